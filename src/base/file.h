@@ -1,0 +1,57 @@
+/* Whole-file reading, and writing that never leaves half a file under the final name. */
+#ifndef CORCAST_BASE_FILE_H
+#define CORCAST_BASE_FILE_H
+
+#include "base/status.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+/* Reads all of `path` ("-": standard input) into *bytes (owned), zero-terminated; *size does not
+ * count that zero. STATUS_INPUT when the file is missing or a folder, STATUS_IO when it cannot be
+ * read. */
+MUST_CHECK Status file_read(const char *path, char **bytes, size_t *size, Err *err);
+
+/* A file being written. What is written to `stream` goes to a temporary neighbour and takes the
+ * final name only in outfile_commit; a signal that ends the program removes the neighbour. "-" is
+ * standard output; a device or pipe is written directly. */
+typedef struct OutFile {
+    FILE *stream;
+    char *path;      /* final name */
+    char *temporary; /* NULL when written directly */
+} OutFile;
+
+/* STATUS_IO when the folder is missing or not writable. Follow with exactly one of outfile_commit
+ * and outfile_discard, each of which releases `file`, also on failure. */
+MUST_CHECK Status outfile_open(OutFile *file, const char *path, Err *err);
+MUST_CHECK Status outfile_commit(OutFile *file, Err *err);
+void outfile_discard(OutFile *file);
+
+/* Writes all of `bytes` to `path` through an OutFile. */
+MUST_CHECK Status file_write(const char *path, const void *bytes, size_t size, Err *err);
+
+/* A temporary name beside `path` that keeps its extension, for another program to write to, in
+ * *temporary (owned). The file exists, empty, and is removed by file_forget or by a signal. */
+MUST_CHECK Status file_temporary(const char *path, char **temporary, Err *err);
+/* Gives the temporary file its final name and frees `temporary`, also on failure. */
+MUST_CHECK Status file_rename(char *temporary, const char *path, Err *err);
+/* Removes and frees a temporary name. NULL is allowed. */
+void file_forget(char *temporary);
+
+/* Makes a folder and its missing parents. */
+MUST_CHECK Status file_make_folder(const char *path, Err *err);
+
+/* Removes temporary files when SIGINT, SIGTERM, SIGHUP or SIGPIPE ends the program. main calls it
+ * once; the table of temporary names that the handler reads is the program's one mutable global. */
+void file_clean_up_on_signals(void);
+
+/* The text after the last '.' of the last component of `path`, "" when there is none. */
+const char *file_extension(const char *path);
+/* `path` without that '.' and extension, and with `suffix` appended, in *out (owned). */
+MUST_CHECK Status file_with_suffix(const char *path, const char *suffix, char **out, Err *err);
+/* folder/name in *out (owned). */
+MUST_CHECK Status file_join(const char *folder, const char *name, char **out, Err *err);
+/* The last component of `path`. Borrowed. */
+const char *file_name(const char *path);
+
+#endif

@@ -1,0 +1,21 @@
+/* Memory and growable arrays whose failure is a Status, never an abort. */
+#ifndef CORCAST_BASE_MEMORY_H
+#define CORCAST_BASE_MEMORY_H
+
+#include "base/status.h"
+#include <stddef.h>
+
+/* Allocates `count` zeroed items of `size` bytes into *out (owned; free with free()). A count of
+ * zero gives a pointer that may be freed. Fails with STATUS_MEMORY, `what` naming the thing. */
+MUST_CHECK Status mem_calloc(void *out, size_t count, size_t size, const char *what, Err *err);
+
+/* Makes room for at least `needed` items of `size` bytes in the array *items, whose capacity is
+ * *capacity items; doubles, so that appending is O(1) amortised. `items` is a pointer to the
+ * array's pointer. Unchanged on failure. */
+MUST_CHECK Status mem_reserve(void *items, size_t *capacity, size_t needed, size_t size,
+                              const char *what, Err *err);
+
+/* A copy of `text` in *out (owned). */
+MUST_CHECK Status mem_strdup(char **out, const char *text, Err *err);
+
+#endif

@@ -1,0 +1,66 @@
+/* Status codes and error text.
+ *
+ * A function that can fail for a reason outside the program returns a Status and takes an
+ * `Err *err` as its last argument. The frame that knows what went wrong writes one whole sentence,
+ * naming the file and line or the option, the value, and what is allowed; callers may prefix where
+ * it happened; main prints it once. On failure every output argument is unchanged. A broken
+ * invariant is an assert, a rejected candidate is an outcome: neither is a Status. */
+#ifndef CORCAST_BASE_STATUS_H
+#define CORCAST_BASE_STATUS_H
+
+#include <stdarg.h>
+
+/* name, process exit status, meaning */
+#define STATUS_TABLE(X)                                                                            \
+    X(OK, 0, "done")                                                                               \
+    X(DIFFERS, 1, "a comparison or verification found a difference")                               \
+    X(USAGE, 2, "the command line or a recipe is wrong")                                           \
+    X(INPUT, 2, "an input file is wrong")                                                          \
+    X(INFEASIBLE, 2, "the request cannot be met")                                                  \
+    X(IO, 3, "reading or writing failed")                                                          \
+    X(MEMORY, 3, "memory ran out")                                                                 \
+    X(TOOL, 3, "another program is missing or failed")                                             \
+    X(INTERRUPTED, 3, "stopped by a signal")
+
+typedef enum Status {
+#define X(name, exit_status, meaning) STATUS_##name,
+    STATUS_TABLE(X)
+#undef X
+} Status;
+
+typedef struct Err {
+    char text[1024]; /* one sentence without a final newline; "" when nothing failed */
+} Err;
+
+#define MUST_CHECK __attribute__((warn_unused_result))
+#define PRINTF_LIKE(format_index, first_index)                                                     \
+    __attribute__((format(printf, format_index, first_index)))
+
+/* Writes the sentence and returns `status`, so that a failing frame reads
+ * `return err_set(err, STATUS_INPUT, "...")`. `err` may be NULL. */
+Status err_set(Err *err, Status status, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* Puts text in front of the sentence: err_prefix(err, "%s: ", path). `err` may be NULL. */
+void err_prefix(Err *err, const char *format, ...) PRINTF_LIKE(2, 3);
+
+/* The process exit status (0 to 3) that stands for `status`. */
+int status_exit(Status status);
+
+/* Returns the status of `expression` from the calling function unless it is STATUS_OK. */
+#define TRY(expression)                                                                            \
+    do {                                                                                           \
+        Status try_status_ = (expression);                                                         \
+        if (try_status_ != STATUS_OK)                                                              \
+            return try_status_;                                                                    \
+    } while (0)
+
+/* Stores the status of `expression` in the local `status` and jumps to `done:` unless it is
+ * STATUS_OK, for functions that hold resources. */
+#define TRY_GOTO(expression)                                                                       \
+    do {                                                                                           \
+        status = (expression);                                                                     \
+        if (status != STATUS_OK)                                                                   \
+            goto done;                                                                             \
+    } while (0)
+
+#endif

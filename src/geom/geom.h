@@ -1,0 +1,9 @@
+/* The door of the room geom: pure geometry. */
+#ifndef CORCAST_GEOM_GEOM_H
+#define CORCAST_GEOM_GEOM_H
+
+#include "geom/box.h"  // IWYU pragma: export
+#include "geom/hit.h"  // IWYU pragma: export
+#include "geom/vec3.h" // IWYU pragma: export
+
+#endif

@@ -1,0 +1,69 @@
+/* Three-vectors in double precision. Millimetres where they are places, pure numbers where they
+ * are directions. */
+#ifndef CORCAST_GEOM_VEC3_H
+#define CORCAST_GEOM_VEC3_H
+
+#include <math.h>
+
+typedef struct Vec3 {
+    double x, y, z;
+} Vec3;
+
+static inline Vec3 vec3(double x, double y, double z)
+{
+    return (Vec3){x, y, z};
+}
+
+static inline Vec3 vec3_add(Vec3 a, Vec3 b)
+{
+    return vec3(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+
+static inline Vec3 vec3_sub(Vec3 a, Vec3 b)
+{
+    return vec3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+
+static inline Vec3 vec3_scale(Vec3 a, double factor)
+{
+    return vec3(a.x * factor, a.y * factor, a.z * factor);
+}
+
+/* a + b * factor */
+static inline Vec3 vec3_add_scaled(Vec3 a, Vec3 b, double factor)
+{
+    return vec3(a.x + b.x * factor, a.y + b.y * factor, a.z + b.z * factor);
+}
+
+static inline double vec3_dot(Vec3 a, Vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline Vec3 vec3_cross(Vec3 a, Vec3 b)
+{
+    return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
+static inline double vec3_length(Vec3 a)
+{
+    return sqrt(vec3_dot(a, a));
+}
+
+static inline double vec3_distance(Vec3 a, Vec3 b)
+{
+    return vec3_length(vec3_sub(a, b));
+}
+
+/* a / |a|; the length of `a` must not be zero. */
+static inline Vec3 vec3_normalized(Vec3 a)
+{
+    return vec3_scale(a, 1 / vec3_length(a));
+}
+
+static inline int vec3_finite(Vec3 a)
+{
+    return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
+}
+
+#endif

@@ -1,0 +1,107 @@
+/* The door of the room image: linear float planes, integer pictures, segment-id planes, the
+ * encoding between them, and their files.
+ *
+ * All hold rows from the top down, pixels from left to right, channels interleaved. Pictures hold
+ * integer codes as a file does; planes hold linear numbers. The only colour encoding step of the
+ * program is picture_from_plane. */
+#ifndef CORCAST_IMAGE_IMAGE_H
+#define CORCAST_IMAGE_IMAGE_H
+
+#include "base/base.h"
+#include <stdint.h>
+
+enum { IMAGE_MAX_SIDE = 1 << 20 };
+
+/* Linear floats: colour (3 channels, 0 black to 1 white), depth (1, mm, INFINITY where nothing is
+ * seen), normal (3, unit vector, 0 0 0 where nothing is seen). */
+typedef struct Plane {
+    int width, height, channels;
+    float *values; /* owned; width * height * channels */
+} Plane;
+
+/* Integer codes of 8 or 16 bits. */
+typedef struct Picture {
+    int width, height, channels; /* channels 1 (grey) or 3 (red green blue) */
+    int bits;                    /* 8 or 16 */
+    uint16_t *codes;             /* owned; width * height * channels, each below 2^bits */
+} Picture;
+
+/* A 24-bit number a pixel: the SWC id of the segment seen, 0 where nothing is seen. */
+typedef struct IdPlane {
+    int width, height;
+    uint32_t *ids; /* owned */
+} IdPlane;
+
+/* Zeroed. STATUS_MEMORY when there is no room; sides are in [1, IMAGE_MAX_SIDE]. */
+MUST_CHECK Status plane_init(Plane *plane, int width, int height, int channels, Err *err);
+MUST_CHECK Status picture_init(Picture *picture, int width, int height, int channels, int bits,
+                               Err *err);
+MUST_CHECK Status idplane_init(IdPlane *ids, int width, int height, Err *err);
+void plane_release(Plane *plane);
+void picture_release(Picture *picture);
+void idplane_release(IdPlane *ids);
+
+/* sRGB transfer curve (IEC 61966-2-1), linear to encoded and back, in float as POV-Ray does. */
+float srgb_encode(float linear);
+float srgb_decode(float encoded);
+
+typedef enum Encoding { ENCODING_SRGB, ENCODING_LINEAR } Encoding;
+
+/* floor(clip(encode(v), 0, 1) * maximum + 1/2), in float: POV-Ray's rounding (base/image/
+ * encoding.h of 3.7.0.10), so that equal floats give equal codes. NaN becomes 0. */
+uint16_t image_code(float linear, Encoding encoding, int bits);
+
+/* New picture of a colour plane (1 or 3 channels). */
+MUST_CHECK Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encoding,
+                                     int bits, Err *err);
+MUST_CHECK Status plane_from_picture(Plane *plane, const Picture *picture, Encoding encoding,
+                                     Err *err);
+/* Id planes as 8-bit pictures: red * 65536 + green * 256 + blue. */
+MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err);
+/* STATUS_INPUT unless the picture has 3 channels of 8 bits. */
+MUST_CHECK Status ids_from_picture(IdPlane *ids, const Picture *picture, Err *err);
+
+/* Provenance written into files that can hold it (PNG tEXt). Never a date or a path. */
+typedef struct ImageNote {
+    const char *key;  /* "Software", "Description", "Comment" */
+    const char *text; /* Latin-1 */
+} ImageNote;
+
+typedef struct ImageNotes {
+    const ImageNote *notes; /* borrowed */
+    int count;
+    double dpi; /* pHYs; 0: not written */
+} ImageNotes;
+
+/* Writes by extension: .ppm (P6), .pgm (P5, 1 channel), .png; "-" writes PPM. `notes` may be NULL.
+ * PNG carries an sRGB chunk when `encoding` is sRGB and gAMA 1.0 when it is linear, and no tIME.
+ * STATUS_USAGE on another extension. */
+MUST_CHECK Status picture_write(const Picture *picture, const char *path, Encoding encoding,
+                                const ImageNotes *notes, Err *err);
+/* Reads PPM/PGM (P2, P3, P5, P6, maxval up to 65535, '#' comments) and PNG (8 and 16 bit, grey,
+ * RGB, palette; an alpha channel is refused unless opaque throughout); the format is told by the
+ * first bytes. A maxval other than 255 and 65535 is rescaled to 8 bits below 255 and to 16 above.
+ * "-" is standard input. STATUS_INPUT with a sentence naming the file on truncated or corrupt
+ * files. */
+MUST_CHECK Status picture_read(Picture *picture, const char *path, Err *err);
+
+/* PFM ("PF" 3 channels, "Pf" 1), little-endian, rows bottom-up in the file. */
+MUST_CHECK Status plane_write(const Plane *plane, const char *path, Err *err);
+/* Both byte orders, the scale's magnitude ignored. */
+MUST_CHECK Status plane_read(Plane *plane, const char *path, Err *err);
+
+/* True when `path` names a PFM, by extension or, for an existing file, by its first bytes. */
+bool image_is_pfm(const char *path);
+
+/* What a renderer delivers, or what is read back from another's files. Planes that were not asked
+ * for have NULL values. */
+typedef struct Frame {
+    Plane color;  /* linear */
+    Plane depth;  /* mm */
+    Plane normal; /* unit, world, towards the viewer */
+    IdPlane id;
+} Frame;
+
+void frame_release(Frame *frame);
+
+#endif

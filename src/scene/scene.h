@@ -1,0 +1,100 @@
+/* The door of the room scene: what there is to draw, with no knowledge of trees.
+ *
+ * The world is right-handed, millimetres, colours linear RGB. A scene is either a list of
+ * primitives or an implicit field, built once by `stage` and constant from then on. */
+#ifndef CORCAST_SCENE_SCENE_H
+#define CORCAST_SCENE_SCENE_H
+
+#include "base/base.h"
+#include "geom/geom.h"
+#include <stdint.h>
+
+typedef struct Rgb {
+    float r, g, b;
+} Rgb;
+
+typedef enum Projection { PROJECTION_ORTHOGRAPHIC, PROJECTION_PERSPECTIVE } Projection;
+
+/* Pixel (i, j), j from the top, looks along the ray through
+ *   x0 = (i + 1/2) / W - 1/2,  y0 = ((H - 1) - (j - 1/2)) / H - 1/2:
+ * orthographic: from location + x0 right + y0 up along direction;
+ * perspective: from location along direction + x0 right + y0 up, normalised.
+ * This is POV-Ray's camera (tracepixel.cpp of 3.7.0.10), order of evaluation included. */
+typedef struct Camera {
+    Projection projection;
+    Vec3 location;
+    Vec3 right;        /* full width: mm (orthographic), or per unit of direction (perspective) */
+    Vec3 up;           /* full height likewise; right x up points against direction */
+    Vec3 direction;    /* unit */
+    int width, height; /* pixels */
+} Camera;
+
+/* The ray through the point (i + dx, j + dy) of the pixel grid, dx = dy = 0 at the centre of pixel
+ * (i, j); direction is unit. */
+Ray camera_ray(const Camera *camera, double i, double j);
+
+/* The depth of a point that a ray of this camera met at parameter t: mm along the ray from the
+ * camera point, or from the plane through location. With a unit direction that is t itself. */
+
+/* A point light at `location`, or, when `parallel`, light that travels from `location` towards
+ * `target` everywhere. */
+typedef struct Light {
+    Vec3 location;
+    Vec3 target;
+    Rgb color;
+    bool parallel;
+    bool casts_shadows;
+} Light;
+
+/* POV-Ray's finish; METHODS section 3. */
+typedef struct Finish {
+    float ambient, diffuse, brilliance, phong, phong_size, specular, roughness;
+} Finish;
+
+typedef enum PrimitiveKind { PRIMITIVE_CYLINDER, PRIMITIVE_SPHERE } PrimitiveKind;
+
+/* A closed cylinder from a to b, or a sphere about a. */
+typedef struct Primitive {
+    PrimitiveKind kind;
+    Vec3 a, b;
+    double radius_mm; /* > 0 */
+    uint32_t id;      /* SWC id of the segment it stands for */
+    Rgb color;
+} Primitive;
+
+/* One Gaussian line potential; METHODS section 2. */
+typedef struct FieldSegment {
+    Vec3 a, b;        /* different */
+    double radius_mm; /* > 0 */
+    uint32_t id;
+    Rgb color;
+} FieldSegment;
+
+/* e^-2, the level at which a long segment has its own radius. */
+#define FIELD_LEVEL 0.13533528323661270
+
+typedef enum SceneModel { SCENE_CYLINDERS, SCENE_ROUNDED, SCENE_ISOSURFACE } SceneModel;
+
+typedef struct Scene {
+    SceneModel model;
+    Camera camera;
+    Rgb background;
+    Finish finish;
+    Light *lights; /* owned */
+    size_t n_lights;
+    Primitive *primitives; /* owned; empty for an implicit model */
+    size_t n_primitives;
+    FieldSegment *segments; /* owned; empty for a primitive model */
+    size_t n_segments;
+    bool uniform_color; /* every color is `color` */
+    Rgb color;
+    Box bounds; /* of the geometry, mm; for the field the box of its segments' tubes */
+} Scene;
+
+void scene_release(Scene *scene);
+
+/* STATUS_INPUT unless every number is finite and in its range, directions are not zero, and
+ * coordinates keep double precision meaningful. */
+MUST_CHECK Status scene_check(const Scene *scene, Err *err);
+
+#endif

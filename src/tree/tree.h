@@ -1,0 +1,75 @@
+/* The door of the room tree: an arterial tree as flat arrays.
+ *
+ * Node i other than a root is the distal end of segment i, the straight tube from its parent's
+ * position to its own, of radius radius_mm[i] throughout. A root is an inlet point, and its radius
+ * that of its first segment. Several roots make a forest. Parents come before children, so a
+ * forward loop is a sweep from the roots and a backward loop one from the terminals. */
+#ifndef CORCAST_TREE_TREE_H
+#define CORCAST_TREE_TREE_H
+
+#include "base/base.h"
+#include "geom/geom.h"
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { TREE_NO_PARENT = -1, TREE_MAX_ID = 0xffffff };
+
+/* Header keys of SPEC that a tree file may carry; `has` tells which are known. */
+typedef struct TreeHeader {
+    struct {
+        bool seed, dimension, gamma, lambda, p_perf, p_term, q_perf, viscosity;
+    } has;
+    uint64_t seed;
+    int dimension;        /* 2 or 3 */
+    double gamma;         /* Murray exponent */
+    double lambda;        /* exponent of the target */
+    double p_perf_mmhg;   /* at the inlet */
+    double p_term_mmhg;   /* at every terminal */
+    double q_perf_ml_min; /* through the inlet */
+    double viscosity_cp;
+    /* Every header comment in file order, known keys included: "key: value" lines are rewritten
+     * from the fields above; all other lines are kept as they are. */
+    char **lines; /* owned; without "# " and line end */
+    size_t n_lines;
+} TreeHeader;
+
+typedef struct Tree {
+    size_t n;          /* nodes; at least 1 */
+    int32_t *id;       /* SWC id, in [1, TREE_MAX_ID] */
+    int32_t *type;     /* SWC type code */
+    int32_t *parent;   /* index of the parent, below the own index; TREE_NO_PARENT at a root */
+    Vec3 *position;    /* mm */
+    double *radius_mm; /* >= 0 */
+    TreeHeader header;
+} Tree;
+
+/* Room for n zeroed nodes, parents TREE_NO_PARENT. */
+MUST_CHECK Status tree_init(Tree *tree, size_t n, Err *err);
+void tree_release(Tree *tree);
+
+static inline bool tree_is_segment(const Tree *tree, size_t i)
+{
+    return tree->parent[i] != TREE_NO_PARENT;
+}
+
+/* Length of segment i, mm; 0 at a root. */
+double tree_segment_length(const Tree *tree, size_t i);
+
+/* The number of children of every node, in *count (owned, n entries). */
+MUST_CHECK Status tree_child_counts(const Tree *tree, int32_t **count, Err *err);
+
+/* Checks what the type promises: parents before children, finite positions and radii, radii not
+ * negative, ids in range and different. STATUS_INPUT naming the id of the node at fault. */
+MUST_CHECK Status tree_check(const Tree *tree, Err *err);
+
+/* A new tree without the segments thinner than `radius_mm` and without what hangs on them; ids are
+ * kept. A root always stays. */
+MUST_CHECK Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err);
+
+/* The box of all segments with their radii. */
+Box tree_bounds(const Tree *tree);
+
+/* Appends a header line (copied). */
+MUST_CHECK Status tree_add_line(Tree *tree, const char *line, Err *err);
+
+#endif
