@@ -9,5 +9,6 @@
 #include "base/status.h"   // IWYU pragma: export
 #include "base/text.h"     // IWYU pragma: export
 #include "base/threads.h"  // IWYU pragma: export
+#include "base/units.h"    // IWYU pragma: export
 
 #endif

@@ -1,0 +1,31 @@
+/* Where units change: users speak mmHg, ml/min and cP; inside are mm, g and s, so pressure is in Pa
+ * and viscosity in Pa s. */
+#ifndef CORCAST_BASE_UNITS_H
+#define CORCAST_BASE_UNITS_H
+
+static inline double pa_from_mmhg(double mmhg)
+{
+    return mmhg * 133.322387415;
+}
+
+static inline double mmhg_from_pa(double pa)
+{
+    return pa / 133.322387415;
+}
+
+static inline double mm3_s_from_ml_min(double ml_min)
+{
+    return ml_min * 1000 / 60;
+}
+
+static inline double ml_min_from_mm3_s(double mm3_s)
+{
+    return mm3_s * 60 / 1000;
+}
+
+static inline double pa_s_from_cp(double cp)
+{
+    return cp * 1e-3;
+}
+
+#endif
