@@ -84,7 +84,10 @@ Status run_grow(int argc, char **argv, Err *err)
     params.toss = (GrowToss)toss;
     params.progress = show_progress;
     params.progress_context = &progress;
-    TRY_GOTO(tree_check_output(output, err));
+    if (!tree_format_known(output)) {
+        status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .swc", output);
+        goto done;
+    }
     TRY_GOTO(domain_parse(&domain, domain_spec, err));
     progress_start(&progress, "growing", parsed.common.quiet);
     status = grow_tree(&params, &domain, &tree, &report, err);
