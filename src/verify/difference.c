@@ -1,0 +1,37 @@
+/* Magma's colours at six fixed steps. */
+#include "verify/verify.h"
+
+#include <stdlib.h>
+
+const HeatStep heat_steps[HEAT_STEPS] = {{0, 0, 0, 4},       {1, 59, 15, 112},
+                                         {2, 140, 41, 129},  {4, 222, 73, 104},
+                                         {8, 254, 159, 109}, {16, 252, 253, 191}};
+
+static const HeatStep *heat_of(double level)
+{
+    int step = 0;
+    while (step + 1 < HEAT_STEPS && level >= heat_steps[step + 1].from_level)
+        step++;
+    return &heat_steps[step == 0 && level > 0 ? 1 : step];
+}
+
+Status difference_picture(Picture *out, const Picture *a, const Picture *b, Err *err)
+{
+    Picture made;
+    TRY(picture_init(&made, a->width, a->height, 3, 8, err));
+    size_t n = (size_t)a->width * (size_t)a->height, channels = (size_t)a->channels;
+    double code_levels = a->bits == 8 ? 1 : 1 / 257.0;
+    for (size_t i = 0; i < n; i++) {
+        int largest = 0;
+        for (size_t c = 0; c < channels; c++) {
+            int difference = abs(a->codes[i * channels + c] - b->codes[i * channels + c]);
+            largest = difference > largest ? difference : largest;
+        }
+        const HeatStep *heat = heat_of(largest * code_levels);
+        made.codes[3 * i] = heat->red;
+        made.codes[3 * i + 1] = heat->green;
+        made.codes[3 * i + 2] = heat->blue;
+    }
+    *out = made;
+    return STATUS_OK;
+}

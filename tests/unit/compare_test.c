@@ -1,0 +1,552 @@
+#include "verify/verify.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { W = 37, H = 23 };
+
+static Err err;
+
+/* A disc of segment 17 about (18, 11), radius 8, whose left half is segment 29, on black. */
+static uint32_t disc_id(int x, int y, int radius)
+{
+    if ((x - 18) * (x - 18) + (y - 11) * (y - 11) > radius * radius)
+        return 0;
+    return x < 18 ? 29 : 17;
+}
+
+static void make_disc(Picture *picture, IdPlane *ids, int bits, int radius)
+{
+    assert_int_equal(picture_init(picture, W, H, 3, bits, &err), STATUS_OK);
+    assert_int_equal(idplane_init(ids, W, H, &err), STATUS_OK);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            uint32_t id = disc_id(x, y, radius);
+            ids->ids[y * W + x] = id;
+            uint16_t *code = picture->codes + (y * W + x) * 3;
+            for (int c = 0; c < 3 && id; c++)
+                code[c] = (uint16_t)((60 + 3 * x + 2 * y + 11 * c) << (bits - 8));
+        }
+}
+
+typedef struct Pair {
+    Picture a, b;
+    IdPlane id_a, id_b;
+} Pair;
+
+static Pair make_pair_of_radii(int bits, int radius_a, int radius_b)
+{
+    Pair pair;
+    make_disc(&pair.a, &pair.id_a, bits, radius_a);
+    make_disc(&pair.b, &pair.id_b, bits, radius_b);
+    return pair;
+}
+
+static Pair make_pair(int bits)
+{
+    return make_pair_of_radii(bits, 8, 8);
+}
+
+static void pair_release(Pair *pair)
+{
+    picture_release(&pair->a);
+    picture_release(&pair->b);
+    idplane_release(&pair->id_a);
+    idplane_release(&pair->id_b);
+}
+
+static CompareResult compare(const Pair *pair, bool with_ids, Tolerance tolerance)
+{
+    CompareResult result;
+    assert_int_equal(compare_pictures(&pair->a, &pair->b, with_ids ? &pair->id_a : NULL,
+                                      with_ids ? &pair->id_b : NULL, &tolerance, &result, &err),
+                     STATUS_OK);
+    return result;
+}
+
+static uint16_t *code_at(Picture *picture, int x, int y, int channel)
+{
+    return &picture->codes[(y * picture->width + x) * picture->channels + channel];
+}
+
+static void agrees_with_itself(void **state)
+{
+    (void)state;
+    for (int bits = 8; bits <= 16; bits += 8)
+        for (int with_ids = 0; with_ids < 2; with_ids++) {
+            Pair pair = make_pair(bits);
+            CompareResult r = compare(&pair, with_ids, tolerance_identity(0));
+            assert_true(r.agrees);
+            assert_string_equal(r.reason, "");
+            assert_int_equal(r.pixels, W * H);
+            assert_int_equal(r.differing_pixels, 0);
+            assert_int_equal(r.classes.identical, W * H);
+            assert_int_equal(r.missing_pixels + r.extra_pixels, 0);
+            assert_float_equal(r.max_abs, 0, 0);
+            assert_float_equal(r.rmse, 0, 0);
+            assert_true(isinf(r.psnr_db));
+            assert_float_equal(r.flip_mean, 0, 0);
+            assert_float_equal(r.ssim, 1, 1e-12);
+            assert_float_equal(r.edge_mismatch_fraction, 0, 0);
+            pair_release(&pair);
+        }
+}
+
+static void counts_exactly_the_pixels_that_were_edited(void **state)
+{
+    (void)state;
+    for (int n = 0; n <= 60; n++) {
+        Pair pair = make_pair(8);
+        Random random;
+        random_seed(&random, 2385 + (uint64_t)n);
+        bool edited[W * H] = {false};
+        double squares = 0, sum = 0;
+        for (int done = 0; done < n;) {
+            int p = (int)(random_uniform(&random) * W * H);
+            int by = 1 + (int)(random_uniform(&random) * 40);
+            if (edited[p])
+                continue;
+            edited[p] = true;
+            uint16_t *code = &pair.b.codes[3 * p + done % 3];
+            *code = (uint16_t)(*code > 127 ? *code - by : *code + by);
+            squares += by * by;
+            sum += by;
+            done++;
+        }
+        CompareResult r = compare(&pair, true, tolerance_identity(0));
+        assert_int_equal(r.differing_pixels, n);
+        assert_int_equal(r.beyond_pixels, n);
+        assert_int_equal(r.classes.identical, W * H - n);
+        assert_int_equal(r.classes.rounding + r.classes.shading, n);
+        assert_float_equal(r.rmse, sqrt(squares / (3 * W * H)), 1e-12);
+        assert_float_equal(r.mean_abs, sum / (3 * W * H), 1e-12);
+        assert_int_equal(r.agrees, n == 0);
+        pair_release(&pair);
+    }
+}
+
+static void is_symmetric_but_for_missing_and_extra(void **state)
+{
+    (void)state;
+    Pair pair = make_pair_of_radii(8, 8, 6);
+    *code_at(&pair.b, 18, 11, 1) ^= 3;
+    Pair back = {pair.b, pair.a, pair.id_b, pair.id_a};
+    CompareResult r = compare(&pair, true, tolerance_identity(0));
+    CompareResult s = compare(&back, true, tolerance_identity(0));
+    assert_true(r.missing_pixels > 0);
+    assert_int_equal(r.missing_pixels, s.extra_pixels);
+    assert_int_equal(r.extra_pixels, s.missing_pixels);
+    assert_int_equal(r.largest_region, s.largest_region);
+    assert_int_equal(r.differing_pixels, s.differing_pixels);
+    assert_int_equal(r.classes.edge, s.classes.edge);
+    assert_float_equal(r.rmse, s.rmse, 0);
+    assert_float_equal(r.flip_mean, s.flip_mean, 0);
+    assert_float_equal(r.ssim, s.ssim, 1e-15);
+    pair_release(&pair);
+}
+
+static void tells_surface_from_edge_from_missing(void **state)
+{
+    (void)state;
+    Pair pair = make_pair(8);
+    /* A hole of 3 x 2 pixels in the middle of segment 17, and one pixel gone from its rim. */
+    for (int y = 8; y < 10; y++)
+        for (int x = 20; x < 23; x++) {
+            pair.id_b.ids[y * W + x] = 0;
+            memset(code_at(&pair.b, x, y, 0), 0, 3 * sizeof(uint16_t));
+        }
+    pair.id_b.ids[11 * W + 26] = 0;
+    memset(code_at(&pair.b, 26, 11, 0), 0, 3 * sizeof(uint16_t));
+    /* Shading: one level, then five, well inside segment 29. */
+    *code_at(&pair.b, 14, 11, 0) += 1;
+    *code_at(&pair.b, 13, 11, 2) += 5;
+    CompareResult r = compare(&pair, true, tolerance_identity(0));
+    assert_int_equal(r.missing_pixels, 7);
+    assert_int_equal(r.extra_pixels, 0);
+    assert_int_equal(r.largest_region, 6);
+    assert_int_equal(r.largest_region_at.x, 20);
+    assert_int_equal(r.largest_region_at.y, 8);
+    assert_int_equal(r.largest_region_at.id_a, 17);
+    assert_int_equal(r.largest_region_at.id_b, 0);
+    /* The hole's pixels touch its own boundary in B, so they are edge pixels. */
+    assert_int_equal(r.classes.edge, 7);
+    assert_int_equal(r.classes.rounding, 1);
+    assert_int_equal(r.classes.shading, 1);
+    assert_float_equal(r.interior_max_abs, 5, 0);
+    assert_true(r.edge_mismatch_fraction > 0);
+    /* The background's colour tells the same. */
+    CompareResult s = compare(&pair, false, tolerance_identity(0));
+    assert_true(s.has_mask && !s.has_ids);
+    assert_int_equal(s.missing_pixels, 7);
+    assert_int_equal(s.largest_region, 6);
+    pair_release(&pair);
+}
+
+static void finds_missing_interior_off_the_band(void **state)
+{
+    (void)state;
+    Pair pair = make_pair(8);
+    for (int i = 0; i < W * H; i++)
+        pair.id_b.ids[i] = 0;
+    CompareResult r;
+    Tolerance tolerance = tolerance_identity(0);
+    assert_int_equal(compare_ids(&pair.id_a, &pair.id_b, &tolerance, &r, &err), STATUS_OK);
+    assert_int_equal(r.missing_pixels, r.differing_pixels);
+    assert_int_equal(r.largest_region, r.missing_pixels);
+    assert_int_equal(r.classes.missing + r.classes.edge, r.missing_pixels);
+    assert_true(r.classes.missing > 100);
+    assert_int_equal(r.classes.missing + r.classes.edge + r.classes.identical, W * H);
+    assert_false(r.agrees);
+    pair_release(&pair);
+}
+
+static void knows_no_mask_without_a_background(void **state)
+{
+    (void)state;
+    Pair pair = make_pair(8);
+    *code_at(&pair.b, 0, 0, 0) = 7;
+    *code_at(&pair.b, W - 1, H - 1, 0) = 9;
+    CompareResult r = compare(&pair, false, tolerance_identity(0));
+    assert_false(r.has_mask);
+    assert_true(isnan(r.interior_max_abs));
+    assert_int_equal(r.differing_pixels, 2);
+    json_t *json = compare_json(&r);
+    assert_true(json_is_null(json_object_get(json, "missing_pixels")));
+    assert_true(json_is_null(json_object_get(json, "interior_max_abs")));
+    json_decref(json);
+    pair_release(&pair);
+}
+
+static void says_what_is_wrong_and_where(void **state)
+{
+    (void)state;
+    Pair pair = make_pair(8);
+    *code_at(&pair.b, 22, 13, 1) += 31;
+    CompareResult r = compare(&pair, true, tolerance_identity(0));
+    assert_string_equal(r.reason, "color: pixels off by more than 0 levels: 1175 ppm, at most 5 "
+                                  "allowed; the worst, 31 levels, is at (22, 13), segment 17");
+    CompareResult without = compare(&pair, false, tolerance_identity(0));
+    assert_non_null(strstr(without.reason, "the worst, 31 levels, is at (22, 13)"));
+    pair.id_b.ids[13 * W + 11] = 0;
+    Tolerance tolerance = tolerance_identity(0);
+    assert_int_equal(compare_ids(&pair.id_a, &pair.id_b, &tolerance, &r, &err), STATUS_OK);
+    assert_string_equal(r.reason, "id: pixels with different ids: 1175 ppm, at most 5 allowed; the "
+                                  "first is at (11, 13), segment 29 in A and 0 in B (0: nothing)");
+    pair_release(&pair);
+}
+
+static void allows_five_pixels_in_a_million(void **state)
+{
+    (void)state;
+    Picture a, b;
+    Tolerance tolerance = tolerance_identity(0);
+    CompareResult r;
+    assert_int_equal(picture_init(&a, 1000, 200, 1, 8, &err), STATUS_OK);
+    assert_int_equal(picture_init(&b, 1000, 200, 1, 8, &err), STATUS_OK);
+    b.codes[777] = 200;
+    assert_int_equal(compare_pictures(&a, &b, NULL, NULL, &tolerance, &r, &err), STATUS_OK);
+    assert_true(r.agrees);
+    b.codes[12345] = 1;
+    assert_int_equal(compare_pictures(&a, &b, NULL, NULL, &tolerance, &r, &err), STATUS_OK);
+    assert_false(r.agrees);
+    picture_release(&a);
+    picture_release(&b);
+}
+
+static void judges_surfaces_by_levels_and_regions(void **state)
+{
+    (void)state;
+    Pair pair = make_pair(8);
+    for (int y = 5; y < 17; y++)
+        for (int x = 14; x < 22; x++)
+            *code_at(&pair.b, x, y, 0) += 2;
+    assert_true(compare(&pair, true, tolerance_surface()).agrees);
+    *code_at(&pair.b, 18, 11, 0) += 1;
+    CompareResult r = compare(&pair, true, tolerance_surface());
+    assert_int_equal(r.beyond_pixels, 1);
+    assert_int_equal(r.judged_pixels, r.common_pixels);
+    assert_int_equal(r.judged_pixels, 197);
+    assert_false(r.agrees); /* 1 pixel of 197 is 5076 ppm, and 5000 are allowed */
+    pair_release(&pair);
+}
+
+static void refuses_a_surface_with_a_hole_of_three_pixels(void **state)
+{
+    (void)state;
+    for (int size = 2; size <= 3; size++) {
+        Pair pair = make_pair(8);
+        for (int x = 20; x < 20 + size; x++)
+            pair.id_b.ids[11 * W + x] = 0;
+        CompareResult r = compare(&pair, true, tolerance_surface());
+        assert_int_equal(r.largest_region, size);
+        assert_int_equal(r.agrees, size == 2);
+        pair_release(&pair);
+    }
+}
+
+static void reports_sixteen_bit_pictures_in_eight_bit_levels(void **state)
+{
+    (void)state;
+    Pair pair = make_pair(16);
+    *code_at(&pair.b, 18, 11, 0) += 1;
+    *code_at(&pair.b, 19, 11, 0) += 514;
+    CompareResult r = compare(&pair, true, tolerance_identity(0));
+    assert_float_equal(r.max_abs, 2, 1e-12);
+    assert_float_equal(r.max_code, 514, 0);
+    assert_int_equal(r.beyond_pixels, 2);
+    assert_int_equal(r.classes.rounding, 1);
+    r = compare(&pair, true, tolerance_surface());
+    assert_int_equal(r.beyond_pixels, 0);
+    pair_release(&pair);
+}
+
+static void compares_single_pixels(void **state)
+{
+    (void)state;
+    Picture a, b;
+    Tolerance tolerance = tolerance_identity(0);
+    CompareResult r;
+    assert_int_equal(picture_init(&a, 1, 1, 3, 8, &err), STATUS_OK);
+    assert_int_equal(picture_init(&b, 1, 1, 3, 8, &err), STATUS_OK);
+    assert_int_equal(compare_pictures(&a, &b, NULL, NULL, &tolerance, &r, &err), STATUS_OK);
+    assert_true(r.agrees);
+    b.codes[2] = 255;
+    assert_int_equal(compare_pictures(&a, &b, NULL, NULL, &tolerance, &r, &err), STATUS_OK);
+    assert_false(r.agrees);
+    assert_int_equal(r.differing_pixels, 1);
+    assert_true(r.flip_mean > 0.5);
+    assert_true(isnan(r.ssim));
+    picture_release(&a);
+    picture_release(&b);
+}
+
+static void refuses_images_of_different_shape(void **state)
+{
+    (void)state;
+    Picture a, wide, deep, grey;
+    CompareResult r = {.pixels = 7};
+    Tolerance tolerance = tolerance_identity(0);
+    assert_int_equal(picture_init(&a, 4, 3, 3, 8, &err), STATUS_OK);
+    assert_int_equal(picture_init(&wide, 5, 3, 3, 8, &err), STATUS_OK);
+    assert_int_equal(picture_init(&deep, 4, 3, 3, 16, &err), STATUS_OK);
+    assert_int_equal(picture_init(&grey, 4, 3, 1, 8, &err), STATUS_OK);
+    assert_int_equal(compare_pictures(&a, &wide, NULL, NULL, &tolerance, &r, &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "4 x 3 and 5 x 3 pixels"));
+    assert_int_equal(compare_pictures(&a, &deep, NULL, NULL, &tolerance, &r, &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "3 x 8 and 3 x 16 bits"));
+    assert_int_equal(compare_pictures(&a, &grey, NULL, NULL, &tolerance, &r, &err), STATUS_INPUT);
+    IdPlane ids;
+    assert_int_equal(idplane_init(&ids, 3, 3, &err), STATUS_OK);
+    assert_int_equal(compare_pictures(&a, &a, &ids, &ids, &tolerance, &r, &err), STATUS_INPUT);
+    assert_int_equal(compare_pictures(&a, &a, &ids, NULL, &tolerance, &r, &err), STATUS_INPUT);
+    assert_int_equal(r.pixels, 7);
+    idplane_release(&ids);
+    picture_release(&a);
+    picture_release(&wide);
+    picture_release(&deep);
+    picture_release(&grey);
+}
+
+static void fill_depth(Plane *depth, int radius, double slope)
+{
+    assert_int_equal(plane_init(depth, W, H, 1, &err), STATUS_OK);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            depth->values[y * W + x] = disc_id(x, y, radius) ? 100 + (float)(slope * x) : INFINITY;
+}
+
+static CompareResult compare_depth(const Plane *a, const Plane *b, Tolerance tolerance)
+{
+    CompareResult result;
+    assert_int_equal(compare_planes(PLANE_DEPTH, a, b, NULL, NULL, &tolerance, &result, &err),
+                     STATUS_OK);
+    return result;
+}
+
+static void measures_depth_in_mm_over_common_pixels(void **state)
+{
+    (void)state;
+    Plane a, b;
+    fill_depth(&a, 8, 0.25);
+    fill_depth(&b, 8, 0.25);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < 14; x++)
+            b.values[y * W + x] += 0.5f;
+    b.values[11 * W + 18] = INFINITY;
+    a.values[0] = 3;
+    CompareResult r = compare_depth(&a, &b, tolerance_identity(0.01));
+    assert_int_equal(r.missing_pixels, 2);
+    assert_int_equal(r.extra_pixels, 0);
+    assert_int_equal(r.common_pixels, 196);
+    assert_float_equal(r.median, 0, 0);
+    assert_float_equal(r.p99, 0.5, 0);
+    assert_float_equal(r.max, 0.5, 0);
+    assert_int_equal(r.beyond_pixels, r.differing_pixels - 2);
+    assert_int_equal(r.worst.y, 5);
+    assert_int_equal(r.worst.x, 13);
+    assert_false(r.agrees);
+    assert_non_null(strstr(r.reason, "pixels seen in only one image"));
+    plane_release(&a);
+    plane_release(&b);
+}
+
+static void takes_percentiles_by_nearest_rank(void **state)
+{
+    (void)state;
+    Plane a, b;
+    assert_int_equal(plane_init(&a, 20, 10, 1, &err), STATUS_OK);
+    assert_int_equal(plane_init(&b, 20, 10, 1, &err), STATUS_OK);
+    for (int i = 0; i < 200; i++)
+        b.values[i] = (float)(i * 77 % 200 + 1); /* 1 to 200 in another order */
+    CompareResult r = compare_depth(&a, &b, tolerance_surface());
+    assert_float_equal(r.median, 100, 0);
+    assert_float_equal(r.p99, 198, 0);
+    assert_float_equal(r.max, 200, 0);
+    assert_string_equal(r.reason, "depth: 99th percentile of differences: 198 mm, at most 0.01 "
+                                  "allowed; the worst, 200 mm, is at (7, 9)");
+    plane_release(&a);
+    plane_release(&b);
+}
+
+static void counts_nan_and_never_averages_it_in(void **state)
+{
+    (void)state;
+    Plane a, b;
+    fill_depth(&a, 8, 0.25);
+    fill_depth(&b, 8, 0.25);
+    b.values[11 * W + 18] = NAN;
+    a.values[10 * W + 17] = -INFINITY;
+    a.values[0] = b.values[0] = NAN;
+    CompareResult r = compare_depth(&a, &b, tolerance_identity(0.01));
+    assert_int_equal(r.nan_pixels_a, 2);
+    assert_int_equal(r.nan_pixels_b, 2);
+    assert_int_equal(r.common_pixels, 195);
+    assert_int_equal(r.missing_pixels + r.extra_pixels, 0);
+    assert_float_equal(r.max, 0, 0);
+    assert_false(r.agrees);
+    assert_string_equal(r.reason, "depth: values that are not a number: 4 pixels, at most 0 "
+                                  "allowed; the first is at (0, 0)");
+    assert_false(compare_depth(&a, &b, tolerance_surface()).agrees);
+    plane_release(&a);
+    plane_release(&b);
+}
+
+static void measures_normals_by_their_angle(void **state)
+{
+    (void)state;
+    Plane a, b;
+    CompareResult r;
+    Tolerance tolerance = tolerance_identity(0);
+    assert_int_equal(plane_init(&a, 3, 1, 3, &err), STATUS_OK);
+    assert_int_equal(plane_init(&b, 3, 1, 3, &err), STATUS_OK);
+    const float normals_a[] = {0, 0, 1, 1, 0, 0, 0, 0, 0};
+    const float normals_b[] = {0, 0.6f, 0.8f, 1, 1e-4f, 0, 0, 0, 0};
+    memcpy(a.values, normals_a, sizeof normals_a);
+    memcpy(b.values, normals_b, sizeof normals_b);
+    assert_int_equal(compare_planes(PLANE_NORMAL, &a, &b, NULL, NULL, &tolerance, &r, &err),
+                     STATUS_OK);
+    assert_int_equal(r.common_pixels, 2);
+    assert_float_equal(r.max, 36.8698976, 1e-5);
+    assert_float_equal(r.median, 0.0057295780, 1e-9);
+    assert_int_equal(r.beyond_pixels, 1);
+    b.values[0] = NAN;
+    assert_int_equal(compare_planes(PLANE_NORMAL, &a, &b, NULL, NULL, &tolerance, &r, &err),
+                     STATUS_OK);
+    assert_int_equal(r.nan_pixels_b, 1);
+    assert_int_equal(r.common_pixels, 1);
+    assert_int_equal(compare_planes(PLANE_DEPTH, &a, &b, NULL, NULL, &tolerance, &r, &err),
+                     STATUS_INPUT);
+    plane_release(&a);
+    plane_release(&b);
+}
+
+static void finds_nothing_in_common_with_an_empty_plane(void **state)
+{
+    (void)state;
+    Plane a, b;
+    fill_depth(&a, 8, 0.25);
+    fill_depth(&b, -1, 0);
+    for (int i = 0; i < W * H; i++)
+        b.values[i] = INFINITY;
+    CompareResult r = compare_depth(&a, &b, tolerance_surface());
+    assert_int_equal(r.common_pixels, 0);
+    assert_true(isnan(r.median));
+    assert_false(r.agrees);
+    assert_non_null(strstr(r.reason, "largest missing or extra region: 197 pixels"));
+    plane_release(&a);
+    plane_release(&b);
+}
+
+static void keeps_the_keys_of_the_contract(void **state)
+{
+    (void)state;
+    static const char *const keys[] = {
+        "verdict",        "pixels",      "max_abs", "mean_abs",         "rmse",
+        "psnr_db",        "flip_mean",   "ssim",    "interior_max_abs", "edge_mismatch_fraction",
+        "missing_pixels", "extra_pixels"};
+    Pair pair = make_pair(8);
+    CompareResult r = compare(&pair, false, tolerance_identity(0));
+    json_t *json = compare_json(&r);
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+        assert_non_null(json_object_get(json, keys[i]));
+    assert_string_equal(json_string_value(json_object_get(json, "verdict")), "agree");
+    assert_true(json_is_null(json_object_get(json, "psnr_db")));
+    assert_int_equal(json_integer_value(json_object_get(json, "pixels")), W * H);
+    json_decref(json);
+    pair_release(&pair);
+}
+
+static void colours_differences_by_fixed_steps(void **state)
+{
+    (void)state;
+    Picture a, b, heat;
+    assert_int_equal(picture_init(&a, 8, 1, 1, 8, &err), STATUS_OK);
+    assert_int_equal(picture_init(&b, 8, 1, 1, 8, &err), STATUS_OK);
+    const uint16_t levels[] = {0, 1, 2, 3, 7, 15, 16, 255};
+    const int steps[] = {0, 1, 2, 2, 3, 4, 5, 5};
+    memcpy(b.codes, levels, sizeof levels);
+    assert_int_equal(difference_picture(&heat, &a, &b, &err), STATUS_OK);
+    for (int i = 0; i < 8; i++) {
+        assert_int_equal(heat.codes[3 * i], heat_steps[steps[i]].red);
+        assert_int_equal(heat.codes[3 * i + 1], heat_steps[steps[i]].green);
+        assert_int_equal(heat.codes[3 * i + 2], heat_steps[steps[i]].blue);
+    }
+    picture_release(&a);
+    picture_release(&b);
+    picture_release(&heat);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(agrees_with_itself),
+        cmocka_unit_test(counts_exactly_the_pixels_that_were_edited),
+        cmocka_unit_test(is_symmetric_but_for_missing_and_extra),
+        cmocka_unit_test(tells_surface_from_edge_from_missing),
+        cmocka_unit_test(finds_missing_interior_off_the_band),
+        cmocka_unit_test(knows_no_mask_without_a_background),
+        cmocka_unit_test(says_what_is_wrong_and_where),
+        cmocka_unit_test(allows_five_pixels_in_a_million),
+        cmocka_unit_test(judges_surfaces_by_levels_and_regions),
+        cmocka_unit_test(refuses_a_surface_with_a_hole_of_three_pixels),
+        cmocka_unit_test(reports_sixteen_bit_pictures_in_eight_bit_levels),
+        cmocka_unit_test(compares_single_pixels),
+        cmocka_unit_test(refuses_images_of_different_shape),
+        cmocka_unit_test(measures_depth_in_mm_over_common_pixels),
+        cmocka_unit_test(takes_percentiles_by_nearest_rank),
+        cmocka_unit_test(counts_nan_and_never_averages_it_in),
+        cmocka_unit_test(measures_normals_by_their_angle),
+        cmocka_unit_test(finds_nothing_in_common_with_an_empty_plane),
+        cmocka_unit_test(keeps_the_keys_of_the_contract),
+        cmocka_unit_test(colours_differences_by_fixed_steps),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
