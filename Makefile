@@ -31,6 +31,8 @@ ORACLE := $(BUILD)/tests/check_tree
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion \
 	-Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wvla -Wformat=2 -Wcast-qual \
 	-Wpointer-arith -Wundef -Wwrite-strings -Werror
+# clang takes the standard's INFINITY and NAN, which are floats, for promotions.
+WARNINGS += $(if $(findstring clang,$(CC)),-Wno-double-promotion)
 OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer

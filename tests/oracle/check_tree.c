@@ -35,11 +35,11 @@ typedef struct Node {
 } Node;
 
 typedef struct Header {
-    double gamma, lambda, p_perf, p_term, q_perf, viscosity, dimension;
+    long double gamma, lambda, p_perf, p_term, q_perf, viscosity, dimension;
     char domain[200];
 } Header;
 
-static void fail(const char *format, ...)
+__attribute__((format(printf, 1, 2), noreturn)) static void fail(const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
@@ -55,15 +55,15 @@ static void read_key(Header *header, const char *line)
     static const char *const keys[] = {"gamma",       "lambda",        "p_perf_mmHg",
                                        "p_term_mmHg", "q_perf_ml_min", "viscosity_cP",
                                        "dimension"};
-    double *const values[] = {&header->gamma,    &header->lambda, &header->p_perf,
-                              &header->p_term,   &header->q_perf, &header->viscosity,
-                              &header->dimension};
+    long double *const values[] = {&header->gamma,    &header->lambda, &header->p_perf,
+                                   &header->p_term,   &header->q_perf, &header->viscosity,
+                                   &header->dimension};
     char key[100], text[200];
     if (sscanf(line, "# %99[^:]: %199s", key, text) != 2)
         return;
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (strcmp(key, keys[i]) == 0)
-            *values[i] = strtod(text, NULL);
+            *values[i] = strtold(text, NULL);
     }
     if (strcmp(key, "domain") == 0)
         snprintf(header->domain, sizeof header->domain, "%s", text);
@@ -207,9 +207,9 @@ static long double pressure_deviation(Node *nodes, int n, const Header *header)
 
 static void check_domain(const Node *nodes, int n, const Header *header)
 {
-    double radius;
-    if (sscanf(header->domain, "disc:%lf", &radius) != 1 &&
-        sscanf(header->domain, "ball:%lf", &radius) != 1)
+    long double radius;
+    if (sscanf(header->domain, "disc:%Lf", &radius) != 1 &&
+        sscanf(header->domain, "ball:%Lf", &radius) != 1)
         fail("the domain '%s' is not known here", header->domain);
     bool flat = header->domain[0] == 'd';
     for (int i = 0; i < n; i++) {
@@ -284,7 +284,7 @@ static void report(const Node *nodes, int n, const Header *header)
     printf("segments %d\nterminals %d\nbifurcations %d\n", n - 1, nodes[1].terminals,
            nodes[1].terminals - 1);
     printf("total_length_mm %.17Lg\nvolume_mm3 %.17Lg\ntarget %.17Lg\n", length, volume, target);
-    printf("gamma %.17g\nlambda %.17g\n", header->gamma, header->lambda);
+    printf("gamma %.17Lg\nlambda %.17Lg\n", header->gamma, header->lambda);
     printf("root_radius_mm %.17Lg\nmin_radius_mm %.17Lg\n", nodes[1].radius, thinnest);
     printf("max_level %d\nmax_strahler %d\n", level, nodes[1].strahler);
 }
@@ -295,7 +295,8 @@ int main(int argc, char **argv)
         fputs("usage: check_tree TREE.swc\n", stderr);
         return 2;
     }
-    Header header = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, ""};
+    const long double none = nanl("");
+    Header header = {none, none, none, none, none, none, none, ""};
     Node *nodes;
     int n = read_tree(argv[1], &header, &nodes);
     check_ids(nodes, n);
