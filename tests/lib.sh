@@ -114,27 +114,27 @@ wait_for() {
 }
 
 run_tests() {
-    local folder reason name number=0 failed=0 result names
+    local reason name number=0 failed=0 result names
     names=${*:-$(sed -n 's/^test_\([a-z0-9_]*\)() *{.*/\1/p' "$0")}
-    folder=$(mktemp -d)
-    trap 'rm -rf "$folder"' EXIT
+    tests_folder=$(mktemp -d)
+    trap 'rm -rf "$tests_folder"' EXIT
     for name in $names; do
         number=$((number + 1))
-        mkdir "$folder/test"
-        (cd "$folder/test" && "test_$name") 9>"$folder/reason" >"$folder/output" 2>&1
+        mkdir "$tests_folder/test"
+        (cd "$tests_folder/test" && "test_$name") 9>"$tests_folder/reason" >"$tests_folder/output" 2>&1
         result=$?
-        reason=$(cat "$folder/reason")
+        reason=$(cat "$tests_folder/reason")
         case $result in
         0) echo "ok $number - $name" ;;
         77) echo "ok $number - $name # SKIP $reason" ;;
         *)
             failed=1
             echo "not ok $number - $name"
-            printf '%s\n' "${reason:-ended with status $result: $(tail -3 "$folder/output")}" | sed 's/^/# /'
+            printf '%s\n' "${reason:-ended with status $result: $(tail -3 "$tests_folder/output")}" | sed 's/^/# /'
             ;;
         esac
-        chmod -R u+w "$folder/test"
-        rm -rf "$folder/test" "$folder/reason"
+        chmod -R u+w "$tests_folder/test"
+        rm -rf "$tests_folder/test" "$tests_folder/reason"
     done
     echo "1..$number"
     return $failed
