@@ -13,7 +13,6 @@ typedef struct RenderParams {
                     * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
     bool shadows;
     bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
-    bool quiet;
 } RenderParams;
 
 typedef struct RenderStats {

@@ -30,11 +30,9 @@ typedef struct Camera {
 } Camera;
 
 /* The ray through the point (i + dx, j + dy) of the pixel grid, dx = dy = 0 at the centre of pixel
- * (i, j); direction is unit. */
+ * (i, j). Its direction is unit, so that its parameter t is the depth in mm along the ray from the
+ * camera point (perspective) or from the plane through location (orthographic). */
 Ray camera_ray(const Camera *camera, double i, double j);
-
-/* The depth of a point that a ray of this camera met at parameter t: mm along the ray from the
- * camera point, or from the plane through location. With a unit direction that is t itself. */
 
 /* A point light at `location`, or, when `parallel`, light that travels from `location` towards
  * `target` everywhere. */
@@ -88,10 +86,13 @@ typedef struct Scene {
     size_t n_segments;
     bool uniform_color; /* every color is `color` */
     Rgb color;
-    Box bounds; /* of the geometry, mm; for the field the box of its segments' tubes */
+    Box bounds; /* of the geometry, mm; for the field widened by its overshoot */
 } Scene;
 
 void scene_release(Scene *scene);
+
+/* An interval of depth that holds all of the geometry, whatever the pixel. */
+void scene_depth_range(const Scene *scene, double *near_mm, double *far_mm);
 
 /* STATUS_INPUT unless every number is finite and in its range, directions are not zero, and
  * coordinates keep double precision meaningful. */

@@ -31,6 +31,7 @@ typedef struct TreeHeader {
      * from the fields above; all other lines are kept as they are. */
     char **lines; /* owned; without "# " and line end */
     size_t n_lines;
+    size_t lines_capacity;
 } TreeHeader;
 
 typedef struct Tree {
@@ -43,8 +44,10 @@ typedef struct Tree {
     TreeHeader header;
 } Tree;
 
-/* Room for n zeroed nodes, parents TREE_NO_PARENT. */
+/* Room for n >= 1 zeroed nodes, parents TREE_NO_PARENT, in *tree (owned; tree_release).
+ * STATUS_INFEASIBLE when there are more nodes than ids. */
 MUST_CHECK Status tree_init(Tree *tree, size_t n, Err *err);
+/* Frees the arrays and header lines and zeroes *tree; a zeroed tree may be released. */
 void tree_release(Tree *tree);
 
 static inline bool tree_is_segment(const Tree *tree, size_t i)
@@ -55,21 +58,25 @@ static inline bool tree_is_segment(const Tree *tree, size_t i)
 /* Length of segment i, mm; 0 at a root. */
 double tree_segment_length(const Tree *tree, size_t i);
 
-/* The number of children of every node, in *count (owned, n entries). */
+/* The number of children of every node, in *count (owned, n entries). A leaf that is not a root is
+ * a terminal; a node with two children or more is a bifurcation. */
 MUST_CHECK Status tree_child_counts(const Tree *tree, int32_t **count, Err *err);
 
 /* Checks what the type promises: parents before children, finite positions and radii, radii not
  * negative, ids in range and different. STATUS_INPUT naming the id of the node at fault. */
 MUST_CHECK Status tree_check(const Tree *tree, Err *err);
 
-/* A new tree without the segments thinner than `radius_mm` and without what hangs on them; ids are
- * kept. A root always stays. */
+/* A new tree in *out (owned) without the segments thinner than `radius_mm` and without what hangs
+ * on them; ids, order and header are kept. A root always stays. */
 MUST_CHECK Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err);
 
-/* The box of all segments with their radii. */
+/* Gives the nodes the ids 1 to n in array order. */
+void tree_renumber(Tree *tree);
+
+/* The box of all nodes and of all segments with their radii, a segment rounded at its ends. */
 Box tree_bounds(const Tree *tree);
 
-/* Appends a header line (copied). */
+/* Appends a header line (copied). STATUS_INPUT when it holds a line end. */
 MUST_CHECK Status tree_add_line(Tree *tree, const char *line, Err *err);
 
 #endif

@@ -1,0 +1,105 @@
+#include "app/commands.h"
+#include "app/frames.h"
+#include "app/picture.h"
+#include "render/render.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const Command command = {
+    .name = "render",
+    .summary = "render a tree with the native renderer",
+    .operands = "T.swc -o P.png",
+    .examples = "  corcast render tree.swc -o tree.png\n"
+                "  corcast render tree.swc --model isosurface --antialias 3 -o tree.ppm\n"
+                "  corcast render tree.swc --planes depth,normal,id -o tree.png\n",
+    .min_operands = 1,
+    .max_operands = 1,
+};
+
+/* --planes: which planes are written beside the picture. */
+static Status read_planes(const char *list, RenderParams *params, Err *err)
+{
+    static const char *const names[] = {"color", "depth", "normal", "id"};
+    bool *const wanted[] = {&params->want_color, &params->want_depth, &params->want_normal,
+                            &params->want_id};
+    while (list && *list) {
+        size_t length = strcspn(list, ",");
+        size_t i = 0;
+        while (i < 4 && (strlen(names[i]) != length || strncmp(names[i], list, length) != 0))
+            i++;
+        if (i == 4)
+            return err_set(err, STATUS_USAGE,
+                           "--planes: '%.*s' is not one of color, depth, normal, id", (int)length,
+                           list);
+        *wanted[i] = true;
+        list += length + (list[length] == ',');
+    }
+    return STATUS_OK;
+}
+
+static Status write_report(const char *path, const Scene *scene, const RenderStats *stats,
+                           int threads, Err *err)
+{
+    json_t *report =
+        json_pack("{s:s, s:s, s:i, s:i, s:f, s:f, s:I, s:i}", "generator", GENERATOR, "model",
+                  model_name(scene->model), "width", scene->camera.width, "height",
+                  scene->camera.height, "prepare_seconds", stats->prepare_s, "trace_seconds",
+                  stats->trace_s, "rays", (json_int_t)stats->rays, "threads",
+                  threads ? threads : threads_available());
+    return json_write(report, path, err);
+}
+
+Status run_render(int argc, char **argv, Err *err)
+{
+    PictureOptions picture;
+    picture_options_init(&picture);
+    const char *output = NULL, *planes = NULL, *json = NULL;
+    int bits = 8;
+    const Option own[] = {
+        {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P", "the picture: .png, .ppm or .pfm"},
+        {"planes", OPTION_TEXT, &planes, NULL, 0, 0, NULL, "LIST",
+         "planes beside it: color,depth,normal,id"},
+        {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16", "of a PNG or PPM (8)"},
+        {"json", OPTION_TEXT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
+        {0},
+    };
+    const Option *const tables[] = {own, picture.table, NULL};
+    Parsed parsed;
+    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
+    Status status = STATUS_OK;
+    Scene scene = {0};
+    Frame frame = {0};
+    RenderStats stats;
+    char *line = NULL;
+    RenderParams params = {.threads = parsed.common.threads,
+                           .antialias = picture.antialias,
+                           .shadows = picture.stage.shadows};
+    if (parsed.common.help)
+        goto done;
+    if (!output) {
+        status = err_set(err, STATUS_USAGE, "-o P.png is missing; usage: corcast render %s",
+                         command.operands);
+        goto done;
+    }
+    if (bits != 8 && bits != 16) {
+        status = err_set(err, STATUS_USAGE, "--bits: '%d' is not 8 or 16", bits);
+        goto done;
+    }
+    TRY_GOTO(read_planes(planes, &params, err));
+    bool color_plane = params.want_color;
+    params.want_color = true;
+    TRY_GOTO(frames_check_output(output, planes != NULL, err));
+    TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 40, err));
+    TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, err));
+    TRY_GOTO(render(&scene, &params, &frame, &stats, err));
+    TRY_GOTO(command_line_text("render", argc, argv, &line, err));
+    TRY_GOTO(frames_write(&frame, output, bits, color_plane, line, err));
+    if (json)
+        TRY_GOTO(write_report(json, &scene, &stats, params.threads, err));
+done:
+    free(line);
+    frame_release(&frame);
+    scene_release(&scene);
+    parsed_release(&parsed);
+    return status;
+}

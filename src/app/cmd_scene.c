@@ -1,0 +1,52 @@
+#include "app/commands.h"
+#include "app/picture.h"
+#include "app/povfiles.h"
+#include <string.h>
+
+static const Command command = {
+    .name = "scene",
+    .summary = "write a tree as a POV-Ray scene",
+    .operands = "T.swc -o S.pov",
+    .examples = "  corcast scene tree.swc -o tree.pov\n"
+                "  corcast scene tree.swc --model isosurface --size 2000x2000 -o tree.pov\n",
+    .min_operands = 1,
+    .max_operands = 1,
+};
+
+Status run_scene(int argc, char **argv, Err *err)
+{
+    PictureOptions picture;
+    picture_options_init(&picture);
+    const char *output = NULL;
+    double beta = 0;
+    const Option own[] = {
+        {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "S.pov",
+         "the scene; its geometry goes to S.inc beside it"},
+        {"cell-beta", OPTION_NUMBER, &beta, NULL, 0.5, 64, NULL, NULL,
+         "isosurface: side of a cell over the smallest radius in it"},
+        {0},
+    };
+    const Option *const tables[] = {own, picture.table, NULL};
+    Parsed parsed;
+    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
+    Status status = STATUS_OK;
+    Scene scene = {0};
+    if (parsed.common.help)
+        goto done;
+    if (!output) {
+        status = err_set(err, STATUS_USAGE, "-o S.pov is missing; usage: corcast scene %s",
+                         command.operands);
+        goto done;
+    }
+    if (strcmp(output, "-") != 0 && strcmp(file_extension(output), "pov") != 0) {
+        status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pov", output);
+        goto done;
+    }
+    TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, err));
+    TRY_GOTO(povfiles_write(&scene, parsed.operands[0], output, picture.stage.shadows, beta, NULL,
+                            err));
+done:
+    scene_release(&scene);
+    parsed_release(&parsed);
+    return status;
+}

@@ -1,0 +1,27 @@
+/* The subcommands. Each gets the arguments after its name. */
+#ifndef CORCAST_APP_COMMANDS_H
+#define CORCAST_APP_COMMANDS_H
+
+#include "base/base.h"
+#include <jansson.h>
+
+typedef Status CommandRun(int argc, char **argv, Err *err);
+
+CommandRun run_grow, run_info, run_convert, run_scene, run_povray, run_render, run_compare,
+    run_verify;
+
+#define GENERATOR "corcast " CORCAST_VERSION
+
+/* The command line as text for provenance, in *out (owned): every argument that is a path cut to its
+ * last component, so that no folder of the user's is told. */
+MUST_CHECK Status command_line_text(const char *command, int argc, char **argv, char **out,
+                                    Err *err);
+
+/* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets go
+ * of it. Numbers that are not finite must have been left out or set to null. */
+MUST_CHECK Status json_write(json_t *object, const char *path, Err *err);
+
+/* A JSON real, or null where the value is not finite. */
+json_t *json_number(double value);
+
+#endif

@@ -1,0 +1,64 @@
+#include "app/commands.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+    const char *name;
+    CommandRun *run;
+    const char *summary;
+} commands[] = {
+    {"grow", run_grow, "grow an arterial tree by constrained constructive optimization"},
+    {"info", run_info, "count, measure and check a tree"},
+    {"convert", run_convert, "convert trees and images"},
+    {"scene", run_scene, "write a tree as a POV-Ray scene"},
+    {"povray", run_povray, "run POV-Ray on a scene"},
+    {"render", run_render, "render a tree with the native renderer"},
+    {"verify", run_verify, "prove that POV-Ray and the native renderer agree"},
+    {"compare", run_compare, "compare two images or planes"},
+};
+enum { N_COMMANDS = sizeof commands / sizeof *commands };
+
+static void print_usage(FILE *stream)
+{
+    fputs("corcast " CORCAST_VERSION ": grow, draw and verify arterial trees\n\n"
+          "usage: corcast COMMAND [options] [files]\n\n",
+          stream);
+    for (int i = 0; i < N_COMMANDS; i++)
+        fprintf(stream, "  %-9s %s\n", commands[i].name, commands[i].summary);
+    fputs("\ncorcast COMMAND --help tells the options of a command; '-' stands for standard input\n"
+          "or output wherever a file may stand. Exit status: 0 done, 1 a comparison found a\n"
+          "difference, 2 wrong usage or input, 3 a file, program or the memory failed.\n",
+          stream);
+}
+
+int main(int argc, char **argv)
+{
+    Err err = {{0}};
+    file_clean_up_on_signals();
+    if (argc < 2) {
+        print_usage(stderr);
+        return status_exit(STATUS_USAGE);
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        puts("corcast " CORCAST_VERSION);
+        return 0;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "help") == 0) {
+        print_usage(stdout);
+        return 0;
+    }
+    for (int i = 0; i < N_COMMANDS; i++) {
+        if (strcmp(argv[1], commands[i].name) != 0)
+            continue;
+        Status status = commands[i].run(argc - 2, argv + 2, &err);
+        if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout)))
+            status = err_set(&err, STATUS_IO, "standard output: writing failed");
+        if (err.text[0] && status != STATUS_OK)
+            fprintf(stderr, "corcast %s: %s\n", argv[1], err.text);
+        return status_exit(status);
+    }
+    fprintf(stderr, "corcast: unknown command '%s'; corcast --help lists those there are\n",
+            argv[1]);
+    return status_exit(STATUS_USAGE);
+}

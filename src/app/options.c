@@ -1,0 +1,356 @@
+#include "app/options.h"
+
+#include <ini.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Reader {
+    const Command *command;
+    const Option *tables[MAX_TABLES + 1];
+    int n_tables;
+    Err *err;
+} Reader;
+
+static const Option *find_option(const Reader *reader, const char *name, size_t length)
+{
+    for (int t = 0; t < reader->n_tables; t++)
+        for (const Option *option = reader->tables[t]; option->name; option++)
+            if (strlen(option->name) == length && strncmp(option->name, name, length) == 0)
+                return option;
+    return NULL;
+}
+
+/* Reads `count` numbers parted by `separator`; the last ones may be missing down to `least`. */
+static bool read_numbers(const char *text, char separator, int least, int count, double *out)
+{
+    for (int i = 0; i < count; i++) {
+        const char *end = strchr(text, separator);
+        size_t length = end && i + 1 < count ? (size_t)(end - text) : strlen(text);
+        char number[64];
+        if (length >= sizeof number)
+            return false;
+        memcpy(number, text, length);
+        number[length] = '\0';
+        if (!number_parse(number, &out[i]) || !isfinite(out[i]))
+            return false;
+        text += length;
+        if (*text == '\0')
+            return i + 1 >= least;
+        text++;
+    }
+    return false;
+}
+
+static Status wrong(const Option *option, const char *value, const char *allowed, Err *err)
+{
+    return err_set(err, STATUS_USAGE, "--%s: '%s' is not %s", option->name, value, allowed);
+}
+
+static Status set_choice(const Option *option, const char *value, Err *err)
+{
+    Text list = TEXT_INIT;
+    for (int i = 0; option->choices[i]; i++) {
+        if (strcmp(option->choices[i], value) == 0) {
+            text_release(&list);
+            *(int *)option->where = i;
+            return STATUS_OK;
+        }
+        text_printf(&list, "%s%s", i ? ", " : "one of ", option->choices[i]);
+    }
+    Status status = wrong(option, value, list.chars ? list.chars : "a choice", err);
+    text_release(&list);
+    return status;
+}
+
+static Status set_whole(const Option *option, const char *value, Err *err)
+{
+    long long number;
+    if (!integer_parse(value, (long long)option->low, (long long)option->high, &number)) {
+        char allowed[96];
+        snprintf(allowed, sizeof allowed, "a whole number from %.0f to %.0f", option->low,
+                 option->high);
+        return wrong(option, value, allowed, err);
+    }
+    if (option->kind == OPTION_WHOLE)
+        *(int *)option->where = (int)number;
+    else
+        *(size_t *)option->where = (size_t)number;
+    return STATUS_OK;
+}
+
+static Status set_number(const Option *option, const char *value, Err *err)
+{
+    double number;
+    if (number_parse(value, &number) && isfinite(number) && number >= option->low &&
+        number <= option->high) {
+        *(double *)option->where = number;
+        return STATUS_OK;
+    }
+    char allowed[96];
+    if (option->high >= 1e300)
+        snprintf(allowed, sizeof allowed, option->low <= -1e300 ? "a number" : "a number of at least %g",
+                 option->low);
+    else
+        snprintf(allowed, sizeof allowed, "a number from %g to %g", option->low, option->high);
+    return wrong(option, value, allowed, err);
+}
+
+static Status set_size(const Option *option, const char *value, Err *err)
+{
+    double size[2];
+    for (int i = 0; i < 2; i++)
+        size[i] = 0;
+    bool read = read_numbers(value, 'x', 2, 2, size);
+    for (int i = 0; i < 2; i++)
+        read = read && size[i] >= 1 && size[i] <= option->high && size[i] == floor(size[i]);
+    if (!read) {
+        char allowed[96];
+        snprintf(allowed, sizeof allowed,
+                 "WIDTHxHEIGHT in pixels, each a whole number from 1 to %.0f", option->high);
+        return wrong(option, value, allowed, err);
+    }
+    ((int *)option->where)[0] = (int)size[0];
+    ((int *)option->where)[1] = (int)size[1];
+    return STATUS_OK;
+}
+
+static Status set_vector(const Option *option, const char *value, Err *err)
+{
+    double xyz[3] = {0, 0, 0};
+    if (!read_numbers(value, ',', 2, 3, xyz))
+        return wrong(option, value, "X,Y or X,Y,Z, numbers parted by commas", err);
+    *(Vec3 *)option->where = vec3(xyz[0], xyz[1], xyz[2]);
+    return STATUS_OK;
+}
+
+static Status set_range(const Option *option, const char *value, Err *err)
+{
+    double range[2];
+    if (!read_numbers(value, ',', 2, 2, range) || !(range[0] < range[1]))
+        return wrong(option, value, "A,B, two numbers with A below B", err);
+    memcpy(option->where, range, sizeof range);
+    return STATUS_OK;
+}
+
+static Status set_seed(const Option *option, const char *value, Err *err)
+{
+    char *end;
+    unsigned long long seed = strtoull(value, &end, 10);
+    if (!*value || *end || strspn(value, "0123456789") != strlen(value) || strlen(value) > 19)
+        return wrong(option, value, "a whole number from 0 to 9999999999999999999", err);
+    *(uint64_t *)option->where = seed;
+    return STATUS_OK;
+}
+
+static Status set_option(const Option *option, const char *value, Err *err)
+{
+    if (option->given)
+        *option->given = true;
+    switch (option->kind) {
+    case OPTION_FLAG:
+        *(bool *)option->where = true;
+        return STATUS_OK;
+    case OPTION_SWITCH:
+        if (strcmp(value, "on") != 0 && strcmp(value, "off") != 0)
+            return wrong(option, value, "on or off", err);
+        *(bool *)option->where = strcmp(value, "on") == 0;
+        return STATUS_OK;
+    case OPTION_TEXT:
+        *(const char **)option->where = value;
+        return STATUS_OK;
+    case OPTION_WHOLE:
+    case OPTION_COUNT:
+        return set_whole(option, value, err);
+    case OPTION_SEED:
+        return set_seed(option, value, err);
+    case OPTION_NUMBER:
+        return set_number(option, value, err);
+    case OPTION_VECTOR:
+        return set_vector(option, value, err);
+    case OPTION_SIZE:
+        return set_size(option, value, err);
+    case OPTION_RANGE:
+        return set_range(option, value, err);
+    case OPTION_CHOICE:
+        return set_choice(option, value, err);
+    }
+    return STATUS_OK;
+}
+
+/* ---- recipes ------------------------------------------------------------------------------- */
+
+typedef struct RecipeReader {
+    const Reader *reader;
+    Text *values; /* keeps the values alive */
+    Status status;
+} RecipeReader;
+
+static int read_recipe_pair(void *user, const char *section, const char *name, const char *value)
+{
+    RecipeReader *recipe = user;
+    const Reader *reader = recipe->reader;
+    if (*section && strcmp(section, reader->command->name) != 0)
+        return 1; /* meant for another command */
+    const Option *option = find_option(reader, name, strlen(name));
+    if (!option || strcmp(name, "recipe") == 0) {
+        recipe->status = err_set(reader->err, STATUS_USAGE, "'%s' is not an option of %s", name,
+                                 reader->command->name);
+        return 0;
+    }
+    if (option->kind == OPTION_FLAG && strcmp(value, "on") != 0) {
+        recipe->status = wrong(option, value, "on; leave the line out to turn it off", reader->err);
+        return 0;
+    }
+    /* The values live as long as the parsed options: one block, reserved whole beforehand. */
+    char *kept = recipe->values->chars + recipe->values->length;
+    text_append(recipe->values, value, strlen(value) + 1);
+    recipe->status = set_option(option, kept, reader->err);
+    return recipe->status == STATUS_OK;
+}
+
+static Status read_recipe(const Reader *reader, const char *path, Parsed *parsed)
+{
+    char *text = NULL;
+    size_t size;
+    TRY(file_read(path, &text, &size, reader->err));
+    Text values = TEXT_INIT;
+    /* No value is longer than its line, so nothing moves once this is reserved. */
+    Status status = mem_reserve(&values.chars, &values.capacity, size + 2, 1, "bytes of text",
+                                reader->err);
+    RecipeReader recipe = {reader, &values, STATUS_OK};
+    if (status == STATUS_OK) {
+        int line = ini_parse_string(text, read_recipe_pair, &recipe);
+        status = recipe.status;
+        if (status != STATUS_OK)
+            err_prefix(reader->err, "%s:%d: ", path, line);
+        else if (line != 0)
+            status = err_set(reader->err, STATUS_USAGE, "%s:%d: expected name = value", path, line);
+    }
+    free(text);
+    if (status != STATUS_OK) {
+        text_release(&values);
+        return status;
+    }
+    parsed->common.recipe_text = values.chars;
+    return STATUS_OK;
+}
+
+/* ---- the command line ----------------------------------------------------------------------- */
+
+static Status read_option(const Reader *reader, int argc, char **argv, int *at, bool apply)
+{
+    const char *name = argv[*at] + 2;
+    if (argv[*at][1] != '-') /* the one short option */
+        name = "output";
+    const char *equals = argv[*at][1] == '-' ? strchr(name, '=') : NULL;
+    size_t length = equals ? (size_t)(equals - name) : strlen(name);
+    const Option *option = find_option(reader, name, length);
+    if (!option || (argv[*at][1] != '-' && strcmp(argv[*at], "-o") != 0))
+        return err_set(reader->err, STATUS_USAGE,
+                       "unknown option '%s'; see corcast %s --help for those there are", argv[*at],
+                       reader->command->name);
+    const char *value = "";
+    if (option->kind == OPTION_FLAG && equals)
+        return err_set(reader->err, STATUS_USAGE, "--%s takes no value", option->name);
+    if (option->kind != OPTION_FLAG) {
+        if (equals)
+            value = equals + 1;
+        else if (*at + 1 < argc)
+            value = argv[++*at];
+        else
+            return err_set(reader->err, STATUS_USAGE, "--%s needs a value", option->name);
+    }
+    bool is_recipe = strcmp(option->name, "recipe") == 0;
+    return apply || is_recipe ? set_option(option, value, reader->err) : STATUS_OK;
+}
+
+/* One pass over the arguments; options other than --recipe take effect only when `apply`. */
+static Status read_arguments(const Reader *reader, int argc, char **argv, bool apply,
+                             Parsed *parsed)
+{
+    bool only_operands = false;
+    parsed->n_operands = 0;
+    for (int i = 0; i < argc; i++) {
+        if (!only_operands && strcmp(argv[i], "--") == 0) {
+            only_operands = true;
+        } else if (!only_operands && argv[i][0] == '-' && argv[i][1] != '\0') {
+            TRY(read_option(reader, argc, argv, &i, apply));
+        } else if (parsed->n_operands == reader->command->max_operands) {
+            return err_set(reader->err, STATUS_USAGE, "'%s' is one operand too many; usage: corcast %s %s",
+                           argv[i], reader->command->name, reader->command->operands);
+        } else {
+            parsed->operands[parsed->n_operands++] = argv[i];
+        }
+    }
+    return STATUS_OK;
+}
+
+static const char *argument_name(const Option *option)
+{
+    static const char *const names[] = {
+        [OPTION_FLAG] = "",        [OPTION_SWITCH] = "on|off", [OPTION_TEXT] = "TEXT",
+        [OPTION_WHOLE] = "N",      [OPTION_SEED] = "N",        [OPTION_COUNT] = "N",
+        [OPTION_NUMBER] = "NUMBER", [OPTION_VECTOR] = "X,Y,Z", [OPTION_SIZE] = "WxH",
+        [OPTION_RANGE] = "A,B",    [OPTION_CHOICE] = "NAME",
+    };
+    return option->argument ? option->argument : names[option->kind];
+}
+
+static void print_help(const Reader *reader)
+{
+    const Command *command = reader->command;
+    printf("corcast %s: %s\n\nusage: corcast %s %s\n\nexamples:\n%s\noptions:\n", command->name,
+           command->summary, command->name, command->operands, command->examples);
+    for (int t = 0; t < reader->n_tables; t++)
+        for (const Option *option = reader->tables[t]; option->name; option++) {
+            bool output = strcmp(option->name, "output") == 0;
+            char left[64];
+            snprintf(left, sizeof left, "%s--%s %s", output ? "-o, " : "", option->name,
+                     argument_name(option));
+            printf("  %-30s %s", left, option->help);
+            for (int i = 0; option->choices && option->choices[i]; i++)
+                printf("%s%s", i ? ", " : ": ", option->choices[i]);
+            putchar('\n');
+        }
+}
+
+Status options_parse(const Command *command, const Option *const tables[], int argc, char **argv,
+                     Parsed *parsed, Err *err)
+{
+    *parsed = (Parsed){.common = {.seed = 1}};
+    Common *common = &parsed->common;
+    const Option common_options[] = {
+        {"recipe", OPTION_TEXT, &common->recipe, NULL, 0, 0, NULL, "FILE",
+         "read options from an INI file, one name = value a line"},
+        {"seed", OPTION_SEED, &common->seed, NULL, 0, 0, NULL, NULL, "of what is random (1)"},
+        {"threads", OPTION_WHOLE, &common->threads, NULL, 0, 256, NULL, NULL,
+         "processors to use (0: all)"},
+        {"quiet", OPTION_FLAG, &common->quiet, NULL, 0, 0, NULL, NULL, "no progress, no summary"},
+        {"help", OPTION_FLAG, &common->help, NULL, 0, 0, NULL, NULL, "this text"},
+        {0},
+    };
+    Reader reader = {.command = command, .err = err};
+    for (; tables[reader.n_tables]; reader.n_tables++)
+        reader.tables[reader.n_tables] = tables[reader.n_tables];
+    reader.tables[reader.n_tables++] = common_options;
+    TRY(read_arguments(&reader, argc, argv, false, parsed));
+    if (common->recipe)
+        TRY(read_recipe(&reader, common->recipe, parsed));
+    Status status = read_arguments(&reader, argc, argv, true, parsed);
+    if (status == STATUS_OK && common->help) {
+        print_help(&reader);
+        return STATUS_OK;
+    }
+    if (status == STATUS_OK && parsed->n_operands < command->min_operands)
+        status = err_set(err, STATUS_USAGE, "a file is missing; usage: corcast %s %s",
+                         command->name, command->operands);
+    if (status != STATUS_OK)
+        parsed_release(parsed);
+    return status;
+}
+
+void parsed_release(Parsed *parsed)
+{
+    free(parsed->common.recipe_text);
+    parsed->common.recipe_text = NULL;
+}

@@ -1,0 +1,65 @@
+/* Command-line options and recipes, bound to plain variables by tables. */
+#ifndef CORCAST_APP_OPTIONS_H
+#define CORCAST_APP_OPTIONS_H
+
+#include "base/base.h"
+#include "geom/geom.h"
+
+typedef enum OptionKind {
+    OPTION_FLAG,   /* bool: no value */
+    OPTION_SWITCH, /* bool: on or off */
+    OPTION_TEXT,   /* const char *: borrowed */
+    OPTION_WHOLE,  /* int, in [low, high] */
+    OPTION_SEED,   /* uint64_t */
+    OPTION_COUNT,  /* size_t, in [low, high] */
+    OPTION_NUMBER, /* double, finite, in [low, high] */
+    OPTION_VECTOR, /* Vec3: X,Y or X,Y,Z */
+    OPTION_SIZE,   /* int[2]: WxH */
+    OPTION_RANGE,  /* double[2]: A,B */
+    OPTION_CHOICE  /* int: index into choices */
+} OptionKind;
+
+typedef struct Option {
+    const char *name; /* without the dashes; NULL ends a table */
+    OptionKind kind;
+    void *where;
+    bool *given; /* set when the option is present; may be NULL */
+    double low, high;
+    const char *const *choices; /* ends with NULL */
+    const char *argument;       /* "N"; NULL: named after the kind */
+    const char *help;
+} Option;
+
+enum { MAX_OPERANDS = 8, MAX_TABLES = 4 };
+
+typedef struct Command {
+    const char *name;
+    const char *summary;  /* one line */
+    const char *operands; /* "T.swc -o P.png" */
+    const char *examples; /* lines */
+    int min_operands, max_operands;
+} Command;
+
+typedef struct Common {
+    bool quiet, help;
+    int threads; /* 0: all processors */
+    uint64_t seed;
+    const char *recipe;
+    char *recipe_text; /* what the values of a recipe point into; owned */
+} Common;
+
+typedef struct Parsed {
+    Common common;
+    const char *operands[MAX_OPERANDS];
+    int n_operands;
+} Parsed;
+
+/* Reads the arguments after the command's name through up to MAX_TABLES tables (a NULL ends them) and
+ * the common options, the recipe first so that the command line wins. On --help prints the command's
+ * help and sets parsed->common.help. STATUS_USAGE with a sentence that names the option, its value
+ * and what is allowed. Release with parsed_release. */
+MUST_CHECK Status options_parse(const Command *command, const Option *const tables[], int argc,
+                                char **argv, Parsed *parsed, Err *err);
+void parsed_release(Parsed *parsed);
+
+#endif

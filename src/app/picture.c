@@ -1,0 +1,204 @@
+#include "app/picture.h"
+
+#include "image/image.h"
+#include "treeio/treeio.h"
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char *const models[] = {
+    [SCENE_CYLINDERS] = "cylinders", [SCENE_ROUNDED] = "rounded", [SCENE_ISOSURFACE] = "isosurface",
+    NULL};
+static const char *const projections[] = {
+    [PROJECTION_ORTHOGRAPHIC] = "orthographic", [PROJECTION_PERSPECTIVE] = "perspective", NULL};
+static const char *const views[] = {
+    [VIEW_FRONT] = "front", [VIEW_TOP] = "top", [VIEW_LEFT] = "left", [VIEW_ISO] = "iso", NULL};
+
+const char *model_name(SceneModel model)
+{
+    return models[model];
+}
+
+void picture_options_init(PictureOptions *options)
+{
+    *options = (PictureOptions){.stage = stage_defaults(),
+                                .model = SCENE_ROUNDED,
+                                .size = {1000, 1000},
+                                .antialias = 1,
+                                .look = "cast"};
+    StageParams *stage = &options->stage;
+    const double huge = 1e300, side = IMAGE_MAX_SIDE, far = 1e7;
+    const Option table[] = {
+        {"model", OPTION_CHOICE, &options->model, NULL, 0, 0, models, NULL,
+         "how vessels are drawn (rounded)"},
+        {"prune-radius", OPTION_NUMBER, &options->prune_radius_mm, NULL, 0, far, NULL, "MM",
+         "drop segments thinner than this"},
+        {"size", OPTION_SIZE, options->size, NULL, 1, side, NULL, NULL, "pixels (1000x1000)"},
+        {"projection", OPTION_CHOICE, &options->projection, NULL, 0, 0, projections, NULL,
+         "of the camera (orthographic)"},
+        {"view", OPTION_CHOICE, &options->view, &options->has_view, 0, 0, views, NULL,
+         "where from (front)"},
+        {"location", OPTION_VECTOR, &stage->location, &stage->has_location, 0, 0, NULL, NULL,
+         "camera point, mm"},
+        {"look-at", OPTION_VECTOR, &stage->look_at, &stage->has_look_at, 0, 0, NULL, NULL,
+         "point in the middle of the picture, mm"},
+        {"up", OPTION_VECTOR, &stage->up, &stage->has_up, 0, 0, NULL, NULL,
+         "what is up in the picture"},
+        {"angle", OPTION_NUMBER, &stage->angle_deg, &options->has_angle, 0.01, 170, NULL, "DEG",
+         "full horizontal angle, perspective (30)"},
+        {"height", OPTION_NUMBER, &stage->height_mm, &options->has_height, 1e-6, far, NULL, "MM",
+         "height of the picture, orthographic"},
+        {"margin", OPTION_NUMBER, &stage->margin, NULL, 0, 0.45, NULL, NULL,
+         "free part on each side when the tree is framed (0.05)"},
+        {"antialias", OPTION_WHOLE, &options->antialias, NULL, 1, 9, NULL, "N",
+         "N x N samples a pixel (1)"},
+        {"look", OPTION_TEXT, &options->look, NULL, 0, huge, NULL, "NAME",
+         "a file of templates/looks, or a path (cast)"},
+        {"shadows", OPTION_SWITCH, &stage->shadows, NULL, 0, 0, NULL, NULL, "(off)"},
+        {"background", OPTION_VECTOR, &options->background, &options->has_background, 0, 1, NULL,
+         "R,G,B", "sRGB, each from 0 to 1"},
+        {0},
+    };
+    memcpy(options->table, table, sizeof table);
+}
+
+static bool is_folder(const char *path)
+{
+    return access(path, X_OK) == 0;
+}
+
+Status templates_folder(char **folder, Err *err)
+{
+    const char *given = getenv("CORCAST_TEMPLATES");
+    if (given)
+        return mem_strdup(folder, given, err);
+    char program[4096];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length > 0) {
+        program[length] = '\0';
+        program[file_name(program) - program] = '\0';
+        static const char *const places[] = {"../templates", "../share/corcast/templates"};
+        for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+            char *path = NULL;
+            TRY(file_join(program, places[i], &path, err));
+            if (is_folder(path)) {
+                *folder = path;
+                return STATUS_OK;
+            }
+            free(path);
+        }
+    }
+    return err_set(err, STATUS_IO,
+                   "the templates folder was found neither beside the program nor where it is "
+                   "installed; name it in CORCAST_TEMPLATES");
+}
+
+static Status read_look(const PictureOptions *options, Look *look, Err *err)
+{
+    if (strchr(options->look, '/'))
+        return look_read(look, options->look, err);
+    char *folder = NULL, *path = NULL;
+    Text name = TEXT_INIT;
+    text_printf(&name, "looks/%s.ini", options->look);
+    Status status = text_check(&name, err);
+    if (status == STATUS_OK)
+        status = templates_folder(&folder, err);
+    if (status == STATUS_OK)
+        status = file_join(folder, name.chars, &path, err);
+    if (status == STATUS_OK && access(path, R_OK) != 0)
+        status = err_set(err, STATUS_USAGE,
+                         "--look: '%s' is not a file of %s/looks; write a path with a '/' for one "
+                         "of your own",
+                         options->look, folder);
+    if (status == STATUS_OK)
+        status = look_read(look, path, err);
+    text_release(&name);
+    free(folder);
+    free(path);
+    return status;
+}
+
+/* Options that fight each other are refused rather than silently ignored. */
+static Status check_camera(const PictureOptions *options, Err *err)
+{
+    const StageParams *stage = &options->stage;
+    bool perspective = options->projection == PROJECTION_PERSPECTIVE;
+    if (options->has_height && perspective)
+        return err_set(err, STATUS_USAGE,
+                       "--height is for orthographic pictures; a perspective one takes --angle");
+    if (options->has_angle && !perspective)
+        return err_set(err, STATUS_USAGE,
+                       "--angle is for perspective pictures; an orthographic one takes --height");
+    if (stage->has_location && options->has_view)
+        return err_set(err, STATUS_USAGE, "--view and --location exclude each other; give one");
+    if (stage->has_look_at && !stage->has_location)
+        return err_set(err, STATUS_USAGE, "--look-at needs --location");
+    if (stage->has_up && !(vec3_length(stage->up) > 0))
+        return err_set(err, STATUS_USAGE, "--up: the vector must not be zero");
+    const double *rgb = &options->background.x;
+    for (int i = 0; i < 3; i++)
+        if (!(rgb[i] >= 0 && rgb[i] <= 1))
+            return err_set(err, STATUS_USAGE,
+                           "--background: %g is not a number from 0 to 1; give R,G,B", rgb[i]);
+    return STATUS_OK;
+}
+
+Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet, Scene *scene,
+                     Err *err)
+{
+    Look look;
+    TRY(check_camera(options, err));
+    TRY(read_look(options, &look, err));
+    if (options->has_background)
+        look.background = (Rgb){srgb_decode((float)options->background.x),
+                                srgb_decode((float)options->background.y),
+                                srgb_decode((float)options->background.z)};
+    StageParams stage = options->stage;
+    stage.model = (SceneModel)options->model;
+    stage.projection = (Projection)options->projection;
+    stage.view = (View)options->view;
+    stage.width = options->size[0];
+    stage.height = options->size[1];
+    Tree tree;
+    TRY(tree_read(&tree, tree_path, err));
+    Status status = STATUS_OK;
+    if (options->prune_radius_mm > 0) {
+        Tree pruned;
+        status = tree_pruned(&tree, options->prune_radius_mm, &pruned, err);
+        if (status == STATUS_OK) {
+            tree_release(&tree);
+            tree = pruned;
+        }
+    }
+    StageReport report;
+    if (status == STATUS_OK) {
+        status = stage_scene(&tree, &look, NULL, &stage, scene, &report, err);
+        if (status == STATUS_INPUT)
+            err_prefix(err, "%s: ", tree_path);
+    }
+    if (status == STATUS_OK && report.dropped && !quiet)
+        fprintf(stderr, "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
+                report.dropped, report.dropped + report.drawn);
+    tree_release(&tree);
+    return status;
+}
+
+Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
+{
+    double needed = (double)width * height * bytes_a_pixel;
+    double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGE_SIZE);
+    if (needed < 0.9 * memory)
+        return STATUS_OK;
+    return err_set(err, STATUS_MEMORY,
+                   "out of memory: --size %dx%d needs %.1f GB and this machine has %.1f GB", width,
+                   height, needed * 1e-9, memory * 1e-9);
+}
+
+void picture_description(const Scene *scene, const char *tree_path, Text *out)
+{
+    size_t drawn = scene->n_segments;
+    for (size_t i = 0; i < scene->n_primitives; i++)
+        drawn += scene->primitives[i].kind == PRIMITIVE_CYLINDER;
+    text_printf(out, "arterial tree %s, %zu segments as %s", file_name(tree_path), drawn,
+                models[scene->model]);
+}

@@ -1,0 +1,46 @@
+/* What a picture shows: the options that scene, render and verify share, and the scene they make. */
+#ifndef CORCAST_APP_PICTURE_H
+#define CORCAST_APP_PICTURE_H
+
+#include "app/options.h"
+#include "scene/scene.h"
+#include "stage/stage.h"
+#include "tree/tree.h"
+
+enum { PICTURE_OPTIONS = 24 };
+
+typedef struct PictureOptions {
+    StageParams stage;
+    int model, projection, view; /* choices */
+    int size[2];
+    int antialias;
+    double prune_radius_mm;
+    const char *look;
+    Vec3 background; /* sRGB in [0, 1] */
+    bool has_background;
+    bool has_height, has_angle, has_view;
+    Option table[PICTURE_OPTIONS];
+} PictureOptions;
+
+/* Defaults, and the table that sets them; `options` must not move afterwards. */
+void picture_options_init(PictureOptions *options);
+
+/* Reads the tree and the look and builds the scene. Says on standard error, unless quiet, how many
+ * segments could not be drawn. */
+MUST_CHECK Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet,
+                                Scene *scene, Err *err);
+
+/* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the machine. */
+MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);
+
+/* The folder of templates: CORCAST_TEMPLATES, or beside the program (../templates), or installed
+ * (../share/corcast/templates); in *folder (owned). */
+MUST_CHECK Status templates_folder(char **folder, Err *err);
+
+/* Name of a model as --model takes it. */
+const char *model_name(SceneModel model);
+
+/* One line that says what a scene shows. */
+void picture_description(const Scene *scene, const char *tree_path, Text *out);
+
+#endif

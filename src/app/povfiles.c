@@ -1,0 +1,38 @@
+#include "app/povfiles.h"
+
+#include "app/commands.h"
+#include "app/picture.h"
+#include <stdlib.h>
+#include <string.h>
+
+Status povfiles_write(const Scene *scene, const char *tree_path, const char *path, bool shadows,
+                      double beta, PovrayReport *report, Err *err)
+{
+    bool to_stdout = strcmp(path, "-") == 0;
+    Text description = TEXT_INIT, pov = TEXT_INIT, inc = TEXT_INIT;
+    char *templates = NULL, *geometry_path = NULL;
+    Status status = templates_folder(&templates, err);
+    if (status != STATUS_OK)
+        return status;
+    picture_description(scene, tree_path, &description);
+    TRY_GOTO(text_check(&description, err));
+    TRY_GOTO(file_with_suffix(path, ".inc", &geometry_path, err));
+    PovrayParams params = {.templates = templates,
+                           .scene_file = to_stdout ? "scene.pov" : file_name(path),
+                           .geometry_file = to_stdout ? NULL : file_name(geometry_path),
+                           .description = description.chars,
+                           .generator = GENERATOR,
+                           .shadows = shadows,
+                           .cell_beta = beta};
+    TRY_GOTO(emit_povray(scene, &params, &pov, &inc, report, err));
+    if (!to_stdout)
+        TRY_GOTO(file_write(geometry_path, inc.chars, inc.length, err));
+    TRY_GOTO(file_write(path, pov.chars, pov.length, err));
+done:
+    text_release(&description);
+    text_release(&pov);
+    text_release(&inc);
+    free(templates);
+    free(geometry_path);
+    return status;
+}

@@ -1,0 +1,14 @@
+/* A scene as the files that POV-Ray reads. */
+#ifndef CORCAST_APP_POVFILES_H
+#define CORCAST_APP_POVFILES_H
+
+#include "base/base.h"
+#include "emit/emit.h"
+#include "scene/scene.h"
+
+/* Writes `path` and, beside it, its geometry with the extension .inc; "-" is one file on standard
+ * output. `beta` as in PovrayParams; `report` may be NULL. */
+MUST_CHECK Status povfiles_write(const Scene *scene, const char *tree_path, const char *path,
+                                 bool shadows, double beta, PovrayReport *report, Err *err);
+
+#endif

@@ -1,0 +1,87 @@
+/* One table row a field. The functions write every node, roots with whatever suits their sweep;
+ * here the roots become NAN. */
+#include "derive/derive.h"
+
+#include "derive/fields.h"
+#include <stdlib.h>
+#include <string.h>
+
+static Status field_radius(const Tree *tree, const FlowParams *params, double *value, Err *err)
+{
+    (void)params, (void)err;
+    memcpy(value, tree->radius_mm, tree->n * sizeof *value);
+    return STATUS_OK;
+}
+
+static Status field_length(const Tree *tree, const FlowParams *params, double *value, Err *err)
+{
+    (void)params, (void)err;
+    for (size_t i = 0; i < tree->n; i++)
+        value[i] = tree_segment_length(tree, i);
+    return STATUS_OK;
+}
+
+typedef struct FieldRule {
+    const char *name, *unit;
+    Status (*fill)(const Tree *tree, const FlowParams *params, double *value, Err *err);
+} FieldRule;
+
+static const FieldRule rules[] = {
+    {"radius", "mm", field_radius},       {"length", "mm", field_length},
+    {"flow", "ml/min", field_flow},       {"velocity", "mm/s", field_velocity},
+    {"pressure", "mmHg", field_pressure}, {"wss", "Pa", field_wss},
+    {"reynolds", "", field_reynolds},     {"level", "", field_level},
+    {"strahler", "", field_strahler},     {"branch", "", field_branch},
+};
+
+enum { N_RULES = sizeof rules / sizeof *rules };
+
+/* NULL when there is none. */
+static const FieldRule *find_rule(const char *name)
+{
+    for (size_t i = 0; i < N_RULES; i++)
+        if (strcmp(name, rules[i].name) == 0)
+            return &rules[i];
+    return NULL;
+}
+
+static Status unknown_field(const char *name, Err *err)
+{
+    Text known = TEXT_INIT;
+    for (size_t i = 0; i < N_RULES; i++)
+        text_printf(&known, "%s%s", i ? ", " : "", rules[i].name);
+    Status status = text_check(&known, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE, "there is no field '%.40s'; known are %s", name,
+                         known.chars);
+    text_release(&known);
+    return status;
+}
+
+Status derive_field(const Tree *tree, const FlowParams *params, const char *name, Field *field,
+                    Err *err)
+{
+    const FieldRule *rule = find_rule(name);
+    if (!rule)
+        return unknown_field(name, err);
+    double *value = NULL;
+    TRY(mem_calloc(&value, tree->n, sizeof *value, "field values", err));
+    Status status = rule->fill(tree, params, value, err);
+    if (status != STATUS_OK) {
+        if (status == STATUS_INPUT) /* a need(), whose sentence goes on from here */
+            err_prefix(err, "the field %s ", rule->name);
+        free(value);
+        return status;
+    }
+    for (size_t i = 0; i < tree->n; i++)
+        if (!tree_is_segment(tree, i))
+            value[i] = (double)NAN;
+    *field = (Field){rule->name, rule->unit, value, tree->n};
+    return STATUS_OK;
+}
+
+void field_release(Field *field)
+{
+    free(field->value);
+    *field = (Field){0};
+}

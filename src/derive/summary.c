@@ -1,0 +1,93 @@
+#include "derive/fields.h"
+
+#include <stdlib.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Everything that one sweep over the segments gives. */
+static void sum_segments(const Tree *tree, TreeSummary *summary)
+{
+    summary->nodes = tree->n;
+    summary->min_radius_mm = (double)NAN;
+    for (size_t i = 0; i < tree->n; i++) {
+        double radius = tree->radius_mm[i];
+        if (!tree_is_segment(tree, i)) {
+            summary->roots++;
+            summary->root_radius_mm = fmax(summary->root_radius_mm, radius);
+            continue;
+        }
+        double length = tree_segment_length(tree, i);
+        summary->segments++;
+        summary->total_length_mm += length;
+        summary->volume_mm3 += pi * radius * radius * length;
+        if (summary->has.target)
+            summary->target += length * pow(radius, summary->lambda);
+        summary->min_radius_mm = fmin(summary->min_radius_mm, radius);
+    }
+}
+
+static void count_ends(const Tree *tree, const int32_t *children, TreeSummary *summary)
+{
+    for (size_t i = 0; i < tree->n; i++) {
+        summary->terminals += tree_is_segment(tree, i) && children[i] == 0;
+        summary->bifurcations += children[i] >= 2;
+    }
+}
+
+/* The largest value of a field that is a count; 0 when there is no segment. */
+static Status largest(const Tree *tree, const FlowParams *params, const char *name, int *out,
+                      Err *err)
+{
+    Field field;
+    TRY(derive_field(tree, params, name, &field, err));
+    double maximum = 0;
+    for (size_t i = 0; i < field.n; i++)
+        maximum = fmax(maximum, field.value[i]);
+    field_release(&field);
+    *out = (int)maximum;
+    return STATUS_OK;
+}
+
+static Status sum_terminal_pressures(const Tree *tree, const FlowParams *params,
+                                     const int32_t *children, TreeSummary *summary, Err *err)
+{
+    if (!pressure_is_known(tree, params) || summary->terminals == 0 ||
+        !(summary->min_radius_mm > 0))
+        return STATUS_OK;
+    Field pressure;
+    TRY(derive_field(tree, params, "pressure", &pressure, err));
+    double low = HUGE_VAL, high = -HUGE_VAL, sum = 0;
+    for (size_t i = 0; i < tree->n; i++) {
+        if (!tree_is_segment(tree, i) || children[i] > 0)
+            continue;
+        low = fmin(low, pressure.value[i]);
+        high = fmax(high, pressure.value[i]);
+        sum += pressure.value[i];
+    }
+    field_release(&pressure);
+    summary->has.terminal_pressure = true;
+    summary->terminal_pressure_min_mmhg = low;
+    summary->terminal_pressure_mean_mmhg = sum / (double)summary->terminals;
+    summary->terminal_pressure_max_mmhg = high;
+    return STATUS_OK;
+}
+
+Status derive_summary(const Tree *tree, const FlowParams *params, TreeSummary *summary, Err *err)
+{
+    const TreeHeader *header = &tree->header;
+    TreeSummary made = {.gamma = header->gamma, .bounds = tree_bounds(tree)};
+    made.has.gamma = header->has.gamma;
+    made.has.lambda = made.has.target = params->has.lambda || header->has.lambda;
+    made.lambda = params->has.lambda ? params->lambda : header->lambda;
+    sum_segments(tree, &made);
+    TRY(largest(tree, params, "level", &made.max_level, err));
+    TRY(largest(tree, params, "strahler", &made.max_strahler, err));
+    int32_t *children = NULL;
+    TRY(tree_child_counts(tree, &children, err));
+    count_ends(tree, children, &made);
+    Status status = sum_terminal_pressures(tree, params, children, &made, err);
+    free(children);
+    if (status == STATUS_OK)
+        *summary = made;
+    return status;
+}

@@ -1,0 +1,31 @@
+/* The door of the room emit: scene -> text for other programs. Their languages stand in templates/;
+ * C writes only numbers and calls of what the templates define. */
+#ifndef CORCAST_EMIT_EMIT_H
+#define CORCAST_EMIT_EMIT_H
+
+#include "base/base.h"
+#include "scene/scene.h"
+
+typedef struct PovrayParams {
+    const char *templates;     /* folder that holds povray/ */
+    const char *scene_file;    /* names as they stand in the header comments and the #include, */
+    const char *geometry_file; /* without folders; NULL: the geometry stands in the scene itself */
+    const char *description;   /* one line: what the scene shows */
+    const char *generator;     /* program and version */
+    bool shadows;
+    double cell_beta; /* isosurface: cells are split while longer than this times the smallest
+                       * radius that matters in them; 0: chosen from the number of segments */
+} PovrayParams;
+
+typedef struct PovrayReport {
+    size_t cells; /* of an isosurface */
+} PovrayReport;
+
+/* Writes a scene for POV-Ray 3.7 and its geometry include (appended to *scene and *geometry; the
+ * latter stays empty without geometry_file). STATUS_INPUT when a template is missing or does not
+ * fit.
+ */
+MUST_CHECK Status emit_povray(const Scene *scene, const PovrayParams *params, Text *scene_text,
+                              Text *geometry_text, PovrayReport *report, Err *err);
+
+#endif

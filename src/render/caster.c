@@ -1,0 +1,90 @@
+#include "render/caster.h"
+
+#include "render/bvh.h"
+#include "render/field.h"
+#include <stdlib.h>
+
+/* POV-Ray's limits [docs/POVRAY.md section 3]: crossings nearer than the first are not seen,
+ * blockers within the second of the lit point or of the light cast no shadow. */
+static const double nearest_seen_mm = 1e-4;
+static const double shadow_slack_mm = 1e-3;
+
+struct Caster {
+    const Scene *scene;
+    Bvh *bvh;               /* NULL for an implicit model */
+    FieldIndex *field;      /* NULL for a primitive model */
+    FieldScratch **scratch; /* one a worker */
+    int workers;
+};
+
+Status caster_new(const Scene *scene, int workers, Caster **out, Err *err)
+{
+    Caster *caster = NULL;
+    TRY(mem_calloc(&caster, 1, sizeof *caster, "casters", err));
+    caster->scene = scene;
+    caster->workers = workers;
+    Status status = STATUS_OK;
+    if (scene->model != SCENE_ISOSURFACE) {
+        TRY_GOTO(bvh_build(scene->primitives, scene->n_primitives, &caster->bvh, err));
+    } else {
+        TRY_GOTO(fieldindex_build(scene, &caster->field, err));
+        TRY_GOTO(mem_calloc(&caster->scratch, (size_t)workers, sizeof *caster->scratch,
+                            "workspaces", err));
+        for (int i = 0; i < workers; i++)
+            TRY_GOTO(fieldscratch_new(caster->field, &caster->scratch[i], err));
+    }
+    *out = caster;
+    return STATUS_OK;
+done:
+    caster_free(caster);
+    return status;
+}
+
+void caster_free(Caster *caster)
+{
+    if (!caster)
+        return;
+    for (int i = 0; caster->scratch && i < caster->workers; i++)
+        fieldscratch_free(caster->scratch[i]);
+    free(caster->scratch);
+    fieldindex_free(caster->field);
+    bvh_free(caster->bvh);
+    free(caster);
+}
+
+bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
+{
+    if (caster->bvh) {
+        Hit hit;
+        size_t index;
+        if (!bvh_first_hit(caster->bvh, ray, nearest_seen_mm, &hit, &index))
+            return false;
+        const Primitive *primitive = &caster->scene->primitives[index];
+        *surfel = (Surfel){hit.t, hit.normal, primitive->color, primitive->id};
+    } else {
+        double t;
+        Vec3 normal;
+        uint32_t index;
+        if (!field_first_hit(caster->field, caster->scratch[worker], ray, nearest_seen_mm, INFINITY,
+                             &t, &normal, &index))
+            return false;
+        const FieldSegment *segment = &caster->scene->segments[index];
+        *surfel = (Surfel){t, normal, segment->color, segment->id};
+    }
+    if (vec3_dot(surfel->normal, ray.direction) > 0)
+        surfel->normal = vec3_scale(surfel->normal, -1);
+    return true;
+}
+
+bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double distance)
+{
+    Ray ray = {point, towards};
+    double far = distance - shadow_slack_mm;
+    if (caster->bvh)
+        return bvh_any_hit(caster->bvh, ray, shadow_slack_mm, far);
+    double t;
+    Vec3 normal;
+    uint32_t index;
+    return field_first_hit(caster->field, caster->scratch[worker], ray, shadow_slack_mm, far, &t,
+                           &normal, &index);
+}

@@ -1,0 +1,26 @@
+/* What a ray of a scene meets first, for either kind of geometry. */
+#ifndef CORCAST_RENDER_CASTER_H
+#define CORCAST_RENDER_CASTER_H
+
+#include "base/base.h"
+#include "scene/scene.h"
+
+typedef struct Caster Caster;
+
+/* A visible point. */
+typedef struct Surfel {
+    double t;    /* mm along the ray */
+    Vec3 normal; /* unit, facing the viewer */
+    Rgb pigment; /* linear */
+    uint32_t id; /* of the segment */
+} Surfel;
+
+/* Builds the search structure of the scene (borrowed), with workspaces for `workers` threads. */
+MUST_CHECK Status caster_new(const Scene *scene, int workers, Caster **out, Err *err);
+void caster_free(Caster *caster);
+
+/* `worker` in [0, workers) is the calling thread's own. */
+bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel);
+bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double distance);
+
+#endif

@@ -1,0 +1,133 @@
+/* Looks are INI files, read by inih, because POV-Ray's users know the form and artists edit it. */
+#include "stage/stage.h"
+
+#include <ini.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Reading {
+    Look look;
+    char light_section[64]; /* of the last light */
+    const char *problem;    /* what the value should have been */
+} Reading;
+
+/* `count` numbers, separated by blanks, each in [low, high]. */
+static bool read_numbers(const char *text, int count, double low, double high, double *out)
+{
+    const char *at = text;
+    for (int i = 0; i < count; i++) {
+        char *end;
+        out[i] = strtod(at, &end);
+        if (end == at || !(out[i] >= low && out[i] <= high))
+            return false;
+        at = end;
+    }
+    return at[strspn(at, " \t")] == '\0';
+}
+
+static bool read_color(Reading *reading, const char *value, Rgb *out)
+{
+    double rgb[3];
+    reading->problem = "three numbers from 0 to 1, red green blue";
+    if (!read_numbers(value, 3, 0, 1, rgb))
+        return false;
+    *out = (Rgb){(float)rgb[0], (float)rgb[1], (float)rgb[2]};
+    return true;
+}
+
+static bool read_finish(Reading *reading, const char *name, const char *value)
+{
+    Finish *finish = &reading->look.finish;
+    const struct {
+        const char *name;
+        float *where;
+        double low, high;
+        const char *allowed;
+    } keys[] = {
+        {"ambient", &finish->ambient, 0, 1, "a number from 0 to 1"},
+        {"diffuse", &finish->diffuse, 0, 1, "a number from 0 to 1"},
+        {"brilliance", &finish->brilliance, 0.1, 10, "a number from 0.1 to 10"},
+        {"phong", &finish->phong, 0, 1, "a number from 0 to 1"},
+        {"phong_size", &finish->phong_size, 1, 1000, "a number from 1 to 1000"},
+        {"specular", &finish->specular, 0, 1, "a number from 0 to 1"},
+        {"roughness", &finish->roughness, 0.0005, 1, "a number from 0.0005 to 1"},
+    };
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+        if (strcmp(name, keys[i].name) != 0)
+            continue;
+        double number;
+        reading->problem = keys[i].allowed;
+        if (!read_numbers(value, 1, keys[i].low, keys[i].high, &number))
+            return false;
+        *keys[i].where = (float)number;
+        return true;
+    }
+    reading->problem =
+        "one of ambient, diffuse, brilliance, phong, phong_size, specular, roughness";
+    return false;
+}
+
+static bool read_light(Reading *reading, const char *section, const char *name, const char *value)
+{
+    Look *look = &reading->look;
+    if (strcmp(section, reading->light_section) != 0) {
+        reading->problem = "one of at most 8 lights with names of at most 63 letters";
+        if (look->n_lights == LOOK_MAX_LIGHTS || strlen(section) >= sizeof reading->light_section)
+            return false;
+        strcpy(reading->light_section, section);
+        look->lights[look->n_lights++] = (LookLight){{0, 0, 1}, {1, 1, 1}};
+    }
+    LookLight *light = &look->lights[look->n_lights - 1];
+    if (strcmp(name, "color") == 0)
+        return read_color(reading, value, &light->color);
+    if (strcmp(name, "direction") == 0) {
+        double xyz[3];
+        reading->problem = "three numbers, right up viewer, not all zero";
+        if (!read_numbers(value, 3, -1e6, 1e6, xyz) || (xyz[0] == 0 && xyz[1] == 0 && xyz[2] == 0))
+            return false;
+        light->direction = vec3(xyz[0], xyz[1], xyz[2]);
+        return true;
+    }
+    reading->problem = "direction or color";
+    return false;
+}
+
+static int read_pair(void *user, const char *section, const char *name, const char *value)
+{
+    Reading *reading = user;
+    bool is_color = strcmp(name, "color") == 0;
+    reading->problem = "color";
+    if (strcmp(section, "vessel") == 0)
+        return is_color && read_color(reading, value, &reading->look.color);
+    if (strcmp(section, "background") == 0)
+        return is_color && read_color(reading, value, &reading->look.background);
+    if (strcmp(section, "finish") == 0)
+        return read_finish(reading, name, value);
+    if (strncmp(section, "light ", 6) == 0)
+        return read_light(reading, section, name, value);
+    reading->problem = "in one of the sections vessel, background, finish, light NAME";
+    return 0;
+}
+
+Status look_read(Look *look, const char *path, Err *err)
+{
+    char *text = NULL;
+    size_t size;
+    TRY(file_read(path, &text, &size, err));
+    Reading reading = {
+        .look = {.finish = {.ambient = 0.1f,
+                            .diffuse = 0.6f,
+                            .brilliance = 1,
+                            .phong_size = 40,
+                            .roughness = 0.05f},
+                 .color = {1, 1, 1}},
+        .problem = "name = value",
+    };
+    int line = ini_parse_string(text, read_pair, &reading);
+    free(text);
+    if (line != 0)
+        return err_set(err, STATUS_INPUT, "%s:%d: not a look: expected %s", path, line,
+                       reading.problem);
+    *look = reading.look;
+    return STATUS_OK;
+}

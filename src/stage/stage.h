@@ -1,0 +1,66 @@
+/* The door of the room stage: tree + fields + look -> scene. */
+#ifndef CORCAST_STAGE_STAGE_H
+#define CORCAST_STAGE_STAGE_H
+
+#include "base/base.h"
+#include "geom/geom.h"
+#include "scene/scene.h"
+#include "tree/tree.h"
+
+/* What a picture looks like whatever it shows: a file of templates/looks. Colours are linear RGB.
+ */
+typedef struct LookLight {
+    Vec3 direction; /* towards the light: x right, y up, z towards the viewer; any length */
+    Rgb color;
+} LookLight;
+
+enum { LOOK_MAX_LIGHTS = 8 };
+
+typedef struct Look {
+    Finish finish;
+    Rgb color; /* of vessels that no field colours */
+    Rgb background;
+    LookLight lights[LOOK_MAX_LIGHTS]; /* parallel */
+    int n_lights;
+} Look;
+
+/* Reads an INI file with the sections [vessel] color, [background] color, [finish] ambient diffuse
+ * brilliance phong phong_size specular roughness, and [light NAME] direction color. STATUS_INPUT
+ * naming file and line on an unknown section or key and on a bad value. */
+MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
+
+typedef enum View { VIEW_FRONT, VIEW_TOP, VIEW_LEFT, VIEW_ISO } View;
+
+typedef struct StageParams {
+    SceneModel model;
+    int width, height; /* pixels, >= 1 */
+    Projection projection;
+    View view; /* used when has_location is false */
+    bool has_location, has_look_at, has_up;
+    Vec3 location, look_at, up;
+    double angle_deg; /* full horizontal angle of a perspective camera, in (0, 180) */
+    double height_mm; /* of an orthographic picture; 0: frames the tree */
+    double margin;    /* free part of the picture on each side when framing, in [0, 0.45] */
+    bool shadows;
+} StageParams;
+
+/* front, orthographic, 1000 x 1000, 30 degrees, margin 0.05. */
+StageParams stage_defaults(void);
+
+typedef struct StageReport {
+    size_t drawn;   /* segments in the scene */
+    size_t dropped; /* segments without length or radius, which cannot be drawn */
+} StageReport;
+
+/* Builds the scene of a tree. `colors` has one linear colour a node, for the segment that ends
+ * there, or is NULL for the look's one colour. STATUS_INPUT when nothing can be drawn or a number
+ * is out of range. */
+MUST_CHECK Status stage_scene(const Tree *tree, const Look *look, const Rgb *colors,
+                              const StageParams *params, Scene *scene, StageReport *report,
+                              Err *err);
+
+/* Unit direction and up vector of a named view: front looks along -z with y up, top along -y with
+ * -z up, left along +x with y up, iso along (-1, -1, -1) with y up. */
+void view_axes(View view, Vec3 *direction, Vec3 *up);
+
+#endif

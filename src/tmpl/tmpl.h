@@ -1,0 +1,20 @@
+/* The door of the room tmpl: strict expansion of text templates. */
+#ifndef CORCAST_TMPL_TMPL_H
+#define CORCAST_TMPL_TMPL_H
+
+#include "base/base.h"
+
+/* What ${name} stands for. Both are borrowed and zero-terminated. */
+typedef struct TmplValue {
+    const char *name; /* letters, digits and '_', not starting with a digit */
+    const char *text; /* put in as it stands: never expanded again */
+} TmplValue;
+
+/* Appends the file `path` to `out`, with every ${name} replaced by the text of that name and every
+ * $$ by one $. Any other $ is an error, and so are a name that `values` lacks and a value that the
+ * template never uses, so that a template and its caller cannot drift apart. STATUS_INPUT names
+ * file, line and name; `out` is unchanged on failure. */
+MUST_CHECK Status tmpl_expand(const char *path, const TmplValue *values, size_t n, Text *out,
+                              Err *err);
+
+#endif

@@ -1,0 +1,170 @@
+/* One array a quantity, all indexed by node, parents first: every function here is one loop, and
+ * none recurses, so that a chain of a million segments is no deeper than a bush. */
+#include "tree/tree.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+Status tree_init(Tree *tree, size_t n, Err *err)
+{
+    assert(n >= 1);
+    if (n > TREE_MAX_ID)
+        return err_set(err, STATUS_INFEASIBLE, "a tree of %zu nodes is too large: at most %d", n,
+                       TREE_MAX_ID);
+    Tree made = {.n = n};
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&made.id, n, sizeof *made.id, "node ids", err));
+    TRY_GOTO(mem_calloc(&made.type, n, sizeof *made.type, "node types", err));
+    TRY_GOTO(mem_calloc(&made.parent, n, sizeof *made.parent, "node parents", err));
+    TRY_GOTO(mem_calloc(&made.position, n, sizeof *made.position, "node positions", err));
+    TRY_GOTO(mem_calloc(&made.radius_mm, n, sizeof *made.radius_mm, "node radii", err));
+    for (size_t i = 0; i < n; i++)
+        made.parent[i] = TREE_NO_PARENT;
+    *tree = made;
+done:
+    if (status != STATUS_OK)
+        tree_release(&made);
+    return status;
+}
+
+void tree_release(Tree *tree)
+{
+    free(tree->id);
+    free(tree->type);
+    free(tree->parent);
+    free(tree->position);
+    free(tree->radius_mm);
+    for (size_t i = 0; i < tree->header.n_lines; i++)
+        free(tree->header.lines[i]);
+    free(tree->header.lines);
+    *tree = (Tree){0};
+}
+
+double tree_segment_length(const Tree *tree, size_t i)
+{
+    if (!tree_is_segment(tree, i))
+        return 0;
+    return vec3_distance(tree->position[tree->parent[i]], tree->position[i]);
+}
+
+Status tree_child_counts(const Tree *tree, int32_t **count, Err *err)
+{
+    int32_t *counted = NULL;
+    TRY(mem_calloc(&counted, tree->n, sizeof *counted, "child counts", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i))
+            counted[tree->parent[i]]++;
+    *count = counted;
+    return STATUS_OK;
+}
+
+static Status check_node(const Tree *tree, size_t i, Err *err)
+{
+    int32_t id = tree->id[i], parent = tree->parent[i];
+    char number[NUMBER_TEXT_SIZE];
+    if (id < 1 || id > TREE_MAX_ID)
+        return err_set(err, STATUS_INPUT, "node %d: the id must be in 1 .. %d", id, TREE_MAX_ID);
+    if (parent != TREE_NO_PARENT && (parent < 0 || (size_t)parent >= i))
+        return err_set(err, STATUS_INPUT, "node %d: its parent does not come before it", id);
+    if (!vec3_finite(tree->position[i]))
+        return err_set(err, STATUS_INPUT, "node %d: the position is not finite", id);
+    if (!isfinite(tree->radius_mm[i]) || tree->radius_mm[i] < 0)
+        return err_set(err, STATUS_INPUT, "node %d: radius %s; it must be finite and not negative",
+                       id, number_text(tree->radius_mm[i], number));
+    return STATUS_OK;
+}
+
+Status tree_check(const Tree *tree, Err *err)
+{
+    if (tree->n == 0)
+        return err_set(err, STATUS_INPUT, "the tree has no nodes; at least one is needed");
+    uint8_t *seen = NULL; /* one bit an id */
+    TRY(mem_calloc(&seen, TREE_MAX_ID / 8 + 1, 1, "bytes of seen ids", err));
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < tree->n; i++) {
+        TRY_GOTO(check_node(tree, i, err));
+        uint8_t *byte = &seen[tree->id[i] / 8];
+        uint8_t bit = (uint8_t)(1u << tree->id[i] % 8);
+        if (*byte & bit)
+            TRY_GOTO(
+                err_set(err, STATUS_INPUT, "node %d: another node has the same id", tree->id[i]));
+        *byte |= bit;
+    }
+done:
+    free(seen);
+    return status;
+}
+
+/* Copies the header of `tree` into `out`, whose header is still empty. */
+static Status copy_header(const Tree *tree, Tree *out, Err *err)
+{
+    out->header = tree->header;
+    out->header.lines = NULL;
+    out->header.n_lines = out->header.lines_capacity = 0;
+    for (size_t i = 0; i < tree->header.n_lines; i++)
+        TRY(tree_add_line(out, tree->header.lines[i], err));
+    return STATUS_OK;
+}
+
+Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
+{
+    enum { DROPPED = -1 };
+    int32_t *place = NULL; /* of each node in the new tree */
+    TRY(mem_calloc(&place, tree->n, sizeof *place, "node places", err));
+    int32_t n = 0;
+    for (size_t i = 0; i < tree->n; i++) {
+        bool kept = !tree_is_segment(tree, i) ||
+                    (place[tree->parent[i]] != DROPPED && !(tree->radius_mm[i] < radius_mm));
+        place[i] = kept ? n++ : DROPPED;
+    }
+    Tree made = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(tree_init(&made, (size_t)n, err));
+    TRY_GOTO(copy_header(tree, &made, err));
+    for (size_t i = 0; i < tree->n; i++) {
+        int32_t at = place[i];
+        if (at == DROPPED)
+            continue;
+        made.id[at] = tree->id[i];
+        made.type[at] = tree->type[i];
+        made.parent[at] = tree_is_segment(tree, i) ? place[tree->parent[i]] : TREE_NO_PARENT;
+        made.position[at] = tree->position[i];
+        made.radius_mm[at] = tree->radius_mm[i];
+    }
+    *out = made;
+done:
+    if (status != STATUS_OK)
+        tree_release(&made);
+    free(place);
+    return status;
+}
+
+void tree_renumber(Tree *tree)
+{
+    for (size_t i = 0; i < tree->n; i++)
+        tree->id[i] = (int32_t)i + 1;
+}
+
+Box tree_bounds(const Tree *tree)
+{
+    Box box = box_empty();
+    for (size_t i = 0; i < tree->n; i++) {
+        box = box_with_ball(box, tree->position[i], tree->radius_mm[i]);
+        if (tree_is_segment(tree, i))
+            box = box_with_ball(box, tree->position[tree->parent[i]], tree->radius_mm[i]);
+    }
+    return box;
+}
+
+Status tree_add_line(Tree *tree, const char *line, Err *err)
+{
+    TreeHeader *header = &tree->header;
+    if (strpbrk(line, "\r\n"))
+        return err_set(err, STATUS_INPUT, "a header line may not hold a line end: %s", line);
+    TRY(mem_reserve(&header->lines, &header->lines_capacity, header->n_lines + 1,
+                    sizeof *header->lines, "header lines", err));
+    TRY(mem_strdup(&header->lines[header->n_lines], line, err));
+    header->n_lines++;
+    return STATUS_OK;
+}

@@ -1,0 +1,98 @@
+// Persistence of Vision Ray Tracer Scene Description File
+// File: ${file}
+// Vers: 3.7
+// Desc: ${description}
+// Auth: ${generator}
+//
+// Geometry stands in ${geometry_file}; this file is the stage: camera, lights, background.
+// Units are millimetres. The camera is given by its own vectors, so that the world is right-handed:
+// seen from the front, x runs to the right, y up, and z towards the viewer.
+// Extent: ${extent}
+//
+// Render: povray +I${file} +O${stem}.png +W${width} +H${height} -D
+// Size: ${width}x${height}
+//
+// Whatever stands in #ifndef can be set from outside: Declare=Vessel_Phong=0.6 on the command line,
+// or #declare before an #include of this file.
+#version 3.7;
+
+// 0 the picture; 1 depth, 2 normals, 3 segment ids, for checking other renderers against.
+#ifndef (Corcast_Plane) #declare Corcast_Plane = 0; #end
+
+global_settings {
+  assumed_gamma 1.0
+  max_trace_level 5
+}
+
+// ---- camera ---------------------------------------------------------------------------------
+#ifndef (Camera_Perspective) #declare Camera_Perspective = ${perspective}; #end
+#ifndef (Camera_Location)    #declare Camera_Location    = ${location}; #end
+#ifndef (Camera_Right)       #declare Camera_Right       = ${right}; #end     // full width
+#ifndef (Camera_Up)          #declare Camera_Up          = ${up}; #end        // full height
+#ifndef (Camera_Direction)   #declare Camera_Direction   = ${direction}; #end // unit
+
+camera {
+  #if (Camera_Perspective) perspective #else orthographic #end
+  location  Camera_Location
+  right     Camera_Right
+  up        Camera_Up
+  direction Camera_Direction
+}
+
+// ---- light ----------------------------------------------------------------------------------
+#ifndef (Light_Intensity)  #declare Light_Intensity  = 1; #end
+#ifndef (Light_Shadows)    #declare Light_Shadows    = ${shadows}; #end
+#ifndef (Background_Color) #declare Background_Color = ${background}; #end // linear RGB
+
+#macro Light_Parallel(Location, Target, Color)
+  light_source { Location, rgb Color * Light_Intensity parallel point_at Target }
+#end
+#macro Light_Point(Location, Color)
+  light_source { Location, rgb Color * Light_Intensity }
+#end
+
+#if (Corcast_Plane = 0)
+  background { rgb Background_Color }
+${lights}
+#else
+  background { rgb 0 }
+#end
+#if (Corcast_Plane = 2)
+  // Signed lights along the axes turn a white finish into 0.5 + 0.5 * normal.
+  #macro Light_Axis(Axis)
+    light_source { Axis * 1e4, rgb Axis parallel point_at 0 shadowless }
+    light_source { -Axis * 1e4, rgb -Axis parallel point_at 0 shadowless }
+  #end
+  Light_Axis(x) Light_Axis(y) Light_Axis(z)
+#end
+#if (Corcast_Plane = 1)
+  // Distance along the viewing ray, from Depth_Near to Depth_Far, as a 32-bit fraction: the high half
+  // in red, the low half in green, and blue where anything is seen.
+  #declare Depth_Near = ${depth_near};
+  #declare Depth_Far  = ${depth_far};
+  #local Lx = Camera_Location.x; #local Ly = Camera_Location.y; #local Lz = Camera_Location.z;
+  #local Dx = Camera_Direction.x; #local Dy = Camera_Direction.y; #local Dz = Camera_Direction.z;
+  #if (Camera_Perspective)
+    #declare Fn_Depth = function(x, y, z) { sqrt(pow(x - Lx, 2) + pow(y - Ly, 2) + pow(z - Lz, 2)) };
+  #else
+    #declare Fn_Depth = function(x, y, z) { (x - Lx) * Dx + (y - Ly) * Dy + (z - Lz) * Dz };
+  #end
+  #declare Fn_Fraction = function(x, y, z) {
+    min(max((Fn_Depth(x, y, z) - Depth_Near) / (Depth_Far - Depth_Near), 0), 1)
+  };
+  #declare P_Depth = pigment {
+    average pigment_map {
+      [1 function { floor(Fn_Fraction(x, y, z) * 65535) / 65535 }
+         color_map { [0 rgb 0] [1 rgb <3, 0, 0>] }]
+      [1 function { Fn_Fraction(x, y, z) * 65535 - floor(Fn_Fraction(x, y, z) * 65535) }
+         color_map { [0 rgb 0] [1 rgb <0, 3, 0>] }]
+      [1 rgb <0, 0, 3>]
+    }
+  };
+#end
+
+// ---- vessels --------------------------------------------------------------------------------
+// The look of the vessels has its defaults with the geometry: Vessel_Color (linear RGB) and
+// Vessel_Ambient, _Diffuse, _Brilliance, _Phong, _Phong_Size, _Specular, _Roughness.
+${geometry}
+object { Tree }

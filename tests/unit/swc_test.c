@@ -1,0 +1,549 @@
+#include "treeio/treeio.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static char folder[] = "/tmp/corcast-swc-XXXXXX";
+static char input[64], output[64], again[64];
+
+static int make_folder(void **state)
+{
+    (void)state;
+    if (!mkdtemp(folder))
+        return -1;
+    snprintf(input, sizeof input, "%s/in.swc", folder);
+    snprintf(output, sizeof output, "%s/out.swc", folder);
+    snprintf(again, sizeof again, "%s/again.swc", folder);
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    unlink(input);
+    unlink(output);
+    unlink(again);
+    return rmdir(folder);
+}
+
+static void must(Status status, const Err *err)
+{
+    if (status != STATUS_OK)
+        fail_msg("%s", err->text);
+}
+
+static Tree read_path(const char *path)
+{
+    Tree tree = {0};
+    Err err;
+    must(tree_read(&tree, path, &err), &err);
+    must(tree_check(&tree, &err), &err);
+    return tree;
+}
+
+static Tree read_bytes(const char *bytes, size_t size)
+{
+    Err err;
+    must(file_write(input, bytes, size, &err), &err);
+    return read_path(input);
+}
+
+static Tree read_text(const char *text)
+{
+    return read_bytes(text, strlen(text));
+}
+
+/* The bytes that the tree is written as (owned). */
+static char *written(const Tree *tree)
+{
+    char *bytes = NULL;
+    size_t size = 0;
+    Err err;
+    must(tree_write(tree, output, &err), &err);
+    must(file_read(output, &bytes, &size, &err), &err);
+    return bytes;
+}
+
+static void assert_written(const Tree *tree, const char *expected)
+{
+    char *bytes = written(tree);
+    assert_string_equal(bytes, expected);
+    free(bytes);
+}
+
+/* Reads, writes, reads and writes: the same bytes both times. */
+static void assert_round_trip(const char *path)
+{
+    Tree first = read_path(path);
+    char *once = written(&first);
+    Tree second = read_path(output);
+    char *twice = written(&second);
+    assert_string_equal(once, twice);
+    assert_int_equal(first.n, second.n);
+    assert_memory_equal(first.position, second.position, first.n * sizeof *first.position);
+    assert_memory_equal(first.radius_mm, second.radius_mm, first.n * sizeof *first.radius_mm);
+    assert_memory_equal(first.parent, second.parent, first.n * sizeof *first.parent);
+    free(once);
+    free(twice);
+    tree_release(&first);
+    tree_release(&second);
+}
+
+/* `expected` goes on from the file's name. */
+static void assert_refused_bytes(const char *bytes, size_t size, const char *expected)
+{
+    Tree tree = {.n = 77};
+    Err err;
+    must(file_write(input, bytes, size, &err), &err);
+    assert_int_equal(tree_read(&tree, input, &err), STATUS_INPUT);
+    assert_memory_equal(err.text, input, strlen(input));
+    assert_string_equal(err.text + strlen(input), expected);
+    assert_int_equal(tree.n, 77);
+}
+
+static void assert_refused(const char *text, const char *expected)
+{
+    assert_refused_bytes(text, strlen(text), expected);
+}
+
+static void reads_a_messy_file(void **state)
+{
+    (void)state;
+    Tree tree = read_path("tests/data/messy.swc");
+    assert_true(tree.header.has.gamma && tree.header.gamma == 2.85);
+    assert_false(tree.header.has.lambda);
+    assert_written(&tree, "# ORIGINAL_SOURCE  by hand \n"
+                          "# \tVERSION_DATE 2007-07-24\n"
+                          "# gamma: 2.85\n"
+                          "# late: remark\n"
+                          "#\n"
+                          "4 2 1.125 0.25 6 0.625 -1\n"
+                          "9 2 2.5 1.5 8 0.625 4\n"
+                          "17 2 3.75 -0.5 10 0.375 9\n"
+                          "23 0 5.5 2.25 9.5 0 9\n");
+    tree_release(&tree);
+}
+
+static void line_ends_may_be_cr_lf_or_both(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "#a\n1 2 .5 .25 0 1.5 -1\n3 2 1 2 4 .5 1\n",
+        "#a\r1 2 .5 .25 0 1.5 -1\r3 2 1 2 4 .5 1\r",
+        "#a\r\n1 2 .5 .25 0 1.5 -1\r\n3 2 1 2 4 .5 1\r\n",
+        "#a\n1 2 .5 .25 0 1.5 -1\n3 2 1 2 4 .5 1",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        Tree tree = read_text(texts[i]);
+        assert_written(&tree, "# a\n1 2 0.5 0.25 0 1.5 -1\n3 2 1 2 4 0.5 1\n");
+        tree_release(&tree);
+    }
+}
+
+static void every_known_key_fills_its_field_and_unknown_lines_stay(void **state)
+{
+    (void)state;
+    static const char text[] = "# generator: corcast 1.2\n"
+                               "# seed: 18446744073709551615\n"
+                               "# dimension: 3\n"
+                               "# domain: ball:28.794\n"
+                               "# gamma: 2.7\n"
+                               "# lambda: 0\n"
+                               "# p_perf_mmHg: 97.3\n"
+                               "# p_term_mmHg: -3.25\n"
+                               "# q_perf_ml_min: 212.5\n"
+                               "# viscosity_cP: 3.4500000000000002\n"
+                               "#\n"
+                               "# gamma rays: 7\n"
+                               "1 5 0 0 0 2.385 -1\n";
+    Tree tree = read_text(text);
+    const TreeHeader *header = &tree.header;
+    assert_true(header->has.seed && header->seed == UINT64_MAX);
+    assert_true(header->has.dimension && header->dimension == 3);
+    assert_true(header->has.gamma && header->gamma == 2.7);
+    assert_true(header->has.lambda && header->lambda == 0);
+    assert_true(header->has.p_perf && header->p_perf_mmhg == 97.3);
+    assert_true(header->has.p_term && header->p_term_mmhg == -3.25);
+    assert_true(header->has.q_perf && header->q_perf_ml_min == 212.5);
+    assert_true(header->has.viscosity && header->viscosity_cp == 3.45);
+    assert_int_equal(header->n_lines, 12);
+
+    char *bytes = written(&tree);
+    assert_non_null(strstr(bytes, "# viscosity_cP: 3.45\n#\n# gamma rays: 7\n1 5 "));
+    assert_non_null(strstr(bytes, "# seed: 18446744073709551615\n# dimension: 3\n# domain"));
+    free(bytes);
+    tree_release(&tree);
+}
+
+static void known_fields_are_written_whether_a_line_names_them_or_not(void **state)
+{
+    (void)state;
+    Err err;
+    Tree tree = read_text("# gamma: 2.7\n# kept\n# seed: 41\n1 0 0 0 0 .5 -1\n");
+    tree.header.gamma = 2.85;
+    tree.header.has.seed = false;
+    tree.header.has.dimension = true;
+    tree.header.dimension = 2;
+    must(tree_add_line(&tree, "domain: disc:50", &err), &err);
+    assert_written(&tree, "# gamma: 2.85\n# kept\n# domain: disc:50\n# dimension: 2\n"
+                          "1 0 0 0 0 0.5 -1\n");
+    tree_release(&tree);
+}
+
+static void a_key_that_says_the_same_again_is_fine(void **state)
+{
+    (void)state;
+    Tree tree = read_text("# gamma: 2.5\n1 0 0 0 0 .5 -1\n# gamma: 2.50\n");
+    assert_written(&tree, "# gamma: 2.5\n1 0 0 0 0 0.5 -1\n");
+    tree_release(&tree);
+}
+
+static void rejects_a_known_key_of_bad_value(void **state)
+{
+    (void)state;
+    assert_refused("# x\n# gamma: high\n",
+                   ":2: gamma is 'high'; it must be above 0 and at most 10");
+    assert_refused("# gamma: 0", ":1: gamma is '0'; it must be above 0 and at most 10");
+    assert_refused("# gamma: 10.5", ":1: gamma is '10.5'; it must be above 0 and at most 10");
+    assert_refused("# gamma:", ":1: gamma is ''; it must be above 0 and at most 10");
+    assert_refused("# lambda: -1", ":1: lambda is '-1'; it must be a number that is not negative");
+    assert_refused("# lambda: inf",
+                   ":1: lambda is 'inf'; it must be a number that is not negative");
+    assert_refused("# dimension: 2.5", ":1: dimension is '2.5'; it must be 2 or 3");
+    assert_refused("# p_perf_mmHg: nan", ":1: p_perf_mmHg is 'nan'; it must be a finite number");
+    assert_refused("# p_term_mmHg: 1 2", ":1: p_term_mmHg is '1 2'; it must be a finite number");
+    assert_refused("# q_perf_ml_min: 0", ":1: q_perf_ml_min is '0'; it must be a number above 0");
+    assert_refused("# viscosity_cP: -3", ":1: viscosity_cP is '-3'; it must be a number above 0");
+    static const char seed[] = "it must be a whole number from 0 to 18446744073709551615";
+    char expected[120];
+    snprintf(expected, sizeof expected, ":1: seed is '-1'; %s", seed);
+    assert_refused("# seed: -1", expected);
+    snprintf(expected, sizeof expected, ":1: seed is '18446744073709551616'; %s", seed);
+    assert_refused("# seed: 18446744073709551616", expected);
+    assert_refused("# gamma: 2.5\n#gamma: 3\n",
+                   ":2: gamma is '3', but an earlier line says otherwise");
+}
+
+static void rejects_a_wrong_field_count(void **state)
+{
+    (void)state;
+    assert_refused("1 2 0 0 0 .5 -1\n2 2 1 1 1 .5\n",
+                   ":2: the row has 6 fields; it must have 7: id type x y z radius parent");
+    assert_refused("1 2 0 0 0 .5 -1 8\n",
+                   ":1: the row has 8 fields; it must have 7: id type x y z radius parent");
+    assert_refused("\n\nhello\n",
+                   ":3: the row has 1 field; it must have 7: id type x y z radius parent");
+    assert_refused("1,2,0,0,0,.5,-1\n",
+                   ":1: the row has 1 field; it must have 7: id type x y z radius parent");
+}
+
+static void rejects_what_is_not_a_number(void **state)
+{
+    (void)state;
+    assert_refused("1 2 0 O 0 .5 -1\n", ":1: the y coordinate is 'O'; it must be a finite number");
+    assert_refused("1 2 0 0 0 .5mm -1\n",
+                   ":1: the radius is '.5mm'; it must be a finite number that is not negative");
+    assert_refused("1 2 0 0 0x1p3 .5 -1\n",
+                   ":1: the z coordinate is '0x1p3'; it must be a finite number");
+    assert_refused("one 2 0 0 0 .5 -1\n",
+                   ":1: the id is 'one'; it must be a whole number from 1 to 16777215");
+    assert_refused("1 axon 0 0 0 .5 -1\n", ":1: the type is 'axon'; it must be a whole number from "
+                                           "-2147483648 to 2147483647");
+    assert_refused("1 2 0 0 0 .5 none\n",
+                   ":1: the parent is 'none'; it must be a whole number from -1 to 16777215");
+}
+
+static void rejects_what_is_not_finite(void **state)
+{
+    (void)state;
+    assert_refused("1 2 nan 0 0 .5 -1\n",
+                   ":1: the x coordinate is 'nan'; it must be a finite number");
+    assert_refused("1 2 0 0 -inf .5 -1\n",
+                   ":1: the z coordinate is '-inf'; it must be a finite number");
+    assert_refused("1 2 0 1e999 0 .5 -1\n",
+                   ":1: the y coordinate is '1e999'; it must be a finite number");
+    assert_refused("1 2 0 0 0 NaN -1\n",
+                   ":1: the radius is 'NaN'; it must be a finite number that is not negative");
+}
+
+static void rejects_a_negative_radius_and_takes_zero(void **state)
+{
+    (void)state;
+    assert_refused("1 2 0 0 0 -0.375 -1\n",
+                   ":1: the radius is '-0.375'; it must be a finite number that is not negative");
+    Tree tree = read_text("1 2 0 0 0 0 -1\n");
+    assert_true(tree.radius_mm[0] == 0);
+    tree_release(&tree);
+}
+
+static void rejects_ids_out_of_range(void **state)
+{
+    (void)state;
+    static const char allowed[] = "; it must be a whole number from 1 to 16777215";
+    static const char *const ids[] = {"0", "-3", "16777216", "1.5", "nan", "99999999999999999999"};
+    for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
+        char text[80], expected[120];
+        snprintf(text, sizeof text, "#\n%s 2 0 0 0 .5 -1\n", ids[i]);
+        snprintf(expected, sizeof expected, ":2: the id is '%s'%s", ids[i], allowed);
+        assert_refused(text, expected);
+    }
+    Tree tree = read_text("16777215 2 0 0 0 .5 -1\n1e1 2 0 0 1 .5 16777215.0\n");
+    assert_int_equal(tree.id[0], 16777215);
+    assert_int_equal(tree.id[1], 10);
+    tree_release(&tree);
+}
+
+static void rejects_a_duplicate_id_naming_both_lines(void **state)
+{
+    (void)state;
+    assert_refused("7 2 0 0 0 .5 -1\n#\n8 2 0 0 1 .5 7\n7 2 0 0 2 .5 8\n",
+                   ":4: the id 7 is already that of line 1; every row needs its own");
+}
+
+static void rejects_an_unknown_parent(void **state)
+{
+    (void)state;
+    static const char *const parents[] = {"3", "0", "16777215"};
+    for (size_t i = 0; i < sizeof parents / sizeof *parents; i++) {
+        char text[80], expected[160];
+        snprintf(text, sizeof text, "7 2 0 0 0 .5 -1\n8 2 0 0 1 .5 %s\n", parents[i]);
+        snprintf(
+            expected, sizeof expected,
+            ":2: the parent is %s, which is no row's id; it must be the id of a row, or -1 for "
+            "a root",
+            parents[i]);
+        assert_refused(text, expected);
+    }
+    assert_refused("7 2 0 0 0 .5 -2\n",
+                   ":1: the parent is '-2'; it must be a whole number from -1 to 16777215");
+}
+
+static void rejects_cycles(void **state)
+{
+    (void)state;
+    static const char rule[] = "parents must lead to a root, whose parent is -1";
+    char expected[120];
+    snprintf(expected, sizeof expected, ":2: node 8 is its own parent; %s", rule);
+    assert_refused("7 2 0 0 0 .5 -1\n8 2 0 0 1 .5 8\n", expected);
+    snprintf(expected, sizeof expected, ":3: node 9 is its own ancestor; %s", rule);
+    assert_refused("1 2 0 0 0 .5 -1\n7 2 0 0 0 .5 9\n9 2 0 0 1 .5 8\n8 2 0 0 1 .5 9\n", expected);
+}
+
+static void rejects_files_without_rows(void **state)
+{
+    (void)state;
+    static const char no_rows[] =
+        ": the file has no rows; an SWC file has at least one, id type x y z radius parent";
+    static const char empty[] = ": the file is empty; an SWC file has at least one row";
+    assert_refused("", empty);
+    assert_refused("\xef\xbb\xbf", empty);
+    assert_refused("# only\n\n \t\n", no_rows);
+    assert_refused("\n", no_rows);
+}
+
+static void rejects_binary_files(void **state)
+{
+    (void)state;
+    static const char bytes[] = "# a\n1 2 0 0\0 0 .5 -1\n";
+    assert_refused_bytes(bytes, sizeof bytes - 1, ":2: a zero byte; an SWC file is plain text");
+    assert_refused_bytes("\0", 1, ":1: a zero byte; an SWC file is plain text");
+}
+
+static void rejects_missing_files_and_unknown_extensions(void **state)
+{
+    (void)state;
+    Tree tree = {0};
+    Err err;
+    assert_int_equal(tree_read(&tree, "/nonexistent/t.swc", &err), STATUS_INPUT);
+    assert_int_equal(tree_read(&tree, "t.vtp", &err), STATUS_USAGE);
+    assert_string_equal(err.text, "t.vtp: not the name of a tree file; known are .swc, and - for "
+                                  "SWC on standard input or output");
+    assert_int_equal(tree_write(&tree, "t", &err), STATUS_USAGE);
+    assert_true(tree_format_known("a.b/T.SWC") && tree_format_known("-"));
+    assert_false(tree_format_known("swc") || tree_format_known("t.swc.gz"));
+}
+
+static void an_unwritable_place_is_an_io_failure(void **state)
+{
+    (void)state;
+    Err err;
+    Tree tree = read_path("tests/data/bifurcation.swc");
+    assert_int_equal(tree_write(&tree, "/nonexistent/t.swc", &err), STATUS_IO);
+    tree_release(&tree);
+}
+
+static void ancestors_move_ahead_and_the_rest_keeps_file_order(void **state)
+{
+    (void)state;
+    Tree tree = read_text("5 0 0 0 0 .5 3\n" /* needs 3, which needs 9 */
+                          "4 0 0 0 0 .5 9\n"
+                          "8 0 0 0 0 .5 -1\n"
+                          "9 0 0 0 0 .5 -1\n"
+                          "3 0 0 0 0 .5 9\n"
+                          "1 0 0 0 0 .5 8\n");
+    static const int32_t id[] = {9, 3, 5, 4, 8, 1};
+    static const int32_t parent[] = {-1, 0, 1, 0, -1, 4};
+    assert_memory_equal(tree.id, id, sizeof id);
+    assert_memory_equal(tree.parent, parent, sizeof parent);
+    tree_release(&tree);
+}
+
+/* A random forest with ids in no order, as text rows in random order. */
+static void random_rows(Random *random, size_t n, Text *text)
+{
+    size_t *order = NULL;
+    int32_t *id = NULL;
+    Err err;
+    must(mem_calloc(&order, n, sizeof *order, "rows", &err), &err);
+    must(mem_calloc(&id, n, sizeof *id, "ids", &err), &err);
+    for (size_t i = 0; i < n; i++) { /* both a shuffle as it grows */
+        size_t at = random_bits(random) % (i + 1);
+        order[i] = order[at];
+        order[at] = i;
+        at = random_bits(random) % (i + 1);
+        id[i] = id[at];
+        id[at] = (int32_t)(1 + i * 37);
+    }
+    int32_t *parent = NULL;
+    must(mem_calloc(&parent, n, sizeof *parent, "parents", &err), &err);
+    for (size_t i = 0; i < n; i++)
+        parent[i] = i == 0 || random_uniform(random) < 0.03 ? -1 : id[random_bits(random) % i];
+    for (size_t k = 0; k < n; k++) {
+        size_t i = order[k];
+        text_printf(text, "%d %d", id[i], (int)(random_bits(random) % 8));
+        for (int axis = 0; axis < 4; axis++) {
+            double value = random_uniform(random) * pow(10, (double)(random_bits(random) % 9) - 4);
+            text_puts(text, " ");
+            text_number(text, axis == 3 ? value : value - 1.75);
+        }
+        text_printf(text, " %d\n", parent[i]);
+    }
+    free(order);
+    free(id);
+    free(parent);
+}
+
+static void random_forests_in_random_order_survive_the_round_trip(void **state)
+{
+    (void)state;
+    Random random;
+    Err err;
+    random_seed(&random, 20240817);
+    for (int round = 0; round < 60; round++) {
+        Text text = TEXT_INIT;
+        random_rows(&random, 1 + random_bits(&random) % 300, &text);
+        must(file_write(input, text.chars, text.length, &err), &err);
+        assert_round_trip(input);
+        text_release(&text);
+    }
+}
+
+static void damaged_files_are_read_or_refused(void **state)
+{
+    (void)state;
+    static const char letters[] = "0123456789-+.e# \t\r\n\v:nax\0\xef\xff";
+    char *original = NULL;
+    size_t size = 0;
+    Err err;
+    Random random;
+    random_seed(&random, 77003);
+    must(file_read("tests/data/messy.swc", &original, &size, &err), &err);
+    for (int round = 0; round < 2000; round++) {
+        char damaged[1024];
+        assert_true(size < sizeof damaged);
+        memcpy(damaged, original, size);
+        for (int hit = 0; hit < 3; hit++)
+            damaged[random_bits(&random) % size] = letters[random_bits(&random) % sizeof letters];
+        must(file_write(input, damaged, random_bits(&random) % (size + 1), &err), &err);
+        Tree tree = {0};
+        Status status = tree_read(&tree, input, &err);
+        assert_true(status == STATUS_OK || status == STATUS_INPUT);
+        if (status == STATUS_OK)
+            must(tree_check(&tree, &err), &err);
+        tree_release(&tree);
+    }
+    free(original);
+}
+
+static void the_hand_made_trees_survive_the_round_trip(void **state)
+{
+    (void)state;
+    assert_round_trip("tests/data/bifurcation.swc");
+    assert_round_trip("tests/data/trifurcation.swc");
+    assert_round_trip("tests/data/messy.swc");
+}
+
+static void measured_trees_are_read(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        size_t n, header_lines;
+    } files[] = {{"brava/BG0002records.swc", 3514, 0}, {"brava/test1.swc", 8, 14}};
+    const char *shared = getenv("CORCAST_SHARED");
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/data/%s", shared ? shared : "../shared", files[i].name);
+        if (access(path, R_OK) != 0) {
+            print_message("SKIPPED: %s is not here; CORCAST_SHARED names its folder\n", path);
+            skip();
+        }
+        Tree tree = read_path(path);
+        assert_int_equal(tree.n, files[i].n);
+        assert_int_equal(tree.header.n_lines, files[i].header_lines);
+        tree_release(&tree);
+        assert_round_trip(path);
+    }
+}
+
+static void a_chain_of_a_million_rows_in_reverse_is_read(void **state)
+{
+    (void)state;
+    enum { N = 1000000 };
+    Text text = TEXT_INIT;
+    for (int32_t id = N; id > 0; id--)
+        text_printf(&text, "%d 0 %d 0 .5 .25 %d\n", id, id % 7, id > 1 ? id - 1 : -1);
+    Tree tree = read_bytes(text.chars, text.length);
+    text_release(&text);
+    assert_int_equal(tree.n, N);
+    assert_int_equal(tree.id[0], 1);
+    assert_int_equal(tree.id[N - 1], N);
+    tree_release(&tree);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_a_messy_file),
+        cmocka_unit_test(line_ends_may_be_cr_lf_or_both),
+        cmocka_unit_test(every_known_key_fills_its_field_and_unknown_lines_stay),
+        cmocka_unit_test(known_fields_are_written_whether_a_line_names_them_or_not),
+        cmocka_unit_test(a_key_that_says_the_same_again_is_fine),
+        cmocka_unit_test(rejects_a_known_key_of_bad_value),
+        cmocka_unit_test(rejects_a_wrong_field_count),
+        cmocka_unit_test(rejects_what_is_not_a_number),
+        cmocka_unit_test(rejects_what_is_not_finite),
+        cmocka_unit_test(rejects_a_negative_radius_and_takes_zero),
+        cmocka_unit_test(rejects_ids_out_of_range),
+        cmocka_unit_test(rejects_a_duplicate_id_naming_both_lines),
+        cmocka_unit_test(rejects_an_unknown_parent),
+        cmocka_unit_test(rejects_cycles),
+        cmocka_unit_test(rejects_files_without_rows),
+        cmocka_unit_test(rejects_binary_files),
+        cmocka_unit_test(rejects_missing_files_and_unknown_extensions),
+        cmocka_unit_test(an_unwritable_place_is_an_io_failure),
+        cmocka_unit_test(ancestors_move_ahead_and_the_rest_keeps_file_order),
+        cmocka_unit_test(random_forests_in_random_order_survive_the_round_trip),
+        cmocka_unit_test(damaged_files_are_read_or_refused),
+        cmocka_unit_test(the_hand_made_trees_survive_the_round_trip),
+        cmocka_unit_test(measured_trees_are_read),
+        cmocka_unit_test(a_chain_of_a_million_rows_in_reverse_is_read),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,104 @@
+#include "tmpl/tmpl.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static const char *const path = "build/tmpl_test.txt";
+
+static Status expand(const char *source, const TmplValue *values, size_t n, Text *out, Err *err)
+{
+    assert_int_equal(file_make_folder("build", err), STATUS_OK);
+    assert_int_equal(file_write(path, source, strlen(source), err), STATUS_OK);
+    Status status = tmpl_expand(path, values, n, out, err);
+    unlink(path);
+    return status;
+}
+
+static void puts_each_value_where_its_name_stands(void **state)
+{
+    (void)state;
+    const TmplValue values[] = {{"model", "rounded"}, {"n_2", "401"}};
+    Text out = TEXT_INIT;
+    Err err = {0};
+    text_puts(&out, "> ");
+    assert_int_equal(
+        expand("#declare M = \"${model}\"; union { ${n_2} ${model} }\n$$5", values, 2, &out, &err),
+        STATUS_OK);
+    assert_string_equal(out.chars, "> #declare M = \"rounded\"; union { 401 rounded }\n$5");
+    text_release(&out);
+}
+
+static void does_not_expand_what_a_value_brings(void **state)
+{
+    (void)state;
+    const TmplValue values[] = {{"a", "${b} $"}};
+    Text out = TEXT_INIT;
+    Err err = {0};
+    assert_int_equal(expand("${a}", values, 1, &out, &err), STATUS_OK);
+    assert_string_equal(out.chars, "${b} $");
+    text_release(&out);
+}
+
+static void refuses(const char *source, const TmplValue *values, size_t n, const char *sentence)
+{
+    Text out = TEXT_INIT;
+    Err err = {0};
+    text_puts(&out, "before");
+    assert_int_equal(expand(source, values, n, &out, &err), STATUS_INPUT);
+    assert_string_equal(err.text, sentence);
+    assert_string_equal(out.chars, "before");
+    text_release(&out);
+}
+
+static void names_the_line_of_a_name_without_a_value(void **state)
+{
+    (void)state;
+    const TmplValue values[] = {{"seed", "7"}};
+    refuses("one\n${seed}\n  ${sed}\n", values, 1,
+            "build/tmpl_test.txt:3: ${sed} is not a value this template is given");
+}
+
+static void names_a_value_the_template_never_uses(void **state)
+{
+    (void)state;
+    const TmplValue values[] = {{"seed", "7"}, {"size", "9"}};
+    refuses("${seed}", values, 2, "build/tmpl_test.txt: the template never uses ${size}");
+}
+
+static void refuses_a_dollar_that_starts_nothing(void **state)
+{
+    (void)state;
+    static const char *const sources[] = {"\n$", "\n$5", "\n${}", "\n${a", "\n${9a}", "\n${a b}"};
+    for (size_t i = 0; i < sizeof sources / sizeof *sources; i++)
+        refuses(sources[i], NULL, 0,
+                "build/tmpl_test.txt:2: '$' starts neither ${name} nor $$, which stands for one "
+                "'$'");
+}
+
+static void says_when_the_template_is_missing(void **state)
+{
+    (void)state;
+    Text out = TEXT_INIT;
+    Err err = {0};
+    assert_int_equal(tmpl_expand("build/no such template", NULL, 0, &out, &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "build/no such template"));
+    assert_null(out.chars);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(puts_each_value_where_its_name_stands),
+        cmocka_unit_test(does_not_expand_what_a_value_brings),
+        cmocka_unit_test(names_the_line_of_a_name_without_a_value),
+        cmocka_unit_test(names_a_value_the_template_never_uses),
+        cmocka_unit_test(refuses_a_dollar_that_starts_nothing),
+        cmocka_unit_test(says_when_the_template_is_missing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
