@@ -136,7 +136,8 @@ golden-update: build/corcast ## rewrite a golden: CASE=name REASON="why"
 SHARE = $(DESTDIR)$(PREFIX)/share
 install: build/corcast ## install under $(DESTDIR)$(PREFIX)
 	install -Dm755 build/corcast $(DESTDIR)$(PREFIX)/bin/corcast
-	cd templates && find . -type f -exec install -Dm644 {} $(SHARE)/corcast/templates/{} \;
+	install -d $(SHARE)/corcast
+	cp -R templates $(SHARE)/corcast
 	install -Dm644 -t $(SHARE)/doc/corcast README.md CHANGELOG.md LICENSE docs/*.md
 
 uninstall: ## remove what `make install` put there
