@@ -40,12 +40,11 @@ static Status read_planes(const char *list, RenderParams *params, Err *err)
 static Status write_report(const char *path, const Scene *scene, const RenderStats *stats,
                            int threads, Err *err)
 {
-    json_t *report =
-        json_pack("{s:s, s:s, s:i, s:i, s:f, s:f, s:I, s:i}", "generator", GENERATOR, "model",
-                  model_name(scene->model), "width", scene->camera.width, "height",
-                  scene->camera.height, "prepare_seconds", stats->prepare_s, "trace_seconds",
-                  stats->trace_s, "rays", (json_int_t)stats->rays, "threads",
-                  threads ? threads : threads_available());
+    json_t *report = json_pack("{s:s, s:s, s:i, s:i, s:f, s:f, s:I, s:i}", "generator", GENERATOR,
+                               "model", model_name(scene->model), "width", scene->camera.width,
+                               "height", scene->camera.height, "prepare_seconds", stats->prepare_s,
+                               "trace_seconds", stats->trace_s, "rays", (json_int_t)stats->rays,
+                               "threads", threads ? threads : threads_available());
     return json_write(report, path, err);
 }
 

@@ -43,8 +43,8 @@ Status run_scene(int argc, char **argv, Err *err)
         goto done;
     }
     TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, err));
-    TRY_GOTO(povfiles_write(&scene, parsed.operands[0], output, picture.stage.shadows, beta, NULL,
-                            err));
+    TRY_GOTO(
+        povfiles_write(&scene, parsed.operands[0], output, picture.stage.shadows, beta, NULL, err));
 done:
     scene_release(&scene);
     parsed_release(&parsed);

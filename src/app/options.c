@@ -88,8 +88,8 @@ static Status set_number(const Option *option, const char *value, Err *err)
     }
     char allowed[96];
     if (option->high >= 1e300)
-        snprintf(allowed, sizeof allowed, option->low <= -1e300 ? "a number" : "a number of at least %g",
-                 option->low);
+        snprintf(allowed, sizeof allowed,
+                 option->low <= -1e300 ? "a number" : "a number of at least %g", option->low);
     else
         snprintf(allowed, sizeof allowed, "a number from %g to %g", option->low, option->high);
     return wrong(option, value, allowed, err);
@@ -215,8 +215,8 @@ static Status read_recipe(const Reader *reader, const char *path, Parsed *parsed
     TRY(file_read(path, &text, &size, reader->err));
     Text values = TEXT_INIT;
     /* No value is longer than its line, so nothing moves once this is reserved. */
-    Status status = mem_reserve(&values.chars, &values.capacity, size + 2, 1, "bytes of text",
-                                reader->err);
+    Status status =
+        mem_reserve(&values.chars, &values.capacity, size + 2, 1, "bytes of text", reader->err);
     RecipeReader recipe = {reader, &values, STATUS_OK};
     if (status == STATUS_OK) {
         int line = ini_parse_string(text, read_recipe_pair, &recipe);
@@ -276,8 +276,9 @@ static Status read_arguments(const Reader *reader, int argc, char **argv, bool a
         } else if (!only_operands && argv[i][0] == '-' && argv[i][1] != '\0') {
             TRY(read_option(reader, argc, argv, &i, apply));
         } else if (parsed->n_operands == reader->command->max_operands) {
-            return err_set(reader->err, STATUS_USAGE, "'%s' is one operand too many; usage: corcast %s %s",
-                           argv[i], reader->command->name, reader->command->operands);
+            return err_set(reader->err, STATUS_USAGE,
+                           "'%s' is one operand too many; usage: corcast %s %s", argv[i],
+                           reader->command->name, reader->command->operands);
         } else {
             parsed->operands[parsed->n_operands++] = argv[i];
         }
@@ -288,10 +289,10 @@ static Status read_arguments(const Reader *reader, int argc, char **argv, bool a
 static const char *argument_name(const Option *option)
 {
     static const char *const names[] = {
-        [OPTION_FLAG] = "",        [OPTION_SWITCH] = "on|off", [OPTION_TEXT] = "TEXT",
-        [OPTION_WHOLE] = "N",      [OPTION_SEED] = "N",        [OPTION_COUNT] = "N",
-        [OPTION_NUMBER] = "NUMBER", [OPTION_VECTOR] = "X,Y,Z", [OPTION_SIZE] = "WxH",
-        [OPTION_RANGE] = "A,B",    [OPTION_CHOICE] = "NAME",
+        [OPTION_FLAG] = "",         [OPTION_SWITCH] = "on|off", [OPTION_TEXT] = "TEXT",
+        [OPTION_WHOLE] = "N",       [OPTION_SEED] = "N",        [OPTION_COUNT] = "N",
+        [OPTION_NUMBER] = "NUMBER", [OPTION_VECTOR] = "X,Y,Z",  [OPTION_SIZE] = "WxH",
+        [OPTION_RANGE] = "A,B",     [OPTION_CHOICE] = "NAME",
     };
     return option->argument ? option->argument : names[option->kind];
 }

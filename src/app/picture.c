@@ -6,9 +6,10 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char *const models[] = {
-    [SCENE_CYLINDERS] = "cylinders", [SCENE_ROUNDED] = "rounded", [SCENE_ISOSURFACE] = "isosurface",
-    NULL};
+static const char *const models[] = {[SCENE_CYLINDERS] = "cylinders",
+                                     [SCENE_ROUNDED] = "rounded",
+                                     [SCENE_ISOSURFACE] = "isosurface",
+                                     NULL};
 static const char *const projections[] = {
     [PROJECTION_ORTHOGRAPHIC] = "orthographic", [PROJECTION_PERSPECTIVE] = "perspective", NULL};
 static const char *const views[] = {
@@ -177,7 +178,8 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
             err_prefix(err, "%s: ", tree_path);
     }
     if (status == STATUS_OK && report.dropped && !quiet)
-        fprintf(stderr, "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
+        fprintf(stderr,
+                "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
                 report.dropped, report.dropped + report.drawn);
     tree_release(&tree);
     return status;

@@ -17,7 +17,7 @@
 enum { MAX_TEMPORARIES = 64 };
 static _Atomic(char *) temporaries[MAX_TEMPORARIES];
 
-static Status remember(char *name, Err *err)
+Status file_remove_on_signal(char *name, Err *err)
 {
     for (int i = 0; i < MAX_TEMPORARIES; i++) {
         char *empty = NULL;
@@ -156,7 +156,7 @@ Status file_temporary(const char *path, char **temporary, Err *err)
     umask(mask);
     fchmod(handle, 0666 & ~mask);
     close(handle);
-    Status status = remember(name, err);
+    Status status = file_remove_on_signal(name, err);
     if (status != STATUS_OK) {
         unlink(name);
         free(name);

@@ -33,6 +33,8 @@ MUST_CHECK Status file_write(const char *path, const void *bytes, size_t size, E
 /* A temporary name beside `path` that keeps its extension, for another program to write to, in
  * *temporary (owned). The file exists, empty, and is removed by file_forget or by a signal. */
 MUST_CHECK Status file_temporary(const char *path, char **temporary, Err *err);
+/* Has `name` (allocated) removed by file_forget or by a signal, too, if it exists by then. */
+MUST_CHECK Status file_remove_on_signal(char *name, Err *err);
 /* Gives the temporary file its final name and frees `temporary`, also on failure. */
 MUST_CHECK Status file_rename(char *temporary, const char *path, Err *err);
 /* Removes and frees a temporary name. NULL is allowed. */

@@ -35,9 +35,10 @@ typedef struct Field {
  *     length    mm
  *     flow      ml/min  Q = N Q_perf / N_term, N the terminals at and below the segment
  *     velocity  mm/s    the mean, v = Q / (pi r^2)
- *     pressure  mmHg    p_perf less the drops 8 mu l Q / (pi r^4) from the root to here
- * (Poiseuille) wss       Pa      wall shear stress 4 mu Q / (pi r^3) reynolds          2 rho v r /
- * mu, rho = 1.05e-3 g/mm^3 level             bifurcations from the root to the segment's start
+ *     pressure  mmHg    p_perf less the drops 8 mu l Q / (pi r^4) from the root to here (Poiseuille)
+ *     wss       Pa      wall shear stress 4 mu Q / (pi r^3)
+ *     reynolds          2 rho v r / mu, rho = 1.05e-3 g/mm^3
+ *     level             bifurcations from the root to the segment's start
  *     strahler          1 at terminals; the largest order m of the daughters, m + 1 where at least
  *                       two have it [Strahler 1957]
  *     branch            main branch, numbered from 1 in array order: at each bifurcation the

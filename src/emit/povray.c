@@ -7,6 +7,7 @@
 #include "surface/surface.h"
 #include "tmpl/tmpl.h"
 #include <ctype.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -138,7 +139,7 @@ static Status put_cell(Text *text, const Tmpl *template, const Scene *scene, con
         {"accuracy", number_text(cell->accuracy, part->accuracy)},
         {"scale", number_text(cell->scale, part->scale)},
     };
-    return tmpl_expand(template, values, sizeof values / sizeof *values, text, err);
+    return tmpl_apply(template, values, sizeof values / sizeof *values, text, err);
 }
 
 static Status load_template(Tmpl *template, const PovrayParams *params, const char *name, Err *err)
@@ -220,11 +221,11 @@ static Status expand(Values *values, const PovrayParams *params, const char *nam
     Tmpl template = {0};
     Status status = load_template(&template, params, name, err);
     for (size_t i = 0; i < values->n && status == STATUS_OK; i++) {
-        values->value[i].value = values->text[i].chars;
+        values->value[i].text = values->text[i].chars;
         status = text_check(&values->text[i], err);
     }
     if (status == STATUS_OK)
-        status = tmpl_expand(&template, values->value, values->n, out, err);
+        status = tmpl_apply(&template, values->value, values->n, out, err);
     tmpl_release(&template);
     for (size_t i = 0; i < values->n; i++)
         text_release(&values->text[i]);

@@ -32,7 +32,8 @@ typedef struct IdPlane {
     uint32_t *ids; /* owned */
 } IdPlane;
 
-/* Zeroed. STATUS_MEMORY when there is no room; sides are in [1, IMAGE_MAX_SIDE]. */
+/* Zeroed. STATUS_INPUT unless both sides are in [1, IMAGE_MAX_SIDE]; STATUS_MEMORY when the machine
+ * has no room for it, said before any of it is touched. */
 MUST_CHECK Status plane_init(Plane *plane, int width, int height, int channels, Err *err);
 MUST_CHECK Status picture_init(Picture *picture, int width, int height, int channels, int bits,
                                Err *err);
@@ -48,7 +49,8 @@ float srgb_decode(float encoded);
 typedef enum Encoding { ENCODING_SRGB, ENCODING_LINEAR } Encoding;
 
 /* floor(clip(encode(v), 0, 1) * maximum + 1/2), in float: POV-Ray's rounding (base/image/
- * encoding.h of 3.7.0.10), so that equal floats give equal codes. NaN becomes 0. */
+ * encoding.h of 3.7.0.10), so that equal floats give equal codes. NaN becomes 0. `bits` is 8 or
+ * 16. */
 uint16_t image_code(float linear, Encoding encoding, int bits);
 
 /* New picture of a colour plane (1 or 3 channels). */
@@ -61,23 +63,28 @@ MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *er
 /* STATUS_INPUT unless the picture has 3 channels of 8 bits. */
 MUST_CHECK Status ids_from_picture(IdPlane *ids, const Picture *picture, Err *err);
 
-/* Provenance written into files that can hold it (PNG tEXt). Never a date or a path. */
+/* Provenance written into the file: tEXt chunks of a PNG, comment lines of a PPM. Never a date or a
+ * path. */
 typedef struct ImageNote {
-    const char *key;  /* "Software", "Description", "Comment" */
+    const char *key;  /* "Software", "Description", "Comment"; at most 79 characters */
     const char *text; /* Latin-1 */
 } ImageNote;
 
 typedef struct ImageNotes {
     const ImageNote *notes; /* borrowed */
     int count;
-    double dpi; /* pHYs; 0: not written */
+    double dpi; /* pHYs of a PNG; 0: not written */
 } ImageNotes;
 
-/* Writes by extension: .ppm (P6), .pgm (P5, 1 channel), .png; "-" writes PPM. `notes` may be NULL.
- * PNG carries an sRGB chunk when `encoding` is sRGB and gAMA 1.0 when it is linear, and no tIME.
- * STATUS_USAGE on another extension. */
+/* Writes by extension: .ppm (P6; a grey picture with its channel three times), .pgm (P5, 1
+ * channel), .png; "-" writes PPM. `notes` may be NULL. PNG carries an sRGB chunk when `encoding` is
+ * sRGB and gAMA 1.0 when it is linear, and no tIME. STATUS_USAGE on another extension and on a
+ * colour picture that is to be a .pgm. */
 MUST_CHECK Status picture_write(const Picture *picture, const char *path, Encoding encoding,
                                 const ImageNotes *notes, Err *err);
+/* Appends the bytes of the PNG file that picture_write would write to `out`. */
+MUST_CHECK Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNotes *notes,
+                                 Text *out, Err *err);
 /* Reads PPM/PGM (P2, P3, P5, P6, maxval up to 65535, '#' comments) and PNG (8 and 16 bit, grey,
  * RGB, palette; an alpha channel is refused unless opaque throughout); the format is told by the
  * first bytes. A maxval other than 255 and 65535 is rescaled to 8 bits below 255 and to 16 above.
@@ -85,9 +92,11 @@ MUST_CHECK Status picture_write(const Picture *picture, const char *path, Encodi
  * files. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, Err *err);
 
-/* PFM ("PF" 3 channels, "Pf" 1), little-endian, rows bottom-up in the file. */
+/* PFM ("PF" 3 channels, "Pf" 1), little-endian, rows bottom-up in the file; "-" is standard
+ * output. */
 MUST_CHECK Status plane_write(const Plane *plane, const char *path, Err *err);
-/* Both byte orders, the scale's magnitude ignored. */
+/* Both byte orders, the scale's magnitude ignored; "-" is standard input. STATUS_INPUT with a
+ * sentence naming the file on truncated or corrupt files. Infinities and NaN are kept. */
 MUST_CHECK Status plane_read(Plane *plane, const char *path, Err *err);
 
 /* True when `path` names a PFM, by extension or, for an existing file, by its first bytes. */

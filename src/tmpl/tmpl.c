@@ -56,11 +56,8 @@ static Status expand_one(Expansion *self, const char *dollar, int line, const ch
                    self->path, line, (int)length, name);
 }
 
-static Status expand_all(Expansion *self, const char *source, size_t size, Err *err)
+static Status expand_all(Expansion *self, const char *source, Err *err)
 {
-    if (memchr(source, '\0', size))
-        return err_set(err, STATUS_INPUT, "%s: is not a text file: it holds a zero byte",
-                       self->path);
     int line = 1;
     for (const char *at = source; *at;) {
         size_t plain = strcspn(at, "$");
@@ -78,20 +75,49 @@ static Status expand_all(Expansion *self, const char *source, size_t size, Err *
     return text_check(&self->text, err);
 }
 
-Status tmpl_expand(const char *path, const TmplValue *values, size_t n, Text *out, Err *err)
+Status tmpl_load(Tmpl *tmpl, const char *path, Err *err)
 {
-    Expansion self = {.path = path, .values = values, .n = n};
-    char *source = NULL;
+    Tmpl loaded = {0};
     size_t size = 0;
-    Status status = STATUS_OK;
-    TRY_GOTO(file_read(path, &source, &size, err));
-    TRY_GOTO(mem_calloc(&self.used, n, sizeof *self.used, "template values", err));
-    TRY_GOTO(expand_all(&self, source, size, err));
-    text_append(out, self.text.chars ? self.text.chars : "", self.text.length);
-    status = text_check(out, err);
-done:
+    Status status = file_read(path, &loaded.source, &size, err);
+    if (status == STATUS_OK && memchr(loaded.source, '\0', size))
+        status = err_set(err, STATUS_INPUT, "%s: is not a text file: it holds a zero byte", path);
+    if (status == STATUS_OK)
+        status = mem_strdup(&loaded.path, path, err);
+    if (status == STATUS_OK)
+        *tmpl = loaded;
+    else
+        tmpl_release(&loaded);
+    return status;
+}
+
+void tmpl_release(Tmpl *tmpl)
+{
+    free(tmpl->path);
+    free(tmpl->source);
+    *tmpl = (Tmpl){0};
+}
+
+Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out, Err *err)
+{
+    Expansion self = {.path = tmpl->path, .values = values, .n = n};
+    Status status = mem_calloc(&self.used, n, sizeof *self.used, "template values", err);
+    if (status == STATUS_OK)
+        status = expand_all(&self, tmpl->source, err);
+    if (status == STATUS_OK) {
+        text_append(out, self.text.chars ? self.text.chars : "", self.text.length);
+        status = text_check(out, err);
+    }
     text_release(&self.text);
     free(self.used);
-    free(source);
+    return status;
+}
+
+Status tmpl_expand(const char *path, const TmplValue *values, size_t n, Text *out, Err *err)
+{
+    Tmpl tmpl;
+    TRY(tmpl_load(&tmpl, path, err));
+    Status status = tmpl_apply(&tmpl, values, n, out, err);
+    tmpl_release(&tmpl);
     return status;
 }

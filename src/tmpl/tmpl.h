@@ -10,10 +10,23 @@ typedef struct TmplValue {
     const char *text; /* put in as it stands: never expanded again */
 } TmplValue;
 
-/* Appends the file `path` to `out`, with every ${name} replaced by the text of that name and every
+/* A template read from a file, for expanding many times. */
+typedef struct Tmpl {
+    char *path, *source; /* owned */
+} Tmpl;
+
+/* STATUS_INPUT when the file is missing or no text. Release with tmpl_release. */
+MUST_CHECK Status tmpl_load(Tmpl *tmpl, const char *path, Err *err);
+void tmpl_release(Tmpl *tmpl);
+
+/* Appends the template to `out`, with every ${name} replaced by the text of that name and every
  * $$ by one $. Any other $ is an error, and so are a name that `values` lacks and a value that the
  * template never uses, so that a template and its caller cannot drift apart. STATUS_INPUT names
  * file, line and name; `out` is unchanged on failure. */
+MUST_CHECK Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out,
+                             Err *err);
+
+/* Loads, applies once and releases. */
 MUST_CHECK Status tmpl_expand(const char *path, const TmplValue *values, size_t n, Text *out,
                               Err *err);
 

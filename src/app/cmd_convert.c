@@ -1,0 +1,93 @@
+#include "app/commands.h"
+#include "app/options.h"
+#include "image/image.h"
+#include "treeio/treeio.h"
+#include <string.h>
+
+static const Command command = {
+    .name = "convert",
+    .summary = "convert trees and images",
+    .operands = "IN OUT",
+    .examples = "  corcast convert measured.swc tidy.swc\n"
+                "  corcast convert picture.ppm picture.png\n"
+                "  corcast convert - - < measured.swc > tidy.swc\n",
+    .min_operands = 2,
+    .max_operands = 2,
+};
+
+/* A tree in its normal form: parents before children, ids 1, 2, ... in that order. */
+static Status convert_tree(const char *from, const char *to, Err *err)
+{
+    Tree tree;
+    TRY(tree_read(&tree, from, err));
+    tree_renumber(&tree);
+    Status status = tree_write(&tree, to, err);
+    tree_release(&tree);
+    return status;
+}
+
+static Status convert_picture(const char *from, const char *to, Err *err)
+{
+    Picture picture;
+    TRY(picture_read(&picture, from, err));
+    const ImageNote note = {"Software", GENERATOR};
+    const ImageNotes notes = {.notes = &note, .count = 1};
+    Status status = picture_write(&picture, to, ENCODING_SRGB, &notes, err);
+    picture_release(&picture);
+    return status;
+}
+
+static Status convert_plane(const char *from, const char *to, Err *err)
+{
+    Plane plane;
+    TRY(plane_read(&plane, from, err));
+    Status status = plane_write(&plane, to, err);
+    plane_release(&plane);
+    return status;
+}
+
+typedef enum FileKind { FILE_TREE, FILE_PICTURE, FILE_PLANE, FILE_UNKNOWN } FileKind;
+
+static FileKind kind_of(const char *path)
+{
+    static const struct {
+        const char *extension;
+        FileKind kind;
+    } known[] = {{"png", FILE_PICTURE}, {"ppm", FILE_PICTURE}, {"pgm", FILE_PICTURE},
+                 {"pfm", FILE_PLANE}};
+    if (strcmp(path, "-") == 0 || tree_format_known(path))
+        return FILE_TREE;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (strcmp(file_extension(path), known[i].extension) == 0)
+            return known[i].kind;
+    return FILE_UNKNOWN;
+}
+
+Status run_convert(int argc, char **argv, Err *err)
+{
+    const Option *const tables[] = {NULL};
+    Parsed parsed;
+    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
+    Status status = STATUS_OK;
+    if (parsed.common.help)
+        goto done;
+    const char *from = parsed.operands[0], *to = parsed.operands[1];
+    FileKind kind = kind_of(to);
+    if (kind_of(from) == FILE_UNKNOWN || kind == FILE_UNKNOWN)
+        status = err_set(err, STATUS_USAGE,
+                         "'%s' has an unknown extension; known are .swc for trees, and .png, .ppm, "
+                         ".pgm and .pfm for images",
+                         kind == FILE_UNKNOWN ? to : from);
+    else if (kind_of(from) != kind)
+        status = err_set(err, STATUS_USAGE, "'%s' cannot become '%s': a tree, a picture and a float "
+                         "plane are different things", from, to);
+    else if (kind == FILE_TREE)
+        status = convert_tree(from, to, err);
+    else if (kind == FILE_PICTURE)
+        status = convert_picture(from, to, err);
+    else
+        status = convert_plane(from, to, err);
+done:
+    parsed_release(&parsed);
+    return status;
+}

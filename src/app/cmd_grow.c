@@ -1,0 +1,106 @@
+#include "app/commands.h"
+#include "app/options.h"
+#include "domain/domain.h"
+#include "grow/grow.h"
+#include "treeio/treeio.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+static const Command command = {
+    .name = "grow",
+    .summary = "grow an arterial tree by constrained constructive optimization",
+    .operands = "-o T.swc",
+    .examples = "  corcast grow --terminals 4000 --seed 7 -o tree.swc\n"
+                "  corcast grow --domain ball:30 --gamma 2.55 --lambda 1 -o tree.swc\n",
+    .max_operands = 0,
+};
+
+static void show_progress(double fraction, void *context)
+{
+    progress_show(context, fraction);
+}
+
+static Status write_report(const char *path, const GrowReport *report, int threads, Err *err)
+{
+    json_t *json = json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:i}", "generator", GENERATOR,
+                             "seconds", report->seconds, "terminals",
+                             (json_int_t)report->terminals, "target", report->target,
+                             "root_radius_mm", report->root_radius_mm, "tosses",
+                             (json_int_t)report->tosses, "rejected", (json_int_t)report->rejected,
+                             "threads", threads);
+    return json_write(json, path, err);
+}
+
+Status run_grow(int argc, char **argv, Err *err)
+{
+    static const char *const tosses[] = {
+        [GROW_TOSS_SEGMENT] = "segment", [GROW_TOSS_TERMINAL] = "terminal", NULL};
+    GrowParams params = grow_defaults();
+    const char *output = NULL, *json = NULL, *domain_spec = "disc:50";
+    int toss = (int)params.toss;
+    const double huge = 1e300;
+    const Option own[] = {
+        {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "T.swc", "the tree"},
+        {"terminals", OPTION_COUNT, &params.terminals, NULL, 1, 8000000, NULL, NULL, "(1000)"},
+        {"domain", OPTION_TEXT, &domain_spec, NULL, 0, 0, NULL, "SHAPE",
+         "tissue: disc:R or ball:R, mm (disc:50)"},
+        {"inlet", OPTION_VECTOR, &params.inlet, &params.has_inlet, 0, 0, NULL, NULL,
+         "where the tree starts, mm (top of the rim)"},
+        {"gamma", OPTION_NUMBER, &params.gamma, NULL, -huge, huge, NULL, NULL,
+         "Murray exponent (3)"},
+        {"lambda", OPTION_NUMBER, &params.lambda, NULL, -huge, huge, NULL, NULL,
+         "target: sum of length * radius^lambda (2)"},
+        {"p-perf", OPTION_NUMBER, &params.p_perf_mmhg, NULL, -huge, huge, NULL, "MMHG",
+         "pressure at the inlet (100)"},
+        {"p-term", OPTION_NUMBER, &params.p_term_mmhg, NULL, -huge, huge, NULL, "MMHG",
+         "pressure at every terminal (60)"},
+        {"q-perf", OPTION_NUMBER, &params.q_perf_ml_min, NULL, -huge, huge, NULL, "ML/MIN",
+         "flow through the inlet (500)"},
+        {"viscosity", OPTION_NUMBER, &params.viscosity_cp, NULL, -huge, huge, NULL, "CP",
+         "of the blood (3.6)"},
+        {"candidates", OPTION_WHOLE, &params.candidates, NULL, 1, 1000, NULL, "K",
+         "nearest segments tried for each terminal (8)"},
+        {"toss", OPTION_CHOICE, &toss, NULL, 0, 0, tosses, NULL,
+         "new terminals keep their distance to (segment)"},
+        {"json", OPTION_TEXT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
+        {0},
+    };
+    const Option *const tables[] = {own, NULL};
+    Parsed parsed;
+    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
+    Status status = STATUS_OK;
+    Tree tree = {0};
+    GrowReport report;
+    Domain domain;
+    Progress progress;
+    if (parsed.common.help)
+        goto done;
+    if (!output) {
+        status = err_set(err, STATUS_USAGE, "-o T.swc is missing; usage: corcast grow %s",
+                         command.operands);
+        goto done;
+    }
+    params.seed = parsed.common.seed;
+    params.toss = (GrowToss)toss;
+    params.progress = show_progress;
+    params.progress_context = &progress;
+    if (!tree_format_known(output)) {
+        status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .swc", output);
+        goto done;
+    }
+    TRY_GOTO(domain_parse(&domain, domain_spec, err));
+    progress_start(&progress, "growing", parsed.common.quiet);
+    status = grow_tree(&params, &domain, &tree, &report, err);
+    progress_end(&progress);
+    TRY_GOTO(status);
+    TRY_GOTO(tree_write(&tree, output, err));
+    if (json)
+        TRY_GOTO(write_report(json, &report, 1, err));
+    if (!parsed.common.quiet)
+        fprintf(stderr, "grew %zu terminals in %.3g s: target %.6g, root radius %.4g mm\n",
+                report.terminals, report.seconds, report.target, report.root_radius_mm);
+done:
+    tree_release(&tree);
+    parsed_release(&parsed);
+    return status;
+}

@@ -1,0 +1,108 @@
+#include "app/commands.h"
+#include "app/options.h"
+#include "derive/derive.h"
+#include "treeio/treeio.h"
+#include <stdio.h>
+
+static const Command command = {
+    .name = "info",
+    .summary = "count, measure and check a tree",
+    .operands = "T.swc [--json]",
+    .examples = "  corcast info tree.swc\n"
+                "  corcast info tree.swc --json | jq .volume_mm3\n",
+    .min_operands = 1,
+    .max_operands = 1,
+};
+
+static json_t *summary_json(const TreeSummary *summary)
+{
+    const Box *box = &summary->bounds;
+    json_t *json = json_object();
+    json_object_set_new(json, "segments", json_integer((json_int_t)summary->segments));
+    json_object_set_new(json, "terminals", json_integer((json_int_t)summary->terminals));
+    json_object_set_new(json, "bifurcations", json_integer((json_int_t)summary->bifurcations));
+    json_object_set_new(json, "roots", json_integer((json_int_t)summary->roots));
+    json_object_set_new(json, "total_length_mm", json_number(summary->total_length_mm));
+    json_object_set_new(json, "volume_mm3", json_number(summary->volume_mm3));
+    json_object_set_new(json, "target",
+                        summary->has.target ? json_number(summary->target) : json_null());
+    json_object_set_new(json, "gamma",
+                        summary->has.gamma ? json_number(summary->gamma) : json_null());
+    json_object_set_new(json, "lambda",
+                        summary->has.lambda ? json_number(summary->lambda) : json_null());
+    json_object_set_new(json, "root_radius_mm", json_number(summary->root_radius_mm));
+    json_object_set_new(json, "min_radius_mm", json_number(summary->min_radius_mm));
+    json_object_set_new(json, "max_level", json_integer(summary->max_level));
+    json_object_set_new(json, "max_strahler", json_integer(summary->max_strahler));
+    json_object_set_new(json, "bbox_mm",
+                        json_pack("[[f,f,f],[f,f,f]]", box->low.x, box->low.y, box->low.z,
+                                  box->high.x, box->high.y, box->high.z));
+    if (summary->has.terminal_pressure)
+        json_object_set_new(json, "terminal_pressure_mmHg",
+                            json_pack("{s:f, s:f, s:f}", "min", summary->terminal_pressure_min_mmhg,
+                                      "mean", summary->terminal_pressure_mean_mmhg, "max",
+                                      summary->terminal_pressure_max_mmhg));
+    return json;
+}
+
+static void print_summary(const char *path, const TreeSummary *summary)
+{
+    const Box *box = &summary->bounds;
+    printf("%s\n", path);
+    printf("  segments      %zu (%zu terminals, %zu bifurcations, %zu root%s)\n", summary->segments,
+           summary->terminals, summary->bifurcations, summary->roots,
+           summary->roots == 1 ? "" : "s");
+    printf("  total length  %.6g mm\n", summary->total_length_mm);
+    printf("  volume        %.6g mm^3\n", summary->volume_mm3);
+    if (summary->has.target)
+        printf("  target        %.6g (sum of length * radius^%g)\n", summary->target,
+               summary->lambda);
+    if (summary->has.gamma)
+        printf("  gamma         %g\n", summary->gamma);
+    printf("  radius        %.6g mm at the root, %.6g mm at the thinnest\n",
+           summary->root_radius_mm, summary->min_radius_mm);
+    printf("  orders        bifurcation level %d, Strahler %d\n", summary->max_level,
+           summary->max_strahler);
+    if (summary->has.terminal_pressure)
+        printf("  terminals at  %.9g to %.9g mmHg\n", summary->terminal_pressure_min_mmhg,
+               summary->terminal_pressure_max_mmhg);
+    printf("  extent        x %.4g to %.4g, y %.4g to %.4g, z %.4g to %.4g mm\n", box->low.x,
+           box->high.x, box->low.y, box->high.y, box->low.z, box->high.z);
+}
+
+Status run_info(int argc, char **argv, Err *err)
+{
+    bool as_json = false;
+    FlowParams flow = {0};
+    const double huge = 1e300;
+    const Option own[] = {
+        {"json", OPTION_FLAG, &as_json, NULL, 0, 0, NULL, NULL, "as JSON"},
+        {"lambda", OPTION_NUMBER, &flow.lambda, &flow.has.lambda, 0, huge, NULL, NULL,
+         "exponent of the target (the tree's)"},
+        {"q-perf", OPTION_NUMBER, &flow.q_perf_ml_min, &flow.has.q_perf, 1e-300, huge, NULL,
+         "ML/MIN", "flow through the inlet (the tree's)"},
+        {"p-perf", OPTION_NUMBER, &flow.p_perf_mmhg, &flow.has.p_perf, -huge, huge, NULL, "MMHG",
+         "pressure at the inlet (the tree's)"},
+        {"viscosity", OPTION_NUMBER, &flow.viscosity_cp, &flow.has.viscosity, 1e-300, huge, NULL,
+         "CP", "of the blood (the tree's)"},
+        {0},
+    };
+    const Option *const tables[] = {own, NULL};
+    Parsed parsed;
+    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
+    Status status = STATUS_OK;
+    Tree tree = {0};
+    TreeSummary summary;
+    if (parsed.common.help)
+        goto done;
+    TRY_GOTO(tree_read(&tree, parsed.operands[0], err));
+    TRY_GOTO(derive_summary(&tree, &flow, &summary, err));
+    if (as_json)
+        status = json_write(summary_json(&summary), "-", err);
+    else
+        print_summary(parsed.operands[0], &summary);
+done:
+    tree_release(&tree);
+    parsed_release(&parsed);
+    return status;
+}

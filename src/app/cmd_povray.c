@@ -1,0 +1,87 @@
+#include "app/commands.h"
+#include "app/options.h"
+#include "verify/verify.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const Command command = {
+    .name = "povray",
+    .summary = "run POV-Ray on a scene",
+    .operands = "S.pov -o P.png",
+    .examples = "  corcast povray tree.pov -o tree.png\n"
+                "  corcast povray tree.pov --size 4000x4000 --antialias 3 -o large.png\n"
+                "  corcast povray tree.pov --plane depth -o depth.png\n",
+    .min_operands = 1,
+    .max_operands = 1,
+};
+
+/* The size that the scene's "// Size: WxH" comment asks for. */
+static Status size_of_scene(const char *path, int size[2], Err *err)
+{
+    char *text = NULL;
+    size_t length;
+    TRY(file_read(path, &text, &length, err));
+    const char *line = strstr(text, "// Size: ");
+    bool found = line && sscanf(line, "// Size: %dx%d", &size[0], &size[1]) == 2 && size[0] > 0 &&
+                 size[1] > 0 && size[0] <= IMAGE_MAX_SIDE && size[1] <= IMAGE_MAX_SIDE;
+    free(text);
+    if (found)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "%s has no line '// Size: WxH'; give --size", path);
+}
+
+static void show_progress(double fraction, void *context)
+{
+    progress_show(context, fraction);
+}
+
+Status run_povray(int argc, char **argv, Err *err)
+{
+    static const char *const planes[] = {"color", "depth", "normal", "id", NULL};
+    const char *output = NULL;
+    int size[2] = {0, 0}, antialias = 1, plane = ORACLE_COLOR;
+    bool has_size = false;
+    const Option own[] = {
+        {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P.png", "the picture"},
+        {"size", OPTION_SIZE, size, &has_size, 1, IMAGE_MAX_SIDE, NULL, NULL,
+         "pixels (what the scene says)"},
+        {"antialias", OPTION_WHOLE, &antialias, NULL, 1, 9, NULL, "N", "N x N samples a pixel (1)"},
+        {"plane", OPTION_CHOICE, &plane, NULL, 0, 0, planes, NULL,
+         "what a scene of ours shows (color)"},
+        {0},
+    };
+    const Option *const tables[] = {own, NULL};
+    Parsed parsed;
+    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
+    Status status = STATUS_OK;
+    Progress progress;
+    OracleRun run;
+    if (parsed.common.help)
+        goto done;
+    if (!output || strcmp(file_extension(output), "png") != 0) {
+        status = err_set(err, STATUS_USAGE, output ? "-o: '%s' does not end in .png"
+                                                   : "-o P.png is missing", output);
+        goto done;
+    }
+    if (!has_size)
+        TRY_GOTO(size_of_scene(parsed.operands[0], size, err));
+    OracleParams params = {.program = getenv("CORCAST_POVRAY"),
+                           .scene = parsed.operands[0],
+                           .output = output,
+                           .width = size[0],
+                           .height = size[1],
+                           .antialias = antialias,
+                           .threads = parsed.common.threads,
+                           .plane = (OraclePlane)plane,
+                           .progress = show_progress,
+                           .progress_context = &progress};
+    progress_start(&progress, "POV-Ray", parsed.common.quiet);
+    status = oracle_run(&params, &run, err);
+    progress_end(&progress);
+    if (status == STATUS_OK && !parsed.common.quiet)
+        fprintf(stderr, "POV-Ray %s took %.1f s\n", run.version, run.seconds);
+done:
+    parsed_release(&parsed);
+    return status;
+}

@@ -1,0 +1,233 @@
+/* PNG through libpng. libpng reports an error by longjmp; setjmp therefore stands in functions
+ * that only call the one that does the work, and everything that work allocates hangs on a struct
+ * outside it, so that nothing leaks and no local is clobbered.
+ *
+ * What a header claims is bounded before allocation: deflate shrinks at most 1032-fold. */
+#include "image/formats.h"
+
+#include <png.h>
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEFLATE_MAX_RATIO = 1032 };
+
+bool png_is(const ImageBytes *file)
+{
+    return file->size >= 8 && png_sig_cmp(file->bytes, 0, 8) == 0;
+}
+
+/* What libpng says, kept for the sentence. */
+typedef struct Complaint {
+    char text[200];
+} Complaint;
+
+static void on_error(png_structp png, png_const_charp message)
+{
+    Complaint *complaint = png_get_error_ptr(png);
+    snprintf(complaint->text, sizeof complaint->text, "%s", message);
+    longjmp(png_jmpbuf(png), 1);
+}
+
+static void on_warning(png_structp png, png_const_charp message)
+{
+    (void)png;
+    (void)message;
+}
+
+/* ------------------------------------------------------------------------------------ reading */
+
+typedef struct Reader {
+    ImageBytes file;
+    size_t at;
+    png_structp png;
+    png_infop info;
+    uint8_t *bytes;  /* owned; all rows */
+    png_bytep *rows; /* owned; into bytes */
+    Picture picture; /* owned */
+    Complaint complaint;
+    Err *err;
+} Reader;
+
+static void read_bytes(png_structp png, png_bytep out, size_t size)
+{
+    Reader *self = png_get_io_ptr(png);
+    if (size > self->file.size - self->at)
+        png_error(png, "the file ends too early");
+    memcpy(out, self->file.bytes + self->at, size);
+    self->at += size;
+}
+
+static Status allocate_rows(Reader *self, int height, size_t row_size)
+{
+    TRY(mem_calloc(&self->bytes, (size_t)height, row_size, "bytes of a PNG row", self->err));
+    TRY(mem_calloc(&self->rows, (size_t)height, sizeof *self->rows, "PNG rows", self->err));
+    for (int y = 0; y < height; y++)
+        self->rows[y] = self->bytes + (size_t)y * row_size;
+    return STATUS_OK;
+}
+
+/* Takes the rows, of `samples` samples a pixel, into the picture, which has no alpha. */
+static Status take_rows(Reader *self, int samples)
+{
+    Picture *picture = &self->picture;
+    bool deep = picture->bits == 16;
+    uint16_t opaque = deep ? 65535 : 255;
+    uint16_t *code = picture->codes;
+    for (int y = 0; y < picture->height; y++) {
+        const uint8_t *at = self->rows[y];
+        for (int x = 0; x < picture->width; x++)
+            for (int c = 0; c < samples; c++) {
+                uint16_t value = (uint16_t)(deep ? at[0] << 8 | at[1] : at[0]);
+                at += deep ? 2 : 1;
+                if (c < picture->channels)
+                    *code++ = value;
+                else if (value != opaque)
+                    return err_set(self->err, STATUS_INPUT,
+                                   "%s: is transparent at column %d, row %d; only opaque pictures "
+                                   "can be read",
+                                   self->file.name, x, y);
+            }
+    }
+    return STATUS_OK;
+}
+
+/* The work between setjmp and the end: may not return when libpng finds an error. */
+static Status read_picture(Reader *self)
+{
+    png_structp png = self->png;
+    png_infop info = self->info;
+    png_set_read_fn(png, self, read_bytes);
+    png_set_user_limits(png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);
+    png_read_info(png, info);
+    int width = (int)png_get_image_width(png, info);
+    int height = (int)png_get_image_height(png, info);
+    if (png_get_rowbytes(png, info) > self->file.size * DEFLATE_MAX_RATIO / (size_t)height)
+        return err_set(self->err, STATUS_INPUT,
+                       "%s: its header announces %d x %d pixels, more than its %zu bytes can hold",
+                       self->file.name, width, height, self->file.size);
+    png_set_expand(png);
+    png_set_interlace_handling(png);
+    png_read_update_info(png, info);
+    int samples = png_get_channels(png, info);
+    TRY(picture_init(&self->picture, width, height, samples < 3 ? 1 : 3,
+                     png_get_bit_depth(png, info), self->err));
+    TRY(allocate_rows(self, height, png_get_rowbytes(png, info)));
+    png_read_image(png, self->rows);
+    png_read_end(png, NULL);
+    return take_rows(self, samples);
+}
+
+static Status read_guarded(Reader *self)
+{
+    if (setjmp(png_jmpbuf(self->png)))
+        return err_set(self->err, STATUS_INPUT, "%s: is not a sound PNG file: %s", self->file.name,
+                       self->complaint.text);
+    return read_picture(self);
+}
+
+Status png_decode(const ImageBytes *file, Picture *picture, Err *err)
+{
+    Reader self = {.file = *file, .err = err};
+    self.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &self.complaint, on_error, on_warning);
+    self.info = self.png ? png_create_info_struct(self.png) : NULL;
+    Status status = self.info ? read_guarded(&self)
+                              : err_set(err, STATUS_MEMORY, "%s: out of memory", file->name);
+    png_destroy_read_struct(&self.png, &self.info, NULL);
+    free(self.rows);
+    free(self.bytes);
+    if (status == STATUS_OK)
+        *picture = self.picture;
+    else
+        picture_release(&self.picture);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------ writing */
+
+typedef struct Writer {
+    FILE *stream;
+    const Picture *picture;
+    Encoding encoding;
+    const ImageNotes *notes; /* or NULL */
+    png_structp png;
+    png_infop info;
+    uint8_t *row;     /* owned */
+    png_text *chunks; /* owned */
+    Complaint complaint;
+} Writer;
+
+static void set_provenance(Writer *self)
+{
+    for (int i = 0; i < self->notes->count; i++) {
+        const ImageNote *note = &self->notes->notes[i];
+        /* libpng copies both; its struct merely lacks the const. */
+        png_text *chunk = &self->chunks[i];
+        memcpy(&chunk->key, &note->key, sizeof chunk->key);
+        memcpy(&chunk->text, &note->text, sizeof chunk->text);
+        chunk->compression = PNG_TEXT_COMPRESSION_NONE;
+    }
+    png_set_text(self->png, self->info, self->chunks, self->notes->count);
+    if (self->notes->dpi > 0) {
+        png_uint_32 per_metre = (png_uint_32)(self->notes->dpi / 0.0254 + 0.5);
+        png_set_pHYs(self->png, self->info, per_metre, per_metre, PNG_RESOLUTION_METER);
+    }
+}
+
+static void write_picture(Writer *self)
+{
+    const Picture *picture = self->picture;
+    png_init_io(self->png, self->stream);
+    png_set_user_limits(self->png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);
+    png_set_IHDR(self->png, self->info, (png_uint_32)picture->width, (png_uint_32)picture->height,
+                 picture->bits, picture->channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (self->encoding == ENCODING_SRGB)
+        png_set_sRGB(self->png, self->info, PNG_sRGB_INTENT_PERCEPTUAL);
+    else
+        png_set_gAMA(self->png, self->info, 1.0);
+    if (self->notes)
+        set_provenance(self);
+    png_write_info(self->png, self->info);
+    size_t samples = (size_t)picture->width * (size_t)picture->channels;
+    for (int y = 0; y < picture->height; y++) {
+        const uint16_t *code = picture->codes + (size_t)y * samples;
+        uint8_t *at = self->row;
+        for (size_t i = 0; i < samples; i++) {
+            if (picture->bits == 16)
+                *at++ = (uint8_t)(code[i] >> 8);
+            *at++ = (uint8_t)(code[i] & 255);
+        }
+        png_write_row(self->png, self->row);
+    }
+    png_write_end(self->png, NULL);
+}
+
+static Status write_guarded(Writer *self, Err *err)
+{
+    if (setjmp(png_jmpbuf(self->png)))
+        return err_set(err, STATUS_IO, "writing the PNG failed: %s", self->complaint.text);
+    write_picture(self);
+    return STATUS_OK;
+}
+
+Status png_encode(FILE *stream, const Picture *picture, Encoding encoding, const ImageNotes *notes,
+                  Err *err)
+{
+    Writer self = {.stream = stream, .picture = picture, .encoding = encoding, .notes = notes};
+    Status status = STATUS_OK;
+    size_t row_size = (size_t)picture->width * (size_t)picture->channels * 2;
+    TRY_GOTO(mem_calloc(&self.row, row_size, 1, "bytes of a row", err));
+    TRY_GOTO(mem_calloc(&self.chunks, notes ? (size_t)notes->count : 0, sizeof *self.chunks,
+                        "PNG texts", err));
+    self.png =
+        png_create_write_struct(PNG_LIBPNG_VER_STRING, &self.complaint, on_error, on_warning);
+    self.info = self.png ? png_create_info_struct(self.png) : NULL;
+    status = self.info ? write_guarded(&self, err)
+                       : err_set(err, STATUS_MEMORY, "out of memory: no room to write a PNG");
+done:
+    png_destroy_write_struct(&self.png, &self.info);
+    free(self.chunks);
+    free(self.row);
+    return status;
+}

@@ -1,0 +1,146 @@
+/* PPM and PGM, binary and plain (netpbm's ppm(5) and pgm(5)). Of binary files the size must agree
+ * to the byte; of plain ones every sample takes two characters at least, which bounds what a header
+ * may claim before anything is allocated. */
+#include "image/formats.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+bool pnm_is(const ImageBytes *file)
+{
+    return file->size >= 2 && file->bytes[0] == 'P' && memchr("2356", file->bytes[1], 4);
+}
+
+typedef struct PnmHeader {
+    int width, height, channels;
+    unsigned maximum; /* maxval */
+    bool plain;
+} PnmHeader;
+
+static Status read_header(HeaderCursor *cursor, PnmHeader *header, Err *err)
+{
+    char kind = (char)cursor->file.bytes[1];
+    cursor->at = 2;
+    long long width, height, maximum;
+    TRY(header_integer(cursor, "width", 1, IMAGE_MAX_SIDE, &width, err));
+    TRY(header_integer(cursor, "height", 1, IMAGE_MAX_SIDE, &height, err));
+    TRY(header_integer(cursor, "largest value", 1, 65535, &maximum, err));
+    *header = (PnmHeader){.width = (int)width,
+                          .height = (int)height,
+                          .channels = kind == '2' || kind == '5' ? 1 : 3,
+                          .maximum = (unsigned)maximum,
+                          .plain = kind == '2' || kind == '3'};
+    return STATUS_OK;
+}
+
+static size_t sample_count(const PnmHeader *header)
+{
+    return (size_t)header->width * (size_t)header->height * (size_t)header->channels;
+}
+
+static Status read_binary(HeaderCursor *cursor, const PnmHeader *header, uint16_t *codes, Err *err)
+{
+    const uint8_t *at = cursor->file.bytes + cursor->at;
+    size_t n = sample_count(header);
+    for (size_t i = 0; i < n; i++) {
+        unsigned code = header->maximum > 255 ? at[2 * i] * 256u + at[2 * i + 1] : at[i];
+        if (code > header->maximum)
+            return err_set(err, STATUS_INPUT, "%s: holds the value %u, above its largest, %u",
+                           cursor->file.name, code, header->maximum);
+        codes[i] = (uint16_t)code;
+    }
+    return STATUS_OK;
+}
+
+static Status read_plain(HeaderCursor *cursor, const PnmHeader *header, uint16_t *codes, Err *err)
+{
+    size_t n = sample_count(header);
+    for (size_t i = 0; i < n; i++) {
+        long long code;
+        TRY(header_integer(cursor, "value of a pixel", 0, header->maximum, &code, err));
+        codes[i] = (uint16_t)code;
+    }
+    char word[32];
+    header_word(cursor, word, sizeof word);
+    if (*word)
+        return err_set(err, STATUS_INPUT, "%s: \"%s\" follows its last pixel", cursor->file.name,
+                       word);
+    return STATUS_OK;
+}
+
+/* Codes of 0 to `maximum` become codes of the picture's bits. */
+static void rescale(Picture *picture, unsigned maximum)
+{
+    unsigned wanted = picture->bits == 8 ? 255 : 65535;
+    if (wanted == maximum)
+        return;
+    size_t n = (size_t)picture->width * (size_t)picture->height * (size_t)picture->channels;
+    for (size_t i = 0; i < n; i++)
+        picture->codes[i] = (uint16_t)((picture->codes[i] * wanted + maximum / 2) / maximum);
+}
+
+Status pnm_decode(const ImageBytes *file, Picture *picture, Err *err)
+{
+    HeaderCursor cursor = {.file = *file};
+    PnmHeader header;
+    TRY(read_header(&cursor, &header, err));
+    size_t n = sample_count(&header);
+    if (!header.plain)
+        TRY(header_end(&cursor, header.maximum > 255 ? 2 * n : n, err));
+    else if (file->size - cursor.at < 2 * n)
+        return err_set(err, STATUS_INPUT,
+                       "%s: its header announces %zu values, more than its %zu bytes can hold",
+                       file->name, n, file->size);
+    Picture made;
+    TRY(picture_init(&made, header.width, header.height, header.channels,
+                     header.maximum > 255 ? 16 : 8, err));
+    Status status = header.plain ? read_plain(&cursor, &header, made.codes, err)
+                                 : read_binary(&cursor, &header, made.codes, err);
+    if (status != STATUS_OK) {
+        picture_release(&made);
+        return status;
+    }
+    rescale(&made, header.maximum);
+    *picture = made;
+    return STATUS_OK;
+}
+
+/* A note as comment lines, each line of its text behind a '#'. */
+static void write_note(FILE *stream, const ImageNote *note)
+{
+    fprintf(stream, "# %s: ", note->key);
+    for (const char *at = note->text; *at; at++) {
+        if (*at == '\n')
+            fputs("\n# ", stream);
+        else if (*at != '\r')
+            putc(*at, stream);
+    }
+    putc('\n', stream);
+}
+
+Status pnm_encode(FILE *stream, const Picture *picture, int channels, const ImageNotes *notes,
+                  Err *err)
+{
+    int bytes = picture->bits / 8;
+    size_t row_size = (size_t)picture->width * (size_t)channels * (size_t)bytes;
+    uint8_t *row;
+    TRY(mem_calloc(&row, row_size, 1, "bytes of a row", err));
+    fprintf(stream, "P%c\n", channels == 1 ? '5' : '6');
+    for (int i = 0; notes && i < notes->count; i++)
+        write_note(stream, &notes->notes[i]);
+    fprintf(stream, "%d %d\n%d\n", picture->width, picture->height, bytes == 1 ? 255 : 65535);
+    const uint16_t *code = picture->codes;
+    for (int y = 0; y < picture->height; y++) {
+        uint8_t *at = row;
+        for (int x = 0; x < picture->width; x++, code += picture->channels)
+            for (int c = 0; c < channels; c++) {
+                uint16_t value = code[picture->channels == 1 ? 0 : c];
+                if (bytes == 2)
+                    *at++ = (uint8_t)(value >> 8);
+                *at++ = (uint8_t)(value & 255);
+            }
+        fwrite(row, 1, row_size, stream);
+    }
+    free(row);
+    return STATUS_OK;
+}

@@ -1,0 +1,43 @@
+/* POV-Ray as the oracle: the program run, and its planes read back. */
+#ifndef CORCAST_VERIFY_ORACLE_H
+#define CORCAST_VERIFY_ORACLE_H
+
+#include "base/base.h"
+#include "image/image.h"
+
+/* What the scene's Corcast_Plane selects. */
+typedef enum OraclePlane { ORACLE_COLOR, ORACLE_DEPTH, ORACLE_NORMAL, ORACLE_ID } OraclePlane;
+
+typedef struct OracleParams {
+    const char *program;   /* NULL: povray */
+    const char *scene;     /* .pov file */
+    const char *output;    /* .png file */
+    int width, height;     /* pixels */
+    int antialias;         /* of the colour plane: 1, or N for +A0.0 +AM1 +RN -J */
+    int threads;           /* 0: POV-Ray's own choice */
+    OraclePlane plane;     /* colour is 8-bit sRGB, depth and normal 16-bit linear, id 8-bit linear */
+    void (*progress)(double fraction, void *context); /* may be NULL */
+    void *progress_context;
+} OracleParams;
+
+typedef struct OracleRun {
+    char version[64]; /* "3.7.0.10.unofficial" */
+    double seconds;   /* wall clock, parsing included */
+} OracleRun;
+
+/* Runs POV-Ray without a window. The picture appears under its name only when it is whole.
+ * STATUS_TOOL with POV-Ray's own words when it is missing or fails. `run` may be NULL. */
+MUST_CHECK Status oracle_run(const OracleParams *params, OracleRun *run, Err *err);
+
+/* The switches of such a run as one line, for the report and for scripts; in *out (owned). */
+MUST_CHECK Status oracle_command(const OracleParams *params, char **out, Err *err);
+
+/* Reads the plane that oracle_run wrote as `output` into the frame: depth in mm between `near_mm` and
+ * `far_mm` as the scene declares them, INFINITY where nothing is seen; unit normals; ids; colour
+ * decoded to linear. */
+MUST_CHECK Status oracle_read_depth(Plane *depth, const char *path, double near_mm, double far_mm,
+                                    Err *err);
+MUST_CHECK Status oracle_read_normal(Plane *normal, const char *path, Err *err);
+MUST_CHECK Status oracle_read_ids(IdPlane *ids, const char *path, Err *err);
+
+#endif
