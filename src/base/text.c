@@ -1,12 +1,6 @@
-/* number_text tries 15, 16 and 17 digits: a double needs at most 17, and the first that reads back
- * is the shortest in all but rare cases of even fewer digits, which %g trims. The program never
- * calls setlocale, so that printf and strtod use '.'. */
 #include "base/text.h"
 
 #include "base/memory.h"
-#include <ctype.h>
-#include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,47 +60,8 @@ Status text_check(const Text *text, Err *err)
                        text->length);
     return STATUS_OK;
 }
-
-const char *number_text(double value, char out[NUMBER_TEXT_SIZE])
-{
-    for (int digits = 15; digits <= 17; digits++) {
-        snprintf(out, NUMBER_TEXT_SIZE, "%.*g", digits, value);
-        if (strtod(out, NULL) == value || !isfinite(value))
-            break;
-    }
-    return out;
-}
-
 void text_number(Text *text, double value)
 {
     char number[NUMBER_TEXT_SIZE];
     text_puts(text, number_text(value, number));
-}
-
-bool number_parse(const char *chars, double *out)
-{
-    if (!*chars || isspace((unsigned char)*chars))
-        return false;
-    /* Hexadecimal numbers are C's, not the field's. */
-    if (strpbrk(chars, "xX"))
-        return false;
-    char *end;
-    double value = strtod(chars, &end);
-    if (*end)
-        return false;
-    *out = value;
-    return true;
-}
-
-bool integer_parse(const char *chars, long long minimum, long long maximum, long long *out)
-{
-    if (!*chars || isspace((unsigned char)*chars))
-        return false;
-    char *end;
-    errno = 0;
-    long long value = strtoll(chars, &end, 10);
-    if (*end || errno || value < minimum || value > maximum)
-        return false;
-    *out = value;
-    return true;
 }

@@ -31,6 +31,8 @@ enum { NUMBER_TEXT_SIZE = 32 };
  * point whatever the locale ("nan", "inf" and "-inf" for what is not finite). Writes to `out` and
  * returns it. */
 const char *number_text(double value, char out[NUMBER_TEXT_SIZE]);
+/* Likewise the shortest that reads back to the same float. */
+const char *number_text_float(float value, char out[NUMBER_TEXT_SIZE]);
 void text_number(Text *text, double value);
 
 /* Reads the whole of `chars` (zero-terminated; blanks at either end are not allowed) as a number

@@ -13,18 +13,27 @@
 
 static void put_vector(Text *text, Vec3 v)
 {
+    /* Adding 0 turns -0 into 0. */
     text_puts(text, "<");
-    text_number(text, v.x);
+    text_number(text, v.x + 0);
     text_puts(text, ",");
-    text_number(text, v.y);
+    text_number(text, v.y + 0);
     text_puts(text, ",");
-    text_number(text, v.z);
+    text_number(text, v.z + 0);
     text_puts(text, ">");
+}
+
+static void put_float(Text *text, float value)
+{
+    char number[NUMBER_TEXT_SIZE];
+    text_puts(text, number_text_float(value, number));
 }
 
 static void put_color(Text *text, Rgb color)
 {
-    put_vector(text, vec3((double)color.r, (double)color.g, (double)color.b));
+    char r[NUMBER_TEXT_SIZE], g[NUMBER_TEXT_SIZE], b[NUMBER_TEXT_SIZE];
+    text_printf(text, "<%s,%s,%s>", number_text_float(color.r, r), number_text_float(color.g, g),
+                number_text_float(color.b, b));
 }
 
 static void put_paint(Text *text, const Scene *scene, uint32_t id, Rgb color)
@@ -253,13 +262,13 @@ static Status put_geometry(const Scene *scene, const PovrayParams *params, const
     put_extent(add_value(&values, "extent"), scene->bounds);
     put_guard(add_value(&values, "guard"), file);
     put_color(add_value(&values, "color"), scene->color);
-    text_number(add_value(&values, "ambient"), (double)finish->ambient);
-    text_number(add_value(&values, "diffuse"), (double)finish->diffuse);
-    text_number(add_value(&values, "brilliance"), (double)finish->brilliance);
-    text_number(add_value(&values, "phong"), (double)finish->phong);
-    text_number(add_value(&values, "phong_size"), (double)finish->phong_size);
-    text_number(add_value(&values, "specular"), (double)finish->specular);
-    text_number(add_value(&values, "roughness"), (double)finish->roughness);
+    put_float(add_value(&values, "ambient"), finish->ambient);
+    put_float(add_value(&values, "diffuse"), finish->diffuse);
+    put_float(add_value(&values, "brilliance"), finish->brilliance);
+    put_float(add_value(&values, "phong"), finish->phong);
+    put_float(add_value(&values, "phong_size"), finish->phong_size);
+    put_float(add_value(&values, "specular"), finish->specular);
+    put_float(add_value(&values, "roughness"), finish->roughness);
     Status status = put_macros(scene, params, add_value(&values, "macros"), err);
     Text *body = add_value(&values, "body");
     if (status == STATUS_OK && scene->model == SCENE_ISOSURFACE)

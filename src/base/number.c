@@ -1,0 +1,147 @@
+/* number_text tries 15, 16 and 17 digits: a double needs at most 17, and the first that reads back
+ * is the shortest in all but rare cases of even fewer digits, whose trailing zeros are cut. For
+ * values in [1e-4, 1e14) this is exact integer arithmetic, ten times as fast as printing and
+ * reading: the value m 2^e scaled to so many digits before the point is N / 2^shift with the whole
+ * number N = m 5^k, which 128 bits hold, and the spacing of doubles there is 5^k in units of N. The
+ * program never calls setlocale, so that printf and strtod use '.'. */
+#include "base/text.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+__extension__ typedef unsigned __int128 Wide;
+
+typedef struct Decimal {
+    uint64_t digits; /* without a point */
+    int count;       /* of them */
+    int exponent;    /* of ten, of the first */
+} Decimal;
+
+static uint64_t power(uint64_t base, int exponent)
+{
+    uint64_t product = 1;
+    while (exponent-- > 0)
+        product *= base;
+    return product;
+}
+
+/* Rounds m 2^e to `count` digits, the first of which stands for 10^exponent; whether they read
+ * back. */
+static bool round_decimal(uint64_t m, int e, int count, int exponent, Decimal *out)
+{
+    int k = count - 1 - exponent, shift = -(e + k);
+    uint64_t spacing = power(5, k);
+    Wide exact = (Wide)m * spacing, unit = (Wide)1 << shift;
+    uint64_t digits = (uint64_t)(exact >> shift);
+    Wide rest = exact & (unit - 1);
+    bool up = 2 * rest > unit || (2 * rest == unit && digits % 2);
+    Wide error = up ? unit - rest : rest;
+    *out = (Decimal){digits + up, count, exponent};
+    /* below a power of two the spacing is halved */
+    Wide room = m == (uint64_t)1 << 52 && !up ? 4 * error : 2 * error;
+    return room < spacing || (room == spacing && m % 2 == 0);
+}
+static void print_decimal(Decimal d, bool negative, char *out)
+{
+    if (d.digits == power(10, d.count)) {
+        d.digits /= 10;
+        d.exponent++;
+    }
+    while (d.digits % 10 == 0) {
+        d.digits /= 10;
+        d.count--;
+    }
+    char text[24];
+    for (int i = d.count; i-- > 0; d.digits /= 10)
+        text[i] = (char)('0' + d.digits % 10);
+    if (negative)
+        *out++ = '-';
+    if (d.exponent < 0) {
+        *out++ = '0';
+        *out++ = '.';
+        for (int i = -1; i > d.exponent; i--)
+            *out++ = '0';
+    }
+    for (int i = 0; i < d.count || i <= d.exponent; i++) {
+        if (i > 0 && i == d.exponent + 1)
+            *out++ = '.';
+        *out++ = i < d.count ? text[i] : '0';
+    }
+    *out = '\0';
+}
+
+/* number_text for magnitudes in [1e-4, 1e14). */
+static void print_common(double value, char *out)
+{
+    int e;
+    double magnitude = fabs(value);
+    uint64_t m = (uint64_t)ldexp(frexp(magnitude, &e), 53);
+    e -= 53;
+    /* negative powers of ten round up to doubles, so that the comparisons are exact */
+    static const double limits[] = {1e-3, 1e-2, 1e-1, 1,   1e1,  1e2,  1e3,  1e4, 1e5,
+                                    1e6,  1e7,  1e8,  1e9, 1e10, 1e11, 1e12, 1e13};
+    int exponent = -4;
+    for (size_t i = 0; i < sizeof limits / sizeof *limits && magnitude >= limits[i]; i++)
+        exponent++;
+    Decimal decimal;
+    for (int count = 15; count <= 17; count++)
+        if (round_decimal(m, e, count, exponent, &decimal))
+            break;
+    print_decimal(decimal, value < 0, out);
+}
+
+const char *number_text(double value, char out[NUMBER_TEXT_SIZE])
+{
+    if (fabs(value) >= 1e-4 && fabs(value) < 1e14) {
+        print_common(value, out);
+        return out;
+    }
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(out, NUMBER_TEXT_SIZE, "%.*g", digits, value);
+        if (strtod(out, NULL) == value || !isfinite(value))
+            break;
+    }
+    return out;
+}
+const char *number_text_float(float value, char out[NUMBER_TEXT_SIZE])
+{
+    for (int digits = 6; digits <= 9; digits++) {
+        snprintf(out, NUMBER_TEXT_SIZE, "%.*g", digits, (double)value);
+        if (strtof(out, NULL) == value || !isfinite(value))
+            break;
+    }
+    return out;
+}
+
+bool number_parse(const char *chars, double *out)
+{
+    if (!*chars || isspace((unsigned char)*chars))
+        return false;
+    /* Hexadecimal numbers are C's, not the field's. */
+    if (strpbrk(chars, "xX"))
+        return false;
+    char *end;
+    double value = strtod(chars, &end);
+    if (*end)
+        return false;
+    *out = value;
+    return true;
+}
+
+bool integer_parse(const char *chars, long long minimum, long long maximum, long long *out)
+{
+    if (!*chars || isspace((unsigned char)*chars))
+        return false;
+    char *end;
+    errno = 0;
+    long long value = strtoll(chars, &end, 10);
+    if (*end || errno || value < minimum || value > maximum)
+        return false;
+    *out = value;
+    return true;
+}
