@@ -46,7 +46,7 @@ test_info_json_has_every_key_of_the_contract() {
 test_info_for_people_names_the_terminals() {
     grow_tree 23
     run_ok corcast info tree.swc
-    expect_stdout '[Tt]erminals.*23'
+    expect_stdout '23 terminals'
 }
 
 test_info_reads_standard_input() {
@@ -69,8 +69,8 @@ test_convert_normalises_and_then_changes_nothing() {
     run_ok corcast convert once.swc twice.swc
     expect_same once.swc twice.swc
     grep -q '^# ORIGINAL_SOURCE hand$' once.swc || fail "expected the comment to be kept: $(head -3 once.swc)"
-    [ "$(grep -v '^#' once.swc | tr '\n' ';')" = "4 1 0.1 0 0 0.5 -1;9 3 1.5 2 0 0.25 4;12 3 1.5 4 1 0.2 9;" ] ||
-        fail "expected parents first and shortest numbers, got $(grep -v '^#' once.swc | tr '\n' ';')"
+    [ "$(grep -v '^#' once.swc | tr '\n' ';')" = "1 1 0.1 0 0 0.5 -1;2 3 1.5 2 0 0.25 1;3 3 1.5 4 1 0.2 2;" ] ||
+        fail "expected parents first, ids from 1 and shortest numbers, got $(grep -v '^#' once.swc | tr '\n' ';')"
     ! grep -q "$(printf '\r')" once.swc || fail "expected no carriage return"
 }
 
@@ -139,7 +139,7 @@ test_an_unknown_parent_is_refused_with_its_line() {
 
 test_a_cycle_is_refused() {
     printf '1 1 0 0 0 1 -1\n2 3 3 0 0 1 4\n3 3 4 0 0 1 2\n4 3 5 0 0 1 3\n' | swc
-    expect_refused '[Cc]ycle'
+    expect_refused 'its own ancestor|[Cc]ycle'
 }
 
 test_a_node_that_is_its_own_parent_is_refused() {

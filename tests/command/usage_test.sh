@@ -143,7 +143,7 @@ test_bad_picture_options_are_refused() {
 --angle 0
 --height 0
 --shadows maybe
---background 1,2
+--background 0.5,0.5
 --margin -1
 --planes color,smell
 --prune-radius -0.1
