@@ -71,6 +71,12 @@ test_other_pressures_flows_and_inlets_give_an_exact_tree() {
     grep -q '^1 [0-9]* 12.5 -20.25 0 ' tree.swc || fail "expected the root at the inlet: $(grep -v '#' tree.swc | head -1)"
 }
 
+test_ten_thousand_terminals_take_seconds_and_give_an_exact_tree() {
+    run_ok timeout 30 "$CORCAST" grow --terminals 10000 --seed 2 -o tree.swc
+    check_tree tree.swc
+    expect_stdout '^terminals 10000$'
+}
+
 test_one_terminal_is_one_segment() {
     run_ok corcast grow --terminals 1 -o tree.swc
     check_tree tree.swc
