@@ -53,8 +53,8 @@ static FileKind kind_of(const char *path)
     static const struct {
         const char *extension;
         FileKind kind;
-    } known[] = {{"png", FILE_PICTURE}, {"ppm", FILE_PICTURE}, {"pgm", FILE_PICTURE},
-                 {"pfm", FILE_PLANE}};
+    } known[] = {
+        {"png", FILE_PICTURE}, {"ppm", FILE_PICTURE}, {"pgm", FILE_PICTURE}, {"pfm", FILE_PLANE}};
     if (strcmp(path, "-") == 0 || tree_format_known(path))
         return FILE_TREE;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
@@ -79,8 +79,10 @@ Status run_convert(int argc, char **argv, Err *err)
                          ".pgm and .pfm for images",
                          kind == FILE_UNKNOWN ? to : from);
     else if (kind_of(from) != kind)
-        status = err_set(err, STATUS_USAGE, "'%s' cannot become '%s': a tree, a picture and a float "
-                         "plane are different things", from, to);
+        status = err_set(err, STATUS_USAGE,
+                         "'%s' cannot become '%s': a tree, a picture and a float "
+                         "plane are different things",
+                         from, to);
     else if (kind == FILE_TREE)
         status = convert_tree(from, to, err);
     else if (kind == FILE_PICTURE)

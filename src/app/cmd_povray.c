@@ -60,8 +60,8 @@ Status run_povray(int argc, char **argv, Err *err)
     if (parsed.common.help)
         goto done;
     if (!output || strcmp(file_extension(output), "png") != 0) {
-        status = err_set(err, STATUS_USAGE, output ? "-o: '%s' does not end in .png"
-                                                   : "-o P.png is missing", output);
+        status = err_set(err, STATUS_USAGE,
+                         output ? "-o: '%s' does not end in .png" : "-o P.png is missing", output);
         goto done;
     }
     if (!has_size)

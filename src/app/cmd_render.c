@@ -62,7 +62,7 @@ Status run_render(int argc, char **argv, Err *err)
         {"json", OPTION_TEXT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
         {0},
     };
-    const Option *const tables[] = {own, picture.table, NULL};
+    const Option *const tables[] = {own, picture.table, picture.coloring.table, NULL};
     Parsed parsed;
     TRY(options_parse(&command, tables, argc, argv, &parsed, err));
     Status status = STATUS_OK;

@@ -26,7 +26,7 @@ Status run_scene(int argc, char **argv, Err *err)
          "isosurface: side of a cell over the smallest radius in it"},
         {0},
     };
-    const Option *const tables[] = {own, picture.table, NULL};
+    const Option *const tables[] = {own, picture.table, picture.coloring.table, NULL};
     Parsed parsed;
     TRY(options_parse(&command, tables, argc, argv, &parsed, err));
     Status status = STATUS_OK;

@@ -1,5 +1,6 @@
 #include "app/picture.h"
 
+#include "app/templates.h"
 #include "image/image.h"
 #include "treeio/treeio.h"
 #include <stdlib.h>
@@ -27,6 +28,7 @@ void picture_options_init(PictureOptions *options)
                                 .size = {1000, 1000},
                                 .antialias = 1,
                                 .look = "cast"};
+    coloring_init(&options->coloring);
     StageParams *stage = &options->stage;
     const double huge = 1e300, side = IMAGE_MAX_SIDE, far = 1e7;
     const Option table[] = {
@@ -63,62 +65,6 @@ void picture_options_init(PictureOptions *options)
     memcpy(options->table, table, sizeof table);
 }
 
-static bool is_folder(const char *path)
-{
-    return access(path, X_OK) == 0;
-}
-
-Status templates_folder(char **folder, Err *err)
-{
-    const char *given = getenv("CORCAST_TEMPLATES");
-    if (given)
-        return mem_strdup(folder, given, err);
-    char program[4096];
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length > 0) {
-        program[length] = '\0';
-        program[file_name(program) - program] = '\0';
-        static const char *const places[] = {"../templates", "../share/corcast/templates"};
-        for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-            char *path = NULL;
-            TRY(file_join(program, places[i], &path, err));
-            if (is_folder(path)) {
-                *folder = path;
-                return STATUS_OK;
-            }
-            free(path);
-        }
-    }
-    return err_set(err, STATUS_IO,
-                   "the templates folder was found neither beside the program nor where it is "
-                   "installed; name it in CORCAST_TEMPLATES");
-}
-
-static Status read_look(const PictureOptions *options, Look *look, Err *err)
-{
-    if (strchr(options->look, '/'))
-        return look_read(look, options->look, err);
-    char *folder = NULL, *path = NULL;
-    Text name = TEXT_INIT;
-    text_printf(&name, "looks/%s.ini", options->look);
-    Status status = text_check(&name, err);
-    if (status == STATUS_OK)
-        status = templates_folder(&folder, err);
-    if (status == STATUS_OK)
-        status = file_join(folder, name.chars, &path, err);
-    if (status == STATUS_OK && access(path, R_OK) != 0)
-        status = err_set(err, STATUS_USAGE,
-                         "--look: '%s' is not a file of %s/looks; write a path with a '/' for one "
-                         "of your own",
-                         options->look, folder);
-    if (status == STATUS_OK)
-        status = look_read(look, path, err);
-    text_release(&name);
-    free(folder);
-    free(path);
-    return status;
-}
-
 /* Options that fight each other are refused rather than silently ignored. */
 static Status check_camera(const PictureOptions *options, Err *err)
 {
@@ -148,8 +94,12 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
                      Err *err)
 {
     Look look;
+    char *look_path = NULL;
     TRY(check_camera(options, err));
-    TRY(read_look(options, &look, err));
+    TRY(template_file("look", "looks", options->look, ".ini", &look_path, err));
+    Status status = look_read(&look, look_path, err);
+    free(look_path);
+    TRY(status);
     if (options->has_background)
         look.background = (Rgb){srgb_decode((float)options->background.x),
                                 srgb_decode((float)options->background.y),
@@ -162,7 +112,6 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
     stage.height = options->size[1];
     Tree tree;
     TRY(tree_read(&tree, tree_path, err));
-    Status status = STATUS_OK;
     if (options->prune_radius_mm > 0) {
         Tree pruned;
         status = tree_pruned(&tree, options->prune_radius_mm, &pruned, err);
@@ -171,12 +120,15 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
             tree = pruned;
         }
     }
+    Rgb *colors = NULL;
     StageReport report;
-    if (status == STATUS_OK) {
-        status = stage_scene(&tree, &look, NULL, &stage, scene, &report, err);
-        if (status == STATUS_INPUT)
-            err_prefix(err, "%s: ", tree_path);
-    }
+    if (status == STATUS_OK)
+        status = coloring_apply(&options->coloring, &tree, &colors, err);
+    if (status == STATUS_OK)
+        status = stage_scene(&tree, &look, colors, &stage, scene, &report, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", tree_path);
+    free(colors);
     if (status == STATUS_OK && report.dropped && !quiet)
         fprintf(stderr,
                 "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",

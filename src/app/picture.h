@@ -2,6 +2,7 @@
 #ifndef CORCAST_APP_PICTURE_H
 #define CORCAST_APP_PICTURE_H
 
+#include "app/coloring.h"
 #include "app/options.h"
 #include "scene/scene.h"
 #include "stage/stage.h"
@@ -19,6 +20,7 @@ typedef struct PictureOptions {
     Vec3 background; /* sRGB in [0, 1] */
     bool has_background;
     bool has_height, has_angle, has_view;
+    Coloring coloring;
     Option table[PICTURE_OPTIONS];
 } PictureOptions;
 
@@ -32,10 +34,6 @@ MUST_CHECK Status picture_scene(const PictureOptions *options, const char *tree_
 
 /* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the machine. */
 MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);
-
-/* The folder of templates: CORCAST_TEMPLATES, or beside the program (../templates), or installed
- * (../share/corcast/templates); in *folder (owned). */
-MUST_CHECK Status templates_folder(char **folder, Err *err);
 
 /* Name of a model as --model takes it. */
 const char *model_name(SceneModel model);

@@ -2,6 +2,7 @@
 
 #include "app/commands.h"
 #include "app/picture.h"
+#include "app/templates.h"
 #include <stdlib.h>
 #include <string.h>
 

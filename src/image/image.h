@@ -8,6 +8,7 @@
 #define CORCAST_IMAGE_IMAGE_H
 
 #include "base/base.h"
+#include "image/colormap.h" // IWYU pragma: export
 #include <stdint.h>
 
 enum { IMAGE_MAX_SIDE = 1 << 20 };

@@ -1,0 +1,262 @@
+/* One scene, two renderers: the scene is written for POV-Ray and rendered natively from memory; then
+ * all four planes of both are held against each other. */
+#include "app/commands.h"
+#include "app/frames.h"
+#include "app/picture.h"
+#include "app/povfiles.h"
+#include "app/templates.h"
+#include "render/render.h"
+#include "verify/verify.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const Command command = {
+    .name = "verify",
+    .summary = "prove that POV-Ray and the native renderer agree",
+    .operands = "T.swc -o DIR",
+    .examples = "  corcast verify tree.swc -o check\n"
+                "  corcast verify tree.swc --model isosurface --size 400x400 -o check\n",
+    .min_operands = 1,
+    .max_operands = 1,
+};
+
+typedef struct Verification {
+    const PictureOptions *picture;
+    const Common *common;
+    const char *tree, *folder;
+    Scene scene;
+    Frame native, povray;
+    Picture native_picture, povray_picture;
+    RenderStats stats;
+    OracleRun run; /* of the colour plane */
+    CompareResult results[PLANE_KINDS];
+    char *commands[8]; /* owned */
+    size_t n_commands;
+} Verification;
+
+static void verification_release(Verification *v)
+{
+    scene_release(&v->scene);
+    frame_release(&v->native);
+    frame_release(&v->povray);
+    picture_release(&v->native_picture);
+    picture_release(&v->povray_picture);
+    for (size_t i = 0; i < v->n_commands; i++)
+        free(v->commands[i]);
+}
+
+static void show_progress(double fraction, void *context)
+{
+    progress_show(context, fraction);
+}
+
+/* ---- the two sides ------------------------------------------------------------------------------ */
+
+static Status render_native(Verification *v, const char *provenance, Err *err)
+{
+    const RenderParams params = {.threads = v->common->threads,
+                                 .antialias = v->picture->antialias,
+                                 .shadows = v->picture->stage.shadows,
+                                 .want_color = true,
+                                 .want_depth = true,
+                                 .want_normal = true,
+                                 .want_id = true};
+    TRY(render(&v->scene, &params, &v->native, &v->stats, err));
+    TRY(picture_from_plane(&v->native_picture, &v->native.color, ENCODING_SRGB, 8, err));
+    char *path = NULL;
+    TRY(file_join(v->folder, "native.png", &path, err));
+    Status status = frames_write(&v->native, path, 8, false, provenance, err);
+    free(path);
+    return status;
+}
+
+static Status read_plane(Verification *v, OraclePlane plane, const char *path, Err *err)
+{
+    double near_mm, far_mm;
+    scene_depth_range(&v->scene, &near_mm, &far_mm);
+    switch (plane) {
+    case ORACLE_COLOR:
+        return picture_read(&v->povray_picture, path, err);
+    case ORACLE_DEPTH:
+        return oracle_read_depth(&v->povray.depth, path, near_mm, far_mm, err);
+    case ORACLE_NORMAL:
+        return oracle_read_normal(&v->povray.normal, path, err);
+    case ORACLE_ID:
+        return oracle_read_ids(&v->povray.id, path, err);
+    }
+    return STATUS_OK;
+}
+
+static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane plane, Err *err)
+{
+    static const char *const names[] = {
+        [ORACLE_COLOR] = "povray.png",
+        [ORACLE_DEPTH] = "povray.depth.png",
+        [ORACLE_NORMAL] = "povray.normal.png",
+        [ORACLE_ID] = "povray.id.png",
+    };
+    static const char *const labels[] = {
+        [ORACLE_COLOR] = "POV-Ray, picture",
+        [ORACLE_DEPTH] = "POV-Ray, depth",
+        [ORACLE_NORMAL] = "POV-Ray, normals",
+        [ORACLE_ID] = "POV-Ray, ids",
+    };
+    char *path = NULL;
+    TRY(file_join(v->folder, names[plane], &path, err));
+    Progress progress;
+    progress_start(&progress, labels[plane], v->common->quiet);
+    const OracleParams params = {.program = getenv("CORCAST_POVRAY"),
+                                 .scene = scene,
+                                 .output = path,
+                                 .width = v->picture->size[0],
+                                 .height = v->picture->size[1],
+                                 .antialias = v->picture->antialias,
+                                 .threads = v->common->threads,
+                                 .plane = plane,
+                                 .progress = show_progress,
+                                 .progress_context = &progress};
+    Status status = oracle_command(&params, &v->commands[v->n_commands], err);
+    if (status == STATUS_OK) {
+        v->n_commands++;
+        status = oracle_run(&params, plane == ORACLE_COLOR ? &v->run : NULL, err);
+    }
+    progress_end(&progress);
+    if (status == STATUS_OK)
+        status = read_plane(v, plane, path, err);
+    free(path);
+    return status;
+}
+
+static Status run_oracle(Verification *v, Err *err)
+{
+    char *scene = NULL;
+    TRY(file_join(v->folder, "scene.pov", &scene, err));
+    Status status =
+        povfiles_write(&v->scene, v->tree, scene, v->picture->stage.shadows, 0, NULL, err);
+    for (int plane = ORACLE_COLOR; status == STATUS_OK && plane <= ORACLE_ID; plane++)
+        status = run_oracle_plane(v, scene, (OraclePlane)plane, err);
+    free(scene);
+    return status;
+}
+
+/* ---- the verdict -------------------------------------------------------------------------------- */
+
+static Status compare_sides(Verification *v, Err *err)
+{
+    double near_mm, far_mm;
+    scene_depth_range(&v->scene, &near_mm, &far_mm);
+    Tolerance tolerance = v->scene.model == SCENE_ISOSURFACE
+                              ? tolerance_surface()
+                              : tolerance_identity((far_mm - near_mm) / 65535);
+    const IdPlane *a = &v->povray.id, *b = &v->native.id;
+    TRY(compare_pictures(&v->povray_picture, &v->native_picture, a, b, &tolerance,
+                         &v->results[PLANE_COLOR], err));
+    TRY(compare_planes(PLANE_DEPTH, &v->povray.depth, &v->native.depth, a, b, &tolerance,
+                       &v->results[PLANE_DEPTH], err));
+    TRY(compare_planes(PLANE_NORMAL, &v->povray.normal, &v->native.normal, a, b, &tolerance,
+                       &v->results[PLANE_NORMAL], err));
+    return compare_ids(a, b, &tolerance, &v->results[PLANE_ID], err);
+}
+
+static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err)
+{
+    ReportCase report = {.name = file_name(v->tree),
+                         .model = model_name(v->scene.model),
+                         .reference_name = "POV-Ray",
+                         .reference_version = v->run.version,
+                         .candidate_name = "corcast",
+                         .candidate_version = CORCAST_VERSION,
+                         .reference_seconds = v->run.seconds,
+                         .candidate_seconds = v->stats.prepare_s + v->stats.trace_s,
+                         .commands = (const char *const *)v->commands,
+                         .n_commands = v->n_commands,
+                         .picture_a = &v->povray_picture,
+                         .picture_b = &v->native_picture,
+                         .id_a = &v->povray.id,
+                         .id_b = &v->native.id};
+    for (int kind = 0; kind < PLANE_KINDS; kind++)
+        report.planes[kind] = &v->results[kind];
+    *agrees = report_agrees(&report);
+    char *templates = NULL, *page = NULL;
+    TRY(templates_folder(&templates, err));
+    Status status = file_join(templates, "report/report.html", &page, err);
+    if (status == STATUS_OK)
+        status = report_write(&report, page, v->folder, err);
+    if (status == STATUS_OK && as_json)
+        status = json_write(report_json(&report), "-", err);
+    free(templates);
+    free(page);
+    return status;
+}
+
+static void print_verdict(const Verification *v, bool agrees)
+{
+    for (int kind = 0; kind < PLANE_KINDS; kind++) {
+        const CompareResult *result = &v->results[kind];
+        printf("  %-7s %-7s", plane_kind_name((PlaneKind)kind),
+               result->agrees ? "agree" : "differ");
+        if (!result->agrees)
+            printf("%s\n", result->reason);
+        else if (kind == PLANE_DEPTH)
+            printf("median %.3g mm, 99 %% within %.3g mm, worst %.3g mm\n", result->median,
+                   result->p99, result->max);
+        else if (kind == PLANE_NORMAL)
+            printf("median %.3g deg, 99 %% within %.3g deg, worst %.3g deg\n", result->median,
+                   result->p99, result->max);
+        else
+            printf("%zu of %zu pixels differ\n", result->differing_pixels, result->pixels);
+    }
+    printf("%s: POV-Ray %s in %.2f s, corcast in %.2f s; %s/report.html\n",
+           agrees ? "agree" : "differ", v->run.version, v->run.seconds,
+           v->stats.prepare_s + v->stats.trace_s, v->folder);
+}
+
+Status run_verify(int argc, char **argv, Err *err)
+{
+    PictureOptions picture;
+    picture_options_init(&picture);
+    const char *folder = NULL;
+    bool as_json = false;
+    const Option own[] = {
+        {"output", OPTION_TEXT, &folder, NULL, 0, 0, NULL, "DIR",
+         "folder for the report, the scene and all planes"},
+        {"json", OPTION_FLAG, &as_json, NULL, 0, 0, NULL, NULL, "the report on standard output"},
+        {0},
+    };
+    const Option *const tables[] = {own, picture.table, picture.coloring.table, NULL};
+    Parsed parsed;
+    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
+    Status status = STATUS_OK;
+    bool agrees = false;
+    char *line = NULL;
+    Verification v = {.picture = &picture,
+                      .common = &parsed.common,
+                      .tree = parsed.operands[0],
+                      .folder = folder};
+    if (parsed.common.help)
+        goto done;
+    if (!folder || strcmp(folder, "-") == 0) {
+        status = err_set(err, STATUS_USAGE, "-o DIR is missing; usage: corcast verify %s",
+                         command.operands);
+        goto done;
+    }
+    TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 120, err));
+    TRY_GOTO(picture_scene(&picture, v.tree, parsed.common.quiet, &v.scene, err));
+    TRY_GOTO(file_make_folder(folder, err));
+    TRY_GOTO(command_line_text("verify", argc, argv, &line, err));
+    TRY_GOTO(mem_strdup(&v.commands[0], line, err));
+    v.n_commands = 1;
+    TRY_GOTO(run_oracle(&v, err));
+    TRY_GOTO(render_native(&v, line, err));
+    TRY_GOTO(compare_sides(&v, err));
+    TRY_GOTO(write_report(&v, as_json, &agrees, err));
+    if (!as_json && !parsed.common.quiet)
+        print_verdict(&v, agrees);
+    status = agrees ? STATUS_OK : STATUS_DIFFERS;
+done:
+    free(line);
+    verification_release(&v);
+    parsed_release(&parsed);
+    return status;
+}

@@ -1,0 +1,92 @@
+#include "app/coloring.h"
+
+#include "app/templates.h"
+#include "image/image.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void coloring_init(Coloring *coloring)
+{
+    *coloring = (Coloring){.colormap = "viridis"};
+    FlowParams *flow = &coloring->flow;
+    const double huge = 1e300;
+    const Option table[] = {
+        {"color-by", OPTION_TEXT, &coloring->field, NULL, 0, 0, NULL, "FIELD",
+         "radius, length, flow, velocity, pressure, wss, reynolds, level, strahler or branch"},
+        {"colormap", OPTION_TEXT, &coloring->colormap, NULL, 0, 0, NULL, "NAME",
+         "a file of templates/colormaps, or a path (viridis)"},
+        {"range", OPTION_RANGE, coloring->range, &coloring->has_range, 0, 0, NULL, NULL,
+         "values at the ends of the colour map (the field's)"},
+        {"log", OPTION_FLAG, &coloring->log, NULL, 0, 0, NULL, NULL, "logarithmic colours"},
+        {"q-perf", OPTION_NUMBER, &flow->q_perf_ml_min, &flow->has.q_perf, 1e-300, huge, NULL,
+         "ML/MIN", "flow through the inlet (the tree's)"},
+        {"p-perf", OPTION_NUMBER, &flow->p_perf_mmhg, &flow->has.p_perf, -huge, huge, NULL, "MMHG",
+         "pressure at the inlet (the tree's)"},
+        {"viscosity", OPTION_NUMBER, &flow->viscosity_cp, &flow->has.viscosity, 1e-300, huge, NULL,
+         "CP", "of the blood (the tree's)"},
+        {0},
+    };
+    memcpy(coloring->table, table, sizeof table);
+}
+
+static double scaled(const Coloring *coloring, double value)
+{
+    return coloring->log ? (value > 0 ? log(value) : (double)NAN) : value;
+}
+
+/* The ends of the colour map, on the scale of the colours. */
+static Status find_range(const Coloring *coloring, const Field *field, double range[2], Err *err)
+{
+    if (coloring->has_range && coloring->log && !(coloring->range[0] > 0))
+        return err_set(err, STATUS_USAGE, "--range: with --log both ends must be positive, not %g",
+                       coloring->range[0]);
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (size_t i = 0; i < field->n && !coloring->has_range; i++) {
+        double value = scaled(coloring, field->value[i]);
+        if (isfinite(value)) {
+            range[0] = fmin(range[0], value);
+            range[1] = fmax(range[1], value);
+        }
+    }
+    if (coloring->has_range)
+        for (int i = 0; i < 2; i++)
+            range[i] = scaled(coloring, coloring->range[i]);
+    if (!(range[0] <= range[1]))
+        return err_set(err, STATUS_INPUT, "--color-by: the field %s has no value%s", field->name,
+                       coloring->log ? " above 0" : "");
+    return STATUS_OK;
+}
+
+Status coloring_apply(const Coloring *coloring, const Tree *tree, Rgb **colors, Err *err)
+{
+    *colors = NULL;
+    if (!coloring->field)
+        return STATUS_OK;
+    Field field = {0};
+    Colormap map = {0};
+    Rgb *made = NULL;
+    char *path = NULL;
+    double range[2] = {0, 0};
+    Status status = derive_field(tree, &coloring->flow, coloring->field, &field, err);
+    if (status != STATUS_OK)
+        return status;
+    TRY_GOTO(template_file("colormap", "colormaps", coloring->colormap, ".txt", &path, err));
+    TRY_GOTO(colormap_read(&map, path, err));
+    TRY_GOTO(find_range(coloring, &field, range, err));
+    TRY_GOTO(mem_calloc(&made, tree->n, sizeof *made, "colours", err));
+    for (size_t i = 0; i < tree->n; i++) {
+        double width = range[1] - range[0];
+        double value = scaled(coloring, field.value[i]);
+        float rgb[3];
+        colormap_linear(&map, width > 0 ? (value - range[0]) / width : value - range[0] + 0.5, rgb);
+        made[i] = (Rgb){rgb[0], rgb[1], rgb[2]};
+    }
+    *colors = made;
+done:
+    free(path);
+    colormap_release(&map);
+    field_release(&field);
+    return status;
+}

@@ -1,0 +1,29 @@
+/* --color-by: a field of the tree as one colour a segment. */
+#ifndef CORCAST_APP_COLORING_H
+#define CORCAST_APP_COLORING_H
+
+#include "app/options.h"
+#include "derive/derive.h"
+#include "scene/scene.h"
+#include "tree/tree.h"
+
+enum { COLORING_OPTIONS = 8 };
+
+typedef struct Coloring {
+    const char *field; /* NULL: the look's one colour */
+    const char *colormap;
+    double range[2];
+    bool has_range, log;
+    FlowParams flow;
+    Option table[COLORING_OPTIONS];
+} Coloring;
+
+/* Defaults, and the table that sets them; `coloring` must not move afterwards. */
+void coloring_init(Coloring *coloring);
+
+/* One linear colour a node in *colors (owned), NULL when no field is asked for. Without --range, the
+ * colours run from the least to the greatest finite value of the field. */
+MUST_CHECK Status coloring_apply(const Coloring *coloring, const Tree *tree, Rgb **colors,
+                                 Err *err);
+
+#endif

@@ -1,0 +1,16 @@
+/* Where the files of templates/ are. */
+#ifndef CORCAST_APP_TEMPLATES_H
+#define CORCAST_APP_TEMPLATES_H
+
+#include "base/base.h"
+
+/* The folder: CORCAST_TEMPLATES, or beside the program (../templates), or installed
+ * (../share/corcast/templates); in *folder (owned). STATUS_IO when there is none. */
+MUST_CHECK Status templates_folder(char **folder, Err *err);
+
+/* The file that an option's value names: the value itself when it has a '/', else value + extension in
+ * a folder of templates/; in *path (owned). STATUS_USAGE when that does not exist. */
+MUST_CHECK Status template_file(const char *option, const char *folder, const char *value,
+                                const char *extension, char **path, Err *err);
+
+#endif

@@ -1,0 +1,225 @@
+#include "base/base.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Exact number text. */
+
+static void a_number_reads_back_to_the_same_double(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 2385);
+    char text[NUMBER_TEXT_SIZE];
+    for (int i = 0; i < 300000; i++) {
+        double value = (random_uniform(&random) - 0.5) * pow(10, random_uniform(&random) * 40 - 20);
+        double back;
+        assert_true(number_parse(number_text(value, text), &back));
+        assert_true(back == value);
+        float single = (float)value;
+        assert_true(strtof(number_text_float(single, text), NULL) == single);
+    }
+}
+
+static void a_number_is_as_short_as_it_can_be(void **state)
+{
+    (void)state;
+    static const struct {
+        double value;
+        const char *text;
+    } cases[] = {{0.1, "0.1"},
+                 {-2.385, "-2.385"},
+                 {50, "50"},
+                 {0, "0"},
+                 {1e-20, "1e-20"},
+                 {1e22, "1e+22"},
+                 {1.0 / 3, "0.3333333333333333"},
+                 {123456.5, "123456.5"},
+                 {0.0001, "0.0001"},
+                 {99999999999999.0, "99999999999999"}};
+    char text[NUMBER_TEXT_SIZE];
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        assert_string_equal(number_text(cases[i].value, text), cases[i].text);
+    assert_string_equal(number_text_float(0.056f, text), "0.056");
+}
+
+static void text_that_is_no_number_is_refused(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {"", " 1", "1 ", "1,5", "0x10", "1e", "--2", "1.2.3", "mm"};
+    double value = 7;
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        assert_false(number_parse(wrong[i], &value));
+    long long whole = 7;
+    assert_false(integer_parse("2.5", 0, 9, &whole));
+    assert_false(integer_parse("10", 0, 9, &whole));
+    assert_false(integer_parse("99999999999999999999", 0, 9, &whole));
+    assert_true(value == 7 && whole == 7);
+}
+
+/* Text and errors. */
+
+static void text_grows_over_any_length(void **state)
+{
+    (void)state;
+    Text text = TEXT_INIT;
+    for (int i = 0; i < 1000; i++)
+        text_printf(&text, "%d,%0*d;", i, i, 1);
+    assert_int_equal(text_check(&text, NULL), STATUS_OK);
+    assert_int_equal(text.length, strlen(text.chars));
+    assert_non_null(strstr(text.chars, ";3,001;"));
+    text_release(&text);
+}
+
+static void a_prefix_says_where_an_error_happened(void **state)
+{
+    (void)state;
+    Err err;
+    Status status = err_set(&err, STATUS_INPUT, "the radius %g is negative", -2.385);
+    err_prefix(&err, "%s:%d: ", "tree.swc", 17);
+    assert_int_equal(status, STATUS_INPUT);
+    assert_string_equal(err.text, "tree.swc:17: the radius -2.385 is negative");
+    assert_int_equal(status_exit(STATUS_DIFFERS), 1);
+    assert_int_equal(status_exit(STATUS_INPUT), 2);
+    assert_int_equal(status_exit(STATUS_MEMORY), 3);
+}
+
+/* Files. */
+
+static char folder[] = "/tmp/corcast-base-XXXXXX";
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    return rmdir(folder);
+}
+
+static void a_discarded_file_leaves_the_old_one_alone(void **state)
+{
+    (void)state;
+    char *path = NULL, *bytes = NULL;
+    size_t size;
+    Err err;
+    assert_int_equal(file_join(folder, "tree.swc", &path, &err), STATUS_OK);
+    assert_int_equal(file_write(path, "old", 3, &err), STATUS_OK);
+    OutFile file;
+    assert_int_equal(outfile_open(&file, path, &err), STATUS_OK);
+    fputs("half", file.stream);
+    outfile_discard(&file);
+    assert_int_equal(file_read(path, &bytes, &size, &err), STATUS_OK);
+    assert_int_equal(size, 3);
+    assert_string_equal(bytes, "old");
+    unlink(path); /* remove_folder fails when a temporary file is left */
+    free(bytes);
+    free(path);
+}
+
+static void a_committed_file_has_the_usual_permissions(void **state)
+{
+    (void)state;
+    char *path = NULL;
+    Err err;
+    assert_int_equal(file_join(folder, "new.swc", &path, &err), STATUS_OK);
+    mode_t mask = umask(022);
+    assert_int_equal(file_write(path, "x", 1, &err), STATUS_OK);
+    umask(mask);
+    struct stat about;
+    assert_int_equal(stat(path, &about), 0);
+    assert_int_equal(about.st_mode & 0777, 0644);
+    unlink(path);
+    free(path);
+}
+
+static void a_file_in_a_missing_folder_cannot_be_opened(void **state)
+{
+    (void)state;
+    OutFile file;
+    Err err;
+    assert_int_equal(outfile_open(&file, "/nowhere/at/all.swc", &err), STATUS_IO);
+    assert_non_null(strstr(err.text, "/nowhere/at/all.swc"));
+    char *bytes;
+    size_t size;
+    assert_int_equal(file_read("/nowhere/at/all.swc", &bytes, &size, &err), STATUS_INPUT);
+    assert_int_equal(file_read(folder, &bytes, &size, &err), STATUS_INPUT);
+}
+
+static void suffixes_replace_extensions_only(void **state)
+{
+    (void)state;
+    char *out = NULL;
+    assert_int_equal(file_with_suffix("a.b/c", ".inc", &out, NULL), STATUS_OK);
+    assert_string_equal(out, "a.b/c.inc");
+    free(out);
+    assert_int_equal(file_with_suffix("a.b/c.pov", ".inc", &out, NULL), STATUS_OK);
+    assert_string_equal(out, "a.b/c.inc");
+    free(out);
+    assert_string_equal(file_extension("a.b/c"), "");
+    assert_string_equal(file_extension(".hidden"), "");
+}
+
+/* Threads and random numbers. */
+
+static void count_index(size_t index, int worker, void *context)
+{
+    (void)worker;
+    ((unsigned char *)context)[index]++;
+}
+
+static void a_parallel_loop_visits_every_index_once(void **state)
+{
+    (void)state;
+    static unsigned char visits[1237];
+    for (int threads = 0; threads < 6; threads++) {
+        memset(visits, 0, sizeof visits);
+        threads_for(sizeof visits, threads, count_index, visits);
+        for (size_t i = 0; i < sizeof visits; i++)
+            assert_int_equal(visits[i], 1);
+    }
+}
+
+static void the_random_stream_is_the_published_one(void **state)
+{
+    (void)state;
+    /* xoshiro256** from the state 1, 2, 3, 4: 11520, 0, 1509978240, 1215971899390074240. */
+    Random random = {{1, 2, 3, 4}};
+    static const uint64_t expected[] = {11520, 0, 1509978240, 1215971899390074240};
+    for (size_t i = 0; i < 4; i++)
+        assert_true(random_bits(&random) == expected[i]);
+    /* splitmix64 from 1234567 starts with 6457827717110365317. */
+    random_seed(&random, 1234567);
+    assert_true(random.state[0] == 6457827717110365317u);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_number_reads_back_to_the_same_double),
+        cmocka_unit_test(a_number_is_as_short_as_it_can_be),
+        cmocka_unit_test(text_that_is_no_number_is_refused),
+        cmocka_unit_test(text_grows_over_any_length),
+        cmocka_unit_test(a_prefix_says_where_an_error_happened),
+        cmocka_unit_test(a_discarded_file_leaves_the_old_one_alone),
+        cmocka_unit_test(a_committed_file_has_the_usual_permissions),
+        cmocka_unit_test(a_file_in_a_missing_folder_cannot_be_opened),
+        cmocka_unit_test(suffixes_replace_extensions_only),
+        cmocka_unit_test(a_parallel_loop_visits_every_index_once),
+        cmocka_unit_test(the_random_stream_is_the_published_one),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

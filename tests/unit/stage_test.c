@@ -1,0 +1,296 @@
+#include "stage/stage.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <stdio.h>
+#include <unistd.h>
+
+static const Look look = {.color = {0.5f, 0.1f, 0.2f},
+                          .background = {1, 1, 1},
+                          .finish = {.ambient = 0.1f, .diffuse = 0.6f, .brilliance = 1},
+                          .lights = {{{1, 2, 3}, {1, 1, 1}}},
+                          .n_lights = 1};
+
+/* A parent along y that splits into a thick and a thin daughter, with a step of no length in the thick
+ * one and a segment of no radius at the end of the thin one. */
+static Tree make_tree(void)
+{
+    static const int32_t parents[] = {-1, 0, 1, 1, 2, 3};
+    static const double radii[] = {2.385, 2.385, 1.9, 1.2, 1.9, 0};
+    static const Vec3 places[] = {{0, 20, 0}, {0, 10, 1}, {-5, 4, 2},
+                                  {6, 3, -1}, {-5, 4, 2}, {9, 1, -1}};
+    Tree tree;
+    assert_int_equal(tree_init(&tree, 6, NULL), STATUS_OK);
+    for (int i = 0; i < 6; i++) {
+        tree.id[i] = i + 11;
+        tree.parent[i] = parents[i];
+        tree.radius_mm[i] = radii[i];
+        tree.position[i] = places[i];
+    }
+    return tree;
+}
+
+static Scene stage(const StageParams *params, StageReport *report)
+{
+    Tree tree = make_tree();
+    Scene scene;
+    Err err = {{0}};
+    if (stage_scene(&tree, &look, NULL, params, &scene, report, &err) != STATUS_OK)
+        fail_msg("%s", err.text);
+    tree_release(&tree);
+    return scene;
+}
+
+static void segments_without_length_or_radius_are_counted_not_drawn(void **state)
+{
+    (void)state;
+    StageParams params = stage_defaults();
+    params.model = SCENE_CYLINDERS;
+    StageReport report;
+    Scene scene = stage(&params, &report);
+    assert_int_equal(report.drawn, 3);
+    assert_int_equal(report.dropped, 2);
+    assert_int_equal(scene.n_primitives, 3);
+    for (size_t i = 0; i < scene.n_primitives; i++)
+        assert_int_equal(scene.primitives[i].id, 12 + i);
+    scene_release(&scene);
+}
+
+static void a_sphere_has_the_largest_radius_that_meets(void **state)
+{
+    (void)state;
+    StageParams params = stage_defaults();
+    params.model = SCENE_ROUNDED;
+    Scene scene = stage(&params, NULL);
+    /* Spheres at the inlet, the bifurcation and the two ends; one only where the step has no length. */
+    assert_int_equal(scene.n_primitives, 3 + 4);
+    static const struct {
+        double radius;
+        uint32_t id;
+    } expected[] = {{2.385, 12}, {2.385, 12}, {1.9, 13}, {1.2, 14}};
+    for (size_t i = 0; i < 4; i++) {
+        const Primitive *sphere = &scene.primitives[3 + i];
+        assert_int_equal(sphere->kind, PRIMITIVE_SPHERE);
+        assert_true(sphere->radius_mm == expected[i].radius);
+        assert_int_equal(sphere->id, expected[i].id);
+    }
+    scene_release(&scene);
+}
+
+/* Where a point of the world stands in the picture, in pixels from its middle. */
+static void project(const Camera *camera, Vec3 x, double *i, double *j)
+{
+    Vec3 from = vec3_sub(x, camera->location);
+    double depth =
+        camera->projection == PROJECTION_PERSPECTIVE ? vec3_dot(from, camera->direction) : 1;
+    double width = vec3_length(camera->right), height = vec3_length(camera->up);
+    *i = vec3_dot(from, camera->right) / (width * width) / depth * camera->width;
+    *j = vec3_dot(from, camera->up) / (height * height) / depth * camera->height;
+}
+
+static void every_view_frames_the_whole_tree(void **state)
+{
+    (void)state;
+    for (int view = VIEW_FRONT; view <= VIEW_ISO; view++)
+        for (int projection = 0; projection < 2; projection++) {
+            StageParams params = stage_defaults();
+            params.view = (View)view;
+            params.projection = (Projection)projection;
+            params.width = 300;
+            params.height = 170;
+            Scene scene = stage(&params, NULL);
+            const Camera *camera = &scene.camera;
+            double widest = 0, highest = 0;
+            for (size_t k = 0; k < scene.n_primitives; k++) {
+                double i, j;
+                project(camera, scene.primitives[k].b, &i, &j);
+                widest = fmax(widest, fabs(i));
+                highest = fmax(highest, fabs(j));
+            }
+            assert_true(widest < 0.45 * 300 && highest < 0.45 * 170);
+            assert_true(widest > 0.2 * 300 || highest > 0.2 * 170);
+            /* Right-handed: right x up points at the viewer. */
+            Vec3 back = vec3_cross(camera->right, camera->up);
+            assert_true(vec3_dot(back, camera->direction) < 0);
+            scene_release(&scene);
+        }
+}
+
+static void the_front_view_has_x_to_the_right_and_y_up(void **state)
+{
+    (void)state;
+    StageParams params = stage_defaults();
+    Scene scene = stage(&params, NULL);
+    assert_true(scene.camera.right.x > 0 && scene.camera.right.y == 0 && scene.camera.right.z == 0);
+    assert_true(scene.camera.up.y > 0 && scene.camera.up.x == 0 && scene.camera.up.z == 0);
+    assert_true(scene.camera.direction.z == -1);
+    scene_release(&scene);
+}
+
+static void a_given_camera_is_taken_as_it_is(void **state)
+{
+    (void)state;
+    StageParams params = stage_defaults();
+    params.projection = PROJECTION_PERSPECTIVE;
+    params.angle_deg = 90;
+    params.width = 200;
+    params.height = 100;
+    params.has_location = params.has_look_at = params.has_up = true;
+    params.location = vec3(0, 0, 40);
+    params.look_at = vec3(0, 0, 0);
+    params.up = vec3(1, 0, 0);
+    Scene scene = stage(&params, NULL);
+    const Camera *camera = &scene.camera;
+    assert_true(fabs(vec3_length(camera->right) - 2) < 1e-12);
+    assert_true(fabs(vec3_length(camera->up) - 1) < 1e-12);
+    assert_true(fabs(camera->up.x - 1) < 1e-12);
+    assert_true(camera->location.z == 40);
+    scene_release(&scene);
+}
+
+static void cameras_that_cannot_be_are_refused(void **state)
+{
+    (void)state;
+    Tree tree = make_tree();
+    Scene scene;
+    Err err;
+    StageParams params = stage_defaults();
+    params.has_location = params.has_look_at = true;
+    params.location = params.look_at = vec3(1, 2, 3);
+    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, &err), STATUS_USAGE);
+    assert_non_null(strstr(err.text, "--look-at"));
+    params.look_at = vec3(1, 2, 9);
+    params.has_up = true;
+    params.up = vec3(0, 0, -2);
+    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, &err), STATUS_USAGE);
+    assert_non_null(strstr(err.text, "--up"));
+    tree_release(&tree);
+}
+
+static void a_tree_with_nothing_to_draw_is_refused(void **state)
+{
+    (void)state;
+    Tree tree = make_tree();
+    for (size_t i = 0; i < tree.n; i++)
+        tree.radius_mm[i] = 0;
+    Scene scene;
+    Err err;
+    StageParams params = stage_defaults();
+    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "nothing to draw"));
+    tree_release(&tree);
+}
+
+static void lights_turn_with_the_camera(void **state)
+{
+    (void)state;
+    for (int view = VIEW_FRONT; view <= VIEW_ISO; view++) {
+        StageParams params = stage_defaults();
+        params.view = (View)view;
+        Scene scene = stage(&params, NULL);
+        Vec3 towards = vec3_sub(scene.lights[0].location, scene.lights[0].target);
+        towards = vec3_normalized(towards);
+        double length = sqrt(1 + 4 + 9);
+        assert_true(fabs(vec3_dot(towards, vec3_normalized(scene.camera.right)) - 1 / length) <
+                    1e-9);
+        assert_true(fabs(vec3_dot(towards, vec3_normalized(scene.camera.up)) - 2 / length) < 1e-9);
+        assert_true(fabs(vec3_dot(towards, scene.camera.direction) + 3 / length) < 1e-9);
+        scene_release(&scene);
+    }
+}
+
+static void the_rays_of_a_camera_go_through_pixel_centres(void **state)
+{
+    (void)state;
+    const Camera camera = {.projection = PROJECTION_ORTHOGRAPHIC,
+                           .location = {1, 2, 30},
+                           .right = {8, 0, 0},
+                           .up = {0, 4, 0},
+                           .direction = {0, 0, -1},
+                           .width = 4,
+                           .height = 2};
+    Ray ray = camera_ray(&camera, 0, 0);
+    assert_true(ray.origin.x == 1 - 3 && ray.origin.y == 2 + 1 && ray.origin.z == 30);
+    ray = camera_ray(&camera, 3, 1);
+    assert_true(ray.origin.x == 1 + 3 && ray.origin.y == 2 - 1);
+    assert_true(ray.direction.z == -1);
+}
+
+/* ---- looks -------------------------------------------------------------------------------------- */
+
+static Status read_look_text(const char *text, Look *out, Err *err)
+{
+    char path[] = "/tmp/corcast-look-XXXXXX";
+    int handle = mkstemp(path);
+    assert_true(handle >= 0);
+    close(handle);
+    assert_int_equal(file_write(path, text, strlen(text), NULL), STATUS_OK);
+    Status status = look_read(out, path, err);
+    unlink(path);
+    return status;
+}
+
+static void a_look_is_read(void **state)
+{
+    (void)state;
+    Look read;
+    Err err = {{0}};
+    Status status =
+        read_look_text("; a comment\n[vessel]\ncolor = 0.25 0.5 0.125\n[finish]\nphong = 0.375\n"
+                       "[light a]\ndirection = 0 1 2\n[light b]\ncolor = 0 0 1\n",
+                       &read, &err);
+    assert_string_equal(err.text, "");
+    assert_int_equal(status, STATUS_OK);
+    assert_true(read.color.r == 0.25f && read.color.g == 0.5f && read.color.b == 0.125f);
+    assert_true(read.finish.phong == 0.375f);
+    assert_int_equal(read.n_lights, 2);
+    assert_true(read.lights[0].direction.z == 2 && read.lights[1].color.b == 1);
+}
+
+static void a_bad_look_names_its_line(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *line, *says;
+    } cases[] = {
+        {"[vessel]\ncolor = 1 2 3\n", ":2:", "from 0 to 1"},
+        {"[vessel]\ncolor = 1 1\n", ":2:", "three numbers"},
+        {"[finish]\nambient = 0.1\nshine = 3\n", ":3:", "ambient"},
+        {"[finish]\ndiffuse = much\n", ":2:", "from 0 to 1"},
+        {"[table]\ncolor = 1 1 1\n", ":2:", "sections"},
+        {"[light a]\ndirection = 0 0 0\n", ":2:", "not all zero"},
+        {"[finish]\nphong\n", ":2:", "expected"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Look read;
+        Err err;
+        assert_int_equal(read_look_text(cases[i].text, &read, &err), STATUS_INPUT);
+        if (!strstr(err.text, cases[i].line) || !strstr(err.text, cases[i].says))
+            fail_msg("case %zu: '%s' lacks '%s' or '%s'", i, err.text, cases[i].line,
+                     cases[i].says);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(segments_without_length_or_radius_are_counted_not_drawn),
+        cmocka_unit_test(a_sphere_has_the_largest_radius_that_meets),
+        cmocka_unit_test(every_view_frames_the_whole_tree),
+        cmocka_unit_test(the_front_view_has_x_to_the_right_and_y_up),
+        cmocka_unit_test(a_given_camera_is_taken_as_it_is),
+        cmocka_unit_test(cameras_that_cannot_be_are_refused),
+        cmocka_unit_test(a_tree_with_nothing_to_draw_is_refused),
+        cmocka_unit_test(lights_turn_with_the_camera),
+        cmocka_unit_test(the_rays_of_a_camera_go_through_pixel_centres),
+        cmocka_unit_test(a_look_is_read),
+        cmocka_unit_test(a_bad_look_names_its_line),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
