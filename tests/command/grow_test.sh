@@ -112,8 +112,10 @@ test_a_tree_goes_to_standard_output() {
     expect_same stdout tree.swc
 }
 
-test_nothing_but_errors_is_said_when_standard_error_is_no_terminal() {
-    grow_tree 30
+test_quiet_says_nothing_and_otherwise_one_line_is_said() {
+    run_ok corcast grow --terminals 30 -o tree.swc
+    [ "$(wc -l <stderr)" -le 1 ] || fail "expected one line, and no progress where there is no terminal$(said)"
+    run_ok corcast grow --terminals 30 -o tree.swc --quiet
     [ ! -s stderr ] || fail "expected silence$(said)"
 }
 
@@ -126,17 +128,25 @@ test_an_output_in_a_missing_folder_is_refused() {
 
 test_an_output_on_a_full_disk_is_refused() {
     [ -w /dev/full ] || skip "there is no /dev/full"
-    run corcast grow --terminals 3 -o /dev/full
+    ln -s /dev/full full.swc
+    run corcast grow --terminals 3 -o full.swc
     expect_status 3
-    expect_sentence "/dev/full"
+    expect_sentence "full"
+}
+
+test_an_extension_that_is_no_tree_is_refused() {
+    run corcast grow --terminals 3 -o tree.txt
+    expect_status 2
+    expect_sentence "tree.txt"
+    expect_only
 }
 
 test_a_folder_is_not_an_output() {
-    mkdir folder
-    run corcast grow --terminals 3 -o folder
+    mkdir folder.swc
+    run corcast grow --terminals 3 -o folder.swc
     expect_status 3
-    expect_sentence "folder"
-    expect_only folder
+    expect_sentence "folder.swc"
+    expect_only folder.swc
 }
 
 run_tests "$@"

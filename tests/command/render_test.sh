@@ -162,6 +162,28 @@ test_pruning_drops_thin_segments_from_the_picture() {
     [ "$(colours thick.id.ppm)" -lt "$(colours all.id.ppm)" ] || fail "expected fewer segments"
 }
 
+test_fields_colour_the_segments() {
+    local field
+    grow_tree 30
+    run_ok corcast render tree.swc --size 80x80 -o plain.ppm
+    for field in radius flow velocity pressure wss reynolds level strahler branch; do
+        run_ok corcast render tree.swc --size 80x80 --color-by $field -o $field.ppm
+        expect_different plain.ppm $field.ppm
+    done
+    run_ok corcast render tree.swc --size 80x80 --color-by radius --log --range 0.5,3 --colormap magma -o log.ppm
+    run corcast render tree.swc --size 80x80 --color-by loudness -o no.ppm
+    expect_status 2
+    expect_sentence 'loudness'
+}
+
+test_a_field_that_needs_flow_is_refused_where_nothing_is_known_of_it() {
+    printf '1 1 0 0 0 1 -1\n2 3 3 0 0 1 1\n' >tree.swc
+    run corcast render tree.swc --size 20x20 --color-by flow -o picture.ppm
+    expect_status 2
+    expect_sentence 'q[-_]perf'
+    run_ok corcast render tree.swc --size 20x20 --color-by flow --q-perf 312.5 -o picture.ppm
+}
+
 test_the_background_is_the_colour_asked_for() {
     grow_tree 5
     run_ok corcast render tree.swc --size 40x40 --background 0,0,0 -o black.ppm

@@ -127,6 +127,15 @@ test_a_measured_tree_agrees() {
     agrees rounded --view left
 }
 
+test_colours_by_a_field_agree_in_every_model() {
+    local model
+    tree_2d 20
+    for model in cylinders rounded isosurface; do
+        agrees $model --color-by pressure
+        rm -r report
+    done
+}
+
 test_verify_writes_what_the_contract_names() {
     local file
     tree_2d 10
