@@ -1,0 +1,207 @@
+#include "emit/emit.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <stdio.h>
+
+static Primitive primitives[] = {
+    {PRIMITIVE_CYLINDER, {0, 50, 0}, {1.0 / 3, 12.5, -2.385}, 2.385, 2, {0.56f, 0.055f, 0.045f}},
+    {PRIMITIVE_SPHERE, {0, 50, 0}, {0, 50, 0}, 2.385, 70000, {0.1f, 0.2f, 0.3f}},
+};
+
+static FieldSegment segments[] = {
+    {{0, 9, 0}, {0, 0, 0}, 1.5, 2, {0.5f, 0.1f, 0.1f}},
+    {{0, 0, 0}, {-4, -7, 1}, 1.2, 3, {0.1f, 0.5f, 0.1f}},
+    {{0, 0, 0}, {5, -6, -1}, 1.1, 4, {0.1f, 0.1f, 0.5f}},
+};
+
+static Light light = {.location = {0, 10, 90}, .color = {1, 1, 1}, .parallel = true};
+
+static Scene make_scene(SceneModel model)
+{
+    Scene scene = {.model = model,
+                   .camera = {.location = {0, 0, 90},
+                              .right = {120, 0, 0},
+                              .up = {0, 90, 0},
+                              .direction = {0, 0, -1},
+                              .width = 400,
+                              .height = 300},
+                   .background = {1, 1, 1},
+                   .finish = {0.1f, 0.6f, 1, 0.3f, 32, 0, 0.05f},
+                   .lights = &light,
+                   .n_lights = 1,
+                   .uniform_color = true,
+                   .color = {0.56f, 0.055f, 0.045f},
+                   .bounds = {{-3, 10, -5}, {3, 53, 3}}};
+    if (model == SCENE_ISOSURFACE) {
+        scene.segments = segments;
+        scene.n_segments = 3;
+    } else {
+        scene.primitives = primitives;
+        scene.n_primitives = 2;
+    }
+    return scene;
+}
+
+static const PovrayParams two_files = {.templates = "templates",
+                                       .scene_file = "tree.pov",
+                                       .geometry_file = "tree.inc",
+                                       .description = "a test",
+                                       .generator = "corcast"};
+
+typedef struct Emitted {
+    Text scene, geometry;
+    PovrayReport report;
+} Emitted;
+
+static Emitted emit(const Scene *scene, const PovrayParams *params)
+{
+    Emitted out = {.scene = TEXT_INIT};
+    Err err = {{0}};
+    if (emit_povray(scene, params, &out.scene, &out.geometry, &out.report, &err) != STATUS_OK)
+        fail_msg("%s", err.text);
+    return out;
+}
+
+static void release(Emitted *out)
+{
+    text_release(&out->scene);
+    text_release(&out->geometry);
+}
+
+static size_t count(const char *text, const char *part)
+{
+    size_t n = 0;
+    for (; (text = strstr(text, part)) != NULL; text += strlen(part))
+        n++;
+    return n;
+}
+
+static void the_numbers_of_a_cylinder_read_back_exactly(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_ROUNDED);
+    Emitted out = emit(&scene, &two_files);
+    const char *call = strstr(out.geometry.chars, "\nVessel_Cylinder(");
+    assert_non_null(call);
+    double v[7];
+    unsigned id;
+    char paint[32];
+    assert_int_equal(sscanf(call, "\nVessel_Cylinder(<%lf,%lf,%lf>,<%lf,%lf,%lf>,%lf,%u,%31[^)]",
+                            &v[0], &v[1], &v[2], &v[3], &v[4], &v[5], &v[6], &id, paint),
+                     9);
+    const Primitive *cylinder = &primitives[0];
+    assert_true(v[0] == cylinder->a.x && v[1] == cylinder->a.y && v[2] == cylinder->a.z);
+    assert_true(v[3] == cylinder->b.x && v[4] == cylinder->b.y && v[5] == cylinder->b.z);
+    assert_true(v[6] == cylinder->radius_mm);
+    assert_int_equal(id, 2);
+    assert_string_equal(paint, "Vessel_Color");
+    assert_int_equal(count(out.geometry.chars, "\nVessel_Sphere("), 1);
+    release(&out);
+}
+
+static void segments_of_different_colours_carry_their_own(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_ROUNDED);
+    scene.uniform_color = false;
+    Emitted out = emit(&scene, &two_files);
+    assert_non_null(strstr(out.geometry.chars, ",70000,<0.1,0.2,0.3>)\n"));
+    release(&out);
+}
+
+static void the_scene_says_what_it_is_and_how_to_render_it(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_CYLINDERS);
+    Emitted out = emit(&scene, &two_files);
+    static const char *const expected[] = {"// Desc: a test\n",
+                                           "millimetres",
+                                           "+Itree.pov +Otree.png +W400 +H300",
+                                           "// Size: 400x300\n",
+                                           "#version 3.7;",
+                                           "#include \"tree.inc\"\n",
+                                           "assumed_gamma 1.0",
+                                           "#ifndef (Camera_Location)",
+                                           "#ifndef (Light_Intensity)"};
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++)
+        if (!strstr(out.scene.chars, expected[i]))
+            fail_msg("the scene lacks '%s'", expected[i]);
+    assert_int_equal(strncmp(out.scene.chars, "// ", 3), 0);
+    assert_null(strstr(out.scene.chars, "${"));
+    assert_null(strstr(out.geometry.chars, "camera {"));
+    release(&out);
+}
+
+static void without_a_geometry_file_all_stands_in_the_scene(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_CYLINDERS);
+    PovrayParams params = two_files;
+    params.geometry_file = NULL;
+    Emitted out = emit(&scene, &params);
+    assert_int_equal(out.geometry.length, 0);
+    assert_null(strstr(out.scene.chars, "\n#include"));
+    assert_int_equal(count(out.scene.chars, "\nVessel_Cylinder("), 1);
+    release(&out);
+}
+
+static void every_term_of_a_cell_is_declared(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_ISOSURFACE);
+    Emitted out = emit(&scene, &two_files);
+    const char *text = out.geometry.chars;
+    assert_true(out.report.cells > 10);
+    assert_int_equal(count(text, "\nCell_Begin() "), out.report.cells);
+    assert_int_equal(count(text, "\n#declare Fn_"), 3 + 5); /* segments, and the template's own */
+    for (const char *at = text; (at = strstr(at, "Cell_Begin() Fn_")) != NULL; at++) {
+        unsigned term = 99;
+        assert_int_equal(sscanf(at, "Cell_Begin() Fn_%u(x,y,z)", &term), 1);
+        assert_true(term < 3);
+    }
+    /* The second segment's function: axis over sqrt2 s, offset, start, 1 / (2 s^2), length. */
+    double v[9];
+    const char *declared = strstr(text, "#declare Fn_1 = Segment(");
+    assert_non_null(declared);
+    assert_int_equal(sscanf(declared,
+                            "#declare Fn_1 = Segment(%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf)", &v[0],
+                            &v[1], &v[2], &v[3], &v[4], &v[5], &v[6], &v[7], &v[8]),
+                     9);
+    double length = sqrt(16 + 49 + 1), s = 0.6, c = 1 / (sqrt(2) * s);
+    assert_true(fabs(v[0] + 4 / length * c) < 1e-12 && fabs(v[3]) < 1e-12);
+    assert_true(fabs(v[7] - c * c) < 1e-12 && fabs(v[8] - c * length) < 1e-12);
+    release(&out);
+}
+
+static void a_missing_template_is_named(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_CYLINDERS);
+    PovrayParams params = two_files;
+    params.templates = "/nowhere";
+    Text a = TEXT_INIT, b = TEXT_INIT;
+    Err err;
+    assert_int_equal(emit_povray(&scene, &params, &a, &b, NULL, &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "/nowhere/povray/"));
+    assert_int_equal(a.length + b.length, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_numbers_of_a_cylinder_read_back_exactly),
+        cmocka_unit_test(segments_of_different_colours_carry_their_own),
+        cmocka_unit_test(the_scene_says_what_it_is_and_how_to_render_it),
+        cmocka_unit_test(without_a_geometry_file_all_stands_in_the_scene),
+        cmocka_unit_test(every_term_of_a_cell_is_declared),
+        cmocka_unit_test(a_missing_template_is_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
