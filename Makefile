@@ -1,44 +1,72 @@
 # corcast: one Makefile for everything. `make help` lists the targets.
 #
-# MODE   release (default), debug, asan, tsan; objects live in build/$(MODE)/
-# CC     gcc or clang
-# V=1    show the commands
+# MODE     release (default), debug, asan, tsan; objects live in build/$(MODE)/
+# CC       gcc or clang
+# V=1      show the commands
+# JOBS     how many to run at once where the Makefile calls itself (all processors)
+# PREFIX   where `make install` puts things (/usr/local); DESTDIR goes in front of it
 
 MODE ?= release
 PREFIX ?= /usr/local
 CC ?= cc
+JOBS ?= $(shell nproc)
 BUILD := build/$(MODE)
 Q := $(if $(V),,@)
 say = $(if $(V),,@printf '  %-6s %s\n' $(1) $(2))
+# This Makefile again, with what `make deps` has installed; -j only when the caller gave none.
+AGAIN = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(JOBS))
 
 ROOMS := $(filter-out app,$(notdir $(patsubst %/,%,$(wildcard src/*/))))
 ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c))
 APP_SOURCES := $(wildcard src/app/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
+FORMATTED := $(sort $(wildcard src/*/*.c src/*/*.h tests/unit/*.c tests/unit/*.h tests/oracle/*.c))
 
 ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o)
 APP_OBJECTS := $(APP_SOURCES:%.c=$(BUILD)/%.o)
+TEST_OBJECTS := $(TEST_SOURCES:%.c=$(BUILD)/%.o)
 TEST_PROGRAMS := $(TEST_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
+ORACLE := $(BUILD)/tests/check_tree
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion \
 	-Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wvla -Wformat=2 -Wcast-qual \
 	-Wpointer-arith -Wundef -Wwrite-strings -Werror
+# clang takes the standard's INFINITY and NAN, which are floats, for promotions.
+WARNINGS += $(if $(findstring clang,$(CC)),-Wno-double-promotion)
 OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPTIMISE_tsan := -O1 -g -fsanitize=thread
-PACKAGES := libpng jansson
+PACKAGES := libpng jansson inih
+PACKAGE_LIBS := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null)
 # Same seed, same bytes with every compiler: no contraction of a * b + c, no reassociation.
 CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -ffp-contract=off $(WARNINGS)
 CPPFLAGS := -Isrc -D_GNU_SOURCE $(shell pkg-config --cflags $(PACKAGES) 2>/dev/null)
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
-LDLIBS := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) -linih -lpthread -lm
+LDLIBS := $(PACKAGE_LIBS) -lpthread -lm
 
-.PHONY: all deps demo check unit layers format asan tsan golden-update install clean help
+.PHONY: all deps demo check program unit unit-programs layers format format-check asan tsan \
+	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: build/corcast
+all: build/corcast ## the program, build/corcast (the default)
+
+help: ## this list
+	@echo 'make TARGET [MODE=release|debug|asan|tsan] [CC=gcc|clang] [V=1]'
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' Makefile
+
+deps: ## install the Debian packages that are missing
+	$(Q)tools/deps $(or $(FOR),build run check)
+
+demo: ## grow a tree, have POV-Ray and corcast draw it, verify; results in out/demo/
+	$(Q)tools/deps build run
+	$(Q)$(AGAIN) all
+	$(Q)tools/demo
+
+check: ## every test; ends in "N passed, N failed"
+	$(Q)tools/deps build run check
+	$(Q)JOBS=$(JOBS) tests/check
 
 # The program users run is always the release build.
 ifeq ($(MODE),release)
@@ -49,6 +77,8 @@ build/corcast:
 	$(Q)$(MAKE) MODE=release build/corcast
 endif
 
+program: $(BUILD)/corcast ## the program of this MODE, build/MODE/corcast
+
 $(BUILD)/corcast: $(APP_OBJECTS) $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
@@ -57,20 +87,62 @@ $(BUILD)/rooms.a: $(ROOM_OBJECTS)
 	$(call say,AR,$@)
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
-$(BUILD)/%.o: %.c Makefile
+$(BUILD)/%.o: %.c Makefile | packages
 	$(call say,CC,$<)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
-$(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(BUILD)/rooms.a
+$(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka
 
--include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_SOURCES:%.c=$(BUILD)/%.d)
+# The oracles stand alone: they share no code with the program they check.
+$(BUILD)/tests/%: tests/oracle/%.c Makefile
+	$(call say,CC,$<)
+	$(Q)mkdir -p $(@D)
+	$(Q)$(CC) -D_GNU_SOURCE $(CFLAGS) $(LDFLAGS) -o $@ $< -lm
 
-unit: $(TEST_PROGRAMS)
+-include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d)
+
+packages:
+ifeq ($(strip $(PACKAGE_LIBS)),)
+	@echo 'corcast needs $(PACKAGES) and pkg-config to build: run "make deps" first' >&2; exit 1
+endif
+
+unit-programs: $(TEST_PROGRAMS) $(ORACLE)
+
+unit: unit-programs ## the unit tests, in this MODE
 	$(Q)for program in $(TEST_PROGRAMS); do $$program || exit 1; done
 
-layers:
+layers: ## hold the includes against src/LAYERS
 	$(Q)tests/check-layers
+
+format: ## rewrite the C sources in the project's layout
+	$(Q)clang-format -i $(FORMATTED)
+
+format-check: ## name the C sources that are not in the project's layout
+	$(Q)clang-format --dry-run -Werror $(FORMATTED)
+
+asan: ## build and run the unit tests with the address and undefined-behaviour sanitizers
+	$(Q)$(AGAIN) MODE=asan program unit
+
+tsan: ## build and run the unit tests with the thread sanitizer
+	$(Q)$(AGAIN) MODE=tsan program unit
+
+golden-update: build/corcast ## rewrite a golden: CASE=name REASON="why"
+	$(Q)tests/golden-update "$(CASE)" "$(REASON)"
+
+SHARE = $(DESTDIR)$(PREFIX)/share
+install: build/corcast ## install under $(DESTDIR)$(PREFIX)
+	install -Dm755 build/corcast $(DESTDIR)$(PREFIX)/bin/corcast
+	install -d $(SHARE)/corcast
+	cp -R templates $(SHARE)/corcast
+	install -Dm644 -t $(SHARE)/doc/corcast README.md CHANGELOG.md LICENSE docs/*.md
+
+uninstall: ## remove what `make install` put there
+	rm -f $(DESTDIR)$(PREFIX)/bin/corcast
+	rm -rf $(SHARE)/corcast $(SHARE)/doc/corcast
+
+clean: ## remove build/ and out/
+	rm -rf build out

@@ -1,0 +1,152 @@
+#!/usr/bin/env bash
+# grow: the same seed gives the same bytes, and the tree keeps what METHODS promises, checked by a
+# program that shares no code with corcast.
+. "$(dirname "$0")/../lib.sh"
+
+check_tree() {
+    run "$CHECK_TREE" "$1"
+    expect_status 0
+}
+
+test_the_same_seed_gives_the_same_bytes() {
+    run_ok corcast grow --terminals 150 --seed 11 -o first.swc
+    run_ok corcast grow --terminals 150 --seed 11 -o second.swc
+    expect_same first.swc second.swc
+}
+
+test_another_seed_gives_another_tree() {
+    run_ok corcast grow --terminals 50 --seed 11 -o first.swc
+    run_ok corcast grow --terminals 50 --seed 12 -o second.swc
+    expect_different first.swc second.swc
+}
+
+test_the_number_of_threads_does_not_change_the_tree() {
+    local threads
+    run_ok corcast grow --terminals 150 --threads 1 -o one.swc
+    for threads in 2 3; do
+        run_ok corcast grow --terminals 150 --threads $threads -o many.swc
+        expect_same one.swc many.swc
+    done
+}
+
+test_the_locale_does_not_change_the_tree() {
+    run_ok corcast grow --terminals 20 -o c.swc
+    LC_ALL=de_DE.UTF-8 run_ok corcast grow --terminals 20 -o de.swc
+    expect_same c.swc de.swc
+}
+
+test_a_tree_in_the_disc_keeps_murray_pressures_and_domain_without_crossings() {
+    run_ok corcast grow --terminals 400 --seed 3 -o tree.swc
+    check_tree tree.swc
+    expect_stdout '^terminals 400$'
+}
+
+test_a_tree_in_the_ball_keeps_murray_pressures_and_domain() {
+    run_ok corcast grow --terminals 300 --domain ball:28.794 --seed 4 -o tree.swc
+    check_tree tree.swc
+    expect_stdout '^terminals 300$'
+    grep -q '^# dimension: 3$' tree.swc || fail "expected the header to say dimension 3"
+}
+
+test_every_gamma_and_lambda_gives_an_exact_tree() {
+    local gamma lambda
+    while read -r gamma lambda; do
+        run_ok corcast grow --terminals 60 --gamma "$gamma" --lambda "$lambda" -o tree.swc
+        check_tree tree.swc
+        expect_stdout "^gamma $gamma\$"
+        expect_stdout "^lambda $lambda\$"
+    done <<'END'
+0.5 2
+2.55 0
+2.7 1
+3 2.385
+10 4
+END
+}
+
+test_other_pressures_flows_and_inlets_give_an_exact_tree() {
+    run_ok corcast grow --terminals 80 --p-perf 117.3 --p-term 71.9 --q-perf 83.1 --viscosity 2.9 \
+        --domain disc:31.7 --inlet 12.5,-20.25 -o tree.swc
+    check_tree tree.swc
+    grep -q '^1 [0-9]* 12.5 -20.25 0 ' tree.swc || fail "expected the root at the inlet: $(grep -v '#' tree.swc | head -1)"
+}
+
+test_ten_thousand_terminals_take_seconds_and_give_an_exact_tree() {
+    run_ok timeout 30 "$CORCAST" grow --terminals 10000 --seed 2 -o tree.swc
+    check_tree tree.swc
+    expect_stdout '^terminals 10000$'
+}
+
+test_one_terminal_is_one_segment() {
+    run_ok corcast grow --terminals 1 -o tree.swc
+    check_tree tree.swc
+    expect_stdout '^segments 1$'
+}
+
+test_the_root_is_at_the_top_of_the_rim_by_default() {
+    run_ok corcast grow --terminals 3 --domain disc:41.5 -o tree.swc
+    [ "$(grep -v '^#' tree.swc | head -1 | cut -d ' ' -f 3-5)" = "0 41.5 0" ] ||
+        fail "expected the root at 0 41.5 0, got $(grep -v '^#' tree.swc | head -1)"
+}
+
+test_the_header_carries_what_swc_has_no_place_for() {
+    local key
+    run_ok corcast grow --terminals 3 --seed 99 -o tree.swc
+    for key in generator 'seed: 99$' 'dimension: 2$' 'domain: disc:50$' 'gamma: 3$' 'lambda: 2$' \
+        'p_perf_mmHg: 100$' 'p_term_mmHg: 60$' 'q_perf_ml_min: 500$' 'viscosity_cP: 3.6$'; do
+        grep -q "^# $key" tree.swc || fail "expected a header line '# $key', got $(grep '^#' tree.swc)"
+    done
+}
+
+test_json_says_what_was_done() {
+    run_ok corcast grow --terminals 20 --threads 1 -o tree.swc --json done.json
+    expect_json done.json '.terminals == 20 and .threads == 1 and .seconds >= 0 and .tosses >= 19'
+    run_ok "$CHECK_TREE" tree.swc
+    expect_json done.json "(.target - $(sed -n 's/^target //p' stdout) | fabs) <= 1e-9 * .target"
+    expect_json done.json "(.root_radius_mm - $(sed -n 's/^root_radius_mm //p' stdout) | fabs) <= 1e-12"
+}
+
+test_a_tree_goes_to_standard_output() {
+    grow_tree 12
+    run_ok corcast grow --terminals 12 --seed 7 -o -
+    expect_same stdout tree.swc
+}
+
+test_quiet_says_nothing_and_otherwise_one_line_is_said() {
+    run_ok corcast grow --terminals 30 -o tree.swc
+    [ "$(wc -l <stderr)" -le 1 ] || fail "expected one line, and no progress where there is no terminal$(said)"
+    run_ok corcast grow --terminals 30 -o tree.swc --quiet
+    [ ! -s stderr ] || fail "expected silence$(said)"
+}
+
+test_an_output_in_a_missing_folder_is_refused() {
+    run corcast grow --terminals 3 -o missing/tree.swc
+    expect_status 3
+    expect_sentence "missing/tree.swc"
+    expect_only
+}
+
+test_an_output_on_a_full_disk_is_refused() {
+    [ -w /dev/full ] || skip "there is no /dev/full"
+    ln -s /dev/full full.swc
+    run corcast grow --terminals 3 -o full.swc
+    expect_status 3
+    expect_sentence "full"
+}
+
+test_an_extension_that_is_no_tree_is_refused() {
+    run corcast grow --terminals 3 -o tree.txt
+    expect_status 2
+    expect_sentence "tree.txt"
+    expect_only
+}
+
+test_a_folder_is_not_an_output() {
+    mkdir folder.swc
+    run corcast grow --terminals 3 -o folder.swc
+    expect_status 3
+    expect_sentence "folder.swc"
+    expect_only folder.swc
+}
+
+run_tests "$@"

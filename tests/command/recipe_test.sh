@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Recipes: what a flag says can be said in a file.
+. "$(dirname "$0")/../lib.sh"
+
+test_a_recipe_says_what_flags_say() {
+    run_ok corcast grow --terminals 25 --gamma 2.7 --seed 6 --domain ball:30 -o flags.swc
+    printf 'terminals = 25\ngamma = 2.7\nseed = 6\ndomain = ball:30\n' >tree.ini
+    run_ok corcast grow --recipe tree.ini -o recipe.swc
+    expect_same flags.swc recipe.swc
+}
+
+test_the_command_line_wins_over_the_recipe() {
+    run_ok corcast grow --terminals 25 --gamma 2.7 -o flags.swc
+    printf 'terminals = 12\ngamma = 2.7\n' >tree.ini
+    run_ok corcast grow --recipe tree.ini --terminals 25 -o first.swc
+    run_ok corcast grow --terminals 25 --recipe tree.ini -o last.swc
+    expect_same flags.swc first.swc
+    expect_same flags.swc last.swc
+}
+
+test_a_section_is_for_the_command_of_its_name() {
+    printf '[grow]\nterminals = 9\n[render]\nsize = 31x17\nmodel = rounded\n' >figure.ini
+    run_ok corcast grow --recipe figure.ini -o tree.swc
+    run_ok "$CHECK_TREE" tree.swc
+    expect_stdout '^terminals 9$'
+    run_ok corcast render tree.swc --recipe figure.ini -o picture.ppm
+    pnmfile picture.ppm | grep -q '31 by 17' || fail "expected 31 by 17, got $(pnmfile picture.ppm)"
+}
+
+test_an_unknown_name_is_refused_with_file_and_line() {
+    printf 'gamma = 2.7\nterminal = 12\n' >tree.ini
+    run corcast grow --recipe tree.ini -o tree.swc
+    expect_status 2
+    expect_sentence 'tree\.ini:2.*terminal'
+    expect_only tree.ini
+}
+
+test_a_bad_value_is_refused_with_file_and_line() {
+    printf '; a comment\ngamma = 0\n' >tree.ini
+    run corcast grow --recipe tree.ini -o tree.swc
+    expect_status 2
+    expect_sentence 'tree\.ini:2.*gamma.*0'
+}
+
+test_a_missing_recipe_is_refused_by_name() {
+    run corcast grow --recipe nowhere.ini -o tree.swc
+    expect_status 2
+    expect_sentence 'nowhere\.ini'
+}
+
+run_tests "$@"

@@ -1,0 +1,243 @@
+#!/usr/bin/env bash
+# render and the image formats, read back by netpbm, which shares no code with corcast.
+. "$(dirname "$0")/../lib.sh"
+
+MODELS="cylinders rounded isosurface"
+
+# colours FILE.ppm: how many different pixels there are.
+colours() {
+    pnmtoplainpnm "$1" 2>/dev/null | tail -n +4 | tr -s ' \n' '\n' | grep -v '^$' | paste - - - | sort -u | wc -l
+}
+
+# pixels FILE: of a PPM or PNG, decoded by netpbm, comments left out.
+pixels() {
+    case $1 in
+    *.png) pngtopnm "$1" ;;
+    *) cat "$1" ;;
+    esac | pnmtoplainpnm
+}
+
+expect_same_pixels() {
+    pixels "$1" >"$1.pixels"
+    pixels "$2" >"$2.pixels"
+    expect_same "$1.pixels" "$2.pixels"
+}
+
+test_every_model_gives_a_picture_of_the_size_asked_for() {
+    local model
+    grow_tree 20
+    for model in $MODELS; do
+        run_ok corcast render tree.swc --model $model --size 83x41 -o $model.ppm
+        pnmfile $model.ppm | grep -q 'PPM raw, 83 by 41  maxval 255' ||
+            fail "expected a P6 of 83 x 41, got $(pnmfile $model.ppm)"
+        [ "$(colours $model.ppm)" -gt 20 ] || fail "expected a shaded picture of $model"
+    done
+}
+
+test_the_number_of_threads_does_not_change_the_picture() {
+    local model threads
+    grow_tree 60
+    for model in $MODELS; do
+        run_ok corcast render tree.swc --model $model --size 150x90 --threads 1 -o picture.ppm
+        mv picture.ppm one.ppm
+        for threads in 2 5; do
+            run_ok corcast render tree.swc --model $model --size 150x90 --threads $threads -o picture.ppm
+            expect_same one.ppm picture.ppm
+        done
+    done
+}
+
+test_png_and_ppm_hold_the_same_pixels() {
+    grow_tree 20
+    run_ok corcast render tree.swc --size 60x45 -o picture.ppm
+    run_ok corcast render tree.swc --size 60x45 -o picture.png
+    expect_same_pixels picture.ppm picture.png
+}
+
+test_a_png_says_where_it_comes_from_and_neither_when_nor_where() {
+    grow_tree 5
+    run_ok corcast render tree.swc --size 30x30 -o picture.png
+    LC_ALL=C grep -qa 'tEXt' picture.png || fail "expected provenance in a tEXt chunk"
+    LC_ALL=C grep -qa 'sRGB' picture.png || fail "expected an sRGB chunk"
+    LC_ALL=C grep -qa 'corcast' picture.png || fail "expected the program's name"
+    ! LC_ALL=C grep -qa -e 'tIME' -e "$PWD" picture.png || fail "expected neither a date nor a path"
+    mkdir elsewhere
+    run_ok corcast render tree.swc --size 30x30 -o elsewhere/picture.png
+    expect_same picture.png elsewhere/picture.png
+}
+
+test_the_planes_stand_beside_the_picture() {
+    grow_tree 20
+    run_ok corcast render tree.swc --size 50x30 --planes color,depth,normal,id -o picture.png
+    expect_only tree.swc picture.png picture.{color,depth,normal}.pfm picture.id.ppm
+    [ "$(head -c 8 picture.depth.pfm | head -1)" = Pf ] || fail "expected a grey PFM"
+    [ "$(head -c 8 picture.normal.pfm | head -1)" = PF ] || fail "expected a colour PFM"
+    [ "$(sed -n 2p picture.depth.pfm | head -c 5)" = "50 30" ] || fail "expected 50 30 in the PFM"
+    pfmtopam picture.normal.pfm >normal.pam 2>stderr || fail "expected netpbm to read the PFM$(said)"
+    pnmfile picture.id.ppm | grep -q 'PPM raw, 50 by 30  maxval 255' || fail "expected a P6 of ids"
+}
+
+# Every id seen is a segment's, and most of a small tree is seen.
+test_the_id_plane_holds_ids_of_segments() {
+    local model
+    grow_tree 12
+    grep -v '^#' tree.swc | awk '$7 != -1 { print $1 }' | sort >segments
+    for model in $MODELS; do
+        run_ok corcast render tree.swc --model $model --size 200x200 --planes id -o picture.ppm
+        pnmtoplainpnm picture.id.ppm | tail -n +4 | tr -s ' \n' '\n' | grep -v '^$' | paste - - - |
+            awk '{ id = $1 * 65536 + $2 * 256 + $3 } id { print id }' | sort -u >seen
+        [ -z "$(comm -13 segments seen)" ] || fail "ids that are no segment: $(comm -13 segments seen | tr '\n' ' ')"
+        [ "$(wc -l <seen)" -ge 18 ] || fail "expected at least 18 of 23 segments to be seen, got $(wc -l <seen)"
+    done
+}
+
+# One tube along x, seen from the front: its depth in the middle row is location z minus radius.
+test_depth_and_normal_of_one_tube_are_what_geometry_says() {
+    local model
+    printf '1 1 -10 0 0 2 -1\n2 3 10 0 0 2 1\n' >tube.swc
+    for model in $MODELS; do
+        run_ok corcast render tube.swc --model $model --size 11x11 --location 0,0,30 --look-at 0,0,0 \
+            --height 11 --planes depth,normal -o picture.ppm
+        pfm_value picture.depth.pfm 60 1 >value
+        awk '{ exit !($1 > 27.998 && $1 < 28.002) }' value ||
+            fail "expected depth 28 at the centre of $model, got $(cat value)"
+        pfm_value picture.depth.pfm 5 1 >value
+        grep -qi inf value || fail "expected inf below the tube, got $(cat value)"
+        pfm_value picture.normal.pfm 60 3 >value
+        awk '{ exit !($1 * $1 < 1e-5 && $2 * $2 < 1e-5 && $3 > 0.9999) }' value ||
+            fail "expected the normal 0 0 1 at the centre of $model, got $(cat value)"
+    done
+}
+
+# pfm_value FILE PIXEL CHANNELS: the floats of pixel number PIXEL, in file order.
+pfm_value() {
+    local size
+    size=$(stat -c %s "$1")
+    tail -c $((121 * $3 * 4)) "$1" | od -A n -t f4 -w$(($3 * 4)) -v | sed -n "$(($2 + 1))p"
+    [ "$size" -gt 0 ]
+}
+
+test_a_picture_goes_to_standard_output() {
+    grow_tree 8
+    run_ok corcast render tree.swc --size 40x30 -o picture.ppm
+    run_ok corcast render tree.swc --size 40x30 -o -
+    expect_same_pixels stdout picture.ppm
+}
+
+test_a_tree_comes_from_standard_input() {
+    grow_tree 8
+    run_ok corcast render tree.swc --size 40x30 -o from_file.ppm
+    corcast render - --size 40x30 -o from_pipe.ppm <tree.swc 2>stderr || fail "render - failed$(said)"
+    expect_same_pixels from_file.ppm from_pipe.ppm
+}
+
+test_convert_changes_the_format_and_not_the_pixels() {
+    grow_tree 8
+    run_ok corcast render tree.swc --size 40x30 -o picture.ppm
+    run_ok corcast convert picture.ppm picture.png
+    run_ok corcast convert picture.png again.ppm
+    expect_same_pixels picture.ppm again.ppm
+}
+
+test_antialiasing_gives_colours_in_between() {
+    grow_tree 20
+    run_ok corcast render tree.swc --size 80x80 -o sharp.ppm
+    run_ok corcast render tree.swc --size 80x80 --antialias 3 -o smooth.ppm
+    [ "$(colours smooth.ppm)" -gt "$(colours sharp.ppm)" ] || fail "expected more colours with antialiasing"
+}
+
+test_perspective_and_shadows_change_the_picture() {
+    run_ok corcast grow --terminals 40 --domain ball:20 -o tree.swc
+    run_ok corcast render tree.swc --size 80x80 -o flat.ppm
+    run_ok corcast render tree.swc --size 80x80 --shadows on -o shadows.ppm
+    run_ok corcast render tree.swc --size 80x80 --projection perspective -o perspective.ppm
+    expect_different flat.ppm shadows.ppm
+    expect_different flat.ppm perspective.ppm
+}
+
+test_pruning_drops_thin_segments_from_the_picture() {
+    grow_tree 60
+    run_ok corcast render tree.swc --size 200x200 --planes id -o all.ppm
+    run_ok corcast render tree.swc --size 200x200 --planes id --prune-radius 1 -o thick.ppm
+    [ "$(colours thick.id.ppm)" -lt "$(colours all.id.ppm)" ] || fail "expected fewer segments"
+}
+
+test_fields_colour_the_segments() {
+    local field
+    grow_tree 30
+    run_ok corcast render tree.swc --size 80x80 -o plain.ppm
+    for field in radius flow velocity pressure wss reynolds level strahler branch; do
+        run_ok corcast render tree.swc --size 80x80 --color-by $field -o $field.ppm
+        expect_different plain.ppm $field.ppm
+    done
+    run_ok corcast render tree.swc --size 80x80 --color-by radius --log --range 0.5,3 --colormap magma -o log.ppm
+    run corcast render tree.swc --size 80x80 --color-by loudness -o no.ppm
+    expect_status 2
+    expect_sentence 'loudness'
+}
+
+test_a_field_that_needs_flow_is_refused_where_nothing_is_known_of_it() {
+    printf '1 1 0 0 0 1 -1\n2 3 3 0 0 1 1\n' >tree.swc
+    run corcast render tree.swc --size 20x20 --color-by flow -o picture.ppm
+    expect_status 2
+    expect_sentence 'q[-_]perf'
+    run_ok corcast render tree.swc --size 20x20 --color-by flow --q-perf 312.5 -o picture.ppm
+}
+
+test_the_background_is_the_colour_asked_for() {
+    grow_tree 5
+    run_ok corcast render tree.swc --size 40x40 --background 0,0,0 -o black.ppm
+    [ "$(tail -c 3 black.ppm | od -A n -t u1 | tr -s ' ')" = " 0 0 0" ] ||
+        fail "expected a black corner, got $(tail -c 3 black.ppm | od -A n -t u1)"
+}
+
+test_a_picture_beyond_memory_is_refused_and_the_old_one_stays() {
+    grow_tree 3
+    echo precious >picture.ppm
+    cp picture.ppm before
+    run corcast render tree.swc --size 1000000x1000000 -o picture.ppm
+    expect_status 3
+    expect_sentence "[Mm]emory"
+    expect_same picture.ppm before
+    expect_only before picture.ppm tree.swc
+}
+
+test_a_side_beyond_the_largest_picture_is_refused() {
+    grow_tree 3
+    run corcast render tree.swc --size 99999999999x10 -o picture.ppm
+    expect_status 2
+    expect_sentence "size.*99999999999x10"
+}
+
+test_an_extension_that_is_no_picture_is_refused() {
+    grow_tree 3
+    run corcast render tree.swc --size 10x10 -o picture.gif
+    expect_status 2
+    expect_sentence "picture\.gif|gif"
+    expect_only tree.swc
+}
+
+test_a_picture_on_a_full_disk_is_refused() {
+    [ -w /dev/full ] || skip "there is no /dev/full"
+    grow_tree 3
+    ln -s /dev/full full.ppm
+    run corcast render tree.swc --size 200x200 -o full.ppm
+    expect_status 3
+    expect_sentence "full"
+}
+
+test_a_truncated_picture_is_refused() {
+    printf 'P6\n4 3\n255\nabc' >short.ppm
+    run corcast convert short.ppm out.png
+    expect_status 2
+    expect_sentence "short\.ppm"
+    grow_tree 3
+    run_ok corcast render tree.swc --size 40x40 -o picture.png
+    head -c 150 picture.png >short.png
+    run corcast convert short.png out.ppm
+    expect_status 2
+    expect_sentence "short\.png"
+    [ ! -e out.png ] && [ ! -e out.ppm ] || fail "expected no output"
+}
+
+run_tests "$@"

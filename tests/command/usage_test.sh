@@ -1,0 +1,154 @@
+#!/usr/bin/env bash
+# The command line itself: help, versions, and what is refused.
+. "$(dirname "$0")/../lib.sh"
+
+COMMANDS="grow info convert scene povray render compare verify"
+
+test_help_names_every_command() {
+    local command
+    run_ok corcast --help
+    for command in $COMMANDS; do
+        expect_stdout "(^| )$command( |$)"
+    done
+    [ ! -s stderr ] || fail "expected help on standard output only$(said)"
+}
+
+test_each_command_has_its_help() {
+    local command
+    for command in $COMMANDS; do
+        run_ok corcast "$command" --help
+        expect_stdout "corcast $command"
+        [ ! -s stderr ] || fail "expected help on standard output only$(said)"
+    done
+}
+
+test_version_is_one_line() {
+    run_ok corcast --version
+    expect_stdout '^corcast [0-9]+\.[0-9]+'
+    [ "$(wc -l <stdout)" -eq 1 ] || fail "expected one line, got $(wc -l <stdout)"
+}
+
+test_no_command_is_bad_usage() {
+    run corcast
+    expect_status 2
+}
+
+test_an_unknown_command_is_refused_by_name() {
+    run corcast grwo -o tree.swc
+    expect_status 2
+    expect_sentence "grwo"
+}
+
+test_an_unknown_option_is_refused_by_name() {
+    local command
+    for command in $COMMANDS; do
+        run corcast "$command" --frobnicate 3
+        expect_status 2
+        expect_sentence "frobnicate"
+    done
+}
+
+test_an_option_without_its_value_is_refused() {
+    run corcast grow -o tree.swc --terminals
+    expect_status 2
+    expect_sentence "terminals"
+}
+
+test_a_missing_output_is_refused() {
+    run corcast grow --terminals 3
+    expect_status 2
+    expect_sentence "-o"
+}
+
+test_a_missing_input_is_refused() {
+    local command
+    for command in info render scene verify; do
+        run corcast "$command" -o out.ppm
+        expect_status 2
+    done
+}
+
+test_too_many_files_are_refused() {
+    grow_tree 3
+    run corcast info tree.swc tree.swc
+    expect_status 2
+    expect_sentence "tree.swc"
+}
+
+test_bad_numbers_are_refused_with_the_option_and_the_value() {
+    local option value
+    while read -r option value; do
+        run corcast grow -o tree.swc --terminals 4 "$option" "$value"
+        expect_status 2
+        expect_sentence "${option#--}.*$value"
+    done <<'END'
+--terminals -5
+--terminals 0
+--terminals 2.5
+--terminals many
+--gamma 0
+--gamma -1
+--gamma 10.5
+--gamma nan
+--lambda -0.5
+--lambda inf
+--seed -1
+--seed 1e3
+--domain disc
+--domain disc:0
+--domain disc:-4
+--domain cube:3
+--inlet 1
+--p-perf 1e400
+--q-perf 0
+--viscosity -3
+--threads -1
+END
+    expect_only
+}
+
+test_a_terminal_pressure_above_the_inlet_pressure_is_refused() {
+    run corcast grow -o tree.swc --terminals 4 --p-perf 50 --p-term 60
+    expect_status 2
+    expect_sentence "p-(perf|term)"
+    expect_only
+}
+
+test_an_inlet_outside_the_domain_is_refused() {
+    run corcast grow -o tree.swc --terminals 4 --domain disc:10 --inlet 0,10.5
+    expect_status 2
+    expect_sentence "inlet"
+    expect_only
+}
+
+test_bad_picture_options_are_refused() {
+    local option value
+    grow_tree 3
+    while read -r option value; do
+        run corcast render tree.swc -o picture.ppm "$option" "$value"
+        expect_status 2
+        expect_sentence "${option#--}.*$value"
+    done <<'END'
+--size 0x10
+--size 10x0
+--size -3x10
+--size 10
+--size 10x10x10
+--model sphere
+--projection fisheye
+--view behind
+--antialias 0
+--antialias -2
+--angle 180
+--angle 0
+--height 0
+--shadows maybe
+--background 0.5,0.5
+--margin -1
+--planes color,smell
+--prune-radius -0.1
+END
+    expect_only tree.swc
+}
+
+run_tests "$@"

@@ -1,0 +1,43 @@
+# What golden_test.sh and golden-update share: how a case is drawn and hashed. Source tests/lib.sh
+# first.
+GOLDEN=$REPO/golden
+
+golden_cases() {
+    sed 's/#.*//' "$REPO/tests/golden/cases" | awk 'NF { print $1 }'
+}
+
+case_tree() {
+    awk -v name="$1" '$1 == name { print $2 }' "$REPO/tests/golden/cases"
+}
+
+case_options() {
+    awk -v name="$1" '$1 == name { $1 = $2 = ""; sub(/^ */, ""); print }' "$REPO/tests/golden/cases"
+}
+
+# The options are words: no quotes around them.
+# shellcheck disable=SC2046
+draw_native() {
+    corcast render "$DATA/$(case_tree "$1")" $(case_options "$1") -o "$2"
+}
+
+# shellcheck disable=SC2046
+write_scene() {
+    corcast scene "$DATA/$(case_tree "$1")" $(case_options "$1") -o scene.pov
+}
+
+draw_povray() {
+    corcast povray scene.pov --size "$(case_options "$1" | sed 's/.*--size \([^ ]*\).*/\1/')" -o "$2"
+}
+
+scene_hash() {
+    cat scene.pov scene.inc | sha256sum | cut -d ' ' -f 1
+}
+
+# Of the decoded pixels, whatever the file looks like.
+pixel_hash() {
+    pngtopnm "$1" | sha256sum | cut -d ' ' -f 1
+}
+
+record() {
+    jq -r ".$2" "$1/case.json"
+}

@@ -1,0 +1,141 @@
+# What every *_test.sh starts from. A test is a function whose name is a sentence, test_grow_..., run
+# in a subshell of its own inside a temporary folder of its own; its first failed expectation ends it.
+# The file ends with `run_tests`, which prints TAP: one "ok" or "not ok" line a test, the reason of a
+# failure in "# " lines below it. `FILE_test.sh NAME...` runs only the tests named.
+#
+#   run COMMAND ...            runs it; status in $status, output in the files ./stdout and ./stderr
+#   expect_status N            the exit status of the last run
+#   expect_sentence PATTERN    standard error of the last run is one line that says PATTERN (grep -E)
+#   expect_stdout PATTERN      standard output of the last run says PATTERN
+#   expect_same A B            two files hold the same bytes
+#   expect_file F              the file is there and not empty
+#   expect_only F ...          the current folder holds these files and no other
+#   expect_json FILE FILTER    the jq filter is true of the file
+#   skip REASON                ends the test: not run, and said so
+#   fail REASON                ends the test: failed
+set -u
+export LC_ALL=C
+
+REPO=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+DATA=$REPO/tests/data
+CORCAST=${CORCAST:-$REPO/build/corcast}
+CHECK_TREE=${CHECK_TREE:-$REPO/build/release/tests/check_tree}
+SHARED=${CORCAST_SHARED:-$REPO/../shared}/data
+
+corcast() {
+    "$CORCAST" "$@"
+}
+
+fail() {
+    printf '%s\n' "$*" >&9
+    exit 1
+}
+
+skip() {
+    printf '%s\n' "$*" >&9
+    exit 77
+}
+
+run() {
+    command_line="$*"
+    "$@" >stdout 2>stderr
+    status=$?
+}
+
+# run_ok COMMAND ...: runs it and expects exit status 0.
+run_ok() {
+    run "$@"
+    expect_status 0
+}
+
+said() {
+    [ -s stderr ] || return 0
+    printf ' (it said: %s)' "$(tr '\r\n' '  ' <stderr | cut -c 1-300)"
+}
+
+expect_status() {
+    [ "$status" -eq "$1" ] ||
+        fail "expected exit status $1, got $status, from: $command_line$(said)"
+}
+
+expect_sentence() {
+    local lines
+    lines=$(wc -l <stderr)
+    [ "$lines" -eq 1 ] || fail "expected one line on standard error, got $lines, from: $command_line$(said)"
+    grep -qE -- "$1" stderr || fail "expected an error that says '$1', from: $command_line$(said)"
+}
+
+expect_stdout() {
+    grep -qE -- "$1" stdout ||
+        fail "expected output that says '$1', got '$(head -c 200 stdout)', from: $command_line$(said)"
+}
+
+expect_same() {
+    cmp -s "$1" "$2" || fail "expected $1 and $2 to hold the same bytes: $(cmp "$1" "$2" 2>&1)"
+}
+
+expect_different() {
+    ! cmp -s "$1" "$2" || fail "expected $1 and $2 to differ"
+}
+
+expect_file() {
+    [ -s "$1" ] || fail "expected the file $1, from: $command_line$(said)"
+}
+
+expect_only() {
+    local expected found
+    expected=$(printf '%s\n' "$@" | sort)
+    found=$(find . -mindepth 1 ! -path ./stdout ! -path ./stderr | sed 's|^\./||' | sort)
+    [ "$found" = "$expected" ] ||
+        fail "expected the folder to hold '$(echo $expected)', found '$(echo $found)'"
+}
+
+expect_json() {
+    jq -e "$2" "$1" >/dev/null 2>jq.error ||
+        fail "expected JSON in $1 with $2, got: $(head -c 400 "$1" | tr '\n' ' ')$(cat jq.error)"
+    rm -f jq.error
+}
+
+# A grown tree of N terminals in ./tree.swc.
+grow_tree() {
+    run_ok corcast grow --terminals "$1" --seed "${2:-7}" -o tree.swc
+}
+
+# wait_for SECONDS COMMAND ...: polls until the command succeeds.
+wait_for() {
+    local tries=$(($1 * 20))
+    shift
+    while [ "$tries" -gt 0 ]; do
+        "$@" && return 0
+        sleep 0.05
+        tries=$((tries - 1))
+    done
+    return 1
+}
+
+run_tests() {
+    local reason name number=0 failed=0 result names
+    names=${*:-$(sed -n 's/^test_\([a-z0-9_]*\)() *{.*/\1/p' "$0")}
+    tests_folder=$(mktemp -d)
+    trap 'rm -rf "$tests_folder"' EXIT
+    for name in $names; do
+        number=$((number + 1))
+        mkdir "$tests_folder/test"
+        (cd "$tests_folder/test" && "test_$name") 9>"$tests_folder/reason" >"$tests_folder/output" 2>&1
+        result=$?
+        reason=$(cat "$tests_folder/reason")
+        case $result in
+        0) echo "ok $number - $name" ;;
+        77) echo "ok $number - $name # SKIP $reason" ;;
+        *)
+            failed=1
+            echo "not ok $number - $name"
+            printf '%s\n' "${reason:-ended with status $result: $(tail -3 "$tests_folder/output")}" | sed 's/^/# /'
+            ;;
+        esac
+        chmod -R u+w "$tests_folder/test"
+        rm -rf "$tests_folder/test" "$tests_folder/reason"
+    done
+    echo "1..$number"
+    return $failed
+}

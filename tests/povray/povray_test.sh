@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# povray and scene with the real POV-Ray.
+. "$(dirname "$0")/../lib.sh"
+
+scene() {
+    run_ok corcast grow --terminals 20 -o tree.swc
+    run_ok corcast scene tree.swc --size 80x60 "$@" -o scene.pov
+}
+
+test_a_scene_is_drawn_in_the_size_asked_for() {
+    scene
+    run_ok corcast povray scene.pov -o picture.png --size 91x47
+    pngtopnm picture.png | pnmfile | grep -q '91 by 47' || fail "expected 91 by 47"
+    expect_only tree.swc scene.pov scene.inc picture.png
+}
+
+test_the_scene_needs_no_switch_but_the_size() {
+    scene --model isosurface
+    run povray +Iscene.pov +Oplain.png +W80 +H60 -D
+    expect_status 0
+    ! grep -iE 'warning|error' stderr || fail "expected neither warnings nor errors$(said)"
+    run_ok corcast povray scene.pov -o picture.png --size 80x60
+    cmp -s <(pngtopnm plain.png) <(pngtopnm picture.png) || fail "expected the same pixels"
+}
+
+test_two_runs_give_the_same_pixels() {
+    scene
+    run_ok corcast povray scene.pov -o first.png --size 80x60 --antialias 3
+    run_ok corcast povray scene.pov -o second.png --size 80x60 --antialias 3 --threads 1
+    cmp -s <(pngtopnm first.png) <(pngtopnm second.png) || fail "expected the same pixels"
+}
+
+test_every_plane_can_be_asked_for() {
+    local plane
+    scene
+    for plane in color depth normal id; do
+        run_ok corcast povray scene.pov -o $plane.png --size 80x60 --plane $plane
+        pngtopnm $plane.png >$plane.ppm || fail "expected a PNG for $plane"
+    done
+    expect_different color.ppm id.ppm
+    pnmfile depth.ppm | grep -q 'maxval 65535' || fail "expected 16 bits of depth"
+}
+
+test_what_an_artist_declares_changes_the_picture() {
+    scene
+    run_ok corcast povray scene.pov -o plain.png --size 80x60
+    printf '#declare Vessel_Color = <0.1, 0.3, 0.8>;\n#include "scene.pov"\n' >blue.pov
+    run_ok corcast povray blue.pov -o blue.png --size 80x60
+    expect_different plain.png blue.png
+    printf '#version 3.7;\n#include "scene.inc"\nobject { Tree }\ncamera { location -150*z }\nlight_source { -500*z, rgb 1 }\n' >own.pov
+    run_ok corcast povray own.pov -o own.png --size 80x60
+}
+
+test_a_scene_with_an_error_is_refused_with_the_words_of_povray() {
+    printf '#version 3.7;\nsphere { 0, 1 pigmnt { rgb 1 } }\n' >broken.pov
+    run corcast povray broken.pov -o picture.png --size 20x20
+    expect_status 3
+    grep -q 'pigmnt' stderr || fail "expected POV-Ray's error$(said)"
+    expect_only broken.pov
+}
+
+test_file_names_with_blanks_are_fine() {
+    mkdir 'a folder'
+    run_ok corcast grow --terminals 5 -o 'a folder/my tree.swc'
+    run_ok corcast scene 'a folder/my tree.swc' -o 'a folder/my scene.pov'
+    run_ok corcast povray 'a folder/my scene.pov' -o 'a folder/my picture.png' --size 20x20
+    expect_file 'a folder/my picture.png'
+}
+
+run_tests "$@"

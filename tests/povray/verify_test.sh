@@ -1,0 +1,212 @@
+#!/usr/bin/env bash
+# verify with the real POV-Ray, on small pictures. Beside the verdict of verify itself, the 8-bit
+# pictures are decoded by netpbm and counted here, so that an error in our comparison shows.
+. "$(dirname "$0")/../lib.sh"
+
+command -v "${CORCAST_POVRAY:-povray}" >/dev/null || {
+    echo "povray is not installed: run make deps" >&2
+    exit 3
+}
+
+# differing A.png B.png: how many pixels differ by more than $3 levels (0) in some channel.
+differing() {
+    cmp -l <(pngtopnm "$1") <(pngtopnm "$2") |
+        awk -v limit="${3:-0}" '
+            function level(octal) { return int(octal / 100) * 64 + int(octal / 10) % 10 * 8 + octal % 10 }
+            { d = level($2) - level($3); if (d > limit || -d > limit) seen[int(($1 - 16) / 3)] = 1 }
+            END { for (p in seen) n++; print n + 0 }'
+}
+
+tree_2d() {
+    run_ok corcast grow --terminals "${1:-60}" --seed 5 --gamma 2.7 -o tree.swc
+}
+
+tree_3d() {
+    run_ok corcast grow --terminals "${1:-60}" --seed 6 --domain ball:28.794 -o tree.swc
+}
+
+# agrees MODEL OPTIONS ...: verify passes on tree.swc, and the pictures are as close as promised.
+agrees() {
+    local model=$1 pixels
+    shift
+    run_ok corcast verify tree.swc --model "$model" --size 160x120 -o report "$@"
+    expect_json report/report.json ".verdict == \"agree\" and .model == \"$model\""
+    if [ "$model" = isosurface ]; then
+        pixels=$(differing report/povray.png report/native.png 2)
+        [ "$pixels" -le 20 ] || fail "expected at most 20 pixels off by more than 2 levels, got $pixels"
+    else
+        pixels=$(differing report/povray.png report/native.png)
+        [ "$pixels" -eq 0 ] || fail "expected the same pixels, got $pixels that differ"
+    fi
+}
+
+test_cylinders_in_the_plane_agree() {
+    tree_2d
+    agrees cylinders
+}
+
+test_rounded_in_the_plane_agree() {
+    tree_2d
+    agrees rounded
+}
+
+test_isosurface_in_the_plane_agrees() {
+    tree_2d
+    agrees isosurface
+}
+
+test_cylinders_in_perspective_agree() {
+    tree_3d
+    agrees cylinders --projection perspective --view iso
+}
+
+test_rounded_in_perspective_agree() {
+    tree_3d
+    agrees rounded --projection perspective --view left
+}
+
+test_isosurface_in_perspective_agrees() {
+    tree_3d 30
+    agrees isosurface --projection perspective --view top
+}
+
+test_cylinders_with_shadows_agree() {
+    tree_3d
+    agrees cylinders --shadows on
+}
+
+test_rounded_with_shadows_in_perspective_agree() {
+    tree_3d
+    agrees rounded --shadows on --projection perspective
+}
+
+test_antialiased_cylinders_agree() {
+    tree_2d
+    agrees cylinders --antialias 3
+}
+
+test_antialiased_rounded_with_shadows_agree() {
+    tree_3d
+    agrees rounded --antialias 3 --shadows on
+}
+
+test_antialiased_isosurface_agrees() {
+    tree_2d 20
+    agrees isosurface --antialias 3
+}
+
+test_a_camera_of_ones_own_agrees() {
+    tree_3d
+    agrees rounded --projection perspective --location 31.5,-42,77 --look-at 1,2,-3 --up 0.1,1,0.2 --angle 41
+    rm -r report
+    agrees cylinders --location -20,35,60 --look-at 0,5,0 --height 37.5 --background 0.1,0.2,0.3
+}
+
+test_a_picture_wider_than_high_and_one_higher_than_wide_agree() {
+    local size
+    tree_2d 30
+    for size in 201x53 47x151; do
+        run_ok corcast verify tree.swc --model rounded --size $size -o report-$size
+        [ "$(differing report-$size/povray.png report-$size/native.png)" -eq 0 ] ||
+            fail "expected the same pixels at $size"
+    done
+}
+
+test_a_tree_drawn_by_hand_agrees_in_every_model() {
+    local model
+    cp "$DATA/bifurcation.swc" tree.swc
+    for model in cylinders rounded isosurface; do
+        agrees $model
+        rm -r report
+    done
+}
+
+test_a_measured_tree_agrees() {
+    [ -d "$SHARED/brava" ] || skip "the measured trees of ../shared/data/brava are not here"
+    cp "$SHARED/brava/BG0002records.swc" tree.swc
+    agrees rounded --view left
+}
+
+test_colours_by_a_field_agree_in_every_model() {
+    local model
+    tree_2d 20
+    for model in cylinders rounded isosurface; do
+        agrees $model --color-by pressure
+        rm -r report
+    done
+}
+
+test_verify_writes_what_the_contract_names() {
+    local file
+    tree_2d 10
+    run_ok corcast verify tree.swc --model rounded --size 80x60 -o report --json
+    for file in report.html report.json junit.xml scene.pov scene.inc povray.png native.png diff.png; do
+        expect_file "report/$file"
+    done
+    expect_json stdout '.verdict == "agree"'
+    expect_json report/report.json '.povray.version | startswith("3.7")'
+    expect_json report/report.json '.povray.seconds > 0 and .native.seconds >= 0'
+    expect_json report/report.json '.planes.color | has("max_abs") and has("flip_mean") and has("ssim")'
+    expect_json report/report.json '.planes.depth | has("median_abs_mm") and has("p99_abs_mm") and has("max_abs_mm")'
+    expect_json report/report.json '.planes.normal | has("median_deg") and has("p99_deg")'
+    expect_json report/report.json '.planes.id | has("mismatch_fraction")'
+    grep -q '<testsuite' report/junit.xml || fail "expected a testsuite in junit.xml"
+    [ "$(grep -o '<testcase' report/junit.xml | wc -l)" -ge 4 ] || fail "expected a test case a plane"
+}
+
+test_the_report_page_needs_nothing_else() {
+    tree_2d 10
+    run_ok corcast verify tree.swc --size 80x60 -o report
+    ! grep -oE '(src|href)="?(https?:|//|[a-z]+\.(png|js|css))[^ >]*' report/report.html >found ||
+        fail "expected everything to be inside, found $(cat found)"
+    grep -q 'data:image/png;base64,' report/report.html || fail "expected the pictures in the page"
+    grep -qi 'agree' report/report.html || fail "expected the verdict in the page"
+    ! grep -qF "$PWD" report/report.html report/report.json || fail "expected no path of this machine"
+}
+
+# A POV-Ray that draws something else must be found out: wrap the real one and change the scene.
+povray_with() {
+    printf '#!/bin/sh\nexec povray "$@" %s\n' "$*" >povray.sh
+    chmod +x povray.sh
+    export CORCAST_POVRAY=$PWD/povray.sh
+}
+
+test_another_finish_is_found_out() {
+    local change
+    tree_2d 30
+    for change in Vessel_Phong=0.33 Vessel_Diffuse=0.727 Vessel_Ambient=0.126 Vessel_Phong_Size=33 \
+        Light_Intensity=1.01; do
+        povray_with "Declare=$change"
+        run corcast verify tree.swc --model rounded --size 160x120 -o report
+        [ "$status" -eq 1 ] || fail "expected exit status 1 with $change, got $status$(said)"
+        expect_json report/report.json '.verdict == "differ"'
+    done
+}
+
+test_a_missing_segment_is_found_out() {
+    local model
+    tree_2d 30
+    cat >povray.sh <<'END'
+#!/bin/sh
+# Leaves out the thirtieth thing of the geometry, then runs POV-Ray.
+for argument; do
+    case $argument in +I*) scene=${argument#+I} ;; esac
+done
+geometry=${scene%.pov}.inc
+[ -f "$geometry.whole" ] || {
+    cp "$geometry" "$geometry.whole"
+    awk '/^ *Vessel_Cylinder\(/ && ++n == 30 { next } { print }' "$geometry.whole" >"$geometry"
+}
+exec povray "$@"
+END
+    chmod +x povray.sh
+    export CORCAST_POVRAY=$PWD/povray.sh
+    for model in cylinders rounded; do
+        rm -rf report
+        run corcast verify tree.swc --model $model --size 160x120 -o report
+        expect_status 1
+        expect_json report/report.json '.verdict == "differ"'
+    done
+}
+
+run_tests "$@"

@@ -1,0 +1,101 @@
+#!/usr/bin/env bash
+# The house itself: compilers, the Makefile's promises, the dependency script, the documents.
+. "$(dirname "$0")/lib.sh"
+
+CLANG_CORCAST=$REPO/build/clang/corcast
+
+test_gcc_and_clang_grow_the_same_bytes() {
+    local seed
+    for seed in 1 5; do
+        run_ok corcast grow --terminals 120 --seed "$seed" --gamma 2.7 -o gcc.swc
+        run_ok "$CLANG_CORCAST" grow --terminals 120 --seed "$seed" --gamma 2.7 -o clang.swc
+        expect_same gcc.swc clang.swc
+    done
+    run_ok corcast grow --terminals 60 --domain ball:20 -o gcc.swc
+    run_ok "$CLANG_CORCAST" grow --terminals 60 --domain ball:20 -o clang.swc
+    expect_same gcc.swc clang.swc
+}
+
+test_gcc_and_clang_render_the_same_bytes() {
+    local model
+    grow_tree 30
+    for model in cylinders rounded isosurface; do
+        run_ok corcast render tree.swc --model $model --size 97x61 -o gcc.ppm
+        run_ok "$CLANG_CORCAST" render tree.swc --model $model --size 97x61 -o clang.ppm
+        expect_same gcc.ppm clang.ppm
+    done
+}
+
+test_continuous_integration_runs_the_test_command_of_the_readme() {
+    grep -qx 'make check' "$REPO/.ci/run" || fail "expected .ci/run to call make check"
+    grep -q 'make check' "$REPO/README.md" || fail "expected README.md to name make check"
+    grep -q 'make demo' "$REPO/README.md" || fail "expected README.md to name make demo"
+}
+
+test_make_help_names_every_public_target() {
+    local target
+    run_ok make -C "$REPO" --no-print-directory help
+    for target in all deps demo check unit layers format format-check asan tsan golden-update \
+        install uninstall clean help; do
+        expect_stdout "^  $target "
+    done
+}
+
+test_make_install_puts_program_templates_and_documents_under_the_prefix() {
+    run_ok make -C "$REPO" --no-print-directory install "DESTDIR=$PWD/stage" PREFIX=/opt/corcast
+    expect_file stage/opt/corcast/bin/corcast
+    expect_file stage/opt/corcast/share/corcast/templates/povray/scene.pov
+    expect_file stage/opt/corcast/share/doc/corcast/README.md
+    grow_tree 5
+    run_ok stage/opt/corcast/bin/corcast scene tree.swc -o installed.pov
+    run_ok make -C "$REPO" --no-print-directory uninstall "DESTDIR=$PWD/stage" PREFIX=/opt/corcast
+    [ -z "$(find stage -type f)" ] || fail "expected nothing to be left, found $(find stage -type f)"
+}
+
+# A PATH that holds only the named programs, plus a dpkg-query that knows no package.
+bare_path() {
+    local program
+    mkdir bin
+    for program in sh "$@"; do
+        ln -s "$(command -v "$program")" bin/
+    done
+    printf '#!/bin/sh\nexit 1\n' >bin/dpkg-query
+    chmod +x bin/dpkg-query
+}
+
+test_deps_says_what_is_needed_when_there_is_no_apt() {
+    bare_path id
+    run env PATH="$PWD/bin" "$REPO/tools/deps" build run
+    expect_status 3
+    grep -q 'not a Debian system' stderr || fail "expected the reason on standard error$(said)"
+    grep -q 'install them: .*libpng-dev.* povray' stderr || fail "expected the packages to be named$(said)"
+}
+
+test_deps_says_what_is_needed_when_it_is_neither_root_nor_has_sudo() {
+    bare_path
+    printf '#!/bin/sh\necho 1000\n' >bin/id
+    printf '#!/bin/sh\nexit 0\n' >bin/apt-get
+    chmod +x bin/id bin/apt-get
+    run env PATH="$PWD/bin" "$REPO/tools/deps" build
+    expect_status 3
+    grep -q 'no sudo' stderr || fail "expected the reason on standard error$(said)"
+    grep -q 'libjansson-dev' stderr || fail "expected the packages to be named$(said)"
+}
+
+test_deps_touches_nothing_when_everything_is_installed() {
+    printf '#!/bin/sh\ntouch %s/called\n' "$PWD" >apt-get
+    chmod +x apt-get
+    run_ok env PATH="$PWD:$PATH" "$REPO/tools/deps"
+    [ ! -e called ] || fail "expected apt-get not to be called"
+}
+
+test_documents_link_only_to_what_exists() {
+    local document link
+    for document in README.md CHANGELOG.md $(cd "$REPO" && echo docs/*.md); do
+        for link in $(grep -oE '\]\([^)#:]+[)#]' "$REPO/$document" | sed 's/^](//; s/[)#]$//'); do
+            [ -e "$REPO/$(dirname "$document")/$link" ] || fail "$document links to $link, which does not exist"
+        done
+    done
+}
+
+run_tests "$@"
