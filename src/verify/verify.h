@@ -117,6 +117,7 @@ MUST_CHECK Status compare_pictures(const Picture *a, const Picture *b, const IdP
 MUST_CHECK Status compare_planes(PlaneKind kind, const Plane *a, const Plane *b,
                                  const IdPlane *id_a, const IdPlane *id_b,
                                  const Tolerance *tolerance, CompareResult *result, Err *err);
+/* Compares two id planes. STATUS_INPUT when sizes differ. */
 MUST_CHECK Status compare_ids(const IdPlane *a, const IdPlane *b, const Tolerance *tolerance,
                               CompareResult *result, Err *err);
 
