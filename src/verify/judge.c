@@ -112,26 +112,37 @@ static void add_difference_rules(CompareResult *result)
     }
 }
 
-/* "at (312, 140), segment 17" */
+/* "segment 17" or "nothing" */
+static const char *describe_id(uint32_t id, char out[24])
+{
+    if (id)
+        snprintf(out, 24, "segment %u", id);
+    else
+        snprintf(out, 24, "nothing");
+    return out;
+}
+
+/* "at (312, 140), segment 17 in A and nothing in B" */
 static void describe_place(const CompareResult *result, const PixelPlace *place, char *out,
                            size_t size)
 {
+    char a[24], b[24];
+    describe_id(place->id_a, a);
+    describe_id(place->id_b, b);
     if (!result->has_ids)
         snprintf(out, size, "at (%d, %d)", place->x, place->y);
     else if (place->id_a != place->id_b)
-        snprintf(out, size, "at (%d, %d), segment %u in A and %u in B (0: nothing)", place->x,
-                 place->y, place->id_a, place->id_b);
-    else if (place->id_a)
-        snprintf(out, size, "at (%d, %d), segment %u", place->x, place->y, place->id_a);
+        snprintf(out, size, "at (%d, %d), %s in A and %s in B", place->x, place->y, a, b);
     else
-        snprintf(out, size, "at (%d, %d), the background", place->x, place->y);
+        snprintf(out, size, "at (%d, %d), %s", place->x, place->y,
+                 place->id_a ? a : "the background");
 }
 
 static void explain(CompareResult *result, const Rule *rule)
 {
     char place[120];
     describe_place(result, &rule->at, place, sizeof place);
-    snprintf(result->reason, sizeof result->reason, "%s: %s: %.4g %s, at most %.4g allowed; %s %s",
+    snprintf(result->reason, sizeof result->reason, "%s: %s: %.6g %s, at most %.6g allowed; %s %s",
              plane_kind_name(result->kind), rule->name, rule->measured, rule->unit, rule->allowed,
              rule->at_what, place);
 }

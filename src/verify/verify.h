@@ -117,6 +117,7 @@ MUST_CHECK Status compare_pictures(const Picture *a, const Picture *b, const IdP
 MUST_CHECK Status compare_planes(PlaneKind kind, const Plane *a, const Plane *b,
                                  const IdPlane *id_a, const IdPlane *id_b,
                                  const Tolerance *tolerance, CompareResult *result, Err *err);
+/* Compares two id planes. STATUS_INPUT when sizes differ. */
 MUST_CHECK Status compare_ids(const IdPlane *a, const IdPlane *b, const Tolerance *tolerance,
                               CompareResult *result, Err *err);
 
@@ -146,17 +147,23 @@ MUST_CHECK Status difference_picture(Picture *out, const Picture *a, const Pictu
  * reference, NULL when memory runs out. */
 json_t *compare_json(const CompareResult *result);
 
-/* One scene rendered by both sides. All is borrowed. */
+/* One of the two programs that rendered a scene. All is borrowed. */
+typedef struct ReportSide {
+    const char *name;    /* "POV-Ray" */
+    const char *key;     /* in JSON: "povray", "native" */
+    const char *version; /* "3.7.0.10" */
+    double seconds;      /* wall-clock time of the colour picture */
+    const Picture *picture;
+    const IdPlane *ids; /* or NULL, then in both */
+} ReportSide;
+
+/* One scene rendered by both. All is borrowed. */
 typedef struct ReportCase {
-    const char *name;                               /* of the scene */
-    const char *model;                              /* "rounded" */
-    const char *reference_name, *reference_version; /* "POV-Ray", "3.7.0.10" */
-    const char *candidate_name, *candidate_version; /* "corcast", "0.1.0" */
-    double reference_seconds, candidate_seconds;
+    const char *name;            /* of the scene: "demo" */
+    const char *model;           /* "rounded" */
+    ReportSide a, b;             /* reference and candidate */
     const char *const *commands; /* how to repeat it, one a line */
     size_t n_commands;
-    const Picture *picture_a, *picture_b;
-    const IdPlane *id_a, *id_b;               /* or NULL */
     const CompareResult *planes[PLANE_KINDS]; /* NULL where not compared; colour is required */
 } ReportCase;
 

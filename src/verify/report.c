@@ -1,0 +1,160 @@
+/* The report for programs: JSON and JUnit XML. The page for people is in report_page.c. */
+#include "verify/report.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const CompareResult *report_worst(const ReportCase *report)
+{
+    for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
+        if (report->planes[kind] && !report->planes[kind]->agrees)
+            return report->planes[kind];
+    return NULL;
+}
+
+bool report_agrees(const ReportCase *report)
+{
+    return report_worst(report) == NULL;
+}
+
+static json_t *side_json(const ReportSide *side)
+{
+    return json_pack("{s:s, s:s, s:f}", "name", side->name, "version", side->version, "seconds",
+                     side->seconds);
+}
+
+json_t *report_json(const ReportCase *report)
+{
+    const CompareResult *worst = report_worst(report);
+    json_t *planes = json_object(), *commands = json_array();
+    for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
+        if (report->planes[kind])
+            json_object_set_new(planes, plane_kind_name(kind), compare_json(report->planes[kind]));
+    for (size_t i = 0; i < report->n_commands; i++)
+        json_array_append_new(commands, json_string(report->commands[i]));
+    return json_pack(
+        "{s:s, s:s?, s:s, s:s, s:s, s:o, s:o, s:o, s:o}", "verdict", worst ? "differ" : "agree",
+        "reason", worst ? worst->reason : NULL, "name", report->name, "model", report->model,
+        "tier", report->planes[PLANE_COLOR]->tolerance.tier, "planes", planes, report->a.key,
+        side_json(&report->a), report->b.key, side_json(&report->b), "commands", commands);
+}
+
+void text_escaped(Text *out, const char *text)
+{
+    for (; *text; text++) {
+        static const struct {
+            char plain;
+            const char *entity;
+        } entities[] = {
+            {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+        const char *entity = NULL;
+        for (size_t i = 0; i < sizeof entities / sizeof *entities; i++)
+            if (*text == entities[i].plain)
+                entity = entities[i].entity;
+        if (entity)
+            text_puts(out, entity);
+        else if ((unsigned char)*text >= ' ' || *text == '\n' || *text == '\t')
+            text_append(out, text, 1);
+    }
+}
+
+static void junit_case(const ReportCase *report, const CompareResult *plane, Text *out)
+{
+    text_puts(out, "    <testcase classname=\"");
+    text_escaped(out, report->model);
+    text_printf(out, "\" name=\"%s\">\n      <properties>\n", plane_kind_name(plane->kind));
+    for (int i = 0; i < plane->n_rules; i++) {
+        const Rule *rule = &plane->rules[i];
+        text_puts(out, "        <property name=\"");
+        text_escaped(out, rule->name);
+        text_printf(out, "\" value=\"%.6g %s (at most %.6g)\"/>\n", rule->measured, rule->unit,
+                    rule->allowed);
+    }
+    text_puts(out, "      </properties>\n");
+    if (!plane->agrees) {
+        text_puts(out, "      <failure message=\"");
+        text_escaped(out, plane->reason);
+        text_puts(out, "\"/>\n");
+    }
+    text_puts(out, "    </testcase>\n");
+}
+
+void report_junit(const ReportCase *report, Text *out)
+{
+    int tests = 0, failures = 0;
+    for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++) {
+        tests += report->planes[kind] != NULL;
+        failures += report->planes[kind] && !report->planes[kind]->agrees;
+    }
+    text_puts(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
+    text_puts(out, "  <testsuite name=\"");
+    text_escaped(out, report->name);
+    text_printf(out, "\" tests=\"%d\" failures=\"%d\" errors=\"0\" skipped=\"0\">\n", tests,
+                failures);
+    for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
+        if (report->planes[kind])
+            junit_case(report, report->planes[kind], out);
+    text_puts(out, "  </testsuite>\n</testsuites>\n");
+}
+
+/* Writes `size` bytes to folder/name. */
+static Status write_named(const char *folder, const char *name, const char *bytes, size_t size,
+                          Err *err)
+{
+    char *path;
+    TRY(file_join(folder, name, &path, err));
+    Status status = file_write(path, bytes, size, err);
+    free(path);
+    return status;
+}
+
+static Status write_json(const ReportCase *report, const char *folder, Err *err)
+{
+    json_t *json = report_json(report);
+    char *text = json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+    json_decref(json);
+    if (!text)
+        return err_set(err, STATUS_MEMORY,
+                       "report.json cannot be made: memory ran out, or a name in it is not UTF-8");
+    size_t length = strlen(text);
+    text[length] = '\n'; /* in the place of the final zero */
+    Status status = write_named(folder, "report.json", text, length + 1, err);
+    free(text);
+    return status;
+}
+
+static Status write_junit(const ReportCase *report, const char *folder, Err *err)
+{
+    Text xml = TEXT_INIT;
+    report_junit(report, &xml);
+    Status status = text_check(&xml, err);
+    if (status == STATUS_OK)
+        status = write_named(folder, "junit.xml", xml.chars, xml.length, err);
+    text_release(&xml);
+    return status;
+}
+
+static Status write_heat(const Picture *heat, const char *folder, Err *err)
+{
+    char *path;
+    TRY(file_join(folder, "diff.png", &path, err));
+    Status status = picture_write(heat, path, ENCODING_SRGB, NULL, err);
+    free(path);
+    return status;
+}
+
+Status report_write(const ReportCase *report, const char *template_path, const char *folder,
+                    Err *err)
+{
+    Picture heat = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(difference_picture(&heat, report->a.picture, report->b.picture, err));
+    TRY_GOTO(write_heat(&heat, folder, err));
+    TRY_GOTO(write_json(report, folder, err));
+    TRY_GOTO(write_junit(report, folder, err));
+    TRY_GOTO(report_page(report, &heat, template_path, folder, err));
+done:
+    picture_release(&heat);
+    return status;
+}

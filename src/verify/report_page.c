@@ -1,0 +1,310 @@
+/* The page for people. The template has the words that never change, the look and the viewer; what
+ * repeats or depends on the case is made here as fragments of HTML. Pictures go in as data: URIs,
+ * because a page opened from disk may not read the pixels of a file beside it. */
+#include "verify/report.h"
+
+#include "tmpl/tmpl.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef enum Fragment {
+    PART_TITLE,
+    PART_EDGE,
+    PART_VERDICT_TITLE,
+    PART_VERDICT_SENTENCE,
+    PART_SUBJECT,
+    PART_RULES,
+    PART_METRICS,
+    PART_LEGEND,
+    PART_SIDES,
+    PART_TOLERANCE,
+    PART_COMMANDS,
+    PART_NAME_A,
+    PART_NAME_B,
+    PART_ALT_A,
+    PART_ALT_B,
+    PART_LABEL_A,
+    PART_LABEL_B,
+    PART_IMAGE_A,
+    PART_IMAGE_B,
+    PART_HEAT,
+    PART_IDS_A,
+    PART_IDS_B,
+    PARTS
+} Fragment;
+
+static const char *const part_names[PARTS] = {
+    "title",   "verdict_edge", "verdict_title", "verdict_sentence",
+    "subject", "rule_rows",    "metric_rows",   "legend",
+    "sides",   "tolerance",    "commands",      "name_a",
+    "name_b",  "alt_a",        "alt_b",         "label_a",
+    "label_b", "image_a",      "image_b",       "image_heat",
+    "ids_a",   "ids_b"};
+
+/* ------------------------------------------------------------------------------------- verdict */
+
+static void verdict_parts(const ReportCase *report, Text parts[PARTS])
+{
+    const CompareResult *worst = report_worst(report), *color = report->planes[PLANE_COLOR];
+    int compared = 0, differing = 0;
+    for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++) {
+        compared += report->planes[kind] != NULL;
+        differing += report->planes[kind] && !report->planes[kind]->agrees;
+    }
+    text_escaped(&parts[PART_TITLE], report->name);
+    text_puts(&parts[PART_TITLE], worst ? ": the pictures differ" : ": the pictures agree");
+    text_puts(&parts[PART_EDGE], worst ? "bad-edge" : "good-edge");
+    text_escaped(&parts[PART_VERDICT_TITLE], report->b.name);
+    text_puts(&parts[PART_VERDICT_TITLE], " and ");
+    text_escaped(&parts[PART_VERDICT_TITLE], report->a.name);
+    text_puts(&parts[PART_VERDICT_TITLE],
+              worst ? " <span class=\"bad\">differ</span>" : " <span class=\"good\">agree</span>");
+    Text *sentence = &parts[PART_VERDICT_SENTENCE];
+    if (worst) {
+        text_printf(sentence, "%d of %d planes differ%s. First, ", differing, compared,
+                    differing == 1 ? "s" : "");
+        text_escaped(sentence, worst->reason);
+        text_puts(sentence, ".");
+    } else {
+        if (color->differing_pixels == 0)
+            text_printf(sentence, "All %zu pixels have the same colour in both pictures. ",
+                        color->pixels);
+        else
+            text_printf(sentence,
+                        "%zu of %zu pixels differ in colour, the worst by %.3g of 255 levels. ",
+                        color->differing_pixels, color->pixels, color->max_abs);
+        text_printf(sentence,
+                    compared == 1 ? "The %d plane compared is" : "The %d planes compared are",
+                    compared);
+        text_puts(sentence, " within tolerance.");
+    }
+    Text *subject = &parts[PART_SUBJECT];
+    text_puts(subject, "Scene ");
+    text_escaped(subject, report->name);
+    text_puts(subject, ", model ");
+    text_escaped(subject, report->model);
+    text_printf(subject, ", %d × %d pixels, tolerance tier ", color->width, color->height);
+    text_escaped(subject, color->tolerance.tier);
+}
+
+/* -------------------------------------------------------------------------------------- tables */
+
+static void rule_rows(const CompareResult *plane, Text *out)
+{
+    for (int i = 0; i < plane->n_rules; i++) {
+        const Rule *rule = &plane->rules[i];
+        text_printf(out, "<tr><th>%s</th>", i == 0 ? plane_kind_name(plane->kind) : "");
+        text_printf(out, "<td class=\"verdict %s\">%s</td><td>", rule->met ? "good" : "bad",
+                    rule->met ? "✓ agree" : "✗ differ");
+        text_escaped(out, rule->name);
+        text_printf(
+            out, "</td><td class=\"number\">%.6g %s</td><td class=\"number\">%.6g %s</td></tr>\n",
+            rule->measured, rule->unit, rule->allowed, rule->unit);
+    }
+    if (plane->n_rules == 0)
+        text_printf(out,
+                    "<tr><th>%s</th><td class=\"verdict quiet\">not judged</td><td>the tolerance "
+                    "sets no limit</td><td></td><td></td></tr>\n",
+                    plane_kind_name(plane->kind));
+}
+
+/* A row of the table of measurements; rows of what could not be measured are left out. */
+static void metric_row(Text *out, const char *plane, const char *name, double value,
+                       const char *unit)
+{
+    if (isnan(value))
+        return;
+    text_printf(out, "<tr><th>%s</th><td>%s</td><td class=\"number\">", plane, name);
+    if (isinf(value))
+        text_puts(out, "∞");
+    else
+        text_printf(out, value == floor(value) && fabs(value) < 1e15 ? "%.0f" : "%.6g", value);
+    text_printf(out, "%s%s</td></tr>\n", *unit ? " " : "", unit);
+}
+
+static void color_metrics(const CompareResult *plane, Text *out)
+{
+    metric_row(out, "color", "differing pixels", (double)plane->differing_pixels, "");
+    metric_row(out, "", "largest difference", plane->max_abs, "levels");
+    metric_row(out, "", "largest difference off the edges", plane->interior_max_abs, "levels");
+    metric_row(out, "", "mean difference", plane->mean_abs, "levels");
+    metric_row(out, "", "root mean square", plane->rmse, "levels");
+    metric_row(out, "", "PSNR", plane->psnr_db, "dB");
+    metric_row(out, "", "SSIM of luma", plane->ssim, "");
+    metric_row(out, "", "FLIP, mean", plane->flip_mean, "");
+    metric_row(out, "", "pixels off by one code (rounding)", (double)plane->classes.rounding, "");
+    metric_row(out, "", "pixels off by more (shading)", (double)plane->classes.shading, "");
+}
+
+static void coverage_metrics(const CompareResult *plane, Text *out)
+{
+    if (!plane->has_mask)
+        return;
+    metric_row(out, "", "missing pixels (seen in A only)", (double)plane->missing_pixels, "");
+    metric_row(out, "", "extra pixels (seen in B only)", (double)plane->extra_pixels, "");
+    metric_row(out, "", "pixels seen in both", (double)plane->common_pixels, "");
+}
+
+static void metric_rows(const CompareResult *plane, Text *out)
+{
+    const char *unit = plane->kind == PLANE_DEPTH ? "mm" : "deg";
+    const char *name = plane_kind_name(plane->kind);
+    switch (plane->kind) {
+    case PLANE_COLOR:
+        color_metrics(plane, out);
+        break;
+    case PLANE_DEPTH:
+    case PLANE_NORMAL:
+        metric_row(out, name, "values that are not a number",
+                   (double)(plane->nan_pixels_a + plane->nan_pixels_b), "");
+        metric_row(out, "", "median difference", plane->median, unit);
+        metric_row(out, "", "99th percentile", plane->p99, unit);
+        metric_row(out, "", "largest difference", plane->max, unit);
+        break;
+    case PLANE_ID:
+        metric_row(out, name, "pixels with different ids", (double)plane->differing_pixels, "");
+        metric_row(out, "", "of the pixels at edges", 100 * plane->edge_mismatch_fraction, "%");
+        break;
+    case PLANE_KINDS:
+        break;
+    }
+    coverage_metrics(plane, out);
+}
+
+static void table_parts(const ReportCase *report, Text parts[PARTS])
+{
+    for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
+        if (report->planes[kind]) {
+            rule_rows(report->planes[kind], &parts[PART_RULES]);
+            metric_rows(report->planes[kind], &parts[PART_METRICS]);
+        }
+    for (int i = 0; i < HEAT_STEPS; i++) {
+        const HeatStep *step = &heat_steps[i];
+        int to = i + 1 < HEAT_STEPS ? heat_steps[i + 1].from_level - 1 : 255;
+        text_printf(&parts[PART_LEGEND], "<span><i style=\"background:#%02x%02x%02x\"></i>%d",
+                    step->red, step->green, step->blue, step->from_level);
+        if (to > step->from_level)
+            text_printf(&parts[PART_LEGEND], "–%d", to);
+        text_puts(&parts[PART_LEGEND], "</span>");
+    }
+}
+
+/* ------------------------------------------------------------------------------------- pictures */
+
+static void base64(Text *out, const char *bytes, size_t size)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < size; i += 3) {
+        uint32_t bits = 0;
+        for (size_t k = 0; k < 3; k++)
+            bits = bits << 8 | (i + k < size ? (uint8_t)bytes[i + k] : 0u);
+        char four[4];
+        for (int k = 0; k < 4; k++)
+            four[k] = i + (size_t)k <= size ? digits[bits >> (18 - 6 * k) & 63] : '=';
+        text_append(out, four, 4);
+    }
+}
+
+static Status picture_part(Text *part, const Picture *picture, Err *err)
+{
+    Text png = TEXT_INIT;
+    Status status = picture_to_png(picture, ENCODING_SRGB, NULL, &png, err);
+    if (status == STATUS_OK) {
+        text_puts(part, "data:image/png;base64,");
+        base64(part, png.chars, png.length);
+    }
+    text_release(&png);
+    return status;
+}
+
+/* "data:," is an empty document: the viewer then knows no ids. */
+static Status ids_part(Text *part, const IdPlane *ids, Err *err)
+{
+    if (!ids) {
+        text_puts(part, "data:,");
+        return STATUS_OK;
+    }
+    Picture picture;
+    TRY(picture_from_ids(&picture, ids, err));
+    Status status = picture_part(part, &picture, err);
+    picture_release(&picture);
+    return status;
+}
+
+/* ---------------------------------------------------------------------------------------- words */
+
+/* A string for use inside the quotes of a script: what could end it is escaped as \uXXXX. */
+static void script_string(Text *out, const char *text)
+{
+    for (; *text; text++) {
+        if (strchr("\"\\<>&", *text) || (unsigned char)*text < ' ')
+            text_printf(out, "\\u%04x", (unsigned)(unsigned char)*text);
+        else
+            text_append(out, text, 1);
+    }
+}
+
+static void side_parts(const ReportSide *side, Fragment name, Fragment alt, Fragment label,
+                       Text parts[PARTS])
+{
+    text_escaped(&parts[name], side->name);
+    text_puts(&parts[alt], "The scene as rendered by ");
+    text_escaped(&parts[alt], side->name);
+    script_string(&parts[label], side->name);
+    text_escaped(&parts[PART_SIDES], side->name);
+    text_puts(&parts[PART_SIDES], " ");
+    text_escaped(&parts[PART_SIDES], side->version);
+    text_printf(&parts[PART_SIDES], " took %.2f s for the picture. ", side->seconds);
+}
+
+static void tolerance_part(const Tolerance *tolerance, Text *part)
+{
+    text_puts(part, "Tolerance tier ");
+    text_escaped(part, tolerance->tier);
+    text_printf(part, ": at most %.4g pixels in a million%s may be off by more than %g levels",
+                tolerance->color_ppm, tolerance->color_common_only ? " seen in both pictures" : "",
+                tolerance->color_levels);
+    text_puts(part, ". A is the reference; a difference is B less A, in 8-bit levels.");
+}
+
+static Status fill_parts(const ReportCase *report, const Picture *heat, Text parts[PARTS], Err *err)
+{
+    verdict_parts(report, parts);
+    table_parts(report, parts);
+    side_parts(&report->a, PART_NAME_A, PART_ALT_A, PART_LABEL_A, parts);
+    side_parts(&report->b, PART_NAME_B, PART_ALT_B, PART_LABEL_B, parts);
+    tolerance_part(&report->planes[PLANE_COLOR]->tolerance, &parts[PART_TOLERANCE]);
+    for (size_t i = 0; i < report->n_commands; i++) {
+        text_escaped(&parts[PART_COMMANDS], report->commands[i]);
+        text_puts(&parts[PART_COMMANDS], "\n");
+    }
+    TRY(picture_part(&parts[PART_IMAGE_A], report->a.picture, err));
+    TRY(picture_part(&parts[PART_IMAGE_B], report->b.picture, err));
+    TRY(picture_part(&parts[PART_HEAT], heat, err));
+    TRY(ids_part(&parts[PART_IDS_A], report->a.ids, err));
+    return ids_part(&parts[PART_IDS_B], report->b.ids, err);
+}
+
+Status report_page(const ReportCase *report, const Picture *heat, const char *template_path,
+                   const char *folder, Err *err)
+{
+    Text parts[PARTS] = {0}, page = TEXT_INIT;
+    TmplValue values[PARTS];
+    char *path = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(fill_parts(report, heat, parts, err));
+    for (int i = 0; i < PARTS; i++) {
+        TRY_GOTO(text_check(&parts[i], err));
+        values[i] = (TmplValue){part_names[i], parts[i].chars ? parts[i].chars : ""};
+    }
+    TRY_GOTO(tmpl_expand(template_path, values, PARTS, &page, err));
+    TRY_GOTO(file_join(folder, "report.html", &path, err));
+    status = file_write(path, page.chars, page.length, err);
+done:
+    for (int i = 0; i < PARTS; i++)
+        text_release(&parts[i]);
+    text_release(&page);
+    free(path);
+    return status;
+}
