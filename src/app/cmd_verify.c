@@ -163,18 +163,20 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
 {
     ReportCase report = {.name = file_name(v->tree),
                          .model = model_name(v->scene.model),
-                         .reference_name = "POV-Ray",
-                         .reference_version = v->run.version,
-                         .candidate_name = "corcast",
-                         .candidate_version = CORCAST_VERSION,
-                         .reference_seconds = v->run.seconds,
-                         .candidate_seconds = v->stats.prepare_s + v->stats.trace_s,
+                         .a = {.name = "POV-Ray",
+                               .key = "povray",
+                               .version = v->run.version,
+                               .seconds = v->run.seconds,
+                               .picture = &v->povray_picture,
+                               .ids = &v->povray.id},
+                         .b = {.name = "corcast",
+                               .key = "native",
+                               .version = CORCAST_VERSION,
+                               .seconds = v->stats.prepare_s + v->stats.trace_s,
+                               .picture = &v->native_picture,
+                               .ids = &v->native.id},
                          .commands = (const char *const *)v->commands,
-                         .n_commands = v->n_commands,
-                         .picture_a = &v->povray_picture,
-                         .picture_b = &v->native_picture,
-                         .id_a = &v->povray.id,
-                         .id_b = &v->native.id};
+                         .n_commands = v->n_commands};
     for (int kind = 0; kind < PLANE_KINDS; kind++)
         report.planes[kind] = &v->results[kind];
     *agrees = report_agrees(&report);

@@ -25,4 +25,3 @@ MUST_CHECK Status json_write(json_t *object, const char *path, Err *err);
 json_t *json_number(double value);
 
 #endif
-#define CORCAST_VERSION "0.1.0"

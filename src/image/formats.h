@@ -32,8 +32,7 @@ MUST_CHECK Status header_end(HeaderCursor *cursor, size_t needed, Err *err);
 
 bool pnm_is(const ImageBytes *file);
 MUST_CHECK Status pnm_decode(const ImageBytes *file, Picture *picture, Err *err);
-MUST_CHECK Status pnm_encode(FILE *stream, const Picture *picture, int channels,
-                             const ImageNotes *notes, Err *err);
+MUST_CHECK Status pnm_encode(FILE *stream, const Picture *picture, int channels, Err *err);
 
 bool png_is(const ImageBytes *file);
 MUST_CHECK Status png_decode(const ImageBytes *file, Picture *picture, Err *err);

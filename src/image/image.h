@@ -64,7 +64,7 @@ MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *er
 /* STATUS_INPUT unless the picture has 3 channels of 8 bits. */
 MUST_CHECK Status ids_from_picture(IdPlane *ids, const Picture *picture, Err *err);
 
-/* Provenance written into the file: tEXt chunks of a PNG, comment lines of a PPM. Never a date or a
+/* Provenance written into a PNG as tEXt chunks; the other formats hold none. Never a date or a
  * path. */
 typedef struct ImageNote {
     const char *key;  /* "Software", "Description", "Comment"; at most 79 characters */

@@ -34,9 +34,9 @@ Status picture_write(const Picture *picture, const char *path, Encoding encoding
     TRY(choose_format(picture, path, &format, err));
     OutFile file;
     TRY(outfile_open(&file, path, err));
-    Status status = format == FORMAT_PNG ? png_encode(file.stream, picture, encoding, notes, err)
-                                         : pnm_encode(file.stream, picture,
-                                                      format == FORMAT_PGM ? 1 : 3, notes, err);
+    Status status = format == FORMAT_PNG
+                        ? png_encode(file.stream, picture, encoding, notes, err)
+                        : pnm_encode(file.stream, picture, format == FORMAT_PGM ? 1 : 3, err);
     if (status == STATUS_OK)
         return outfile_commit(&file, err);
     err_prefix(err, "%s: ", path);

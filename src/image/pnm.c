@@ -105,29 +105,14 @@ Status pnm_decode(const ImageBytes *file, Picture *picture, Err *err)
     return STATUS_OK;
 }
 
-/* A note as comment lines, each line of its text behind a '#'. */
-static void write_note(FILE *stream, const ImageNote *note)
-{
-    fprintf(stream, "# %s: ", note->key);
-    for (const char *at = note->text; *at; at++) {
-        if (*at == '\n')
-            fputs("\n# ", stream);
-        else if (*at != '\r')
-            putc(*at, stream);
-    }
-    putc('\n', stream);
-}
-
-Status pnm_encode(FILE *stream, const Picture *picture, int channels, const ImageNotes *notes,
-                  Err *err)
+/* No comment lines: libvips stumbles over them. */
+Status pnm_encode(FILE *stream, const Picture *picture, int channels, Err *err)
 {
     int bytes = picture->bits / 8;
     size_t row_size = (size_t)picture->width * (size_t)channels * (size_t)bytes;
     uint8_t *row;
     TRY(mem_calloc(&row, row_size, 1, "bytes of a row", err));
     fprintf(stream, "P%c\n", channels == 1 ? '5' : '6');
-    for (int i = 0; notes && i < notes->count; i++)
-        write_note(stream, &notes->notes[i]);
     fprintf(stream, "%d %d\n%d\n", picture->width, picture->height, bytes == 1 ? 255 : 65535);
     const uint16_t *code = picture->codes;
     for (int y = 0; y < picture->height; y++) {

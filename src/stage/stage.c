@@ -1,8 +1,10 @@
 /* A tree becomes a scene in three steps: the geometry of its model, the camera that frames it, and
  * the look's lights turned from the camera's axes to the world's.
  *
- * Nodes joined by segments of no length are one place: `rounded` puts one sphere there, of the
- * largest radius that meets, so that no two spheres coincide. */
+ * No two surfaces of a primitive model coincide, because which of two coincident surfaces is seen is
+ * nobody's to say. Nodes joined by segments of no length are one place: `rounded` puts one sphere
+ * there, of the largest radius that meets. A segment that shares both ends with a sister at least as
+ * thick lies inside her and is left out; measured trees hold such pairs. */
 #include "stage/stage.h"
 
 #include "stage/framing.h"
@@ -32,15 +34,48 @@ static bool can_be_drawn(const Tree *tree, size_t i)
     return tree_is_segment(tree, i) && tree->radius_mm[i] > 0 && has_length(tree, i);
 }
 
+/* For each node the sister within whose segment its own lies, or TREE_NO_PARENT, in *cover (owned). */
+static Status find_covers(const Tree *tree, int32_t **cover, Err *err)
+{
+    int32_t *last = NULL, *previous = NULL, *found = NULL; /* child lists, latest first */
+    Status status = mem_calloc(&last, tree->n, sizeof *last, "nodes", err);
+    if (status == STATUS_OK)
+        status = mem_calloc(&previous, tree->n, sizeof *previous, "nodes", err);
+    if (status == STATUS_OK)
+        status = mem_calloc(&found, tree->n, sizeof *found, "nodes", err);
+    for (size_t i = 0; status == STATUS_OK && i < tree->n; i++) {
+        last[i] = found[i] = TREE_NO_PARENT;
+        if (!can_be_drawn(tree, i))
+            continue;
+        int32_t self = (int32_t)i, *youngest = &last[tree->parent[i]];
+        for (int32_t sister = *youngest; sister >= 0; sister = previous[sister]) {
+            if (found[sister] >= 0 ||
+                vec3_distance(tree->position[i], tree->position[sister]) > shortest_mm)
+                continue;
+            bool thicker = tree->radius_mm[i] > tree->radius_mm[sister];
+            found[thicker ? sister : self] = thicker ? self : sister;
+            break;
+        }
+        previous[i] = *youngest;
+        *youngest = self;
+    }
+    free(last);
+    free(previous);
+    if (status == STATUS_OK)
+        *cover = found;
+    return status;
+}
+
 static Rgb color_of(const Rgb *colors, const Look *look, size_t node)
 {
     return colors ? colors[node] : look->color;
 }
 
-static void add_cylinders(const Tree *tree, const Look *look, const Rgb *colors, Scene *scene)
+static void add_cylinders(const Tree *tree, const Look *look, const Rgb *colors,
+                          const int32_t *cover, Scene *scene)
 {
     for (size_t i = 0; i < tree->n; i++) {
-        if (can_be_drawn(tree, i))
+        if (can_be_drawn(tree, i) && cover[i] < 0)
             scene->primitives[scene->n_primitives++] =
                 (Primitive){.kind = PRIMITIVE_CYLINDER,
                             .a = tree->position[tree->parent[i]],
@@ -53,8 +88,8 @@ static void add_cylinders(const Tree *tree, const Look *look, const Rgb *colors,
 
 /* The sphere of a place stands for the thickest segment that meets there; of equals, the one that
  * ends there. */
-static Status add_spheres(const Tree *tree, const Look *look, const Rgb *colors, Scene *scene,
-                          Err *err)
+static Status add_spheres(const Tree *tree, const Look *look, const Rgb *colors,
+                          const int32_t *cover, Scene *scene, Err *err)
 {
     int32_t *place = NULL, *thickest = NULL;
     Status status = mem_calloc(&place, tree->n, sizeof *place, "nodes", err);
@@ -64,7 +99,7 @@ static Status add_spheres(const Tree *tree, const Look *look, const Rgb *colors,
         goto done;
     for (size_t i = 0; i < tree->n; i++) {
         bool joined = tree_is_segment(tree, i) && !has_length(tree, i);
-        place[i] = joined ? place[tree->parent[i]] : (int32_t)i;
+        place[i] = joined ? place[tree->parent[i]] : cover[i] >= 0 ? cover[i] : (int32_t)i;
         thickest[i] = can_be_drawn(tree, i) ? (int32_t)i : TREE_NO_PARENT;
     }
     for (size_t i = 0; i < tree->n; i++) {
@@ -114,10 +149,14 @@ static Status add_geometry(const Tree *tree, const Look *look, const Rgb *colors
         return STATUS_OK;
     }
     TRY(mem_calloc(&scene->primitives, 2 * tree->n, sizeof *scene->primitives, "primitives", err));
-    add_cylinders(tree, look, colors, scene);
-    if (scene->model == SCENE_ROUNDED)
-        TRY(add_spheres(tree, look, colors, scene, err));
-    return STATUS_OK;
+    int32_t *cover = NULL;
+    Status status = find_covers(tree, &cover, err);
+    if (status == STATUS_OK)
+        add_cylinders(tree, look, colors, cover, scene);
+    if (status == STATUS_OK && scene->model == SCENE_ROUNDED)
+        status = add_spheres(tree, look, colors, cover, scene, err);
+    free(cover);
+    return status;
 }
 
 /* The two end balls of every segment drawn. The implicit surface reaches beyond its segments by

@@ -13,7 +13,7 @@ Tolerance tolerance_identity(double depth_step_mm)
                        .color_ppm = 5,
                        .id_ppm = 5,
                        .depth_max_mm = depth_step_mm,
-                       .depth_ppm = 0,
+                       .depth_ppm = 5,
                        .depth_p99_mm = (double)INFINITY,
                        .normal_max_deg = 0.03,
                        .normal_ppm = 5,

@@ -48,8 +48,8 @@ static Status add_argument(Arguments *arguments, Err *err, const char *format, .
 static Status make_arguments(const OracleParams *params, const char *scene, const char *output,
                              Arguments *arguments, Err *err)
 {
-    bool color = params->plane == ORACLE_COLOR, deep = params->plane == ORACLE_DEPTH ||
-                                                      params->plane == ORACLE_NORMAL;
+    bool color = params->plane == ORACLE_COLOR,
+         deep = params->plane == ORACLE_DEPTH || params->plane == ORACLE_NORMAL;
     TRY(add_argument(arguments, err, "%s", params->program ? params->program : "povray"));
     TRY(add_argument(arguments, err, "+I%s", scene));
     TRY(add_argument(arguments, err, "+O%s", output));
@@ -215,9 +215,9 @@ static Status judge(const OracleParams *params, const Text *log, int exit_status
     const char *program = params->program ? params->program : "povray";
     char reason[700];
     if (exit_status == STATUS_NOT_STARTED)
-        return err_set(err, STATUS_TOOL,
-                       "POV-Ray is needed and '%s' cannot be started; on Debian: apt install povray",
-                       program);
+        return err_set(
+            err, STATUS_TOOL,
+            "POV-Ray is needed and '%s' cannot be started; on Debian: apt install povray", program);
     if (exit_status == 0)
         return STATUS_OK;
     reason_of_failure(log, reason, sizeof reason);
@@ -235,13 +235,12 @@ Status oracle_run(const OracleParams *params, OracleRun *run, Err *err)
     Status status = STATUS_OK;
     scene = realpath(params->scene, NULL);
     if (!scene)
-        return err_set(err, STATUS_INPUT, "%s: cannot be read: %s", params->scene,
-                       strerror(errno));
+        return err_set(err, STATUS_INPUT, "%s: cannot be read: %s", params->scene, strerror(errno));
     TRY_GOTO(file_temporary(params->output, &temporary, err));
     absolute = realpath(temporary, NULL);
     if (!absolute) {
-        status = err_set(err, STATUS_IO, "%s: cannot be written: %s", params->output,
-                         strerror(errno));
+        status =
+            err_set(err, STATUS_IO, "%s: cannot be written: %s", params->output, strerror(errno));
         goto done;
     }
     TRY_GOTO(folder_of(scene, &folder, err));

@@ -9,13 +9,13 @@
 typedef enum OraclePlane { ORACLE_COLOR, ORACLE_DEPTH, ORACLE_NORMAL, ORACLE_ID } OraclePlane;
 
 typedef struct OracleParams {
-    const char *program;   /* NULL: povray */
-    const char *scene;     /* .pov file */
-    const char *output;    /* .png file */
-    int width, height;     /* pixels */
-    int antialias;         /* of the colour plane: 1, or N for +A0.0 +AM1 +RN -J */
-    int threads;           /* 0: POV-Ray's own choice */
-    OraclePlane plane;     /* colour is 8-bit sRGB, depth and normal 16-bit linear, id 8-bit linear */
+    const char *program; /* NULL: povray */
+    const char *scene;   /* .pov file */
+    const char *output;  /* .png file */
+    int width, height;   /* pixels */
+    int antialias;       /* of the colour plane: 1, or N for +A0.0 +AM1 +RN -J */
+    int threads;         /* 0: POV-Ray's own choice */
+    OraclePlane plane;   /* colour is 8-bit sRGB, depth and normal 16-bit linear, id 8-bit linear */
     void (*progress)(double fraction, void *context); /* may be NULL */
     void *progress_context;
 } OracleParams;

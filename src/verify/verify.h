@@ -5,6 +5,7 @@
 
 #include "base/base.h"
 #include "image/image.h"
+#include "verify/oracle.h" // IWYU pragma: export
 #include <jansson.h>
 
 typedef enum PlaneKind { PLANE_COLOR, PLANE_DEPTH, PLANE_NORMAL, PLANE_ID, PLANE_KINDS } PlaneKind;

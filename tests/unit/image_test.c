@@ -111,25 +111,6 @@ static void tags_a_png_with_encoding_resolution_and_provenance_but_no_date(void 
     picture_release(&picture);
 }
 
-static void writes_notes_into_a_ppm_as_comment_lines(void **state)
-{
-    (void)state;
-    Picture picture;
-    make(&picture, 1, 1, 1, 8);
-    const ImageNote note = {"Comment", "one\ntwo"};
-    const ImageNotes notes = {&note, 1, 0};
-    assert_int_equal(picture_write(&picture, "build/image_test.ppm", ENCODING_SRGB, &notes, &err),
-                     STATUS_OK);
-    char *bytes;
-    size_t size;
-    assert_int_equal(file_read("build/image_test.ppm", &bytes, &size, &err), STATUS_OK);
-    assert_memory_equal(bytes, "P6\n# Comment: one\n# two\n1 1\n255\n", 32);
-    assert_int_equal(size, 35);
-    free(bytes);
-    unlink("build/image_test.ppm");
-    picture_release(&picture);
-}
-
 static void refuses_to_write_what_the_extension_cannot_hold(void **state)
 {
     (void)state;
@@ -528,7 +509,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(returns_from_every_file_what_was_written),
         cmocka_unit_test(tags_a_png_with_encoding_resolution_and_provenance_but_no_date),
-        cmocka_unit_test(writes_notes_into_a_ppm_as_comment_lines),
         cmocka_unit_test(refuses_to_write_what_the_extension_cannot_hold),
         cmocka_unit_test(reports_a_disk_that_is_full),
         cmocka_unit_test(reads_plain_and_commented_pnm),

@@ -62,6 +62,21 @@ static void segments_without_length_or_radius_are_counted_not_drawn(void **state
     scene_release(&scene);
 }
 
+static void a_segment_inside_its_sister_is_left_out(void **state)
+{
+    (void)state;
+    Tree tree = make_tree();
+    tree.position[3] = tree.position[2]; /* the thin daughter runs within the thick one */
+    StageParams params = stage_defaults();
+    Scene scene;
+    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
+    assert_int_equal(scene.n_primitives, 2 + 3);
+    for (size_t i = 0; i < scene.n_primitives; i++)
+        assert_int_not_equal(scene.primitives[i].id, 14);
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
 static void a_sphere_has_the_largest_radius_that_meets(void **state)
 {
     (void)state;
@@ -281,6 +296,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(segments_without_length_or_radius_are_counted_not_drawn),
+        cmocka_unit_test(a_segment_inside_its_sister_is_left_out),
         cmocka_unit_test(a_sphere_has_the_largest_radius_that_meets),
         cmocka_unit_test(every_view_frames_the_whole_tree),
         cmocka_unit_test(the_front_view_has_x_to_the_right_and_y_up),
