@@ -46,7 +46,7 @@ slow_povray() {
     cat >povray.sh <<'END'
 #!/bin/sh
 for argument; do
-    case $argument in +O*) echo half >"${argument#+O}" ;; esac
+    case $argument in +O*) echo half >"$(echo "${argument#+O}" | tr -d '"')" ;; esac
 done
 echo $$ >running
 exec sleep 60

@@ -101,7 +101,9 @@ test_a_missing_scene_is_refused_by_name() {
 test_the_errors_of_povray_are_passed_on_and_no_half_picture_stays() {
     grow_tree 3
     run_ok corcast scene tree.swc -o scene.pov
-    stand_in 'for argument; do case $argument in +O*) echo half >"${argument#+O}" ;; esac; done
+    stand_in 'for argument; do
+    case $argument in +O*) echo half >"$(echo "${argument#+O}" | tr -d \")" ;; esac
+done
 echo "Parse Error: the moon is not a primitive" >&2; exit 1'
     run corcast povray scene.pov -o picture.png
     expect_status 3
