@@ -67,26 +67,3 @@ int hit_cylinder(Ray ray, const CylinderFrame *cylinder, Hit hits[4])
     }
     return count;
 }
-
-bool hit_box(Vec3 origin, Vec3 inverse, const Box *box, double *t0, double *t1)
-{
-    double low = *t0, high = *t1;
-    const double *from = &origin.x, *over = &inverse.x;
-    const double *box_low = &box->low.x, *box_high = &box->high.x;
-    for (int axis = 0; axis < 3; axis++) {
-        if (isinf(over[axis])) { /* parallel to this pair of faces: between them or not */
-            if (from[axis] < box_low[axis] || from[axis] > box_high[axis])
-                return false;
-            continue;
-        }
-        double near = (box_low[axis] - from[axis]) * over[axis];
-        double far = (box_high[axis] - from[axis]) * over[axis];
-        low = fmax(low, fmin(near, far));
-        high = fmin(high, fmax(near, far));
-    }
-    if (!(low <= high))
-        return false;
-    *t0 = low;
-    *t1 = high;
-    return true;
-}

@@ -1,11 +1,13 @@
-/* Built top-down by splitting the longest side of the box of the centres at its median, four
- * primitives a leaf: the depth is at most log2 n + 1, so traversal needs a short fixed stack. Nodes
- * stand in depth-first order, the first child next to its parent. */
+/* Built top-down by the surface area heuristic over the bins of the centres along each axis
+ * [Wald 2007, On fast construction of SAH-based bounding volume hierarchies]: long vessels beside short
+ * ones make median splits overlap. Past half the depth that the traversal's stack allows, items are
+ * halved, which ends within 32 more levels. Nodes stand in depth-first order, the first child next to
+ * its parent. */
 #include "render/bvh.h"
 
 #include <stdlib.h>
 
-enum { LEAF_SIZE = 4, MAX_DEPTH = 64 };
+enum { LEAF_SIZE = 2, MAX_DEPTH = 64, BINS = 16 };
 
 typedef struct Node {
     Box box;
@@ -14,6 +16,7 @@ typedef struct Node {
 } Node;
 
 typedef struct Item {
+    Box box;
     Vec3 center;
     uint32_t primitive;
 } Item;
@@ -41,48 +44,96 @@ static double along(Vec3 v, int axis)
     return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-static int compare_along(const void *a, const void *b, int axis)
+/* Half the surface of a box: the chance that a ray meets it. */
+static double box_area(Box box)
 {
-    const Item *left = a, *right = b;
-    double x = along(left->center, axis), y = along(right->center, axis);
-    if (x != y)
-        return x < y ? -1 : 1;
-    return left->primitive < right->primitive ? -1 : 1;
+    Vec3 size = vec3_sub(box.high, box.low);
+    return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-static int compare_x(const void *a, const void *b)
+/* A split of items by the bins of their centres along one axis. */
+typedef struct Split {
+    int axis;
+    int bin; /* the first one of the second child */
+    double cost;
+} Split;
+
+static int bin_of(const Item *item, int axis, Box centers)
 {
-    return compare_along(a, b, 0);
+    double low = along(centers.low, axis), size = along(centers.high, axis) - low;
+    int bin = size > 0 ? (int)((along(item->center, axis) - low) / size * BINS) : 0;
+    return bin < BINS ? bin : BINS - 1;
 }
 
-static int compare_y(const void *a, const void *b)
+/* The cheapest split along an axis by the surface area heuristic. */
+static Split best_split(const Bvh *bvh, uint32_t first, uint32_t n, Box centers, int axis)
 {
-    return compare_along(a, b, 1);
+    Box box[BINS];
+    uint32_t count[BINS] = {0};
+    for (int i = 0; i < BINS; i++)
+        box[i] = box_empty();
+    for (uint32_t i = first; i < first + n; i++) {
+        int bin = bin_of(&bvh->items[i], axis, centers);
+        box[bin] = box_union(box[bin], bvh->items[i].box);
+        count[bin]++;
+    }
+    double cost_above[BINS]; /* of bin i and those above it */
+    Box sum = box_empty();
+    uint32_t items = 0;
+    for (int i = BINS - 1; i > 0; i--) {
+        sum = box_union(sum, box[i]);
+        items += count[i];
+        cost_above[i] = items ? items * box_area(sum) : 0;
+    }
+    Split best = {axis, 0, INFINITY};
+    sum = box_empty();
+    items = 0;
+    for (int i = 1; i < BINS; i++) {
+        sum = box_union(sum, box[i - 1]);
+        items += count[i - 1];
+        double cost = items ? items * box_area(sum) + cost_above[i] : (double)INFINITY;
+        if (items < n && cost < best.cost)
+            best = (Split){axis, i, cost};
+    }
+    return best;
 }
 
-static int compare_z(const void *a, const void *b)
+/* Moves the items of the first child to the front; how many they are. */
+static uint32_t partition(Bvh *bvh, uint32_t first, uint32_t n, Box centers, Split split)
 {
-    return compare_along(a, b, 2);
+    uint32_t front = first;
+    for (uint32_t i = first; i < first + n; i++) {
+        if (bin_of(&bvh->items[i], split.axis, centers) >= split.bin)
+            continue;
+        Item item = bvh->items[i];
+        bvh->items[i] = bvh->items[front];
+        bvh->items[front++] = item;
+    }
+    return front - first;
 }
 
-static uint32_t build_node(Bvh *bvh, uint32_t first, uint32_t n)
+static uint32_t build_node(Bvh *bvh, uint32_t first, uint32_t n, int depth)
 {
     uint32_t index = (uint32_t)bvh->n_nodes++;
     Box box = box_empty(), centers = box_empty();
     for (uint32_t i = first; i < first + n; i++) {
-        box = box_union(box, primitive_box(&bvh->primitives[bvh->items[i].primitive]));
+        box = box_union(box, bvh->items[i].box);
         centers = box_with_ball(centers, bvh->items[i].center, 0);
     }
     bvh->nodes[index] = (Node){box, first, n};
     if (n <= LEAF_SIZE)
         return index;
-    Vec3 size = vec3_sub(centers.high, centers.low);
-    int (*compare)(const void *, const void *) = size.x >= size.y && size.x >= size.z ? compare_x
-                                                 : size.y >= size.z                   ? compare_y
-                                                                                      : compare_z;
-    qsort(bvh->items + first, n, sizeof *bvh->items, compare);
-    build_node(bvh, first, n / 2);
-    uint32_t second = build_node(bvh, first + n / 2, n - n / 2);
+    Split best = {0, 0, INFINITY};
+    for (int axis = 0; axis < 3; axis++) {
+        Split split = best_split(bvh, first, n, centers, axis);
+        if (split.cost < best.cost)
+            best = split;
+    }
+    /* Centres that coincide, or a tree that grows too deep, are halved as they stand. */
+    bool halve = best.cost == (double)INFINITY || depth > MAX_DEPTH / 2;
+    uint32_t half = halve ? n / 2 : partition(bvh, first, n, centers, best);
+    build_node(bvh, first, half, depth + 1);
+    uint32_t second = build_node(bvh, first + half, n - half, depth + 1);
     bvh->nodes[index].first = second;
     bvh->nodes[index].n_items = 0;
     return index;
@@ -102,9 +153,10 @@ Status bvh_build(const Primitive *primitives, size_t n, Bvh **out, Err *err)
         const Primitive *primitive = &primitives[i];
         if (primitive->kind == PRIMITIVE_CYLINDER)
             bvh->frames[i] = cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
-        bvh->items[i] = (Item){vec3_scale(vec3_add(primitive->a, primitive->b), 0.5), (uint32_t)i};
+        bvh->items[i] = (Item){primitive_box(primitive),
+                               vec3_scale(vec3_add(primitive->a, primitive->b), 0.5), (uint32_t)i};
     }
-    build_node(bvh, 0, (uint32_t)n);
+    build_node(bvh, 0, (uint32_t)n, 0);
     *out = bvh;
     return STATUS_OK;
 done:
@@ -132,8 +184,8 @@ static int primitive_hits(const Bvh *bvh, uint32_t index, Ray ray, Hit hits[4])
 
 bool bvh_first_hit(const Bvh *bvh, Ray ray, double t_min, Hit *hit, size_t *primitive)
 {
-    Vec3 inverse = vec3(1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z);
-    uint32_t stack[MAX_DEPTH];
+    Vec3 inverse = ray_inverse(ray.direction);
+    uint32_t stack[MAX_DEPTH + 2];
     int top = 0;
     uint32_t best = UINT32_MAX;
     hit->t = INFINITY;
@@ -173,8 +225,8 @@ bool bvh_first_hit(const Bvh *bvh, Ray ray, double t_min, Hit *hit, size_t *prim
 
 bool bvh_any_hit(const Bvh *bvh, Ray ray, double t_min, double t_max)
 {
-    Vec3 inverse = vec3(1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z);
-    uint32_t stack[MAX_DEPTH];
+    Vec3 inverse = ray_inverse(ray.direction);
+    uint32_t stack[MAX_DEPTH + 2];
     int top = 0;
     stack[top++] = 0;
     while (top > 0) {
