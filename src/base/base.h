@@ -10,5 +10,6 @@
 #include "base/text.h"     // IWYU pragma: export
 #include "base/threads.h"  // IWYU pragma: export
 #include "base/units.h"    // IWYU pragma: export
+#include "base/version.h"  // IWYU pragma: export
 
 #endif

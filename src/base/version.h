@@ -1,0 +1,6 @@
+#ifndef CORCAST_BASE_VERSION_H
+#define CORCAST_BASE_VERSION_H
+
+#define CORCAST_VERSION "0.1.0"
+
+#endif
