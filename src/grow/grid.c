@@ -168,30 +168,21 @@ void grid_remove(Grid *grid, int32_t segment, Vec3 a, Vec3 b)
 
 static float point_distance2(const GridEntry *entry, const float point[3])
 {
-    float dot = 0, length2 = 0, along[3], away[3];
-    for (int i = 0; i < 3; i++) {
-        along[i] = entry->distal[i] - entry->proximal[i];
-        away[i] = point[i] - entry->proximal[i];
-        dot += along[i] * away[i];
-        length2 += along[i] * along[i];
-    }
+    const float *a = entry->proximal, *b = entry->distal;
+    float ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
+    float wx = point[0] - a[0], wy = point[1] - a[1], wz = point[2] - a[2];
+    float dot = ux * wx + uy * wy + uz * wz;
+    float length2 = ux * ux + uy * uy + uz * uz;
     float t = dot <= 0 ? 0 : dot >= length2 ? 1 : dot / length2;
-    float distance2 = 0;
-    for (int i = 0; i < 3; i++) {
-        float d = away[i] - t * along[i];
-        distance2 += d * d;
-    }
-    return distance2;
+    float dx = wx - t * ux, dy = wy - t * uy, dz = wz - t * uz;
+    return dx * dx + dy * dy + dz * dz;
 }
 
 static float end_distance2(const GridEntry *entry, const float point[3])
 {
-    float distance2 = 0;
-    for (int i = 0; i < 3; i++) {
-        float d = point[i] - entry->distal[i];
-        distance2 += d * d;
-    }
-    return distance2;
+    const float *end = entry->distal;
+    float dx = point[0] - end[0], dy = point[1] - end[1], dz = point[2] - end[2];
+    return dx * dx + dy * dy + dz * dz;
 }
 
 static bool cell_any_within(const Grid *grid, size_t cell, const float point[3], float limit2,
@@ -236,79 +227,91 @@ static bool nearer(Near a, Near b)
     return a.distance2 < b.distance2 || (a.distance2 == b.distance2 && a.segment < b.segment);
 }
 
-/* Puts what the cell holds into the sorted list. */
-static int gather(const Grid *grid, size_t cell, const float point[3], int limit, Near *list,
-                  int count)
+/* A search for the nearest segments, those found so far sorted in `list`. */
+typedef struct Search {
+    const Grid *grid;
+    Vec3 point;
+    float at[3]; /* the point */
+    int home[3]; /* its cell */
+    int limit, count;
+    Near *list;
+} Search;
+
+static void gather_cell(Search *search, size_t cell)
 {
-    for (int32_t at = grid->head[cell]; at >= 0; at = grid->entry[at].next) {
-        const GridEntry *entry = &grid->entry[at];
-        Near found = {point_distance2(entry, point), entry->tag >> 1};
-        if (count == limit && !nearer(found, list[count - 1]))
+    Near *list = search->list;
+    const GridEntry *entry;
+    for (int32_t at = search->grid->head[cell]; at >= 0; at = entry->next) {
+        entry = &search->grid->entry[at];
+        Near found = {point_distance2(entry, search->at), entry->tag >> 1};
+        if (search->count == search->limit && !nearer(found, list[search->count - 1]))
             continue;
         bool known = false;
-        for (int i = 0; i < count && !known; i++)
+        for (int i = 0; i < search->count && !known; i++)
             known = list[i].segment == found.segment;
         if (known)
             continue;
-        int place = count < limit ? count++ : count - 1;
+        int place = search->count < search->limit ? search->count++ : search->count - 1;
         for (; place > 0 && nearer(found, list[place - 1]); place--)
             list[place] = list[place - 1];
         list[place] = found;
     }
-    return count;
 }
 
-/* Squared distance of the point from a cell. */
-static double cell_distance2(const Grid *grid, Vec3 point, const int cell[3])
+/* Squared distance of a value from an interval of one cell's length. */
+static double excess2(const Grid *grid, double value, int cell, int axis)
 {
-    double distance2 = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        double low = component(grid->low, axis) + cell[axis] * grid->cell;
-        double at = component(point, axis);
-        double d = fmax(0, fmax(low - at, at - low - grid->cell));
-        distance2 += d * d;
+    double low = component(grid->low, axis) + cell * grid->cell;
+    double excess = fmax(0, fmax(low - value, value - low - grid->cell));
+    return excess * excess;
+}
+
+/* Gathers every `step`-th cell of a row, except what is further than all that is wanted. */
+static void gather_row(Search *search, int first, int last, int step, int y, int z)
+{
+    const Grid *grid = search->grid;
+    double across2 = excess2(grid, search->point.y, y, 1) + excess2(grid, search->point.z, z, 2);
+    for (int x = first; x <= last; x += step) {
+        if (x < 0 || x >= grid->count[0])
+            continue;
+        double distance2 = across2 + excess2(grid, search->point.x, x, 0);
+        if (search->count < search->limit ||
+            distance2 <= (double)search->list[search->count - 1].distance2)
+            gather_cell(search, cell_index(grid, x, y, z));
     }
-    return distance2;
+}
+
+/* Gathers the cells at `ring` steps from the point's own: whole rows at the faces of the cube, the
+ * two ends of rows between them. */
+static void gather_ring(Search *search, int ring)
+{
+    const int *home = search->home, *count = search->grid->count;
+    for (int z = home[2] - ring; z <= home[2] + ring; z++)
+        for (int y = home[1] - ring; y <= home[1] + ring; y++) {
+            if (z < 0 || z >= count[2] || y < 0 || y >= count[1])
+                continue;
+            bool face = abs(z - home[2]) == ring || abs(y - home[1]) == ring;
+            gather_row(search, home[0] - ring, home[0] + ring, face ? 1 : 2 * ring, y, z);
+        }
 }
 
 int grid_nearest(const Grid *grid, Vec3 point, int limit, Near *out)
 {
-    float at[3];
-    int home[3], count = 0, farthest = 0;
-    store(point, at);
+    Search search = {.grid = grid, .point = point, .limit = limit, .list = out};
+    store(point, search.at);
+    int farthest = 0;
     for (int axis = 0; axis < 3; axis++) {
-        home[axis] = cell_of(grid, component(point, axis), axis);
-        int across = grid->count[axis] - 1 - home[axis];
-        farthest = across > farthest ? across : farthest;
-        farthest = home[axis] > farthest ? home[axis] : farthest;
+        search.home[axis] = cell_of(grid, component(point, axis), axis);
+        int other_side = grid->count[axis] - 1 - search.home[axis];
+        farthest = search.home[axis] > farthest ? search.home[axis] : farthest;
+        farthest = other_side > farthest ? other_side : farthest;
     }
-    /* Rings of cells around the point's own. Those of ring k are at least k - 1 edges away. */
     for (int ring = 0; ring <= farthest; ring++) {
-        double clear = (ring - 1) * grid->cell;
-        if (count == limit && clear > 0 && clear * clear > (double)out[count - 1].distance2)
+        double clear = (ring - 1) * grid->cell; /* a ring's cells are further than this */
+        if (search.count == limit && clear > 0 &&
+            clear * clear > (double)out[search.count - 1].distance2)
             break;
-        int low[3], high[3];
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = home[axis] - ring < 0 ? 0 : home[axis] - ring;
-            high[axis] = home[axis] + ring;
-            if (high[axis] >= grid->count[axis])
-                high[axis] = grid->count[axis] - 1;
-        }
-        for (int z = low[2]; z <= high[2]; z++)
-            for (int y = low[1]; y <= high[1]; y++) {
-                bool face = abs(z - home[2]) == ring || abs(y - home[1]) == ring;
-                for (int x = low[0]; x <= high[0]; x++) {
-                    if (!face && abs(x - home[0]) != ring) {
-                        x = home[0] + ring - 1; /* across the inside of the ring */
-                        continue;
-                    }
-                    int cell[3] = {x, y, z};
-                    if (count == limit &&
-                        cell_distance2(grid, point, cell) > (double)out[count - 1].distance2)
-                        continue;
-                    count = gather(grid, cell_index(grid, x, y, z), at, limit, out, count);
-                }
-            }
+        gather_ring(&search, ring);
     }
-    return count;
+    return search.count;
 }

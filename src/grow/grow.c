@@ -29,8 +29,8 @@ static const double least_length_share = 0.1;
  * thickness as lines, and at last the domain is full. */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
 static const double least_thickness = 1.0 / 64;
-/* Radii in the grid are entered with room to grow until it is made anew. */
-static const double reach_reserve = 1.25;
+/* Radii enter the grid with the reserve the rules want and room to grow until it is made anew. */
+static const double reach_reserve = 1.4;
 
 typedef struct Growth {
     const GrowParams *params;
@@ -50,7 +50,7 @@ typedef struct Growth {
 static Status enter(Growth *growth, int32_t segment, Err *err)
 {
     Capsule capsule = network_capsule(&growth->net, segment);
-    capsule.radius *= reach_reserve * growth->rules.thickness;
+    capsule.radius = fmin(capsule.radius * reach_reserve * growth->rules.thickness, growth->size);
     bool terminal = growth->net.segment[segment].terminals == 1;
     return grid_add(&growth->grid, segment, terminal, capsule, err);
 }
@@ -106,12 +106,27 @@ static Vec3 toss(Growth *growth)
     }
 }
 
+/* Whether the point lies in one of the `near` vessels around it. Those points are no tissue, and
+ * in a tree with fine branches they are most of what is left far from centrelines. */
+static bool is_in_a_vessel(const Growth *growth, int near)
+{
+    for (int i = 0; i < near; i++) {
+        const Segment *segment = &growth->net.segment[growth->near[i].segment];
+        double radius = growth->rules.thickness * (double)segment->radius;
+        if ((double)growth->near[i].distance2 < radius * radius)
+            return true;
+    }
+    return false;
+}
+
 /* The cheapest connection with room in *out; false when there is none. */
 static bool choose(Growth *growth, Vec3 terminal, Connection *out)
 {
     const Network *net = &growth->net;
     Connection *connections = growth->connections;
     int near = grid_nearest(&growth->grid, terminal, growth->params->candidates, growth->near);
+    if (is_in_a_vessel(growth, near))
+        return false;
     int count = 0;
     for (int i = 0; i < near; i++)
         if (place_connection(net, &growth->rules, growth->near[i].segment, terminal,
@@ -162,8 +177,7 @@ static Status add_terminal(Growth *growth, Err *err)
         Vec3 terminal = toss(growth);
         Connection connection;
         if (choose(growth, terminal, &connection)) {
-            TRY(connect(growth, &connection, terminal, err));
-            return check_range(growth, err);
+            return connect(growth, &connection, terminal, err);
         }
         growth->rejected++;
         if (in_a_row >= LAST_PATIENCE)
@@ -225,6 +239,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     TRY_GOTO(start(&growth, err));
     network_plant(&growth.net, toss(&growth));
     while (network_terminals(&growth.net) < params->terminals) {
+        TRY_GOTO(check_range(&growth, err));
         TRY_GOTO(keep_up(&growth, err));
         TRY_GOTO(add_terminal(&growth, err));
         report_progress(&growth);

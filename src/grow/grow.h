@@ -53,9 +53,9 @@ typedef struct GrowReport {
     double root_radius_mm;
     uint64_t tosses;   /* random points drawn */
     uint64_t rejected; /* points far enough from the tree to which no connection was possible */
-    /* The share of their radii for which vessels were kept at least as long as wide and clear of
-     * those they share no node with, at the time each was made: 1 unless the domain was too full.
-     */
+    /* Growth makes segments at least as long as wide, and keeps those without a common node clear
+     * of each other, at this share of their radii: 1 unless the domain was too full for vessels so
+     * thick, down to 0 for centrelines that do not cross. */
     double thickness;
 } GrowReport;
 

@@ -7,6 +7,7 @@
  * between candidates, never the tree's own figures. */
 #include "grow/network.h"
 
+#include <float.h>
 #include <stdlib.h>
 
 Status network_init(Network *net, Law law, double radius_scale, size_t terminals, Vec3 inlet,
@@ -45,6 +46,12 @@ double network_cost(const Network *net)
     return net->segment[0].cost[0];
 }
 
+/* Radii beyond what a float holds are wider than any domain all the same. */
+static float narrow(double value)
+{
+    return (float)fmin(value, (double)FLT_MAX);
+}
+
 static int slot_of(const Network *net, int32_t parent, int32_t child)
 {
     return net->segment[parent].child[1] == child;
@@ -78,8 +85,8 @@ static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t paren
     Adjoint adjoint = {net->sensitivity[parent].load, law_lambda_power(&net->law, gauge)};
     Segment *segment = &net->segment[i];
     double own_gauge = gauge * above->widening;
-    segment->gauge = (float)own_gauge;
-    segment->radius = (float)(network_radius_unit(net) * own_gauge * reduced->rho);
+    segment->gauge = narrow(own_gauge);
+    segment->radius = narrow(network_radius_unit(net) * own_gauge * reduced->rho);
     net->sensitivity[i] = (Sensitivity){law_descend(&net->law, above, adjoint, reduced).load,
                                         net->sensitivity[parent].extra +
                                             law_total(&net->law, above, adjoint) * mother->length};
@@ -88,7 +95,7 @@ static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t paren
 static void set_root_radius(Network *net, int32_t root, const Reduced *reduced)
 {
     net->segment[root].gauge = 1;
-    net->segment[root].radius = (float)(network_radius_unit(net) * reduced->rho);
+    net->segment[root].radius = narrow(network_radius_unit(net) * reduced->rho);
     net->sensitivity[root] = (Sensitivity){0, 0};
 }
 
@@ -132,7 +139,7 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
     walk_up(net, proximal);
     Reduced mother = network_reduce(net, proximal);
     net->segment[proximal].radius =
-        (float)(network_radius_unit(net) * (double)net->segment[proximal].gauge * mother.rho);
+        narrow(network_radius_unit(net) * (double)net->segment[proximal].gauge * mother.rho);
     adopt(net, segment, &daughters[0], proximal, &mother);
     adopt(net, fresh, &daughters[1], proximal, &mother);
 }
