@@ -1,0 +1,13 @@
+/* The grown network becomes a Tree. */
+#ifndef CORCAST_GROW_FINISH_H
+#define CORCAST_GROW_FINISH_H
+
+#include "grow/grow.h"
+#include "grow/network.h"
+
+/* Renumbers `net`, computes all radii from the coordinates and writes the tree with its header into
+ * *out. STATUS_INFEASIBLE when a radius is beyond the range of a double. */
+MUST_CHECK Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
+                              Tree *out, Err *err);
+
+#endif

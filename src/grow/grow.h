@@ -1,0 +1,75 @@
+/* The door of the room grow: constrained constructive optimization (CCO), which grows an arterial
+ * tree terminal by terminal, each connected where the target sum of l r^lambda grows least
+ * [Schreiner & Buxbaum, IEEE Trans. Biomed. Eng. 40 (1993) 482-491; in space: Karch et al., Comput.
+ * Biol. Med. 29 (1999) 19-38]. */
+#ifndef CORCAST_GROW_GROW_H
+#define CORCAST_GROW_GROW_H
+
+#include "base/base.h"
+#include "domain/domain.h"
+#include "geom/geom.h"
+#include "tree/tree.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* What a new terminal must keep its distance from. */
+typedef enum GrowToss {
+    GROW_TOSS_SEGMENT,  /* the centrelines of all segments [Schreiner & Buxbaum] */
+    GROW_TOSS_TERMINAL, /* the other terminals' end points */
+} GrowToss;
+
+enum { GROW_MAX_TERMINALS = 8000000, GROW_MAX_CANDIDATES = 1000 };
+
+/* The SWC type code of all nodes of a grown tree: SWC has none for arteries, and 3 is what files of
+ * arterial trees use. */
+enum { GROW_SWC_TYPE = 3 };
+
+typedef struct GrowParams {
+    size_t terminals;     /* in [1, GROW_MAX_TERMINALS] */
+    double gamma;         /* Murray exponent, in (0, 10] */
+    double lambda;        /* exponent of the target, >= 0 */
+    uint64_t seed;        /* of the random points */
+    bool has_inlet;       /* else the domain's default inlet */
+    Vec3 inlet;           /* mm */
+    double p_perf_mmhg;   /* at the inlet */
+    double p_term_mmhg;   /* at every terminal, below p_perf_mmhg */
+    double q_perf_ml_min; /* through the inlet, > 0; every terminal gets the same share */
+    double viscosity_cp;  /* > 0 */
+    int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
+    GrowToss toss;
+    void (*progress)(double fraction, void *context); /* NULL: none */
+    void *progress_context;
+} GrowParams;
+
+/* 1,000 terminals, gamma 3, lambda 2, seed 1, 100 to 60 mmHg, 500 ml/min, 3.6 cP, 8 candidates,
+ * tossed by segment. */
+GrowParams grow_defaults(void);
+
+typedef struct GrowReport {
+    double seconds; /* wall clock */
+    size_t terminals;
+    double target; /* sum of l r^lambda, mm^(1 + lambda) */
+    double root_radius_mm;
+    uint64_t tosses;   /* random points drawn */
+    uint64_t rejected; /* points far enough from the tree to which no connection was possible */
+    /* Growth makes segments at least as long as wide, and keeps those without a common node clear
+     * of each other, at this share of their radii: 1 unless the domain was too full for vessels so
+     * thick, down to 0 for centrelines that do not cross. */
+    double thickness;
+} GrowReport;
+
+/* STATUS_USAGE with a sentence that names the option at fault. */
+MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err);
+
+/* Grows a tree into *out (release with tree_release). Node 0 is the inlet; nodes are in depth-first
+ * order, ids 1 .. 2 N in that order, and the header is filled. Murray's law and the pressures hold
+ * to rounding for the coordinates and radii in *out. Centrelines do not cross. The same parameters
+ * give the same tree, bit for bit. `report` may be NULL.
+ *
+ * Fails with STATUS_USAGE as grow_params_check does, STATUS_INFEASIBLE when there is no room for
+ * all terminals or when the radii span more than a double can hold, and STATUS_MEMORY. */
+MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
+                            GrowReport *report, Err *err);
+
+#endif

@@ -1,0 +1,130 @@
+/* How a segment and the subtree below it add up: Murray's law, Poiseuille's law and the target, in
+ * the reduced quantities that make one step up the tree a few multiplications.
+ *
+ * With N terminals below a segment and R*, V* its reduced resistance and target [METHODS 1], R*
+ * in units of 8 mu / pi:
+ *     load  W = N R*             rho = W^(1/4)
+ *     flare X = rho^gamma        Murray's law is addition: the subtree below a segment has the
+ *                                flare G = sum of X over the daughters, and P = G^(1/gamma)
+ *     cost  S = rho^lambda V*    so that S = rho^lambda l + (rho / P)^lambda sum of S over them
+ *     W = N l + P^4
+ * A radius is r = q g rho, q = (8 mu / pi Q_term / (p_perf - p_term))^(1/4) and g the gauge: 1 at
+ * the root and greater by rho / P from each segment to its daughters. The target is
+ * T = q^lambda S_root, so for one number of terminals the least S_root is the least T. */
+#ifndef CORCAST_GROW_LAW_H
+#define CORCAST_GROW_LAW_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+typedef struct Law {
+    double gamma;  /* in (0, 10] */
+    double lambda; /* >= 0 */
+} Law;
+
+/* A segment together with all that hangs on it. */
+typedef struct Reduced {
+    double load;       /* W, mm */
+    double flare;      /* X */
+    double cost;       /* S */
+    double rho;        /* W^(1/4) */
+    double rho_lambda; /* rho^lambda */
+    double widening;   /* rho / P; 0 at a terminal */
+    double pass;       /* (rho / P)^lambda; 0 at a terminal */
+    double load_below; /* P^4; 0 at a terminal */
+    double flare_below;
+    double cost_below;
+} Reduced;
+
+/* Derivatives of S_root with respect to a segment's load, its cost held, and to its cost. */
+typedef struct Adjoint {
+    double load;
+    double cost;
+} Adjoint;
+
+/* x^(-1/3) for normal x > 0 to about one unit in the last place: exponent arithmetic for the first
+ * guess (3.4 % off), then two steps of order three and one of order two of Newton's kind. No
+ * library function, so every machine gives the same bits. */
+static inline double inverse_cube_root(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits = 0x553ef0ff289dd796u - bits / 3;
+    double y;
+    memcpy(&y, &bits, sizeof y);
+    for (int i = 0; i < 2; i++) {
+        double error = 1 - x * y * y * y;
+        y += y * error * (1.0 / 3 + 2.0 / 9 * error);
+    }
+    double error = 1 - x * y * y * y;
+    return y + y * error * (1.0 / 3);
+}
+
+/* x^lambda */
+static inline double law_lambda_power(const Law *law, double x)
+{
+    if (law->lambda == 2)
+        return x * x;
+    if (law->lambda == 1)
+        return x;
+    if (law->lambda == 0)
+        return 1;
+    return pow(x, law->lambda);
+}
+
+/* The segment of `length` mm with `terminals` below it and daughters whose flares and costs sum up
+ * to `flare_below` and `cost_below`, both 0 at a terminal. */
+static inline Reduced law_reduce(const Law *law, double terminals, double length,
+                                 double flare_below, double cost_below)
+{
+    double inverse = 0, load_below = 0; /* 1 / P and P^4 */
+    if (flare_below > 0) {
+        if (law->gamma == 3) {
+            inverse = inverse_cube_root(flare_below);
+            load_below = flare_below * inverse * (flare_below * inverse);
+        } else {
+            double p = pow(flare_below, 1 / law->gamma);
+            inverse = 1 / p;
+            load_below = p * p * (p * p);
+        }
+    }
+    Reduced out = {.flare_below = flare_below, .cost_below = cost_below, .load_below = load_below};
+    out.load = terminals * length + load_below;
+    out.rho = sqrt(sqrt(out.load));
+    out.rho_lambda = law_lambda_power(law, out.rho);
+    out.flare = law->gamma == 3 ? out.rho * out.rho * out.rho : pow(out.rho, law->gamma);
+    out.cost = out.rho_lambda * length;
+    if (flare_below > 0) {
+        out.widening = out.rho * inverse;
+        out.pass = law_lambda_power(law, out.widening);
+        out.cost += out.pass * cost_below;
+    }
+    return out;
+}
+
+/* dS_root / d load of `at`, now with the part that goes through its own cost. */
+static inline double law_total(const Law *law, const Reduced *at, Adjoint adjoint)
+{
+    return adjoint.load + adjoint.cost * law->lambda / 4 * at->cost / at->load;
+}
+
+/* The adjoint of a daughter of the segment `parent` whose adjoint is known. */
+static inline Adjoint law_descend(const Law *law, const Reduced *parent, Adjoint adjoint,
+                                  const Reduced *daughter)
+{
+    double cost = adjoint.cost * parent->pass;
+    double below = parent->load_below * law_total(law, parent, adjoint) -
+                   law->lambda / 4 * cost * parent->cost_below;
+    return (Adjoint){below * (daughter->flare / parent->flare_below) / daughter->load, cost};
+}
+
+/* dS_root / d length of the segment `at` with `terminals` below it. */
+static inline double law_length_weight(const Law *law, const Reduced *at, Adjoint adjoint,
+                                       double terminals)
+{
+    return terminals * law_total(law, at, adjoint) + adjoint.cost * at->rho_lambda;
+}
+
+#endif

@@ -1,0 +1,67 @@
+#include "grow/grow.h"
+
+GrowParams grow_defaults(void)
+{
+    return (GrowParams){.terminals = 1000,
+                        .gamma = 3,
+                        .lambda = 2,
+                        .seed = 1,
+                        .p_perf_mmhg = 100,
+                        .p_term_mmhg = 60,
+                        .q_perf_ml_min = 500,
+                        .viscosity_cp = 3.6,
+                        .candidates = 8,
+                        .toss = GROW_TOSS_SEGMENT};
+}
+
+static Status refuse(const char *option, double value, const char *allowed, Err *err)
+{
+    char number[NUMBER_TEXT_SIZE];
+    return err_set(err, STATUS_USAGE, "%s %s: must be %s", option, number_text(value, number),
+                   allowed);
+}
+
+static Status check_inlet(const GrowParams *params, const Domain *domain, Err *err)
+{
+    if (!params->has_inlet)
+        return STATUS_OK;
+    Box box = domain_bounds(domain);
+    double rim = 1e-6 * vec3_distance(box.low, box.high);
+    if (vec3_finite(params->inlet) && domain_inside(domain, params->inlet, rim))
+        return STATUS_OK;
+    Text text = TEXT_INIT;
+    domain_text(domain, &text);
+    Status status = text_check(&text, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE, "--inlet %.9g,%.9g,%.9g: must lie in the domain %s",
+                         params->inlet.x, params->inlet.y, params->inlet.z, text.chars);
+    text_release(&text);
+    return status;
+}
+
+Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err)
+{
+    if (params->terminals < 1 || params->terminals > GROW_MAX_TERMINALS)
+        return err_set(err, STATUS_USAGE, "--terminals %zu: must be from 1 to %d",
+                       params->terminals, GROW_MAX_TERMINALS);
+    if (!(params->gamma > 0) || !(params->gamma <= 10))
+        return refuse("--gamma", params->gamma, "above 0 and at most 10", err);
+    if (!(params->lambda >= 0) || !isfinite(params->lambda))
+        return refuse("--lambda", params->lambda, "a finite number not below 0", err);
+    if (!isfinite(params->p_perf_mmhg))
+        return refuse("--p-perf", params->p_perf_mmhg, "a finite number of mmHg", err);
+    if (!isfinite(params->p_term_mmhg) || !(params->p_term_mmhg < params->p_perf_mmhg)) {
+        char number[NUMBER_TEXT_SIZE], allowed[96];
+        snprintf(allowed, sizeof allowed, "a finite number of mmHg below --p-perf, which is %s",
+                 number_text(params->p_perf_mmhg, number));
+        return refuse("--p-term", params->p_term_mmhg, allowed, err);
+    }
+    if (!(params->q_perf_ml_min > 0) || !isfinite(params->q_perf_ml_min))
+        return refuse("--q-perf", params->q_perf_ml_min, "a finite number of ml/min above 0", err);
+    if (!(params->viscosity_cp > 0) || !isfinite(params->viscosity_cp))
+        return refuse("--viscosity", params->viscosity_cp, "a finite number of cP above 0", err);
+    if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
+        return err_set(err, STATUS_USAGE, "--candidates %d: must be from 1 to %d",
+                       params->candidates, GROW_MAX_CANDIDATES);
+    return check_inlet(params, domain, err);
+}
