@@ -1,0 +1,34 @@
+/* Where rays first meet the implicit surface Phi = FIELD_LEVEL, by proof and not by sampling. */
+#ifndef CORCAST_RENDER_FIELD_H
+#define CORCAST_RENDER_FIELD_H
+
+#include "base/base.h"
+#include "geom/geom.h"
+#include "scene/scene.h"
+
+/* The search structure over the segments of a scene, constant once built and shared by threads. */
+typedef struct FieldIndex FieldIndex;
+
+/* scene->segments is borrowed and must outlive the index; there may be none. */
+MUST_CHECK Status fieldindex_build(const Scene *scene, FieldIndex **out, Err *err);
+void fieldindex_free(FieldIndex *index);
+
+/* The workspace of one thread: room for every segment on one ray, of which only the part that rays
+ * need is ever touched. Nothing is allocated later. */
+typedef struct FieldScratch FieldScratch;
+
+MUST_CHECK Status fieldscratch_new(const FieldIndex *index, FieldScratch **out, Err *err);
+void fieldscratch_free(FieldScratch *scratch);
+
+/* The first point at t in [t_min, t_max] where Phi rises through FIELD_LEVEL along the ray; t_min
+ * is finite, t_max may be infinite. False when there is none. A ray that starts inside first leaves
+ * the vessel, and meets what it enters next, if anything.
+ *
+ * *normal is unit and outward, -grad Phi / |grad Phi|; *segment the index of the segment whose term
+ * is largest there, the lowest of equals. Terms are left out where they are below 1e-9, so the
+ * surface of a lone vessel is off by at most 1.9e-9 r each; a ray that grazes within that of the
+ * level may go either way. */
+bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
+                     double t_max, double *t, Vec3 *normal, uint32_t *segment);
+
+#endif
