@@ -328,16 +328,16 @@ int main(int argc, char **argv)
     check_ids(nodes, n);
     link_tree(nodes, n);
     check_domain(nodes, n, &header);
+    if (header.dimension == 2)
+        check_crossings(nodes, n);
+    else if (header.dimension != 3)
+        fail("the header does not say dimension 2 or 3");
     long double murray = murray_deviation(nodes, n, header.gamma);
     if (!(murray <= 1e-12L))
         fail("Murray's law is missed by %.3Lg of r^gamma", murray);
     long double pressure = pressure_deviation(nodes, n, &header);
     if (!(pressure <= 1e-9L))
         fail("a terminal is off p_term by %.3Lg of the pressure drop", pressure);
-    if (header.dimension == 2)
-        check_crossings(nodes, n);
-    else if (header.dimension != 3)
-        fail("the header does not say dimension 2 or 3");
     report(nodes, n, &header);
     printf("murray_deviation %.3Lg\npressure_deviation %.3Lg\n", murray, pressure);
     free(nodes);
