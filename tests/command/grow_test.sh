@@ -8,6 +8,28 @@ check_tree() {
     expect_status 0
 }
 
+# A checker that finds nothing is worth nothing.
+test_the_checker_finds_what_is_wrong() {
+    run_ok corcast grow --terminals 50 --seed 3 -o tree.swc
+    awk '!/^#/ && $1 == 20 { $6 *= 1.00000000001 } { print }' tree.swc >radius.swc
+    run "$CHECK_TREE" radius.swc
+    expect_status 1
+    expect_sentence "Murray"
+    sed 's/^# p_term_mmHg: 60/# p_term_mmHg: 60.0000001/' tree.swc >pressure.swc
+    run "$CHECK_TREE" pressure.swc
+    expect_status 1
+    expect_sentence "p_term"
+    awk '!/^#/ && $1 == 30 { $3 = 51 } { print }' tree.swc >outside.swc
+    run "$CHECK_TREE" outside.swc
+    expect_status 1
+    expect_sentence "outside"
+    printf '%s\n' '# dimension: 2' '# domain: disc:9' '1 3 0 9 0 1 -1' '2 3 0 4 0 1 1' '3 3 -4 0 0 1 2' \
+        '4 3 4 0 0 1 2' '5 3 0 -2 0 1 3' '6 3 3 2.5 0 1 3' >crossing.swc
+    run "$CHECK_TREE" crossing.swc
+    expect_status 1
+    expect_sentence "segments 4 and 6 cross"
+}
+
 test_the_same_seed_gives_the_same_bytes() {
     run_ok corcast grow --terminals 150 --seed 11 -o first.swc
     run_ok corcast grow --terminals 150 --seed 11 -o second.swc

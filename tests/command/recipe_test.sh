@@ -36,10 +36,10 @@ test_an_unknown_name_is_refused_with_file_and_line() {
 }
 
 test_a_bad_value_is_refused_with_file_and_line() {
-    printf '; a comment\ngamma = 0\n' >tree.ini
+    printf '; a comment\nterminals = -3\n' >tree.ini
     run corcast grow --recipe tree.ini -o tree.swc
     expect_status 2
-    expect_sentence 'tree\.ini:2.*gamma.*0'
+    expect_sentence 'tree\.ini:2.*terminals.*-3'
 }
 
 test_a_missing_recipe_is_refused_by_name() {

@@ -250,23 +250,49 @@ static bool overlap_at(const Node *node, const Node *a, const Node *b)
            (a->x - node->x) * (b->x - node->x) + (a->y - node->y) * (b->y - node->y) > 0;
 }
 
+/* A segment as the sweep sees it: its extent in x, and its distal node. */
+typedef struct Span {
+    long double low, high;
+    int node;
+} Span;
+
+static int compare_spans(const void *a, const void *b)
+{
+    long double x = ((const Span *)a)->low, y = ((const Span *)b)->low;
+    return (x > y) - (x < y);
+}
+
+static bool segments_cross(const Node *nodes, int i, int j)
+{
+    int from_i = nodes[i].parent, from_j = nodes[j].parent;
+    if (from_j == i)
+        return overlap_at(&nodes[i], &nodes[from_i], &nodes[j]);
+    if (from_i == j)
+        return overlap_at(&nodes[j], &nodes[from_j], &nodes[i]);
+    if (from_j == from_i)
+        return overlap_at(&nodes[from_i], &nodes[i], &nodes[j]);
+    return segments_meet(&nodes[from_i], &nodes[i], &nodes[from_j], &nodes[j]);
+}
+
+/* Every pair of segments whose extents in x overlap, found by a sweep from the left. */
 static void check_crossings(const Node *nodes, int n)
 {
+    Span *spans = malloc((size_t)n * sizeof *spans);
+    if (!spans)
+        fail("memory ran out");
     for (int i = 1; i < n; i++) {
-        int from_i = nodes[i].parent;
-        for (int j = i + 1; j < n; j++) {
-            int from_j = nodes[j].parent;
-            bool meet;
-            if (from_j == i)
-                meet = overlap_at(&nodes[i], &nodes[from_i], &nodes[j]);
-            else if (from_j == from_i)
-                meet = overlap_at(&nodes[from_i], &nodes[i], &nodes[j]);
-            else
-                meet = segments_meet(&nodes[from_i], &nodes[i], &nodes[from_j], &nodes[j]);
-            if (meet)
-                fail("segments %ld and %ld cross", nodes[i].id, nodes[j].id);
+        long double a = nodes[i].x, b = nodes[nodes[i].parent].x;
+        spans[i - 1] = (Span){fminl(a, b), fmaxl(a, b), i};
+    }
+    qsort(spans, (size_t)(n - 1), sizeof *spans, compare_spans);
+    for (int a = 0; a < n - 1; a++) {
+        for (int b = a + 1; b < n - 1 && spans[b].low <= spans[a].high; b++) {
+            if (segments_cross(nodes, spans[a].node, spans[b].node))
+                fail("segments %ld and %ld cross", nodes[spans[a].node].id,
+                     nodes[spans[b].node].id);
         }
     }
+    free(spans);
 }
 
 static void report(const Node *nodes, int n, const Header *header)
@@ -302,16 +328,16 @@ int main(int argc, char **argv)
     check_ids(nodes, n);
     link_tree(nodes, n);
     check_domain(nodes, n, &header);
+    if (header.dimension == 2)
+        check_crossings(nodes, n);
+    else if (header.dimension != 3)
+        fail("the header does not say dimension 2 or 3");
     long double murray = murray_deviation(nodes, n, header.gamma);
     if (!(murray <= 1e-12L))
         fail("Murray's law is missed by %.3Lg of r^gamma", murray);
     long double pressure = pressure_deviation(nodes, n, &header);
     if (!(pressure <= 1e-9L))
         fail("a terminal is off p_term by %.3Lg of the pressure drop", pressure);
-    if (header.dimension == 2)
-        check_crossings(nodes, n);
-    else if (header.dimension != 3)
-        fail("the header does not say dimension 2 or 3");
     report(nodes, n, &header);
     printf("murray_deviation %.3Lg\npressure_deviation %.3Lg\n", murray, pressure);
     free(nodes);
