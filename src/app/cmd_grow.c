@@ -23,11 +23,10 @@ static void show_progress(double fraction, void *context)
 static Status write_report(const char *path, const GrowReport *report, int threads, Err *err)
 {
     json_t *json = json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:i}", "generator", GENERATOR,
-                             "seconds", report->seconds, "terminals",
-                             (json_int_t)report->terminals, "target", report->target,
-                             "root_radius_mm", report->root_radius_mm, "tosses",
-                             (json_int_t)report->tosses, "rejected", (json_int_t)report->rejected,
-                             "threads", threads);
+                             "seconds", report->seconds, "terminals", (json_int_t)report->terminals,
+                             "target", report->target, "root_radius_mm", report->root_radius_mm,
+                             "tosses", (json_int_t)report->tosses, "rejected",
+                             (json_int_t)report->rejected, "threads", threads);
     return json_write(json, path, err);
 }
 
