@@ -356,6 +356,10 @@ Status options_parse(const Command *command, const Option *const tables[], int a
         print_help(&reader);
         return STATUS_OK;
     }
+    const Option *output = find_option(&reader, "output", strlen("output"));
+    if (status == STATUS_OK && command->needs_output && !*(const char **)output->where)
+        status = err_set(err, STATUS_USAGE, "-o %s is missing; usage: corcast %s %s",
+                         output->argument, command->name, command->operands);
     if (status == STATUS_OK && parsed->n_operands < command->min_operands)
         status = err_set(err, STATUS_USAGE, "a file is missing; usage: corcast %s %s",
                          command->name, command->operands);

@@ -39,6 +39,7 @@ typedef struct Command {
     const char *operands; /* "T.swc -o P.png" */
     const char *examples; /* lines */
     int min_operands, max_operands;
+    bool needs_output; /* the option output must be given */
 } Command;
 
 typedef struct Common {
