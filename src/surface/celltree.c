@@ -32,8 +32,8 @@ static const double significant = 1e-2;
 /* accuracy = radius / radii_per_accuracy */
 static const double radii_per_accuracy = 300;
 
-/* Down to a term of LOG_FORM_FLOOR / 10 the tanh form of erf is at most this much steeper, relative
- * to sqrt(-2 ln phi), than a proven bound allows; from 1e-3 up it is within it. */
+/* With erf approximated by tanh, s |A'| is at most this times A sqrt(-2 ln A) down to A =
+ * LOG_FORM_FLOOR / 10, and within the bound of the exact form from A = 1e-3 up (tabulated). */
 static const double tanh_steepness = 1.18;
 
 static const size_t max_cells = 1000000;
