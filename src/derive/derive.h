@@ -67,7 +67,7 @@ void field_release(Field *field);
 typedef struct TreeSummary {
     struct {
         bool target, gamma, lambda;
-        bool terminal_pressure; /* p_perf, q_perf and viscosity are known, and no radius is 0 */
+        bool terminal_pressure; /* what they need is known, and blood reaches all terminals */
     } has;
     size_t nodes, roots, segments, terminals, bifurcations;
     double total_length_mm;
