@@ -51,6 +51,7 @@ LDLIBS := $(PACKAGE_LIBS) -lpthread -lm
 .SECONDARY:
 
 all: build/corcast ## the program, build/corcast (the default)
+	@:
 
 help: ## this list
 	@echo 'make TARGET [MODE=release|debug|asan|tsan] [CC=gcc|clang] [V=1]'

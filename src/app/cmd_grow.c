@@ -13,21 +13,16 @@ static const Command command = {
     .examples = "  corcast grow --terminals 4000 --seed 7 -o tree.swc\n"
                 "  corcast grow --domain ball:30 --gamma 2.55 --lambda 1 -o tree.swc\n",
     .max_operands = 0,
+    .needs_output = true,
 };
-
-static void show_progress(double fraction, void *context)
-{
-    progress_show(context, fraction);
-}
 
 static Status write_report(const char *path, const GrowReport *report, int threads, Err *err)
 {
     json_t *json = json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:i}", "generator", GENERATOR,
-                             "seconds", report->seconds, "terminals",
-                             (json_int_t)report->terminals, "target", report->target,
-                             "root_radius_mm", report->root_radius_mm, "tosses",
-                             (json_int_t)report->tosses, "rejected", (json_int_t)report->rejected,
-                             "threads", threads);
+                             "seconds", report->seconds, "terminals", (json_int_t)report->terminals,
+                             "target", report->target, "root_radius_mm", report->root_radius_mm,
+                             "tosses", (json_int_t)report->tosses, "rejected",
+                             (json_int_t)report->rejected, "threads", threads);
     return json_write(json, path, err);
 }
 
@@ -75,14 +70,9 @@ Status run_grow(int argc, char **argv, Err *err)
     Progress progress;
     if (parsed.common.help)
         goto done;
-    if (!output) {
-        status = err_set(err, STATUS_USAGE, "-o T.swc is missing; usage: corcast grow %s",
-                         command.operands);
-        goto done;
-    }
     params.seed = parsed.common.seed;
     params.toss = (GrowToss)toss;
-    params.progress = show_progress;
+    params.progress = progress_report;
     params.progress_context = &progress;
     if (!tree_format_known(output)) {
         status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .swc", output);
