@@ -37,10 +37,20 @@ test_a_tree_of_one_segment_has_stats_without_ratios() {
 }
 
 test_flow_shares_and_viscosity_law_reach_the_pressures() {
-    printf '# p_perf_mmHg: 90\n# q_perf_ml_min: 0.01\n# viscosity_law: pries\n# hematocrit: 0.45\n' >tree.swc
-    printf '# plasma_viscosity_cP: 1.2\n# terminal_flow: territory\n' >>tree.swc
-    printf '# flow_share: 3 2\n# flow_share: 4 1\n1 1 0 0 0 .1 -1\n2 3 3 0 0 .1 1\n' >>tree.swc
-    printf '3 3 4 1 0 .02 2\n4 3 4 -1 0 .02 2\n' >>tree.swc
+    cat >tree.swc <<'END'
+# p_perf_mmHg: 90
+# q_perf_ml_min: 0.01
+# viscosity_law: pries
+# hematocrit: 0.45
+# plasma_viscosity_cP: 1.2
+# terminal_flow: territory
+# flow_share: 3 2
+# flow_share: 4 1
+1 1 0 0 0 .1 -1
+2 3 3 0 0 .1 1
+3 3 4 1 0 .02 2
+4 3 4 -1 0 .02 2
+END
     run_ok corcast info tree.swc --json
     expect_json stdout '.terminal_pressure_mmHg | .min < .max and .max < 90'
     mv stdout by_pries
