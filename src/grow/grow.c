@@ -170,7 +170,8 @@ static Status add_terminal(Growth *growth, Err *err)
         if (in_a_row >= LAST_PATIENCE)
             return err_set(err, STATUS_INFEASIBLE,
                            "no room for terminal %zu of --terminals %zu in %d tries: lower "
-                           "--terminals or choose a larger --domain",
+                           "--terminals, choose a larger --domain, or move --gamma and --lambda "
+                           "towards 3 and 2",
                            network_terminals(&growth->net) + 1, growth->params->terminals,
                            in_a_row);
         if (in_a_row % PATIENCE == 0)

@@ -52,9 +52,9 @@ static void writes_the_spec_it_reads(void **state)
 static void refuses_what_is_no_domain_with_a_sentence(void **state)
 {
     (void)state;
-    const char *specs[] = {"",          "disc",     "disc:",    "disc:0",     "disc:-3",
-                           "disc:nan",  "disc:inf", "disc:1e7", "disc:5 ",    "ball:5,5",
-                           "sphere:50", "dis:50",   "discs:50", "ball:fifty", ":50"};
+    const char *specs[] = {"",         "disc",     "disc:",      "disc:0",  "disc:-3",  "disc:nan",
+                           "disc:inf", "disc:1e7", "ball:1e-7",  "disc:5 ", "ball:5,5", "sphere:50",
+                           "dis:50",   "discs:50", "ball:fifty", ":50"};
     for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) {
         Domain domain = {.radius_mm = 7.25};
         Err err = {""};

@@ -166,9 +166,10 @@ static void laws_hold_for_any_flow_pressure_and_size(void **state)
     params.toss = GROW_TOSS_TERMINAL;
     params.candidates = 1;
     params.has_inlet = true;
-    params.inlet = vec3(0.0013, -0.0007, 0);
+    params.inlet = vec3(3e-7, -7e-7, 0);
     assert_all(&params, "disc:0.0238");
     assert_all(&params, "ball:1e6");
+    assert_all(&params, "disc:1e-6");
     params.candidates = GROW_MAX_CANDIDATES;
     assert_all(&params, "ball:0.0238");
 }
@@ -431,6 +432,9 @@ static void says_what_to_change_when_the_radii_exceed_all_numbers(void **state)
     GrowParams params = grow_defaults();
     params.gamma = 0.01;
     assert_infeasible(&params, "disc:50", "--gamma 0.01");
+    params.lambda = 100;
+    params.gamma = 0.05;
+    assert_infeasible(&params, "disc:50", "no room for terminal 2 of --terminals 1000");
     params.gamma = 3;
     params.lambda = 5000;
     assert_infeasible(&params, "disc:50", "--lambda 5000");
