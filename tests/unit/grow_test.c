@@ -325,7 +325,7 @@ static void the_header_tells_how_the_tree_was_made(void **state)
     params.gamma = 2.55;
     params.lambda = 0.1;
     Tree tree = grown(&params, "disc:23.85", NULL);
-    const char *lines[] = {"generator: corcast " CORCAST_VERSION,
+    const char *lines[] = {("generator: corcast " CORCAST_VERSION),
                            "seed: 12345678901234567890",
                            "dimension: 2",
                            "domain: disc:23.85",
