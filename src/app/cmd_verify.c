@@ -139,6 +139,12 @@ static Status run_oracle(Verification *v, Err *err)
     for (int plane = ORACLE_COLOR; status == STATUS_OK && plane <= ORACLE_ID; plane++)
         status = run_oracle_plane(v, scene, (OraclePlane)plane, err);
     free(scene);
+    char *picture = NULL;
+    if (status == STATUS_OK)
+        status = file_join(v->folder, "povray.png", &picture, err);
+    if (status == STATUS_OK)
+        status = frames_write_planes(&v->povray, picture, err);
+    free(picture);
     return status;
 }
 

@@ -54,16 +54,22 @@ static Status write_ids(const IdPlane *ids, const char *path, Err *err)
     return status;
 }
 
-Status frames_write(const Frame *frame, const char *path, int bits, bool color_plane,
-                    const char *provenance, Err *err)
+Status frames_write_planes(const Frame *frame, const char *path, Err *err)
 {
-    if (color_plane)
-        TRY(write_plane(&frame->color, path, ".color.pfm", err));
     if (frame->depth.values)
         TRY(write_plane(&frame->depth, path, ".depth.pfm", err));
     if (frame->normal.values)
         TRY(write_plane(&frame->normal, path, ".normal.pfm", err));
     if (frame->id.ids)
         TRY(write_ids(&frame->id, path, err));
+    return STATUS_OK;
+}
+
+Status frames_write(const Frame *frame, const char *path, int bits, bool color_plane,
+                    const char *provenance, Err *err)
+{
+    if (color_plane)
+        TRY(write_plane(&frame->color, path, ".color.pfm", err));
+    TRY(frames_write_planes(frame, path, err));
     return frames_write_color(&frame->color, path, bits, provenance, err);
 }

@@ -8,9 +8,12 @@
 /* STATUS_USAGE when `path` is no image file, or is standard output although planes are wanted. */
 MUST_CHECK Status frames_check_output(const char *path, bool planes, Err *err);
 
-/* Writes the colour as `path` (.png and .ppm sRGB, .pfm linear) and the planes that the frame has as
- * P.depth.pfm, P.normal.pfm, P.id.ppm, and P.color.pfm when `color_plane`. `provenance` is the command
- * line. */
+/* Writes the planes that the frame has beside the picture `path`: P.depth.pfm, P.normal.pfm and
+ * P.id.ppm for P.png. */
+MUST_CHECK Status frames_write_planes(const Frame *frame, const char *path, Err *err);
+
+/* Writes these planes, the linear colour as P.color.pfm when `color_plane`, and last the picture itself
+ * (.png and .ppm sRGB, .pfm linear). `provenance` is the command line. */
 MUST_CHECK Status frames_write(const Frame *frame, const char *path, int bits, bool color_plane,
                                const char *provenance, Err *err);
 
