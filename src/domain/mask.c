@@ -95,7 +95,7 @@ static bool mask_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 
 /* Walks the line index = from + t along, 0 <= t <= 1. */
 typedef struct VoxelWalk {
-    double from[3], along[3];
+    double from[3], along[3], inverse[3]; /* 1 / along */
     int64_t voxel[3], last[3];
 } VoxelWalk;
 
@@ -108,7 +108,7 @@ static double leave(const VoxelWalk *walk, int *axis)
         if (walk->voxel[i] == walk->last[i])
             continue;
         double face = (double)walk->voxel[i] + (walk->along[i] > 0);
-        double t = (face - walk->from[i]) / walk->along[i];
+        double t = (face - walk->from[i]) * walk->inverse[i];
         if (*axis < 0 || t < first) {
             first = t;
             *axis = i;
@@ -128,6 +128,7 @@ static bool mask_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     index_of(domain->mask, b, to);
     for (int axis = 0; axis < 3; axis++) {
         walk.along[axis] = to[axis] - walk.from[axis];
+        walk.inverse[axis] = 1 / walk.along[axis];
         walk.voxel[axis] = (int64_t)floor(walk.from[axis]);
         walk.last[axis] = (int64_t)floor(to[axis]);
     }

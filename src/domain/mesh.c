@@ -1,7 +1,7 @@
 /* A point is inside when a ray from it crosses the surface an odd number of times. The ray runs
- * nearly along x, so that the box around it is thin and the tree of triangles prunes well; one that
- * comes too near to an edge, or to the plane of a triangle it meets, to be counted safely is
- * replaced by one of another direction. The directions are fixed, so that the answer is, too.
+ * nearly along an axis, so that the box around it is thin and meets few triangles; one that comes
+ * too near to an edge, or to the plane of a triangle, to be counted safely is replaced by one of
+ * another direction. The directions are fixed, so that the answer is, too.
  *
  * Crossings of a ray and contacts of a segment are found as by Moeller & Trumbore (J. Graphics
  * Tools 2 (1997), 21). */
@@ -47,7 +47,8 @@ static bool count_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *count)
     bool safe = true;
     uint32_t i;
     *count = 0;
-    for (BoxWalk walk = boxwalk_segment(mesh->tree, point, end); boxwalk_next(&walk, &i);) {
+    Box around = box_with_ball(box_with_ball(box_empty(), point, 0), end, 0);
+    for (BoxWalk walk = boxwalk_box(mesh->tree, around); boxwalk_next(&walk, &i);) {
         Crossing crossing;
         if (!cross_plane(&mesh->triangles[i], point, d, &crossing)) {
             safe = false;
@@ -70,7 +71,7 @@ static bool is_odd(const Mesh *mesh, const Box *bounds, Vec3 point)
 {
     static const Vec3 directions[] = {
         {1, 0.0013713, 0.0007179},   {-1, 0.0031415, -0.0019321}, {0.0017711, 1, 0.0009173},
-        {-0.0023131, -1, 0.0037191}, {0.0041381, 0.0011933, 1},   {0.4113173, 0.7335191, 0.5411933},
+        {-0.0023131, -1, 0.0037191}, {0.0041381, 0.0011933, 1},   {-0.0017393, 0.0029173, -1},
     };
     if (!is_within(bounds, point))
         return false;

@@ -28,8 +28,8 @@ static bool same(Vec3 a, Vec3 b)
 static Status add_point(Reader *reader, Vec3 point, Err *err)
 {
     Polygon *polygon = reader->polygon;
-    Edge *last = polygon->edges + polygon->n - 1;
     if (polygon->n > reader->first) {
+        Edge *last = &polygon->edges[polygon->n - 1];
         if (same(last->a, point))
             return STATUS_OK;
         last->b = point;
