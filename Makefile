@@ -46,7 +46,7 @@ NIFTI_HEADER := $(wildcard $(NIFTI)/nifti2_io.h)
 CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -ffp-contract=off $(WARNINGS)
 CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) $(shell pkg-config --cflags $(PACKAGES) 2>/dev/null)
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
-LDLIBS := $(PACKAGE_LIBS) -lnifti2 -lpthread -lm
+LDLIBS := $(PACKAGE_LIBS) -lnifti2 -lznz -lpthread -lm
 
 .PHONY: all deps demo check program unit unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages

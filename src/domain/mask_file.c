@@ -1,10 +1,13 @@
 /* NIfTI files are read by the library of the format's authors. Its errors go to standard error in
- * its own words, so it is told to be quiet, and the header is looked at before the voxels are. */
+ * its own words, so it is told to be quiet, and has to find the header good before it is to make
+ * an image of it; the sizes are looked at before the voxels are read. It would look for the voxels
+ * of a.nii.gz in a.nii if there is one, so the file is opened here. */
 #include "domain/mask.h"
 
 #include "image/image.h"
 #include <nifti2_io.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 Status mask_init(Mask *mask, const char *path, const int64_t n[3], Err *err)
@@ -84,6 +87,21 @@ static void place(Mask *mask, const nifti_image *image)
     }
 }
 
+static Status load_voxels(const char *path, nifti_image *image, Err *err)
+{
+    int64_t size = image->nvox * image->nbyper;
+    TRY(mem_calloc(&image->data, (size_t)size, 1, "bytes of voxels", err));
+    znzFile file = znzopen(path, "rb", nifti_is_gzfile(path));
+    bool whole = !znz_isnull(file) &&
+                 znzseek(file, (znz_off_t)image->iname_offset, SEEK_SET) >= 0 &&
+                 nifti_read_buffer(file, image->data, size, image) == size;
+    znzclose(file);
+    if (!whole)
+        return err_set(err, STATUS_INPUT, "%s: ends before all of its %lld x %lld x %lld voxels",
+                       path, (long long)image->nx, (long long)image->ny, (long long)image->nz);
+    return STATUS_OK;
+}
+
 static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err *err)
 {
     const int64_t n[3] = {image->nx, image->ny, image->nz};
@@ -93,9 +111,7 @@ static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err 
         return err_set(err, STATUS_INPUT,
                        "%s: holds more than one volume (%lld dimensions); a mask is a single one",
                        path, (long long)image->ndim);
-    if (nifti_image_load(image) != 0)
-        return err_set(err, STATUS_INPUT, "%s: ends before all of its %lld x %lld x %lld voxels",
-                       path, (long long)n[0], (long long)n[1], (long long)n[2]);
+    TRY(load_voxels(path, image, err));
     bool scaled = image->scl_slope != 0;
     for (size_t i = 0; i < count; i++) {
         double value = 0;
@@ -112,6 +128,21 @@ static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err 
     return STATUS_OK;
 }
 
+/* With the voxels in the same file. */
+static bool has_good_header(const char *path)
+{
+    int version = 0;
+    void *header = nifti_read_header(path, &version, 0);
+    bool good = false;
+    if (header && version == 1)
+        good = nifti_hdr1_looks_good(header) && NIFTI_ONEFILE(*(nifti_1_header *)header);
+    else if (header && version == 2)
+        good = nifti_hdr2_looks_good(header) &&
+               memcmp(((nifti_2_header *)header)->magic, "n+2", 4) == 0;
+    free(header);
+    return good;
+}
+
 Status mask_read_nifti(Mask *mask, const char *path, Err *err)
 {
     if (access(path, R_OK) != 0) { /* the library would try other endings of the name */
@@ -121,7 +152,7 @@ Status mask_read_nifti(Mask *mask, const char *path, Err *err)
         free(bytes);
     }
     nifti_set_debug_level(0);
-    nifti_image *image = nifti_image_read(path, 0);
+    nifti_image *image = has_good_header(path) ? nifti_image_read(path, 0) : NULL;
     if (!image)
         return err_set(err, STATUS_INPUT, "%s: is not a NIfTI-1 or NIfTI-2 file", path);
     Status status = read_voxels(mask, path, image, err);

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <cmocka.h>
+#include <znzlib.h>
 
 static void must(Status status, const Err *err)
 {
@@ -307,6 +308,50 @@ static void a_nifti_mask_has_units_and_a_scale(void **state)
     domain_release(&domain);
 }
 
+static void turn_round(Nifti *nifti, size_t at, size_t size, size_t count)
+{
+    for (char *item = nifti->bytes + at; count-- > 0; item += size)
+        for (size_t i = 0; i < size / 2; i++) {
+            char byte = item[i];
+            item[i] = item[size - 1 - i];
+            item[size - 1 - i] = byte;
+        }
+}
+
+static void a_nifti_mask_may_be_big_endian(void **state)
+{
+    (void)state;
+    Nifti nifti = new_nifti();
+    turn_round(&nifti, 0, 4, 1);
+    turn_round(&nifti, 40, 2, 8);
+    turn_round(&nifti, 70, 2, 2);
+    turn_round(&nifti, 76, 4, 8);
+    turn_round(&nifti, 108, 4, 1);
+    turn_round(&nifti, NIFTI_HEADER, 2, NIFTI_VOXELS);
+    Domain domain = parse_nifti(&nifti);
+    assert_true(fabs(domain_volume(&domain) - 16 * 15) < 1e-9);
+    assert_true(domain_inside(&domain, vec3(0, 6, 0), 0));
+    assert_false(domain_inside(&domain, vec3(6, 3, 0), 0));
+    domain_release(&domain);
+}
+
+/* The library would find a.nii first. */
+static void a_compressed_mask_is_read_beside_one_that_is_not(void **state)
+{
+    (void)state;
+    Nifti plain = new_nifti();
+    write_bytes("a.nii", plain.bytes, NIFTI_SIZE);
+    memset(plain.bytes + NIFTI_HEADER, 1, 2 * NIFTI_VOXELS);
+    znzFile file = znzopen("a.nii.gz", "wb", 1);
+    assert_int_equal(znzwrite(plain.bytes, 1, NIFTI_SIZE, file), NIFTI_SIZE);
+    znzclose(file);
+    Domain domain = parse("mask:a.nii.gz");
+    assert_true(fabs(domain_volume(&domain) - 24 * 15) < 1e-9);
+    domain_release(&domain);
+    unlink("a.nii");
+    unlink("a.nii.gz");
+}
+
 static void nifti_files_that_are_no_mask_are_refused(void **state)
 {
     (void)state;
@@ -319,6 +364,9 @@ static void nifti_files_that_are_no_mask_are_refused(void **state)
     Nifti bad = nifti;
     put(&bad, 40, volumes, sizeof volumes);
     expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE, "more than one volume");
+    bad = nifti;
+    put(&bad, 344, "ni1", 4); /* voxels in another file */
+    expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE, "is not a NIfTI-1");
     const int16_t huge[8] = {3, 32767, 32767, 32767, 1, 1, 1, 1};
     bad = nifti;
     put(&bad, 40, huge, sizeof huge);
@@ -456,6 +504,8 @@ int main(void)
         cmocka_unit_test(masks_that_hold_nothing_are_refused),
         cmocka_unit_test(a_nifti_mask_is_placed_by_sform_else_qform_else_voxel_size),
         cmocka_unit_test(a_nifti_mask_has_units_and_a_scale),
+        cmocka_unit_test(a_nifti_mask_may_be_big_endian),
+        cmocka_unit_test(a_compressed_mask_is_read_beside_one_that_is_not),
         cmocka_unit_test(nifti_files_that_are_no_mask_are_refused),
         cmocka_unit_test(meshes_that_enclose_nothing_are_refused),
         cmocka_unit_test(files_that_are_no_stl_are_refused),
