@@ -48,12 +48,13 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) $(shell pkg-config --cflags $(
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo check program unit unit-programs layers format format-check asan tsan \
+.PHONY: all deps demo validate check program unit unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
 
 all: build/corcast ## the program, build/corcast (the default)
+	@:
 
 help: ## this list
 	@echo 'make TARGET [MODE=release|debug|asan|tsan] [CC=gcc|clang] [V=1]'
@@ -66,6 +67,11 @@ demo: ## grow a tree, have POV-Ray and corcast draw it, verify; results in out/d
 	$(Q)tools/deps build run
 	$(Q)$(AGAIN) all
 	$(Q)tools/demo
+
+validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
+	$(Q)tools/deps build check
+	$(Q)$(AGAIN) all
+	$(Q)tools/validate
 
 check: ## every test; ends in "N passed, N failed"
 	$(Q)tools/deps build run check

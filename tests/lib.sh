@@ -113,29 +113,44 @@ wait_for() {
     return 1
 }
 
+# run_test NUMBER NAME: one test in its own folder; its TAP in the file NUMBER.tap beside it.
+run_test() {
+    local number=$1 name=$2 folder=$tests_folder/$1 result reason
+    mkdir "$folder"
+    (cd "$folder" && "test_$name") 9>"$folder.reason" >"$folder.output" 2>&1
+    result=$?
+    reason=$(cat "$folder.reason")
+    case $result in
+    0) echo "ok $number - $name" ;;
+    77) echo "ok $number - $name # SKIP $reason" ;;
+    *)
+        echo "not ok $number - $name"
+        printf '%s\n' "${reason:-ended with status $result: $(tail -3 "$folder.output")}" | sed 's/^/# /'
+        ;;
+    esac >"$folder.tap"
+    chmod -R u+w "$folder"
+    rm -rf "$folder"
+}
+
+# Runs the tests named, all of the file by default, TEST_JOBS (1) at a time.
 run_tests() {
-    local reason name number=0 failed=0 result names
-    names=${*:-$(sed -n 's/^test_\([a-z0-9_]*\)() *{.*/\1/p' "$0")}
+    local number=0 name
     tests_folder=$(mktemp -d)
     trap 'rm -rf "$tests_folder"' EXIT
-    for name in $names; do
+    for name in ${*:-$(sed -n 's/^test_\([a-z0-9_]*\)() *{.*/\1/p' "$0")}; do
         number=$((number + 1))
-        mkdir "$tests_folder/test"
-        (cd "$tests_folder/test" && "test_$name") 9>"$tests_folder/reason" >"$tests_folder/output" 2>&1
-        result=$?
-        reason=$(cat "$tests_folder/reason")
-        case $result in
-        0) echo "ok $number - $name" ;;
-        77) echo "ok $number - $name # SKIP $reason" ;;
-        *)
-            failed=1
-            echo "not ok $number - $name"
-            printf '%s\n' "${reason:-ended with status $result: $(tail -3 "$tests_folder/output")}" | sed 's/^/# /'
-            ;;
-        esac
-        chmod -R u+w "$tests_folder/test"
-        rm -rf "$tests_folder/test" "$tests_folder/reason"
+        if [ "${TEST_JOBS:-1}" -eq 1 ]; then
+            run_test $number "$name"
+            cat "$tests_folder/$number.tap"
+        else
+            [ "$(jobs -rp | wc -l)" -lt "$TEST_JOBS" ] || wait -n
+            run_test $number "$name" &
+        fi
     done
+    if [ "${TEST_JOBS:-1}" -ne 1 ]; then
+        wait
+        cat $(seq -f "$tests_folder/%g.tap" $number)
+    fi
     echo "1..$number"
-    return $failed
+    ! grep -q '^not ok' $(seq -f "$tests_folder/%g.tap" $number)
 }

@@ -14,6 +14,7 @@ static const Command command = {
                 "  corcast povray tree.pov --plane depth -o depth.png\n",
     .min_operands = 1,
     .max_operands = 1,
+    .needs_output = true,
 };
 
 /* The size that the scene's "// Size: WxH" comment asks for. */
@@ -29,11 +30,6 @@ static Status size_of_scene(const char *path, int size[2], Err *err)
     if (found)
         return STATUS_OK;
     return err_set(err, STATUS_USAGE, "%s has no line '// Size: WxH'; give --size", path);
-}
-
-static void show_progress(double fraction, void *context)
-{
-    progress_show(context, fraction);
 }
 
 Status run_povray(int argc, char **argv, Err *err)
@@ -59,9 +55,8 @@ Status run_povray(int argc, char **argv, Err *err)
     OracleRun run;
     if (parsed.common.help)
         goto done;
-    if (!output || strcmp(file_extension(output), "png") != 0) {
-        status = err_set(err, STATUS_USAGE,
-                         output ? "-o: '%s' does not end in .png" : "-o P.png is missing", output);
+    if (strcmp(file_extension(output), "png") != 0) {
+        status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png", output);
         goto done;
     }
     if (!has_size)
@@ -74,7 +69,7 @@ Status run_povray(int argc, char **argv, Err *err)
                            .antialias = antialias,
                            .threads = parsed.common.threads,
                            .plane = (OraclePlane)plane,
-                           .progress = show_progress,
+                           .progress = progress_report,
                            .progress_context = &progress};
     progress_start(&progress, "POV-Ray", parsed.common.quiet);
     status = oracle_run(&params, &run, err);

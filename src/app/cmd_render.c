@@ -14,6 +14,7 @@ static const Command command = {
                 "  corcast render tree.swc --planes depth,normal,id -o tree.png\n",
     .min_operands = 1,
     .max_operands = 1,
+    .needs_output = true,
 };
 
 /* --planes: which planes are written beside the picture. */
@@ -70,16 +71,14 @@ Status run_render(int argc, char **argv, Err *err)
     Frame frame = {0};
     RenderStats stats;
     char *line = NULL;
+    Progress progress;
     RenderParams params = {.threads = parsed.common.threads,
+                           .progress = progress_report,
+                           .progress_context = &progress,
                            .antialias = picture.antialias,
                            .shadows = picture.stage.shadows};
     if (parsed.common.help)
         goto done;
-    if (!output) {
-        status = err_set(err, STATUS_USAGE, "-o P.png is missing; usage: corcast render %s",
-                         command.operands);
-        goto done;
-    }
     if (bits != 8 && bits != 16) {
         status = err_set(err, STATUS_USAGE, "--bits: '%d' is not 8 or 16", bits);
         goto done;
@@ -90,7 +89,10 @@ Status run_render(int argc, char **argv, Err *err)
     TRY_GOTO(frames_check_output(output, planes != NULL, err));
     TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 40, err));
     TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, err));
-    TRY_GOTO(render(&scene, &params, &frame, &stats, err));
+    progress_start(&progress, "rendering", parsed.common.quiet);
+    status = render(&scene, &params, &frame, &stats, err);
+    progress_end(&progress);
+    TRY_GOTO(status);
     TRY_GOTO(command_line_text("render", argc, argv, &line, err));
     TRY_GOTO(frames_write(&frame, output, bits, color_plane, line, err));
     if (json)

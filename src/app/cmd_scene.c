@@ -11,6 +11,7 @@ static const Command command = {
                 "  corcast scene tree.swc --model isosurface --size 2000x2000 -o tree.pov\n",
     .min_operands = 1,
     .max_operands = 1,
+    .needs_output = true,
 };
 
 Status run_scene(int argc, char **argv, Err *err)
@@ -33,11 +34,6 @@ Status run_scene(int argc, char **argv, Err *err)
     Scene scene = {0};
     if (parsed.common.help)
         goto done;
-    if (!output) {
-        status = err_set(err, STATUS_USAGE, "-o S.pov is missing; usage: corcast scene %s",
-                         command.operands);
-        goto done;
-    }
     if (strcmp(output, "-") != 0 && strcmp(file_extension(output), "pov") != 0) {
         status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pov", output);
         goto done;

@@ -19,6 +19,7 @@ static const Command command = {
                 "  corcast verify tree.swc --model isosurface --size 400x400 -o check\n",
     .min_operands = 1,
     .max_operands = 1,
+    .needs_output = true,
 };
 
 typedef struct Verification {
@@ -46,27 +47,28 @@ static void verification_release(Verification *v)
         free(v->commands[i]);
 }
 
-static void show_progress(double fraction, void *context)
-{
-    progress_show(context, fraction);
-}
-
 /* ---- the two sides ------------------------------------------------------------------------------ */
 
 static Status render_native(Verification *v, const char *provenance, Err *err)
 {
+    Progress progress;
     const RenderParams params = {.threads = v->common->threads,
                                  .antialias = v->picture->antialias,
                                  .shadows = v->picture->stage.shadows,
                                  .want_color = true,
                                  .want_depth = true,
                                  .want_normal = true,
-                                 .want_id = true};
-    TRY(render(&v->scene, &params, &v->native, &v->stats, err));
+                                 .want_id = true,
+                                 .progress = progress_report,
+                                 .progress_context = &progress};
+    progress_start(&progress, "corcast", v->common->quiet);
+    Status status = render(&v->scene, &params, &v->native, &v->stats, err);
+    progress_end(&progress);
+    TRY(status);
     TRY(picture_from_plane(&v->native_picture, &v->native.color, ENCODING_SRGB, 8, err));
     char *path = NULL;
     TRY(file_join(v->folder, "native.png", &path, err));
-    Status status = frames_write(&v->native, path, 8, false, provenance, err);
+    status = frames_write(&v->native, path, 8, false, provenance, err);
     free(path);
     return status;
 }
@@ -114,7 +116,7 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
                                  .antialias = v->picture->antialias,
                                  .threads = v->common->threads,
                                  .plane = plane,
-                                 .progress = show_progress,
+                                 .progress = progress_report,
                                  .progress_context = &progress};
     Status status = oracle_command(&params, &v->commands[v->n_commands], err);
     if (status == STATUS_OK) {
@@ -238,9 +240,8 @@ Status run_verify(int argc, char **argv, Err *err)
                       .folder = folder};
     if (parsed.common.help)
         goto done;
-    if (!folder || strcmp(folder, "-") == 0) {
-        status = err_set(err, STATUS_USAGE, "-o DIR is missing; usage: corcast verify %s",
-                         command.operands);
+    if (strcmp(folder, "-") == 0) {
+        status = err_set(err, STATUS_USAGE, "-o: a report is a folder, not standard output");
         goto done;
     }
     TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 120, err));

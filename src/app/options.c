@@ -123,6 +123,18 @@ static Status set_vector(const Option *option, const char *value, Err *err)
     return STATUS_OK;
 }
 
+static Status set_color(const Option *option, const char *value, Err *err)
+{
+    double rgb[3];
+    bool read = read_numbers(value, ',', 3, 3, rgb);
+    for (int i = 0; i < 3; i++)
+        read = read && rgb[i] >= 0 && rgb[i] <= 1;
+    if (!read)
+        return wrong(option, value, "R,G,B, three numbers from 0 to 1 parted by commas", err);
+    *(Vec3 *)option->where = vec3(rgb[0], rgb[1], rgb[2]);
+    return STATUS_OK;
+}
+
 static Status set_range(const Option *option, const char *value, Err *err)
 {
     double range[2];
@@ -167,6 +179,8 @@ static Status set_option(const Option *option, const char *value, Err *err)
         return set_number(option, value, err);
     case OPTION_VECTOR:
         return set_vector(option, value, err);
+    case OPTION_COLOR:
+        return set_color(option, value, err);
     case OPTION_SIZE:
         return set_size(option, value, err);
     case OPTION_RANGE:
@@ -291,8 +305,8 @@ static const char *argument_name(const Option *option)
     static const char *const names[] = {
         [OPTION_FLAG] = "",         [OPTION_SWITCH] = "on|off", [OPTION_TEXT] = "TEXT",
         [OPTION_WHOLE] = "N",       [OPTION_SEED] = "N",        [OPTION_COUNT] = "N",
-        [OPTION_NUMBER] = "NUMBER", [OPTION_VECTOR] = "X,Y,Z",  [OPTION_SIZE] = "WxH",
-        [OPTION_RANGE] = "A,B",     [OPTION_CHOICE] = "NAME",
+        [OPTION_NUMBER] = "NUMBER", [OPTION_VECTOR] = "X,Y,Z",  [OPTION_COLOR] = "R,G,B",
+        [OPTION_SIZE] = "WxH",      [OPTION_RANGE] = "A,B",     [OPTION_CHOICE] = "NAME",
     };
     return option->argument ? option->argument : names[option->kind];
 }
@@ -342,6 +356,10 @@ Status options_parse(const Command *command, const Option *const tables[], int a
         print_help(&reader);
         return STATUS_OK;
     }
+    const Option *output = find_option(&reader, "output", strlen("output"));
+    if (status == STATUS_OK && command->needs_output && !*(const char **)output->where)
+        status = err_set(err, STATUS_USAGE, "-o %s is missing; usage: corcast %s %s",
+                         output->argument, command->name, command->operands);
     if (status == STATUS_OK && parsed->n_operands < command->min_operands)
         status = err_set(err, STATUS_USAGE, "a file is missing; usage: corcast %s %s",
                          command->name, command->operands);

@@ -14,6 +14,7 @@ typedef enum OptionKind {
     OPTION_COUNT,  /* size_t, in [low, high] */
     OPTION_NUMBER, /* double, finite, in [low, high] */
     OPTION_VECTOR, /* Vec3: X,Y or X,Y,Z */
+    OPTION_COLOR,  /* Vec3: R,G,B, each in [0, 1] */
     OPTION_SIZE,   /* int[2]: WxH */
     OPTION_RANGE,  /* double[2]: A,B */
     OPTION_CHOICE  /* int: index into choices */
@@ -38,6 +39,7 @@ typedef struct Command {
     const char *operands; /* "T.swc -o P.png" */
     const char *examples; /* lines */
     int min_operands, max_operands;
+    bool needs_output; /* the option output must be given */
 } Command;
 
 typedef struct Common {

@@ -58,8 +58,8 @@ void picture_options_init(PictureOptions *options)
         {"look", OPTION_TEXT, &options->look, NULL, 0, huge, NULL, "NAME",
          "a file of templates/looks, or a path (cast)"},
         {"shadows", OPTION_SWITCH, &stage->shadows, NULL, 0, 0, NULL, NULL, "(off)"},
-        {"background", OPTION_VECTOR, &options->background, &options->has_background, 0, 1, NULL,
-         "R,G,B", "sRGB, each from 0 to 1"},
+        {"background", OPTION_COLOR, &options->background, &options->has_background, 0, 0, NULL,
+         NULL, "sRGB, each from 0 to 1"},
         {0},
     };
     memcpy(options->table, table, sizeof table);
@@ -82,11 +82,6 @@ static Status check_camera(const PictureOptions *options, Err *err)
         return err_set(err, STATUS_USAGE, "--look-at needs --location");
     if (stage->has_up && !(vec3_length(stage->up) > 0))
         return err_set(err, STATUS_USAGE, "--up: the vector must not be zero");
-    const double *rgb = &options->background.x;
-    for (int i = 0; i < 3; i++)
-        if (!(rgb[i] >= 0 && rgb[i] <= 1))
-            return err_set(err, STATUS_USAGE,
-                           "--background: %g is not a number from 0 to 1; give R,G,B", rgb[i]);
     return STATUS_OK;
 }
 

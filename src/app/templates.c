@@ -19,7 +19,8 @@ Status templates_folder(char **folder, Err *err)
     if (length > 0) {
         program[length] = '\0';
         program[file_name(program) - program] = '\0';
-        static const char *const places[] = {"../templates", "../share/corcast/templates"};
+        static const char *const places[] = {"../templates", "../../templates",
+                                             "../share/corcast/templates"};
         for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
             char *path = NULL;
             TRY(file_join(program, places[i], &path, err));

@@ -4,7 +4,7 @@
 
 #include "base/base.h"
 
-/* The folder: CORCAST_TEMPLATES, or beside the program (../templates), or installed
+/* The folder: CORCAST_TEMPLATES, or beside the build folder (../templates, ../../templates), or installed
  * (../share/corcast/templates); in *folder (owned). STATUS_IO when there is none. */
 MUST_CHECK Status templates_folder(char **folder, Err *err);
 

@@ -29,6 +29,11 @@ void progress_show(Progress *progress, double fraction)
     fflush(stderr);
 }
 
+void progress_report(double fraction, void *progress)
+{
+    progress_show(progress, fraction);
+}
+
 void progress_end(Progress *progress)
 {
     if (progress->shown)

@@ -15,6 +15,8 @@ typedef struct Progress {
 void progress_start(Progress *progress, const char *what, bool quiet);
 /* Shows `fraction` in [0, 1], at most ten times a second. */
 void progress_show(Progress *progress, double fraction);
+/* progress_show for a library's callback, whose context is the Progress. */
+void progress_report(double fraction, void *progress);
 /* Clears the line. */
 void progress_end(Progress *progress);
 

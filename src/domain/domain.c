@@ -83,9 +83,9 @@ Status domain_load_file_name(Domain *domain, const char *values, Err *err)
     if (length == 0)
         return err_set(err, STATUS_USAGE, "the name of a file is missing; use %s:%s", ops->name,
                        ops->parameters);
-    if (has_mm && !(mm > 0 && mm <= DOMAIN_MAX_MM))
+    if (has_mm && !(mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
         return err_set(err, STATUS_USAGE,
-                       "the unit of the file must be a number of mm above 0 and at most %.0f",
+                       "the unit of the file must be a number of mm from %g to %g", DOMAIN_MIN_MM,
                        DOMAIN_MAX_MM);
     TRY(mem_calloc(&domain->file, length + 1, 1, "bytes of text", err));
     memcpy(domain->file, values, length);

@@ -23,7 +23,9 @@ typedef enum DomainKind {
 
 enum { DOMAIN_MAX_SIZES = 5 };
 
-/* The largest length in a text, and the farthest a file's points may lie from the origin. */
+/* A nanometre and a kilometre: the range of the lengths in a text, and how far from the origin a
+ * file's points may lie. */
+#define DOMAIN_MIN_MM 1e-6
 #define DOMAIN_MAX_MM 1e6
 
 typedef struct Polygon Polygon;

@@ -18,8 +18,8 @@ static double square(double x)
 
 /* The numbers of one shape's text. */
 typedef struct Form {
-    int n_positive; /* that must be there, each above 0 */
-    int n_optional; /* of any sign */
+    int n_positive; /* that must be there, each at least DOMAIN_MIN_MM */
+    int n_optional; /* of either sign */
     const char *example;
 } Form;
 
@@ -33,12 +33,12 @@ static Status load_sizes(Domain *domain, const DomainOps *ops, const Form *form,
         if (length < sizeof number)
             memcpy(number, at, length);
         double value = 0;
-        bool good = number_parse(number, &value) && fabs(value) <= DOMAIN_MAX_MM;
-        if (!good || (n < form->n_positive && !(value > 0)))
+        double least = n < form->n_positive ? DOMAIN_MIN_MM : -DOMAIN_MAX_MM;
+        if (!number_parse(number, &value) || !(value >= least && value <= DOMAIN_MAX_MM))
             return err_set(err, STATUS_USAGE,
-                           "'%.*s' is not a number of mm %sat most %.0f; %s:%s, as in %s:%s",
-                           (int)length, at, n < form->n_positive ? "above 0 and " : "of magnitude ",
-                           DOMAIN_MAX_MM, ops->name, ops->parameters, ops->name, form->example);
+                           "'%.*s' is not a number of mm from %g to %g; %s:%s, as in %s:%s",
+                           (int)length, at, least, DOMAIN_MAX_MM, ops->name, ops->parameters,
+                           ops->name, form->example);
         if (n < most)
             domain->size[n] = value;
         at = at[length] ? at + length + 1 : NULL;

@@ -247,6 +247,9 @@ static Status put_macros(const Scene *scene, const PovrayParams *params, Text *o
     if (scene->model != SCENE_ISOSURFACE)
         return expand(&values, params, "primitives.inc", out, err);
     text_puts(add_value(&values, "many_colors"), scene->uniform_color ? "0" : "1");
+    text_number(add_value(&values, "log_floor"), LOG_FORM_FLOOR);
+    text_number(add_value(&values, "log_ceiling"), LOG_FORM_CEILING);
+    text_printf(add_value(&values, "cell_overlap"), "%d", CELL_OVERLAP);
     put_segments(add_value(&values, "segments"), scene);
     return expand(&values, params, "isosurface.inc", out, err);
 }

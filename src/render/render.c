@@ -79,6 +79,8 @@ static void render_row(size_t row, int worker, void *context)
 {
     const Job *job = context;
     const Camera *camera = &job->scene->camera;
+    if (worker == 0 && job->params->progress)
+        job->params->progress((double)row / camera->height, job->params->progress_context);
     for (int i = 0; i < camera->width; i++) {
         size_t pixel = row * (size_t)camera->width + (size_t)i;
         Ray ray = camera_ray(camera, i, (double)row);

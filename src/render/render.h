@@ -13,6 +13,8 @@ typedef struct RenderParams {
                     * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
     bool shadows;
     bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
+    void (*progress)(double fraction, void *context);  /* called by one thread; may be NULL */
+    void *progress_context;
 } RenderParams;
 
 typedef struct RenderStats {

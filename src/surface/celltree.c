@@ -16,13 +16,15 @@
  *                              <= 2 ln sum exp(q_i L^2 / 2),
  * and grad (log form) = -grad Phi / (Phi L): s_min |grad| <= sqrt(2 ln(sum exp(q_i L^2 / 2))) / L,
  * which grows with Phi. Equality for one term, and for n that coincide. */
-#include "surface/surface.h"
+#include "surface/potential.h"
 
+#include <float.h>
 #include <stdlib.h>
 
-/* Bounds that add up to less than this leave the surface out. The missing hundredth of the level
+/* There is no surface where the potential is below or above these. The hundredth of the level
  * covers a thousand dropped terms, and an erf approximated to 2.8e-4 in four terms. */
 static const double empty_below = 0.99 * FIELD_LEVEL;
+static const double full_above = 1.01 * FIELD_LEVEL;
 
 /* A term matters for the size of a cell when its bound is above this. */
 static const double significant = 1e-2;
@@ -30,14 +32,20 @@ static const double significant = 1e-2;
 /* accuracy = radius / radii_per_accuracy */
 static const double radii_per_accuracy = 300;
 
-/* Down to a term of LOG_FORM_FLOOR / 10 the tanh form of erf is at most this much steeper, relative
- * to sqrt(-2 ln phi), than a proven bound allows; from 1e-3 up it is within it. */
+/* With erf approximated by tanh, s |A'| is at most this times A sqrt(-2 ln A) down to A =
+ * LOG_FORM_FLOOR / 10, and within the bound of the exact form from A = 1e-3 up (tabulated). */
 static const double tanh_steepness = 1.18;
 
-static const size_t max_cells = 4000000;
+static const size_t max_cells = 1000000;
+
+/* A term's bound is peak exp(-decay dist^2), above the cut-off up to dist^2 = reach2. */
+typedef struct Support {
+    double peak, decay, reach2;
+} Support;
 
 typedef struct Builder {
     const FieldSegment *segments;
+    Support *supports; /* one a segment */
     double beta;
     double root_side;
     uint32_t *stack; /* the lists of the cubes from the first down to the current one */
@@ -81,11 +89,14 @@ static Status filter_terms(Builder *builder, const TermList *from, Box box, Term
                     sizeof *builder->stack, "terms", err));
     TermList list = {builder->depth, 0, 0, HUGE_VAL, 0, HUGE_VAL};
     for (size_t i = from->first; i < from->first + from->count; i++) {
-        const FieldSegment *segment = &builder->segments[builder->stack[i]];
-        double bound = potential_term_bound(segment, box);
-        if (bound <= TERM_CUTOFF)
+        uint32_t number = builder->stack[i];
+        const FieldSegment *segment = &builder->segments[number];
+        const Support *support = &builder->supports[number];
+        double distance2 = segment_box_distance2(segment, &box);
+        if (!(distance2 < support->reach2))
             continue;
-        builder->stack[list.first + list.count++] = builder->stack[i];
+        builder->stack[list.first + list.count++] = number;
+        double bound = support->peak * exp(-support->decay * distance2);
         list.bound_sum += bound;
         list.smallest_radius = fmin(list.smallest_radius, segment->radius_mm);
         list.largest_radius = fmax(list.largest_radius, segment->radius_mm);
@@ -110,18 +121,25 @@ static double gradient_bound(const Builder *builder, const TermList *terms, doub
     return sqrt(log(sum) / half_l2);
 }
 
-/* Whether the potential at the centre is so small that it cannot reach the level in the cube. */
-static bool is_outside(const Builder *builder, const TermList *terms, const Cube *cube,
-                       double margin)
+/* Whether the potential at the centre proves that the level is not met in the cube widened by
+ * `margin`: it is too small to reach the level by the bound of the log form's gradient, or so large
+ * that it stays above, each term losing at most the largest phi sqrt(-2 ln phi) / s, exp(-1/2) / s,
+ * a mm. */
+static bool misses_surface(const Builder *builder, const TermList *terms, const Cube *cube,
+                           double margin)
 {
     Vec3 center = box_center(cube_box(cube, 0));
-    double phi = 0;
-    for (size_t i = terms->first; i < terms->first + terms->count; i++)
-        phi += potential_term(&builder->segments[builder->stack[i]], center);
-    if (phi >= empty_below)
-        return false;
     double half_diagonal = sqrt(3) * (cube->side / 2 + margin);
-    double rise = sqrt(-2 * log(phi)) - sqrt(-2 * log(empty_below));
+    double phi = 0, at_least = 0;
+    for (size_t i = terms->first; i < terms->first + terms->count; i++) {
+        const FieldSegment *segment = &builder->segments[builder->stack[i]];
+        double term = potential_term(segment, center);
+        phi += term;
+        at_least += fmax(0, term - half_diagonal * exp(-0.5) * 2 / segment->radius_mm);
+    }
+    if (phi >= empty_below)
+        return at_least > full_above;
+    double rise = sqrt(-2 * log(fmax(phi, DBL_MIN))) - sqrt(-2 * log(empty_below));
     return rise * terms->smallest_radius / 2 >
            gradient_bound(builder, terms, empty_below) * half_diagonal;
 }
@@ -132,7 +150,7 @@ static Status add_cell(Builder *builder, const TermList *candidates, const Cube 
     double margin = CELL_OVERLAP * accuracy;
     TermList terms;
     TRY(filter_terms(builder, candidates, cube_box(cube, margin), &terms, err));
-    if (terms.bound_sum < empty_below || is_outside(builder, &terms, cube, margin))
+    if (terms.bound_sum < empty_below || misses_surface(builder, &terms, cube, margin))
         return STATUS_OK;
 
     CellTree *tree = &builder->tree;
@@ -167,7 +185,7 @@ static Status descend(Builder *builder, const TermList *parent, const Cube *cube
     double margin = CELL_OVERLAP * parent->largest_radius / radii_per_accuracy;
     TermList terms;
     TRY(filter_terms(builder, parent, cube_box(cube, margin), &terms, err));
-    if (terms.bound_sum >= empty_below) {
+    if (terms.bound_sum >= empty_below && !misses_surface(builder, &terms, cube, margin)) {
         bool split =
             cube->side > builder->root_side || cube->side > builder->beta * terms.local_radius;
         if (!split)
@@ -208,18 +226,27 @@ static Status descend_from_top(Builder *builder, const TermList *all, Box box, E
     return STATUS_OK;
 }
 
+static Support support_of(const FieldSegment *segment)
+{
+    double peak = potential_term_peak(segment);
+    double decay = 2 / (segment->radius_mm * segment->radius_mm);
+    return (Support){peak, decay, log(peak / TERM_CUTOFF) / decay};
+}
+
 static Status build(Builder *builder, size_t n_segments, Err *err)
 {
     TRY(mem_reserve(&builder->stack, &builder->stack_capacity, n_segments, sizeof *builder->stack,
                     "terms", err));
+    TRY(mem_calloc(&builder->supports, n_segments, sizeof *builder->supports, "supports", err));
     TermList all = {.count = n_segments};
     Box box = box_empty();
-    const double reach = sqrt(-log(TERM_CUTOFF) / 2); /* exp(-2 reach^2) = TERM_CUTOFF */
     for (size_t i = 0; i < n_segments; i++) {
         const FieldSegment *segment = &builder->segments[i];
+        builder->supports[i] = support_of(segment);
         builder->stack[i] = (uint32_t)i;
-        box = box_with_ball(box, segment->a, reach * segment->radius_mm);
-        box = box_with_ball(box, segment->b, reach * segment->radius_mm);
+        double reach = sqrt(fmax(builder->supports[i].reach2, 0));
+        box = box_with_ball(box, segment->a, reach);
+        box = box_with_ball(box, segment->b, reach);
         all.largest_radius = fmax(all.largest_radius, segment->radius_mm);
     }
     builder->depth = n_segments;
@@ -231,6 +258,7 @@ Status celltree_build(const Scene *scene, double beta, CellTree *cells, Err *err
 {
     Builder builder = {.segments = scene->segments, .beta = beta};
     Status status = build(&builder, scene->n_segments, err);
+    free(builder.supports);
     free(builder.stack);
     if (status == STATUS_OK)
         *cells = builder.tree;

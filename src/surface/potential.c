@@ -3,7 +3,7 @@
  * exp(-E^2) (erf u + erf v) / 2. Beyond an end both erf are close to -1 and +1, and their sum is
  * taken as a difference of erfc, which keeps the digits of the tail. E comes from the part of x - a
  * across the axis and v from b, not from differences of large squares or lengths. */
-#include "surface/surface.h"
+#include "surface/potential.h"
 
 /* 1 / sqrt(pi) */
 static const double inv_sqrt_pi = 0.56418958354775628695;
@@ -74,12 +74,9 @@ static Vec3 gap_to_box(Vec3 x, const Box *box)
  * piecewise linear and rises, with its bends where the point passes the plane of a face. [s0, s1]
  * is drawn together about the zero of the slope, past each bend, until the slope between them is
  * one straight line. */
-static double box_distance2(const FieldSegment *segment, const Box *box)
+double segment_box_distance2(const FieldSegment *segment, const Box *box)
 {
     Vec3 a = segment->a, span = vec3_sub(segment->b, a);
-    const double bends[6] = {(box->low.x - a.x) / span.x,  (box->low.y - a.y) / span.y,
-                             (box->low.z - a.z) / span.z,  (box->high.x - a.x) / span.x,
-                             (box->high.y - a.y) / span.y, (box->high.z - a.z) / span.z};
     Vec3 gap0 = gap_to_box(a, box), gap1 = gap_to_box(segment->b, box);
     double s0 = 0, slope0 = vec3_dot(gap0, span);
     double s1 = 1, slope1 = vec3_dot(gap1, span);
@@ -87,6 +84,9 @@ static double box_distance2(const FieldSegment *segment, const Box *box)
         return vec3_dot(gap0, gap0);
     if (slope1 <= 0)
         return vec3_dot(gap1, gap1);
+    const double bends[6] = {(box->low.x - a.x) / span.x,  (box->low.y - a.y) / span.y,
+                             (box->low.z - a.z) / span.z,  (box->high.x - a.x) / span.x,
+                             (box->high.y - a.y) / span.y, (box->high.z - a.z) / span.z};
     for (int i = 0; i < 6; i++) {
         if (!(bends[i] > s0 && bends[i] < s1)) /* also when the segment is parallel to the face */
             continue;
@@ -116,7 +116,7 @@ double potential_term_peak(const FieldSegment *segment)
 double potential_term_bound(const FieldSegment *segment, Box box)
 {
     double k = sqrt(2) / segment->radius_mm;
-    return exp(-k * k * box_distance2(segment, &box)) * potential_term_peak(segment);
+    return exp(-k * k * segment_box_distance2(segment, &box)) * potential_term_peak(segment);
 }
 
 double potential_log_form(double phi)

@@ -58,7 +58,7 @@ typedef struct CellTree {
 
 /* The octree of cells in which the surface can lie: root cells of 4 r_max on the lattice of their
  * multiples, split while the side is above beta (> 0) times the smallest radius that matters in it,
- * in Morton order. Owned by the caller. STATUS_INFEASIBLE beyond four million cells. */
+ * in Morton order. Owned by the caller. STATUS_INFEASIBLE beyond a million cells. */
 MUST_CHECK Status celltree_build(const Scene *scene, double beta, CellTree *cells, Err *err);
 void celltree_release(CellTree *cells);
 

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -44,6 +45,18 @@ static Status add_argument(Arguments *arguments, Err *err, const char *format, .
     return STATUS_OK;
 }
 
+/* A switch with a path; POV-Ray wants quotes around one with blanks, of the kind it does not hold. */
+static Status add_path(Arguments *arguments, const char *name, const char *path, Err *err)
+{
+    if (!strpbrk(path, " \t\"'"))
+        return add_argument(arguments, err, "%s%s", name, path);
+    char quote = strchr(path, '"') ? '\'' : '"';
+    if (strchr(path, quote))
+        return err_set(err, STATUS_INPUT,
+                       "%s: POV-Ray cannot be given a path with both kinds of quotes", path);
+    return add_argument(arguments, err, "%s%c%s%c", name, quote, path, quote);
+}
+
 /* Every switch that a user's povray.ini could have set otherwise is given. */
 static Status make_arguments(const OracleParams *params, const char *scene, const char *output,
                              Arguments *arguments, Err *err)
@@ -51,8 +64,8 @@ static Status make_arguments(const OracleParams *params, const char *scene, cons
     bool color = params->plane == ORACLE_COLOR,
          deep = params->plane == ORACLE_DEPTH || params->plane == ORACLE_NORMAL;
     TRY(add_argument(arguments, err, "%s", params->program ? params->program : "povray"));
-    TRY(add_argument(arguments, err, "+I%s", scene));
-    TRY(add_argument(arguments, err, "+O%s", output));
+    TRY(add_path(arguments, "+I", scene, err));
+    TRY(add_path(arguments, "+O", output, err));
     TRY(add_argument(arguments, err, "+W%d", params->width));
     TRY(add_argument(arguments, err, "+H%d", params->height));
     TRY(add_argument(arguments, err, "+FN%d", deep ? 16 : 8));
@@ -210,7 +223,8 @@ static Status run_program(const OracleParams *params, char *const *arguments, co
     return status;
 }
 
-static Status judge(const OracleParams *params, const Text *log, int exit_status, Err *err)
+static Status judge(const OracleParams *params, const Text *log, int exit_status,
+                    const char *output, Err *err)
 {
     const char *program = params->program ? params->program : "povray";
     char reason[700];
@@ -218,8 +232,11 @@ static Status judge(const OracleParams *params, const Text *log, int exit_status
         return err_set(
             err, STATUS_TOOL,
             "POV-Ray is needed and '%s' cannot be started; on Debian: apt install povray", program);
-    if (exit_status == 0)
+    struct stat about;
+    if (exit_status == 0 && stat(output, &about) == 0 && about.st_size > 0)
         return STATUS_OK;
+    if (exit_status == 0)
+        return err_set(err, STATUS_TOOL, "POV-Ray ended without a picture of %s", params->scene);
     reason_of_failure(log, reason, sizeof reason);
     return err_set(err, STATUS_TOOL, "POV-Ray failed on %s (exit status %d): %s", params->scene,
                    exit_status, reason[0] ? reason : "it gave no reason");
@@ -248,7 +265,7 @@ Status oracle_run(const OracleParams *params, OracleRun *run, Err *err)
     TRY_GOTO(file_remove_on_signal(state, err));
     TRY_GOTO(make_arguments(params, scene, absolute, &arguments, err));
     TRY_GOTO(run_program(params, arguments.list, folder, &log, &exit_status, err));
-    TRY_GOTO(judge(params, &log, exit_status, err));
+    TRY_GOTO(judge(params, &log, exit_status, absolute, err));
     status = file_rename(temporary, params->output, err);
     temporary = NULL;
     if (status == STATUS_OK && run) {

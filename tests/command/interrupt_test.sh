@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A run that is stopped leaves no file under the final name, no temporary, and the old file as it was.
 . "$(dirname "$0")/../lib.sh"
+TEST_JOBS=1
 set -m # background jobs get their own process group, so that they hear SIGINT
 
 # stop_after SECONDS SIGNAL COMMAND ...: starts the command, signals it, leaves its status in $status.

@@ -145,7 +145,7 @@ test_bad_picture_options_are_refused() {
 --shadows maybe
 --background 0.5,0.5
 --margin -1
---planes color,smell
+--planes smell
 --prune-radius -0.1
 END
     expect_only tree.swc

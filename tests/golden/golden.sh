@@ -17,12 +17,12 @@ case_options() {
 # The options are words: no quotes around them.
 # shellcheck disable=SC2046
 draw_native() {
-    corcast render "$DATA/$(case_tree "$1")" $(case_options "$1") -o "$2"
+    corcast render "$REPO/$(case_tree "$1")" $(case_options "$1") -o "$2"
 }
 
 # shellcheck disable=SC2046
 write_scene() {
-    corcast scene "$DATA/$(case_tree "$1")" $(case_options "$1") -o scene.pov
+    corcast scene "$REPO/$(case_tree "$1")" $(case_options "$1") -o scene.pov
 }
 
 draw_povray() {

@@ -492,6 +492,46 @@ static void a_segment_may_touch_the_boundary_and_end_on_it(void **state)
     }
 }
 
+static void shapes_know_inside_from_outside(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *spec;
+        Vec3 point;
+        double tolerance_mm;
+        bool inside;
+    } cases[] = {
+        {"disc:5", {3, -4, 0}, 0, true},
+        {"disc:5", {3, -4.001, 0}, 0, false},
+        {"disc:5", {3, -4.001, 0}, 0.01, true},
+        {"disc:5", {1, 1, 0.5}, 0.01, false},
+        {"ball:5", {2, -3, 3.46}, 0, true},
+        {"ball:5", {2, -3, 3.47}, 0, false},
+        {"ball:5", {NAN, 0, 0}, 0, false},
+        {"rect:6,4", {3, -2, 0}, 0, true},
+        {"rect:6,4", {3.1, 0, 0}, 0, false},
+        {"rect:6,4", {0, 0, 0.1}, 0.5, false},
+        {"box:6,4,2", {-3, 2, 1}, 0, true},
+        {"box:6,4,2", {0, 0, 1.1}, 0, false},
+        {"ellipsoid:6,4,2", {3, 2, 1.41}, 0, true},
+        {"ellipsoid:6,4,2", {3, 2, 1.42}, 0, false},
+        {"shell:30,50,30,10", {25, 0, 0}, 0, true},
+        {"shell:30,50,30,10", {19.9, 0, 0}, 0, false},
+        {"shell:30,50,30,10", {25, 20.1, 0}, 0, false},
+        {"mesh:hollow.obj", {1.5, 1.5, 1.5}, 0, false},
+        {"mesh:hollow.obj", {NAN, 1.5, 0.5}, 0, false},
+        {"mask:hollow.nii", {NAN, 1.5, 0.5}, 0, false},
+        {"polygon:frame.txt", {10, NAN, 0}, 0, false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Domain domain = parse(cases[i].spec);
+        if (domain_inside(&domain, cases[i].point, cases[i].tolerance_mm) != cases[i].inside)
+            fail_msg("%s: case %zu is not %s", cases[i].spec, i,
+                     cases[i].inside ? "inside" : "outside");
+        domain_release(&domain);
+    }
+}
+
 static void a_tolerance_reaches_as_far_as_it_says(void **state)
 {
     (void)state;
@@ -550,6 +590,7 @@ int main(void)
         cmocka_unit_test(discs_and_balls_draw_x_then_y_then_z),
         cmocka_unit_test(a_segment_is_held_when_all_of_it_is_inside),
         cmocka_unit_test(a_segment_may_touch_the_boundary_and_end_on_it),
+        cmocka_unit_test(shapes_know_inside_from_outside),
         cmocka_unit_test(a_tolerance_reaches_as_far_as_it_says),
         cmocka_unit_test(a_released_domain_may_be_released_again),
         cmocka_unit_test(a_heart_is_a_domain),
