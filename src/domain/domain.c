@@ -1,90 +1,184 @@
-/* Disc and ball are the same set in two and in three dimensions, so one row of `shapes` a kind and
- * the dimension say everything. Points are sampled by rejection from the bounding box (acceptance
- * pi/4 and pi/6): exactly uniform, and without functions whose last bit differs between machines.
- */
+/* One row of `kinds` a shape, in the order of DomainKind; each family of shapes has its own file
+ * and keeps to DomainOps. Points are sampled by rejection from the bounding box (acceptance pi/4 in
+ * the disc, pi/6 in the ball) unless a kind knows better: exactly uniform, and without functions
+ * whose last bit differs between machines. */
 #include "domain/domain.h"
 
+#include "domain/kinds.h"
+#include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
-static const struct {
-    const char *name;
-    int dimension;
-} shapes[] = {
-    [DOMAIN_DISC] = {"disc", 2},
-    [DOMAIN_BALL] = {"ball", 3},
+static const DomainOps *const kinds[] = {
+    [DOMAIN_DISC] = &disc_ops,           [DOMAIN_BALL] = &ball_ops,
+    [DOMAIN_RECT] = &rect_ops,           [DOMAIN_BOX] = &box_ops,
+    [DOMAIN_ELLIPSOID] = &ellipsoid_ops, [DOMAIN_SHELL] = &shell_ops,
+    [DOMAIN_POLYGON] = &polygon_ops,     [DOMAIN_MASK] = &mask_ops,
+    [DOMAIN_MESH] = &mesh_ops,
 };
 
-enum { SHAPES = sizeof shapes / sizeof *shapes };
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+static const double slack = 1e-6; /* of the diagonal of the bounds */
+
+static const DomainOps *ops_of(const Domain *domain)
+{
+    return kinds[domain->kind];
+}
+
+static Status refuse_shape(const char *spec, Err *err)
+{
+    Text shapes = TEXT_INIT;
+    for (int kind = 0; kind < KINDS; kind++)
+        text_printf(&shapes, "%s%s:%s",
+                    kind == 0           ? ""
+                    : kind == KINDS - 1 ? " or "
+                                        : ", ",
+                    kinds[kind]->name, kinds[kind]->parameters);
+    Status status = text_check(&shapes, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE, "--domain %s: unknown shape; use %s, lengths in mm",
+                         spec, shapes.chars);
+    text_release(&shapes);
+    return status;
+}
 
 Status domain_parse(Domain *domain, const char *spec, Err *err)
 {
-    const char *colon = strchr(spec, ':');
-    size_t length = colon ? (size_t)(colon - spec) : strlen(spec);
-    for (int kind = 0; kind < SHAPES; kind++) {
-        if (strlen(shapes[kind].name) != length || memcmp(spec, shapes[kind].name, length) != 0)
+    size_t length = strcspn(spec, ":");
+    const char *values = spec + length + (spec[length] == ':');
+    for (int kind = 0; kind < KINDS; kind++) {
+        const DomainOps *ops = kinds[kind];
+        if (strlen(ops->name) != length || memcmp(spec, ops->name, length) != 0)
             continue;
-        double radius = 0;
-        if (!colon || !number_parse(colon + 1, &radius) || !(radius >= DOMAIN_MIN_RADIUS_MM) ||
-            !(radius <= DOMAIN_MAX_RADIUS_MM))
-            return err_set(
-                err, STATUS_USAGE,
-                "--domain %s: the radius must be a number of mm from %g to %g, as in %s:50", spec,
-                DOMAIN_MIN_RADIUS_MM, DOMAIN_MAX_RADIUS_MM, shapes[kind].name);
-        *domain = (Domain){(DomainKind)kind, radius};
+        Domain loaded = {.kind = (DomainKind)kind};
+        Status status = ops->load(&loaded, values, err);
+        if (status != STATUS_OK) {
+            if (status == STATUS_USAGE)
+                err_prefix(err, "--domain %s: ", spec);
+            domain_release(&loaded);
+            return status;
+        }
+        loaded.slack_mm = slack * vec3_distance(loaded.bounds.low, loaded.bounds.high);
+        *domain = loaded;
         return STATUS_OK;
     }
-    return err_set(err, STATUS_USAGE,
-                   "--domain %s: unknown shape; use disc:R or ball:R with the radius R in mm",
-                   spec);
+    return refuse_shape(spec, err);
+}
+
+void domain_release(Domain *domain)
+{
+    if (ops_of(domain)->release)
+        ops_of(domain)->release(domain);
+    free(domain->file);
+    *domain = (Domain){0};
+}
+
+Status domain_load_file_name(Domain *domain, const char *values, Err *err)
+{
+    const DomainOps *ops = ops_of(domain);
+    const char *comma = strrchr(values, ',');
+    double mm = 1;
+    bool has_mm = comma && number_parse(comma + 1, &mm);
+    size_t length = has_mm ? (size_t)(comma - values) : strlen(values);
+    if (length == 0)
+        return err_set(err, STATUS_USAGE, "the name of a file is missing; use %s:%s", ops->name,
+                       ops->parameters);
+    if (has_mm && !(mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
+        return err_set(err, STATUS_USAGE,
+                       "the unit of the file must be a number of mm from %g to %g", DOMAIN_MIN_MM,
+                       DOMAIN_MAX_MM);
+    TRY(mem_calloc(&domain->file, length + 1, 1, "bytes of text", err));
+    memcpy(domain->file, values, length);
+    domain->size[0] = has_mm ? mm : 1;
+    domain->n_sizes = has_mm;
+    return STATUS_OK;
+}
+
+Status domain_check_point(const char *file, size_t line, Vec3 point, Err *err)
+{
+    /* false for NaN, too */
+    if (fabs(point.x) <= DOMAIN_MAX_MM && fabs(point.y) <= DOMAIN_MAX_MM &&
+        fabs(point.z) <= DOMAIN_MAX_MM)
+        return STATUS_OK;
+    char where[32] = "";
+    if (line > 0)
+        snprintf(where, sizeof where, ":%zu", line);
+    return err_set(err, STATUS_INPUT,
+                   "%s%s: the point %.9g %.9g %.9g (mm) is not finite or lies beyond %.0f mm", file,
+                   where, point.x, point.y, point.z, DOMAIN_MAX_MM);
 }
 
 void domain_text(const Domain *domain, Text *text)
 {
-    text_printf(text, "%s:", shapes[domain->kind].name);
-    text_number(text, domain->radius_mm);
+    text_printf(text, "%s:", ops_of(domain)->name);
+    if (domain->file)
+        text_puts(text, domain->file);
+    for (int i = 0; i < domain->n_sizes; i++) {
+        if (i > 0 || domain->file)
+            text_puts(text, ",");
+        text_number(text, domain->size[i]);
+    }
 }
 
 int domain_dimension(const Domain *domain)
 {
-    return shapes[domain->kind].dimension;
+    return domain->dimension;
+}
+
+bool domain_is_convex(const Domain *domain)
+{
+    return ops_of(domain)->is_convex;
 }
 
 bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    double reach = domain->radius_mm + tolerance_mm;
-    if (domain_dimension(domain) == 2 && point.z != 0)
+    if (domain->dimension == 2 && point.z != 0)
         return false;
-    return vec3_dot(point, point) <= reach * reach;
+    return ops_of(domain)->inside(domain, point, tolerance_mm);
+}
+
+bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
+{
+    if (domain->dimension == 2 && (a.z != 0 || b.z != 0))
+        return false;
+    const DomainOps *ops = ops_of(domain);
+    if (ops->is_convex || vec3_distance(a, b) <= domain->slack_mm)
+        return ops->inside(domain, a, domain->slack_mm) && ops->inside(domain, b, domain->slack_mm);
+    return ops->holds_segment(domain, a, b);
+}
+
+Vec3 domain_sample_bounds(const Domain *domain, Random *random)
+{
+    Vec3 center = box_center(domain->bounds);
+    Vec3 half = vec3_scale(vec3_sub(domain->bounds.high, domain->bounds.low), 0.5);
+    double x = 2 * random_uniform(random) - 1;
+    double y = 2 * random_uniform(random) - 1;
+    double z = domain->dimension == 3 ? 2 * random_uniform(random) - 1 : 0;
+    return vec3_add(center, vec3(x * half.x, y * half.y, z * half.z));
 }
 
 Vec3 domain_sample(const Domain *domain, Random *random)
 {
+    const DomainOps *ops = ops_of(domain);
     for (;;) {
-        double x = 2 * random_uniform(random) - 1;
-        double y = 2 * random_uniform(random) - 1;
-        double z = domain_dimension(domain) == 3 ? 2 * random_uniform(random) - 1 : 0;
-        Vec3 point = vec3_scale(vec3(x, y, z), domain->radius_mm);
-        if (domain_inside(domain, point, 0))
+        Vec3 point =
+            ops->sample ? ops->sample(domain, random) : domain_sample_bounds(domain, random);
+        if (ops->inside(domain, point, 0))
             return point;
     }
 }
 
 double domain_volume(const Domain *domain)
 {
-    double r = domain->radius_mm;
-    return domain_dimension(domain) == 2 ? pi * r * r : 4.0 / 3 * pi * r * r * r;
+    return domain->volume;
 }
 
 Vec3 domain_default_inlet(const Domain *domain)
 {
-    return vec3(0, domain->radius_mm, 0);
+    return domain->inlet;
 }
 
 Box domain_bounds(const Domain *domain)
 {
-    double r = domain->radius_mm;
-    double z = domain_dimension(domain) == 3 ? r : 0;
-    return (Box){{-r, -r, -z}, {r, r, z}};
+    return domain->bounds;
 }

@@ -1,7 +1,7 @@
 /* The door of the room domain: the piece of tissue that a tree perfuses.
  *
- * Domains are centred on the origin. Those of dimension 2 lie in the plane z = 0. All are convex,
- * so that a segment whose ends are inside is inside. */
+ * Domains of dimension 2 lie in the plane z = 0. What a text says of a shape stands in the table of
+ * domain.c and, for users, in docs/FORMATS.md. */
 #ifndef CORCAST_DOMAIN_DOMAIN_H
 #define CORCAST_DOMAIN_DOMAIN_H
 
@@ -10,23 +10,54 @@
 #include <stdbool.h>
 
 typedef enum DomainKind {
-    DOMAIN_DISC,
-    DOMAIN_BALL,
+    DOMAIN_DISC,      /* disc:R */
+    DOMAIN_BALL,      /* ball:R */
+    DOMAIN_RECT,      /* rect:W,H */
+    DOMAIN_BOX,       /* box:A,B,C */
+    DOMAIN_ELLIPSOID, /* ellipsoid:A,B,C */
+    DOMAIN_SHELL,     /* shell:A,B,C,THICKNESS[,BASE] */
+    DOMAIN_POLYGON,   /* polygon:FILE[,MM] */
+    DOMAIN_MASK,      /* mask:FILE[,MM] */
+    DOMAIN_MESH,      /* mesh:FILE[,MM] */
 } DomainKind;
 
-/* A plain value; copies are independent. */
+enum { DOMAIN_MAX_SIZES = 5 };
+
+/* A nanometre and a kilometre: the range of the lengths in a text, and how far from the origin a
+ * file's points may lie. */
+#define DOMAIN_MIN_MM 1e-6
+#define DOMAIN_MAX_MM 1e6
+
+typedef struct Polygon Polygon;
+typedef struct Mask Mask;
+typedef struct Mesh Mesh;
+
+/* Constant once parsed, so that threads may share it. A copy shares what the original owns. */
 typedef struct Domain {
     DomainKind kind;
-    double radius_mm; /* in [DOMAIN_MIN_RADIUS_MM, DOMAIN_MAX_RADIUS_MM] */
+    int dimension;                 /* 2 or 3 */
+    int n_sizes;                   /* of the text's numbers */
+    double size[DOMAIN_MAX_SIZES]; /* they, in the text's order, mm; of a file: mm for its unit */
+    char *file;                    /* owned; NULL for the kinds that read none */
+    union {                        /* owned; what the file held */
+        Polygon *polygon;
+        Mask *mask;
+        Mesh *mesh;
+    };
+    Box bounds;
+    double volume;
+    Vec3 inlet;
+    double slack_mm; /* 1e-6 of the diagonal of the bounds */
 } Domain;
 
-/* A nanometre and a kilometre. */
-#define DOMAIN_MIN_RADIUS_MM 1e-6
-#define DOMAIN_MAX_RADIUS_MM 1e6
-
-/* Reads "disc:R" or "ball:R", R in mm. STATUS_USAGE naming --domain, the value and what is
- * allowed. */
+/* Reads a text as listed at DomainKind, and the file it names. STATUS_USAGE, naming --domain, the
+ * text and what is allowed, for a wrong text; STATUS_INPUT, naming the file, for a file that is
+ * missing, malformed or no domain (an empty mask, a mesh that is open or inside out, a polygon that
+ * crosses itself). Release with domain_release. */
 MUST_CHECK Status domain_parse(Domain *domain, const char *spec, Err *err);
+
+/* Frees what the domain owns. A zeroed or released domain is allowed. */
+void domain_release(Domain *domain);
 
 /* Appends the text that domain_parse reads back to the same domain. */
 void domain_text(const Domain *domain, Text *text);
@@ -34,17 +65,28 @@ void domain_text(const Domain *domain, Text *text);
 /* 2 or 3. */
 int domain_dimension(const Domain *domain);
 
-/* Whether `point` is in the domain, its boundary included, or outside by at most `tolerance_mm`. In
- * two dimensions also whether it lies in the plane. */
+/* Whether a segment whose ends are inside is inside, for all of them. */
+bool domain_is_convex(const Domain *domain);
+
+/* Whether `point` is in the domain, or outside by at most `tolerance_mm`, which is not negative;
+ * where a shape is curved some of those outside may be refused. The boundary belongs to the shapes
+ * that formulas describe; a point on that of a file's may go either way. In two dimensions also
+ * whether the point lies in the plane. */
 bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm);
 
-/* A point uniformly distributed in the domain. */
+/* Whether the segment from `a` to `b` stays in the domain; it may leave it for stretches of up to
+ * slack_mm, so that it can begin at an inlet on the boundary. O(log n) in the n edges or triangles
+ * of a boundary, O(m) in the m voxels on the way through a mask. */
+bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b);
+
+/* A point uniformly distributed in the domain, and inside at tolerance 0. */
 Vec3 domain_sample(const Domain *domain, Random *random);
 
 /* mm^3, or mm^2 in two dimensions. */
 double domain_volume(const Domain *domain);
 
-/* Where the tree enters when nothing else is asked for: the top of the rim, (0, R, 0). */
+/* Where the tree enters when nothing else is asked for: a point of the domain at its top, where y
+ * is largest. */
 Vec3 domain_default_inlet(const Domain *domain);
 
 /* The smallest box that holds the domain, mm; flat in two dimensions. */

@@ -1,0 +1,39 @@
+/* A segment stays in a closed set exactly when each open stretch between its contacts with the
+ * boundary is inside, and a stretch without contacts is inside or outside as a whole. A segment
+ * that only touches the boundary, or ends on it, needs no case of its own. */
+#include "domain/contacts.h"
+
+void contacts_add(Contacts *contacts, double t)
+{
+    if (contacts->n < CONTACTS_MAX)
+        contacts->t[contacts->n] = fmin(fmax(t, 0), 1);
+    contacts->n += contacts->n <= CONTACTS_MAX;
+}
+
+static void sort(double *t, int n)
+{
+    for (int i = 1; i < n; i++) {
+        double value = t[i];
+        int at = i;
+        for (; at > 0 && t[at - 1] > value; at--)
+            t[at] = t[at - 1];
+        t[at] = value;
+    }
+}
+
+bool contacts_hold_segment(Contacts *contacts, const Domain *domain, Vec3 a, Vec3 b)
+{
+    if (contacts->n > CONTACTS_MAX)
+        return false;
+    sort(contacts->t, contacts->n);
+    Vec3 along = vec3_sub(b, a);
+    double shortest = domain->slack_mm / vec3_length(along), from = 0;
+    for (int i = 0; i <= contacts->n; i++) {
+        double to = i < contacts->n ? contacts->t[i] : 1;
+        if (to - from > shortest &&
+            !domain_inside(domain, vec3_add_scaled(a, along, (from + to) / 2), 0))
+            return false;
+        from = to;
+    }
+    return true;
+}

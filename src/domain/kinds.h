@@ -1,0 +1,37 @@
+/* What each kind of domain supplies to domain.c; private to the room. */
+#ifndef CORCAST_DOMAIN_KINDS_H
+#define CORCAST_DOMAIN_KINDS_H
+
+#include "domain/domain.h"
+
+typedef struct DomainOps {
+    const char *name;       /* "disc" */
+    const char *parameters; /* "R" */
+    bool is_convex;
+    /* Reads what stands behind the colon into a zeroed domain that knows its kind: sizes, file,
+     * dimension, bounds, volume, inlet. Of STATUS_USAGE the sentence lacks "--domain TEXT: ". On failure
+     * the caller releases what there is. */
+    Status (*load)(Domain *domain, const char *values, Err *err);
+    bool (*inside)(const Domain *domain, Vec3 point, double tolerance_mm);
+    /* For segments longer than slack_mm; NULL for convex kinds. */
+    bool (*holds_segment)(const Domain *domain, Vec3 a, Vec3 b);
+    /* NULL: rejection from the bounds. */
+    Vec3 (*sample)(const Domain *domain, Random *random);
+    /* Frees what the union holds; NULL for the kinds that read no file. */
+    void (*release)(Domain *domain);
+} DomainOps;
+
+extern const DomainOps disc_ops, ball_ops, rect_ops, box_ops, ellipsoid_ops, shell_ops;
+extern const DomainOps polygon_ops, mask_ops, mesh_ops;
+
+/* Uniform in the bounds of the domain; draws x, y and, in three dimensions, z. */
+Vec3 domain_sample_bounds(const Domain *domain, Random *random);
+
+/* Reads FILE[,MM] into file, size and n_sizes; size[0] is 1 where MM is not given. */
+MUST_CHECK Status domain_load_file_name(Domain *domain, const char *values, Err *err);
+
+/* STATUS_INPUT, naming the file and the line (0: there are none), unless the
+ * point is finite and within DOMAIN_MAX_MM of the origin on each axis. */
+MUST_CHECK Status domain_check_point(const char *file, size_t line, Vec3 point, Err *err);
+
+#endif

@@ -1,0 +1,273 @@
+/* Points go to index coordinates by the inverse of the voxels' affine map; a voxel is the whole
+ * part. Sampling picks a voxel of tissue, then a point in it. A segment is followed from voxel to
+ * voxel (Amanatides & Woo, Eurographics 1987): it takes as many steps along each axis as its ends
+ * are voxels apart, whatever rounding does to the places where it leaves them. */
+#include "domain/mask.h"
+
+#include "domain/kinds.h"
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static bool is_tissue(const Mask *mask, const int64_t voxel[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (voxel[axis] < 0 || voxel[axis] >= mask->n[axis])
+            return false;
+    return mask->is_tissue[(voxel[2] * mask->n[1] + voxel[1]) * mask->n[0] + voxel[0]];
+}
+
+static void index_of(const Mask *mask, Vec3 point, double index[3])
+{
+    Vec3 from = vec3_sub(point, mask->corner);
+    for (int axis = 0; axis < 3; axis++)
+        index[axis] = vec3_dot(mask->inverse[axis], from);
+}
+
+static Vec3 point_at(const Mask *mask, const double index[3])
+{
+    Vec3 point = mask->corner;
+    for (int axis = 0; axis < 3; axis++)
+        point = vec3_add_scaled(point, mask->step[axis], index[axis]);
+    return point;
+}
+
+static void voxel_of(const Mask *mask, uint32_t number, int64_t voxel[3])
+{
+    voxel[0] = number % mask->n[0];
+    voxel[1] = number / mask->n[0] % mask->n[1];
+    voxel[2] = number / mask->n[0] / mask->n[1];
+}
+
+/* The middle of a voxel; in two dimensions in the plane. */
+static Vec3 middle_of(const Domain *domain, uint32_t number)
+{
+    int64_t voxel[3];
+    voxel_of(domain->mask, number, voxel);
+    const double index[3] = {(double)voxel[0] + 0.5, (double)voxel[1] + 0.5,
+                             domain->dimension == 3 ? (double)voxel[2] + 0.5 : 0};
+    return point_at(domain->mask, index);
+}
+
+/* Whether a voxel of tissue comes within `reach` of the point, whose index coordinates are `index`,
+ * at the place nearest to them. */
+static bool is_near(const Mask *mask, Vec3 point, const double index[3], double reach)
+{
+    int64_t low[3], high[3], voxel[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double extent = reach * vec3_length(mask->inverse[axis]);
+        low[axis] = (int64_t)fmax(floor(index[axis] - extent), 0);
+        high[axis] = (int64_t)fmin(floor(index[axis] + extent), (double)mask->n[axis] - 1);
+    }
+    for (voxel[2] = low[2]; voxel[2] <= high[2]; voxel[2]++)
+        for (voxel[1] = low[1]; voxel[1] <= high[1]; voxel[1]++)
+            for (voxel[0] = low[0]; voxel[0] <= high[0]; voxel[0]++) {
+                if (!is_tissue(mask, voxel))
+                    continue;
+                double nearest[3];
+                for (int axis = 0; axis < 3; axis++)
+                    nearest[axis] =
+                        fmin(fmax(index[axis], (double)voxel[axis]), (double)voxel[axis] + 1);
+                if (vec3_distance(point_at(mask, nearest), point) <= reach)
+                    return true;
+            }
+    return false;
+}
+
+static bool is_within(const Box *box, Vec3 point, double reach)
+{
+    return box->low.x - reach <= point.x && point.x <= box->high.x + reach &&
+           box->low.y - reach <= point.y && point.y <= box->high.y + reach &&
+           box->low.z - reach <= point.z && point.z <= box->high.z + reach;
+}
+
+static bool mask_inside(const Domain *domain, Vec3 point, double tolerance_mm)
+{
+    if (!is_within(&domain->bounds, point, tolerance_mm))
+        return false;
+    double index[3];
+    index_of(domain->mask, point, index);
+    const int64_t voxel[3] = {(int64_t)floor(index[0]), (int64_t)floor(index[1]),
+                              (int64_t)floor(index[2])};
+    return is_tissue(domain->mask, voxel) ||
+           (tolerance_mm > 0 && is_near(domain->mask, point, index, tolerance_mm));
+}
+
+/* Walks the line index = from + t along, 0 <= t <= 1. */
+typedef struct VoxelWalk {
+    double from[3], along[3], inverse[3]; /* 1 / along */
+    int64_t voxel[3], last[3];
+} VoxelWalk;
+
+/* Where the line leaves the voxel, and along which axis; 1 and -1 in its last voxel. */
+static double leave(const VoxelWalk *walk, int *axis)
+{
+    double first = 1;
+    *axis = -1;
+    for (int i = 0; i < 3; i++) {
+        if (walk->voxel[i] == walk->last[i])
+            continue;
+        double face = (double)walk->voxel[i] + (walk->along[i] > 0);
+        double t = (face - walk->from[i]) * walk->inverse[i];
+        if (*axis < 0 || t < first) {
+            first = t;
+            *axis = i;
+        }
+    }
+    return first;
+}
+
+static bool mask_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
+{
+    if (!is_within(&domain->bounds, a, domain->slack_mm) ||
+        !is_within(&domain->bounds, b, domain->slack_mm))
+        return false;
+    VoxelWalk walk;
+    double to[3], overlooked = domain->slack_mm / vec3_distance(a, b), entered = 0;
+    index_of(domain->mask, a, walk.from);
+    index_of(domain->mask, b, to);
+    for (int axis = 0; axis < 3; axis++) {
+        walk.along[axis] = to[axis] - walk.from[axis];
+        walk.inverse[axis] = 1 / walk.along[axis];
+        walk.voxel[axis] = (int64_t)floor(walk.from[axis]);
+        walk.last[axis] = (int64_t)floor(to[axis]);
+    }
+    for (int axis = 0; axis >= 0;) {
+        double left = leave(&walk, &axis);
+        if (left - entered > overlooked && !is_tissue(domain->mask, walk.voxel))
+            return false;
+        if (axis >= 0)
+            walk.voxel[axis] += walk.along[axis] > 0 ? 1 : -1;
+        entered = left;
+    }
+    return true;
+}
+
+static Vec3 mask_sample(const Domain *domain, Random *random)
+{
+    const Mask *mask = domain->mask;
+    size_t pick = (size_t)(random_uniform(random) * (double)mask->n_tissue);
+    int64_t voxel[3];
+    voxel_of(mask, mask->tissue[pick], voxel);
+    double index[3] = {0};
+    for (int axis = 0; axis < domain->dimension; axis++)
+        index[axis] = (double)voxel[axis] + random_uniform(random);
+    return point_at(mask, index);
+}
+
+/* Rows of the inverse of the matrix with the columns `step`; false when it has none. */
+static bool invert(const Vec3 step[3], Vec3 inverse[3], double *determinant)
+{
+    Vec3 across[3] = {vec3_cross(step[1], step[2]), vec3_cross(step[2], step[0]),
+                      vec3_cross(step[0], step[1])};
+    *determinant = vec3_dot(step[0], across[0]);
+    for (int axis = 0; axis < 3; axis++) {
+        inverse[axis] = vec3_scale(across[axis], 1 / *determinant);
+        if (!vec3_finite(inverse[axis]))
+            return false;
+    }
+    return isfinite(*determinant);
+}
+
+static Status list_tissue(Domain *domain, Err *err)
+{
+    Mask *mask = domain->mask;
+    size_t n = (size_t)(mask->n[0] * mask->n[1] * mask->n[2]), count = 0;
+    for (size_t i = 0; i < n; i++)
+        count += mask->is_tissue[i];
+    if (count == 0)
+        return err_set(err, STATUS_INPUT, "%s: the mask is empty: none of its %zu %s is above 0",
+                       domain->file, n, domain->dimension == 2 ? "pixels" : "voxels");
+    TRY(mem_calloc(&mask->tissue, count, sizeof *mask->tissue, "voxels", err));
+    for (size_t i = 0; i < n; i++)
+        if (mask->is_tissue[i])
+            mask->tissue[mask->n_tissue++] = (uint32_t)i;
+    return STATUS_OK;
+}
+
+/* Bounds of the voxels of tissue, and the middle one of those whose middle is highest. */
+static void find_extent(Domain *domain)
+{
+    const Mask *mask = domain->mask;
+    Vec3 half = vec3(0, 0, 0);
+    for (int axis = 0; axis < domain->dimension; axis++)
+        half = vec3_add_scaled(
+            half,
+            vec3(fabs(mask->step[axis].x), fabs(mask->step[axis].y), fabs(mask->step[axis].z)),
+            0.5);
+    Box middles = box_empty();
+    size_t highest = 0;
+    for (size_t i = 0; i < mask->n_tissue; i++) {
+        Vec3 middle = middle_of(domain, mask->tissue[i]);
+        highest = middle.y > middles.high.y ? 1 : highest + (middle.y == middles.high.y);
+        middles = box_with_ball(middles, middle, 0);
+    }
+    size_t skipped = highest / 2;
+    for (size_t i = 0; i < mask->n_tissue; i++) {
+        domain->inlet = middle_of(domain, mask->tissue[i]);
+        if (domain->inlet.y == middles.high.y && skipped-- == 0)
+            break;
+    }
+    domain->bounds = (Box){vec3_sub(middles.low, half), vec3_add(middles.high, half)};
+}
+
+static bool ends_in(const char *text, const char *end)
+{
+    size_t length = strlen(text), tail = strlen(end);
+    return length >= tail && strcasecmp(text + length - tail, end) == 0;
+}
+
+static Status read_file(Domain *domain, Err *err)
+{
+    bool is_nifti = ends_in(domain->file, ".nii") || ends_in(domain->file, ".nii.gz");
+    if (is_nifti && domain->n_sizes > 0)
+        return err_set(err, STATUS_USAGE,
+                       "a NIfTI file has its own units; use mask:FILE without a number");
+    if (!is_nifti && domain->n_sizes == 0)
+        return err_set(err, STATUS_USAGE,
+                       "a picture needs the width of a pixel in mm; use mask:FILE,MM, as in "
+                       "mask:%s,0.5",
+                       domain->file);
+    domain->dimension = is_nifti ? 3 : 2;
+    if (is_nifti)
+        return mask_read_nifti(domain->mask, domain->file, err);
+    return mask_read_picture(domain->mask, domain->file, domain->size[0], err);
+}
+
+static Status mask_load(Domain *domain, const char *values, Err *err)
+{
+    TRY(domain_load_file_name(domain, values, err));
+    TRY(mem_calloc(&domain->mask, 1, sizeof *domain->mask, "masks", err));
+    TRY(read_file(domain, err));
+    Mask *mask = domain->mask;
+    double determinant;
+    if (!invert(mask->step, mask->inverse, &determinant))
+        return err_set(err, STATUS_INPUT,
+                       "%s: the voxels' axes do not span space; the sform or qform is wrong",
+                       domain->file);
+    TRY(list_tissue(domain, err));
+    find_extent(domain);
+    TRY(domain_check_point(domain->file, 0, domain->bounds.low, err));
+    TRY(domain_check_point(domain->file, 0, domain->bounds.high, err));
+    domain->volume = fabs(determinant) * (double)mask->n_tissue;
+    return STATUS_OK;
+}
+
+static void mask_release(Domain *domain)
+{
+    if (!domain->mask)
+        return;
+    free(domain->mask->is_tissue);
+    free(domain->mask->tissue);
+    free(domain->mask);
+}
+
+const DomainOps mask_ops = {
+    .name = "mask",
+    .parameters = "FILE[,MM]",
+    .load = mask_load,
+    .inside = mask_inside,
+    .holds_segment = mask_holds_segment,
+    .sample = mask_sample,
+    .release = mask_release,
+};

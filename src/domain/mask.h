@@ -1,0 +1,31 @@
+/* Voxels of tissue in space; pixels are voxels in a single layer. Private to the room domain. */
+#ifndef CORCAST_DOMAIN_MASK_H
+#define CORCAST_DOMAIN_MASK_H
+
+#include "domain/domain.h"
+#include <stdint.h>
+
+/* The voxel (i, j, k), each from 0 to n - 1, fills the points whose index coordinates are in
+ * [i, i + 1) x [j, j + 1) x [k, k + 1). */
+struct Mask {
+    int64_t n[3];       /* below 2^32 in all */
+    uint8_t *is_tissue; /* 0 or 1, i fastest; owned */
+    Vec3 corner;        /* of the index coordinates 0 0 0, mm */
+    Vec3 step[3];       /* from one voxel to the next along i, j, k, mm */
+    Vec3 inverse[3];    /* rows of the inverse of the matrix whose columns the steps are */
+    uint32_t *tissue;   /* the voxels of tissue, ascending; owned */
+    size_t n_tissue;
+};
+
+/* Readers fill n, is_tissue, corner and step of a zeroed mask. STATUS_INPUT naming the file.
+ * A picture: black is not tissue; a pixel is `mm` wide, the middle of the picture is the origin, the
+ * first row is at the top. */
+MUST_CHECK Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err);
+/* NIfTI-1 or -2: what is above 0 is tissue; world coordinates are those of the sform or, without
+ * one, of the qform. */
+MUST_CHECK Status mask_read_nifti(Mask *mask, const char *path, Err *err);
+
+/* Room for n[0] n[1] n[2] voxels that are not tissue. STATUS_INPUT when there are 2^32 or more. */
+MUST_CHECK Status mask_init(Mask *mask, const char *path, const int64_t n[3], Err *err);
+
+#endif

@@ -1,0 +1,265 @@
+/* A point is inside when a ray from it crosses the surface an odd number of times. The ray runs
+ * nearly along an axis, so that the box around it is thin and meets few triangles; one that comes
+ * too near to an edge, or to the plane of a triangle, to be counted safely is replaced by one of
+ * another direction. The directions are fixed, so that the answer is, too.
+ *
+ * Crossings of a ray and contacts of a segment are found as by Moeller & Trumbore (J. Graphics
+ * Tools 2 (1997), 21). */
+#include "domain/mesh.h"
+
+#include "domain/contacts.h"
+#include "domain/kinds.h"
+#include <stdlib.h>
+#include <strings.h>
+
+/* Where the line a + t d meets the plane of a triangle: at t, which is a's corner plus u ab + v ac.
+ */
+typedef struct Crossing {
+    double t, u, v;
+} Crossing;
+
+/* False when the line and the plane are too nearly parallel to say. */
+static bool cross_plane(const Triangle *triangle, Vec3 a, Vec3 d, Crossing *crossing)
+{
+    const double parallel = 1e-12; /* cosine of the line and the normal */
+    Vec3 normal = vec3_cross(triangle->ab, triangle->ac);
+    double determinant = -vec3_dot(d, normal);
+    if (determinant * determinant <=
+        parallel * parallel * vec3_dot(d, d) * vec3_dot(normal, normal))
+        return false;
+    Vec3 from = vec3_sub(a, triangle->a), across = vec3_cross(from, d);
+    crossing->t = vec3_dot(from, normal) / determinant;
+    crossing->u = vec3_dot(triangle->ac, across) / determinant;
+    crossing->v = -vec3_dot(triangle->ab, across) / determinant;
+    return true;
+}
+
+/* How deep in its triangle a crossing is: the least of its barycentric coordinates. */
+static double depth(const Crossing *crossing)
+{
+    return fmin(fmin(crossing->u, crossing->v), 1 - crossing->u - crossing->v);
+}
+
+/* Counts the triangles between `point` and `end`; false when one cannot be counted safely. */
+static bool count_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *count)
+{
+    Vec3 d = vec3_sub(end, point);
+    bool safe = true;
+    uint32_t i;
+    *count = 0;
+    Box around = box_with_ball(box_with_ball(box_empty(), point, 0), end, 0);
+    for (BoxWalk walk = boxwalk_box(mesh->tree, around); boxwalk_next(&walk, &i);) {
+        Crossing crossing;
+        if (!cross_plane(&mesh->triangles[i], point, d, &crossing)) {
+            safe = false;
+            continue;
+        }
+        double inner = depth(&crossing);
+        safe = safe && fabs(inner) > CONTACT_MARGIN;
+        *count += inner > 0 && crossing.t > 0;
+    }
+    return safe;
+}
+
+static bool is_within(const Box *box, Vec3 point)
+{
+    return box->low.x <= point.x && point.x <= box->high.x && box->low.y <= point.y &&
+           point.y <= box->high.y && box->low.z <= point.z && point.z <= box->high.z;
+}
+
+static bool is_odd(const Mesh *mesh, const Box *bounds, Vec3 point)
+{
+    static const Vec3 directions[] = {
+        {1, 0.0013713, 0.0007179},   {-1, 0.0031415, -0.0019321}, {0.0017711, 1, 0.0009173},
+        {-0.0023131, -1, 0.0037191}, {0.0041381, 0.0011933, 1},   {-0.0017393, 0.0029173, -1},
+    };
+    if (!is_within(bounds, point))
+        return false;
+    double reach = 1.01 * vec3_distance(bounds->low, bounds->high);
+    int count = 0;
+    for (size_t i = 0; i < sizeof directions / sizeof *directions; i++)
+        if (count_crossings(mesh, point, vec3_add_scaled(point, directions[i], reach), &count))
+            break;
+    return count % 2 == 1;
+}
+
+/* Squared distance of a point, as seen from corner a, to the segment from corner a + from along. */
+static double edge_distance2(Vec3 to, Vec3 from, Vec3 along)
+{
+    Vec3 apart = vec3_sub(to, from);
+    double length2 = vec3_dot(along, along);
+    double t = length2 > 0 ? fmin(fmax(vec3_dot(apart, along) / length2, 0), 1) : 0;
+    apart = vec3_add_scaled(apart, along, -t);
+    return vec3_dot(apart, apart);
+}
+
+static double distance2(const Triangle *triangle, Vec3 point)
+{
+    Vec3 to = vec3_sub(point, triangle->a), zero = {0, 0, 0};
+    Vec3 normal = vec3_cross(triangle->ab, triangle->ac);
+    Crossing foot;
+    if (cross_plane(triangle, point, normal, &foot) && depth(&foot) >= 0)
+        return foot.t * foot.t * vec3_dot(normal, normal);
+    double nearest = edge_distance2(to, zero, triangle->ab);
+    nearest = fmin(nearest, edge_distance2(to, zero, triangle->ac));
+    return fmin(nearest, edge_distance2(to, triangle->ab, vec3_sub(triangle->ac, triangle->ab)));
+}
+
+static bool is_near(const Mesh *mesh, Vec3 point, double reach)
+{
+    uint32_t i;
+    Box around = box_with_ball(box_empty(), point, reach);
+    for (BoxWalk walk = boxwalk_box(mesh->tree, around); boxwalk_next(&walk, &i);)
+        if (distance2(&mesh->triangles[i], point) <= reach * reach)
+            return true;
+    return false;
+}
+
+static bool mesh_inside(const Domain *domain, Vec3 point, double tolerance_mm)
+{
+    return is_odd(domain->mesh, &domain->bounds, point) ||
+           (tolerance_mm > 0 && is_near(domain->mesh, point, tolerance_mm));
+}
+
+/* Whether the line a + t d meets the triangle or its margin, at t. */
+static bool find_contact(const Triangle *triangle, Vec3 a, Vec3 d, double *t)
+{
+    Crossing crossing;
+    if (!cross_plane(triangle, a, d, &crossing) || depth(&crossing) < -CONTACT_MARGIN)
+        return false;
+    *t = crossing.t;
+    return true;
+}
+
+static bool mesh_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
+{
+    const Mesh *mesh = domain->mesh;
+    Contacts contacts = {.n = 0};
+    Vec3 d = vec3_sub(b, a);
+    uint32_t i;
+    double t;
+    for (BoxWalk walk = boxwalk_segment(mesh->tree, a, b); boxwalk_next(&walk, &i);)
+        if (find_contact(&mesh->triangles[i], a, d, &t) && t >= -CONTACT_MARGIN &&
+            t <= 1 + CONTACT_MARGIN)
+            contacts_add(&contacts, t);
+    return contacts_hold_segment(&contacts, domain, a, b);
+}
+
+static Vec3 middle_of(const Triangle *triangle)
+{
+    return vec3_add_scaled(triangle->a, vec3_add(triangle->ab, triangle->ac), 1.0 / 3);
+}
+
+/* Below the middle of the triangle whose middle is highest, along its normal: a thousandth of the
+ * mesh's height, or half the way to the other side where that is less. */
+static Vec3 find_inlet(const Mesh *mesh, const Box *bounds)
+{
+    size_t top = 0;
+    for (size_t i = 1; i < mesh->n; i++)
+        if (middle_of(&mesh->triangles[i]).y > middle_of(&mesh->triangles[top]).y)
+            top = i;
+    const Triangle *triangle = &mesh->triangles[top];
+    Vec3 from = middle_of(triangle);
+    Vec3 inwards = vec3_normalized(vec3_cross(triangle->ac, triangle->ab));
+    double reach = 2e-3 * (bounds->high.y - bounds->low.y), t;
+    Vec3 d = vec3_scale(inwards, reach);
+    double nearest = 1;
+    uint32_t i;
+    for (BoxWalk walk = boxwalk_segment(mesh->tree, from, vec3_add(from, d));
+         boxwalk_next(&walk, &i);)
+        if (i != top && find_contact(&mesh->triangles[i], from, d, &t) && t > 0)
+            nearest = fmin(nearest, t);
+    return vec3_add_scaled(from, d, nearest / 2);
+}
+
+/* Six times the signed volume of the tetrahedron from `origin` over the triangle (the divergence
+ * theorem). */
+static double volume6(const Triangle *triangle, Vec3 origin)
+{
+    return vec3_dot(vec3_sub(triangle->a, origin), vec3_cross(triangle->ab, triangle->ac));
+}
+
+/* Triangles without area bound nothing. */
+static Status set_triangles(Mesh *mesh, const Soup *soup, Err *err)
+{
+    TRY(mem_calloc(&mesh->triangles, soup->n / 3, sizeof *mesh->triangles, "triangles", err));
+    for (const Vec3 *corner = soup->corners; corner < soup->corners + soup->n; corner += 3) {
+        Triangle triangle = {corner[0], vec3_sub(corner[1], corner[0]),
+                             vec3_sub(corner[2], corner[0])};
+        Vec3 normal = vec3_cross(triangle.ab, triangle.ac);
+        if (vec3_dot(normal, normal) > 0)
+            mesh->triangles[mesh->n++] = triangle;
+    }
+    return STATUS_OK;
+}
+
+static Status build_tree(Domain *domain, Err *err)
+{
+    Mesh *mesh = domain->mesh;
+    Box *boxes = NULL;
+    TRY(mem_calloc(&boxes, mesh->n, sizeof *boxes, "boxes", err));
+    domain->bounds = box_empty();
+    for (size_t i = 0; i < mesh->n; i++) {
+        const Triangle *triangle = &mesh->triangles[i];
+        boxes[i] = box_with_ball(box_empty(), triangle->a, 0);
+        boxes[i] = box_with_ball(boxes[i], vec3_add(triangle->a, triangle->ab), 0);
+        boxes[i] = box_with_ball(boxes[i], vec3_add(triangle->a, triangle->ac), 0);
+        domain->bounds = box_union(domain->bounds, boxes[i]);
+    }
+    Status status = boxtree_build(boxes, mesh->n, &mesh->tree, err);
+    free(boxes);
+    return status;
+}
+
+static Status build(Domain *domain, const Soup *soup, Err *err)
+{
+    Mesh *mesh = domain->mesh;
+    TRY(soup_check_closed(soup, domain->file, err));
+    TRY(set_triangles(mesh, soup, err));
+    double sum = 0;
+    for (size_t i = 0; i < mesh->n; i++)
+        sum += volume6(&mesh->triangles[i], mesh->triangles[0].a);
+    domain->volume = sum / 6;
+    if (!(domain->volume > 0))
+        return err_set(err, STATUS_INPUT,
+                       "%s: the mesh is %s: its volume is %.9g mm^3; its triangles must be "
+                       "counter-clockwise seen from outside",
+                       domain->file, domain->volume < 0 ? "inside out" : "flat", domain->volume);
+    TRY(build_tree(domain, err));
+    domain->inlet = find_inlet(mesh, &domain->bounds);
+    return STATUS_OK;
+}
+
+static Status mesh_load(Domain *domain, const char *values, Err *err)
+{
+    domain->dimension = 3;
+    TRY(domain_load_file_name(domain, values, err));
+    const char *extension = file_extension(domain->file);
+    if (strcasecmp(extension, "stl") != 0 && strcasecmp(extension, "obj") != 0)
+        return err_set(err, STATUS_USAGE, "the name of a mesh must end in .stl or .obj");
+    TRY(mem_calloc(&domain->mesh, 1, sizeof *domain->mesh, "meshes", err));
+    Soup soup = {0};
+    Status status = soup_read(&soup, domain->file, domain->size[0], err);
+    if (status == STATUS_OK)
+        status = build(domain, &soup, err);
+    free(soup.corners);
+    return status;
+}
+
+static void mesh_release(Domain *domain)
+{
+    if (!domain->mesh)
+        return;
+    boxtree_free(domain->mesh->tree);
+    free(domain->mesh->triangles);
+    free(domain->mesh);
+}
+
+const DomainOps mesh_ops = {
+    .name = "mesh",
+    .parameters = "FILE[,MM]",
+    .load = mesh_load,
+    .inside = mesh_inside,
+    .holds_segment = mesh_holds_segment,
+    .release = mesh_release,
+};

@@ -1,0 +1,190 @@
+/* A binary STL file is told by its size, 84 + 50 n bytes with the n it states; its 80-byte title may
+ * begin with "solid" as an ASCII file does. Normals, colours, textures and groups are not read: a
+ * triangle's outside is where its corners run counter-clockwise. */
+#include "domain/mesh.h"
+
+#include "domain/kinds.h"
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { STL_TITLE = 80, STL_HEADER = 84, STL_FACET = 50, STL_CORNERS = 12, SHOWN = 40 };
+enum { MAX_TRIANGLES = INT32_MAX };
+
+static const char blanks[] = " \t\v\f\r";
+
+typedef struct Reader {
+    Soup *soup;
+    const char *path;
+    double mm;
+    size_t line;    /* counted from 1 */
+    Vec3 *vertices; /* of an OBJ file, or of the facet of an STL file being read; owned */
+    size_t n, capacity;
+} Reader;
+
+static Status add_triangle(Reader *reader, Vec3 a, Vec3 b, Vec3 c, Err *err)
+{
+    Soup *soup = reader->soup;
+    if (soup->n / 3 == MAX_TRIANGLES)
+        return err_set(err, STATUS_INPUT, "%s: has more than %d triangles", reader->path,
+                       MAX_TRIANGLES);
+    TRY(mem_reserve(&soup->corners, &soup->capacity, soup->n + 3, sizeof *soup->corners,
+                    "corners of triangles", err));
+    soup->corners[soup->n++] = a;
+    soup->corners[soup->n++] = b;
+    soup->corners[soup->n++] = c;
+    return STATUS_OK;
+}
+
+static uint32_t little_endian(const char *bytes)
+{
+    const unsigned char *b = (const unsigned char *)bytes;
+    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+static double stl_float(const char *bytes)
+{
+    uint32_t bits = little_endian(bytes);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return (double)value;
+}
+
+static bool is_binary_stl(const char *bytes, size_t size)
+{
+    return size >= STL_HEADER &&
+           size == STL_HEADER + (size_t)STL_FACET * little_endian(bytes + STL_TITLE);
+}
+
+static Status read_binary_stl(Reader *reader, const char *bytes, size_t size, Err *err)
+{
+    for (size_t at = STL_HEADER; at < size; at += STL_FACET) {
+        Vec3 corner[3];
+        for (size_t i = 0; i < 3; i++) {
+            const char *xyz = bytes + at + STL_CORNERS + 12 * i;
+            corner[i] = vec3_scale(vec3(stl_float(xyz), stl_float(xyz + 4), stl_float(xyz + 8)),
+                                   reader->mm);
+            TRY(domain_check_point(reader->path, 0, corner[i], err));
+        }
+        TRY(add_triangle(reader, corner[0], corner[1], corner[2], err));
+    }
+    return STATUS_OK;
+}
+
+static Status refuse_line(const Reader *reader, const char *what, const char *word, Err *err)
+{
+    return err_set(err, STATUS_INPUT, "%s:%zu: '%.*s' %s", reader->path, reader->line, SHOWN, word,
+                   what);
+}
+
+/* The three numbers that follow `vertex` or `v`; what stands behind them is not looked at. */
+static Status add_vertex(Reader *reader, char **rest, Err *err)
+{
+    double value[3];
+    for (int i = 0; i < 3; i++) {
+        const char *word = strtok_r(NULL, blanks, rest);
+        if (!word || !number_parse(word, &value[i]))
+            return refuse_line(reader, "is not a number; a vertex has three, x y z",
+                               word ? word : "", err);
+    }
+    Vec3 vertex = vec3_scale(vec3(value[0], value[1], value[2]), reader->mm);
+    TRY(domain_check_point(reader->path, reader->line, vertex, err));
+    TRY(mem_reserve(&reader->vertices, &reader->capacity, reader->n + 1, sizeof vertex, "vertices",
+                    err));
+    reader->vertices[reader->n++] = vertex;
+    return STATUS_OK;
+}
+
+static Status read_stl_line(Reader *reader, char *line, Err *err)
+{
+    char *rest = NULL;
+    const char *word = strtok_r(line, blanks, &rest);
+    if (!word)
+        return STATUS_OK;
+    if (strcmp(word, "vertex") == 0)
+        return add_vertex(reader, &rest, err);
+    if (strcmp(word, "endloop") == 0) {
+        const Vec3 *corner = reader->vertices;
+        if (reader->n != 3)
+            return refuse_line(reader, "closes a facet that has not three vertices", word, err);
+        reader->n = 0;
+        return add_triangle(reader, corner[0], corner[1], corner[2], err);
+    }
+    static const char *const others[] = {"solid", "facet", "outer", "endfacet", "endsolid"};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (strcmp(word, others[i]) == 0)
+            return STATUS_OK;
+    return refuse_line(reader,
+                       "is no word of an ASCII STL file, nor is the file a binary one of "
+                       "the size it states",
+                       word, err);
+}
+
+/* One corner of a face, "7", "7/1", "7//3" or "7/1/3"; negative numbers count from the last vertex
+ * back. */
+static Status find_corner(const Reader *reader, char *word, Vec3 *corner, Err *err)
+{
+    word[strcspn(word, "/")] = '\0';
+    long long number = 0, n = (long long)reader->n;
+    if (!integer_parse(word, -n, n, &number) || number == 0)
+        return refuse_line(reader, "is not one of the vertices so far", word, err);
+    *corner = reader->vertices[number > 0 ? number - 1 : n + number];
+    return STATUS_OK;
+}
+
+static Status read_obj_line(Reader *reader, char *line, Err *err)
+{
+    line[strcspn(line, "#")] = '\0';
+    char *rest = NULL, *word = strtok_r(line, blanks, &rest);
+    if (!word)
+        return STATUS_OK;
+    if (strcmp(word, "v") == 0)
+        return add_vertex(reader, &rest, err);
+    if (strcmp(word, "f") != 0)
+        return STATUS_OK;
+    Vec3 first = {0}, last = {0}, corner;
+    int n = 0;
+    for (; (word = strtok_r(NULL, blanks, &rest)); n++) {
+        TRY(find_corner(reader, word, &corner, err));
+        if (n >= 2)
+            TRY(add_triangle(reader, first, last, corner, err));
+        if (n == 0)
+            first = corner;
+        last = corner;
+    }
+    if (n < 3)
+        return refuse_line(reader, "is a face of fewer than three corners", "f", err);
+    return STATUS_OK;
+}
+
+static Status read_lines(Reader *reader, char *bytes, Status (*read_line)(Reader *, char *, Err *),
+                         Err *err)
+{
+    for (char *at = bytes, *next = NULL; at; at = next) {
+        reader->line++;
+        next = strchr(at, '\n');
+        if (next)
+            *next++ = '\0';
+        TRY(read_line(reader, at, err));
+    }
+    return STATUS_OK;
+}
+
+Status soup_read(Soup *soup, const char *path, double mm, Err *err)
+{
+    char *bytes = NULL;
+    size_t size = 0;
+    bool is_obj = strcasecmp(file_extension(path), "obj") == 0;
+    TRY(file_read(path, &bytes, &size, err));
+    Reader reader = {.soup = soup, .path = path, .mm = mm};
+    Status status;
+    if (!is_obj && is_binary_stl(bytes, size))
+        status = read_binary_stl(&reader, bytes, size, err);
+    else
+        status = read_lines(&reader, bytes, is_obj ? read_obj_line : read_stl_line, err);
+    if (status == STATUS_OK && soup->n == 0)
+        status = err_set(err, STATUS_INPUT, "%s: has no triangles", path);
+    free(reader.vertices);
+    free(bytes);
+    return status;
+}

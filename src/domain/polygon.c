@@ -1,0 +1,179 @@
+/* A point is inside when the ray from it along x crosses an odd number of edges, an edge reaching
+ * from its lower end, included, to its upper end, excluded. The tree of edges makes this O(log n)
+ * for all but ragged outlines. */
+#include "domain/polygon.h"
+
+#include "domain/contacts.h"
+#include "domain/kinds.h"
+#include <stdlib.h>
+
+#define NO_EDGE UINT32_MAX
+
+static bool crosses_ray(const Edge *edge, Vec3 point)
+{
+    bool up = edge->a.y <= edge->b.y;
+    Vec3 low = up ? edge->a : edge->b, high = up ? edge->b : edge->a;
+    return low.y <= point.y && point.y < high.y && polygon_turn(low, high, point) > 0;
+}
+
+/* Leaves out the edge `except`. */
+static bool is_odd(const Polygon *polygon, const Box *bounds, Vec3 point, uint32_t except)
+{
+    bool odd = false;
+    uint32_t i;
+    Box ray = {point, vec3(fmax(point.x, bounds->high.x), point.y, 0)};
+    for (BoxWalk walk = boxwalk_box(polygon->tree, ray); boxwalk_next(&walk, &i);)
+        odd ^= i != except && crosses_ray(&polygon->edges[i], point);
+    return odd;
+}
+
+static double distance2(const Edge *edge, Vec3 point)
+{
+    Vec3 along = vec3_sub(edge->b, edge->a), to = vec3_sub(point, edge->a);
+    double t = fmin(fmax(vec3_dot(to, along) / vec3_dot(along, along), 0), 1);
+    Vec3 apart = vec3_add_scaled(to, along, -t);
+    return vec3_dot(apart, apart);
+}
+
+static bool is_near(const Polygon *polygon, Vec3 point, double reach)
+{
+    uint32_t i;
+    Box around = box_with_ball(box_empty(), point, reach);
+    for (BoxWalk walk = boxwalk_box(polygon->tree, around); boxwalk_next(&walk, &i);)
+        if (distance2(&polygon->edges[i], point) <= reach * reach)
+            return true;
+    return false;
+}
+
+static bool polygon_inside(const Domain *domain, Vec3 point, double tolerance_mm)
+{
+    return is_odd(domain->polygon, &domain->bounds, point, NO_EDGE) ||
+           (tolerance_mm > 0 && is_near(domain->polygon, point, tolerance_mm));
+}
+
+/* Lines that are parallel meet nowhere: where they coincide, the edges at either end meet both. */
+static void find_contact(const Edge *edge, Vec3 a, Vec3 b, Contacts *contacts)
+{
+    Vec3 d = vec3_sub(b, a), e = vec3_sub(edge->b, edge->a), to = vec3_sub(edge->a, a);
+    double determinant = d.x * e.y - d.y * e.x;
+    if (determinant == 0)
+        return;
+    double t = (to.x * e.y - to.y * e.x) / determinant;
+    double s = (to.x * d.y - to.y * d.x) / determinant;
+    const double margin = CONTACT_MARGIN;
+    if (t >= -margin && t <= 1 + margin && s >= -margin && s <= 1 + margin)
+        contacts_add(contacts, t);
+}
+
+static bool polygon_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
+{
+    Contacts contacts = {.n = 0};
+    uint32_t i;
+    for (BoxWalk walk = boxwalk_segment(domain->polygon->tree, a, b); boxwalk_next(&walk, &i);)
+        find_contact(&domain->polygon->edges[i], a, b, &contacts);
+    return contacts_hold_segment(&contacts, domain, a, b);
+}
+
+static int ascending(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The middle of the widest stretch inside, a thousandth of the height below the top. */
+static Status find_inlet(Domain *domain, Err *err)
+{
+    const Polygon *polygon = domain->polygon;
+    const Box *bounds = &domain->bounds;
+    double y = bounds->high.y - 1e-3 * (bounds->high.y - bounds->low.y), widest = -1;
+    double *x = NULL;
+    size_t n = 0;
+    TRY(mem_calloc(&x, polygon->n, sizeof *x, "crossings", err));
+    for (size_t i = 0; i < polygon->n; i++) {
+        Vec3 a = polygon->edges[i].a, b = polygon->edges[i].b;
+        if ((a.y <= y) != (b.y <= y))
+            x[n++] = a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
+    }
+    qsort(x, n, sizeof *x, ascending);
+    for (size_t i = 0; i + 1 < n; i += 2) {
+        if (x[i + 1] - x[i] <= widest)
+            continue;
+        widest = x[i + 1] - x[i];
+        domain->inlet = vec3((x[i] + x[i + 1]) / 2, y, 0);
+    }
+    free(x);
+    return STATUS_OK;
+}
+
+/* A ring's signed area is positive when it runs counter-clockwise, and counts as it is when the
+ * inside is to the left of it; else its sign is turned. The steepest edge says which: what is right
+ * of its middle is to its left when it runs down. */
+static double area(const Polygon *polygon, const Box *bounds)
+{
+    const Edge *edges = polygon->edges;
+    double sum = 0;
+    for (size_t first = 0, last; first < polygon->n; first = last + 1) {
+        double twice = 0;
+        size_t steepest = first;
+        last = first;
+        for (size_t i = first; i <= last; i++) {
+            twice += polygon_turn(edges[first].a, edges[i].a, edges[i].b);
+            if (fabs(edges[i].b.y - edges[i].a.y) > fabs(edges[steepest].b.y - edges[steepest].a.y))
+                steepest = i;
+            if (edges[i].next > i)
+                last = i + 1;
+        }
+        const Edge *edge = &edges[steepest];
+        Vec3 middle = vec3_scale(vec3_add(edge->a, edge->b), 0.5);
+        bool right_is_inside = is_odd(polygon, bounds, middle, (uint32_t)steepest);
+        bool left_is_inside = right_is_inside == (edge->b.y < edge->a.y);
+        sum += left_is_inside ? twice / 2 : -twice / 2;
+    }
+    return sum;
+}
+
+static Status build(Domain *domain, Err *err)
+{
+    Polygon *polygon = domain->polygon;
+    Box *boxes = NULL;
+    TRY(polygon_read(polygon, domain->file, domain->size[0], err));
+    TRY(mem_calloc(&boxes, polygon->n, sizeof *boxes, "boxes", err));
+    domain->bounds = box_empty();
+    for (size_t i = 0; i < polygon->n; i++) {
+        boxes[i] = box_with_ball(box_empty(), polygon->edges[i].a, 0);
+        boxes[i] = box_with_ball(boxes[i], polygon->edges[i].b, 0);
+        domain->bounds = box_union(domain->bounds, boxes[i]);
+    }
+    Status status = boxtree_build(boxes, polygon->n, &polygon->tree, err);
+    free(boxes);
+    TRY(status);
+    TRY(polygon_check_crossings(polygon, domain->file, err));
+    domain->volume = area(polygon, &domain->bounds);
+    return find_inlet(domain, err);
+}
+
+static Status polygon_load(Domain *domain, const char *values, Err *err)
+{
+    domain->dimension = 2;
+    TRY(domain_load_file_name(domain, values, err));
+    TRY(mem_calloc(&domain->polygon, 1, sizeof *domain->polygon, "polygons", err));
+    return build(domain, err);
+}
+
+static void polygon_release(Domain *domain)
+{
+    if (!domain->polygon)
+        return;
+    boxtree_free(domain->polygon->tree);
+    free(domain->polygon->edges);
+    free(domain->polygon);
+}
+
+const DomainOps polygon_ops = {
+    .name = "polygon",
+    .parameters = "FILE[,MM]",
+    .load = polygon_load,
+    .inside = polygon_inside,
+    .holds_segment = polygon_holds_segment,
+    .release = polygon_release,
+};

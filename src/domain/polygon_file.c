@@ -1,0 +1,178 @@
+/* Rings are runs of points between blank lines. A polygon is good when no two edges have a point in
+ * common but neighbours the corner between them: then the even-odd rule makes rings within rings
+ * holes, islands in them, and so on. The tree of edges finds the few pairs worth a look. */
+#include "domain/polygon.h"
+
+#include "domain/kinds.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { SHOWN = 40 /* characters of a bad line */ };
+
+static const char blanks[] = " \t\v\f\r";
+
+typedef struct Reader {
+    Polygon *polygon;
+    const char *path;
+    double mm;
+    size_t line;  /* counted from 1 */
+    size_t first; /* edge of the ring being read */
+} Reader;
+
+static bool same(Vec3 a, Vec3 b)
+{
+    return a.x == b.x && a.y == b.y;
+}
+
+/* Until the next point is known an edge ends where it begins. */
+static Status add_point(Reader *reader, Vec3 point, Err *err)
+{
+    Polygon *polygon = reader->polygon;
+    if (polygon->n > reader->first) {
+        Edge *last = &polygon->edges[polygon->n - 1];
+        if (same(last->a, point))
+            return STATUS_OK;
+        last->b = point;
+        last->next = polygon->n;
+    }
+    TRY(mem_reserve(&polygon->edges, &polygon->capacity, polygon->n + 1, sizeof *polygon->edges,
+                    "points", err));
+    polygon->edges[polygon->n] = (Edge){point, point, polygon->n, reader->line};
+    polygon->n++;
+    return STATUS_OK;
+}
+
+static Status end_ring(Reader *reader, Err *err)
+{
+    Polygon *polygon = reader->polygon;
+    if (polygon->n == reader->first)
+        return STATUS_OK;
+    Edge *first = polygon->edges + reader->first, *last = polygon->edges + polygon->n - 1;
+    if (last > first && same(last->a, first->a)) {
+        polygon->n--;
+        last--;
+    }
+    last->b = first->a;
+    last->next = reader->first;
+    size_t n = polygon->n - reader->first;
+    if (n < 3)
+        return err_set(err, STATUS_INPUT,
+                       "%s:%zu: the ring that begins here has %zu point%s; it must have at least "
+                       "3 different ones",
+                       reader->path, first->line, n, n == 1 ? "" : "s");
+    reader->first = polygon->n;
+    return STATUS_OK;
+}
+
+static Status read_line(Reader *reader, char *line, Err *err)
+{
+    line += strspn(line, blanks);
+    if (*line == '\0')
+        return end_ring(reader, err);
+    line[strcspn(line, "#")] = '\0';
+    if (*line == '\0')
+        return STATUS_OK;
+    char text[2 * SHOWN];
+    snprintf(text, sizeof text, "%s", line);
+    double value[2] = {0, 0};
+    int count = 0;
+    bool good = true;
+    for (char *rest = NULL, *word = strtok_r(line, blanks, &rest); word;
+         word = strtok_r(NULL, blanks, &rest), count++)
+        good = good && count < 2 && number_parse(word, &value[count]);
+    if (!good || count != 2)
+        return err_set(err, STATUS_INPUT,
+                       "%s:%zu: '%.*s' is not a point; a line holds two numbers, x y, or nothing, "
+                       "which ends a ring",
+                       reader->path, reader->line, SHOWN, text);
+    Vec3 point = vec3(value[0] * reader->mm, value[1] * reader->mm, 0);
+    TRY(domain_check_point(reader->path, reader->line, point, err));
+    return add_point(reader, point, err);
+}
+
+static Status read_lines(Reader *reader, char *bytes, size_t size, Err *err)
+{
+    if (memchr(bytes, '\0', size))
+        return err_set(err, STATUS_INPUT, "%s: holds zero bytes; a polygon is plain text",
+                       reader->path);
+    for (char *at = bytes, *next = NULL; at; at = next) {
+        reader->line++;
+        next = strchr(at, '\n');
+        if (next)
+            *next++ = '\0';
+        TRY(read_line(reader, at, err));
+    }
+    TRY(end_ring(reader, err));
+    if (reader->polygon->n == 0)
+        return err_set(err, STATUS_INPUT, "%s: the file has no points; a polygon has at least 3",
+                       reader->path);
+    return STATUS_OK;
+}
+
+Status polygon_read(Polygon *polygon, const char *path, double mm, Err *err)
+{
+    char *bytes = NULL;
+    size_t size = 0;
+    TRY(file_read(path, &bytes, &size, err));
+    Reader reader = {.polygon = polygon, .path = path, .mm = mm};
+    Status status = read_lines(&reader, bytes, size, err);
+    free(bytes);
+    return status;
+}
+
+double polygon_turn(Vec3 a, Vec3 b, Vec3 c)
+{
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/* Whether `point`, on the line through the edge, is between its ends. */
+static bool between(const Edge *edge, Vec3 point)
+{
+    return fmin(edge->a.x, edge->b.x) <= point.x && point.x <= fmax(edge->a.x, edge->b.x) &&
+           fmin(edge->a.y, edge->b.y) <= point.y && point.y <= fmax(edge->a.y, edge->b.y);
+}
+
+static bool opposite(double a, double b)
+{
+    return (a < 0 && b > 0) || (a > 0 && b < 0);
+}
+
+static bool have_common_point(const Edge *e, const Edge *f)
+{
+    double fa = polygon_turn(e->a, e->b, f->a), fb = polygon_turn(e->a, e->b, f->b);
+    double ea = polygon_turn(f->a, f->b, e->a), eb = polygon_turn(f->a, f->b, e->b);
+    if (opposite(fa, fb) && opposite(ea, eb))
+        return true;
+    return (fa == 0 && between(e, f->a)) || (fb == 0 && between(e, f->b)) ||
+           (ea == 0 && between(f, e->a)) || (eb == 0 && between(f, e->b));
+}
+
+/* Whether `next`, which begins where `edge` ends, goes back on it. */
+static bool folds_back(const Edge *edge, const Edge *next)
+{
+    return polygon_turn(edge->a, edge->b, next->b) == 0 &&
+           vec3_dot(vec3_sub(edge->b, edge->a), vec3_sub(next->b, next->a)) < 0;
+}
+
+Status polygon_check_crossings(const Polygon *polygon, const char *path, Err *err)
+{
+    for (size_t i = 0; i < polygon->n; i++) {
+        const Edge *e = &polygon->edges[i];
+        uint32_t j;
+        for (BoxWalk walk = boxwalk_segment(polygon->tree, e->a, e->b); boxwalk_next(&walk, &j);) {
+            const Edge *f = &polygon->edges[j];
+            if (j <= i)
+                continue;
+            bool bad = e->next == j   ? folds_back(e, f)
+                       : f->next == i ? folds_back(f, e)
+                                      : have_common_point(e, f);
+            if (bad)
+                return err_set(err, STATUS_INPUT,
+                               "%s:%zu: the edge that begins here crosses or touches the one that "
+                               "begins on line %zu; the edges of a polygon may meet at the "
+                               "corners of their ring only",
+                               path, f->line, e->line);
+        }
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,262 @@
+/* The shapes that formulas describe, about the origin, y up: disc and ball, rectangle and box,
+ * ellipsoid, and the wall of a left ventricle as an ellipsoid hollowed out by a smaller one and cut
+ * off at the base. All but the last are convex.
+ *
+ * A tolerance widens the semi-axes: the ellipsoid of semi-axes a + t lies within t of that of
+ * semi-axes a, because its support function |(a_i + t) u_i| is at most |a_i u_i| + t. Likewise a
+ * point outside the cavity's ellipsoid of semi-axes a - t is at most t deep in that of a. */
+#include "domain/kinds.h"
+
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+static double square(double x)
+{
+    return x * x;
+}
+
+/* The numbers of one shape's text. */
+typedef struct Form {
+    int n_positive; /* that must be there, each at least DOMAIN_MIN_MM */
+    int n_optional; /* of either sign */
+    const char *example;
+} Form;
+
+static Status load_sizes(Domain *domain, const DomainOps *ops, const Form *form, const char *values,
+                         Err *err)
+{
+    int most = form->n_positive + form->n_optional, n = 0;
+    for (const char *at = values; at; n++) {
+        char number[64] = "";
+        size_t length = strcspn(at, ",");
+        if (length < sizeof number)
+            memcpy(number, at, length);
+        double value = 0;
+        double least = n < form->n_positive ? DOMAIN_MIN_MM : -DOMAIN_MAX_MM;
+        if (!number_parse(number, &value) || !(value >= least && value <= DOMAIN_MAX_MM))
+            return err_set(err, STATUS_USAGE,
+                           "'%.*s' is not a number of mm from %g to %g; %s:%s, as in %s:%s",
+                           (int)length, at, least, DOMAIN_MAX_MM, ops->name, ops->parameters,
+                           ops->name, form->example);
+        if (n < most)
+            domain->size[n] = value;
+        at = at[length] ? at + length + 1 : NULL;
+    }
+    if (n < form->n_positive || n > most)
+        return err_set(err, STATUS_USAGE, "%d number%s, but the shape is %s:%s, as in %s:%s", n,
+                       n == 1 ? "" : "s", ops->name, ops->parameters, ops->name, form->example);
+    domain->n_sizes = n;
+    return STATUS_OK;
+}
+
+static Vec3 size_vector(const Domain *domain)
+{
+    return vec3(domain->size[0], domain->size[1], domain->size[2]);
+}
+
+static void set_centered(Domain *domain, int dimension, Vec3 half, double volume)
+{
+    domain->dimension = dimension;
+    domain->bounds = (Box){vec3(-half.x, -half.y, -half.z), half};
+    domain->volume = volume;
+    domain->inlet = vec3(0, half.y, 0);
+}
+
+static bool round_inside(const Domain *domain, Vec3 point, double tolerance_mm)
+{
+    double reach = domain->size[0] + tolerance_mm;
+    return vec3_dot(point, point) <= reach * reach;
+}
+
+static Status disc_load(Domain *domain, const char *values, Err *err)
+{
+    TRY(load_sizes(domain, &disc_ops, &(Form){1, 0, "50"}, values, err));
+    double r = domain->size[0];
+    set_centered(domain, 2, vec3(r, r, 0), pi * r * r);
+    return STATUS_OK;
+}
+
+const DomainOps disc_ops = {
+    .name = "disc",
+    .parameters = "R",
+    .is_convex = true,
+    .load = disc_load,
+    .inside = round_inside,
+};
+
+static Status ball_load(Domain *domain, const char *values, Err *err)
+{
+    TRY(load_sizes(domain, &ball_ops, &(Form){1, 0, "30"}, values, err));
+    double r = domain->size[0];
+    set_centered(domain, 3, vec3(r, r, r), 4.0 / 3 * pi * r * r * r);
+    return STATUS_OK;
+}
+
+const DomainOps ball_ops = {
+    .name = "ball",
+    .parameters = "R",
+    .is_convex = true,
+    .load = ball_load,
+    .inside = round_inside,
+};
+
+static bool box_inside(const Domain *domain, Vec3 point, double tolerance_mm)
+{
+    Vec3 half = domain->bounds.high;
+    return fabs(point.x) <= half.x + tolerance_mm && fabs(point.y) <= half.y + tolerance_mm &&
+           fabs(point.z) <= half.z + tolerance_mm;
+}
+
+static Status rect_load(Domain *domain, const char *values, Err *err)
+{
+    TRY(load_sizes(domain, &rect_ops, &(Form){2, 0, "60,40"}, values, err));
+    Vec3 size = size_vector(domain);
+    set_centered(domain, 2, vec3_scale(size, 0.5), size.x * size.y);
+    return STATUS_OK;
+}
+
+const DomainOps rect_ops = {
+    .name = "rect",
+    .parameters = "W,H",
+    .is_convex = true,
+    .load = rect_load,
+    .inside = box_inside,
+};
+
+static Status box_load(Domain *domain, const char *values, Err *err)
+{
+    TRY(load_sizes(domain, &box_ops, &(Form){3, 0, "40,30,20"}, values, err));
+    Vec3 size = size_vector(domain);
+    set_centered(domain, 3, vec3_scale(size, 0.5), size.x * size.y * size.z);
+    return STATUS_OK;
+}
+
+const DomainOps box_ops = {
+    .name = "box",
+    .parameters = "A,B,C",
+    .is_convex = true,
+    .load = box_load,
+    .inside = box_inside,
+};
+
+/* The point where the ellipsoid of semi-axes axis_i + widening is the unit ball. */
+static Vec3 in_unit_ball(Vec3 point, Vec3 axes, double widening)
+{
+    return vec3(point.x / (axes.x + widening), point.y / (axes.y + widening),
+                point.z / (axes.z + widening));
+}
+
+static bool ellipsoid_inside(const Domain *domain, Vec3 point, double tolerance_mm)
+{
+    Vec3 unit = in_unit_ball(point, size_vector(domain), tolerance_mm);
+    return vec3_dot(unit, unit) <= 1;
+}
+
+static Status ellipsoid_load(Domain *domain, const char *values, Err *err)
+{
+    TRY(load_sizes(domain, &ellipsoid_ops, &(Form){3, 0, "40,50,30"}, values, err));
+    Vec3 axes = size_vector(domain);
+    set_centered(domain, 3, axes, 4.0 / 3 * pi * axes.x * axes.y * axes.z);
+    return STATUS_OK;
+}
+
+const DomainOps ellipsoid_ops = {
+    .name = "ellipsoid",
+    .parameters = "A,B,C",
+    .is_convex = true,
+    .load = ellipsoid_load,
+    .inside = ellipsoid_inside,
+};
+
+/* The shell's numbers: semi-axes of the outer ellipsoid, how much shorter those of the cavity are,
+ * and the height of the base. */
+enum { SHELL_THICKNESS = 3, SHELL_BASE = 4 };
+
+static Vec3 cavity_axes(const Domain *domain)
+{
+    double thickness = domain->size[SHELL_THICKNESS];
+    return vec3_sub(size_vector(domain), vec3(thickness, thickness, thickness));
+}
+
+/* The volume of an ellipsoid below the height `top`, in [-axes.y, axes.y]. */
+static double volume_below(Vec3 axes, double top)
+{
+    double s = top / axes.y;
+    return pi * axes.x * axes.y * axes.z * (2.0 / 3 + s - s * s * s / 3);
+}
+
+/* The radius along x of an ellipsoid at the height `y`, in [-axes.y, axes.y]. */
+static double radius_at(Vec3 axes, double y)
+{
+    return axes.x * sqrt(1 - square(y / axes.y));
+}
+
+static Status shell_load(Domain *domain, const char *values, Err *err)
+{
+    TRY(load_sizes(domain, &shell_ops, &(Form){4, 1, "30,50,30,10,20"}, values, err));
+    Vec3 outer = size_vector(domain), cavity = cavity_axes(domain);
+    if (domain->n_sizes == SHELL_BASE)
+        domain->size[SHELL_BASE] = cavity.y / 2;
+    domain->n_sizes = SHELL_BASE + 1;
+    if (!(fmin(cavity.x, fmin(cavity.y, cavity.z)) > 0))
+        return err_set(err, STATUS_USAGE,
+                       "the THICKNESS %.9g must be less than each of the semi-axes A, B and C",
+                       domain->size[SHELL_THICKNESS]);
+    double base = domain->size[SHELL_BASE];
+    if (!(fabs(base) < cavity.y))
+        return err_set(err, STATUS_USAGE,
+                       "the height BASE %.9g must be between -%.9g and %.9g, B - THICKNESS, so "
+                       "that the cavity is open there",
+                       base, cavity.y, cavity.y);
+    double widest = base < 0 ? radius_at(outer, base) / outer.x : 1;
+    domain->dimension = 3;
+    domain->bounds = (Box){vec3(-outer.x * widest, -outer.y, -outer.z * widest),
+                           vec3(outer.x * widest, base, outer.z * widest)};
+    domain->volume = volume_below(outer, base) - volume_below(cavity, base);
+    domain->inlet = vec3((radius_at(outer, base) + radius_at(cavity, base)) / 2, base, 0);
+    return STATUS_OK;
+}
+
+/* Whether all of the segment from `a` to `b` is outside the open unit ball. */
+static bool misses_unit_ball(Vec3 a, Vec3 b)
+{
+    Vec3 along = vec3_sub(b, a);
+    double length2 = vec3_dot(along, along);
+    double t = length2 > 0 ? fmin(fmax(-vec3_dot(a, along) / length2, 0), 1) : 0;
+    Vec3 nearest = vec3_add_scaled(a, along, t);
+    return vec3_dot(nearest, nearest) >= 1;
+}
+
+/* The outer ellipsoid below the base is convex, so only the cavity is to be kept clear of. */
+static bool shell_holds(const Domain *domain, Vec3 a, Vec3 b, double tolerance_mm)
+{
+    Vec3 outer = size_vector(domain), cavity = cavity_axes(domain);
+    Vec3 outer_a = in_unit_ball(a, outer, tolerance_mm);
+    Vec3 outer_b = in_unit_ball(b, outer, tolerance_mm);
+    double top = domain->size[SHELL_BASE] + tolerance_mm;
+    if (vec3_dot(outer_a, outer_a) > 1 || vec3_dot(outer_b, outer_b) > 1 || a.y > top || b.y > top)
+        return false;
+    if (fmin(cavity.x, fmin(cavity.y, cavity.z)) <= tolerance_mm)
+        return true;
+    return misses_unit_ball(in_unit_ball(a, cavity, -tolerance_mm),
+                            in_unit_ball(b, cavity, -tolerance_mm));
+}
+
+static bool shell_inside(const Domain *domain, Vec3 point, double tolerance_mm)
+{
+    return shell_holds(domain, point, point, tolerance_mm);
+}
+
+static bool shell_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
+{
+    return shell_holds(domain, a, b, domain->slack_mm);
+}
+
+const DomainOps shell_ops = {
+    .name = "shell",
+    .parameters = "A,B,C,THICKNESS[,BASE]",
+    .load = shell_load,
+    .inside = shell_inside,
+    .holds_segment = shell_holds_segment,
+};

@@ -1,0 +1,521 @@
+/* How domains are read: what the texts and files may look like, and the sentence each bad one gets.
+ * Runs in a folder of its own; the NIfTI headers are laid out by hand. */
+#include "domain/domain.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <znzlib.h>
+
+static void must(Status status, const Err *err)
+{
+    if (status != STATUS_OK)
+        fail_msg("%s", err->text);
+}
+
+static void write_bytes(const char *name, const void *bytes, size_t size)
+{
+    Err err;
+    must(file_write(name, bytes, size, &err), &err);
+}
+
+static char folder[] = "/tmp/domain_file_test.XXXXXX";
+
+static int enter_folder(void **state)
+{
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    return chdir(folder);
+}
+
+static int leave_folder(void **state)
+{
+    (void)state;
+    return chdir("/") || rmdir(folder);
+}
+
+static Domain parse(const char *spec)
+{
+    Domain domain;
+    Err err;
+    must(domain_parse(&domain, spec, &err), &err);
+    return domain;
+}
+
+/* The text is refused with a sentence that holds the fragment and, as the case may be, names the
+ * text itself or the file. */
+static void expect_refused(const char *spec, Status status, const char *fragment)
+{
+    Domain domain = {.kind = DOMAIN_BOX, .n_sizes = 77};
+    Err err = {""};
+    Status got = domain_parse(&domain, spec, &err);
+    char name[200];
+    snprintf(name, sizeof name, "%s%s", status == STATUS_USAGE ? "--domain " : "",
+             status == STATUS_USAGE ? spec : strchr(spec, ':') + 1);
+    if (status == STATUS_INPUT && strchr(name, ','))
+        *strchr(name, ',') = '\0';
+    if (got != status || strncmp(err.text, name, strlen(name)) != 0 || !strstr(err.text, fragment))
+        fail_msg("%s: status %d, '%s', not %d, '%s...%s'", spec, got, err.text, status, name,
+                 fragment);
+    assert_true(domain.kind == DOMAIN_BOX && domain.n_sizes == 77);
+}
+
+/* Likewise for a file of these bytes. */
+static void expect_bytes_refused(const char *spec, const void *bytes, size_t size,
+                                 const char *fragment)
+{
+    char name[200];
+    snprintf(name, sizeof name, "%s", strchr(spec, ':') + 1);
+    name[strcspn(name, ",")] = '\0';
+    write_bytes(name, bytes, size);
+    expect_refused(spec, STATUS_INPUT, fragment);
+    unlink(name);
+}
+
+static void expect_text_refused(const char *spec, const char *text, const char *fragment)
+{
+    expect_bytes_refused(spec, text, strlen(text), fragment);
+}
+
+static Domain parse_text(const char *spec, const char *text)
+{
+    char name[200];
+    snprintf(name, sizeof name, "%s", strchr(spec, ':') + 1);
+    name[strcspn(name, ",")] = '\0';
+    write_bytes(name, text, strlen(text));
+    Domain domain = parse(spec);
+    unlink(name);
+    return domain;
+}
+
+static void texts_that_are_no_domain_are_refused(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"", "unknown shape"},
+        {"cube:3", "use disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
+                   "shell:A,B,C,THICKNESS[,BASE], polygon:FILE[,MM], mask:FILE[,MM] or "
+                   "mesh:FILE[,MM]"},
+        {"Disc:3", "unknown shape"},
+        {"disc", "'' is not a number of mm from"},
+        {"disc:", "as in disc:50"},
+        {"disc:0", "'0' is not a number of mm from 1e-06 to 1e+06"},
+        {"ball:-4", "'-4' is not"},
+        {"ball:nan", "'nan' is not"},
+        {"disc:inf", "'inf' is not"},
+        {"disc:1000001", "'1000001' is not"},
+        {"disc: 5", "' 5' is not"},
+        {"disc:5 ", "'5 ' is not"},
+        {"ball:1e-7", "'1e-7' is not"},
+        {"ball:fifty", "'fifty' is not"},
+        {"dis:50", "unknown shape"},
+        {"discs:50", "unknown shape"},
+        {":50", "unknown shape"},
+        {"disc:5,6", "2 numbers, but the shape is disc:R"},
+        {"rect:3", "1 number, but the shape is rect:W,H, as in rect:60,40"},
+        {"rect:3,0", "'0' is not"},
+        {"box:1,2", "2 numbers, but the shape is box:A,B,C"},
+        {"box:1,2,3,4", "4 numbers"},
+        {"box:1,,3", "'' is not"},
+        {"ellipsoid:1,2,x", "'x' is not"},
+        {"shell:30,50,30", "3 numbers, but the shape is shell:A,B,C,THICKNESS[,BASE]"},
+        {"shell:30,50,30,10,20,5", "6 numbers"},
+        {"shell:30,50,30,30", "THICKNESS 30 must be less"},
+        {"shell:30,50,30,10,40", "BASE 40 must be between -40 and 40"},
+        {"shell:30,50,30,10,-41", "BASE -41 must be"},
+        {"shell:30,50,30,10,nan", "'nan' is not a number of mm from -1e+06 to 1e+06"},
+        {"polygon:", "name of a file is missing; use polygon:FILE[,MM]"},
+        {"mask", "name of a file is missing"},
+        {"mask:a.pgm", "width of a pixel in mm; use mask:FILE,MM"},
+        {"mask:a.pgm,0", "the unit of the file must be a number of mm from 1e-06 to 1e+06"},
+        {"mask:a.nii.gz,2", "has its own units"},
+        {"mesh:a.ply", "must end in .stl or .obj"},
+        {"mesh:a.stl,-1", "the unit of the file must be a number of mm from 1e-06 to 1e+06"},
+        {"polygon:a.txt,nan", "the unit of the file must be a number of mm from 1e-06 to 1e+06"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        expect_refused(cases[i][0], STATUS_USAGE, cases[i][1]);
+}
+
+static void files_that_are_missing_are_named(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {"polygon:a.txt", "polygon:a.txt,x", "mask:a.pgm,1",
+                                        "mask:a.nii",    "mask:a.nii.gz",   "mesh:a.stl",
+                                        "mesh:a.OBJ,10"};
+    for (size_t i = 0; i < sizeof specs / sizeof *specs; i++)
+        expect_refused(specs[i], STATUS_INPUT, "cannot be read");
+}
+
+static void polygons_that_bound_nothing_are_refused(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"", "a.txt: the file has no points"},
+        {"# nothing\n\n", "has no points"},
+        {"0 0\n1 1\n", "a.txt:1: the ring that begins here has 2 points; it must have at least 3"},
+        {"0 0\n1 1\n1 1\n0 0\n", "has 2 points"},
+        {"0 0\n9 0\n9 9\n\n# hole\n3 3\n", "a.txt:6: the ring that begins here has 1 point;"},
+        {"0 0\n9\n9 9\n", "a.txt:2: '9' is not a point"},
+        {"0 0\n9 0 0\n9 9\n", "a.txt:2: '9 0 0' is not a point"},
+        {"0 0\n9,0\n9 9\n", "a.txt:2: '9,0' is not a point"},
+        {"0 0\n9 nan\n9 9\n", "a.txt:2: the point 9 nan 0 (mm) is not finite"},
+        {"0 0\n9 1e7\n9 9\n", "lies beyond 1000000 mm"},
+        {"0 0\n9 9\n9 0\n0 9\n", "a.txt:3: the edge that begins here crosses or touches the one "
+                                 "that begins on line 1"},
+        {"0 0\n9 0\n9 9\n5 0\n", "crosses or touches"},           /* corner on an edge */
+        {"0 0\n9 0\n5 0\n5 9\n", "crosses or touches"},           /* goes back */
+        {"0 0\n4 4\n8 0\n8 8\n4 4\n0 8\n", "crosses or touches"}, /* pinched at a corner */
+        {"0 0\n9 0\n9 9\n0 9\n\n0 0\n9 0\n9 9\n0 9\n", "crosses or touches"}, /* the same twice */
+        {"0 0\n9 0\n9 9\n0 9\n\n5 5\n12 5\n12 7\n5 7\n",
+         "crosses or touches"}, /* hole sticks out */
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        expect_text_refused("polygon:a.txt", cases[i][0], cases[i][1]);
+    expect_bytes_refused("polygon:a.txt", "0 0\n1 0\0\n1 1\n", 13, "holds zero bytes");
+}
+
+static void rings_may_run_either_way_and_nest(void **state)
+{
+    (void)state;
+    static const char text[] = "1 1\n1 9\n9 9\n9 1\n1 1\n\n2 2\n8 2\n8 8\n2 8\n\n"
+                               "4 3\n3 3\n3 7\n4 7\n\n5 3\n7 3\n7 7\n5 7\n \n20 0\n24 0\n22 2.5\n";
+    Domain domain = parse_text("polygon:a.txt,2", text);
+    assert_true(fabs(domain_volume(&domain) - 4 * (64 - 36 + 4 + 8 + 5)) < 1e-9);
+    static const struct {
+        double x, y;
+        bool inside;
+    } points[] = {{1.5, 5, true},  {2.5, 5, false}, {3.5, 5, true}, {4.5, 5, false},
+                  {6, 5, true},    {7.5, 5, false}, {8.5, 5, true}, {9.5, 5, false},
+                  {22, 1.5, true}, {22, 3, false}};
+    for (size_t i = 0; i < sizeof points / sizeof *points; i++)
+        assert_int_equal(domain_inside(&domain, vec3(2 * points[i].x, 2 * points[i].y, 0), 0),
+                         points[i].inside);
+    domain_release(&domain);
+}
+
+static void masks_that_hold_nothing_are_refused(void **state)
+{
+    (void)state;
+    expect_text_refused("mask:a.pgm,0.5", "P2 3 2 255 0 0 0 0 0 0\n",
+                        "a.pgm: the mask is empty: none of its 6 pixels is above 0");
+    expect_text_refused("mask:a.pgm,0.5", "P5 3 2 255\nabc", "a.pgm");
+    expect_text_refused("mask:a.png,0.5", "no picture", "a.png");
+    expect_text_refused("mask:a.pgm,1000000", "P2 3 2 255 0 0 1 0 0 0\n", "lies beyond");
+}
+
+/* A NIfTI-1 file of 4 x 3 x 2 voxels of 16 bits, that at (i, j, k) holding i + 4 (j + 3 k) - 7. */
+enum { NIFTI_VOXELS = 24, NIFTI_HEADER = 352, NIFTI_SIZE = NIFTI_HEADER + 2 * NIFTI_VOXELS };
+
+typedef struct Nifti {
+    char bytes[NIFTI_SIZE];
+} Nifti;
+
+static void put(Nifti *nifti, size_t at, const void *value, size_t size)
+{
+    memcpy(nifti->bytes + at, value, size);
+}
+
+static Nifti new_nifti(void)
+{
+    Nifti nifti = {{0}};
+    const int32_t header_size = 348;
+    const int16_t dim[8] = {3, 4, 3, 2, 1, 1, 1, 1}, type[2] = {4, 16};
+    const float pixdim[8] = {1, 2, 3, 2.5, 0, 0, 0, 0}, offset = NIFTI_HEADER;
+    put(&nifti, 0, &header_size, sizeof header_size);
+    put(&nifti, 40, dim, sizeof dim);
+    put(&nifti, 70, type, sizeof type);
+    put(&nifti, 76, pixdim, sizeof pixdim);
+    put(&nifti, 108, &offset, sizeof offset);
+    put(&nifti, 344, "n+1", 4);
+    for (int16_t i = 0; i < NIFTI_VOXELS; i++) {
+        int16_t value = (int16_t)(i - 7);
+        put(&nifti, NIFTI_HEADER + 2 * (size_t)i, &value, sizeof value);
+    }
+    return nifti;
+}
+
+static void put_sform(Nifti *nifti, const float rows[12])
+{
+    const int16_t code = 1;
+    put(nifti, 254, &code, sizeof code);
+    put(nifti, 280, rows, 12 * sizeof *rows);
+}
+
+/* Turned by 90 degrees about z: x = 5 - 3 j, y = 7 + 2 i, z = 2.5 k - 1. */
+static const float turned[12] = {0, -3, 0, 5, 2, 0, 0, 7, 0, 0, 2.5, -1};
+
+static Domain parse_nifti(const Nifti *nifti)
+{
+    write_bytes("a.nii", nifti->bytes, sizeof nifti->bytes);
+    Domain domain = parse("mask:a.nii");
+    unlink("a.nii");
+    return domain;
+}
+
+static void expect_box(const Domain *domain, Vec3 low, Vec3 high)
+{
+    Box box = domain_bounds(domain);
+    assert_true(vec3_distance(box.low, low) < 1e-6 && vec3_distance(box.high, high) < 1e-6);
+}
+
+static void a_nifti_mask_is_placed_by_sform_else_qform_else_voxel_size(void **state)
+{
+    (void)state;
+    Nifti nifti = new_nifti();
+    Domain domain = parse_nifti(&nifti);
+    assert_true(fabs(domain_volume(&domain) - 16 * 15) < 1e-9);
+    expect_box(&domain, vec3(-1, -1.5, -1.25), vec3(7, 7.5, 3.75));
+    assert_true(domain_inside(&domain, vec3(0, 6, 0), 0));
+    assert_false(domain_inside(&domain, vec3(6, 3, 0), 0));
+    domain_release(&domain);
+
+    /* a quarter turn about z as a quaternion (b, c, d), and a shift */
+    const int16_t code = 1;
+    const float quaternion[6] = {0, 0, 0.70710678F, 5, 7, -1};
+    put(&nifti, 252, &code, sizeof code);
+    put(&nifti, 256, quaternion, sizeof quaternion);
+    domain = parse_nifti(&nifti);
+    expect_box(&domain, vec3(-2.5, 6, -2.25), vec3(6.5, 14, 2.75));
+    assert_true(domain_inside(&domain, vec3(-1, 7, -1), 0));
+    assert_false(domain_inside(&domain, vec3(2, 13, -1), 0));
+    domain_release(&domain);
+
+    float shifted[12];
+    memcpy(shifted, turned, sizeof shifted);
+    shifted[3] = 105;
+    put_sform(&nifti, shifted);
+    domain = parse_nifti(&nifti);
+    expect_box(&domain, vec3(97.5, 6, -2.25), vec3(106.5, 14, 2.75));
+    domain_release(&domain);
+}
+
+static void a_nifti_mask_has_units_and_a_scale(void **state)
+{
+    (void)state;
+    Nifti nifti = new_nifti();
+    put_sform(&nifti, turned);
+    const char micron = 3;
+    put(&nifti, 123, &micron, 1);
+    Domain domain = parse_nifti(&nifti);
+    assert_true(fabs(domain_volume(&domain) - 16 * 15e-9) < 1e-15);
+    domain_release(&domain);
+    const char meter = 1;
+    const float scale[2] = {-0.5, -1}; /* above 0 for the stored values below -2 */
+    put(&nifti, 123, &meter, 1);
+    put(&nifti, 112, scale, sizeof scale);
+    domain = parse_nifti(&nifti);
+    assert_true(fabs(domain_volume(&domain) / 75e9 - 1) < 1e-6);
+    domain_release(&domain);
+}
+
+static void turn_round(Nifti *nifti, size_t at, size_t size, size_t count)
+{
+    for (char *item = nifti->bytes + at; count-- > 0; item += size)
+        for (size_t i = 0; i < size / 2; i++) {
+            char byte = item[i];
+            item[i] = item[size - 1 - i];
+            item[size - 1 - i] = byte;
+        }
+}
+
+static void a_nifti_mask_may_be_big_endian(void **state)
+{
+    (void)state;
+    Nifti nifti = new_nifti();
+    turn_round(&nifti, 0, 4, 1);
+    turn_round(&nifti, 40, 2, 8);
+    turn_round(&nifti, 70, 2, 2);
+    turn_round(&nifti, 76, 4, 8);
+    turn_round(&nifti, 108, 4, 1);
+    turn_round(&nifti, NIFTI_HEADER, 2, NIFTI_VOXELS);
+    Domain domain = parse_nifti(&nifti);
+    assert_true(fabs(domain_volume(&domain) - 16 * 15) < 1e-9);
+    assert_true(domain_inside(&domain, vec3(0, 6, 0), 0));
+    assert_false(domain_inside(&domain, vec3(6, 3, 0), 0));
+    domain_release(&domain);
+}
+
+/* The library would find a.nii first. */
+static void a_compressed_mask_is_read_beside_one_that_is_not(void **state)
+{
+    (void)state;
+    Nifti plain = new_nifti();
+    write_bytes("a.nii", plain.bytes, NIFTI_SIZE);
+    memset(plain.bytes + NIFTI_HEADER, 1, 2 * NIFTI_VOXELS);
+    znzFile file = znzopen("a.nii.gz", "wb", 1);
+    assert_int_equal(znzwrite(plain.bytes, 1, NIFTI_SIZE, file), NIFTI_SIZE);
+    znzclose(file);
+    Domain domain = parse("mask:a.nii.gz");
+    assert_true(fabs(domain_volume(&domain) - 24 * 15) < 1e-9);
+    domain_release(&domain);
+    unlink("a.nii");
+    unlink("a.nii.gz");
+}
+
+static void nifti_files_that_are_no_mask_are_refused(void **state)
+{
+    (void)state;
+    Nifti nifti = new_nifti();
+    expect_text_refused("mask:a.nii", "no NIfTI file", "a.nii: is not a NIfTI-1 or NIfTI-2 file");
+    expect_text_refused("mask:a.nii.gz", "no NIfTI file", "a.nii.gz: is not");
+    expect_bytes_refused("mask:a.nii", nifti.bytes, NIFTI_SIZE - 2,
+                         "a.nii: ends before all of its 4 x 3 x 2 voxels");
+    const int16_t volumes[8] = {4, 2, 3, 2, 2, 1, 1, 1};
+    Nifti bad = nifti;
+    put(&bad, 40, volumes, sizeof volumes);
+    expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE, "more than one volume");
+    bad = nifti;
+    put(&bad, 344, "ni1", 4); /* voxels in another file */
+    expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE, "is not a NIfTI-1");
+    const int16_t huge[8] = {3, 32767, 32767, 32767, 1, 1, 1, 1};
+    bad = nifti;
+    put(&bad, 40, huge, sizeof huge);
+    expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE, "fewer than 2^32");
+    const int16_t rgba[2] = {2304, 32}, halved[8] = {3, 2, 3, 2, 1, 1, 1, 1};
+    bad = nifti;
+    put(&bad, 70, rgba, sizeof rgba);
+    put(&bad, 40, halved, sizeof halved);
+    expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE, "type RGBA32");
+    float flat[12];
+    memcpy(flat, turned, sizeof flat);
+    flat[10] = 0;
+    bad = nifti;
+    put_sform(&bad, flat);
+    expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE, "do not span space");
+    bad = nifti;
+    memset(bad.bytes + NIFTI_HEADER, 0, 2 * NIFTI_VOXELS);
+    expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE,
+                         "the mask is empty: none of its 24 voxels is above 0");
+}
+
+static const char cube[] =
+    "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 2 2 0\nv 0 0 2\nv 2 0 2\nv 0 2 2\nv 2 2 2\n"
+    "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\n";
+
+static void put_cube(char *out, size_t size, const char *rest)
+{
+    snprintf(out, size, "%s%s", cube, rest);
+}
+
+static void meshes_that_enclose_nothing_are_refused(void **state)
+{
+    (void)state;
+    static const char *const last_faces[][2] = {
+        {"", "a.obj: the mesh is open: 4 edges have a triangle on one side only"},
+        {"f 2 4 8\n", "is open: 3 edges"},
+        {"f 2 6 8 4\n",
+         "the sides of the mesh do not agree: at 4 edges the triangles run the same"},
+        {"f 2 4 8 9\n", "a.obj:14: '9' is not one of the vertices so far"},
+        {"f 2 4 -9 8\n", "'-9' is not"},
+        {"f 2 4 0 8\n", "'0' is not"},
+        {"f 2 4\n", "a.obj:14: 'f' is a face of fewer than three corners"},
+        {"v 0 0 nan\n", "a.obj:14: the point 0 0 nan (mm) is not finite"},
+        {"v 0 0\n", "a.obj:14: '' is not a number; a vertex has three"},
+        {"v 0 zero 0\n", "'zero' is not a number"},
+    };
+    char text[1000];
+    for (size_t i = 0; i < sizeof last_faces / sizeof *last_faces; i++) {
+        put_cube(text, sizeof text, last_faces[i][0]);
+        expect_text_refused("mesh:a.obj", text, last_faces[i][1]);
+    }
+    expect_text_refused("mesh:a.obj", "# nothing\nv 0 0 0\n", "a.obj: has no triangles");
+    expect_text_refused("mesh:a.obj",
+                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                        "f 1 2 3\nf 1 3 4\nf 1 4 2\nf 4 3 2\n",
+                        "the mesh is inside out: its volume is -0.1666");
+    expect_text_refused("mesh:a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n",
+                        "the mesh is flat");
+}
+
+static void files_that_are_no_stl_are_refused(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"", "has no triangles"},
+        {"solid a\nendsolid\n", "has no triangles"},
+        {"ply\nformat ascii\n", "a.stl:1: 'ply' is no word of an ASCII STL file"},
+        {"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nendloop\n",
+         "a.stl:5: 'endloop' closes a facet that has not three vertices"},
+        {"solid\nfacet\nouter loop\nvertex 1 2 inf\n", "a.stl:4: the point 1 2 inf"},
+        {"solid\nfacet\nouter loop\nvertex 1 2\n", "a.stl:4: '' is not a number"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        expect_text_refused("mesh:a.stl", cases[i][0], cases[i][1]);
+    char binary[84 + 50 - 1] = "Binary";
+    binary[80] = 1;
+    expect_bytes_refused("mesh:a.stl", binary, sizeof binary, "nor is the file a binary one");
+}
+
+/* The tetrahedron at the origin, two units wide. */
+static const Vec3 tetrahedron[12] = {{0, 0, 0}, {0, 2, 0}, {2, 0, 0}, {0, 0, 0},
+                                     {0, 0, 2}, {0, 2, 0}, {0, 0, 0}, {2, 0, 0},
+                                     {0, 0, 2}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}};
+
+static void expect_tetrahedron(const char *spec)
+{
+    Domain domain = parse(spec);
+    assert_true(fabs(domain_volume(&domain) - 4.0 / 3 * 1000) < 1e-9);
+    expect_box(&domain, vec3(0, 0, 0), vec3(20, 20, 20));
+    assert_true(domain_inside(&domain, vec3(5, 5, 5), 0));
+    assert_false(domain_inside(&domain, vec3(8, 8, 8), 0));
+    domain_release(&domain);
+}
+
+static void stl_and_obj_files_give_the_same_domain(void **state)
+{
+    (void)state;
+    static char binary[84 + 4 * 50] = "solid by its title only";
+    binary[80] = 4;
+    Text ascii = TEXT_INIT, obj = TEXT_INIT;
+    text_puts(&ascii, "solid\tt\r\n");
+    for (size_t i = 0; i < 12; i++) {
+        Vec3 p = tetrahedron[i];
+        const float xyz[3] = {(float)p.x, (float)p.y, (float)p.z};
+        memcpy(binary + 84 + 50 * (i / 3) + 12 + 12 * (i % 3), xyz, sizeof xyz);
+        if (i % 3 == 0)
+            text_puts(&ascii, "  facet normal 0 0 0\r\n    outer loop\r\n");
+        text_printf(&ascii, "      vertex %e %e %e\r\n", p.x, p.y, p.z);
+        if (i % 3 == 2)
+            text_puts(&ascii, "    endloop\r\n  endfacet\r\n");
+        text_printf(&obj, "v %g %g %g 1.0 # w\nvn 0 0 1\n%s", p.x, p.y, p.z,
+                    i % 3 == 2 ? "g name\nf -3/1/1 -2//1 -1\n" : "");
+    }
+    text_puts(&ascii, "endsolid t\r\n");
+    write_bytes("a.stl", binary, sizeof binary);
+    write_bytes("b.STL", ascii.chars, ascii.length);
+    write_bytes("a,b.obj", obj.chars, obj.length);
+    expect_tetrahedron("mesh:a.stl,10");
+    expect_tetrahedron("mesh:b.STL,10");
+    expect_tetrahedron("mesh:a,b.obj,10");
+    unlink("a.stl");
+    unlink("b.STL");
+    unlink("a,b.obj");
+    text_release(&ascii);
+    text_release(&obj);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(texts_that_are_no_domain_are_refused),
+        cmocka_unit_test(files_that_are_missing_are_named),
+        cmocka_unit_test(polygons_that_bound_nothing_are_refused),
+        cmocka_unit_test(rings_may_run_either_way_and_nest),
+        cmocka_unit_test(masks_that_hold_nothing_are_refused),
+        cmocka_unit_test(a_nifti_mask_is_placed_by_sform_else_qform_else_voxel_size),
+        cmocka_unit_test(a_nifti_mask_has_units_and_a_scale),
+        cmocka_unit_test(a_nifti_mask_may_be_big_endian),
+        cmocka_unit_test(a_compressed_mask_is_read_beside_one_that_is_not),
+        cmocka_unit_test(nifti_files_that_are_no_mask_are_refused),
+        cmocka_unit_test(meshes_that_enclose_nothing_are_refused),
+        cmocka_unit_test(files_that_are_no_stl_are_refused),
+        cmocka_unit_test(stl_and_obj_files_give_the_same_domain),
+    };
+    return cmocka_run_group_tests(tests, enter_folder, leave_folder);
+}
