@@ -50,7 +50,9 @@ Status run_grow(int argc, char **argv, Err *err)
         {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "T.swc", "the tree"},
         {"terminals", OPTION_COUNT, &params.terminals, NULL, 1, 8000000, NULL, NULL, "(1000)"},
         {"domain", OPTION_TEXT, &domain_spec, NULL, 0, 0, NULL, "SHAPE",
-         "tissue: disc:R or ball:R, mm (disc:50)"},
+         "tissue, mm: disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
+         "shell:A,B,C,THICKNESS,\n"
+         "                                 polygon:FILE, mask:FILE, mesh:FILE (disc:50)"},
         {"inlet", OPTION_VECTOR, &params.inlet, &params.has_inlet, 0, 0, NULL, NULL,
          "where the tree starts, mm (top of the rim)"},
         {"gamma", OPTION_NUMBER, &params.gamma, NULL, -huge, huge, NULL, NULL,
@@ -78,7 +80,7 @@ Status run_grow(int argc, char **argv, Err *err)
     Status status = STATUS_OK;
     Tree tree = {0};
     GrowReport report;
-    Domain domain;
+    Domain domain = {0};
     Progress progress;
     if (parsed.common.help)
         goto done;
@@ -101,6 +103,7 @@ Status run_grow(int argc, char **argv, Err *err)
     if (!parsed.common.quiet)
         print_report(&report);
 done:
+    domain_release(&domain);
     tree_release(&tree);
     parsed_release(&parsed);
     return status;

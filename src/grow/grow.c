@@ -5,7 +5,8 @@
  *
  * The toss distance starts where the last terminal was accepted, one notch up, and shrinks by a
  * notch after every few points that are too near, so it follows the filling of the domain without
- * being searched for anew. Connections are tested for room cheapest first, so most tests are never
+ * being searched for anew. It shrinks, too, when points have no way to the tree within the tissue,
+ * because nearer ones may. Connections are tested for room cheapest first, so most tests are never
  * made. When no point finds room at the vessels' real thickness, they are taken to be thinner, in
  * the end bare centrelines. */
 #include "grow/grow.h"
@@ -106,32 +107,59 @@ static Vec3 toss(Growth *growth)
     }
 }
 
-/* The cheapest connection with room in *out; false when there is none. */
-static bool choose(Growth *growth, Vec3 terminal, Connection *out)
+typedef enum Choice {
+    CHOICE_MADE,
+    CHOICE_CROWDED, /* vessels are in the way */
+    CHOICE_OUTSIDE, /* every way leads through what is not tissue */
+} Choice;
+
+/* The cheapest connection with room in *out, when there is one. */
+static Choice choose(Growth *growth, Vec3 terminal, Connection *out)
 {
     const Network *net = &growth->net;
     Connection *connections = growth->connections;
     if (place_is_in_vessel(net, &growth->grid, &growth->rules, terminal))
-        return false;
+        return CHOICE_CROWDED;
     int near = grid_nearest(&growth->grid, terminal, growth->params->candidates, growth->near);
     int count = 0;
     for (int i = 0; i < near; i++)
         if (place_connection(net, &growth->rules, growth->near[i].segment, terminal,
                              &connections[count]))
             count++;
+    Choice choice = count > 0 ? CHOICE_OUTSIDE : CHOICE_CROWDED;
     while (count > 0) {
         int best = 0;
         for (int i = 1; i < count; i++)
             if (connections[i].price < connections[best].price)
                 best = i;
-        if (place_is_free(net, &growth->grid, growth->domain, &growth->rules, &connections[best],
-                          terminal)) {
-            *out = connections[best];
-            return true;
+        if (place_is_inside(net, growth->domain, &connections[best], terminal)) {
+            choice = CHOICE_CROWDED;
+            if (place_is_free(net, &growth->grid, &growth->rules, &connections[best], terminal)) {
+                *out = connections[best];
+                return CHOICE_MADE;
+            }
         }
         connections[best] = connections[--count];
     }
-    return false;
+    return choice;
+}
+
+/* The first segment, from the inlet to a point that it reaches within the domain. */
+static Status plant(Growth *growth, Err *err)
+{
+    for (int tries = 1; tries <= LAST_PATIENCE; tries++) {
+        Vec3 point = toss(growth);
+        if (domain_is_convex(growth->domain) ||
+            domain_holds_segment(growth->domain, growth->net.position[0], point)) {
+            network_plant(&growth->net, point);
+            return STATUS_OK;
+        }
+        if (tries % TOSSES_PER_NOTCH == 0)
+            set_toss_distance(growth, growth->toss_distance * toss_notch);
+    }
+    return err_set(err, STATUS_INFEASIBLE,
+                   "no straight vessel leads from the inlet into the domain; choose an --inlet "
+                   "further inside");
 }
 
 static Status connect(Growth *growth, const Connection *connection, Vec3 terminal, Err *err)
@@ -160,23 +188,24 @@ static Status add_terminal(Growth *growth, Err *err)
 {
     Rules *rules = &growth->rules;
     set_toss_distance(growth, growth->toss_distance / toss_notch);
-    for (int in_a_row = 1;; in_a_row++) {
+    int crowded = 0, outside = 0;
+    while (crowded + outside < LAST_PATIENCE) {
         Vec3 terminal = toss(growth);
         Connection connection;
-        if (choose(growth, terminal, &connection)) {
+        Choice choice = choose(growth, terminal, &connection);
+        if (choice == CHOICE_MADE)
             return connect(growth, &connection, terminal, err);
-        }
         growth->rejected++;
-        if (in_a_row >= LAST_PATIENCE)
-            return err_set(err, STATUS_INFEASIBLE,
-                           "no room for terminal %zu of --terminals %zu in %d tries: lower "
-                           "--terminals, choose a larger --domain, or move --gamma and --lambda "
-                           "towards 3 and 2",
-                           network_terminals(&growth->net) + 1, growth->params->terminals,
-                           in_a_row);
-        if (in_a_row % PATIENCE == 0)
+        if (choice == CHOICE_CROWDED && ++crowded % PATIENCE == 0)
             rules->thickness = rules->thickness > least_thickness ? rules->thickness / 2 : 0;
+        if (choice == CHOICE_OUTSIDE && ++outside % TOSSES_PER_NOTCH == 0)
+            set_toss_distance(growth, growth->toss_distance * toss_notch);
     }
+    return err_set(err, STATUS_INFEASIBLE,
+                   "no room for terminal %zu of --terminals %zu in %d tries: lower --terminals, "
+                   "choose a larger --domain, or move --gamma and --lambda towards 3 and 2",
+                   network_terminals(&growth->net) + 1, growth->params->terminals,
+                   crowded + outside);
 }
 
 static Status start(Growth *growth, Err *err)
@@ -225,7 +254,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     Growth growth = {.params = params, .domain = domain};
     Status status = STATUS_OK;
     TRY_GOTO(start(&growth, err));
-    network_plant(&growth.net, toss(&growth));
+    TRY_GOTO(plant(&growth, err));
     while (network_terminals(&growth.net) < params->terminals) {
         TRY_GOTO(check_range(&growth, err));
         TRY_GOTO(keep_up(&growth, err));

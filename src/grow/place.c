@@ -173,14 +173,25 @@ static bool is_clear(const Network *net, const Grid *grid, const Rules *rules, C
     return true;
 }
 
-bool place_is_free(const Network *net, const Grid *grid, const Domain *domain, const Rules *rules,
+bool place_is_inside(const Network *net, const Domain *domain, const Connection *connection,
+                     Vec3 terminal)
+{
+    int32_t host = connection->segment;
+    Vec3 fork = connection->bifurcation;
+    return domain_inside(domain, fork, 0) &&
+           (domain_is_convex(domain) ||
+            (domain_holds_segment(domain, fork, terminal) &&
+             domain_holds_segment(domain, net->position[net->segment[host].parent], fork) &&
+             domain_holds_segment(domain, fork, net->position[host])));
+}
+
+bool place_is_free(const Network *net, const Grid *grid, const Rules *rules,
                    const Connection *connection, Vec3 terminal)
 {
     int32_t host = connection->segment, parent = net->segment[host].parent;
     Vec3 fork = connection->bifurcation;
     const double *radius = connection->radius;
-    return domain_inside(domain, fork, 0) &&
-           is_clear(net, grid, rules, (Capsule){fork, terminal, radius[FRESH]}, host, -1) &&
+    return is_clear(net, grid, rules, (Capsule){fork, terminal, radius[FRESH]}, host, -1) &&
            is_clear(net, grid, rules, (Capsule){net->position[parent], fork, radius[PROXIMAL]},
                     host, parent) &&
            is_clear(net, grid, rules, (Capsule){fork, net->position[host], radius[DISTAL]}, host,

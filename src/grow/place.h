@@ -29,8 +29,12 @@ bool place_is_in_vessel(const Network *net, const Grid *grid, const Rules *rules
 bool place_connection(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
                       Connection *out);
 
-/* Whether the bifurcation is inside the domain and the three segments keep clear of all others. */
-bool place_is_free(const Network *net, const Grid *grid, const Domain *domain, const Rules *rules,
+/* Whether the three segments are inside the domain; in a convex one they are when the bifurcation is. */
+bool place_is_inside(const Network *net, const Domain *domain, const Connection *connection,
+                     Vec3 terminal);
+
+/* Whether the three segments keep clear of all others. */
+bool place_is_free(const Network *net, const Grid *grid, const Rules *rules,
                    const Connection *connection, Vec3 terminal);
 
 #endif
