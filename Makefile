@@ -45,7 +45,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE $(shell pkg-config --cflags $(PACKAGES) 2>/dev/n
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lpthread -lm
 
-.PHONY: all deps demo check program unit unit-programs layers format format-check asan tsan \
+.PHONY: all deps demo validate check program unit unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -64,6 +64,11 @@ demo: ## grow a tree, have POV-Ray and corcast draw it, verify; results in out/d
 	$(Q)tools/deps build run
 	$(Q)$(AGAIN) all
 	$(Q)tools/demo
+
+validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
+	$(Q)tools/deps build check
+	$(Q)$(AGAIN) all
+	$(Q)tools/validate
 
 check: ## every test; ends in "N passed, N failed"
 	$(Q)tools/deps build run check

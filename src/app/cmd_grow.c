@@ -18,12 +18,24 @@ static const Command command = {
 
 static Status write_report(const char *path, const GrowReport *report, int threads, Err *err)
 {
-    json_t *json = json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:i}", "generator", GENERATOR,
-                             "seconds", report->seconds, "terminals", (json_int_t)report->terminals,
-                             "target", report->target, "root_radius_mm", report->root_radius_mm,
-                             "tosses", (json_int_t)report->tosses, "rejected",
-                             (json_int_t)report->rejected, "threads", threads);
+    json_t *json = json_pack(
+        "{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:i}", "generator", GENERATOR, "seconds",
+        report->seconds, "terminals", (json_int_t)report->terminals, "target", report->target,
+        "root_radius_mm", report->root_radius_mm, "tosses", (json_int_t)report->tosses, "rejected",
+        (json_int_t)report->rejected, "thickness", report->thickness, "threads", threads);
     return json_write(json, path, err);
+}
+
+static void print_report(const GrowReport *report)
+{
+    fprintf(stderr, "grew %zu terminals in %.3g s: target %.6g, root radius %.4g mm\n",
+            report->terminals, report->seconds, report->target, report->root_radius_mm);
+    if (report->thickness < 1)
+        fprintf(stderr,
+                "corcast: the domain was too full for vessels of their real thickness: they keep "
+                "clear of each other at %g of it only; ask for fewer terminals, a larger domain or "
+                "a smaller --q-perf\n",
+                report->thickness);
 }
 
 Status run_grow(int argc, char **argv, Err *err)
@@ -87,8 +99,7 @@ Status run_grow(int argc, char **argv, Err *err)
     if (json)
         TRY_GOTO(write_report(json, &report, 1, err));
     if (!parsed.common.quiet)
-        fprintf(stderr, "grew %zu terminals in %.3g s: target %.6g, root radius %.4g mm\n",
-                report.terminals, report.seconds, report.target, report.root_radius_mm);
+        print_report(&report);
 done:
     tree_release(&tree);
     parsed_release(&parsed);

@@ -1,4 +1,5 @@
 #include "app/commands.h"
+#include "app/info_statistics.h"
 #include "app/options.h"
 #include "derive/derive.h"
 #include "treeio/treeio.h"
@@ -7,9 +8,10 @@
 static const Command command = {
     .name = "info",
     .summary = "count, measure and check a tree",
-    .operands = "T.swc [--json]",
+    .operands = "T.swc [--stats] [--json]",
     .examples = "  corcast info tree.swc\n"
-                "  corcast info tree.swc --json | jq .volume_mm3\n",
+                "  corcast info tree.swc --json | jq .volume_mm3\n"
+                "  corcast info tree.swc --stats --json | jq .stats.by_strahler\n",
     .min_operands = 1,
     .max_operands = 1,
 };
@@ -72,11 +74,16 @@ static void print_summary(const char *path, const TreeSummary *summary)
 
 Status run_info(int argc, char **argv, Err *err)
 {
-    bool as_json = false;
+    static const char *const laws[] = {
+        [VISCOSITY_CONSTANT] = "constant", [VISCOSITY_PRIES] = "pries", NULL};
+    bool as_json = false, with_statistics = false;
     FlowParams flow = {0};
+    int law = VISCOSITY_CONSTANT;
     const double huge = 1e300;
     const Option own[] = {
         {"json", OPTION_FLAG, &as_json, NULL, 0, 0, NULL, NULL, "as JSON"},
+        {"stats", OPTION_FLAG, &with_statistics, NULL, 0, 0, NULL, NULL,
+         "radius and length by level and order, branching ratios"},
         {"lambda", OPTION_NUMBER, &flow.lambda, &flow.has.lambda, 0, huge, NULL, NULL,
          "exponent of the target (the tree's)"},
         {"q-perf", OPTION_NUMBER, &flow.q_perf_ml_min, &flow.has.q_perf, 1e-300, huge, NULL,
@@ -85,6 +92,12 @@ Status run_info(int argc, char **argv, Err *err)
          "pressure at the inlet (the tree's)"},
         {"viscosity", OPTION_NUMBER, &flow.viscosity_cp, &flow.has.viscosity, 1e-300, huge, NULL,
          "CP", "of the blood (the tree's)"},
+        {"viscosity-law", OPTION_CHOICE, &law, &flow.has.viscosity_law, 0, 0, laws, NULL,
+         "constant, or pries: by vessel diameter (the tree's)"},
+        {"hematocrit", OPTION_NUMBER, &flow.hematocrit, &flow.has.hematocrit, 0, 0.95, NULL, "H",
+         "of the blood, for pries (the tree's)"},
+        {"plasma-viscosity", OPTION_NUMBER, &flow.plasma_viscosity_cp, &flow.has.plasma_viscosity,
+         1e-300, huge, NULL, "CP", "of the plasma, for pries (the tree's)"},
         {0},
     };
     const Option *const tables[] = {own, NULL};
@@ -93,15 +106,26 @@ Status run_info(int argc, char **argv, Err *err)
     Status status = STATUS_OK;
     Tree tree = {0};
     TreeSummary summary;
+    TreeStatistics statistics = {0};
+    flow.viscosity_law = (ViscosityLaw)law;
     if (parsed.common.help)
         goto done;
     TRY_GOTO(tree_read(&tree, parsed.operands[0], err));
     TRY_GOTO(derive_summary(&tree, &flow, &summary, err));
-    if (as_json)
-        status = json_write(summary_json(&summary), "-", err);
-    else
+    if (with_statistics)
+        TRY_GOTO(derive_statistics(&tree, &statistics, err));
+    if (as_json) {
+        json_t *json = summary_json(&summary);
+        if (with_statistics)
+            json_object_set_new(json, "stats", statistics_json(&statistics));
+        status = json_write(json, "-", err);
+    } else {
         print_summary(parsed.operands[0], &summary);
+        if (with_statistics)
+            statistics_print(&statistics);
+    }
 done:
+    statistics_release(&statistics);
     tree_release(&tree);
     parsed_release(&parsed);
     return status;

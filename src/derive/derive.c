@@ -31,7 +31,8 @@ static const FieldRule rules[] = {
     {"flow", "ml/min", field_flow},       {"velocity", "mm/s", field_velocity},
     {"pressure", "mmHg", field_pressure}, {"wss", "Pa", field_wss},
     {"reynolds", "", field_reynolds},     {"level", "", field_level},
-    {"strahler", "", field_strahler},     {"branch", "", field_branch},
+    {"strahler", "", field_strahler},     {"diameter-strahler", "", field_diameter_strahler},
+    {"branch", "", field_branch},
 };
 
 enum { N_RULES = sizeof rules / sizeof *rules };

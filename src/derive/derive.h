@@ -14,11 +14,15 @@
 typedef struct FlowParams {
     struct {
         bool q_perf, p_perf, viscosity, lambda;
+        bool viscosity_law, hematocrit, plasma_viscosity;
     } has;
     double q_perf_ml_min; /* > 0, through all roots together */
     double p_perf_mmhg;   /* at every root */
-    double viscosity_cp;  /* > 0 */
+    double viscosity_cp;  /* > 0, of the blood; without viscosity_law it means the constant law */
     double lambda;        /* >= 0, exponent of the target; only derive_summary uses it */
+    ViscosityLaw viscosity_law; /* constant, when the tree does not say either */
+    double hematocrit;          /* in [0, 1), by Pries's law */
+    double plasma_viscosity_cp; /* > 0, by Pries's law */
 } FlowParams;
 
 /* One value a node: that of segment i, taken at its distal end, and NAN at roots. */
@@ -33,7 +37,8 @@ typedef struct Field {
  *
  *     radius    mm
  *     length    mm
- *     flow      ml/min  Q = N Q_perf / N_term, N the terminals at and below the segment
+ *     flow      ml/min  Q = S Q_perf / S_all, S the flow shares at and below the segment and S_all
+ *                       those of the tree; in a tree without shares of its own, S counts terminals
  *     velocity  mm/s    the mean, v = Q / (pi r^2)
  *     pressure  mmHg    p_perf less the drops 8 mu l Q / (pi r^4) from the root to here (Poiseuille)
  *     wss       Pa      wall shear stress 4 mu Q / (pi r^3)
@@ -41,10 +46,17 @@ typedef struct Field {
  *     level             bifurcations from the root to the segment's start
  *     strahler          1 at terminals; the largest order m of the daughters, m + 1 where at least
  *                       two have it [Strahler 1957]
+ *     diameter-strahler Strahler orders that heed diameters [Jiang, Kassab & Fung, J. Appl. Physiol.
+ *                       76 (1994) 882-892]: 1 at terminals; else m, the largest of the daughters, or
+ *                       m + 1 if the diameter is above (D_m + S_m + D_m+1 - S_m+1) / 2, D and S mean
+ *                       and standard deviation of the diameters of all vessels of that order, from
+ *                       Strahler orders on until at most 1 % of the vessels change. A vessel is all
+ *                       that lies between two branchings
  *     branch            main branch, numbered from 1 in array order: at each bifurcation the
  *                       thickest daughter (the first of several) continues its parent's, and the
  *                       others begin new ones, as do all segments that leave a root
  *
+ * mu is the constant viscosity of the blood, or viscosity_pries_pa_s of each segment's radius.
  * Velocity, wall shear stress and Reynolds number of a segment of radius 0 are not defined: NAN;
  * so are the pressures at and below one. STATUS_USAGE for an unknown name; STATUS_INPUT, naming the
  * option and the header key, when neither `params` nor the header says what the field needs. */
@@ -55,7 +67,7 @@ void field_release(Field *field);
 typedef struct TreeSummary {
     struct {
         bool target, gamma, lambda;
-        bool terminal_pressure; /* p_perf, q_perf and viscosity are known, and no radius is 0 */
+        bool terminal_pressure; /* what they need is known, and blood reaches all terminals */
     } has;
     size_t nodes, roots, segments, terminals, bifurcations;
     double total_length_mm;
@@ -72,5 +84,58 @@ typedef struct TreeSummary {
 
 MUST_CHECK Status derive_summary(const Tree *tree, const FlowParams *params, TreeSummary *summary,
                                  Err *err);
+
+/* A vessel is the chain of segments between two branchings, which the morphometric literature calls
+ * a segment; its radius is the mean weighted by length. An element is a series of vessels of the
+ * same order, each continued by the thickest daughter of its order; its length is their sum and its
+ * radius their mean. */
+
+/* Mean and standard deviation, that of a sample (n - 1); 0 for one value, NAN for none. */
+typedef struct Spread {
+    double mean, sd;
+} Spread;
+
+/* The vessels of one bifurcation level, or the elements of one order. */
+typedef struct StatisticsRow {
+    int number;                  /* the level, or the order */
+    size_t vessels;              /* of that level or order */
+    size_t elements;             /* at a level every vessel is one */
+    Spread radius_mm, length_mm; /* of the elements */
+} StatisticsRow;
+
+typedef struct StatisticsTable {
+    StatisticsRow *row; /* owned; upwards, levels and orders without vessels left out */
+    size_t n;
+} StatisticsTable;
+
+/* How number, diameter and length of the elements go with their order n, from straight lines through
+ * the logarithms of their numbers and means by least squares, all orders weighing alike [Horton,
+ * Geol. Soc. Am. Bull. 56 (1945) 275-370]: numbers as ratio^-n, diameters and lengths as ratio^n.
+ * NAN with fewer than two orders; a mean of 0 is left out. */
+typedef struct OrderRatios {
+    double number, diameter, length;
+} OrderRatios;
+
+/* One number at each of some bifurcations. */
+typedef struct BifurcationSpread {
+    size_t count;
+    double mean, sd, median; /* NAN when count is 0 */
+} BifurcationSpread;
+
+typedef struct TreeStatistics {
+    size_t vessels;
+    double volume_mm3; /* sum of pi r^2 l over the segments */
+    StatisticsTable by_level, by_strahler, by_diameter_strahler;
+    OrderRatios strahler_ratios, diameter_strahler_ratios;
+    int diameter_rounds;            /* of assignment */
+    bool diameter_orders_converged; /* false when they were given up */
+    BifurcationSpread symmetry;     /* radius of the thinnest daughter over that of the thickest */
+    BifurcationSpread area_ratio;   /* sum of r^2 of the daughters over that of the parent */
+} TreeStatistics;
+
+/* Fills *statistics (owned; statistics_release). Bifurcations whose thickest daughter, or whose
+ * parent, has no radius are left out of the ratio concerned; so is a root in the area ratio. */
+MUST_CHECK Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err);
+void statistics_release(TreeStatistics *statistics);
 
 #endif

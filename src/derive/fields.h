@@ -17,6 +17,8 @@ MUST_CHECK Status field_reynolds(const Tree *tree, const FlowParams *params, dou
 MUST_CHECK Status field_level(const Tree *tree, const FlowParams *params, double *value, Err *err);
 MUST_CHECK Status field_strahler(const Tree *tree, const FlowParams *params, double *value,
                                  Err *err);
+MUST_CHECK Status field_diameter_strahler(const Tree *tree, const FlowParams *params, double *value,
+                                          Err *err);
 MUST_CHECK Status field_branch(const Tree *tree, const FlowParams *params, double *value, Err *err);
 
 /* Whether field_pressure has all it needs. */

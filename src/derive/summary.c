@@ -65,6 +65,8 @@ static Status sum_terminal_pressures(const Tree *tree, const FlowParams *params,
         sum += pressure.value[i];
     }
     field_release(&pressure);
+    if (!isfinite(sum)) /* a vessel so narrow that Pries's law closes it */
+        return STATUS_OK;
     summary->has.terminal_pressure = true;
     summary->terminal_pressure_min_mmhg = low;
     summary->terminal_pressure_mean_mmhg = sum / (double)summary->terminals;

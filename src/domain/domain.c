@@ -26,12 +26,12 @@ Status domain_parse(Domain *domain, const char *spec, Err *err)
         if (strlen(shapes[kind].name) != length || memcmp(spec, shapes[kind].name, length) != 0)
             continue;
         double radius = 0;
-        if (!colon || !number_parse(colon + 1, &radius) || !(radius > 0) ||
+        if (!colon || !number_parse(colon + 1, &radius) || !(radius >= DOMAIN_MIN_RADIUS_MM) ||
             !(radius <= DOMAIN_MAX_RADIUS_MM))
-            return err_set(err, STATUS_USAGE,
-                           "--domain %s: the radius must be a number of mm above 0 and at most "
-                           "%.0f, as in %s:50",
-                           spec, DOMAIN_MAX_RADIUS_MM, shapes[kind].name);
+            return err_set(
+                err, STATUS_USAGE,
+                "--domain %s: the radius must be a number of mm from %g to %g, as in %s:50", spec,
+                DOMAIN_MIN_RADIUS_MM, DOMAIN_MAX_RADIUS_MM, shapes[kind].name);
         *domain = (Domain){(DomainKind)kind, radius};
         return STATUS_OK;
     }

@@ -17,9 +17,11 @@ typedef enum DomainKind {
 /* A plain value; copies are independent. */
 typedef struct Domain {
     DomainKind kind;
-    double radius_mm; /* in (0, DOMAIN_MAX_RADIUS_MM] */
+    double radius_mm; /* in [DOMAIN_MIN_RADIUS_MM, DOMAIN_MAX_RADIUS_MM] */
 } Domain;
 
+/* A nanometre and a kilometre. */
+#define DOMAIN_MIN_RADIUS_MM 1e-6
 #define DOMAIN_MAX_RADIUS_MM 1e6
 
 /* Reads "disc:R" or "ball:R", R in mm. STATUS_USAGE naming --domain, the value and what is

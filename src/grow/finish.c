@@ -8,20 +8,6 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-/* Sums up flares and costs from the final coordinates; parents come before children. */
-static void sweep_up(Network *net)
-{
-    for (size_t i = net->n - 1; i > 0; i--) {
-        Segment *segment = &net->segment[i];
-        segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
-        Reduced reduced = network_reduce(net, (int32_t)i);
-        Segment *parent = &net->segment[segment->parent];
-        int slot = parent->child[1] == (int32_t)i;
-        parent->flare[slot] = reduced.flare;
-        parent->cost[slot] = reduced.cost;
-    }
-}
-
 static Status sweep_down(const Network *net, Tree *tree, Err *err)
 {
     double unit = network_radius_unit(net);
@@ -96,7 +82,7 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
                    Err *err)
 {
     TRY(network_reorder(net, err));
-    sweep_up(net);
+    network_resum(net);
     Tree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(tree_init(&made, net->n, err));

@@ -58,6 +58,12 @@ static size_t cell_index(const Grid *grid, int x, int y, int z)
     return ((size_t)z * grid->count[1] + y) * grid->count[0] + x;
 }
 
+size_t grid_cell_at(const Grid *grid, Vec3 point)
+{
+    return cell_index(grid, cell_of(grid, point.x, 0), cell_of(grid, point.y, 1),
+                      cell_of(grid, point.z, 2));
+}
+
 /* Bounds the part of the capsule in the walk's slab and starts there. */
 static void enter_slab(GridWalk *walk)
 {
@@ -203,17 +209,15 @@ static bool cell_any_within(const Grid *grid, size_t cell, const float point[3],
 bool grid_any_within(const Grid *grid, Vec3 point, double distance, bool terminals_only)
 {
     float at[3], limit2 = (float)(distance * distance);
-    int low[3], high[3], home[3];
     store(point, at);
+    /* Most points that are too near something are so within their own cell. */
+    if (cell_any_within(grid, grid_cell_at(grid, point), at, limit2, terminals_only))
+        return true;
+    int low[3], high[3];
     for (int axis = 0; axis < 3; axis++) {
         low[axis] = cell_of(grid, component(point, axis) - distance, axis);
         high[axis] = cell_of(grid, component(point, axis) + distance, axis);
-        home[axis] = cell_of(grid, component(point, axis), axis);
     }
-    /* Most points that are too near something are so within their own cell. */
-    size_t own = cell_index(grid, home[0], home[1], home[2]);
-    if (cell_any_within(grid, own, at, limit2, terminals_only))
-        return true;
     for (int z = low[2]; z <= high[2]; z++)
         for (int y = low[1]; y <= high[1]; y++)
             for (int x = low[0]; x <= high[0]; x++)

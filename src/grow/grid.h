@@ -56,6 +56,9 @@ bool grid_any_within(const Grid *grid, Vec3 point, double distance, bool termina
  * many. Equal distances are ordered by segment. */
 int grid_nearest(const Grid *grid, Vec3 point, int limit, Near *out);
 
+/* The cell that holds `point`. Every segment whose capsule holds it is entered there. */
+size_t grid_cell_at(const Grid *grid, Vec3 point);
+
 /* Iterates over the cells that may meet a capsule, each once. */
 typedef struct GridWalk {
     const Grid *grid;

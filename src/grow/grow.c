@@ -106,27 +106,14 @@ static Vec3 toss(Growth *growth)
     }
 }
 
-/* Whether the point lies in one of the `near` vessels around it. Those points are no tissue, and
- * in a tree with fine branches they are most of what is left far from centrelines. */
-static bool is_in_a_vessel(const Growth *growth, int near)
-{
-    for (int i = 0; i < near; i++) {
-        const Segment *segment = &growth->net.segment[growth->near[i].segment];
-        double radius = growth->rules.thickness * (double)segment->radius;
-        if ((double)growth->near[i].distance2 < radius * radius)
-            return true;
-    }
-    return false;
-}
-
 /* The cheapest connection with room in *out; false when there is none. */
 static bool choose(Growth *growth, Vec3 terminal, Connection *out)
 {
     const Network *net = &growth->net;
     Connection *connections = growth->connections;
-    int near = grid_nearest(&growth->grid, terminal, growth->params->candidates, growth->near);
-    if (is_in_a_vessel(growth, near))
+    if (place_is_in_vessel(net, &growth->grid, &growth->rules, terminal))
         return false;
+    int near = grid_nearest(&growth->grid, terminal, growth->params->candidates, growth->near);
     int count = 0;
     for (int i = 0; i < near; i++)
         if (place_connection(net, &growth->rules, growth->near[i].segment, terminal,
@@ -183,7 +170,8 @@ static Status add_terminal(Growth *growth, Err *err)
         if (in_a_row >= LAST_PATIENCE)
             return err_set(err, STATUS_INFEASIBLE,
                            "no room for terminal %zu of --terminals %zu in %d tries: lower "
-                           "--terminals or choose a larger --domain",
+                           "--terminals, choose a larger --domain, or move --gamma and --lambda "
+                           "towards 3 and 2",
                            network_terminals(&growth->net) + 1, growth->params->terminals,
                            in_a_row);
         if (in_a_row % PATIENCE == 0)

@@ -52,11 +52,6 @@ static float narrow(double value)
     return (float)fmin(value, (double)FLT_MAX);
 }
 
-static int slot_of(const Network *net, int32_t parent, int32_t child)
-{
-    return net->segment[parent].child[1] == child;
-}
-
 /* Tells the parent of `i` what hangs there now. */
 static void report(Network *net, int32_t i, const Reduced *reduced)
 {
@@ -119,7 +114,7 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
     net->n += 2;
     net->position[proximal] = bifurcation;
     net->position[fresh] = terminal;
-    net->segment[above].child[slot_of(net, above, segment)] = proximal;
+    net->segment[above].child[net->segment[above].child[1] == segment] = proximal;
     net->segment[proximal] = (Segment){.length = vec3_distance(net->position[above], bifurcation),
                                        .child = {segment, fresh},
                                        .parent = above,
@@ -184,6 +179,16 @@ static Status permute(void *items, size_t size, const int32_t *order, size_t n, 
     memcpy(bytes, scratch, n * size);
     free(scratch);
     return STATUS_OK;
+}
+
+void network_resum(Network *net)
+{
+    for (int32_t i = (int32_t)net->n - 1; i > 0; i--) {
+        Segment *segment = &net->segment[i];
+        segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
+        Reduced reduced = network_reduce(net, i);
+        report(net, i, &reduced);
+    }
 }
 
 Status network_reorder(Network *net, Err *err)

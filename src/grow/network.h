@@ -77,8 +77,11 @@ double network_cost(const Network *net);
 /* Brings radius, gauge and sensitivities of all segments up to date. */
 void network_refresh(Network *net);
 
+/* Sums up lengths, flares and costs anew from the positions; parents come before children. */
+void network_resum(Network *net);
+
 /* Renumbers the nodes depth first, so that parents come before children and neighbours in the tree
- * are neighbours in memory. */
+ * are neighbours in memory. On failure `net` is only fit for network_release. */
 MUST_CHECK Status network_reorder(Network *net, Err *err);
 
 #endif

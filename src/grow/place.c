@@ -118,6 +118,20 @@ static double clamp01(double t)
     return t < 0 ? 0 : t > 1 ? 1 : t;
 }
 
+bool place_is_in_vessel(const Network *net, const Grid *grid, const Rules *rules, Vec3 point)
+{
+    for (int32_t at = grid->head[grid_cell_at(grid, point)]; at >= 0; at = grid->entry[at].next) {
+        int32_t i = grid->entry[at].tag >> 1;
+        Vec3 a = net->position[net->segment[i].parent];
+        Vec3 u = vec3_sub(net->position[i], a), w = vec3_sub(point, a);
+        Vec3 apart = vec3_add_scaled(w, u, -clamp01(vec3_dot(u, w) / vec3_dot(u, u)));
+        double radius = rules->thickness * (double)net->segment[i].radius;
+        if (vec3_dot(apart, apart) < radius * radius)
+            return true;
+    }
+    return false;
+}
+
 /* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
  * Detection, 2005, sec. 5.1.9]. */
 static double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)

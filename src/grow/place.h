@@ -21,6 +21,9 @@ typedef struct Connection {
     double radius[3]; /* mm, of the proximal, the distal and the new segment */
 } Connection;
 
+/* Whether `point` lies in a vessel. */
+bool place_is_in_vessel(const Network *net, const Grid *grid, const Rules *rules, Vec3 point);
+
 /* The cheapest connection of `terminal` to `segment` that keeps to the length rule. False when
  * there is none. */
 bool place_connection(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,

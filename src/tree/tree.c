@@ -35,6 +35,7 @@ void tree_release(Tree *tree)
     free(tree->parent);
     free(tree->position);
     free(tree->radius_mm);
+    free(tree->flow_share);
     for (size_t i = 0; i < tree->header.n_lines; i++)
         free(tree->header.lines[i]);
     free(tree->header.lines);
@@ -59,6 +60,33 @@ Status tree_child_counts(const Tree *tree, int32_t **count, Err *err)
     return STATUS_OK;
 }
 
+Status tree_add_flow_shares(Tree *tree, Err *err)
+{
+    assert(!tree->flow_share);
+    return mem_calloc(&tree->flow_share, tree->n, sizeof *tree->flow_share, "flow shares", err);
+}
+
+Status tree_flow_shares(const Tree *tree, double **share, Err *err)
+{
+    double *made = NULL;
+    int32_t *children = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&made, tree->n, sizeof *made, "flow shares", err));
+    if (tree->flow_share) {
+        memcpy(made, tree->flow_share, tree->n * sizeof *made);
+    } else {
+        TRY_GOTO(tree_child_counts(tree, &children, err));
+        for (size_t i = 0; i < tree->n; i++)
+            made[i] = tree_is_segment(tree, i) && children[i] == 0;
+    }
+    *share = made;
+done:
+    if (status != STATUS_OK)
+        free(made);
+    free(children);
+    return status;
+}
+
 static Status check_node(const Tree *tree, size_t i, Err *err)
 {
     int32_t id = tree->id[i], parent = tree->parent[i];
@@ -72,6 +100,10 @@ static Status check_node(const Tree *tree, size_t i, Err *err)
     if (!isfinite(tree->radius_mm[i]) || tree->radius_mm[i] < 0)
         return err_set(err, STATUS_INPUT, "node %d: radius %s; it must be finite and not negative",
                        id, number_text(tree->radius_mm[i], number));
+    if (tree->flow_share && !(isfinite(tree->flow_share[i]) && tree->flow_share[i] >= 0))
+        return err_set(err, STATUS_INPUT,
+                       "node %d: flow share %s; it must be finite and not negative", id,
+                       number_text(tree->flow_share[i], number));
     return STATUS_OK;
 }
 
@@ -107,9 +139,32 @@ static Status copy_header(const Tree *tree, Tree *out, Err *err)
     return STATUS_OK;
 }
 
+enum { DROPPED = -1 };
+
+/* Gives `out` the flow shares of `tree`, those of dropped nodes summed into the node they hung on:
+ * backwards, whatever hangs on a node has arrived before it is passed on. `place` is where each
+ * node of `tree` is in `out`. */
+static Status prune_flow_shares(const Tree *tree, const int32_t *place, Tree *out, Err *err)
+{
+    if (out->n == tree->n && !tree->flow_share)
+        return STATUS_OK;
+    TRY(tree_add_flow_shares(out, err));
+    double *share = NULL;
+    TRY(tree_flow_shares(tree, &share, err));
+    for (size_t i = tree->n; i-- > 0;) {
+        if (place[i] == DROPPED)
+            share[tree->parent[i]] += share[i];
+        else
+            out->flow_share[place[i]] = share[i];
+    }
+    free(share);
+    if (!tree->flow_share)
+        out->header.has.terminal_flow = false;
+    return STATUS_OK;
+}
+
 Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
 {
-    enum { DROPPED = -1 };
     int32_t *place = NULL; /* of each node in the new tree */
     TRY(mem_calloc(&place, tree->n, sizeof *place, "node places", err));
     int32_t n = 0;
@@ -132,6 +187,7 @@ Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
         made.position[at] = tree->position[i];
         made.radius_mm[at] = tree->radius_mm[i];
     }
+    TRY_GOTO(prune_flow_shares(tree, place, &made, err));
     *out = made;
 done:
     if (status != STATUS_OK)

@@ -9,15 +9,23 @@
 
 #include "base/base.h"
 #include "geom/geom.h"
+#include "tree/viscosity.h" // IWYU pragma: export
 #include <stdbool.h>
 #include <stdint.h>
 
 enum { TREE_NO_PARENT = -1, TREE_MAX_ID = 0xffffff };
 
+/* What the flow through each terminal was made after. */
+typedef enum TerminalFlow {
+    TERMINAL_FLOW_EQUAL,    /* the same for all; the tree has no flow shares */
+    TERMINAL_FLOW_TERRITORY /* the tissue that each supplies; the flow shares tell */
+} TerminalFlow;
+
 /* Header keys of SPEC that a tree file may carry; `has` tells which are known. */
 typedef struct TreeHeader {
     struct {
         bool seed, dimension, gamma, lambda, p_perf, p_term, q_perf, viscosity;
+        bool viscosity_law, hematocrit, plasma_viscosity, terminal_flow;
     } has;
     uint64_t seed;
     int dimension;        /* 2 or 3 */
@@ -26,7 +34,11 @@ typedef struct TreeHeader {
     double p_perf_mmhg;   /* at the inlet */
     double p_term_mmhg;   /* at every terminal */
     double q_perf_ml_min; /* through the inlet */
-    double viscosity_cp;
+    double viscosity_cp;  /* of the blood, by the constant law */
+    ViscosityLaw viscosity_law;
+    double hematocrit;          /* in [0, 1), by Pries's law */
+    double plasma_viscosity_cp; /* by Pries's law */
+    TerminalFlow terminal_flow;
     /* Every header comment in file order, known keys included: "key: value" lines are rewritten
      * from the fields above; all other lines are kept as they are. */
     char **lines; /* owned; without "# " and line end */
@@ -41,6 +53,9 @@ typedef struct Tree {
     int32_t *parent;   /* index of the parent, below the own index; TREE_NO_PARENT at a root */
     Vec3 *position;    /* mm */
     double *radius_mm; /* >= 0 */
+    /* The part of the flow that leaves the tree at each node, >= 0, relative to the others; NULL:
+     * the same at every terminal and none elsewhere. */
+    double *flow_share;
     TreeHeader header;
 } Tree;
 
@@ -62,12 +77,21 @@ double tree_segment_length(const Tree *tree, size_t i);
  * a terminal; a node with two children or more is a bifurcation. */
 MUST_CHECK Status tree_child_counts(const Tree *tree, int32_t **count, Err *err);
 
-/* Checks what the type promises: parents before children, finite positions and radii, radii not
- * negative, ids in range and different. STATUS_INPUT naming the id of the node at fault. */
+/* Gives the tree, which has none, flow shares of 0 for the caller to fill. */
+MUST_CHECK Status tree_add_flow_shares(Tree *tree, Err *err);
+
+/* The flow share of every node in *share (owned, n entries): tree->flow_share, or without it 1 at
+ * terminals and 0 elsewhere. */
+MUST_CHECK Status tree_flow_shares(const Tree *tree, double **share, Err *err);
+
+/* Checks what the type promises: parents before children, finite positions and radii, radii and
+ * flow shares not negative, ids in range and different. STATUS_INPUT naming the id of the node at
+ * fault. */
 MUST_CHECK Status tree_check(const Tree *tree, Err *err);
 
 /* A new tree in *out (owned) without the segments thinner than `radius_mm` and without what hangs
- * on them; ids, order and header are kept. A root always stays. */
+ * on them; ids, order and header are kept. A root always stays. What is left carries the flow that
+ * it carried before: the flow shares of what is cut off go to the node it hung on. */
 MUST_CHECK Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err);
 
 /* Gives the nodes the ids 1 to n in array order. */

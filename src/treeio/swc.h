@@ -8,7 +8,10 @@ MUST_CHECK Status swc_read(Tree *tree, const char *path, Err *err);
 MUST_CHECK Status swc_write(const Tree *tree, const char *path, Err *err);
 
 /* The known header keys are numbered 0 .. SWC_N_KEYS - 1. */
-enum { SWC_N_KEYS = 8, SWC_NO_KEY = -1 };
+enum { SWC_N_KEYS = 12, SWC_NO_KEY = -1 };
+
+/* What follows "name:" and blanks in a header line; NULL when it does not begin so. */
+const char *swc_value_of(const char *line, const char *name);
 
 /* The key of a header line "key: value", or SWC_NO_KEY. */
 int swc_key_of_line(const char *line);
@@ -21,5 +24,29 @@ bool swc_key_known(const TreeHeader *header, int key);
 
 /* Writes "# key: value" and a line end. */
 void swc_key_write(const TreeHeader *header, int key, FILE *stream);
+
+/* Header lines "flow_share: ID SHARE" that have been read; `name` is the file's. */
+typedef struct FlowShareLines {
+    const char *name;
+    struct FlowShareLine *line; /* owned; swc_flow_shares_release */
+    size_t n, capacity;
+} FlowShareLines;
+
+bool swc_is_flow_share(const char *line);
+
+/* Appends what the line, the file's `number`th, says. STATUS_INPUT when that is not an id and a
+ * share. */
+MUST_CHECK Status swc_flow_share_parse(FlowShareLines *lines, const char *line, size_t number,
+                                       Err *err);
+
+/* Gives the tree the flow shares of the lines, if there are any; what no line names gets 0.
+ * STATUS_INPUT when a line names no node or one that has its share, and when the header key
+ * terminal_flow says otherwise. */
+MUST_CHECK Status swc_flow_shares_apply(const FlowShareLines *lines, Tree *tree, Err *err);
+
+void swc_flow_shares_release(FlowShareLines *lines);
+
+/* Writes the line of every node whose share is above 0. */
+void swc_flow_shares_write(const Tree *tree, FILE *stream);
 
 #endif

@@ -26,6 +26,7 @@ typedef struct Reader {
     Row *rows;
     size_t n, capacity;
     Tree header_holder; /* its header lines and fields, and nothing else */
+    FlowShareLines flow_shares;
 } Reader;
 
 static Status read_whole(const Reader *reader, const char *what, const char *text, int32_t minimum,
@@ -73,6 +74,8 @@ static Status read_row(Reader *reader, char *const field[N_FIELDS], Err *err)
 static Status read_comment(Reader *reader, const char *text, Err *err)
 {
     text += *text == ' ';
+    if (swc_is_flow_share(text))
+        return swc_flow_share_parse(&reader->flow_shares, text, reader->line, err);
     TRY(tree_add_line(&reader->header_holder, text, err));
     int key = swc_key_of_line(text);
     if (key == SWC_NO_KEY)
@@ -219,7 +222,7 @@ static void fill_tree(const Reader *reader, const int32_t *place, Tree *tree)
 }
 
 /* Moves the header from the reader. */
-static Status build_tree(Reader *reader, Tree *tree, Err *err)
+static Status build_tree(Reader *reader, Tree *out, Err *err)
 {
     TRY(find_parents(reader, err));
     int32_t *place = NULL; /* of each row in the tree */
@@ -228,13 +231,18 @@ static Status build_tree(Reader *reader, Tree *tree, Err *err)
         place[i] = UNPLACED;
     Status status = STATUS_OK;
     int32_t placed = 0;
+    Tree tree = {0};
     for (size_t i = 0; i < reader->n; i++)
         TRY_GOTO(place_with_ancestors(reader, (int32_t)i, place, &placed, err));
-    TRY_GOTO(tree_init(tree, reader->n, err));
-    fill_tree(reader, place, tree);
-    tree->header = reader->header_holder.header;
+    TRY_GOTO(tree_init(&tree, reader->n, err));
+    fill_tree(reader, place, &tree);
+    tree.header = reader->header_holder.header;
     reader->header_holder.header = (TreeHeader){0};
+    TRY_GOTO(swc_flow_shares_apply(&reader->flow_shares, &tree, err));
+    *out = tree;
 done:
+    if (status != STATUS_OK)
+        tree_release(&tree);
     free(place);
     return status;
 }
@@ -244,12 +252,14 @@ Status swc_read(Tree *tree, const char *path, Err *err)
     char *bytes = NULL;
     size_t size = 0;
     TRY(file_read(path, &bytes, &size, err));
-    Reader reader = {.name = strcmp(path, "-") == 0 ? "standard input" : path};
+    const char *name = strcmp(path, "-") == 0 ? "standard input" : path;
+    Reader reader = {.name = name, .flow_shares.name = name};
     Status status = STATUS_OK;
     TRY_GOTO(read_lines(&reader, bytes, size, err));
     TRY_GOTO(build_tree(&reader, tree, err));
 done:
     tree_release(&reader.header_holder);
+    swc_flow_shares_release(&reader.flow_shares);
     free(reader.rows);
     free(bytes);
     return status;

@@ -34,6 +34,7 @@ Status swc_write(const Tree *tree, const char *path, Err *err)
     OutFile file;
     TRY(outfile_open(&file, path, err));
     write_header(&tree->header, file.stream);
+    swc_flow_shares_write(tree, file.stream);
     for (size_t i = 0; i < tree->n; i++)
         write_row(tree, i, file.stream);
     return outfile_commit(&file, err);

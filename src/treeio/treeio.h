@@ -11,9 +11,11 @@
  * "key: value" with the keys
  *
  *     seed dimension gamma lambda p_perf_mmHg p_term_mmHg q_perf_ml_min viscosity_cP
+ *     viscosity_law hematocrit plasma_viscosity_cP terminal_flow
  *
- * fill TreeHeader; all other lines are kept as they are. Ids that start at 0 are refused, not
- * shifted: 0 means "nothing" in id planes, and ids are what users know their segments by. */
+ * fill TreeHeader, and lines "flow_share: ID SHARE" fill Tree.flow_share, with 0 where no line is;
+ * all other lines are kept as they are. Ids that start at 0 are refused, not shifted: 0 means
+ * "nothing" in id planes, and ids are what users know their segments by. */
 #ifndef CORCAST_TREEIO_TREEIO_H
 #define CORCAST_TREEIO_TREEIO_H
 
@@ -27,12 +29,14 @@ bool tree_format_known(const char *path);
  * ancestor that the file names later moves to just before its first descendant. STATUS_USAGE for an
  * unknown extension; STATUS_INPUT, naming file and line, for a wrong field count, a value that is
  * no number or out of range, a duplicate id, an unknown parent, a cycle, a header key of bad value
- * or given twice with different values, and for a file without rows. */
+ * or given twice with different values, a flow share given twice or to what is no node, flow shares
+ * that terminal_flow contradicts, and for a file without rows. */
 MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
 
 /* Writes the header, then the rows in array order; every number reads back to the same double. A
  * known "key: value" line is rewritten from its field, and left out when the field is not known;
- * known fields without a line follow the lines. STATUS_USAGE for an unknown extension. */
+ * known fields without a line follow the lines, then the flow shares above 0. STATUS_USAGE for an
+ * unknown extension. */
 MUST_CHECK Status tree_write(const Tree *tree, const char *path, Err *err);
 
 #endif

@@ -249,7 +249,105 @@ static void an_unknown_field_is_answered_with_the_known_ones(void **state)
     assert_int_equal(derive_field(&tree, &no_options, "colour", &field, &err), STATUS_USAGE);
     assert_string_equal(err.text,
                         "there is no field 'colour'; known are radius, length, flow, velocity, "
-                        "pressure, wss, reynolds, level, strahler, branch");
+                        "pressure, wss, reynolds, level, strahler, diameter-strahler, branch");
+    tree_release(&tree);
+}
+
+static void flow_goes_by_the_shares_of_the_nodes(void **state)
+{
+    (void)state;
+    Tree tree = read_tree("tests/data/trifurcation.swc");
+    Err err;
+    must(tree_add_flow_shares(&tree, &err), &err);
+    tree.flow_share[5] = 0.75;
+    tree.flow_share[3] = 0.125; /* leaks on the way to 6 and 7 */
+    tree.flow_share[6] = 0.5;
+    tree.flow_share[7] = 1.125;
+    tree.flow_share[9] = 1.5;
+    FlowParams params = {.has.q_perf = true, .q_perf_ml_min = 24};
+    const double flow[] = {none, 15, 15, 10.5, 0, 4.5, 3, 6.75, none, 9};
+    assert_field(&tree, &params, "flow", "ml/min", flow);
+    memset(tree.flow_share, 0, tree.n * sizeof *tree.flow_share);
+    const double stagnant[] = {none, 0, 0, 0, 0, 0, 0, 0, none, 0};
+    assert_field(&tree, &params, "flow", "ml/min", stagnant);
+    tree_release(&tree);
+}
+
+/* 0 -> 1 -> { 2, 3 } of 55, 15 and 4.25 micrometres: every vessel has a viscosity of its own. */
+static void pressures_follow_the_law_of_pries_vessel_by_vessel(void **state)
+{
+    (void)state;
+    const int32_t parent[] = {-1, 0, 1, 1};
+    const double radius[] = {0.055, 0.055, 0.015, 0.00425};
+    Tree tree = make_tree(4, parent, radius);
+    Err err;
+    must(tree_add_flow_shares(&tree, &err), &err);
+    tree.flow_share[2] = 0.75;
+    tree.flow_share[3] = 0.0625;
+    tree.header = (TreeHeader){.has = {.q_perf = true,
+                                       .p_perf = true,
+                                       .viscosity_law = true,
+                                       .hematocrit = true,
+                                       .plasma_viscosity = true},
+                               .q_perf_ml_min = 0.00325,
+                               .p_perf_mmhg = 88.5,
+                               .viscosity_law = VISCOSITY_PRIES,
+                               .hematocrit = 0.45,
+                               .plasma_viscosity_cp = 1.25};
+    const double share[] = {0, 1, 0.75 / 0.8125, 0.0625 / 0.8125};
+    double pressure[] = {none, 0, 0, 0}, wss[] = {none, 0, 0, 0}, above = 88.5;
+    for (int i = 1; i < 4; i++) {
+        double viscosity = viscosity_pries_pa_s(radius[i], 0.45, 1.25e-3);
+        double flow = share[i] * 0.00325 * 1000 / 60, r = radius[i];
+        double length = tree_segment_length(&tree, (size_t)i);
+        wss[i] = 4 * viscosity * flow / (acos(-1) * r * r * r);
+        pressure[i] = above - wss[i] * 2 * length / r / 133.322387415;
+        above = pressure[1];
+    }
+    assert_field(&tree, &no_options, "wss", "Pa", wss);
+    Field field;
+    must(derive_field(&tree, &no_options, "pressure", &field, &err), &err);
+    for (int i = 1; i < 4; i++)
+        assert_true(fabs(field.value[i] - pressure[i]) < 1e-12 * fabs(88.5 - pressure[i]));
+    field_release(&field);
+
+    TreeSummary summary;
+    must(derive_summary(&tree, &no_options, &summary, &err), &err);
+    assert_true(summary.has.terminal_pressure);
+    tree.radius_mm[3] = 0.0005; /* closed */
+    must(derive_summary(&tree, &no_options, &summary, &err), &err);
+    assert_false(summary.has.terminal_pressure);
+    tree.header.has.hematocrit = false;
+    must(derive_summary(&tree, &no_options, &summary, &err), &err);
+    assert_false(summary.has.terminal_pressure);
+    tree_release(&tree);
+}
+
+static void a_viscosity_given_alone_means_a_constant_one(void **state)
+{
+    (void)state;
+    Tree tree = read_tree("tests/data/bifurcation.swc");
+    tree.header.has.viscosity_law = true;
+    tree.header.viscosity_law = VISCOSITY_PRIES;
+    FlowParams params = {.has.viscosity = true, .viscosity_cp = 3.45};
+    const double wss[] = {none, 1.146757918267365, 1.7159827102602663, 0.8865944950177453};
+    assert_field(&tree, &params, "wss", "Pa", wss);
+
+    params.has.viscosity_law = true;
+    params.viscosity_law = VISCOSITY_PRIES;
+    params.has.plasma_viscosity = true;
+    params.plasma_viscosity_cp = 1.25;
+    Field field;
+    Err err;
+    assert_int_equal(derive_field(&tree, &params, "wss", &field, &err), STATUS_INPUT);
+    assert_string_equal(err.text,
+                        "the field wss needs the hematocrit, which the tree does not say; give "
+                        "--hematocrit H, or the header key hematocrit");
+    params.has.plasma_viscosity = false;
+    assert_int_equal(derive_field(&tree, &params, "wss", &field, &err), STATUS_INPUT);
+    assert_string_equal(err.text,
+                        "the field wss needs the viscosity of the plasma, which the tree does not "
+                        "say; give --plasma-viscosity CP, or the header key plasma_viscosity_cP");
     tree_release(&tree);
 }
 
@@ -325,7 +423,8 @@ static void a_lone_root_has_a_summary(void **state)
     assert_true(summary.root_radius_mm == 1.375 && isnan(summary.min_radius_mm));
     assert_int_equal(summary.max_level + summary.max_strahler, 0);
     assert_false(summary.has.terminal_pressure);
-    static const char *const names[] = {"radius", "flow", "pressure", "strahler", "branch"};
+    static const char *const names[] = {"radius",   "flow",   "pressure",
+                                        "strahler", "branch", "diameter-strahler"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         Field field;
         must(derive_field(&tree, &no_options, names[i], &field, &err), &err);
@@ -378,6 +477,9 @@ int main(void)
         cmocka_unit_test(a_step_of_length_zero_drops_no_pressure),
         cmocka_unit_test(missing_data_are_asked_for_by_option),
         cmocka_unit_test(an_unknown_field_is_answered_with_the_known_ones),
+        cmocka_unit_test(flow_goes_by_the_shares_of_the_nodes),
+        cmocka_unit_test(pressures_follow_the_law_of_pries_vessel_by_vessel),
+        cmocka_unit_test(a_viscosity_given_alone_means_a_constant_one),
         cmocka_unit_test(the_summary_of_a_bifurcation),
         cmocka_unit_test(the_summary_of_a_measured_tree_says_what_it_cannot_know),
         cmocka_unit_test(a_lone_root_has_a_summary),

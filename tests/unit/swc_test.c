@@ -159,6 +159,10 @@ static void every_known_key_fills_its_field_and_unknown_lines_stay(void **state)
                                "# p_term_mmHg: -3.25\n"
                                "# q_perf_ml_min: 212.5\n"
                                "# viscosity_cP: 3.4500000000000002\n"
+                               "# viscosity_law:pries \n"
+                               "# hematocrit: 0.4375\n"
+                               "# plasma_viscosity_cP: 1.1875\n"
+                               "# terminal_flow: equal\n"
                                "#\n"
                                "# gamma rays: 7\n"
                                "1 5 0 0 0 2.385 -1\n";
@@ -172,10 +176,16 @@ static void every_known_key_fills_its_field_and_unknown_lines_stay(void **state)
     assert_true(header->has.p_term && header->p_term_mmhg == -3.25);
     assert_true(header->has.q_perf && header->q_perf_ml_min == 212.5);
     assert_true(header->has.viscosity && header->viscosity_cp == 3.45);
-    assert_int_equal(header->n_lines, 12);
+    assert_true(header->has.viscosity_law && header->viscosity_law == VISCOSITY_PRIES);
+    assert_true(header->has.hematocrit && header->hematocrit == 0.4375);
+    assert_true(header->has.plasma_viscosity && header->plasma_viscosity_cp == 1.1875);
+    assert_true(header->has.terminal_flow && header->terminal_flow == TERMINAL_FLOW_EQUAL);
+    assert_int_equal(header->n_lines, 16);
 
     char *bytes = written(&tree);
-    assert_non_null(strstr(bytes, "# viscosity_cP: 3.45\n#\n# gamma rays: 7\n1 5 "));
+    assert_non_null(strstr(bytes, "# viscosity_cP: 3.45\n# viscosity_law: pries\n# hematocrit: "
+                                  "0.4375\n# plasma_viscosity_cP: 1.1875\n# terminal_flow: "
+                                  "equal\n#\n# gamma rays: 7\n1 5 "));
     assert_non_null(strstr(bytes, "# seed: 18446744073709551615\n# dimension: 3\n# domain"));
     free(bytes);
     tree_release(&tree);
@@ -220,6 +230,12 @@ static void rejects_a_known_key_of_bad_value(void **state)
     assert_refused("# p_term_mmHg: 1 2", ":1: p_term_mmHg is '1 2'; it must be a finite number");
     assert_refused("# q_perf_ml_min: 0", ":1: q_perf_ml_min is '0'; it must be a number above 0");
     assert_refused("# viscosity_cP: -3", ":1: viscosity_cP is '-3'; it must be a number above 0");
+    assert_refused("# viscosity_law: casson",
+                   ":1: viscosity_law is 'casson'; it must be constant or pries");
+    assert_refused("# hematocrit: 1", ":1: hematocrit is '1'; it must be at least 0 and below 1");
+    assert_refused("# terminal_flow:", ":1: terminal_flow is ''; it must be equal or territory");
+    assert_refused("# terminal_flow: equal\n#terminal_flow: territory",
+                   ":2: terminal_flow is 'territory', but an earlier line says otherwise");
     static const char seed[] = "it must be a whole number from 0 to 18446744073709551615";
     char expected[120];
     snprintf(expected, sizeof expected, ":1: seed is '-1'; %s", seed);
@@ -228,6 +244,52 @@ static void rejects_a_known_key_of_bad_value(void **state)
     assert_refused("# seed: 18446744073709551616", expected);
     assert_refused("# gamma: 2.5\n#gamma: 3\n",
                    ":2: gamma is '3', but an earlier line says otherwise");
+}
+
+static void flow_shares_follow_their_nodes(void **state)
+{
+    (void)state;
+    Tree tree = read_text("# flow_share: 9 0.75\n"
+                          "# terminal_flow: territory\n"
+                          "17 3 1 2 3 .5 4\n"
+                          "4 3 1 2 0 .5 -1\n"
+                          "9 3 4 2 3 .25 17\n"
+                          "12 3 0 2 3 .25 17\n"
+                          "#\tflow_share :12\t1.0625e0 \n");
+    static const double expected[] = {0, 0, 0.75, 1.0625};
+    assert_memory_equal(tree.flow_share, expected, sizeof expected);
+    tree_renumber(&tree);
+    assert_written(&tree, "# terminal_flow: territory\n"
+                          "# flow_share: 3 0.75\n"
+                          "# flow_share: 4 1.0625\n"
+                          "1 3 1 2 0 0.5 -1\n"
+                          "2 3 1 2 3 0.5 1\n"
+                          "3 3 4 2 3 0.25 2\n"
+                          "4 3 0 2 3 0.25 2\n");
+    tree_release(&tree);
+    assert_round_trip(output);
+}
+
+static void rejects_flow_shares_that_make_no_sense(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {"", "2", "2 0", "2 -1", "2 1 1", "2 nan", "2.5 1", "0 1"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        char text[100], expected[200];
+        snprintf(text, sizeof text, "1 0 0 0 0 1 -1\n# flow_share: %s\n", bad[i]);
+        snprintf(expected, sizeof expected,
+                 ":2: flow_share is '%s'; it must be the id of a node and a number above 0",
+                 bad[i]);
+        assert_refused(text, expected);
+    }
+    assert_refused("1 0 0 0 0 1 -1\n# flow_share: 2 1.5\n",
+                   ":2: flow_share names the node 2, which is no row's id");
+    assert_refused("# flow_share: 1 1.5\n# flow_share: 1 1.5\n1 0 0 0 0 1 -1\n",
+                   ":2: an earlier line says the flow share of node 1, too");
+    assert_refused("# terminal_flow: territory\n1 0 0 0 0 1 -1\n",
+                   ": terminal_flow is territory, but there are no flow_share lines");
+    assert_refused("# terminal_flow: equal\n# flow_share: 1 2\n1 0 0 0 0 1 -1\n",
+                   ": terminal_flow is equal, but there are flow_share lines");
 }
 
 static void rejects_a_wrong_field_count(void **state)
@@ -526,6 +588,8 @@ int main(void)
         cmocka_unit_test(known_fields_are_written_whether_a_line_names_them_or_not),
         cmocka_unit_test(a_key_that_says_the_same_again_is_fine),
         cmocka_unit_test(rejects_a_known_key_of_bad_value),
+        cmocka_unit_test(flow_shares_follow_their_nodes),
+        cmocka_unit_test(rejects_flow_shares_that_make_no_sense),
         cmocka_unit_test(rejects_a_wrong_field_count),
         cmocka_unit_test(rejects_what_is_not_a_number),
         cmocka_unit_test(rejects_what_is_not_finite),

@@ -153,6 +153,42 @@ static void pruning_drops_thin_segments_and_what_hangs_on_them(void **state)
     tree_release(&tree);
 }
 
+static void pruning_leaves_the_flow_of_what_stays(void **state)
+{
+    (void)state;
+    Err err;
+    Tree tree = small_tree(), pruned;
+    tree.header.has.terminal_flow = true; /* equal: 30 and 41 are the terminals */
+    must(tree_pruned(&tree, 0, &pruned, &err), &err);
+    assert_null(pruned.flow_share);
+    assert_true(pruned.header.has.terminal_flow);
+    tree_release(&pruned);
+
+    must(tree_pruned(&tree, 1.75, &pruned, &err), &err); /* 12 -> 7 -> 9, and 5 */
+    static const double counted[] = {0, 1, 1, 0};
+    assert_int_equal(pruned.n, 4);
+    assert_memory_equal(pruned.flow_share, counted, sizeof counted);
+    assert_false(pruned.header.has.terminal_flow);
+    tree_release(&pruned);
+
+    must(tree_add_flow_shares(&tree, &err), &err);
+    tree.flow_share[2] = 0.375;
+    tree.flow_share[3] = 0.125; /* leaks */
+    tree.flow_share[4] = 2.25;
+    must(tree_pruned(&tree, 2.125, &pruned, &err), &err); /* 12 -> 7, and 5 */
+    static const double summed[] = {0, 2.75, 0};
+    assert_int_equal(pruned.n, 3);
+    assert_memory_equal(pruned.flow_share, summed, sizeof summed);
+    assert_true(pruned.header.has.terminal_flow);
+    must(tree_check(&pruned, &err), &err);
+    tree_release(&pruned);
+
+    tree.flow_share[4] = -2.25;
+    assert_int_equal(tree_check(&tree, &err), STATUS_INPUT);
+    assert_string_equal(err.text, "node 41: flow share -2.25; it must be finite and not negative");
+    tree_release(&tree);
+}
+
 static void renumbering_counts_from_one(void **state)
 {
     (void)state;
@@ -223,6 +259,7 @@ int main(void)
         cmocka_unit_test(children_are_counted),
         cmocka_unit_test(check_names_the_node_at_fault),
         cmocka_unit_test(pruning_drops_thin_segments_and_what_hangs_on_them),
+        cmocka_unit_test(pruning_leaves_the_flow_of_what_stays),
         cmocka_unit_test(renumbering_counts_from_one),
         cmocka_unit_test(the_bounds_hold_both_ends_with_the_segment_radius),
         cmocka_unit_test(a_header_line_holds_no_line_end),

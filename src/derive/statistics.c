@@ -1,0 +1,272 @@
+/* Everything is counted over vessels, so that a measured tree, whose vessels are chains of short
+ * segments, stands beside a grown one. Levels and both kinds of order go through the same two steps:
+ * merge vessels into elements, then take the elements group by group. */
+#include "derive/derive.h"
+#include "derive/vessels.h"
+
+#include <stdlib.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Vessels of the same group in series; at levels, single vessels. */
+typedef struct Element {
+    int32_t group;
+    size_t vessels;
+    double radius_mm, length_mm; /* mean and sum */
+} Element;
+
+/* `element` has room for as many as there are vessels. `heir` tells which vessel continues which;
+ * NULL when none does. */
+static size_t merge_vessels(const Vessels *vessels, const int32_t *group, const int32_t *heir,
+                            int32_t *element_of, Element *element)
+{
+    size_t n = 0;
+    for (size_t v = 0; v < vessels->n; v++) {
+        const Vessel *vessel = &vessels->vessel[v];
+        bool continues = heir && vessel->parent != NO_VESSEL && heir[vessel->parent] == (int32_t)v;
+        element_of[v] = continues ? element_of[vessel->parent] : (int32_t)n++;
+        Element *own = &element[element_of[v]];
+        own->group = group[v];
+        own->vessels++;
+        own->radius_mm += (vessel->radius_mm - own->radius_mm) / (double)own->vessels;
+        own->length_mm += vessel->length_mm;
+    }
+    return n;
+}
+
+/* Rows for the groups 0 .. n_groups - 1, empty ones included, from `n` elements. */
+static void fill_rows(const Element *element, size_t n, StatisticsRow *row, int n_groups)
+{
+    for (size_t e = 0; e < n; e++) {
+        StatisticsRow *own = &row[element[e].group];
+        own->vessels += element[e].vessels;
+        own->elements++;
+        own->radius_mm.mean += element[e].radius_mm;
+        own->length_mm.mean += element[e].length_mm;
+    }
+    for (int g = 0; g < n_groups; g++) {
+        row[g].number = g;
+        row[g].radius_mm.mean /= (double)row[g].elements;
+        row[g].length_mm.mean /= (double)row[g].elements;
+    }
+    for (size_t e = 0; e < n; e++) {
+        StatisticsRow *own = &row[element[e].group];
+        double radius = element[e].radius_mm - own->radius_mm.mean;
+        double length = element[e].length_mm - own->length_mm.mean;
+        own->radius_mm.sd += radius * radius;
+        own->length_mm.sd += length * length;
+    }
+    for (int g = 0; g < n_groups; g++) {
+        double freedom = row[g].elements > 1 ? (double)(row[g].elements - 1) : 1;
+        row[g].radius_mm.sd = sqrt(row[g].radius_mm.sd / freedom);
+        row[g].length_mm.sd = sqrt(row[g].length_mm.sd / freedom);
+    }
+}
+
+static Status make_table(const Vessels *vessels, const int32_t *group, const int32_t *heir,
+                         StatisticsTable *table, Err *err)
+{
+    int n_groups = 0;
+    for (size_t v = 0; v < vessels->n; v++)
+        if (group[v] >= n_groups)
+            n_groups = group[v] + 1;
+    int32_t *element_of = NULL;
+    Element *element = NULL;
+    StatisticsRow *row = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&element_of, vessels->n, sizeof *element_of, "elements", err));
+    TRY_GOTO(mem_calloc(&element, vessels->n, sizeof *element, "elements", err));
+    TRY_GOTO(mem_calloc(&row, (size_t)n_groups, sizeof *row, "rows of statistics", err));
+    size_t n = merge_vessels(vessels, group, heir, element_of, element);
+    fill_rows(element, n, row, n_groups);
+    table->n = 0;
+    for (int g = 0; g < n_groups; g++)
+        if (row[g].elements > 0)
+            row[table->n++] = row[g];
+    table->row = row;
+    row = NULL;
+done:
+    free(element_of);
+    free(element);
+    free(row);
+    return status;
+}
+
+static double element_number(const StatisticsRow *row)
+{
+    return (double)row->elements;
+}
+
+static double element_diameter(const StatisticsRow *row)
+{
+    return 2 * row->radius_mm.mean;
+}
+
+static double element_length(const StatisticsRow *row)
+{
+    return row->length_mm.mean;
+}
+
+/* exp of the slope of the straight line through log(quantity) against the order. */
+static double growth_ratio(const StatisticsTable *table,
+                           double (*quantity)(const StatisticsRow *row))
+{
+    double n = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0;
+    for (size_t i = 0; i < table->n; i++) {
+        if (!(quantity(&table->row[i]) > 0))
+            continue;
+        n++;
+        mean_x += table->row[i].number;
+        mean_y += log(quantity(&table->row[i]));
+    }
+    mean_x /= n;
+    mean_y /= n;
+    for (size_t i = 0; i < table->n; i++) {
+        if (!(quantity(&table->row[i]) > 0))
+            continue;
+        double x = table->row[i].number - mean_x;
+        xx += x * x;
+        xy += x * (log(quantity(&table->row[i])) - mean_y);
+    }
+    return n >= 2 ? exp(xy / xx) : (double)NAN;
+}
+
+static OrderRatios order_ratios(const StatisticsTable *table)
+{
+    return (OrderRatios){1 / growth_ratio(table, element_number),
+                         growth_ratio(table, element_diameter),
+                         growth_ratio(table, element_length)};
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Sorts `value`. */
+static BifurcationSpread spread_of(double *value, size_t n)
+{
+    const double none = (double)NAN;
+    if (n == 0)
+        return (BifurcationSpread){0, none, none, none};
+    double sum = 0, squares = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += value[i];
+    double mean = sum / (double)n;
+    for (size_t i = 0; i < n; i++)
+        squares += (value[i] - mean) * (value[i] - mean);
+    qsort(value, n, sizeof *value, compare_numbers);
+    double sd = n > 1 ? sqrt(squares / (double)(n - 1)) : 0;
+    return (BifurcationSpread){n, mean, sd, (value[(n - 1) / 2] + value[n / 2]) / 2};
+}
+
+/* What the vessels that start at a node have in common. */
+typedef struct Fork {
+    int32_t daughters, parent; /* vessels; parent NO_VESSEL at a root */
+    double thinnest, thickest, squares;
+} Fork;
+
+static void find_forks(const Vessels *vessels, Fork *fork)
+{
+    for (size_t v = 0; v < vessels->n; v++) {
+        const Vessel *vessel = &vessels->vessel[v];
+        Fork *own = &fork[vessel->start];
+        double radius = vessel->radius_mm;
+        own->parent = vessel->parent;
+        own->thinnest = own->daughters ? fmin(own->thinnest, radius) : radius;
+        own->thickest = fmax(own->thickest, radius);
+        own->squares += radius * radius;
+        own->daughters++;
+    }
+}
+
+static Status measure_forks(const Tree *tree, const Vessels *vessels, TreeStatistics *statistics,
+                            Err *err)
+{
+    Fork *fork = NULL;
+    double *symmetry = NULL, *area = NULL;
+    size_t n_symmetry = 0, n_area = 0;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&fork, tree->n, sizeof *fork, "bifurcations", err));
+    TRY_GOTO(mem_calloc(&symmetry, tree->n, sizeof *symmetry, "symmetry ratios", err));
+    TRY_GOTO(mem_calloc(&area, tree->n, sizeof *area, "area ratios", err));
+    find_forks(vessels, fork);
+    for (size_t i = 0; i < tree->n; i++) {
+        if (fork[i].daughters < 2)
+            continue;
+        if (fork[i].thickest > 0)
+            symmetry[n_symmetry++] = fork[i].thinnest / fork[i].thickest;
+        double parent = fork[i].parent == NO_VESSEL ? 0 : vessels->vessel[fork[i].parent].radius_mm;
+        if (parent > 0)
+            area[n_area++] = fork[i].squares / (parent * parent);
+    }
+    statistics->symmetry = spread_of(symmetry, n_symmetry);
+    statistics->area_ratio = spread_of(area, n_area);
+done:
+    free(fork);
+    free(symmetry);
+    free(area);
+    return status;
+}
+
+/* The table of elements that are series of vessels of the same order. */
+static Status make_order_table(const Vessels *vessels, const int32_t *order, StatisticsTable *table,
+                               OrderRatios *ratios, Err *err)
+{
+    int32_t *heir = NULL;
+    TRY(vessels_heirs(vessels, order, &heir, err));
+    Status status = make_table(vessels, order, heir, table, err);
+    free(heir);
+    if (status == STATUS_OK)
+        *ratios = order_ratios(table);
+    return status;
+}
+
+static double volume_mm3(const Tree *tree)
+{
+    double volume = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        volume += pi * tree->radius_mm[i] * tree->radius_mm[i] * tree_segment_length(tree, i);
+    return volume;
+}
+
+Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err)
+{
+    TreeStatistics made = {.volume_mm3 = volume_mm3(tree)};
+    Vessels vessels;
+    int32_t *group = NULL, *diameter_order = NULL;
+    DiameterOrders result;
+    TRY(vessels_init(&vessels, tree, err));
+    made.vessels = vessels.n;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&group, vessels.n, sizeof *group, "levels", err));
+    for (size_t v = 0; v < vessels.n; v++)
+        group[v] = vessels.vessel[v].level;
+    TRY_GOTO(make_table(&vessels, group, NULL, &made.by_level, err));
+    for (size_t v = 0; v < vessels.n; v++)
+        group[v] = vessels.vessel[v].strahler;
+    TRY_GOTO(make_order_table(&vessels, group, &made.by_strahler, &made.strahler_ratios, err));
+    TRY_GOTO(vessels_diameter_orders(&vessels, &diameter_order, &result, err));
+    made.diameter_rounds = result.rounds;
+    made.diameter_orders_converged = result.converged;
+    TRY_GOTO(make_order_table(&vessels, diameter_order, &made.by_diameter_strahler,
+                              &made.diameter_strahler_ratios, err));
+    TRY_GOTO(measure_forks(tree, &vessels, &made, err));
+    *statistics = made;
+done:
+    if (status != STATUS_OK)
+        statistics_release(&made);
+    free(group);
+    free(diameter_order);
+    vessels_release(&vessels);
+    return status;
+}
+
+void statistics_release(TreeStatistics *statistics)
+{
+    free(statistics->by_level.row);
+    free(statistics->by_strahler.row);
+    free(statistics->by_diameter_strahler.row);
+    *statistics = (TreeStatistics){0};
+}

@@ -1,0 +1,29 @@
+/* The law as published, with the quotient of the two powers written as expm1(C a) / expm1(C b),
+ * which keeps its digits where C passes through zero, near a diameter of 8 micrometres. */
+#include "tree/viscosity.h"
+
+#include <math.h>
+
+/* ((1 - H)^C - 1) / ((1 - 0.45)^C - 1): how the viscosity grows with the hematocrit. */
+static double hematocrit_factor(double hematocrit, double exponent)
+{
+    double log_plasma = log1p(-hematocrit), log_reference = log1p(-0.45);
+    if (exponent == 0)
+        return log_plasma / log_reference;
+    return expm1(exponent * log_plasma) / expm1(exponent * log_reference);
+}
+
+double viscosity_pries_pa_s(double radius_mm, double hematocrit, double plasma_viscosity_pa_s)
+{
+    const double wall_layer = 1.1; /* micrometres of the diameter */
+    double diameter = 2e3 * radius_mm;
+    if (!(diameter > wall_layer))
+        return HUGE_VAL;
+    double at_45 = 6 * exp(-0.085 * diameter) + 3.2 - 2.44 * exp(-0.06 * pow(diameter, 0.645));
+    double e = 1 / (1 + 1e-11 * pow(diameter, 12));
+    double exponent = (0.8 + exp(-0.075 * diameter)) * (e - 1) + e;
+    double narrowing = diameter / (diameter - wall_layer);
+    double w = narrowing * narrowing;
+    double relative = (1 + (at_45 - 1) * hematocrit_factor(hematocrit, exponent) * w) * w;
+    return relative * plasma_viscosity_pa_s;
+}

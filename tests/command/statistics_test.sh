@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# info --stats: what is said of levels, orders and bifurcations.
+. "$(dirname "$0")/../lib.sh"
+
+test_stats_add_up() {
+    local table
+    run_ok corcast grow --terminals 150 --seed 3 -o tree.swc
+    run_ok corcast info tree.swc --stats --json
+    for table in by_level by_strahler by_diameter_strahler; do
+        expect_json stdout "(.stats.$table | map(.vessels) | add) == 299 and .stats.vessels == 299"
+        expect_json stdout "(.total_length_mm - (.stats.$table | map(.elements * .length_mm.mean)
+            | add) | fabs) < 1e-9 * .total_length_mm"
+    done
+    expect_json stdout '.stats.by_strahler[0] | .order == 1 and .vessels == 150'
+    expect_json stdout '(.stats.by_level | length) == .max_level + 1'
+    expect_json stdout '(.stats.by_strahler | length) == .max_strahler'
+    expect_json stdout '.stats.strahler_ratios | .number > 2 and .diameter > 1 and .length > 1'
+    expect_json stdout '.stats.diameter_orders_converged'
+    expect_json stdout '.stats.symmetry.count == 149 and .stats.area_ratio.count == 149'
+}
+
+test_stats_for_people_have_three_tables() {
+    grow_tree 60
+    run_ok corcast info tree.swc --stats
+    expect_stdout 'By bifurcation level'
+    expect_stdout 'By Strahler order'
+    expect_stdout 'By diameter-defined Strahler order'
+    expect_stdout 'area ratio'
+}
+
+test_a_tree_of_one_segment_has_stats_without_ratios() {
+    printf '1 1 0 0 0 1.5 -1\n2 3 3 0 0 1.5 1\n' >tree.swc
+    run_ok corcast info tree.swc --stats --json
+    expect_json stdout '.stats.vessels == 1 and .stats.strahler_ratios.number == null'
+    expect_json stdout '.stats.symmetry | .count == 0 and .median == null'
+    run_ok corcast info tree.swc --stats
+}
+
+test_flow_shares_and_viscosity_law_reach_the_pressures() {
+    cat >tree.swc <<'END'
+# p_perf_mmHg: 90
+# q_perf_ml_min: 0.01
+# viscosity_law: pries
+# hematocrit: 0.45
+# plasma_viscosity_cP: 1.2
+# terminal_flow: territory
+# flow_share: 3 2
+# flow_share: 4 1
+1 1 0 0 0 .1 -1
+2 3 3 0 0 .1 1
+3 3 4 1 0 .02 2
+4 3 4 -1 0 .02 2
+END
+    run_ok corcast info tree.swc --json
+    expect_json stdout '.terminal_pressure_mmHg | .min < .max and .max < 90'
+    mv stdout by_pries
+    run_ok corcast info tree.swc --json --viscosity 3.6
+    expect_json stdout '.terminal_pressure_mmHg.max < 90'
+    expect_different by_pries stdout
+    run corcast info tree.swc --viscosity-law casson
+    expect_status 2
+    expect_sentence 'viscosity-law.*constant, pries'
+}
+
+test_color_by_diameter_defined_order() {
+    grow_tree 30
+    run_ok corcast render tree.swc --color-by diameter-strahler --size 40x30 -o picture.ppm
+}
+
+run_tests "$@"

@@ -1,0 +1,460 @@
+/* Grown trees, held to their promises from coordinates and radii alone: nothing here uses growth's
+ * own bookkeeping. */
+#include "grow/grow.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const double pi = 3.14159265358979323846;
+
+static Domain domain_of(const char *spec)
+{
+    Domain domain;
+    assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
+    return domain;
+}
+
+static Tree grown(const GrowParams *params, const char *spec, GrowReport *report)
+{
+    Domain domain = domain_of(spec);
+    Tree tree;
+    Err err = {""};
+    if (grow_tree(params, &domain, &tree, report, &err) != STATUS_OK)
+        fail_msg("%s", err.text);
+    return tree;
+}
+
+static int32_t *child_counts(const Tree *tree)
+{
+    int32_t *count;
+    assert_int_equal(tree_child_counts(tree, &count, NULL), STATUS_OK);
+    return count;
+}
+
+static void assert_binary(const Tree *tree, size_t terminals)
+{
+    assert_int_equal(tree->n, 2 * terminals);
+    assert_int_equal(tree_check(tree, NULL), STATUS_OK);
+    int32_t *children = child_counts(tree);
+    size_t ends = 0;
+    assert_int_equal(tree->parent[0], TREE_NO_PARENT);
+    assert_int_equal(children[0], 1);
+    assert_true(tree->radius_mm[0] == tree->radius_mm[1]);
+    for (size_t i = 0; i < tree->n; i++) {
+        assert_int_equal(tree->id[i], (int32_t)i + 1);
+        assert_int_equal(tree->type[i], GROW_SWC_TYPE);
+        if (i > 0) {
+            assert_true(children[i] == 0 || children[i] == 2);
+            assert_true(tree_segment_length(tree, i) > 0 && tree->radius_mm[i] > 0);
+            ends += children[i] == 0;
+        }
+    }
+    assert_int_equal(ends, terminals);
+    free(children);
+}
+
+/* Murray's law to 1e-12 at every bifurcation. Shares of the parent's radius, so that no power
+ * overflows. */
+static void assert_murray(const Tree *tree, double gamma)
+{
+    double *sum = calloc(tree->n, sizeof *sum);
+    assert_non_null(sum);
+    for (size_t i = 2; i < tree->n; i++)
+        sum[tree->parent[i]] += pow(tree->radius_mm[i] / tree->radius_mm[tree->parent[i]], gamma);
+    int32_t *children = child_counts(tree);
+    for (size_t i = 1; i < tree->n; i++)
+        if (children[i])
+            assert_true(fabs(sum[i] - 1) <= 1e-12);
+    free(children);
+    free(sum);
+}
+
+/* Poiseuille's law from the inlet with equal flow into all terminals: p_term at each, to 1e-9 of
+ * the drop. */
+static void assert_pressures(const Tree *tree)
+{
+    const TreeHeader *header = &tree->header;
+    const double pa = 133.322387415;
+    double drop = (header->p_perf_mmhg - header->p_term_mmhg) * pa;
+    double flow = header->q_perf_ml_min * 1000 / 60, viscosity = header->viscosity_cp * 1e-3;
+    int32_t *ends = calloc(tree->n, sizeof *ends), *children = child_counts(tree);
+    double *pressure = calloc(tree->n, sizeof *pressure);
+    assert_true(ends && pressure);
+    for (size_t i = tree->n - 1; i > 0; i--) {
+        ends[i] += children[i] == 0;
+        ends[tree->parent[i]] += ends[i];
+    }
+    pressure[0] = header->p_perf_mmhg * pa;
+    for (size_t i = 1; i < tree->n; i++) {
+        double r2 = tree->radius_mm[i] * tree->radius_mm[i];
+        double fall =
+            8 * viscosity / pi * tree_segment_length(tree, i) / r2 * flow * ends[i] / ends[0] / r2;
+        pressure[i] = pressure[tree->parent[i]] - fall;
+        if (!children[i])
+            assert_true(fabs(pressure[i] - header->p_term_mmhg * pa) <= 1e-9 * drop);
+    }
+    free(ends);
+    free(children);
+    free(pressure);
+}
+
+static void assert_inside(const Tree *tree, const char *spec)
+{
+    Domain domain = domain_of(spec);
+    for (size_t i = 0; i < tree->n; i++)
+        assert_true(domain_inside(&domain, tree->position[i], 0));
+}
+
+static void assert_all(const GrowParams *params, const char *spec)
+{
+    GrowReport report;
+    Tree tree = grown(params, spec, &report);
+    assert_binary(&tree, params->terminals);
+    assert_murray(&tree, params->gamma);
+    assert_pressures(&tree);
+    assert_inside(&tree, spec);
+    double target = 0;
+    for (size_t i = 1; i < tree.n; i++)
+        target += vec3_distance(tree.position[i], tree.position[tree.parent[i]]) *
+                  pow(tree.radius_mm[i], params->lambda);
+    assert_true(fabs(report.target / target - 1) <= 1e-12);
+    assert_int_equal(report.terminals, params->terminals);
+    assert_true(report.root_radius_mm == tree.radius_mm[0]);
+    assert_true(report.tosses >= params->terminals + report.rejected);
+    tree_release(&tree);
+}
+
+static void one_two_and_three_terminals_make_trees(void **state)
+{
+    (void)state;
+    GrowParams params = grow_defaults();
+    for (params.terminals = 1; params.terminals <= 3; params.terminals++) {
+        assert_all(&params, "disc:50");
+        assert_all(&params, "ball:23.85");
+    }
+}
+
+static void laws_hold_for_any_gamma_and_lambda(void **state)
+{
+    (void)state;
+    const double gammas[] = {0.1, 0.3, 1, 2, 2.55, 3, 10}, lambdas[] = {0, 0.5, 1, 2, 3, 6.5};
+    GrowParams params = grow_defaults();
+    params.terminals = 150;
+    for (size_t i = 0; i < sizeof gammas / sizeof *gammas; i++)
+        for (size_t j = 0; j < sizeof lambdas / sizeof *lambdas; j++) {
+            params.gamma = gammas[i];
+            params.lambda = lambdas[j];
+            params.seed++;
+            assert_all(&params, params.seed % 2 ? "disc:50" : "ball:23.85");
+        }
+}
+
+static void laws_hold_for_any_flow_pressure_and_size(void **state)
+{
+    (void)state;
+    GrowParams params = grow_defaults();
+    params.terminals = 120;
+    params.p_perf_mmhg = 23.85;
+    params.p_term_mmhg = -71.5;
+    params.q_perf_ml_min = 0.37;
+    params.viscosity_cp = 1.2;
+    params.toss = GROW_TOSS_TERMINAL;
+    params.candidates = 1;
+    params.has_inlet = true;
+    params.inlet = vec3(3e-7, -7e-7, 0);
+    assert_all(&params, "disc:0.0238");
+    assert_all(&params, "ball:1e6");
+    assert_all(&params, "disc:1e-6");
+    params.candidates = GROW_MAX_CANDIDATES;
+    assert_all(&params, "ball:0.0238");
+}
+
+static double cross_z(Vec3 a, Vec3 b, Vec3 c)
+{
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+static bool share_a_node(const Tree *tree, size_t i, size_t j)
+{
+    return tree->parent[i] == tree->parent[j] || tree->parent[i] == (int32_t)j ||
+           tree->parent[j] == (int32_t)i;
+}
+
+static void segments_in_the_plane_never_cross(void **state)
+{
+    (void)state;
+    GrowParams params = grow_defaults();
+    params.terminals = 400;
+    const double lambdas[] = {0, 2}, gammas[] = {3, 1};
+    for (params.seed = 1; params.seed <= 8; params.seed++) {
+        params.lambda = lambdas[params.seed % 2];
+        params.gamma = gammas[params.seed / 7]; /* the last are too thick for the disc */
+        Tree tree = grown(&params, "disc:50", NULL);
+        for (size_t i = 1; i < tree.n; i++)
+            for (size_t j = 1; j < i; j++) {
+                Vec3 a = tree.position[tree.parent[i]], b = tree.position[i];
+                Vec3 c = tree.position[tree.parent[j]], d = tree.position[j];
+                if (!share_a_node(&tree, i, j))
+                    assert_false(cross_z(a, b, c) * cross_z(a, b, d) <= 0 &&
+                                 cross_z(c, d, a) * cross_z(c, d, b) <= 0);
+            }
+        tree_release(&tree);
+    }
+}
+
+static double distance_to_segment(Vec3 p, Vec3 a, Vec3 b)
+{
+    Vec3 u = vec3_sub(b, a);
+    double t = vec3_dot(vec3_sub(p, a), u) / vec3_dot(u, u);
+    return vec3_distance(p, vec3_add_scaled(a, u, fmin(1, fmax(0, t))));
+}
+
+/* By ternary search: the distance of a point from a segment is convex along another segment. */
+static double segment_distance(Vec3 a, Vec3 b, Vec3 c, Vec3 d)
+{
+    double low = 0, high = 1;
+    Vec3 u = vec3_sub(b, a);
+    while (high - low > 1e-9) {
+        double left = (2 * low + high) / 3, right = (low + 2 * high) / 3;
+        if (distance_to_segment(vec3_add_scaled(a, u, left), c, d) <
+            distance_to_segment(vec3_add_scaled(a, u, right), c, d))
+            high = right;
+        else
+            low = left;
+    }
+    return distance_to_segment(vec3_add_scaled(a, u, low), c, d);
+}
+
+/* At final radii; growth sees to it with a reserve, so one segment in a hundred is a lot. */
+static void vessels_are_longer_than_wide_and_clear_of_each_other(void **state)
+{
+    (void)state;
+    const char *specs[] = {"disc:50", "ball:50"};
+    for (size_t k = 0; k < 2; k++) {
+        GrowParams params = grow_defaults();
+        params.terminals = 200;
+        params.seed = 17;
+        GrowReport report;
+        Tree tree = grown(&params, specs[k], &report);
+        size_t bad = 0;
+        for (size_t i = 1; i < tree.n; i++) {
+            bad += tree_segment_length(&tree, i) < 2 * tree.radius_mm[i];
+            for (size_t j = 1; j < i; j++)
+                if (!share_a_node(&tree, i, j))
+                    bad += segment_distance(tree.position[tree.parent[i]], tree.position[i],
+                                            tree.position[tree.parent[j]], tree.position[j]) <
+                           tree.radius_mm[i] + tree.radius_mm[j];
+        }
+        assert_true(report.thickness == 1);
+        assert_true(bad <= 3);
+        tree_release(&tree);
+    }
+}
+
+static void targets_are_as_low_as_published_peers_reach(void **state)
+{
+    (void)state;
+    GrowParams params = grow_defaults();
+    double sum = 0;
+    for (params.seed = 1; params.seed <= 6; params.seed++) {
+        GrowReport report;
+        Tree tree = grown(&params, "disc:50", &report);
+        sum += report.target;
+        tree_release(&tree);
+    }
+    assert_true(sum / 6 <= 245);
+}
+
+static bool same_trees(const Tree *a, const Tree *b)
+{
+    return a->n == b->n && memcmp(a->parent, b->parent, a->n * sizeof *a->parent) == 0 &&
+           memcmp(a->position, b->position, a->n * sizeof *a->position) == 0 &&
+           memcmp(a->radius_mm, b->radius_mm, a->n * sizeof *a->radius_mm) == 0;
+}
+
+static void one_seed_gives_one_tree(void **state)
+{
+    (void)state;
+    GrowParams params = grow_defaults();
+    params.terminals = 700;
+    params.seed = UINT64_MAX;
+    Tree a = grown(&params, "ball:50", NULL), b = grown(&params, "ball:50", NULL);
+    params.seed = 2;
+    Tree c = grown(&params, "ball:50", NULL);
+    assert_true(same_trees(&a, &b));
+    assert_false(same_trees(&a, &c));
+    tree_release(&a);
+    tree_release(&b);
+    tree_release(&c);
+}
+
+static void terminals_fill_the_tissue_evenly(void **state)
+{
+    (void)state;
+    GrowParams params = grow_defaults();
+    params.terminals = 2000;
+    Tree tree = grown(&params, "disc:50", NULL);
+    int32_t *children = child_counts(&tree);
+    enum { RINGS = 4, SECTORS = 5 };
+    int count[RINGS * SECTORS] = {0};
+    for (size_t i = 1; i < tree.n; i++) {
+        if (children[i])
+            continue;
+        Vec3 p = tree.position[i];
+        int ring = (int)(RINGS * vec3_dot(p, p) / 2500);
+        int sector = (int)(SECTORS * (atan2(p.y, p.x) + pi) / (2 * pi));
+        count[(ring < RINGS ? ring : RINGS - 1) * SECTORS + (sector < SECTORS ? sector : 0)]++;
+    }
+    for (int i = 0; i < RINGS * SECTORS; i++)
+        assert_in_range(count[i], 75, 125);
+    free(children);
+    tree_release(&tree);
+}
+
+static void the_header_tells_how_the_tree_was_made(void **state)
+{
+    (void)state;
+    GrowParams params = grow_defaults();
+    params.terminals = 5;
+    params.seed = 12345678901234567890u;
+    params.gamma = 2.55;
+    params.lambda = 0.1;
+    Tree tree = grown(&params, "disc:23.85", NULL);
+    const char *lines[] = {"generator: corcast " CORCAST_VERSION,
+                           "seed: 12345678901234567890",
+                           "dimension: 2",
+                           "domain: disc:23.85",
+                           "gamma: 2.55",
+                           "lambda: 0.1",
+                           "p_perf_mmHg: 100",
+                           "p_term_mmHg: 60",
+                           "q_perf_ml_min: 500",
+                           "viscosity_cP: 3.6"};
+    assert_int_equal(tree.header.n_lines, sizeof lines / sizeof *lines);
+    for (size_t i = 0; i < tree.header.n_lines; i++)
+        assert_string_equal(tree.header.lines[i], lines[i]);
+    assert_true(tree.header.has.seed && tree.header.has.dimension && tree.header.has.gamma &&
+                tree.header.has.lambda && tree.header.has.p_perf && tree.header.has.p_term &&
+                tree.header.has.q_perf && tree.header.has.viscosity);
+    assert_true(tree.header.seed == params.seed && tree.header.gamma == 2.55);
+    tree_release(&tree);
+}
+
+static void note_progress(double fraction, void *context)
+{
+    double *last = context;
+    assert_true(fraction > *last && fraction <= 1);
+    *last = fraction;
+}
+
+static void progress_rises(void **state)
+{
+    (void)state;
+    GrowParams params = grow_defaults();
+    double last = 0;
+    params.progress = note_progress;
+    params.progress_context = &last;
+    Tree tree = grown(&params, "disc:50", NULL);
+    assert_true(last > 0.7);
+    tree_release(&tree);
+}
+
+static void assert_refused(GrowParams params, const char *option)
+{
+    Domain domain = domain_of("disc:50");
+    Err err = {""};
+    assert_int_equal(grow_params_check(&params, &domain, &err), STATUS_USAGE);
+    assert_memory_equal(err.text, option, strlen(option));
+    Tree tree = {.n = 23};
+    GrowReport report = {.target = 2.385};
+    assert_int_equal(grow_tree(&params, &domain, &tree, &report, &err), STATUS_USAGE);
+    assert_true(tree.n == 23 && report.target == 2.385);
+}
+
+#define REFUSES(field, value, option)                                                              \
+    do {                                                                                           \
+        GrowParams params_ = grow_defaults();                                                      \
+        params_.field = value;                                                                     \
+        assert_refused(params_, option);                                                           \
+    } while (0)
+
+static void refuses_parameters_out_of_range_and_names_the_option(void **state)
+{
+    (void)state;
+    REFUSES(terminals, 0, "--terminals 0");
+    REFUSES(terminals, GROW_MAX_TERMINALS + 1, "--terminals 8000001");
+    REFUSES(gamma, 0, "--gamma 0");
+    REFUSES(gamma, -2.5, "--gamma -2.5");
+    REFUSES(gamma, 10.01, "--gamma 10.01");
+    REFUSES(gamma, NAN, "--gamma nan");
+    REFUSES(lambda, -0.5, "--lambda -0.5");
+    REFUSES(lambda, INFINITY, "--lambda inf");
+    REFUSES(p_perf_mmhg, INFINITY, "--p-perf inf");
+    REFUSES(p_term_mmhg, 100, "--p-term 100");
+    REFUSES(p_term_mmhg, 100.5, "--p-term 100.5");
+    REFUSES(p_term_mmhg, -INFINITY, "--p-term -inf");
+    REFUSES(q_perf_ml_min, 0, "--q-perf 0");
+    REFUSES(q_perf_ml_min, NAN, "--q-perf nan");
+    REFUSES(viscosity_cp, -3.6, "--viscosity -3.6");
+    REFUSES(viscosity_cp, INFINITY, "--viscosity inf");
+    REFUSES(candidates, 0, "--candidates 0");
+    REFUSES(candidates, GROW_MAX_CANDIDATES + 1, "--candidates 1001");
+    GrowParams params = grow_defaults();
+    params.has_inlet = true;
+    const Vec3 inlets[] = {{0, 50.1, 0}, {3, 4, 0.01}, {NAN, 0, 0}};
+    for (size_t i = 0; i < sizeof inlets / sizeof *inlets; i++) {
+        params.inlet = inlets[i];
+        assert_refused(params, "--inlet");
+    }
+    params.inlet = vec3(35.3553391, 35.3553391, 0); /* on the rim but for typing */
+    Domain domain = domain_of("disc:50");
+    assert_int_equal(grow_params_check(&params, &domain, NULL), STATUS_OK);
+}
+
+static void assert_infeasible(const GrowParams *params, const char *spec, const char *change)
+{
+    Domain domain = domain_of(spec);
+    Tree tree = {.n = 23};
+    Err err = {""};
+    assert_int_equal(grow_tree(params, &domain, &tree, NULL, &err), STATUS_INFEASIBLE);
+    assert_non_null(strstr(err.text, change));
+    assert_int_equal(tree.n, 23);
+}
+
+static void says_what_to_change_when_the_radii_exceed_all_numbers(void **state)
+{
+    (void)state;
+    GrowParams params = grow_defaults();
+    params.gamma = 0.01;
+    assert_infeasible(&params, "disc:50", "--gamma 0.01");
+    params.lambda = 100;
+    params.gamma = 0.05;
+    assert_infeasible(&params, "disc:50", "no room for terminal 2 of --terminals 1000");
+    params.gamma = 3;
+    params.lambda = 5000;
+    assert_infeasible(&params, "disc:50", "--lambda 5000");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_two_and_three_terminals_make_trees),
+        cmocka_unit_test(laws_hold_for_any_gamma_and_lambda),
+        cmocka_unit_test(laws_hold_for_any_flow_pressure_and_size),
+        cmocka_unit_test(segments_in_the_plane_never_cross),
+        cmocka_unit_test(vessels_are_longer_than_wide_and_clear_of_each_other),
+        cmocka_unit_test(targets_are_as_low_as_published_peers_reach),
+        cmocka_unit_test(one_seed_gives_one_tree),
+        cmocka_unit_test(terminals_fill_the_tissue_evenly),
+        cmocka_unit_test(the_header_tells_how_the_tree_was_made),
+        cmocka_unit_test(progress_rises),
+        cmocka_unit_test(refuses_parameters_out_of_range_and_names_the_option),
+        cmocka_unit_test(says_what_to_change_when_the_radii_exceed_all_numbers),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
