@@ -191,7 +191,7 @@ static Status add_terminal(Growth *growth, Err *err)
     int crowded = 0, outside = 0;
     while (crowded + outside < LAST_PATIENCE) {
         Vec3 terminal = toss(growth);
-        Connection connection;
+        Connection connection = {0};
         Choice choice = choose(growth, terminal, &connection);
         if (choice == CHOICE_MADE)
             return connect(growth, &connection, terminal, err);
