@@ -7,6 +7,7 @@
 #include <float.h>
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
 
 static Status sweep_down(const Network *net, Tree *tree, Err *err)
 {
@@ -39,14 +40,20 @@ static Status add_number(Tree *tree, const char *key, double value, Err *err)
     return tree_add_line(tree, line, err);
 }
 
+/* Of a domain from a file, the header tells the file's name, not the user's folders. */
 static Status add_domain(Tree *tree, const Domain *domain, Err *err)
 {
-    Text line = TEXT_INIT;
-    text_puts(&line, "domain: ");
-    domain_text(domain, &line);
-    Status status = text_check(&line, err);
+    Text spec = TEXT_INIT, line = TEXT_INIT;
+    domain_text(domain, &spec);
+    Status status = text_check(&spec, err);
+    if (status == STATUS_OK) {
+        size_t kind = strcspn(spec.chars, ":") + 1;
+        text_printf(&line, "domain: %.*s%s", (int)kind, spec.chars, file_name(spec.chars + kind));
+        status = text_check(&line, err);
+    }
     if (status == STATUS_OK)
         status = tree_add_line(tree, line.chars, err);
+    text_release(&spec);
     text_release(&line);
     return status;
 }

@@ -70,6 +70,14 @@ test_a_tree_in_the_ball_keeps_murray_pressures_and_domain() {
     grep -q '^# dimension: 3$' tree.swc || fail "expected the header to say dimension 3"
 }
 
+test_a_tree_in_any_convex_shape_stays_inside() {
+    local domain
+    for domain in rect:30,52 box:21,30,44 ellipsoid:20,33,15; do
+        run_ok corcast grow --terminals 150 --domain $domain --q-perf 100 -o tree.swc
+        check_tree tree.swc
+    done
+}
+
 test_every_gamma_and_lambda_gives_an_exact_tree() {
     local gamma lambda
     while read -r gamma lambda; do

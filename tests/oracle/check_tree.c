@@ -10,7 +10,7 @@
  * - r_p^gamma = r_l^gamma + r_r^gamma at every bifurcation, to 1e-12 of r_p^gamma;
  * - every terminal is at p_term, to 1e-9 of p_perf - p_term, when the inlet is at p_perf and each
  *   terminal carries q_perf / N (Poiseuille);
- * - every point lies in the domain (disc:R, ball:R), to 1e-9 mm;
+ * - every point lies in the domain (disc, ball, rect, box, ellipsoid), to 1e-9 mm;
  * - in two dimensions, no two segments share a point other than a common node.
  * Prints what `corcast info --json` should say, and the largest deviations, as "key value" lines.
  */
@@ -205,17 +205,43 @@ static long double pressure_deviation(Node *nodes, int n, const Header *header)
     return worst;
 }
 
+/* Whether x / a, y / b, z / c, in units of a half-axis, is a point of the domain. */
+static bool inside(const char *kind, long double x, long double y, long double z)
+{
+    if (strcmp(kind, "rect") == 0 || strcmp(kind, "box") == 0)
+        return fabsl(x) <= 1 && fabsl(y) <= 1 && fabsl(z) <= 1;
+    return hypotl(hypotl(x, y), z) <= 1;
+}
+
 static void check_domain(const Node *nodes, int n, const Header *header)
 {
-    long double radius;
-    if (sscanf(header->domain, "disc:%Lf", &radius) != 1 &&
-        sscanf(header->domain, "ball:%Lf", &radius) != 1)
+    char kind[16];
+    long double size[3] = {0, 0, 0};
+    int sizes =
+        sscanf(header->domain, "%15[a-z]:%Lf,%Lf,%Lf", kind, &size[0], &size[1], &size[2]) - 1;
+    static const struct {
+        const char *kind;
+        int sizes;
+        bool flat, halved; /* whether sizes are whole widths */
+    } known[] = {{"disc", 1, true, false},
+                 {"ball", 1, false, false},
+                 {"rect", 2, true, true},
+                 {"box", 3, false, true},
+                 {"ellipsoid", 3, false, false}};
+    size_t k = 0, kinds = sizeof known / sizeof *known;
+    while (k < kinds && (strcmp(known[k].kind, kind) != 0 || known[k].sizes != sizes))
+        k++;
+    if (k == kinds)
         fail("the domain '%s' is not known here", header->domain);
-    bool flat = header->domain[0] == 'd';
+    long double half[3];
+    for (int axis = 0; axis < 3; axis++) {
+        half[axis] = size[axis < sizes ? axis : 0] * (known[k].halved ? 0.5L : 1);
+        half[axis] += 1e-9L;
+    }
     for (int i = 0; i < n; i++) {
-        if (flat && nodes[i].z != 0)
+        if (known[k].flat && nodes[i].z != 0)
             fail("node %ld is not in the plane z = 0", nodes[i].id);
-        if (hypotl(hypotl(nodes[i].x, nodes[i].y), nodes[i].z) > radius + 1e-9L)
+        if (!inside(kind, nodes[i].x / half[0], nodes[i].y / half[1], nodes[i].z / half[2]))
             fail("node %ld is outside the domain", nodes[i].id);
     }
 }
