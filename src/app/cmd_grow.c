@@ -18,11 +18,12 @@ static const Command command = {
 
 static Status write_report(const char *path, const GrowReport *report, int threads, Err *err)
 {
-    json_t *json = json_pack(
-        "{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:i}", "generator", GENERATOR, "seconds",
-        report->seconds, "terminals", (json_int_t)report->terminals, "target", report->target,
-        "root_radius_mm", report->root_radius_mm, "tosses", (json_int_t)report->tosses, "rejected",
-        (json_int_t)report->rejected, "thickness", report->thickness, "threads", threads);
+    json_t *json =
+        json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:b, s:i}", "generator", GENERATOR,
+                  "seconds", report->seconds, "terminals", (json_int_t)report->terminals, "target",
+                  report->target, "root_radius_mm", report->root_radius_mm, "tosses",
+                  (json_int_t)report->tosses, "rejected", (json_int_t)report->rejected, "thickness",
+                  report->thickness, "complete", report->complete, "threads", threads);
     return json_write(json, path, err);
 }
 
@@ -71,6 +72,8 @@ Status run_grow(int argc, char **argv, Err *err)
          "nearest segments tried for each terminal (8)"},
         {"toss", OPTION_CHOICE, &toss, NULL, 0, 0, tosses, NULL,
          "new terminals keep their distance to (segment)"},
+        {"partial", OPTION_FLAG, &params.partial, NULL, 0, 0, NULL, NULL,
+         "write the tree so far when no more terminals find room"},
         {"json", OPTION_TEXT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
         {0},
     };
@@ -100,6 +103,8 @@ Status run_grow(int argc, char **argv, Err *err)
     TRY_GOTO(tree_write(&tree, output, err));
     if (json)
         TRY_GOTO(write_report(json, &report, 1, err));
+    if (!report.complete)
+        fprintf(stderr, "corcast grow: %s\n", err->text);
     if (!parsed.common.quiet)
         print_report(&report);
 done:

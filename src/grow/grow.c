@@ -258,20 +258,25 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     while (network_terminals(&growth.net) < params->terminals) {
         TRY_GOTO(check_range(&growth, err));
         TRY_GOTO(keep_up(&growth, err));
-        TRY_GOTO(add_terminal(&growth, err));
+        status = add_terminal(&growth, err);
+        if (status == STATUS_INFEASIBLE && params->partial)
+            break;
+        TRY_GOTO(status);
         report_progress(&growth);
     }
+    bool complete = status == STATUS_OK;
     TRY_GOTO(check_range(&growth, err));
     grid_release(&growth.grid);
     TRY_GOTO(finish_tree(&growth.net, params, domain, out, err));
     if (report)
         *report = (GrowReport){.seconds = clock_seconds() - begun,
-                               .terminals = params->terminals,
+                               .terminals = network_terminals(&growth.net),
                                .target = target_of(out),
                                .root_radius_mm = out->radius_mm[0],
                                .tosses = growth.tosses,
                                .rejected = growth.rejected,
-                               .thickness = growth.rules.thickness};
+                               .thickness = growth.rules.thickness,
+                               .complete = complete};
 done:
     free(growth.near);
     free(growth.connections);

@@ -38,6 +38,7 @@ typedef struct GrowParams {
     double viscosity_cp;  /* > 0 */
     int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
     GrowToss toss;
+    bool partial; /* when no more terminals find room, deliver the tree so far */
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *progress_context;
 } GrowParams;
@@ -57,6 +58,7 @@ typedef struct GrowReport {
      * of each other, at this share of their radii: 1 unless the domain was too full for vessels so
      * thick, down to 0 for centrelines that do not cross. */
     double thickness;
+    bool complete; /* false: a partial tree; err holds the sentence that says why */
 } GrowReport;
 
 /* STATUS_USAGE with a sentence that names the option at fault. */

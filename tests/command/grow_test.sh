@@ -78,6 +78,18 @@ test_a_tree_in_any_convex_shape_stays_inside() {
     done
 }
 
+test_a_full_domain_is_said_and_partial_writes_the_tree_so_far() {
+    run corcast grow --terminals 50 --gamma 0.05 --lambda 100 -o tree.swc
+    expect_status 2
+    expect_sentence "no room for terminal 2"
+    expect_only
+    run corcast grow --terminals 50 --gamma 0.05 --lambda 100 --partial --json grow.json -o tree.swc
+    expect_status 0
+    grep -q "no room for terminal 2" stderr || fail "expected the reason on standard error"
+    expect_json grow.json '.complete == false and .terminals == 1 and .rejected > 0'
+    check_tree tree.swc
+}
+
 test_every_gamma_and_lambda_gives_an_exact_tree() {
     local gamma lambda
     while read -r gamma lambda; do
