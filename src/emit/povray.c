@@ -90,7 +90,7 @@ static void put_segments(Text *text, const Scene *scene)
 }
 
 typedef struct CellText {
-    Text low, terms, pick, paints;
+    Text low, terms, largest, pick, paints;
     char side[NUMBER_TEXT_SIZE], gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE],
         scale[NUMBER_TEXT_SIZE], count[NUMBER_TEXT_SIZE];
 } CellText;
@@ -101,19 +101,22 @@ static void clear(Text *text)
     text_puts(text, "");
 }
 
-/* Fn_Choose(T1-max,0,Fn_Choose(T2-max,1,...)): the number of the first term that equals the
- * largest. */
+/* Fn_Max(T1,Fn_Max(T2,...)): the largest term. */
+static void put_largest(Text *text, const uint32_t *terms, uint32_t count)
+{
+    for (uint32_t k = 0; k + 1 < count; k++)
+        text_printf(text, "Fn_Max(Fn_%u(x,y,z),", terms[k]);
+    text_printf(text, "Fn_%u(x,y,z)", terms[count - 1]);
+    for (uint32_t k = 0; k + 1 < count; k++)
+        text_puts(text, ")");
+}
+
+/* Fn_Choose(T1-Fn_Top,0,Fn_Choose(T2-Fn_Top,1,...)): the number of the first term that equals the
+ * largest, Fn_Top. */
 static void put_pick(Text *text, const uint32_t *terms, uint32_t count)
 {
-    for (uint32_t k = 0; k + 1 < count; k++) {
-        text_printf(text, "Fn_Choose(Fn_%u(x,y,z)-", terms[k]);
-        for (uint32_t m = 0; m + 1 < count; m++)
-            text_printf(text, "Fn_Max(Fn_%u(x,y,z),", terms[m]);
-        text_printf(text, "Fn_%u(x,y,z)", terms[count - 1]);
-        for (uint32_t m = 0; m + 1 < count; m++)
-            text_puts(text, ")");
-        text_printf(text, ",%u,", k);
-    }
+    for (uint32_t k = 0; k + 1 < count; k++)
+        text_printf(text, "Fn_Choose(Fn_%u(x,y,z)-Fn_Top(x,y,z),%u,", terms[k], k);
     text_printf(text, "%u", count - 1);
     for (uint32_t k = 0; k + 1 < count; k++)
         text_puts(text, ")");
@@ -125,6 +128,7 @@ static Status put_cell(Text *text, const Tmpl *template, const Scene *scene, con
     const uint32_t *terms = cells->terms + cell->first;
     clear(&part->low);
     clear(&part->terms);
+    clear(&part->largest);
     clear(&part->pick);
     clear(&part->paints);
     put_vector(&part->low, cell->low);
@@ -135,11 +139,13 @@ static Status put_cell(Text *text, const Tmpl *template, const Scene *scene, con
         put_paint(&part->paints, scene, segment->id, segment->color);
         text_puts(&part->paints, ")");
     }
+    put_largest(&part->largest, terms, cell->count);
     put_pick(&part->pick, terms, cell->count);
     snprintf(part->count, sizeof part->count, "%u", cell->count);
     const TmplValue values[] = {
         {"low", part->low.chars},
         {"terms", part->terms.chars},
+        {"largest", part->largest.chars},
         {"pick", part->pick.chars},
         {"paints", part->paints.chars},
         {"count", part->count},
@@ -186,6 +192,7 @@ static Status put_cells(Text *text, const Scene *scene, const PovrayParams *para
     *n_cells = cells.n_cells;
     text_release(&part.low);
     text_release(&part.terms);
+    text_release(&part.largest);
     text_release(&part.pick);
     text_release(&part.paints);
     celltree_release(&cells);
