@@ -133,7 +133,7 @@ BoxWalk boxwalk_segment(const BoxTree *tree, Vec3 a, Vec3 b)
     start(&walk, tree, box_with_ball(box_with_ball(box_empty(), a, 0), b, 0));
     walk.is_segment = true;
     walk.origin = a;
-    walk.inverse = vec3(1 / (b.x - a.x), 1 / (b.y - a.y), 1 / (b.z - a.z));
+    walk.inverse = vec3_inverse(vec3_sub(b, a));
     return walk;
 }
 

@@ -41,29 +41,19 @@ int hit_sphere(Ray ray, Vec3 center, double radius, Hit hits[2]);
  * most 4, two but for lines through a rim. */
 int hit_cylinder(Ray ray, const CylinderFrame *cylinder, Hit hits[4]);
 
-/* 1 / direction for hit_box, with a huge number where a component is 0, so that the product with
- * a distance is never NaN. */
-static inline Vec3 ray_inverse(Vec3 direction)
-{
-    const double huge = 1e300;
-    return vec3(direction.x == 0 ? huge : 1 / direction.x,
-                direction.y == 0 ? huge : 1 / direction.y,
-                direction.z == 0 ? huge : 1 / direction.z);
-}
-
-/* Narrows [*low, *high] to where the line lies between two planes across an axis. */
+/* Narrows [*low, *high] to where the line lies between two planes across an axis. In the plane of one
+ * of them 0 * infinity is NaN, every comparison with it is false, and that plane does not narrow. */
 static inline void clip_slab(double from, double inverse, double box_low, double box_high,
                              double *low, double *high)
 {
-    double a = (box_low - from) * inverse, b = (box_high - from) * inverse;
-    double near = a < b ? a : b, far = a < b ? b : a;
+    double near = ((inverse < 0 ? box_high : box_low) - from) * inverse;
+    double far = ((inverse < 0 ? box_low : box_high) - from) * inverse;
     *low = near > *low ? near : *low;
     *high = far < *high ? far : *high;
 }
 
-/* Whether the line meets the box for some t in [*t0, *t1], t0 >= 0, and if so that part of the
- * interval. `inverse` is ray_inverse(direction). A line that runs within a face may be taken to miss,
- * so boxes are made a little larger than what they hold. */
+/* Whether the line meets the box, its faces included, for some t in [*t0, *t1], and if so that part
+ * of the interval. `inverse` holds 1 / direction, infinities allowed. */
 static inline bool hit_box(Vec3 origin, Vec3 inverse, const Box *box, double *t0, double *t1)
 {
     double low = *t0, high = *t1;

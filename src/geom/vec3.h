@@ -61,6 +61,12 @@ static inline Vec3 vec3_normalized(Vec3 a)
     return vec3_scale(a, 1 / vec3_length(a));
 }
 
+/* 1 / each component; infinite where that is 0. */
+static inline Vec3 vec3_inverse(Vec3 a)
+{
+    return vec3(1 / a.x, 1 / a.y, 1 / a.z);
+}
+
 static inline int vec3_finite(Vec3 a)
 {
     return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);

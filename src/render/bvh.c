@@ -184,7 +184,7 @@ static int primitive_hits(const Bvh *bvh, uint32_t index, Ray ray, Hit hits[4])
 
 bool bvh_first_hit(const Bvh *bvh, Ray ray, double t_min, Hit *hit, size_t *primitive)
 {
-    Vec3 inverse = ray_inverse(ray.direction);
+    Vec3 inverse = vec3_inverse(ray.direction);
     uint32_t stack[MAX_DEPTH + 2];
     int top = 0;
     uint32_t best = UINT32_MAX;
@@ -225,7 +225,7 @@ bool bvh_first_hit(const Bvh *bvh, Ray ray, double t_min, Hit *hit, size_t *prim
 
 bool bvh_any_hit(const Bvh *bvh, Ray ray, double t_min, double t_max)
 {
-    Vec3 inverse = ray_inverse(ray.direction);
+    Vec3 inverse = vec3_inverse(ray.direction);
     uint32_t stack[MAX_DEPTH + 2];
     int top = 0;
     stack[top++] = 0;
