@@ -74,4 +74,53 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
                             GrowReport *report, Err *err);
 
+/* How a whole tree is optimised after growth. */
+typedef enum GrowRefine {
+    GROW_REFINE_NONE,
+    GROW_REFINE_GEOMETRY, /* every bifurcation moves to where it is best */
+    GROW_REFINE_TOPOLOGY, /* subtrees are also connected elsewhere when that is better */
+    GROW_REFINE_ANNEAL,   /* and at first, less and less often, when it is worse */
+} GrowRefine;
+
+typedef struct RefineParams {
+    GrowRefine level;
+    double seconds; /* at most; 0: any. What a time allows differs from run to run */
+    uint64_t moves; /* tried at most; 0: any if `seconds` is given, else refine_moves */
+    uint64_t seed;  /* of the order of moves */
+    bool (*stop)(void *context); /* asked after every move; NULL: never */
+    void *stop_context;
+    void (*progress)(double fraction, void *context); /* NULL: none */
+    void *progress_context;
+} RefineParams;
+
+typedef struct RefineReport {
+    double seconds;                     /* wall clock */
+    double target_before, target_after; /* sum of l r^lambda, mm^(1 + lambda) */
+    uint64_t moves_tried, moves_kept;
+    double thickness; /* the share of their radii at which vessels that moved were kept clear */
+    bool stopped;     /* by the callback */
+} RefineReport;
+
+/* The moves that a level is given for a tree of so many terminals when nothing else is asked for.
+ * Geometry and topology end before when little is left to gain. */
+uint64_t refine_moves(GrowRefine level, size_t terminals);
+
+/* Lowers the target of a tree, grown or read, by moving bifurcations and by connecting subtrees
+ * elsewhere. The tree is binary with one root, which has one child, and its header tells gamma,
+ * lambda, p_perf, p_term, q_perf and viscosity; flows may be unequal. `domain` holds all of it;
+ * NULL: it may be anywhere.
+ *
+ * Inlet, terminals, node types, flow shares and header stay. Nodes are in depth-first order with ids
+ * 1 .. n, and radii follow from the places by Murray's law and the pressures, which hold to
+ * rounding. All that moves stays in the domain; segments that are longer than wide and clear of
+ * those they share no node with stay so, and where they were not it does not get worse. If more
+ * than one in ten were not, all vessels count at a smaller part of their radii [report].
+ *
+ * With a budget of moves alone, the same tree and parameters give the same bits. `report` may be
+ * NULL. Fails, *tree unchanged, with STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree that
+ * cannot be refined, STATUS_INFEASIBLE when the radii span more than a double can hold, and
+ * STATUS_MEMORY. */
+MUST_CHECK Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
+                              RefineReport *report, Err *err);
+
 #endif

@@ -132,9 +132,7 @@ bool place_is_in_vessel(const Network *net, const Grid *grid, const Rules *rules
     return false;
 }
 
-/* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
- * Detection, 2005, sec. 5.1.9]. */
-static double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
+double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
 {
     Vec3 u = vec3_sub(a1, a0), v = vec3_sub(b1, b0), w = vec3_sub(a0, b0);
     double uu = vec3_dot(u, u), vv = vec3_dot(v, v), uv = vec3_dot(u, v);

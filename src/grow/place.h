@@ -37,4 +37,8 @@ bool place_is_inside(const Network *net, const Domain *domain, const Connection 
 bool place_is_free(const Network *net, const Grid *grid, const Rules *rules,
                    const Connection *connection, Vec3 terminal);
 
+/* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
+ * Detection, 2005, sec. 5.1.9]. */
+double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
+
 #endif

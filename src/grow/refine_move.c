@@ -1,0 +1,178 @@
+/* A move is made in the arbor, where it costs O(depth); then S_root is exact, and only a move that
+ * is wanted is tested for room. Candidates are priced in O(1) by outlooks that age a little: this
+ * blurs the choice between them, never the decision to keep a move.
+ *
+ * Connections are chosen from Boltzmann's distribution of their prices, so one draw stands for many
+ * proposals of which all but one would be rejected; the error of the price is made up for by
+ * Metropolis's rule. */
+#include "grow/refine_move.h"
+
+#include <float.h>
+
+/* Candidates for a connection, and how many segments are looked at to find them. */
+enum { CANDIDATES = 8, NEIGHBOURS = 20 };
+/* Rounds of settling: of a candidate, and of the one that is chosen. */
+enum { ROUGH_ROUNDS = 1, ROUNDS = 2 };
+/* A bifurcation that has no room where it should be tries shorter and shorter steps. */
+enum { STEPS = 3 };
+/* Gains of S_root, over S_root, too small to be worth a move. */
+static const double least_gain = 1e-9;
+
+static Burden burden_of(const Arbor *arbor, int32_t i)
+{
+    const Branch *branch = &arbor->branch[i];
+    if (branch->child[0] < 0)
+        return (Burden){branch->flow, 0, 0};
+    const Branch *left = &arbor->branch[branch->child[0]];
+    const Branch *right = &arbor->branch[branch->child[1]];
+    return (Burden){left->flow + right->flow, left->flare + right->flare, left->cost + right->cost};
+}
+
+static Fork fork_of(const Surgery *surgery, Vec3 from, int32_t left, int32_t right, Outlook outlook)
+{
+    const Arbor *arbor = &surgery->arbor;
+    return (Fork){&arbor->law,
+                  {from, arbor->shape[left].to, arbor->shape[right].to},
+                  {burden_of(arbor, left), burden_of(arbor, right)},
+                  outlook,
+                  arbor->radius_unit,
+                  surgery->room.least_length,
+                  surgery->room.level};
+}
+
+/* Keeps the present move, which ends with a bifurcation at the end of segment i. */
+static Status keep(Surgery *surgery, int32_t i, Err *err)
+{
+    Arbor *arbor = &surgery->arbor;
+    surgery->kept++;
+    const int32_t *child = arbor->branch[i].child;
+    arbor->outlook[i] = arbor_outlook(arbor, i);
+    arbor->outlook[child[0]] = arbor_outlook(arbor, child[0]);
+    arbor->outlook[child[1]] = arbor_outlook(arbor, child[1]);
+    return room_follow(&surgery->room, arbor, err);
+}
+
+Status move_bifurcation(Surgery *surgery, int32_t i, Err *err)
+{
+    Arbor *arbor = &surgery->arbor;
+    const int32_t *child = arbor->branch[i].child;
+    double cost = arbor_cost(arbor);
+    Vec3 place = arbor->shape[i].to;
+    Fork fork = fork_of(surgery, arbor->shape[i].from, child[0], child[1], arbor_outlook(arbor, i));
+    ForkState now, best;
+    surgery->tried++;
+    if (!fork_at(&fork, place, &now))
+        return STATUS_OK;
+    best = now;
+    if (!fork_settle(&fork, ROUNDS, &best) || !(best.cost < now.cost - least_gain * cost))
+        return STATUS_OK;
+    Vec3 step = vec3_sub(best.place, place);
+    for (int k = 0; k < STEPS; k++, step = vec3_scale(step, 0.5)) {
+        arbor_begin(arbor);
+        arbor_shift(arbor, i, vec3_add(place, step));
+        if (arbor_cost(arbor) < cost && room_allows(&surgery->room, arbor))
+            return keep(surgery, i, err);
+        arbor_undo(arbor);
+    }
+    return STATUS_OK;
+}
+
+typedef struct Candidate {
+    int32_t host;
+    double price; /* of connecting there, by the outlooks */
+    Fork fork;
+    ForkState state;
+} Candidate;
+
+/* Prices the connection of `subtree`, which is pruned, to `host`. */
+static bool price(const Surgery *surgery, int32_t subtree, int32_t host, Candidate *out)
+{
+    const Arbor *arbor = &surgery->arbor;
+    const Shape *shape = &arbor->shape[host];
+    Outlook outlook = arbor_outlook(arbor, host);
+    Reduced before = arbor_reduce(arbor, host);
+    out->host = host;
+    out->fork = fork_of(surgery, shape->from, host, subtree, outlook);
+    Vec3 middle = vec3_scale(vec3_add(shape->from, shape->to), 0.5);
+    Vec3 place = vec3_add_scaled(vec3_scale(middle, 0.75), arbor->shape[subtree].to, 0.25);
+    if (!fork_at(&out->fork, place, &out->state) ||
+        !fork_settle(&out->fork, ROUGH_ROUNDS, &out->state))
+        return false;
+    out->price = out->state.cost - outlook.adjoint.load * before.load -
+                 outlook.adjoint.cost * before.cost + outlook.extra * arbor->branch[subtree].flow;
+    return isfinite(out->price);
+}
+
+/* The connections of `subtree`, which is pruned, to the nearest segments; the first is the one that
+ * it came from. 0 when that one has no price. */
+static int find_candidates(const Surgery *surgery, int32_t subtree, int32_t origin,
+                           Candidate out[CANDIDATES])
+{
+    const Arbor *arbor = &surgery->arbor;
+    int32_t fork = arbor->branch[subtree].parent;
+    Near near[NEIGHBOURS];
+    int found = grid_nearest(&surgery->room.grid, arbor->shape[subtree].to, NEIGHBOURS, near);
+    int count = price(surgery, subtree, origin, &out[0]);
+    for (int k = 0; k < found && count > 0 && count < CANDIDATES; k++) {
+        int32_t host = near[k].segment;
+        if (host != origin && host != fork && !arbor_is_below(arbor, host, subtree))
+            count += price(surgery, subtree, host, &out[count]);
+    }
+    return count;
+}
+
+static int choose(Surgery *surgery, const Candidate *candidate, int count, double temperature)
+{
+    int best = 0;
+    for (int k = 1; k < count; k++)
+        if (candidate[k].price < candidate[best].price)
+            best = k;
+    if (!(temperature > 0))
+        return best;
+    double weight[CANDIDATES], sum = 0;
+    for (int k = 0; k < count; k++)
+        sum += weight[k] = exp((candidate[best].price - candidate[k].price) / temperature);
+    double left = random_uniform(&surgery->random) * sum;
+    for (int k = 0; k < count; k++)
+        if ((left -= weight[k]) < 0)
+            return k;
+    return best;
+}
+
+/* Whether to keep a move that raised S_root by `rise` where `expected` was expected. */
+static bool is_wanted(Surgery *surgery, double rise, double expected, double temperature)
+{
+    if (!(temperature > 0))
+        return rise < 0;
+    double error = rise - expected;
+    return isfinite(error) && random_uniform(&surgery->random) < exp(fmin(0, -error / temperature));
+}
+
+Status move_subtree(Surgery *surgery, int32_t i, double temperature, Err *err)
+{
+    Arbor *arbor = &surgery->arbor;
+    surgery->tried++;
+    if (i == arbor_root(arbor))
+        return STATUS_OK;
+    int32_t fork = arbor->branch[i].parent, origin = arbor_sibling(arbor, i);
+    double cost = arbor_cost(arbor);
+    Candidate candidate[CANDIDATES];
+    arbor_begin(arbor);
+    arbor_prune(arbor, i);
+    int count = find_candidates(surgery, i, origin, candidate);
+    int chosen = count > 1 ? choose(surgery, candidate, count, temperature) : 0;
+    Candidate *to = &candidate[chosen];
+    if (chosen > 0 && fork_settle(&to->fork, ROUNDS, &to->state) &&
+        fork_is_long_enough(&to->fork, &to->state)) {
+        arbor_graft(arbor, i, to->host, to->state.place);
+        if (is_wanted(surgery, arbor_cost(arbor) - cost, to->price - candidate[0].price,
+                      temperature) &&
+            room_allows(&surgery->room, arbor)) {
+            TRY(keep(surgery, fork, err));
+            arbor->outlook[origin] = arbor_outlook(arbor, origin);
+            return STATUS_OK;
+        }
+    }
+    arbor_undo(arbor);
+    return STATUS_OK;
+}
