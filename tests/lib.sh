@@ -90,6 +90,12 @@ expect_only() {
         fail "expected the folder to hold '$(echo $expected)', found '$(echo $found)'"
 }
 
+# check_tree FILE: the independent checker finds a grown tree as promised; stdout holds its numbers.
+check_tree() {
+    run "$CHECK_TREE" "$1"
+    expect_status 0
+}
+
 expect_json() {
     jq -e "$2" "$1" >/dev/null 2>jq.error ||
         fail "expected JSON in $1 with $2, got: $(head -c 400 "$1" | tr '\n' ' ')$(cat jq.error)"

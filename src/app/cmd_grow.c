@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/options.h"
+#include "app/refining.h"
 #include "domain/domain.h"
 #include "grow/grow.h"
 #include "treeio/treeio.h"
@@ -16,14 +17,16 @@ static const Command command = {
     .needs_output = true,
 };
 
-static Status write_report(const char *path, const GrowReport *report, int threads, Err *err)
+static Status write_report(const char *path, const GrowReport *report, const RefineReport *refined,
+                           int threads, Err *err)
 {
-    json_t *json =
-        json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:b, s:i}", "generator", GENERATOR,
-                  "seconds", report->seconds, "terminals", (json_int_t)report->terminals, "target",
-                  report->target, "root_radius_mm", report->root_radius_mm, "tosses",
-                  (json_int_t)report->tosses, "rejected", (json_int_t)report->rejected, "thickness",
-                  report->thickness, "complete", report->complete, "threads", threads);
+    double target = refined->target_before > 0 ? refined->target_after : report->target;
+    json_t *json = json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:b, s:i}", "generator",
+                             GENERATOR, "seconds", report->seconds + refined->seconds, "terminals",
+                             (json_int_t)report->terminals, "target", target, "root_radius_mm",
+                             report->root_radius_mm, "tosses", (json_int_t)report->tosses,
+                             "rejected", (json_int_t)report->rejected, "thickness",
+                             report->thickness, "complete", report->complete, "threads", threads);
     return json_write(json, path, err);
 }
 
@@ -44,6 +47,8 @@ Status run_grow(int argc, char **argv, Err *err)
     static const char *const tosses[] = {
         [GROW_TOSS_SEGMENT] = "segment", [GROW_TOSS_TERMINAL] = "terminal", NULL};
     GrowParams params = grow_defaults();
+    Refining refining;
+    refining_init(&refining);
     const char *output = NULL, *json = NULL, *domain_spec = "disc:50";
     int toss = (int)params.toss;
     const double huge = 1e300;
@@ -77,12 +82,14 @@ Status run_grow(int argc, char **argv, Err *err)
         {"json", OPTION_TEXT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
         {0},
     };
-    const Option *const tables[] = {own, NULL};
+    const Option *const tables[] = {own, refining.table, NULL};
     Parsed parsed;
     TRY(options_parse(&command, tables, argc, argv, &parsed, err));
     Status status = STATUS_OK;
     Tree tree = {0};
     GrowReport report;
+    RefineReport refined;
+    Err why;
     Domain domain = {0};
     Progress progress;
     if (parsed.common.help)
@@ -98,15 +105,20 @@ Status run_grow(int argc, char **argv, Err *err)
     TRY_GOTO(domain_parse(&domain, domain_spec, err));
     progress_start(&progress, "growing", parsed.common.quiet);
     status = grow_tree(&params, &domain, &tree, &report, err);
+    why = *err;
     progress_end(&progress);
     TRY_GOTO(status);
+    TRY_GOTO(refining_apply(&refining, &parsed.common, &domain, &tree, &refined, err));
+    report.root_radius_mm = tree.radius_mm[0];
     TRY_GOTO(tree_write(&tree, output, err));
     if (json)
-        TRY_GOTO(write_report(json, &report, 1, err));
+        TRY_GOTO(write_report(json, &report, &refined, 1, err));
     if (!report.complete)
-        fprintf(stderr, "corcast grow: %s\n", err->text);
-    if (!parsed.common.quiet)
+        fprintf(stderr, "corcast grow: %s\n", why.text);
+    if (!parsed.common.quiet) {
         print_report(&report);
+        refining_print(&refined);
+    }
 done:
     domain_release(&domain);
     tree_release(&tree);

@@ -9,6 +9,7 @@ static const struct {
     const char *summary;
 } commands[] = {
     {"grow", run_grow, "grow an arterial tree by constrained constructive optimization"},
+    {"refine", run_refine, "lower the target of a tree by whole-tree optimisation"},
     {"info", run_info, "count, measure and check a tree"},
     {"convert", run_convert, "convert trees and images"},
     {"scene", run_scene, "write a tree as a POV-Ray scene"},

@@ -2,14 +2,15 @@
 #ifndef CORCAST_BASE_BASE_H
 #define CORCAST_BASE_BASE_H
 
-#include "base/file.h"     // IWYU pragma: export
-#include "base/memory.h"   // IWYU pragma: export
-#include "base/progress.h" // IWYU pragma: export
-#include "base/random.h"   // IWYU pragma: export
-#include "base/status.h"   // IWYU pragma: export
-#include "base/text.h"     // IWYU pragma: export
-#include "base/threads.h"  // IWYU pragma: export
-#include "base/units.h"    // IWYU pragma: export
-#include "base/version.h"  // IWYU pragma: export
+#include "base/file.h"      // IWYU pragma: export
+#include "base/interrupt.h" // IWYU pragma: export
+#include "base/memory.h"    // IWYU pragma: export
+#include "base/progress.h"  // IWYU pragma: export
+#include "base/random.h"    // IWYU pragma: export
+#include "base/status.h"    // IWYU pragma: export
+#include "base/text.h"      // IWYU pragma: export
+#include "base/threads.h"   // IWYU pragma: export
+#include "base/units.h"     // IWYU pragma: export
+#include "base/version.h"   // IWYU pragma: export
 
 #endif

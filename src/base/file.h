@@ -44,7 +44,7 @@ void file_forget(char *temporary);
 MUST_CHECK Status file_make_folder(const char *path, Err *err);
 
 /* Removes temporary files when SIGINT, SIGTERM, SIGHUP or SIGPIPE ends the program. main calls it
- * once; the table of temporary names that the handler reads is the program's one mutable global. */
+ * once; the table of temporary names is a global, because a handler reaches nothing else. */
 void file_clean_up_on_signals(void);
 
 /* The text after the last '.' of the last component of `path`, "" when there is none. */

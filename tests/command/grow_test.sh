@@ -3,11 +3,6 @@
 # program that shares no code with corcast.
 . "$(dirname "$0")/../lib.sh"
 
-check_tree() {
-    run "$CHECK_TREE" "$1"
-    expect_status 0
-}
-
 # A checker that finds nothing is worth nothing.
 test_the_checker_finds_what_is_wrong() {
     run_ok corcast grow --terminals 50 --seed 3 -o tree.swc

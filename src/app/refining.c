@@ -1,0 +1,56 @@
+#include "app/refining.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void refining_init(Refining *refining)
+{
+    static const char *const levels[] = {[GROW_REFINE_NONE] = "none",
+                                         [GROW_REFINE_GEOMETRY] = "geometry",
+                                         [GROW_REFINE_TOPOLOGY] = "topology",
+                                         [GROW_REFINE_ANNEAL] = "anneal",
+                                         NULL};
+    *refining = (Refining){.level = GROW_REFINE_NONE};
+    const Option table[] = {
+        {"refine", OPTION_CHOICE, &refining->level, NULL, 0, 0, levels, "LEVEL",
+         "whole-tree optimisation"},
+        {"refine-seconds", OPTION_NUMBER, &refining->seconds, NULL, 0, 1e6, NULL, "S",
+         "at most this long; results then depend on the machine (0: as the moves allow)"},
+        {"refine-moves", OPTION_COUNT, &refining->moves, NULL, 0, 1e12, NULL, "N",
+         "moves tried at most (0: enough for the tree)"},
+        {0},
+    };
+    memcpy(refining->table, table, sizeof table);
+}
+
+Status refining_apply(const Refining *refining, const Common *common, const Domain *domain,
+                      Tree *tree, RefineReport *report, Err *err)
+{
+    *report = (RefineReport){0};
+    if (refining->level == GROW_REFINE_NONE)
+        return STATUS_OK;
+    Progress progress;
+    const RefineParams params = {.level = (GrowRefine)refining->level,
+                                 .seconds = refining->seconds,
+                                 .moves = refining->moves,
+                                 .seed = common->seed,
+                                 .stop = interrupt_asked,
+                                 .progress = progress_report,
+                                 .progress_context = &progress};
+    progress_start(&progress, "refining", common->quiet);
+    interrupt_catch();
+    Status status = refine_tree(&params, domain, tree, report, err);
+    interrupt_release();
+    progress_end(&progress);
+    return status;
+}
+
+void refining_print(const RefineReport *report)
+{
+    if (report->target_before > 0)
+        fprintf(stderr,
+                "refined in %.3g s%s: target %.6g to %.6g (%.2f %%), %llu of %llu moves kept\n",
+                report->seconds, report->stopped ? ", stopped" : "", report->target_before,
+                report->target_after, 100 * (report->target_after / report->target_before - 1),
+                (unsigned long long)report->moves_kept, (unsigned long long)report->moves_tried);
+}

@@ -1,0 +1,33 @@
+#include "base/interrupt.h"
+
+#include <signal.h>
+#include <stddef.h>
+
+/* A signal handler can reach nothing but globals. */
+static volatile sig_atomic_t asked;
+static struct sigaction before;
+
+static void note(int signal_number)
+{
+    asked = 1;
+    sigaction(signal_number, &before, NULL);
+}
+
+void interrupt_catch(void)
+{
+    struct sigaction action = {.sa_handler = note};
+    sigemptyset(&action.sa_mask);
+    asked = 0;
+    sigaction(SIGINT, &action, &before);
+}
+
+void interrupt_release(void)
+{
+    sigaction(SIGINT, &before, NULL);
+}
+
+bool interrupt_asked(void *context)
+{
+    (void)context;
+    return asked != 0;
+}
