@@ -15,7 +15,7 @@
 #include <stdlib.h>
 
 /* Temperatures of annealing over S_root a segment: at first, and just before the last part. */
-static const double hot = 0.05, cold = 0.001;
+static const double hot = 0.2, cold = 0.03;
 static const double last_part = 0.1;
 /* A round that gains less than this of S_root is the last but for annealing. */
 static const double least_gain[] = {

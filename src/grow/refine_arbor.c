@@ -145,17 +145,17 @@ double arbor_radius(const Arbor *arbor, int32_t i)
     return radius;
 }
 
-int32_t arbor_overfull(const Arbor *arbor, double limit, double *radius)
+int32_t arbor_overfull(const Arbor *arbor, double *radius)
 {
     int32_t i = arbor_root(arbor);
     double scale = arbor->radius_unit;
-    if (!(scale * arbor->branch[i].fullness > limit))
+    if (!(scale * arbor->branch[i].fullness > 1))
         return 0;
     for (;;) {
         Reduced reduced = arbor_reduce(arbor, i);
         *radius = scale * reduced.rho;
         const int32_t *child = arbor->branch[i].child;
-        if (*radius * arbor->branch[i].tightness > limit || child[0] < 0)
+        if (*radius * arbor->branch[i].tightness > 1 || child[0] < 0)
             return i;
         scale *= reduced.widening;
         i = child[arbor->branch[child[1]].fullness > arbor->branch[child[0]].fullness];

@@ -89,9 +89,9 @@ Outlook arbor_outlook(const Arbor *arbor, int32_t i);
 
 /* The radius of segment i, mm. O(depth). */
 double arbor_radius(const Arbor *arbor, int32_t i);
-/* A segment whose radius times its tightness is above `limit`, and that radius in *radius; 0 when
+/* A segment whose radius times its tightness is above 1, and that radius in *radius; 0 when
  * there is none. O(depth). */
-int32_t arbor_overfull(const Arbor *arbor, double limit, double *radius);
+int32_t arbor_overfull(const Arbor *arbor, double *radius);
 
 static inline int32_t arbor_sibling(const Arbor *arbor, int32_t i)
 {

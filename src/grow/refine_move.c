@@ -10,11 +10,12 @@
 #include <float.h>
 
 /* Candidates for a connection, and how many segments are looked at to find them. */
-enum { CANDIDATES = 8, NEIGHBOURS = 20 };
+enum { CANDIDATES = 12, NEIGHBOURS = 20 };
 /* Rounds of settling: of a candidate, and of the one that is chosen. */
 enum { ROUGH_ROUNDS = 1, ROUNDS = 2 };
-/* A bifurcation that has no room where it should be tries shorter and shorter steps. */
-enum { STEPS = 3 };
+/* A bifurcation that has no room where it should be tries shorter and shorter steps; a subtree that
+ * cannot be connected where it was to be tries other candidates. */
+enum { STEPS = 3, ATTEMPTS = 4 };
 /* Gains of S_root, over S_root, too small to be worth a move. */
 static const double least_gain = 1e-9;
 
@@ -103,22 +104,43 @@ static bool price(const Surgery *surgery, int32_t subtree, int32_t host, Candida
     return isfinite(out->price);
 }
 
-/* The connections of `subtree`, which is pruned, to the nearest segments; the first is the one that
- * it came from. 0 when that one has no price. */
-static int find_candidates(const Surgery *surgery, int32_t subtree, int32_t origin,
-                           Candidate out[CANDIDATES])
+typedef struct Candidates {
+    int count;
+    Candidate list[CANDIDATES]; /* the first is where the subtree came from */
+} Candidates;
+
+static void propose(const Surgery *surgery, int32_t subtree, int32_t host, Candidates *out)
+{
+    for (int k = 0; k < out->count; k++)
+        if (out->list[k].host == host)
+            return;
+    if (out->count < CANDIDATES)
+        out->count += price(surgery, subtree, host, &out->list[out->count]);
+}
+
+/* Finds connections of `subtree`, which is pruned: to the segment that it came from, to those that
+ * this one shares a node with, and to the nearest. None when the first has no price. */
+static void find_candidates(const Surgery *surgery, int32_t subtree, int32_t origin,
+                            Candidates *out)
 {
     const Arbor *arbor = &surgery->arbor;
-    int32_t fork = arbor->branch[subtree].parent;
+    int32_t fork = arbor->branch[subtree].parent, above = arbor->branch[origin].parent;
+    const int32_t *below = arbor->branch[origin].child;
     Near near[NEIGHBOURS];
-    int found = grid_nearest(&surgery->room.grid, arbor->shape[subtree].to, NEIGHBOURS, near);
-    int count = price(surgery, subtree, origin, &out[0]);
-    for (int k = 0; k < found && count > 0 && count < CANDIDATES; k++) {
-        int32_t host = near[k].segment;
-        if (host != origin && host != fork && !arbor_is_below(arbor, host, subtree))
-            count += price(surgery, subtree, host, &out[count]);
+    out->count = 0;
+    propose(surgery, subtree, origin, out);
+    if (out->count == 0)
+        return;
+    if (above != 0) {
+        propose(surgery, subtree, above, out);
+        propose(surgery, subtree, arbor_sibling(arbor, origin), out);
     }
-    return count;
+    for (int side = 0; side < 2 && below[0] >= 0; side++)
+        propose(surgery, subtree, below[side], out);
+    int found = grid_nearest(&surgery->room.grid, arbor->shape[subtree].to, NEIGHBOURS, near);
+    for (int k = 0; k < found; k++)
+        if (near[k].segment != fork && !arbor_is_below(arbor, near[k].segment, subtree))
+            propose(surgery, subtree, near[k].segment, out);
 }
 
 static int choose(Surgery *surgery, const Candidate *candidate, int count, double temperature)
@@ -148,6 +170,19 @@ static bool is_wanted(Surgery *surgery, double rise, double expected, double tem
     return isfinite(error) && random_uniform(&surgery->random) < exp(fmin(0, -error / temperature));
 }
 
+/* Connects `subtree`, which is pruned, as the candidate says. False when that is not wanted or when
+ * there is no room; the move is then to be undone. */
+static bool connect(Surgery *surgery, int32_t subtree, Candidate *to, double cost, double expected,
+                    double temperature)
+{
+    Arbor *arbor = &surgery->arbor;
+    if (!fork_settle(&to->fork, ROUNDS, &to->state) || !fork_is_long_enough(&to->fork, &to->state))
+        return false;
+    arbor_graft(arbor, subtree, to->host, to->state.place);
+    return is_wanted(surgery, arbor_cost(arbor) - cost, expected, temperature) &&
+           room_allows(&surgery->room, arbor);
+}
+
 Status move_subtree(Surgery *surgery, int32_t i, double temperature, Err *err)
 {
     Arbor *arbor = &surgery->arbor;
@@ -156,22 +191,25 @@ Status move_subtree(Surgery *surgery, int32_t i, double temperature, Err *err)
         return STATUS_OK;
     int32_t fork = arbor->branch[i].parent, origin = arbor_sibling(arbor, i);
     double cost = arbor_cost(arbor);
-    Candidate candidate[CANDIDATES];
+    Candidates candidates;
+    Candidate *candidate = candidates.list;
     arbor_begin(arbor);
     arbor_prune(arbor, i);
-    int count = find_candidates(surgery, i, origin, candidate);
-    int chosen = count > 1 ? choose(surgery, candidate, count, temperature) : 0;
-    Candidate *to = &candidate[chosen];
-    if (chosen > 0 && fork_settle(&to->fork, ROUNDS, &to->state) &&
-        fork_is_long_enough(&to->fork, &to->state)) {
-        arbor_graft(arbor, i, to->host, to->state.place);
-        if (is_wanted(surgery, arbor_cost(arbor) - cost, to->price - candidate[0].price,
-                      temperature) &&
-            room_allows(&surgery->room, arbor)) {
+    find_candidates(surgery, i, origin, &candidates);
+    for (int attempt = 0; attempt < ATTEMPTS && candidates.count > 1; attempt++) {
+        int chosen = choose(surgery, candidate, candidates.count, temperature);
+        if (chosen == 0)
+            break;
+        if (connect(surgery, i, &candidate[chosen], cost,
+                    candidate[chosen].price - candidate[0].price, temperature)) {
             TRY(keep(surgery, fork, err));
             arbor->outlook[origin] = arbor_outlook(arbor, origin);
             return STATUS_OK;
         }
+        candidate[chosen] = candidate[--candidates.count];
+        arbor_undo(arbor);
+        arbor_begin(arbor);
+        arbor_prune(arbor, i);
     }
     arbor_undo(arbor);
     return STATUS_OK;

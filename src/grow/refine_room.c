@@ -11,12 +11,13 @@
 
 /* Cells of the grid a terminal. */
 static const double cells_per_terminal = 4;
-/* Bookings above the radii. */
-static const double reserve = 1.15;
+/* Bookings over the radii: as a rule, and at least when a segment moves. Vessels that touch would
+ * make every other move impossible that widens them ever so little. */
+static const double reserve = 1.1, least_reserve = 1.04;
 /* The share of segments that must be clear at the level, and the least level but 0. */
 static const double clear_share = 0.9;
 static const double least_level = 1.0 / 64;
-/* Rounding of radii and lengths that bookings allow for. */
+/* Room for the rounding of radii and lengths, over them. */
 static const double slack = 1e-9;
 
 static Box box_of(const Domain *domain, const Arbor *arbor)
@@ -211,7 +212,7 @@ static bool book_moved(const Room *room, Arbor *arbor)
     for (int k = 0; k < moved; k++) {
         int32_t i = arbor->saved_shape[k].i;
         double booked = most_room(room, arbor, i, reserve * need[k]);
-        if (!(booked >= need[k]))
+        if (!(booked >= least_reserve * need[k]))
             return false;
         arbor_book(arbor, i, booked, booked > 0 ? room->level / booked : 0);
     }
@@ -225,12 +226,12 @@ bool room_allows(const Room *room, Arbor *arbor)
     if (!are_inside(room->domain, arbor) || !book_moved(room, arbor))
         return false;
     double radius;
-    for (int32_t i; (i = arbor_overfull(arbor, 1 + slack, &radius)) != 0;) {
+    for (int32_t i; (i = arbor_overfull(arbor, &radius)) != 0;) {
         if (arbor->n_saved_shapes == ARBOR_MOVE_SHAPES)
             return false;
         double thickness = arbor->branch[i].tightness * arbor->shape[i].booked;
         double booked = most_room(room, arbor, i, reserve * thickness * radius);
-        if (!(booked >= thickness * radius))
+        if (!(booked >= thickness * radius * (1 + slack)))
             return false;
         arbor_book(arbor, i, booked, thickness / booked);
         arbor_climb(arbor, i);
