@@ -96,6 +96,7 @@ Status run_grow(int argc, char **argv, Err *err)
         goto done;
     params.seed = parsed.common.seed;
     params.toss = (GrowToss)toss;
+    params.threads = parsed.common.threads;
     params.progress = progress_report;
     params.progress_context = &progress;
     if (!tree_format_known(output)) {
@@ -112,7 +113,8 @@ Status run_grow(int argc, char **argv, Err *err)
     report.root_radius_mm = tree.radius_mm[0];
     TRY_GOTO(tree_write(&tree, output, err));
     if (json)
-        TRY_GOTO(write_report(json, &report, &refined, 1, err));
+        TRY_GOTO(write_report(json, &report, &refined,
+                              params.threads ? params.threads : threads_available(), err));
     if (!report.complete)
         fprintf(stderr, "corcast grow: %s\n", why.text);
     if (!parsed.common.quiet) {

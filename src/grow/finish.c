@@ -11,7 +11,7 @@
 
 static Status sweep_down(const Network *net, Tree *tree, Err *err)
 {
-    double unit = network_radius_unit(net);
+    double unit = net->radius_unit;
     double *gauge = NULL;
     TRY(mem_calloc(&gauge, net->n, sizeof *gauge, "gauges", err));
     gauge[1] = 1;

@@ -38,6 +38,7 @@ typedef struct GrowParams {
     double viscosity_cp;  /* > 0 */
     int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
     GrowToss toss;
+    int threads;  /* 0: all processors. They do not change the tree */
     bool partial; /* when no more terminals find room, deliver the tree so far */
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *progress_context;

@@ -24,6 +24,13 @@ typedef struct Law {
     double lambda; /* >= 0 */
 } Law;
 
+/* What hangs on the distal end of a segment; all 0 at a terminal. */
+typedef struct Below {
+    double flare, cost; /* sums over the daughters */
+    double inverse;     /* 1 / P */
+    double load;        /* P^4 */
+} Below;
+
 /* A segment together with all that hangs on it. */
 typedef struct Reduced {
     double load;       /* W, mm */
@@ -33,9 +40,7 @@ typedef struct Reduced {
     double rho_lambda; /* rho^lambda */
     double widening;   /* rho / P; 0 at a terminal */
     double pass;       /* (rho / P)^lambda; 0 at a terminal */
-    double load_below; /* P^4; 0 at a terminal */
-    double flare_below;
-    double cost_below;
+    Below below;
 } Reduced;
 
 /* Derivatives of S_root with respect to a segment's load, its cost held, and to its cost. */
@@ -74,34 +79,47 @@ static inline double law_lambda_power(const Law *law, double x)
     return pow(x, law->lambda);
 }
 
+/* What daughters make whose flares and costs sum up to `flare` and `cost`, both 0 at a terminal. */
+static inline Below law_gather(const Law *law, double flare, double cost)
+{
+    Below out = {.flare = flare, .cost = cost};
+    if (flare > 0 && law->gamma == 3) {
+        out.inverse = inverse_cube_root(flare);
+        double p2 = flare * out.inverse;
+        out.load = p2 * p2;
+    } else if (flare > 0) {
+        double p = pow(flare, 1 / law->gamma), p2 = p * p;
+        out.inverse = 1 / p;
+        out.load = p2 * p2;
+    }
+    return out;
+}
+
+/* The segment of `length` mm with `terminals` at or below it on top of what hangs there. */
+static inline Reduced law_extend(const Law *law, double terminals, double length,
+                                 const Below *below)
+{
+    Reduced out = {.below = *below};
+    out.load = terminals * length + below->load;
+    out.rho = sqrt(sqrt(out.load));
+    out.rho_lambda = law_lambda_power(law, out.rho);
+    out.flare = law->gamma == 3 ? out.rho * out.rho * out.rho : pow(out.rho, law->gamma);
+    out.cost = out.rho_lambda * length;
+    if (below->flare > 0) {
+        out.widening = out.rho * below->inverse;
+        out.pass = law_lambda_power(law, out.widening);
+        out.cost += out.pass * below->cost;
+    }
+    return out;
+}
+
 /* The segment of `length` mm with `terminals` below it and daughters whose flares and costs sum up
  * to `flare_below` and `cost_below`, both 0 at a terminal. */
 static inline Reduced law_reduce(const Law *law, double terminals, double length,
                                  double flare_below, double cost_below)
 {
-    double inverse = 0, load_below = 0; /* 1 / P and P^4 */
-    if (flare_below > 0) {
-        if (law->gamma == 3) {
-            inverse = inverse_cube_root(flare_below);
-            load_below = flare_below * inverse * (flare_below * inverse);
-        } else {
-            double p = pow(flare_below, 1 / law->gamma);
-            inverse = 1 / p;
-            load_below = p * p * (p * p);
-        }
-    }
-    Reduced out = {.flare_below = flare_below, .cost_below = cost_below, .load_below = load_below};
-    out.load = terminals * length + load_below;
-    out.rho = sqrt(sqrt(out.load));
-    out.rho_lambda = law_lambda_power(law, out.rho);
-    out.flare = law->gamma == 3 ? out.rho * out.rho * out.rho : pow(out.rho, law->gamma);
-    out.cost = out.rho_lambda * length;
-    if (flare_below > 0) {
-        out.widening = out.rho * inverse;
-        out.pass = law_lambda_power(law, out.widening);
-        out.cost += out.pass * cost_below;
-    }
-    return out;
+    Below below = law_gather(law, flare_below, cost_below);
+    return law_extend(law, terminals, length, &below);
 }
 
 /* dS_root / d load of `at`, now with the part that goes through its own cost. */
@@ -115,9 +133,9 @@ static inline Adjoint law_descend(const Law *law, const Reduced *parent, Adjoint
                                   const Reduced *daughter)
 {
     double cost = adjoint.cost * parent->pass;
-    double below = parent->load_below * law_total(law, parent, adjoint) -
-                   law->lambda / 4 * cost * parent->cost_below;
-    return (Adjoint){below * (daughter->flare / parent->flare_below) / daughter->load, cost};
+    double below = parent->below.load * law_total(law, parent, adjoint) -
+                   law->lambda / 4 * cost * parent->below.cost;
+    return (Adjoint){below * (daughter->flare / parent->below.flare) / daughter->load, cost};
 }
 
 /* dS_root / d length of the segment `at` with `terminals` below it. */

@@ -2,13 +2,28 @@
  * root by recomputing the segments on the way and nothing else: O(depth), one cache line each, and
  * exact, because nothing is added to or taken from a running sum.
  *
+ * Splits come in batches, whose ways to the root soon join. First every changed segment announces
+ * itself to its parent, up to one that others have announced before; then values go up, and at a
+ * node where more than one way arrives only the last to come goes on. So every segment is recomputed
+ * once and sees final daughters, whatever thread comes last.
+ *
  * The sensitivities are the derivatives of the root's cost, carried down by the chain rule. They
  * price a change below a segment in O(1). They age as the tree grows, which only blurs the choice
  * between candidates, never the tree's own figures. */
 #include "grow/network.h"
 
 #include <float.h>
+#include <stdatomic.h>
 #include <stdlib.h>
+
+/* Splits that a thread carries at a time, and the least that are worth starting threads for. */
+enum { CHUNK = 32, LEAST_SHARED = 256 };
+
+struct Arrivals {
+    atomic_int gain;    /* terminals more */
+    atomic_schar below; /* changed daughters that have not arrived */
+    atomic_bool announced;
+};
 
 Status network_init(Network *net, Law law, double radius_scale, size_t terminals, Vec3 inlet,
                     Err *err)
@@ -19,6 +34,7 @@ Status network_init(Network *net, Law law, double radius_scale, size_t terminals
     TRY_GOTO(mem_calloc(&made.segment, n, sizeof *made.segment, "segments", err));
     TRY_GOTO(mem_calloc(&made.sensitivity, n, sizeof *made.sensitivity, "segments", err));
     TRY_GOTO(mem_calloc(&made.position, n, sizeof *made.position, "positions", err));
+    TRY_GOTO(mem_calloc(&made.coming, n, sizeof *made.coming, "segments", err));
     made.segment[0] = (Segment){.child = {-1, -1}, .parent = -1};
     made.position[0] = inlet;
     *net = made;
@@ -33,12 +49,14 @@ void network_release(Network *net)
     free(net->segment);
     free(net->sensitivity);
     free(net->position);
+    free(net->coming);
     *net = (Network){0};
 }
 
-double network_radius_unit(const Network *net)
+static void set_nodes(Network *net, size_t n)
 {
-    return net->radius_scale / sqrt(sqrt((double)network_terminals(net)));
+    net->n = n;
+    net->radius_unit = net->radius_scale / sqrt(sqrt((double)network_terminals(net)));
 }
 
 double network_cost(const Network *net)
@@ -61,16 +79,6 @@ static void report(Network *net, int32_t i, const Reduced *reduced)
     parent->cost[slot] = reduced->cost;
 }
 
-/* Carries one more terminal below segment `i`, and what changed there, up to the inlet. */
-static void walk_up(Network *net, int32_t i)
-{
-    for (; i != 0; i = net->segment[i].parent) {
-        net->segment[i].terminals++;
-        Reduced reduced = network_reduce(net, i);
-        report(net, i, &reduced);
-    }
-}
-
 /* Gives a segment the adjoint it has as a daughter of `parent`. */
 static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t parent,
                   const Reduced *above)
@@ -81,7 +89,7 @@ static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t paren
     Segment *segment = &net->segment[i];
     double own_gauge = gauge * above->widening;
     segment->gauge = narrow(own_gauge);
-    segment->radius = narrow(network_radius_unit(net) * own_gauge * reduced->rho);
+    segment->radius = narrow(net->radius_unit * own_gauge * reduced->rho);
     net->sensitivity[i] = (Sensitivity){law_descend(&net->law, above, adjoint, reduced).load,
                                         net->sensitivity[parent].extra +
                                             law_total(&net->law, above, adjoint) * mother->length};
@@ -90,28 +98,33 @@ static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t paren
 static void set_root_radius(Network *net, int32_t root, const Reduced *reduced)
 {
     net->segment[root].gauge = 1;
-    net->segment[root].radius = narrow(network_radius_unit(net) * reduced->rho);
+    net->segment[root].radius = narrow(net->radius_unit * reduced->rho);
     net->sensitivity[root] = (Sensitivity){0, 0};
 }
 
 void network_plant(Network *net, Vec3 terminal)
 {
     net->position[1] = terminal;
-    net->segment[1] = (Segment){
-        .length = vec3_distance(net->position[0], terminal), .child = {-1, -1}, .parent = 0};
+    net->segment[1] = (Segment){.length = vec3_distance(net->position[0], terminal),
+                                .child = {-1, -1},
+                                .parent = 0,
+                                .terminals = 1};
     net->segment[0].child[0] = 1;
-    net->n = 2;
-    walk_up(net, 1);
+    set_nodes(net, 2);
     Reduced reduced = network_reduce(net, 1);
+    report(net, 1, &reduced);
     set_root_radius(net, 1, &reduced);
 }
 
-void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal)
+void network_extend(Network *net, size_t splits)
+{
+    set_nodes(net, net->n + 2 * splits);
+}
+
+void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal, int32_t fresh)
 {
     Segment *distal = &net->segment[segment];
-    int32_t above = distal->parent;
-    int32_t proximal = (int32_t)net->n, fresh = proximal + 1;
-    net->n += 2;
+    int32_t above = distal->parent, proximal = fresh - 1;
     net->position[proximal] = bifurcation;
     net->position[fresh] = terminal;
     net->segment[above].child[net->segment[above].child[1] == segment] = proximal;
@@ -121,6 +134,8 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
                                        .terminals = distal->terminals,
                                        .gauge = distal->gauge};
     net->sensitivity[proximal] = net->sensitivity[segment];
+    atomic_init(&net->coming[proximal].gain, 1); /* the new terminal, on its way up */
+    atomic_init(&net->coming[proximal].below, 1);
     net->segment[fresh] = (Segment){.length = vec3_distance(bifurcation, terminal),
                                     .child = {-1, -1},
                                     .parent = proximal,
@@ -131,12 +146,84 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
     Reduced daughters[2] = {network_reduce(net, segment), network_reduce(net, fresh)};
     report(net, segment, &daughters[0]);
     report(net, fresh, &daughters[1]);
-    walk_up(net, proximal);
-    Reduced mother = network_reduce(net, proximal);
+    Below below = network_below(net, proximal);
+    Reduced mother = law_extend(&net->law, net->segment[proximal].terminals + 1,
+                                net->segment[proximal].length, &below);
     net->segment[proximal].radius =
-        narrow(network_radius_unit(net) * (double)net->segment[proximal].gauge * mother.rho);
+        narrow(net->radius_unit * (double)net->segment[proximal].gauge * mother.rho);
     adopt(net, segment, &daughters[0], proximal, &mother);
     adopt(net, fresh, &daughters[1], proximal, &mother);
+}
+
+static size_t chunk_end(size_t index, size_t count)
+{
+    size_t end = (index + 1) * CHUNK;
+    return end < count ? end : count;
+}
+
+/* The splits of one call of network_carry. */
+typedef struct Carrying {
+    Network *net;
+    size_t splits;
+} Carrying;
+
+/* The proximal segment that the k-th of them made. */
+static int32_t split_proximal(const Carrying *carrying, size_t k)
+{
+    return (int32_t)(carrying->net->n - 2 * (carrying->splits - k));
+}
+
+static void announce(size_t index, int worker, void *context)
+{
+    (void)worker;
+    const Carrying *carrying = context;
+    Network *net = carrying->net;
+    size_t end = chunk_end(index, carrying->splits);
+    for (size_t k = index * CHUNK; k < end; k++) {
+        int32_t i = split_proximal(carrying, k);
+        while (i != 0 &&
+               !atomic_exchange_explicit(&net->coming[i].announced, true, memory_order_relaxed)) {
+            i = net->segment[i].parent;
+            atomic_fetch_add_explicit(&net->coming[i].below, 1, memory_order_relaxed);
+        }
+    }
+}
+
+/* Whether nothing that `i` waits for is missing, now that one more has come. */
+static bool arrive(Network *net, int32_t i)
+{
+    return atomic_fetch_sub_explicit(&net->coming[i].below, 1, memory_order_acq_rel) == 1;
+}
+
+static void ascend(size_t index, int worker, void *context)
+{
+    (void)worker;
+    const Carrying *carrying = context;
+    Network *net = carrying->net;
+    size_t end = chunk_end(index, carrying->splits);
+    for (size_t k = index * CHUNK; k < end; k++)
+        for (int32_t i = split_proximal(carrying, k); arrive(net, i) && i != 0;) {
+            Arrivals *here = &net->coming[i];
+            int gain = atomic_load_explicit(&here->gain, memory_order_relaxed);
+            atomic_store_explicit(&here->gain, 0, memory_order_relaxed);
+            atomic_store_explicit(&here->announced, false, memory_order_relaxed);
+            net->segment[i].terminals += gain;
+            Reduced reduced = network_reduce(net, i);
+            report(net, i, &reduced);
+            i = net->segment[i].parent;
+            atomic_fetch_add_explicit(&net->coming[i].gain, gain, memory_order_relaxed);
+        }
+}
+
+void network_carry(Network *net, size_t splits, int threads)
+{
+    Carrying carrying = {net, splits};
+    size_t chunks = (splits + CHUNK - 1) / CHUNK;
+    if (splits < LEAST_SHARED)
+        threads = 1;
+    threads_for(chunks, threads, announce, &carrying);
+    threads_for(chunks, threads, ascend, &carrying);
+    atomic_store_explicit(&net->coming[0].gain, 0, memory_order_relaxed);
 }
 
 /* The segment after `i` in depth-first order, 0 after the last. */

@@ -28,13 +28,18 @@ typedef struct Sensitivity {
     double extra; /* dS_root for one more terminal on every segment above this one */
 } Sensitivity;
 
+/* What a node waits for while changes are carried towards the root. */
+typedef struct Arrivals Arrivals;
+
 typedef struct Network {
     Law law;
-    double radius_scale; /* q N^(1/4), mm^(3/4): r = radius_scale / N^(1/4) * gauge * rho */
+    double radius_scale; /* q N^(1/4), mm^(3/4) */
+    double radius_unit;  /* q, mm^(3/4): r = q * gauge * rho */
     size_t n, capacity;  /* nodes */
     Segment *segment;
     Sensitivity *sensitivity;
-    Vec3 *position; /* mm */
+    Vec3 *position;   /* mm */
+    Arrivals *coming; /* at rest between calls */
 } Network;
 
 /* An inlet with room for `terminals`. */
@@ -47,15 +52,20 @@ static inline size_t network_terminals(const Network *net)
     return net->n / 2;
 }
 
-/* q: radius = q * gauge * rho. */
-double network_radius_unit(const Network *net);
+/* What hangs on segment i. */
+static inline Below network_below(const Network *net, int32_t i)
+{
+    const Segment *segment = &net->segment[i];
+    return law_gather(&net->law, segment->flare[0] + segment->flare[1],
+                      segment->cost[0] + segment->cost[1]);
+}
 
 /* Segment i with what hangs on it. */
 static inline Reduced network_reduce(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
-    return law_reduce(&net->law, segment->terminals, segment->length,
-                      segment->flare[0] + segment->flare[1], segment->cost[0] + segment->cost[1]);
+    const Below below = network_below(net, i);
+    return law_extend(&net->law, segment->terminals, segment->length, &below);
 }
 
 static inline Capsule network_capsule(const Network *net, int32_t i)
@@ -67,9 +77,17 @@ static inline Capsule network_capsule(const Network *net, int32_t i)
 /* The first segment, from the inlet to `terminal`. */
 void network_plant(Network *net, Vec3 terminal);
 
+/* Makes room for so many splits. The radii of what they make are those for as many more terminals. */
+void network_extend(Network *net, size_t splits);
+
 /* Splits `segment` at `bifurcation` and hangs a new segment to `terminal` there. Its proximal part
- * becomes segment n and the new one segment n + 1, n as it was before. */
-void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal);
+ * becomes segment `fresh` - 1 and the new one `fresh`, both among those that network_extend made.
+ * What is above does not know of it until network_carry. Threads may split at a time segments that
+ * have no node in common. */
+void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal, int32_t fresh);
+
+/* Carries all splits since network_extend up to the inlet, on `threads` threads. */
+void network_carry(Network *net, size_t splits, int threads);
 
 /* S_root; not finite, or 0, when the radii of the tree span more than a double can hold. */
 double network_cost(const Network *net);

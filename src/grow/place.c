@@ -1,73 +1,92 @@
 /* The cost of a connection depends on the bifurcation through three lengths only. Where it is
  * least, the derivatives with respect to them pull evenly: the point is the weighted Fermat point
- * for these derivatives as weights [fermat.h]. They vary slowly, so weights at one point and the
- * Fermat point for them in turn converge in a few rounds. A point that collapses onto an end is
- * pushed off it to the shortest length the rules allow, in the direction that costs least: such
- * connections are among the best there are, so they must not be lost. */
+ * for these derivatives as weights [fermat.h]. They vary slowly, so the Fermat point for the weights
+ * at a middling place is within a hair of the best, and the same weights price it to first order. A
+ * point that collapses onto an end is pushed off it to the shortest length the rules allow, in the
+ * direction that costs least: such connections are among the best there are, so they must not be
+ * lost. Only the connection that is made is priced in full. */
 #include "grow/place.h"
 
 #include "grow/fermat.h"
+#include <stdlib.h>
 
-enum { PROXIMAL, DISTAL, FRESH, ENDS };
-enum { ROUNDS = 3 };
 /* Vessels widen as the tree below them grows: the rules hold for radii this much greater, and so at
- * the end of growth for nearly all vessels at their final radii. */
-static const double widening_reserve = 1.15;
+ * the end of growth for nearly all vessels at their final radii. For length, and for keeping clear
+ * of others. */
+static const double length_reserve = 1.15, clearance_reserve = 1.1;
+/* And this much they may widen until the grid is made anew. */
+static const double reach_reserve = 1.4;
+
+/* The segment to be split, as it is. */
+typedef struct Host {
+    double terminals, gauge;
+    Below below;
+    Reduced whole;
+    Adjoint adjoint;
+    double extra;
+} Host;
 
 typedef struct Trial {
     double price;
-    double weight[ENDS]; /* d price / d length, greatest 1 */
-    double radius[ENDS]; /* mm */
+    double weight[PARTS]; /* d price / d length */
+    double radius[PARTS]; /* mm */
 } Trial;
 
-/* False when the trial's figures are beyond what a double can hold. */
-static bool evaluate(const Network *net, int32_t host, const Reduced *before,
-                     const double length[ENDS], Trial *out)
+static Host host_of(const Network *net, int32_t i)
+{
+    const Segment *segment = &net->segment[i];
+    Host host = {.terminals = segment->terminals,
+                 .gauge = (double)segment->gauge,
+                 .below = network_below(net, i),
+                 .extra = net->sensitivity[i].extra};
+    host.whole = law_extend(&net->law, host.terminals, segment->length, &host.below);
+    host.adjoint = (Adjoint){net->sensitivity[i].load, law_lambda_power(&net->law, host.gauge)};
+    return host;
+}
+
+/* What splitting the host costs when the parts have these lengths. */
+static Trial evaluate(const Network *net, const Host *host, const double length[PARTS])
 {
     const Law *law = &net->law;
-    double n = net->segment[host].terminals, gauge = (double)net->segment[host].gauge;
-    Reduced distal = law_reduce(law, n, length[DISTAL], before->flare_below, before->cost_below);
-    Reduced fresh = law_reduce(law, 1, length[FRESH], 0, 0);
-    Reduced proximal = law_reduce(law, n + 1, length[PROXIMAL], distal.flare + fresh.flare,
-                                  distal.cost + fresh.cost);
+    const Below nothing = {0};
+    double n = host->terminals;
+    Reduced distal = law_extend(law, n, length[DISTAL], &host->below);
+    Reduced fresh = law_extend(law, 1, length[FRESH], &nothing);
+    Below fork = law_gather(law, distal.flare + fresh.flare, distal.cost + fresh.cost);
+    Reduced proximal = law_extend(law, n + 1, length[PROXIMAL], &fork);
 
-    Adjoint top = {net->sensitivity[host].load, law_lambda_power(law, gauge)};
+    Trial out;
+    Adjoint top = host->adjoint;
     Adjoint distal_adjoint = law_descend(law, &proximal, top, &distal);
     Adjoint fresh_adjoint = law_descend(law, &proximal, top, &fresh);
-    out->price = top.load * (proximal.load - before->load) +
-                 top.cost * (proximal.cost - before->cost) + net->sensitivity[host].extra;
-    out->weight[PROXIMAL] = law_length_weight(law, &proximal, top, n + 1);
-    out->weight[DISTAL] = law_length_weight(law, &distal, distal_adjoint, n);
-    out->weight[FRESH] = law_length_weight(law, &fresh, fresh_adjoint, 1);
+    out.price = top.load * (proximal.load - host->whole.load) +
+                top.cost * (proximal.cost - host->whole.cost) + host->extra;
+    out.weight[PROXIMAL] = law_length_weight(law, &proximal, top, n + 1);
+    out.weight[DISTAL] = law_length_weight(law, &distal, distal_adjoint, n);
+    out.weight[FRESH] = law_length_weight(law, &fresh, fresh_adjoint, 1);
 
-    double unit = network_radius_unit(net) * gauge;
-    out->radius[PROXIMAL] = unit * proximal.rho;
-    out->radius[DISTAL] = unit * proximal.widening * distal.rho;
-    out->radius[FRESH] = unit * proximal.widening * fresh.rho;
-
-    double greatest = fmax(out->weight[0], fmax(out->weight[1], out->weight[2]));
-    if (!isfinite(out->price) || !isfinite(greatest) || !(greatest > 0))
-        return false;
-    for (int end = 0; end < ENDS; end++) /* none pushes: Fermat's point wants weights above 0 */
-        out->weight[end] = fmax(out->weight[end] / greatest, 1e-9);
-    return true;
+    double unit = net->radius_unit * host->gauge;
+    out.radius[PROXIMAL] = unit * proximal.rho;
+    out.radius[DISTAL] = unit * proximal.widening * distal.rho;
+    out.radius[FRESH] = unit * proximal.widening * fresh.rho;
+    return out;
 }
 
 static double shortest(const Rules *rules, double radius)
 {
-    return fmax(rules->least_length, 2 * widening_reserve * rules->thickness * radius);
+    double width = 2 * length_reserve * rules->thickness * radius;
+    return width > rules->least_length ? width : rules->least_length;
 }
 
 /* Keeps the bifurcation off the three ends. */
-static Vec3 push_off(const Rules *rules, const Vec3 end[ENDS], const Trial *trial,
+static Vec3 push_off(const Rules *rules, const Vec3 end[PARTS], const double radius[PARTS],
                      const Fermat *fermat)
 {
     Vec3 place = fermat->place;
-    for (int i = 0; i < ENDS; i++) {
-        double least = 1.01 * shortest(rules, trial->radius[i]); /* the radius moves a little too */
+    for (int i = 0; i < PARTS; i++) {
+        double least = 1.02 * shortest(rules, radius[i]); /* the radius moves a little too */
         Vec3 away = vec3_sub(place, end[i]);
-        double distance = vec3_length(away);
-        if (distance >= least)
+        if (vec3_dot(away, away) >= least * least)
             continue;
         Vec3 direction = fermat->corner == i ? fermat->inward : away;
         double length = vec3_length(direction);
@@ -77,59 +96,67 @@ static Vec3 push_off(const Rules *rules, const Vec3 end[ENDS], const Trial *tria
     return place;
 }
 
-static void measure(const Vec3 end[ENDS], Vec3 place, double length[ENDS])
+static void measure(const Vec3 end[PARTS], Vec3 place, double length[PARTS])
 {
-    for (int i = 0; i < ENDS; i++)
+    for (int i = 0; i < PARTS; i++)
         length[i] = vec3_distance(end[i], place);
+}
+
+static void find_ends(const Network *net, int32_t segment, Vec3 terminal, Vec3 end[PARTS])
+{
+    end[PROXIMAL] = net->position[net->segment[segment].parent];
+    end[DISTAL] = net->position[segment];
+    end[FRESH] = terminal;
 }
 
 bool place_connection(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
                       Connection *out)
 {
-    Vec3 end[ENDS] = {net->position[net->segment[segment].parent], net->position[segment],
-                      terminal};
-    Reduced before = network_reduce(net, segment);
+    Vec3 end[PARTS];
+    find_ends(net, segment, terminal, end);
+    Host host = host_of(net, segment);
     Vec3 middle = vec3_scale(vec3_add(end[PROXIMAL], end[DISTAL]), 0.5);
-    Vec3 place = vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25);
-    double length[ENDS];
-    Trial trial;
-    for (int round = 0; round < ROUNDS; round++) {
-        measure(end, place, length);
-        if (!evaluate(net, segment, &before, length, &trial))
-            return false;
-        Fermat fermat = fermat_point(end, trial.weight);
-        place = push_off(rules, end, &trial, &fermat);
-    }
-    measure(end, place, length);
-    if (!evaluate(net, segment, &before, length, &trial))
+    Vec3 guess = vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25);
+    double from[PARTS], to[PARTS];
+    measure(end, guess, from);
+    Trial trial = evaluate(net, &host, from);
+    double greatest = fmax(trial.weight[0], fmax(trial.weight[1], trial.weight[2]));
+    if (!isfinite(trial.price) || !isfinite(greatest) || !(greatest > 0))
+        return false; /* beyond what a double can hold */
+    double weight[PARTS];
+    for (int i = 0; i < PARTS; i++) /* none pushes: Fermat's point wants weights above 0 */
+        weight[i] = fmax(trial.weight[i] / greatest, 1e-9);
+    Fermat fermat = fermat_point(end, weight);
+    *out = (Connection){.segment = segment, .price = trial.price};
+    out->bifurcation = push_off(rules, end, trial.radius, &fermat);
+    measure(end, out->bifurcation, to);
+    for (int i = 0; i < PARTS; i++)
+        out->price += trial.weight[i] * (to[i] - from[i]);
+    return true;
+}
+
+bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connection *connection)
+{
+    Vec3 end[PARTS];
+    find_ends(net, connection->segment, terminal, end);
+    Host host = host_of(net, connection->segment);
+    double length[PARTS];
+    measure(end, connection->bifurcation, length);
+    Trial trial = evaluate(net, &host, length);
+    if (!isfinite(trial.price))
         return false;
-    for (int i = 0; i < ENDS; i++)
+    for (int i = 0; i < PARTS; i++) {
         if (!(length[i] >= shortest(rules, trial.radius[i])))
             return false;
-    *out = (Connection){segment,
-                        trial.price,
-                        place,
-                        {trial.radius[PROXIMAL], trial.radius[DISTAL], trial.radius[FRESH]}};
+        connection->radius[i] = trial.radius[i];
+    }
+    connection->price = trial.price;
     return true;
 }
 
 static double clamp01(double t)
 {
     return t < 0 ? 0 : t > 1 ? 1 : t;
-}
-
-bool place_is_in_vessel(const Network *net, const Grid *grid, const Rules *rules, Vec3 point)
-{
-    for (int32_t at = grid->head[grid_cell_at(grid, point)]; at >= 0; at = grid->entry[at].next) {
-        int32_t i = grid->entry[at].tag >> 1;
-        Vec3 a = net->position[net->segment[i].parent];
-        Vec3 u = vec3_sub(net->position[i], a), w = vec3_sub(point, a);
-        Vec3 apart = vec3_add_scaled(w, u, -clamp01(vec3_dot(u, w) / vec3_dot(u, u)));
-        double radius = rules->thickness * (double)net->segment[i].radius;
-        if (vec3_dot(apart, apart) < radius * radius)
-            return true;
-    }
-    return false;
 }
 
 double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
@@ -148,27 +175,24 @@ double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
     return vec3_dot(apart, apart);
 }
 
-/* Whether the capsule keeps clear of all segments but `host` and those that end or begin at `node`
- * (-1: none). */
-static bool is_clear(const Network *net, const Grid *grid, const Rules *rules, Capsule capsule,
-                     int32_t host, int32_t node)
+double place_reach(const Rules *rules, double radius)
 {
-    double scale = widening_reserve * rules->thickness;
-    capsule.radius = scale * capsule.radius + rules->gap;
-    size_t cell;
-    for (GridWalk walk = grid_walk(grid, capsule); grid_walk_next(&walk, &cell);) {
-        for (int32_t at = grid->head[cell]; at >= 0; at = grid->entry[at].next) {
-            int32_t other = grid->entry[at].tag >> 1;
-            int32_t parent = net->segment[other].parent;
-            if (other == host || other == node || parent == node)
-                continue;
-            double clearance = capsule.radius + scale * (double)net->segment[other].radius;
-            if (segment_distance2(capsule.a, capsule.b, net->position[parent],
-                                  net->position[other]) < clearance * clearance)
-                return false;
-        }
-    }
-    return true;
+    double reach = reach_reserve * rules->thickness * radius;
+    return (reach < rules->widest ? reach : rules->widest) + rules->gap;
+}
+
+GridItem place_item(const Network *net, const Grid *grid, const Rules *rules,
+                    const Connection *connection, Vec3 terminal, int part)
+{
+    int32_t host = connection->segment;
+    double radius = connection->radius[part];
+    Capsule capsule = {connection->bifurcation, terminal, place_reach(rules, radius)};
+    if (part == PROXIMAL)
+        capsule = (Capsule){net->position[net->segment[host].parent], connection->bifurcation,
+                            capsule.radius};
+    else if (part == DISTAL)
+        capsule.b = net->position[host];
+    return grid_item(grid, capsule, radius);
 }
 
 bool place_is_inside(const Network *net, const Domain *domain, const Connection *connection,
@@ -183,15 +207,99 @@ bool place_is_inside(const Network *net, const Domain *domain, const Connection 
              domain_holds_segment(domain, fork, net->position[host])));
 }
 
-bool place_is_free(const Network *net, const Grid *grid, const Rules *rules,
-                   const Connection *connection, Vec3 terminal)
+void footprint_release(Footprint *footprint)
 {
-    int32_t host = connection->segment, parent = net->segment[host].parent;
-    Vec3 fork = connection->bifurcation;
-    const double *radius = connection->radius;
-    return is_clear(net, grid, rules, (Capsule){fork, terminal, radius[FRESH]}, host, -1) &&
-           is_clear(net, grid, rules, (Capsule){net->position[parent], fork, radius[PROXIMAL]},
-                    host, parent) &&
-           is_clear(net, grid, rules, (Capsule){fork, net->position[host], radius[DISTAL]}, host,
-                    host);
+    free(footprint->cell);
+    *footprint = (Footprint){0};
+}
+
+static Status append_cell(Footprint *footprint, size_t cell, Err *err)
+{
+    if (footprint->n == footprint->capacity)
+        TRY(mem_reserve(&footprint->cell, &footprint->capacity, footprint->n + 1,
+                        sizeof *footprint->cell, "grid cells", err));
+    footprint->cell[footprint->n++] = (uint32_t)cell;
+    return STATUS_OK;
+}
+
+Status footprint_add_box(Footprint *footprint, const Grid *grid, GridBox box, Err *err)
+{
+    for (int z = box.low[2]; z <= box.high[2]; z++)
+        for (int y = box.low[1]; y <= box.high[1]; y++)
+            for (int x = box.low[0]; x <= box.high[0]; x++)
+                TRY(append_cell(footprint, grid_index(grid, x, y, z), err));
+    return STATUS_OK;
+}
+
+/* A new segment that is to keep clear of all but its kin. */
+typedef struct Newcomer {
+    GridItem item;
+    double radius; /* with all reserves, mm */
+    double scale;  /* of the others' radii */
+    int32_t kin[4];
+} Newcomer;
+
+/* Its kin are the segment to split and all that end or begin where the newcomer does. */
+static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rules,
+                         const Connection *connection, Vec3 terminal, int part)
+{
+    int32_t host = connection->segment;
+    Newcomer out = {.item = place_item(net, grid, rules, connection, terminal, part),
+                    .scale = clearance_reserve * rules->thickness,
+                    .kin = {host, host, host, host}};
+    out.radius = out.scale * connection->radius[part] + rules->gap;
+    if (part != FRESH) {
+        int32_t node = part == PROXIMAL ? net->segment[host].parent : host;
+        out.kin[1] = node;
+        out.kin[2] = net->segment[node].child[0];
+        out.kin[3] = net->segment[node].child[1];
+    }
+    return out;
+}
+
+static Vec3 load(const float v[3])
+{
+    return vec3((double)v[0], (double)v[1], (double)v[2]);
+}
+
+static bool is_clear(const Grid *grid, const Newcomer *newcomer, const GridCell *cell)
+{
+    const int32_t *kin = newcomer->kin;
+    Vec3 from = load(newcomer->item.proximal), to = load(newcomer->item.distal);
+    for (uint32_t i = 0; i < cell->count; i++) {
+        int32_t other = cell->tag[i] >> 1;
+        if (other == kin[0] || other == kin[1] || other == kin[2] || other == kin[3])
+            continue;
+        const GridItem *item = &grid->item[other];
+        double clearance = newcomer->radius + newcomer->scale * (double)item->radius;
+        if (segment_distance2(from, to, load(item->proximal), load(item->distal)) <
+            clearance * clearance)
+            return false;
+    }
+    return true;
+}
+
+Status place_is_free(const Network *net, const Grid *grid, const Rules *rules,
+                     const Connection *connection, Vec3 terminal, Footprint *footprint, bool *out,
+                     Err *err)
+{
+    size_t cell, n = footprint->n;
+    bool is_free = true;
+    for (int part = 0; part < PARTS && is_free; part++) {
+        Newcomer part_of = newcomer(net, grid, rules, connection, terminal, part);
+        for (GridWalk walk = grid_walk(grid, &part_of.item);
+             is_free && grid_walk_next(&walk, &cell);) {
+            is_free = is_clear(grid, &part_of, &grid->cell[cell]);
+            TRY(append_cell(footprint, cell, err));
+        }
+    }
+    if (is_free) {
+        GridWalk walk = grid_walk(grid, &grid->item[connection->segment]);
+        while (grid_walk_next(&walk, &cell))
+            TRY(append_cell(footprint, cell, err));
+    } else {
+        footprint->n = n;
+    }
+    *out = is_free;
+    return STATUS_OK;
 }

@@ -180,6 +180,25 @@ static void one_seed_gives_one_tree(void **state)
     tree_release(&c);
 }
 
+/* Enough terminals for batches that are worth more than one thread. */
+static void the_number_of_threads_does_not_change_the_tree(void **state)
+{
+    (void)state;
+    GrowParams params = grow_defaults();
+    params.terminals = 12000;
+    const char *specs[] = {"disc:50", "ball:50"};
+    for (size_t k = 0; k < 2; k++) {
+        params.threads = 1;
+        Tree one = grown(&params, specs[k], NULL);
+        for (params.threads = 2; params.threads <= 3; params.threads++) {
+            Tree many = grown(&params, specs[k], NULL);
+            assert_true(same_trees(&one, &many));
+            tree_release(&many);
+        }
+        tree_release(&one);
+    }
+}
+
 static void terminals_fill_the_tissue_evenly(void **state)
 {
     (void)state;
@@ -337,6 +356,7 @@ int main(void)
         cmocka_unit_test(vessels_are_longer_than_wide_and_clear_of_each_other),
         cmocka_unit_test(targets_are_as_low_as_published_peers_reach),
         cmocka_unit_test(one_seed_gives_one_tree),
+        cmocka_unit_test(the_number_of_threads_does_not_change_the_tree),
         cmocka_unit_test(terminals_fill_the_tissue_evenly),
         cmocka_unit_test(the_header_tells_how_the_tree_was_made),
         cmocka_unit_test(progress_rises),
