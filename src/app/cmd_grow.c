@@ -46,11 +46,15 @@ Status run_grow(int argc, char **argv, Err *err)
 {
     static const char *const tosses[] = {
         [GROW_TOSS_SEGMENT] = "segment", [GROW_TOSS_TERMINAL] = "terminal", NULL};
+    static const char *const laws[] = {
+        [VISCOSITY_CONSTANT] = "constant", [VISCOSITY_PRIES] = "pries", NULL};
+    static const char *const flows[] = {
+        [TERMINAL_FLOW_EQUAL] = "equal", [TERMINAL_FLOW_TERRITORY] = "territory", NULL};
     GrowParams params = grow_defaults();
     Refining refining;
     refining_init(&refining);
     const char *output = NULL, *json = NULL, *domain_spec = "disc:50";
-    int toss = (int)params.toss;
+    int toss = (int)params.toss, law = VISCOSITY_CONSTANT, flow = TERMINAL_FLOW_EQUAL;
     const double huge = 1e300;
     const Option own[] = {
         {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "T.swc", "the tree"},
@@ -73,6 +77,14 @@ Status run_grow(int argc, char **argv, Err *err)
          "flow through the inlet (500)"},
         {"viscosity", OPTION_NUMBER, &params.viscosity_cp, NULL, -huge, huge, NULL, "CP",
          "of the blood (3.6)"},
+        {"viscosity-law", OPTION_CHOICE, &law, NULL, 0, 0, laws, NULL,
+         "the same in all vessels, or by their diameter, Pries 1994 (constant)"},
+        {"hematocrit", OPTION_NUMBER, &params.hematocrit, NULL, 0, GROW_MAX_HEMATOCRIT, NULL, "H",
+         "for pries (0.45)"},
+        {"plasma-viscosity", OPTION_NUMBER, &params.plasma_viscosity_cp, NULL, -huge, huge, NULL,
+         "CP", "for pries (1.2)"},
+        {"terminal-flow", OPTION_CHOICE, &flow, NULL, 0, 0, flows, NULL,
+         "the same through all terminals, or as large as the tissue nearest to each (equal)"},
         {"candidates", OPTION_WHOLE, &params.candidates, NULL, 1, 1000, NULL, "K",
          "nearest segments tried for each terminal (8)"},
         {"toss", OPTION_CHOICE, &toss, NULL, 0, 0, tosses, NULL,
@@ -96,6 +108,8 @@ Status run_grow(int argc, char **argv, Err *err)
         goto done;
     params.seed = parsed.common.seed;
     params.toss = (GrowToss)toss;
+    params.viscosity_law = (ViscosityLaw)law;
+    params.terminal_flow = (TerminalFlow)flow;
     params.threads = parsed.common.threads;
     params.progress = progress_report;
     params.progress_context = &progress;

@@ -1,9 +1,15 @@
 /* Radii are r = q g rho: rho is summed up from the terminals, g multiplied down from the root
  * [law.h]. Both sweeps only add and multiply positive numbers, so nothing cancels and every radius
  * is exact to a few units in the last place for any gamma: Murray's law holds by the definition of
- * P, and the daughters of a bifurcation see one pressure by that of g. */
+ * P, and the daughters of a bifurcation see one pressure by that of g.
+ *
+ * Where viscosity depends on the radius, radii and viscosities are computed in turn until they agree.
+ * A radius goes with the fourth root of the viscosity, which falls by far less than the fourth power of
+ * the radius in all but the thinnest vessels, so this converges; where it does not, steps are
+ * shortened. */
 #include "grow/finish.h"
 
+#include "grow/weigh.h"
 #include <float.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -33,6 +39,52 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
     return status;
 }
 
+/* Viscosities agree with the radii to this share; rounds in which they are to. */
+static const double agreement = 1e-13;
+enum { MAX_ROUNDS = 200 };
+
+/* Computes all radii, with the viscosities at these radii and the flows that `share` asks for; turns it
+ * into flows. */
+static Status settle_radii(Network *net, const GrowParams *params, double *share, Tree *tree,
+                           Err *err)
+{
+    double part = 1, last = INFINITY, change;
+    weigh_gather(net, share);
+    for (int round = 0; round < MAX_ROUNDS; round++) {
+        TRY(sweep_down(net, tree, err));
+        TRY(weigh_segments(net, params, share, tree->radius_mm, part, &change, err));
+        if (change <= agreement)
+            return STATUS_OK;
+        part = change < last ? part : part / 2;
+        last = change;
+        network_resum(net);
+    }
+    return err_set(err, STATUS_INFEASIBLE,
+                   "the vessels of %zu terminals are too thin for --viscosity-law pries: radii and "
+                   "viscosities do not settle; lower --terminals or raise --q-perf",
+                   network_terminals(net));
+}
+
+/* Radii, and flow shares where terminals have their own. */
+static Status write_radii(Network *net, const GrowParams *params, const Domain *domain, Tree *tree,
+                          Err *err)
+{
+    if (!net->trait)
+        return sweep_down(net, tree, err);
+    double *share = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&share, net->n, sizeof *share, "flow shares", err));
+    TRY_GOTO(weigh_share(net, params, domain, WEIGH_FINE, share, err));
+    if (params->terminal_flow == TERMINAL_FLOW_TERRITORY) {
+        TRY_GOTO(tree_add_flow_shares(tree, err));
+        memcpy(tree->flow_share, share, net->n * sizeof *share);
+    }
+    TRY_GOTO(settle_radii(net, params, share, tree, err));
+done:
+    free(share);
+    return status;
+}
+
 static Status add_number(Tree *tree, const char *key, double value, Err *err)
 {
     char number[NUMBER_TEXT_SIZE], line[128];
@@ -58,11 +110,28 @@ static Status add_domain(Tree *tree, const Domain *domain, Err *err)
     return status;
 }
 
+static Status write_blood(const GrowParams *params, Tree *tree, Err *err)
+{
+    TreeHeader *header = &tree->header;
+    if (params->viscosity_law == VISCOSITY_CONSTANT) {
+        header->has.viscosity = true;
+        header->viscosity_cp = params->viscosity_cp;
+        return add_number(tree, "viscosity_cP", header->viscosity_cp, err);
+    }
+    header->has.viscosity_law = header->has.hematocrit = header->has.plasma_viscosity = true;
+    header->viscosity_law = params->viscosity_law;
+    header->hematocrit = params->hematocrit;
+    header->plasma_viscosity_cp = params->plasma_viscosity_cp;
+    TRY(tree_add_line(tree, "viscosity_law: pries", err));
+    TRY(add_number(tree, "hematocrit", header->hematocrit, err));
+    return add_number(tree, "plasma_viscosity_cP", header->plasma_viscosity_cp, err);
+}
+
 static Status write_header(const GrowParams *params, const Domain *domain, Tree *tree, Err *err)
 {
     TreeHeader *header = &tree->header;
     header->has.seed = header->has.dimension = header->has.gamma = header->has.lambda = true;
-    header->has.p_perf = header->has.p_term = header->has.q_perf = header->has.viscosity = true;
+    header->has.p_perf = header->has.p_term = header->has.q_perf = true;
     header->seed = params->seed;
     header->dimension = domain_dimension(domain);
     header->gamma = params->gamma;
@@ -70,7 +139,6 @@ static Status write_header(const GrowParams *params, const Domain *domain, Tree 
     header->p_perf_mmhg = params->p_perf_mmhg;
     header->p_term_mmhg = params->p_term_mmhg;
     header->q_perf_ml_min = params->q_perf_ml_min;
-    header->viscosity_cp = params->viscosity_cp;
     char seed[64];
     snprintf(seed, sizeof seed, "seed: %" PRIu64, params->seed);
     TRY(tree_add_line(tree, "generator: corcast " CORCAST_VERSION, err));
@@ -82,7 +150,12 @@ static Status write_header(const GrowParams *params, const Domain *domain, Tree 
     TRY(add_number(tree, "p_perf_mmHg", header->p_perf_mmhg, err));
     TRY(add_number(tree, "p_term_mmHg", header->p_term_mmhg, err));
     TRY(add_number(tree, "q_perf_ml_min", header->q_perf_ml_min, err));
-    return add_number(tree, "viscosity_cP", header->viscosity_cp, err);
+    TRY(write_blood(params, tree, err));
+    if (params->terminal_flow == TERMINAL_FLOW_EQUAL)
+        return STATUS_OK;
+    header->has.terminal_flow = true;
+    header->terminal_flow = params->terminal_flow;
+    return tree_add_line(tree, "terminal_flow: territory", err);
 }
 
 Status finish_tree(Network *net, const GrowParams *params, const Domain *domain, Tree *out,
@@ -93,7 +166,7 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
     Tree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(tree_init(&made, net->n, err));
-    TRY_GOTO(sweep_down(net, &made, err));
+    TRY_GOTO(write_radii(net, params, domain, &made, err));
     TRY_GOTO(write_header(params, domain, &made, err));
     for (size_t i = 0; i < net->n; i++) {
         made.id[i] = (int32_t)i + 1;

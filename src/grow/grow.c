@@ -13,6 +13,7 @@
 
 #include "grow/batch.h"
 #include "grow/finish.h"
+#include "grow/weigh.h"
 #include <stdlib.h>
 
 /* Cells of the grid a terminal, when the grid is made; it serves until the terminals doubled. */
@@ -86,7 +87,10 @@ static Status keep_up(Growth *growth, Err *err)
     Network *net = &growth->net;
     size_t terminals = network_terminals(net);
     if (terminals >= growth->refresh_until) {
-        network_refresh(net);
+        if (net->trait)
+            TRY(weigh_refresh(net, growth->params, growth->domain, err));
+        else
+            network_refresh(net);
         for (size_t i = 1; growth->grid.item && i < net->n; i++)
             growth->grid.item[i].radius = net->segment[i].radius;
         growth->refresh_until = (size_t)(refresh_growth * (double)terminals) + 1;
@@ -221,11 +225,11 @@ static Status start(Growth *growth, Err *err)
     TRY(batch_init(&growth->batch, MAX_BATCH, params->candidates, threads, err));
 
     double drop = pa_from_mmhg(params->p_perf_mmhg) - pa_from_mmhg(params->p_term_mmhg);
-    double resistance = 8 * pa_s_from_cp(params->viscosity_cp) / pi;
+    double resistance = 8 * weigh_reference_pa_s(params) / pi;
     double scale = sqrt(sqrt(resistance * mm3_s_from_ml_min(params->q_perf_ml_min) / drop));
     Vec3 inlet = params->has_inlet ? params->inlet : domain_default_inlet(growth->domain);
     return network_init(&growth->net, (Law){params->gamma, params->lambda}, scale,
-                        params->terminals, inlet, err);
+                        params->terminals, weigh_is_needed(params), inlet, err);
 }
 
 static void report_progress(const Growth *growth, size_t before)

@@ -20,22 +20,27 @@ typedef enum GrowToss {
 } GrowToss;
 
 enum { GROW_MAX_TERMINALS = 8000000, GROW_MAX_CANDIDATES = 1000 };
+#define GROW_MAX_HEMATOCRIT 0.95
 
 /* The SWC type code of all nodes of a grown tree: SWC has none for arteries, and 3 is what files of
  * arterial trees use. */
 enum { GROW_SWC_TYPE = 3 };
 
 typedef struct GrowParams {
-    size_t terminals;     /* in [1, GROW_MAX_TERMINALS] */
-    double gamma;         /* Murray exponent, in (0, 10] */
-    double lambda;        /* exponent of the target, >= 0 */
-    uint64_t seed;        /* of the random points */
-    bool has_inlet;       /* else the domain's default inlet */
-    Vec3 inlet;           /* mm */
-    double p_perf_mmhg;   /* at the inlet */
-    double p_term_mmhg;   /* at every terminal, below p_perf_mmhg */
-    double q_perf_ml_min; /* through the inlet, > 0; every terminal gets the same share */
-    double viscosity_cp;  /* > 0 */
+    size_t terminals;           /* in [1, GROW_MAX_TERMINALS] */
+    double gamma;               /* Murray exponent, in (0, 10] */
+    double lambda;              /* exponent of the target, >= 0 */
+    uint64_t seed;              /* of the random points */
+    bool has_inlet;             /* else the domain's default inlet */
+    Vec3 inlet;                 /* mm */
+    double p_perf_mmhg;         /* at the inlet */
+    double p_term_mmhg;         /* at every terminal, below p_perf_mmhg */
+    double q_perf_ml_min;       /* through the inlet, > 0 */
+    TerminalFlow terminal_flow; /* how the terminals share it */
+    ViscosityLaw viscosity_law;
+    double viscosity_cp;        /* of the blood, by the constant law; > 0 */
+    double hematocrit;          /* by Pries's law; in [0, GROW_MAX_HEMATOCRIT] */
+    double plasma_viscosity_cp; /* by Pries's law; > 0 */
     int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
     GrowToss toss;
     int threads;  /* 0: all processors. They do not change the tree */
@@ -44,8 +49,8 @@ typedef struct GrowParams {
     void *progress_context;
 } GrowParams;
 
-/* 1,000 terminals, gamma 3, lambda 2, seed 1, 100 to 60 mmHg, 500 ml/min, 3.6 cP, 8 candidates,
- * tossed by segment. */
+/* 1,000 terminals of equal flow, gamma 3, lambda 2, seed 1, 100 to 60 mmHg, 500 ml/min, constant
+ * viscosity, 3.6 cP (of plasma 1.2, hematocrit 0.45), 8 candidates, tossed by segment. */
 GrowParams grow_defaults(void);
 
 typedef struct GrowReport {
@@ -67,11 +72,14 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
 
 /* Grows a tree into *out (release with tree_release). Node 0 is the inlet; nodes are in depth-first
  * order, ids 1 .. 2 N in that order, and the header is filled. Murray's law and the pressures hold
- * to rounding for the coordinates and radii in *out. Centrelines do not cross. The same parameters
+ * to rounding for the coordinates and radii in *out, by Pries's law with the viscosity at those very
+ * radii. By territory, the flow share of a terminal is the number of points of a fine lattice over
+ * the domain that are nearer to it than to any other. Centrelines do not cross. The same parameters
  * give the same tree, bit for bit. `report` may be NULL.
  *
  * Fails with STATUS_USAGE as grow_params_check does, STATUS_INFEASIBLE when there is no room for
- * all terminals or when the radii span more than a double can hold, and STATUS_MEMORY. */
+ * all terminals, when the radii span more than a double can hold, or when vessels are too thin for
+ * blood to pass by Pries's law, and STATUS_MEMORY. */
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
                             GrowReport *report, Err *err);
 

@@ -1,13 +1,13 @@
 /* How a segment and the subtree below it add up: Murray's law, Poiseuille's law and the target, in
  * the reduced quantities that make one step up the tree a few multiplications.
  *
- * With N terminals below a segment and R*, V* its reduced resistance and target [METHODS 1], R*
- * in units of 8 mu / pi:
+ * With N the flow through a segment over a terminal's mean, m its viscosity over a reference mu, and
+ * R*, V* its reduced resistance and target [METHODS 1], R* in units of 8 mu / pi:
  *     load  W = N R*             rho = W^(1/4)
  *     flare X = rho^gamma        Murray's law is addition: the subtree below a segment has the
  *                                flare G = sum of X over the daughters, and P = G^(1/gamma)
  *     cost  S = rho^lambda V*    so that S = rho^lambda l + (rho / P)^lambda sum of S over them
- *     W = N l + P^4
+ *     W = N m l + P^4            with N m the segment's burden
  * A radius is r = q g rho, q = (8 mu / pi Q_term / (p_perf - p_term))^(1/4) and g the gauge: 1 at
  * the root and greater by rho / P from each segment to its daughters. The target is
  * T = q^lambda S_root, so for one number of terminals the least S_root is the least T. */
@@ -95,12 +95,11 @@ static inline Below law_gather(const Law *law, double flare, double cost)
     return out;
 }
 
-/* The segment of `length` mm with `terminals` at or below it on top of what hangs there. */
-static inline Reduced law_extend(const Law *law, double terminals, double length,
-                                 const Below *below)
+/* The segment of `length` mm that carries `burden` on top of what hangs there. */
+static inline Reduced law_extend(const Law *law, double burden, double length, const Below *below)
 {
     Reduced out = {.below = *below};
-    out.load = terminals * length + below->load;
+    out.load = burden * length + below->load;
     out.rho = sqrt(sqrt(out.load));
     out.rho_lambda = law_lambda_power(law, out.rho);
     out.flare = law->gamma == 3 ? out.rho * out.rho * out.rho : pow(out.rho, law->gamma);
@@ -113,13 +112,13 @@ static inline Reduced law_extend(const Law *law, double terminals, double length
     return out;
 }
 
-/* The segment of `length` mm with `terminals` below it and daughters whose flares and costs sum up
- * to `flare_below` and `cost_below`, both 0 at a terminal. */
-static inline Reduced law_reduce(const Law *law, double terminals, double length,
-                                 double flare_below, double cost_below)
+/* The segment of `length` mm that carries `burden`, with daughters whose flares and costs sum up to
+ * `flare_below` and `cost_below`, both 0 at a terminal. */
+static inline Reduced law_reduce(const Law *law, double burden, double length, double flare_below,
+                                 double cost_below)
 {
     Below below = law_gather(law, flare_below, cost_below);
-    return law_extend(law, terminals, length, &below);
+    return law_extend(law, burden, length, &below);
 }
 
 /* dS_root / d load of `at`, now with the part that goes through its own cost. */
@@ -138,11 +137,11 @@ static inline Adjoint law_descend(const Law *law, const Reduced *parent, Adjoint
     return (Adjoint){below * (daughter->flare / parent->below.flare) / daughter->load, cost};
 }
 
-/* dS_root / d length of the segment `at` with `terminals` below it. */
+/* dS_root / d length of the segment `at`, which carries `burden`. */
 static inline double law_length_weight(const Law *law, const Reduced *at, Adjoint adjoint,
-                                       double terminals)
+                                       double burden)
 {
-    return terminals * law_total(law, at, adjoint) + adjoint.cost * at->rho_lambda;
+    return burden * law_total(law, at, adjoint) + adjoint.cost * at->rho_lambda;
 }
 
 #endif

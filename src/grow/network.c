@@ -25,14 +25,20 @@ struct Arrivals {
     atomic_bool announced;
 };
 
-Status network_init(Network *net, Law law, double radius_scale, size_t terminals, Vec3 inlet,
-                    Err *err)
+Status network_init(Network *net, Law law, double radius_scale, size_t terminals, bool traits,
+                    Vec3 inlet, Err *err)
 {
-    Network made = {.law = law, .radius_scale = radius_scale, .n = 1, .capacity = 2 * terminals};
+    Network made = {.law = law,
+                    .radius_scale = radius_scale,
+                    .n = 1,
+                    .capacity = 2 * terminals,
+                    .fresh_weight = 1};
     size_t n = made.capacity;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&made.segment, n, sizeof *made.segment, "segments", err));
     TRY_GOTO(mem_calloc(&made.sensitivity, n, sizeof *made.sensitivity, "segments", err));
+    if (traits)
+        TRY_GOTO(mem_calloc(&made.trait, n, sizeof *made.trait, "segments", err));
     TRY_GOTO(mem_calloc(&made.position, n, sizeof *made.position, "positions", err));
     TRY_GOTO(mem_calloc(&made.coming, n, sizeof *made.coming, "segments", err));
     made.segment[0] = (Segment){.child = {-1, -1}, .parent = -1};
@@ -48,6 +54,7 @@ void network_release(Network *net)
 {
     free(net->segment);
     free(net->sensitivity);
+    free(net->trait);
     free(net->position);
     free(net->coming);
     *net = (Network){0};
@@ -92,7 +99,8 @@ static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t paren
     segment->radius = narrow(net->radius_unit * own_gauge * reduced->rho);
     net->sensitivity[i] = (Sensitivity){law_descend(&net->law, above, adjoint, reduced).load,
                                         net->sensitivity[parent].extra +
-                                            law_total(&net->law, above, adjoint) * mother->length};
+                                            law_total(&net->law, above, adjoint) * mother->length *
+                                                network_burden(net, parent, 1)};
 }
 
 static void set_root_radius(Network *net, int32_t root, const Reduced *reduced)
@@ -109,6 +117,8 @@ void network_plant(Network *net, Vec3 terminal)
                                 .child = {-1, -1},
                                 .parent = 0,
                                 .terminals = 1};
+    if (net->trait)
+        net->trait[1].weight = net->fresh_weight;
     net->segment[0].child[0] = 1;
     set_nodes(net, 2);
     Reduced reduced = network_reduce(net, 1);
@@ -142,13 +152,18 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
                                     .terminals = 1};
     distal->parent = proximal;
     distal->length = vec3_distance(bifurcation, net->position[segment]);
+    if (net->trait) {
+        net->trait[proximal] = net->trait[segment];
+        net->trait[fresh].weight = net->fresh_weight;
+    }
 
     Reduced daughters[2] = {network_reduce(net, segment), network_reduce(net, fresh)};
     report(net, segment, &daughters[0]);
     report(net, fresh, &daughters[1]);
     Below below = network_below(net, proximal);
-    Reduced mother = law_extend(&net->law, net->segment[proximal].terminals + 1,
-                                net->segment[proximal].length, &below);
+    Reduced mother =
+        law_extend(&net->law, network_burden(net, proximal, net->segment[proximal].terminals + 1),
+                   net->segment[proximal].length, &below);
     net->segment[proximal].radius =
         narrow(net->radius_unit * (double)net->segment[proximal].gauge * mother.rho);
     adopt(net, segment, &daughters[0], proximal, &mother);
@@ -268,9 +283,23 @@ static Status permute(void *items, size_t size, const int32_t *order, size_t n, 
     return STATUS_OK;
 }
 
+int32_t network_first_upward(const Network *net, int32_t i)
+{
+    while (net->segment[i].child[0] >= 0)
+        i = net->segment[i].child[0];
+    return i;
+}
+
+int32_t network_next_upward(const Network *net, int32_t i)
+{
+    int32_t above = net->segment[i].parent;
+    const int32_t *child = net->segment[above].child;
+    return child[0] == i && child[1] >= 0 ? network_first_upward(net, child[1]) : above;
+}
+
 void network_resum(Network *net)
 {
-    for (int32_t i = (int32_t)net->n - 1; i > 0; i--) {
+    for (int32_t i = network_first_upward(net, 0); i != 0; i = network_next_upward(net, i)) {
         Segment *segment = &net->segment[i];
         segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
         Reduced reduced = network_reduce(net, i);
@@ -293,6 +322,8 @@ Status network_reorder(Network *net, Err *err)
     } while (i != 0);
     TRY_GOTO(permute(net->segment, sizeof *net->segment, order, n, err));
     TRY_GOTO(permute(net->sensitivity, sizeof *net->sensitivity, order, n, err));
+    if (net->trait)
+        TRY_GOTO(permute(net->trait, sizeof *net->trait, order, n, err));
     TRY_GOTO(permute(net->position, sizeof *net->position, order, n, err));
     for (size_t k = 0; k < n; k++) {
         Segment *segment = &net->segment[k];

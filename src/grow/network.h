@@ -1,7 +1,8 @@
 /* The growing tree: a binary tree of segments that knows its own hydrodynamics at every moment.
  *
- * Node i > 0 is the distal end of segment i; node 0 is the inlet, its only child the root segment.
- * Segments are split in place: the one that is split keeps its index as the distal part. */
+ * Every node but the inlet is the distal end of the segment of its index; the inlet's only child is
+ * the root segment. Segments are split in place: the one that is split keeps its index as the distal
+ * part. */
 #ifndef CORCAST_GROW_NETWORK_H
 #define CORCAST_GROW_NETWORK_H
 
@@ -28,6 +29,13 @@ typedef struct Sensitivity {
     double extra; /* dS_root for one more terminal on every segment above this one */
 } Sensitivity;
 
+/* What sets segments apart whose flow does not just count terminals or whose viscosity differs. */
+typedef struct Trait {
+    /* The segment's flow over that of as many mean terminals, times its viscosity over that of
+     * radius_scale; as of the last refresh, or of its making. */
+    double weight;
+} Trait;
+
 /* What a node waits for while changes are carried towards the root. */
 typedef struct Arrivals Arrivals;
 
@@ -38,18 +46,26 @@ typedef struct Network {
     size_t n, capacity;  /* nodes */
     Segment *segment;
     Sensitivity *sensitivity;
-    Vec3 *position;   /* mm */
-    Arrivals *coming; /* at rest between calls */
+    Trait *trait;        /* NULL: all weights are 1 */
+    double fresh_weight; /* of a new terminal's segment */
+    Vec3 *position;      /* mm */
+    Arrivals *coming;    /* at rest between calls */
 } Network;
 
-/* An inlet with room for `terminals`. */
+/* An inlet with room for `terminals`; `traits`: whether segments have them. */
 MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, size_t terminals,
-                               Vec3 inlet, Err *err);
+                               bool traits, Vec3 inlet, Err *err);
 void network_release(Network *net);
 
 static inline size_t network_terminals(const Network *net)
 {
     return net->n / 2;
+}
+
+/* What `terminals` more on segment i add to its load, over its length. */
+static inline double network_burden(const Network *net, int32_t i, int32_t terminals)
+{
+    return net->trait ? terminals * net->trait[i].weight : terminals;
 }
 
 /* What hangs on segment i. */
@@ -65,7 +81,8 @@ static inline Reduced network_reduce(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
     const Below below = network_below(net, i);
-    return law_extend(&net->law, segment->terminals, segment->length, &below);
+    return law_extend(&net->law, network_burden(net, i, segment->terminals), segment->length,
+                      &below);
 }
 
 static inline Capsule network_capsule(const Network *net, int32_t i)
@@ -95,7 +112,13 @@ double network_cost(const Network *net);
 /* Brings radius, gauge and sensitivities of all segments up to date. */
 void network_refresh(Network *net);
 
-/* Sums up lengths, flares and costs anew from the positions; parents come before children. */
+/* The segment after `i` in the order in which daughters come before their mother, which begins with
+ * network_first_upward of the inlet and ends with the inlet. */
+int32_t network_next_upward(const Network *net, int32_t i);
+/* The first of `i` and all below it in that order. */
+int32_t network_first_upward(const Network *net, int32_t i);
+
+/* Sums up lengths, flares and costs anew from positions and weights. */
 void network_resum(Network *net);
 
 /* Renumbers the nodes depth first, so that parents come before children and neighbours in the tree

@@ -10,6 +10,8 @@ GrowParams grow_defaults(void)
                         .p_term_mmhg = 60,
                         .q_perf_ml_min = 500,
                         .viscosity_cp = 3.6,
+                        .hematocrit = 0.45,
+                        .plasma_viscosity_cp = 1.2,
                         .candidates = 8,
                         .toss = GROW_TOSS_SEGMENT};
 }
@@ -19,6 +21,18 @@ static Status refuse(const char *option, double value, const char *allowed, Err 
     char number[NUMBER_TEXT_SIZE];
     return err_set(err, STATUS_USAGE, "%s %s: must be %s", option, number_text(value, number),
                    allowed);
+}
+
+static Status check_blood(const GrowParams *params, Err *err)
+{
+    if (!(params->viscosity_cp > 0) || !isfinite(params->viscosity_cp))
+        return refuse("--viscosity", params->viscosity_cp, "a finite number of cP above 0", err);
+    if (!(params->hematocrit >= 0) || !(params->hematocrit <= GROW_MAX_HEMATOCRIT))
+        return refuse("--hematocrit", params->hematocrit, "from 0 to 0.95", err);
+    if (!(params->plasma_viscosity_cp > 0) || !isfinite(params->plasma_viscosity_cp))
+        return refuse("--plasma-viscosity", params->plasma_viscosity_cp,
+                      "a finite number of cP above 0", err);
+    return STATUS_OK;
 }
 
 static Status check_inlet(const GrowParams *params, const Domain *domain, Err *err)
@@ -58,8 +72,7 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     }
     if (!(params->q_perf_ml_min > 0) || !isfinite(params->q_perf_ml_min))
         return refuse("--q-perf", params->q_perf_ml_min, "a finite number of ml/min above 0", err);
-    if (!(params->viscosity_cp > 0) || !isfinite(params->viscosity_cp))
-        return refuse("--viscosity", params->viscosity_cp, "a finite number of cP above 0", err);
+    TRY(check_blood(params, err));
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
         return err_set(err, STATUS_USAGE, "--candidates %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);

@@ -19,7 +19,8 @@ static const double reach_reserve = 1.4;
 
 /* The segment to be split, as it is. */
 typedef struct Host {
-    double terminals, gauge;
+    double burden[PARTS]; /* of the segments that splitting it makes */
+    double gauge;
     Below below;
     Reduced whole;
     Adjoint adjoint;
@@ -35,11 +36,14 @@ typedef struct Trial {
 static Host host_of(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
-    Host host = {.terminals = segment->terminals,
+    int32_t terminals = segment->terminals;
+    Host host = {.burden = {[PROXIMAL] = network_burden(net, i, terminals + 1),
+                            [DISTAL] = network_burden(net, i, terminals),
+                            [FRESH] = net->fresh_weight},
                  .gauge = (double)segment->gauge,
                  .below = network_below(net, i),
                  .extra = net->sensitivity[i].extra};
-    host.whole = law_extend(&net->law, host.terminals, segment->length, &host.below);
+    host.whole = law_extend(&net->law, host.burden[DISTAL], segment->length, &host.below);
     host.adjoint = (Adjoint){net->sensitivity[i].load, law_lambda_power(&net->law, host.gauge)};
     return host;
 }
@@ -49,11 +53,11 @@ static Trial evaluate(const Network *net, const Host *host, const double length[
 {
     const Law *law = &net->law;
     const Below nothing = {0};
-    double n = host->terminals;
-    Reduced distal = law_extend(law, n, length[DISTAL], &host->below);
-    Reduced fresh = law_extend(law, 1, length[FRESH], &nothing);
+    const double *burden = host->burden;
+    Reduced distal = law_extend(law, burden[DISTAL], length[DISTAL], &host->below);
+    Reduced fresh = law_extend(law, burden[FRESH], length[FRESH], &nothing);
     Below fork = law_gather(law, distal.flare + fresh.flare, distal.cost + fresh.cost);
-    Reduced proximal = law_extend(law, n + 1, length[PROXIMAL], &fork);
+    Reduced proximal = law_extend(law, burden[PROXIMAL], length[PROXIMAL], &fork);
 
     Trial out;
     Adjoint top = host->adjoint;
@@ -61,9 +65,9 @@ static Trial evaluate(const Network *net, const Host *host, const double length[
     Adjoint fresh_adjoint = law_descend(law, &proximal, top, &fresh);
     out.price = top.load * (proximal.load - host->whole.load) +
                 top.cost * (proximal.cost - host->whole.cost) + host->extra;
-    out.weight[PROXIMAL] = law_length_weight(law, &proximal, top, n + 1);
-    out.weight[DISTAL] = law_length_weight(law, &distal, distal_adjoint, n);
-    out.weight[FRESH] = law_length_weight(law, &fresh, fresh_adjoint, 1);
+    out.weight[PROXIMAL] = law_length_weight(law, &proximal, top, burden[PROXIMAL]);
+    out.weight[DISTAL] = law_length_weight(law, &distal, distal_adjoint, burden[DISTAL]);
+    out.weight[FRESH] = law_length_weight(law, &fresh, fresh_adjoint, burden[FRESH]);
 
     double unit = net->radius_unit * host->gauge;
     out.radius[PROXIMAL] = unit * proximal.rho;

@@ -1,0 +1,99 @@
+/* A weight is flow over terminals times viscosity over its reference, so that terminals times weight
+ * is the burden of the law. Growth takes weights for the radii of the last refresh, each of which
+ * moves them towards agreement; finish.c iterates until they agree. */
+#include "grow/weigh.h"
+
+#include "grow/territory.h"
+#include <stdlib.h>
+
+/* Lattice points a terminal: rough; fine, at least and at most; and fine ones in all, if that is
+ * between the two. */
+static const double rough_points = 8;
+static const double least_points = 256, most_points = 4096, all_points = 2e6;
+
+bool weigh_is_needed(const GrowParams *params)
+{
+    return params->viscosity_law != VISCOSITY_CONSTANT ||
+           params->terminal_flow != TERMINAL_FLOW_EQUAL;
+}
+
+double weigh_reference_pa_s(const GrowParams *params)
+{
+    return pa_s_from_cp(params->viscosity_law == VISCOSITY_PRIES ? params->plasma_viscosity_cp
+                                                                 : params->viscosity_cp);
+}
+
+static double relative_viscosity(const GrowParams *params, double radius)
+{
+    if (params->viscosity_law == VISCOSITY_CONSTANT)
+        return 1;
+    return viscosity_pries_pa_s(radius, params->hematocrit, 1);
+}
+
+Status weigh_share(const Network *net, const GrowParams *params, const Domain *domain,
+                   WeighPrecision precision, double *share, Err *err)
+{
+    double points = rough_points;
+    if (precision == WEIGH_FINE)
+        points = fmin(fmax(all_points / (double)network_terminals(net), least_points), most_points);
+    if (params->terminal_flow == TERMINAL_FLOW_TERRITORY)
+        return territory_count(net, domain, points,
+                               params->threads > 0 ? params->threads : threads_available(), share,
+                               err);
+    for (size_t i = 0; i < net->n; i++)
+        share[i] = net->segment[i].child[0] < 0;
+    return STATUS_OK;
+}
+
+void weigh_gather(const Network *net, double *share)
+{
+    for (int32_t i = network_first_upward(net, 0); i != 0; i = network_next_upward(net, i))
+        share[net->segment[i].parent] += share[i];
+    double scale = (double)network_terminals(net) / share[0];
+    for (size_t i = 0; i < net->n; i++)
+        share[i] *= scale;
+}
+
+Status weigh_segments(Network *net, const GrowParams *params, const double *flow,
+                      const double *radius, double part, double *change, Err *err)
+{
+    double sum = 0;
+    *change = 0;
+    for (size_t i = 1; i < net->n; i++) {
+        double viscosity = relative_viscosity(params, radius[i]);
+        if (!isfinite(viscosity))
+            return err_set(err, STATUS_INFEASIBLE,
+                           "with --viscosity-law pries no blood passes a vessel %.3g um wide, and "
+                           "with %zu terminals there is one; lower --terminals or raise --q-perf",
+                           2e3 * radius[i], network_terminals(net));
+        double *weight = &net->trait[i].weight;
+        double ratio = flow[i] / net->segment[i].terminals * viscosity / *weight;
+        *change = fmax(*change, fabs(ratio - 1));
+        *weight *= part == 1 ? ratio : pow(ratio, part);
+        if (net->segment[i].child[0] < 0)
+            sum += viscosity;
+    }
+    net->fresh_weight = sum / (double)network_terminals(net);
+    return STATUS_OK;
+}
+
+Status weigh_refresh(Network *net, const GrowParams *params, const Domain *domain, Err *err)
+{
+    double *flow = NULL, *radius = NULL;
+    Status status = STATUS_OK;
+    double change;
+    TRY_GOTO(mem_calloc(&flow, net->n, sizeof *flow, "flows", err));
+    TRY_GOTO(mem_calloc(&radius, net->n, sizeof *radius, "radii", err));
+    network_refresh(net);
+    for (size_t i = 0; i < net->n; i++)
+        radius[i] = (double)net->segment[i].radius;
+    TRY_GOTO(weigh_share(net, params, domain, WEIGH_ROUGH, flow, err));
+    weigh_gather(net, flow);
+    TRY_GOTO(weigh_segments(net, params, flow, radius, 1, &change, err));
+    network_resum(net);
+    network_refresh(net);
+done:
+    free(flow);
+    free(radius);
+    return status;
+}
