@@ -12,7 +12,8 @@
  *   terminal carries q_perf / N (Poiseuille);
  * - every point lies in the domain (disc, ball, rect, box, ellipsoid), to 1e-9 mm;
  * - in two dimensions, no two segments share a point other than a common node.
- * Prints what `corcast info --json` should say, and the largest deviations, as "key value" lines.
+ * Prints what `corcast info --json` should say, the largest deviations, how many segments are shorter
+ * than wide, and how many pairs without a common node overlap as tubes, as "key value" lines.
  */
 #include <errno.h>
 #include <math.h>
@@ -300,25 +301,85 @@ static bool segments_cross(const Node *nodes, int i, int j)
     return segments_meet(&nodes[from_i], &nodes[i], &nodes[from_j], &nodes[j]);
 }
 
-/* Every pair of segments whose extents in x overlap, found by a sweep from the left. */
-static void check_crossings(const Node *nodes, int n)
+static long double clamp01(long double t)
 {
+    return fminl(1, fmaxl(0, t));
+}
+
+/* The squared distance of a point from the segment a, b. */
+static long double distance2(const Node *point, const Node *a, const Node *b)
+{
+    long double ux = b->x - a->x, uy = b->y - a->y, uz = b->z - a->z;
+    long double wx = point->x - a->x, wy = point->y - a->y, wz = point->z - a->z;
+    long double t = clamp01((ux * wx + uy * wy + uz * wz) / (ux * ux + uy * uy + uz * uz));
+    wx -= t * ux, wy -= t * uy, wz -= t * uz;
+    return wx * wx + wy * wy + wz * wz;
+}
+
+static Node between(const Node *a, const Node *b, long double t)
+{
+    return (Node){.x = a->x + t * (b->x - a->x),
+                  .y = a->y + t * (b->y - a->y),
+                  .z = a->z + t * (b->z - a->z)};
+}
+
+/* The distance of two segments that share no node: the squared distance of a point on one from the
+ * other is convex, so a search by thirds finds its least. */
+static bool tubes_overlap(const Node *nodes, int i, int j)
+{
+    const Node *a = &nodes[nodes[i].parent], *b = &nodes[i];
+    const Node *c = &nodes[nodes[j].parent], *d = &nodes[j];
+    long double touch = b->radius + d->radius, low = 0, high = 1;
+    if (fminl(a->y, b->y) - touch > fmaxl(c->y, d->y) ||
+        fmaxl(a->y, b->y) + touch < fminl(c->y, d->y) ||
+        fminl(a->z, b->z) - touch > fmaxl(c->z, d->z) ||
+        fmaxl(a->z, b->z) + touch < fminl(c->z, d->z))
+        return false;
+    while (high - low > 1e-7L) {
+        long double third = (high - low) / 3;
+        Node left = between(a, b, low + third), right = between(a, b, high - third);
+        if (distance2(&left, c, d) < distance2(&right, c, d))
+            high -= third;
+        else
+            low += third;
+    }
+    Node nearest = between(a, b, (low + high) / 2);
+    return sqrtl(distance2(&nearest, c, d)) < touch * (1 - 1e-6L);
+}
+
+/* Every pair of segments whose extents in x overlap, found by a sweep from the left. In two
+ * dimensions none may cross. Returns how many without a common node overlap as tubes. */
+static long check_pairs(const Node *nodes, int n, bool flat)
+{
+    long overlaps = 0;
     Span *spans = malloc((size_t)n * sizeof *spans);
     if (!spans)
         fail("memory ran out");
     for (int i = 1; i < n; i++) {
-        long double a = nodes[i].x, b = nodes[nodes[i].parent].x;
-        spans[i - 1] = (Span){fminl(a, b), fmaxl(a, b), i};
+        long double a = nodes[i].x, b = nodes[nodes[i].parent].x, r = nodes[i].radius;
+        spans[i - 1] = (Span){fminl(a, b) - r, fmaxl(a, b) + r, i};
     }
     qsort(spans, (size_t)(n - 1), sizeof *spans, compare_spans);
     for (int a = 0; a < n - 1; a++) {
         for (int b = a + 1; b < n - 1 && spans[b].low <= spans[a].high; b++) {
-            if (segments_cross(nodes, spans[a].node, spans[b].node))
-                fail("segments %ld and %ld cross", nodes[spans[a].node].id,
-                     nodes[spans[b].node].id);
+            int i = spans[a].node, j = spans[b].node;
+            if (flat && segments_cross(nodes, i, j))
+                fail("segments %ld and %ld cross", nodes[i].id, nodes[j].id);
+            bool joined =
+                nodes[i].parent == j || nodes[j].parent == i || nodes[i].parent == nodes[j].parent;
+            overlaps += !joined && tubes_overlap(nodes, i, j);
         }
     }
     free(spans);
+    return overlaps;
+}
+
+static int shorter_than_wide(const Node *nodes, int n)
+{
+    int count = 0;
+    for (int i = 1; i < n; i++)
+        count += nodes[i].length < 2 * nodes[i].radius;
+    return count;
 }
 
 static void report(const Node *nodes, int n, const Header *header)
@@ -354,10 +415,9 @@ int main(int argc, char **argv)
     check_ids(nodes, n);
     link_tree(nodes, n);
     check_domain(nodes, n, &header);
-    if (header.dimension == 2)
-        check_crossings(nodes, n);
-    else if (header.dimension != 3)
+    if (header.dimension != 2 && header.dimension != 3)
         fail("the header does not say dimension 2 or 3");
+    long overlaps = check_pairs(nodes, n, header.dimension == 2);
     long double murray = murray_deviation(nodes, n, header.gamma);
     if (!(murray <= 1e-12L))
         fail("Murray's law is missed by %.3Lg of r^gamma", murray);
@@ -365,6 +425,7 @@ int main(int argc, char **argv)
     if (!(pressure <= 1e-9L))
         fail("a terminal is off p_term by %.3Lg of the pressure drop", pressure);
     report(nodes, n, &header);
+    printf("shorter_than_wide %d\noverlapping_pairs %ld\n", shorter_than_wide(nodes, n), overlaps);
     printf("murray_deviation %.3Lg\npressure_deviation %.3Lg\n", murray, pressure);
     free(nodes);
     return 0;
