@@ -12,7 +12,8 @@ static const Command command = {
     .summary = "grow an arterial tree by constrained constructive optimization",
     .operands = "-o T.swc",
     .examples = "  corcast grow --terminals 4000 --seed 7 -o tree.swc\n"
-                "  corcast grow --domain ball:30 --gamma 2.55 --lambda 1 -o tree.swc\n",
+                "  corcast grow --domain ball:30 --gamma 2.55 --lambda 1 -o tree.swc\n"
+                "  corcast grow --inlet 0,50 --inlet 30,-40 --inlet-shares 0.7,0.3 -o forest.swc\n",
     .max_operands = 0,
     .needs_output = true,
 };
@@ -53,6 +54,8 @@ Status run_grow(int argc, char **argv, Err *err)
     GrowParams params = grow_defaults();
     Refining refining;
     refining_init(&refining);
+    VectorList inlets = {.n = 0};
+    NumberList shares = {.n = 0};
     const char *output = NULL, *json = NULL, *domain_spec = "disc:50";
     int toss = (int)params.toss, law = VISCOSITY_CONSTANT, flow = TERMINAL_FLOW_EQUAL;
     const double huge = 1e300;
@@ -63,8 +66,10 @@ Status run_grow(int argc, char **argv, Err *err)
          "tissue, mm: disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
          "shell:A,B,C,THICKNESS,\n"
          "                                 polygon:FILE, mask:FILE, mesh:FILE (disc:50)"},
-        {"inlet", OPTION_VECTOR, &params.inlet, &params.has_inlet, 0, 0, NULL, NULL,
-         "where the tree starts, mm (top of the rim)"},
+        {"inlet", OPTION_VECTORS, &inlets, NULL, 0, 0, NULL, NULL,
+         "where the tree starts, mm (top of the rim); given several times: one tree from each"},
+        {"inlet-shares", OPTION_NUMBERS, &shares, NULL, 0, 0, NULL, NULL,
+         "of the terminals for the trees, in the order of the inlets, any sum (equal)"},
         {"gamma", OPTION_NUMBER, &params.gamma, NULL, -huge, huge, NULL, NULL,
          "Murray exponent (3)"},
         {"lambda", OPTION_NUMBER, &params.lambda, NULL, -huge, huge, NULL, NULL,
@@ -107,6 +112,10 @@ Status run_grow(int argc, char **argv, Err *err)
     if (parsed.common.help)
         goto done;
     params.seed = parsed.common.seed;
+    params.inlets = inlets.n;
+    params.inlet = inlets.at;
+    params.inlet_shares = shares.n;
+    params.inlet_share = shares.at;
     params.toss = (GrowToss)toss;
     params.viscosity_law = (ViscosityLaw)law;
     params.terminal_flow = (TerminalFlow)flow;
@@ -117,6 +126,11 @@ Status run_grow(int argc, char **argv, Err *err)
         status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .swc", output);
         goto done;
     }
+    if (inlets.n > 1 && refining.level != GROW_REFINE_NONE) {
+        status = err_set(err, STATUS_USAGE,
+                         "--refine: takes one tree, not one from each of %zu inlets", inlets.n);
+        goto done;
+    }
     TRY_GOTO(domain_parse(&domain, domain_spec, err));
     progress_start(&progress, "growing", parsed.common.quiet);
     status = grow_tree(&params, &domain, &tree, &report, err);
@@ -124,7 +138,8 @@ Status run_grow(int argc, char **argv, Err *err)
     progress_end(&progress);
     TRY_GOTO(status);
     TRY_GOTO(refining_apply(&refining, &parsed.common, &domain, &tree, &refined, err));
-    report.root_radius_mm = tree.radius_mm[0];
+    if (refined.target_before > 0)
+        report.root_radius_mm = tree.radius_mm[0];
     TRY_GOTO(tree_write(&tree, output, err));
     if (json)
         TRY_GOTO(write_report(json, &report, &refined,

@@ -108,19 +108,23 @@ static bool is_outdated(const Batch *batch, const Plan *plan)
     return false;
 }
 
-void batch_accept(Batch *batch, size_t limit)
+void batch_accept(Batch *batch, const Network *net, size_t *limit)
 {
     for (size_t i = 0; i < batch->n; i++) {
         const Plan *plan = &batch->plan[i];
         if (plan->state != PLAN_READY)
             continue;
-        if (batch->n_accepted == limit || is_outdated(batch, plan)) {
+        size_t *left = &limit[network_tree(net, plan->connection.segment)];
+        if (*left == 0)
+            continue;
+        if (is_outdated(batch, plan)) {
             batch->waiting[batch->n_waiting++] = plan->terminal;
         } else {
             const uint32_t *cell = batch->planner[plan->planner].footprint.cell;
             for (size_t k = plan->first_cell; k < plan->end_changed; k++)
                 batch->stamp[cell[k]] = batch->number;
             batch->accepted[batch->n_accepted++] = i;
+            --*left;
         }
     }
 }

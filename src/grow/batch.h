@@ -30,9 +30,10 @@ size_t batch_start(Batch *batch, size_t tosses);
 /* Plans all points. */
 MUST_CHECK Status batch_plan(Batch *batch, const Site *site, Err *err);
 
-/* Chooses the plans that go together, in order and up to `limit`; the points of all others that are
- * ready are put off. */
-void batch_accept(Batch *batch, size_t limit);
+/* Chooses the plans that go together, in order and no more for each tree of `net` than its `limit`,
+ * from which they are taken off; those that a tree may not get are given up, and the points of all
+ * others that are ready are put off. */
+void batch_accept(Batch *batch, const Network *net, size_t *limit);
 
 /* Makes the connections that were accepted. */
 MUST_CHECK Status batch_carry_out(Batch *batch, Network *net, Grid *grid, const Rules *rules,

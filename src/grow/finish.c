@@ -10,31 +10,42 @@
 #include "grow/finish.h"
 
 #include "grow/weigh.h"
+#include <assert.h>
 #include <float.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Node i, whose gauge is known, and the gauges of its daughters. */
+static void sweep_node(const Network *net, size_t i, double *gauge, Tree *tree)
+{
+    const Segment *segment = &net->segment[i];
+    double below = 1;
+    if (segment->parent >= 0) {
+        Reduced reduced = network_reduce(net, (int32_t)i);
+        tree->radius_mm[i] = net->radius_unit * gauge[i] * reduced.rho;
+        below = gauge[i] * reduced.widening;
+    }
+    for (int slot = 0; slot < 2 && segment->child[slot] >= 0; slot++)
+        gauge[segment->child[slot]] = below;
+}
+
 static Status sweep_down(const Network *net, Tree *tree, Err *err)
 {
-    double unit = net->radius_unit;
     double *gauge = NULL;
     TRY(mem_calloc(&gauge, net->n, sizeof *gauge, "gauges", err));
-    gauge[1] = 1;
     Status status = STATUS_OK;
-    for (size_t i = 1; i < net->n && status == STATUS_OK; i++) {
-        Reduced reduced = network_reduce(net, (int32_t)i);
-        tree->radius_mm[i] = unit * gauge[i] * reduced.rho;
-        for (int slot = 0; slot < 2; slot++)
-            if (net->segment[i].child[slot] >= 0)
-                gauge[net->segment[i].child[slot]] = gauge[i] * reduced.widening;
-        if (!(tree->radius_mm[i] >= DBL_MIN) || !isfinite(tree->radius_mm[i]))
+    for (size_t i = 0; i < net->n && status == STATUS_OK; i++) {
+        sweep_node(net, i, gauge, tree);
+        bool fits = tree->radius_mm[i] >= DBL_MIN && isfinite(tree->radius_mm[i]);
+        if (!fits && net->segment[i].parent >= 0)
             status = err_set(err, STATUS_INFEASIBLE,
                              "the radii span more than a double can hold; move --gamma, now %g, "
                              "towards 3",
                              net->law.gamma);
     }
-    tree->radius_mm[0] = tree->radius_mm[1];
+    for (size_t k = 0; k < net->inlets; k++)
+        tree->radius_mm[net->inlet[k]] = tree->radius_mm[net->inlet[k] + 1];
     free(gauge);
     return status;
 }
@@ -62,14 +73,14 @@ static Status settle_radii(Network *net, const GrowParams *params, double *share
     return err_set(err, STATUS_INFEASIBLE,
                    "the vessels of %zu terminals are too thin for --viscosity-law pries: radii and "
                    "viscosities do not settle; lower --terminals or raise --q-perf",
-                   network_terminals(net));
+                   net->terminals);
 }
 
 /* Radii, and flow shares where terminals have their own. */
 static Status write_radii(Network *net, const GrowParams *params, const Domain *domain, Tree *tree,
                           Err *err)
 {
-    if (!net->trait)
+    if (!weigh_is_needed(params))
         return sweep_down(net, tree, err);
     double *share = NULL;
     Status status = STATUS_OK;
@@ -168,10 +179,11 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
     TRY_GOTO(tree_init(&made, net->n, err));
     TRY_GOTO(write_radii(net, params, domain, &made, err));
     TRY_GOTO(write_header(params, domain, &made, err));
+    static_assert(TREE_NO_PARENT == -1, "as in a Segment");
     for (size_t i = 0; i < net->n; i++) {
         made.id[i] = (int32_t)i + 1;
         made.type[i] = GROW_SWC_TYPE;
-        made.parent[i] = i ? net->segment[i].parent : TREE_NO_PARENT;
+        made.parent[i] = net->segment[i].parent;
         made.position[i] = net->position[i];
     }
     *out = made;

@@ -13,6 +13,8 @@
 
 #include "grow/batch.h"
 #include "grow/finish.h"
+#include "grow/forest.h"
+#include "grow/plant.h"
 #include "grow/weigh.h"
 #include <stdlib.h>
 
@@ -38,6 +40,7 @@ typedef struct Growth {
     const Domain *domain;
     double size; /* of the domain's box, mm */
     Network net;
+    Forest forest;
     Grid grid;
     Random random;
     size_t grid_until, refresh_until; /* terminals */
@@ -50,7 +53,7 @@ typedef struct Growth {
 
 /* What became of the new points of a batch. */
 typedef struct Tally {
-    size_t tossed, in_vessel, outside, crowded;
+    size_t tossed, in_vessel, ahead, outside, crowded;
     size_t far; /* as far from the tree as asked, with a way to it within the tissue */
 } Tally;
 
@@ -66,7 +69,7 @@ static Status enter(Growth *growth, int32_t segment, Err *err)
 static Status make_grid(Growth *growth, Err *err)
 {
     Network *net = &growth->net;
-    size_t terminals = network_terminals(net);
+    size_t terminals = net->terminals;
     grid_release(&growth->grid);
     TRY(network_reorder(net, err));
     growth->grid_until = 2 * terminals;
@@ -76,8 +79,9 @@ static Status make_grid(Growth *growth, Err *err)
     TRY(grid_reset(&growth->grid, domain_bounds(growth->domain),
                    cells_per_terminal * (double)terminals, 2 * most, growth->batch.threads, err));
     TRY(batch_use_grid(&growth->batch, &growth->grid, err));
-    for (size_t i = 1; i < net->n; i++)
-        TRY(enter(growth, (int32_t)i, err));
+    for (size_t i = 0; i < net->n; i++)
+        if (net->segment[i].parent >= 0)
+            TRY(enter(growth, (int32_t)i, err));
     return STATUS_OK;
 }
 
@@ -85,9 +89,9 @@ static Status make_grid(Growth *growth, Err *err)
 static Status keep_up(Growth *growth, Err *err)
 {
     Network *net = &growth->net;
-    size_t terminals = network_terminals(net);
+    size_t terminals = net->terminals;
     if (terminals >= growth->refresh_until) {
-        if (net->trait)
+        if (weigh_is_needed(growth->params))
             TRY(weigh_refresh(net, growth->params, growth->domain, err));
         else
             network_refresh(net);
@@ -110,36 +114,18 @@ static Vec3 toss(Growth *growth)
     return domain_sample(growth->domain, &growth->random);
 }
 
-/* The first segment, from the inlet to a point that it reaches within the domain. */
-static Status plant(Growth *growth, Err *err)
-{
-    Vec3 inlet = growth->net.position[0];
-    for (int tries = 1; tries <= LAST_PATIENCE; tries++) {
-        Vec3 point = toss(growth);
-        if (vec3_distance(point, inlet) >= growth->toss_distance &&
-            (domain_is_convex(growth->domain) ||
-             domain_holds_segment(growth->domain, inlet, point))) {
-            network_plant(&growth->net, point);
-            return STATUS_OK;
-        }
-        if (tries % TOSSES_PER_ADDED == 0)
-            set_toss_distance(growth, growth->toss_distance * (1 - toss_notch));
-    }
-    return err_set(err, STATUS_INFEASIBLE,
-                   "no straight vessel leads from the inlet into the domain; choose an --inlet "
-                   "further inside");
-}
-
 /* Tosses a batch of points and connects those that can be. */
 static Status add_batch(Growth *growth, Tally *tally, Err *err)
 {
     Batch *batch = &growth->batch;
-    size_t terminals = network_terminals(&growth->net), added = terminals / TERMINALS_PER_ADDED;
+    size_t terminals = growth->net.terminals, added = terminals / TERMINALS_PER_ADDED;
     added = added < 1 ? 1 : added > MAX_ADDED ? MAX_ADDED : added;
     size_t first = batch_start(batch, TOSSES_PER_ADDED * added);
     for (size_t i = first; i < batch->n; i++)
         batch->plan[i].terminal = toss(growth);
+    forest_limit(&growth->forest, &growth->net);
     Site site = {.net = &growth->net,
+                 .limit = growth->forest.limit,
                  .grid = &growth->grid,
                  .domain = growth->domain,
                  .rules = &growth->rules,
@@ -151,18 +137,19 @@ static Status add_batch(Growth *growth, Tally *tally, Err *err)
     for (size_t i = first; i < batch->n; i++) {
         PlanState state = batch->plan[i].state;
         tally->in_vessel += state == PLAN_IN_VESSEL;
+        tally->ahead += state == PLAN_AHEAD;
         tally->outside += state == PLAN_OUTSIDE;
         tally->crowded += state == PLAN_CROWDED;
         tally->far += state >= PLAN_CROWDED;
     }
-    batch_accept(batch, growth->params->terminals - terminals);
+    batch_accept(batch, &growth->net, growth->forest.limit);
     return batch_carry_out(batch, &growth->net, &growth->grid, &growth->rules, err);
 }
 
 /* Holds the share of points that are far enough from the tree at one in TOSSES_PER_ADDED. */
 static void adapt_toss_distance(Growth *growth, const Tally *tally)
 {
-    double free = (double)(tally->tossed - tally->in_vessel);
+    double free = (double)(tally->tossed - tally->in_vessel - tally->ahead);
     if (free > 0) {
         double share = TOSSES_PER_ADDED * (double)tally->far / free;
         set_toss_distance(growth, growth->toss_distance * (1 + toss_notch * (share - 1)));
@@ -176,7 +163,7 @@ static Status be_patient(Growth *growth, const Tally *tally, Err *err)
     size_t before = growth->crowded;
     growth->rejected += tally->in_vessel + tally->outside + tally->crowded;
     growth->crowded += tally->in_vessel + tally->crowded;
-    growth->outside += tally->outside;
+    growth->outside += tally->outside + tally->ahead;
     if (growth->batch.n_accepted * PATIENCE > growth->crowded)
         growth->crowded = growth->outside = 0;
     else if (growth->crowded / PATIENCE > before / PATIENCE)
@@ -186,7 +173,7 @@ static Status be_patient(Growth *growth, const Tally *tally, Err *err)
     return err_set(err, STATUS_INFEASIBLE,
                    "no room for terminal %zu of --terminals %zu in %zu tries: lower --terminals, "
                    "choose a larger --domain, or move --gamma and --lambda towards 3 and 2",
-                   network_terminals(&growth->net) + 1, growth->params->terminals,
+                   growth->net.terminals + 1, growth->params->terminals,
                    growth->crowded + growth->outside);
 }
 
@@ -214,6 +201,7 @@ static Status add_terminals(Growth *growth, Err *err)
 static Status start(Growth *growth, Err *err)
 {
     const GrowParams *params = growth->params;
+    Network *net = &growth->net;
     const double pi = 3.14159265358979323846;
     Box box = domain_bounds(growth->domain);
     growth->size = vec3_distance(box.low, box.high);
@@ -227,23 +215,43 @@ static Status start(Growth *growth, Err *err)
     double drop = pa_from_mmhg(params->p_perf_mmhg) - pa_from_mmhg(params->p_term_mmhg);
     double resistance = 8 * weigh_reference_pa_s(params) / pi;
     double scale = sqrt(sqrt(resistance * mm3_s_from_ml_min(params->q_perf_ml_min) / drop));
-    Vec3 inlet = params->has_inlet ? params->inlet : domain_default_inlet(growth->domain);
-    return network_init(&growth->net, (Law){params->gamma, params->lambda}, scale,
-                        params->terminals, weigh_is_needed(params), inlet, err);
+    size_t trees = params->inlets > 0 ? params->inlets : 1;
+    double share[GROW_MAX_INLETS];
+    for (size_t k = 0; k < trees; k++)
+        share[k] = params->inlet_shares > 0 ? params->inlet_share[k] : 1;
+    TRY(forest_init(&growth->forest, trees, share, params->terminals, err));
+    TRY(network_init(net, (Law){params->gamma, params->lambda}, scale, 2 * params->terminals, trees,
+                     trees > 1 || weigh_is_needed(params), err));
+    for (size_t k = 0; k < trees; k++)
+        network_append(
+            net, -1, params->inlets > 0 ? params->inlet[k] : domain_default_inlet(growth->domain));
+    double distance = growth->toss_distance;
+    TRY(plant_trees(net, growth->domain, &growth->random, &distance, &growth->tosses, err));
+    set_toss_distance(growth, distance);
+    return STATUS_OK;
 }
 
 static void report_progress(const Growth *growth, size_t before)
 {
-    size_t terminals = network_terminals(&growth->net);
+    size_t terminals = growth->net.terminals;
     if (growth->params->progress && terminals / 256 > before / 256)
         growth->params->progress((double)terminals / (double)growth->params->terminals,
                                  growth->params->progress_context);
 }
 
+static double root_radius_of(const Tree *tree)
+{
+    double radius = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        if (!tree_is_segment(tree, i))
+            radius = fmax(radius, tree->radius_mm[i]);
+    return radius;
+}
+
 static double target_of(const Tree *tree)
 {
     double target = 0;
-    for (size_t i = 1; i < tree->n; i++)
+    for (size_t i = 0; i < tree->n; i++)
         target += tree_segment_length(tree, i) * pow(tree->radius_mm[i], tree->header.lambda);
     return target;
 }
@@ -256,9 +264,8 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     Growth growth = {.params = params, .domain = domain};
     Status status = STATUS_OK;
     TRY_GOTO(start(&growth, err));
-    TRY_GOTO(plant(&growth, err));
     size_t terminals;
-    while ((terminals = network_terminals(&growth.net)) < params->terminals) {
+    while ((terminals = growth.net.terminals) < params->terminals) {
         status = add_terminals(&growth, err);
         if (status == STATUS_INFEASIBLE && params->partial)
             break;
@@ -271,9 +278,9 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     TRY_GOTO(finish_tree(&growth.net, params, domain, out, err));
     if (report)
         *report = (GrowReport){.seconds = clock_seconds() - begun,
-                               .terminals = network_terminals(&growth.net),
+                               .terminals = growth.net.terminals,
                                .target = target_of(out),
-                               .root_radius_mm = out->radius_mm[0],
+                               .root_radius_mm = root_radius_of(out),
                                .tosses = growth.tosses,
                                .rejected = growth.rejected,
                                .thickness = growth.rules.thickness,
@@ -281,6 +288,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
 done:
     batch_release(&growth.batch);
     grid_release(&growth.grid);
+    forest_release(&growth.forest);
     network_release(&growth.net);
     return status;
 }

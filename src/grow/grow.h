@@ -19,7 +19,7 @@ typedef enum GrowToss {
     GROW_TOSS_TERMINAL, /* the other terminals' end points */
 } GrowToss;
 
-enum { GROW_MAX_TERMINALS = 8000000, GROW_MAX_CANDIDATES = 1000 };
+enum { GROW_MAX_TERMINALS = 8000000, GROW_MAX_CANDIDATES = 1000, GROW_MAX_INLETS = 64 };
 #define GROW_MAX_HEMATOCRIT 0.95
 
 /* The SWC type code of all nodes of a grown tree: SWC has none for arteries, and 3 is what files of
@@ -31,8 +31,10 @@ typedef struct GrowParams {
     double gamma;               /* Murray exponent, in (0, 10] */
     double lambda;              /* exponent of the target, >= 0 */
     uint64_t seed;              /* of the random points */
-    bool has_inlet;             /* else the domain's default inlet */
-    Vec3 inlet;                 /* mm */
+    size_t inlets;              /* at most GROW_MAX_INLETS; 0: one, the domain's default */
+    const Vec3 *inlet;          /* mm (borrowed); one tree grows from each */
+    size_t inlet_shares;        /* 0: all trees get as many terminals; else as many as inlets */
+    const double *inlet_share;  /* > 0 (borrowed): the trees' terminals, relative to each other */
     double p_perf_mmhg;         /* at the inlet */
     double p_term_mmhg;         /* at every terminal, below p_perf_mmhg */
     double q_perf_ml_min;       /* through the inlet, > 0 */
@@ -56,10 +58,10 @@ GrowParams grow_defaults(void);
 typedef struct GrowReport {
     double seconds; /* wall clock */
     size_t terminals;
-    double target; /* sum of l r^lambda, mm^(1 + lambda) */
-    double root_radius_mm;
-    uint64_t tosses;   /* random points drawn */
-    uint64_t rejected; /* points far enough from the tree to which no connection was possible */
+    double target;         /* sum of l r^lambda, mm^(1 + lambda) */
+    double root_radius_mm; /* the largest */
+    uint64_t tosses;       /* random points drawn */
+    uint64_t rejected;     /* points far enough from the tree to which no connection was possible */
     /* Growth makes segments at least as long as wide, and keeps those without a common node clear
      * of each other, at this share of their radii: 1 unless the domain was too full for vessels so
      * thick, down to 0 for centrelines that do not cross. */
@@ -70,8 +72,9 @@ typedef struct GrowReport {
 /* STATUS_USAGE with a sentence that names the option at fault. */
 MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err);
 
-/* Grows a tree into *out (release with tree_release). Node 0 is the inlet; nodes are in depth-first
- * order, ids 1 .. 2 N in that order, and the header is filled. Murray's law and the pressures hold
+/* Grows a tree, or a forest whose trees share all flow, into *out (release with tree_release). Node 0
+ * is the inlet; nodes are in depth-first order, tree after tree in the order of the inlets, ids
+ * 1 .. 2 N in that order, and the header is filled. Murray's law and the pressures hold
  * to rounding for the coordinates and radii in *out, by Pries's law with the viscosity at those very
  * radii. By territory, the flow share of a terminal is the number of points of a fine lattice over
  * the domain that are nearer to it than to any other. Centrelines do not cross. The same parameters

@@ -25,24 +25,19 @@ struct Arrivals {
     atomic_bool announced;
 };
 
-Status network_init(Network *net, Law law, double radius_scale, size_t terminals, bool traits,
-                    Vec3 inlet, Err *err)
+Status network_init(Network *net, Law law, double radius_scale, size_t capacity, size_t inlets,
+                    bool traits, Err *err)
 {
-    Network made = {.law = law,
-                    .radius_scale = radius_scale,
-                    .n = 1,
-                    .capacity = 2 * terminals,
-                    .fresh_weight = 1};
-    size_t n = made.capacity;
+    Network made = {
+        .law = law, .radius_scale = radius_scale, .capacity = capacity, .fresh_weight = 1};
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&made.segment, n, sizeof *made.segment, "segments", err));
-    TRY_GOTO(mem_calloc(&made.sensitivity, n, sizeof *made.sensitivity, "segments", err));
+    TRY_GOTO(mem_calloc(&made.segment, capacity, sizeof *made.segment, "segments", err));
+    TRY_GOTO(mem_calloc(&made.sensitivity, capacity, sizeof *made.sensitivity, "segments", err));
     if (traits)
-        TRY_GOTO(mem_calloc(&made.trait, n, sizeof *made.trait, "segments", err));
-    TRY_GOTO(mem_calloc(&made.position, n, sizeof *made.position, "positions", err));
-    TRY_GOTO(mem_calloc(&made.coming, n, sizeof *made.coming, "segments", err));
-    made.segment[0] = (Segment){.child = {-1, -1}, .parent = -1};
-    made.position[0] = inlet;
+        TRY_GOTO(mem_calloc(&made.trait, capacity, sizeof *made.trait, "segments", err));
+    TRY_GOTO(mem_calloc(&made.position, capacity, sizeof *made.position, "positions", err));
+    TRY_GOTO(mem_calloc(&made.coming, capacity, sizeof *made.coming, "segments", err));
+    TRY_GOTO(mem_calloc(&made.inlet, inlets, sizeof *made.inlet, "inlets", err));
     *net = made;
 done:
     if (status != STATUS_OK)
@@ -57,18 +52,24 @@ void network_release(Network *net)
     free(net->trait);
     free(net->position);
     free(net->coming);
+    free(net->inlet);
     *net = (Network){0};
 }
 
-static void set_nodes(Network *net, size_t n)
+static void set_terminals(Network *net, size_t terminals)
 {
-    net->n = n;
-    net->radius_unit = net->radius_scale / sqrt(sqrt((double)network_terminals(net)));
+    net->terminals = terminals;
+    net->radius_unit = net->radius_scale / sqrt(sqrt((double)terminals));
 }
 
 double network_cost(const Network *net)
 {
-    return net->segment[0].cost[0];
+    double cost = 0;
+    for (size_t k = 0; k < net->inlets; k++) {
+        const Segment *inlet = &net->segment[net->inlet[k]];
+        cost += inlet->cost[0] + inlet->cost[1];
+    }
+    return cost;
 }
 
 /* Radii beyond what a float holds are wider than any domain all the same. */
@@ -103,32 +104,34 @@ static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t paren
                                                 network_burden(net, parent, 1)};
 }
 
-static void set_root_radius(Network *net, int32_t root, const Reduced *reduced)
+static void adopt_root(Network *net, int32_t root, const Reduced *reduced)
 {
     net->segment[root].gauge = 1;
     net->segment[root].radius = narrow(net->radius_unit * reduced->rho);
     net->sensitivity[root] = (Sensitivity){0, 0};
 }
 
-void network_plant(Network *net, Vec3 terminal)
+int32_t network_append(Network *net, int32_t parent, Vec3 position)
 {
-    net->position[1] = terminal;
-    net->segment[1] = (Segment){.length = vec3_distance(net->position[0], terminal),
-                                .child = {-1, -1},
-                                .parent = 0,
-                                .terminals = 1};
+    int32_t i = (int32_t)net->n++;
+    net->position[i] = position;
+    net->segment[i] = (Segment){.child = {-1, -1}, .parent = parent};
     if (net->trait)
-        net->trait[1].weight = net->fresh_weight;
-    net->segment[0].child[0] = 1;
-    set_nodes(net, 2);
-    Reduced reduced = network_reduce(net, 1);
-    report(net, 1, &reduced);
-    set_root_radius(net, 1, &reduced);
+        net->trait[i] =
+            (Trait){net->fresh_weight, parent < 0 ? (int32_t)net->inlets : net->trait[parent].tree};
+    if (parent < 0) {
+        net->inlet[net->inlets++] = i;
+    } else {
+        int32_t *child = net->segment[parent].child;
+        child[child[0] >= 0] = i;
+    }
+    return i;
 }
 
 void network_extend(Network *net, size_t splits)
 {
-    set_nodes(net, net->n + 2 * splits);
+    net->n += 2 * splits;
+    set_terminals(net, net->terminals + splits);
 }
 
 void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal, int32_t fresh)
@@ -154,7 +157,7 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
     distal->length = vec3_distance(bifurcation, net->position[segment]);
     if (net->trait) {
         net->trait[proximal] = net->trait[segment];
-        net->trait[fresh].weight = net->fresh_weight;
+        net->trait[fresh] = (Trait){net->fresh_weight, net->trait[segment].tree};
     }
 
     Reduced daughters[2] = {network_reduce(net, segment), network_reduce(net, fresh)};
@@ -196,7 +199,7 @@ static void announce(size_t index, int worker, void *context)
     size_t end = chunk_end(index, carrying->splits);
     for (size_t k = index * CHUNK; k < end; k++) {
         int32_t i = split_proximal(carrying, k);
-        while (i != 0 &&
+        while (net->segment[i].parent >= 0 &&
                !atomic_exchange_explicit(&net->coming[i].announced, true, memory_order_relaxed)) {
             i = net->segment[i].parent;
             atomic_fetch_add_explicit(&net->coming[i].below, 1, memory_order_relaxed);
@@ -217,7 +220,8 @@ static void ascend(size_t index, int worker, void *context)
     Network *net = carrying->net;
     size_t end = chunk_end(index, carrying->splits);
     for (size_t k = index * CHUNK; k < end; k++)
-        for (int32_t i = split_proximal(carrying, k); arrive(net, i) && i != 0;) {
+        for (int32_t i = split_proximal(carrying, k);
+             arrive(net, i) && net->segment[i].parent >= 0;) {
             Arrivals *here = &net->coming[i];
             int gain = atomic_load_explicit(&here->gain, memory_order_relaxed);
             atomic_store_explicit(&here->gain, 0, memory_order_relaxed);
@@ -238,37 +242,49 @@ void network_carry(Network *net, size_t splits, int threads)
         threads = 1;
     threads_for(chunks, threads, announce, &carrying);
     threads_for(chunks, threads, ascend, &carrying);
-    atomic_store_explicit(&net->coming[0].gain, 0, memory_order_relaxed);
+    for (size_t k = 0; k < net->inlets; k++) {
+        int32_t inlet = net->inlet[k];
+        net->segment[inlet].terminals +=
+            atomic_exchange_explicit(&net->coming[inlet].gain, 0, memory_order_relaxed);
+    }
 }
 
-/* The segment after `i` in depth-first order, 0 after the last. */
+/* The node after `i` in the depth-first order of its tree, -1 after the last. */
 static int32_t next_depth_first(const Network *net, int32_t i)
 {
     if (net->segment[i].child[0] >= 0)
         return net->segment[i].child[0];
-    for (; i != 0; i = net->segment[i].parent) {
-        const Segment *parent = &net->segment[net->segment[i].parent];
-        if (parent->child[0] == i && parent->child[1] >= 0)
-            return parent->child[1];
+    for (int32_t above; (above = net->segment[i].parent) >= 0; i = above) {
+        const int32_t *child = net->segment[above].child;
+        if (child[0] == i && child[1] >= 0)
+            return child[1];
     }
-    return 0;
+    return -1;
+}
+
+static void refresh_daughters(Network *net, int32_t i)
+{
+    const Segment *segment = &net->segment[i];
+    if (segment->child[0] < 0)
+        return;
+    Reduced mother = {0};
+    if (segment->parent >= 0)
+        mother = network_reduce(net, i);
+    for (int slot = 0; slot < 2 && segment->child[slot] >= 0; slot++) {
+        int32_t child = segment->child[slot];
+        Reduced daughter = network_reduce(net, child);
+        if (segment->parent >= 0)
+            adopt(net, child, &daughter, i, &mother);
+        else
+            adopt_root(net, child, &daughter);
+    }
 }
 
 void network_refresh(Network *net)
 {
-    int32_t root = net->segment[0].child[0];
-    Reduced reduced = network_reduce(net, root);
-    set_root_radius(net, root, &reduced);
-    for (int32_t i = root; i != 0; i = next_depth_first(net, i)) {
-        if (net->segment[i].child[0] < 0)
-            continue;
-        Reduced mother = network_reduce(net, i);
-        for (int slot = 0; slot < 2; slot++) {
-            int32_t child = net->segment[i].child[slot];
-            Reduced daughter = network_reduce(net, child);
-            adopt(net, child, &daughter, i, &mother);
-        }
-    }
+    for (size_t k = 0; k < net->inlets; k++)
+        for (int32_t i = net->inlet[k]; i >= 0; i = next_depth_first(net, i))
+            refresh_daughters(net, i);
 }
 
 /* Replaces items[k] by items[order[k]] for all k. */
@@ -297,14 +313,32 @@ int32_t network_next_upward(const Network *net, int32_t i)
     return child[0] == i && child[1] >= 0 ? network_first_upward(net, child[1]) : above;
 }
 
+/* Counts the terminals of node i from those of its daughters. */
+static void count_terminals(Network *net, int32_t i)
+{
+    Segment *segment = &net->segment[i];
+    segment->terminals = segment->child[0] < 0 && segment->parent >= 0;
+    for (int slot = 0; slot < 2 && segment->child[slot] >= 0; slot++)
+        segment->terminals += net->segment[segment->child[slot]].terminals;
+}
+
 void network_resum(Network *net)
 {
-    for (int32_t i = network_first_upward(net, 0); i != 0; i = network_next_upward(net, i)) {
-        Segment *segment = &net->segment[i];
-        segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
-        Reduced reduced = network_reduce(net, i);
-        report(net, i, &reduced);
+    size_t terminals = 0;
+    for (size_t k = 0; k < net->inlets; k++) {
+        int32_t inlet = net->inlet[k];
+        for (int32_t i = network_first_upward(net, inlet); i != inlet;
+             i = network_next_upward(net, i)) {
+            Segment *segment = &net->segment[i];
+            segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
+            count_terminals(net, i);
+            Reduced reduced = network_reduce(net, i);
+            report(net, i, &reduced);
+        }
+        count_terminals(net, inlet);
+        terminals += (size_t)net->segment[inlet].terminals;
     }
+    set_terminals(net, terminals);
 }
 
 Status network_reorder(Network *net, Err *err)
@@ -314,12 +348,14 @@ Status network_reorder(Network *net, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&order, n, sizeof *order, "nodes to renumber", err));
     TRY_GOTO(mem_calloc(&place, n, sizeof *place, "nodes to renumber", err));
-    int32_t count = 0, i = 0;
-    do {
-        place[i] = count;
-        order[count++] = i;
-        i = next_depth_first(net, i);
-    } while (i != 0);
+    int32_t count = 0;
+    for (size_t k = 0; k < net->inlets; k++)
+        for (int32_t i = net->inlet[k]; i >= 0; i = next_depth_first(net, i)) {
+            place[i] = count;
+            order[count++] = i;
+        }
+    for (size_t k = 0; k < net->inlets; k++)
+        net->inlet[k] = place[net->inlet[k]];
     TRY_GOTO(permute(net->segment, sizeof *net->segment, order, n, err));
     TRY_GOTO(permute(net->sensitivity, sizeof *net->sensitivity, order, n, err));
     if (net->trait)

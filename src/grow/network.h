@@ -1,8 +1,9 @@
-/* The growing tree: a binary tree of segments that knows its own hydrodynamics at every moment.
+/* The growing tree, or forest: binary trees of segments that know their own hydrodynamics at every
+ * moment.
  *
- * Every node but the inlet is the distal end of the segment of its index; the inlet's only child is
- * the root segment. Segments are split in place: the one that is split keeps its index as the distal
- * part. */
+ * Every node but an inlet is the distal end of the segment of its index; what hangs on an inlet are
+ * root segments, one where the tree is grown. Segments are split in place: the one that is split keeps
+ * its index as the distal part. */
 #ifndef CORCAST_GROW_NETWORK_H
 #define CORCAST_GROW_NETWORK_H
 
@@ -29,11 +30,12 @@ typedef struct Sensitivity {
     double extra; /* dS_root for one more terminal on every segment above this one */
 } Sensitivity;
 
-/* What sets segments apart whose flow does not just count terminals or whose viscosity differs. */
+/* What sets segments apart where terminals are unequal, viscosities differ, or several trees grow. */
 typedef struct Trait {
     /* The segment's flow over that of as many mean terminals, times its viscosity over that of
      * radius_scale; as of the last refresh, or of its making. */
     double weight;
+    int32_t tree; /* which of the inlets it hangs on */
 } Trait;
 
 /* What a node waits for while changes are carried towards the root. */
@@ -44,22 +46,26 @@ typedef struct Network {
     double radius_scale; /* q N^(1/4), mm^(3/4) */
     double radius_unit;  /* q, mm^(3/4): r = q * gauge * rho */
     size_t n, capacity;  /* nodes */
+    size_t terminals;
+    int32_t *inlet; /* nodes */
+    size_t inlets;
     Segment *segment;
     Sensitivity *sensitivity;
-    Trait *trait;        /* NULL: all weights are 1 */
+    Trait *trait;        /* NULL: all weights are 1, and there is one tree */
     double fresh_weight; /* of a new terminal's segment */
     Vec3 *position;      /* mm */
     Arrivals *coming;    /* at rest between calls */
 } Network;
 
-/* An inlet with room for `terminals`; `traits`: whether segments have them. */
-MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, size_t terminals,
-                               bool traits, Vec3 inlet, Err *err);
+/* Room for so many nodes, of them so many inlets; `traits`: whether segments have them. */
+MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, size_t capacity,
+                               size_t inlets, bool traits, Err *err);
 void network_release(Network *net);
 
-static inline size_t network_terminals(const Network *net)
+/* The tree that segment i is of. */
+static inline int32_t network_tree(const Network *net, int32_t i)
 {
-    return net->n / 2;
+    return net->trait ? net->trait[i].tree : 0;
 }
 
 /* What `terminals` more on segment i add to its load, over its length. */
@@ -91,8 +97,8 @@ static inline Capsule network_capsule(const Network *net, int32_t i)
     return (Capsule){net->position[segment->parent], net->position[i], (double)segment->radius};
 }
 
-/* The first segment, from the inlet to `terminal`. */
-void network_plant(Network *net, Vec3 terminal);
+/* Appends a node that hangs on `parent`, or for -1 an inlet, and returns it. All sums are due. */
+int32_t network_append(Network *net, int32_t parent, Vec3 position);
 
 /* Makes room for so many splits. The radii of what they make are those for as many more terminals. */
 void network_extend(Network *net, size_t splits);
@@ -103,25 +109,25 @@ void network_extend(Network *net, size_t splits);
  * have no node in common. */
 void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal, int32_t fresh);
 
-/* Carries all splits since network_extend up to the inlet, on `threads` threads. */
+/* Carries all splits since network_extend up to the inlets, on `threads` threads. */
 void network_carry(Network *net, size_t splits, int threads);
 
-/* S_root; not finite, or 0, when the radii of the tree span more than a double can hold. */
+/* S_root, over all trees; not finite, or 0, when radii span more than a double can hold. */
 double network_cost(const Network *net);
 
 /* Brings radius, gauge and sensitivities of all segments up to date. */
 void network_refresh(Network *net);
 
-/* The segment after `i` in the order in which daughters come before their mother, which begins with
+/* The node after `i` in the order in which daughters come before their mother, which begins with
  * network_first_upward of the inlet and ends with the inlet. */
 int32_t network_next_upward(const Network *net, int32_t i);
 /* The first of `i` and all below it in that order. */
 int32_t network_first_upward(const Network *net, int32_t i);
 
-/* Sums up lengths, flares and costs anew from positions and weights. */
+/* Sums up lengths, terminals, flares and costs anew from positions and weights. */
 void network_resum(Network *net);
 
-/* Renumbers the nodes depth first, so that parents come before children and neighbours in the tree
+/* Renumbers the nodes depth first, tree after tree, so that parents come before children and neighbours in the tree
  * are neighbours in memory. On failure `net` is only fit for network_release. */
 MUST_CHECK Status network_reorder(Network *net, Err *err);
 

@@ -50,10 +50,15 @@ static Status choose(const Site *site, Planner *planner, Plan *plan, Err *err)
     Connection *connection = planner->connection;
     int near = grid_nearest(site->grid, plan->terminal, site->candidates, planner->near);
     int count = 0;
-    for (int i = 0; i < near; i++)
-        if (place_connection(site->net, site->rules, planner->near[i].segment, plan->terminal,
-                             &connection[count]))
+    bool ahead = false;
+    for (int i = 0; i < near; i++) {
+        int32_t segment = planner->near[i].segment;
+        if (site->limit[network_tree(site->net, segment)] == 0)
+            ahead = true;
+        else if (place_connection(site->net, site->rules, segment, plan->terminal,
+                                  &connection[count]))
             count++;
+    }
     bool inside = false, outside = false, is_free = false;
     for (; count > 0 && !is_free; count--) {
         int best = cheapest(connection, count);
@@ -68,7 +73,10 @@ static Status choose(const Site *site, Planner *planner, Plan *plan, Err *err)
             outside = true;
         }
     }
-    plan->state = is_free ? PLAN_READY : outside && !inside ? PLAN_OUTSIDE : PLAN_CROWDED;
+    plan->state = is_free              ? PLAN_READY
+                  : ahead              ? PLAN_AHEAD
+                  : outside && !inside ? PLAN_OUTSIDE
+                                       : PLAN_CROWDED;
     return STATUS_OK;
 }
 

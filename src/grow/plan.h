@@ -10,6 +10,7 @@
 typedef enum PlanState {
     PLAN_TOO_NEAR,  /* nearer to the tree than the toss distance */
     PLAN_IN_VESSEL, /* at the toss distance, but in a thick vessel */
+    PLAN_AHEAD,     /* a tree is in the way that may get no more terminals for now */
     PLAN_OUTSIDE,   /* every way leads through what is not tissue */
     PLAN_CROWDED,   /* vessels are in the way */
     PLAN_READY,
@@ -30,6 +31,7 @@ typedef struct Plan {
 /* What all plans of a batch are made for. */
 typedef struct Site {
     const Network *net;
+    const size_t *limit; /* by tree: terminals that it may get in this batch */
     const Grid *grid;
     const Domain *domain;
     const Rules *rules;

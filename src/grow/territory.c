@@ -43,7 +43,7 @@ static void lay_lattice(Survey *survey, double points)
 static Status enter_terminals(Survey *survey, const Network *net, Err *err)
 {
     TRY(grid_reset(&survey->grid, domain_bounds(survey->domain),
-                   cells_per_terminal * (double)network_terminals(net), net->n, 1, err));
+                   cells_per_terminal * (double)net->terminals, net->n, 1, err));
     for (size_t i = 0; i < net->n; i++) {
         if (net->segment[i].child[0] >= 0)
             continue;
@@ -75,7 +75,7 @@ Status territory_count(const Network *net, const Domain *domain, double points, 
 {
     Survey survey = {.domain = domain, .nodes = net->n};
     Status status = STATUS_OK;
-    lay_lattice(&survey, points * (double)network_terminals(net));
+    lay_lattice(&survey, points * (double)net->terminals);
     TRY_GOTO(enter_terminals(&survey, net, err));
     TRY_GOTO(mem_calloc(&survey.points, (size_t)threads * net->n, sizeof *survey.points,
                         "territories", err));

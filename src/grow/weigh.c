@@ -35,7 +35,7 @@ Status weigh_share(const Network *net, const GrowParams *params, const Domain *d
 {
     double points = rough_points;
     if (precision == WEIGH_FINE)
-        points = fmin(fmax(all_points / (double)network_terminals(net), least_points), most_points);
+        points = fmin(fmax(all_points / (double)net->terminals, least_points), most_points);
     if (params->terminal_flow == TERMINAL_FLOW_TERRITORY)
         return territory_count(net, domain, points,
                                params->threads > 0 ? params->threads : threads_available(), share,
@@ -47,11 +47,16 @@ Status weigh_share(const Network *net, const GrowParams *params, const Domain *d
 
 void weigh_gather(const Network *net, double *share)
 {
-    for (int32_t i = network_first_upward(net, 0); i != 0; i = network_next_upward(net, i))
-        share[net->segment[i].parent] += share[i];
-    double scale = (double)network_terminals(net) / share[0];
+    double sum = 0;
+    for (size_t k = 0; k < net->inlets; k++) {
+        int32_t inlet = net->inlet[k];
+        for (int32_t i = network_first_upward(net, inlet); i != inlet;
+             i = network_next_upward(net, i))
+            share[net->segment[i].parent] += share[i];
+        sum += share[inlet];
+    }
     for (size_t i = 0; i < net->n; i++)
-        share[i] *= scale;
+        share[i] *= (double)net->terminals / sum;
 }
 
 Status weigh_segments(Network *net, const GrowParams *params, const double *flow,
@@ -59,13 +64,15 @@ Status weigh_segments(Network *net, const GrowParams *params, const double *flow
 {
     double sum = 0;
     *change = 0;
-    for (size_t i = 1; i < net->n; i++) {
+    for (size_t i = 0; i < net->n; i++) {
+        if (net->segment[i].parent < 0)
+            continue;
         double viscosity = relative_viscosity(params, radius[i]);
         if (!isfinite(viscosity))
             return err_set(err, STATUS_INFEASIBLE,
                            "with --viscosity-law pries no blood passes a vessel %.3g um wide, and "
                            "with %zu terminals there is one; lower --terminals or raise --q-perf",
-                           2e3 * radius[i], network_terminals(net));
+                           2e3 * radius[i], net->terminals);
         double *weight = &net->trait[i].weight;
         double ratio = flow[i] / net->segment[i].terminals * viscosity / *weight;
         *change = fmax(*change, fabs(ratio - 1));
@@ -73,7 +80,7 @@ Status weigh_segments(Network *net, const GrowParams *params, const double *flow
         if (net->segment[i].child[0] < 0)
             sum += viscosity;
     }
-    net->fresh_weight = sum / (double)network_terminals(net);
+    net->fresh_weight = sum / (double)net->terminals;
     return STATUS_OK;
 }
 

@@ -90,8 +90,9 @@ static void laws_hold_for_any_flow_pressure_and_size(void **state)
     params.viscosity_cp = 1.2;
     params.toss = GROW_TOSS_TERMINAL;
     params.candidates = 1;
-    params.has_inlet = true;
-    params.inlet = vec3(3e-7, -7e-7, 0);
+    const Vec3 inlet = vec3(3e-7, -7e-7, 0);
+    params.inlets = 1;
+    params.inlet = &inlet;
     assert_all(&params, "disc:0.0238");
     assert_all(&params, "ball:1e6");
     assert_all(&params, "disc:1e-6");
@@ -311,13 +312,14 @@ static void refuses_parameters_out_of_range_and_names_the_option(void **state)
     REFUSES(candidates, 0, "--candidates 0");
     REFUSES(candidates, GROW_MAX_CANDIDATES + 1, "--candidates 1001");
     GrowParams params = grow_defaults();
-    params.has_inlet = true;
+    params.inlets = 1;
     const Vec3 inlets[] = {{0, 50.1, 0}, {3, 4, 0.01}, {NAN, 0, 0}};
     for (size_t i = 0; i < sizeof inlets / sizeof *inlets; i++) {
-        params.inlet = inlets[i];
+        params.inlet = &inlets[i];
         assert_refused(params, "--inlet");
     }
-    params.inlet = vec3(35.3553391, 35.3553391, 0); /* on the rim but for typing */
+    const Vec3 rim = vec3(35.3553391, 35.3553391, 0); /* but for typing */
+    params.inlet = &rim;
     Domain domain = domain_of("disc:50");
     assert_int_equal(grow_params_check(&params, &domain, NULL), STATUS_OK);
 }
