@@ -27,6 +27,8 @@ enum { TOSSES_PER_ADDED = 3, MAX_BATCH = 2 * TOSSES_PER_ADDED * MAX_ADDED };
 static const double toss_notch = 0.1;
 /* Segments are no shorter than this share of the toss distance. */
 static const double least_length_share = 0.1;
+/* Trees with fewer terminals than this have cells too large to be full after a few misses. */
+enum { LEAST_WITH_FULL_CELLS = 1000 };
 /* Points without a connection for one that has: then vessels count as half as thick, below the least
  * thickness as lines, and at last the domain is full. */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
@@ -131,10 +133,11 @@ static Status plant(Growth *growth, Err *err)
 static void fill_batch(Growth *growth, size_t first, Tally *tally)
 {
     Batch *batch = &growth->batch;
+    bool skip = network_terminals(&growth->net) >= LEAST_WITH_FULL_CELLS;
     size_t i = first;
     while (i < batch->n && tally->skipped < LAST_PATIENCE * (i - first + 1)) {
         Vec3 point = toss(growth);
-        if (batch_is_full(batch, &growth->grid, point))
+        if (skip && batch_is_full(batch, &growth->grid, point))
             tally->skipped++;
         else
             batch->plan[i++].terminal = point;
