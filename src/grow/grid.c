@@ -273,6 +273,13 @@ static float end_distance2(const GridItem *item, const float point[3])
     return dx * dx + dy * dy + dz * dz;
 }
 
+size_t grid_cell_at(const Grid *grid, Vec3 point)
+{
+    return grid_index(grid, cell_of(grid, point.x - grid->low.x, 0),
+                      cell_of(grid, point.y - grid->low.y, 1),
+                      cell_of(grid, point.z - grid->low.z, 2));
+}
+
 GridBox grid_box(const Grid *grid, Vec3 point, double distance)
 {
     GridBox box;
@@ -317,11 +324,11 @@ GridRoom grid_room(const Grid *grid, Vec3 point, double distance, bool terminals
                    .terminals_only = terminals_only};
     store(grid, point, query.at);
     /* Its own cell has every vessel that may hold the point, and most that are too near. */
-    GridBox own = grid_box(grid, point, 0), box = grid_box(grid, point, distance);
-    size_t home = grid_index(grid, own.low[0], own.low[1], own.low[2]);
+    size_t home = grid_cell_at(grid, point);
     GridRoom room = cell_room(grid, home, &query);
     if (room == GRID_TOO_NEAR)
         return room;
+    GridBox box = grid_box(grid, point, distance);
     for (int z = box.low[2]; z <= box.high[2]; z++)
         for (int y = box.low[1]; y <= box.high[1]; y++)
             for (int x = box.low[0]; x <= box.high[0]; x++) {

@@ -62,6 +62,9 @@ void grid_release(Grid *grid);
 /* The number of cells. */
 size_t grid_cells(const Grid *grid);
 
+/* The cell that holds `point`. */
+size_t grid_cell_at(const Grid *grid, Vec3 point);
+
 /* The item of a vessel of `radius` from capsule.a (proximal) to capsule.b that reaches as far as
  * the capsule. */
 GridItem grid_item(const Grid *grid, Capsule capsule, double radius);

@@ -23,13 +23,15 @@ static const double cells_per_terminal = 2;
 /* The sensitivities serve until there are this many times the terminals. */
 static const double refresh_growth = 1.1;
 /* A batch adds about one terminal for every so many there are. */
-enum { TERMINALS_PER_ADDED = 128, MAX_ADDED = 1024 };
+enum { TERMINALS_PER_ADDED = 64, MAX_ADDED = 2048 };
 /* Points tossed for each terminal to be added, and the batch's size at most. */
-enum { TOSSES_PER_ADDED = 5, MAX_BATCH = 2 * TOSSES_PER_ADDED * MAX_ADDED };
+enum { TOSSES_PER_ADDED = 3, MAX_BATCH = 2 * TOSSES_PER_ADDED * MAX_ADDED };
 /* How far the toss distance falls after a batch in which no point is far enough from the tree. */
 static const double toss_notch = 0.1;
 /* Segments are no shorter than this share of the toss distance. */
 static const double least_length_share = 0.1;
+/* Trees with fewer terminals than this have cells too large to be full after a few misses. */
+enum { LEAST_WITH_FULL_CELLS = 1000 };
 /* Points without a connection for one that has: then vessels count as half as thick, below the least
  * thickness as lines, and at last the domain is full. */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
@@ -53,6 +55,7 @@ typedef struct Growth {
 
 /* What became of the new points of a batch. */
 typedef struct Tally {
+    size_t skipped; /* in cells that are full; not among the others */
     size_t tossed, in_vessel, ahead, outside, crowded;
     size_t far; /* as far from the tree as asked, with a way to it within the tissue */
 } Tally;
@@ -114,6 +117,23 @@ static Vec3 toss(Growth *growth)
     return domain_sample(growth->domain, &growth->random);
 }
 
+/* Tosses the new points of a batch, from plan[first] on. */
+static void fill_batch(Growth *growth, size_t first, Tally *tally)
+{
+    Batch *batch = &growth->batch;
+    bool skip = growth->net.terminals >= LEAST_WITH_FULL_CELLS;
+    size_t i = first;
+    while (i < batch->n && tally->skipped < LAST_PATIENCE * (i - first + 1)) {
+        Vec3 point = toss(growth);
+        if (skip && batch_is_full(batch, &growth->grid, point))
+            tally->skipped++;
+        else
+            batch->plan[i++].terminal = point;
+    }
+    batch->n = i;
+    tally->tossed = i - first;
+}
+
 /* Tosses a batch of points and connects those that can be. */
 static Status add_batch(Growth *growth, Tally *tally, Err *err)
 {
@@ -121,8 +141,8 @@ static Status add_batch(Growth *growth, Tally *tally, Err *err)
     size_t terminals = growth->net.terminals, added = terminals / TERMINALS_PER_ADDED;
     added = added < 1 ? 1 : added > MAX_ADDED ? MAX_ADDED : added;
     size_t first = batch_start(batch, TOSSES_PER_ADDED * added);
-    for (size_t i = first; i < batch->n; i++)
-        batch->plan[i].terminal = toss(growth);
+    *tally = (Tally){0};
+    fill_batch(growth, first, tally);
     forest_limit(&growth->forest, &growth->net);
     Site site = {.net = &growth->net,
                  .limit = growth->forest.limit,
@@ -133,7 +153,6 @@ static Status add_batch(Growth *growth, Tally *tally, Err *err)
                  .terminals_only = growth->params->toss == GROW_TOSS_TERMINAL,
                  .candidates = growth->params->candidates};
     TRY(batch_plan(batch, &site, err));
-    *tally = (Tally){.tossed = batch->n - first};
     for (size_t i = first; i < batch->n; i++) {
         PlanState state = batch->plan[i].state;
         tally->in_vessel += state == PLAN_IN_VESSEL;
@@ -142,7 +161,7 @@ static Status add_batch(Growth *growth, Tally *tally, Err *err)
         tally->crowded += state == PLAN_CROWDED;
         tally->far += state >= PLAN_CROWDED;
     }
-    batch_accept(batch, &growth->net, growth->forest.limit);
+    batch_accept(batch, &growth->net, &growth->grid, growth->forest.limit);
     return batch_carry_out(batch, &growth->net, &growth->grid, &growth->rules, err);
 }
 
@@ -161,13 +180,16 @@ static Status be_patient(Growth *growth, const Tally *tally, Err *err)
 {
     Rules *rules = &growth->rules;
     size_t before = growth->crowded;
-    growth->rejected += tally->in_vessel + tally->outside + tally->crowded;
-    growth->crowded += tally->in_vessel + tally->crowded;
+    size_t crowded = tally->skipped + tally->in_vessel + tally->crowded;
+    growth->rejected += crowded + tally->outside;
+    growth->crowded += crowded;
     growth->outside += tally->outside + tally->ahead;
-    if (growth->batch.n_accepted * PATIENCE > growth->crowded)
+    if (growth->batch.n_accepted * PATIENCE > growth->crowded) {
         growth->crowded = growth->outside = 0;
-    else if (growth->crowded / PATIENCE > before / PATIENCE)
+    } else if (growth->crowded / PATIENCE > before / PATIENCE) {
         rules->thickness = rules->thickness > least_thickness ? rules->thickness / 2 : 0;
+        TRY(batch_use_grid(&growth->batch, &growth->grid, err));
+    }
     if (growth->crowded + growth->outside < LAST_PATIENCE)
         return STATUS_OK;
     return err_set(err, STATUS_INFEASIBLE,

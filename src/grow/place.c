@@ -1,14 +1,16 @@
 /* The cost of a connection depends on the bifurcation through three lengths only. Where it is
  * least, the derivatives with respect to them pull evenly: the point is the weighted Fermat point
- * for these derivatives as weights [fermat.h]. They vary slowly, so the Fermat point for the weights
- * at a middling place is within a hair of the best, and the same weights price it to first order. A
- * point that collapses onto an end is pushed off it to the shortest length the rules allow, in the
+ * for these derivatives as weights [fermat.h]. They vary slowly, so weights at one place and the
+ * Fermat point for them in turn converge in a few rounds. To rank connections one round from a
+ * middling place does, priced to first order by the same weights; the rest are for the one that is
+ * made. A point that collapses onto an end is pushed off it to the shortest length the rules allow, in the
  * direction that costs least: such connections are among the best there are, so they must not be
- * lost. Only the connection that is made is priced in full. */
+ * lost. */
 #include "grow/place.h"
 
 #include "grow/fermat.h"
 #include <stdlib.h>
+#include <string.h>
 
 /* Vessels widen as the tree below them grows: the rules hold for radii this much greater, and so at
  * the end of growth for nearly all vessels at their final radii. For length, and for keeping clear
@@ -16,6 +18,8 @@
 static const double length_reserve = 1.15, clearance_reserve = 1.1;
 /* And this much they may widen until the grid is made anew. */
 static const double reach_reserve = 1.4;
+/* How often the place of the connection that is made is found anew. */
+enum { ROUNDS = 2 };
 
 /* The segment to be split, as it is. */
 typedef struct Host {
@@ -113,48 +117,79 @@ static void find_ends(const Network *net, int32_t segment, Vec3 terminal, Vec3 e
     end[FRESH] = terminal;
 }
 
+/* Where the bifurcation is best by a trial's weights, as far as the rules allow. False when they are
+ * beyond what a double can hold. */
+static bool find_place(const Rules *rules, const Vec3 end[PARTS], const Trial *trial, Vec3 *place)
+{
+    double greatest = fmax(trial->weight[0], fmax(trial->weight[1], trial->weight[2]));
+    if (!isfinite(trial->price) || !isfinite(greatest) || !(greatest > 0))
+        return false;
+    double weight[PARTS];
+    for (int i = 0; i < PARTS; i++) /* none pushes: Fermat's point wants weights above 0 */
+        weight[i] = fmax(trial->weight[i] / greatest, 1e-9);
+    Fermat fermat = fermat_point(end, weight);
+    *place = push_off(rules, end, trial->radius, &fermat);
+    return true;
+}
+
 bool place_connection(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
                       Connection *out)
 {
-    Vec3 end[PARTS];
+    Vec3 end[PARTS], middle, place;
     find_ends(net, segment, terminal, end);
     Host host = host_of(net, segment);
-    Vec3 middle = vec3_scale(vec3_add(end[PROXIMAL], end[DISTAL]), 0.5);
-    Vec3 guess = vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25);
+    middle = vec3_scale(vec3_add(end[PROXIMAL], end[DISTAL]), 0.5);
     double from[PARTS], to[PARTS];
-    measure(end, guess, from);
+    measure(end, vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25), from);
     Trial trial = evaluate(net, &host, from);
-    double greatest = fmax(trial.weight[0], fmax(trial.weight[1], trial.weight[2]));
-    if (!isfinite(trial.price) || !isfinite(greatest) || !(greatest > 0))
-        return false; /* beyond what a double can hold */
-    double weight[PARTS];
-    for (int i = 0; i < PARTS; i++) /* none pushes: Fermat's point wants weights above 0 */
-        weight[i] = fmax(trial.weight[i] / greatest, 1e-9);
-    Fermat fermat = fermat_point(end, weight);
-    *out = (Connection){.segment = segment, .price = trial.price};
-    out->bifurcation = push_off(rules, end, trial.radius, &fermat);
-    measure(end, out->bifurcation, to);
+    if (!find_place(rules, end, &trial, &place))
+        return false;
+    measure(end, place, to);
+    *out = (Connection){.segment = segment, .price = trial.price, .bifurcation = place};
     for (int i = 0; i < PARTS; i++)
         out->price += trial.weight[i] * (to[i] - from[i]);
     return true;
 }
 
+static Vec3 load(const float v[3])
+{
+    return vec3((double)v[0], (double)v[1], (double)v[2]);
+}
+
+bool place_is_splittable(const Grid *grid, const Rules *rules, int32_t segment)
+{
+    const GridItem *item = &grid->item[segment];
+    Vec3 along = vec3_sub(load(item->distal), load(item->proximal));
+    double least = 2 * shortest(rules, (double)item->radius);
+    return vec3_dot(along, along) > least * least;
+}
+
+static bool is_long_enough(const Rules *rules, const double length[PARTS],
+                           const double radius[PARTS])
+{
+    for (int i = 0; i < PARTS; i++)
+        if (!(length[i] >= shortest(rules, radius[i])))
+            return false;
+    return true;
+}
+
 bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connection *connection)
 {
-    Vec3 end[PARTS];
+    Vec3 end[PARTS], place = connection->bifurcation;
     find_ends(net, connection->segment, terminal, end);
     Host host = host_of(net, connection->segment);
-    double length[PARTS];
-    measure(end, connection->bifurcation, length);
-    Trial trial = evaluate(net, &host, length);
-    if (!isfinite(trial.price))
-        return false;
-    for (int i = 0; i < PARTS; i++) {
-        if (!(length[i] >= shortest(rules, trial.radius[i])))
-            return false;
-        connection->radius[i] = trial.radius[i];
+    for (int round = 0; round <= ROUNDS; round++) {
+        double length[PARTS];
+        measure(end, place, length);
+        Trial trial = evaluate(net, &host, length);
+        if (!isfinite(trial.price) || !is_long_enough(rules, length, trial.radius))
+            return round > 0;
+        connection->price = trial.price;
+        connection->bifurcation = place;
+        memcpy(connection->radius, trial.radius, sizeof trial.radius);
+        if (!find_place(rules, end, &trial, &place))
+            break;
     }
-    connection->price = trial.price;
     return true;
 }
 
@@ -261,11 +296,6 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
         out.kin[3] = net->segment[node].child[1];
     }
     return out;
-}
-
-static Vec3 load(const float v[3])
-{
-    return vec3((double)v[0], (double)v[1], (double)v[2]);
 }
 
 static double distance2(const GridItem *a, const GridItem *b)

@@ -43,12 +43,16 @@ double place_reach(const Rules *rules, double radius);
 GridItem place_item(const Network *net, const Grid *grid, const Rules *rules,
                     const Connection *connection, Vec3 terminal, int part);
 
+/* Whether a segment is long enough to become two that are longer than wide. */
+bool place_is_splittable(const Grid *grid, const Rules *rules, int32_t segment);
+
 /* A connection of `terminal` to `segment` that is good and, to first order, priced; its radii are
  * not set. False when there is none. */
 bool place_connection(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
                       Connection *out);
 
-/* Sets the exact price and the radii. False when a segment would be too short. */
+/* Finds the best bifurcation, the price and the radii to the end. False when a segment would be too
+ * short. */
 bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connection *connection);
 
 /* Whether the three segments are inside the domain; in a convex one they are when the bifurcation is. */

@@ -55,7 +55,8 @@ static Status choose(const Site *site, Planner *planner, Plan *plan, Err *err)
         int32_t segment = planner->near[i].segment;
         if (site->limit[network_tree(site->net, segment)] == 0)
             ahead = true;
-        else if (place_connection(site->net, site->rules, segment, plan->terminal,
+        else if (place_is_splittable(site->grid, site->rules, segment) &&
+                 place_connection(site->net, site->rules, segment, plan->terminal,
                                   &connection[count]))
             count++;
     }

@@ -6,7 +6,7 @@
 #include "grow/place.h"
 
 /* Points after which less distance is asked for, by how much; and after which all is in vain. */
-enum { TRIES_PER_NOTCH = 5, MAX_TRIES = 20000 };
+enum { TRIES_PER_NOTCH = 3, MAX_TRIES = 20000 };
 static const double notch = 0.1;
 /* Roots widen as trees grow. */
 static const double reserve = 1.3;

@@ -56,7 +56,7 @@ recount() {
          { x[$1] = $3; y[$1] = $4; inner[$7] }
          END {
              for (id in x) if (!(id in inner)) { n++; at[n] = id; px[n] = x[id]; py[n] = y[id] }
-             for (u = -49.9; u < 50; u += 0.4) for (v = -49.9; v < 50; v += 0.4) {
+             for (u = -49.9; u < 50; u += 0.25) for (v = -49.9; v < 50; v += 0.25) {
                  if (u * u + v * v > 2500) continue
                  least = 1e9
                  for (k = 1; k <= n; k++) {
