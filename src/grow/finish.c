@@ -9,6 +9,7 @@
  * shortened. */
 #include "grow/finish.h"
 
+#include "grow/adopt.h"
 #include "grow/weigh.h"
 #include <assert.h>
 #include <float.h>
@@ -181,11 +182,13 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
     TRY_GOTO(write_header(params, domain, &made, err));
     static_assert(TREE_NO_PARENT == -1, "as in a Segment");
     for (size_t i = 0; i < net->n; i++) {
-        made.id[i] = (int32_t)i + 1;
         made.type[i] = GROW_SWC_TYPE;
         made.parent[i] = net->segment[i].parent;
         made.position[i] = net->position[i];
     }
+    tree_renumber(&made);
+    if (params->from)
+        TRY_GOTO(adopt_restore(params->from, net, &made, err));
     *out = made;
 done:
     if (status != STATUS_OK)

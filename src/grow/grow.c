@@ -11,12 +11,14 @@
  * taken to be thinner, in the end bare centrelines. */
 #include "grow/grow.h"
 
+#include "grow/adopt.h"
 #include "grow/batch.h"
 #include "grow/finish.h"
 #include "grow/forest.h"
 #include "grow/plant.h"
 #include "grow/weigh.h"
 #include <stdlib.h>
+#include <string.h>
 
 /* Cells of the grid a terminal, when the grid is made; it serves until the terminals doubled. */
 static const double cells_per_terminal = 2;
@@ -65,8 +67,11 @@ static Status enter(Growth *growth, int32_t segment, Err *err)
     Capsule capsule = network_capsule(&growth->net, segment);
     double radius = capsule.radius;
     capsule.radius = place_reach(&growth->rules, radius);
-    return grid_add(&growth->grid, 0, segment, growth->net.segment[segment].child[0] < 0,
-                    grid_item(&growth->grid, capsule, radius), err);
+    GridItem item = grid_item(&growth->grid, capsule, radius);
+    if (memcmp(item.proximal, item.distal, sizeof item.distal) == 0)
+        return STATUS_OK; /* of no length: others begin and end there */
+    return grid_add(&growth->grid, 0, segment, growth->net.segment[segment].child[0] < 0, item,
+                    err);
 }
 
 static Status make_grid(Growth *growth, Err *err)
@@ -80,7 +85,8 @@ static Status make_grid(Growth *growth, Err *err)
     if (most > growth->params->terminals)
         most = growth->params->terminals;
     TRY(grid_reset(&growth->grid, domain_bounds(growth->domain),
-                   cells_per_terminal * (double)terminals, 2 * most, growth->batch.threads, err));
+                   cells_per_terminal * (double)terminals, net->n + 2 * (most - terminals),
+                   growth->batch.threads, err));
     TRY(batch_use_grid(&growth->batch, &growth->grid, err));
     for (size_t i = 0; i < net->n; i++)
         if (net->segment[i].parent >= 0)
@@ -220,37 +226,72 @@ static Status add_terminals(Growth *growth, Err *err)
     return be_patient(growth, &tally, err);
 }
 
-static Status start(Growth *growth, Err *err)
+/* New trees at the inlets. */
+static Status plant(Growth *growth, Err *err)
 {
     const GrowParams *params = growth->params;
     Network *net = &growth->net;
+    double distance = growth->toss_distance;
+    if (params->inlets == 0)
+        network_append(net, -1, domain_default_inlet(growth->domain));
+    for (size_t k = 0; k < params->inlets; k++)
+        network_append(net, -1, params->inlet[k]);
+    TRY(plant_trees(net, growth->domain, &growth->random, &distance, &growth->tosses, err));
+    set_toss_distance(growth, distance);
+    return STATUS_OK;
+}
+
+/* Shares the terminals among the trees that there are. */
+static Status start_forest(Growth *growth, Err *err)
+{
+    const GrowParams *params = growth->params;
+    const Network *net = &growth->net;
+    Forest *forest = &growth->forest;
+    double share[GROW_MAX_INLETS];
+    for (size_t k = 0; k < net->inlets; k++)
+        share[k] = params->inlet_shares > 0 ? params->inlet_share[k]
+                   : params->from           ? net->segment[net->inlet[k]].terminals
+                                            : 1;
+    TRY(forest_init(forest, net->inlets, share, params->terminals, err));
+    for (size_t k = 0; k < net->inlets; k++) {
+        int has = net->segment[net->inlet[k]].terminals;
+        if ((size_t)has > forest->quota[k])
+            return err_set(err, STATUS_USAGE,
+                           "--inlet-shares: tree %zu of --from has %d terminals, and its share of "
+                           "--terminals %zu is only %zu",
+                           k + 1, has, params->terminals, forest->quota[k]);
+    }
+    return STATUS_OK;
+}
+
+static Status start(Growth *growth, Err *err)
+{
+    const GrowParams *params = growth->params;
     const double pi = 3.14159265358979323846;
     Box box = domain_bounds(growth->domain);
     growth->size = vec3_distance(box.low, box.high);
     growth->rules = (Rules){.thickness = 1, .gap = 1e-7 * growth->size, .widest = growth->size};
     set_toss_distance(growth, growth->size);
     growth->refresh_until = growth->grid_until = 1;
-    random_seed(&growth->random, params->seed);
+    /* Not the points again that made a tree by the same seed. */
+    uint64_t turn = params->from ? 0x9e3779b97f4a7c15 * (uint64_t)params->from->n : 0;
+    random_seed(&growth->random, params->seed ^ turn);
     int threads = params->threads > 0 ? params->threads : threads_available();
     TRY(batch_init(&growth->batch, MAX_BATCH, params->candidates, threads, err));
 
     double drop = pa_from_mmhg(params->p_perf_mmhg) - pa_from_mmhg(params->p_term_mmhg);
     double resistance = 8 * weigh_reference_pa_s(params) / pi;
     double scale = sqrt(sqrt(resistance * mm3_s_from_ml_min(params->q_perf_ml_min) / drop));
-    size_t trees = params->inlets > 0 ? params->inlets : 1;
-    double share[GROW_MAX_INLETS];
-    for (size_t k = 0; k < trees; k++)
-        share[k] = params->inlet_shares > 0 ? params->inlet_share[k] : 1;
-    TRY(forest_init(&growth->forest, trees, share, params->terminals, err));
-    TRY(network_init(net, (Law){params->gamma, params->lambda}, scale, 2 * params->terminals, trees,
-                     trees > 1 || weigh_is_needed(params), err));
-    for (size_t k = 0; k < trees; k++)
-        network_append(
-            net, -1, params->inlets > 0 ? params->inlet[k] : domain_default_inlet(growth->domain));
-    double distance = growth->toss_distance;
-    TRY(plant_trees(net, growth->domain, &growth->random, &distance, &growth->tosses, err));
-    set_toss_distance(growth, distance);
-    return STATUS_OK;
+    bool traits = params->from || params->inlets > 1 || weigh_is_needed(params);
+    size_t inlets = params->from ? adopt_inlets(params->from) : params->inlets;
+    size_t given = params->from ? params->from->n : 0;
+    TRY(network_init(&growth->net, (Law){params->gamma, params->lambda}, scale,
+                     given + 2 * params->terminals, inlets > 0 ? inlets : 1, traits, err));
+    if (params->from)
+        adopt_tree(params->from, &growth->net);
+    else
+        TRY(plant(growth, err));
+    return start_forest(growth, err);
 }
 
 static void report_progress(const Growth *growth, size_t before)

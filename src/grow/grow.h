@@ -27,13 +27,18 @@ enum { GROW_MAX_TERMINALS = 8000000, GROW_MAX_CANDIDATES = 1000, GROW_MAX_INLETS
 enum { GROW_SWC_TYPE = 3 };
 
 typedef struct GrowParams {
-    size_t terminals;           /* in [1, GROW_MAX_TERMINALS] */
-    double gamma;               /* Murray exponent, in (0, 10] */
-    double lambda;              /* exponent of the target, >= 0 */
-    uint64_t seed;              /* of the random points */
-    size_t inlets;              /* at most GROW_MAX_INLETS; 0: one, the domain's default */
-    const Vec3 *inlet;          /* mm (borrowed); one tree grows from each */
-    size_t inlet_shares;        /* 0: all trees get as many terminals; else as many as inlets */
+    size_t terminals; /* in [1, GROW_MAX_TERMINALS] */
+    double gamma;     /* Murray exponent, in (0, 10] */
+    double lambda;    /* exponent of the target, >= 0 */
+    uint64_t seed;    /* of the random points */
+    /* The tree (borrowed) to grow on from, with its inlets; NULL: none. Its nodes keep their places,
+     * ids and types, its segments stay straight; a node other than an inlet has at most two children,
+     * an inlet one or two. Its radii, flow shares and header fields are not looked at. */
+    const Tree *from;
+    size_t inlets; /* at most GROW_MAX_INLETS; 0: one, the domain's default, or those of `from` */
+    const Vec3 *inlet; /* mm (borrowed); one tree grows from each */
+    size_t
+        inlet_shares; /* 0: all get as many terminals, or as those of `from` have; else as many as inlets */
     const double *inlet_share;  /* > 0 (borrowed): the trees' terminals, relative to each other */
     double p_perf_mmhg;         /* at the inlet */
     double p_term_mmhg;         /* at every terminal, below p_perf_mmhg */
@@ -80,7 +85,13 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  * the domain that are nearer to it than to any other. Centrelines do not cross. The same parameters
  * give the same tree, bit for bit. `report` may be NULL.
  *
- * Fails with STATUS_USAGE as grow_params_check does, STATUS_INFEASIBLE when there is no room for
+ * Grown on from another tree, all nodes of that one are in *out with their ids, types and header lines;
+ * new nodes take the smallest ids that are free. New segments are in the domain and keep clear of each
+ * other and of the given ones, but for those of a vessel of several segments, of which they only keep
+ * off the centrelines; given segments may be anywhere.
+ *
+ * Fails with STATUS_USAGE as grow_params_check does, STATUS_INPUT when `from` is not as above or leaves
+ * the plane of a domain of two dimensions, STATUS_INFEASIBLE when there is no room for
  * all terminals, when the radii span more than a double can hold, or when vessels are too thin for
  * blood to pass by Pries's law, and STATUS_MEMORY. */
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,

@@ -117,8 +117,9 @@ int32_t network_append(Network *net, int32_t parent, Vec3 position)
     net->position[i] = position;
     net->segment[i] = (Segment){.child = {-1, -1}, .parent = parent};
     if (net->trait)
-        net->trait[i] =
-            (Trait){net->fresh_weight, parent < 0 ? (int32_t)net->inlets : net->trait[parent].tree};
+        net->trait[i] = (Trait){.weight = net->fresh_weight,
+                                .tree = parent < 0 ? (int32_t)net->inlets : net->trait[parent].tree,
+                                .origin = -1};
     if (parent < 0) {
         net->inlet[net->inlets++] = i;
     } else {
@@ -157,7 +158,9 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
     distal->length = vec3_distance(bifurcation, net->position[segment]);
     if (net->trait) {
         net->trait[proximal] = net->trait[segment];
-        net->trait[fresh] = (Trait){net->fresh_weight, net->trait[segment].tree};
+        net->trait[proximal].origin = -1;
+        net->trait[fresh] =
+            (Trait){.weight = net->fresh_weight, .tree = net->trait[segment].tree, .origin = -1};
     }
 
     Reduced daughters[2] = {network_reduce(net, segment), network_reduce(net, fresh)};

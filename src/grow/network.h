@@ -35,7 +35,10 @@ typedef struct Trait {
     /* The segment's flow over that of as many mean terminals, times its viscosity over that of
      * radius_scale; as of the last refresh, or of its making. */
     double weight;
-    int32_t tree; /* which of the inlets it hangs on */
+    int32_t tree;   /* which of the inlets it hangs on */
+    int32_t origin; /* the node's index in the tree that growth started from; -1: none */
+    bool given;     /* on a segment of that tree, which stays straight */
+    bool piece;     /* on one of several that make up a vessel of that tree; given, too */
 } Trait;
 
 /* What a node waits for while changes are carried towards the root. */
@@ -51,7 +54,7 @@ typedef struct Network {
     size_t inlets;
     Segment *segment;
     Sensitivity *sensitivity;
-    Trait *trait;        /* NULL: all weights are 1, and there is one tree */
+    Trait *trait;        /* NULL: all weights are 1, there is one tree, and nothing is given */
     double fresh_weight; /* of a new terminal's segment */
     Vec3 *position;      /* mm */
     Arrivals *coming;    /* at rest between calls */
@@ -66,6 +69,18 @@ void network_release(Network *net);
 static inline int32_t network_tree(const Network *net, int32_t i)
 {
     return net->trait ? net->trait[i].tree : 0;
+}
+
+/* Whether segment i must stay straight. */
+static inline bool network_is_given(const Network *net, int32_t i)
+{
+    return net->trait && net->trait[i].given;
+}
+
+/* Whether segment i is a piece of a vessel, which may be shorter than wide. */
+static inline bool network_is_piece(const Network *net, int32_t i)
+{
+    return net->trait && net->trait[i].piece;
 }
 
 /* What `terminals` more on segment i add to its load, over its length. */

@@ -5,7 +5,7 @@
  * middling place does, priced to first order by the same weights; the rest are for the one that is
  * made. A point that collapses onto an end is pushed off it to the shortest length the rules allow, in the
  * direction that costs least: such connections are among the best there are, so they must not be
- * lost. */
+ * lost. A segment that must stay straight is split at the best place along it. */
 #include "grow/place.h"
 
 #include "grow/fermat.h"
@@ -29,6 +29,8 @@ typedef struct Host {
     Reduced whole;
     Adjoint adjoint;
     double extra;
+    bool given, piece;
+    double length; /* mm */
 } Host;
 
 typedef struct Trial {
@@ -46,7 +48,10 @@ static Host host_of(const Network *net, int32_t i)
                             [FRESH] = net->fresh_weight},
                  .gauge = (double)segment->gauge,
                  .below = network_below(net, i),
-                 .extra = net->sensitivity[i].extra};
+                 .extra = net->sensitivity[i].extra,
+                 .given = network_is_given(net, i),
+                 .piece = network_is_piece(net, i),
+                 .length = segment->length};
     host.whole = law_extend(&net->law, host.burden[DISTAL], segment->length, &host.below);
     host.adjoint = (Adjoint){net->sensitivity[i].load, law_lambda_power(&net->law, host.gauge)};
     return host;
@@ -86,6 +91,13 @@ static double shortest(const Rules *rules, double radius)
     return width > rules->least_length ? width : rules->least_length;
 }
 
+/* The shortest that a part of the host may be: of a piece of a vessel, nearly a quarter will do. */
+static double shortest_part(const Rules *rules, const Host *host, int part, double radius)
+{
+    double least = shortest(rules, radius);
+    return host->piece && part != FRESH ? fmin(least, 0.24 * host->length) : least;
+}
+
 /* Keeps the bifurcation off the three ends. */
 static Vec3 push_off(const Rules *rules, const Vec3 end[PARTS], const double radius[PARTS],
                      const Fermat *fermat)
@@ -119,7 +131,8 @@ static void find_ends(const Network *net, int32_t segment, Vec3 terminal, Vec3 e
 
 /* Where the bifurcation is best by a trial's weights, as far as the rules allow. False when they are
  * beyond what a double can hold. */
-static bool find_place(const Rules *rules, const Vec3 end[PARTS], const Trial *trial, Vec3 *place)
+static bool find_place(const Rules *rules, const Host *host, const Vec3 end[PARTS],
+                       const Trial *trial, Vec3 *place)
 {
     double greatest = fmax(trial->weight[0], fmax(trial->weight[1], trial->weight[2]));
     if (!isfinite(trial->price) || !isfinite(greatest) || !(greatest > 0))
@@ -127,6 +140,13 @@ static bool find_place(const Rules *rules, const Vec3 end[PARTS], const Trial *t
     double weight[PARTS];
     for (int i = 0; i < PARTS; i++) /* none pushes: Fermat's point wants weights above 0 */
         weight[i] = fmax(trial->weight[i] / greatest, 1e-9);
+    if (host->given) {
+        double margin[2];
+        for (int i = 0; i < 2; i++)
+            margin[i] = 1.02 * shortest_part(rules, host, i, trial->radius[i]);
+        *place = fermat_point_between(end, weight, margin);
+        return true;
+    }
     Fermat fermat = fermat_point(end, weight);
     *place = push_off(rules, end, trial->radius, &fermat);
     return true;
@@ -142,7 +162,7 @@ bool place_connection(const Network *net, const Rules *rules, int32_t segment, V
     double from[PARTS], to[PARTS];
     measure(end, vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25), from);
     Trial trial = evaluate(net, &host, from);
-    if (!find_place(rules, end, &trial, &place))
+    if (!find_place(rules, &host, end, &trial, &place))
         return false;
     measure(end, place, to);
     *out = (Connection){.segment = segment, .price = trial.price, .bifurcation = place};
@@ -156,19 +176,21 @@ static Vec3 load(const float v[3])
     return vec3((double)v[0], (double)v[1], (double)v[2]);
 }
 
-bool place_is_splittable(const Grid *grid, const Rules *rules, int32_t segment)
+bool place_is_splittable(const Network *net, const Grid *grid, const Rules *rules, int32_t segment)
 {
+    if (network_is_piece(net, segment))
+        return true;
     const GridItem *item = &grid->item[segment];
     Vec3 along = vec3_sub(load(item->distal), load(item->proximal));
     double least = 2 * shortest(rules, (double)item->radius);
     return vec3_dot(along, along) > least * least;
 }
 
-static bool is_long_enough(const Rules *rules, const double length[PARTS],
+static bool is_long_enough(const Rules *rules, const Host *host, const double length[PARTS],
                            const double radius[PARTS])
 {
     for (int i = 0; i < PARTS; i++)
-        if (!(length[i] >= shortest(rules, radius[i])))
+        if (!(length[i] >= shortest_part(rules, host, i, radius[i])))
             return false;
     return true;
 }
@@ -182,12 +204,12 @@ bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connect
         double length[PARTS];
         measure(end, place, length);
         Trial trial = evaluate(net, &host, length);
-        if (!isfinite(trial.price) || !is_long_enough(rules, length, trial.radius))
+        if (!isfinite(trial.price) || !is_long_enough(rules, &host, length, trial.radius))
             return round > 0;
         connection->price = trial.price;
         connection->bifurcation = place;
         memcpy(connection->radius, trial.radius, sizeof trial.radius);
-        if (!find_place(rules, end, &trial, &place))
+        if (!find_place(rules, &host, end, &trial, &place))
             break;
     }
     return true;
@@ -239,6 +261,8 @@ bool place_is_inside(const Network *net, const Domain *domain, const Connection 
 {
     int32_t host = connection->segment;
     Vec3 fork = connection->bifurcation;
+    if (network_is_given(net, host))
+        return domain_inside(domain, fork, 0) && domain_holds_segment(domain, fork, terminal);
     return domain_inside(domain, fork, 0) &&
            (domain_is_convex(domain) ||
             (domain_holds_segment(domain, fork, terminal) &&
@@ -272,6 +296,7 @@ Status footprint_add_box(Footprint *footprint, const Grid *grid, GridBox box, Er
 
 /* A new segment that is to keep clear of all but its kin. */
 typedef struct Newcomer {
+    const Network *net;
     GridItem item;
     double radius;    /* mm */
     double thickness; /* at which all radii count */
@@ -284,7 +309,8 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
                          const Connection *connection, Vec3 terminal, int part)
 {
     int32_t host = connection->segment;
-    Newcomer out = {.item = place_item(net, grid, rules, connection, terminal, part),
+    Newcomer out = {.net = net,
+                    .item = place_item(net, grid, rules, connection, terminal, part),
                     .radius = connection->radius[part],
                     .thickness = rules->thickness,
                     .gap = rules->gap,
@@ -305,7 +331,8 @@ static double distance2(const GridItem *a, const GridItem *b)
 }
 
 /* Whether the newcomer keeps clear of another segment, with the reserve unless the segment that is
- * split did not either. */
+ * split did not either. What begins in a vessel of many pieces overlaps those about its beginning:
+ * from them only the centrelines must keep apart. */
 static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t other)
 {
     const GridItem *item = &grid->item[other];
@@ -314,7 +341,7 @@ static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t othe
     double clear = clearance_reserve * touch + newcomer->gap;
     if (apart2 >= clear * clear)
         return true;
-    touch += newcomer->gap;
+    touch = newcomer->gap + (network_is_piece(newcomer->net, other) ? 0 : touch);
     return apart2 >= touch * touch && apart2 >= distance2(&grid->item[newcomer->kin[0]], item);
 }
 
@@ -338,9 +365,10 @@ Status place_is_free(const Network *net, const Grid *grid, const Rules *rules,
     bool is_free = true;
     for (int part = 0; part < PARTS && is_free; part++) {
         Newcomer part_of = newcomer(net, grid, rules, connection, terminal, part);
+        bool is_given = part != FRESH && network_is_given(net, connection->segment);
         for (GridWalk walk = grid_walk(grid, &part_of.item);
              is_free && grid_walk_next(&walk, &cell);) {
-            is_free = is_clear(grid, &part_of, &grid->cell[cell]);
+            is_free = is_given || is_clear(grid, &part_of, &grid->cell[cell]);
             TRY(append_cell(footprint, cell, err));
         }
     }

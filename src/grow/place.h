@@ -43,8 +43,8 @@ double place_reach(const Rules *rules, double radius);
 GridItem place_item(const Network *net, const Grid *grid, const Rules *rules,
                     const Connection *connection, Vec3 terminal, int part);
 
-/* Whether a segment is long enough to become two that are longer than wide. */
-bool place_is_splittable(const Grid *grid, const Rules *rules, int32_t segment);
+/* Whether a segment is long enough to become two that are longer than wide, or need not be. */
+bool place_is_splittable(const Network *net, const Grid *grid, const Rules *rules, int32_t segment);
 
 /* A connection of `terminal` to `segment` that is good and, to first order, priced; its radii are
  * not set. False when there is none. */
@@ -55,12 +55,13 @@ bool place_connection(const Network *net, const Rules *rules, int32_t segment, V
  * short. */
 bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connection *connection);
 
-/* Whether the three segments are inside the domain; in a convex one they are when the bifurcation is. */
+/* Whether the three segments are inside the domain, those of a given one wherever that is; in a convex
+ * domain they are when the bifurcation is. */
 bool place_is_inside(const Network *net, const Domain *domain, const Connection *connection,
                      Vec3 terminal);
 
-/* Whether the three segments of a settled connection keep clear of all others, in *out. If so,
- * appends the cells in which they or the segment they replace are to `footprint`. */
+/* Whether the segments of a settled connection that are not given keep clear of all others, in *out.
+ * If so, appends the cells in which they or the segment they replace are to `footprint`. */
 MUST_CHECK Status place_is_free(const Network *net, const Grid *grid, const Rules *rules,
                                 const Connection *connection, Vec3 terminal, Footprint *footprint,
                                 bool *out, Err *err);

@@ -55,7 +55,7 @@ static Status choose(const Site *site, Planner *planner, Plan *plan, Err *err)
         int32_t segment = planner->near[i].segment;
         if (site->limit[network_tree(site->net, segment)] == 0)
             ahead = true;
-        else if (place_is_splittable(site->grid, site->rules, segment) &&
+        else if (place_is_splittable(site->net, site->grid, site->rules, segment) &&
                  place_connection(site->net, site->rules, segment, plan->terminal,
                                   &connection[count]))
             count++;
