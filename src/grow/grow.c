@@ -13,6 +13,7 @@
 
 #include "grow/batch.h"
 #include "grow/finish.h"
+#include "grow/mend.h"
 #include <stdlib.h>
 
 /* Cells of the grid a terminal, when the grid is made; it serves until the terminals doubled. */
@@ -263,6 +264,8 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     }
     bool complete = status == STATUS_OK;
     TRY_GOTO(check_range(&growth, err));
+    if (network_terminals(&growth.net) > 1)
+        TRY_GOTO(mend_network(&growth.net, &growth.grid, domain, &growth.rules, err));
     grid_release(&growth.grid);
     TRY_GOTO(finish_tree(&growth.net, params, domain, out, err));
     if (report)

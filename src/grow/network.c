@@ -155,6 +155,23 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
     adopt(net, fresh, &daughters[1], proximal, &mother);
 }
 
+void network_move(Network *net, int32_t node, Vec3 place)
+{
+    Segment *segment = net->segment;
+    net->position[node] = place;
+    segment[node].length = vec3_distance(net->position[segment[node].parent], place);
+    for (int slot = 0; slot < 2; slot++) {
+        int32_t child = segment[node].child[slot];
+        segment[child].length = vec3_distance(place, net->position[child]);
+        Reduced reduced = network_reduce(net, child);
+        report(net, child, &reduced);
+    }
+    for (int32_t i = node; i != 0; i = segment[i].parent) {
+        Reduced reduced = network_reduce(net, i);
+        report(net, i, &reduced);
+    }
+}
+
 static size_t chunk_end(size_t index, size_t count)
 {
     size_t end = (index + 1) * CHUNK;

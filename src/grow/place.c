@@ -257,22 +257,17 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
     return out;
 }
 
-static Vec3 load(const float v[3])
-{
-    return vec3((double)v[0], (double)v[1], (double)v[2]);
-}
-
 static bool is_clear(const Grid *grid, const Newcomer *newcomer, const GridCell *cell)
 {
     const int32_t *kin = newcomer->kin;
-    Vec3 from = load(newcomer->item.proximal), to = load(newcomer->item.distal);
+    Vec3 from = place_point(newcomer->item.proximal), to = place_point(newcomer->item.distal);
     for (uint32_t i = 0; i < cell->count; i++) {
         int32_t other = cell->tag[i] >> 1;
         if (other == kin[0] || other == kin[1] || other == kin[2] || other == kin[3])
             continue;
         const GridItem *item = &grid->item[other];
         double clearance = newcomer->radius + newcomer->scale * (double)item->radius;
-        if (segment_distance2(from, to, load(item->proximal), load(item->distal)) <
+        if (segment_distance2(from, to, place_point(item->proximal), place_point(item->distal)) <
             clearance * clearance)
             return false;
     }

@@ -61,6 +61,12 @@ MUST_CHECK Status place_is_free(const Network *net, const Grid *grid, const Rule
                                 const Connection *connection, Vec3 terminal, Footprint *footprint,
                                 bool *out, Err *err);
 
+/* An end of a GridItem. */
+static inline Vec3 place_point(const float v[3])
+{
+    return vec3((double)v[0], (double)v[1], (double)v[2]);
+}
+
 /* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
  * Detection, 2005, sec. 5.1.9]. */
 double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
