@@ -234,9 +234,10 @@ Status footprint_add_box(Footprint *footprint, const Grid *grid, GridBox box, Er
 /* A new segment that is to keep clear of all but its kin. */
 typedef struct Newcomer {
     GridItem item;
-    double radius; /* with all reserves, mm */
-    double scale;  /* of the others' radii */
-    int32_t kin[4];
+    double radius;    /* mm */
+    double thickness; /* at which all radii count */
+    double gap;       /* mm */
+    int32_t kin[4];   /* the first is the segment to split */
 } Newcomer;
 
 /* Its kin are the segment to split and all that end or begin where the newcomer does. */
@@ -245,9 +246,10 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
 {
     int32_t host = connection->segment;
     Newcomer out = {.item = place_item(net, grid, rules, connection, terminal, part),
-                    .scale = clearance_reserve * rules->thickness,
+                    .radius = connection->radius[part],
+                    .thickness = rules->thickness,
+                    .gap = rules->gap,
                     .kin = {host, host, host, host}};
-    out.radius = out.scale * connection->radius[part] + rules->gap;
     if (part != FRESH) {
         int32_t node = part == PROXIMAL ? net->segment[host].parent : host;
         out.kin[1] = node;
@@ -257,18 +259,33 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
     return out;
 }
 
+static double distance2(const GridItem *a, const GridItem *b)
+{
+    return segment_distance2(place_point(a->proximal), place_point(a->distal),
+                             place_point(b->proximal), place_point(b->distal));
+}
+
+/* Whether the newcomer keeps clear of another segment, with the reserve unless the segment that is
+ * split did not either. */
+static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t other)
+{
+    const GridItem *item = &grid->item[other];
+    double apart2 = distance2(&newcomer->item, item);
+    double touch = newcomer->thickness * (newcomer->radius + (double)item->radius);
+    double clear = clearance_reserve * touch + newcomer->gap;
+    if (apart2 >= clear * clear)
+        return true;
+    touch += newcomer->gap;
+    return apart2 >= touch * touch && apart2 >= distance2(&grid->item[newcomer->kin[0]], item);
+}
+
 static bool is_clear(const Grid *grid, const Newcomer *newcomer, const GridCell *cell)
 {
     const int32_t *kin = newcomer->kin;
-    Vec3 from = place_point(newcomer->item.proximal), to = place_point(newcomer->item.distal);
     for (uint32_t i = 0; i < cell->count; i++) {
         int32_t other = cell->tag[i] >> 1;
-        if (other == kin[0] || other == kin[1] || other == kin[2] || other == kin[3])
-            continue;
-        const GridItem *item = &grid->item[other];
-        double clearance = newcomer->radius + newcomer->scale * (double)item->radius;
-        if (segment_distance2(from, to, place_point(item->proximal), place_point(item->distal)) <
-            clearance * clearance)
+        if (other != kin[0] && other != kin[1] && other != kin[2] && other != kin[3] &&
+            !is_clear_of(grid, newcomer, other))
             return false;
     }
     return true;
