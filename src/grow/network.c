@@ -79,6 +79,18 @@ static void report(Network *net, int32_t i, const Reduced *reduced)
     parent->cost[slot] = reduced->cost;
 }
 
+static void measure(Network *net, int32_t i)
+{
+    Segment *segment = &net->segment[i];
+    segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
+}
+
+static void recompute(Network *net, int32_t i)
+{
+    Reduced reduced = network_reduce(net, i);
+    report(net, i, &reduced);
+}
+
 /* Gives a segment the adjoint it has as a daughter of `parent`. */
 static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t parent,
                   const Reduced *above)
@@ -208,8 +220,7 @@ static void ascend(size_t index, int worker, void *context)
             atomic_store_explicit(&here->gain, 0, memory_order_relaxed);
             atomic_store_explicit(&here->announced, false, memory_order_relaxed);
             net->segment[i].terminals += gain;
-            Reduced reduced = network_reduce(net, i);
-            report(net, i, &reduced);
+            recompute(net, i);
             i = net->segment[i].parent;
             atomic_fetch_add_explicit(&net->coming[i].gain, gain, memory_order_relaxed);
         }
@@ -224,6 +235,19 @@ void network_carry(Network *net, size_t splits, int threads)
     threads_for(chunks, threads, announce, &carrying);
     threads_for(chunks, threads, ascend, &carrying);
     atomic_store_explicit(&net->coming[0].gain, 0, memory_order_relaxed);
+}
+
+void network_move(Network *net, int32_t node, Vec3 place)
+{
+    const int32_t *child = net->segment[node].child;
+    net->position[node] = place;
+    for (int slot = 0; slot < 2; slot++) {
+        measure(net, child[slot]);
+        recompute(net, child[slot]);
+    }
+    measure(net, node);
+    for (int32_t i = node; i != 0; i = net->segment[i].parent)
+        recompute(net, i);
 }
 
 /* The segment after `i` in depth-first order, 0 after the last. */
@@ -271,10 +295,8 @@ static Status permute(void *items, size_t size, const int32_t *order, size_t n, 
 void network_resum(Network *net)
 {
     for (int32_t i = (int32_t)net->n - 1; i > 0; i--) {
-        Segment *segment = &net->segment[i];
-        segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
-        Reduced reduced = network_reduce(net, i);
-        report(net, i, &reduced);
+        measure(net, i);
+        recompute(net, i);
     }
 }
 
