@@ -32,14 +32,19 @@ void batch_release(Batch *batch)
     free(batch->waiting);
     free(batch->plan);
     free(batch->stamp);
+    free(batch->misses);
     *batch = (Batch){0};
 }
 
 Status batch_use_grid(Batch *batch, const Grid *grid, Err *err)
 {
+    size_t cells = grid_cells(grid);
     free(batch->stamp);
+    free(batch->misses);
     batch->stamp = NULL;
-    return mem_calloc(&batch->stamp, grid_cells(grid), sizeof *batch->stamp, "grid cells", err);
+    batch->misses = NULL;
+    TRY(mem_calloc(&batch->stamp, cells, sizeof *batch->stamp, "grid cells", err));
+    return mem_calloc(&batch->misses, cells, sizeof *batch->misses, "grid cells", err);
 }
 
 size_t batch_start(Batch *batch, size_t tosses)
@@ -108,19 +113,29 @@ static bool is_outdated(const Batch *batch, const Plan *plan)
     return false;
 }
 
-void batch_accept(Batch *batch, size_t limit)
+static void accept(Batch *batch, size_t index)
+{
+    const Plan *plan = &batch->plan[index];
+    const uint32_t *cell = batch->planner[plan->planner].footprint.cell;
+    for (size_t i = plan->first_cell; i < plan->end_changed; i++)
+        batch->stamp[cell[i]] = batch->number;
+    batch->accepted[batch->n_accepted++] = index;
+}
+
+void batch_accept(Batch *batch, const Grid *grid, size_t limit)
 {
     for (size_t i = 0; i < batch->n; i++) {
         const Plan *plan = &batch->plan[i];
-        if (plan->state != PLAN_READY)
+        if (plan->state < PLAN_CROWDED)
             continue;
-        if (batch->n_accepted == limit || is_outdated(batch, plan)) {
+        uint8_t *misses = &batch->misses[grid_cell_at(grid, plan->terminal)];
+        if (plan->state == PLAN_CROWDED) {
+            *misses = (uint8_t)(*misses + (*misses < BATCH_FULL));
+        } else if (batch->n_accepted == limit || is_outdated(batch, plan)) {
             batch->waiting[batch->n_waiting++] = plan->terminal;
         } else {
-            const uint32_t *cell = batch->planner[plan->planner].footprint.cell;
-            for (size_t k = plan->first_cell; k < plan->end_changed; k++)
-                batch->stamp[cell[k]] = batch->number;
-            batch->accepted[batch->n_accepted++] = i;
+            *misses = 0;
+            accept(batch, i);
         }
     }
 }

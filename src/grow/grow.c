@@ -17,17 +17,19 @@
 #include <stdlib.h>
 
 /* Cells of the grid a terminal, when the grid is made; it serves until the terminals doubled. */
-static const double cells_per_terminal = 2;
+static const double cells_per_terminal = 3;
 /* The sensitivities serve until there are this many times the terminals. */
 static const double refresh_growth = 1.1;
 /* A batch adds about one terminal for every so many there are. */
-enum { TERMINALS_PER_ADDED = 128, MAX_ADDED = 1024 };
+enum { TERMINALS_PER_ADDED = 64, MAX_ADDED = 2048 };
 /* Points tossed for each terminal to be added, and the batch's size at most. */
-enum { TOSSES_PER_ADDED = 5, MAX_BATCH = 2 * TOSSES_PER_ADDED * MAX_ADDED };
+enum { TOSSES_PER_ADDED = 3, MAX_BATCH = 2 * TOSSES_PER_ADDED * MAX_ADDED };
 /* How far the toss distance falls after a batch in which no point is far enough from the tree. */
 static const double toss_notch = 0.1;
 /* Segments are no shorter than this share of the toss distance. */
 static const double least_length_share = 0.1;
+/* Trees with fewer terminals than this have cells too large to be full after a few misses. */
+enum { LEAST_WITH_FULL_CELLS = 1000 };
 /* Points without a connection for one that has: then vessels count as half as thick, below the least
  * thickness as lines, and at last the domain is full. */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
@@ -50,18 +52,10 @@ typedef struct Growth {
 
 /* What became of the new points of a batch. */
 typedef struct Tally {
+    size_t skipped; /* in cells that are full; not among the others */
     size_t tossed, in_vessel, outside, crowded;
     size_t far; /* as far from the tree as asked, with a way to it within the tissue */
 } Tally;
-
-static Status enter(Growth *growth, int32_t segment, Err *err)
-{
-    Capsule capsule = network_capsule(&growth->net, segment);
-    double radius = capsule.radius;
-    capsule.radius = place_reach(&growth->rules, radius);
-    return grid_add(&growth->grid, 0, segment, growth->net.segment[segment].child[0] < 0,
-                    grid_item(&growth->grid, capsule, radius), err);
-}
 
 static Status make_grid(Growth *growth, Err *err)
 {
@@ -77,7 +71,7 @@ static Status make_grid(Growth *growth, Err *err)
                    cells_per_terminal * (double)terminals, 2 * most, growth->batch.threads, err));
     TRY(batch_use_grid(&growth->batch, &growth->grid, err));
     for (size_t i = 1; i < net->n; i++)
-        TRY(enter(growth, (int32_t)i, err));
+        TRY(place_enter(&growth->grid, &growth->rules, net, (int32_t)i, err));
     return STATUS_OK;
 }
 
@@ -88,8 +82,8 @@ static Status keep_up(Growth *growth, Err *err)
     size_t terminals = network_terminals(net);
     if (terminals >= growth->refresh_until) {
         network_refresh(net);
-        for (size_t i = 1; growth->grid.item && i < net->n; i++)
-            growth->grid.item[i].radius = net->segment[i].radius;
+        if (growth->grid.item)
+            TRY(place_widen(&growth->grid, &growth->rules, net, err));
         growth->refresh_until = (size_t)(refresh_growth * (double)terminals) + 1;
     }
     return terminals >= growth->grid_until ? make_grid(growth, err) : STATUS_OK;
@@ -127,6 +121,23 @@ static Status plant(Growth *growth, Err *err)
                    "further inside");
 }
 
+/* Tosses the new points of a batch, from plan[first] on. */
+static void fill_batch(Growth *growth, size_t first, Tally *tally)
+{
+    Batch *batch = &growth->batch;
+    bool skip = network_terminals(&growth->net) >= LEAST_WITH_FULL_CELLS;
+    size_t i = first;
+    while (i < batch->n && tally->skipped < LAST_PATIENCE * (i - first + 1)) {
+        Vec3 point = toss(growth);
+        if (skip && batch_is_full(batch, &growth->grid, point))
+            tally->skipped++;
+        else
+            batch->plan[i++].terminal = point;
+    }
+    batch->n = i;
+    tally->tossed = i - first;
+}
+
 /* Tosses a batch of points and connects those that can be. */
 static Status add_batch(Growth *growth, Tally *tally, Err *err)
 {
@@ -134,8 +145,8 @@ static Status add_batch(Growth *growth, Tally *tally, Err *err)
     size_t terminals = network_terminals(&growth->net), added = terminals / TERMINALS_PER_ADDED;
     added = added < 1 ? 1 : added > MAX_ADDED ? MAX_ADDED : added;
     size_t first = batch_start(batch, TOSSES_PER_ADDED * added);
-    for (size_t i = first; i < batch->n; i++)
-        batch->plan[i].terminal = toss(growth);
+    *tally = (Tally){0};
+    fill_batch(growth, first, tally);
     Site site = {.net = &growth->net,
                  .grid = &growth->grid,
                  .domain = growth->domain,
@@ -144,7 +155,6 @@ static Status add_batch(Growth *growth, Tally *tally, Err *err)
                  .terminals_only = growth->params->toss == GROW_TOSS_TERMINAL,
                  .candidates = growth->params->candidates};
     TRY(batch_plan(batch, &site, err));
-    *tally = (Tally){.tossed = batch->n - first};
     for (size_t i = first; i < batch->n; i++) {
         PlanState state = batch->plan[i].state;
         tally->in_vessel += state == PLAN_IN_VESSEL;
@@ -152,7 +162,7 @@ static Status add_batch(Growth *growth, Tally *tally, Err *err)
         tally->crowded += state == PLAN_CROWDED;
         tally->far += state >= PLAN_CROWDED;
     }
-    batch_accept(batch, growth->params->terminals - terminals);
+    batch_accept(batch, &growth->grid, growth->params->terminals - terminals);
     return batch_carry_out(batch, &growth->net, &growth->grid, &growth->rules, err);
 }
 
@@ -171,13 +181,16 @@ static Status be_patient(Growth *growth, const Tally *tally, Err *err)
 {
     Rules *rules = &growth->rules;
     size_t before = growth->crowded;
-    growth->rejected += tally->in_vessel + tally->outside + tally->crowded;
-    growth->crowded += tally->in_vessel + tally->crowded;
+    size_t crowded = tally->skipped + tally->in_vessel + tally->crowded;
+    growth->rejected += crowded + tally->outside;
+    growth->crowded += crowded;
     growth->outside += tally->outside;
-    if (growth->batch.n_accepted * PATIENCE > growth->crowded)
+    if (growth->batch.n_accepted * PATIENCE > growth->crowded) {
         growth->crowded = growth->outside = 0;
-    else if (growth->crowded / PATIENCE > before / PATIENCE)
+    } else if (growth->crowded / PATIENCE > before / PATIENCE) {
         rules->thickness = rules->thickness > least_thickness ? rules->thickness / 2 : 0;
+        TRY(batch_use_grid(&growth->batch, &growth->grid, err));
+    }
     if (growth->crowded + growth->outside < LAST_PATIENCE)
         return STATUS_OK;
     return err_set(err, STATUS_INFEASIBLE,
@@ -264,8 +277,10 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     }
     bool complete = status == STATUS_OK;
     TRY_GOTO(check_range(&growth, err));
-    if (network_terminals(&growth.net) > 1)
-        TRY_GOTO(mend_network(&growth.net, &growth.grid, domain, &growth.rules, err));
+    size_t broken = 0;
+    if (growth.grid.item)
+        TRY_GOTO(mend_network(&growth.net, &growth.grid, domain, &growth.rules,
+                              growth.batch.threads, &broken, err));
     grid_release(&growth.grid);
     TRY_GOTO(finish_tree(&growth.net, params, domain, out, err));
     if (report)
@@ -276,6 +291,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
                                .tosses = growth.tosses,
                                .rejected = growth.rejected,
                                .thickness = growth.rules.thickness,
+                               .broken = broken,
                                .complete = complete};
 done:
     batch_release(&growth.batch);

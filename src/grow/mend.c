@@ -1,234 +1,198 @@
-/* Connections are made with a reserve for vessels to widen [place.c], which some few outgrow. Each
- * segment that breaks a rule in the end has bifurcations at its ends: the nearest place where the
- * three segments that meet there keep all rules is looked for on rays from the present one, ever
- * further out. Every move changes all radii a little, so this goes round until a round finds nothing
- * to do.
- *
- * Suspects are found from the grid alone, cell by cell, in single precision with room for its
- * rounding; all else is double. */
+/* Radii change all over the tree as it grows, so rules that held when a segment was made may be
+ * broken, by a little and for few segments, at the end. Each of these has its two bifurcations moved
+ * to the best of a few places around, the nearest ones first, where the three segments that meet
+ * there break the rules least. Moves change the radii by much less than what they leave to spare, so
+ * that it is enough to look at all segments once and afterwards at those that were within that. */
 #include "grow/mend.h"
 
 #include <stdlib.h>
 
-enum { ROUNDS = 8 };
-/* Ways out are those to the points of a lattice up to so many steps from its middle. */
-enum { SPREAD = 3 };
-/* Of clearances, for the rounding of the grid's items. */
-static const double suspicion = 1.001;
-/* What a bifurcation that moves leaves between the vessels, over their radii. */
-static const double reserve = 1.01;
-/* How far bifurcations move, over the radius of the vessel that is in the way. */
-static const double first_step = 0.05, step_growth = 1.5, last_step = 8;
+enum { ROUNDS = 6, CHUNK = 512 };
+/* Moved segments keep to the rules with this to spare, over the radii. */
+static const double spare = 2e-3;
+/* How far bifurcations are moved, over the radius of the segment that ends there. */
+static const double steps[] = {0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
 
 typedef struct Mending {
     Network *net;
     Grid *grid;
     const Domain *domain;
     const Rules *rules;
-    int32_t *suspect; /* segments, some perhaps more than once */
-    size_t n_suspects, capacity;
+    bool *close; /* by segment: whether it breaks the rules or is next to doing so */
 } Mending;
 
-static bool have_common_node(const Network *net, int32_t i, int32_t j)
+static Vec3 proximal(const Network *net, int32_t i)
 {
-    int32_t from_i = net->segment[i].parent, from_j = net->segment[j].parent;
-    return from_i == from_j || from_i == j || from_j == i;
+    return net->position[net->segment[i].parent];
 }
 
-/* Whether the segment, were it from `a` to `b`, would keep the rules with its vessel and all others
- * wider by `factor`. Those that begin or end at `moving` do not count. */
-static bool is_right(const Mending *mending, int32_t i, Vec3 a, Vec3 b, double factor,
-                     int32_t moving)
+static bool are_joined(const Network *net, int32_t i, int32_t j)
+{
+    int32_t above_i = net->segment[i].parent, above_j = net->segment[j].parent;
+    return i == j || above_i == above_j || above_i == j || above_j == i;
+}
+
+static double width(const Mending *mending, int32_t i)
+{
+    return mending->rules->thickness * (double)mending->net->segment[i].radius;
+}
+
+/* By how many mm segment i, its radius and the others' widened by `margin` of them, is too short or
+ * too near to another `below` an index, *with, which is unchanged when there is none. */
+static double fault(const Mending *mending, int32_t i, double margin, int32_t below, int32_t *with)
 {
     const Network *net = mending->net;
     const Grid *grid = mending->grid;
-    double scale = factor * mending->rules->thickness, radius = (double)net->segment[i].radius;
-    if (vec3_distance(a, b) < 2 * scale * radius)
-        return false;
-    GridItem item = grid_item(grid, (Capsule){a, b, scale * radius + mending->rules->gap}, radius);
-    size_t cell;
-    for (GridWalk walk = grid_walk(grid, &item); grid_walk_next(&walk, &cell);) {
-        for (uint32_t k = 0; k < grid->cell[cell].count; k++) {
-            int32_t j = grid->cell[cell].tag[k] >> 1;
-            if (j == i || j == moving || net->segment[j].parent == moving ||
-                have_common_node(net, i, j))
+    double radius = width(mending, i), scale = 1 + margin, gap = mending->rules->gap;
+    Vec3 a = proximal(net, i), b = net->position[i];
+    double worst = fmax(0, 2 * scale * radius - vec3_distance(a, b));
+    GridItem item = grid_item(grid, (Capsule){a, b, scale * radius + gap}, radius);
+    size_t index;
+    for (GridWalk walk = grid_walk(grid, &item); grid_walk_next(&walk, &index);) {
+        const GridCell *cell = &grid->cell[index];
+        for (uint32_t k = 0; k < cell->count; k++) {
+            int32_t other = cell->tag[k] >> 1;
+            const GridItem *there = &grid->item[other];
+            double wide = mending->rules->thickness * (double)there->radius;
+            double need = scale * (radius + wide) + gap;
+            if (other >= below || other == i || !grid_boxes_within(&item, there, (float)need) ||
+                are_joined(net, i, other))
                 continue;
-            double clearance =
-                scale * (radius + (double)net->segment[j].radius) + mending->rules->gap;
-            if (segment_distance2(a, b, net->position[net->segment[j].parent], net->position[j]) <
-                clearance * clearance)
-                return false;
+            double apart2 = grid_distance2(&item, there);
+            if (apart2 < need * need && need - sqrt(apart2) > worst) {
+                worst = need - sqrt(apart2);
+                *with = other;
+            }
         }
     }
-    return true;
+    return worst;
 }
 
-/* The segments that meet at bifurcation `node`: the one above and its daughters. */
-static void meeting_at(const Network *net, int32_t node, int32_t segment[3])
+/* The faults of the three segments that meet at a bifurcation. */
+static double fault_at(const Mending *mending, int32_t node)
 {
-    segment[0] = node;
-    segment[1] = net->segment[node].child[0];
-    segment[2] = net->segment[node].child[1];
+    const int32_t *child = mending->net->segment[node].child;
+    int32_t with;
+    return fault(mending, node, spare, INT32_MAX, &with) +
+           fault(mending, child[0], spare, INT32_MAX, &with) +
+           fault(mending, child[1], spare, INT32_MAX, &with);
 }
 
-static bool has_room_at(const Mending *mending, int32_t node, Vec3 place)
+static bool is_inside(const Mending *mending, int32_t node)
 {
     const Network *net = mending->net;
-    if (!domain_inside(mending->domain, place, 0))
-        return false;
-    int32_t segment[3];
-    meeting_at(net, node, segment);
-    for (int k = 0; k < 3; k++) {
-        Vec3 other = net->position[k == 0 ? net->segment[node].parent : segment[k]];
-        if (!domain_is_convex(mending->domain) &&
-            !domain_holds_segment(mending->domain, other, place))
-            return false;
-        if (!is_right(mending, segment[k], other, place, reserve, node))
-            return false;
-    }
-    return true;
+    const int32_t *child = net->segment[node].child;
+    Vec3 place = net->position[node];
+    return domain_inside(mending->domain, place, 0) &&
+           (domain_is_convex(mending->domain) ||
+            (domain_holds_segment(mending->domain, proximal(net, node), place) &&
+             domain_holds_segment(mending->domain, place, net->position[child[0]]) &&
+             domain_holds_segment(mending->domain, place, net->position[child[1]])));
 }
 
-static Status move_to(Mending *mending, int32_t node, Vec3 place, Err *err)
+/* Tries the places a step away from a bifurcation's own, up to the first without fault. */
+static void try_step(const Mending *mending, int32_t node, Vec3 from, double step, Vec3 *best,
+                     double *least)
 {
     Network *net = mending->net;
-    int32_t segment[3];
-    meeting_at(net, node, segment);
-    for (int k = 0; k < 3; k++)
-        grid_remove(mending->grid, segment[k]);
-    network_move(net, node, place);
-    for (int k = 0; k < 3; k++) {
-        Capsule capsule = network_capsule(net, segment[k]);
-        double radius = capsule.radius;
-        capsule.radius = place_reach(mending->rules, radius);
-        TRY(grid_add(mending->grid, 0, segment[k], net->segment[segment[k]].child[0] < 0,
-                     grid_item(mending->grid, capsule, radius), err));
-    }
-    return STATUS_OK;
-}
-
-/* Moves the bifurcation to the nearest place with room; *done tells whether there is one. */
-static Status nudge(Mending *mending, int32_t node, double radius, bool *done, Err *err)
-{
-    const Network *net = mending->net;
-    Vec3 from = net->position[node];
-    int depth = domain_dimension(mending->domain) == 3 ? SPREAD : 0;
-    for (double step = first_step; step < last_step; step *= step_growth)
-        for (int z = -depth; z <= depth; z++)
-            for (int y = -SPREAD; y <= SPREAD; y++)
-                for (int x = -SPREAD; x <= SPREAD; x++) {
-                    Vec3 way = vec3(x, y, z);
-                    double length = vec3_length(way);
-                    if (!(length > 0))
-                        continue;
-                    Vec3 place = vec3_add_scaled(from, way, step * radius / length);
-                    if (has_room_at(mending, node, place)) {
-                        *done = true;
-                        return move_to(mending, node, place, err);
-                    }
+    int depth = domain_dimension(mending->domain) == 3;
+    for (int z = -depth; z <= depth; z++)
+        for (int y = -1; y <= 1; y++)
+            for (int x = -1; x <= 1; x++) {
+                if ((x == 0 && y == 0 && z == 0) || *least == 0)
+                    continue;
+                net->position[node] = vec3_add_scaled(from, vec3_normalized(vec3(x, y, z)), step);
+                double there = is_inside(mending, node) ? fault_at(mending, node) : *least;
+                if (there < *least) {
+                    *least = there;
+                    *best = net->position[node];
                 }
-    return STATUS_OK;
+            }
 }
 
-static Status mend_segment(Mending *mending, int32_t i, bool *done, Err *err)
+/* The place around a bifurcation with the least fault. */
+static Vec3 best_place(const Mending *mending, int32_t node)
 {
-    const Network *net = mending->net;
-    const int32_t ends[2] = {i, net->segment[i].parent};
-    for (int k = 0; k < 2 && !*done; k++)
-        if (ends[k] != 0 && net->segment[ends[k]].child[1] >= 0)
-            TRY(nudge(mending, ends[k], (double)net->segment[i].radius, done, err));
-    return STATUS_OK;
+    Network *net = mending->net;
+    const Vec3 from = net->position[node];
+    Vec3 best = from;
+    double least = fault_at(mending, node);
+    for (size_t s = 0; s < sizeof steps / sizeof *steps && least > 0; s++)
+        try_step(mending, node, from, steps[s] * width(mending, node), &best, &least);
+    net->position[node] = from;
+    return best;
 }
 
-static Status suspect(Mending *mending, int32_t i, Err *err)
+static Status move(const Mending *mending, int32_t node, Err *err)
 {
-    TRY(mem_reserve(&mending->suspect, &mending->capacity, mending->n_suspects + 1,
-                    sizeof *mending->suspect, "segments to mend", err));
-    mending->suspect[mending->n_suspects++] = i;
-    return STATUS_OK;
-}
-
-static bool are_one(const float a[3], const float b[3])
-{
-    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
-
-/* Whether the items' vessels may overlap, and not just meet at a node. */
-static bool may_overlap(const GridItem *a, const GridItem *b, double thickness)
-{
-    float along = 0, apart = 0; /* squares of their lengths together, and of twice their distance */
-    for (int k = 0; k < 3; k++) {
-        float ua = a->distal[k] - a->proximal[k], ub = b->distal[k] - b->proximal[k];
-        float between = a->proximal[k] + a->distal[k] - b->proximal[k] - b->distal[k];
-        along += ua * ua + ub * ub;
-        apart += between * between;
-    }
-    double clearance = suspicion * thickness * ((double)a->radius + (double)b->radius);
-    double reach = sqrt(2 * (double)along) + 2 * clearance; /* u + v <= sqrt(2 (u^2 + v^2)) */
-    if ((double)apart > reach * reach || are_one(a->proximal, b->distal) ||
-        are_one(a->distal, b->proximal) || are_one(a->proximal, b->proximal))
-        return false;
-    return segment_distance2(place_point(a->proximal), place_point(a->distal),
-                             place_point(b->proximal),
-                             place_point(b->distal)) < clearance * clearance;
-}
-
-static Status suspect_pairs(Mending *mending, const GridCell *cell, Err *err)
-{
-    for (uint32_t p = 1; p < cell->count; p++)
-        for (uint32_t q = 0; q < p; q++) {
-            int32_t i = cell->tag[p] >> 1, j = cell->tag[q] >> 1;
-            const GridItem *item = mending->grid->item;
-            if (!may_overlap(&item[i], &item[j], mending->rules->thickness))
-                continue;
-            TRY(suspect(mending, i, err));
-            TRY(suspect(mending, j, err));
+    Network *net = mending->net;
+    Grid *grid = mending->grid;
+    if (node == 0 || net->segment[node].child[0] < 0 || !(fault_at(mending, node) > 0))
+        return STATUS_OK;
+    Vec3 place = best_place(mending, node);
+    if (vec3_distance(place, net->position[node]) > 0) {
+        const int32_t *child = net->segment[node].child;
+        network_move(net, node, place);
+        for (int k = 0; k < 3; k++) {
+            int32_t i = k < 2 ? child[k] : node;
+            TRY(place_enter_again(grid, mending->rules, net, i, err));
         }
-    return STATUS_OK;
-}
-
-static Status find_suspects(Mending *mending, Err *err)
-{
-    const Network *net = mending->net;
-    mending->n_suspects = 0;
-    for (size_t i = 1; i < net->n; i++) {
-        const Segment *segment = &net->segment[i];
-        mending->grid->item[i].radius = segment->radius;
-        if (segment->length < 2 * mending->rules->thickness * (double)segment->radius)
-            TRY(suspect(mending, (int32_t)i, err));
-    }
-    size_t cells = grid_cells(mending->grid);
-    for (size_t k = 0; k < cells; k++)
-        TRY(suspect_pairs(mending, &mending->grid->cell[k], err));
-    return STATUS_OK;
-}
-
-/* Whether anything has moved, in *moved. */
-static Status mend_suspects(Mending *mending, bool *moved, Err *err)
-{
-    const Network *net = mending->net;
-    for (size_t k = 0; k < mending->n_suspects; k++) {
-        int32_t i = mending->suspect[k];
-        bool done = false;
-        if (!is_right(mending, i, net->position[net->segment[i].parent], net->position[i], 1, -2))
-            TRY(mend_segment(mending, i, &done, err));
-        *moved = *moved || done;
     }
     return STATUS_OK;
 }
 
-Status mend_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules, Err *err)
+/* Marks the segments that break the rules or are next to doing so. Of a pair the later finds it. */
+static void look_at_chunk(size_t index, int worker, void *context)
 {
-    Mending mending = {.net = net, .grid = grid, .domain = domain, .rules = rules};
+    (void)worker;
+    const Mending *mending = context;
+    size_t end = (index + 1) * CHUNK < mending->net->n ? (index + 1) * CHUNK : mending->net->n;
+    for (size_t k = index * CHUNK; k < end; k++) {
+        int32_t i = (int32_t)k, with;
+        mending->close[k] = i > 0 && fault(mending, i, spare, i, &with) > 0;
+    }
+}
+
+static Status move_ends(const Mending *mending, int32_t i, Err *err)
+{
+    TRY(move(mending, mending->net->segment[i].parent, err));
+    return move(mending, i, err);
+}
+
+/* Moves the ends of the close segments that break the rules, and if need be of what they are too
+ * near to. *count were there. */
+static Status mend(const Mending *mending, size_t *count, Err *err)
+{
+    *count = 0;
+    for (size_t k = 1; k < mending->net->n; k++) {
+        int32_t i = (int32_t)k, with = -1;
+        if (!mending->close[k] || !(fault(mending, i, 0, INT32_MAX, &with) > 0))
+            continue;
+        ++*count;
+        TRY(move_ends(mending, i, err));
+        with = -1;
+        if (fault(mending, i, 0, INT32_MAX, &with) > 0 && with >= 0)
+            TRY(move_ends(mending, with, err));
+    }
+    return STATUS_OK;
+}
+
+Status mend_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules, int threads,
+                    size_t *left, Err *err)
+{
+    Mending mending = {net, grid, domain, rules, NULL};
     Status status = STATUS_OK;
-    bool moved = true;
-    for (int round = 0; moved && round < ROUNDS; round++) {
-        moved = false;
+    TRY_GOTO(mem_calloc(&mending.close, net->n, sizeof *mending.close, "segments", err));
+    for (int round = 0; round < ROUNDS; round++) {
         network_refresh(net);
-        TRY_GOTO(find_suspects(&mending, err));
-        TRY_GOTO(mend_suspects(&mending, &moved, err));
+        TRY_GOTO(place_widen(grid, rules, net, err));
+        if (round == 0)
+            threads_for((net->n + CHUNK - 1) / CHUNK, threads, look_at_chunk, &mending);
+        TRY_GOTO(mend(&mending, left, err));
+        if (*left == 0)
+            break;
     }
 done:
-    free(mending.suspect);
+    free(mending.close);
     return status;
 }

@@ -1,4 +1,4 @@
-/* Puts right what widened too much after it was made. */
+/* The few vessels that widened more than the rules' reserves allow for are put right. */
 #ifndef CORCAST_GROW_MEND_H
 #define CORCAST_GROW_MEND_H
 
@@ -7,11 +7,11 @@
 #include "grow/network.h"
 #include "grow/place.h"
 
-/* Moves bifurcations, as little as it takes, until all segments are at least as long as wide and
- * those without a common node clear of each other, at the present radii; what cannot be put right
- * so is left. The grid is that of the network and knows all its segments. Fails with STATUS_MEMORY
- * only. */
+/* Brings all radii up to date and moves bifurcations until, at those radii times rules->thickness,
+ * every segment is longer than wide and clear of those it shares no node with, as far as small moves
+ * can bring that about. *left: the number of segments for which it is still not so. `grid` holds the
+ * segments of `net`. `threads` do not change the result. */
 MUST_CHECK Status mend_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules,
-                               Err *err);
+                               int threads, size_t *left, Err *err);
 
 #endif

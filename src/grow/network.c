@@ -79,6 +79,18 @@ static void report(Network *net, int32_t i, const Reduced *reduced)
     parent->cost[slot] = reduced->cost;
 }
 
+static void measure(Network *net, int32_t i)
+{
+    Segment *segment = &net->segment[i];
+    segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
+}
+
+static void recompute(Network *net, int32_t i)
+{
+    Reduced reduced = network_reduce(net, i);
+    report(net, i, &reduced);
+}
+
 /* Gives a segment the adjoint it has as a daughter of `parent`. */
 static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t parent,
                   const Reduced *above)
@@ -155,23 +167,6 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
     adopt(net, fresh, &daughters[1], proximal, &mother);
 }
 
-void network_move(Network *net, int32_t node, Vec3 place)
-{
-    Segment *segment = net->segment;
-    net->position[node] = place;
-    segment[node].length = vec3_distance(net->position[segment[node].parent], place);
-    for (int slot = 0; slot < 2; slot++) {
-        int32_t child = segment[node].child[slot];
-        segment[child].length = vec3_distance(place, net->position[child]);
-        Reduced reduced = network_reduce(net, child);
-        report(net, child, &reduced);
-    }
-    for (int32_t i = node; i != 0; i = segment[i].parent) {
-        Reduced reduced = network_reduce(net, i);
-        report(net, i, &reduced);
-    }
-}
-
 static size_t chunk_end(size_t index, size_t count)
 {
     size_t end = (index + 1) * CHUNK;
@@ -225,8 +220,7 @@ static void ascend(size_t index, int worker, void *context)
             atomic_store_explicit(&here->gain, 0, memory_order_relaxed);
             atomic_store_explicit(&here->announced, false, memory_order_relaxed);
             net->segment[i].terminals += gain;
-            Reduced reduced = network_reduce(net, i);
-            report(net, i, &reduced);
+            recompute(net, i);
             i = net->segment[i].parent;
             atomic_fetch_add_explicit(&net->coming[i].gain, gain, memory_order_relaxed);
         }
@@ -241,6 +235,19 @@ void network_carry(Network *net, size_t splits, int threads)
     threads_for(chunks, threads, announce, &carrying);
     threads_for(chunks, threads, ascend, &carrying);
     atomic_store_explicit(&net->coming[0].gain, 0, memory_order_relaxed);
+}
+
+void network_move(Network *net, int32_t node, Vec3 place)
+{
+    const int32_t *child = net->segment[node].child;
+    net->position[node] = place;
+    for (int slot = 0; slot < 2; slot++) {
+        measure(net, child[slot]);
+        recompute(net, child[slot]);
+    }
+    measure(net, node);
+    for (int32_t i = node; i != 0; i = net->segment[i].parent)
+        recompute(net, i);
 }
 
 /* The segment after `i` in depth-first order, 0 after the last. */
@@ -288,10 +295,8 @@ static Status permute(void *items, size_t size, const int32_t *order, size_t n, 
 void network_resum(Network *net)
 {
     for (int32_t i = (int32_t)net->n - 1; i > 0; i--) {
-        Segment *segment = &net->segment[i];
-        segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
-        Reduced reduced = network_reduce(net, i);
-        report(net, i, &reduced);
+        measure(net, i);
+        recompute(net, i);
     }
 }
 

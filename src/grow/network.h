@@ -89,7 +89,7 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
 /* Carries all splits since network_extend up to the inlet, on `threads` threads. */
 void network_carry(Network *net, size_t splits, int threads);
 
-/* Moves a bifurcation and carries the change up to the inlet. */
+/* Moves a bifurcation, and brings all sums up to date. */
 void network_move(Network *net, int32_t node, Vec3 place);
 
 /* S_root; not finite, or 0, when the radii of the tree span more than a double can hold. */

@@ -1,14 +1,16 @@
 /* The cost of a connection depends on the bifurcation through three lengths only. Where it is
  * least, the derivatives with respect to them pull evenly: the point is the weighted Fermat point
- * for these derivatives as weights [fermat.h]. They vary slowly, so the Fermat point for the weights
- * at a middling place is within a hair of the best, and the same weights price it to first order. A
- * point that collapses onto an end is pushed off it to the shortest length the rules allow, in the
+ * for these derivatives as weights [fermat.h]. They vary slowly, so weights at one place and the
+ * Fermat point for them in turn converge in a few rounds. To rank connections one round from a
+ * middling place does, priced to first order by the same weights; the rest are for the one that is
+ * made. A point that collapses onto an end is pushed off it to the shortest length the rules allow, in the
  * direction that costs least: such connections are among the best there are, so they must not be
- * lost. Only the connection that is made is priced in full. */
+ * lost. */
 #include "grow/place.h"
 
 #include "grow/fermat.h"
 #include <stdlib.h>
+#include <string.h>
 
 /* Vessels widen as the tree below them grows: the rules hold for radii this much greater, and so at
  * the end of growth for nearly all vessels at their final radii. For length, and for keeping clear
@@ -16,6 +18,8 @@
 static const double length_reserve = 1.15, clearance_reserve = 1.1;
 /* And this much they may widen until the grid is made anew. */
 static const double reach_reserve = 1.4;
+/* How often the place of the connection that is made is found anew. */
+enum { ROUNDS = 2 };
 
 /* The segment to be split, as it is. */
 typedef struct Host {
@@ -109,70 +113,74 @@ static void find_ends(const Network *net, int32_t segment, Vec3 terminal, Vec3 e
     end[FRESH] = terminal;
 }
 
+/* Where the bifurcation is best by a trial's weights, as far as the rules allow. False when they are
+ * beyond what a double can hold. */
+static bool find_place(const Rules *rules, const Vec3 end[PARTS], const Trial *trial, Vec3 *place)
+{
+    double greatest = fmax(trial->weight[0], fmax(trial->weight[1], trial->weight[2]));
+    if (!isfinite(trial->price) || !isfinite(greatest) || !(greatest > 0))
+        return false;
+    double weight[PARTS];
+    for (int i = 0; i < PARTS; i++) /* none pushes: Fermat's point wants weights above 0 */
+        weight[i] = fmax(trial->weight[i] / greatest, 1e-9);
+    Fermat fermat = fermat_point(end, weight);
+    *place = push_off(rules, end, trial->radius, &fermat);
+    return true;
+}
+
 bool place_connection(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
                       Connection *out)
 {
-    Vec3 end[PARTS];
+    Vec3 end[PARTS], middle, place;
     find_ends(net, segment, terminal, end);
     Host host = host_of(net, segment);
-    Vec3 middle = vec3_scale(vec3_add(end[PROXIMAL], end[DISTAL]), 0.5);
-    Vec3 guess = vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25);
+    middle = vec3_scale(vec3_add(end[PROXIMAL], end[DISTAL]), 0.5);
     double from[PARTS], to[PARTS];
-    measure(end, guess, from);
+    measure(end, vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25), from);
     Trial trial = evaluate(net, &host, from);
-    double greatest = fmax(trial.weight[0], fmax(trial.weight[1], trial.weight[2]));
-    if (!isfinite(trial.price) || !isfinite(greatest) || !(greatest > 0))
-        return false; /* beyond what a double can hold */
-    double weight[PARTS];
-    for (int i = 0; i < PARTS; i++) /* none pushes: Fermat's point wants weights above 0 */
-        weight[i] = fmax(trial.weight[i] / greatest, 1e-9);
-    Fermat fermat = fermat_point(end, weight);
-    *out = (Connection){.segment = segment, .price = trial.price};
-    out->bifurcation = push_off(rules, end, trial.radius, &fermat);
-    measure(end, out->bifurcation, to);
+    if (!find_place(rules, end, &trial, &place))
+        return false;
+    measure(end, place, to);
+    *out = (Connection){.segment = segment, .price = trial.price, .bifurcation = place};
     for (int i = 0; i < PARTS; i++)
         out->price += trial.weight[i] * (to[i] - from[i]);
     return true;
 }
 
-bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connection *connection)
+bool place_is_splittable(const Grid *grid, const Rules *rules, int32_t segment)
 {
-    Vec3 end[PARTS];
-    find_ends(net, connection->segment, terminal, end);
-    Host host = host_of(net, connection->segment);
-    double length[PARTS];
-    measure(end, connection->bifurcation, length);
-    Trial trial = evaluate(net, &host, length);
-    if (!isfinite(trial.price))
-        return false;
-    for (int i = 0; i < PARTS; i++) {
-        if (!(length[i] >= shortest(rules, trial.radius[i])))
+    const GridItem *item = &grid->item[segment];
+    double least = 2 * shortest(rules, (double)item->radius);
+    return grid_length2(item) > least * least;
+}
+
+static bool is_long_enough(const Rules *rules, const double length[PARTS],
+                           const double radius[PARTS])
+{
+    for (int i = 0; i < PARTS; i++)
+        if (!(length[i] >= shortest(rules, radius[i])))
             return false;
-        connection->radius[i] = trial.radius[i];
-    }
-    connection->price = trial.price;
     return true;
 }
 
-static double clamp01(double t)
+bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connection *connection)
 {
-    return t < 0 ? 0 : t > 1 ? 1 : t;
-}
-
-double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
-{
-    Vec3 u = vec3_sub(a1, a0), v = vec3_sub(b1, b0), w = vec3_sub(a0, b0);
-    double uu = vec3_dot(u, u), vv = vec3_dot(v, v), uv = vec3_dot(u, v);
-    double uw = vec3_dot(u, w), vw = vec3_dot(v, w);
-    double denominator = uu * vv - uv * uv;
-    double s = denominator > 0 ? clamp01((uv * vw - uw * vv) / denominator) : 0;
-    double t = (uv * s + vw) / vv;
-    if (t < 0 || t > 1) {
-        t = clamp01(t);
-        s = clamp01((uv * t - uw) / uu);
+    Vec3 end[PARTS], place = connection->bifurcation;
+    find_ends(net, connection->segment, terminal, end);
+    Host host = host_of(net, connection->segment);
+    for (int round = 0; round <= ROUNDS; round++) {
+        double length[PARTS];
+        measure(end, place, length);
+        Trial trial = evaluate(net, &host, length);
+        if (!isfinite(trial.price) || !is_long_enough(rules, length, trial.radius))
+            return round > 0;
+        connection->price = trial.price;
+        connection->bifurcation = place;
+        memcpy(connection->radius, trial.radius, sizeof trial.radius);
+        if (!find_place(rules, end, &trial, &place))
+            break;
     }
-    Vec3 apart = vec3_add_scaled(vec3_add_scaled(w, u, s), v, -t);
-    return vec3_dot(apart, apart);
+    return true;
 }
 
 double place_reach(const Rules *rules, double radius)
@@ -193,6 +201,34 @@ GridItem place_item(const Network *net, const Grid *grid, const Rules *rules,
     else if (part == DISTAL)
         capsule.b = net->position[host];
     return grid_item(grid, capsule, radius);
+}
+
+Status place_enter(Grid *grid, const Rules *rules, const Network *net, int32_t segment, Err *err)
+{
+    Capsule capsule = network_capsule(net, segment);
+    double radius = capsule.radius;
+    capsule.radius = place_reach(rules, radius);
+    return grid_add(grid, 0, segment, net->segment[segment].child[0] < 0,
+                    grid_item(grid, capsule, radius), err);
+}
+
+Status place_enter_again(Grid *grid, const Rules *rules, const Network *net, int32_t segment,
+                         Err *err)
+{
+    grid_remove(grid, segment);
+    return place_enter(grid, rules, net, segment, err);
+}
+
+Status place_widen(Grid *grid, const Rules *rules, const Network *net, Err *err)
+{
+    for (size_t i = 1; i < net->n; i++) {
+        GridItem *item = &grid->item[i];
+        item->radius = net->segment[i].radius;
+        double reach = (double)item->reach;
+        if (rules->thickness * (double)item->radius > reach && reach < rules->widest)
+            TRY(place_enter_again(grid, rules, net, (int32_t)i, err));
+    }
+    return STATUS_OK;
 }
 
 bool place_is_inside(const Network *net, const Domain *domain, const Connection *connection,
@@ -259,24 +295,18 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
     return out;
 }
 
-static double distance2(const GridItem *a, const GridItem *b)
-{
-    return segment_distance2(place_point(a->proximal), place_point(a->distal),
-                             place_point(b->proximal), place_point(b->distal));
-}
-
 /* Whether the newcomer keeps clear of another segment, with the reserve unless the segment that is
  * split did not either. */
 static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t other)
 {
     const GridItem *item = &grid->item[other];
-    double apart2 = distance2(&newcomer->item, item);
+    double apart2 = grid_distance2(&newcomer->item, item);
     double touch = newcomer->thickness * (newcomer->radius + (double)item->radius);
     double clear = clearance_reserve * touch + newcomer->gap;
     if (apart2 >= clear * clear)
         return true;
     touch += newcomer->gap;
-    return apart2 >= touch * touch && apart2 >= distance2(&grid->item[newcomer->kin[0]], item);
+    return apart2 >= touch * touch && apart2 >= grid_distance2(&grid->item[newcomer->kin[0]], item);
 }
 
 static bool is_clear(const Grid *grid, const Newcomer *newcomer, const GridCell *cell)

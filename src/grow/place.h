@@ -43,12 +43,25 @@ double place_reach(const Rules *rules, double radius);
 GridItem place_item(const Network *net, const Grid *grid, const Rules *rules,
                     const Connection *connection, Vec3 terminal, int part);
 
+/* Enters a segment of the tree. */
+MUST_CHECK Status place_enter(Grid *grid, const Rules *rules, const Network *net, int32_t segment,
+                              Err *err);
+/* Enters it anew, after it moved or widened. */
+MUST_CHECK Status place_enter_again(Grid *grid, const Rules *rules, const Network *net,
+                                    int32_t segment, Err *err);
+/* Brings all radii in the grid up to date with the network's. */
+MUST_CHECK Status place_widen(Grid *grid, const Rules *rules, const Network *net, Err *err);
+
+/* Whether a segment is long enough to become two that are longer than wide. */
+bool place_is_splittable(const Grid *grid, const Rules *rules, int32_t segment);
+
 /* A connection of `terminal` to `segment` that is good and, to first order, priced; its radii are
  * not set. False when there is none. */
 bool place_connection(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
                       Connection *out);
 
-/* Sets the exact price and the radii. False when a segment would be too short. */
+/* Finds the best bifurcation, the price and the radii to the end. False when a segment would be too
+ * short. */
 bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connection *connection);
 
 /* Whether the three segments are inside the domain; in a convex one they are when the bifurcation is. */
@@ -60,15 +73,5 @@ bool place_is_inside(const Network *net, const Domain *domain, const Connection 
 MUST_CHECK Status place_is_free(const Network *net, const Grid *grid, const Rules *rules,
                                 const Connection *connection, Vec3 terminal, Footprint *footprint,
                                 bool *out, Err *err);
-
-/* An end of a GridItem. */
-static inline Vec3 place_point(const float v[3])
-{
-    return vec3((double)v[0], (double)v[1], (double)v[2]);
-}
-
-/* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
- * Detection, 2005, sec. 5.1.9]. */
-double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
 
 #endif

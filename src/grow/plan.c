@@ -51,7 +51,8 @@ static Status choose(const Site *site, Planner *planner, Plan *plan, Err *err)
     int near = grid_nearest(site->grid, plan->terminal, site->candidates, planner->near);
     int count = 0;
     for (int i = 0; i < near; i++)
-        if (place_connection(site->net, site->rules, planner->near[i].segment, plan->terminal,
+        if (place_is_splittable(site->grid, site->rules, planner->near[i].segment) &&
+            place_connection(site->net, site->rules, planner->near[i].segment, plan->terminal,
                              &connection[count]))
             count++;
     bool inside = false, outside = false, is_free = false;
