@@ -124,7 +124,7 @@ Status render(const Scene *scene, const RenderParams *params, Frame *frame, Rend
     double start_s = clock_seconds(), built_s = start_s;
     Status status = make_planes(&scene->camera, params, &made, err);
     if (status == STATUS_OK)
-        status = caster_new(scene, threads, &caster, err);
+        status = caster_new(scene, params->povray_cells, threads, &caster, err);
     if (status == STATUS_OK) {
         built_s = clock_seconds();
         Job job = {scene, params, caster, &made};
