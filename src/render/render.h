@@ -11,6 +11,7 @@ typedef struct RenderParams {
     int threads;   /* 0: all processors */
     int antialias; /* 1: one ray through each pixel's centre; N > 1: that ray and N x N more, the
                     * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
+    double antialias_threshold; /* 0: every pixel; else those that refine_mask tells, in (0, 1] */
     bool shadows;
     bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
     void (*progress)(double fraction, void *context);  /* called by one thread; may be NULL */
