@@ -21,12 +21,13 @@ static Status write_report(const char *path, const GrowReport *report, const Ref
                            int threads, Err *err)
 {
     double target = refined->target_before > 0 ? refined->target_after : report->target;
-    json_t *json = json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:b, s:i}", "generator",
-                             GENERATOR, "seconds", report->seconds + refined->seconds, "terminals",
-                             (json_int_t)report->terminals, "target", target, "root_radius_mm",
-                             report->root_radius_mm, "tosses", (json_int_t)report->tosses,
-                             "rejected", (json_int_t)report->rejected, "thickness",
-                             report->thickness, "complete", report->complete, "threads", threads);
+    json_t *json =
+        json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:I, s:b, s:i}", "generator", GENERATOR,
+                  "seconds", report->seconds + refined->seconds, "terminals",
+                  (json_int_t)report->terminals, "target", target, "root_radius_mm",
+                  report->root_radius_mm, "tosses", (json_int_t)report->tosses, "rejected",
+                  (json_int_t)report->rejected, "thickness", report->thickness, "broken",
+                  (json_int_t)report->broken, "complete", report->complete, "threads", threads);
     return json_write(json, path, err);
 }
 

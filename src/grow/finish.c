@@ -55,16 +55,16 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
 static const double agreement = 1e-13;
 enum { MAX_ROUNDS = 200 };
 
-/* Computes all radii, with the viscosities at these radii and the flows that `share` asks for; turns it
- * into flows. */
-static Status settle_radii(Network *net, const GrowParams *params, double *share, Tree *tree,
+/* Computes all radii, with the flows that the terminals' shares ask for and the viscosities at these
+ * radii. `flow` has room for one a node. */
+static Status settle_radii(Network *net, const GrowParams *params, double *flow, Tree *tree,
                            Err *err)
 {
     double part = 1, last = INFINITY, change;
-    weigh_gather(net, share);
+    weigh_gather(net, flow);
     for (int round = 0; round < MAX_ROUNDS; round++) {
         TRY(sweep_down(net, tree, err));
-        TRY(weigh_segments(net, params, share, tree->radius_mm, part, &change, err));
+        TRY(weigh_segments(net, params, flow, tree->radius_mm, part, &change, err));
         if (change <= agreement)
             return STATUS_OK;
         part = change < last ? part : part / 2;
@@ -78,22 +78,21 @@ static Status settle_radii(Network *net, const GrowParams *params, double *share
 }
 
 /* Radii, and flow shares where terminals have their own. */
-static Status write_radii(Network *net, const GrowParams *params, const Domain *domain, Tree *tree,
-                          Err *err)
+static Status write_radii(Network *net, const GrowParams *params, Tree *tree, Err *err)
 {
     if (!weigh_is_needed(params))
         return sweep_down(net, tree, err);
-    double *share = NULL;
+    double *flow = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&share, net->n, sizeof *share, "flow shares", err));
-    TRY_GOTO(weigh_share(net, params, domain, WEIGH_FINE, share, err));
-    if (params->terminal_flow == TERMINAL_FLOW_TERRITORY) {
-        TRY_GOTO(tree_add_flow_shares(tree, err));
-        memcpy(tree->flow_share, share, net->n * sizeof *share);
-    }
-    TRY_GOTO(settle_radii(net, params, share, tree, err));
+    TRY_GOTO(mem_calloc(&flow, net->n, sizeof *flow, "flows", err));
+    TRY_GOTO(settle_radii(net, params, flow, tree, err));
+    if (params->terminal_flow != TERMINAL_FLOW_TERRITORY)
+        goto done;
+    TRY_GOTO(tree_add_flow_shares(tree, err));
+    for (size_t i = 0; i < net->n; i++)
+        tree->flow_share[i] = net->trait[i].share;
 done:
-    free(share);
+    free(flow);
     return status;
 }
 
@@ -178,7 +177,7 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
     Tree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(tree_init(&made, net->n, err));
-    TRY_GOTO(write_radii(net, params, domain, &made, err));
+    TRY_GOTO(write_radii(net, params, &made, err));
     TRY_GOTO(write_header(params, domain, &made, err));
     static_assert(TREE_NO_PARENT == -1, "as in a Segment");
     for (size_t i = 0; i < net->n; i++) {

@@ -254,7 +254,40 @@ void grid_remove(Grid *grid, int32_t segment)
     }
 }
 
-static float point_distance2(const GridItem *item, const float point[3])
+double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
+{
+    Vec3 u = vec3_sub(a1, a0), v = vec3_sub(b1, b0), w = vec3_sub(a0, b0);
+    double uu = vec3_dot(u, u), vv = vec3_dot(v, v), uv = vec3_dot(u, v);
+    double uw = vec3_dot(u, w), vw = vec3_dot(v, w);
+    double denominator = uu * vv - uv * uv;
+    double s = denominator > 0 ? clamp01((uv * vw - uw * vv) / denominator) : 0;
+    double t = (uv * s + vw) / vv;
+    if (t < 0 || t > 1) {
+        t = clamp01(t);
+        s = clamp01((uv * t - uw) / uu);
+    }
+    Vec3 apart = vec3_add_scaled(vec3_add_scaled(w, u, s), v, -t);
+    return vec3_dot(apart, apart);
+}
+
+static Vec3 load(const float v[3])
+{
+    return vec3((double)v[0], (double)v[1], (double)v[2]);
+}
+
+double grid_distance2(const GridItem *a, const GridItem *b)
+{
+    return segment_distance2(load(a->proximal), load(a->distal), load(b->proximal),
+                             load(b->distal));
+}
+
+double grid_length2(const GridItem *item)
+{
+    Vec3 along = vec3_sub(load(item->distal), load(item->proximal));
+    return vec3_dot(along, along);
+}
+
+static inline float point_distance2(const GridItem *item, const float point[3])
 {
     const float *a = item->proximal, *b = item->distal;
     float ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
@@ -266,7 +299,7 @@ static float point_distance2(const GridItem *item, const float point[3])
     return dx * dx + dy * dy + dz * dz;
 }
 
-static float end_distance2(const GridItem *item, const float point[3])
+static inline float end_distance2(const GridItem *item, const float point[3])
 {
     const float *end = item->distal;
     float dx = point[0] - end[0], dy = point[1] - end[1], dz = point[2] - end[2];

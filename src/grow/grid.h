@@ -85,6 +85,29 @@ GridRoom grid_room(const Grid *grid, Vec3 point, double distance, bool terminals
  * many. Equal distances are ordered by segment. */
 int grid_nearest(const Grid *grid, Vec3 point, int limit, Near *out);
 
+/* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
+ * Detection, 2005, sec. 5.1.9]. */
+double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
+
+/* Squared distance of two items' centrelines, and squared length of one's, mm^2. */
+double grid_distance2(const GridItem *a, const GridItem *b);
+double grid_length2(const GridItem *item);
+
+/* Whether the boxes around two items' centrelines are within `distance` of each other; a little more
+ * is allowed for rounding. */
+static inline bool grid_boxes_within(const GridItem *a, const GridItem *b, float distance)
+{
+    for (int i = 0; i < 3; i++) {
+        float a_low = a->proximal[i] < a->distal[i] ? a->proximal[i] : a->distal[i];
+        float a_high = a->proximal[i] < a->distal[i] ? a->distal[i] : a->proximal[i];
+        float b_low = b->proximal[i] < b->distal[i] ? b->proximal[i] : b->distal[i];
+        float b_high = b->proximal[i] < b->distal[i] ? b->distal[i] : b->proximal[i];
+        if ((a_low - b_high) * 0.999999f > distance || (b_low - a_high) * 0.999999f > distance)
+            return false;
+    }
+    return true;
+}
+
 /* A box of cells, both ends included. */
 typedef struct GridBox {
     int low[3], high[3];

@@ -15,13 +15,13 @@
 #include "grow/batch.h"
 #include "grow/finish.h"
 #include "grow/forest.h"
+#include "grow/mend.h"
 #include "grow/plant.h"
 #include "grow/weigh.h"
 #include <stdlib.h>
-#include <string.h>
 
 /* Cells of the grid a terminal, when the grid is made; it serves until the terminals doubled. */
-static const double cells_per_terminal = 2;
+static const double cells_per_terminal = 3;
 /* The sensitivities serve until there are this many times the terminals. */
 static const double refresh_growth = 1.1;
 /* A batch adds about one terminal for every so many there are. */
@@ -62,18 +62,6 @@ typedef struct Tally {
     size_t far; /* as far from the tree as asked, with a way to it within the tissue */
 } Tally;
 
-static Status enter(Growth *growth, int32_t segment, Err *err)
-{
-    Capsule capsule = network_capsule(&growth->net, segment);
-    double radius = capsule.radius;
-    capsule.radius = place_reach(&growth->rules, radius);
-    GridItem item = grid_item(&growth->grid, capsule, radius);
-    if (memcmp(item.proximal, item.distal, sizeof item.distal) == 0)
-        return STATUS_OK; /* of no length: others begin and end there */
-    return grid_add(&growth->grid, 0, segment, growth->net.segment[segment].child[0] < 0, item,
-                    err);
-}
-
 static Status make_grid(Growth *growth, Err *err)
 {
     Network *net = &growth->net;
@@ -90,7 +78,7 @@ static Status make_grid(Growth *growth, Err *err)
     TRY(batch_use_grid(&growth->batch, &growth->grid, err));
     for (size_t i = 0; i < net->n; i++)
         if (net->segment[i].parent >= 0)
-            TRY(enter(growth, (int32_t)i, err));
+            TRY(place_enter(&growth->grid, &growth->rules, net, (int32_t)i, err));
     return STATUS_OK;
 }
 
@@ -101,11 +89,11 @@ static Status keep_up(Growth *growth, Err *err)
     size_t terminals = net->terminals;
     if (terminals >= growth->refresh_until) {
         if (weigh_is_needed(growth->params))
-            TRY(weigh_refresh(net, growth->params, growth->domain, err));
+            TRY(weigh_refresh(net, growth->params, growth->domain, WEIGH_ROUGH, err));
         else
             network_refresh(net);
-        for (size_t i = 1; growth->grid.item && i < net->n; i++)
-            growth->grid.item[i].radius = net->segment[i].radius;
+        if (growth->grid.item)
+            TRY(place_widen(&growth->grid, &growth->rules, net, err));
         growth->refresh_until = (size_t)(refresh_growth * (double)terminals) + 1;
     }
     return terminals >= growth->grid_until ? make_grid(growth, err) : STATUS_OK;
@@ -337,6 +325,12 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     }
     bool complete = status == STATUS_OK;
     TRY_GOTO(check_range(&growth, err));
+    size_t broken = 0;
+    if (weigh_is_needed(params))
+        TRY_GOTO(weigh_refresh(&growth.net, params, domain, WEIGH_FINE, err));
+    if (growth.grid.item)
+        TRY_GOTO(mend_network(&growth.net, &growth.grid, domain, &growth.rules,
+                              growth.batch.threads, &broken, err));
     grid_release(&growth.grid);
     TRY_GOTO(finish_tree(&growth.net, params, domain, out, err));
     if (report)
@@ -347,6 +341,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
                                .tosses = growth.tosses,
                                .rejected = growth.rejected,
                                .thickness = growth.rules.thickness,
+                               .broken = broken,
                                .complete = complete};
 done:
     batch_release(&growth.batch);

@@ -71,6 +71,7 @@ typedef struct GrowReport {
      * of each other, at this share of their radii: 1 unless the domain was too full for vessels so
      * thick, down to 0 for centrelines that do not cross. */
     double thickness;
+    size_t broken; /* segments that widened so much that this does not hold for them */
     bool complete; /* false: a partial tree; err holds the sentence that says why */
 } GrowReport;
 

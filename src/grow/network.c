@@ -87,6 +87,18 @@ static void report(Network *net, int32_t i, const Reduced *reduced)
     parent->cost[slot] = reduced->cost;
 }
 
+static void measure(Network *net, int32_t i)
+{
+    Segment *segment = &net->segment[i];
+    segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
+}
+
+static void recompute(Network *net, int32_t i)
+{
+    Reduced reduced = network_reduce(net, i);
+    report(net, i, &reduced);
+}
+
 /* Gives a segment the adjoint it has as a daughter of `parent`. */
 static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t parent,
                   const Reduced *above)
@@ -230,8 +242,7 @@ static void ascend(size_t index, int worker, void *context)
             atomic_store_explicit(&here->gain, 0, memory_order_relaxed);
             atomic_store_explicit(&here->announced, false, memory_order_relaxed);
             net->segment[i].terminals += gain;
-            Reduced reduced = network_reduce(net, i);
-            report(net, i, &reduced);
+            recompute(net, i);
             i = net->segment[i].parent;
             atomic_fetch_add_explicit(&net->coming[i].gain, gain, memory_order_relaxed);
         }
@@ -250,6 +261,19 @@ void network_carry(Network *net, size_t splits, int threads)
         net->segment[inlet].terminals +=
             atomic_exchange_explicit(&net->coming[inlet].gain, 0, memory_order_relaxed);
     }
+}
+
+void network_move(Network *net, int32_t node, Vec3 place)
+{
+    const int32_t *child = net->segment[node].child;
+    net->position[node] = place;
+    for (int slot = 0; slot < 2; slot++) {
+        measure(net, child[slot]);
+        recompute(net, child[slot]);
+    }
+    measure(net, node);
+    for (int32_t i = node; net->segment[i].parent >= 0; i = net->segment[i].parent)
+        recompute(net, i);
 }
 
 /* The node after `i` in the depth-first order of its tree, -1 after the last. */
@@ -332,11 +356,9 @@ void network_resum(Network *net)
         int32_t inlet = net->inlet[k];
         for (int32_t i = network_first_upward(net, inlet); i != inlet;
              i = network_next_upward(net, i)) {
-            Segment *segment = &net->segment[i];
-            segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
+            measure(net, i);
             count_terminals(net, i);
-            Reduced reduced = network_reduce(net, i);
-            report(net, i, &reduced);
+            recompute(net, i);
         }
         count_terminals(net, inlet);
         terminals += (size_t)net->segment[inlet].terminals;

@@ -35,6 +35,7 @@ typedef struct Trait {
     /* The segment's flow over that of as many mean terminals, times its viscosity over that of
      * radius_scale; as of the last refresh, or of its making. */
     double weight;
+    double share;   /* of a terminal: of the flow, relative to the others'; 0 elsewhere */
     int32_t tree;   /* which of the inlets it hangs on */
     int32_t origin; /* the node's index in the tree that growth started from; -1: none */
     bool given;     /* on a segment of that tree, which stays straight */
@@ -126,6 +127,9 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
 
 /* Carries all splits since network_extend up to the inlets, on `threads` threads. */
 void network_carry(Network *net, size_t splits, int threads);
+
+/* Moves a bifurcation, and brings all sums up to date. */
+void network_move(Network *net, int32_t node, Vec3 place);
 
 /* S_root, over all trees; not finite, or 0, when radii span more than a double can hold. */
 double network_cost(const Network *net);

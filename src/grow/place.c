@@ -171,19 +171,13 @@ bool place_connection(const Network *net, const Rules *rules, int32_t segment, V
     return true;
 }
 
-static Vec3 load(const float v[3])
-{
-    return vec3((double)v[0], (double)v[1], (double)v[2]);
-}
-
 bool place_is_splittable(const Network *net, const Grid *grid, const Rules *rules, int32_t segment)
 {
     if (network_is_piece(net, segment))
         return true;
     const GridItem *item = &grid->item[segment];
-    Vec3 along = vec3_sub(load(item->distal), load(item->proximal));
     double least = 2 * shortest(rules, (double)item->radius);
-    return vec3_dot(along, along) > least * least;
+    return grid_length2(item) > least * least;
 }
 
 static bool is_long_enough(const Rules *rules, const Host *host, const double length[PARTS],
@@ -215,27 +209,6 @@ bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connect
     return true;
 }
 
-static double clamp01(double t)
-{
-    return t < 0 ? 0 : t > 1 ? 1 : t;
-}
-
-double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
-{
-    Vec3 u = vec3_sub(a1, a0), v = vec3_sub(b1, b0), w = vec3_sub(a0, b0);
-    double uu = vec3_dot(u, u), vv = vec3_dot(v, v), uv = vec3_dot(u, v);
-    double uw = vec3_dot(u, w), vw = vec3_dot(v, w);
-    double denominator = uu * vv - uv * uv;
-    double s = denominator > 0 ? clamp01((uv * vw - uw * vv) / denominator) : 0;
-    double t = (uv * s + vw) / vv;
-    if (t < 0 || t > 1) {
-        t = clamp01(t);
-        s = clamp01((uv * t - uw) / uu);
-    }
-    Vec3 apart = vec3_add_scaled(vec3_add_scaled(w, u, s), v, -t);
-    return vec3_dot(apart, apart);
-}
-
 double place_reach(const Rules *rules, double radius)
 {
     double reach = reach_reserve * rules->thickness * radius;
@@ -254,6 +227,46 @@ GridItem place_item(const Network *net, const Grid *grid, const Rules *rules,
     else if (part == DISTAL)
         capsule.b = net->position[host];
     return grid_item(grid, capsule, radius);
+}
+
+/* An item of no length is in no cell. */
+static bool has_length(const GridItem *item)
+{
+    return memcmp(item->proximal, item->distal, sizeof item->distal) != 0;
+}
+
+Status place_enter(Grid *grid, const Rules *rules, const Network *net, int32_t segment, Err *err)
+{
+    Capsule capsule = network_capsule(net, segment);
+    double radius = capsule.radius;
+    capsule.radius = place_reach(rules, radius);
+    GridItem item = grid_item(grid, capsule, radius);
+    if (has_length(&item))
+        return grid_add(grid, 0, segment, net->segment[segment].child[0] < 0, item, err);
+    grid->item[segment] = item;
+    return STATUS_OK;
+}
+
+Status place_enter_again(Grid *grid, const Rules *rules, const Network *net, int32_t segment,
+                         Err *err)
+{
+    if (has_length(&grid->item[segment]))
+        grid_remove(grid, segment);
+    return place_enter(grid, rules, net, segment, err);
+}
+
+Status place_widen(Grid *grid, const Rules *rules, const Network *net, Err *err)
+{
+    for (size_t i = 0; i < net->n; i++) {
+        GridItem *item = &grid->item[i];
+        if (net->segment[i].parent < 0)
+            continue;
+        item->radius = net->segment[i].radius;
+        double reach = (double)item->reach;
+        if (rules->thickness * (double)item->radius > reach && reach < rules->widest)
+            TRY(place_enter_again(grid, rules, net, (int32_t)i, err));
+    }
+    return STATUS_OK;
 }
 
 bool place_is_inside(const Network *net, const Domain *domain, const Connection *connection,
@@ -324,25 +337,19 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
     return out;
 }
 
-static double distance2(const GridItem *a, const GridItem *b)
-{
-    return segment_distance2(load(a->proximal), load(a->distal), load(b->proximal),
-                             load(b->distal));
-}
-
 /* Whether the newcomer keeps clear of another segment, with the reserve unless the segment that is
  * split did not either. What begins in a vessel of many pieces overlaps those about its beginning:
  * from them only the centrelines must keep apart. */
 static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t other)
 {
     const GridItem *item = &grid->item[other];
-    double apart2 = distance2(&newcomer->item, item);
+    double apart2 = grid_distance2(&newcomer->item, item);
     double touch = newcomer->thickness * (newcomer->radius + (double)item->radius);
     double clear = clearance_reserve * touch + newcomer->gap;
     if (apart2 >= clear * clear)
         return true;
     touch = newcomer->gap + (network_is_piece(newcomer->net, other) ? 0 : touch);
-    return apart2 >= touch * touch && apart2 >= distance2(&grid->item[newcomer->kin[0]], item);
+    return apart2 >= touch * touch && apart2 >= grid_distance2(&grid->item[newcomer->kin[0]], item);
 }
 
 static bool is_clear(const Grid *grid, const Newcomer *newcomer, const GridCell *cell)

@@ -43,6 +43,15 @@ double place_reach(const Rules *rules, double radius);
 GridItem place_item(const Network *net, const Grid *grid, const Rules *rules,
                     const Connection *connection, Vec3 terminal, int part);
 
+/* Enters a segment of the tree, unless it has no length: others begin and end there. */
+MUST_CHECK Status place_enter(Grid *grid, const Rules *rules, const Network *net, int32_t segment,
+                              Err *err);
+/* Enters it anew, after it moved or widened. */
+MUST_CHECK Status place_enter_again(Grid *grid, const Rules *rules, const Network *net,
+                                    int32_t segment, Err *err);
+/* Brings all radii in the grid up to date with the network's. */
+MUST_CHECK Status place_widen(Grid *grid, const Rules *rules, const Network *net, Err *err);
+
 /* Whether a segment is long enough to become two that are longer than wide, or need not be. */
 bool place_is_splittable(const Network *net, const Grid *grid, const Rules *rules, int32_t segment);
 
@@ -65,9 +74,5 @@ bool place_is_inside(const Network *net, const Domain *domain, const Connection 
 MUST_CHECK Status place_is_free(const Network *net, const Grid *grid, const Rules *rules,
                                 const Connection *connection, Vec3 terminal, Footprint *footprint,
                                 bool *out, Err *err);
-
-/* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
- * Detection, 2005, sec. 5.1.9]. */
-double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
 
 #endif

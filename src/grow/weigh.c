@@ -11,6 +11,9 @@
 static const double rough_points = 8;
 static const double least_points = 256, most_points = 4096, all_points = 2e6;
 
+/* How often radii and weights are computed in turn for a fine result. */
+enum { FINE_ROUNDS = 3 };
+
 bool weigh_is_needed(const GrowParams *params)
 {
     return params->viscosity_law != VISCOSITY_CONSTANT ||
@@ -30,33 +33,39 @@ static double relative_viscosity(const GrowParams *params, double radius)
     return viscosity_pries_pa_s(radius, params->hematocrit, 1);
 }
 
-Status weigh_share(const Network *net, const GrowParams *params, const Domain *domain,
-                   WeighPrecision precision, double *share, Err *err)
+/* Gives all terminals their shares; `share` has room for one a node. */
+static Status set_shares(Network *net, const GrowParams *params, const Domain *domain,
+                         WeighPrecision precision, double *share, Err *err)
 {
     double points = rough_points;
     if (precision == WEIGH_FINE)
         points = fmin(fmax(all_points / (double)net->terminals, least_points), most_points);
-    if (params->terminal_flow == TERMINAL_FLOW_TERRITORY)
-        return territory_count(net, domain, points,
-                               params->threads > 0 ? params->threads : threads_available(), share,
-                               err);
-    for (size_t i = 0; i < net->n; i++)
-        share[i] = net->segment[i].child[0] < 0;
+    int threads = params->threads > 0 ? params->threads : threads_available();
+    bool territory = params->terminal_flow == TERMINAL_FLOW_TERRITORY;
+    if (territory)
+        TRY(territory_count(net, domain, points, threads, share, err));
+    for (size_t i = 0; i < net->n; i++) {
+        const Segment *segment = &net->segment[i];
+        bool terminal = segment->child[0] < 0 && segment->parent >= 0;
+        net->trait[i].share = territory ? share[i] : terminal;
+    }
     return STATUS_OK;
 }
 
-void weigh_gather(const Network *net, double *share)
+void weigh_gather(const Network *net, double *flow)
 {
     double sum = 0;
+    for (size_t i = 0; i < net->n; i++)
+        flow[i] = net->trait[i].share;
     for (size_t k = 0; k < net->inlets; k++) {
         int32_t inlet = net->inlet[k];
         for (int32_t i = network_first_upward(net, inlet); i != inlet;
              i = network_next_upward(net, i))
-            share[net->segment[i].parent] += share[i];
-        sum += share[inlet];
+            flow[net->segment[i].parent] += flow[i];
+        sum += flow[inlet];
     }
     for (size_t i = 0; i < net->n; i++)
-        share[i] *= (double)net->terminals / sum;
+        flow[i] *= (double)net->terminals / sum;
 }
 
 Status weigh_segments(Network *net, const GrowParams *params, const double *flow,
@@ -84,21 +93,31 @@ Status weigh_segments(Network *net, const GrowParams *params, const double *flow
     return STATUS_OK;
 }
 
-Status weigh_refresh(Network *net, const GrowParams *params, const Domain *domain, Err *err)
+/* Weights for the radii there are, and the radii for these. `radius` has room for one a node. */
+static Status reweigh(Network *net, const GrowParams *params, const double *flow, double *radius,
+                      Err *err)
+{
+    double change;
+    for (size_t i = 0; i < net->n; i++)
+        radius[i] = (double)net->segment[i].radius;
+    TRY(weigh_segments(net, params, flow, radius, 1, &change, err));
+    network_resum(net);
+    network_refresh(net);
+    return STATUS_OK;
+}
+
+Status weigh_refresh(Network *net, const GrowParams *params, const Domain *domain,
+                     WeighPrecision precision, Err *err)
 {
     double *flow = NULL, *radius = NULL;
     Status status = STATUS_OK;
-    double change;
     TRY_GOTO(mem_calloc(&flow, net->n, sizeof *flow, "flows", err));
     TRY_GOTO(mem_calloc(&radius, net->n, sizeof *radius, "radii", err));
-    network_refresh(net);
-    for (size_t i = 0; i < net->n; i++)
-        radius[i] = (double)net->segment[i].radius;
-    TRY_GOTO(weigh_share(net, params, domain, WEIGH_ROUGH, flow, err));
+    TRY_GOTO(set_shares(net, params, domain, precision, flow, err));
     weigh_gather(net, flow);
-    TRY_GOTO(weigh_segments(net, params, flow, radius, 1, &change, err));
-    network_resum(net);
     network_refresh(net);
+    for (int round = 0; round < (precision == WEIGH_FINE ? FINE_ROUNDS : 1); round++)
+        TRY_GOTO(reweigh(net, params, flow, radius, err));
 done:
     free(flow);
     free(radius);

@@ -19,13 +19,8 @@ typedef enum WeighPrecision {
     WEIGH_FINE,  /* the result: to one in a hundred, for up to 1,000 terminals two in a thousand */
 } WeighPrecision;
 
-/* Sets share[i] of every terminal i to its part of the flow, relative to the others', and that of all
- * other nodes to 0. */
-MUST_CHECK Status weigh_share(const Network *net, const GrowParams *params, const Domain *domain,
-                              WeighPrecision precision, double *share, Err *err);
-
-/* Turns shares into flows: of every segment, over the terminals' mean. */
-void weigh_gather(const Network *net, double *share);
+/* Fills `flow` with the flow through every segment, over the terminals' mean, from their shares. */
+void weigh_gather(const Network *net, double *flow);
 
 /* Sets the weights of all segments to what their flows and radii (mm) ask for, or moves them `part`
  * of the way, in (0, 1]; *change is the largest share by which one was off. What follows from weights
@@ -33,8 +28,8 @@ void weigh_gather(const Network *net, double *share);
 MUST_CHECK Status weigh_segments(Network *net, const GrowParams *params, const double *flow,
                                  const double *radius, double part, double *change, Err *err);
 
-/* Brings weights, and all that follows from them, up to date in a growing network. */
+/* Brings shares and weights, and all that follows from them, up to date. */
 MUST_CHECK Status weigh_refresh(Network *net, const GrowParams *params, const Domain *domain,
-                                Err *err);
+                                WeighPrecision precision, Err *err);
 
 #endif

@@ -127,7 +127,7 @@ static void segments_in_the_plane_never_cross(void **state)
     }
 }
 
-/* At final radii; growth sees to it with a reserve, so one segment in a hundred is a lot. */
+/* At final radii. */
 static void vessels_are_longer_than_wide_and_clear_of_each_other(void **state)
 {
     (void)state;
@@ -139,7 +139,7 @@ static void vessels_are_longer_than_wide_and_clear_of_each_other(void **state)
         GrowReport report;
         Tree tree = grown(&params, specs[k], &report);
         assert_true(report.thickness == 1);
-        assert_true(count_violations(&tree) <= 3);
+        assert_int_equal(count_violations(&tree), 0);
         tree_release(&tree);
     }
 }
