@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK_SIZES = 56, SLAB_TAGS = 1 << 14 };
+enum { BLOCK_SIZES = 56, SLAB_TAGS = 1 << 14, SMALL_BOX = 4 };
 
 /* Memory for blocks that never moves. */
 typedef struct GridSlab {
@@ -63,6 +63,7 @@ Status grid_reset(Grid *grid, Box box, double cells, size_t segments, int worker
     made.inverse = 1 / made.edge;
     for (int axis = 0; axis < 3; axis++)
         made.count[axis] = (int)(component(size, axis) / made.edge) + 1;
+    made.rounding = 1e-7 * vec3_length(size);
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&made.item, segments, sizeof *made.item, "segments", err));
     TRY_GOTO(mem_calloc(&made.arena, (size_t)workers, sizeof *made.arena, "threads", err));
@@ -140,19 +141,34 @@ static void enter_slab(GridWalk *walk)
         walk->at[i] = walk->box.low[i];
 }
 
+/* Most capsules are so short that the box around them is as good as slabs. */
+static bool enter_small_box(GridWalk *walk)
+{
+    int cells = 1;
+    for (int i = 0; i < 3; i++) {
+        double a = walk->from[i], b = a + walk->span[i];
+        walk->box.low[i] = walk->at[i] = cell_of(walk->grid, least(a, b) - walk->radius, i);
+        walk->box.high[i] = cell_of(walk->grid, greatest(a, b) + walk->radius, i);
+        cells *= walk->box.high[i] - walk->box.low[i] + 1;
+        if (cells > SMALL_BOX)
+            return false;
+    }
+    return true;
+}
+
 GridWalk grid_walk(const Grid *grid, const GridItem *item)
 {
-    GridWalk walk = {.grid = grid};
-    double size = 0;
+    /* Wider by the rounding of places on cell borders. */
+    GridWalk walk = {.grid = grid, .radius = (double)item->reach + grid->rounding};
     for (int i = 0; i < 3; i++) {
         walk.from[i] = (double)item->proximal[i];
         walk.span[i] = (double)item->distal[i] - walk.from[i];
+    }
+    if (enter_small_box(&walk))
+        return walk;
+    for (int i = 1; i < 3; i++)
         if (fabs(walk.span[i]) > fabs(walk.span[walk.axis]))
             walk.axis = i;
-        size += grid->count[i];
-    }
-    /* Wider by the rounding of places on cell borders. */
-    walk.radius = (double)item->reach + 1e-7 * size * grid->edge;
     double a = walk.from[walk.axis], b = a + walk.span[walk.axis];
     walk.slab = cell_of(grid, least(a, b) - walk.radius, walk.axis);
     walk.last_slab = cell_of(grid, greatest(a, b) + walk.radius, walk.axis);

@@ -31,8 +31,9 @@ typedef struct GridArena GridArena;
 
 typedef struct Grid {
     Vec3 low;
-    double edge;    /* of a cell, mm */
-    double inverse; /* 1 / edge */
+    double edge;     /* of a cell, mm */
+    double inverse;  /* 1 / edge */
+    double rounding; /* mm; more than the rounding of coordinates */
     int count[3];
     GridCell *cell; /* x fastest */
     GridItem *item; /* by segment */

@@ -49,7 +49,8 @@ static double needed(const Mending *mending, int32_t i, int32_t j, double thickn
 }
 
 /* By how many mm segment i, its radius and the others' widened by `margin` of them, is too short or
- * too near to another `below` an index, *with, which is unchanged when there is none. */
+ * too near to another `below` an index, *with, which is unchanged when there is none. Centrelines
+ * that touch are the worst fault there is. */
 static double fault(const Mending *mending, int32_t i, double margin, int32_t below, int32_t *with)
 {
     const Network *net = mending->net;
@@ -70,8 +71,9 @@ static double fault(const Mending *mending, int32_t i, double margin, int32_t be
                 are_joined(net, i, other))
                 continue;
             double apart2 = grid_distance2(&item, there);
-            if (apart2 < need * need && need - sqrt(apart2) > worst) {
-                worst = need - sqrt(apart2);
+            double depth = apart2 < gap * gap ? mending->rules->widest : need - sqrt(apart2);
+            if (depth > worst) {
+                worst = depth;
                 *with = other;
             }
         }
