@@ -18,6 +18,8 @@
 
 /* Splits that a thread carries at a time, and the least that are worth starting threads for. */
 enum { CHUNK = 32, LEAST_SHARED = 256 };
+/* Refreshing goes by subtrees of at most one in so many terminals, by the place where they begin. */
+enum { SUBTREES = 128, REFRESHED = 4096 };
 
 struct Arrivals {
     atomic_int gain;    /* terminals more */
@@ -250,34 +252,71 @@ void network_move(Network *net, int32_t node, Vec3 place)
         recompute(net, i);
 }
 
-/* The segment after `i` in depth-first order, 0 after the last. */
-static int32_t next_depth_first(const Network *net, int32_t i)
+/* The segment after `i` in depth-first order below `top`, among those with at least so many
+ * terminals; 0 after the last. */
+static int32_t next_below(const Network *net, int32_t i, int32_t top, int32_t terminals)
 {
-    if (net->segment[i].child[0] >= 0)
-        return net->segment[i].child[0];
-    for (; i != 0; i = net->segment[i].parent) {
+    for (int slot = 0; slot < 2; slot++) {
+        int32_t child = net->segment[i].child[slot];
+        if (child >= 0 && net->segment[child].terminals >= terminals)
+            return child;
+    }
+    for (; i != top; i = net->segment[i].parent) {
         const Segment *parent = &net->segment[net->segment[i].parent];
-        if (parent->child[0] == i && parent->child[1] >= 0)
-            return parent->child[1];
+        int32_t sister = parent->child[1];
+        if (parent->child[0] == i && sister >= 0 && net->segment[sister].terminals >= terminals)
+            return sister;
     }
     return 0;
 }
 
-void network_refresh(Network *net)
+/* Passes on to its daughters what a segment has itself. */
+static void refresh_below(Network *net, int32_t i)
+{
+    if (net->segment[i].child[0] < 0)
+        return;
+    Reduced mother = network_reduce(net, i);
+    for (int slot = 0; slot < 2; slot++) {
+        int32_t child = net->segment[i].child[slot];
+        Reduced daughter = network_reduce(net, child);
+        adopt(net, child, &daughter, i, &mother);
+    }
+}
+
+typedef struct Refreshing {
+    Network *net;
+    int32_t least; /* terminals of the segments that are refreshed already */
+} Refreshing;
+
+/* Refreshes the subtrees that hang on segments with so many terminals and begin in the chunk. */
+static void refresh_chunk(size_t index, int worker, void *context)
+{
+    (void)worker;
+    const Refreshing *refreshing = context;
+    Network *net = refreshing->net;
+    size_t end = (index + 1) * REFRESHED < net->n ? (index + 1) * REFRESHED : net->n;
+    for (size_t k = index * REFRESHED; k < end; k++) {
+        int32_t top = (int32_t)k, above = net->segment[k].parent;
+        if (above <= 0 || net->segment[k].terminals >= refreshing->least ||
+            net->segment[above].terminals < refreshing->least)
+            continue;
+        int32_t i = top;
+        do
+            refresh_below(net, i);
+        while ((i = next_below(net, i, top, 1)) != 0);
+    }
+}
+
+void network_refresh(Network *net, int threads)
 {
     int32_t root = net->segment[0].child[0];
     Reduced reduced = network_reduce(net, root);
     set_root_radius(net, root, &reduced);
-    for (int32_t i = root; i != 0; i = next_depth_first(net, i)) {
-        if (net->segment[i].child[0] < 0)
-            continue;
-        Reduced mother = network_reduce(net, i);
-        for (int slot = 0; slot < 2; slot++) {
-            int32_t child = net->segment[i].child[slot];
-            Reduced daughter = network_reduce(net, child);
-            adopt(net, child, &daughter, i, &mother);
-        }
-    }
+    int32_t least = net->segment[root].terminals / SUBTREES + 1;
+    for (int32_t i = root; i != 0; i = next_below(net, i, 0, least))
+        refresh_below(net, i);
+    Refreshing refreshing = {net, least};
+    threads_for((net->n + REFRESHED - 1) / REFRESHED, threads, refresh_chunk, &refreshing);
 }
 
 /* Replaces items[k] by items[order[k]] for all k. */
@@ -311,7 +350,7 @@ Status network_reorder(Network *net, Err *err)
     do {
         place[i] = count;
         order[count++] = i;
-        i = next_depth_first(net, i);
+        i = next_below(net, i, 0, 1);
     } while (i != 0);
     TRY_GOTO(permute(net->segment, sizeof *net->segment, order, n, err));
     TRY_GOTO(permute(net->sensitivity, sizeof *net->sensitivity, order, n, err));

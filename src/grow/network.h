@@ -96,7 +96,7 @@ void network_move(Network *net, int32_t node, Vec3 place);
 double network_cost(const Network *net);
 
 /* Brings radius, gauge and sensitivities of all segments up to date. */
-void network_refresh(Network *net);
+void network_refresh(Network *net, int threads);
 
 /* Sums up lengths, flares and costs anew from the positions; parents come before children. */
 void network_resum(Network *net);
