@@ -29,7 +29,7 @@ static const double hot = 0.2, cold = 0.03;
 static const double last_part = 0.1;
 /* A round that gains less than this of S_root is the last: of sweeps; before a detour, on it and
  * after it. */
-static const double least_sweep_gain = 1e-5;
+static const double least_sweep_gain = 1e-4;
 static const double least_gain_before = 2e-3, least_gain_across = 2e-4, least_gain_after = 5e-5;
 /* The price of the first detour, over S_root a mm of vessels, and how it rises to the next. */
 static const double first_price = 0.25, price_rise = 4;
@@ -61,7 +61,7 @@ uint64_t refine_moves(GrowRefine level, size_t terminals)
     const uint64_t moves_per_terminal[] = {[GROW_REFINE_NONE] = 0,
                                            [GROW_REFINE_GEOMETRY] = 100,
                                            [GROW_REFINE_TOPOLOGY] = 200,
-                                           [GROW_REFINE_ANNEAL] = 2000};
+                                           [GROW_REFINE_ANNEAL] = 1600};
     return moves_per_terminal[level] * terminals;
 }
 

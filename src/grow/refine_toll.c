@@ -1,7 +1,7 @@
 /* An exterior penalty in the l1 norm: at a finite price, the best tree keeps the rules exactly
  * wherever a mm gained by breaking them is worth less than that. As not even the shape of the tree
  * is known at which the rules hold, prices are not one number that rises, but one for each segment,
- * which rises most while the segment breaks a rule (the breakout method [Morris 1993]): where rules
+ * which rises most while the segment breaks a rule ([METHODS M], the breakout method): where rules
  * hold they stay low, and the tree can go on giving way to those places where they do not. */
 #include "grow/refine_toll.h"
 
