@@ -70,23 +70,32 @@ static void line_distances(Ray ray, const FieldSegment *segment, double *to_segm
     *to_segment = vec3_length(vec3_add_scaled(start, across, fmin(fmax(s, 0), 1)));
 }
 
-/* With G = exp(-(k distance)^2) across the axis, of slope at most 0.858 k and second derivative at
- * most 2 k^2, and A the axial factor, of slope at most k / sqrt(pi) and second derivative at most
- * 0.49 k^2, that of G A is at most (2 + 2 0.858 / sqrt(pi) + 0.49) k^2 = 3.5 k^2. On a line that
- * keeps a distance from the axis, G has that distance's value as a factor. */
+/* On a line with sine s and cosine c to the axis, a term is exp(-e^2) G A, G = exp(-w^2) and A the
+ * axial factor: the suprema of G'', 2 |G'| |A'| and |A''| are 4 exp(-3/2) s^2, 2 sqrt(2/e) / sqrt(pi)
+ * s c and sqrt(2/e) / sqrt(pi) c^2, times k^2. */
+static double bend_of(const FieldSegment *segment, Ray ray, double to_line)
+{
+    Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
+    double c = fabs(vec3_dot(axis, ray.direction)),
+           s = vec3_length(vec3_cross(axis, ray.direction));
+    double k = sqrt(2) / segment->radius_mm;
+    return k * k * exp(-k * k * to_line * to_line) *
+           (0.8926 * s * s + 0.9682 * s * c + 0.4841 * c * c);
+}
+
 static Walk walk_start(const Scene *scene, Ray ray, Near *near)
 {
     Walk walk = {.ray = ray, .near = near};
     for (size_t i = 0; i < scene->n_segments; i++) {
         const FieldSegment *segment = &scene->segments[i];
-        double r = segment->radius_mm, to_segment, to_line, k = sqrt(2) / r;
+        double r = segment->radius_mm, to_segment, to_line;
         line_distances(ray, segment, &to_segment, &to_line);
         if (to_segment > 4 * r)
             continue;
         double t_a = vec3_dot(vec3_sub(segment->a, ray.origin), ray.direction);
         double t_b = vec3_dot(vec3_sub(segment->b, ray.origin), ray.direction);
         near[walk.n++] = (Near){segment, fmin(t_a, t_b) - 4 * r, fmax(t_a, t_b) + 4 * r,
-                                3.5 * k * k * exp(-k * k * to_line * to_line)};
+                                bend_of(segment, ray, to_line)};
     }
     qsort(near, walk.n, sizeof *near, compare_near);
     walk.t = walk.n ? near[0].on : HUGE_VAL;
@@ -109,6 +118,15 @@ static long double slope_along(const Walk *walk, LongVec3 gradient)
            gradient.z * (long double)d.z;
 }
 
+/* Whether the term is below e^-32 at x. */
+static bool is_far(const FieldSegment *segment, Vec3 x)
+{
+    Vec3 span = vec3_sub(segment->b, segment->a), from = vec3_sub(x, segment->a);
+    double s = vec3_dot(from, span) / vec3_dot(span, span);
+    Vec3 across = vec3_add_scaled(from, span, -fmin(fmax(s, 0), 1));
+    return vec3_length(across) > 4 * segment->radius_mm;
+}
+
 /* Walks on to where the potential first reaches the level; false when it never does. */
 static bool walk_to(Walk *walk, long double level)
 {
@@ -124,11 +142,13 @@ static bool walk_to(Walk *walk, long double level)
             }
             if (near->off < walk->t)
                 continue;
+            bend += near->bend;
+            smallest = fmin(smallest, near->segment->radius_mm);
+            if (is_far(near->segment, ray_at(walk->ray, walk->t)))
+                continue;
             LongVec3 gradient;
             lack -= exact_term(near->segment, x, &gradient);
             slope += slope_along(walk, gradient);
-            bend += near->bend;
-            smallest = fmin(smallest, near->segment->radius_mm);
         }
         if (lack <= 1e-10L)
             return true;
