@@ -34,6 +34,7 @@
 #define LEVEL ((float)FIELD_LEVEL)
 /* Lack of potential at which a certain hit is closed by Newton's method. */
 #define CLOSE_ENOUGH (1e-3f * LEVEL)
+#define NEAR_ENOUGH (2e-2f * LEVEL)
 /* The margin: a part for terms left out, one for each term's arithmetic, and one for the rounding
  * of places, in units of the last place of the packet's extent. */
 #define MARGIN_DROPPED 2e-5f
@@ -98,8 +99,10 @@ LANE_FN void term_stretch(const PacketTerm *term, Lanes beside2, Lanes beyond2, 
     *high = lanes_select(seen, to, -none);
     for (int end = 0; end < 2; end++) {
         Lanes chord2 = (beyond2 - term->end_y2[end]) * term->inverse_speed2;
-        Lanes half = lanes_sqrt(lanes_max(chord2, lanes_set(0)));
         seen = chord2 >= 0.0f;
+        if (!lanes_any(seen))
+            continue;
+        Lanes half = lanes_sqrt(lanes_max(chord2, lanes_set(0)));
         *low = lanes_min(*low, lanes_select(seen, term->end_z[end] - half, none));
         *high = lanes_max(*high, lanes_select(seen, term->end_z[end] + half, -none));
     }
@@ -125,8 +128,9 @@ LANE_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
     return rays;
 }
 
-/* The linear part of an orthographic packet's term, 1 / s and a. */
-LANE_FN void place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out)
+/* The linear part of an orthographic packet's term, 1 / s and a; false, some of it not set, when all
+ * rays pass the axis beyond reach. */
+LANE_FN bool place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, s = term->sine, a = term->cosine;
     const float ex = term->cross[1], ey = -term->cross[0];
@@ -134,6 +138,8 @@ LANE_FN void place_parallel(const Packet *packet, const TileTerm *term, PacketTe
     Lanes along = lanes_fma(x, lanes_set(ex), y * ey);
     Lanes e = lanes_fma(y, lanes_set(ex), -(x * ey)) * k;
     out->e2 = square(e);
+    if (!lanes_any(out->e2 < term->reach2))
+        return false;
     out->w0 = along * (-k * a);
     out->w1 = lanes_set(k * s);
     out->u0 = lanes_fma(along, lanes_set(k * s), lanes_set(term->u));
@@ -141,7 +147,8 @@ LANE_FN void place_parallel(const Packet *packet, const TileTerm *term, PacketTe
     out->u1 = lanes_set(k * a);
     out->share = lanes_set(term->per_sine);
     out->cosine = lanes_set(fabsf(a));
-    out->inverse_speed2 = lanes_set(1 / (k * k));
+    out->inverse_speed2 = lanes_set(term->per_k2);
+    return true;
 }
 
 LANE_FN Lanes dot(const Lanes a[3], const float b[3])
@@ -185,8 +192,8 @@ LANE_FN void add_to_packet(Packet *packet, const TileTerm *tile_term)
     PacketTerm *term = &packet->terms[packet->n];
     if (packet->tile->perspective)
         place_bundle(packet, tile_term, term);
-    else
-        place_parallel(packet, tile_term, term);
+    else if (!place_parallel(packet, tile_term, term))
+        return;
     Lanes cross_a = lanes_fma(term->u0, term->w1, -(term->w0 * term->u1));
     Lanes cross_b = lanes_fma(term->v0, term->w1, term->w0 * term->u1);
     term->end_y2[0] = square(cross_a) * term->inverse_speed2;
@@ -344,8 +351,9 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, Lanes end, LaneM
         Lanes lack = LEVEL - sample.phi, safe = lack - group->margin, slope = sample.slope;
         Lanes curvature = lanes_max(sample.curvature, lanes_set(1e-30f));
         Lanes slope2 = square(slope);
-        LaneMask sure = (slope > 0.0f) & (lack >= -group->margin) & (lack <= CLOSE_ENOUGH) &
-                        (slope2 >= 4.6f * curvature * (lack + group->margin));
+        Lanes safety = lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46));
+        LaneMask sure = (slope > 0.0f) & (lack >= -group->margin) & (lack <= NEAR_ENOUGH) &
+                        (slope2 >= safety * curvature * (lack + group->margin));
         LaneMask met = live & sure;
         *hit |= met;
         *z = lanes_select(met, *z + lack / slope, *z);

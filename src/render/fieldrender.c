@@ -32,7 +32,8 @@ typedef struct FieldPicture {
     SampleGrid grid;   /* of this pass */
     TileLook look;
     TileLight *lights;
-    Caster *caster; /* for shadows; NULL without */
+    bool needs_places; /* rays or lights differ from sample to sample */
+    Caster *caster;    /* for shadows; NULL without */
     Canvas *canvases;
     int workers;
     uint8_t *mask; /* pixels to antialias; NULL: all */
@@ -122,7 +123,7 @@ static void color_tile(const FieldPicture *picture, const SeenTile *seen, int wo
     const Scene *scene = picture->scene;
     Canvas *canvas = &picture->canvases[worker];
     TileSurface *surface = &canvas->surface;
-    memcpy(surface->normal, seen->hits->normal, sizeof surface->normal);
+    surface->hits = seen->hits;
     if (!scene->uniform_color)
         for (int sample = 0; sample < TILE_SAMPLES; sample++) {
             Rgb pigment = scene->segments[seen->hits->segment[sample]].color;
@@ -130,7 +131,8 @@ static void color_tile(const FieldPicture *picture, const SeenTile *seen, int wo
             surface->pigment[1][sample] = pigment.g;
             surface->pigment[2][sample] = pigment.b;
         }
-    place_surface(seen, surface);
+    if (picture->needs_places)
+        place_surface(seen, surface);
     if (picture->caster)
         find_shadows(picture, seen, worker, canvas);
     fieldtiles_kernels(picture->tiles)->shade(&picture->look, surface, color);
@@ -362,6 +364,9 @@ static Status prepare_lights(FieldPicture *picture, Err *err)
                                          .color = {light->color.r, light->color.g, light->color.b},
                                          .parallel = light->parallel};
     }
+    picture->needs_places = camera->projection == PROJECTION_PERSPECTIVE;
+    for (size_t i = 0; i < scene->n_lights; i++)
+        picture->needs_places |= !scene->lights[i].parallel;
     picture->look = (TileLook){scene->finish, picture->lights, scene->n_lights};
     return STATUS_OK;
 }

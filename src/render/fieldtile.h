@@ -20,7 +20,7 @@ enum { TILE_SIDE = 8, TILE_SAMPLES = TILE_SIDE * TILE_SIDE };
 typedef struct TileTerm {
     double z_near;
     double on, off; /* z between which the term may exceed the cut-off on a ray of the tile */
-    float k;
+    float k, per_k2;
     float reach2; /* the term is below the cut-off where (k distance)^2 of the segment exceeds it */
     float u, v;   /* k times the distances of that point from the two ends */
     float o[3];

@@ -427,6 +427,7 @@ static bool make_term(const FieldTile *tile, const FrameSegment *segment, double
                        .on = depths.low,
                        .off = depths.high,
                        .k = (float)k,
+                       .per_k2 = (float)(1 / (k * k)),
                        .reach2 = (float)(k * k * segment->reach * segment->reach),
                        .u = (float)(k * along),
                        .v = (float)(k * (segment->length - along)),
@@ -474,10 +475,14 @@ static double place_samples(const FieldTiles *tiles, int column, int row, FieldT
     int bottom = row + TILE_SIDE - 1 < last_y ? row + TILE_SIDE - 1 : last_y;
     tile->middle_x = (tiles->x[column] + tiles->x[right]) / 2;
     tile->middle_y = (tiles->y[row] + tiles->y[bottom]) / 2;
+    float x[TILE_SIDE], y[TILE_SIDE];
+    for (int i = 0; i < TILE_SIDE; i++) {
+        x[i] = (float)(tiles->x[column + i < right ? column + i : right] - tile->middle_x);
+        y[i] = (float)(tiles->y[row + i < bottom ? row + i : bottom] - tile->middle_y);
+    }
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        int i = column + tile_sample_x(sample), j = row + tile_sample_y(sample);
-        tile->x[sample] = (float)(tiles->x[i < right ? i : right] - tile->middle_x);
-        tile->y[sample] = (float)(tiles->y[j < bottom ? j : bottom] - tile->middle_y);
+        tile->x[sample] = x[tile_sample_x(sample)];
+        tile->y[sample] = y[tile_sample_y(sample)];
     }
     double half_x = tiles->x[right] - tile->middle_x, half_y = tiles->y[row] - tile->middle_y;
     tile->half_size = (float)sqrt(half_x * half_x + half_y * half_y);
@@ -554,6 +559,14 @@ static Status decide_all(const FieldTiles *tiles, Workspace *space, const SeenTi
     return STATUS_OK;
 }
 
+static bool any_hit(const TileHits *hits)
+{
+    uint8_t any = 0;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++)
+        any |= hits->state[sample];
+    return any != TILE_MISS;
+}
+
 Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t *wanted,
                         TileVisitor *visit, void *context, Err *err)
 {
@@ -573,7 +586,7 @@ Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t
             if (tile.n_terms) {
                 tiles->kernels->trace(&tile, &space->work, &hits);
                 TRY(decide_all(tiles, space, &seen, &hits, err));
-                seen.hits = &hits;
+                seen.hits = any_hit(&hits) ? &hits : NULL;
             }
         }
         visit(&seen, worker, context);
