@@ -48,7 +48,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) $(shell pkg-config --cflags $(
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate check program unit unit-programs layers format format-check asan tsan \
+.PHONY: all deps demo validate bench-render check program unit unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -72,6 +72,9 @@ validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
 	$(Q)tools/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tools/validate
+
+bench-render: build/corcast ## how fast pictures are drawn, beside POV-Ray; BENCH=full|quick
+	$(Q)tools/bench-render
 
 check: ## every test; ends in "N passed, N failed"
 	$(Q)tools/deps build run check

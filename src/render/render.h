@@ -11,7 +11,9 @@ typedef struct RenderParams {
     int threads;   /* 0: all processors */
     int antialias; /* 1: one ray through each pixel's centre; N > 1: that ray and N x N more, the
                     * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
-    double antialias_threshold; /* 0: every pixel; else those that refine_mask tells, in (0, 1] */
+    double antialias_threshold; /* 0: every pixel gets the N x N more, as in POV-Ray; else, in
+                                 * (0, 1], those only that differ from a neighbour by so much in
+                                 * the square root of a channel, which no POV-Ray picture repeats */
     bool shadows;
     bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
     void (*progress)(double fraction, void *context);  /* called by one thread; may be NULL */
@@ -21,6 +23,8 @@ typedef struct RenderParams {
 typedef struct RenderStats {
     double prepare_s; /* building the search structure */
     double trace_s;
+    double
+        cpu_s; /* of all threads, for both: trace_s when nothing else runs is about cpu_s / threads */
     size_t rays; /* primary */
 } RenderStats;
 
