@@ -49,7 +49,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate bench-grow check program unit unit-programs layers format format-check asan tsan \
+.PHONY: all deps demo validate bench-grow bench-render check program unit unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -78,6 +78,9 @@ bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
 	$(Q)tools/deps build bench
 	$(Q)$(AGAIN) all
 	$(Q)tools/bench-grow
+
+bench-render: build/corcast ## how fast pictures are drawn, beside POV-Ray; BENCH=full|quick
+	$(Q)tools/bench-render
 
 check: ## every test; ends in "N passed, N failed"
 	$(Q)tools/deps build run check

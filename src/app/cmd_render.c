@@ -44,11 +44,12 @@ static Status read_planes(const char *list, RenderParams *params, Err *err)
 static Status write_report(const char *path, const Scene *scene, const RenderStats *stats,
                            int threads, Err *err)
 {
-    json_t *report = json_pack("{s:s, s:s, s:i, s:i, s:f, s:f, s:I, s:i}", "generator", GENERATOR,
-                               "model", model_name(scene->model), "width", scene->camera.width,
-                               "height", scene->camera.height, "prepare_seconds", stats->prepare_s,
-                               "trace_seconds", stats->trace_s, "rays", (json_int_t)stats->rays,
-                               "threads", threads ? threads : threads_available());
+    json_t *report =
+        json_pack("{s:s, s:s, s:i, s:i, s:f, s:f, s:f, s:I, s:i}", "generator", GENERATOR, "model",
+                  model_name(scene->model), "width", scene->camera.width, "height",
+                  scene->camera.height, "prepare_seconds", stats->prepare_s, "trace_seconds",
+                  stats->trace_s, "cpu_seconds", stats->cpu_s, "rays", (json_int_t)stats->rays,
+                  "threads", threads ? threads : threads_available());
     return json_write(report, path, err);
 }
 
@@ -58,6 +59,7 @@ Status run_render(int argc, char **argv, Err *err)
     picture_options_init(&picture);
     const char *output = NULL, *planes = NULL, *json = NULL;
     int bits = 8, hits = HITS_EXACT;
+    double threshold = 0;
     const Option own[] = {
         {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P", "the picture: .png, .ppm or .pfm"},
         {"planes", OPTION_TEXT, &planes, NULL, 0, 0, NULL, "LIST",
@@ -65,6 +67,8 @@ Status run_render(int argc, char **argv, Err *err)
         {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16", "of a PNG or PPM (8)"},
         {"hits", OPTION_CHOICE, &hits, NULL, 0, 0, hits_names, NULL,
          "isosurface: where it is, or where POV-Ray's root finder sees it (exact)"},
+        {"antialias-threshold", OPTION_NUMBER, &threshold, NULL, 0, 1, NULL, "T",
+         "antialias only pixels that differ by T from a neighbour (0: all, as POV-Ray)"},
         {"json", OPTION_TEXT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
         {0},
     };
@@ -88,6 +92,12 @@ Status run_render(int argc, char **argv, Err *err)
         status = err_set(err, STATUS_USAGE, "--bits: '%d' is not 8 or 16", bits);
         goto done;
     }
+    if (threshold > 0 && picture.antialias == 1) {
+        status = err_set(err, STATUS_USAGE,
+                         "--antialias-threshold needs --antialias N, with N from 2 to 9");
+        goto done;
+    }
+    params.antialias_threshold = threshold;
     TRY_GOTO(read_planes(planes, &params, err));
     bool color_plane = params.want_color;
     params.want_color = true;

@@ -2,6 +2,7 @@
 
 #include "app/templates.h"
 #include "image/image.h"
+#include "render/render.h"
 #include "treeio/treeio.h"
 #include <stdlib.h>
 #include <string.h>
@@ -96,6 +97,26 @@ static Status check_camera(const PictureOptions *options, Err *err)
     return STATUS_OK;
 }
 
+/* What of the tree the picture cannot show. */
+static Status warn_of_losses(const Scene *scene, const StageReport *report, size_t pruned, Err *err)
+{
+    size_t vanished;
+    TRY(render_count_vanished(scene, &vanished, err));
+    size_t segments = report->dropped + report->drawn;
+    if (pruned)
+        fprintf(stderr, "corcast: %zu of %zu segments are pruned\n", pruned, pruned + segments);
+    if (report->dropped)
+        fprintf(stderr,
+                "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
+                report->dropped, segments);
+    if (vanished)
+        fprintf(stderr,
+                "corcast: %zu of %zu segments are too short for their radius: the potential is "
+                "below e^-2 there and shows nothing\n",
+                vanished, segments);
+    return STATUS_OK;
+}
+
 Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet, Scene *scene,
                      Err *err)
 {
@@ -118,6 +139,7 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
     stage.height = options->size[1];
     Tree tree;
     TRY(tree_read(&tree, tree_path, err));
+    size_t unpruned = tree.n;
     if (options->prune_radius_mm > 0) {
         Tree pruned;
         status = tree_pruned(&tree, options->prune_radius_mm, &pruned, err);
@@ -135,10 +157,11 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", tree_path);
     free(colors);
-    if (status == STATUS_OK && report.dropped && !quiet)
-        fprintf(stderr,
-                "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
-                report.dropped, report.dropped + report.drawn);
+    if (status == STATUS_OK && !quiet) {
+        status = warn_of_losses(scene, &report, unpruned - tree.n, err);
+        if (status != STATUS_OK)
+            scene_release(scene);
+    }
     tree_release(&tree);
     return status;
 }

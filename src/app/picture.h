@@ -34,7 +34,7 @@ void picture_options_init(PictureOptions *options);
 CellParams picture_cells(const PictureOptions *options);
 
 /* Reads the tree and the look and builds the scene. Says on standard error, unless quiet, how many
- * segments could not be drawn. */
+ * segments are pruned, cannot be drawn, or have no surface. */
 MUST_CHECK Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet,
                                 Scene *scene, Err *err);
 

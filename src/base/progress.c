@@ -11,6 +11,13 @@ double clock_seconds(void)
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
 
+double clock_cpu_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
+}
+
 void progress_start(Progress *progress, const char *what, bool quiet)
 {
     *progress = (Progress){.what = what, .enabled = !quiet && isatty(STDERR_FILENO)};

@@ -22,5 +22,7 @@ void progress_end(Progress *progress);
 
 /* Seconds of a monotonic clock. */
 double clock_seconds(void);
+/* Seconds that processors have spent on this program, all threads together. */
+double clock_cpu_seconds(void);
 
 #endif

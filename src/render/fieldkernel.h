@@ -30,11 +30,11 @@
 #include "render/lanes.h"
 #include "scene/scene.h"
 #include <assert.h>
-#include <stdlib.h>
 
 #define LEVEL ((float)FIELD_LEVEL)
 /* Lack of potential at which a certain hit is closed by Newton's method. */
 #define CLOSE_ENOUGH (1e-3f * LEVEL)
+#define NEAR_ENOUGH (2e-2f * LEVEL)
 /* The margin: a part for terms left out, one for each term's arithmetic, and one for the rounding
  * of places, in units of the last place of the packet's extent. */
 #define MARGIN_DROPPED 2e-5f
@@ -44,31 +44,31 @@
 #define SATURATED 4.0f
 #define MOST_STEPS 128
 
-/* A term on the rays of a packet, in powers of dz = z - z of the term. */
+/* A term on the rays of a packet, in powers of dz = z - z of the term. The last four Lanes are set
+ * once it is known that the packet may hit something. */
 typedef struct PacketTerm {
-    Lanes w0, w1, u0, u1, v0;  /* w = w0 + w1 dz, u = u0 + u1 dz, v = v0 - u1 dz */
-    Lanes half_gauss;          /* exp(-E^2) / 2 */
-    Lanes peak, curvature;     /* B and M */
-    Lanes e2, spare;           /* E^2, and -ln B - E^2 */
-    Lanes end_z[2], end_y2[2]; /* nearest to either end: dz, and squared distance less E^2 */
-    Lanes inverse_speed2;      /* 1 / (w1^2 + u1^2) */
+    Lanes w0, w1, u0, u1, v0; /* w = w0 + w1 dz, u = u0 + u1 dz, v = v0 - u1 dz */
+    Lanes peak;               /* B */
+    Lanes gauss;              /* exp(-d^2) */
+    Lanes e2, end_y2[2];      /* E^2, and the squared distances of ray and ends, less E^2 */
+    Lanes past;               /* d^2 - E^2 */
+    Lanes share, cosine;      /* h / s, and a */
+    Lanes inverse_speed2;     /* 1 / (w1^2 + u1^2) */
+    Lanes half_gauss;         /* exp(-E^2) / 2 */
+    Lanes curvature, spare;   /* M, and -ln B - E^2 */
+    Lanes end_z[2];           /* dz nearest to the ends */
+    const TileTerm *term;
+    float z;       /* of the term, relative to the group's */
+    float on, off; /* likewise, between which it may exceed the cut-off */
+    bool flat;     /* u and v are the same all along, and their factor is in half_gauss */
 } PacketTerm;
 
-/* Where a term matters on some ray of the packet. */
-typedef struct PacketSpan {
-    double on, off; /* z */
-    uint32_t place; /* in the packet's terms */
-    uint32_t term;  /* in the tile's */
-    float z;        /* of the term, relative to the group's */
-} PacketSpan;
-
-_Static_assert(sizeof(PacketTerm) + sizeof(PacketSpan) <= TILE_WORK_BYTES, "TILE_WORK_BYTES");
+_Static_assert(sizeof(PacketTerm) <= TILE_WORK_BYTES, "TILE_WORK_BYTES");
 
 typedef struct Packet {
     const FieldTile *tile;
-    Lanes x, y; /* of the samples */
-    PacketTerm *terms;
-    PacketSpan *spans;
+    Lanes x, y;        /* of the samples */
+    PacketTerm *terms; /* those of the tile's that matter, in their order */
     size_t n;
 } Packet;
 
@@ -99,8 +99,10 @@ LANE_FN void term_stretch(const PacketTerm *term, Lanes beside2, Lanes beyond2, 
     *high = lanes_select(seen, to, -none);
     for (int end = 0; end < 2; end++) {
         Lanes chord2 = (beyond2 - term->end_y2[end]) * term->inverse_speed2;
-        Lanes half = lanes_sqrt(lanes_max(chord2, lanes_set(0)));
         seen = chord2 >= 0.0f;
+        if (!lanes_any(seen))
+            continue;
+        Lanes half = lanes_sqrt(lanes_max(chord2, lanes_set(0)));
         *low = lanes_min(*low, lanes_select(seen, term->end_z[end] - half, none));
         *high = lanes_max(*high, lanes_select(seen, term->end_z[end] + half, -none));
     }
@@ -126,9 +128,9 @@ LANE_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
     return rays;
 }
 
-/* w, u, v and E^2 of an orthographic packet; sine and cosine are the same for all rays. */
-LANE_FN void place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out,
-                            Lanes *sine, Lanes *cosine)
+/* The linear part of an orthographic packet's term, 1 / s and a; false, some of it not set, when all
+ * rays pass the axis beyond reach. */
+LANE_FN bool place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, s = term->sine, a = term->cosine;
     const float ex = term->cross[1], ey = -term->cross[0];
@@ -136,13 +138,17 @@ LANE_FN void place_parallel(const Packet *packet, const TileTerm *term, PacketTe
     Lanes along = lanes_fma(x, lanes_set(ex), y * ey);
     Lanes e = lanes_fma(y, lanes_set(ex), -(x * ey)) * k;
     out->e2 = square(e);
+    if (!lanes_any(out->e2 < term->reach2))
+        return false;
     out->w0 = along * (-k * a);
     out->w1 = lanes_set(k * s);
     out->u0 = lanes_fma(along, lanes_set(k * s), lanes_set(term->u));
     out->v0 = lanes_fma(along, lanes_set(-k * s), lanes_set(term->v));
     out->u1 = lanes_set(k * a);
-    *sine = lanes_set(s);
-    *cosine = lanes_set(fabsf(a));
+    out->share = lanes_set(term->per_sine);
+    out->cosine = lanes_set(fabsf(a));
+    out->inverse_speed2 = lanes_set(term->per_k2);
+    return true;
 }
 
 LANE_FN Lanes dot(const Lanes a[3], const float b[3])
@@ -152,8 +158,7 @@ LANE_FN Lanes dot(const Lanes a[3], const float b[3])
 
 /* Likewise in perspective, where they are not. The directions' common part of cross products comes
  * from the tile, in double, so that rays nearly along the axis lose nothing. */
-LANE_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTerm *out, Lanes *sine,
-                          Lanes *cosine)
+LANE_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, *axis = term->axis;
     TermRays rays = rays_of(packet, term);
@@ -175,86 +180,34 @@ LANE_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTerm
     out->u0 = lanes_fma(along, lanes_set(k), lanes_set(term->u));
     out->v0 = lanes_fma(along, lanes_set(-k), lanes_set(term->v));
     out->u1 = speed * k;
-    Lanes per_length = 1.0f / lanes_sqrt(square(crossed) + square(speed));
-    *sine = crossed * per_length;
-    *cosine = lanes_abs(speed) * per_length;
-}
-
-/* B, M and what term_stretch needs; the squared distance of ray and segment in *d2. */
-LANE_FN void bound_term(PacketTerm *term, Lanes sine, Lanes cosine, Lanes d2, LaneMask beyond)
-{
-    Lanes share = lanes_select(beyond, lanes_set(0.5f), lanes_set(1)) / sine;
-    Lanes speed2 = square(term->w1) + square(term->u1);
-    Lanes gauss = lanes_exp_minus(d2);
-    Lanes factor = lanes_min(share, lanes_set(1));
-    term->peak = gauss * factor;
-    term->curvature =
-        gauss * speed2 *
-        lanes_min(share * 0.8925207f, 0.9678830f / lanes_max(cosine, lanes_set(1e-20f)));
-    term->spare = d2 - term->e2;
-    term->half_gauss = gauss * 0.5f;
-    if (lanes_any(beyond)) {
-        term->spare -= lanes_log(factor);
-        term->half_gauss = lanes_exp_minus(term->e2) * 0.5f;
-    }
+    Lanes length2 = square(crossed) + square(speed), length = lanes_sqrt(length2);
+    out->share = per_cross * length;
+    out->cosine = lanes_abs(speed) / length;
+    out->inverse_speed2 = 1.0f / (length2 * (k * k));
 }
 
 /* Appends the term unless it is below the cut-off on every ray. */
-LANE_FN void add_to_packet(Packet *packet, uint32_t number)
+LANE_FN void add_to_packet(Packet *packet, const TileTerm *tile_term)
 {
-    const TileTerm *tile_term = &packet->tile->terms[number];
     PacketTerm *term = &packet->terms[packet->n];
-    Lanes sine, cosine;
     if (packet->tile->perspective)
-        place_bundle(packet, tile_term, term, &sine, &cosine);
-    else
-        place_parallel(packet, tile_term, term, &sine, &cosine);
-    Lanes per_speed2 = 1.0f / (square(term->w1) + square(term->u1));
-    Lanes cross_a = term->u0 * term->w1 - term->w0 * term->u1;
-    Lanes cross_b = term->v0 * term->w1 + term->w0 * term->u1;
-    LaneMask beyond = (cross_a < 0.0f) | (cross_b < 0.0f);
-    term->inverse_speed2 = per_speed2;
-    term->end_y2[0] = square(cross_a) * per_speed2;
-    term->end_y2[1] = square(cross_b) * per_speed2;
-    Lanes past = lanes_select(cross_a < 0.0f, term->end_y2[0], lanes_set(0));
-    past = lanes_select(cross_b < 0.0f, term->end_y2[1], past);
-    Lanes d2 = term->e2 + past;
-    LaneMask near = d2 < tile_term->reach2;
-    if (!lanes_any(near))
+        place_bundle(packet, tile_term, term);
+    else if (!place_parallel(packet, tile_term, term))
         return;
-    term->end_z[0] = -(term->w0 * term->w1 + term->u0 * term->u1) * per_speed2;
-    term->end_z[1] = -(term->w0 * term->w1 - term->v0 * term->u1) * per_speed2;
-    bound_term(term, sine, cosine, d2, beyond);
-    Lanes low, high, left = tile_term->reach2 - term->e2;
-    term_stretch(term, left, left, &low, &high);
-    packet->spans[packet->n] = (PacketSpan){.on = tile_term->z_near + (double)lanes_least(low),
-                                            .off = tile_term->z_near + (double)lanes_largest(high),
-                                            .place = (uint32_t)packet->n,
-                                            .term = number};
+    Lanes cross_a = lanes_fma(term->u0, term->w1, -(term->w0 * term->u1));
+    Lanes cross_b = lanes_fma(term->v0, term->w1, term->w0 * term->u1);
+    term->end_y2[0] = square(cross_a) * term->inverse_speed2;
+    term->end_y2[1] = square(cross_b) * term->inverse_speed2;
+    term->past = lanes_select(cross_a < 0.0f, term->end_y2[0], lanes_set(0));
+    term->past = lanes_select(cross_b < 0.0f, term->end_y2[1], term->past);
+    Lanes d2 = term->e2 + term->past;
+    if (!lanes_any(d2 < tile_term->reach2))
+        return;
+    term->share *= lanes_select((cross_a < 0.0f) | (cross_b < 0.0f), lanes_set(0.5f), lanes_set(1));
+    term->gauss = lanes_exp_minus(d2);
+    term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
+    term->term = tile_term;
     packet->n++;
-}
-
-LANE_TARGET static int compare_spans(const void *a, const void *b)
-{
-    const PacketSpan *one = a, *other = b;
-    if (one->on != other->on)
-        return one->on < other->on ? -1 : 1;
-    return one->term < other->term ? -1 : 1;
-}
-
-LANE_FN void sort_spans(PacketSpan *spans, size_t n)
-{
-    if (n > 64) {
-        qsort(spans, n, sizeof *spans, compare_spans);
-        return;
-    }
-    for (size_t i = 1; i < n; i++) {
-        PacketSpan span = spans[i];
-        size_t hole = i;
-        for (; hole > 0 && spans[hole - 1].on > span.on; hole--)
-            spans[hole] = spans[hole - 1];
-        spans[hole] = span;
-    }
 }
 
 /* The axial factor of a term, twice, and exp(-u^2) - exp(-v^2). */
@@ -274,11 +227,34 @@ LANE_FN void axial_factors(Lanes u, Lanes v, Lanes *ends, Lanes *ends_slope)
     }
 }
 
-/* Terms that overlap along the packet, and where its rays are among them. z is relative to `base`.
- */
+/* Sets what only packets need that may hit something. */
+LANE_FN void complete_term(PacketTerm *term, bool perspective)
+{
+    const Lanes one = lanes_set(1), tiny = lanes_set(1e-20f);
+    Lanes factor = lanes_min(term->share, one), speed2 = square(term->w1) + square(term->u1);
+    Lanes bend = lanes_min(term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny));
+    term->curvature = term->gauss * speed2 * bend;
+    term->spare = term->past;
+    term->half_gauss = term->gauss * 0.5f;
+    if (lanes_any(term->past > 0.0f)) {
+        term->spare -= lanes_log(factor);
+        term->half_gauss = lanes_exp_minus(term->e2) * 0.5f;
+    }
+    Lanes across = term->w0 * term->w1;
+    term->end_z[0] = -lanes_fma(term->u0, term->u1, across) * term->inverse_speed2;
+    term->end_z[1] = lanes_fma(term->v0, term->u1, -across) * term->inverse_speed2;
+    term->flat = !perspective && fabsf(term->term->cosine) < 1e-8f;
+    if (term->flat) {
+        Lanes ends, ends_slope;
+        axial_factors(term->u0, term->v0, &ends, &ends_slope);
+        term->half_gauss *= ends;
+    }
+}
+
+/* Terms that overlap along the packet. z is relative to `base`. */
 typedef struct Group {
     const Packet *packet;
-    const PacketSpan *spans;
+    PacketTerm *terms;
     size_t n;
     double base;
     Lanes margin;
@@ -290,30 +266,44 @@ typedef struct Sample {
     float next;
 } Sample;
 
+/* Whether the term is above the cut-off on some of the rays. */
+LANE_FN bool matters(const PacketTerm *term, LaneMask rays)
+{
+    return lanes_any(rays & (term->peak > (float)FIELD_CUTOFF));
+}
+
+LANE_FN void add_sample(const PacketTerm *term, Lanes z, Sample *sample)
+{
+    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
+    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;
+    sample->curvature += term->curvature;
+    if (term->flat) {
+        sample->phi += gauss;
+        sample->slope = lanes_fma(gauss, w_slope, sample->slope);
+        return;
+    }
+    Lanes ends, ends_slope;
+    axial_factors(lanes_fma(term->u1, dz, term->u0), lanes_fma(-term->u1, dz, term->v0), &ends,
+                  &ends_slope);
+    sample->phi = lanes_fma(gauss, ends, sample->phi);
+    Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
+    sample->slope = lanes_fma(gauss, change, sample->slope);
+}
+
 LANE_FN Sample sample_at(const Group *group, Lanes z, LaneMask live)
 {
     const Lanes far = lanes_set(1e30f);
-    double first = group->base + (double)lanes_least(lanes_select(live, z, far));
-    double last = group->base + (double)lanes_largest(lanes_select(live, z, -far));
+    float first = lanes_least(lanes_select(live, z, far));
+    float last = lanes_largest(lanes_select(live, z, -far));
     Sample sample = {lanes_set(0), lanes_set(0), lanes_set(0), 1e30f};
     for (size_t i = 0; i < group->n; i++) {
-        const PacketSpan *span = &group->spans[i];
-        if (span->on > last) {
-            sample.next = (float)(span->on - group->base);
+        const PacketTerm *term = &group->terms[i];
+        if (term->on > last) {
+            sample.next = term->on;
             break;
         }
-        if (span->off < first)
-            continue;
-        const PacketTerm *term = &group->packet->terms[span->place];
-        Lanes dz = z - span->z, ends, ends_slope;
-        Lanes w = lanes_fma(term->w1, dz, term->w0);
-        axial_factors(lanes_fma(term->u1, dz, term->u0), lanes_fma(-term->u1, dz, term->v0), &ends,
-                      &ends_slope);
-        Lanes gauss = term->half_gauss * lanes_exp_minus(square(w));
-        sample.phi = lanes_fma(gauss, ends, sample.phi);
-        Lanes change = term->u1 * ends_slope * 1.12837917f - 2.0f * w * term->w1 * ends;
-        sample.slope = lanes_fma(gauss, change, sample.slope);
-        sample.curvature += term->curvature;
+        if (term->off >= first && matters(term, live))
+            add_sample(term, z, &sample);
     }
     return sample;
 }
@@ -322,13 +312,11 @@ LANE_FN Sample sample_at(const Group *group, Lanes z, LaneMask live)
  * LEVEL - margin; false when there is no ray with any. */
 LANE_FN bool group_window(Group *group, float extent, LaneMask *live, Lanes *start, Lanes *end)
 {
-    const PacketTerm *terms = group->packet->terms;
-    const TileTerm *tile_terms = group->packet->tile->terms;
     Lanes sum = lanes_set(0), places = lanes_set(0);
     for (size_t i = 0; i < group->n; i++) {
-        Lanes peak = terms[group->spans[i].place].peak;
-        sum += peak;
-        places = lanes_fma(peak, lanes_set(tile_terms[group->spans[i].term].k), places);
+        const PacketTerm *term = &group->terms[i];
+        sum += term->peak;
+        places = lanes_fma(term->peak, lanes_set(term->term->k), places);
     }
     group->margin =
         places * (extent * MARGIN_PLACE) + (MARGIN_DROPPED + MARGIN_TERM * (float)group->n);
@@ -340,11 +328,14 @@ LANE_FN bool group_window(Group *group, float extent, LaneMask *live, Lanes *sta
     *start = lanes_set(1e30f);
     *end = lanes_set(-1e30f);
     for (size_t i = 0; i < group->n; i++) {
-        const PacketTerm *term = &terms[group->spans[i].place];
+        PacketTerm *term = &group->terms[i];
+        if (!matters(term, *live))
+            continue;
+        complete_term(term, group->packet->tile->perspective);
         Lanes low, high, beside2 = excess + term->spare;
         term_stretch(term, beside2, beside2 - 0.69314718f, &low, &high);
-        *start = lanes_min(*start, low + group->spans[i].z);
-        *end = lanes_max(*end, high + group->spans[i].z);
+        *start = lanes_min(*start, low + term->z);
+        *end = lanes_max(*end, high + term->z);
     }
     *live &= *start <= *end;
     return lanes_any(*live);
@@ -360,8 +351,9 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, Lanes end, LaneM
         Lanes lack = LEVEL - sample.phi, safe = lack - group->margin, slope = sample.slope;
         Lanes curvature = lanes_max(sample.curvature, lanes_set(1e-30f));
         Lanes slope2 = square(slope);
-        LaneMask sure = (slope > 0.0f) & (lack >= -group->margin) & (lack <= CLOSE_ENOUGH) &
-                        (slope2 >= 4.6f * curvature * (lack + group->margin));
+        Lanes safety = lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46));
+        LaneMask sure = (slope > 0.0f) & (lack >= -group->margin) & (lack <= NEAR_ENOUGH) &
+                        (slope2 >= safety * curvature * (lack + group->margin));
         LaneMask met = live & sure;
         *hit |= met;
         *z = lanes_select(met, *z + lack / slope, *z);
@@ -385,35 +377,43 @@ typedef struct Gradient {
     LaneMask segment;
 } Gradient;
 
-/* The potential and its gradient at the rays' points z, and the index of the largest term. */
-LANE_FN Gradient gradient_at(const Group *group, Lanes z)
+LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Gradient *sum)
+{
+    const TileTerm *tile_term = term->term;
+    const float k = tile_term->k, *axis = tile_term->axis;
+    TermRays rays = rays_of(packet, tile_term);
+    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
+    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), value = gauss, ends_slope;
+    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
+    if (term->flat) {
+        ends_slope = lanes_exp_minus(square(u)) - lanes_exp_minus(square(v));
+        gauss = lanes_exp_minus(square(w) + term->e2) * 0.5f;
+    } else {
+        Lanes ends;
+        axial_factors(u, v, &ends, &ends_slope);
+        value *= ends;
+    }
+    for (int c = 0; c < 3; c++)
+        rays.o[c] = lanes_fma(rays.d[c], dz, rays.o[c]);
+    Lanes across = value * (-2.0f * k * k);
+    Lanes along = gauss * ends_slope * (k * 1.12837917f) - across * dot(rays.o, axis);
+    sum->phi += value;
+    sum->x += lanes_fma(across, rays.o[0], along * axis[0]);
+    sum->y += lanes_fma(across, rays.o[1], along * axis[1]);
+    sum->z += lanes_fma(across, rays.o[2], along * axis[2]);
+    int32_t segment = (int32_t)tile_term->segment;
+    LaneMask larger = (value > sum->largest) | ((value == sum->largest) & (segment < sum->segment));
+    sum->largest = lanes_select(larger, value, sum->largest);
+    sum->segment = (larger & segment) | (~larger & sum->segment);
+}
+
+/* The potential and its gradient at the points z of the rays, and the index of the largest term. */
+LANE_FN Gradient gradient_at(const Group *group, Lanes z, LaneMask rays)
 {
     Gradient sum = {.largest = lanes_set(-1)};
-    for (size_t i = 0; i < group->n; i++) {
-        const PacketSpan *span = &group->spans[i];
-        const PacketTerm *term = &group->packet->terms[span->place];
-        const TileTerm *tile_term = &group->packet->tile->terms[span->term];
-        const float k = tile_term->k, *axis = tile_term->axis;
-        TermRays rays = rays_of(group->packet, tile_term);
-        Lanes dz = z - span->z, ends, ends_slope;
-        Lanes w = lanes_fma(term->w1, dz, term->w0);
-        axial_factors(lanes_fma(term->u1, dz, term->u0), lanes_fma(-term->u1, dz, term->v0), &ends,
-                      &ends_slope);
-        Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), value = gauss * ends;
-        for (int c = 0; c < 3; c++)
-            rays.o[c] = lanes_fma(rays.d[c], dz, rays.o[c]);
-        Lanes across = value * (-2.0f * k * k);
-        Lanes along = gauss * ends_slope * (k * 1.12837917f) - across * dot(rays.o, axis);
-        sum.phi += value;
-        sum.x += lanes_fma(across, rays.o[0], along * axis[0]);
-        sum.y += lanes_fma(across, rays.o[1], along * axis[1]);
-        sum.z += lanes_fma(across, rays.o[2], along * axis[2]);
-        int32_t segment = (int32_t)tile_term->segment;
-        LaneMask larger =
-            (value > sum.largest) | ((value == sum.largest) & (segment < sum.segment));
-        sum.largest = lanes_select(larger, value, sum.largest);
-        sum.segment = (larger & segment) | (~larger & sum.segment);
-    }
+    for (size_t i = 0; i < group->n; i++)
+        if (matters(&group->terms[i], rays))
+            add_gradient(&group->terms[i], group->packet, z, &sum);
     return sum;
 }
 
@@ -421,7 +421,7 @@ LANE_FN Gradient gradient_at(const Group *group, Lanes z)
 LANE_FN void store_hits(const Group *group, int first, LaneMask hit, Lanes z, TileHits *hits)
 {
     const FieldTile *tile = group->packet->tile;
-    Gradient at = gradient_at(group, z);
+    Gradient at = gradient_at(group, z, hit);
     Lanes slope = at.z;
     if (tile->perspective)
         slope += at.x * (group->packet->x + (float)tile->middle_x) +
@@ -444,20 +444,23 @@ LANE_FN void store_hits(const Group *group, int first, LaneMask hit, Lanes z, Ti
     }
 }
 
-/* Makes the spans from `first` on that overlap a group, and returns the number of the next. */
+/* Makes the terms from `first` on that overlap a group, and returns the number of the next. */
 LANE_FN size_t next_group(const Packet *packet, size_t first, Group *group, float *extent)
 {
-    PacketSpan *spans = packet->spans;
-    double end = spans[first].off;
+    PacketTerm *terms = packet->terms;
+    double begin = terms[first].term->on, end = terms[first].term->off;
+    double base = terms[first].term->z_near;
     size_t last = first + 1;
-    for (; last < packet->n && spans[last].on <= end; last++)
-        end = spans[last].off > end ? spans[last].off : end;
-    *group = (Group){.packet = packet, .spans = spans + first, .n = last - first};
-    group->base = packet->tile->terms[spans[first].term].z_near;
-    double reach = fmax(end - group->base, group->base - spans[first].on);
-    for (size_t i = first; i < last; i++)
-        spans[i].z = (float)(packet->tile->terms[spans[i].term].z_near - group->base);
+    for (; last < packet->n && terms[last].term->on <= end; last++)
+        end = terms[last].term->off > end ? terms[last].term->off : end;
+    for (size_t i = first; i < last; i++) {
+        terms[i].z = (float)(terms[i].term->z_near - base);
+        terms[i].on = (float)(terms[i].term->on - base);
+        terms[i].off = (float)(terms[i].term->off - base);
+    }
+    double reach = end - base > base - begin ? end - base : base - begin;
     double width = (double)packet->tile->half_size;
+    *group = (Group){packet, terms + first, last - first, base, lanes_set(0)};
     *extent = (float)(reach + width * (packet->tile->perspective ? fabs(end) : 1));
     return last;
 }
@@ -469,8 +472,7 @@ LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
     packet->y = lanes_load(&tile->y[first]);
     packet->n = 0;
     for (size_t i = 0; i < tile->n_terms; i++)
-        add_to_packet(packet, (uint32_t)i);
-    sort_spans(packet->spans, packet->n);
+        add_to_packet(packet, &tile->terms[i]);
     LaneMask open = (LaneMask){0} - 1;
     for (size_t i = 0; i < packet->n && lanes_any(open);) {
         Group group;
@@ -498,7 +500,6 @@ LANE_TARGET static void FIELD_KERNEL(const FieldTile *tile, TileWork *work, Tile
 {
     assert(tile->n_terms <= work->capacity);
     Packet packet = {.tile = tile, .terms = work->memory};
-    packet.spans = (PacketSpan *)(packet.terms + tile->n_terms);
     __builtin_memset(hits, 0, sizeof *hits);
     for (int first = 0; first < TILE_SAMPLES; first += LANES)
         trace_packet(&packet, first, hits);

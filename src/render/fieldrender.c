@@ -17,6 +17,7 @@ static const double nearest_seen_mm = 1e-4;
 typedef struct Canvas {
     TileSurface surface;
     uint8_t (*shadowed)[TILE_SAMPLES]; /* one a light */
+    float background[3 * TILE_SIDE];   /* a row of it */
     float *band;                       /* colours of a band's samples */
     uint8_t *wanted;                   /* tiles of a band's rows, one row of tiles */
     Status status;
@@ -31,7 +32,8 @@ typedef struct FieldPicture {
     SampleGrid grid;   /* of this pass */
     TileLook look;
     TileLight *lights;
-    Caster *caster; /* for shadows; NULL without */
+    bool needs_places; /* rays or lights differ from sample to sample */
+    Caster *caster;    /* for shadows; NULL without */
     Canvas *canvases;
     int workers;
     uint8_t *mask; /* pixels to antialias; NULL: all */
@@ -121,7 +123,7 @@ static void color_tile(const FieldPicture *picture, const SeenTile *seen, int wo
     const Scene *scene = picture->scene;
     Canvas *canvas = &picture->canvases[worker];
     TileSurface *surface = &canvas->surface;
-    memcpy(surface->normal, seen->hits->normal, sizeof surface->normal);
+    surface->hits = seen->hits;
     if (!scene->uniform_color)
         for (int sample = 0; sample < TILE_SAMPLES; sample++) {
             Rgb pigment = scene->segments[seen->hits->segment[sample]].color;
@@ -129,7 +131,8 @@ static void color_tile(const FieldPicture *picture, const SeenTile *seen, int wo
             surface->pigment[1][sample] = pigment.g;
             surface->pigment[2][sample] = pigment.b;
         }
-    place_surface(seen, surface);
+    if (picture->needs_places)
+        place_surface(seen, surface);
     if (picture->caster)
         find_shadows(picture, seen, worker, canvas);
     fieldtiles_kernels(picture->tiles)->shade(&picture->look, surface, color);
@@ -141,29 +144,39 @@ static void color_tile(const FieldPicture *picture, const SeenTile *seen, int wo
         }
 }
 
-/* Writes the part of a tile that is inside the grid to rows of `width` samples, the first of which
- * is row `first_row` of the grid. */
+/* Copies a tile's colours to rows of `width` pixels, as far as they reach. */
+static void copy_tile(float color[3][TILE_SAMPLES], int columns, int rows, size_t width, float *to)
+{
+    for (int j = 0; j < rows; j++)
+        for (int i = 0; i < columns; i++) {
+            int sample = tile_sample_at(i, j);
+            float *pixel = to + 3 * ((size_t)j * width + (size_t)i);
+            pixel[0] = color[0][sample];
+            pixel[1] = color[1][sample];
+            pixel[2] = color[2][sample];
+        }
+}
+
+/* Writes the part of a tile that is inside the grid to rows of samples, the first of which is row
+ * `first_row` of the grid. */
 static void write_colors(const FieldPicture *picture, const SeenTile *seen, int worker,
                          int first_row, float *values)
 {
-    int width = picture->grid.n_columns;
-    int columns = width - seen->column < TILE_SIDE ? width - seen->column : TILE_SIDE;
-    int rows =
-        picture->grid.n_rows - seen->row < TILE_SIDE ? picture->grid.n_rows - seen->row : TILE_SIDE;
-    float color[3][TILE_SAMPLES];
-    if (seen->hits)
-        color_tile(picture, seen, worker, color);
-    for (int j = 0; j < rows; j++) {
-        float *row = values + 3 * ((size_t)(seen->row - first_row + j) * (size_t)width +
-                                   (size_t)seen->column);
-        for (int i = 0; i < columns; i++) {
-            int sample = tile_sample_at(i, j);
-            const Rgb *background = &picture->scene->background;
-            row[3 * i] = seen->hits ? color[0][sample] : background->r;
-            row[3 * i + 1] = seen->hits ? color[1][sample] : background->g;
-            row[3 * i + 2] = seen->hits ? color[2][sample] : background->b;
-        }
+    const SampleGrid *grid = &picture->grid;
+    int columns =
+        grid->n_columns - seen->column < TILE_SIDE ? grid->n_columns - seen->column : TILE_SIDE;
+    int rows = grid->n_rows - seen->row < TILE_SIDE ? grid->n_rows - seen->row : TILE_SIDE;
+    size_t width = (size_t)grid->n_columns;
+    float *to = values + 3 * ((size_t)(seen->row - first_row) * width + (size_t)seen->column);
+    if (!seen->hits) {
+        const float *background = picture->canvases[worker].background;
+        for (int j = 0; j < rows; j++)
+            memcpy(to + 3 * width * (size_t)j, background, 3 * (size_t)columns * sizeof *to);
+        return;
     }
+    float color[3][TILE_SAMPLES];
+    color_tile(picture, seen, worker, color);
+    copy_tile(color, columns, rows, width, to);
 }
 
 static void write_geometry(const FieldPicture *picture, const SeenTile *seen)
@@ -351,6 +364,9 @@ static Status prepare_lights(FieldPicture *picture, Err *err)
                                          .color = {light->color.r, light->color.g, light->color.b},
                                          .parallel = light->parallel};
     }
+    picture->needs_places = camera->projection == PROJECTION_PERSPECTIVE;
+    for (size_t i = 0; i < scene->n_lights; i++)
+        picture->needs_places |= !scene->lights[i].parallel;
     picture->look = (TileLook){scene->finish, picture->lights, scene->n_lights};
     return STATUS_OK;
 }
@@ -364,6 +380,11 @@ static Status prepare_canvases(FieldPicture *picture, Err *err)
         Canvas *canvas = &picture->canvases[i];
         TRY(mem_calloc(&canvas->shadowed, scene->n_lights, sizeof *canvas->shadowed, "lights",
                        err));
+        for (int pixel = 0; pixel < TILE_SIDE; pixel++) {
+            canvas->background[3 * pixel] = scene->background.r;
+            canvas->background[3 * pixel + 1] = scene->background.g;
+            canvas->background[3 * pixel + 2] = scene->background.b;
+        }
         for (int sample = 0; sample < TILE_SAMPLES; sample++) {
             canvas->surface.direction[2][sample] = 1;
             canvas->surface.pigment[0][sample] = scene->color.r;
@@ -382,7 +403,7 @@ static Status antialias(FieldPicture *picture, double *prepared_s, Err *err)
     const Plane *color = &picture->frame->color;
     double *offsets = NULL;
     TRY_GOTO(mem_calloc(&offsets, (size_t)params->antialias, sizeof *offsets, "samples", err));
-    refine_offsets(params->antialias, offsets);
+    resample_offsets(params->antialias, offsets);
     if (params->antialias_threshold > 0) {
         TRY_GOTO(mem_calloc(&picture->mask, (size_t)color->width * (size_t)color->height, 1,
                             "masks", err));

@@ -19,19 +19,20 @@ enum { TILE_SIDE = 8, TILE_SAMPLES = TILE_SIDE * TILE_SIDE };
  * its place less the point of the axis that is nearest to the ray. k = sqrt(2) / radius. */
 typedef struct TileTerm {
     double z_near;
-    float k;
+    double on, off; /* z between which the term may exceed the cut-off on a ray of the tile */
+    float k, per_k2;
     float reach2; /* the term is below the cut-off where (k distance)^2 of the segment exceeds it */
     float u, v;   /* k times the distances of that point from the two ends */
     float o[3];
-    float axis[3];      /* unit */
-    float cross[3];     /* (middle ray's direction) x axis; orthographic: of length 1 */
-    float sine, cosine; /* orthographic: of the angle between axis and ray */
-    uint32_t segment;   /* index in the scene */
+    float axis[3];                /* unit */
+    float cross[3];               /* (middle ray's direction) x axis; orthographic: of length 1 */
+    float sine, per_sine, cosine; /* orthographic: of the angle between axis and ray */
+    uint32_t segment;             /* index in the scene */
 } TileTerm;
 
 /* Samples are numbered so that each run of 8, and of 4, is a compact block: tile_sample_x/y. */
 typedef struct FieldTile {
-    const TileTerm *terms;
+    const TileTerm *terms; /* by rising `on` */
     size_t n_terms;
     bool perspective;
     float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* of the samples, relative to the middle ray */
@@ -56,7 +57,7 @@ static inline int tile_sample_at(int x, int y)
     return (y >> 1) << 4 | (x >> 2) << 3 | (x >> 1 & 1) << 2 | (y & 1) << 1 | (x & 1);
 }
 
-enum { TILE_WORK_BYTES = 512 }; /* of one term in a kernel's workspace */
+enum { TILE_WORK_BYTES = 704 }; /* of one term in a kernel's workspace */
 
 typedef enum TileState {
     TILE_MISS = 0, /* proven: nothing is there */

@@ -58,13 +58,23 @@ struct FieldTiles {
     int workers;
 };
 
+static double min_of(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double max_of(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 typedef struct Range {
     double low, high;
 } Range;
 
 static Range range_union(Range a, Range b)
 {
-    return (Range){fmin(a.low, b.low), fmax(a.high, b.high)};
+    return (Range){min_of(a.low, b.low), max_of(a.high, b.high)};
 }
 
 /* The shadow on the camera's plane, in one of its two directions, of a ball at coordinate c in that
@@ -73,7 +83,7 @@ static Range ball_shadow(const FieldTiles *tiles, double c, double z, double rad
 {
     if (!tiles->perspective)
         return (Range){c - radius, c + radius};
-    double half = radius * sqrt(fmax(c * c + z * z - radius * radius, 0));
+    double half = radius * sqrt(max_of(c * c + z * z - radius * radius, 0));
     double per = 1 / ((z - radius) * (z + radius));
     return (Range){(c * z - half) * per, (c * z + half) * per};
 }
@@ -83,7 +93,7 @@ static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
 {
     if (!tiles->perspective)
         return 1;
-    double near = fmin(segment->a.z, segment->b.z), far = fmax(segment->a.z, segment->b.z);
+    double near = min_of(segment->a.z, segment->b.z), far = max_of(segment->a.z, segment->b.z);
     return near > segment->reach * (1 + 1e-9) ? 1 : far < -segment->reach ? -1 : 0;
 }
 
@@ -92,9 +102,9 @@ static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
 static Span tiles_within(Range range, double first, double step, int count)
 {
     double from = (range.low - first) / step, to = (range.high - first) / step;
-    double low = ceil(fmin(from, to) - 1e-3), high = floor(fmax(from, to) + 1e-3);
-    low = fmax(low, 0);
-    high = fmin(high, count - 1);
+    double low = ceil(min_of(from, to) - 1e-3), high = floor(max_of(from, to) + 1e-3);
+    low = max_of(low, 0);
+    high = min_of(high, count - 1);
     if (!(low <= high))
         return (Span){1, 0};
     return (Span){(int)low / TILE_SIDE, (int)high / TILE_SIDE};
@@ -307,9 +317,9 @@ static Span columns_of(const FieldTiles *tiles, const FrameSegment *segment, dou
         if (at_a < 0 && at_b < 0)
             return (Span){1, 0};
         if (at_a < 0)
-            from = fmax(from, at_a / (at_a - at_b));
+            from = max_of(from, at_a / (at_a - at_b));
         if (at_b < 0)
-            to = fmin(to, at_a / (at_a - at_b));
+            to = min_of(to, at_a / (at_a - at_b));
     }
     if (from > to)
         return (Span){1, 0};
@@ -356,50 +366,105 @@ static Status list_row(const FieldTiles *tiles, size_t row, Workspace *space, Er
     return STATUS_OK;
 }
 
-/* The terms of a tile need its middle ray's nearest point of the axis, at `along` mm from a. */
-static double nearest_along(const FrameSegment *segment, Vec3 origin, Vec3 direction)
+/* The depths at which a ray of the tile may be within reach of the segment: those of the part of the
+ * axis, from along - half to along + half, that is near enough to the middle ray, widened by the
+ * reach. */
+static Range depths_of(const FrameSegment *segment, double along, double half)
+{
+    double first = max_of(along - half, 0), last = min_of(along + half, segment->length);
+    double z_first = segment->a.z + first * segment->axis.z;
+    double z_last = segment->a.z + last * segment->axis.z;
+    return (Range){min_of(z_first, z_last) - segment->reach,
+                   max_of(z_first, z_last) + segment->reach};
+}
+
+/* How a segment lies to the middle ray of a tile. */
+typedef struct Encounter {
+    double along;       /* mm from a to where the lines are nearest; the middle when parallel */
+    double per_sine;    /* 1 / sine of their angle; 0 when parallel */
+    Vec3 normal;        /* direction of the ray x axis */
+    double per_length2; /* 1 / |direction|^2 */
+} Encounter;
+
+static Encounter encounter(const FrameSegment *segment, Vec3 origin, Vec3 direction)
 {
     Vec3 from_a = vec3_sub(origin, segment->a);
-    Vec3 normal = vec3_cross(direction, segment->axis);
-    double cross2 = vec3_dot(normal, normal), dd = vec3_dot(direction, direction);
-    double cosine = vec3_dot(direction, segment->axis);
-    double along = dd * vec3_dot(from_a, segment->axis) - cosine * vec3_dot(from_a, direction);
-    along = cross2 > 0 ? along / cross2 : segment->length / 2;
-    return fmin(fmax(along, 0), segment->length);
+    Encounter met = {.normal = vec3_cross(direction, segment->axis),
+                     .per_length2 = 1 / vec3_dot(direction, direction),
+                     .along = segment->length / 2};
+    double cross2 = vec3_dot(met.normal, met.normal);
+    if (cross2 > 0) {
+        double cosine = vec3_dot(direction, segment->axis) * met.per_length2;
+        double along = vec3_dot(from_a, segment->axis) - cosine * vec3_dot(from_a, direction);
+        met.per_sine = 1 / sqrt(cross2 * met.per_length2);
+        met.along = along * met.per_sine * met.per_sine;
+    }
+    return met;
 }
 
 static bool make_term(const FieldTile *tile, const FrameSegment *segment, double half_size,
                       uint32_t number, TileTerm *term)
 {
-    double mx = tile->middle_x, my = tile->middle_y;
-    Vec3 origin = tile->perspective ? vec3(0, 0, 0) : vec3(mx, my, 0);
+    double mx = tile->middle_x, my = tile->middle_y, widening = half_size;
+    Vec3 origin = tile->perspective ? vec3(0, 0, 0) : vec3(mx, my, 0), axis = segment->axis;
     Vec3 direction = tile->perspective ? vec3(mx, my, 1) : vec3(0, 0, 1);
-    double along = nearest_along(segment, origin, direction);
-    Vec3 point = vec3_add_scaled(segment->a, segment->axis, along), axis = segment->axis;
-    double z = vec3_dot(vec3_sub(point, origin), direction) / vec3_dot(direction, direction);
+    Encounter met = encounter(segment, origin, direction);
+    double along = min_of(max_of(met.along, 0), segment->length);
+    Vec3 point = vec3_add_scaled(segment->a, axis, along);
+    double z = vec3_dot(vec3_sub(point, origin), direction) * met.per_length2;
     Vec3 o = vec3_sub(vec3_add_scaled(origin, direction, z), point);
-    double widening = half_size;
     if (tile->perspective)
-        widening *= fmax(fmax(segment->a.z, segment->b.z) + segment->reach, 0);
+        widening *= max_of(max_of(segment->a.z, segment->b.z) + segment->reach, 0);
     double far = segment->reach + widening;
     if (vec3_dot(o, o) > far * far)
         return false;
-    Vec3 cross = vec3_cross(direction, axis);
-    double sine = hypot(axis.x, axis.y);
+    Range depths = depths_of(segment, met.along, met.per_sine > 0 ? far * met.per_sine : HUGE_VAL);
+    double sine = met.per_sine > 0 ? 1 / met.per_sine : 0, k = segment->k;
+    Vec3 cross = met.normal;
     if (!tile->perspective)
-        cross = sine > 0 ? vec3_scale(cross, 1 / sine) : vec3(0, 1, 0);
+        cross = sine > 0 ? vec3_scale(cross, met.per_sine) : vec3(0, 1, 0);
     *term = (TileTerm){.z_near = z,
-                       .k = (float)segment->k,
-                       .reach2 = (float)(segment->k * segment->k * segment->reach * segment->reach),
-                       .u = (float)(segment->k * along),
-                       .v = (float)(segment->k * (segment->length - along)),
+                       .on = depths.low,
+                       .off = depths.high,
+                       .k = (float)k,
+                       .per_k2 = (float)(1 / (k * k)),
+                       .reach2 = (float)(k * k * segment->reach * segment->reach),
+                       .u = (float)(k * along),
+                       .v = (float)(k * (segment->length - along)),
                        .o = {(float)o.x, (float)o.y, (float)o.z},
                        .axis = {(float)axis.x, (float)axis.y, (float)axis.z},
                        .cross = {(float)cross.x, (float)cross.y, (float)cross.z},
                        .sine = (float)sine,
+                       .per_sine = (float)min_of(1 / sine, 1e20),
                        .cosine = (float)axis.z,
                        .segment = number};
     return true;
+}
+
+static int compare_terms(const void *a, const void *b)
+{
+    const TileTerm *one = a, *other = b;
+    if (one->on != other->on)
+        return one->on < other->on ? -1 : 1;
+    return one->segment < other->segment ? -1 : 1;
+}
+
+/* By rising `on`. Most lists are short. */
+static void sort_terms(TileTerm *terms, size_t n)
+{
+    if (n > 64) {
+        qsort(terms, n, sizeof *terms, compare_terms);
+        return;
+    }
+    for (size_t i = 1; i < n; i++) {
+        if (terms[i - 1].on <= terms[i].on)
+            continue;
+        TileTerm term = terms[i];
+        size_t hole = i;
+        for (; hole > 0 && terms[hole - 1].on > term.on; hole--)
+            terms[hole] = terms[hole - 1];
+        terms[hole] = term;
+    }
 }
 
 /* Sets the samples of the tile; those outside the grid repeat its last column or row. */
@@ -410,13 +475,17 @@ static double place_samples(const FieldTiles *tiles, int column, int row, FieldT
     int bottom = row + TILE_SIDE - 1 < last_y ? row + TILE_SIDE - 1 : last_y;
     tile->middle_x = (tiles->x[column] + tiles->x[right]) / 2;
     tile->middle_y = (tiles->y[row] + tiles->y[bottom]) / 2;
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        int i = column + tile_sample_x(sample), j = row + tile_sample_y(sample);
-        tile->x[sample] = (float)(tiles->x[i < right ? i : right] - tile->middle_x);
-        tile->y[sample] = (float)(tiles->y[j < bottom ? j : bottom] - tile->middle_y);
+    float x[TILE_SIDE], y[TILE_SIDE];
+    for (int i = 0; i < TILE_SIDE; i++) {
+        x[i] = (float)(tiles->x[column + i < right ? column + i : right] - tile->middle_x);
+        y[i] = (float)(tiles->y[row + i < bottom ? row + i : bottom] - tile->middle_y);
     }
-    tile->half_size =
-        (float)hypot(tiles->x[right] - tile->middle_x, tiles->y[row] - tile->middle_y);
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        tile->x[sample] = x[tile_sample_x(sample)];
+        tile->y[sample] = y[tile_sample_y(sample)];
+    }
+    double half_x = tiles->x[right] - tile->middle_x, half_y = tiles->y[row] - tile->middle_y;
+    tile->half_size = (float)sqrt(half_x * half_x + half_y * half_y);
     return (double)tile->half_size;
 }
 
@@ -437,6 +506,7 @@ static Status make_terms(const FieldTiles *tiles, size_t tile_column, double hal
             continue;
         space->candidates[tile->n_terms++] = list[i];
     }
+    sort_terms(space->terms, tile->n_terms);
     return tilework_reserve(&space->work, tile->n_terms, err);
 }
 
@@ -489,6 +559,14 @@ static Status decide_all(const FieldTiles *tiles, Workspace *space, const SeenTi
     return STATUS_OK;
 }
 
+static bool any_hit(const TileHits *hits)
+{
+    uint8_t any = 0;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++)
+        any |= hits->state[sample];
+    return any != TILE_MISS;
+}
+
 Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t *wanted,
                         TileVisitor *visit, void *context, Err *err)
 {
@@ -497,7 +575,9 @@ Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t
     for (int column = 0; column < tiles->tile_columns; column++) {
         if (wanted && !wanted[column])
             continue;
-        FieldTile tile = {.perspective = tiles->perspective, .z_min = tiles->z_min};
+        FieldTile tile;
+        tile.perspective = tiles->perspective;
+        tile.z_min = tiles->z_min;
         TileHits hits;
         SeenTile seen = {.column = column * TILE_SIDE, .row = (int)row * TILE_SIDE, .tile = &tile};
         if (space->offsets[column] < space->offsets[column + 1]) {
@@ -506,7 +586,7 @@ Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t
             if (tile.n_terms) {
                 tiles->kernels->trace(&tile, &space->work, &hits);
                 TRY(decide_all(tiles, space, &seen, &hits, err));
-                seen.hits = &hits;
+                seen.hits = any_hit(&hits) ? &hits : NULL;
             }
         }
         visit(&seen, worker, context);

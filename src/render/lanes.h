@@ -69,6 +69,15 @@ LANE_FN Lanes lanes_select(LaneMask mask, Lanes a, Lanes b)
     return (Lanes)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)mask);
 }
 
+/* The smallest lane. */
+LANE_FN float lanes_least(Lanes a)
+{
+    __m128 low = _mm256_castps256_ps128((__m256)a), high = _mm256_extractf128_ps((__m256)a, 1);
+    __m128 least = _mm_min_ps(low, high);
+    least = _mm_min_ps(least, _mm_movehl_ps(least, least));
+    return _mm_cvtss_f32(_mm_min_ss(least, _mm_shuffle_ps(least, least, 1)));
+}
+
 LANE_FN bool lanes_any(LaneMask mask)
 {
     return _mm256_movemask_ps((__m256)mask) != 0;
@@ -103,6 +112,14 @@ LANE_FN Lanes lanes_max(Lanes a, Lanes b)
     return lanes_select(a > b, a, b);
 }
 
+LANE_FN float lanes_least(Lanes a)
+{
+    float least = a[0];
+    for (int i = 1; i < LANES; i++)
+        least = a[i] < least ? a[i] : least;
+    return least;
+}
+
 LANE_FN bool lanes_any(LaneMask mask)
 {
     return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
@@ -113,15 +130,6 @@ LANE_FN bool lanes_any(LaneMask mask)
 LANE_FN Lanes lanes_abs(Lanes a)
 {
     return (Lanes)((LaneMask)a & 0x7fffffff);
-}
-
-/* The smallest lane. */
-LANE_FN float lanes_least(Lanes a)
-{
-    float least = a[0];
-    for (int i = 1; i < LANES; i++)
-        least = a[i] < least ? a[i] : least;
-    return least;
 }
 
 LANE_FN float lanes_largest(Lanes a)

@@ -12,7 +12,9 @@ typedef struct RenderParams {
     int threads;   /* 0: all processors */
     int antialias; /* 1: one ray through each pixel's centre; N > 1: that ray and N x N more, the
                     * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
-    double antialias_threshold; /* 0: every pixel; else those that resample_mask tells, in (0, 1] */
+    double antialias_threshold; /* 0: every pixel gets the N x N more, as in POV-Ray; else, in
+                                 * (0, 1], those only that differ from a neighbour by so much in
+                                 * the square root of a channel, which no POV-Ray picture repeats */
     bool shadows;
     const CellParams *povray_cells; /* of an implicit model: where POV-Ray's root finder sees it in
                                      * these cells; NULL: where it is, by proof */
@@ -24,6 +26,8 @@ typedef struct RenderParams {
 typedef struct RenderStats {
     double prepare_s; /* building the search structure */
     double trace_s;
+    double
+        cpu_s; /* of all threads, for both: trace_s when nothing else runs is about cpu_s / threads */
     size_t rays; /* primary */
 } RenderStats;
 
@@ -31,5 +35,9 @@ typedef struct RenderStats {
  * planes do not fit. `stats` may be NULL. */
 MUST_CHECK Status render(const Scene *scene, const RenderParams *params, Frame *frame,
                          RenderStats *stats, Err *err);
+
+/* How many segments of an implicit scene have no surface about them: the potential half way along
+ * the segment is below the level. */
+MUST_CHECK Status render_count_vanished(const Scene *scene, size_t *count, Err *err);
 
 #endif

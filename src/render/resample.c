@@ -40,7 +40,7 @@ void resample_mask(const Plane *color, float threshold, int threads, uint8_t *ma
     threads_for((size_t)color->height, threads, mask_row, &job);
 }
 
-void refine_offsets(int n, double *offsets)
+void resample_offsets(int n, double *offsets)
 {
     double step = 1.0 / n, offset = -(0.5 - step * 0.5);
     for (int i = 0; i < n; i++) {

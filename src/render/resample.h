@@ -11,6 +11,6 @@ void resample_mask(const Plane *color, float threshold, int threads, uint8_t *ma
 
 /* Where a pixel's N x N further samples stand, from its centre, in pixels: offsets[n], the same in
  * both directions; POV-Ray's places [docs/POVRAY.md], summed up as it sums them. */
-void refine_offsets(int n, double *offsets);
+void resample_offsets(int n, double *offsets);
 
 #endif

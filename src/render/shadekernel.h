@@ -89,13 +89,23 @@ LANE_FN void add_light(Shading *shading, size_t number)
     }
 }
 
+LANE_FN bool any_hit_among(const uint8_t *state)
+{
+    uint8_t any = 0;
+    for (int lane = 0; lane < LANES; lane++)
+        any |= state[lane];
+    return any != TILE_MISS;
+}
+
 LANE_TARGET static void SHADE_KERNEL(const TileLook *look, const TileSurface *surface,
                                      float color[3][TILE_SAMPLES])
 {
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
+        if (!any_hit_among(surface->hits->state + first))
+            continue;
         Shading shading = {.look = look, .surface = surface, .first = first};
         for (int c = 0; c < 3; c++) {
-            shading.normal[c] = lanes_load(&surface->normal[c][first]);
+            shading.normal[c] = lanes_load(&surface->hits->normal[c][first]);
             shading.direction[c] = lanes_load(&surface->direction[c][first]);
             shading.color[c] = lanes_load(&surface->pigment[c][first]) * look->finish.ambient;
         }

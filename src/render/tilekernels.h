@@ -18,10 +18,9 @@ typedef struct TileLook {
     size_t n_lights;
 } TileLook;
 
-/* The visible points of a tile, in the camera's frame. Samples that show nothing may hold anything
- * finite. */
+/* The visible points of a tile, in the camera's frame. */
 typedef struct TileSurface {
-    float normal[3][TILE_SAMPLES];    /* unit */
+    const TileHits *hits;
     float direction[3][TILE_SAMPLES]; /* unit, of the ray */
     float point[3][TILE_SAMPLES];     /* mm from the camera's location; only for lights that are not
                                        * parallel */
@@ -32,7 +31,7 @@ typedef struct TileSurface {
 typedef struct TileKernels {
     /* Finds the first hits; `work` has room for the tile's terms. */
     void (*trace)(const FieldTile *tile, TileWork *work, TileHits *hits);
-    /* Colours as shade() gives, to 2e-5 of the light's colour. */
+    /* Colours of the hits as shade() gives, to 2e-5 of the light's colour. */
     void (*shade)(const TileLook *look, const TileSurface *surface, float color[3][TILE_SAMPLES]);
 } TileKernels;
 

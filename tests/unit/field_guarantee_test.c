@@ -1,0 +1,426 @@
+/* The tile renderer against brute force: every ray's hit must be the exact first hit for a level
+ * within EPSILON of e^-2. The brute force adds up every term above e^-32 in long double, straight
+ * from the definition, and walks the ray in steps that the slope and a bound of the terms' second
+ * derivatives allow, at least 2e-5 of the smallest radius present, to where the potential first reaches level -
+ * EPSILON and then level + EPSILON. Without a hit at the lower one there must be none; the hit must
+ * lie between the two, widened by the tolerance. Rays for which the two are farther apart than the
+ * tolerance graze, and are counted. */
+#include "render/fieldtiles.h"
+
+#include "grow/grow.h"
+#include "treeio/treeio.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "field_scenes.h"
+#include <cmocka.h>
+#include <stdio.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SHARE 10 /* sanitizers are slow: one camera in so many */
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define SHARE 10
+#endif
+#endif
+#ifndef SHARE
+#define SHARE 1
+#endif
+
+/* Potential by which the picture may be off: a millionth for each term that the ray passes, all of
+ * which may be left out somewhere along it, and for single precision. */
+static long double epsilon_of(size_t n_terms)
+{
+    return 1e-6L * (long double)(n_terms + 4);
+}
+
+typedef struct Near {
+    const FieldSegment *segment;
+    double on, off; /* along the ray; outside, the term is below e^-32 */
+    double bend;    /* bound of the term's second derivative along any line, 1/mm^2 */
+} Near;
+
+typedef struct Walk {
+    Ray ray;
+    Near *near; /* by rising `on` */
+    size_t n;
+    double t;
+} Walk;
+
+static int compare_near(const void *a, const void *b)
+{
+    double one = ((const Near *)a)->on, other = ((const Near *)b)->on;
+    return (one > other) - (one < other);
+}
+
+/* The distances of the ray's line from the segment, and from the segment's own line. */
+static void line_distances(Ray ray, const FieldSegment *segment, double *to_segment,
+                           double *to_line)
+{
+    Vec3 span = vec3_sub(segment->b, segment->a), from = vec3_sub(segment->a, ray.origin);
+    Vec3 across = vec3_add_scaled(span, ray.direction, -vec3_dot(span, ray.direction));
+    Vec3 start = vec3_add_scaled(from, ray.direction, -vec3_dot(from, ray.direction));
+    double length2 = vec3_dot(across, across);
+    double s = length2 > 0 ? -vec3_dot(start, across) / length2 : 0;
+    *to_line = vec3_length(vec3_add_scaled(start, across, s));
+    *to_segment = vec3_length(vec3_add_scaled(start, across, fmin(fmax(s, 0), 1)));
+}
+
+/* On a line with sine s and cosine c to the axis, a term is exp(-e^2) G A, G = exp(-w^2) and A the
+ * axial factor: the suprema of G'', 2 |G'| |A'| and |A''| are 4 exp(-3/2) s^2, 2 sqrt(2/e) / sqrt(pi)
+ * s c and sqrt(2/e) / sqrt(pi) c^2, times k^2. */
+static double bend_of(const FieldSegment *segment, Ray ray, double to_line)
+{
+    Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
+    double c = fabs(vec3_dot(axis, ray.direction)),
+           s = vec3_length(vec3_cross(axis, ray.direction));
+    double k = sqrt(2) / segment->radius_mm;
+    return k * k * exp(-k * k * to_line * to_line) *
+           (0.8926 * s * s + 0.9682 * s * c + 0.4841 * c * c);
+}
+
+static Walk walk_start(const Scene *scene, Ray ray, Near *near)
+{
+    Walk walk = {.ray = ray, .near = near};
+    for (size_t i = 0; i < scene->n_segments; i++) {
+        const FieldSegment *segment = &scene->segments[i];
+        double r = segment->radius_mm, to_segment, to_line;
+        line_distances(ray, segment, &to_segment, &to_line);
+        if (to_segment > 4 * r)
+            continue;
+        double t_a = vec3_dot(vec3_sub(segment->a, ray.origin), ray.direction);
+        double t_b = vec3_dot(vec3_sub(segment->b, ray.origin), ray.direction);
+        near[walk.n++] = (Near){segment, fmin(t_a, t_b) - 4 * r, fmax(t_a, t_b) + 4 * r,
+                                bend_of(segment, ray, to_line)};
+    }
+    qsort(near, walk.n, sizeof *near, compare_near);
+    walk.t = walk.n ? near[0].on : HUGE_VAL;
+    return walk;
+}
+
+static LongVec3 point_at(const Walk *walk, double t)
+{
+    Ray ray = walk->ray;
+    long double s = (long double)t;
+    return (LongVec3){(long double)ray.origin.x + s * (long double)ray.direction.x,
+                      (long double)ray.origin.y + s * (long double)ray.direction.y,
+                      (long double)ray.origin.z + s * (long double)ray.direction.z};
+}
+
+static long double slope_along(const Walk *walk, LongVec3 gradient)
+{
+    Vec3 d = walk->ray.direction;
+    return gradient.x * (long double)d.x + gradient.y * (long double)d.y +
+           gradient.z * (long double)d.z;
+}
+
+/* Whether the term is below e^-32 at x. */
+static bool is_far(const FieldSegment *segment, Vec3 x)
+{
+    Vec3 span = vec3_sub(segment->b, segment->a), from = vec3_sub(x, segment->a);
+    double s = vec3_dot(from, span) / vec3_dot(span, span);
+    Vec3 across = vec3_add_scaled(from, span, -fmin(fmax(s, 0), 1));
+    return vec3_length(across) > 4 * segment->radius_mm;
+}
+
+/* Walks on to where the potential first reaches the level; false when it never does. */
+static bool walk_to(Walk *walk, long double level)
+{
+    for (;;) {
+        long double lack = level, slope = 0;
+        double bend = 0, next = HUGE_VAL, smallest = HUGE_VAL;
+        LongVec3 x = point_at(walk, walk->t);
+        for (size_t i = 0; i < walk->n; i++) {
+            const Near *near = &walk->near[i];
+            if (near->on > walk->t) {
+                next = near->on;
+                break;
+            }
+            if (near->off < walk->t)
+                continue;
+            bend += near->bend;
+            smallest = fmin(smallest, near->segment->radius_mm);
+            if (is_far(near->segment, ray_at(walk->ray, walk->t)))
+                continue;
+            LongVec3 gradient;
+            lack -= exact_term(near->segment, x, &gradient);
+            slope += slope_along(walk, gradient);
+        }
+        if (lack <= 1e-10L)
+            return true;
+        double step = HUGE_VAL, p = (double)slope, root = sqrt(p * p + 2 * bend * (double)lack);
+        if (bend > 0)
+            step = p > 0 ? 2 * (double)lack / (p + root) : (root - p) / bend;
+        walk->t = fmin(walk->t + fmax(step, 2e-5 * smallest), next);
+        if (!(walk->t < HUGE_VAL))
+            return false;
+    }
+}
+
+typedef struct Tally {
+    const char *name;
+    int rays, hits, grazing, wrong;
+    double worst_mm, worst_degrees;
+} Tally;
+
+/* What one kernel says of the samples of an 8 x 8 picture. */
+typedef struct Answer {
+    bool hit[TILE_SAMPLES];
+    double t[TILE_SAMPLES];
+    Vec3 normal[TILE_SAMPLES];
+    uint32_t segment[TILE_SAMPLES];
+    const FieldTiles *tiles;
+} Answer;
+
+static void keep_answer(const SeenTile *seen, int worker, void *context)
+{
+    (void)worker;
+    Answer *answer = context;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        answer->hit[sample] = seen->hits && seen->hits->state[sample] == TILE_HIT;
+        if (!answer->hit[sample])
+            continue;
+        const TileHits *hits = seen->hits;
+        answer->t[sample] = tile_depth(seen->tile, hits, sample);
+        answer->segment[sample] = hits->segment[sample];
+        answer->normal[sample] = fieldtiles_to_world(
+            answer->tiles, vec3((double)hits->normal[0][sample], (double)hits->normal[1][sample],
+                                (double)hits->normal[2][sample]));
+    }
+}
+
+static void ask(const Scene *scene, const TileKernels *kernels, Answer *answer)
+{
+    const double places[] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const SampleGrid grid = {places, places, 8, 8, 1};
+    FieldTiles *tiles;
+    assert_int_equal(fieldtiles_new(scene, &grid, 1e-4, 1, &tiles, NULL), STATUS_OK);
+    fieldtiles_use_kernels(tiles, kernels);
+    *answer = (Answer){.tiles = tiles};
+    assert_int_equal(fieldtiles_trace(tiles, 0, 0, NULL, keep_answer, answer, NULL), STATUS_OK);
+    fieldtiles_free(tiles);
+}
+
+/* The normal is the gradient's direction, and the segment that of the largest term. */
+static bool describes_hit(const Walk *walk, const Scene *scene, const Answer *answer, int sample,
+                          Tally *tally)
+{
+    LongVec3 x = point_at(walk, answer->t[sample]);
+    Vec3 sum = vec3(0, 0, 0);
+    long double largest = 0;
+    for (size_t i = 0; i < walk->n; i++) {
+        LongVec3 gradient;
+        long double term = exact_term(walk->near[i].segment, x, &gradient);
+        largest = term > largest ? term : largest;
+        sum = vec3_add(sum, vec3((double)gradient.x, (double)gradient.y, (double)gradient.z));
+    }
+    const FieldSegment *named = &scene->segments[answer->segment[sample]];
+    double steepness = vec3_length(sum) * named->radius_mm;
+    if (steepness > 0.1 * FIELD_LEVEL) {
+        Vec3 difference = vec3_add_scaled(answer->normal[sample], sum, 1 / vec3_length(sum));
+        double degrees = vec3_length(difference) * 57.3;
+        tally->worst_degrees = fmax(tally->worst_degrees, degrees);
+    }
+    return exact_term(named, x, NULL) >= largest - 1e-4L;
+}
+
+static void judge(const Scene *scene, const Answer *answer, int sample, Near *near, Tally *tally)
+{
+    Ray ray = camera_ray(&scene->camera, tile_sample_x(sample), tile_sample_y(sample));
+    Walk walk = walk_start(scene, ray, near);
+    long double epsilon = epsilon_of(walk.n);
+    bool hit = answer->hit[sample];
+    double t = answer->t[sample];
+    bool earliest = walk_to(&walk, (long double)FIELD_LEVEL - epsilon);
+    double from = walk.t;
+    bool latest = earliest && walk_to(&walk, (long double)FIELD_LEVEL + epsilon);
+    double to = latest ? walk.t : HUGE_VAL;
+    double radius = hit ? scene->segments[answer->segment[sample]].radius_mm : 0;
+    double tolerance = fmin(1e-4, 1e-3 * radius);
+    bool right = hit ? earliest && t >= from - tolerance && t <= to + tolerance : !latest;
+    tally->rays++;
+    tally->hits += hit;
+    tally->grazing += earliest && to - from > tolerance;
+    if (right && hit && to - from <= tolerance)
+        tally->worst_mm = fmax(tally->worst_mm, fabs(t - (from + to) / 2));
+    if (!right || (hit && !describes_hit(&walk, scene, answer, sample, tally))) {
+        tally->wrong++;
+        print_error("%s: %s at %.9g, exact between %.9g and %.9g, sample %d\n", tally->name,
+                    hit ? "hit" : "none", t, from, to, sample);
+    }
+}
+
+typedef enum Aim {
+    AIM_ANY,     /* from anywhere at a vessel, from very near to very far */
+    AIM_TANGENT, /* along the silhouette of a vessel */
+    AIM_AXIAL,   /* along its axis, exactly or nearly */
+    AIM_ALIGNED, /* along x, y or z */
+    N_AIMS
+} Aim;
+
+static Camera aim(Aim kind, const Scene *scene, double extent, Random *random)
+{
+    const FieldSegment *segment = &scene->segments[random_bits(random) % scene->n_segments];
+    Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a)), d = random_direction(random);
+    Vec3 target =
+        vec3_add_scaled(segment->a, vec3_sub(segment->b, segment->a), uniform(random, -0.05, 1.05));
+    double r = segment->radius_mm, pixel = r * pow(10, uniform(random, -2.5, 0.8));
+    if (kind == AIM_AXIAL) {
+        double off = random_bits(random) % 3 ? pow(10, uniform(random, -9, -1)) : 0;
+        d = vec3_normalized(vec3_add_scaled(axis, d, off));
+    } else if (kind == AIM_ALIGNED) {
+        int which = (int)(random_bits(random) % 6), sign = which % 2 ? -1 : 1;
+        d = vec3(which / 2 == 0 ? sign : 0, which / 2 == 1 ? sign : 0, which / 2 == 2 ? sign : 0);
+    } else if (kind == AIM_TANGENT) {
+        Vec3 side = vec3_cross(axis, d);
+        double off =
+            r * (1 + pow(10, uniform(random, -7, -1)) * (random_bits(random) % 2 ? 1 : -1));
+        target = vec3_add_scaled(target, vec3_normalized(side), off);
+        pixel = r * pow(10, uniform(random, -6, -1));
+    }
+    Vec3 right = random_normal_to(random, d), up = vec3_cross(right, d);
+    Camera camera = {.direction = d, .width = 8, .height = 8};
+    double distance = extent * uniform(random, 2, 4);
+    camera.location = vec3_add_scaled(target, d, -distance);
+    if (random_bits(random) % 2) {
+        camera.projection = PROJECTION_PERSPECTIVE;
+        pixel /= distance;
+    }
+    camera.right = vec3_scale(right, 8 * pixel);
+    camera.up = vec3_scale(up, 8 * pixel);
+    return camera;
+}
+
+static void try_cameras(Scene *scene, int cameras, Random *random, Tally *tally)
+{
+    double extent = 0;
+    for (size_t i = 0; i < scene->n_segments; i++)
+        extent = fmax(extent, vec3_distance(scene->segments[0].a, scene->segments[i].b) +
+                                  4 * scene->segments[i].radius_mm);
+    Near *near = calloc(scene->n_segments, sizeof *near);
+    assert_non_null(near);
+    Answer portable, fastest;
+    for (int i = 0; i < cameras; i++) {
+        scene->camera = aim((Aim)(i % N_AIMS), scene, extent, random);
+        ask(scene, tilekernels_best(), &fastest);
+        for (int sample = 0; sample < TILE_SAMPLES; sample++)
+            judge(scene, &fastest, sample, near, tally);
+        if (i % 8 || tilekernels_best() == &tilekernels_portable)
+            continue;
+        ask(scene, &tilekernels_portable, &portable);
+        for (int sample = 0; sample < TILE_SAMPLES; sample++)
+            judge(scene, &portable, sample, near, tally);
+    }
+    free(near);
+}
+
+static void finish(const Tally *tally)
+{
+    printf("  %-12s %6d rays, %5d hits, %4d grazing; off by %.1e mm, normals by %.1e degrees; %d "
+           "wrong\n",
+           tally->name, tally->rays, tally->hits, tally->grazing, tally->worst_mm,
+           tally->worst_degrees, tally->wrong);
+    assert_int_equal(tally->wrong, 0);
+    assert_true(tally->hits > tally->rays / 8);
+    assert_true(tally->worst_mm <= 1e-4);
+    assert_true(tally->worst_degrees < 0.1);
+}
+
+static void try_tree(const Tree *tree, const char *name, uint64_t seed)
+{
+    Scene scene = {.model = SCENE_ISOSURFACE};
+    scene.segments = calloc(tree->n, sizeof *scene.segments);
+    assert_non_null(scene.segments);
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i) && tree_segment_length(tree, i) > 0)
+            scene.segments[scene.n_segments++] =
+                (FieldSegment){.a = tree->position[tree->parent[i]],
+                               .b = tree->position[i],
+                               .radius_mm = tree->radius_mm[i]};
+    Random random;
+    random_seed(&random, seed);
+    Tally tally = {.name = name};
+    try_cameras(&scene, 240 / SHARE, &random, &tally);
+    finish(&tally);
+    free(scene.segments);
+}
+
+static void try_grown(const char *name, const char *spec, double lambda)
+{
+    Domain domain;
+    Tree tree;
+    GrowParams params = grow_defaults();
+    params.terminals = 400;
+    params.lambda = lambda;
+    assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
+    assert_int_equal(grow_tree(&params, &domain, &tree, NULL, NULL), STATUS_OK);
+    try_tree(&tree, name, 61);
+    tree_release(&tree);
+    domain_release(&domain);
+}
+
+static void holds_for_a_tree_of_least_volume(void **state)
+{
+    (void)state;
+    try_grown("lambda 2", "disc:50", 2);
+}
+
+static void holds_for_a_tree_of_least_length(void **state)
+{
+    (void)state;
+    try_grown("lambda 0", "disc:50", 0);
+}
+
+static void holds_for_a_tree_in_space(void **state)
+{
+    (void)state;
+    try_grown("in space", "ball:28.794", 2);
+}
+
+static void holds_for_a_measured_tree(void **state)
+{
+    (void)state;
+    const char *shared = getenv("CORCAST_SHARED");
+    char path[4096];
+    snprintf(path, sizeof path, "%s/data/brava/BG0002records.swc", shared ? shared : "../shared");
+    if (access(path, R_OK) != 0) {
+        fprintf(stderr, "  SKIPPED: %s is not here\n", path);
+        skip();
+    }
+    Tree tree;
+    assert_int_equal(tree_read(&tree, path, NULL), STATUS_OK);
+    try_tree(&tree, "measured", 62);
+    tree_release(&tree);
+}
+
+static void holds_for_adversarial_scenes(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 63);
+    for (int kind = 0; kind < N_KINDS; kind++) {
+        Tally tally = {.name = kind_names[kind]};
+        for (int run = 0; run < 10; run++) {
+            TestScene test;
+            make_test_scene((SceneKind)kind, &random, &test);
+            try_cameras(&test.scene, 8 / (SHARE > 1 ? 2 : 1), &random, &tally);
+        }
+        finish(&tally);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(holds_for_a_tree_of_least_volume),
+        cmocka_unit_test(holds_for_a_tree_of_least_length),
+        cmocka_unit_test(holds_for_a_tree_in_space),
+        cmocka_unit_test(holds_for_a_measured_tree),
+        cmocka_unit_test(holds_for_adversarial_scenes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

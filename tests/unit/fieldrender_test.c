@@ -1,0 +1,435 @@
+/* Pictures of the potential: the same whatever the threads, the same as ray by ray in double
+ * precision whatever the kernel, and right for scenes that are wrong. */
+#include "render/render.h"
+
+#include "render/caster.h"
+#include "render/fieldtiles.h"
+#include "render/resample.h"
+#include "render/shade.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "field_scenes.h"
+#include <cmocka.h>
+#include <stdio.h>
+
+enum { WIDTH = 101, HEIGHT = 67 };
+
+/* A tree under a parallel and a point light. */
+typedef struct Staged {
+    TestScene test;
+    Light lights[2];
+    Scene *scene;
+} Staged;
+
+static void set_camera(Scene *scene, Projection projection, Vec3 direction, Vec3 center,
+                       double height)
+{
+    Vec3 right = vec3_normalized(vec3_cross(direction, vec3(0.1, 1, 0)));
+    Vec3 up = vec3_cross(right, direction);
+    double aspect = (double)scene->camera.width / scene->camera.height;
+    double distance = 5 * height;
+    scene->camera.projection = projection;
+    scene->camera.direction = direction;
+    scene->camera.location = vec3_add_scaled(center, direction, -distance);
+    if (projection == PROJECTION_PERSPECTIVE)
+        height /= distance;
+    scene->camera.right = vec3_scale(right, height * aspect);
+    scene->camera.up = vec3_scale(up, height);
+}
+
+static void stage(Staged *staged, SceneKind kind, Projection projection)
+{
+    Random random;
+    random_seed(&random, 71);
+    make_test_scene(kind, &random, &staged->test);
+    Scene *scene = staged->scene = &staged->test.scene;
+    for (size_t i = 0; i < scene->n_segments; i++)
+        staged->test.segments[i].color = (Rgb){0.2f + 0.01f * (float)i, 0.3f, 0.7f};
+    staged->lights[0] = (Light){.location = {30, 80, 90},
+                                .color = {0.9f, 0.8f, 0.7f},
+                                .parallel = true,
+                                .casts_shadows = true};
+    staged->lights[1] =
+        (Light){.location = {-60, 20, 75}, .color = {0.2f, 0.3f, 0.4f}, .casts_shadows = true};
+    scene->lights = staged->lights;
+    scene->n_lights = 2;
+    scene->background = (Rgb){0.25f, 0.5f, 1};
+    scene->finish = (Finish){.ambient = 0.1f,
+                             .diffuse = 0.7f,
+                             .brilliance = 1.3f,
+                             .phong = 0.4f,
+                             .phong_size = 35,
+                             .specular = 0.1f,
+                             .roughness = 0.07f};
+    scene->camera.width = WIDTH;
+    scene->camera.height = HEIGHT;
+    Vec3 center = vec3(0, 0, 0);
+    for (size_t i = 0; i < scene->n_segments; i++)
+        center = vec3_add_scaled(center, scene->segments[i].b, 1.0 / (double)scene->n_segments);
+    set_camera(scene, projection, vec3_normalized(vec3(-0.3, -0.4, -1)), center, 18);
+}
+
+static Frame drawn(const Scene *scene, int threads, int antialias, double threshold)
+{
+    const RenderParams params = {.threads = threads,
+                                 .antialias = antialias,
+                                 .antialias_threshold = threshold,
+                                 .shadows = true,
+                                 .want_color = true,
+                                 .want_depth = true,
+                                 .want_normal = true,
+                                 .want_id = true};
+    Frame frame;
+    RenderStats stats;
+    assert_int_equal(render(scene, &params, &frame, &stats, NULL), STATUS_OK);
+    assert_true(stats.prepare_s >= 0 && stats.trace_s > 0);
+    return frame;
+}
+
+static void assert_same_frames(const Frame *a, const Frame *b, size_t pixels)
+{
+    assert_memory_equal(a->color.values, b->color.values, 3 * pixels * sizeof(float));
+    assert_memory_equal(a->depth.values, b->depth.values, pixels * sizeof(float));
+    assert_memory_equal(a->normal.values, b->normal.values, 3 * pixels * sizeof(float));
+    assert_memory_equal(a->id.ids, b->id.ids, pixels * sizeof(uint32_t));
+}
+
+static void the_picture_does_not_depend_on_the_number_of_threads(void **state)
+{
+    (void)state;
+    const struct {
+        int antialias;
+        double threshold;
+    } cases[] = {{1, 0}, {3, 0}, {2, 0.05}};
+    for (int projection = 0; projection < 2; projection++)
+        for (size_t i = 0; i < 3; i++) {
+            Staged staged;
+            stage(&staged, KIND_TREE, (Projection)projection);
+            Frame one = drawn(staged.scene, 1, cases[i].antialias, cases[i].threshold);
+            for (int threads = 2; threads <= 7; threads += 5) {
+                Frame many = drawn(staged.scene, threads, cases[i].antialias, cases[i].threshold);
+                assert_same_frames(&one, &many, WIDTH * HEIGHT);
+                frame_release(&many);
+            }
+            frame_release(&one);
+        }
+}
+
+typedef struct Shadows {
+    Caster *caster;
+} Shadows;
+
+static bool is_shadowed(void *context, Vec3 point, Vec3 towards, double distance)
+{
+    return caster_shadow(((Shadows *)context)->caster, 0, point, towards, distance);
+}
+
+/* The colour of a place of the picture, in double precision. */
+static Rgb color_at(const Scene *scene, Caster *caster, double i, double j)
+{
+    Ray ray = camera_ray(&scene->camera, i, j);
+    Surfel surfel;
+    Shadows shadows = {caster};
+    if (!caster_first(caster, 0, ray, &surfel))
+        return scene->background;
+    return shade(scene, surfel.pigment, ray_at(ray, surfel.t), surfel.normal, ray.direction,
+                 is_shadowed, &shadows);
+}
+
+static double color_distance(Rgb a, const float *b)
+{
+    return fmax(fmax(fabs((double)(a.r - b[0])), fabs((double)(a.g - b[1]))),
+                fabs((double)(a.b - b[2])));
+}
+
+static void the_picture_is_that_of_single_rays(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < N_TAME_KINDS; kind++)
+        for (int projection = 0; projection < 2; projection++) {
+            Staged staged;
+            stage(&staged, (SceneKind)kind, (Projection)projection);
+            Caster *caster;
+            assert_int_equal(caster_new(staged.scene, 1, &caster, NULL), STATUS_OK);
+            Frame frame = drawn(staged.scene, 2, 1, 0);
+            int seen = 0, different = 0;
+            for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
+                Rgb color = color_at(staged.scene, caster, pixel % WIDTH, pixel / WIDTH);
+                seen += frame.id.ids[pixel] != 0;
+                different += color_distance(color, &frame.color.values[3 * pixel]) > 2e-4;
+            }
+            printf("  %s: %d seen, %d different\n", kind_names[kind], seen, different);
+            assert_true(seen > 30);
+            /* A vessel's edge or that of a shadow may fall on either side of a ray. */
+            assert_true(different <= seen / 200);
+            caster_free(caster);
+            frame_release(&frame);
+        }
+}
+
+static void antialiasing_weighs_the_centre_and_the_grid_alike(void **state)
+{
+    (void)state;
+    for (int n = 2; n <= 3; n++) {
+        Staged staged;
+        stage(&staged, KIND_TREE, n == 2 ? PROJECTION_ORTHOGRAPHIC : PROJECTION_PERSPECTIVE);
+        Caster *caster;
+        assert_int_equal(caster_new(staged.scene, 1, &caster, NULL), STATUS_OK);
+        Frame frame = drawn(staged.scene, 2, n, 0);
+        double offsets[3];
+        resample_offsets(n, offsets);
+        int different = 0;
+        for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel += 7) {
+            int i = pixel % WIDTH, j = pixel / WIDTH;
+            Rgb sum = color_at(staged.scene, caster, i, j);
+            for (int k = 0; k < n * n; k++) {
+                Rgb more = color_at(staged.scene, caster, i + offsets[k % n], j + offsets[k / n]);
+                sum = (Rgb){sum.r + more.r, sum.g + more.g, sum.b + more.b};
+            }
+            float count = (float)(n * n + 1);
+            sum = (Rgb){sum.r / count, sum.g / count, sum.b / count};
+            different += color_distance(sum, &frame.color.values[3 * pixel]) > 2e-4;
+        }
+        assert_true(different <= 5);
+        caster_free(caster);
+        frame_release(&frame);
+    }
+}
+
+static void adaptive_antialiasing_changes_edges_alone(void **state)
+{
+    (void)state;
+    Staged staged;
+    stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
+    Frame plain = drawn(staged.scene, 2, 1, 0), full = drawn(staged.scene, 2, 3, 0);
+    Frame adaptive = drawn(staged.scene, 2, 3, 0.1);
+    uint8_t *mask = calloc(WIDTH * HEIGHT, 1);
+    assert_non_null(mask);
+    resample_mask(&plain.color, 0.1f, 1, mask);
+    int refined = 0;
+    for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
+        const Frame *expected = mask[pixel] ? &full : &plain;
+        assert_memory_equal(&adaptive.color.values[3 * pixel], &expected->color.values[3 * pixel],
+                            3 * sizeof(float));
+        refined += mask[pixel];
+    }
+    assert_true(refined > 100 && refined < WIDTH * HEIGHT / 2);
+    free(mask);
+    frame_release(&plain);
+    frame_release(&full);
+    frame_release(&adaptive);
+}
+
+/* Both kernels' hits and colours of one tile. */
+typedef struct Tile {
+    TileHits hits;
+    float color[3][TILE_SAMPLES];
+} Tile;
+
+typedef struct KernelVisit {
+    const TileKernels *kernels;
+    const TileLook *look;
+    Tile *tiles;
+    size_t n;
+} KernelVisit;
+
+static void keep_tile(const SeenTile *seen, int worker, void *context)
+{
+    (void)worker;
+    KernelVisit *visit = context;
+    Tile *tile = &visit->tiles[visit->n++];
+    memset(tile, 0, sizeof *tile);
+    if (!seen->hits)
+        return;
+    tile->hits = *seen->hits;
+    TileSurface surface = {.hits = seen->hits};
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        surface.direction[2][sample] = 1;
+        for (int c = 0; c < 3; c++)
+            surface.pigment[c][sample] = 0.3f;
+    }
+    visit->kernels->shade(visit->look, &surface, tile->color);
+}
+
+static void both_kernels_agree(void **state)
+{
+    (void)state;
+    const TileLight light = {
+        .towards = {0.48f, 0.6f, -0.64f}, .color = {1, 1, 1}, .parallel = true};
+    Staged staged;
+    stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
+    const TileLook look = {staged.scene->finish, &light, 1};
+    double places[64];
+    for (int i = 0; i < 64; i++)
+        places[i] = i;
+    const SampleGrid grid = {places, places, 64, 64, 1};
+    const TileKernels *kernels[2] = {&tilekernels_portable, tilekernels_best()};
+    static Tile tiles[2][64];
+    for (int k = 0; k < 2; k++) {
+        FieldTiles *field;
+        KernelVisit visit = {kernels[k], &look, tiles[k], 0};
+        assert_int_equal(fieldtiles_new(staged.scene, &grid, 0, 1, &field, NULL), STATUS_OK);
+        fieldtiles_use_kernels(field, kernels[k]);
+        for (size_t row = 0; row < fieldtiles_rows(field); row++)
+            assert_int_equal(fieldtiles_trace(field, row, 0, NULL, keep_tile, &visit, NULL),
+                             STATUS_OK);
+        fieldtiles_free(field);
+    }
+    int hits = 0;
+    for (int n = 0; n < 64 * TILE_SAMPLES; n++) {
+        const Tile *a = &tiles[0][n / TILE_SAMPLES], *b = &tiles[1][n / TILE_SAMPLES];
+        int sample = n % TILE_SAMPLES;
+        assert_int_equal(a->hits.state[sample], b->hits.state[sample]);
+        hits += a->hits.state[sample] == TILE_HIT;
+        assert_true(fabs(a->hits.z[sample] - b->hits.z[sample]) < 1e-4);
+        assert_int_equal(a->hits.segment[sample], b->hits.segment[sample]);
+        for (int c = 0; c < 3; c++) {
+            assert_true(fabsf(a->hits.normal[c][sample] - b->hits.normal[c][sample]) < 1e-3f);
+            if (a->hits.state[sample] == TILE_HIT)
+                assert_true(fabsf(a->color[c][sample] - b->color[c][sample]) < 1e-3f);
+        }
+    }
+    assert_true(hits > 200);
+}
+
+static void a_distant_scene_is_the_same_scene(void **state)
+{
+    (void)state;
+    const Vec3 away = vec3(1e6, -1e6, 1e6);
+    for (int projection = 0; projection < 2; projection++) {
+        Staged staged;
+        stage(&staged, KIND_TREE, (Projection)projection);
+        staged.scene->n_lights = 1;
+        Frame near = drawn(staged.scene, 2, 1, 0);
+        for (size_t i = 0; i < staged.scene->n_segments; i++) {
+            staged.test.segments[i].a = vec3_add(staged.test.segments[i].a, away);
+            staged.test.segments[i].b = vec3_add(staged.test.segments[i].b, away);
+        }
+        staged.scene->camera.location = vec3_add(staged.scene->camera.location, away);
+        Frame far = drawn(staged.scene, 2, 1, 0);
+        int different = 0;
+        for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++)
+            different +=
+                near.id.ids[pixel] != far.id.ids[pixel] ||
+                fabsf(near.normal.values[3 * pixel] - far.normal.values[3 * pixel]) > 1e-3f;
+        assert_true(different <= 3);
+        frame_release(&near);
+        frame_release(&far);
+    }
+}
+
+static void assert_finite(const Frame *frame)
+{
+    for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
+        assert_false(isnan(frame->depth.values[pixel]));
+        for (int c = 0; c < 3; c++) {
+            assert_true(isfinite(frame->color.values[3 * pixel + c]));
+            assert_true(isfinite(frame->normal.values[3 * pixel + c]));
+        }
+    }
+}
+
+/* The middle pixel's ray starts in the vessel's axis, leaves it, and meets the second vessel. */
+static void a_camera_inside_a_vessel_sees_what_is_beyond(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++) {
+        Staged staged;
+        stage(&staged, KIND_TREE, (Projection)projection);
+        staged.test.scene.n_segments = 0;
+        put_segment(&staged.test, vec3(-20, 0, 0), vec3(20, 0, 0), 1.23);
+        put_segment(&staged.test, vec3(-20, 0, -7.5), vec3(20, 0, -7.5), 0.61);
+        Camera *camera = &staged.scene->camera;
+        camera->location = vec3(0.3, 0, 0.2);
+        camera->direction = vec3(0, 0, -1);
+        camera->right = vec3(0.9, 0, 0);
+        camera->up = vec3(0, 0.6, 0);
+        Frame frame = drawn(staged.scene, 1, 1, 0);
+        assert_finite(&frame);
+        int middle = HEIGHT / 2 * WIDTH + WIDTH / 2;
+        assert_int_equal(frame.id.ids[middle], 3);
+        assert_true(fabs((double)frame.depth.values[middle] - (7.5 + 0.2 - 0.61)) < 1e-5);
+        frame_release(&frame);
+    }
+}
+
+static void extremes_are_drawn_without_harm(void **state)
+{
+    (void)state;
+    const struct {
+        double radius, length;
+    } cases[] = {{1e-9, 5}, {1e9, 5}, {1, 1e-9}, {1, 1e7}, {1e-9, 1e-9}, {1e9, 1e9}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        for (int projection = 0; projection < 2; projection++) {
+            Staged staged;
+            stage(&staged, KIND_TREE, (Projection)projection);
+            staged.test.scene.n_segments = 0;
+            double half = cases[i].length / 2;
+            put_segment(&staged.test, vec3(-half, 0.1, 0), vec3(half, 0.1, 0), cases[i].radius);
+            put_segment(&staged.test, vec3(-5, 3, 0), vec3(5, 3, 0), 0.5);
+            set_camera(staged.scene, (Projection)projection, vec3(0, 0, -1), vec3(0, 0, 0), 12);
+            Frame frame = drawn(staged.scene, 2, 2, 0);
+            assert_finite(&frame);
+            int seen = 0;
+            for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++)
+                seen += frame.id.ids[pixel] == 3;
+            /* The second vessel is seen, unless the camera stands within the first. */
+            if (cases[i].radius < 1e9)
+                assert_true(seen > 300);
+            frame_release(&frame);
+        }
+}
+
+static void coincident_segments_add_up(void **state)
+{
+    (void)state;
+    Staged staged;
+    stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
+    staged.test.scene.n_segments = 0;
+    for (int i = 0; i < 60; i++)
+        put_segment(&staged.test, vec3(-20, 0, 0), vec3(20, 0, 0), 1);
+    set_camera(staged.scene, PROJECTION_ORTHOGRAPHIC, vec3(0, 0, -1), vec3(0, 0, 0), 12);
+    Frame frame = drawn(staged.scene, 2, 1, 0);
+    assert_finite(&frame);
+    /* 60 exp(-2 d^2) = e^-2 */
+    int middle = HEIGHT / 2 * WIDTH + WIDTH / 2;
+    double expected = 5 * 12 - sqrt(1 + log(60) / 2);
+    assert_true(fabs((double)frame.depth.values[middle] - expected) < 1e-4);
+    assert_int_equal(frame.id.ids[middle], 2);
+    frame_release(&frame);
+}
+
+static void nothing_is_background(void **state)
+{
+    (void)state;
+    Staged staged;
+    stage(&staged, KIND_TREE, PROJECTION_PERSPECTIVE);
+    staged.scene->n_segments = 0;
+    Frame frame = drawn(staged.scene, 2, 2, 0);
+    for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
+        assert_true(isinf(frame.depth.values[pixel]));
+        assert_true(frame.color.values[3 * pixel + 2] == 1);
+    }
+    frame_release(&frame);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_picture_does_not_depend_on_the_number_of_threads),
+        cmocka_unit_test(the_picture_is_that_of_single_rays),
+        cmocka_unit_test(antialiasing_weighs_the_centre_and_the_grid_alike),
+        cmocka_unit_test(adaptive_antialiasing_changes_edges_alone),
+        cmocka_unit_test(both_kernels_agree),
+        cmocka_unit_test(a_distant_scene_is_the_same_scene),
+        cmocka_unit_test(a_camera_inside_a_vessel_sees_what_is_beyond),
+        cmocka_unit_test(extremes_are_drawn_without_harm),
+        cmocka_unit_test(coincident_segments_add_up),
+        cmocka_unit_test(nothing_is_background),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
