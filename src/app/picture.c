@@ -139,6 +139,8 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
         fprintf(stderr,
                 "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
                 report.dropped, report.dropped + report.drawn);
+    if (status == STATUS_OK)
+        scene_move_to_origin(scene);
     tree_release(&tree);
     return status;
 }
