@@ -37,18 +37,19 @@ OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPTIMISE_tsan := -O1 -g -fsanitize=thread
-PACKAGES := libpng jansson inih
+PACKAGES := libpng libdeflate libtiff-4 jansson inih
 PACKAGE_LIBS := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null)
-# libnifti2-dev has no pkg-config file.
+# libnifti2-dev has no pkg-config file, and OpenEXR's asks for the whole of it.
 NIFTI := /usr/include/nifti
-NIFTI_HEADER := $(wildcard $(NIFTI)/nifti2_io.h)
+EXR := /usr/include/OpenEXR
+PLAIN_HEADERS := $(and $(wildcard $(NIFTI)/nifti2_io.h),$(wildcard $(EXR)/openexr.h))
 # Same seed, same bytes with every compiler: no contraction of a * b + c, no reassociation.
 CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -ffp-contract=off $(WARNINGS)
-CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) $(shell pkg-config --cflags $(PACKAGES) 2>/dev/null)
+CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-config --cflags $(PACKAGES) 2>/dev/null)
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
-LDLIBS := $(PACKAGE_LIBS) -lnifti2 -lznz -lpthread -lm
+LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate check program unit unit-programs layers format format-check asan tsan \
+.PHONY: all deps demo validate bench-grow check program unit unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -72,6 +73,11 @@ validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
 	$(Q)tools/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tools/validate
+
+bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
+	$(Q)tools/deps build bench
+	$(Q)$(AGAIN) all
+	$(Q)tools/bench-grow
 
 check: ## every test; ends in "N passed, N failed"
 	$(Q)tools/deps build run check
@@ -115,8 +121,8 @@ $(BUILD)/tests/%: tests/oracle/%.c Makefile
 -include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d)
 
 packages:
-ifeq ($(and $(strip $(PACKAGE_LIBS)),$(NIFTI_HEADER)),)
-	@echo 'corcast needs $(PACKAGES), libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
+ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
+	@echo 'corcast needs $(PACKAGES), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
 endif
 
 unit-programs: $(TEST_PROGRAMS) $(ORACLE)

@@ -1,6 +1,7 @@
 #include "app/commands.h"
 #include "app/options.h"
 #include "verify/verify.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,47 +11,60 @@ static const Command command = {
     .summary = "compare two images or planes",
     .operands = "A B",
     .examples = "  corcast compare reference.png mine.png\n"
-                "  corcast compare a.ppm b.ppm --ids-a a.id.ppm --ids-b b.id.ppm --json\n"
+                "  corcast compare a.ppm b.ppm --ids-a a.id.ppm --ids-b b.id.ppm --tier B --json\n"
+                "  corcast compare a.exr b.exr --metrics on --tolerance mine.ini\n"
                 "  corcast compare a.depth.pfm b.depth.pfm --depth-mm 0.01\n",
     .min_operands = 2,
     .max_operands = 2,
 };
 
+typedef enum Tier { TIER_A, TIER_B, TIER_SURFACE, TIER_NONE } Tier;
+
 typedef struct CompareOptions {
     int kind; /* a PlaneKind, or PLANE_KINDS: told by the names */
-    const char *ids_a, *ids_b, *difference;
-    bool json, has_levels, has_ppm;
-    double levels, ppm, depth_mm;
+    int tier;
+    const char *ids_a, *ids_b;
+    const char *tolerance, *junit;
+    const char *heat, *difference, *flicker, *ledger;
+    bool json, metrics, has_metrics, has_tier, has_levels, has_ppm, has_pixelmatch;
+    double levels, ppm, depth_mm, pixelmatch;
 } CompareOptions;
 
-static bool ends_with(const char *text, const char *end)
+/* What is compared. */
+typedef struct Sides {
+    const char *paths[2];
+    Image images[2];
+    IdPlane ids[2]; /* without ids unless they are given */
+    Status status[4];
+    Err err[4];
+    const char *id_paths[2];
+} Sides;
+
+static void sides_release(Sides *sides)
 {
-    size_t length = strlen(text), tail = strlen(end);
-    return length >= tail && strcmp(text + length - tail, end) == 0;
+    for (int side = 0; side < 2; side++) {
+        image_release(&sides->images[side]);
+        idplane_release(&sides->ids[side]);
+    }
 }
+
+/* ---- files -------------------------------------------------------------------------------------- */
 
 /* What a file holds, by its name as `render --planes` gives it. */
 static PlaneKind kind_of(const char *path)
 {
-    if (ends_with(path, ".id.ppm") || ends_with(path, ".id.png"))
-        return PLANE_ID;
-    if (ends_with(path, "normal.pfm"))
-        return PLANE_NORMAL;
-    if (ends_with(path, "depth.pfm"))
-        return PLANE_DEPTH;
+    static const struct {
+        const char *part;
+        PlaneKind kind;
+    } names[] = {{".id.", PLANE_ID}, {"normal.", PLANE_NORMAL}, {"depth.", PLANE_DEPTH}};
+    const char *name = file_name(path), *extension = file_extension(path);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        size_t length = strlen(names[i].part), tail = strlen(extension);
+        if (strlen(name) >= length + tail &&
+            strncmp(name + strlen(name) - tail - length, names[i].part, length) == 0)
+            return names[i].kind;
+    }
     return PLANE_COLOR;
-}
-
-/* A float picture is compared as its 16-bit sRGB codes. */
-static Status read_picture(Picture *picture, const char *path, Err *err)
-{
-    if (!image_is_pfm(path))
-        return picture_read(picture, path, err);
-    Plane plane;
-    TRY(plane_read(&plane, path, err));
-    Status status = picture_from_plane(picture, &plane, ENCODING_SRGB, 16, err);
-    plane_release(&plane);
-    return status;
 }
 
 static Status read_ids(IdPlane *ids, const char *path, Err *err)
@@ -64,95 +78,265 @@ static Status read_ids(IdPlane *ids, const char *path, Err *err)
     return status;
 }
 
-static Status compare_color(const CompareOptions *options, const char *a, const char *b,
-                            const IdPlane *id_a, const IdPlane *id_b, const Tolerance *tolerance,
-                            CompareResult *result, Err *err)
+/* File 0 and 1 are the images, 2 and 3 their ids. */
+static void read_file(size_t index, int worker, void *context)
 {
-    Picture picture_a = {0}, picture_b = {0}, difference = {0};
-    Status status = STATUS_OK;
-    TRY_GOTO(read_picture(&picture_a, a, err));
-    TRY_GOTO(read_picture(&picture_b, b, err));
-    TRY_GOTO(compare_pictures(&picture_a, &picture_b, id_a, id_b, tolerance, result, err));
-    if (options->difference) {
-        TRY_GOTO(difference_picture(&difference, &picture_a, &picture_b, err));
-        TRY_GOTO(picture_write(&difference, options->difference, ENCODING_SRGB, NULL, err));
-    }
-done:
-    picture_release(&picture_a);
-    picture_release(&picture_b);
-    picture_release(&difference);
-    return status;
+    (void)worker;
+    Sides *sides = context;
+    size_t side = index % 2;
+    const char *path = index < 2 ? sides->paths[side] : sides->id_paths[side];
+    if (!path)
+        return;
+    sides->status[index] = index < 2 ? image_read(&sides->images[side], path, &sides->err[index])
+                                     : read_ids(&sides->ids[side], path, &sides->err[index]);
 }
 
-static Status compare_floats(PlaneKind kind, const char *a, const char *b, const IdPlane *id_a,
-                             const IdPlane *id_b, const Tolerance *tolerance, CompareResult *result,
+/* Reads all files at once; of several errors the first file's is reported. */
+static Status read_files(Sides *sides, int threads, Err *err)
+{
+    threads_for(4, threads, read_file, sides);
+    for (int i = 0; i < 4; i++)
+        if (sides->status[i] != STATUS_OK)
+            return err_set(err, sides->status[i], "%s", sides->err[i].text);
+    if (!sides->images[0].plane.values != !sides->images[1].plane.values &&
+        (sides->paths[0] && sides->paths[1]))
+        return err_set(err, STATUS_INPUT,
+                       "%s holds %s and %s %s; only images of one depth can be compared",
+                       sides->paths[0], sides->images[0].plane.values ? "floats" : "whole numbers",
+                       sides->paths[1], sides->images[1].plane.values ? "floats" : "whole numbers");
+    return STATUS_OK;
+}
+
+/* ---- tolerance ------------------------------------------------------------------------------- */
+
+/* *name owns the tier's name when that comes from a file. */
+static Status make_tolerance(const CompareOptions *options, Tolerance *tolerance, char **name,
                              Err *err)
 {
-    Plane plane_a = {0}, plane_b = {0};
-    Status status = STATUS_OK;
-    TRY_GOTO(plane_read(&plane_a, a, err));
-    TRY_GOTO(plane_read(&plane_b, b, err));
-    TRY_GOTO(compare_planes(kind, &plane_a, &plane_b, id_a, id_b, tolerance, result, err));
-done:
-    plane_release(&plane_a);
-    plane_release(&plane_b);
+    Tier tier = options->tolerance && !options->has_tier ? TIER_NONE : (Tier)options->tier;
+    *tolerance = tier == TIER_A         ? tolerance_identity(options->depth_mm)
+                 : tier == TIER_B       ? tolerance_tolerant(options->depth_mm)
+                 : tier == TIER_SURFACE ? tolerance_surface()
+                                        : tolerance_none();
+    if (options->tolerance)
+        TRY(tolerance_read(tolerance, name, options->tolerance, err));
+    if (options->has_levels)
+        tolerance->color_levels = options->levels;
+    if (options->has_ppm)
+        tolerance->color_ppm = tolerance->id_ppm = tolerance->depth_ppm = tolerance->normal_ppm =
+            tolerance->coverage_ppm = tolerance->pixelmatch_ppm = options->ppm;
+    if (options->has_pixelmatch) {
+        tolerance->pixelmatch = options->pixelmatch;
+        tolerance->color_ppm = (double)INFINITY;
+        if (!options->has_ppm)
+            tolerance->pixelmatch_ppm = 0;
+    }
+    if (options->has_levels || options->has_ppm || options->depth_mm > 0 || options->has_pixelmatch)
+        tolerance->tier = "given";
+    return STATUS_OK;
+}
+
+/* ---- comparison ------------------------------------------------------------------------------- */
+
+static Status write_text(const char *path, const Text *text, Err *err)
+{
+    TRY(text_check(text, err));
+    return file_write(path, text->chars, text->length, err);
+}
+
+static Status write_picture(Status (*make)(Picture *, const Picture *, const Picture *, Err *),
+                            const char *path, const Picture *a, const Picture *b, Err *err)
+{
+    Picture picture;
+    if (!path)
+        return STATUS_OK;
+    TRY(make(&picture, a, b, err));
+    Status status = picture_write(&picture, path, ENCODING_SRGB, NULL, err);
+    picture_release(&picture);
     return status;
 }
 
-static Status compare_files(const CompareOptions *options, const char *a, const char *b,
-                            CompareResult *result, Err *err)
+static Status write_pictures(const CompareOptions *options, const Picture *a, const Picture *b,
+                             Err *err)
 {
-    PlaneKind kind = options->kind == PLANE_KINDS ? kind_of(a) : (PlaneKind)options->kind;
-    Tolerance tolerance = tolerance_identity(options->depth_mm);
-    if (options->has_levels)
-        tolerance.color_levels = options->levels;
-    if (options->has_ppm)
-        tolerance.color_ppm = tolerance.id_ppm = tolerance.depth_ppm = tolerance.normal_ppm =
-            tolerance.coverage_ppm = options->ppm;
-    if (options->has_levels || options->has_ppm || options->depth_mm > 0)
-        tolerance.tier = "given";
-    IdPlane id_a = {0}, id_b = {0};
+    TRY(write_picture(heat_picture, options->heat, a, b, err));
+    TRY(write_picture(difference_picture, options->difference, a, b, err));
+    if (!options->flicker)
+        return STATUS_OK;
+    Text png = TEXT_INIT;
+    Status status = flicker_png(a, b, &png, err);
+    if (status == STATUS_OK)
+        status = write_text(options->flicker, &png, err);
+    text_release(&png);
+    return status;
+}
+
+static Status write_ledger(const char *path, const Ledger *ledger, Err *err)
+{
+    Text csv = TEXT_INIT;
+    if (!path)
+        return STATUS_OK;
+    ledger_csv(ledger, &csv);
+    Status status = write_text(path, &csv, err);
+    text_release(&csv);
+    return status;
+}
+
+static Status compare_codes(const CompareOptions *options, const Sides *sides,
+                            const Tolerance *tolerance, CompareResult *result, Err *err)
+{
+    bool ids = options->ids_a != NULL;
+    const Rendering a = {.picture = &sides->images[0].picture, .ids = ids ? &sides->ids[0] : NULL};
+    const Rendering b = {.picture = &sides->images[1].picture, .ids = ids ? &sides->ids[1] : NULL};
+    Ledger ledger = {0};
     Status status = STATUS_OK;
-    bool with_ids = options->ids_a && options->ids_b;
-    if (with_ids) {
-        TRY_GOTO(read_ids(&id_a, options->ids_a, err));
-        TRY_GOTO(read_ids(&id_b, options->ids_b, err));
-    }
-    const IdPlane *ids_a = with_ids ? &id_a : NULL, *ids_b = with_ids ? &id_b : NULL;
-    if (kind == PLANE_COLOR) {
-        status = compare_color(options, a, b, ids_a, ids_b, &tolerance, result, err);
-    } else if (kind == PLANE_ID) {
-        TRY_GOTO(read_ids(&id_a, a, err));
-        TRY_GOTO(read_ids(&id_b, b, err));
-        status = compare_ids(&id_a, &id_b, &tolerance, result, err);
-    } else {
-        status = compare_floats(kind, a, b, ids_a, ids_b, &tolerance, result, err);
+    TRY_GOTO(compare_pictures(&a, &b, tolerance, result, &ledger, err));
+    if (options->metrics)
+        TRY_GOTO(compare_perception(a.picture, b.picture, result, err));
+    TRY_GOTO(write_ledger(options->ledger, &ledger, err));
+    status = write_pictures(options, a.picture, b.picture, err);
+done:
+    ledger_release(&ledger);
+    return status;
+}
+
+static Status compare_linear(const CompareOptions *options, const Sides *sides,
+                             const Tolerance *tolerance, CompareResult *result, Err *err)
+{
+    const Plane *a = &sides->images[0].plane, *b = &sides->images[1].plane;
+    bool ids = options->ids_a != NULL;
+    TRY(compare_colors(a, b, ids ? &sides->ids[0] : NULL, ids ? &sides->ids[1] : NULL, tolerance,
+                       options->metrics, result, err));
+    Picture clipped[2] = {{0}, {0}};
+    Status status = STATUS_OK;
+    if (options->heat || options->difference || options->flicker) {
+        TRY_GOTO(picture_from_plane(&clipped[0], a, ENCODING_SRGB, 16, err));
+        TRY_GOTO(picture_from_plane(&clipped[1], b, ENCODING_SRGB, 16, err));
+        status = write_pictures(options, &clipped[0], &clipped[1], err);
     }
 done:
-    idplane_release(&id_a);
-    idplane_release(&id_b);
+    picture_release(&clipped[0]);
+    picture_release(&clipped[1]);
     return status;
+}
+
+static Status compare_geometry(PlaneKind kind, const CompareOptions *options, const Sides *sides,
+                               const Tolerance *tolerance, CompareResult *result, Err *err)
+{
+    bool ids = options->ids_a != NULL;
+    for (int side = 0; side < 2; side++)
+        if (!sides->images[side].plane.values)
+            return err_set(
+                err, STATUS_INPUT,
+                "%s: holds whole numbers; a %s plane is of floats (PFM, OpenEXR or TIFF)",
+                sides->paths[side], plane_kind_name(kind));
+    return compare_planes(kind, &sides->images[0].plane, &sides->images[1].plane,
+                          ids ? &sides->ids[0] : NULL, ids ? &sides->ids[1] : NULL, tolerance,
+                          result, err);
+}
+
+static Status compare_files(const CompareOptions *options, PlaneKind kind, Sides *sides,
+                            const Tolerance *tolerance, int threads, CompareResult *result,
+                            Err *err)
+{
+    if (kind == PLANE_ID) {
+        sides->id_paths[0] = sides->paths[0];
+        sides->id_paths[1] = sides->paths[1];
+        sides->paths[0] = sides->paths[1] = NULL;
+    } else {
+        sides->id_paths[0] = options->ids_a;
+        sides->id_paths[1] = options->ids_b;
+    }
+    TRY(read_files(sides, threads, err));
+    if (kind == PLANE_ID)
+        return compare_ids(&sides->ids[0], &sides->ids[1], tolerance, result, err);
+    if (kind != PLANE_COLOR)
+        return compare_geometry(kind, options, sides, tolerance, result, err);
+    if (sides->images[0].plane.values)
+        return compare_linear(options, sides, tolerance, result, err);
+    return compare_codes(options, sides, tolerance, result, err);
+}
+
+/* ---- output ------------------------------------------------------------------------------------ */
+
+static Status write_junit(const CompareResult *result, const char *path, const char *name, Err *err)
+{
+    Text xml = TEXT_INIT;
+    if (!path)
+        return STATUS_OK;
+    compare_junit(result, name, &xml);
+    Status status = write_text(path, &xml, err);
+    text_release(&xml);
+    return status;
+}
+
+static Status print_result(const CompareOptions *options, const CompareResult *result, Err *err)
+{
+    if (options->json)
+        return json_write(compare_json(result), "-", err);
+    Text text = TEXT_INIT;
+    compare_text(result, &text);
+    Status status = text_check(&text, err);
+    size_t length = text.length;
+    if (status == STATUS_OK && !options->metrics)
+        length = strcspn(text.chars, "\n") + 1;
+    if (status == STATUS_OK)
+        fwrite(text.chars, 1, length, stdout);
+    text_release(&text);
+    return status;
+}
+
+static Status check_options(const CompareOptions *options, PlaneKind kind, Err *err)
+{
+    if (!options->ids_a != !options->ids_b)
+        return err_set(err, STATUS_USAGE, "--ids-a and --ids-b go together; one is missing");
+    if (options->ledger && !options->ids_a)
+        return err_set(err, STATUS_USAGE, "--ledger needs --ids-a and --ids-b, to tell segments");
+    if (kind != PLANE_COLOR &&
+        (options->heat || options->difference || options->flicker || options->ledger))
+        return err_set(err, STATUS_USAGE,
+                       "-o, --difference, --flicker and --ledger are of two pictures, not of two "
+                       "%s planes",
+                       plane_kind_name(kind));
+    return STATUS_OK;
 }
 
 Status run_compare(int argc, char **argv, Err *err)
 {
     static const char *const kinds[] = {"color", "depth", "normal", "id", "auto", NULL};
+    static const char *const tiers[] = {"A", "B", "surface", "none", NULL};
     CompareOptions options = {.kind = PLANE_KINDS};
     const Option own[] = {
         {"json", OPTION_FLAG, &options.json, NULL, 0, 0, NULL, NULL, "as JSON"},
+        {"junit", OPTION_TEXT, &options.junit, NULL, 0, 0, NULL, "FILE.xml",
+         "JUnit XML, a test case for each rule"},
         {"kind", OPTION_CHOICE, &options.kind, NULL, 0, 0, kinds, NULL,
          "what the files hold (auto: by their names)"},
+        {"tier", OPTION_CHOICE, &options.tier, &options.has_tier, 0, 0, tiers, NULL,
+         "what is still agreement (A)"},
+        {"tolerance", OPTION_TEXT, &options.tolerance, NULL, 0, 0, NULL, "FILE.ini",
+         "limits of one's own, the others unjudged unless --tier is given"},
         {"levels", OPTION_NUMBER, &options.levels, &options.has_levels, 0, 255, NULL, NULL,
          "8-bit levels a pixel may be off (0)"},
         {"ppm", OPTION_NUMBER, &options.ppm, &options.has_ppm, 0, 1e6, NULL, NULL,
          "pixels in a million that may be off by more (5)"},
         {"depth-mm", OPTION_NUMBER, &options.depth_mm, NULL, 0, 1e7, NULL, "MM",
          "a depth may be off (0)"},
+        {"pixelmatch", OPTION_NUMBER, &options.pixelmatch, &options.has_pixelmatch, 0, 1, NULL, "T",
+         "count pixels as pixelmatch 7.2.0 does at this threshold (0.1 is its own)"},
+        {"metrics", OPTION_SWITCH, &options.metrics, &options.has_metrics, 0, 0, NULL, NULL,
+         "FLIP, SSIM, CIEDE2000 and all that was measured (on with --json)"},
         {"ids-a", OPTION_TEXT, &options.ids_a, NULL, 0, 0, NULL, "FILE",
          "id plane of A; tells silhouettes from surfaces"},
         {"ids-b", OPTION_TEXT, &options.ids_b, NULL, 0, 0, NULL, "FILE", "id plane of B"},
-        {"output", OPTION_TEXT, &options.difference, NULL, 0, 0, NULL, "D.png",
+        {"output", OPTION_TEXT, &options.heat, NULL, 0, 0, NULL, "H.png",
          "heat map of the difference of two pictures"},
+        {"difference", OPTION_TEXT, &options.difference, NULL, 0, 0, NULL, "D.png",
+         "signed difference, 128 + 8 (B - A)"},
+        {"flicker", OPTION_TEXT, &options.flicker, NULL, 0, 0, NULL, "F.png",
+         "animated PNG that shows A and B in turn"},
+        {"ledger", OPTION_TEXT, &options.ledger, NULL, 0, 0, NULL, "L.csv",
+         "the account of every segment"},
         {0},
     };
     const Option *const tables[] = {own, NULL};
@@ -160,21 +344,27 @@ Status run_compare(int argc, char **argv, Err *err)
     TRY(options_parse(&command, tables, argc, argv, &parsed, err));
     Status status = STATUS_OK;
     CompareResult result;
+    Tolerance tolerance;
+    char *tier_name = NULL;
+    Sides sides = {0};
     if (parsed.common.help)
         goto done;
-    if (!options.ids_a != !options.ids_b) {
-        status = err_set(err, STATUS_USAGE, "--ids-a and --ids-b go together; one is missing");
-        goto done;
-    }
-    TRY_GOTO(compare_files(&options, parsed.operands[0], parsed.operands[1], &result, err));
-    if (options.json)
-        TRY_GOTO(json_write(compare_json(&result), "-", err));
-    else if (result.agrees)
-        printf("agree: %zu of %zu pixels differ\n", result.differing_pixels, result.pixels);
-    else
-        printf("differ: %s\n", result.reason);
+    sides.paths[0] = parsed.operands[0];
+    sides.paths[1] = parsed.operands[1];
+    if (!options.has_metrics)
+        options.metrics = options.json;
+    PlaneKind kind =
+        options.kind == PLANE_KINDS ? kind_of(parsed.operands[0]) : (PlaneKind)options.kind;
+    TRY_GOTO(check_options(&options, kind, err));
+    TRY_GOTO(make_tolerance(&options, &tolerance, &tier_name, err));
+    TRY_GOTO(
+        compare_files(&options, kind, &sides, &tolerance, parsed.common.threads, &result, err));
+    TRY_GOTO(write_junit(&result, options.junit, file_name(parsed.operands[0]), err));
+    TRY_GOTO(print_result(&options, &result, err));
     status = result.agrees ? STATUS_OK : STATUS_DIFFERS;
 done:
+    sides_release(&sides);
+    free(tier_name);
     parsed_release(&parsed);
     return status;
 }

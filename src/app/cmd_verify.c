@@ -194,8 +194,10 @@ static Status compare_sides(Verification *v, Err *err)
     scene_depth_range(&v->scene, &near_mm, &far_mm);
     Tolerance tolerance = tolerance_identity((far_mm - near_mm) / 65535);
     const IdPlane *a = &v->povray.id, *b = &v->native.id;
-    TRY(compare_pictures(&v->povray_picture, &v->native_picture, a, b, &tolerance,
-                         &v->results[PLANE_COLOR], err));
+    const Rendering view_a = {&v->povray_picture, a, &v->povray.depth, &v->povray.normal};
+    const Rendering view_b = {&v->native_picture, b, &v->native.depth, &v->native.normal};
+    TRY(compare_pictures(&view_a, &view_b, &tolerance, &v->results[PLANE_COLOR], NULL, err));
+    TRY(compare_perception(view_a.picture, view_b.picture, &v->results[PLANE_COLOR], err));
     TRY(compare_planes(PLANE_DEPTH, &v->povray.depth, &v->native.depth, a, b, &tolerance,
                        &v->results[PLANE_DEPTH], err));
     TRY(compare_planes(PLANE_NORMAL, &v->povray.normal, &v->native.normal, a, b, &tolerance,

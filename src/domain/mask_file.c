@@ -35,7 +35,7 @@ Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err)
         size_t channels = (size_t)picture.channels;
         for (size_t i = 0; i < (size_t)picture.width * (size_t)picture.height; i++)
             for (size_t c = 0; c < channels; c++)
-                mask->is_tissue[i] |= picture.codes[i * channels + c] != 0;
+                mask->is_tissue[i] |= picture_code(&picture, i * channels + c) != 0;
         mask->corner = vec3(-mm * picture.width / 2, mm * picture.height / 2, 0);
         mask->step[0] = vec3(mm, 0, 0);
         mask->step[1] = vec3(0, -mm, 0);

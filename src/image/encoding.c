@@ -34,7 +34,7 @@ Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encodin
     TRY(picture_init(&made, plane->width, plane->height, plane->channels, bits, err));
     size_t n = (size_t)plane->width * (size_t)plane->height * (size_t)plane->channels;
     for (size_t i = 0; i < n; i++)
-        made.codes[i] = image_code(plane->values[i], encoding, bits);
+        picture_set(&made, i, image_code(plane->values[i], encoding, bits));
     *picture = made;
     return STATUS_OK;
 }
@@ -52,7 +52,7 @@ Status plane_from_picture(Plane *plane, const Picture *picture, Encoding encodin
     if (status == STATUS_OK) {
         size_t n = (size_t)picture->width * (size_t)picture->height * (size_t)picture->channels;
         for (size_t i = 0; i < n; i++)
-            plane->values[i] = decoded[picture->codes[i]];
+            plane->values[i] = decoded[picture_code(picture, i)];
     }
     free(decoded);
     return status;
@@ -65,9 +65,9 @@ Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err)
     size_t n = (size_t)ids->width * (size_t)ids->height;
     for (size_t i = 0; i < n; i++) {
         assert(ids->ids[i] < 1u << 24);
-        made.codes[3 * i] = (uint16_t)(ids->ids[i] >> 16);
-        made.codes[3 * i + 1] = (uint16_t)(ids->ids[i] >> 8 & 255);
-        made.codes[3 * i + 2] = (uint16_t)(ids->ids[i] & 255);
+        made.codes8[3 * i] = (uint8_t)(ids->ids[i] >> 16);
+        made.codes8[3 * i + 1] = (uint8_t)(ids->ids[i] >> 8 & 255);
+        made.codes8[3 * i + 2] = (uint8_t)(ids->ids[i] & 255);
     }
     *picture = made;
     return STATUS_OK;
@@ -83,7 +83,7 @@ Status ids_from_picture(IdPlane *ids, const Picture *picture, Err *err)
     TRY(idplane_init(&made, picture->width, picture->height, err));
     size_t n = (size_t)picture->width * (size_t)picture->height;
     for (size_t i = 0; i < n; i++) {
-        const uint16_t *code = &picture->codes[3 * i];
+        const uint8_t *code = &picture->codes8[3 * i];
         made.ids[i] = (uint32_t)code[0] << 16 | (uint32_t)code[1] << 8 | code[2];
     }
     *ids = made;

@@ -1,4 +1,4 @@
-/* The file formats behind picture_read, picture_write, plane_read and plane_write; private to the
+/* The file formats behind image_read, picture_write and plane_write; private to the
  * room image. Readers take a whole file and its name for the error sentence; no size a header
  * claims is believed before it has been held against the size of the file. */
 #ifndef CORCAST_IMAGE_FORMATS_H
@@ -14,6 +14,12 @@ typedef struct ImageBytes {
 
 /* STATUS_INPUT unless both sides, as a header states them, are in [1, IMAGE_MAX_SIDE]. */
 MUST_CHECK Status image_check_sides(const char *name, long long width, long long height, Err *err);
+
+/* STATUS_MEMORY when the machine has fewer than `bytes` for an image of these sides. */
+MUST_CHECK Status image_check_memory(int width, int height, size_t bytes, Err *err);
+
+/* A library's words as part of a sentence: what is no printable ASCII becomes a blank. */
+void image_plain_text(char *text);
 
 /* Walks the header of a PNM or PFM file: words between blanks, '#' comments skipped. */
 typedef struct HeaderCursor {
@@ -34,9 +40,28 @@ bool pnm_is(const ImageBytes *file);
 MUST_CHECK Status pnm_decode(const ImageBytes *file, Picture *picture, Err *err);
 MUST_CHECK Status pnm_encode(FILE *stream, const Picture *picture, int channels, Err *err);
 
+/* Deflate shrinks at most 1032-fold, which bounds what a PNG's header may claim. */
+enum { DEFLATE_MAX_RATIO = 1032 };
+
 bool png_is(const ImageBytes *file);
+/* Decodes a PNG of the common form; false, leaving *picture as it is, on any other, broken ones
+ * included. */
+bool png_decode_plain(const ImageBytes *file, Picture *picture);
 MUST_CHECK Status png_decode(const ImageBytes *file, Picture *picture, Err *err);
 MUST_CHECK Status png_encode(FILE *stream, const Picture *picture, Encoding encoding,
                              const ImageNotes *notes, Err *err);
+
+bool pfm_is(const ImageBytes *file);
+MUST_CHECK Status pfm_decode(const ImageBytes *file, Plane *plane, Err *err);
+
+bool exr_is(const ImageBytes *file);
+MUST_CHECK Status exr_decode(const ImageBytes *file, Plane *plane, Err *err);
+
+bool tiff_is(const ImageBytes *file);
+MUST_CHECK Status tiff_decode(const ImageBytes *file, Image *image, Err *err);
+
+/* Removes the last channel of a plane of 2 or 4. STATUS_INPUT, naming the file, unless it is 1
+ * throughout. */
+MUST_CHECK Status plane_drop_alpha(Plane *plane, const char *name, Err *err);
 
 #endif

@@ -5,6 +5,7 @@
 #include "image/formats.h"
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 Status image_check_sides(const char *name, long long width, long long height, Err *err)
@@ -15,18 +16,23 @@ Status image_check_sides(const char *name, long long width, long long height, Er
                    width, height, IMAGE_MAX_SIDE);
 }
 
+Status image_check_memory(int width, int height, size_t bytes, Err *err)
+{
+    double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    if (machine > 0 && (double)bytes > machine)
+        return err_set(err, STATUS_MEMORY,
+                       "out of memory: an image of %d x %d pixels needs %.1f GB, and this machine "
+                       "has %.1f GB",
+                       width, height, (double)bytes / 1e9, machine / 1e9);
+    return STATUS_OK;
+}
+
 /* width * height * channels zeroed items in *out. */
 static Status allocate(void *out, int width, int height, int channels, size_t item, Err *err)
 {
     TRY(image_check_sides("the image", width, height, err));
     size_t count = (size_t)width * (size_t)height * (size_t)channels;
-    double needed = (double)count * (double)item;
-    double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-    if (machine > 0 && needed > machine)
-        return err_set(err, STATUS_MEMORY,
-                       "out of memory: an image of %d x %d pixels needs %.1f GB, and this machine "
-                       "has %.1f GB",
-                       width, height, needed / 1e9, machine / 1e9);
+    TRY(image_check_memory(width, height, count * item, err));
     return mem_calloc(out, count, item, "image values", err);
 }
 
@@ -43,11 +49,32 @@ Status picture_init(Picture *picture, int width, int height, int channels, int b
 {
     assert(channels == 1 || channels == 3);
     assert(bits == 8 || bits == 16);
-    uint16_t *codes;
-    TRY(allocate(&codes, width, height, channels, sizeof *codes, err));
-    *picture = (Picture){
-        .width = width, .height = height, .channels = channels, .bits = bits, .codes = codes};
+    Picture made = {.width = width, .height = height, .channels = channels, .bits = bits};
+    if (bits == 8)
+        TRY(allocate(&made.codes8, width, height, channels, sizeof *made.codes8, err));
+    else
+        TRY(allocate(&made.codes16, width, height, channels, sizeof *made.codes16, err));
+    *picture = made;
     return STATUS_OK;
+}
+
+const uint16_t *picture_row(const Picture *picture, int y, uint16_t *scratch)
+{
+    size_t n = picture_stride(picture), start = (size_t)y * n;
+    if (picture->bits == 16)
+        return picture->codes16 + start;
+    for (size_t i = 0; i < n; i++)
+        scratch[i] = picture->codes8[start + i];
+    return scratch;
+}
+
+bool picture_rows_equal(const Picture *a, const Picture *b, int y, int x, int n)
+{
+    size_t start = (size_t)y * picture_stride(a) + (size_t)x * (size_t)a->channels;
+    size_t count = (size_t)n * (size_t)a->channels;
+    if (a->bits == 8)
+        return memcmp(a->codes8 + start, b->codes8 + start, count) == 0;
+    return memcmp(a->codes16 + start, b->codes16 + start, count * sizeof *a->codes16) == 0;
 }
 
 Status idplane_init(IdPlane *ids, int width, int height, Err *err)
@@ -66,7 +93,8 @@ void plane_release(Plane *plane)
 
 void picture_release(Picture *picture)
 {
-    free(picture->codes);
+    free(picture->codes8);
+    free(picture->codes16);
     *picture = (Picture){0};
 }
 
@@ -74,6 +102,29 @@ void idplane_release(IdPlane *ids)
 {
     free(ids->ids);
     *ids = (IdPlane){0};
+}
+
+void image_release(Image *image)
+{
+    picture_release(&image->picture);
+    plane_release(&image->plane);
+}
+
+Status plane_drop_alpha(Plane *plane, const char *name, Err *err)
+{
+    size_t n = (size_t)plane->width * (size_t)plane->height;
+    size_t samples = (size_t)plane->channels, kept = samples - 1;
+    for (size_t i = 0; i < n; i++) {
+        if (plane->values[i * samples + kept] != 1)
+            return err_set(err, STATUS_INPUT,
+                           "%s: is transparent at column %zu, row %zu; only opaque pictures can be "
+                           "read",
+                           name, i % (size_t)plane->width, i / (size_t)plane->width);
+        memmove(plane->values + i * kept, plane->values + i * samples,
+                kept * sizeof *plane->values);
+    }
+    plane->channels--;
+    return STATUS_OK;
 }
 
 void frame_release(Frame *frame)

@@ -20,11 +20,12 @@ typedef struct Plane {
     float *values; /* owned; width * height * channels */
 } Plane;
 
-/* Integer codes of 8 or 16 bits. */
+/* Integer codes of 8 or 16 bits, each kept in as many. */
 typedef struct Picture {
     int width, height, channels; /* channels 1 (grey) or 3 (red green blue) */
     int bits;                    /* 8 or 16 */
-    uint16_t *codes;             /* owned; width * height * channels, each below 2^bits */
+    uint8_t *codes8;             /* owned; width * height * channels of 8 bits, else NULL */
+    uint16_t *codes16;           /* owned; width * height * channels of 16 bits, else NULL */
 } Picture;
 
 /* A 24-bit number a pixel: the SWC id of the segment seen, 0 where nothing is seen. */
@@ -42,6 +43,32 @@ MUST_CHECK Status idplane_init(IdPlane *ids, int width, int height, Err *err);
 void plane_release(Plane *plane);
 void picture_release(Picture *picture);
 void idplane_release(IdPlane *ids);
+
+/* Code number `i` in the order of the file. */
+static inline uint16_t picture_code(const Picture *picture, size_t i)
+{
+    return picture->bits == 8 ? picture->codes8[i] : picture->codes16[i];
+}
+
+static inline void picture_set(Picture *picture, size_t i, uint16_t code)
+{
+    if (picture->bits == 8)
+        picture->codes8[i] = (uint8_t)code;
+    else
+        picture->codes16[i] = code;
+}
+
+/* How many codes a row has. */
+static inline size_t picture_stride(const Picture *picture)
+{
+    return (size_t)picture->width * (size_t)picture->channels;
+}
+
+/* The codes of row `y` as 16-bit numbers: borrowed from the picture, or in `scratch`, which has room
+ * for them. */
+const uint16_t *picture_row(const Picture *picture, int y, uint16_t *scratch);
+/* Whether row `y` is the same in two pictures of one shape, from pixel `x` on for `n` pixels. */
+bool picture_rows_equal(const Picture *a, const Picture *b, int y, int x, int n);
 
 /* sRGB transfer curve (IEC 61966-2-1), linear to encoded and back, in float as POV-Ray does. */
 float srgb_encode(float linear);
@@ -86,23 +113,30 @@ MUST_CHECK Status picture_write(const Picture *picture, const char *path, Encodi
 /* Appends the bytes of the PNG file that picture_write would write to `out`. */
 MUST_CHECK Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNotes *notes,
                                  Text *out, Err *err);
-/* Reads PPM/PGM (P2, P3, P5, P6, maxval up to 65535, '#' comments) and PNG (8 and 16 bit, grey,
- * RGB, palette; an alpha channel is refused unless opaque throughout); the format is told by the
- * first bytes. A maxval other than 255 and 65535 is rescaled to 8 bits below 255 and to 16 above.
- * "-" is standard input. STATUS_INPUT with a sentence naming the file on truncated or corrupt
- * files. */
+/* What a file holds: integer codes, or linear floats. */
+typedef struct Image {
+    Picture picture; /* without codes when the file holds floats */
+    Plane plane;     /* without values when it holds codes */
+} Image;
+
+void image_release(Image *image);
+
+/* Reads a file, its format told by its first bytes; "-" is standard input.
+ * Codes: PPM/PGM (P2, P3, P5, P6, maxval up to 65535, '#' comments; a maxval other than 255 and
+ * 65535 is rescaled to 8 bits below 255 and to 16 above), PNG (8 and 16 bit, grey, RGB, palette),
+ * TIFF (8 and 16 bit, grey and RGB, in strips).
+ * Floats: PFM (both byte orders, the scale's magnitude ignored), OpenEXR (half and float; channels
+ * R G B, X Y Z or a single one; scan lines), TIFF (32 bit). Infinities and NaN are kept.
+ * An alpha channel is refused unless opaque throughout. STATUS_INPUT with a sentence naming the file
+ * on truncated, corrupt and other files. */
+MUST_CHECK Status image_read(Image *image, const char *path, Err *err);
+/* Likewise, and STATUS_INPUT when the file does not hold codes, or floats. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, Err *err);
+MUST_CHECK Status plane_read(Plane *plane, const char *path, Err *err);
 
 /* PFM ("PF" 3 channels, "Pf" 1), little-endian, rows bottom-up in the file; "-" is standard
  * output. */
 MUST_CHECK Status plane_write(const Plane *plane, const char *path, Err *err);
-/* Both byte orders, the scale's magnitude ignored; "-" is standard input. STATUS_INPUT with a
- * sentence naming the file on truncated or corrupt files. Infinities and NaN are kept. */
-MUST_CHECK Status plane_read(Plane *plane, const char *path, Err *err);
-
-/* True when `path` names a PFM, by extension or, for an existing file, by its first bytes. */
-bool image_is_pfm(const char *path);
-
 /* What a renderer delivers, or what is read back from another's files. Planes that were not asked
  * for have NULL values. */
 typedef struct Frame {

@@ -5,25 +5,11 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
-static bool pfm_is(const ImageBytes *file)
+bool pfm_is(const ImageBytes *file)
 {
     return file->size >= 2 && file->bytes[0] == 'P' &&
            (file->bytes[1] == 'F' || file->bytes[1] == 'f');
-}
-
-bool image_is_pfm(const char *path)
-{
-    if (strcasecmp(file_extension(path), "pfm") == 0)
-        return true;
-    FILE *stream = strcmp(path, "-") ? fopen(path, "rb") : NULL;
-    if (!stream)
-        return false;
-    uint8_t bytes[2];
-    ImageBytes start = {path, bytes, fread(bytes, 1, sizeof bytes, stream)};
-    fclose(stream);
-    return pfm_is(&start);
 }
 
 static float read_float(const uint8_t *bytes, bool little)
@@ -44,10 +30,8 @@ static void write_float(uint8_t *bytes, float value)
         bytes[i] = (uint8_t)(bits >> 8 * i & 255);
 }
 
-static Status pfm_decode(const ImageBytes *file, Plane *plane, Err *err)
+Status pfm_decode(const ImageBytes *file, Plane *plane, Err *err)
 {
-    if (!pfm_is(file))
-        return err_set(err, STATUS_INPUT, "%s: is not a PFM file", file->name);
     HeaderCursor cursor = {.file = *file, .at = 2};
     long long width, height;
     double scale;
@@ -73,17 +57,6 @@ static Status pfm_decode(const ImageBytes *file, Plane *plane, Err *err)
     }
     *plane = made;
     return STATUS_OK;
-}
-
-Status plane_read(Plane *plane, const char *path, Err *err)
-{
-    char *bytes;
-    size_t size;
-    TRY(file_read(path, &bytes, &size, err));
-    ImageBytes file = {strcmp(path, "-") ? path : "standard input", (const uint8_t *)bytes, size};
-    Status status = pfm_decode(&file, plane, err);
-    free(bytes);
-    return status;
 }
 
 Status plane_write(const Plane *plane, const char *path, Err *err)

@@ -1,16 +1,14 @@
-/* PNG through libpng. libpng reports an error by longjmp; setjmp therefore stands in functions
+/* PNG through libpng: writing, and reading what png_plain.c leaves to it. libpng reports an error by longjmp; setjmp therefore stands in functions
  * that only call the one that does the work, and everything that work allocates hangs on a struct
  * outside it, so that nothing leaks and no local is clobbered.
  *
- * What a header claims is bounded before allocation: deflate shrinks at most 1032-fold. */
+ * What a header claims is bounded before allocation. */
 #include "image/formats.h"
 
 #include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { DEFLATE_MAX_RATIO = 1032 };
 
 bool png_is(const ImageBytes *file)
 {
@@ -26,6 +24,7 @@ static void on_error(png_structp png, png_const_charp message)
 {
     Complaint *complaint = png_get_error_ptr(png);
     snprintf(complaint->text, sizeof complaint->text, "%s", message);
+    image_plain_text(complaint->text);
     longjmp(png_jmpbuf(png), 1);
 }
 
@@ -73,7 +72,7 @@ static Status take_rows(Reader *self, int samples)
     Picture *picture = &self->picture;
     bool deep = picture->bits == 16;
     uint16_t opaque = deep ? 65535 : 255;
-    uint16_t *code = picture->codes;
+    size_t next = 0;
     for (int y = 0; y < picture->height; y++) {
         const uint8_t *at = self->rows[y];
         for (int x = 0; x < picture->width; x++)
@@ -81,7 +80,7 @@ static Status take_rows(Reader *self, int samples)
                 uint16_t value = (uint16_t)(deep ? at[0] << 8 | at[1] : at[0]);
                 at += deep ? 2 : 1;
                 if (c < picture->channels)
-                    *code++ = value;
+                    picture_set(picture, next++, value);
                 else if (value != opaque)
                     return err_set(self->err, STATUS_INPUT,
                                    "%s: is transparent at column %d, row %d; only opaque pictures "
@@ -128,6 +127,8 @@ static Status read_guarded(Reader *self)
 
 Status png_decode(const ImageBytes *file, Picture *picture, Err *err)
 {
+    if (png_decode_plain(file, picture))
+        return STATUS_OK;
     Reader self = {.file = *file, .err = err};
     self.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &self.complaint, on_error, on_warning);
     self.info = self.png ? png_create_info_struct(self.png) : NULL;
@@ -153,6 +154,7 @@ typedef struct Writer {
     png_structp png;
     png_infop info;
     uint8_t *row;     /* owned */
+    uint16_t *codes;  /* owned; a row */
     png_text *chunks; /* owned */
     Complaint complaint;
 } Writer;
@@ -191,7 +193,7 @@ static void write_picture(Writer *self)
     png_write_info(self->png, self->info);
     size_t samples = (size_t)picture->width * (size_t)picture->channels;
     for (int y = 0; y < picture->height; y++) {
-        const uint16_t *code = picture->codes + (size_t)y * samples;
+        const uint16_t *code = picture_row(picture, y, self->codes);
         uint8_t *at = self->row;
         for (size_t i = 0; i < samples; i++) {
             if (picture->bits == 16)
@@ -218,6 +220,7 @@ Status png_encode(FILE *stream, const Picture *picture, Encoding encoding, const
     Status status = STATUS_OK;
     size_t row_size = (size_t)picture->width * (size_t)picture->channels * 2;
     TRY_GOTO(mem_calloc(&self.row, row_size, 1, "bytes of a row", err));
+    TRY_GOTO(mem_calloc(&self.codes, row_size, 1, "codes of a row", err));
     TRY_GOTO(mem_calloc(&self.chunks, notes ? (size_t)notes->count : 0, sizeof *self.chunks,
                         "PNG texts", err));
     self.png =
@@ -228,6 +231,7 @@ Status png_encode(FILE *stream, const Picture *picture, Encoding encoding, const
 done:
     png_destroy_write_struct(&self.png, &self.info);
     free(self.chunks);
+    free(self.codes);
     free(self.row);
     return status;
 }

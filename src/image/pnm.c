@@ -38,27 +38,31 @@ static size_t sample_count(const PnmHeader *header)
     return (size_t)header->width * (size_t)header->height * (size_t)header->channels;
 }
 
-static Status read_binary(HeaderCursor *cursor, const PnmHeader *header, uint16_t *codes, Err *err)
+static Status read_binary(HeaderCursor *cursor, const PnmHeader *header, Picture *picture, Err *err)
 {
     const uint8_t *at = cursor->file.bytes + cursor->at;
     size_t n = sample_count(header);
+    if (header->maximum == 255) {
+        memcpy(picture->codes8, at, n);
+        return STATUS_OK;
+    }
     for (size_t i = 0; i < n; i++) {
         unsigned code = header->maximum > 255 ? at[2 * i] * 256u + at[2 * i + 1] : at[i];
         if (code > header->maximum)
             return err_set(err, STATUS_INPUT, "%s: holds the value %u, above its largest, %u",
                            cursor->file.name, code, header->maximum);
-        codes[i] = (uint16_t)code;
+        picture_set(picture, i, (uint16_t)code);
     }
     return STATUS_OK;
 }
 
-static Status read_plain(HeaderCursor *cursor, const PnmHeader *header, uint16_t *codes, Err *err)
+static Status read_plain(HeaderCursor *cursor, const PnmHeader *header, Picture *picture, Err *err)
 {
     size_t n = sample_count(header);
     for (size_t i = 0; i < n; i++) {
         long long code;
         TRY(header_integer(cursor, "value of a pixel", 0, header->maximum, &code, err));
-        codes[i] = (uint16_t)code;
+        picture_set(picture, i, (uint16_t)code);
     }
     char word[32];
     header_word(cursor, word, sizeof word);
@@ -76,7 +80,8 @@ static void rescale(Picture *picture, unsigned maximum)
         return;
     size_t n = (size_t)picture->width * (size_t)picture->height * (size_t)picture->channels;
     for (size_t i = 0; i < n; i++)
-        picture->codes[i] = (uint16_t)((picture->codes[i] * wanted + maximum / 2) / maximum);
+        picture_set(picture, i,
+                    (uint16_t)((picture_code(picture, i) * wanted + maximum / 2) / maximum));
 }
 
 Status pnm_decode(const ImageBytes *file, Picture *picture, Err *err)
@@ -94,8 +99,8 @@ Status pnm_decode(const ImageBytes *file, Picture *picture, Err *err)
     Picture made;
     TRY(picture_init(&made, header.width, header.height, header.channels,
                      header.maximum > 255 ? 16 : 8, err));
-    Status status = header.plain ? read_plain(&cursor, &header, made.codes, err)
-                                 : read_binary(&cursor, &header, made.codes, err);
+    Status status = header.plain ? read_plain(&cursor, &header, &made, err)
+                                 : read_binary(&cursor, &header, &made, err);
     if (status != STATUS_OK) {
         picture_release(&made);
         return status;
@@ -114,12 +119,13 @@ Status pnm_encode(FILE *stream, const Picture *picture, int channels, Err *err)
     TRY(mem_calloc(&row, row_size, 1, "bytes of a row", err));
     fprintf(stream, "P%c\n", channels == 1 ? '5' : '6');
     fprintf(stream, "%d %d\n%d\n", picture->width, picture->height, bytes == 1 ? 255 : 65535);
-    const uint16_t *code = picture->codes;
+    size_t pixel = 0;
     for (int y = 0; y < picture->height; y++) {
         uint8_t *at = row;
-        for (int x = 0; x < picture->width; x++, code += picture->channels)
+        for (int x = 0; x < picture->width; x++, pixel += (size_t)picture->channels)
             for (int c = 0; c < channels; c++) {
-                uint16_t value = code[picture->channels == 1 ? 0 : c];
+                uint16_t value =
+                    picture_code(picture, pixel + (picture->channels == 1 ? 0 : (size_t)c));
                 if (bytes == 2)
                     *at++ = (uint8_t)(value >> 8);
                 *at++ = (uint8_t)(value & 255);

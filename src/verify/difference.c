@@ -1,7 +1,9 @@
-/* Magma's colours at six fixed steps. */
+/* Pictures of a difference: Magma's colours at six fixed steps, and a signed one. */
 #include "verify/verify.h"
 
 #include <stdlib.h>
+
+enum { SIGNED_GAIN = 8, SIGNED_MIDDLE = 128 };
 
 const HeatStep heat_steps[HEAT_STEPS] = {{0, 0, 0, 4},       {1, 59, 15, 112},
                                          {2, 140, 41, 129},  {4, 222, 73, 104},
@@ -15,7 +17,7 @@ static const HeatStep *heat_of(double level)
     return &heat_steps[step == 0 && level > 0 ? 1 : step];
 }
 
-Status difference_picture(Picture *out, const Picture *a, const Picture *b, Err *err)
+Status heat_picture(Picture *out, const Picture *a, const Picture *b, Err *err)
 {
     Picture made;
     TRY(picture_init(&made, a->width, a->height, 3, 8, err));
@@ -23,14 +25,29 @@ Status difference_picture(Picture *out, const Picture *a, const Picture *b, Err 
     double code_levels = a->bits == 8 ? 1 : 1 / 257.0;
     for (size_t i = 0; i < n; i++) {
         int largest = 0;
-        for (size_t c = 0; c < channels; c++) {
-            int difference = abs(a->codes[i * channels + c] - b->codes[i * channels + c]);
+        for (size_t c = i * channels; c < (i + 1) * channels; c++) {
+            int difference = abs(picture_code(a, c) - picture_code(b, c));
             largest = difference > largest ? difference : largest;
         }
         const HeatStep *heat = heat_of(largest * code_levels);
-        made.codes[3 * i] = heat->red;
-        made.codes[3 * i + 1] = heat->green;
-        made.codes[3 * i + 2] = heat->blue;
+        made.codes8[3 * i] = heat->red;
+        made.codes8[3 * i + 1] = heat->green;
+        made.codes8[3 * i + 2] = heat->blue;
+    }
+    *out = made;
+    return STATUS_OK;
+}
+
+Status difference_picture(Picture *out, const Picture *a, const Picture *b, Err *err)
+{
+    Picture made;
+    TRY(picture_init(&made, a->width, a->height, a->channels, 8, err));
+    size_t n = (size_t)a->height * picture_stride(a);
+    int divisor = a->bits == 8 ? 1 : 257;
+    for (size_t i = 0; i < n; i++) {
+        int moved = SIGNED_GAIN * (picture_code(b, i) - picture_code(a, i)) / divisor;
+        int shown = SIGNED_MIDDLE + moved;
+        made.codes8[i] = (uint8_t)(shown < 0 ? 0 : shown > 255 ? 255 : shown);
     }
     *out = made;
     return STATUS_OK;

@@ -1,124 +1,54 @@
-/* LDR-FLIP 1.6 with separable filters, all in float as its authors' program, so that their means
- * come out.
+/* FLIP 1.6 with separable filters, all in float as its authors' program, so that their means come
+ * out.
  *
- * Both pictures go to the opponent space YCxCz. There they are blurred as the eye blurs at 67
- * pixels per degree (Cz by a sum of two Gaussians, each filtered on its own), and their colour
- * distance is taken in a Hunt-adjusted CIELab. Edges and points, first and second derivatives of a
- * Gaussian applied to Y, amplify it: error = colour^(1 - feature).
+ * Both images go to the opponent space YCxCz. There they are blurred as the eye blurs at 67 pixels
+ * per degree (Cz by a sum of two Gaussians, each filtered on its own), and their colour distance is
+ * taken in a Hunt-adjusted CIELab. Edges and points, first and second derivatives of a Gaussian
+ * applied to Y, amplify it: error = colour^(1 - feature).
  *
- * Work goes by bands of rows. A worker filters the band and its halo horizontally into a workspace
- * of its own, seven planes for each picture, and then each row of the band vertically, so that
- * memory does not grow with the height. A band whose rows and halo are equal in both pictures is
- * zero without computing: the metric is local. */
-#include "verify/verify.h"
+ * Work goes by square tiles, small enough that all filtered planes of a tile stay in a processor's
+ * cache: first all rows of the tile and its halo are filtered horizontally, then each of its rows
+ * vertically. A tile that is equal in both images, halo included, is zero without computing: the
+ * metric is local. Sums are kept by tile and added in order. */
+#include "verify/flip.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ceil(3 sqrt(0.04 / (2 pi^2)) ppd) and ceil(3 * 0.5 * 0.082 ppd) */
-enum { CSF_RADIUS = 10, FEATURE_RADIUS = 9, TAPS_MAX = 2 * CSF_RADIUS + 1 };
-enum { HALO = CSF_RADIUS, BAND_ROWS = 64, SPAN_ROWS = BAND_ROWS + 2 * HALO };
+enum { HALO = FLIP_RADIUS, TILE = 64, SPAN = TILE + 2 * HALO };
 
-static const float pixels_per_degree = 67.0206451f; /* a 0.7 m wide 4K screen seen from 0.7 m */
-
-/* The seven one-dimensional filters; each also names the plane that it gives horizontally. */
-typedef enum Filter { F_Y, F_CX, F_CZ1, F_CZ2, F_GAUSS, F_EDGE, F_POINT, FILTERS } Filter;
-/* The four rows they are applied to. */
+/* The four planes the filters are applied to. */
 typedef enum Input { IN_Y, IN_CX, IN_CZ, IN_LIGHTNESS, INPUTS } Input;
 
-static const Input filter_input[FILTERS] = {IN_Y,         IN_CX,        IN_CZ,       IN_CZ,
-                                            IN_LIGHTNESS, IN_LIGHTNESS, IN_LIGHTNESS};
+static const Input filter_input[FLIP_FILTERS] = {IN_Y,         IN_CX,        IN_CZ,       IN_CZ,
+                                                 IN_LIGHTNESS, IN_LIGHTNESS, IN_LIGHTNESS};
 
 /* What is filtered vertically by what: the colours, then the derivatives along x and along y. */
 typedef enum Output { Y, CX, CZ1, CZ2, EDGE_X, POINT_X, EDGE_Y, POINT_Y, OUTPUTS } Output;
 static const struct {
-    Filter plane, filter;
+    FlipFilter plane, filter;
 } outputs[OUTPUTS] = {{F_Y, F_Y},        {F_CX, F_CX},       {F_CZ1, F_CZ1},    {F_CZ2, F_CZ2},
                       {F_EDGE, F_GAUSS}, {F_POINT, F_GAUSS}, {F_GAUSS, F_EDGE}, {F_GAUSS, F_POINT}};
 
-typedef struct Kernel {
-    int radius;
-    float weights[TAPS_MAX];
-} Kernel;
+/* What a worker holds of a tile. */
+typedef struct Workspace {
+    float colors[3][SPAN];
+    float inputs[INPUTS][SPAN];
+    float filtered[2][FLIP_FILTERS][SPAN][TILE]; /* horizontally */
+    float rows[2][OUTPUTS][TILE];                /* and one row of it vertically */
+    float errors[TILE];
+} Workspace;
 
 typedef struct Flip {
-    const Picture *pictures[2];
-    float *linear; /* owned; decoded level of each code */
-    Kernel kernels[FILTERS];
+    const FlipPair *pair;
+    FlipKernel kernels[FLIP_FILTERS];
     float color_max, color_knee; /* cmax, and pc of it */
-    size_t workspace_size;       /* floats for each worker */
-    float *workspaces;           /* owned */
-    Plane map;                   /* owned */
+    int tiles_across;
+    double *sums, *maxs;   /* owned; of each tile */
+    Workspace *workspaces; /* owned; one for each worker */
+    Plane map;             /* owned; without values when nobody wants it */
 } Flip;
-
-/* ------------------------------------------------------------------------------------- filters */
-
-/* a sqrt(pi / b) exp(-pi^2 x^2 / b) with x in degrees; of a sum of two such, each is applied along
- * both axes and therefore takes the root of its amplitude. */
-static float csf_fill(Kernel *kernel, float a, float b, bool root)
-{
-    const float pi = 3.14159265358979f;
-    float amplitude = a * sqrtf(pi / b), sum = 0;
-    if (root)
-        amplitude = sqrtf(amplitude);
-    kernel->radius = CSF_RADIUS;
-    for (int i = -CSF_RADIUS; i <= CSF_RADIUS; i++) {
-        float x = (float)i / pixels_per_degree;
-        float weight = amplitude * expf(-pi * pi * x * x / b);
-        kernel->weights[i + CSF_RADIUS] = weight;
-        sum += weight;
-    }
-    return sum;
-}
-
-static void kernel_scale(Kernel *kernel, float factor)
-{
-    for (int i = 0; i <= 2 * kernel->radius; i++)
-        kernel->weights[i] *= factor;
-}
-
-static void csf_kernels(Kernel kernels[FILTERS])
-{
-    kernel_scale(&kernels[F_Y], 1 / csf_fill(&kernels[F_Y], 1, 0.0047f, false));
-    kernel_scale(&kernels[F_CX], 1 / csf_fill(&kernels[F_CX], 1, 0.0053f, false));
-    float sum1 = csf_fill(&kernels[F_CZ1], 34.1f, 0.04f, true);
-    float sum2 = csf_fill(&kernels[F_CZ2], 13.5f, 0.025f, true);
-    float joint = 1 / sqrtf(sum1 * sum1 + sum2 * sum2);
-    kernel_scale(&kernels[F_CZ1], joint);
-    kernel_scale(&kernels[F_CZ2], joint);
-}
-
-/* Makes the positive weights sum to 1 and the negative ones, if any, to -1. */
-static void kernel_balance(Kernel *kernel)
-{
-    float positive = 0, negative = 0;
-    for (int i = 0; i <= 2 * kernel->radius; i++) {
-        float weight = kernel->weights[i];
-        if (weight > 0)
-            positive += weight;
-        else
-            negative -= weight;
-    }
-    for (int i = 0; i <= 2 * kernel->radius; i++)
-        kernel->weights[i] /= kernel->weights[i] > 0 ? positive : negative > 0 ? negative : 1;
-}
-
-static void feature_kernels(Kernel kernels[FILTERS])
-{
-    const float sigma = 0.5f * 0.082f * pixels_per_degree;
-    for (int i = -FEATURE_RADIUS; i <= FEATURE_RADIUS; i++) {
-        float x = (float)i;
-        float gauss = expf(-(x * x) / (2 * sigma * sigma));
-        kernels[F_GAUSS].weights[i + FEATURE_RADIUS] = gauss;
-        kernels[F_EDGE].weights[i + FEATURE_RADIUS] = -x * gauss;
-        kernels[F_POINT].weights[i + FEATURE_RADIUS] = (x * x / (sigma * sigma) - 1) * gauss;
-    }
-    for (Filter filter = F_GAUSS; filter <= F_POINT; filter++) {
-        kernels[filter].radius = FEATURE_RADIUS;
-        kernel_balance(&kernels[filter]);
-    }
-}
 
 /* --------------------------------------------------------------------------------------- colour */
 
@@ -172,17 +102,13 @@ static float color_distance(Triple a, Triple b)
     return powf(fabsf(a.x - b.x) + sqrtf(da * da + db * db), 0.7f);
 }
 
-/* The vertically filtered rows of one picture. */
-typedef struct Rows {
-    float *of[OUTPUTS];
-} Rows;
-
-static float pixel_error(const Flip *flip, const Rows rows[2], int x)
+/* The error of one pixel from its vertically filtered values. */
+static float pixel_error(const Flip *flip, const Workspace *work, int x)
 {
     Triple lab[2];
     float edge[2], point[2];
     for (int i = 0; i < 2; i++) {
-        float *const *row = rows[i].of;
+        const float(*row)[TILE] = work->rows[i];
         lab[i] = hunt_lab(rgb_from_ycxcz(row[Y][x], row[CX][x], row[CZ1][x] + row[CZ2][x]));
         edge[i] = sqrtf(row[EDGE_X][x] * row[EDGE_X][x] + row[EDGE_Y][x] * row[EDGE_Y][x]);
         point[i] = sqrtf(row[POINT_X][x] * row[POINT_X][x] + row[POINT_Y][x] * row[POINT_Y][x]);
@@ -195,151 +121,212 @@ static float pixel_error(const Flip *flip, const Rows rows[2], int x)
     return powf(color, 1 - sqrtf(feature / sqrtf(2)));
 }
 
-/* ---------------------------------------------------------------------------------------- bands */
+/* ---------------------------------------------------------------------------------------- tiles */
 
 static int clamp(int i, int low, int high)
 {
     return i < low ? low : i > high ? high : i;
 }
 
-/* Row `y` of a picture in YCxCz and lightness (Y scaled to [0, 1]), its ends repeated HALO times.
- */
-static void row_inputs(const Flip *flip, const Picture *picture, int y, float *const in[INPUTS])
+/* Row `y` from `x` on, SPAN pixels, in YCxCz and lightness (Y scaled to [0, 1]); the pixels at the
+ * image's edges are repeated beyond them. */
+static void load_inputs(const Flip *flip, int side, int exposure, int x, int y, Workspace *work)
 {
-    const uint16_t *row =
-        picture->codes + (size_t)y * (size_t)picture->width * (size_t)picture->channels;
-    for (int x = -HALO; x < picture->width + HALO; x++) {
-        const uint16_t *code = row + (size_t)clamp(x, 0, picture->width - 1) * picture->channels;
-        bool grey = picture->channels == 1;
-        Triple xyz = xyz_from_rgb((Triple){flip->linear[code[0]], flip->linear[code[grey ? 0 : 1]],
-                                           flip->linear[code[grey ? 0 : 2]]});
-        in[IN_Y][x] = 116 * xyz.y - 16;
-        in[IN_CX][x] = 500 * (xyz.x - xyz.y);
-        in[IN_CZ][x] = 200 * (xyz.y - xyz.z);
-        in[IN_LIGHTNESS][x] = in[IN_Y][x] * (1.0f / 116) + 16.0f / 116;
+    const FlipPair *pair = flip->pair;
+    int left = clamp(x, 0, pair->width - 1), right = clamp(x + SPAN, left + 1, pair->width);
+    int first = left - x, count = right - left;
+    pair->colors(pair, side, exposure, left, clamp(y, 0, pair->height - 1), count,
+                 work->colors[0] + first, SPAN);
+    for (int i = first; i < first + count; i++) {
+        Triple xyz =
+            xyz_from_rgb((Triple){work->colors[0][i], work->colors[1][i], work->colors[2][i]});
+        work->inputs[IN_Y][i] = 116 * xyz.y - 16;
+        work->inputs[IN_CX][i] = 500 * (xyz.x - xyz.y);
+        work->inputs[IN_CZ][i] = 200 * (xyz.y - xyz.z);
+        work->inputs[IN_LIGHTNESS][i] = work->inputs[IN_Y][i] * (1.0f / 116) + 16.0f / 116;
+    }
+    for (int k = 0; k < INPUTS; k++) {
+        for (int i = 0; i < first; i++)
+            work->inputs[k][i] = work->inputs[k][first];
+        for (int i = first + count; i < SPAN; i++)
+            work->inputs[k][i] = work->inputs[k][first + count - 1];
     }
 }
 
-static void add_scaled(float *restrict out, const float *restrict in, float factor, int n)
+/* Filters TILE values; `in` is the value under the first tap of the first of them, `step` the
+ * distance to that under the next tap. `odd` is for antisymmetric kernels. */
+static inline void convolve(float *restrict out, const float *restrict in, size_t step,
+                            const float *weights, bool odd)
 {
-    for (int i = 0; i < n; i++)
-        out[i] += factor * in[i];
-}
-
-/* Where the parts of a worker's workspace begin. */
-static float *span_row(float *workspace, int width, int picture, Filter filter, int row)
-{
-    return workspace + (((size_t)picture * FILTERS + filter) * SPAN_ROWS + (size_t)row) * width;
-}
-
-static void filter_rows(const Flip *flip, float *workspace, int picture, int first, int count)
-{
-    int width = flip->map.width;
-    float *padded = span_row(workspace, width, 2, 0, 0);
-    float *in[INPUTS];
-    for (int i = 0; i < INPUTS; i++)
-        in[i] = padded + (size_t)i * (size_t)(width + 2 * HALO) + HALO;
-    for (int row = 0; row < count; row++) {
-        row_inputs(flip, flip->pictures[picture], clamp(first + row, 0, flip->map.height - 1), in);
-        for (Filter filter = 0; filter < FILTERS; filter++) {
-            const Kernel *kernel = &flip->kernels[filter];
-            float *out = span_row(workspace, width, picture, filter, row);
-            memset(out, 0, (size_t)width * sizeof *out);
-            for (int k = -kernel->radius; k <= kernel->radius; k++)
-                add_scaled(out, in[filter_input[filter]] + k, kernel->weights[k + kernel->radius],
-                           width);
+    for (int i = 0; i < TILE; i++) {
+        float sum = odd ? 0 : weights[FLIP_RADIUS] * in[i + FLIP_RADIUS * step];
+        for (size_t k = 0; k < FLIP_RADIUS; k++) {
+            float before = in[i + k * step], after = in[i + (FLIP_TAPS - 1 - k) * step];
+            sum += weights[k] * (odd ? before - after : before + after);
         }
+        out[i] = sum;
     }
 }
 
-/* The map's row that lies `row` rows below the start of the span. */
-static void error_row(const Flip *flip, float *workspace, int row, float *out)
+static void filter(float *out, const float *in, size_t step, const Flip *flip, FlipFilter which)
 {
-    int width = flip->map.width;
-    float *next = span_row(workspace, width, 2, 0, 0);
-    Rows rows[2];
-    for (int picture = 0; picture < 2; picture++)
-        for (Output output = 0; output < OUTPUTS; output++, next += width) {
-            const Kernel *kernel = &flip->kernels[outputs[output].filter];
-            rows[picture].of[output] = next;
-            memset(next, 0, (size_t)width * sizeof *next);
-            for (int k = -kernel->radius; k <= kernel->radius; k++)
-                add_scaled(next,
-                           span_row(workspace, width, picture, outputs[output].plane, row + k),
-                           kernel->weights[k + kernel->radius], width);
+    const float *weights = flip->kernels[which].weights;
+    if (step == 1 && which == F_EDGE)
+        convolve(out, in, 1, weights, true);
+    else if (step == 1)
+        convolve(out, in, 1, weights, false);
+    else if (which == F_EDGE)
+        convolve(out, in, TILE, weights, true);
+    else
+        convolve(out, in, TILE, weights, false);
+}
+
+/* Filters a tile and its halo horizontally. */
+static void filter_rows(const Flip *flip, int exposure, int left, int top, int rows,
+                        Workspace *work)
+{
+    for (int side = 0; side < 2; side++)
+        for (int row = 0; row < rows + 2 * HALO; row++) {
+            load_inputs(flip, side, exposure, left - HALO, top - HALO + row, work);
+            for (int f = 0; f < FLIP_FILTERS; f++)
+                filter(work->filtered[side][f][row], work->inputs[filter_input[f]], 1, flip,
+                       (FlipFilter)f);
         }
-    for (int x = 0; x < width; x++)
-        out[x] = pixel_error(flip, rows, x);
 }
 
-/* Whether both pictures are equal in the rows that lie inside [first, first + count). */
-static bool rows_equal(const Flip *flip, int first, int count)
+/* The errors of the tile's row `row`, the larger of what they are and were. */
+static void find_errors(const Flip *flip, int row, int columns, Workspace *work)
 {
-    const Picture *a = flip->pictures[0], *b = flip->pictures[1];
-    int low = clamp(first, 0, a->height), high = clamp(first + count, 0, a->height);
-    size_t row = (size_t)a->width * (size_t)a->channels;
-    return memcmp(a->codes + low * row, b->codes + low * row,
-                  (size_t)(high - low) * row * sizeof *a->codes) == 0;
+    for (int side = 0; side < 2; side++)
+        for (int i = 0; i < OUTPUTS; i++)
+            filter(work->rows[side][i], work->filtered[side][outputs[i].plane][row], TILE, flip,
+                   outputs[i].filter);
+    for (int x = 0; x < columns; x++)
+        work->errors[x] = pixel_error(flip, work, x);
 }
 
-static void do_band(size_t index, int worker, void *context)
+static bool tile_equal(const FlipPair *pair, int left, int top, int columns, int rows)
+{
+    int x0 = clamp(left - HALO, 0, pair->width), x1 = clamp(left + columns + HALO, 0, pair->width);
+    int y0 = clamp(top - HALO, 0, pair->height), y1 = clamp(top + rows + HALO, 0, pair->height);
+    for (int y = y0; y < y1; y++)
+        if (!pair->equal(pair, x0, y, x1 - x0))
+            return false;
+    return true;
+}
+
+static void do_tile(size_t index, int worker, void *context)
 {
     Flip *flip = context;
-    int top = (int)index * BAND_ROWS;
-    int rows = flip->map.height - top < BAND_ROWS ? flip->map.height - top : BAND_ROWS;
-    if (rows_equal(flip, top - HALO, rows + 2 * HALO))
+    const FlipPair *pair = flip->pair;
+    Workspace *work = &flip->workspaces[worker];
+    int left = (int)(index % (size_t)flip->tiles_across) * TILE;
+    int top = (int)(index / (size_t)flip->tiles_across) * TILE;
+    int columns = pair->width - left < TILE ? pair->width - left : TILE;
+    int rows = pair->height - top < TILE ? pair->height - top : TILE;
+    if (tile_equal(pair, left, top, columns, rows))
         return;
-    float *workspace = flip->workspaces + (size_t)worker * flip->workspace_size;
-    for (int picture = 0; picture < 2; picture++)
-        filter_rows(flip, workspace, picture, top - HALO, rows + 2 * HALO);
+    float largest[TILE][TILE] = {{0}};
+    for (int exposure = 0; exposure < pair->exposures; exposure++) {
+        filter_rows(flip, exposure, left, top, rows, work);
+        for (int row = 0; row < rows; row++) {
+            find_errors(flip, row, columns, work);
+            for (int x = 0; x < columns; x++)
+                largest[row][x] = fmaxf(largest[row][x], work->errors[x]);
+        }
+    }
+    double sum = 0, max = 0;
     for (int row = 0; row < rows; row++)
-        error_row(flip, workspace, HALO + row,
-                  flip->map.values + (size_t)(top + row) * (size_t)flip->map.width);
+        for (int x = 0; x < columns; x++) {
+            sum += (double)largest[row][x];
+            max = fmax(max, (double)largest[row][x]);
+        }
+    flip->sums[index] = sum;
+    flip->maxs[index] = max;
+    for (int row = 0; row < rows && flip->map.values; row++)
+        memcpy(flip->map.values + (size_t)(top + row) * (size_t)pair->width + (size_t)left,
+               largest[row], (size_t)columns * sizeof(float));
 }
 
-static Status flip_init(Flip *flip, size_t bands, int *threads, Err *err)
+static Status flip_init(Flip *flip, size_t tiles, int threads, bool with_map, Err *err)
 {
-    const Picture *a = flip->pictures[0];
-    TRY(plane_init(&flip->map, a->width, a->height, 1, err));
-    size_t levels = (size_t)1 << a->bits;
-    TRY(mem_calloc(&flip->linear, levels, sizeof *flip->linear, "decoded levels", err));
-    for (size_t i = 0; i < levels; i++)
-        flip->linear[i] = srgb_decode((float)i / (float)(levels - 1));
-    csf_kernels(flip->kernels);
-    feature_kernels(flip->kernels);
+    if (with_map)
+        TRY(plane_init(&flip->map, flip->pair->width, flip->pair->height, 1, err));
+    flip_kernels(flip->kernels);
     flip->color_max = color_distance(hunt_lab((Triple){0, 1, 0}), hunt_lab((Triple){0, 0, 1}));
     flip->color_knee = 0.4f * flip->color_max;
-    *threads = threads_available();
-    if ((size_t)*threads > bands)
-        *threads = (int)bands;
-    size_t rows = 2 * FILTERS * SPAN_ROWS + 2 * OUTPUTS;
-    flip->workspace_size = rows * (size_t)a->width + INPUTS * 2 * HALO;
-    return mem_calloc(&flip->workspaces, (size_t)*threads * flip->workspace_size,
-                      sizeof *flip->workspaces, "values of FLIP's rows", err);
+    TRY(mem_calloc(&flip->sums, tiles, sizeof *flip->sums, "sums of tiles", err));
+    TRY(mem_calloc(&flip->maxs, tiles, sizeof *flip->maxs, "maxima of tiles", err));
+    return mem_calloc(&flip->workspaces, (size_t)threads, sizeof *flip->workspaces,
+                      "values of FLIP's tiles", err);
 }
 
-Status flip_compute(const Picture *a, const Picture *b, Plane *map, Err *err)
+Status flip_run(const FlipPair *pair, Plane *map, FlipSummary *summary, Err *err)
 {
-    Flip flip = {.pictures = {a, b}};
-    size_t bands = ((size_t)a->height + BAND_ROWS - 1) / BAND_ROWS;
-    int threads;
-    Status status = flip_init(&flip, bands, &threads, err);
+    Flip flip = {.pair = pair, .tiles_across = (pair->width + TILE - 1) / TILE};
+    size_t tiles = (size_t)flip.tiles_across * (size_t)((pair->height + TILE - 1) / TILE);
+    int threads = threads_available();
+    Status status = flip_init(&flip, tiles, threads, map != NULL, err);
     if (status == STATUS_OK) {
-        threads_for(bands, threads, do_band, &flip);
-        *map = flip.map;
+        threads_for(tiles, threads, do_tile, &flip);
+        double sum = 0, max = 0;
+        for (size_t i = 0; i < tiles; i++) {
+            sum += flip.sums[i];
+            max = fmax(max, flip.maxs[i]);
+        }
+        *summary = (FlipSummary){.mean = sum / ((double)pair->width * pair->height), .max = max};
+        if (map)
+            *map = flip.map;
     } else {
         plane_release(&flip.map);
     }
-    free(flip.linear);
+    free(flip.sums);
+    free(flip.maxs);
     free(flip.workspaces);
     return status;
 }
 
-double plane_mean(const Plane *plane)
+/* ------------------------------------------------------------------------------------- pictures */
+
+typedef struct Pictures {
+    const Picture *pictures[2];
+    float *linear; /* owned; decoded level of each code */
+} Pictures;
+
+static void picture_colors(const FlipPair *pair, int side, int exposure, int x, int y, int n,
+                           float *out, size_t stride)
 {
-    size_t n = (size_t)plane->width * (size_t)plane->height;
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += (double)plane->values[i];
-    return sum / (double)n;
+    (void)exposure;
+    const Pictures *self = pair->context;
+    const Picture *picture = self->pictures[side];
+    size_t channels = (size_t)picture->channels;
+    size_t first = (size_t)y * picture_stride(picture) + (size_t)x * channels;
+    for (size_t i = 0; i < (size_t)n; i++)
+        for (size_t c = 0; c < 3; c++)
+            out[c * stride + i] =
+                self->linear[picture_code(picture, first + i * channels + (channels == 1 ? 0 : c))];
+}
+
+static bool pictures_equal(const FlipPair *pair, int x, int y, int n)
+{
+    const Pictures *self = pair->context;
+    return picture_rows_equal(self->pictures[0], self->pictures[1], y, x, n);
+}
+
+Status flip_compute(const Picture *a, const Picture *b, Plane *map, FlipSummary *summary, Err *err)
+{
+    Pictures self = {.pictures = {a, b}};
+    size_t levels = (size_t)1 << a->bits;
+    TRY(mem_calloc(&self.linear, levels, sizeof *self.linear, "decoded levels", err));
+    for (size_t i = 0; i < levels; i++)
+        self.linear[i] = srgb_decode((float)i / (float)(levels - 1));
+    const FlipPair pair = {.width = a->width,
+                           .height = a->height,
+                           .colors = picture_colors,
+                           .equal = pictures_equal,
+                           .exposures = 1,
+                           .context = &self};
+    Status status = flip_run(&pair, map, summary, err);
+    free(self.linear);
+    return status;
 }

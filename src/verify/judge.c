@@ -1,41 +1,11 @@
 /* Rules in the order of what they say about a picture: values that are no numbers, things missing
  * or extra, wrong segments, then sizes of differences. The first broken one gives the reason. */
-#include "verify/labels.h"
+#include "verify/result.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-Tolerance tolerance_identity(double depth_step_mm)
-{
-    return (Tolerance){.tier = "A",
-                       .color_levels = 0,
-                       .color_ppm = 5,
-                       .id_ppm = 5,
-                       .depth_max_mm = depth_step_mm,
-                       .depth_ppm = 5,
-                       .depth_p99_mm = (double)INFINITY,
-                       .normal_max_deg = 0.03,
-                       .normal_ppm = 5,
-                       .coverage_ppm = 5,
-                       .region_pixels = SIZE_MAX};
-}
-
-Tolerance tolerance_surface(void)
-{
-    return (Tolerance){.tier = "surface",
-                       .color_levels = 2,
-                       .color_ppm = 5000,
-                       .color_common_only = true,
-                       .id_ppm = (double)INFINITY,
-                       .depth_max_mm = (double)INFINITY,
-                       .depth_ppm = (double)INFINITY,
-                       .depth_p99_mm = 0.01,
-                       .normal_max_deg = (double)INFINITY,
-                       .normal_ppm = (double)INFINITY,
-                       .coverage_ppm = (double)INFINITY,
-                       .region_pixels = 2};
-}
 
 /* What a rule measures, and the pixel to look at when it is broken. */
 typedef struct Finding {
@@ -47,8 +17,9 @@ typedef struct Finding {
 
 static void add_rule(CompareResult *result, Finding finding, double allowed, const char *name)
 {
-    if (isinf(allowed))
+    if (isinf(allowed) || isnan(finding.measured))
         return;
+    assert(result->n_rules < RULES_MAX);
     Rule *rule = &result->rules[result->n_rules++];
     *rule = (Rule){.unit = finding.unit,
                    .measured = finding.measured,
@@ -64,52 +35,115 @@ static double ppm(size_t count, size_t of)
     return of ? 1e6 * (double)count / (double)of : 0;
 }
 
+static void add_count_rule(CompareResult *result, Finding finding, size_t allowed, const char *name)
+{
+    if (allowed != SIZE_MAX)
+        add_rule(result, finding, (double)allowed, name);
+}
+
 static void add_coverage_rules(CompareResult *result)
 {
     if (!result->has_mask)
         return;
+    const Tolerance *tolerance = &result->tolerance;
     Finding region = {"pixels", (double)result->largest_region, result->largest_region_at,
                       "it starts"};
-    if (result->tolerance.region_pixels != SIZE_MAX)
-        add_rule(result, region, (double)result->tolerance.region_pixels,
-                 "largest missing or extra region");
     Finding coverage = {"ppm", ppm(result->missing_pixels + result->extra_pixels, result->pixels),
                         result->largest_region_at, "the largest region starts"};
+    Finding missing = {"segments", (double)result->segments_missing, result->segment_missing_at,
+                       "the first is"};
+    Finding silhouette = {"px", fabs(result->silhouette_px), result->largest_region_at,
+                          "the largest region starts"};
+    add_count_rule(result, region, tolerance->region_pixels, "largest missing or extra region");
     if (result->kind == PLANE_DEPTH || result->kind == PLANE_NORMAL)
-        add_rule(result, coverage, result->tolerance.coverage_ppm, "pixels seen in only one image");
+        add_rule(result, coverage, tolerance->coverage_ppm, "pixels seen in only one image");
+    if (result->kind != PLANE_COLOR)
+        return;
+    if (result->has_ids)
+        add_count_rule(result, missing, tolerance->segments_missing,
+                       "segments seen in only one image");
+    add_rule(result, silhouette, tolerance->silhouette_px, "outline of what is seen is off");
 }
 
-static void add_difference_rules(CompareResult *result)
+/* What only the account of every segment and the straight line through all colours tell. */
+static void add_segment_rules(CompareResult *result)
+{
+    if (!result->has_ids)
+        return;
+    const Tolerance *tolerance = &result->tolerance;
+    Finding levels = {"levels", result->segment_levels, result->segment_levels_at, "its middle is"};
+    Finding moved = {"px", result->segment_px, result->segment_px_at, "its middle is"};
+    Finding gain = {"", fabs(result->gain - 1), result->worst, "the worst pixel is"};
+    Finding offset = {"levels", fabs(result->offset_levels), result->worst, "the worst pixel is"};
+    add_rule(result, moved, tolerance->segment_px, "outline of a segment is off");
+    add_rule(result, levels, tolerance->segment_levels, "mean of a segment is off");
+    add_rule(result, gain, tolerance->gain, "gain is off 1");
+    add_rule(result, offset, tolerance->offset_levels, "offset is off 0");
+}
+
+static void add_color_rules(CompareResult *result)
 {
     const Tolerance *tolerance = &result->tolerance;
     char name[sizeof result->rules->name], worst[sizeof result->rules->at_what];
+    size_t interior = result->pixels - result->band_pixels;
     Finding beyond = {"ppm", ppm(result->beyond_pixels, result->judged_pixels), result->worst,
                       worst};
-    Finding p99 = {"mm", result->p99, result->worst, worst};
-    switch (result->kind) {
-    case PLANE_COLOR:
-        snprintf(name, sizeof name, "pixels off by more than %g levels", tolerance->color_levels);
-        snprintf(worst, sizeof worst, "the worst, %.4g levels, is", result->max_abs);
-        add_rule(result, beyond, tolerance->color_ppm, name);
-        break;
-    case PLANE_DEPTH:
-        snprintf(name, sizeof name, "pixels off by more than %.4g mm", tolerance->depth_max_mm);
-        snprintf(worst, sizeof worst, "the worst, %.4g mm, is", result->max);
-        add_rule(result, beyond, tolerance->depth_ppm, name);
-        add_rule(result, p99, tolerance->depth_p99_mm, "99th percentile of differences");
-        break;
-    case PLANE_NORMAL:
-        snprintf(name, sizeof name, "pixels off by more than %g deg", tolerance->normal_max_deg);
-        snprintf(worst, sizeof worst, "the worst, %.4g deg, is", result->max);
-        add_rule(result, beyond, tolerance->normal_ppm, name);
-        break;
-    case PLANE_ID:
-        snprintf(worst, sizeof worst, "the first is");
-        add_rule(result, beyond, tolerance->id_ppm, "pixels with different ids");
-        break;
-    case PLANE_KINDS:
-        break;
+    Finding inside = {"ppm", ppm(result->interior_beyond, interior), result->worst, worst};
+    Finding band = {"ppm", ppm(result->band_beyond, result->band_pixels), result->worst, worst};
+    Finding bias = {"levels", fabs(result->bias_levels), result->worst, worst};
+    Finding matched = {"ppm", 1e6 * result->pixelmatch_pixels / (double)result->pixels,
+                       result->worst, worst};
+    snprintf(worst, sizeof worst, "the worst, %.4g levels, is", result->max_abs);
+    snprintf(name, sizeof name, "pixels off by more than %g levels", tolerance->color_levels);
+    add_rule(result, beyond, tolerance->color_ppm, name);
+    if (result->has_mask) {
+        snprintf(name, sizeof name, "pixels off the edges, off by more than %g levels",
+                 tolerance->color_levels);
+        add_rule(result, inside, tolerance->interior_ppm, name);
+        snprintf(name, sizeof name, "pixels at edges, off by more than %g levels",
+                 tolerance->color_levels);
+        add_rule(result, band, tolerance->band_ppm, name);
     }
+    add_segment_rules(result);
+    add_rule(result, bias, tolerance->bias_levels, "mean difference");
+    if (!isnan(result->pixelmatch_pixels)) {
+        snprintf(name, sizeof name, "pixels that pixelmatch finds at %g", tolerance->pixelmatch);
+        add_rule(result, matched, tolerance->pixelmatch_ppm, name);
+    }
+}
+
+static void add_geometry_rules(CompareResult *result)
+{
+    const Tolerance *tolerance = &result->tolerance;
+    char name[sizeof result->rules->name], worst[sizeof result->rules->at_what];
+    bool depth = result->kind == PLANE_DEPTH;
+    const char *unit = depth ? "mm" : "deg";
+    Finding beyond = {"ppm", ppm(result->beyond_pixels, result->judged_pixels), result->worst,
+                      worst};
+    Finding p99 = {unit, result->p99, result->worst, worst};
+    Finding median = {unit, result->median, result->worst, worst};
+    snprintf(worst, sizeof worst, "the worst, %.4g %s, is", result->max, unit);
+    snprintf(name, sizeof name, "pixels off by more than %.4g %s",
+             depth ? tolerance->depth_max_mm : tolerance->normal_max_deg, unit);
+    add_rule(result, beyond, depth ? tolerance->depth_ppm : tolerance->normal_ppm, name);
+    if (depth)
+        add_rule(result, p99, tolerance->depth_p99_mm, "99th percentile of differences");
+    else
+        add_rule(result, median, tolerance->normal_median_deg, "median of differences");
+}
+
+static void add_id_rules(CompareResult *result)
+{
+    const Tolerance *tolerance = &result->tolerance;
+    size_t interior = result->pixels - result->band_pixels;
+    Finding all = {"ppm", ppm(result->beyond_pixels, result->judged_pixels), result->worst,
+                   "the first is"};
+    Finding inside = {"ppm", ppm(result->interior_beyond, interior), result->worst, "the first is"};
+    Finding band = {"ppm", ppm(result->band_beyond, result->band_pixels), result->worst,
+                    "the first is"};
+    add_rule(result, all, tolerance->id_ppm, "pixels with different ids");
+    add_rule(result, inside, tolerance->id_interior_ppm, "pixels off the edges, with other ids");
+    add_rule(result, band, tolerance->id_band_ppm, "pixels at edges, with other ids");
 }
 
 /* "segment 17" or "nothing" */
@@ -141,9 +175,14 @@ static void describe_place(const CompareResult *result, const PixelPlace *place,
 static void explain(CompareResult *result, const Rule *rule)
 {
     char place[120];
+    int length =
+        snprintf(result->reason, sizeof result->reason, "%s: %s: %.6g%s%s, at most %.6g allowed",
+                 plane_kind_name(result->kind), rule->name, rule->measured, *rule->unit ? " " : "",
+                 rule->unit, rule->allowed);
+    if (rule->at.x < 0)
+        return;
     describe_place(result, &rule->at, place, sizeof place);
-    snprintf(result->reason, sizeof result->reason, "%s: %s: %.6g %s, at most %.6g allowed; %s %s",
-             plane_kind_name(result->kind), rule->name, rule->measured, rule->unit, rule->allowed,
+    snprintf(result->reason + length, sizeof result->reason - (size_t)length, "; %s %s",
              rule->at_what, place);
 }
 
@@ -153,8 +192,15 @@ void compare_judge(CompareResult *result)
                    "the first is"};
     if (result->kind == PLANE_DEPTH || result->kind == PLANE_NORMAL)
         add_rule(result, nan, 0, "values that are not a number");
+    else if (result->kind == PLANE_COLOR && result->bits == 32)
+        add_rule(result, nan, 0, "colours that are not finite");
     add_coverage_rules(result);
-    add_difference_rules(result);
+    if (result->kind == PLANE_COLOR)
+        add_color_rules(result);
+    else if (result->kind == PLANE_ID)
+        add_id_rules(result);
+    else
+        add_geometry_rules(result);
     result->agrees = true;
     for (int i = 0; i < result->n_rules && result->agrees; i++) {
         if (result->rules[i].met)

@@ -1,9 +1,8 @@
-/* Regions are filled with an explicit stack; a pixel is marked when it is pushed, so that it is
- * pushed once. Missing and extra pixels make separate regions: a shifted edge is missing on one
- * side and extra on the other. */
+/* A pixel is off the band when the nine labels about it are equal on both sides: when three rows
+ * are uniform beside it and the one in the middle equals the others at its column. Both are
+ * elementwise over rows, so a window needs no more than three rows of each side. */
 #include "verify/labels.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,189 +21,208 @@ Status labels_check_ids(int width, int height, const IdPlane *a, const IdPlane *
     return STATUS_OK;
 }
 
-void labels_from_ids(Labels *labels, const IdPlane *a, const IdPlane *b)
+Labels labels_from_ids(const IdPlane *a, const IdPlane *b)
 {
-    *labels = (Labels){.width = a->width, .height = a->height, .a = a->ids, .b = b->ids};
+    return (Labels){.source = LABELS_IDS, .width = a->width, .height = a->height, .ids = {a, b}};
 }
 
-Status labels_init(Labels *labels, int width, int height, Err *err)
+/* Whether three corners share a colour; *background is the number of its first code. */
+static bool find_background(const Picture *picture, size_t *background)
+{
+    size_t channels = (size_t)picture->channels, row = picture_stride(picture);
+    size_t bottom = ((size_t)picture->height - 1) * row;
+    const size_t corners[] = {0, row - channels, bottom, bottom + row - channels};
+    for (int i = 0; i < 2; i++) {
+        int sharing = 0;
+        for (int j = 0; j < 4; j++) {
+            bool equal = true;
+            for (size_t c = 0; c < channels; c++)
+                equal = equal && picture_code(picture, corners[i] + c) ==
+                                     picture_code(picture, corners[j] + c);
+            sharing += equal;
+        }
+        *background = corners[i];
+        if (sharing >= 3)
+            return true;
+    }
+    return false;
+}
+
+Labels labels_from_background(const Picture *a, const Picture *b)
+{
+    Labels labels = {
+        .source = LABELS_BACKGROUND, .width = a->width, .height = a->height, .pictures = {a, b}};
+    for (int side = 0; side < 2; side++) {
+        size_t first;
+        if (!find_background(labels.pictures[side], &first))
+            return (Labels){.source = LABELS_UNKNOWN, .width = a->width, .height = a->height};
+        for (size_t c = 0; c < (size_t)a->channels; c++)
+            labels.background[side][c] = picture_code(labels.pictures[side], first + c);
+    }
+    return labels;
+}
+
+Status labels_init_seen(Labels *labels, int width, int height, Err *err)
 {
     size_t n = (size_t)width * (size_t)height;
-    uint32_t *owned;
-    TRY(mem_calloc(&owned, 2 * n, sizeof *owned, "pixel labels", err));
-    *labels =
-        (Labels){.width = width, .height = height, .a = owned, .b = owned + n, .owned = owned};
+    Labels made = {.source = LABELS_SEEN, .width = width, .height = height};
+    TRY(mem_calloc(&made.seen[0], 2 * n, 1, "pixel labels", err));
+    made.seen[1] = made.seen[0] + n;
+    *labels = made;
     return STATUS_OK;
 }
 
 void labels_release(Labels *labels)
 {
-    free(labels->owned);
+    free(labels->seen[0]);
     *labels = (Labels){0};
 }
 
-/* The colour that three corners share, or NULL. Borrowed. */
-static const uint16_t *background_of(const Picture *picture)
-{
-    size_t channels = (size_t)picture->channels, size = channels * sizeof(uint16_t);
-    size_t right = (size_t)picture->width - 1;
-    size_t bottom = ((size_t)picture->height - 1) * (size_t)picture->width;
-    const size_t corners[] = {0, right, bottom, bottom + right};
-    for (int i = 0; i < 2; i++) {
-        const uint16_t *candidate = picture->codes + corners[i] * channels;
-        int sharing = 0;
-        for (int j = 0; j < 4; j++)
-            sharing += memcmp(candidate, picture->codes + corners[j] * channels, size) == 0;
-        if (sharing >= 3)
-            return candidate;
+/* 1 where the codes of a pixel are not those of the background. */
+#define FILL_FOREGROUND(codes)                                                                     \
+    for (size_t x = 0; x < width; x++, codes += channels) {                                        \
+        unsigned differs = 0;                                                                      \
+        for (size_t c = 0; c < channels; c++)                                                      \
+            differs |= (unsigned)(codes[c] ^ background[c]);                                       \
+        out[x] = differs != 0;                                                                     \
     }
-    return NULL;
+
+static void fill_foreground(const Labels *labels, int side, int y, uint32_t *out)
+{
+    const Picture *picture = labels->pictures[side];
+    const uint16_t *background = labels->background[side];
+    size_t width = (size_t)labels->width, channels = (size_t)picture->channels;
+    size_t start = (size_t)y * picture_stride(picture);
+    if (picture->bits == 8) {
+        const uint8_t *codes = picture->codes8 + start;
+        FILL_FOREGROUND(codes)
+    } else {
+        const uint16_t *codes = picture->codes16 + start;
+        FILL_FOREGROUND(codes)
+    }
 }
 
-static void fill_seen(const Picture *picture, const uint16_t *background, uint32_t *labels)
+const uint32_t *labels_row(const Labels *labels, int side, int y, uint32_t *scratch)
 {
-    size_t n = (size_t)picture->width * (size_t)picture->height;
-    size_t channels = (size_t)picture->channels;
-    for (size_t i = 0; i < n; i++)
-        labels[i] =
-            memcmp(picture->codes + i * channels, background, channels * sizeof *background) != 0;
+    size_t width = (size_t)labels->width, start = (size_t)y * width;
+    switch (labels->source) {
+    case LABELS_IDS:
+        return labels->ids[side]->ids + start;
+    case LABELS_BACKGROUND:
+        fill_foreground(labels, side, y, scratch);
+        return scratch;
+    case LABELS_SEEN:
+        for (size_t x = 0; x < width; x++)
+            scratch[x] = labels->seen[side][start + x];
+        return scratch;
+    case LABELS_UNKNOWN:
+        break;
+    }
+    memset(scratch, 0, width * sizeof *scratch);
+    return scratch;
 }
 
-Status labels_from_background(Labels *labels, const Picture *a, const Picture *b, Err *err)
+bool labels_seen_at(const Labels *labels, int side, size_t pixel)
 {
-    const uint16_t *of_a = background_of(a), *of_b = background_of(b);
-    *labels = (Labels){.width = a->width, .height = a->height};
-    if (!of_a || !of_b)
-        return STATUS_OK;
-    TRY(labels_init(labels, a->width, a->height, err));
-    fill_seen(a, of_a, labels->owned);
-    fill_seen(b, of_b, labels->owned + (size_t)a->width * (size_t)a->height);
-    return STATUS_OK;
-}
-
-bool labels_in_band(const Labels *labels, int x, int y)
-{
-    size_t width = (size_t)labels->width;
-    size_t here = (size_t)y * width + (size_t)x;
-    int left = x > 0 ? x - 1 : 0, right = x + 1 < labels->width ? x + 1 : x;
-    int top = y > 0 ? y - 1 : 0, bottom = y + 1 < labels->height ? y + 1 : y;
-    for (int row = top; row <= bottom; row++)
-        for (int column = left; column <= right; column++) {
-            size_t there = (size_t)row * width + (size_t)column;
-            if (labels->a[there] != labels->a[here] || labels->b[there] != labels->b[here])
-                return true;
-        }
+    if (labels->source == LABELS_IDS)
+        return labels->ids[side]->ids[pixel] != 0;
+    if (labels->source == LABELS_SEEN)
+        return labels->seen[side][pixel] != 0;
+    const Picture *picture = labels->pictures[side];
+    for (size_t c = 0; c < (size_t)picture->channels; c++)
+        if (picture_code(picture, pixel * (size_t)picture->channels + c) !=
+            labels->background[side][c])
+            return true;
     return false;
 }
 
-bool labels_classify(const Labels *labels, size_t pixel, bool band, ClassCounts *classes)
+PixelClass labels_class(uint32_t a, uint32_t b, bool band)
 {
-    uint32_t a = labels->a[pixel], b = labels->b[pixel];
-    if (a == b)
-        return false;
-    if (band)
-        classes->edge++;
-    else if (b == 0)
-        classes->missing++;
-    else if (a == 0)
-        classes->extra++;
-    else
-        classes->wrong_segment++;
-    return true;
+    return band ? PIXEL_EDGE : b == 0 ? PIXEL_MISSING : a == 0 ? PIXEL_EXTRA : PIXEL_WRONG_SEGMENT;
 }
 
-typedef enum Coverage { COVERED_ALIKE, COVERED_MISSING, COVERED_EXTRA } Coverage;
+/* -------------------------------------------------------------------------------------- window */
 
-static Coverage coverage_at(const Labels *labels, size_t pixel)
+enum { WINDOW_ROWS = 3 };
+
+size_t label_window_size(int width)
 {
-    bool a = labels->a[pixel] != 0, b = labels->b[pixel] != 0;
-    return a == b ? COVERED_ALIKE : a ? COVERED_MISSING : COVERED_EXTRA;
+    size_t bytes = (size_t)width * (2 * WINDOW_ROWS * sizeof(uint32_t) + WINDOW_ROWS + 1);
+    return (bytes + 3) / 4 * 4;
 }
 
-/* Pixels of the regions being filled. */
-typedef struct Fill {
-    uint8_t *marked; /* owned; one a pixel */
-    size_t *stack;   /* owned */
-    size_t capacity, depth;
-} Fill;
-
-static Status fill_push(Fill *fill, size_t pixel, Err *err)
+/* 1 for the pixels beside which neither side changes. */
+static void fill_uniform(const uint32_t *restrict a, const uint32_t *restrict b,
+                         uint8_t *restrict uniform, size_t width)
 {
-    TRY(mem_reserve(&fill->stack, &fill->capacity, fill->depth + 1, sizeof *fill->stack,
-                    "pixels of a region", err));
-    fill->marked[pixel] = 1;
-    fill->stack[fill->depth++] = pixel;
-    return STATUS_OK;
+    size_t last = width - 1, second = width > 1, before = last - second;
+    for (size_t x = 1; x < last; x++)
+        uniform[x] = (uint8_t)((a[x - 1] == a[x]) & (a[x] == a[x + 1]) & (b[x - 1] == b[x]) &
+                               (b[x] == b[x + 1]));
+    uniform[0] = a[0] == a[second] && b[0] == b[second];
+    uniform[last] = a[before] == a[last] && b[before] == b[last];
 }
 
-/* Pushes the unmarked neighbours of a pixel that are covered like it. */
-static Status fill_neighbours(Fill *fill, const Labels *labels, size_t pixel, Err *err)
+/* Loads row y, or its nearest, into slot 0, 1 or 2. A row that both pictures share is made once. */
+static void load_row(LabelWindow *window, int slot, int y)
 {
-    int width = labels->width;
-    int x = (int)(pixel % (size_t)width), y = (int)(pixel / (size_t)width);
-    for (int row = y - 1; row <= y + 1; row++)
-        for (int column = x - 1; column <= x + 1; column++) {
-            if (row < 0 || row >= labels->height || column < 0 || column >= width)
-                continue;
-            size_t there = (size_t)row * (size_t)width + (size_t)column;
-            if (!fill->marked[there] && coverage_at(labels, there) == coverage_at(labels, pixel))
-                TRY(fill_push(fill, there, err));
-        }
-    return STATUS_OK;
+    const Labels *labels = window->labels;
+    int row = y < 0 ? 0 : y < labels->height ? y : labels->height - 1;
+    window->rows[0][slot] = labels_row(labels, 0, row, window->scratch[0][slot]);
+    bool shared =
+        labels->source == LABELS_BACKGROUND &&
+        memcmp(labels->background[0], labels->background[1], sizeof labels->background[0]) == 0 &&
+        picture_rows_equal(labels->pictures[0], labels->pictures[1], row, 0, labels->width);
+    window->rows[1][slot] =
+        shared ? window->rows[0][slot] : labels_row(labels, 1, row, window->scratch[1][slot]);
+    fill_uniform(window->rows[0][slot], window->rows[1][slot], window->uniform[slot],
+                 (size_t)labels->width);
 }
 
-static Status region_size(Fill *fill, const Labels *labels, size_t start, size_t *size, Err *err)
+static void fill_band(const LabelWindow *window)
 {
-    *size = 0;
-    TRY(fill_push(fill, start, err));
-    while (fill->depth > 0) {
-        size_t pixel = fill->stack[--fill->depth];
-        ++*size;
-        TRY(fill_neighbours(fill, labels, pixel, err));
+    const uint32_t *const *a = window->rows[0], *const *b = window->rows[1];
+    uint8_t *const *uniform = window->uniform;
+    uint8_t *band = window->band;
+    size_t width = (size_t)window->labels->width;
+    for (size_t x = 0; x < width; x++) {
+        unsigned level = (a[0][x] == a[1][x]) & (a[2][x] == a[1][x]) & (b[0][x] == b[1][x]) &
+                         (b[2][x] == b[1][x]);
+        band[x] = (uint8_t)(1 ^ (level & uniform[0][x] & uniform[1][x] & uniform[2][x]));
     }
-    return STATUS_OK;
 }
 
-static Status find_largest_region(const Labels *labels, CompareResult *result, Err *err)
+void label_window_open(LabelWindow *window, const Labels *labels, int y, void *scratch)
 {
-    size_t n = (size_t)labels->width * (size_t)labels->height;
-    Fill fill = {0};
-    Status status = mem_calloc(&fill.marked, n, 1, "pixel marks", err);
-    for (size_t i = 0; i < n && status == STATUS_OK; i++) {
-        if (fill.marked[i] || coverage_at(labels, i) == COVERED_ALIKE)
-            continue;
-        size_t size;
-        status = region_size(&fill, labels, i, &size, err);
-        if (status == STATUS_OK && size > result->largest_region) {
-            result->largest_region = size;
-            result->largest_region_at = (PixelPlace){.x = (int)(i % (size_t)labels->width),
-                                                     .y = (int)(i / (size_t)labels->width)};
+    *window = (LabelWindow){.labels = labels, .y = y};
+    uint32_t *next = scratch;
+    for (int side = 0; side < 2; side++)
+        for (int slot = 0; slot < WINDOW_ROWS; slot++, next += labels->width)
+            window->scratch[side][slot] = next;
+    uint8_t *bytes = (uint8_t *)next;
+    for (int slot = 0; slot < WINDOW_ROWS; slot++, bytes += labels->width)
+        window->uniform[slot] = bytes;
+    window->band = bytes;
+    for (int slot = 0; slot < WINDOW_ROWS; slot++)
+        load_row(window, slot, y - 1 + slot);
+    fill_band(window);
+}
+
+void label_window_next(LabelWindow *window)
+{
+    uint8_t *first = window->uniform[0];
+    for (int slot = 0; slot + 1 < WINDOW_ROWS; slot++)
+        window->uniform[slot] = window->uniform[slot + 1];
+    window->uniform[WINDOW_ROWS - 1] = first;
+    for (int side = 0; side < 2; side++) {
+        uint32_t *scratch = window->scratch[side][0];
+        for (int slot = 0; slot + 1 < WINDOW_ROWS; slot++) {
+            window->rows[side][slot] = window->rows[side][slot + 1];
+            window->scratch[side][slot] = window->scratch[side][slot + 1];
         }
+        window->scratch[side][WINDOW_ROWS - 1] = scratch;
     }
-    free(fill.marked);
-    free(fill.stack);
-    return status;
-}
-
-Status labels_measure(const Labels *labels, CompareResult *result, Err *err)
-{
-    if (!labels->a)
-        return STATUS_OK;
-    result->has_mask = true;
-    size_t band = 0, band_differs = 0, i = 0;
-    for (int y = 0; y < labels->height; y++)
-        for (int x = 0; x < labels->width; x++, i++) {
-            Coverage coverage = coverage_at(labels, i);
-            result->missing_pixels += coverage == COVERED_MISSING;
-            result->extra_pixels += coverage == COVERED_EXTRA;
-            result->common_pixels += coverage == COVERED_ALIKE && labels->a[i] != 0;
-            if (labels_in_band(labels, x, y)) {
-                band++;
-                band_differs += labels->a[i] != labels->b[i];
-            }
-        }
-    result->edge_mismatch_fraction = band ? (double)band_differs / (double)band : 0;
-    if (result->missing_pixels + result->extra_pixels == 0)
-        return STATUS_OK;
-    return find_largest_region(labels, result, err);
+    window->y++;
+    load_row(window, WINDOW_ROWS - 1, window->y + 1);
+    fill_band(window);
 }

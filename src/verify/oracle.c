@@ -302,7 +302,7 @@ Status oracle_read_depth(Plane *depth, const char *path, double near_mm, double 
     Status status = plane_init(depth, picture.width, picture.height, 1, err);
     size_t pixels = (size_t)picture.width * (size_t)picture.height;
     for (size_t i = 0; status == STATUS_OK && i < pixels; i++) {
-        const uint16_t *code = &picture.codes[3 * i];
+        const uint16_t *code = &picture.codes16[3 * i];
         double fraction = (code[0] + code[1] / 65535.0) / 65535.0;
         depth->values[i] =
             code[2] > 32767 ? (float)(near_mm + fraction * (far_mm - near_mm)) : HUGE_VALF;
@@ -318,7 +318,7 @@ Status oracle_read_normal(Plane *normal, const char *path, Err *err)
     Status status = plane_init(normal, picture.width, picture.height, 3, err);
     size_t pixels = (size_t)picture.width * (size_t)picture.height;
     for (size_t i = 0; status == STATUS_OK && i < pixels; i++) {
-        const uint16_t *code = &picture.codes[3 * i];
+        const uint16_t *code = &picture.codes16[3 * i];
         if (code[0] == 0 && code[1] == 0 && code[2] == 0)
             continue; /* nothing seen: no unit vector is (-1, -1, -1) */
         double xyz[3], square = 0;

@@ -181,7 +181,7 @@ Status report_write(const ReportCase *report, const char *template_path, const c
 {
     Picture heat = {0};
     Status status = STATUS_OK;
-    TRY_GOTO(difference_picture(&heat, report->a.picture, report->b.picture, err));
+    TRY_GOTO(heat_picture(&heat, report->a.picture, report->b.picture, err));
     TRY_GOTO(write_heat(&heat, folder, err));
     TRY_GOTO(write_json(report, folder, err));
     TRY_GOTO(write_junit(report, folder, err));

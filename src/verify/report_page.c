@@ -137,8 +137,9 @@ static void color_metrics(const CompareResult *plane, Text *out)
     metric_row(out, "", "PSNR", plane->psnr_db, "dB");
     metric_row(out, "", "SSIM of luma", plane->ssim, "");
     metric_row(out, "", "FLIP, mean", plane->flip_mean, "");
-    metric_row(out, "", "pixels off by one code (rounding)", (double)plane->classes.rounding, "");
-    metric_row(out, "", "pixels off by more (shading)", (double)plane->classes.shading, "");
+    metric_row(out, "", "pixels off by one code (rounding)", (double)plane->classes[PIXEL_ROUNDING],
+               "");
+    metric_row(out, "", "pixels off by more (shading)", (double)plane->classes[PIXEL_SHADING], "");
 }
 
 static void coverage_metrics(const CompareResult *plane, Text *out)

@@ -44,19 +44,64 @@ static json_t *rules_json(const CompareResult *result)
 
 static json_t *classes_json(const CompareResult *result)
 {
-    const ClassCounts *classes = &result->classes;
-    return json_pack(
-        "{s:o, s:o, s:o, s:o, s:I, s:I, s:I}", "missing", count(result, classes->missing), "extra",
-        count(result, classes->extra), "wrong_segment", count(result, classes->wrong_segment),
-        "edge", count(result, classes->edge), "shading", (json_int_t)classes->shading, "rounding",
-        (json_int_t)classes->rounding, "identical", (json_int_t)classes->identical);
+    json_t *classes = json_object();
+    for (PixelClass i = 0; i < PIXEL_CLASSES; i++)
+        json_object_set_new(classes, pixel_class_name(i),
+                            i <= PIXEL_EDGE ? count(result, result->classes[i])
+                                            : json_integer((json_int_t)result->classes[i]));
+    return classes;
+}
+
+static json_t *segment_json(const LedgerEntry *entry)
+{
+    return json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:[i, i, i, i]}", "id",
+                     (json_int_t)entry->id, "area_a", (json_int_t)entry->area_a, "area_b",
+                     (json_int_t)entry->area_b, "differing", (json_int_t)entry->differing,
+                     "signed_levels", number(ledger_entry_levels(entry)), "moved_px",
+                     number(entry->moved_px), "gain", number(entry->gain), "box", entry->left,
+                     entry->top, entry->right, entry->bottom);
+}
+
+static json_t *worst_segments_json(const CompareResult *result)
+{
+    json_t *segments = json_array();
+    for (int i = 0; i < result->n_worst_segments; i++)
+        json_array_append_new(segments, segment_json(&result->worst_segments[i]));
+    return segments;
+}
+
+static void set_color_keys(json_t *json, const CompareResult *result)
+{
+    const struct {
+        const char *key;
+        json_t *value;
+    } members[] = {
+        {"classes", classes_json(result)},
+        {"bias_levels", number(result->bias_levels)},
+        {"silhouette_px", number(result->silhouette_px)},
+        {"gain", number(result->gain)},
+        {"offset_levels", number(result->offset_levels)},
+        {"segments", result->has_ids ? number((double)result->segments) : json_null()},
+        {"segments_missing",
+         result->has_ids ? number((double)result->segments_missing) : json_null()},
+        {"segment_levels", number(result->segment_levels)},
+        {"segment_px", number(result->segment_px)},
+        {"worst_segments", worst_segments_json(result)},
+        {"flip_max", number(result->flip_max)},
+        {"hdr_flip_mean", number(result->hdr_flip_mean)},
+        {"de2000_mean", number(result->de2000_mean)},
+        {"de2000_max", number(result->de2000_max)},
+        {"pixelmatch_pixels", number(result->pixelmatch_pixels)},
+    };
+    for (size_t i = 0; i < sizeof members / sizeof *members; i++)
+        json_object_set_new(json, members[i].key, members[i].value);
 }
 
 static void set_kind_keys(json_t *json, const CompareResult *result)
 {
     switch (result->kind) {
     case PLANE_COLOR:
-        json_object_set_new(json, "classes", classes_json(result));
+        set_color_keys(json, result);
         break;
     case PLANE_DEPTH:
         json_object_set_new(json, "median_abs_mm", number(result->median));

@@ -23,10 +23,12 @@ static void fill_luma(const Picture *picture, double *luma)
     size_t n = (size_t)picture->width * (size_t)picture->height;
     double scale = picture->bits == 8 ? 1 : 1 / 257.0;
     for (size_t i = 0; i < n; i++) {
-        const uint16_t *code = picture->codes + i * (size_t)picture->channels;
-        uint64_t rounded = code[0];
+        size_t first = i * (size_t)picture->channels;
+        uint64_t rounded = picture_code(picture, first);
         if (picture->channels == 3)
-            rounded = (19595ull * code[0] + 38470ull * code[1] + 7471ull * code[2] + 32768) >> 16;
+            rounded = (19595 * rounded + 38470ull * picture_code(picture, first + 1) +
+                       7471ull * picture_code(picture, first + 2) + 32768) >>
+                      16;
         luma[i] = scale * (double)rounded;
     }
 }

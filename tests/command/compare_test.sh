@@ -103,4 +103,155 @@ test_depth_planes_are_compared() {
     expect_status 1
 }
 
+test_the_verdict_names_its_tier() {
+    picture 100 >a.ppm
+    picture 101 >b.ppm
+    run corcast compare a.ppm b.ppm
+    expect_stdout '^differ \(tier A\): color: pixels off by more than 0 levels'
+    run_ok corcast compare a.ppm a.ppm --tier B
+    expect_stdout '^agree \(tier B\): 0 of 20 pixels differ$'
+    run_ok corcast compare a.ppm b.ppm --levels 1
+    expect_stdout '^agree \(tier given\): 1 of 20'
+}
+
+test_a_tolerance_file_sets_the_limits() {
+    picture 100 >a.ppm
+    picture 104 >b.ppm
+    printf 'tier = mine\ncolor_levels = 3\ncolor_ppm = 60000\n' >mine.ini
+    run_ok corcast compare a.ppm b.ppm --tolerance mine.ini
+    expect_stdout '^agree \(tier mine\)'
+    printf 'color_levels = 3\ncolor_ppm = 40000\n' >mine.ini
+    run corcast compare a.ppm b.ppm --tolerance mine.ini
+    expect_status 1
+    printf 'color_level = 3\n' >mine.ini
+    run corcast compare a.ppm b.ppm --tolerance mine.ini
+    expect_status 2
+    expect_sentence "mine\.ini:1: 'color_level' is not a limit"
+}
+
+test_metrics_are_printed_when_they_are_asked_for() {
+    picture 100 >a.ppm
+    picture 155 >b.ppm
+    run corcast compare a.ppm b.ppm
+    [ "$(wc -l <stdout)" -eq 1 ] || fail "expected one line, got $(cat stdout)"
+    run corcast compare a.ppm b.ppm --metrics on
+    expect_stdout 'FLIP, mean \(reported\) +0\.'
+    expect_stdout 'CIEDE2000, largest \(reported\) +[1-9]'
+    expect_stdout 'pixels, identical +19$'
+}
+
+test_pictures_of_the_difference_are_written() {
+    picture 100 >a.ppm
+    picture 104 >b.ppm
+    run corcast compare a.ppm b.ppm -o heat.png --difference signed.png --flicker flicker.png
+    expect_status 1
+    [ "$(pngtopnm signed.png | tail -c 60 | od -An -tu1 -v | tr -s ' \n' '\n' | grep -c '^160$')" -eq 3 ] ||
+        fail "expected one pixel of 128 + 8 * 4"
+    [ "$(pngtopnm signed.png | tail -c 60 | od -An -tu1 -v | tr -s ' \n' '\n' | grep -c '^128$')" -eq 57 ] ||
+        fail "expected the rest to be grey"
+    grep -aq acTL flicker.png || fail "expected an animation"
+    pngtopnm flicker.png >first.ppm
+    cmp -s a.ppm first.ppm || fail "expected viewers without animation to show A"
+}
+
+test_junit_has_a_case_for_each_rule() {
+    picture 100 >a.ppm
+    picture 155 >b.ppm
+    run corcast compare a.ppm b.ppm --tier B --junit out.xml
+    expect_status 1
+    [ "$(grep -c '<testcase ' out.xml)" -ge 4 ] || fail "expected a case for each rule"
+    grep -q '<failure message="color: ' out.xml || fail "expected a failure with its reason"
+}
+
+test_every_segment_has_its_line_in_the_ledger() {
+    run_ok corcast grow --terminals 12 --seed 3 -o tree.swc
+    run_ok corcast render tree.swc --size 160x120 --planes id -o a.ppm
+    awk '/^#/ { print; next } $1 == 5 { $6 *= 1.3 } { print }' tree.swc >thick.swc
+    run_ok corcast render thick.swc --size 160x120 --planes id --view front -o b.ppm
+    run corcast compare a.ppm b.ppm --ids-a a.id.ppm --ids-b b.id.ppm --tier B --ledger ledger.csv --json
+    expect_status 1
+    head -1 ledger.csv | grep -q '^id,area_a,area_b,' || fail "expected a header"
+    awk -F, '$1 == 5 && $7 > 0.15 { found = 1 } END { exit !found }' ledger.csv ||
+        fail "expected segment 5's outline to have moved outwards: $(grep '^5,' ledger.csv)"
+    expect_json stdout '.worst_segments[0].id == 5 and .tier == "B" and .segment_px > 0.15'
+}
+
+test_formats_of_every_kind_are_compared() {
+    local f=$DATA/images
+    printf 'P6\n7 5\n255\n' >a.ppm
+    awk 'BEGIN { for (y = 0; y < 5; y++) for (x = 0; x < 7; x++) printf "%c%c%c", 1, 1, 1 }' >>a.ppm
+    run corcast compare "$f/rgb8-lzw.tif" a.ppm
+    expect_status 1
+    run_ok corcast compare "$f/float-piz.exr" "$f/half-zip.exr"
+    run_ok corcast compare "$f/float.tif" "$f/half-zip.exr"
+    run corcast compare "$f/rgb8-lzw.tif" "$f/rgb16-zip.tif"
+    expect_status 2
+    expect_sentence '3 x 8 and 3 x 16 bits'
+    run corcast compare "$f/rgb8-lzw.tif" "$f/float.tif"
+    expect_status 2
+    expect_sentence 'rgb8-lzw\.tif holds whole numbers and .*float\.tif floats'
+    run corcast compare "$f/depth.exr" "$f/depth.exr"
+    expect_status 1
+    expect_stdout 'depth: values that are not a number: 2 pixels'
+}
+
+test_sides_beyond_all_bounds_are_refused() {
+    printf 'P6\n99999999 3\n255\nabc' >a.ppm
+    run corcast compare a.ppm a.ppm
+    expect_status 2
+    expect_sentence 'a\.ppm: the width is "99999999"'
+    printf 'P6\n1000000 1000000\n255\nabc' >a.ppm
+    run corcast compare a.ppm a.ppm
+    expect_status 2
+    expect_sentence 'announces 3000000000000 bytes of pixels, and 3 follow'
+}
+
+# Two noisy pictures of 61 x 47, and what other programs say of them.
+noisy_pair() {
+    awk 'BEGIN {
+        print "P3 61 47 255" > "a.txt"; print "P3 61 47 255" > "b.txt"; v = 12345
+        for (i = 0; i < 61 * 47 * 3; i++) {
+            v = (v * 1103 + 12347) % 65536; a = 40 + int(v / 400); d = v % 29 == 0 ? v % 23 : 0
+            print a > "a.txt"; print a + d > "b.txt"
+        } }'
+    pnmtopng a.txt >a.png 2>pnm.log || fail "pnmtopng: $(cat pnm.log)"
+    pnmtopng b.txt >b.png 2>pnm.log
+    run corcast compare a.png b.png --json
+}
+
+test_scikit_image_measures_the_same() {
+    /usr/bin/python3 -c 'import skimage' 2>import.log || skip "python3-skimage is not installed"
+    noisy_pair
+    /usr/bin/python3 - >skimage.json <<'END' || fail "scikit-image failed: $(cat stderr)"
+import json
+import numpy as np
+from skimage import color, io, metrics
+a, b = io.imread('a.png'), io.imread('b.png')
+luma = lambda p: ((p.astype(int) @ [19595, 38470, 7471] + 32768) >> 16).astype(np.uint8)
+_, s = metrics.structural_similarity(luma(a), luma(b), gaussian_weights=True, sigma=1.5,
+    use_sample_covariance=False, data_range=255, full=True)
+de = color.deltaE_ciede2000(color.rgb2lab(a), color.rgb2lab(b))
+print(json.dumps({'ssim': s[5:-5, 5:-5].mean(), 'psnr': metrics.peak_signal_noise_ratio(a, b),
+    'rmse': metrics.mean_squared_error(a, b) ** 0.5, 'mean': de.mean(), 'max': de.max()}))
+END
+    jq -s '.[0] + {other: .[1]}' stdout skimage.json >both.json
+    expect_json both.json '(.ssim - .other.ssim | fabs) < 1e-6'
+    expect_json both.json '(.psnr_db - .other.psnr | fabs) < 1e-6'
+    expect_json both.json '(.rmse - .other.rmse | fabs) < 1e-9'
+    expect_json both.json '(.de2000_mean - .other.mean | fabs) < 1e-4'
+    expect_json both.json '(.de2000_max - .other.max | fabs) < 1e-3'
+}
+
+test_idiff_measures_the_same() {
+    command -v idiff >idiff.path || skip "openimageio-tools is not installed"
+    noisy_pair
+    idiff -fail 0 a.png b.png >idiff.txt
+    awk '/Mean error/ { mean = $4 } /RMS error/ { rms = $4 } /Peak SNR/ { psnr = $4 }
+        END { printf "{\"mean\": %s, \"rms\": %s, \"psnr\": %s}\n", mean, rms, psnr }' idiff.txt >idiff.json
+    jq -s '.[0] + {other: .[1]}' stdout idiff.json >both.json
+    expect_json both.json '(.mean_abs / 255 / .other.mean - 1 | fabs) < 1e-5'
+    expect_json both.json '(.rmse / 255 / .other.rms - 1 | fabs) < 1e-5'
+    expect_json both.json '(.psnr_db / .other.psnr - 1 | fabs) < 1e-5'
+}
+
 run_tests "$@"

@@ -22,19 +22,25 @@ static void make(Picture *picture, int width, int height, int channels, int bits
     random_seed(&random, seed);
     size_t n = (size_t)width * (size_t)height * (size_t)channels;
     for (size_t i = 0; i < n; i++)
-        picture->codes[i] = (uint16_t)(random_bits(&random) & (bits == 8 ? 255 : 65535));
+        picture_set(picture, i, (uint16_t)(random_bits(&random) & (bits == 8 ? 255 : 65535)));
 }
 
 /* False, with a word about it, where the shared data is missing. */
-static bool read_shared(const char *name, Picture *picture)
+static bool shared_path(const char *name, char *path, size_t size)
 {
     const char *root = getenv("CORCAST_SHARED");
+    snprintf(path, size, "%s/data/flip/%s", root ? root : "../shared", name);
+    if (access(path, R_OK) == 0)
+        return true;
+    print_message("SKIPPED: %s is not there\n", path);
+    return false;
+}
+
+static bool read_shared(const char *name, Picture *picture)
+{
     char path[512];
-    snprintf(path, sizeof path, "%s/data/flip/%s", root ? root : "../shared", name);
-    if (access(path, R_OK) != 0) {
-        print_message("SKIPPED: %s is not there\n", path);
+    if (!shared_path(name, path, sizeof path))
         return false;
-    }
     assert_int_equal(picture_read(picture, path, &err), STATUS_OK);
     return true;
 }
@@ -43,17 +49,26 @@ typedef struct Expected {
     const char *pair;
     double flip, flip_max; /* FLIP 1.6, no fused operations */
     double ssim, psnr_db;  /* scikit-image; NAN: not known */
+    double de2000;         /* mean, scikit-image */
+    size_t pixelmatch;     /* 7.2.0, threshold 0.1 */
 } Expected;
 
+#define UNKNOWN ((double)NAN)
 static const Expected expected[] = {
-    {"p1", 0.102207, 0.146054, 0.998876, 36.1229},
-    {"p2", 0.321397, 0.993284, 0.619735, 9.0309},
-    {"p3", 1.000000, 1.000000, 0.372909, 1.7609},
-    {"p4", 0.000175, 0.378678, 0.998021, 49.9598},
-    {"p5", 0.136329, 0.359060, 0.975625, 24.0484},
-    {"p6", 0.019466, 0.466271, 0.967053, 30.4378},
-    {"tree", 0.133276, 0.983034, (double)NAN, (double)NAN},
+    {"p1", 0.102207, 0.146054, 0.998876, 36.1229, 1.1796, 0},
+    {"p2", 0.321397, 0.993284, 0.619735, 9.0309, 12.5, 3072},
+    {"p3", 1.000000, 1.000000, 0.372909, 1.7609, 83.1868, 24576},
+    {"p4", 0.000175, 0.378678, 0.998021, 49.9598, UNKNOWN, 1},
+    {"p5", 0.136329, 0.359060, 0.975625, 24.0484, UNKNOWN, 0},
+    {"p6", 0.019466, 0.466271, 0.967053, 30.4378, 0.2776, 144},
+    {"tree", 0.133276, 0.983034, UNKNOWN, UNKNOWN, UNKNOWN, SIZE_MAX},
 };
+
+static void assert_near(double value, double wanted, double tolerance)
+{
+    if (!isnan(wanted) && !(fabs(value - wanted) <= tolerance))
+        fail_msg("%.9g is not %.9g to %g", value, wanted, tolerance);
+}
 
 static void reproduces_the_values_of_reference_tools(void **state)
 {
@@ -67,27 +82,72 @@ static void reproduces_the_values_of_reference_tools(void **state)
             skip();
         snprintf(name, sizeof name, e->pair[0] == 't' ? "%s-test.png" : "%s_test.png", e->pair);
         assert_true(read_shared(name, &b));
+        const Rendering of_a = {.picture = &a}, of_b = {.picture = &b};
         Tolerance tolerance = tolerance_identity(0);
         CompareResult result;
-        assert_int_equal(compare_pictures(&a, &b, NULL, NULL, &tolerance, &result, &err),
+        assert_int_equal(compare_pictures(&of_a, &of_b, &tolerance, &result, NULL, &err),
                          STATUS_OK);
-        print_message("%s FLIP %.6f SSIM %.6f PSNR %.4f\n", e->pair, result.flip_mean, result.ssim,
-                      result.psnr_db);
-        assert_true(fabs(result.flip_mean - e->flip) <= 2e-5);
-        Plane map;
-        assert_int_equal(flip_compute(&a, &b, &map, &err), STATUS_OK);
-        double largest = 0;
-        for (size_t p = 0; p < (size_t)map.width * (size_t)map.height; p++)
-            largest = fmax(largest, (double)map.values[p]);
-        assert_true(fabs(largest - e->flip_max) <= 1e-3);
-        if (!isnan(e->ssim)) {
-            assert_true(fabs(result.ssim - e->ssim) <= 1e-5);
-            assert_true(fabs(result.psnr_db - e->psnr_db) <= 1e-4);
-        }
-        plane_release(&map);
+        assert_int_equal(compare_perception(&a, &b, &result, &err), STATUS_OK);
+        assert_near(result.flip_mean, e->flip, 2e-5);
+        assert_near(result.flip_max, e->flip_max, 1e-3);
+        assert_near(result.ssim, e->ssim, 1e-5);
+        assert_near(result.psnr_db, e->psnr_db, 1e-4);
+        assert_near(result.de2000_mean, e->de2000, 1e-4);
+        if (e->pixelmatch != SIZE_MAX)
+            assert_int_equal(pixelmatch_count(&a, &b, 0.1), e->pixelmatch);
         picture_release(&a);
         picture_release(&b);
     }
+}
+
+static void reproduces_hdr_flip(void **state)
+{
+    (void)state;
+    Plane planes[2], map;
+    static const char *const names[] = {"h1_ref.pfm", "h1_test.pfm"};
+    for (int i = 0; i < 2; i++) {
+        char path[512];
+        if (!shared_path(names[i], path, sizeof path))
+            skip();
+        assert_int_equal(plane_read(&planes[i], path, &err), STATUS_OK);
+    }
+    FlipSummary summary;
+    assert_int_equal(hdr_flip_compute(&planes[0], &planes[1], &map, &summary, &err), STATUS_OK);
+    assert_near(summary.mean, 0.077869, 2e-5);
+    assert_near(summary.max, 0.094178, 1e-3);
+    double sum = 0;
+    for (size_t i = 0; i < (size_t)map.width * (size_t)map.height; i++)
+        sum += (double)map.values[i];
+    assert_near(summary.mean, sum / ((double)map.width * map.height), 1e-12);
+    plane_release(&map);
+    plane_release(&planes[0]);
+    plane_release(&planes[1]);
+}
+
+/* The 34 pairs of Sharma, Wu and Dalal. */
+static void reproduces_the_table_of_ciede2000(void **state)
+{
+    (void)state;
+    char path[512], line[256];
+    if (!shared_path("ciede2000_sharma.txt", path, sizeof path))
+        skip();
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    int rows = 0;
+    while (fgets(line, sizeof line, file)) {
+        double a[3], b[3], wanted;
+        /* pair, 1, L a b, ten intermediate values, the difference, 2, L a b */
+        if (sscanf(line,
+                   "%*d %*d %lf %lf %lf %*f %*f %*f %*f %*f %*f %*f %*f %*f %*f %lf %*d %lf %lf "
+                   "%lf",
+                   &a[0], &a[1], &a[2], &wanted, &b[0], &b[1], &b[2]) != 7)
+            continue;
+        assert_near(de2000(a, b), wanted, 1e-4);
+        assert_near(de2000(b, a), wanted, 1e-4);
+        rows++;
+    }
+    fclose(file);
+    assert_int_equal(rows, 34);
 }
 
 static void finds_nothing_between_a_picture_and_itself(void **state)
@@ -98,10 +158,12 @@ static void finds_nothing_between_a_picture_and_itself(void **state)
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         Picture a;
         Plane map;
+        FlipSummary summary;
         double ssim;
         make(&a, shapes[i][0], shapes[i][1], shapes[i][2], shapes[i][3], 7);
-        assert_int_equal(flip_compute(&a, &a, &map, &err), STATUS_OK);
-        assert_float_equal(plane_mean(&map), 0, 0);
+        assert_int_equal(flip_compute(&a, &a, &map, &summary, &err), STATUS_OK);
+        assert_float_equal(summary.mean, 0, 0);
+        assert_float_equal(summary.max, 0, 0);
         assert_int_equal(ssim_compute(&a, &a, &ssim, &err), STATUS_OK);
         if (a.width >= 11 && a.height >= 11)
             assert_float_equal(ssim, 1, 1e-12);
@@ -117,11 +179,12 @@ static void is_symmetric_and_zero_beyond_the_reach_of_a_difference(void **state)
     (void)state;
     Picture a, b;
     Plane ab, ba;
+    FlipSummary summary;
     make(&a, 90, 211, 3, 8, 11);
     make(&b, 90, 211, 3, 8, 11);
-    b.codes[(100 * 90 + 41) * 3 + 1] ^= 255;
-    assert_int_equal(flip_compute(&a, &b, &ab, &err), STATUS_OK);
-    assert_int_equal(flip_compute(&b, &a, &ba, &err), STATUS_OK);
+    b.codes8[(100 * 90 + 41) * 3 + 1] ^= 255;
+    assert_int_equal(flip_compute(&a, &b, &ab, &summary, &err), STATUS_OK);
+    assert_int_equal(flip_compute(&b, &a, &ba, &summary, &err), STATUS_OK);
     assert_memory_equal(ab.values, ba.values, 90 * 211 * sizeof *ab.values);
     for (int y = 0; y < 211; y++)
         for (int x = 0; x < 90; x++) {
@@ -140,32 +203,32 @@ static void sees_the_same_in_eight_and_sixteen_bits(void **state)
 {
     (void)state;
     Picture a[2], b[2];
-    Plane map[2];
+    FlipSummary summary[2];
     double ssim[2];
     for (int i = 0; i < 2; i++) {
         make(&a[i], 40, 30, 3, i ? 16 : 8, 3);
         make(&b[i], 40, 30, 3, i ? 16 : 8, 4);
     }
     for (size_t p = 0; p < 40 * 30 * 3; p++) {
-        a[1].codes[p] = (uint16_t)(a[0].codes[p] * 257);
-        b[1].codes[p] = (uint16_t)(b[0].codes[p] * 257);
+        a[1].codes16[p] = (uint16_t)(a[0].codes8[p] * 257);
+        b[1].codes16[p] = (uint16_t)(b[0].codes8[p] * 257);
     }
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(flip_compute(&a[i], &b[i], &map[i], &err), STATUS_OK);
+        assert_int_equal(flip_compute(&a[i], &b[i], NULL, &summary[i], &err), STATUS_OK);
         assert_int_equal(ssim_compute(&a[i], &b[i], &ssim[i], &err), STATUS_OK);
         picture_release(&a[i]);
         picture_release(&b[i]);
     }
-    assert_float_equal(plane_mean(&map[0]), plane_mean(&map[1]), 1e-6);
+    assert_float_equal(summary[0].mean, summary[1].mean, 1e-6);
     assert_float_equal(ssim[0], ssim[1], 1e-4); /* luma is rounded to whole codes */
-    plane_release(&map[0]);
-    plane_release(&map[1]);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reproduces_the_values_of_reference_tools),
+        cmocka_unit_test(reproduces_hdr_flip),
+        cmocka_unit_test(reproduces_the_table_of_ciede2000),
         cmocka_unit_test(finds_nothing_between_a_picture_and_itself),
         cmocka_unit_test(is_symmetric_and_zero_beyond_the_reach_of_a_difference),
         cmocka_unit_test(sees_the_same_in_eight_and_sixteen_bits),

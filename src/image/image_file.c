@@ -63,19 +63,73 @@ Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNote
     return status;
 }
 
-Status picture_read(Picture *picture, const char *path, Err *err)
+static Status decode(const ImageBytes *file, Image *image, Err *err)
+{
+    if (png_is(file))
+        return png_decode(file, &image->picture, err);
+    if (pnm_is(file))
+        return pnm_decode(file, &image->picture, err);
+    if (pfm_is(file))
+        return pfm_decode(file, &image->plane, err);
+    if (exr_is(file))
+        return exr_decode(file, &image->plane, err);
+    if (tiff_is(file))
+        return tiff_decode(file, image, err);
+    return err_set(err, STATUS_INPUT, "%s: is not a PPM, PGM, PFM, PNG, TIFF or OpenEXR file",
+                   file->name);
+}
+
+void image_plain_text(char *text)
+{
+    for (; *text; text++)
+        if (*text < ' ' || *text > '~')
+            *text = ' ';
+}
+
+static const char *name_of(const char *path)
+{
+    return strcmp(path, "-") ? path : "standard input";
+}
+
+Status image_read(Image *image, const char *path, Err *err)
 {
     char *bytes;
     size_t size;
     TRY(file_read(path, &bytes, &size, err));
-    ImageBytes file = {strcmp(path, "-") ? path : "standard input", (const uint8_t *)bytes, size};
-    Status status;
-    if (png_is(&file))
-        status = png_decode(&file, picture, err);
-    else if (pnm_is(&file))
-        status = pnm_decode(&file, picture, err);
-    else
-        status = err_set(err, STATUS_INPUT, "%s: is not a PPM, PGM or PNG file", file.name);
+    ImageBytes file = {name_of(path), (const uint8_t *)bytes, size};
+    Image made = {0};
+    Status status = decode(&file, &made, err);
     free(bytes);
+    if (status == STATUS_OK)
+        *image = made;
     return status;
+}
+
+Status picture_read(Picture *picture, const char *path, Err *err)
+{
+    Image image;
+    TRY(image_read(&image, path, err));
+    if (image.plane.values) {
+        image_release(&image);
+        return err_set(err, STATUS_INPUT,
+                       "%s: holds floats; a picture of 8 or 16 bits is wanted here", name_of(path));
+    }
+    *picture = image.picture;
+    return STATUS_OK;
+}
+
+Status plane_read(Plane *plane, const char *path, Err *err)
+{
+    Image image;
+    TRY(image_read(&image, path, err));
+    if (!image.plane.values) {
+        image_release(&image);
+        return err_set(
+            err, STATUS_INPUT,
+            "%s: holds whole numbers; a plane of floats (PFM, OpenEXR or TIFF) is wanted "
+            "here",
+            name_of(path));
+    }
+    *plane = image.plane;
+    return STATUS_OK;
 }

@@ -1,0 +1,276 @@
+/* Rows are booked by runs of pixels that show one segment in A and one in B; a run that is equal
+ * in both pictures adds to the sum of squares alone.
+ *
+ * An outline's length is the number of pixel sides on it times pi / 4, which is right on average
+ * over directions. */
+#include "verify/ledger.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ID_LIMIT = 1 << 24, LEVELS_MIN_PIXELS = 64, OUTLINE_MIN_PX = 8, MISSING_MIN_PIXELS = 3 };
+
+static const double px_per_edge = 0.78539816339744831;
+
+Status segment_index_init(SegmentIndex *index, const IdPlane *a, const IdPlane *b, Err *err)
+{
+    SegmentIndex made = {0};
+    uint8_t *present = NULL;
+    Status status = STATUS_OK;
+    size_t n = (size_t)a->width * (size_t)a->height;
+    uint32_t last = 0, previous = 0;
+    TRY_GOTO(mem_calloc(&present, ID_LIMIT, 1, "marks of ids", err));
+    present[0] = 1;
+    for (int side = 0; side < 2; side++) {
+        const uint32_t *ids = side ? b->ids : a->ids;
+        for (size_t i = 0; i < n; i++) {
+            if (ids[i] == previous)
+                continue;
+            previous = ids[i];
+            present[previous] = 1;
+            last = previous > last ? previous : last;
+        }
+    }
+    for (size_t id = 0; id <= last; id++)
+        made.n += present[id];
+    TRY_GOTO(mem_calloc(&made.of_id, (size_t)last + 1, sizeof *made.of_id, "segments", err));
+    TRY_GOTO(mem_calloc(&made.ids, made.n, sizeof *made.ids, "segments", err));
+    uint32_t next = 0;
+    for (uint32_t id = 0; id <= last; id++)
+        if (present[id]) {
+            made.ids[next] = id;
+            made.of_id[id] = next++;
+        }
+    *index = made;
+done:
+    free(present);
+    if (status != STATUS_OK)
+        segment_index_release(&made);
+    return status;
+}
+
+void segment_index_release(SegmentIndex *index)
+{
+    free(index->of_id);
+    free(index->ids);
+    *index = (SegmentIndex){0};
+}
+
+void accounts_clear(Account *accounts, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        accounts[i] =
+            (Account){.left = IMAGE_MAX_SIDE, .top = IMAGE_MAX_SIDE, .right = -1, .bottom = -1};
+}
+
+static void widen(Account *account, int left, int right, int y)
+{
+    account->left = left < account->left ? left : account->left;
+    account->right = right > account->right ? right : account->right;
+    account->top = y < account->top ? y : account->top;
+    account->bottom = y > account->bottom ? y : account->bottom;
+}
+
+/* The sides of one image's segments that lie between row y and the next, and along row y. */
+static void book_edges(Account *accounts, const SegmentIndex *index, const uint32_t *row,
+                       const uint32_t *below, int side, int width)
+{
+    for (int x = 0; x < width; x++) {
+        if (row[x] != below[x]) {
+            accounts[index->of_id[row[x]]].edges[side]++;
+            accounts[index->of_id[below[x]]].edges[side]++;
+        }
+        if (x > 0 && row[x] != row[x - 1]) {
+            accounts[index->of_id[row[x]]].edges[side]++;
+            accounts[index->of_id[row[x - 1]]].edges[side]++;
+        }
+    }
+}
+
+static void book_squares(Account *account, const uint16_t *a, size_t n)
+{
+    uint64_t squares = 0;
+    for (size_t i = 0; i < n; i++)
+        squares += (uint32_t)a[i] * (uint32_t)a[i];
+    account->squares += squares;
+}
+
+/* The pixels that show one segment in both pictures. */
+static void book_common(Account *account, const uint16_t *a, const uint16_t *b, int n, int channels)
+{
+    for (int x = 0; x < n; x++, a += channels, b += channels) {
+        int largest = 0;
+        for (int c = 0; c < channels; c++) {
+            int difference = b[c] - a[c];
+            account->signed_codes[c] += difference;
+            account->products += (int64_t)a[c] * difference;
+            largest = abs(difference) > largest ? abs(difference) : largest;
+        }
+        account->differing += largest > 0;
+        account->max_code = largest > account->max_code ? largest : account->max_code;
+    }
+}
+
+void accounts_book(Account *accounts, const SegmentIndex *index, const LabelWindow *window,
+                   const uint16_t *a, const uint16_t *b, int channels)
+{
+    const uint32_t *in_a = window->rows[0][1], *in_b = window->rows[1][1];
+    int width = window->labels->width;
+    for (int x = 0, end; x < width; x = end) {
+        for (end = x + 1; end < width && in_a[end] == in_a[x] && in_b[end] == in_b[x];)
+            end++;
+        size_t start = (size_t)x * (size_t)channels, n = (size_t)(end - x) * (size_t)channels;
+        Account *of_a = &accounts[index->of_id[in_a[x]]], *of_b = &accounts[index->of_id[in_b[x]]];
+        of_a->area[0] += (uint64_t)(end - x);
+        of_b->area[1] += (uint64_t)(end - x);
+        widen(of_a, x, end - 1, window->y);
+        if (of_a != of_b) {
+            widen(of_b, x, end - 1, window->y);
+            of_a->differing += (uint64_t)(end - x);
+            of_b->differing += (uint64_t)(end - x);
+            continue;
+        }
+        of_a->common += (uint64_t)(end - x);
+        book_squares(of_a, a + start, n);
+        if (a != b)
+            book_common(of_a, a + start, b + start, end - x, channels);
+    }
+    book_edges(accounts, index, in_a, window->rows[0][2], 0, width);
+    book_edges(accounts, index, in_b, window->rows[1][2], 1, width);
+}
+
+void accounts_add(Account *to, const Account *from, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        for (int side = 0; side < 2; side++) {
+            to[i].area[side] += from[i].area[side];
+            to[i].edges[side] += from[i].edges[side];
+        }
+        for (int c = 0; c < 3; c++)
+            to[i].signed_codes[c] += from[i].signed_codes[c];
+        to[i].common += from[i].common;
+        to[i].differing += from[i].differing;
+        to[i].squares += from[i].squares;
+        to[i].products += from[i].products;
+        to[i].max_code = from[i].max_code > to[i].max_code ? from[i].max_code : to[i].max_code;
+        if (from[i].right >= from[i].left) {
+            widen(&to[i], from[i].left, from[i].right, from[i].top);
+            widen(&to[i], from[i].left, from[i].right, from[i].bottom);
+        }
+    }
+}
+
+/* -------------------------------------------------------------------------------------- ledger */
+
+static LedgerEntry make_entry(uint32_t id, const Account *account, int channels, double code_levels)
+{
+    uint64_t edges = account->area[0] ? account->edges[0] : account->edges[1];
+    LedgerEntry entry = {.id = id,
+                         .area_a = account->area[0],
+                         .area_b = account->area[1],
+                         .common = account->common,
+                         .differing = account->differing,
+                         .outline_px = px_per_edge * (double)edges,
+                         .gain = (double)NAN,
+                         .max_levels = account->max_code * code_levels,
+                         .left = account->left,
+                         .top = account->top,
+                         .right = account->right,
+                         .bottom = account->bottom};
+    for (int c = 0; c < channels && account->common; c++)
+        entry.signed_levels[c] =
+            (double)account->signed_codes[c] * code_levels / (double)account->common;
+    if (account->squares)
+        entry.gain = 1 + (double)account->products / (double)account->squares;
+    if (edges)
+        entry.moved_px = ((double)entry.area_b - (double)entry.area_a) / entry.outline_px;
+    return entry;
+}
+
+Status ledger_from_accounts(Ledger *ledger, const SegmentIndex *index, const Account *accounts,
+                            int channels, double code_levels, Err *err)
+{
+    Ledger made = {.n = index->n - 1};
+    TRY(mem_calloc(&made.entries, made.n, sizeof *made.entries, "entries of the ledger", err));
+    for (size_t i = 0; i < made.n; i++)
+        made.entries[i] = make_entry(index->ids[i + 1], &accounts[i + 1], channels, code_levels);
+    *ledger = made;
+    return STATUS_OK;
+}
+
+void ledger_release(Ledger *ledger)
+{
+    free(ledger->entries);
+    *ledger = (Ledger){0};
+}
+
+double ledger_entry_levels(const LedgerEntry *entry)
+{
+    double worst = 0;
+    for (int c = 0; c < 3; c++)
+        if (fabs(entry->signed_levels[c]) > fabs(worst))
+            worst = entry->signed_levels[c];
+    return worst;
+}
+
+static PixelPlace middle_of(const LedgerEntry *entry)
+{
+    return (PixelPlace){.x = entry->left + (entry->right - entry->left) / 2,
+                        .y = entry->top + (entry->bottom - entry->top) / 2,
+                        .id_a = entry->area_a ? entry->id : 0,
+                        .id_b = entry->area_b ? entry->id : 0};
+}
+
+/* Keeps the entries with most differing pixels, sorted; of equals the first. */
+static void keep_worst(CompareResult *result, const LedgerEntry *entry)
+{
+    if (entry->differing == 0)
+        return;
+    LedgerEntry *kept = result->worst_segments;
+    int at = result->n_worst_segments;
+    while (at > 0 && kept[at - 1].differing < entry->differing)
+        at--;
+    if (at == WORST_SEGMENTS)
+        return;
+    if (result->n_worst_segments < WORST_SEGMENTS)
+        result->n_worst_segments++;
+    memmove(kept + at + 1, kept + at, (size_t)(result->n_worst_segments - 1 - at) * sizeof *kept);
+    kept[at] = *entry;
+}
+
+void ledger_summarise(const Ledger *ledger, CompareResult *result)
+{
+    result->segments = ledger->n;
+    result->segment_levels = result->segment_px = 0;
+    for (size_t i = 0; i < ledger->n; i++) {
+        const LedgerEntry *entry = &ledger->entries[i];
+        double levels = fabs(ledger_entry_levels(entry)), moved = fabs(entry->moved_px);
+        keep_worst(result, entry);
+        size_t area = entry->area_a > entry->area_b ? entry->area_a : entry->area_b;
+        if ((entry->area_a == 0 || entry->area_b == 0) && area >= MISSING_MIN_PIXELS) {
+            if (result->segments_missing++ == 0)
+                result->segment_missing_at = middle_of(entry);
+        } else if (entry->outline_px >= OUTLINE_MIN_PX && moved > result->segment_px) {
+            result->segment_px = moved;
+            result->segment_px_at = middle_of(entry);
+        }
+        if (entry->common >= LEVELS_MIN_PIXELS && levels > result->segment_levels) {
+            result->segment_levels = levels;
+            result->segment_levels_at = middle_of(entry);
+        }
+    }
+}
+
+void ledger_csv(const Ledger *ledger, Text *out)
+{
+    text_puts(out, "id,area_a,area_b,common,differing,outline_px,moved_px,signed_levels_r,"
+                   "signed_levels_g,signed_levels_b,gain,max_levels,left,top,right,bottom\n");
+    for (size_t i = 0; i < ledger->n; i++) {
+        const LedgerEntry *e = &ledger->entries[i];
+        text_printf(out, "%u,%zu,%zu,%zu,%zu,%.6g,%.6g,%.6g,%.6g,%.6g,%.9g,%.6g,%d,%d,%d,%d\n",
+                    e->id, e->area_a, e->area_b, e->common, e->differing, e->outline_px,
+                    e->moved_px, e->signed_levels[0], e->signed_levels[1], e->signed_levels[2],
+                    e->gain, e->max_levels, e->left, e->top, e->right, e->bottom);
+    }
+}

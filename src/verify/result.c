@@ -1,0 +1,104 @@
+#include "verify/result.h"
+
+#include <math.h>
+
+const char *plane_kind_name(PlaneKind kind)
+{
+    static const char *const names[PLANE_KINDS] = {"color", "depth", "normal", "id"};
+    return names[kind];
+}
+
+const char *pixel_class_name(PixelClass pixel_class)
+{
+    static const char *const names[PIXEL_CLASSES] = {
+        [PIXEL_MISSING] = "missing",    [PIXEL_EXTRA] = "extra",
+        [PIXEL_EDGE] = "edge",          [PIXEL_WRONG_SEGMENT] = "wrong_segment",
+        [PIXEL_SHADOW] = "shadow",      [PIXEL_GEOMETRY] = "geometry",
+        [PIXEL_SHADING] = "shading",    [PIXEL_ROUNDING] = "rounding",
+        [PIXEL_IDENTICAL] = "identical"};
+    return names[pixel_class];
+}
+
+CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane *ids,
+                           const Tolerance *tolerance)
+{
+    const PixelPlace nowhere = {.x = -1, .y = -1};
+    const double unknown = (double)NAN;
+    return (CompareResult){.kind = kind,
+                           .tolerance = *tolerance,
+                           .width = width,
+                           .height = height,
+                           .pixels = (size_t)width * (size_t)height,
+                           .judged_pixels = (size_t)width * (size_t)height,
+                           .has_ids = ids != NULL,
+                           .largest_region_at = nowhere,
+                           .nan_at = nowhere,
+                           .worst = nowhere,
+                           .max_abs = unknown,
+                           .mean_abs = unknown,
+                           .rmse = unknown,
+                           .max_code = unknown,
+                           .psnr_db = unknown,
+                           .bias_levels = unknown,
+                           .interior_max_abs = unknown,
+                           .edge_mismatch_fraction = unknown,
+                           .silhouette_px = unknown,
+                           .gain = unknown,
+                           .offset_levels = unknown,
+                           .segment_levels = unknown,
+                           .segment_px = unknown,
+                           .segment_levels_at = nowhere,
+                           .segment_px_at = nowhere,
+                           .segment_missing_at = nowhere,
+                           .flip_mean = unknown,
+                           .flip_max = unknown,
+                           .hdr_flip_mean = unknown,
+                           .ssim = unknown,
+                           .de2000_mean = unknown,
+                           .de2000_max = unknown,
+                           .pixelmatch_pixels = unknown,
+                           .median = unknown,
+                           .p99 = unknown,
+                           .max = unknown};
+}
+
+PixelPlace place_of(size_t pixel, int width)
+{
+    return (PixelPlace){.x = (int)(pixel % (size_t)width), .y = (int)(pixel / (size_t)width)};
+}
+
+static void name_ids(PixelPlace *place, const IdPlane *a, const IdPlane *b)
+{
+    if (!a || place->x < 0)
+        return;
+    size_t pixel = (size_t)place->y * (size_t)a->width + (size_t)place->x;
+    place->id_a = a->ids[pixel];
+    place->id_b = b->ids[pixel];
+}
+
+void result_finish(CompareResult *result, const IdPlane *a, const IdPlane *b)
+{
+    name_ids(&result->worst, a, b);
+    name_ids(&result->largest_region_at, a, b);
+    name_ids(&result->nan_at, a, b);
+    compare_judge(result);
+}
+
+Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *err)
+{
+    if (width_a == width_b && height_a == height_b)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "the images differ in size: %d x %d and %d x %d pixels; only images of one size "
+                   "can be compared",
+                   width_a, height_a, width_b, height_b);
+}
+
+double angle_deg(const float *a, const float *b)
+{
+    double ax = (double)a[0], ay = (double)a[1], az = (double)a[2];
+    double bx = (double)b[0], by = (double)b[1], bz = (double)b[2];
+    double x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
+    return atan2(sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz) * 180 /
+           3.14159265358979323846;
+}

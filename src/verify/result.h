@@ -1,0 +1,23 @@
+/* What comparisons of all kinds share; private to the room verify. */
+#ifndef CORCAST_VERIFY_RESULT_H
+#define CORCAST_VERIFY_RESULT_H
+
+#include "verify/verify.h"
+
+/* Nothing measured yet. `ids` is of one of the images, or NULL. */
+CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane *ids,
+                           const Tolerance *tolerance);
+/* Names the segments at the places found, and judges. */
+void result_finish(CompareResult *result, const IdPlane *a, const IdPlane *b);
+/* Holds the result against its tolerance: rules, agrees, reason. */
+void compare_judge(CompareResult *result);
+
+/* STATUS_INPUT unless both sides are equal. */
+MUST_CHECK Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *err);
+
+PixelPlace place_of(size_t pixel, int width);
+
+/* The angle between two vectors in degrees, exact also where it is small. */
+double angle_deg(const float *a, const float *b);
+
+#endif

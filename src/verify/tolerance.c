@@ -1,0 +1,239 @@
+/* Every number of a tolerance stands once in a table, by which files are read and written. */
+#include "verify/verify.h"
+
+#include <ctype.h>
+#include <ini.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef enum FieldKind { FIELD_NUMBER, FIELD_COUNT, FIELD_SWITCH } FieldKind;
+
+typedef struct Field {
+    const char *key;
+    FieldKind kind;
+    size_t offset;
+} Field;
+
+#define NUMBER(name)                                                                               \
+    {                                                                                              \
+#name, FIELD_NUMBER, offsetof(Tolerance, name)                                             \
+    }
+#define COUNT(name)                                                                                \
+    {                                                                                              \
+#name, FIELD_COUNT, offsetof(Tolerance, name)                                              \
+    }
+static const Field fields[] = {
+    NUMBER(color_levels),
+    NUMBER(color_ppm),
+    {"color_common_only", FIELD_SWITCH, offsetof(Tolerance, color_common_only)},
+    NUMBER(interior_ppm),
+    NUMBER(band_ppm),
+    NUMBER(bias_levels),
+    NUMBER(gain),
+    NUMBER(offset_levels),
+    NUMBER(silhouette_px),
+    NUMBER(segment_levels),
+    NUMBER(segment_px),
+    COUNT(segments_missing),
+    NUMBER(id_ppm),
+    NUMBER(id_interior_ppm),
+    NUMBER(id_band_ppm),
+    NUMBER(depth_max_mm),
+    NUMBER(depth_ppm),
+    NUMBER(depth_p99_mm),
+    NUMBER(normal_max_deg),
+    NUMBER(normal_ppm),
+    NUMBER(normal_median_deg),
+    NUMBER(coverage_ppm),
+    COUNT(region_pixels),
+    NUMBER(pixelmatch),
+    NUMBER(pixelmatch_ppm),
+};
+enum { FIELDS = sizeof fields / sizeof *fields };
+
+static void *field_of(Tolerance *tolerance, const Field *field)
+{
+    return (char *)tolerance + field->offset;
+}
+
+Tolerance tolerance_none(void)
+{
+    Tolerance none = {.tier = "none", .depth_max_mm = 0};
+    for (int i = 0; i < FIELDS; i++) {
+        if (fields[i].kind == FIELD_NUMBER)
+            *(double *)field_of(&none, &fields[i]) = (double)INFINITY;
+        else if (fields[i].kind == FIELD_COUNT)
+            *(size_t *)field_of(&none, &fields[i]) = SIZE_MAX;
+    }
+    none.color_levels = 0;
+    none.pixelmatch = (double)NAN;
+    return none;
+}
+
+Tolerance tolerance_identity(double depth_step_mm)
+{
+    Tolerance tolerance = tolerance_none();
+    tolerance.tier = "A";
+    tolerance.color_ppm = 5;
+    tolerance.id_ppm = 5;
+    tolerance.depth_max_mm = depth_step_mm;
+    tolerance.depth_ppm = 5;
+    tolerance.normal_max_deg = 0.03;
+    tolerance.normal_ppm = 5;
+    tolerance.coverage_ppm = 5;
+    return tolerance;
+}
+
+Tolerance tolerance_tolerant(double depth_step_mm)
+{
+    Tolerance tolerance = tolerance_none();
+    tolerance.tier = "B";
+    tolerance.color_levels = 2;
+    tolerance.interior_ppm = 2000;
+    tolerance.band_ppm = 10000;
+    tolerance.bias_levels = 0.01;
+    tolerance.gain = 0.0005;
+    tolerance.offset_levels = 0.0255;
+    tolerance.silhouette_px = 0.002;
+    tolerance.segment_levels = 0.12;
+    tolerance.segment_px = 0.15;
+    tolerance.segments_missing = 0;
+    tolerance.id_interior_ppm = 0;
+    tolerance.id_band_ppm = 2000;
+    tolerance.depth_p99_mm = depth_step_mm;
+    tolerance.normal_max_deg = 0.1;
+    tolerance.normal_ppm = 10000;
+    tolerance.normal_median_deg = 0.02;
+    return tolerance;
+}
+
+Tolerance tolerance_surface(void)
+{
+    Tolerance tolerance = tolerance_none();
+    tolerance.tier = "surface";
+    tolerance.color_levels = 2;
+    tolerance.color_ppm = 5000;
+    tolerance.color_common_only = true;
+    tolerance.depth_p99_mm = 0.01;
+    tolerance.region_pixels = 2;
+    return tolerance;
+}
+
+/* --------------------------------------------------------------------------------------- files */
+
+typedef struct ToleranceReader {
+    Tolerance tolerance;
+    char *name; /* owned */
+    Status status;
+    Err *err;
+} ToleranceReader;
+
+static Status set_field(Tolerance *tolerance, const Field *field, const char *value, Err *err)
+{
+    double number;
+    long long count;
+    bool unjudged = strcmp(value, "inf") == 0;
+    if (field->kind == FIELD_SWITCH) {
+        bool on = strcmp(value, "on") == 0;
+        if (!on && strcmp(value, "off") != 0)
+            return err_set(err, STATUS_INPUT, "%s is '%s'; it must be on or off", field->key,
+                           value);
+        *(bool *)field_of(tolerance, field) = on;
+    } else if (field->kind == FIELD_COUNT) {
+        if (!unjudged && !integer_parse(value, 0, 1ll << 40, &count))
+            return err_set(err, STATUS_INPUT,
+                           "%s is '%s'; it must be a whole number of at least 0, or inf",
+                           field->key, value);
+        *(size_t *)field_of(tolerance, field) = unjudged ? SIZE_MAX : (size_t)count;
+    } else {
+        if (!number_parse(value, &number) || !(number >= 0))
+            return err_set(err, STATUS_INPUT,
+                           "%s is '%s'; it must be a number of at least 0, or inf", field->key,
+                           value);
+        *(double *)field_of(tolerance, field) = number;
+    }
+    return STATUS_OK;
+}
+
+static Status take_pair(ToleranceReader *reader, const char *section, const char *key,
+                        const char *value)
+{
+    if (*section)
+        return err_set(reader->err, STATUS_INPUT, "a tolerance has no sections, and here is [%s]",
+                       section);
+    if (strcmp(key, "tier") == 0) {
+        free(reader->name);
+        reader->name = NULL;
+        return mem_strdup(&reader->name, value, reader->err);
+    }
+    for (int i = 0; i < FIELDS; i++)
+        if (strcmp(key, fields[i].key) == 0)
+            return set_field(&reader->tolerance, &fields[i], value, reader->err);
+    return err_set(reader->err, STATUS_INPUT, "'%s' is not a limit of a tolerance", key);
+}
+
+static int on_pair(void *user, const char *section, const char *key, const char *value)
+{
+    ToleranceReader *reader = user;
+    reader->status = take_pair(reader, section, key, value);
+    return reader->status == STATUS_OK;
+}
+
+Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *err)
+{
+    char *text = NULL;
+    size_t size;
+    ToleranceReader reader = {.tolerance = *tolerance, .err = err};
+    TRY(file_read(path, &text, &size, err));
+    int line = ini_parse_string(text, on_pair, &reader);
+    free(text);
+    Status status = reader.status;
+    if (status == STATUS_OK && line != 0)
+        status = err_set(err, STATUS_INPUT, "expected key = value");
+    if (status != STATUS_OK)
+        err_prefix(err, "%s:%d: ", path, line);
+    else if (!reader.name)
+        status = mem_strdup(&reader.name, "given", err);
+    if (status != STATUS_OK) {
+        free(reader.name);
+        return status;
+    }
+    *tolerance = reader.tolerance;
+    tolerance->tier = reader.name;
+    *name = reader.name;
+    return STATUS_OK;
+}
+
+void tolerance_text(const Tolerance *tolerance, Text *out)
+{
+    text_printf(out, "tier = %s\n", tolerance->tier);
+    for (int i = 0; i < FIELDS; i++) {
+        const char *at = (const char *)tolerance + fields[i].offset;
+        double number;
+        size_t count;
+        bool on;
+        switch (fields[i].kind) {
+        case FIELD_NUMBER:
+            memcpy(&number, at, sizeof number);
+            if (isnan(number))
+                break;
+            text_printf(out, "%s = ", fields[i].key);
+            text_number(out, number);
+            text_puts(out, "\n");
+            break;
+        case FIELD_COUNT:
+            memcpy(&count, at, sizeof count);
+            if (count == SIZE_MAX)
+                text_printf(out, "%s = inf\n", fields[i].key);
+            else
+                text_printf(out, "%s = %zu\n", fields[i].key, count);
+            break;
+        case FIELD_SWITCH:
+            memcpy(&on, at, sizeof on);
+            text_printf(out, "%s = %s\n", fields[i].key, on ? "on" : "off");
+            break;
+        }
+    }
+}

@@ -1,0 +1,214 @@
+/* TIFF and OpenEXR files of 7 x 5 pixels made by another program, tests/data/images, and every format
+ * after damage. */
+#include "image/image.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static Err err;
+
+enum { W = 7, H = 5 };
+
+static void path_of(const char *name, char path[128])
+{
+    snprintf(path, 128, "tests/data/images/%s", name);
+}
+
+static int level_at(int x, int y, int channel)
+{
+    return channel == 0 ? 30 * x + 11 * y : channel == 1 ? 40 * y + 3 * x : (17 * x * y + 5) % 256;
+}
+
+static void reads_tiff_codes_however_compressed(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        int bits, factor;
+    } files[] = {{"rgb8-lzw.tif", 8, 1}, {"rgb16-zip.tif", 16, 257}};
+    for (size_t i = 0; i < 2; i++) {
+        char path[128];
+        Picture picture;
+        path_of(files[i].name, path);
+        assert_int_equal(picture_read(&picture, path, &err), STATUS_OK);
+        assert_int_equal(picture.width, W);
+        assert_int_equal(picture.height, H);
+        assert_int_equal(picture.channels, 3);
+        assert_int_equal(picture.bits, files[i].bits);
+        size_t at = 0;
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < W; x++)
+                for (int c = 0; c < 3; c++)
+                    assert_int_equal(picture_code(&picture, at++),
+                                     level_at(x, y, c) * files[i].factor);
+        picture_release(&picture);
+    }
+}
+
+static void reads_floats_of_every_kind(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"float.tif", "half-zip.exr", "float-piz.exr"};
+    for (size_t i = 0; i < 3; i++) {
+        char path[128];
+        Plane plane;
+        path_of(names[i], path);
+        assert_int_equal(plane_read(&plane, path, &err), STATUS_OK);
+        assert_int_equal(plane.width, W);
+        assert_int_equal(plane.height, H);
+        assert_int_equal(plane.channels, 3);
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < W; x++) {
+                const float *value = plane.values + (y * W + x) * 3;
+                assert_float_equal(value[0], (float)(0.25 * x - 0.5), 0);
+                assert_float_equal(value[1], (float)(0.125 * y + 2 * x), 0);
+                assert_float_equal(value[2], (float)(0.5 * x * y), 0);
+            }
+        plane_release(&plane);
+    }
+}
+
+static void keeps_infinity_and_nan_of_a_single_channel(void **state)
+{
+    (void)state;
+    Plane plane;
+    assert_int_equal(plane_read(&plane, "tests/data/images/depth.exr", &err), STATUS_OK);
+    assert_int_equal(plane.channels, 1);
+    assert_true(isinf(plane.values[0]));
+    assert_true(isnan(plane.values[2 * W + 3]));
+    assert_float_equal(plane.values[W + 1], 100.75, 0);
+    plane_release(&plane);
+}
+
+static void says_what_it_does_not_read(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *sentence;
+    } files[] = {{"glassy.tif", "is transparent at column 0, row 0"},
+                 {"glassy.exr", "is transparent at column 0, row 0"},
+                 {"tiled.tif", "has 3 samples a pixel of 8 bits in a form that cannot be read"},
+                 {"tiled.exr", "only one flat image in scan lines can be read"}};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        char path[128];
+        Image image = {.picture = {.width = -7}};
+        path_of(files[i].name, path);
+        assert_int_equal(image_read(&image, path, &err), STATUS_INPUT);
+        assert_non_null(strstr(err.text, path));
+        if (!strstr(err.text, files[i].sentence))
+            fail_msg("\"%s\" lacks \"%s\"", err.text, files[i].sentence);
+        assert_int_equal(image.picture.width, -7);
+    }
+    Picture picture;
+    Plane plane;
+    assert_int_equal(picture_read(&picture, "tests/data/images/float.tif", &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "holds floats"));
+    assert_int_equal(plane_read(&plane, "tests/data/images/rgb8-lzw.tif", &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "holds whole numbers"));
+}
+
+/* ------------------------------------------------------------------------------------- damage */
+
+/* Reads bytes as an image: it is read, or refused with a sentence that names the file. */
+static Status read_bytes(const char *bytes, size_t size)
+{
+    static const char *const path = "build/image_formats_test.in";
+    Image image = {0};
+    assert_int_equal(file_write(path, bytes, size, &err), STATUS_OK);
+    err.text[0] = '\0';
+    Status status = image_read(&image, path, &err);
+    if (status != STATUS_OK) {
+        assert_true(status == STATUS_INPUT || status == STATUS_MEMORY);
+        assert_true(strlen(err.text) > strlen(path));
+        assert_null(strchr(err.text, '\n'));
+        assert_null(image.picture.codes8);
+        assert_null(image.plane.values);
+    }
+    image_release(&image);
+    return status;
+}
+
+/* One file of every format; the last two are made here. */
+static char *sample(size_t i, size_t *size)
+{
+    static const char *const names[] = {"rgb8-lzw.tif", "rgb16-zip.tif", "float.tif",
+                                        "half-zip.exr", "float-piz.exr", "depth.exr",
+                                        "tiled.exr"};
+    char path[128] = "build/image_formats_test.png", *bytes;
+    if (i < sizeof names / sizeof *names) {
+        path_of(names[i], path);
+    } else {
+        Picture picture;
+        assert_int_equal(picture_init(&picture, W, H, 3, i % 2 ? 8 : 16, &err), STATUS_OK);
+        for (size_t k = 0; k < W * H * 3; k++)
+            picture_set(&picture, k, (uint16_t)(k * 77 % 256));
+        assert_int_equal(picture_write(&picture, path, ENCODING_SRGB, NULL, &err), STATUS_OK);
+        picture_release(&picture);
+    }
+    assert_int_equal(file_read(path, &bytes, size, &err), STATUS_OK);
+    return bytes;
+}
+enum { SAMPLES = 9 };
+
+static void survives_files_cut_anywhere(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < SAMPLES; i++) {
+        size_t size;
+        char *bytes = sample(i, &size);
+        for (size_t length = 0; length < size; length += 1 + length % 3)
+            (void)read_bytes(bytes, length);
+        assert_int_equal(read_bytes(bytes, size / 2), STATUS_INPUT);
+        free(bytes);
+    }
+}
+
+static void survives_files_with_damaged_bytes(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 2385);
+    for (size_t i = 0; i < SAMPLES; i++) {
+        size_t size;
+        char *bytes = sample(i, &size);
+        for (int round = 0; round < 600; round++) {
+            char *damaged = malloc(size);
+            assert_non_null(damaged);
+            memcpy(damaged, bytes, size);
+            int edits = 1 + (int)(random_uniform(&random) * 4);
+            for (int k = 0; k < edits; k++) {
+                /* The first half of them near the start, where headers are. */
+                double reach = round % 2 ? 1 : 0.2;
+                size_t at = (size_t)(random_uniform(&random) * reach * (double)size);
+                damaged[at] = (char)(random_bits(&random) & 255);
+            }
+            (void)read_bytes(damaged, size);
+            free(damaged);
+        }
+        free(bytes);
+    }
+    unlink("build/image_formats_test.in");
+    unlink("build/image_formats_test.png");
+}
+
+int main(void)
+{
+    if (file_make_folder("build", &err) != STATUS_OK)
+        return 1;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_tiff_codes_however_compressed),
+        cmocka_unit_test(reads_floats_of_every_kind),
+        cmocka_unit_test(keeps_infinity_and_nan_of_a_single_channel),
+        cmocka_unit_test(says_what_it_does_not_read),
+        cmocka_unit_test(survives_files_cut_anywhere),
+        cmocka_unit_test(survives_files_with_damaged_bytes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

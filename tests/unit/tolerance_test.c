@@ -1,0 +1,466 @@
+/* Tiers, the account of segments, float colours, and tolerances as files. */
+#include "verify/verify.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static Err err;
+
+static void assert_near(double value, double wanted, double tolerance)
+{
+    if (!(fabs(value - wanted) <= tolerance))
+        fail_msg("%.12g is not %.12g to %g", value, wanted, tolerance);
+}
+
+enum { W = 96, H = 64, LEFT = 20, RIGHT = 60, TOP = 16, BOTTOM = 48 };
+
+typedef struct Side {
+    Picture picture;
+    IdPlane ids;
+    Plane depth, normal;
+} Side;
+
+/* Segment 23 beside segment 85, two rectangles of 20 x 32 pixels, on a dark ground. */
+static uint32_t id_at(int x, int y, int shift)
+{
+    if (y < TOP || y >= BOTTOM || x < LEFT + shift || x >= RIGHT + shift)
+        return 0;
+    return x < 40 + shift ? 23 : 85;
+}
+
+static void side_init(Side *side, int shift)
+{
+    assert_int_equal(picture_init(&side->picture, W, H, 3, 8, &err), STATUS_OK);
+    assert_int_equal(idplane_init(&side->ids, W, H, &err), STATUS_OK);
+    assert_int_equal(plane_init(&side->depth, W, H, 1, &err), STATUS_OK);
+    assert_int_equal(plane_init(&side->normal, W, H, 3, &err), STATUS_OK);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            int i = y * W + x;
+            side->ids.ids[i] = id_at(x, y, shift);
+            side->depth.values[i] = side->ids.ids[i] ? 31.5f : INFINITY;
+            side->normal.values[3 * i + 2] = side->ids.ids[i] ? 1 : 0;
+            for (int c = 0; c < 3; c++)
+                side->picture.codes8[3 * i + c] =
+                    (uint8_t)(side->ids.ids[i] ? 60 + 2 * (x - shift) + c : 10);
+        }
+}
+
+static void side_release(Side *side)
+{
+    picture_release(&side->picture);
+    idplane_release(&side->ids);
+    plane_release(&side->depth);
+    plane_release(&side->normal);
+}
+
+static Rendering rendering(const Side *side)
+{
+    return (Rendering){&side->picture, &side->ids, &side->depth, &side->normal};
+}
+
+static CompareResult compare(const Side *a, const Side *b, Tolerance tolerance, Ledger *ledger)
+{
+    CompareResult result;
+    Rendering of_a = rendering(a), of_b = rendering(b);
+    assert_int_equal(compare_pictures(&of_a, &of_b, &tolerance, &result, ledger, &err), STATUS_OK);
+    return result;
+}
+
+static const Rule *rule_named(const CompareResult *result, const char *part)
+{
+    for (int i = 0; i < result->n_rules; i++)
+        if (strstr(result->rules[i].name, part))
+            return &result->rules[i];
+    fail_msg("there is no rule about \"%s\"", part);
+    return NULL;
+}
+
+static void tier_b_agrees_with_what_single_precision_does(void **state)
+{
+    (void)state;
+    Side a, b;
+    side_init(&a, 0);
+    side_init(&b, 0);
+    /* One code up in one place, down in another. */
+    b.picture.codes8[3 * (20 * W + 30)] += 1;
+    b.picture.codes8[3 * (30 * W + 50) + 1] -= 1;
+    CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
+    assert_true(r.agrees);
+    assert_string_equal(r.tolerance.tier, "B");
+    assert_false(compare(&a, &b, tolerance_identity(0), NULL).agrees);
+    side_release(&a);
+    side_release(&b);
+}
+
+static void tier_b_finds_one_segment_a_little_brighter(void **state)
+{
+    (void)state;
+    Side a, b;
+    Ledger ledger;
+    side_init(&a, 0);
+    side_init(&b, 0);
+    /* A quarter of segment 85's pixels one level brighter: no pixel is off by more than a code. */
+    for (int y = TOP; y < BOTTOM; y += 2)
+        for (int x = 40; x < RIGHT; x += 2)
+            b.picture.codes8[3 * (y * W + x)] += 1;
+    CompareResult r = compare(&a, &b, tolerance_tolerant(0), &ledger);
+    assert_false(r.agrees);
+    const Rule *rule = rule_named(&r, "mean of a segment");
+    assert_false(rule->met);
+    assert_near(rule->measured, 0.25, 1e-12);
+    assert_int_equal(rule->at.id_a, 85);
+    assert_int_equal(ledger.n, 2);
+    assert_int_equal(ledger.entries[0].id, 23);
+    assert_int_equal(ledger.entries[0].differing, 0);
+    assert_near(ledger.entries[0].gain, 1, 0);
+    const LedgerEntry *entry = &ledger.entries[1];
+    assert_int_equal(entry->area_a, 20 * 32);
+    assert_int_equal(entry->common, 20 * 32);
+    assert_int_equal(entry->differing, 160);
+    assert_near(entry->signed_levels[0], 0.25, 1e-12);
+    assert_near(entry->signed_levels[1], 0, 0);
+    assert_true(entry->gain > 1 && entry->gain < 1.001);
+    assert_near(entry->outline_px, 104 * 0.78539816339744831, 1e-9);
+    assert_int_equal(entry->left, 40);
+    assert_int_equal(entry->bottom, BOTTOM - 1);
+    assert_int_equal(r.n_worst_segments, 1);
+    assert_int_equal(r.worst_segments[0].id, 85);
+    ledger_release(&ledger);
+    side_release(&a);
+    side_release(&b);
+}
+
+static void measures_by_how_much_an_outline_has_moved(void **state)
+{
+    (void)state;
+    Side a, b;
+    Ledger ledger;
+    side_init(&a, 0);
+    side_init(&b, 0);
+    /* Segment 85 one column wider. */
+    for (int y = TOP; y < BOTTOM; y++) {
+        b.ids.ids[y * W + RIGHT] = 85;
+        memset(&b.picture.codes8[3 * (y * W + RIGHT)], 99, 3);
+    }
+    CompareResult r = compare(&a, &b, tolerance_tolerant(0), &ledger);
+    double outline = 2 * (40 + 32) * 0.78539816339744831;
+    assert_near(r.silhouette_px, 32 / outline, 1e-12);
+    assert_near(ledger.entries[1].moved_px, 32 / (104 * 0.78539816339744831), 1e-12);
+    assert_int_equal(r.extra_pixels, 32);
+    assert_false(rule_named(&r, "outline of what is seen")->met);
+    assert_false(rule_named(&r, "outline of a segment")->met);
+    ledger_release(&ledger);
+    side_release(&a);
+    side_release(&b);
+}
+
+static void names_a_segment_that_is_gone(void **state)
+{
+    (void)state;
+    Side a, b;
+    side_init(&a, 0);
+    side_init(&b, 0);
+    for (int i = 0; i < W * H; i++)
+        if (b.ids.ids[i] == 23)
+            b.ids.ids[i] = 85;
+    CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
+    assert_int_equal(r.segments, 2);
+    assert_int_equal(r.segments_missing, 1);
+    assert_int_equal(r.segment_missing_at.id_a, 23);
+    assert_int_equal(r.segment_missing_at.id_b, 0);
+    assert_int_equal(r.classes[PIXEL_WRONG_SEGMENT] + r.classes[PIXEL_EDGE], 640);
+    assert_non_null(strstr(r.reason, "segments seen in only one image"));
+    side_release(&a);
+    side_release(&b);
+}
+
+static void fits_gain_and_offset(void **state)
+{
+    (void)state;
+    Side a, b;
+    side_init(&a, 0);
+    side_init(&b, 0);
+    for (int i = 0; i < W * H * 3; i++)
+        if (a.ids.ids[i / 3])
+            b.picture.codes8[i] = (uint8_t)((a.picture.codes8[i] * 5) / 4 + 7);
+    CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
+    assert_true(fabs(r.gain - 1.25) < 2e-3);
+    assert_true(fabs(r.offset_levels - 6.6) < 0.3); /* the quotient is rounded down */
+    assert_false(rule_named(&r, "gain")->met);
+    assert_false(rule_named(&r, "offset")->met);
+    side_release(&a);
+    side_release(&b);
+}
+
+static void tells_geometry_from_shading_and_shadow(void **state)
+{
+    (void)state;
+    Side a, b;
+    side_init(&a, 0);
+    side_init(&b, 0);
+    int geometry = 20 * W + 30, tilt = 21 * W + 30, shading = 22 * W + 30, shadow = 23 * W + 30;
+    b.depth.values[geometry] += 0.5f;
+    b.normal.values[3 * tilt] = 0.01f;
+    const int changed[] = {geometry, tilt, shading};
+    for (int i = 0; i < 3; i++)
+        b.picture.codes8[3 * changed[i]] += 9;
+    memset(&b.picture.codes8[3 * shadow], 20, 3);
+    b.picture.codes8[3 * (24 * W + 30)] += 1;
+    CompareResult r = compare(&a, &b, tolerance_identity(0.01), NULL);
+    assert_int_equal(r.classes[PIXEL_GEOMETRY], 2);
+    assert_int_equal(r.classes[PIXEL_SHADING], 1);
+    assert_int_equal(r.classes[PIXEL_SHADOW], 1);
+    assert_int_equal(r.classes[PIXEL_ROUNDING], 1);
+    assert_int_equal(r.classes[PIXEL_IDENTICAL], W * H - 5);
+    side_release(&a);
+    side_release(&b);
+}
+
+static void sums_do_not_depend_on_where_the_bands_lie(void **state)
+{
+    (void)state;
+    /* The same rows, once as they are and once five rows further down. */
+    Side a[2], b[2];
+    CompareResult r[2];
+    for (int i = 0; i < 2; i++) {
+        side_init(&a[i], 0);
+        side_init(&b[i], 3);
+        if (i == 0)
+            continue;
+        Side *sides[] = {&a[1], &b[1]};
+        for (int k = 0; k < 2; k++) {
+            memmove(sides[k]->picture.codes8 + 5 * 3 * W, sides[k]->picture.codes8,
+                    (H - 5) * 3 * W);
+            memmove(sides[k]->ids.ids + 5 * W, sides[k]->ids.ids, (H - 5) * W * 4);
+            for (int p = 0; p < W * H; p++)
+                sides[k]->depth.values[p] = sides[k]->ids.ids[p] ? 31.5f : INFINITY;
+        }
+    }
+    for (int i = 0; i < 2; i++)
+        r[i] = compare(&a[i], &b[i], tolerance_tolerant(0), NULL);
+    assert_int_equal(r[0].differing_pixels, r[1].differing_pixels);
+    assert_int_equal(r[0].band_pixels, r[1].band_pixels);
+    assert_int_equal(r[0].worst.y + 5, r[1].worst.y);
+    assert_near(r[0].rmse, r[1].rmse, 0);
+    assert_near(r[0].gain, r[1].gain, 1e-15);
+    assert_near(r[0].silhouette_px, r[1].silhouette_px, 0);
+    for (int i = 0; i < 2; i++) {
+        side_release(&a[i]);
+        side_release(&b[i]);
+    }
+}
+
+/* -------------------------------------------------------------------------------------- floats */
+
+static void never_averages_in_what_is_not_finite(void **state)
+{
+    (void)state;
+    Plane a, b;
+    assert_int_equal(plane_init(&a, 20, 15, 3, &err), STATUS_OK);
+    assert_int_equal(plane_init(&b, 20, 15, 3, &err), STATUS_OK);
+    for (int i = 0; i < 900; i++)
+        a.values[i] = b.values[i] = 0.001f * (float)i;
+    b.values[3 * 7 + 1] = NAN;
+    a.values[3 * 100] = INFINITY;
+    b.values[3 * 100] = INFINITY;
+    Tolerance tolerance = tolerance_none();
+    CompareResult r;
+    assert_int_equal(compare_colors(&a, &b, NULL, NULL, &tolerance, true, &r, &err), STATUS_OK);
+    assert_int_equal(r.nan_pixels_a, 1);
+    assert_int_equal(r.nan_pixels_b, 2);
+    assert_int_equal(r.nan_at.x, 7);
+    assert_int_equal(r.judged_pixels, 298);
+    assert_int_equal(r.differing_pixels, 0);
+    assert_near(r.rmse, 0, 0);
+    assert_near(r.hdr_flip_mean, 0, 0);
+    assert_false(r.agrees);
+    assert_non_null(strstr(r.reason, "colours that are not finite: 3 pixels"));
+    plane_release(&a);
+    plane_release(&b);
+}
+
+static void sees_differences_beyond_white_and_below_a_code(void **state)
+{
+    (void)state;
+    Plane a, b;
+    Tolerance tolerance = tolerance_identity(0);
+    CompareResult r;
+    assert_int_equal(plane_init(&a, 12, 12, 3, &err), STATUS_OK);
+    assert_int_equal(plane_init(&b, 12, 12, 3, &err), STATUS_OK);
+    for (int i = 0; i < 12 * 12 * 3; i++)
+        a.values[i] = b.values[i] = 0.5f;
+    a.values[30] = 5;
+    b.values[30] = 5.5f;
+    b.values[60] = nextafterf(0.5f, 1);
+    assert_int_equal(compare_colors(&a, &b, NULL, NULL, &tolerance, true, &r, &err), STATUS_OK);
+    assert_int_equal(r.differing_pixels, 2);
+    assert_int_equal(r.beyond_pixels, 2);
+    assert_int_equal(r.worst.x, 10);
+    assert_near(r.max_abs, 255 * 1.055 * (pow(5.5, 1 / 2.4) - pow(5, 1 / 2.4)), 1e-9);
+    assert_true(r.hdr_flip_mean > 0);
+    tolerance.color_levels = 0.01;
+    assert_int_equal(compare_colors(&a, &b, NULL, NULL, &tolerance, false, &r, &err), STATUS_OK);
+    assert_int_equal(r.beyond_pixels, 1);
+    plane_release(&a);
+    plane_release(&b);
+}
+
+/* ---------------------------------------------------------------------------------- tolerances */
+
+static Status read_text(Tolerance *tolerance, char **name, const char *text)
+{
+    assert_int_equal(file_write("build/tolerance_test.ini", text, strlen(text), &err), STATUS_OK);
+    Status status = tolerance_read(tolerance, name, "build/tolerance_test.ini", &err);
+    unlink("build/tolerance_test.ini");
+    return status;
+}
+
+static void reads_back_what_it_writes(void **state)
+{
+    (void)state;
+    Tolerance written = tolerance_tolerant(0.00251), read = tolerance_none();
+    Text text = TEXT_INIT, again = TEXT_INIT;
+    char *name;
+    written.pixelmatch = 0.2;
+    written.pixelmatch_ppm = 7;
+    tolerance_text(&written, &text);
+    assert_int_equal(read_text(&read, &name, text.chars), STATUS_OK);
+    assert_string_equal(read.tier, "B");
+    tolerance_text(&read, &again);
+    assert_string_equal(text.chars, again.chars);
+    free(name);
+    text_release(&text);
+    text_release(&again);
+}
+
+static void says_which_line_of_a_tolerance_is_wrong(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *sentence;
+    } cases[] = {{"tier = mine\ncolor_pmm = 3\n", ":2: 'color_pmm' is not a limit"},
+                 {"gain = -0.1\n", ":1: gain is '-0.1'; it must be a number of at least 0"},
+                 {"\nregion_pixels = 2.5\n", ":2: region_pixels is '2.5'"},
+                 {"color_common_only = yes\n", "it must be on or off"},
+                 {"gain = nan\n", "gain is 'nan'"},
+                 {"[color]\ngain = 1\n", "has no sections"},
+                 {"gain\n", ":1: expected key = value"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Tolerance tolerance = tolerance_identity(0);
+        char *name = NULL;
+        assert_int_equal(read_text(&tolerance, &name, cases[i].text), STATUS_INPUT);
+        if (!strstr(err.text, cases[i].sentence))
+            fail_msg("\"%s\" lacks \"%s\"", err.text, cases[i].sentence);
+        assert_null(name);
+        assert_string_equal(tolerance.tier, "A");
+    }
+}
+
+/* ------------------------------------------------------------------------------------ pictures */
+
+static void shows_signed_differences_about_grey(void **state)
+{
+    (void)state;
+    Picture a, b, shown;
+    assert_int_equal(picture_init(&a, 5, 1, 1, 8, &err), STATUS_OK);
+    assert_int_equal(picture_init(&b, 5, 1, 1, 8, &err), STATUS_OK);
+    const uint8_t in_a[] = {50, 50, 50, 50, 50}, in_b[] = {50, 53, 48, 90, 10};
+    const uint8_t wanted[] = {128, 152, 112, 255, 0};
+    memcpy(a.codes8, in_a, 5);
+    memcpy(b.codes8, in_b, 5);
+    assert_int_equal(difference_picture(&shown, &a, &b, &err), STATUS_OK);
+    assert_memory_equal(shown.codes8, wanted, 5);
+    picture_release(&a);
+    picture_release(&b);
+    picture_release(&shown);
+}
+
+/* Counts the chunks of this type. */
+static int count_chunks(const Text *png, const char *type)
+{
+    int count = 0;
+    for (size_t at = 8; at + 12 <= png->length;) {
+        const uint8_t *chunk = (const uint8_t *)png->chars + at;
+        count += memcmp(chunk + 4, type, 4) == 0;
+        at += 12 +
+              ((size_t)chunk[0] << 24 | (size_t)chunk[1] << 16 | (size_t)chunk[2] << 8 | chunk[3]);
+    }
+    return count;
+}
+
+static void animates_two_pictures_in_one_png(void **state)
+{
+    (void)state;
+    Side a, b;
+    Text png = TEXT_INIT;
+    Picture first;
+    side_init(&a, 0);
+    side_init(&b, 3);
+    assert_int_equal(flicker_png(&a.picture, &b.picture, &png, &err), STATUS_OK);
+    assert_int_equal(count_chunks(&png, "acTL"), 1);
+    assert_int_equal(count_chunks(&png, "fcTL"), 2);
+    assert_true(count_chunks(&png, "fdAT") >= 1);
+    assert_int_equal(count_chunks(&png, "IEND"), 1);
+    /* Readers that know no animations see A; libpng holds the checksums against the chunks. */
+    assert_int_equal(file_write("build/flicker.png", png.chars, png.length, &err), STATUS_OK);
+    assert_int_equal(picture_read(&first, "build/flicker.png", &err), STATUS_OK);
+    assert_memory_equal(first.codes8, a.picture.codes8, W * H * 3);
+    unlink("build/flicker.png");
+    picture_release(&first);
+    text_release(&png);
+    side_release(&a);
+    side_release(&b);
+}
+
+static void writes_a_junit_case_for_each_rule(void **state)
+{
+    (void)state;
+    Side a, b;
+    Text xml = TEXT_INIT;
+    side_init(&a, 0);
+    side_init(&b, 1);
+    CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
+    compare_junit(&r, "a<b>.png", &xml);
+    int cases = 0, failures = 0;
+    for (const char *at = xml.chars; (at = strstr(at, "<testcase ")); at++)
+        cases++;
+    for (const char *at = xml.chars; (at = strstr(at, "<failure ")); at++)
+        failures++;
+    assert_int_equal(cases, r.n_rules);
+    assert_true(failures > 0 && failures <= cases);
+    assert_non_null(strstr(xml.chars, "name=\"a&lt;b&gt;.png\""));
+    text_release(&xml);
+    side_release(&a);
+    side_release(&b);
+}
+
+int main(void)
+{
+    if (file_make_folder("build", &err) != STATUS_OK)
+        return 1;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tier_b_agrees_with_what_single_precision_does),
+        cmocka_unit_test(tier_b_finds_one_segment_a_little_brighter),
+        cmocka_unit_test(measures_by_how_much_an_outline_has_moved),
+        cmocka_unit_test(names_a_segment_that_is_gone),
+        cmocka_unit_test(fits_gain_and_offset),
+        cmocka_unit_test(tells_geometry_from_shading_and_shadow),
+        cmocka_unit_test(sums_do_not_depend_on_where_the_bands_lie),
+        cmocka_unit_test(never_averages_in_what_is_not_finite),
+        cmocka_unit_test(sees_differences_beyond_white_and_below_a_code),
+        cmocka_unit_test(reads_back_what_it_writes),
+        cmocka_unit_test(says_which_line_of_a_tolerance_is_wrong),
+        cmocka_unit_test(shows_signed_differences_about_grey),
+        cmocka_unit_test(animates_two_pictures_in_one_png),
+        cmocka_unit_test(writes_a_junit_case_for_each_rule),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
