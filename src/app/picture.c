@@ -162,6 +162,8 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
         if (status != STATUS_OK)
             scene_release(scene);
     }
+    if (status == STATUS_OK)
+        scene_move_to_origin(scene);
     tree_release(&tree);
     return status;
 }

@@ -81,10 +81,13 @@ static void put_guard(Text *text, const char *name)
         text_printf(text, "%c", isalnum((unsigned char)*name) ? *name : '_');
 }
 
-static void put_extent(Text *text, Box box)
+/* The box, and where its origin lies in the tree when that was moved. */
+static void put_extent(Text *text, Box box, Vec3 origin)
 {
     text_printf(text, "%.4g to %.4g, %.4g to %.4g, %.4g to %.4g mm", box.low.x, box.high.x,
                 box.low.y, box.high.y, box.low.z, box.high.z);
+    if (origin.x != 0 || origin.y != 0 || origin.z != 0)
+        text_printf(text, ", about <%.15g,%.15g,%.15g> of the tree", origin.x, origin.y, origin.z);
 }
 
 enum { MAX_VALUES = 32 };
@@ -169,7 +172,7 @@ static Status put_geometry(const Scene *scene, const PovrayParams *params, const
     text_puts(add_value(&values, "file"), file);
     text_puts(add_value(&values, "description"), params->description);
     text_puts(add_value(&values, "generator"), params->generator);
-    put_extent(add_value(&values, "extent"), scene->bounds);
+    put_extent(add_value(&values, "extent"), scene->bounds, scene->origin);
     put_guard(add_value(&values, "guard"), file);
     put_color(add_value(&values, "color"), scene->color);
     put_float(add_value(&values, "ambient"), finish->ambient);
@@ -216,7 +219,7 @@ static Status put_scene(const Scene *scene, const PovrayParams *params, const Te
               params->geometry_file ? params->geometry_file : "the last part of this file");
     text_puts(add_value(&values, "description"), params->description);
     text_puts(add_value(&values, "generator"), params->generator);
-    put_extent(add_value(&values, "extent"), scene->bounds);
+    put_extent(add_value(&values, "extent"), scene->bounds, scene->origin);
     text_printf(add_value(&values, "width"), "%d", camera->width);
     text_printf(add_value(&values, "height"), "%d", camera->height);
     text_puts(add_value(&values, "perspective"),

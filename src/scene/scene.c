@@ -28,6 +28,39 @@ void scene_depth_range(const Scene *scene, double *near_mm, double *far_mm)
     *far_mm = distance + radius;
 }
 
+/* A scene is far from the origin beyond this many times its size. */
+static const double far_sizes = 16;
+
+static double largest_of(Vec3 v)
+{
+    return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
+}
+
+void scene_move_to_origin(Scene *scene)
+{
+    Vec3 center = box_center(scene->bounds);
+    double size = largest_of(vec3_sub(scene->bounds.high, scene->bounds.low));
+    if (!(largest_of(center) > far_sizes * size))
+        return;
+    Vec3 move = {-round(center.x), -round(center.y), -round(center.z)};
+    Vec3 *const places[] = {&scene->camera.location, &scene->bounds.low, &scene->bounds.high};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++)
+        *places[i] = vec3_add(*places[i], move);
+    for (size_t i = 0; i < scene->n_lights; i++) {
+        scene->lights[i].location = vec3_add(scene->lights[i].location, move);
+        scene->lights[i].target = vec3_add(scene->lights[i].target, move);
+    }
+    for (size_t i = 0; i < scene->n_primitives; i++) {
+        scene->primitives[i].a = vec3_add(scene->primitives[i].a, move);
+        scene->primitives[i].b = vec3_add(scene->primitives[i].b, move);
+    }
+    for (size_t i = 0; i < scene->n_segments; i++) {
+        scene->segments[i].a = vec3_add(scene->segments[i].a, move);
+        scene->segments[i].b = vec3_add(scene->segments[i].b, move);
+    }
+    scene->origin = vec3_sub(scene->origin, move);
+}
+
 void scene_release(Scene *scene)
 {
     free(scene->lights);

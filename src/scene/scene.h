@@ -86,10 +86,16 @@ typedef struct Scene {
     size_t n_segments;
     bool uniform_color; /* every color is `color` */
     Rgb color;
-    Box bounds; /* of the geometry, mm; for the field widened by its overshoot */
+    Box bounds;  /* of the geometry, mm; for the field widened by its overshoot */
+    Vec3 origin; /* where the origin of all of this lies in the coordinates of the tree */
 } Scene;
 
 void scene_release(Scene *scene);
+
+/* Moves a scene that lies far from the origin, for its size, next to it, by whole millimetres, so that no
+ * digits are lost to the distance; nothing seen changes. POV-Ray keeps bounding boxes in single precision.
+ */
+void scene_move_to_origin(Scene *scene);
 
 /* An interval of depth that holds all of the geometry, whatever the pixel. */
 void scene_depth_range(const Scene *scene, double *near_mm, double *far_mm);

@@ -141,6 +141,28 @@ test_a_tree_drawn_by_hand_agrees_in_every_model() {
     done
 }
 
+# Faces of cells lie at x = 0 and y = 0.
+test_isosurface_agrees_at_any_magnification() {
+    local height
+    cp "$DATA/bifurcation.swc" tree.swc
+    for height in 1 0.05 0.002; do
+        agrees isosurface --location 0,-0.53,90 --look-at 0,-0.53,0 --height $height --shadows on
+        rm -r report
+    done
+}
+
+test_a_tree_far_from_the_origin_agrees() {
+    local model
+    tree_3d 40
+    awk '/^#/ { if (!/domain/) print; next }
+         { $3 += 1000000; $4 -= 500000; $5 += 200000; print }' CONVFMT=%.15g OFMT=%.15g tree.swc >far.swc
+    mv far.swc tree.swc
+    for model in rounded isosurface; do
+        agrees $model
+        rm -r report
+    done
+}
+
 test_a_measured_tree_agrees() {
     [ -d "$SHARED/brava" ] || skip "the measured trees of ../shared/data/brava are not here"
     cp "$SHARED/brava/BG0002records.swc" tree.swc

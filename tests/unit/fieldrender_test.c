@@ -154,7 +154,7 @@ static void the_picture_is_that_of_single_rays(void **state)
             Staged staged;
             stage(&staged, (SceneKind)kind, (Projection)projection);
             Caster *caster;
-            assert_int_equal(caster_new(staged.scene, 1, &caster, NULL), STATUS_OK);
+            assert_int_equal(caster_new(staged.scene, NULL, 1, &caster, NULL), STATUS_OK);
             Frame frame = drawn(staged.scene, 2, 1, 0);
             int seen = 0, different = 0;
             for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
@@ -178,7 +178,7 @@ static void antialiasing_weighs_the_centre_and_the_grid_alike(void **state)
         Staged staged;
         stage(&staged, KIND_TREE, n == 2 ? PROJECTION_ORTHOGRAPHIC : PROJECTION_PERSPECTIVE);
         Caster *caster;
-        assert_int_equal(caster_new(staged.scene, 1, &caster, NULL), STATUS_OK);
+        assert_int_equal(caster_new(staged.scene, NULL, 1, &caster, NULL), STATUS_OK);
         Frame frame = drawn(staged.scene, 2, n, 0);
         double offsets[3];
         resample_offsets(n, offsets);

@@ -31,49 +31,126 @@ static Ray random_ray(const TestScene *test, Random *random)
     return (Ray){vec3_add_scaled(at, direction, -200), direction};
 }
 
+/* The same scene, to be seen as POV-Ray sees it and by proof. */
+typedef struct Views {
+    TestScene test;
+    Halving *halving;
+    FieldIndex *index;
+    FieldScratch *scratch;
+    size_t seen, grazing;
+} Views;
+
+static void views_init(Views *views, SceneKind kind, Random *random)
+{
+    make_test_scene(kind, random, &views->test);
+    views->halving = halving_of(&views->test.scene);
+    assert_int_equal(fieldindex_build(&views->test.scene, &views->index, NULL), STATUS_OK);
+    assert_int_equal(fieldscratch_new(fieldindex_size(views->index), &views->scratch, NULL),
+                     STATUS_OK);
+}
+
+static void views_release(Views *views)
+{
+    fieldscratch_free(views->scratch);
+    fieldindex_free(views->index);
+    halving_free(views->halving);
+}
+
+/* Both see the ray's first hit, and at the same place, unless it grazes. */
+static void assert_seen_alike(Views *views, Ray ray)
+{
+    Hit hit;
+    double t;
+    Vec3 normal;
+    uint32_t segment, exact_segment;
+    bool found = halving_first_hit(views->halving, ray, 1e-4, &hit, &segment);
+    bool exact = field_first_hit(views->index, views->scratch, ray, 1e-4, INFINITY, &t, &normal,
+                                 &exact_segment);
+    double cosine = exact ? -vec3_dot(normal, ray.direction) : 0;
+    if (found && (!exact || hit.t < t))
+        cosine = exact ? fmin(cosine, fabs(vec3_dot(hit.normal, ray.direction))) : 0;
+    if (cosine < 0.05) {
+        views->grazing += found || exact;
+        return;
+    }
+    assert_true(found);
+    views->seen++;
+    double radius = views->test.segments[segment].radius_mm;
+    double allowed = cell_accuracy(radius) + cell_displacement(radius, ERF_FAST) / cosine;
+    assert_true(fabs(hit.t - t) <= allowed);
+    assert_true(vec3_dot(hit.normal, normal) > cos(0.2)); /* it turns fast in a crease */
+}
+
 static void what_it_sees_is_the_surface_to_its_accuracy(void **state)
 {
     (void)state;
     Random random;
     random_seed(&random, 61);
-    size_t seen = 0, grazing = 0;
+    Views views = {0};
     for (int kind = 0; kind < N_TAME_KINDS; kind++) {
-        TestScene test;
-        make_test_scene((SceneKind)kind, &random, &test);
-        Halving *halving = halving_of(&test.scene);
-        FieldIndex *index;
-        FieldScratch *scratch;
-        assert_int_equal(fieldindex_build(&test.scene, &index, NULL), STATUS_OK);
-        assert_int_equal(fieldscratch_new(fieldindex_size(index), &scratch, NULL), STATUS_OK);
-        for (int i = 0; i < 3000; i++) {
-            Ray ray = random_ray(&test, &random);
-            Hit hit;
-            double t;
-            Vec3 normal;
-            uint32_t segment, exact_segment;
-            bool found = halving_first_hit(halving, ray, 1e-4, &hit, &segment);
-            bool exact =
-                field_first_hit(index, scratch, ray, 1e-4, INFINITY, &t, &normal, &exact_segment);
-            double cosine = exact ? -vec3_dot(normal, ray.direction) : 0;
-            if (found && (!exact || hit.t < t))
-                cosine = exact ? fmin(cosine, fabs(vec3_dot(hit.normal, ray.direction))) : 0;
-            if (cosine < 0.05) {
-                grazing += found || exact;
-                continue;
-            }
-            assert_true(found);
-            seen++;
-            double radius = test.segments[segment].radius_mm;
-            double allowed = cell_accuracy(radius) + cell_displacement(radius, ERF_FAST) / cosine;
-            assert_true(fabs(hit.t - t) <= allowed);
-            assert_true(vec3_dot(hit.normal, normal) > cos(0.05));
-        }
-        fieldscratch_free(scratch);
-        fieldindex_free(index);
-        halving_free(halving);
+        views_init(&views, (SceneKind)kind, &random);
+        for (int i = 0; i < 3000; i++)
+            assert_seen_alike(&views, random_ray(&views.test, &random));
+        views_release(&views);
     }
-    printf("  %zu rays seen alike, %zu graze\n", seen, grazing);
-    assert_true(seen > 5000 && grazing < seen / 10);
+    printf("  %zu rays seen alike, %zu graze\n", views.seen, views.grazing);
+    assert_true(views.seen > 5000 && views.grazing < views.seen / 10);
+}
+
+/* A place of the surface in a face of the cell's cube, found on a line in that face. */
+static bool surface_on_face(const CellTree *tree, const Cell *cell, Random *random, Vec3 *found)
+{
+    double overlap = 5 * cell->accuracy;
+    double low[3] = {cell->low.x, cell->low.y, cell->low.z};
+    double high[3] = {cell->high.x, cell->high.y, cell->high.z};
+    int axis = (int)(random_bits(random) % 3), other = (axis + 1) % 3, third = (axis + 2) % 3;
+    double a[3], b[3];
+    a[axis] = b[axis] = random_bits(random) & 1 ? low[axis] + overlap : high[axis] - overlap;
+    a[other] = low[other];
+    b[other] = high[other];
+    a[third] = uniform(random, low[third], high[third]);
+    b[third] = uniform(random, low[third], high[third]);
+    Vec3 x = vec3(a[0], a[1], a[2]), y = vec3(b[0], b[1], b[2]);
+    bool inside = cell_function(tree, cell, x) < 0;
+    if ((cell_function(tree, cell, y) < 0) == inside)
+        return false;
+    for (int i = 0; i < 50; i++) {
+        Vec3 middle = vec3_scale(vec3_add(x, y), 0.5);
+        *((cell_function(tree, cell, middle) < 0) == inside ? &x : &y) = middle;
+    }
+    *found = x;
+    return true;
+}
+
+static void no_seam_shows_between_cells_at_any_magnification(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 62);
+    Views views = {0};
+    for (int kind = 0; kind < N_TAME_KINDS; kind++) {
+        views_init(&views, (SceneKind)kind, &random);
+        CellTree tree;
+        assert_int_equal(celltree_build(&views.test.scene, &cells, &tree, NULL), STATUS_OK);
+        for (int i = 0; i < 2500; i++) {
+            const Cell *cell = &tree.cells[random_bits(&random) % tree.n_cells];
+            Vec3 at;
+            if (!surface_on_face(&tree, cell, &random, &at))
+                continue;
+            for (double spread = 1e-2; spread > 1e-9; spread *= 0.05) {
+                Vec3 aim = vec3_add_scaled(at, random_direction(&random), spread * 8 * cell->scale);
+                Vec3 direction = random_direction(&random);
+                if (i & 1) /* along an axis, as in the views from the front, top and left */
+                    direction = i & 2 ? vec3(0, 0, -1) : vec3(1, 0, 0);
+                Ray ray = {vec3_add_scaled(aim, direction, -200), direction};
+                assert_seen_alike(&views, ray);
+            }
+        }
+        celltree_release(&tree);
+        views_release(&views);
+    }
+    printf("  %zu rays at faces of cells seen alike, %zu graze\n", views.seen, views.grazing);
+    assert_true(views.seen > 10000);
 }
 
 static void a_hit_is_behind_the_wall_by_less_than_the_accuracy(void **state)
@@ -130,6 +207,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_it_sees_is_the_surface_to_its_accuracy),
+        cmocka_unit_test(no_seam_shows_between_cells_at_any_magnification),
         cmocka_unit_test(a_hit_is_behind_the_wall_by_less_than_the_accuracy),
         cmocka_unit_test(a_shadow_ray_leaves_its_own_wall_alone),
         cmocka_unit_test(an_empty_scene_shows_nothing),
