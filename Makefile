@@ -37,6 +37,7 @@ OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPTIMISE_tsan := -O1 -g -fsanitize=thread
+VECTORS_release := -O3 -fno-math-errno -fno-trapping-math
 PACKAGES := libpng libdeflate libtiff-4 jansson inih
 PACKAGE_LIBS := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null)
 # libnifti2-dev has no pkg-config file, and OpenEXR's asks for the whole of it.
@@ -49,7 +50,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate check program unit unit-programs layers format format-check asan tsan \
+.PHONY: all deps demo validate bench-compare check program unit unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -73,6 +74,11 @@ validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
 	$(Q)tools/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tools/validate
+
+bench-compare: ## time `compare` on large pictures, beside idiff and odiff
+	$(Q)tools/deps build check
+	$(Q)$(AGAIN) all
+	$(Q)tools/bench-compare
 
 check: ## every test; ends in "N passed, N failed"
 	$(Q)tools/deps build run check
@@ -112,6 +118,9 @@ $(BUILD)/tests/%: tests/oracle/%.c Makefile
 	$(call say,CC,$<)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) -D_GNU_SOURCE $(CFLAGS) $(LDFLAGS) -o $@ $< -lm
+
+# Loops over pixels gain from vectors.
+$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
 
 -include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d)
 
