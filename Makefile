@@ -50,7 +50,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate bench-compare check program unit unit-programs layers format format-check asan tsan \
+.PHONY: all deps demo validate bench-grow bench-compare check program unit unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -74,6 +74,11 @@ validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
 	$(Q)tools/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tools/validate
+
+bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
+	$(Q)tools/deps build bench
+	$(Q)$(AGAIN) all
+	$(Q)tools/bench-grow
 
 bench-compare: ## time `compare` on large pictures, beside idiff and odiff
 	$(Q)tools/deps build check

@@ -1,8 +1,8 @@
 #include "app/commands.h"
 #include "app/refining.h"
+#include "app/tree_domain.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
-#include <string.h>
 
 static const Command command = {
     .name = "refine",
@@ -14,24 +14,6 @@ static const Command command = {
     .max_operands = 1,
     .needs_output = true,
 };
-
-/* The domain that the tree's header names; *found is false when it names none. */
-static Status domain_of_header(const Tree *tree, Domain *domain, bool *found, Err *err)
-{
-    static const char key[] = "domain: ";
-    for (size_t i = 0; i < tree->header.n_lines; i++) {
-        const char *line = tree->header.lines[i];
-        if (strncmp(line, key, sizeof key - 1) != 0)
-            continue;
-        Status status = domain_parse(domain, line + sizeof key - 1, err);
-        if (status != STATUS_OK)
-            err_prefix(err, "the tree's own domain cannot be read, so give --domain: ");
-        *found = status == STATUS_OK;
-        return status;
-    }
-    *found = false;
-    return STATUS_OK;
-}
 
 Status run_refine(int argc, char **argv, Err *err)
 {
@@ -63,7 +45,7 @@ Status run_refine(int argc, char **argv, Err *err)
     if (spec)
         TRY_GOTO(domain_parse(&domain, spec, err));
     else
-        TRY_GOTO(domain_of_header(&tree, &domain, &has_domain, err));
+        TRY_GOTO(tree_domain(&tree, &domain, &has_domain, err));
     TRY_GOTO(refining_apply(&refining, &parsed.common, has_domain ? &domain : NULL, &tree, &report,
                             err));
     TRY_GOTO(tree_write(&tree, output, err));

@@ -17,6 +17,9 @@ static const Command command = {
     .needs_output = true,
 };
 
+enum { HITS_EXACT, HITS_POVRAY };
+static const char *const hits_names[] = {"exact", "povray", NULL};
+
 /* --planes: which planes are written beside the picture. */
 static Status read_planes(const char *list, RenderParams *params, Err *err)
 {
@@ -54,12 +57,14 @@ Status run_render(int argc, char **argv, Err *err)
     PictureOptions picture;
     picture_options_init(&picture);
     const char *output = NULL, *planes = NULL, *json = NULL;
-    int bits = 8;
+    int bits = 8, hits = HITS_EXACT;
     const Option own[] = {
         {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P", "the picture: .png, .ppm or .pfm"},
         {"planes", OPTION_TEXT, &planes, NULL, 0, 0, NULL, "LIST",
          "planes beside it: color,depth,normal,id"},
         {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16", "of a PNG or PPM (8)"},
+        {"hits", OPTION_CHOICE, &hits, NULL, 0, 0, hits_names, NULL,
+         "isosurface: where it is, or where POV-Ray's root finder sees it (exact)"},
         {"json", OPTION_TEXT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
         {0},
     };
@@ -89,6 +94,8 @@ Status run_render(int argc, char **argv, Err *err)
     TRY_GOTO(frames_check_output(output, planes != NULL, err));
     TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 40, err));
     TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, err));
+    const CellParams cells = picture_cells(&picture);
+    params.povray_cells = hits == HITS_POVRAY ? &cells : NULL;
     progress_start(&progress, "rendering", parsed.common.quiet);
     status = render(&scene, &params, &frame, &stats, err);
     progress_end(&progress);

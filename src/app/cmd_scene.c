@@ -19,12 +19,12 @@ Status run_scene(int argc, char **argv, Err *err)
     PictureOptions picture;
     picture_options_init(&picture);
     const char *output = NULL;
-    double beta = 0;
+    bool ids = false;
     const Option own[] = {
         {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "S.pov",
          "the scene; its geometry goes to S.inc beside it"},
-        {"cell-beta", OPTION_NUMBER, &beta, NULL, 0.5, 64, NULL, NULL,
-         "isosurface: side of a cell over the smallest radius in it"},
+        {"ids", OPTION_SWITCH, &ids, NULL, 0, 0, NULL, NULL,
+         "isosurface: with what POV-Ray needs for the id plane (off)"},
         {0},
     };
     const Option *const tables[] = {own, picture.table, picture.coloring.table, NULL};
@@ -39,8 +39,9 @@ Status run_scene(int argc, char **argv, Err *err)
         goto done;
     }
     TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, err));
-    TRY_GOTO(
-        povfiles_write(&scene, parsed.operands[0], output, picture.stage.shadows, beta, NULL, err));
+    const CellParams cells = picture_cells(&picture);
+    TRY_GOTO(povfiles_write(&scene, parsed.operands[0], output, picture.stage.shadows, ids, &cells,
+                            err));
 done:
     scene_release(&scene);
     parsed_release(&parsed);

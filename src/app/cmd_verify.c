@@ -1,9 +1,12 @@
 /* One scene, two renderers: the scene is written for POV-Ray and rendered natively from memory; then
- * all four planes of both are held against each other. */
+ * all four planes of both are held against each other. An implicit surface takes two steps: corcast
+ * repeats POV-Ray's root finder, whose picture must be POV-Ray's, and where that sees the surface is held
+ * against where it is. */
 #include "app/commands.h"
 #include "app/frames.h"
 #include "app/picture.h"
 #include "app/povfiles.h"
+#include "app/surface_step.h"
 #include "app/templates.h"
 #include "render/render.h"
 #include "verify/verify.h"
@@ -27,11 +30,14 @@ typedef struct Verification {
     const Common *common;
     const char *tree, *folder;
     Scene scene;
-    Frame native, povray;
+    CellParams cells;
+    Frame native, povray,
+        exact; /* `exact` of an isosurface, whose `native` is POV-Ray's view of it */
     Picture native_picture, povray_picture;
-    RenderStats stats;
-    OracleRun run; /* of the colour plane */
+    RenderStats stats; /* of the exact frame, where there is one */
+    OracleRun run;     /* of the colour plane */
     CompareResult results[PLANE_KINDS];
+    SurfaceCheck surface;
     char *commands[8]; /* owned */
     size_t n_commands;
 } Verification;
@@ -41,6 +47,7 @@ static void verification_release(Verification *v)
     scene_release(&v->scene);
     frame_release(&v->native);
     frame_release(&v->povray);
+    frame_release(&v->exact);
     picture_release(&v->native_picture);
     picture_release(&v->povray_picture);
     for (size_t i = 0; i < v->n_commands; i++)
@@ -49,28 +56,49 @@ static void verification_release(Verification *v)
 
 /* ---- the two sides ------------------------------------------------------------------------------ */
 
-static Status render_native(Verification *v, const char *provenance, Err *err)
+static bool is_isosurface(const Verification *v)
+{
+    return v->scene.model == SCENE_ISOSURFACE;
+}
+
+static Status render_frame(Verification *v, const CellParams *povray_cells, Frame *frame, Err *err)
 {
     Progress progress;
     const RenderParams params = {.threads = v->common->threads,
                                  .antialias = v->picture->antialias,
                                  .shadows = v->picture->stage.shadows,
+                                 .povray_cells = povray_cells,
                                  .want_color = true,
                                  .want_depth = true,
                                  .want_normal = true,
                                  .want_id = true,
                                  .progress = progress_report,
                                  .progress_context = &progress};
-    progress_start(&progress, "corcast", v->common->quiet);
-    Status status = render(&v->scene, &params, &v->native, &v->stats, err);
+    progress_start(&progress, povray_cells ? "corcast, as POV-Ray" : "corcast", v->common->quiet);
+    Status status = render(&v->scene, &params, frame, &v->stats, err);
     progress_end(&progress);
-    TRY(status);
-    TRY(picture_from_plane(&v->native_picture, &v->native.color, ENCODING_SRGB, 8, err));
+    return status;
+}
+
+static Status write_frame(const Verification *v, const Frame *frame, const char *name,
+                          const char *provenance, Err *err)
+{
     char *path = NULL;
-    TRY(file_join(v->folder, "native.png", &path, err));
-    status = frames_write(&v->native, path, 8, false, provenance, err);
+    TRY(file_join(v->folder, name, &path, err));
+    Status status = frames_write(frame, path, 8, false, provenance, err);
     free(path);
     return status;
+}
+
+static Status render_native(Verification *v, const char *provenance, Err *err)
+{
+    TRY(render_frame(v, is_isosurface(v) ? &v->cells : NULL, &v->native, err));
+    TRY(picture_from_plane(&v->native_picture, &v->native.color, ENCODING_SRGB, 8, err));
+    TRY(write_frame(v, &v->native, "native.png", provenance, err));
+    if (!is_isosurface(v))
+        return STATUS_OK;
+    TRY(render_frame(v, NULL, &v->exact, err));
+    return write_frame(v, &v->exact, "exact.png", provenance, err);
 }
 
 static Status read_plane(Verification *v, OraclePlane plane, const char *path, Err *err)
@@ -130,15 +158,25 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
     return status;
 }
 
+/* Writes the scene; the ids of an isosurface are painted in a scene of their own, as they take most of it. */
+static Status write_scene(Verification *v, bool ids, char **scene, Err *err)
+{
+    TRY(file_join(v->folder, ids ? "ids.pov" : "scene.pov", scene, err));
+    return povfiles_write(&v->scene, v->tree, *scene, v->picture->stage.shadows, ids, &v->cells,
+                          err);
+}
+
 static Status run_oracle(Verification *v, Err *err)
 {
-    char *scene = NULL;
-    TRY(file_join(v->folder, "scene.pov", &scene, err));
-    Status status =
-        povfiles_write(&v->scene, v->tree, scene, v->picture->stage.shadows, 0, NULL, err);
+    char *scene = NULL, *ids = NULL;
+    Status status = write_scene(v, false, &scene, err);
+    if (status == STATUS_OK && is_isosurface(v))
+        status = write_scene(v, true, &ids, err);
     for (int plane = ORACLE_COLOR; status == STATUS_OK && plane <= ORACLE_ID; plane++)
-        status = run_oracle_plane(v, scene, (OraclePlane)plane, err);
+        status =
+            run_oracle_plane(v, plane == ORACLE_ID && ids ? ids : scene, (OraclePlane)plane, err);
     free(scene);
+    free(ids);
     char *picture = NULL;
     if (status == STATUS_OK)
         status = file_join(v->folder, "povray.png", &picture, err);
@@ -154,9 +192,7 @@ static Status compare_sides(Verification *v, Err *err)
 {
     double near_mm, far_mm;
     scene_depth_range(&v->scene, &near_mm, &far_mm);
-    Tolerance tolerance = v->scene.model == SCENE_ISOSURFACE
-                              ? tolerance_surface()
-                              : tolerance_identity((far_mm - near_mm) / 65535);
+    Tolerance tolerance = tolerance_identity((far_mm - near_mm) / 65535);
     const IdPlane *a = &v->povray.id, *b = &v->native.id;
     const Rendering view_a = {&v->povray_picture, a, &v->povray.depth, &v->povray.normal};
     const Rendering view_b = {&v->native_picture, b, &v->native.depth, &v->native.normal};
@@ -166,7 +202,10 @@ static Status compare_sides(Verification *v, Err *err)
                        &v->results[PLANE_DEPTH], err));
     TRY(compare_planes(PLANE_NORMAL, &v->povray.normal, &v->native.normal, a, b, &tolerance,
                        &v->results[PLANE_NORMAL], err));
-    return compare_ids(a, b, &tolerance, &v->results[PLANE_ID], err);
+    TRY(compare_ids(a, b, &tolerance, &v->results[PLANE_ID], err));
+    if (!is_isosurface(v))
+        return STATUS_OK;
+    return surface_step(&v->scene, v->cells.erf, &v->native, &v->exact, &v->surface, err);
 }
 
 static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err)
@@ -189,6 +228,7 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
                          .n_commands = v->n_commands};
     for (int kind = 0; kind < PLANE_KINDS; kind++)
         report.planes[kind] = &v->results[kind];
+    report.surface = is_isosurface(v) ? &v->surface : NULL;
     *agrees = report_agrees(&report);
     char *templates = NULL, *page = NULL;
     TRY(templates_folder(&templates, err));
@@ -200,6 +240,16 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
     free(templates);
     free(page);
     return status;
+}
+
+static void print_surface(const SurfaceCheck *surface)
+{
+    printf("  %-7s %-7s", "surface", surface->agrees ? "agree" : "differ");
+    if (surface->agrees)
+        printf("99 %% within %.3g mm, worst %.3g mm, %zu pixels graze\n", surface->p99_mm,
+               surface->max_mm, surface->grazing);
+    else
+        printf("%s\n", surface->reason);
 }
 
 static void print_verdict(const Verification *v, bool agrees)
@@ -219,6 +269,8 @@ static void print_verdict(const Verification *v, bool agrees)
         else
             printf("%zu of %zu pixels differ\n", result->differing_pixels, result->pixels);
     }
+    if (is_isosurface(v))
+        print_surface(&v->surface);
     printf("%s: POV-Ray %s in %.2f s, corcast in %.2f s; %s/report.html\n",
            agrees ? "agree" : "differ", v->run.version, v->run.seconds,
            v->stats.prepare_s + v->stats.trace_s, v->folder);
@@ -254,6 +306,7 @@ Status run_verify(int argc, char **argv, Err *err)
     }
     TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 120, err));
     TRY_GOTO(picture_scene(&picture, v.tree, parsed.common.quiet, &v.scene, err));
+    v.cells = picture_cells(&picture);
     TRY_GOTO(file_make_folder(folder, err));
     TRY_GOTO(command_line_text("verify", argc, argv, &line, err));
     TRY_GOTO(mem_strdup(&v.commands[0], line, err));

@@ -123,6 +123,32 @@ static Status set_vector(const Option *option, const char *value, Err *err)
     return STATUS_OK;
 }
 
+static Status set_vectors(const Option *option, const char *value, Err *err)
+{
+    VectorList *list = option->where;
+    if (list->from_recipe)
+        *list = (VectorList){0};
+    if (list->n == MAX_LIST)
+        return err_set(err, STATUS_USAGE, "--%s: may be given at most %d times", option->name,
+                       MAX_LIST);
+    double xyz[3] = {0, 0, 0};
+    if (!read_numbers(value, ',', 2, 3, xyz))
+        return wrong(option, value, "X,Y or X,Y,Z, numbers parted by commas", err);
+    list->at[list->n++] = vec3(xyz[0], xyz[1], xyz[2]);
+    return STATUS_OK;
+}
+
+static Status set_numbers(const Option *option, const char *value, Err *err)
+{
+    NumberList list = {.n = 1};
+    for (const char *comma = value; (comma = strchr(comma, ',')); comma++)
+        list.n++;
+    if (list.n > MAX_LIST || !read_numbers(value, ',', (int)list.n, (int)list.n, list.at))
+        return wrong(option, value, "a list of numbers parted by commas", err);
+    *(NumberList *)option->where = list;
+    return STATUS_OK;
+}
+
 static Status set_color(const Option *option, const char *value, Err *err)
 {
     double rgb[3];
@@ -179,6 +205,10 @@ static Status set_option(const Option *option, const char *value, Err *err)
         return set_number(option, value, err);
     case OPTION_VECTOR:
         return set_vector(option, value, err);
+    case OPTION_VECTORS:
+        return set_vectors(option, value, err);
+    case OPTION_NUMBERS:
+        return set_numbers(option, value, err);
     case OPTION_COLOR:
         return set_color(option, value, err);
     case OPTION_SIZE:
@@ -245,6 +275,10 @@ static Status read_recipe(const Reader *reader, const char *path, Parsed *parsed
         text_release(&values);
         return status;
     }
+    for (int t = 0; t < reader->n_tables; t++)
+        for (const Option *option = reader->tables[t]; option->name; option++)
+            if (option->kind == OPTION_VECTORS)
+                ((VectorList *)option->where)->from_recipe = true;
     parsed->common.recipe_text = values.chars;
     return STATUS_OK;
 }
@@ -303,10 +337,11 @@ static Status read_arguments(const Reader *reader, int argc, char **argv, bool a
 static const char *argument_name(const Option *option)
 {
     static const char *const names[] = {
-        [OPTION_FLAG] = "",         [OPTION_SWITCH] = "on|off", [OPTION_TEXT] = "TEXT",
-        [OPTION_WHOLE] = "N",       [OPTION_SEED] = "N",        [OPTION_COUNT] = "N",
-        [OPTION_NUMBER] = "NUMBER", [OPTION_VECTOR] = "X,Y,Z",  [OPTION_COLOR] = "R,G,B",
-        [OPTION_SIZE] = "WxH",      [OPTION_RANGE] = "A,B",     [OPTION_CHOICE] = "NAME",
+        [OPTION_FLAG] = "",         [OPTION_SWITCH] = "on|off",   [OPTION_TEXT] = "TEXT",
+        [OPTION_WHOLE] = "N",       [OPTION_SEED] = "N",          [OPTION_COUNT] = "N",
+        [OPTION_NUMBER] = "NUMBER", [OPTION_VECTOR] = "X,Y,Z",    [OPTION_COLOR] = "R,G,B",
+        [OPTION_VECTORS] = "X,Y,Z", [OPTION_NUMBERS] = "A,B,...", [OPTION_SIZE] = "WxH",
+        [OPTION_RANGE] = "A,B",     [OPTION_CHOICE] = "NAME",
     };
     return option->argument ? option->argument : names[option->kind];
 }

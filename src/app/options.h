@@ -6,19 +6,34 @@
 #include "geom/geom.h"
 
 typedef enum OptionKind {
-    OPTION_FLAG,   /* bool: no value */
-    OPTION_SWITCH, /* bool: on or off */
-    OPTION_TEXT,   /* const char *: borrowed */
-    OPTION_WHOLE,  /* int, in [low, high] */
-    OPTION_SEED,   /* uint64_t */
-    OPTION_COUNT,  /* size_t, in [low, high] */
-    OPTION_NUMBER, /* double, finite, in [low, high] */
-    OPTION_VECTOR, /* Vec3: X,Y or X,Y,Z */
-    OPTION_COLOR,  /* Vec3: R,G,B, each in [0, 1] */
-    OPTION_SIZE,   /* int[2]: WxH */
-    OPTION_RANGE,  /* double[2]: A,B */
-    OPTION_CHOICE  /* int: index into choices */
+    OPTION_FLAG,    /* bool: no value */
+    OPTION_SWITCH,  /* bool: on or off */
+    OPTION_TEXT,    /* const char *: borrowed */
+    OPTION_WHOLE,   /* int, in [low, high] */
+    OPTION_SEED,    /* uint64_t */
+    OPTION_COUNT,   /* size_t, in [low, high] */
+    OPTION_NUMBER,  /* double, finite, in [low, high] */
+    OPTION_VECTOR,  /* Vec3: X,Y or X,Y,Z */
+    OPTION_VECTORS, /* VectorList: X,Y or X,Y,Z, given several times */
+    OPTION_NUMBERS, /* NumberList: A,B,... */
+    OPTION_COLOR,   /* Vec3: R,G,B, each in [0, 1] */
+    OPTION_SIZE,    /* int[2]: WxH */
+    OPTION_RANGE,   /* double[2]: A,B */
+    OPTION_CHOICE   /* int: index into choices */
 } OptionKind;
+
+enum { MAX_LIST = 64 };
+
+typedef struct VectorList {
+    Vec3 at[MAX_LIST];
+    size_t n;
+    bool from_recipe; /* all so far; the first on the command line replaces them */
+} VectorList;
+
+typedef struct NumberList {
+    double at[MAX_LIST];
+    size_t n;
+} NumberList;
 
 typedef struct Option {
     const char *name; /* without the dashes; NULL ends a table */

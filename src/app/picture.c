@@ -16,6 +16,8 @@ static const char *const projections[] = {
 static const char *const views[] = {
     [VIEW_FRONT] = "front", [VIEW_TOP] = "top", [VIEW_LEFT] = "left", [VIEW_ISO] = "iso", NULL};
 
+static const char *const erf_names[] = {[ERF_FAST] = "fast", [ERF_EXACT] = "exact", NULL};
+
 const char *model_name(SceneModel model)
 {
     return models[model];
@@ -57,12 +59,21 @@ void picture_options_init(PictureOptions *options)
          "N x N samples a pixel (1)"},
         {"look", OPTION_TEXT, &options->look, NULL, 0, huge, NULL, "NAME",
          "a file of templates/looks, or a path (cast)"},
+        {"erf", OPTION_CHOICE, &options->erf, NULL, 0, 0, erf_names, NULL,
+         "POV-Ray's isosurface: how exact erf is (fast)"},
+        {"cell-beta", OPTION_NUMBER, &options->cell_beta, NULL, 0.5, 64, NULL, NULL,
+         "POV-Ray's isosurface: side of a cell over the smallest radius in it"},
         {"shadows", OPTION_SWITCH, &stage->shadows, NULL, 0, 0, NULL, NULL, "(off)"},
         {"background", OPTION_COLOR, &options->background, &options->has_background, 0, 0, NULL,
          NULL, "sRGB, each from 0 to 1"},
         {0},
     };
     memcpy(options->table, table, sizeof table);
+}
+
+CellParams picture_cells(const PictureOptions *options)
+{
+    return (CellParams){.beta = options->cell_beta, .erf = (ErfForm)options->erf};
 }
 
 /* Options that fight each other are refused rather than silently ignored. */

@@ -6,6 +6,7 @@
 #include "app/options.h"
 #include "scene/scene.h"
 #include "stage/stage.h"
+#include "surface/surface.h"
 #include "tree/tree.h"
 
 enum { PICTURE_OPTIONS = 24 };
@@ -20,12 +21,17 @@ typedef struct PictureOptions {
     Vec3 background; /* sRGB in [0, 1] */
     bool has_background;
     bool has_height, has_angle, has_view;
+    int erf;          /* choice: ErfForm */
+    double cell_beta; /* as in CellParams */
     Coloring coloring;
     Option table[PICTURE_OPTIONS];
 } PictureOptions;
 
 /* Defaults, and the table that sets them; `options` must not move afterwards. */
 void picture_options_init(PictureOptions *options);
+
+/* How POV-Ray's isosurface is cut into cells. */
+CellParams picture_cells(const PictureOptions *options);
 
 /* Reads the tree and the look and builds the scene. Says on standard error, unless quiet, how many
  * segments could not be drawn. */

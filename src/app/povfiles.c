@@ -7,7 +7,7 @@
 #include <string.h>
 
 Status povfiles_write(const Scene *scene, const char *tree_path, const char *path, bool shadows,
-                      double beta, PovrayReport *report, Err *err)
+                      bool ids, const CellParams *cells, Err *err)
 {
     bool to_stdout = strcmp(path, "-") == 0;
     Text description = TEXT_INIT, pov = TEXT_INIT, inc = TEXT_INIT;
@@ -24,8 +24,9 @@ Status povfiles_write(const Scene *scene, const char *tree_path, const char *pat
                            .description = description.chars,
                            .generator = GENERATOR,
                            .shadows = shadows,
-                           .cell_beta = beta};
-    TRY_GOTO(emit_povray(scene, &params, &pov, &inc, report, err));
+                           .ids = ids,
+                           .cells = *cells};
+    TRY_GOTO(emit_povray(scene, &params, &pov, &inc, NULL, err));
     if (!to_stdout)
         TRY_GOTO(file_write(geometry_path, inc.chars, inc.length, err));
     TRY_GOTO(file_write(path, pov.chars, pov.length, err));

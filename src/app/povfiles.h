@@ -7,8 +7,8 @@
 #include "scene/scene.h"
 
 /* Writes `path` and, beside it, its geometry with the extension .inc; "-" is one file on standard
- * output. `beta` as in PovrayParams; `report` may be NULL. */
+ * output. The rest as in PovrayParams. */
 MUST_CHECK Status povfiles_write(const Scene *scene, const char *tree_path, const char *path,
-                                 bool shadows, double beta, PovrayReport *report, Err *err);
+                                 bool shadows, bool ids, const CellParams *cells, Err *err);
 
 #endif

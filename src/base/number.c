@@ -101,6 +101,10 @@ const char *number_text(double value, char out[NUMBER_TEXT_SIZE])
         print_common(value, out);
         return out;
     }
+    if (value == 0) {
+        strcpy(out, signbit(value) ? "-0" : "0");
+        return out;
+    }
     for (int digits = 15; digits <= 17; digits++) {
         snprintf(out, NUMBER_TEXT_SIZE, "%.*g", digits, value);
         if (strtod(out, NULL) == value || !isfinite(value))

@@ -5,6 +5,7 @@
 
 #include "base/base.h"
 #include "scene/scene.h"
+#include "surface/surface.h"
 
 typedef struct PovrayParams {
     const char *templates;     /* folder that holds povray/ */
@@ -13,8 +14,8 @@ typedef struct PovrayParams {
     const char *description;   /* one line: what the scene shows */
     const char *generator;     /* program and version */
     bool shadows;
-    double cell_beta; /* isosurface: cells are split while longer than this times the smallest
-                       * radius that matters in them; 0: chosen from the number of segments */
+    bool ids;         /* isosurface: give cells the paint that the id plane needs */
+    CellParams cells; /* isosurface */
 } PovrayParams;
 
 typedef struct PovrayReport {

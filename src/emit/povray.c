@@ -1,17 +1,13 @@
 /* Two files: the scene (camera, lights) and the geometry, a union of one macro call a primitive or
- * of one isosurface a cell [docs/POVRAY.md]. Constants of a segment's function are printed with the
- * digits that read back exactly, so what POV-Ray evaluates is what `surface` defines up to its erf.
- */
-#include "emit/emit.h"
+ * of one isosurface a cell [docs/POVRAY.md]. */
+#include "emit/povray_text.h"
 
-#include "surface/surface.h"
-#include "tmpl/tmpl.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static void put_vector(Text *text, Vec3 v)
+void put_vector(Text *text, Vec3 v)
 {
     /* Adding 0 turns -0 into 0. */
     text_puts(text, "<");
@@ -29,14 +25,14 @@ static void put_float(Text *text, float value)
     text_puts(text, number_text_float(value, number));
 }
 
-static void put_color(Text *text, Rgb color)
+void put_color(Text *text, Rgb color)
 {
     char r[NUMBER_TEXT_SIZE], g[NUMBER_TEXT_SIZE], b[NUMBER_TEXT_SIZE];
     text_printf(text, "<%s,%s,%s>", number_text_float(color.r, r), number_text_float(color.g, g),
                 number_text_float(color.b, b));
 }
 
-static void put_paint(Text *text, const Scene *scene, uint32_t id, Rgb color)
+void put_paint(Text *text, const Scene *scene, uint32_t id, Rgb color)
 {
     text_printf(text, "%u,", id);
     if (scene->uniform_color)
@@ -64,100 +60,7 @@ static void put_primitives(Text *text, const Scene *scene)
     }
 }
 
-/* With s = r / 2 and c = 1 / (sqrt2 s): the arguments of the two erf are T = c t and L - T for L =
- * c l, and the exponent of the Gaussian is T^2 - Q for Q = c^2 |x - a|^2, since d^2 = |x - a|^2 -
- * t^2. */
-static void put_segments(Text *text, const Scene *scene)
-{
-    for (size_t i = 0; i < scene->n_segments; i++) {
-        const FieldSegment *segment = &scene->segments[i];
-        Vec3 span = vec3_sub(segment->b, segment->a);
-        double length = vec3_length(span);
-        double c = sqrt(2) / segment->radius_mm;
-        Vec3 axis = vec3_scale(span, c / length);
-        const double numbers[] = {
-            axis.x,       axis.y,       axis.z,       -vec3_dot(axis, segment->a),
-            segment->a.x, segment->a.y, segment->a.z, c * c,
-            c * length};
-        text_printf(text, "#declare Fn_%zu = Segment(", i);
-        for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
-            if (k)
-                text_puts(text, ",");
-            text_number(text, numbers[k]);
-        }
-        text_puts(text, ")\n");
-    }
-}
-
-typedef struct CellText {
-    Text low, terms, largest, pick, paints;
-    char side[NUMBER_TEXT_SIZE], gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE],
-        scale[NUMBER_TEXT_SIZE], count[NUMBER_TEXT_SIZE];
-} CellText;
-
-static void clear(Text *text)
-{
-    text->length = 0;
-    text_puts(text, "");
-}
-
-/* Fn_Max(T1,Fn_Max(T2,...)): the largest term. */
-static void put_largest(Text *text, const uint32_t *terms, uint32_t count)
-{
-    for (uint32_t k = 0; k + 1 < count; k++)
-        text_printf(text, "Fn_Max(Fn_%u(x,y,z),", terms[k]);
-    text_printf(text, "Fn_%u(x,y,z)", terms[count - 1]);
-    for (uint32_t k = 0; k + 1 < count; k++)
-        text_puts(text, ")");
-}
-
-/* Fn_Choose(T1-Fn_Top,0,Fn_Choose(T2-Fn_Top,1,...)): the number of the first term that equals the
- * largest, Fn_Top. */
-static void put_pick(Text *text, const uint32_t *terms, uint32_t count)
-{
-    for (uint32_t k = 0; k + 1 < count; k++)
-        text_printf(text, "Fn_Choose(Fn_%u(x,y,z)-Fn_Top(x,y,z),%u,", terms[k], k);
-    text_printf(text, "%u", count - 1);
-    for (uint32_t k = 0; k + 1 < count; k++)
-        text_puts(text, ")");
-}
-
-static Status put_cell(Text *text, const Tmpl *template, const Scene *scene, const CellTree *cells,
-                       const Cell *cell, CellText *part, Err *err)
-{
-    const uint32_t *terms = cells->terms + cell->first;
-    clear(&part->low);
-    clear(&part->terms);
-    clear(&part->largest);
-    clear(&part->pick);
-    clear(&part->paints);
-    put_vector(&part->low, cell->low);
-    for (uint32_t k = 0; k < cell->count; k++) {
-        const FieldSegment *segment = &scene->segments[terms[k]];
-        text_printf(&part->terms, "%sFn_%u(x,y,z)", k ? "+" : "", terms[k]);
-        text_printf(&part->paints, "Cell_Paint(%u,%u,", k, cell->count);
-        put_paint(&part->paints, scene, segment->id, segment->color);
-        text_puts(&part->paints, ")");
-    }
-    put_largest(&part->largest, terms, cell->count);
-    put_pick(&part->pick, terms, cell->count);
-    snprintf(part->count, sizeof part->count, "%u", cell->count);
-    const TmplValue values[] = {
-        {"low", part->low.chars},
-        {"terms", part->terms.chars},
-        {"largest", part->largest.chars},
-        {"pick", part->pick.chars},
-        {"paints", part->paints.chars},
-        {"count", part->count},
-        {"side", number_text(cell->side, part->side)},
-        {"max_gradient", number_text(cell->max_gradient, part->gradient)},
-        {"accuracy", number_text(cell->accuracy, part->accuracy)},
-        {"scale", number_text(cell->scale, part->scale)},
-    };
-    return tmpl_apply(template, values, sizeof values / sizeof *values, text, err);
-}
-
-static Status load_template(Tmpl *template, const PovrayParams *params, const char *name, Err *err)
+Status load_template(Tmpl *template, const PovrayParams *params, const char *name, Err *err)
 {
     char *folder = NULL, *path = NULL;
     Status status = file_join(params->templates, "povray", &folder, err);
@@ -167,36 +70,6 @@ static Status load_template(Tmpl *template, const PovrayParams *params, const ch
         status = tmpl_load(template, path, err);
     free(folder);
     free(path);
-    return status;
-}
-
-/* Finer cells are traced faster but take longer to read; POVRAY.md has the measurements. */
-static double chosen_beta(const Scene *scene, const PovrayParams *params)
-{
-    if (params->cell_beta > 0)
-        return params->cell_beta;
-    return scene->n_segments <= 3000 ? 3 : scene->n_segments <= 10000 ? 4 : 6;
-}
-
-static Status put_cells(Text *text, const Scene *scene, const PovrayParams *params, size_t *n_cells,
-                        Err *err)
-{
-    Tmpl template = {0};
-    CellTree cells = {0};
-    CellText part = {0};
-    Status status = load_template(&template, params, "cell.inc", err);
-    if (status == STATUS_OK)
-        status = celltree_build(scene, chosen_beta(scene, params), &cells, err);
-    for (size_t i = 0; status == STATUS_OK && i < cells.n_cells; i++)
-        status = put_cell(text, &template, scene, &cells, &cells.cells[i], &part, err);
-    *n_cells = cells.n_cells;
-    text_release(&part.low);
-    text_release(&part.terms);
-    text_release(&part.largest);
-    text_release(&part.pick);
-    text_release(&part.paints);
-    celltree_release(&cells);
-    tmpl_release(&template);
     return status;
 }
 
@@ -248,17 +121,44 @@ static Status expand(Values *values, const PovrayParams *params, const char *nam
     return status;
 }
 
-static Status put_macros(const Scene *scene, const PovrayParams *params, Text *out, Err *err)
+static Status put_macros(const Scene *scene, const PovrayParams *params, const CellTree *cells,
+                         Text *out, Err *err)
 {
     Values values = {0};
     if (scene->model != SCENE_ISOSURFACE)
         return expand(&values, params, "primitives.inc", out, err);
+    static const char *const names[ERF_TERMS] = {"erf1", "erf3", "erf5", "erf7", "erf9"};
+    for (int i = 0; i < ERF_TERMS; i++)
+        text_number(add_value(&values, names[i]), erf_forms[cells->erf][i]);
+    text_puts(add_value(&values, "exact_erf"), cells->erf == ERF_EXACT ? "1" : "0");
+    text_puts(add_value(&values, "painted"), scene->uniform_color && !params->ids ? "0" : "1");
     text_puts(add_value(&values, "many_colors"), scene->uniform_color ? "0" : "1");
-    text_number(add_value(&values, "log_floor"), LOG_FORM_FLOOR);
-    text_number(add_value(&values, "log_ceiling"), LOG_FORM_CEILING);
-    text_printf(add_value(&values, "cell_overlap"), "%d", CELL_OVERLAP);
-    put_segments(add_value(&values, "segments"), scene);
-    return expand(&values, params, "isosurface.inc", out, err);
+    Status status = put_scales(add_value(&values, "scales"), params, cells, err);
+    Text *terms = add_value(&values, "terms");
+    if (status == STATUS_OK)
+        status = put_terms(terms, scene, params, cells, err);
+    Status expanded =
+        expand(&values, params, "isosurface.inc", out, status == STATUS_OK ? err : NULL);
+    return status == STATUS_OK ? expanded : status;
+}
+
+/* The macros, and the members of the union that they make. */
+static Status put_members(const Scene *scene, const PovrayParams *params, Text *macros, Text *body,
+                          PovrayReport *report, Err *err)
+{
+    CellTree cells = {0};
+    Status status = STATUS_OK;
+    if (scene->model == SCENE_ISOSURFACE)
+        status = celltree_build(scene, &params->cells, &cells, err);
+    if (status == STATUS_OK)
+        status = put_macros(scene, params, &cells, macros, err);
+    if (status == STATUS_OK && scene->model == SCENE_ISOSURFACE)
+        status = put_cells(body, scene, params, &cells, err);
+    else if (status == STATUS_OK)
+        put_primitives(body, scene);
+    report->cells = cells.n_cells;
+    celltree_release(&cells);
+    return status;
 }
 
 static Status put_geometry(const Scene *scene, const PovrayParams *params, const char *file,
@@ -279,12 +179,8 @@ static Status put_geometry(const Scene *scene, const PovrayParams *params, const
     put_float(add_value(&values, "phong_size"), finish->phong_size);
     put_float(add_value(&values, "specular"), finish->specular);
     put_float(add_value(&values, "roughness"), finish->roughness);
-    Status status = put_macros(scene, params, add_value(&values, "macros"), err);
-    Text *body = add_value(&values, "body");
-    if (status == STATUS_OK && scene->model == SCENE_ISOSURFACE)
-        status = put_cells(body, scene, params, &report->cells, err);
-    else if (status == STATUS_OK)
-        put_primitives(body, scene);
+    Text *macros = add_value(&values, "macros"), *body = add_value(&values, "body");
+    Status status = put_members(scene, params, macros, body, report, err);
     Status expanded = expand(&values, params, "vessels.inc", out, status == STATUS_OK ? err : NULL);
     return status == STATUS_OK ? expanded : status;
 }

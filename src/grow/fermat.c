@@ -5,7 +5,11 @@
  * the classical csc(A + 60 deg) construction). h_i <= 0 says that corner i sees the other two under
  * too wide an angle and is itself the minimum, and so it is when its weight is no less than the
  * other two together. All h_i are kept multiplied by sin A and sin theta, so nothing is divided by
- * an area that may be zero. */
+ * an area that may be zero.
+ *
+ * On the line through the first two corners, at x, the sum is w_0 x - w_1 x + w_2 sqrt(h^2 + (x - f)^2)
+ * but for a constant, with the third corner at the height h above f: least where the third's unit vector
+ * has the component (w_1 - w_0) / w_2 along the line, or at an end. */
 #include "grow/fermat.h"
 
 static Fermat at_corner(const Vec3 corner[3], const double weight[3], int i)
@@ -46,4 +50,18 @@ Fermat fermat_point(const Vec3 corner[3], const double weight[3])
     place = vec3_add_scaled(place, corner[1], share[1] * scale);
     place = vec3_add_scaled(place, corner[2], share[2] * scale);
     return (Fermat){place, -1, vec3(0, 0, 0)};
+}
+
+Vec3 fermat_point_between(const Vec3 corner[3], const double weight[3], const double margin[2])
+{
+    Vec3 along = vec3_sub(corner[1], corner[0]), to_third = vec3_sub(corner[2], corner[0]);
+    double length = vec3_length(along);
+    double low = margin[0], high = length - margin[1];
+    Vec3 unit = vec3_scale(along, 1 / length);
+    double foot = vec3_dot(to_third, unit);
+    double height = vec3_length(vec3_add_scaled(to_third, unit, -foot));
+    double pull = (weight[1] - weight[0]) / weight[2];
+    double x = pull >= 1 ? high : pull <= -1 ? low : foot + height * pull / sqrt(1 - pull * pull);
+    x = low > high ? (low + high) / 2 : fmin(fmax(x, low), high);
+    return vec3_add_scaled(corner[0], unit, x);
 }

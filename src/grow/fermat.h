@@ -1,4 +1,5 @@
-/* The weighted Fermat point: where three weighted lengths that meet are shortest. */
+/* The weighted Fermat point: where three weighted lengths that meet are shortest; in space, and on a
+ * straight line. */
 #ifndef CORCAST_GROW_FERMAT_H
 #define CORCAST_GROW_FERMAT_H
 
@@ -14,5 +15,9 @@ typedef struct Fermat {
 /* The point that minimises sum_i weight[i] |x - corner[i]|. The corners differ; weights are
  * positive. In space it lies in the plane of the corners, always in their triangle. */
 Fermat fermat_point(const Vec3 corner[3], const double weight[3]);
+
+/* The point between corner[0] and corner[1], margin[0] and margin[1] or more away from them, that
+ * minimises the same sum; midway between the margins when these are wider than the distance. */
+Vec3 fermat_point_between(const Vec3 corner[3], const double weight[3], const double margin[2]);
 
 #endif

@@ -1,35 +1,98 @@
 /* Radii are r = q g rho: rho is summed up from the terminals, g multiplied down from the root
  * [law.h]. Both sweeps only add and multiply positive numbers, so nothing cancels and every radius
  * is exact to a few units in the last place for any gamma: Murray's law holds by the definition of
- * P, and the daughters of a bifurcation see one pressure by that of g. */
+ * P, and the daughters of a bifurcation see one pressure by that of g.
+ *
+ * Where viscosity depends on the radius, radii and viscosities are computed in turn until they agree.
+ * A radius goes with the fourth root of the viscosity, which falls by far less than the fourth power of
+ * the radius in all but the thinnest vessels, so this converges; where it does not, steps are
+ * shortened. */
 #include "grow/finish.h"
 
+#include "grow/adopt.h"
+#include "grow/weigh.h"
+#include <assert.h>
 #include <float.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Node i, whose gauge is known, and the gauges of its daughters. */
+static void sweep_node(const Network *net, size_t i, double *gauge, Tree *tree)
+{
+    const Segment *segment = &net->segment[i];
+    double below = 1;
+    if (segment->parent >= 0) {
+        Reduced reduced = network_reduce(net, (int32_t)i);
+        tree->radius_mm[i] = net->radius_unit * gauge[i] * reduced.rho;
+        below = gauge[i] * reduced.widening;
+    }
+    for (int slot = 0; slot < 2 && segment->child[slot] >= 0; slot++)
+        gauge[segment->child[slot]] = below;
+}
+
 static Status sweep_down(const Network *net, Tree *tree, Err *err)
 {
-    double unit = network_radius_unit(net);
     double *gauge = NULL;
     TRY(mem_calloc(&gauge, net->n, sizeof *gauge, "gauges", err));
-    gauge[1] = 1;
     Status status = STATUS_OK;
-    for (size_t i = 1; i < net->n && status == STATUS_OK; i++) {
-        Reduced reduced = network_reduce(net, (int32_t)i);
-        tree->radius_mm[i] = unit * gauge[i] * reduced.rho;
-        for (int slot = 0; slot < 2; slot++)
-            if (net->segment[i].child[slot] >= 0)
-                gauge[net->segment[i].child[slot]] = gauge[i] * reduced.widening;
-        if (!(tree->radius_mm[i] >= DBL_MIN) || !isfinite(tree->radius_mm[i]))
+    for (size_t i = 0; i < net->n && status == STATUS_OK; i++) {
+        sweep_node(net, i, gauge, tree);
+        bool fits = tree->radius_mm[i] >= DBL_MIN && isfinite(tree->radius_mm[i]);
+        if (!fits && net->segment[i].parent >= 0)
             status = err_set(err, STATUS_INFEASIBLE,
                              "the radii span more than a double can hold; move --gamma, now %g, "
                              "towards 3",
                              net->law.gamma);
     }
-    tree->radius_mm[0] = tree->radius_mm[1];
+    for (size_t k = 0; k < net->inlets; k++)
+        tree->radius_mm[net->inlet[k]] = tree->radius_mm[net->inlet[k] + 1];
     free(gauge);
+    return status;
+}
+
+/* Viscosities agree with the radii to this share; rounds in which they are to. */
+static const double agreement = 1e-13;
+enum { MAX_ROUNDS = 200 };
+
+/* Computes all radii, with the flows that the terminals' shares ask for and the viscosities at these
+ * radii. `flow` has room for one a node. */
+static Status settle_radii(Network *net, const GrowParams *params, double *flow, Tree *tree,
+                           Err *err)
+{
+    double part = 1, last = INFINITY, change;
+    weigh_gather(net, flow);
+    for (int round = 0; round < MAX_ROUNDS; round++) {
+        TRY(sweep_down(net, tree, err));
+        TRY(weigh_segments(net, params, flow, tree->radius_mm, part, &change, err));
+        if (change <= agreement)
+            return STATUS_OK;
+        part = change < last ? part : part / 2;
+        last = change;
+        network_resum(net);
+    }
+    return err_set(err, STATUS_INFEASIBLE,
+                   "the vessels of %zu terminals are too thin for --viscosity-law pries: radii and "
+                   "viscosities do not settle; lower --terminals or raise --q-perf",
+                   net->terminals);
+}
+
+/* Radii, and flow shares where terminals have their own. */
+static Status write_radii(Network *net, const GrowParams *params, Tree *tree, Err *err)
+{
+    if (!weigh_is_needed(params))
+        return sweep_down(net, tree, err);
+    double *flow = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&flow, net->n, sizeof *flow, "flows", err));
+    TRY_GOTO(settle_radii(net, params, flow, tree, err));
+    if (params->terminal_flow != TERMINAL_FLOW_TERRITORY)
+        goto done;
+    TRY_GOTO(tree_add_flow_shares(tree, err));
+    for (size_t i = 0; i < net->n; i++)
+        tree->flow_share[i] = net->trait[i].share;
+done:
+    free(flow);
     return status;
 }
 
@@ -58,11 +121,28 @@ static Status add_domain(Tree *tree, const Domain *domain, Err *err)
     return status;
 }
 
+static Status write_blood(const GrowParams *params, Tree *tree, Err *err)
+{
+    TreeHeader *header = &tree->header;
+    if (params->viscosity_law == VISCOSITY_CONSTANT) {
+        header->has.viscosity = true;
+        header->viscosity_cp = params->viscosity_cp;
+        return add_number(tree, "viscosity_cP", header->viscosity_cp, err);
+    }
+    header->has.viscosity_law = header->has.hematocrit = header->has.plasma_viscosity = true;
+    header->viscosity_law = params->viscosity_law;
+    header->hematocrit = params->hematocrit;
+    header->plasma_viscosity_cp = params->plasma_viscosity_cp;
+    TRY(tree_add_line(tree, "viscosity_law: pries", err));
+    TRY(add_number(tree, "hematocrit", header->hematocrit, err));
+    return add_number(tree, "plasma_viscosity_cP", header->plasma_viscosity_cp, err);
+}
+
 static Status write_header(const GrowParams *params, const Domain *domain, Tree *tree, Err *err)
 {
     TreeHeader *header = &tree->header;
     header->has.seed = header->has.dimension = header->has.gamma = header->has.lambda = true;
-    header->has.p_perf = header->has.p_term = header->has.q_perf = header->has.viscosity = true;
+    header->has.p_perf = header->has.p_term = header->has.q_perf = true;
     header->seed = params->seed;
     header->dimension = domain_dimension(domain);
     header->gamma = params->gamma;
@@ -70,7 +150,6 @@ static Status write_header(const GrowParams *params, const Domain *domain, Tree 
     header->p_perf_mmhg = params->p_perf_mmhg;
     header->p_term_mmhg = params->p_term_mmhg;
     header->q_perf_ml_min = params->q_perf_ml_min;
-    header->viscosity_cp = params->viscosity_cp;
     char seed[64];
     snprintf(seed, sizeof seed, "seed: %" PRIu64, params->seed);
     TRY(tree_add_line(tree, "generator: corcast " CORCAST_VERSION, err));
@@ -82,7 +161,12 @@ static Status write_header(const GrowParams *params, const Domain *domain, Tree 
     TRY(add_number(tree, "p_perf_mmHg", header->p_perf_mmhg, err));
     TRY(add_number(tree, "p_term_mmHg", header->p_term_mmhg, err));
     TRY(add_number(tree, "q_perf_ml_min", header->q_perf_ml_min, err));
-    return add_number(tree, "viscosity_cP", header->viscosity_cp, err);
+    TRY(write_blood(params, tree, err));
+    if (params->terminal_flow == TERMINAL_FLOW_EQUAL)
+        return STATUS_OK;
+    header->has.terminal_flow = true;
+    header->terminal_flow = params->terminal_flow;
+    return tree_add_line(tree, "terminal_flow: territory", err);
 }
 
 Status finish_tree(Network *net, const GrowParams *params, const Domain *domain, Tree *out,
@@ -93,14 +177,17 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
     Tree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(tree_init(&made, net->n, err));
-    TRY_GOTO(sweep_down(net, &made, err));
+    TRY_GOTO(write_radii(net, params, &made, err));
     TRY_GOTO(write_header(params, domain, &made, err));
+    static_assert(TREE_NO_PARENT == -1, "as in a Segment");
     for (size_t i = 0; i < net->n; i++) {
-        made.id[i] = (int32_t)i + 1;
         made.type[i] = GROW_SWC_TYPE;
-        made.parent[i] = i ? net->segment[i].parent : TREE_NO_PARENT;
+        made.parent[i] = net->segment[i].parent;
         made.position[i] = net->position[i];
     }
+    tree_renumber(&made);
+    if (params->from)
+        TRY_GOTO(adopt_restore(params->from, net, &made, err));
     *out = made;
 done:
     if (status != STATUS_OK)

@@ -1,109 +1,177 @@
-/* Entries are linked lists in one pool, one list a cell. A segment is entered wherever its capsule
- * may reach, so that two capsules that meet always share a cell, and so that the number of entries
- * grows with the segments' total length and not with the boxes around them: the walk cuts the
- * capsule into slabs of cells across its longest axis and bounds each piece by itself.
+/* A cell lists its segments in one block of memory, in a few block sizes; a block that is outgrown
+ * is kept for another cell. What distance queries need of a segment lies in one table of half cache
+ * lines, so that a cell costs four bytes a segment and a neighbourhood a few cache lines.
  *
- * Distances are computed in single precision, relative to nothing: they rank candidates and compare
- * with the toss distance, where an error of 1e-7 of the domain's size is of no account. What must
- * not cross is tested in double precision from the nodes themselves. */
+ * A segment is entered wherever its capsule may reach, so that two capsules that meet always share a
+ * cell, and so that the number of entries grows with the segments' total length and not with the
+ * boxes around them: the walk cuts the capsule into slabs of cells across its longest axis and
+ * bounds each piece by itself. It reads the item alone, so that the same cells come out again when
+ * the segment is taken out.
+ *
+ * Coordinates are in single precision from the grid's low corner, where rounding moves them by less
+ * than 3e-8 of the grid's size. That is of no account for distances; who wants segments not to
+ * cross keeps them further apart than that.
+ *
+ * Threads that touch different cells need no locks: each worker has an arena of blocks. Which block
+ * holds a cell, and in what order, has no influence on any answer. */
 #include "grow/grid.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+enum { BLOCK_SIZES = 56, SLAB_TAGS = 1 << 14, SMALL_BOX = 4 };
+
+/* Memory for blocks that never moves. */
+typedef struct GridSlab {
+    struct GridSlab *next;
+    int32_t tags[];
+} GridSlab;
+
+struct GridArena {
+    GridSlab *slab;        /* the one in use, and those before it */
+    size_t used, capacity; /* tags of that one */
+    int32_t
+        *free[BLOCK_SIZES]; /* a free block of each size; it begins with the next one's address */
+};
 
 static double component(Vec3 v, int axis)
 {
     return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-Status grid_reset(Grid *grid, Box box, double cells, size_t segments, Err *err)
+static double least(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double greatest(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static double clamp01(double t)
+{
+    return t < 0 ? 0 : t > 1 ? 1 : t;
+}
+
+Status grid_reset(Grid *grid, Box box, double cells, size_t segments, int workers, Err *err)
 {
     grid_release(grid);
     Vec3 size = vec3_sub(box.high, box.low);
-    Grid made = {.low = box.low, .free = -1};
-    made.cell = size.z > 0 ? cbrt(size.x * size.y * size.z / cells) : sqrt(size.x * size.y / cells);
-    size_t total = 1;
-    for (int axis = 0; axis < 3; axis++) {
-        made.count[axis] = (int)(component(size, axis) / made.cell) + 1;
-        total *= (size_t)made.count[axis];
-    }
-    TRY(mem_calloc(&made.reach, segments, sizeof *made.reach, "segments", err));
-    Status status = mem_calloc(&made.head, total, sizeof *made.head, "grid cells", err);
-    if (status != STATUS_OK) {
-        grid_release(&made);
-        return status;
-    }
-    for (size_t i = 0; i < total; i++)
-        made.head[i] = -1;
+    Grid made = {.low = box.low, .workers = workers};
+    made.edge = size.z > 0 ? cbrt(size.x * size.y * size.z / cells) : sqrt(size.x * size.y / cells);
+    made.inverse = 1 / made.edge;
+    for (int axis = 0; axis < 3; axis++)
+        made.count[axis] = (int)(component(size, axis) / made.edge) + 1;
+    made.rounding = 1e-7 * vec3_length(size);
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&made.item, segments, sizeof *made.item, "segments", err));
+    TRY_GOTO(mem_calloc(&made.arena, (size_t)workers, sizeof *made.arena, "threads", err));
+    TRY_GOTO(mem_calloc(&made.cell, grid_cells(&made), sizeof *made.cell, "grid cells", err));
     *grid = made;
-    return STATUS_OK;
+done:
+    if (status != STATUS_OK)
+        grid_release(&made);
+    return status;
 }
 
 void grid_release(Grid *grid)
 {
-    free(grid->head);
-    free(grid->entry);
-    free(grid->reach);
+    for (int i = 0; grid->arena && i < grid->workers; i++) {
+        for (GridSlab *slab = grid->arena[i].slab, *next; slab; slab = next) {
+            next = slab->next;
+            free(slab);
+        }
+    }
+    free(grid->cell);
+    free(grid->item);
+    free(grid->arena);
     *grid = (Grid){0};
 }
 
-/* The cell coordinate of `value` along `axis`, moved into the grid. */
+size_t grid_cells(const Grid *grid)
+{
+    return (size_t)grid->count[0] * grid->count[1] * grid->count[2];
+}
+
+/* The cell coordinate of a distance from the low corner along `axis`, moved into the grid. */
 static int cell_of(const Grid *grid, double value, int axis)
 {
-    double at = (value - component(grid->low, axis)) / grid->cell;
+    double at = value * grid->inverse;
     return at <= 0 ? 0 : at >= grid->count[axis] ? grid->count[axis] - 1 : (int)at;
 }
 
-static size_t cell_index(const Grid *grid, int x, int y, int z)
+static void store(const Grid *grid, Vec3 v, float out[3])
 {
-    return ((size_t)z * grid->count[1] + y) * grid->count[0] + x;
+    out[0] = (float)(v.x - grid->low.x);
+    out[1] = (float)(v.y - grid->low.y);
+    out[2] = (float)(v.z - grid->low.z);
 }
 
-size_t grid_cell_at(const Grid *grid, Vec3 point)
+GridItem grid_item(const Grid *grid, Capsule capsule, double radius)
 {
-    return cell_index(grid, cell_of(grid, point.x, 0), cell_of(grid, point.y, 1),
-                      cell_of(grid, point.z, 2));
+    GridItem item = {.radius = (float)radius, .reach = (float)capsule.radius};
+    store(grid, capsule.a, item.proximal);
+    store(grid, capsule.b, item.distal);
+    return item;
 }
 
-/* Bounds the part of the capsule in the walk's slab and starts there. */
+/* Goes to the cells of the slab that may meet the capsule: those of the box around the part of the
+ * centreline within the radius of the slab. */
 static void enter_slab(GridWalk *walk)
 {
     const Grid *grid = walk->grid;
-    const Capsule *capsule = &walk->capsule;
     int axis = walk->axis;
-    double from = component(capsule->a, axis), span = component(capsule->b, axis) - from;
-    double start = component(grid->low, axis) + walk->slab * grid->cell;
-    double t0 = 0, t1 = 1; /* along the centreline, for the slab widened by the radius */
-    if (span != 0) {
-        double ta = (start - capsule->radius - from) / span;
-        double tb = (start + grid->cell + capsule->radius - from) / span;
-        t0 = fmin(1, fmax(0, fmin(ta, tb)));
-        t1 = fmin(1, fmax(0, fmax(ta, tb)));
+    double near = walk->slab * grid->edge - walk->from[axis];
+    double t0 = 0, t1 = 1;
+    if (walk->span[axis] != 0) {
+        double ta = (near - walk->radius) / walk->span[axis];
+        double tb = (near + grid->edge + walk->radius) / walk->span[axis];
+        t0 = clamp01(least(ta, tb));
+        t1 = clamp01(greatest(ta, tb));
     }
     for (int i = 0; i < 3; i++) {
-        if (i == axis) {
-            walk->low[i] = walk->high[i] = walk->slab;
-        } else {
-            double base = component(capsule->a, i), across = component(capsule->b, i) - base;
-            double first = base + t0 * across, last = base + t1 * across;
-            walk->low[i] = cell_of(grid, fmin(first, last) - capsule->radius, i);
-            walk->high[i] = cell_of(grid, fmax(first, last) + capsule->radius, i);
-        }
-        walk->at[i] = walk->low[i];
+        double first = walk->from[i] + t0 * walk->span[i];
+        double last = walk->from[i] + t1 * walk->span[i];
+        walk->box.low[i] = cell_of(grid, least(first, last) - walk->radius, i);
+        walk->box.high[i] = cell_of(grid, greatest(first, last) + walk->radius, i);
     }
+    walk->box.low[axis] = walk->box.high[axis] = walk->slab;
+    for (int i = 0; i < 3; i++)
+        walk->at[i] = walk->box.low[i];
 }
 
-GridWalk grid_walk(const Grid *grid, Capsule capsule)
+/* Most capsules are so short that the box around them is as good as slabs. */
+static bool enter_small_box(GridWalk *walk)
 {
-    /* Wider by the rounding of positions on cell borders. */
-    capsule.radius += 1e-9 * grid->cell;
-    GridWalk walk = {.grid = grid, .capsule = capsule};
-    Vec3 span = vec3_sub(capsule.b, capsule.a);
-    for (int axis = 1; axis < 3; axis++)
-        if (fabs(component(span, axis)) > fabs(component(span, walk.axis)))
-            walk.axis = axis;
-    double a = component(capsule.a, walk.axis), b = component(capsule.b, walk.axis);
-    walk.slab = cell_of(grid, fmin(a, b) - capsule.radius, walk.axis);
-    walk.last_slab = cell_of(grid, fmax(a, b) + capsule.radius, walk.axis);
+    int cells = 1;
+    for (int i = 0; i < 3; i++) {
+        double a = walk->from[i], b = a + walk->span[i];
+        walk->box.low[i] = walk->at[i] = cell_of(walk->grid, least(a, b) - walk->radius, i);
+        walk->box.high[i] = cell_of(walk->grid, greatest(a, b) + walk->radius, i);
+        cells *= walk->box.high[i] - walk->box.low[i] + 1;
+        if (cells > SMALL_BOX)
+            return false;
+    }
+    return true;
+}
+
+GridWalk grid_walk(const Grid *grid, const GridItem *item)
+{
+    /* Wider by the rounding of places on cell borders. */
+    GridWalk walk = {.grid = grid, .radius = (double)item->reach + grid->rounding};
+    for (int i = 0; i < 3; i++) {
+        walk.from[i] = (double)item->proximal[i];
+        walk.span[i] = (double)item->distal[i] - walk.from[i];
+    }
+    if (enter_small_box(&walk))
+        return walk;
+    for (int i = 1; i < 3; i++)
+        if (fabs(walk.span[i]) > fabs(walk.span[walk.axis]))
+            walk.axis = i;
+    double a = walk.from[walk.axis], b = a + walk.span[walk.axis];
+    walk.slab = cell_of(grid, least(a, b) - walk.radius, walk.axis);
+    walk.last_slab = cell_of(grid, greatest(a, b) + walk.radius, walk.axis);
     enter_slab(&walk);
     return walk;
 }
@@ -112,13 +180,13 @@ bool grid_walk_next(GridWalk *walk, size_t *cell)
 {
     if (walk->slab > walk->last_slab)
         return false;
-    *cell = cell_index(walk->grid, walk->at[0], walk->at[1], walk->at[2]);
+    *cell = grid_index(walk->grid, walk->at[0], walk->at[1], walk->at[2]);
     for (int axis = 0; axis < 3; axis++) {
-        if (walk->at[axis] < walk->high[axis]) {
+        if (walk->at[axis] < walk->box.high[axis]) {
             walk->at[axis]++;
             return true;
         }
-        walk->at[axis] = walk->low[axis];
+        walk->at[axis] = walk->box.low[axis];
     }
     walk->slab++;
     if (walk->slab <= walk->last_slab)
@@ -126,55 +194,118 @@ bool grid_walk_next(GridWalk *walk, size_t *cell)
     return true;
 }
 
-static void store(Vec3 v, float out[3])
+/* Tags in a block of a size from 1: 4, 6, 8, 12, 16, 24, ... */
+static size_t block_tags(uint32_t size)
 {
-    out[0] = (float)v.x;
-    out[1] = (float)v.y;
-    out[2] = (float)v.z;
+    return (size_t)(2 + (size - 1) % 2) << ((size - 1) / 2 + 1);
 }
 
-Status grid_add(Grid *grid, int32_t segment, bool terminal, Capsule capsule, Err *err)
+/* A block of a size, off the arena. */
+static Status take_block(GridArena *arena, uint32_t size, int32_t **out, Err *err)
 {
-    GridEntry entry = {.tag = 2 * segment + terminal};
-    store(capsule.a, entry.proximal);
-    store(capsule.b, entry.distal);
-    grid->reach[segment] = (float)capsule.radius;
-    capsule.radius = (double)grid->reach[segment];
-    size_t cell;
-    for (GridWalk walk = grid_walk(grid, capsule); grid_walk_next(&walk, &cell);) {
-        int32_t at = grid->free;
-        if (at >= 0) {
-            grid->free = grid->entry[at].next;
-        } else {
-            TRY(mem_reserve(&grid->entry, &grid->capacity, grid->used + 1, sizeof *grid->entry,
-                            "grid entries", err));
-            at = (int32_t)grid->used++;
-        }
-        entry.next = grid->head[cell];
-        grid->entry[at] = entry;
-        grid->head[cell] = at;
+    int32_t *block = arena->free[size - 1];
+    if (block) {
+        memcpy(&arena->free[size - 1], block, sizeof arena->free[size - 1]);
+        *out = block;
+        return STATUS_OK;
+    }
+    size_t tags = block_tags(size);
+    if (!arena->slab || arena->used + tags > arena->capacity) {
+        size_t capacity = tags > SLAB_TAGS ? tags : SLAB_TAGS;
+        GridSlab *slab = malloc(sizeof *slab + capacity * sizeof *slab->tags);
+        if (!slab)
+            return err_set(err, STATUS_MEMORY, "no memory for the entries of the grid");
+        slab->next = arena->slab;
+        arena->slab = slab;
+        arena->used = 0;
+        arena->capacity = capacity;
+    }
+    *out = arena->slab->tags + arena->used;
+    arena->used += tags;
+    return STATUS_OK;
+}
+
+static void give_block(GridArena *arena, uint32_t size, int32_t *block)
+{
+    memcpy(block, &arena->free[size - 1], sizeof arena->free[size - 1]);
+    arena->free[size - 1] = block;
+}
+
+/* Moves the tags of a cell to a block of the next size. */
+static Status widen(GridArena *arena, GridCell *cell, Err *err)
+{
+    int32_t *block = NULL;
+    TRY(take_block(arena, cell->size + 1, &block, err));
+    if (cell->size > 0) {
+        memcpy(block, cell->tag, cell->count * sizeof *block);
+        give_block(arena, cell->size, cell->tag);
+    }
+    cell->tag = block;
+    cell->size++;
+    return STATUS_OK;
+}
+
+Status grid_add(Grid *grid, int worker, int32_t segment, bool terminal, GridItem item, Err *err)
+{
+    grid->item[segment] = item;
+    size_t index;
+    for (GridWalk walk = grid_walk(grid, &item); grid_walk_next(&walk, &index);) {
+        GridCell *cell = &grid->cell[index];
+        if (cell->size == 0 || cell->count == block_tags(cell->size))
+            TRY(widen(&grid->arena[worker], cell, err));
+        cell->tag[cell->count++] = 2 * segment + terminal;
     }
     return STATUS_OK;
 }
 
-void grid_remove(Grid *grid, int32_t segment, Vec3 a, Vec3 b)
+void grid_remove(Grid *grid, int32_t segment)
 {
-    Capsule capsule = {a, b, (double)grid->reach[segment]};
-    size_t cell;
-    for (GridWalk walk = grid_walk(grid, capsule); grid_walk_next(&walk, &cell);) {
-        int32_t *link = &grid->head[cell];
-        while (grid->entry[*link].tag >> 1 != segment)
-            link = &grid->entry[*link].next;
-        int32_t at = *link;
-        *link = grid->entry[at].next;
-        grid->entry[at].next = grid->free;
-        grid->free = at;
+    size_t index;
+    for (GridWalk walk = grid_walk(grid, &grid->item[segment]); grid_walk_next(&walk, &index);) {
+        GridCell *cell = &grid->cell[index];
+        int32_t *tag = cell->tag;
+        while (*tag >> 1 != segment)
+            tag++;
+        *tag = cell->tag[--cell->count];
     }
 }
 
-static float point_distance2(const GridEntry *entry, const float point[3])
+double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
 {
-    const float *a = entry->proximal, *b = entry->distal;
+    Vec3 u = vec3_sub(a1, a0), v = vec3_sub(b1, b0), w = vec3_sub(a0, b0);
+    double uu = vec3_dot(u, u), vv = vec3_dot(v, v), uv = vec3_dot(u, v);
+    double uw = vec3_dot(u, w), vw = vec3_dot(v, w);
+    double denominator = uu * vv - uv * uv;
+    double s = denominator > 0 ? clamp01((uv * vw - uw * vv) / denominator) : 0;
+    double t = (uv * s + vw) / vv;
+    if (t < 0 || t > 1) {
+        t = clamp01(t);
+        s = clamp01((uv * t - uw) / uu);
+    }
+    Vec3 apart = vec3_add_scaled(vec3_add_scaled(w, u, s), v, -t);
+    return vec3_dot(apart, apart);
+}
+
+static Vec3 load(const float v[3])
+{
+    return vec3((double)v[0], (double)v[1], (double)v[2]);
+}
+
+double grid_distance2(const GridItem *a, const GridItem *b)
+{
+    return segment_distance2(load(a->proximal), load(a->distal), load(b->proximal),
+                             load(b->distal));
+}
+
+double grid_length2(const GridItem *item)
+{
+    Vec3 along = vec3_sub(load(item->distal), load(item->proximal));
+    return vec3_dot(along, along);
+}
+
+static inline float point_distance2(const GridItem *item, const float point[3])
+{
+    const float *a = item->proximal, *b = item->distal;
     float ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
     float wx = point[0] - a[0], wy = point[1] - a[1], wz = point[2] - a[2];
     float dot = ux * wx + uy * wy + uz * wz;
@@ -184,46 +315,77 @@ static float point_distance2(const GridEntry *entry, const float point[3])
     return dx * dx + dy * dy + dz * dz;
 }
 
-static float end_distance2(const GridEntry *entry, const float point[3])
+static inline float end_distance2(const GridItem *item, const float point[3])
 {
-    const float *end = entry->distal;
+    const float *end = item->distal;
     float dx = point[0] - end[0], dy = point[1] - end[1], dz = point[2] - end[2];
     return dx * dx + dy * dy + dz * dz;
 }
 
-static bool cell_any_within(const Grid *grid, size_t cell, const float point[3], float limit2,
-                            bool terminals_only)
+size_t grid_cell_at(const Grid *grid, Vec3 point)
 {
-    for (int32_t at = grid->head[cell]; at >= 0; at = grid->entry[at].next) {
-        const GridEntry *entry = &grid->entry[at];
-        if (terminals_only) {
-            if ((entry->tag & 1) && end_distance2(entry, point) < limit2)
-                return true;
-        } else if (point_distance2(entry, point) < limit2) {
-            return true;
-        }
-    }
-    return false;
+    return grid_index(grid, cell_of(grid, point.x - grid->low.x, 0),
+                      cell_of(grid, point.y - grid->low.y, 1),
+                      cell_of(grid, point.z - grid->low.z, 2));
 }
 
-bool grid_any_within(const Grid *grid, Vec3 point, double distance, bool terminals_only)
+GridBox grid_box(const Grid *grid, Vec3 point, double distance)
 {
-    float at[3], limit2 = (float)(distance * distance);
-    store(point, at);
-    /* Most points that are too near something are so within their own cell. */
-    if (cell_any_within(grid, grid_cell_at(grid, point), at, limit2, terminals_only))
-        return true;
-    int low[3], high[3];
+    GridBox box;
     for (int axis = 0; axis < 3; axis++) {
-        low[axis] = cell_of(grid, component(point, axis) - distance, axis);
-        high[axis] = cell_of(grid, component(point, axis) + distance, axis);
+        double at = component(point, axis) - component(grid->low, axis);
+        box.low[axis] = cell_of(grid, at - distance, axis);
+        box.high[axis] = cell_of(grid, at + distance, axis);
     }
-    for (int z = low[2]; z <= high[2]; z++)
-        for (int y = low[1]; y <= high[1]; y++)
-            for (int x = low[0]; x <= high[0]; x++)
-                if (cell_any_within(grid, cell_index(grid, x, y, z), at, limit2, terminals_only))
-                    return true;
-    return false;
+    return box;
+}
+
+/* What grid_room looks for. */
+typedef struct Query {
+    float at[3]; /* the point */
+    float distance2, thickness;
+    bool terminals_only;
+} Query;
+
+static GridRoom cell_room(const Grid *grid, size_t index, const Query *query)
+{
+    const GridCell *cell = &grid->cell[index];
+    GridRoom room = GRID_FREE;
+    for (uint32_t i = 0; i < cell->count; i++) {
+        const GridItem *item = &grid->item[cell->tag[i] >> 1];
+        float distance2 = point_distance2(item, query->at);
+        if (query->terminals_only
+                ? (cell->tag[i] & 1) && end_distance2(item, query->at) < query->distance2
+                : distance2 < query->distance2)
+            return GRID_TOO_NEAR;
+        float radius = query->thickness * item->radius;
+        if (distance2 < radius * radius)
+            room = GRID_IN_VESSEL;
+    }
+    return room;
+}
+
+GridRoom grid_room(const Grid *grid, Vec3 point, double distance, bool terminals_only,
+                   double thickness)
+{
+    Query query = {.distance2 = (float)(distance * distance),
+                   .thickness = (float)thickness,
+                   .terminals_only = terminals_only};
+    store(grid, point, query.at);
+    /* Its own cell has every vessel that may hold the point, and most that are too near. */
+    size_t home = grid_cell_at(grid, point);
+    GridRoom room = cell_room(grid, home, &query);
+    if (room == GRID_TOO_NEAR)
+        return room;
+    GridBox box = grid_box(grid, point, distance);
+    for (int z = box.low[2]; z <= box.high[2]; z++)
+        for (int y = box.low[1]; y <= box.high[1]; y++)
+            for (int x = box.low[0]; x <= box.high[0]; x++) {
+                size_t index = grid_index(grid, x, y, z);
+                if (index != home && cell_room(grid, index, &query) == GRID_TOO_NEAR)
+                    return GRID_TOO_NEAR;
+            }
+    return room;
 }
 
 static bool nearer(Near a, Near b)
@@ -234,25 +396,24 @@ static bool nearer(Near a, Near b)
 /* A search for the nearest segments, those found so far sorted in `list`. */
 typedef struct Search {
     const Grid *grid;
-    Vec3 point;
     float at[3]; /* the point */
     int home[3]; /* its cell */
     int limit, count;
     Near *list;
 } Search;
 
-static void gather_cell(Search *search, size_t cell)
+static void gather_cell(Search *search, size_t index)
 {
     Near *list = search->list;
-    const GridEntry *entry;
-    for (int32_t at = search->grid->head[cell]; at >= 0; at = entry->next) {
-        entry = &search->grid->entry[at];
-        Near found = {point_distance2(entry, search->at), entry->tag >> 1};
+    const GridCell *cell = &search->grid->cell[index];
+    for (uint32_t k = 0; k < cell->count; k++) {
+        int32_t segment = cell->tag[k] >> 1;
+        Near found = {point_distance2(&search->grid->item[segment], search->at), segment};
         if (search->count == search->limit && !nearer(found, list[search->count - 1]))
             continue;
         bool known = false;
         for (int i = 0; i < search->count && !known; i++)
-            known = list[i].segment == found.segment;
+            known = list[i].segment == segment;
         if (known)
             continue;
         int place = search->count < search->limit ? search->count++ : search->count - 1;
@@ -262,11 +423,12 @@ static void gather_cell(Search *search, size_t cell)
     }
 }
 
-/* Squared distance of a value from an interval of one cell's length. */
-static double excess2(const Grid *grid, double value, int cell, int axis)
+/* Squared distance of the point from a row of cells, or with all cells of that column, along one
+ * axis. */
+static double excess2(const Search *search, int cell, int axis)
 {
-    double low = component(grid->low, axis) + cell * grid->cell;
-    double excess = fmax(0, fmax(low - value, value - low - grid->cell));
+    double low = cell * search->grid->edge, at = (double)search->at[axis];
+    double excess = greatest(0, greatest(low - at, at - low - search->grid->edge));
     return excess * excess;
 }
 
@@ -274,14 +436,13 @@ static double excess2(const Grid *grid, double value, int cell, int axis)
 static void gather_row(Search *search, int first, int last, int step, int y, int z)
 {
     const Grid *grid = search->grid;
-    double across2 = excess2(grid, search->point.y, y, 1) + excess2(grid, search->point.z, z, 2);
+    double across2 = excess2(search, y, 1) + excess2(search, z, 2);
     for (int x = first; x <= last; x += step) {
         if (x < 0 || x >= grid->count[0])
             continue;
-        double distance2 = across2 + excess2(grid, search->point.x, x, 0);
         if (search->count < search->limit ||
-            distance2 <= (double)search->list[search->count - 1].distance2)
-            gather_cell(search, cell_index(grid, x, y, z));
+            across2 + excess2(search, x, 0) <= (double)search->list[search->count - 1].distance2)
+            gather_cell(search, grid_index(grid, x, y, z));
     }
 }
 
@@ -301,17 +462,18 @@ static void gather_ring(Search *search, int ring)
 
 int grid_nearest(const Grid *grid, Vec3 point, int limit, Near *out)
 {
-    Search search = {.grid = grid, .point = point, .limit = limit, .list = out};
-    store(point, search.at);
+    Search search = {.grid = grid, .limit = limit, .list = out};
+    store(grid, point, search.at);
+    GridBox own = grid_box(grid, point, 0);
     int farthest = 0;
     for (int axis = 0; axis < 3; axis++) {
-        search.home[axis] = cell_of(grid, component(point, axis), axis);
+        search.home[axis] = own.low[axis];
         int other_side = grid->count[axis] - 1 - search.home[axis];
         farthest = search.home[axis] > farthest ? search.home[axis] : farthest;
         farthest = other_side > farthest ? other_side : farthest;
     }
     for (int ring = 0; ring <= farthest; ring++) {
-        double clear = (ring - 1) * grid->cell; /* a ring's cells are further than this */
+        double clear = (ring - 1) * grid->edge; /* a ring's cells are further than this */
         if (search.count == limit && clear > 0 &&
             clear * clear > (double)out[search.count - 1].distance2)
             break;

@@ -8,67 +8,132 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A segment in one cell, its ends at hand so that distance queries touch nothing else. */
-typedef struct GridEntry {
-    float proximal[3], distal[3]; /* mm */
-    int32_t tag;                  /* 2 * segment + (1 at a terminal) */
-    int32_t next;                 /* entry of the same cell or of the free list, -1: none */
-} GridEntry;
-
-typedef struct Grid {
-    Vec3 low;
-    double cell; /* edge length, mm */
-    int count[3];
-    int32_t *head; /* first entry of each cell, -1: none; x fastest */
-    GridEntry *entry;
-    size_t used, capacity;
-    int32_t free;
-    float *reach; /* radius each segment was entered with, mm */
-} Grid;
-
 /* A straight tube with round ends. */
 typedef struct Capsule {
     Vec3 a, b;
     double radius;
 } Capsule;
 
+/* A segment as the grid knows it, in half a cache line. */
+typedef struct GridItem {
+    float proximal[3], distal[3]; /* mm, from the grid's low corner */
+    float radius;                 /* of the vessel, mm; the caller may bring it up to date */
+    float reach;                  /* it is entered where the capsule of this radius may be, mm */
+} GridItem;
+
+/* The segments in one cell: 2 * segment + (1 at a terminal) of each. */
+typedef struct GridCell {
+    int32_t *tag;
+    uint32_t count, size; /* `size`: of the block that holds them, 0: none */
+} GridCell;
+
+typedef struct GridArena GridArena;
+
+typedef struct Grid {
+    Vec3 low;
+    double edge;     /* of a cell, mm */
+    double inverse;  /* 1 / edge */
+    double rounding; /* mm; more than the rounding of coordinates */
+    int count[3];
+    GridCell *cell; /* x fastest */
+    GridItem *item; /* by segment */
+    GridArena *arena;
+    int workers;
+} Grid;
+
 typedef struct Near {
     float distance2; /* mm^2 */
     int32_t segment;
 } Near;
 
+/* Where a point is. */
+typedef enum GridRoom {
+    GRID_FREE,
+    GRID_IN_VESSEL,
+    GRID_TOO_NEAR, /* to the tree */
+} GridRoom;
+
 /* An empty grid over `box` with about `cells` cells for segments below `segments`; a flat box gives
- * one layer. Releases what `grid` held before, so start from (Grid){0}. */
-MUST_CHECK Status grid_reset(Grid *grid, Box box, double cells, size_t segments, Err *err);
+ * one layer. Releases what `grid` held before, so start from (Grid){0}. Up to `workers` threads may
+ * enter and take out segments at a time, as long as no two of them touch the same cell. */
+MUST_CHECK Status grid_reset(Grid *grid, Box box, double cells, size_t segments, int workers,
+                             Err *err);
 void grid_release(Grid *grid);
 
-/* Enters a segment, from capsule.a (proximal) to capsule.b, in every cell that may meet its
- * capsule. */
-MUST_CHECK Status grid_add(Grid *grid, int32_t segment, bool terminal, Capsule capsule, Err *err);
-/* Takes out the segment that was entered from `a` to `b`. */
-void grid_remove(Grid *grid, int32_t segment, Vec3 a, Vec3 b);
+/* The number of cells. */
+size_t grid_cells(const Grid *grid);
+
+/* The cell that holds `point`. */
+size_t grid_cell_at(const Grid *grid, Vec3 point);
+
+/* The item of a vessel of `radius` from capsule.a (proximal) to capsule.b that reaches as far as
+ * the capsule. */
+GridItem grid_item(const Grid *grid, Capsule capsule, double radius);
+
+/* Enters a segment in every cell that may meet its item's capsule. `worker` is below the number of
+ * workers, and each thread has its own. */
+MUST_CHECK Status grid_add(Grid *grid, int worker, int32_t segment, bool terminal, GridItem item,
+                           Err *err);
+/* Takes a segment out. */
+void grid_remove(Grid *grid, int32_t segment);
 
 /* Whether some segment's centreline, or with `terminals_only` some terminal's end point, is nearer
- * to `point` than `distance`. */
-bool grid_any_within(const Grid *grid, Vec3 point, double distance, bool terminals_only);
+ * to `point` than `distance`; if not, whether a vessel of `thickness` times its radius holds it. */
+GridRoom grid_room(const Grid *grid, Vec3 point, double distance, bool terminals_only,
+                   double thickness);
 
 /* The up to `limit` segments whose centrelines are nearest to `point`, nearest first; returns how
  * many. Equal distances are ordered by segment. */
 int grid_nearest(const Grid *grid, Vec3 point, int limit, Near *out);
 
-/* The cell that holds `point`. Every segment whose capsule holds it is entered there. */
-size_t grid_cell_at(const Grid *grid, Vec3 point);
+/* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
+ * Detection, 2005, sec. 5.1.9]. */
+double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
 
-/* Iterates over the cells that may meet a capsule, each once. */
+/* Squared distance of two items' centrelines, and squared length of one's, mm^2. */
+double grid_distance2(const GridItem *a, const GridItem *b);
+double grid_length2(const GridItem *item);
+
+/* Whether the boxes around two items' centrelines are within `distance` of each other; a little more
+ * is allowed for rounding. */
+static inline bool grid_boxes_within(const GridItem *a, const GridItem *b, float distance)
+{
+    for (int i = 0; i < 3; i++) {
+        float a_low = a->proximal[i] < a->distal[i] ? a->proximal[i] : a->distal[i];
+        float a_high = a->proximal[i] < a->distal[i] ? a->distal[i] : a->proximal[i];
+        float b_low = b->proximal[i] < b->distal[i] ? b->proximal[i] : b->distal[i];
+        float b_high = b->proximal[i] < b->distal[i] ? b->distal[i] : b->proximal[i];
+        if ((a_low - b_high) * 0.999999f > distance || (b_low - a_high) * 0.999999f > distance)
+            return false;
+    }
+    return true;
+}
+
+/* A box of cells, both ends included. */
+typedef struct GridBox {
+    int low[3], high[3];
+} GridBox;
+
+/* The cells that meet the cube of twice `distance` about `point`. */
+GridBox grid_box(const Grid *grid, Vec3 point, double distance);
+
+static inline size_t grid_index(const Grid *grid, int x, int y, int z)
+{
+    return ((size_t)z * grid->count[1] + y) * grid->count[0] + x;
+}
+
+/* Iterates over the cells that may meet an item's capsule, each once. Two capsules that meet have a
+ * cell in common. */
 typedef struct GridWalk {
     const Grid *grid;
-    Capsule capsule;
-    int axis;                   /* the one along which the capsule is longest */
-    int slab, last_slab;        /* of cells across that axis */
-    int low[3], high[3], at[3]; /* within the slab */
+    double from[3], span[3], radius;
+    int axis;            /* the one along which the capsule is longest */
+    int slab, last_slab; /* of cells across that axis */
+    GridBox box;         /* within the slab */
+    int at[3];
 } GridWalk;
 
-GridWalk grid_walk(const Grid *grid, Capsule capsule);
+GridWalk grid_walk(const Grid *grid, const GridItem *item);
 /* The next cell in *cell; false when there is none. */
 bool grid_walk_next(GridWalk *walk, size_t *cell);
 

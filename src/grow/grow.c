@@ -1,80 +1,99 @@
-/* One terminal at a time [METHODS 1]: toss a random point until one is far enough from the tree,
- * connect it to each of the nearest segments at the bifurcation that is best for that segment, and
- * keep the cheapest connection that has room. The domain has its final size throughout: scaling all
- * lengths scales all costs alike, so this chooses as a domain that grows with the tree does.
+/* Terminals are added in batches [METHODS 1]: random points are tossed; each that is far enough from
+ * the tree is connected to that of the nearest segments where it is cheapest, at the bifurcation
+ * that is best there, if there is room [plan.c, batch.c]. A batch is small against the tree, so that
+ * it does what adding one by one would do, but for points that get in each other's way, which wait
+ * for the next. The domain has its final size throughout: scaling all lengths scales all costs
+ * alike, so this chooses as a domain that grows with the tree does.
  *
- * The toss distance starts where the last terminal was accepted, one notch up, and shrinks by a
- * notch after every few points that are too near, so it follows the filling of the domain without
- * being searched for anew. It shrinks, too, when points have no way to the tree within the tissue,
- * because nearer ones may. Connections are tested for room cheapest first, so most tests are never
- * made. When no point finds room at the vessels' real thickness, they are taken to be thinner, in
- * the end bare centrelines. */
+ * The toss distance is controlled so that a fixed share of the points is far enough. It follows the
+ * filling of the domain by itself, and falls, too, when points have no way to the tree within the
+ * tissue, because nearer ones may. When no point finds room at the vessels' real thickness, they are
+ * taken to be thinner, in the end bare centrelines. */
 #include "grow/grow.h"
 
+#include "grow/adopt.h"
+#include "grow/batch.h"
 #include "grow/finish.h"
-#include "grow/grid.h"
-#include "grow/network.h"
-#include "grow/place.h"
+#include "grow/forest.h"
+#include "grow/mend.h"
+#include "grow/plant.h"
+#include "grow/weigh.h"
 #include <stdlib.h>
 
 /* Cells of the grid a terminal, when the grid is made; it serves until the terminals doubled. */
-static const double cells_per_terminal = 4;
+static const double cells_per_terminal = 3;
 /* The sensitivities serve until there are this many times the terminals. */
 static const double refresh_growth = 1.1;
-/* A notch of the toss distance, and the points tossed at each. */
-static const double toss_notch = 0.9;
-enum { TOSSES_PER_NOTCH = 10 };
+/* A batch adds about one terminal for every so many there are. */
+enum { TERMINALS_PER_ADDED = 64, MAX_ADDED = 2048 };
+/* Points tossed for each terminal to be added, and the batch's size at most. */
+enum { TOSSES_PER_ADDED = 3, MAX_BATCH = 2 * TOSSES_PER_ADDED * MAX_ADDED };
+/* How far the toss distance falls after a batch in which no point is far enough from the tree. */
+static const double toss_notch = 0.1;
 /* Segments are no shorter than this share of the toss distance. */
 static const double least_length_share = 0.1;
-/* Points without a connection in a row: then vessels count as half as thick, below the least
+/* Trees with fewer terminals than this have cells too large to be full after a few misses. */
+enum { LEAST_WITH_FULL_CELLS = 1000 };
+/* Points without a connection for one that has: then vessels count as half as thick, below the least
  * thickness as lines, and at last the domain is full. */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
 static const double least_thickness = 1.0 / 64;
-/* Radii enter the grid with the reserve the rules want and room to grow until it is made anew. */
-static const double reach_reserve = 1.4;
 
 typedef struct Growth {
     const GrowParams *params;
     const Domain *domain;
     double size; /* of the domain's box, mm */
     Network net;
+    Forest forest;
     Grid grid;
     Random random;
     size_t grid_until, refresh_until; /* terminals */
     double toss_distance;             /* mm */
     Rules rules;
-    Near *near; /* params->candidates of each */
-    Connection *connections;
+    Batch batch;
     uint64_t tosses, rejected;
+    size_t crowded, outside; /* points far enough from the tree since one was connected */
 } Growth;
 
-static Status enter(Growth *growth, int32_t segment, Err *err)
-{
-    Capsule capsule = network_capsule(&growth->net, segment);
-    capsule.radius = fmin(capsule.radius * reach_reserve * growth->rules.thickness, growth->size);
-    bool terminal = growth->net.segment[segment].terminals == 1;
-    return grid_add(&growth->grid, segment, terminal, capsule, err);
-}
+/* What became of the new points of a batch. */
+typedef struct Tally {
+    size_t skipped; /* in cells that are full; not among the others */
+    size_t tossed, in_vessel, ahead, outside, crowded;
+    size_t far; /* as far from the tree as asked, with a way to it within the tissue */
+} Tally;
 
 static Status make_grid(Growth *growth, Err *err)
 {
     Network *net = &growth->net;
-    size_t terminals = network_terminals(net);
+    size_t terminals = net->terminals;
+    grid_release(&growth->grid);
     TRY(network_reorder(net, err));
     growth->grid_until = 2 * terminals;
+    size_t most = growth->grid_until + MAX_BATCH;
+    if (most > growth->params->terminals)
+        most = growth->params->terminals;
     TRY(grid_reset(&growth->grid, domain_bounds(growth->domain),
-                   cells_per_terminal * (double)terminals, 2 * growth->grid_until + 2, err));
-    for (size_t i = 1; i < net->n; i++)
-        TRY(enter(growth, (int32_t)i, err));
+                   cells_per_terminal * (double)terminals, net->n + 2 * (most - terminals),
+                   growth->batch.threads, err));
+    TRY(batch_use_grid(&growth->batch, &growth->grid, err));
+    for (size_t i = 0; i < net->n; i++)
+        if (net->segment[i].parent >= 0)
+            TRY(place_enter(&growth->grid, &growth->rules, net, (int32_t)i, err));
     return STATUS_OK;
 }
 
 /* Brings what ages with growth up to date when it is due. */
 static Status keep_up(Growth *growth, Err *err)
 {
-    size_t terminals = network_terminals(&growth->net);
+    Network *net = &growth->net;
+    size_t terminals = net->terminals;
     if (terminals >= growth->refresh_until) {
-        network_refresh(&growth->net);
+        if (weigh_is_needed(growth->params))
+            TRY(weigh_refresh(net, growth->params, growth->domain, WEIGH_ROUGH, err));
+        else
+            network_refresh(net);
+        if (growth->grid.item)
+            TRY(place_widen(&growth->grid, &growth->rules, net, err));
         growth->refresh_until = (size_t)(refresh_growth * (double)terminals) + 1;
     }
     return terminals >= growth->grid_until ? make_grid(growth, err) : STATUS_OK;
@@ -86,91 +105,92 @@ static void set_toss_distance(Growth *growth, double distance)
     growth->rules.least_length = least_length_share * growth->toss_distance;
 }
 
-static bool is_too_near(const Growth *growth, Vec3 point)
-{
-    if (growth->net.n == 1)
-        return vec3_distance(point, growth->net.position[0]) < growth->toss_distance;
-    return grid_any_within(&growth->grid, point, growth->toss_distance,
-                           growth->params->toss == GROW_TOSS_TERMINAL);
-}
-
-/* A random point at the toss distance, which falls until there is one. */
 static Vec3 toss(Growth *growth)
 {
-    for (int tries = 1;; tries++) {
-        Vec3 point = domain_sample(growth->domain, &growth->random);
-        growth->tosses++;
-        if (!is_too_near(growth, point))
-            return point;
-        if (tries % TOSSES_PER_NOTCH == 0)
-            set_toss_distance(growth, growth->toss_distance * toss_notch);
-    }
+    growth->tosses++;
+    return domain_sample(growth->domain, &growth->random);
 }
 
-typedef enum Choice {
-    CHOICE_MADE,
-    CHOICE_CROWDED, /* vessels are in the way */
-    CHOICE_OUTSIDE, /* every way leads through what is not tissue */
-} Choice;
-
-/* The cheapest connection with room in *out, when there is one. */
-static Choice choose(Growth *growth, Vec3 terminal, Connection *out)
+/* Tosses the new points of a batch, from plan[first] on. */
+static void fill_batch(Growth *growth, size_t first, Tally *tally)
 {
-    const Network *net = &growth->net;
-    Connection *connections = growth->connections;
-    if (place_is_in_vessel(net, &growth->grid, &growth->rules, terminal))
-        return CHOICE_CROWDED;
-    int near = grid_nearest(&growth->grid, terminal, growth->params->candidates, growth->near);
-    int count = 0;
-    for (int i = 0; i < near; i++)
-        if (place_connection(net, &growth->rules, growth->near[i].segment, terminal,
-                             &connections[count]))
-            count++;
-    Choice choice = count > 0 ? CHOICE_OUTSIDE : CHOICE_CROWDED;
-    while (count > 0) {
-        int best = 0;
-        for (int i = 1; i < count; i++)
-            if (connections[i].price < connections[best].price)
-                best = i;
-        if (place_is_inside(net, growth->domain, &connections[best], terminal)) {
-            choice = CHOICE_CROWDED;
-            if (place_is_free(net, &growth->grid, &growth->rules, &connections[best], terminal)) {
-                *out = connections[best];
-                return CHOICE_MADE;
-            }
-        }
-        connections[best] = connections[--count];
-    }
-    return choice;
-}
-
-/* The first segment, from the inlet to a point that it reaches within the domain. */
-static Status plant(Growth *growth, Err *err)
-{
-    for (int tries = 1; tries <= LAST_PATIENCE; tries++) {
+    Batch *batch = &growth->batch;
+    bool skip = growth->net.terminals >= LEAST_WITH_FULL_CELLS;
+    size_t i = first;
+    while (i < batch->n && tally->skipped < LAST_PATIENCE * (i - first + 1)) {
         Vec3 point = toss(growth);
-        if (domain_is_convex(growth->domain) ||
-            domain_holds_segment(growth->domain, growth->net.position[0], point)) {
-            network_plant(&growth->net, point);
-            return STATUS_OK;
-        }
-        if (tries % TOSSES_PER_NOTCH == 0)
-            set_toss_distance(growth, growth->toss_distance * toss_notch);
+        if (skip && batch_is_full(batch, &growth->grid, point))
+            tally->skipped++;
+        else
+            batch->plan[i++].terminal = point;
     }
-    return err_set(err, STATUS_INFEASIBLE,
-                   "no straight vessel leads from the inlet into the domain; choose an --inlet "
-                   "further inside");
+    batch->n = i;
+    tally->tossed = i - first;
 }
 
-static Status connect(Growth *growth, const Connection *connection, Vec3 terminal, Err *err)
+/* Tosses a batch of points and connects those that can be. */
+static Status add_batch(Growth *growth, Tally *tally, Err *err)
 {
-    Network *net = &growth->net;
-    int32_t host = connection->segment, fresh = (int32_t)net->n;
-    grid_remove(&growth->grid, host, net->position[net->segment[host].parent], net->position[host]);
-    network_split(net, host, connection->bifurcation, terminal);
-    TRY(enter(growth, host, err));
-    TRY(enter(growth, fresh, err));
-    return enter(growth, fresh + 1, err);
+    Batch *batch = &growth->batch;
+    size_t terminals = growth->net.terminals, added = terminals / TERMINALS_PER_ADDED;
+    added = added < 1 ? 1 : added > MAX_ADDED ? MAX_ADDED : added;
+    size_t first = batch_start(batch, TOSSES_PER_ADDED * added);
+    *tally = (Tally){0};
+    fill_batch(growth, first, tally);
+    forest_limit(&growth->forest, &growth->net);
+    Site site = {.net = &growth->net,
+                 .limit = growth->forest.limit,
+                 .grid = &growth->grid,
+                 .domain = growth->domain,
+                 .rules = &growth->rules,
+                 .toss_distance = growth->toss_distance,
+                 .terminals_only = growth->params->toss == GROW_TOSS_TERMINAL,
+                 .candidates = growth->params->candidates};
+    TRY(batch_plan(batch, &site, err));
+    for (size_t i = first; i < batch->n; i++) {
+        PlanState state = batch->plan[i].state;
+        tally->in_vessel += state == PLAN_IN_VESSEL;
+        tally->ahead += state == PLAN_AHEAD;
+        tally->outside += state == PLAN_OUTSIDE;
+        tally->crowded += state == PLAN_CROWDED;
+        tally->far += state >= PLAN_CROWDED;
+    }
+    batch_accept(batch, &growth->net, &growth->grid, growth->forest.limit);
+    return batch_carry_out(batch, &growth->net, &growth->grid, &growth->rules, err);
+}
+
+/* Holds the share of points that are far enough from the tree at one in TOSSES_PER_ADDED. */
+static void adapt_toss_distance(Growth *growth, const Tally *tally)
+{
+    double free = (double)(tally->tossed - tally->in_vessel - tally->ahead);
+    if (free > 0) {
+        double share = TOSSES_PER_ADDED * (double)tally->far / free;
+        set_toss_distance(growth, growth->toss_distance * (1 + toss_notch * (share - 1)));
+    }
+}
+
+/* Gives thick vessels up, and at last the search, when next to nothing finds room. */
+static Status be_patient(Growth *growth, const Tally *tally, Err *err)
+{
+    Rules *rules = &growth->rules;
+    size_t before = growth->crowded;
+    size_t crowded = tally->skipped + tally->in_vessel + tally->crowded;
+    growth->rejected += crowded + tally->outside;
+    growth->crowded += crowded;
+    growth->outside += tally->outside + tally->ahead;
+    if (growth->batch.n_accepted * PATIENCE > growth->crowded) {
+        growth->crowded = growth->outside = 0;
+    } else if (growth->crowded / PATIENCE > before / PATIENCE) {
+        rules->thickness = rules->thickness > least_thickness ? rules->thickness / 2 : 0;
+        TRY(batch_use_grid(&growth->batch, &growth->grid, err));
+    }
+    if (growth->crowded + growth->outside < LAST_PATIENCE)
+        return STATUS_OK;
+    return err_set(err, STATUS_INFEASIBLE,
+                   "no room for terminal %zu of --terminals %zu in %zu tries: lower --terminals, "
+                   "choose a larger --domain, or move --gamma and --lambda towards 3 and 2",
+                   growth->net.terminals + 1, growth->params->terminals,
+                   growth->crowded + growth->outside);
 }
 
 static Status check_range(const Growth *growth, Err *err)
@@ -184,28 +204,52 @@ static Status check_range(const Growth *growth, Err *err)
                    growth->params->gamma, growth->params->lambda, growth->params->terminals);
 }
 
-static Status add_terminal(Growth *growth, Err *err)
+static Status add_terminals(Growth *growth, Err *err)
 {
-    Rules *rules = &growth->rules;
-    set_toss_distance(growth, growth->toss_distance / toss_notch);
-    int crowded = 0, outside = 0;
-    while (crowded + outside < LAST_PATIENCE) {
-        Vec3 terminal = toss(growth);
-        Connection connection = {0};
-        Choice choice = choose(growth, terminal, &connection);
-        if (choice == CHOICE_MADE)
-            return connect(growth, &connection, terminal, err);
-        growth->rejected++;
-        if (choice == CHOICE_CROWDED && ++crowded % PATIENCE == 0)
-            rules->thickness = rules->thickness > least_thickness ? rules->thickness / 2 : 0;
-        if (choice == CHOICE_OUTSIDE && ++outside % TOSSES_PER_NOTCH == 0)
-            set_toss_distance(growth, growth->toss_distance * toss_notch);
+    Tally tally;
+    TRY(check_range(growth, err));
+    TRY(keep_up(growth, err));
+    TRY(add_batch(growth, &tally, err));
+    adapt_toss_distance(growth, &tally);
+    return be_patient(growth, &tally, err);
+}
+
+/* New trees at the inlets. */
+static Status plant(Growth *growth, Err *err)
+{
+    const GrowParams *params = growth->params;
+    Network *net = &growth->net;
+    double distance = growth->toss_distance;
+    if (params->inlets == 0)
+        network_append(net, -1, domain_default_inlet(growth->domain));
+    for (size_t k = 0; k < params->inlets; k++)
+        network_append(net, -1, params->inlet[k]);
+    TRY(plant_trees(net, growth->domain, &growth->random, &distance, &growth->tosses, err));
+    set_toss_distance(growth, distance);
+    return STATUS_OK;
+}
+
+/* Shares the terminals among the trees that there are. */
+static Status start_forest(Growth *growth, Err *err)
+{
+    const GrowParams *params = growth->params;
+    const Network *net = &growth->net;
+    Forest *forest = &growth->forest;
+    double share[GROW_MAX_INLETS];
+    for (size_t k = 0; k < net->inlets; k++)
+        share[k] = params->inlet_shares > 0 ? params->inlet_share[k]
+                   : params->from           ? net->segment[net->inlet[k]].terminals
+                                            : 1;
+    TRY(forest_init(forest, net->inlets, share, params->terminals, err));
+    for (size_t k = 0; k < net->inlets; k++) {
+        int has = net->segment[net->inlet[k]].terminals;
+        if ((size_t)has > forest->quota[k])
+            return err_set(err, STATUS_USAGE,
+                           "--inlet-shares: tree %zu of --from has %d terminals, and its share of "
+                           "--terminals %zu is only %zu",
+                           k + 1, has, params->terminals, forest->quota[k]);
     }
-    return err_set(err, STATUS_INFEASIBLE,
-                   "no room for terminal %zu of --terminals %zu in %d tries: lower --terminals, "
-                   "choose a larger --domain, or move --gamma and --lambda towards 3 and 2",
-                   network_terminals(&growth->net) + 1, growth->params->terminals,
-                   crowded + outside);
+    return STATUS_OK;
 }
 
 static Status start(Growth *growth, Err *err)
@@ -214,34 +258,51 @@ static Status start(Growth *growth, Err *err)
     const double pi = 3.14159265358979323846;
     Box box = domain_bounds(growth->domain);
     growth->size = vec3_distance(box.low, box.high);
-    growth->rules = (Rules){.thickness = 1, .gap = 1e-7 * growth->size};
+    growth->rules = (Rules){.thickness = 1, .gap = 1e-7 * growth->size, .widest = growth->size};
     set_toss_distance(growth, growth->size);
     growth->refresh_until = growth->grid_until = 1;
-    random_seed(&growth->random, params->seed);
-    size_t slots = (size_t)params->candidates;
-    TRY(mem_calloc(&growth->near, slots, sizeof *growth->near, "candidates", err));
-    TRY(mem_calloc(&growth->connections, slots, sizeof *growth->connections, "candidates", err));
+    /* Not the points again that made a tree by the same seed. */
+    uint64_t turn = params->from ? 0x9e3779b97f4a7c15 * (uint64_t)params->from->n : 0;
+    random_seed(&growth->random, params->seed ^ turn);
+    int threads = params->threads > 0 ? params->threads : threads_available();
+    TRY(batch_init(&growth->batch, MAX_BATCH, params->candidates, threads, err));
 
     double drop = pa_from_mmhg(params->p_perf_mmhg) - pa_from_mmhg(params->p_term_mmhg);
-    double resistance = 8 * pa_s_from_cp(params->viscosity_cp) / pi;
+    double resistance = 8 * weigh_reference_pa_s(params) / pi;
     double scale = sqrt(sqrt(resistance * mm3_s_from_ml_min(params->q_perf_ml_min) / drop));
-    Vec3 inlet = params->has_inlet ? params->inlet : domain_default_inlet(growth->domain);
-    return network_init(&growth->net, (Law){params->gamma, params->lambda}, scale,
-                        params->terminals, inlet, err);
+    bool traits = params->from || params->inlets > 1 || weigh_is_needed(params);
+    size_t inlets = params->from ? adopt_inlets(params->from) : params->inlets;
+    size_t given = params->from ? params->from->n : 0;
+    TRY(network_init(&growth->net, (Law){params->gamma, params->lambda}, scale,
+                     given + 2 * params->terminals, inlets > 0 ? inlets : 1, traits, err));
+    if (params->from)
+        adopt_tree(params->from, &growth->net);
+    else
+        TRY(plant(growth, err));
+    return start_forest(growth, err);
 }
 
-static void report_progress(const Growth *growth)
+static void report_progress(const Growth *growth, size_t before)
 {
-    size_t terminals = network_terminals(&growth->net);
-    if (growth->params->progress && terminals % 256 == 0)
+    size_t terminals = growth->net.terminals;
+    if (growth->params->progress && terminals / 256 > before / 256)
         growth->params->progress((double)terminals / (double)growth->params->terminals,
                                  growth->params->progress_context);
+}
+
+static double root_radius_of(const Tree *tree)
+{
+    double radius = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        if (!tree_is_segment(tree, i))
+            radius = fmax(radius, tree->radius_mm[i]);
+    return radius;
 }
 
 static double target_of(const Tree *tree)
 {
     double target = 0;
-    for (size_t i = 1; i < tree->n; i++)
+    for (size_t i = 0; i < tree->n; i++)
         target += tree_segment_length(tree, i) * pow(tree->radius_mm[i], tree->header.lambda);
     return target;
 }
@@ -254,33 +315,38 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     Growth growth = {.params = params, .domain = domain};
     Status status = STATUS_OK;
     TRY_GOTO(start(&growth, err));
-    TRY_GOTO(plant(&growth, err));
-    while (network_terminals(&growth.net) < params->terminals) {
-        TRY_GOTO(check_range(&growth, err));
-        TRY_GOTO(keep_up(&growth, err));
-        status = add_terminal(&growth, err);
+    size_t terminals;
+    while ((terminals = growth.net.terminals) < params->terminals) {
+        status = add_terminals(&growth, err);
         if (status == STATUS_INFEASIBLE && params->partial)
             break;
         TRY_GOTO(status);
-        report_progress(&growth);
+        report_progress(&growth, terminals);
     }
     bool complete = status == STATUS_OK;
     TRY_GOTO(check_range(&growth, err));
+    size_t broken = 0;
+    if (weigh_is_needed(params))
+        TRY_GOTO(weigh_refresh(&growth.net, params, domain, WEIGH_FINE, err));
+    if (growth.grid.item)
+        TRY_GOTO(mend_network(&growth.net, &growth.grid, domain, &growth.rules,
+                              growth.batch.threads, &broken, err));
     grid_release(&growth.grid);
     TRY_GOTO(finish_tree(&growth.net, params, domain, out, err));
     if (report)
         *report = (GrowReport){.seconds = clock_seconds() - begun,
-                               .terminals = network_terminals(&growth.net),
+                               .terminals = growth.net.terminals,
                                .target = target_of(out),
-                               .root_radius_mm = out->radius_mm[0],
+                               .root_radius_mm = root_radius_of(out),
                                .tosses = growth.tosses,
                                .rejected = growth.rejected,
                                .thickness = growth.rules.thickness,
+                               .broken = broken,
                                .complete = complete};
 done:
-    free(growth.near);
-    free(growth.connections);
+    batch_release(&growth.batch);
     grid_release(&growth.grid);
+    forest_release(&growth.forest);
     network_release(&growth.net);
     return status;
 }

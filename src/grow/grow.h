@@ -19,58 +19,82 @@ typedef enum GrowToss {
     GROW_TOSS_TERMINAL, /* the other terminals' end points */
 } GrowToss;
 
-enum { GROW_MAX_TERMINALS = 8000000, GROW_MAX_CANDIDATES = 1000 };
+enum { GROW_MAX_TERMINALS = 8000000, GROW_MAX_CANDIDATES = 1000, GROW_MAX_INLETS = 64 };
+#define GROW_MAX_HEMATOCRIT 0.95
 
 /* The SWC type code of all nodes of a grown tree: SWC has none for arteries, and 3 is what files of
  * arterial trees use. */
 enum { GROW_SWC_TYPE = 3 };
 
 typedef struct GrowParams {
-    size_t terminals;     /* in [1, GROW_MAX_TERMINALS] */
-    double gamma;         /* Murray exponent, in (0, 10] */
-    double lambda;        /* exponent of the target, >= 0 */
-    uint64_t seed;        /* of the random points */
-    bool has_inlet;       /* else the domain's default inlet */
-    Vec3 inlet;           /* mm */
-    double p_perf_mmhg;   /* at the inlet */
-    double p_term_mmhg;   /* at every terminal, below p_perf_mmhg */
-    double q_perf_ml_min; /* through the inlet, > 0; every terminal gets the same share */
-    double viscosity_cp;  /* > 0 */
+    size_t terminals; /* in [1, GROW_MAX_TERMINALS] */
+    double gamma;     /* Murray exponent, in (0, 10] */
+    double lambda;    /* exponent of the target, >= 0 */
+    uint64_t seed;    /* of the random points */
+    /* The tree (borrowed) to grow on from, with its inlets; NULL: none. Its nodes keep their places,
+     * ids and types, its segments stay straight; a node other than an inlet has at most two children,
+     * an inlet one or two. Its radii, flow shares and header fields are not looked at. */
+    const Tree *from;
+    size_t inlets; /* at most GROW_MAX_INLETS; 0: one, the domain's default, or those of `from` */
+    const Vec3 *inlet; /* mm (borrowed); one tree grows from each */
+    size_t
+        inlet_shares; /* 0: all get as many terminals, or as those of `from` have; else as many as inlets */
+    const double *inlet_share;  /* > 0 (borrowed): the trees' terminals, relative to each other */
+    double p_perf_mmhg;         /* at the inlet */
+    double p_term_mmhg;         /* at every terminal, below p_perf_mmhg */
+    double q_perf_ml_min;       /* through the inlet, > 0 */
+    TerminalFlow terminal_flow; /* how the terminals share it */
+    ViscosityLaw viscosity_law;
+    double viscosity_cp;        /* of the blood, by the constant law; > 0 */
+    double hematocrit;          /* by Pries's law; in [0, GROW_MAX_HEMATOCRIT] */
+    double plasma_viscosity_cp; /* by Pries's law; > 0 */
     int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
     GrowToss toss;
+    int threads;  /* 0: all processors. They do not change the tree */
     bool partial; /* when no more terminals find room, deliver the tree so far */
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *progress_context;
 } GrowParams;
 
-/* 1,000 terminals, gamma 3, lambda 2, seed 1, 100 to 60 mmHg, 500 ml/min, 3.6 cP, 8 candidates,
- * tossed by segment. */
+/* 1,000 terminals of equal flow, gamma 3, lambda 2, seed 1, 100 to 60 mmHg, 500 ml/min, constant
+ * viscosity, 3.6 cP (of plasma 1.2, hematocrit 0.45), 8 candidates, tossed by segment. */
 GrowParams grow_defaults(void);
 
 typedef struct GrowReport {
     double seconds; /* wall clock */
     size_t terminals;
-    double target; /* sum of l r^lambda, mm^(1 + lambda) */
-    double root_radius_mm;
-    uint64_t tosses;   /* random points drawn */
-    uint64_t rejected; /* points far enough from the tree to which no connection was possible */
+    double target;         /* sum of l r^lambda, mm^(1 + lambda) */
+    double root_radius_mm; /* the largest */
+    uint64_t tosses;       /* random points drawn */
+    uint64_t rejected;     /* points far enough from the tree to which no connection was possible */
     /* Growth makes segments at least as long as wide, and keeps those without a common node clear
      * of each other, at this share of their radii: 1 unless the domain was too full for vessels so
      * thick, down to 0 for centrelines that do not cross. */
     double thickness;
+    size_t broken; /* segments that widened so much that this does not hold for them */
     bool complete; /* false: a partial tree; err holds the sentence that says why */
 } GrowReport;
 
 /* STATUS_USAGE with a sentence that names the option at fault. */
 MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err);
 
-/* Grows a tree into *out (release with tree_release). Node 0 is the inlet; nodes are in depth-first
- * order, ids 1 .. 2 N in that order, and the header is filled. Murray's law and the pressures hold
- * to rounding for the coordinates and radii in *out. Centrelines do not cross. The same parameters
+/* Grows a tree, or a forest whose trees share all flow, into *out (release with tree_release). Node 0
+ * is the inlet; nodes are in depth-first order, tree after tree in the order of the inlets, ids
+ * 1 .. 2 N in that order, and the header is filled. Murray's law and the pressures hold
+ * to rounding for the coordinates and radii in *out, by Pries's law with the viscosity at those very
+ * radii. By territory, the flow share of a terminal is the number of points of a fine lattice over
+ * the domain that are nearer to it than to any other. Centrelines do not cross. The same parameters
  * give the same tree, bit for bit. `report` may be NULL.
  *
- * Fails with STATUS_USAGE as grow_params_check does, STATUS_INFEASIBLE when there is no room for
- * all terminals or when the radii span more than a double can hold, and STATUS_MEMORY. */
+ * Grown on from another tree, all nodes of that one are in *out with their ids, types and header lines;
+ * new nodes take the smallest ids that are free. New segments are in the domain and keep clear of each
+ * other and of the given ones, but for those of a vessel of several segments, of which they only keep
+ * off the centrelines; given segments may be anywhere.
+ *
+ * Fails with STATUS_USAGE as grow_params_check does, STATUS_INPUT when `from` is not as above or leaves
+ * the plane of a domain of two dimensions, STATUS_INFEASIBLE when there is no room for
+ * all terminals, when the radii span more than a double can hold, or when vessels are too thin for
+ * blood to pass by Pries's law, and STATUS_MEMORY. */
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
                             GrowReport *report, Err *err);
 

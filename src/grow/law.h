@@ -1,13 +1,13 @@
 /* How a segment and the subtree below it add up: Murray's law, Poiseuille's law and the target, in
  * the reduced quantities that make one step up the tree a few multiplications.
  *
- * With N terminals below a segment and R*, V* its reduced resistance and target [METHODS 1], R*
- * in units of 8 mu / pi:
+ * With N the flow through a segment over a terminal's mean, m its viscosity over a reference mu, and
+ * R*, V* its reduced resistance and target [METHODS 1], R* in units of 8 mu / pi:
  *     load  W = N R*             rho = W^(1/4)
  *     flare X = rho^gamma        Murray's law is addition: the subtree below a segment has the
  *                                flare G = sum of X over the daughters, and P = G^(1/gamma)
  *     cost  S = rho^lambda V*    so that S = rho^lambda l + (rho / P)^lambda sum of S over them
- *     W = N l + P^4
+ *     W = N m l + P^4            with N m the segment's burden
  * A radius is r = q g rho, q = (8 mu / pi Q_term / (p_perf - p_term))^(1/4) and g the gauge: 1 at
  * the root and greater by rho / P from each segment to its daughters. The target is
  * T = q^lambda S_root, so for one number of terminals the least S_root is the least T. */
@@ -24,6 +24,13 @@ typedef struct Law {
     double lambda; /* >= 0 */
 } Law;
 
+/* What hangs on the distal end of a segment; all 0 at a terminal. */
+typedef struct Below {
+    double flare, cost; /* sums over the daughters */
+    double inverse;     /* 1 / P */
+    double load;        /* P^4 */
+} Below;
+
 /* A segment together with all that hangs on it. */
 typedef struct Reduced {
     double load;       /* W, mm */
@@ -33,9 +40,7 @@ typedef struct Reduced {
     double rho_lambda; /* rho^lambda */
     double widening;   /* rho / P; 0 at a terminal */
     double pass;       /* (rho / P)^lambda; 0 at a terminal */
-    double load_below; /* P^4; 0 at a terminal */
-    double flare_below;
-    double cost_below;
+    Below below;
 } Reduced;
 
 /* Derivatives of S_root with respect to a segment's load, its cost held, and to its cost. */
@@ -74,34 +79,46 @@ static inline double law_lambda_power(const Law *law, double x)
     return pow(x, law->lambda);
 }
 
-/* The segment of `length` mm with `terminals` below it and daughters whose flares and costs sum up
- * to `flare_below` and `cost_below`, both 0 at a terminal. */
-static inline Reduced law_reduce(const Law *law, double terminals, double length,
-                                 double flare_below, double cost_below)
+/* What daughters make whose flares and costs sum up to `flare` and `cost`, both 0 at a terminal. */
+static inline Below law_gather(const Law *law, double flare, double cost)
 {
-    double inverse = 0, load_below = 0; /* 1 / P and P^4 */
-    if (flare_below > 0) {
-        if (law->gamma == 3) {
-            inverse = inverse_cube_root(flare_below);
-            load_below = flare_below * inverse * (flare_below * inverse);
-        } else {
-            double p = pow(flare_below, 1 / law->gamma);
-            inverse = 1 / p;
-            load_below = p * p * (p * p);
-        }
+    Below out = {.flare = flare, .cost = cost};
+    if (flare > 0 && law->gamma == 3) {
+        out.inverse = inverse_cube_root(flare);
+        double p2 = flare * out.inverse;
+        out.load = p2 * p2;
+    } else if (flare > 0) {
+        double p = pow(flare, 1 / law->gamma), p2 = p * p;
+        out.inverse = 1 / p;
+        out.load = p2 * p2;
     }
-    Reduced out = {.flare_below = flare_below, .cost_below = cost_below, .load_below = load_below};
-    out.load = terminals * length + load_below;
+    return out;
+}
+
+/* The segment of `length` mm that carries `burden` on top of what hangs there. */
+static inline Reduced law_extend(const Law *law, double burden, double length, const Below *below)
+{
+    Reduced out = {.below = *below};
+    out.load = burden * length + below->load;
     out.rho = sqrt(sqrt(out.load));
     out.rho_lambda = law_lambda_power(law, out.rho);
     out.flare = law->gamma == 3 ? out.rho * out.rho * out.rho : pow(out.rho, law->gamma);
     out.cost = out.rho_lambda * length;
-    if (flare_below > 0) {
-        out.widening = out.rho * inverse;
+    if (below->flare > 0) {
+        out.widening = out.rho * below->inverse;
         out.pass = law_lambda_power(law, out.widening);
-        out.cost += out.pass * cost_below;
+        out.cost += out.pass * below->cost;
     }
     return out;
+}
+
+/* The segment of `length` mm that carries `burden`, with daughters whose flares and costs sum up to
+ * `flare_below` and `cost_below`, both 0 at a terminal. */
+static inline Reduced law_reduce(const Law *law, double burden, double length, double flare_below,
+                                 double cost_below)
+{
+    Below below = law_gather(law, flare_below, cost_below);
+    return law_extend(law, burden, length, &below);
 }
 
 /* dS_root / d load of `at`, now with the part that goes through its own cost. */
@@ -115,16 +132,16 @@ static inline Adjoint law_descend(const Law *law, const Reduced *parent, Adjoint
                                   const Reduced *daughter)
 {
     double cost = adjoint.cost * parent->pass;
-    double below = parent->load_below * law_total(law, parent, adjoint) -
-                   law->lambda / 4 * cost * parent->cost_below;
-    return (Adjoint){below * (daughter->flare / parent->flare_below) / daughter->load, cost};
+    double below = parent->below.load * law_total(law, parent, adjoint) -
+                   law->lambda / 4 * cost * parent->below.cost;
+    return (Adjoint){below * (daughter->flare / parent->below.flare) / daughter->load, cost};
 }
 
-/* dS_root / d length of the segment `at` with `terminals` below it. */
+/* dS_root / d length of the segment `at`, which carries `burden`. */
 static inline double law_length_weight(const Law *law, const Reduced *at, Adjoint adjoint,
-                                       double terminals)
+                                       double burden)
 {
-    return terminals * law_total(law, at, adjoint) + adjoint.cost * at->rho_lambda;
+    return burden * law_total(law, at, adjoint) + adjoint.cost * at->rho_lambda;
 }
 
 #endif

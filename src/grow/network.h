@@ -1,7 +1,9 @@
-/* The growing tree: a binary tree of segments that knows its own hydrodynamics at every moment.
+/* The growing tree, or forest: binary trees of segments that know their own hydrodynamics at every
+ * moment.
  *
- * Node i > 0 is the distal end of segment i; node 0 is the inlet, its only child the root segment.
- * Segments are split in place: the one that is split keeps its index as the distal part. */
+ * Every node but an inlet is the distal end of the segment of its index; what hangs on an inlet are
+ * root segments, one where the tree is grown. Segments are split in place: the one that is split keeps
+ * its index as the distal part. */
 #ifndef CORCAST_GROW_NETWORK_H
 #define CORCAST_GROW_NETWORK_H
 
@@ -28,34 +30,81 @@ typedef struct Sensitivity {
     double extra; /* dS_root for one more terminal on every segment above this one */
 } Sensitivity;
 
+/* What sets segments apart where terminals are unequal, viscosities differ, or several trees grow. */
+typedef struct Trait {
+    /* The segment's flow over that of as many mean terminals, times its viscosity over that of
+     * radius_scale; as of the last refresh, or of its making. */
+    double weight;
+    double share;   /* of a terminal: of the flow, relative to the others'; 0 elsewhere */
+    int32_t tree;   /* which of the inlets it hangs on */
+    int32_t origin; /* the node's index in the tree that growth started from; -1: none */
+    bool given;     /* on a segment of that tree, which stays straight */
+    bool piece;     /* on one of several that make up a vessel of that tree; given, too */
+} Trait;
+
+/* What a node waits for while changes are carried towards the root. */
+typedef struct Arrivals Arrivals;
+
 typedef struct Network {
     Law law;
-    double radius_scale; /* q N^(1/4), mm^(3/4): r = radius_scale / N^(1/4) * gauge * rho */
+    double radius_scale; /* q N^(1/4), mm^(3/4) */
+    double radius_unit;  /* q, mm^(3/4): r = q * gauge * rho */
     size_t n, capacity;  /* nodes */
+    size_t terminals;
+    int32_t *inlet; /* nodes */
+    size_t inlets;
     Segment *segment;
     Sensitivity *sensitivity;
-    Vec3 *position; /* mm */
+    Trait *trait;        /* NULL: all weights are 1, there is one tree, and nothing is given */
+    double fresh_weight; /* of a new terminal's segment */
+    Vec3 *position;      /* mm */
+    Arrivals *coming;    /* at rest between calls */
 } Network;
 
-/* An inlet with room for `terminals`. */
-MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, size_t terminals,
-                               Vec3 inlet, Err *err);
+/* Room for so many nodes, of them so many inlets; `traits`: whether segments have them. */
+MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, size_t capacity,
+                               size_t inlets, bool traits, Err *err);
 void network_release(Network *net);
 
-static inline size_t network_terminals(const Network *net)
+/* The tree that segment i is of. */
+static inline int32_t network_tree(const Network *net, int32_t i)
 {
-    return net->n / 2;
+    return net->trait ? net->trait[i].tree : 0;
 }
 
-/* q: radius = q * gauge * rho. */
-double network_radius_unit(const Network *net);
+/* Whether segment i must stay straight. */
+static inline bool network_is_given(const Network *net, int32_t i)
+{
+    return net->trait && net->trait[i].given;
+}
+
+/* Whether segment i is a piece of a vessel, which may be shorter than wide. */
+static inline bool network_is_piece(const Network *net, int32_t i)
+{
+    return net->trait && net->trait[i].piece;
+}
+
+/* What `terminals` more on segment i add to its load, over its length. */
+static inline double network_burden(const Network *net, int32_t i, int32_t terminals)
+{
+    return net->trait ? terminals * net->trait[i].weight : terminals;
+}
+
+/* What hangs on segment i. */
+static inline Below network_below(const Network *net, int32_t i)
+{
+    const Segment *segment = &net->segment[i];
+    return law_gather(&net->law, segment->flare[0] + segment->flare[1],
+                      segment->cost[0] + segment->cost[1]);
+}
 
 /* Segment i with what hangs on it. */
 static inline Reduced network_reduce(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
-    return law_reduce(&net->law, segment->terminals, segment->length,
-                      segment->flare[0] + segment->flare[1], segment->cost[0] + segment->cost[1]);
+    const Below below = network_below(net, i);
+    return law_extend(&net->law, network_burden(net, i, segment->terminals), segment->length,
+                      &below);
 }
 
 static inline Capsule network_capsule(const Network *net, int32_t i)
@@ -64,23 +113,40 @@ static inline Capsule network_capsule(const Network *net, int32_t i)
     return (Capsule){net->position[segment->parent], net->position[i], (double)segment->radius};
 }
 
-/* The first segment, from the inlet to `terminal`. */
-void network_plant(Network *net, Vec3 terminal);
+/* Appends a node that hangs on `parent`, or for -1 an inlet, and returns it. All sums are due. */
+int32_t network_append(Network *net, int32_t parent, Vec3 position);
+
+/* Makes room for so many splits. The radii of what they make are those for as many more terminals. */
+void network_extend(Network *net, size_t splits);
 
 /* Splits `segment` at `bifurcation` and hangs a new segment to `terminal` there. Its proximal part
- * becomes segment n and the new one segment n + 1, n as it was before. */
-void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal);
+ * becomes segment `fresh` - 1 and the new one `fresh`, both among those that network_extend made.
+ * What is above does not know of it until network_carry. Threads may split at a time segments that
+ * have no node in common. */
+void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal, int32_t fresh);
 
-/* S_root; not finite, or 0, when the radii of the tree span more than a double can hold. */
+/* Carries all splits since network_extend up to the inlets, on `threads` threads. */
+void network_carry(Network *net, size_t splits, int threads);
+
+/* Moves a bifurcation, and brings all sums up to date. */
+void network_move(Network *net, int32_t node, Vec3 place);
+
+/* S_root, over all trees; not finite, or 0, when radii span more than a double can hold. */
 double network_cost(const Network *net);
 
 /* Brings radius, gauge and sensitivities of all segments up to date. */
 void network_refresh(Network *net);
 
-/* Sums up lengths, flares and costs anew from the positions; parents come before children. */
+/* The node after `i` in the order in which daughters come before their mother, which begins with
+ * network_first_upward of the inlet and ends with the inlet. */
+int32_t network_next_upward(const Network *net, int32_t i);
+/* The first of `i` and all below it in that order. */
+int32_t network_first_upward(const Network *net, int32_t i);
+
+/* Sums up lengths, terminals, flares and costs anew from positions and weights. */
 void network_resum(Network *net);
 
-/* Renumbers the nodes depth first, so that parents come before children and neighbours in the tree
+/* Renumbers the nodes depth first, tree after tree, so that parents come before children and neighbours in the tree
  * are neighbours in memory. On failure `net` is only fit for network_release. */
 MUST_CHECK Status network_reorder(Network *net, Err *err);
 

@@ -1,3 +1,4 @@
+#include "grow/adopt.h"
 #include "grow/grow.h"
 
 GrowParams grow_defaults(void)
@@ -10,6 +11,8 @@ GrowParams grow_defaults(void)
                         .p_term_mmhg = 60,
                         .q_perf_ml_min = 500,
                         .viscosity_cp = 3.6,
+                        .hematocrit = 0.45,
+                        .plasma_viscosity_cp = 1.2,
                         .candidates = 8,
                         .toss = GROW_TOSS_SEGMENT};
 }
@@ -21,22 +24,64 @@ static Status refuse(const char *option, double value, const char *allowed, Err 
                    allowed);
 }
 
-static Status check_inlet(const GrowParams *params, const Domain *domain, Err *err)
+static Status check_blood(const GrowParams *params, Err *err)
 {
-    if (!params->has_inlet)
-        return STATUS_OK;
-    Box box = domain_bounds(domain);
-    double rim = 1e-6 * vec3_distance(box.low, box.high);
-    if (vec3_finite(params->inlet) && domain_inside(domain, params->inlet, rim))
+    if (!(params->viscosity_cp > 0) || !isfinite(params->viscosity_cp))
+        return refuse("--viscosity", params->viscosity_cp, "a finite number of cP above 0", err);
+    if (!(params->hematocrit >= 0) || !(params->hematocrit <= GROW_MAX_HEMATOCRIT))
+        return refuse("--hematocrit", params->hematocrit, "from 0 to 0.95", err);
+    if (!(params->plasma_viscosity_cp > 0) || !isfinite(params->plasma_viscosity_cp))
+        return refuse("--plasma-viscosity", params->plasma_viscosity_cp,
+                      "a finite number of cP above 0", err);
+    return STATUS_OK;
+}
+
+static Status check_inlet(Vec3 inlet, const Domain *domain, Err *err)
+{
+    if (vec3_finite(inlet) && domain_inside(domain, inlet, domain->slack_mm))
         return STATUS_OK;
     Text text = TEXT_INIT;
     domain_text(domain, &text);
     Status status = text_check(&text, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE, "--inlet %.9g,%.9g,%.9g: must lie in the domain %s",
-                         params->inlet.x, params->inlet.y, params->inlet.z, text.chars);
+                         inlet.x, inlet.y, inlet.z, text.chars);
     text_release(&text);
     return status;
+}
+
+static Status check_inlets(const GrowParams *params, const Domain *domain, Err *err)
+{
+    size_t trees = params->inlets > 0 ? params->inlets : 1;
+    if (trees > GROW_MAX_INLETS)
+        return err_set(err, STATUS_USAGE, "--inlet: %zu of them; at most %d may be given", trees,
+                       GROW_MAX_INLETS);
+    if (params->terminals < trees)
+        return err_set(err, STATUS_USAGE,
+                       "--terminals %zu: must be at least one for each of %zu inlets",
+                       params->terminals, trees);
+    for (size_t k = 0; k < params->inlets; k++) {
+        Vec3 inlet = params->inlet[k];
+        TRY(check_inlet(inlet, domain, err));
+        for (size_t i = 0; i < k; i++)
+            if (vec3_distance(inlet, params->inlet[i]) <= domain->slack_mm)
+                return err_set(err, STATUS_USAGE,
+                               "--inlet %.9g,%.9g,%.9g: is given twice; inlets must be apart",
+                               inlet.x, inlet.y, inlet.z);
+    }
+    return STATUS_OK;
+}
+
+static Status check_shares(const GrowParams *params, size_t trees, Err *err)
+{
+    if (params->inlet_shares != 0 && params->inlet_shares != trees)
+        return err_set(err, STATUS_USAGE,
+                       "--inlet-shares: %zu shares for %zu inlets; there must be one for each",
+                       params->inlet_shares, trees);
+    for (size_t k = 0; k < params->inlet_shares; k++)
+        if (!(params->inlet_share[k] > 0) || !isfinite(params->inlet_share[k]))
+            return refuse("--inlet-shares", params->inlet_share[k], "finite numbers above 0", err);
+    return STATUS_OK;
 }
 
 Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err)
@@ -58,10 +103,14 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     }
     if (!(params->q_perf_ml_min > 0) || !isfinite(params->q_perf_ml_min))
         return refuse("--q-perf", params->q_perf_ml_min, "a finite number of ml/min above 0", err);
-    if (!(params->viscosity_cp > 0) || !isfinite(params->viscosity_cp))
-        return refuse("--viscosity", params->viscosity_cp, "a finite number of cP above 0", err);
+    TRY(check_blood(params, err));
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
         return err_set(err, STATUS_USAGE, "--candidates %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);
-    return check_inlet(params, domain, err);
+    if (params->from) {
+        TRY(adopt_check(params, domain, err));
+        return check_shares(params, adopt_inlets(params->from), err);
+    }
+    TRY(check_inlets(params, domain, err));
+    return check_shares(params, params->inlets > 0 ? params->inlets : 1, err);
 }

@@ -1,73 +1,112 @@
 /* The cost of a connection depends on the bifurcation through three lengths only. Where it is
  * least, the derivatives with respect to them pull evenly: the point is the weighted Fermat point
- * for these derivatives as weights [fermat.h]. They vary slowly, so weights at one point and the
- * Fermat point for them in turn converge in a few rounds. A point that collapses onto an end is
- * pushed off it to the shortest length the rules allow, in the direction that costs least: such
- * connections are among the best there are, so they must not be lost. */
+ * for these derivatives as weights [fermat.h]. They vary slowly, so weights at one place and the
+ * Fermat point for them in turn converge in a few rounds. To rank connections one round from a
+ * middling place does, priced to first order by the same weights; the rest are for the one that is
+ * made. A point that collapses onto an end is pushed off it to the shortest length the rules allow, in the
+ * direction that costs least: such connections are among the best there are, so they must not be
+ * lost. A segment that must stay straight is split at the best place along it. */
 #include "grow/place.h"
 
 #include "grow/fermat.h"
+#include <stdlib.h>
+#include <string.h>
 
-enum { PROXIMAL, DISTAL, FRESH, ENDS };
-enum { ROUNDS = 3 };
 /* Vessels widen as the tree below them grows: the rules hold for radii this much greater, and so at
- * the end of growth for nearly all vessels at their final radii. */
-static const double widening_reserve = 1.15;
+ * the end of growth for nearly all vessels at their final radii. For length, and for keeping clear
+ * of others. */
+static const double length_reserve = 1.15, clearance_reserve = 1.1;
+/* And this much they may widen until the grid is made anew. */
+static const double reach_reserve = 1.4;
+/* How often the place of the connection that is made is found anew. */
+enum { ROUNDS = 2 };
+
+/* The segment to be split, as it is. */
+typedef struct Host {
+    double burden[PARTS]; /* of the segments that splitting it makes */
+    double gauge;
+    Below below;
+    Reduced whole;
+    Adjoint adjoint;
+    double extra;
+    bool given, piece;
+    double length; /* mm */
+} Host;
 
 typedef struct Trial {
     double price;
-    double weight[ENDS]; /* d price / d length, greatest 1 */
-    double radius[ENDS]; /* mm */
+    double weight[PARTS]; /* d price / d length */
+    double radius[PARTS]; /* mm */
 } Trial;
 
-/* False when the trial's figures are beyond what a double can hold. */
-static bool evaluate(const Network *net, int32_t host, const Reduced *before,
-                     const double length[ENDS], Trial *out)
+static Host host_of(const Network *net, int32_t i)
+{
+    const Segment *segment = &net->segment[i];
+    int32_t terminals = segment->terminals;
+    Host host = {.burden = {[PROXIMAL] = network_burden(net, i, terminals + 1),
+                            [DISTAL] = network_burden(net, i, terminals),
+                            [FRESH] = net->fresh_weight},
+                 .gauge = (double)segment->gauge,
+                 .below = network_below(net, i),
+                 .extra = net->sensitivity[i].extra,
+                 .given = network_is_given(net, i),
+                 .piece = network_is_piece(net, i),
+                 .length = segment->length};
+    host.whole = law_extend(&net->law, host.burden[DISTAL], segment->length, &host.below);
+    host.adjoint = (Adjoint){net->sensitivity[i].load, law_lambda_power(&net->law, host.gauge)};
+    return host;
+}
+
+/* What splitting the host costs when the parts have these lengths. */
+static Trial evaluate(const Network *net, const Host *host, const double length[PARTS])
 {
     const Law *law = &net->law;
-    double n = net->segment[host].terminals, gauge = (double)net->segment[host].gauge;
-    Reduced distal = law_reduce(law, n, length[DISTAL], before->flare_below, before->cost_below);
-    Reduced fresh = law_reduce(law, 1, length[FRESH], 0, 0);
-    Reduced proximal = law_reduce(law, n + 1, length[PROXIMAL], distal.flare + fresh.flare,
-                                  distal.cost + fresh.cost);
+    const Below nothing = {0};
+    const double *burden = host->burden;
+    Reduced distal = law_extend(law, burden[DISTAL], length[DISTAL], &host->below);
+    Reduced fresh = law_extend(law, burden[FRESH], length[FRESH], &nothing);
+    Below fork = law_gather(law, distal.flare + fresh.flare, distal.cost + fresh.cost);
+    Reduced proximal = law_extend(law, burden[PROXIMAL], length[PROXIMAL], &fork);
 
-    Adjoint top = {net->sensitivity[host].load, law_lambda_power(law, gauge)};
+    Trial out;
+    Adjoint top = host->adjoint;
     Adjoint distal_adjoint = law_descend(law, &proximal, top, &distal);
     Adjoint fresh_adjoint = law_descend(law, &proximal, top, &fresh);
-    out->price = top.load * (proximal.load - before->load) +
-                 top.cost * (proximal.cost - before->cost) + net->sensitivity[host].extra;
-    out->weight[PROXIMAL] = law_length_weight(law, &proximal, top, n + 1);
-    out->weight[DISTAL] = law_length_weight(law, &distal, distal_adjoint, n);
-    out->weight[FRESH] = law_length_weight(law, &fresh, fresh_adjoint, 1);
+    out.price = top.load * (proximal.load - host->whole.load) +
+                top.cost * (proximal.cost - host->whole.cost) + host->extra;
+    out.weight[PROXIMAL] = law_length_weight(law, &proximal, top, burden[PROXIMAL]);
+    out.weight[DISTAL] = law_length_weight(law, &distal, distal_adjoint, burden[DISTAL]);
+    out.weight[FRESH] = law_length_weight(law, &fresh, fresh_adjoint, burden[FRESH]);
 
-    double unit = network_radius_unit(net) * gauge;
-    out->radius[PROXIMAL] = unit * proximal.rho;
-    out->radius[DISTAL] = unit * proximal.widening * distal.rho;
-    out->radius[FRESH] = unit * proximal.widening * fresh.rho;
-
-    double greatest = fmax(out->weight[0], fmax(out->weight[1], out->weight[2]));
-    if (!isfinite(out->price) || !isfinite(greatest) || !(greatest > 0))
-        return false;
-    for (int end = 0; end < ENDS; end++) /* none pushes: Fermat's point wants weights above 0 */
-        out->weight[end] = fmax(out->weight[end] / greatest, 1e-9);
-    return true;
+    double unit = net->radius_unit * host->gauge;
+    out.radius[PROXIMAL] = unit * proximal.rho;
+    out.radius[DISTAL] = unit * proximal.widening * distal.rho;
+    out.radius[FRESH] = unit * proximal.widening * fresh.rho;
+    return out;
 }
 
 static double shortest(const Rules *rules, double radius)
 {
-    return fmax(rules->least_length, 2 * widening_reserve * rules->thickness * radius);
+    double width = 2 * length_reserve * rules->thickness * radius;
+    return width > rules->least_length ? width : rules->least_length;
+}
+
+/* The shortest that a part of the host may be: of a piece of a vessel, nearly a quarter will do. */
+static double shortest_part(const Rules *rules, const Host *host, int part, double radius)
+{
+    double least = shortest(rules, radius);
+    return host->piece && part != FRESH ? fmin(least, 0.24 * host->length) : least;
 }
 
 /* Keeps the bifurcation off the three ends. */
-static Vec3 push_off(const Rules *rules, const Vec3 end[ENDS], const Trial *trial,
+static Vec3 push_off(const Rules *rules, const Vec3 end[PARTS], const double radius[PARTS],
                      const Fermat *fermat)
 {
     Vec3 place = fermat->place;
-    for (int i = 0; i < ENDS; i++) {
-        double least = 1.01 * shortest(rules, trial->radius[i]); /* the radius moves a little too */
+    for (int i = 0; i < PARTS; i++) {
+        double least = 1.02 * shortest(rules, radius[i]); /* the radius moves a little too */
         Vec3 away = vec3_sub(place, end[i]);
-        double distance = vec3_length(away);
-        if (distance >= least)
+        if (vec3_dot(away, away) >= least * least)
             continue;
         Vec3 direction = fermat->corner == i ? fermat->inward : away;
         double length = vec3_length(direction);
@@ -77,98 +116,157 @@ static Vec3 push_off(const Rules *rules, const Vec3 end[ENDS], const Trial *tria
     return place;
 }
 
-static void measure(const Vec3 end[ENDS], Vec3 place, double length[ENDS])
+static void measure(const Vec3 end[PARTS], Vec3 place, double length[PARTS])
 {
-    for (int i = 0; i < ENDS; i++)
+    for (int i = 0; i < PARTS; i++)
         length[i] = vec3_distance(end[i], place);
+}
+
+static void find_ends(const Network *net, int32_t segment, Vec3 terminal, Vec3 end[PARTS])
+{
+    end[PROXIMAL] = net->position[net->segment[segment].parent];
+    end[DISTAL] = net->position[segment];
+    end[FRESH] = terminal;
+}
+
+/* Where the bifurcation is best by a trial's weights, as far as the rules allow. False when they are
+ * beyond what a double can hold. */
+static bool find_place(const Rules *rules, const Host *host, const Vec3 end[PARTS],
+                       const Trial *trial, Vec3 *place)
+{
+    double greatest = fmax(trial->weight[0], fmax(trial->weight[1], trial->weight[2]));
+    if (!isfinite(trial->price) || !isfinite(greatest) || !(greatest > 0))
+        return false;
+    double weight[PARTS];
+    for (int i = 0; i < PARTS; i++) /* none pushes: Fermat's point wants weights above 0 */
+        weight[i] = fmax(trial->weight[i] / greatest, 1e-9);
+    if (host->given) {
+        double margin[2];
+        for (int i = 0; i < 2; i++)
+            margin[i] = 1.02 * shortest_part(rules, host, i, trial->radius[i]);
+        *place = fermat_point_between(end, weight, margin);
+        return true;
+    }
+    Fermat fermat = fermat_point(end, weight);
+    *place = push_off(rules, end, trial->radius, &fermat);
+    return true;
 }
 
 bool place_connection(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
                       Connection *out)
 {
-    Vec3 end[ENDS] = {net->position[net->segment[segment].parent], net->position[segment],
-                      terminal};
-    Reduced before = network_reduce(net, segment);
-    Vec3 middle = vec3_scale(vec3_add(end[PROXIMAL], end[DISTAL]), 0.5);
-    Vec3 place = vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25);
-    double length[ENDS];
-    Trial trial;
-    for (int round = 0; round < ROUNDS; round++) {
-        measure(end, place, length);
-        if (!evaluate(net, segment, &before, length, &trial))
-            return false;
-        Fermat fermat = fermat_point(end, trial.weight);
-        place = push_off(rules, end, &trial, &fermat);
-    }
-    measure(end, place, length);
-    if (!evaluate(net, segment, &before, length, &trial))
+    Vec3 end[PARTS], middle, place;
+    find_ends(net, segment, terminal, end);
+    Host host = host_of(net, segment);
+    middle = vec3_scale(vec3_add(end[PROXIMAL], end[DISTAL]), 0.5);
+    double from[PARTS], to[PARTS];
+    measure(end, vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25), from);
+    Trial trial = evaluate(net, &host, from);
+    if (!find_place(rules, &host, end, &trial, &place))
         return false;
-    for (int i = 0; i < ENDS; i++)
-        if (!(length[i] >= shortest(rules, trial.radius[i])))
+    measure(end, place, to);
+    *out = (Connection){.segment = segment, .price = trial.price, .bifurcation = place};
+    for (int i = 0; i < PARTS; i++)
+        out->price += trial.weight[i] * (to[i] - from[i]);
+    return true;
+}
+
+bool place_is_splittable(const Network *net, const Grid *grid, const Rules *rules, int32_t segment)
+{
+    if (network_is_piece(net, segment))
+        return true;
+    const GridItem *item = &grid->item[segment];
+    double least = 2 * shortest(rules, (double)item->radius);
+    return grid_length2(item) > least * least;
+}
+
+static bool is_long_enough(const Rules *rules, const Host *host, const double length[PARTS],
+                           const double radius[PARTS])
+{
+    for (int i = 0; i < PARTS; i++)
+        if (!(length[i] >= shortest_part(rules, host, i, radius[i])))
             return false;
-    *out = (Connection){segment,
-                        trial.price,
-                        place,
-                        {trial.radius[PROXIMAL], trial.radius[DISTAL], trial.radius[FRESH]}};
     return true;
 }
 
-static double clamp01(double t)
+bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connection *connection)
 {
-    return t < 0 ? 0 : t > 1 ? 1 : t;
-}
-
-bool place_is_in_vessel(const Network *net, const Grid *grid, const Rules *rules, Vec3 point)
-{
-    for (int32_t at = grid->head[grid_cell_at(grid, point)]; at >= 0; at = grid->entry[at].next) {
-        int32_t i = grid->entry[at].tag >> 1;
-        Vec3 a = net->position[net->segment[i].parent];
-        Vec3 u = vec3_sub(net->position[i], a), w = vec3_sub(point, a);
-        Vec3 apart = vec3_add_scaled(w, u, -clamp01(vec3_dot(u, w) / vec3_dot(u, u)));
-        double radius = rules->thickness * (double)net->segment[i].radius;
-        if (vec3_dot(apart, apart) < radius * radius)
-            return true;
-    }
-    return false;
-}
-
-double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
-{
-    Vec3 u = vec3_sub(a1, a0), v = vec3_sub(b1, b0), w = vec3_sub(a0, b0);
-    double uu = vec3_dot(u, u), vv = vec3_dot(v, v), uv = vec3_dot(u, v);
-    double uw = vec3_dot(u, w), vw = vec3_dot(v, w);
-    double denominator = uu * vv - uv * uv;
-    double s = denominator > 0 ? clamp01((uv * vw - uw * vv) / denominator) : 0;
-    double t = (uv * s + vw) / vv;
-    if (t < 0 || t > 1) {
-        t = clamp01(t);
-        s = clamp01((uv * t - uw) / uu);
-    }
-    Vec3 apart = vec3_add_scaled(vec3_add_scaled(w, u, s), v, -t);
-    return vec3_dot(apart, apart);
-}
-
-/* Whether the capsule keeps clear of all segments but `host` and those that end or begin at `node`
- * (-1: none). */
-static bool is_clear(const Network *net, const Grid *grid, const Rules *rules, Capsule capsule,
-                     int32_t host, int32_t node)
-{
-    double scale = widening_reserve * rules->thickness;
-    capsule.radius = scale * capsule.radius + rules->gap;
-    size_t cell;
-    for (GridWalk walk = grid_walk(grid, capsule); grid_walk_next(&walk, &cell);) {
-        for (int32_t at = grid->head[cell]; at >= 0; at = grid->entry[at].next) {
-            int32_t other = grid->entry[at].tag >> 1;
-            int32_t parent = net->segment[other].parent;
-            if (other == host || other == node || parent == node)
-                continue;
-            double clearance = capsule.radius + scale * (double)net->segment[other].radius;
-            if (segment_distance2(capsule.a, capsule.b, net->position[parent],
-                                  net->position[other]) < clearance * clearance)
-                return false;
-        }
+    Vec3 end[PARTS], place = connection->bifurcation;
+    find_ends(net, connection->segment, terminal, end);
+    Host host = host_of(net, connection->segment);
+    for (int round = 0; round <= ROUNDS; round++) {
+        double length[PARTS];
+        measure(end, place, length);
+        Trial trial = evaluate(net, &host, length);
+        if (!isfinite(trial.price) || !is_long_enough(rules, &host, length, trial.radius))
+            return round > 0;
+        connection->price = trial.price;
+        connection->bifurcation = place;
+        memcpy(connection->radius, trial.radius, sizeof trial.radius);
+        if (!find_place(rules, &host, end, &trial, &place))
+            break;
     }
     return true;
+}
+
+double place_reach(const Rules *rules, double radius)
+{
+    double reach = reach_reserve * rules->thickness * radius;
+    return (reach < rules->widest ? reach : rules->widest) + rules->gap;
+}
+
+GridItem place_item(const Network *net, const Grid *grid, const Rules *rules,
+                    const Connection *connection, Vec3 terminal, int part)
+{
+    int32_t host = connection->segment;
+    double radius = connection->radius[part];
+    Capsule capsule = {connection->bifurcation, terminal, place_reach(rules, radius)};
+    if (part == PROXIMAL)
+        capsule = (Capsule){net->position[net->segment[host].parent], connection->bifurcation,
+                            capsule.radius};
+    else if (part == DISTAL)
+        capsule.b = net->position[host];
+    return grid_item(grid, capsule, radius);
+}
+
+/* An item of no length is in no cell. */
+static bool has_length(const GridItem *item)
+{
+    return memcmp(item->proximal, item->distal, sizeof item->distal) != 0;
+}
+
+Status place_enter(Grid *grid, const Rules *rules, const Network *net, int32_t segment, Err *err)
+{
+    Capsule capsule = network_capsule(net, segment);
+    double radius = capsule.radius;
+    capsule.radius = place_reach(rules, radius);
+    GridItem item = grid_item(grid, capsule, radius);
+    if (has_length(&item))
+        return grid_add(grid, 0, segment, net->segment[segment].child[0] < 0, item, err);
+    grid->item[segment] = item;
+    return STATUS_OK;
+}
+
+Status place_enter_again(Grid *grid, const Rules *rules, const Network *net, int32_t segment,
+                         Err *err)
+{
+    if (has_length(&grid->item[segment]))
+        grid_remove(grid, segment);
+    return place_enter(grid, rules, net, segment, err);
+}
+
+Status place_widen(Grid *grid, const Rules *rules, const Network *net, Err *err)
+{
+    for (size_t i = 0; i < net->n; i++) {
+        GridItem *item = &grid->item[i];
+        if (net->segment[i].parent < 0)
+            continue;
+        item->radius = net->segment[i].radius;
+        double reach = (double)item->reach;
+        if (rules->thickness * (double)item->radius > reach && reach < rules->widest)
+            TRY(place_enter_again(grid, rules, net, (int32_t)i, err));
+    }
+    return STATUS_OK;
 }
 
 bool place_is_inside(const Network *net, const Domain *domain, const Connection *connection,
@@ -176,6 +274,8 @@ bool place_is_inside(const Network *net, const Domain *domain, const Connection 
 {
     int32_t host = connection->segment;
     Vec3 fork = connection->bifurcation;
+    if (network_is_given(net, host))
+        return domain_inside(domain, fork, 0) && domain_holds_segment(domain, fork, terminal);
     return domain_inside(domain, fork, 0) &&
            (domain_is_convex(domain) ||
             (domain_holds_segment(domain, fork, terminal) &&
@@ -183,15 +283,109 @@ bool place_is_inside(const Network *net, const Domain *domain, const Connection 
              domain_holds_segment(domain, fork, net->position[host])));
 }
 
-bool place_is_free(const Network *net, const Grid *grid, const Rules *rules,
-                   const Connection *connection, Vec3 terminal)
+void footprint_release(Footprint *footprint)
 {
-    int32_t host = connection->segment, parent = net->segment[host].parent;
-    Vec3 fork = connection->bifurcation;
-    const double *radius = connection->radius;
-    return is_clear(net, grid, rules, (Capsule){fork, terminal, radius[FRESH]}, host, -1) &&
-           is_clear(net, grid, rules, (Capsule){net->position[parent], fork, radius[PROXIMAL]},
-                    host, parent) &&
-           is_clear(net, grid, rules, (Capsule){fork, net->position[host], radius[DISTAL]}, host,
-                    host);
+    free(footprint->cell);
+    *footprint = (Footprint){0};
+}
+
+static Status append_cell(Footprint *footprint, size_t cell, Err *err)
+{
+    if (footprint->n == footprint->capacity)
+        TRY(mem_reserve(&footprint->cell, &footprint->capacity, footprint->n + 1,
+                        sizeof *footprint->cell, "grid cells", err));
+    footprint->cell[footprint->n++] = (uint32_t)cell;
+    return STATUS_OK;
+}
+
+Status footprint_add_box(Footprint *footprint, const Grid *grid, GridBox box, Err *err)
+{
+    for (int z = box.low[2]; z <= box.high[2]; z++)
+        for (int y = box.low[1]; y <= box.high[1]; y++)
+            for (int x = box.low[0]; x <= box.high[0]; x++)
+                TRY(append_cell(footprint, grid_index(grid, x, y, z), err));
+    return STATUS_OK;
+}
+
+/* A new segment that is to keep clear of all but its kin. */
+typedef struct Newcomer {
+    const Network *net;
+    GridItem item;
+    double radius;    /* mm */
+    double thickness; /* at which all radii count */
+    double gap;       /* mm */
+    int32_t kin[4];   /* the first is the segment to split */
+} Newcomer;
+
+/* Its kin are the segment to split and all that end or begin where the newcomer does. */
+static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rules,
+                         const Connection *connection, Vec3 terminal, int part)
+{
+    int32_t host = connection->segment;
+    Newcomer out = {.net = net,
+                    .item = place_item(net, grid, rules, connection, terminal, part),
+                    .radius = connection->radius[part],
+                    .thickness = rules->thickness,
+                    .gap = rules->gap,
+                    .kin = {host, host, host, host}};
+    if (part != FRESH) {
+        int32_t node = part == PROXIMAL ? net->segment[host].parent : host;
+        out.kin[1] = node;
+        out.kin[2] = net->segment[node].child[0];
+        out.kin[3] = net->segment[node].child[1];
+    }
+    return out;
+}
+
+/* Whether the newcomer keeps clear of another segment, with the reserve unless the segment that is
+ * split did not either. What begins in a vessel of many pieces overlaps those about its beginning:
+ * from them only the centrelines must keep apart. */
+static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t other)
+{
+    const GridItem *item = &grid->item[other];
+    double apart2 = grid_distance2(&newcomer->item, item);
+    double touch = newcomer->thickness * (newcomer->radius + (double)item->radius);
+    double clear = clearance_reserve * touch + newcomer->gap;
+    if (apart2 >= clear * clear)
+        return true;
+    touch = newcomer->gap + (network_is_piece(newcomer->net, other) ? 0 : touch);
+    return apart2 >= touch * touch && apart2 >= grid_distance2(&grid->item[newcomer->kin[0]], item);
+}
+
+static bool is_clear(const Grid *grid, const Newcomer *newcomer, const GridCell *cell)
+{
+    const int32_t *kin = newcomer->kin;
+    for (uint32_t i = 0; i < cell->count; i++) {
+        int32_t other = cell->tag[i] >> 1;
+        if (other != kin[0] && other != kin[1] && other != kin[2] && other != kin[3] &&
+            !is_clear_of(grid, newcomer, other))
+            return false;
+    }
+    return true;
+}
+
+Status place_is_free(const Network *net, const Grid *grid, const Rules *rules,
+                     const Connection *connection, Vec3 terminal, Footprint *footprint, bool *out,
+                     Err *err)
+{
+    size_t cell, n = footprint->n;
+    bool is_free = true;
+    for (int part = 0; part < PARTS && is_free; part++) {
+        Newcomer part_of = newcomer(net, grid, rules, connection, terminal, part);
+        bool is_given = part != FRESH && network_is_given(net, connection->segment);
+        for (GridWalk walk = grid_walk(grid, &part_of.item);
+             is_free && grid_walk_next(&walk, &cell);) {
+            is_free = is_given || is_clear(grid, &part_of, &grid->cell[cell]);
+            TRY(append_cell(footprint, cell, err));
+        }
+    }
+    if (is_free) {
+        GridWalk walk = grid_walk(grid, &grid->item[connection->segment]);
+        while (grid_walk_next(&walk, &cell))
+            TRY(append_cell(footprint, cell, err));
+    } else {
+        footprint->n = n;
+    }
+    *out = is_free;
+    return STATUS_OK;
 }

@@ -11,34 +11,68 @@ typedef struct Rules {
     double thickness;    /* how much of their radii vessels are taken to have, in [0, 1] */
     double least_length; /* mm; segments are at least this long and `thickness` diameters */
     double gap;          /* mm; vessels without a common node are further apart than this */
+    double widest;       /* mm; vessels count as no thicker than this */
 } Rules;
+
+/* The three segments that a connection makes. */
+enum { PROXIMAL, DISTAL, FRESH, PARTS };
 
 /* A way to connect a terminal: `segment` is split at `bifurcation`. */
 typedef struct Connection {
     int32_t segment;
     double price; /* growth of S_root, by the segment's sensitivities */
     Vec3 bifurcation;
-    double radius[3]; /* mm, of the proximal, the distal and the new segment */
+    double radius[PARTS]; /* mm */
 } Connection;
 
-/* Whether `point` lies in a vessel. */
-bool place_is_in_vessel(const Network *net, const Grid *grid, const Rules *rules, Vec3 point);
+/* Cells of a grid, some perhaps more than once. Starts as (Footprint){0}; ends with
+ * footprint_release. */
+typedef struct Footprint {
+    uint32_t *cell;
+    size_t n, capacity;
+} Footprint;
 
-/* The cheapest connection of `terminal` to `segment` that keeps to the length rule. False when
- * there is none. */
+void footprint_release(Footprint *footprint);
+MUST_CHECK Status footprint_add_box(Footprint *footprint, const Grid *grid, GridBox box, Err *err);
+
+/* The radius of the capsule that stands in the grid for a vessel of `radius`: with room to widen
+ * until the grid is made anew. */
+double place_reach(const Rules *rules, double radius);
+
+/* One of the segments that a connection makes, as it enters the grid. */
+GridItem place_item(const Network *net, const Grid *grid, const Rules *rules,
+                    const Connection *connection, Vec3 terminal, int part);
+
+/* Enters a segment of the tree, unless it has no length: others begin and end there. */
+MUST_CHECK Status place_enter(Grid *grid, const Rules *rules, const Network *net, int32_t segment,
+                              Err *err);
+/* Enters it anew, after it moved or widened. */
+MUST_CHECK Status place_enter_again(Grid *grid, const Rules *rules, const Network *net,
+                                    int32_t segment, Err *err);
+/* Brings all radii in the grid up to date with the network's. */
+MUST_CHECK Status place_widen(Grid *grid, const Rules *rules, const Network *net, Err *err);
+
+/* Whether a segment is long enough to become two that are longer than wide, or need not be. */
+bool place_is_splittable(const Network *net, const Grid *grid, const Rules *rules, int32_t segment);
+
+/* A connection of `terminal` to `segment` that is good and, to first order, priced; its radii are
+ * not set. False when there is none. */
 bool place_connection(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
                       Connection *out);
 
-/* Whether the three segments are inside the domain; in a convex one they are when the bifurcation is. */
+/* Finds the best bifurcation, the price and the radii to the end. False when a segment would be too
+ * short. */
+bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connection *connection);
+
+/* Whether the three segments are inside the domain, those of a given one wherever that is; in a convex
+ * domain they are when the bifurcation is. */
 bool place_is_inside(const Network *net, const Domain *domain, const Connection *connection,
                      Vec3 terminal);
 
-/* Whether the three segments keep clear of all others. */
-bool place_is_free(const Network *net, const Grid *grid, const Rules *rules,
-                   const Connection *connection, Vec3 terminal);
-
-/* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
- * Detection, 2005, sec. 5.1.9]. */
-double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
+/* Whether the segments of a settled connection that are not given keep clear of all others, in *out.
+ * If so, appends the cells in which they or the segment they replace are to `footprint`. */
+MUST_CHECK Status place_is_free(const Network *net, const Grid *grid, const Rules *rules,
+                                const Connection *connection, Vec3 terminal, Footprint *footprint,
+                                bool *out, Err *err);
 
 #endif

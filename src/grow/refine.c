@@ -43,7 +43,7 @@ uint64_t refine_moves(GrowRefine level, size_t terminals)
     const uint64_t moves_per_terminal[] = {[GROW_REFINE_NONE] = 0,
                                            [GROW_REFINE_GEOMETRY] = 100,
                                            [GROW_REFINE_TOPOLOGY] = 100,
-                                           [GROW_REFINE_ANNEAL] = 3000};
+                                           [GROW_REFINE_ANNEAL] = 2000};
     return moves_per_terminal[level] * terminals;
 }
 

@@ -41,7 +41,8 @@ static Status enter(Room *room, const Arbor *arbor, int32_t i, Err *err)
 {
     const Shape *shape = &arbor->shape[i];
     Capsule capsule = {shape->from, shape->to, shape->booked};
-    return grid_add(&room->grid, i, arbor->branch[i].child[0] < 0, capsule, err);
+    return grid_add(&room->grid, 0, i, arbor->branch[i].child[0] < 0,
+                    grid_item(&room->grid, capsule, shape->booked), err);
 }
 
 static double longest_booking(const Branch *branch)
@@ -82,23 +83,26 @@ static double fair_share(const Room *room, const Arbor *arbor, const double *rad
     const Shape *shape = &arbor->shape[i];
     const Branch *branch = arbor->branch;
     Capsule capsule = {shape->from, shape->to, shape->booked + room->gap};
+    GridItem item = grid_item(&room->grid, capsule, 0);
     double share = 1;
-    size_t cell;
-    for (GridWalk walk = grid_walk(&room->grid, capsule); grid_walk_next(&walk, &cell);)
-        for (int32_t at = room->grid.head[cell]; at >= 0; at = room->grid.entry[at].next) {
-            int32_t other = room->grid.entry[at].tag >> 1;
+    size_t index;
+    for (GridWalk walk = grid_walk(&room->grid, &item); grid_walk_next(&walk, &index);) {
+        const GridCell *cell = &room->grid.cell[index];
+        for (uint32_t k = 0; k < cell->count; k++) {
+            int32_t other = cell->tag[k] >> 1;
             if (other != i && !arbor_are_joined(arbor, i, other))
                 share = fmin(share,
                              common_share(room, &branch[i], radius[i], &branch[other],
                                           radius[other], distance_of(shape, &arbor->shape[other])));
         }
+    }
     return share;
 }
 
 /* Books at the room's level; *clear is the share of segments that have the room they should. */
 static Status book(Room *room, Arbor *arbor, double *clear, Err *err)
 {
-    TRY(grid_reset(&room->grid, room->box, cells_per_terminal * (double)(arbor->n / 2), arbor->n,
+    TRY(grid_reset(&room->grid, room->box, cells_per_terminal * (double)(arbor->n / 2), arbor->n, 1,
                    err));
     arbor_look(arbor);
     for (size_t i = 1; i < arbor->n; i++) {
@@ -163,15 +167,18 @@ static double most_room(const Room *room, const Arbor *arbor, int32_t i, double 
 {
     const Shape *shape = &arbor->shape[i];
     double most = fmin(wish, longest_booking(&arbor->branch[i]));
-    size_t cell;
+    size_t index;
     Capsule capsule = {shape->from, shape->to, most + room->gap};
-    for (GridWalk walk = grid_walk(&room->grid, capsule); grid_walk_next(&walk, &cell);)
-        for (int32_t at = room->grid.head[cell]; at >= 0; at = room->grid.entry[at].next) {
-            int32_t other = room->grid.entry[at].tag >> 1;
+    GridItem item = grid_item(&room->grid, capsule, 0);
+    for (GridWalk walk = grid_walk(&room->grid, &item); grid_walk_next(&walk, &index);) {
+        const GridCell *cell = &room->grid.cell[index];
+        for (uint32_t k = 0; k < cell->count; k++) {
+            int32_t other = cell->tag[k] >> 1;
             const Shape *there = &arbor->shape[other];
             if (there->saved != arbor->move && !arbor_are_joined(arbor, i, other))
                 most = fmin(most, distance_of(shape, there) - there->booked - room->gap);
         }
+    }
     for (int k = 0; k < arbor->n_saved_shapes; k++) { /* the grid has them as they were */
         int32_t other = arbor->saved_shape[k].i;
         const Shape *there = &arbor->shape[other];
@@ -241,10 +248,8 @@ bool room_allows(const Room *room, Arbor *arbor)
 
 Status room_follow(Room *room, const Arbor *arbor, Err *err)
 {
-    for (int k = 0; k < arbor->n_saved_shapes; k++) {
-        const Shape *was = &arbor->saved_shape[k].was;
-        grid_remove(&room->grid, arbor->saved_shape[k].i, was->from, was->to);
-    }
+    for (int k = 0; k < arbor->n_saved_shapes; k++)
+        grid_remove(&room->grid, arbor->saved_shape[k].i);
     for (int k = 0; k < arbor->n_saved_shapes; k++)
         TRY(enter(room, arbor, arbor->saved_shape[k].i, err));
     return STATUS_OK;

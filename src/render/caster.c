@@ -2,6 +2,7 @@
 
 #include "render/bvh.h"
 #include "render/field.h"
+#include "render/halving.h"
 #include <stdlib.h>
 
 /* POV-Ray's limits [docs/POVRAY.md section 3]: crossings nearer than the first are not seen,
@@ -12,12 +13,13 @@ static const double shadow_slack_mm = 1e-3;
 struct Caster {
     const Scene *scene;
     Bvh *bvh;               /* NULL for an implicit model */
-    FieldIndex *field;      /* NULL for a primitive model */
+    Halving *halving;       /* an implicit model as POV-Ray finds it, or NULL */
+    FieldIndex *field;      /* an implicit model by proof, or NULL */
     FieldScratch **scratch; /* one a worker */
     int workers;
 };
 
-Status caster_new(const Scene *scene, int workers, Caster **out, Err *err)
+Status caster_new(const Scene *scene, const CellParams *cells, int workers, Caster **out, Err *err)
 {
     Caster *caster = NULL;
     TRY(mem_calloc(&caster, 1, sizeof *caster, "casters", err));
@@ -26,12 +28,14 @@ Status caster_new(const Scene *scene, int workers, Caster **out, Err *err)
     Status status = STATUS_OK;
     if (scene->model != SCENE_ISOSURFACE) {
         TRY_GOTO(bvh_build(scene->primitives, scene->n_primitives, &caster->bvh, err));
+    } else if (cells) {
+        TRY_GOTO(halving_new(scene, cells, &caster->halving, err));
     } else {
         TRY_GOTO(fieldindex_build(scene, &caster->field, err));
         TRY_GOTO(mem_calloc(&caster->scratch, (size_t)workers, sizeof *caster->scratch,
                             "workspaces", err));
         for (int i = 0; i < workers; i++)
-            TRY_GOTO(fieldscratch_new(caster->field, &caster->scratch[i], err));
+            TRY_GOTO(fieldscratch_new(fieldindex_size(caster->field), &caster->scratch[i], err));
     }
     *out = caster;
     return STATUS_OK;
@@ -48,6 +52,7 @@ void caster_free(Caster *caster)
         fieldscratch_free(caster->scratch[i]);
     free(caster->scratch);
     fieldindex_free(caster->field);
+    halving_free(caster->halving);
     bvh_free(caster->bvh);
     free(caster);
 }
@@ -61,6 +66,13 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
             return false;
         const Primitive *primitive = &caster->scene->primitives[index];
         *surfel = (Surfel){hit.t, hit.normal, primitive->color, primitive->id};
+    } else if (caster->halving) {
+        Hit hit;
+        uint32_t index;
+        if (!halving_first_hit(caster->halving, ray, nearest_seen_mm, &hit, &index))
+            return false;
+        const FieldSegment *segment = &caster->scene->segments[index];
+        *surfel = (Surfel){hit.t, hit.normal, segment->color, segment->id};
     } else {
         double t;
         Vec3 normal;
@@ -82,6 +94,8 @@ bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double 
     double far = distance - shadow_slack_mm;
     if (caster->bvh)
         return bvh_any_hit(caster->bvh, ray, shadow_slack_mm, far);
+    if (caster->halving)
+        return halving_any_hit(caster->halving, ray, shadow_slack_mm, far);
     double t;
     Vec3 normal;
     uint32_t index;

@@ -4,6 +4,7 @@
 
 #include "base/base.h"
 #include "scene/scene.h"
+#include "surface/surface.h"
 
 typedef struct Caster Caster;
 
@@ -15,8 +16,10 @@ typedef struct Surfel {
     uint32_t id; /* of the segment */
 } Surfel;
 
-/* Builds the search structure of the scene (borrowed), with workspaces for `workers` threads. */
-MUST_CHECK Status caster_new(const Scene *scene, int workers, Caster **out, Err *err);
+/* Builds the search structure of the scene (borrowed), with workspaces for `workers` threads. With
+ * `cells`, an implicit surface is found as POV-Ray finds it in them; NULL: by proof. */
+MUST_CHECK Status caster_new(const Scene *scene, const CellParams *cells, int workers, Caster **out,
+                             Err *err);
 void caster_free(Caster *caster);
 
 /* `worker` in [0, workers) is the calling thread's own. */

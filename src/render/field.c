@@ -155,8 +155,8 @@ static double first_entry(const FieldScratch *scratch, double t_min, double t_ma
     return march(scratch, t, t_max, 1);
 }
 
-static void describe_hit(const FieldIndex *index, const FieldScratch *scratch, Ray ray, double t,
-                         Vec3 *normal, uint32_t *segment)
+static void describe_hit(const FieldSegment *segments, const FieldScratch *scratch, Ray ray,
+                         double t, Vec3 *normal, uint32_t *segment)
 {
     Vec3 x = ray_at(ray, t), sum = vec3(0, 0, 0);
     double largest = -1;
@@ -166,7 +166,7 @@ static void describe_hit(const FieldIndex *index, const FieldScratch *scratch, R
             continue;
         Vec3 gradient;
         uint32_t number = passage->segment;
-        double term = potential_term_gradient(&index->segments[number], x, &gradient);
+        double term = potential_term_gradient(&segments[number], x, &gradient);
         sum = vec3_add(sum, gradient);
         if (term > largest || (term == largest && number < *segment)) {
             largest = term;
@@ -177,20 +177,41 @@ static void describe_hit(const FieldIndex *index, const FieldScratch *scratch, R
     *normal = vec3_scale(steepness > 0 ? sum : ray.direction, steepness > 0 ? -1 / steepness : -1);
 }
 
-bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
-                     double t_max, double *t, Vec3 *normal, uint32_t *segment)
+static bool first_hit(const FieldSegment *segments, FieldScratch *scratch, Ray ray, double t_min,
+                      double t_max, double *t, Vec3 *normal, uint32_t *segment)
 {
-    t_max = fmin(t_max, DBL_MAX); /* so that "none", infinite, is beyond it */
-    passages_find(index, scratch, ray, t_min, t_max);
     while (passages_next_group(scratch)) {
         if (!passages_find_windows(scratch))
             continue;
         double hit = first_entry(scratch, t_min, t_max);
         if (hit <= t_max) {
             *t = hit;
-            describe_hit(index, scratch, ray, hit, normal, segment);
+            describe_hit(segments, scratch, ray, hit, normal, segment);
             return true;
         }
     }
     return false;
+}
+
+bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
+                     double t_max, double *t, Vec3 *normal, uint32_t *segment)
+{
+    t_max = fmin(t_max, DBL_MAX); /* so that "none", infinite, is beyond it */
+    passages_find(index, scratch, ray, t_min, t_max);
+    return first_hit(index->segments, scratch, ray, t_min, t_max, t, normal, segment);
+}
+
+bool field_first_hit_among(const FieldSegment *segments, const uint32_t *list, size_t n,
+                           FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
+                           Vec3 *normal, uint32_t *segment)
+{
+    t_max = fmin(t_max, DBL_MAX);
+    passages_clear(scratch);
+    for (size_t i = 0; i < n; i++) {
+        FieldTube tube = fieldtube_of(&segments[list[i]], list[i]);
+        if (tube.reach2 > 0)
+            passages_add(scratch, &tube, ray, t_min, t_max);
+    }
+    passages_order(scratch);
+    return first_hit(segments, scratch, ray, t_min, t_max, t, normal, segment);
 }

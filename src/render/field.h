@@ -13,12 +13,15 @@ typedef struct FieldIndex FieldIndex;
 MUST_CHECK Status fieldindex_build(const Scene *scene, FieldIndex **out, Err *err);
 void fieldindex_free(FieldIndex *index);
 
-/* The workspace of one thread: room for every segment on one ray, of which only the part that rays
- * need is ever touched. Nothing is allocated later. */
+/* The workspace of one thread: room for `capacity` segments on one ray, of which only the part that
+ * rays need is ever touched. Nothing is allocated later. */
 typedef struct FieldScratch FieldScratch;
 
-MUST_CHECK Status fieldscratch_new(const FieldIndex *index, FieldScratch **out, Err *err);
+MUST_CHECK Status fieldscratch_new(size_t capacity, FieldScratch **out, Err *err);
 void fieldscratch_free(FieldScratch *scratch);
+
+/* How many segments the index holds: what a ray may need room for. */
+size_t fieldindex_size(const FieldIndex *index);
 
 /* The first point at t in [t_min, t_max] where Phi rises through FIELD_LEVEL along the ray; t_min
  * is finite, t_max may be infinite. False when there is none. A ray that starts inside first leaves
@@ -30,5 +33,10 @@ void fieldscratch_free(FieldScratch *scratch);
  * level may go either way. */
 bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                      double t_max, double *t, Vec3 *normal, uint32_t *segment);
+
+/* The same among the `n` segments listed, without an index. `scratch` has room for n. */
+bool field_first_hit_among(const FieldSegment *segments, const uint32_t *list, size_t n,
+                           FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
+                           Vec3 *normal, uint32_t *segment);
 
 #endif

@@ -9,7 +9,7 @@
 /* Terms below this are left out. */
 static const double cutoff = 1e-9;
 
-static FieldTube prepare_tube(const FieldSegment *segment, uint32_t number)
+FieldTube fieldtube_of(const FieldSegment *segment, uint32_t number)
 {
     Vec3 span = vec3_sub(segment->b, segment->a);
     FieldTube tube = {.a = segment->a, .length = vec3_length(span), .segment = number};
@@ -90,7 +90,7 @@ Status fieldindex_build(const Scene *scene, FieldIndex **out, Err *err)
     TRY_GOTO(mem_calloc(&index->nodes, 2 * n, sizeof *index->nodes, "nodes", err));
     index->segments = scene->segments;
     for (size_t i = 0; i < n; i++) {
-        FieldTube tube = prepare_tube(&scene->segments[i], (uint32_t)i);
+        FieldTube tube = fieldtube_of(&scene->segments[i], (uint32_t)i);
         if (tube.reach2 > 0)
             index->tubes[index->n_tubes++] = tube;
     }
@@ -101,6 +101,11 @@ Status fieldindex_build(const Scene *scene, FieldIndex **out, Err *err)
 done:
     fieldindex_free(index);
     return status;
+}
+
+size_t fieldindex_size(const FieldIndex *index)
+{
+    return index->n_tubes;
 }
 
 void fieldindex_free(FieldIndex *index)

@@ -18,6 +18,8 @@ typedef struct FieldTube {
     uint32_t segment;
 } FieldTube;
 
+FieldTube fieldtube_of(const FieldSegment *segment, uint32_t number);
+
 enum { FIELD_LEAF_SIZE = 2, FIELD_STACK_SIZE = 64 };
 
 /* A box about tubes out to their reach. */

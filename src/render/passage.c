@@ -9,11 +9,10 @@
 
 static const double ln2 = 0.69314718055994530942;
 
-Status fieldscratch_new(const FieldIndex *index, FieldScratch **out, Err *err)
+Status fieldscratch_new(size_t n, FieldScratch **out, Err *err)
 {
     Status status;
     FieldScratch *scratch = NULL;
-    size_t n = index->n_tubes;
     TRY_GOTO(mem_calloc(&scratch, 1, sizeof *scratch, "field workspaces", err));
     TRY_GOTO(mem_calloc(&scratch->passages, n, sizeof *scratch->passages, "passages", err));
     TRY_GOTO(mem_calloc(&scratch->heap, n, sizeof *scratch->heap, "passages", err));
@@ -137,7 +136,19 @@ static void sift_down(Passage **heap, size_t n, size_t hole)
     heap[hole] = item;
 }
 
-static void make_heap(FieldScratch *scratch)
+void passages_clear(FieldScratch *scratch)
+{
+    scratch->n_passages = 0;
+}
+
+void passages_add(FieldScratch *scratch, const FieldTube *tube, Ray ray, double t_min, double t_max)
+{
+    Passage *passage = &scratch->passages[scratch->n_passages];
+    if (pass_tube(tube, ray, passage) && passage->t1 >= t_min && passage->t0 <= t_max)
+        scratch->n_passages++;
+}
+
+void passages_order(FieldScratch *scratch)
 {
     scratch->n_heap = scratch->n_passages;
     for (size_t i = 0; i < scratch->n_heap; i++)
@@ -153,7 +164,7 @@ void passages_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, doub
     const double inverse[3] = {1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
     uint32_t stack[FIELD_STACK_SIZE];
     int top = 0;
-    scratch->n_passages = 0;
+    passages_clear(scratch);
     if (index->n_nodes)
         stack[top++] = 0;
     while (top > 0) {
@@ -165,14 +176,10 @@ void passages_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, doub
             stack[top++] = node->first;
             stack[top++] = number + 1;
         }
-        for (uint32_t i = node->first; i < node->first + node->n_tubes; i++) {
-            Passage *passage = &scratch->passages[scratch->n_passages];
-            if (pass_tube(&index->tubes[i], ray, passage) && passage->t1 >= t_min &&
-                passage->t0 <= t_max)
-                scratch->n_passages++;
-        }
+        for (uint32_t i = node->first; i < node->first + node->n_tubes; i++)
+            passages_add(scratch, &index->tubes[i], ray, t_min, t_max);
     }
-    make_heap(scratch);
+    passages_order(scratch);
 }
 
 bool passages_next_group(FieldScratch *scratch)

@@ -25,7 +25,12 @@ struct FieldScratch {
     size_t n_passages, n_heap, n_group;
 };
 
-/* Finds the passages of the ray that reach into [t_min, t_max], t_max finite. */
+/* Empties the scratch. Follow with passages_add for every segment that may matter in [t_min, t_max],
+ * t_max finite, and then passages_order; passages_find does all three. */
+void passages_clear(FieldScratch *scratch);
+void passages_add(FieldScratch *scratch, const FieldTube *tube, Ray ray, double t_min,
+                  double t_max);
+void passages_order(FieldScratch *scratch);
 void passages_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                    double t_max);
 

@@ -5,6 +5,7 @@
 #include "render/render.h"
 
 #include "render/caster.h"
+#include "render/fieldrender.h"
 #include "render/shade.h"
 #include <math.h>
 
@@ -115,30 +116,37 @@ static Status make_planes(const Camera *camera, const RenderParams *params, Fram
     return STATUS_OK;
 }
 
+static Status rayrender(const Scene *scene, const RenderParams *params, Frame *frame,
+                        RenderStats *stats, Err *err)
+{
+    Caster *caster = NULL;
+    int threads = params->threads > 0 ? params->threads : threads_available();
+    double start_s = clock_seconds();
+    TRY(caster_new(scene, params->povray_cells, threads, &caster, err));
+    double built_s = clock_seconds();
+    Job job = {scene, params, caster, frame};
+    threads_for((size_t)scene->camera.height, threads, render_row, &job);
+    caster_free(caster);
+    if (stats)
+        *stats = (RenderStats){.prepare_s = built_s - start_s,
+                               .trace_s = clock_seconds() - built_s,
+                               .rays = (size_t)scene->camera.width * (size_t)scene->camera.height};
+    return STATUS_OK;
+}
+
 Status render(const Scene *scene, const RenderParams *params, Frame *frame, RenderStats *stats,
               Err *err)
 {
     Frame made = {0};
-    Caster *caster = NULL;
-    int threads = params->threads > 0 ? params->threads : threads_available();
-    double start_s = clock_seconds(), built_s = start_s;
     Status status = make_planes(&scene->camera, params, &made, err);
     if (status == STATUS_OK)
-        status = caster_new(scene, threads, &caster, err);
-    if (status == STATUS_OK) {
-        built_s = clock_seconds();
-        Job job = {scene, params, caster, &made};
-        threads_for((size_t)scene->camera.height, threads, render_row, &job);
-    }
-    caster_free(caster);
+        status = scene->model == SCENE_ISOSURFACE && !params->povray_cells
+                     ? fieldrender(scene, params, &made, stats, err)
+                     : rayrender(scene, params, &made, stats, err);
     if (status != STATUS_OK) {
         frame_release(&made);
         return status;
     }
     *frame = made;
-    if (stats)
-        *stats = (RenderStats){.prepare_s = built_s - start_s,
-                               .trace_s = clock_seconds() - built_s,
-                               .rays = (size_t)scene->camera.width * (size_t)scene->camera.height};
     return STATUS_OK;
 }

@@ -6,12 +6,16 @@
 #include "base/base.h"
 #include "image/image.h"
 #include "scene/scene.h"
+#include "surface/surface.h"
 
 typedef struct RenderParams {
     int threads;   /* 0: all processors */
     int antialias; /* 1: one ray through each pixel's centre; N > 1: that ray and N x N more, the
                     * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
+    double antialias_threshold; /* 0: every pixel; else those that resample_mask tells, in (0, 1] */
     bool shadows;
+    const CellParams *povray_cells; /* of an implicit model: where POV-Ray's root finder sees it in
+                                     * these cells; NULL: where it is, by proof */
     bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
     void (*progress)(double fraction, void *context);  /* called by one thread; may be NULL */
     void *progress_context;

@@ -2,7 +2,7 @@
  * terms by their bound in it, and is dropped when the bounds do not add up to the level; so empty
  * space costs nothing and a segment is looked at only where it may matter. A cube of side 4 r_max *
  * 2^j lies on the lattice of multiples of its side, so that neighbours share their faces to the
- * last bit.
+ * last bit. The box of a cell is its cube with an overlap about it.
  *
  * The bound of the gradient. In units of s, the axial factor A of a term is the probability that a
  * normal variable is within the segment, and |A'| = |E[g; inside]| <= A sqrt(-2 ln A), because a
@@ -29,12 +29,17 @@ static const double full_above = 1.01 * FIELD_LEVEL;
 /* A term matters for the size of a cell when its bound is above this. */
 static const double significant = 1e-2;
 
-/* accuracy = radius / radii_per_accuracy */
-static const double radii_per_accuracy = 300;
+/* The accuracy of a cell over its local radius, and the most that a shadow may ask for. */
+static const double accuracy_ratio = 1.0 / 300, largest_accuracy_ratio = 1.0 / 60;
 
-/* With erf approximated by tanh, s |A'| is at most this times A sqrt(-2 ln A) down to A =
- * LOG_FORM_FLOOR / 10, and within the bound of the exact form from A = 1e-3 up (tabulated). */
-static const double tanh_steepness = 1.18;
+/* Boxes reach beyond their cubes by this many accuracies, and by this part of their coordinates, because
+ * POV-Ray keeps bounding boxes in single precision. */
+static const double overlap_accuracies = 5, overlap_rounding = 4 * FLT_EPSILON;
+
+/* With erf as a polynomial's tanh, s |A'| is at most this times A sqrt(-2 ln A) down to A =
+ * LOG_FORM_FLOOR / 10, and within the bound of the exact form from A = 1e-3 up (tabulated in
+ * tests/unit/surface_test.c). */
+static const double tail_steepness[] = {[ERF_FAST] = 1.14, [ERF_EXACT] = 1.21};
 
 static const size_t max_cells = 1000000;
 
@@ -48,6 +53,7 @@ typedef struct Builder {
     Support *supports; /* one a segment */
     double beta;
     double root_side;
+    double rounding; /* mm: what single precision may take from a box */
     uint32_t *stack; /* the lists of the cubes from the first down to the current one */
     size_t depth, stack_capacity;
     CellTree tree;
@@ -60,6 +66,7 @@ typedef struct TermList {
     double bound_sum;
     double smallest_radius, largest_radius;
     double local_radius; /* smallest of the significant terms, of all when none is */
+    double steepness;    /* the bound of s_min |grad (log form)| below the level */
 } TermList;
 
 /* A cube of the octree: the multiples of `side` from at[] on. */
@@ -82,12 +89,23 @@ static Box cube_box(const Cube *cube, double margin)
                  {low.x + side, low.y + side, low.z + side}};
 }
 
+/* The bound of s_min |grad (log form)| for potentials up to `phi`. */
+static double gradient_bound(const Builder *builder, const TermList *terms, double phi)
+{
+    double half_l2 = -log(phi), sum = 0;
+    for (size_t i = terms->first; i < terms->first + terms->count; i++) {
+        double ratio = terms->smallest_radius / builder->segments[builder->stack[i]].radius_mm;
+        sum += exp(ratio * ratio * half_l2);
+    }
+    return sqrt(log(sum) / half_l2);
+}
+
 /* Pushes those terms of `from` whose bound in the box is above TERM_CUTOFF. */
 static Status filter_terms(Builder *builder, const TermList *from, Box box, TermList *out, Err *err)
 {
     TRY(mem_reserve(&builder->stack, &builder->stack_capacity, builder->depth + from->count,
                     sizeof *builder->stack, "terms", err));
-    TermList list = {builder->depth, 0, 0, HUGE_VAL, 0, HUGE_VAL};
+    TermList list = {builder->depth, 0, 0, HUGE_VAL, 0, HUGE_VAL, 0};
     for (size_t i = from->first; i < from->first + from->count; i++) {
         uint32_t number = builder->stack[i];
         const FieldSegment *segment = &builder->segments[number];
@@ -105,20 +123,11 @@ static Status filter_terms(Builder *builder, const TermList *from, Box box, Term
     }
     if (isinf(list.local_radius))
         list.local_radius = list.smallest_radius;
+    if (list.count)
+        list.steepness = gradient_bound(builder, &list, empty_below);
     builder->depth += list.count;
     *out = list;
     return STATUS_OK;
-}
-
-/* The bound of s_min |grad (log form)| for potentials up to `phi`. */
-static double gradient_bound(const Builder *builder, const TermList *terms, double phi)
-{
-    double half_l2 = -log(phi), sum = 0;
-    for (size_t i = terms->first; i < terms->first + terms->count; i++) {
-        double ratio = terms->smallest_radius / builder->segments[builder->stack[i]].radius_mm;
-        sum += exp(ratio * ratio * half_l2);
-    }
-    return sqrt(log(sum) / half_l2);
 }
 
 /* Whether the potential at the centre proves that the level is not met in the cube widened by
@@ -140,17 +149,109 @@ static bool misses_surface(const Builder *builder, const TermList *terms, const 
     if (phi >= empty_below)
         return at_least > full_above;
     double rise = sqrt(-2 * log(fmax(phi, DBL_MIN))) - sqrt(-2 * log(empty_below));
-    return rise * terms->smallest_radius / 2 >
-           gradient_bound(builder, terms, empty_below) * half_diagonal;
+    return rise * terms->smallest_radius / 2 > terms->steepness * half_diagonal;
+}
+
+/* x down (sign 1) or up (sign -1) to `decimals` places behind the point, which may be negative. */
+static double round_down(double x, int decimals, double sign)
+{
+    double unit = pow(10, abs(decimals));
+    return decimals < 0 ? sign * floor(sign * x / unit) * unit
+                        : sign * floor(sign * x * unit) / unit;
+}
+
+/* Decimals that keep `digits` digits of x > 0. */
+static int decimals_of(double x, int digits)
+{
+    return digits - 1 - (int)floor(log10(x));
+}
+
+double cell_accuracy(double radius)
+{
+    double accuracy =
+        fmax(accuracy_ratio * radius, fmin(SHADOW_ACCURACY_MM, largest_accuracy_ratio * radius));
+    return round_down(accuracy, decimals_of(accuracy, 3), 1);
+}
+
+/* The box with corners of few digits: larger by less than a hundredth of the accuracy. */
+static Box box_rounded(Box box, double accuracy)
+{
+    int places = decimals_of(accuracy, 3);
+    return (Box){{round_down(box.low.x, places, 1), round_down(box.low.y, places, 1),
+                  round_down(box.low.z, places, 1)},
+                 {round_down(box.high.x, places, -1), round_down(box.high.y, places, -1),
+                  round_down(box.high.z, places, -1)}};
+}
+
+/* Which ends of the segment the term feels somewhere in the box. */
+static TermPart part_in(const TermForm *form, Box box)
+{
+    Vec3 center = box_center(box), half = vec3_sub(box.high, center);
+    bool felt[2];
+    for (int end = 0; end < 2; end++) {
+        const double *k = end ? form->end.k : form->start.k;
+        double inside = k[0] * center.x + k[1] * center.y + k[2] * center.z + k[3];
+        double swing = fabs(k[0]) * half.x + fabs(k[1]) * half.y + fabs(k[2]) * half.z;
+        felt[end] = inside - swing < END_REACH;
+    }
+    return felt[0] ? (felt[1] ? TERM_BOTH_ENDS : TERM_START) : felt[1] ? TERM_END : TERM_MIDDLE;
+}
+
+static Status push_terms(Builder *builder, const TermList *terms, Box box, Err *err)
+{
+    CellTree *tree = &builder->tree;
+    TRY(mem_reserve(&tree->terms, &builder->term_capacity, tree->n_terms + terms->count,
+                    sizeof *tree->terms, "terms of cells", err));
+    for (size_t i = 0; i < terms->count; i++) {
+        uint32_t segment = builder->stack[terms->first + i];
+        tree->terms[tree->n_terms++] = (CellTerm){segment, part_in(&tree->forms[segment], box)};
+    }
+    return STATUS_OK;
+}
+
+/* The segment whose term is more than half the level where the sum reaches it, because all others
+ * together stay below. */
+static uint32_t largest_in(const Builder *builder, const TermList *terms, Box box)
+{
+    for (size_t i = 0; i < terms->count; i++) {
+        uint32_t segment = builder->stack[terms->first + i];
+        double bound = potential_term_bound(&builder->segments[segment], box);
+        if (terms->bound_sum - bound < 0.48 * FIELD_LEVEL)
+            return segment;
+    }
+    return CELL_MIXED;
+}
+
+/* The bound of the gradient of the cell's function, whose scale is `scale`. */
+static double max_gradient(const Builder *builder, const TermList *terms, const Cell *cell)
+{
+    double bound = 1;
+    if (!cell_is_tube(&builder->tree, cell)) {
+        double near = gradient_bound(builder, terms, LOG_FORM_CEILING);
+        double far = gradient_bound(builder, terms, LOG_FORM_FLOOR);
+        bound = fmax(near, tail_steepness[builder->tree.erf] * far);
+    }
+    double gradient = bound * (1 + 1e-9) * cell->scale * 2 / terms->smallest_radius;
+    return round_down(gradient, decimals_of(gradient, 4), -1);
+}
+
+/* How far the box of a cell reaches beyond its cube: not alike for any two neighbours, so that POV-Ray,
+ * which halves what a ray has in the box, does not find the same wall at the same place in both, and the
+ * order in which it looks at them does not matter. */
+static double overlap_of(const Builder *builder, const Cube *cube, double accuracy)
+{
+    int64_t octant = (cube->at[0] & 1) | (cube->at[1] & 1) << 1 | (cube->at[2] & 1) << 2;
+    return (overlap_accuracies + (double)octant / 8) * accuracy + builder->rounding;
 }
 
 static Status add_cell(Builder *builder, const TermList *candidates, const Cube *cube, Err *err)
 {
-    double accuracy = candidates->local_radius / radii_per_accuracy;
-    double margin = CELL_OVERLAP * accuracy;
+    double accuracy = cell_accuracy(candidates->local_radius);
+    double margin = overlap_of(builder, cube, accuracy);
+    Box box = box_rounded(cube_box(cube, margin), accuracy);
     TermList terms;
-    TRY(filter_terms(builder, candidates, cube_box(cube, margin), &terms, err));
-    if (terms.bound_sum < empty_below || misses_surface(builder, &terms, cube, margin))
+    TRY(filter_terms(builder, candidates, box, &terms, err));
+    if (terms.bound_sum < empty_below || misses_surface(builder, &terms, cube, 2 * margin))
         return STATUS_OK;
 
     CellTree *tree = &builder->tree;
@@ -161,19 +262,16 @@ static Status add_cell(Builder *builder, const TermList *candidates, const Cube 
                        max_cells, builder->root_side);
     TRY(mem_reserve(&tree->cells, &builder->cell_capacity, tree->n_cells + 1, sizeof *tree->cells,
                     "cells", err));
-    TRY(mem_reserve(&tree->terms, &builder->term_capacity, tree->n_terms + terms.count,
-                    sizeof *tree->terms, "terms of cells", err));
-    double near = gradient_bound(builder, &terms, LOG_FORM_CEILING);
-    double far = tanh_steepness * gradient_bound(builder, &terms, LOG_FORM_FLOOR);
-    tree->cells[tree->n_cells++] = (Cell){.low = cube_low(cube),
-                                          .side = cube->side,
-                                          .first = (uint32_t)tree->n_terms,
-                                          .count = (uint32_t)terms.count,
-                                          .scale = terms.smallest_radius / 2,
-                                          .max_gradient = fmax(near, far),
-                                          .accuracy = accuracy};
-    for (size_t i = 0; i < terms.count; i++)
-        tree->terms[tree->n_terms++] = builder->stack[terms.first + i];
+    Cell cell = {.low = box.low,
+                 .high = box.high,
+                 .first = (uint32_t)tree->n_terms,
+                 .count = (uint32_t)terms.count,
+                 .scale = exp2(floor(log2(terms.smallest_radius / 8))),
+                 .accuracy = accuracy,
+                 .largest = largest_in(builder, &terms, box)};
+    TRY(push_terms(builder, &terms, box, err));
+    cell.max_gradient = max_gradient(builder, &terms, &cell);
+    tree->cells[tree->n_cells++] = cell;
     return STATUS_OK;
 }
 
@@ -182,7 +280,8 @@ static Status add_cell(Builder *builder, const TermList *candidates, const Cube 
 static Status descend(Builder *builder, const TermList *parent, const Cube *cube, Err *err)
 {
     size_t depth = builder->depth;
-    double margin = CELL_OVERLAP * parent->largest_radius / radii_per_accuracy;
+    double margin =
+        (overlap_accuracies + 1) * cell_accuracy(parent->largest_radius) + builder->rounding;
     TermList terms;
     TRY(filter_terms(builder, parent, cube_box(cube, margin), &terms, err));
     if (terms.bound_sum >= empty_below && !misses_surface(builder, &terms, cube, margin)) {
@@ -190,10 +289,10 @@ static Status descend(Builder *builder, const TermList *parent, const Cube *cube
             cube->side > builder->root_side || cube->side > builder->beta * terms.local_radius;
         if (!split)
             TRY(add_cell(builder, &terms, cube, err));
-        for (int child = 0; split && child < 8; child++) {
+        for (int octant = 0; split && octant < 8; octant++) {
             Cube part = {cube->side / 2, {0}};
             for (int axis = 0; axis < 3; axis++)
-                part.at[axis] = 2 * cube->at[axis] + (child >> axis & 1);
+                part.at[axis] = 2 * cube->at[axis] + (octant >> axis & 1);
             TRY(descend(builder, &terms, &part, err));
         }
     }
@@ -235,13 +334,16 @@ static Support support_of(const FieldSegment *segment)
 
 static Status build(Builder *builder, size_t n_segments, Err *err)
 {
+    CellTree *tree = &builder->tree;
     TRY(mem_reserve(&builder->stack, &builder->stack_capacity, n_segments, sizeof *builder->stack,
                     "terms", err));
     TRY(mem_calloc(&builder->supports, n_segments, sizeof *builder->supports, "supports", err));
+    TRY(mem_calloc(&tree->forms, n_segments, sizeof *tree->forms, "forms of terms", err));
     TermList all = {.count = n_segments};
     Box box = box_empty();
     for (size_t i = 0; i < n_segments; i++) {
         const FieldSegment *segment = &builder->segments[i];
+        tree->forms[i] = term_form(segment);
         builder->supports[i] = support_of(segment);
         builder->stack[i] = (uint32_t)i;
         double reach = sqrt(fmax(builder->supports[i].reach2, 0));
@@ -249,14 +351,27 @@ static Status build(Builder *builder, size_t n_segments, Err *err)
         box = box_with_ball(box, segment->b, reach);
         all.largest_radius = fmax(all.largest_radius, segment->radius_mm);
     }
+    if (n_segments == 0)
+        return STATUS_OK;
     builder->depth = n_segments;
     builder->root_side = 4 * all.largest_radius;
-    return n_segments ? descend_from_top(builder, &all, box, err) : STATUS_OK;
+    builder->rounding =
+        overlap_rounding * fmax(fmax(fmax(-box.low.x, box.high.x), fmax(-box.low.y, box.high.y)),
+                                fmax(-box.low.z, box.high.z));
+    return descend_from_top(builder, &all, box, err);
 }
 
-Status celltree_build(const Scene *scene, double beta, CellTree *cells, Err *err)
+/* Finer cells are traced faster but take longer to read; docs/POVRAY.md has the measurements. */
+static double chosen_beta(size_t n_segments)
 {
-    Builder builder = {.segments = scene->segments, .beta = beta};
+    return n_segments <= 3000 ? 3 : n_segments <= 10000 ? 4 : 6;
+}
+
+Status celltree_build(const Scene *scene, const CellParams *params, CellTree *cells, Err *err)
+{
+    Builder builder = {.segments = scene->segments,
+                       .beta = params->beta > 0 ? params->beta : chosen_beta(scene->n_segments),
+                       .tree = {.erf = params->erf}};
     Status status = build(&builder, scene->n_segments, err);
     free(builder.supports);
     free(builder.stack);
@@ -271,5 +386,6 @@ void celltree_release(CellTree *cells)
 {
     free(cells->cells);
     free(cells->terms);
+    free(cells->forms);
     *cells = (CellTree){0};
 }

@@ -9,6 +9,7 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "scene/scene.h"
+#include "surface/cells.h" // IWYU pragma: export
 
 /* One term of the potential at x, in [0, 1], to a few units of the last place of its largest
  * factor, tails included. */
@@ -28,38 +29,10 @@ double potential_term_bound(const FieldSegment *segment, Box box);
 
 /* The log form of the potential that POV-Ray traces: sqrt(-2 ln clamp(phi, LOG_FORM_FLOOR,
  * LOG_FORM_CEILING)) - 2, zero on the surface, (distance - 2 s) / s about a lone vessel. Where the
- * potential is below the floor the terms that were dropped weigh as much as those that were kept;
- * above the ceiling nothing is seen, and the form would only grow steep. */
-#define LOG_FORM_FLOOR 1e-6
+ * potential is below the floor the terms that were dropped begin to weigh as much as those that were
+ * kept; above the ceiling nothing is seen, and the form would only grow steep. */
+#define LOG_FORM_FLOOR 1e-5
 #define LOG_FORM_CEILING 0.2
 double potential_log_form(double phi);
-
-/* Cubes that cover the surface, each with the few terms that matter in it, for POV-Ray's isosurface
- * object [docs/POVRAY.md]. What is said of a cell holds up to CELL_OVERLAP * accuracy outside it
- * too, so that containers may overlap by that much and leave no seam. */
-typedef struct Cell {
-    Vec3 low;
-    double side;
-    uint32_t first, count; /* its terms: terms[first .. first + count), by rising index */
-    double scale;        /* smallest s of its terms, mm; the cell's function is scale * log form */
-    double max_gradient; /* proven bound of that function's gradient in the cell; covers the erf
-                          * approximated by tanh(1.129663422 x + 0.09980966638 x^3) too */
-    double accuracy;     /* mm: 1/300 of the smallest radius whose term exceeds 1e-2 in the cell */
-} Cell;
-
-#define CELL_OVERLAP 5
-
-typedef struct CellTree {
-    Cell *cells;
-    size_t n_cells;
-    uint32_t *terms; /* indices into scene->segments */
-    size_t n_terms;
-} CellTree;
-
-/* The octree of cells in which the surface can lie: root cells of 4 r_max on the lattice of their
- * multiples, split while the side is above beta (> 0) times the smallest radius that matters in it,
- * in Morton order. Owned by the caller. STATUS_INFEASIBLE beyond a million cells. */
-MUST_CHECK Status celltree_build(const Scene *scene, double beta, CellTree *cells, Err *err);
-void celltree_release(CellTree *cells);
 
 #endif

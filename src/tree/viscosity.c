@@ -7,7 +7,9 @@
 /* ((1 - H)^C - 1) / ((1 - 0.45)^C - 1): how the viscosity grows with the hematocrit. */
 static double hematocrit_factor(double hematocrit, double exponent)
 {
-    double log_plasma = log1p(-hematocrit), log_reference = log1p(-0.45);
+    /* A number, as compilers that compute log(1 - 0.45) round it more exactly than the library. */
+    const double log_reference = -0.5978370007556204;
+    double log_plasma = log1p(-hematocrit);
     if (exponent == 0)
         return log_plasma / log_reference;
     return expm1(exponent * log_plasma) / expm1(exponent * log_reference);

@@ -13,9 +13,17 @@ const CompareResult *report_worst(const ReportCase *report)
     return NULL;
 }
 
+const char *report_reason(const ReportCase *report)
+{
+    const CompareResult *worst = report_worst(report);
+    if (worst)
+        return worst->reason;
+    return report->surface && !report->surface->agrees ? report->surface->reason : NULL;
+}
+
 bool report_agrees(const ReportCase *report)
 {
-    return report_worst(report) == NULL;
+    return report_reason(report) == NULL;
 }
 
 static json_t *side_json(const ReportSide *side)
@@ -26,7 +34,7 @@ static json_t *side_json(const ReportSide *side)
 
 json_t *report_json(const ReportCase *report)
 {
-    const CompareResult *worst = report_worst(report);
+    const char *reason = report_reason(report);
     json_t *planes = json_object(), *commands = json_array();
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
         if (report->planes[kind])
@@ -34,9 +42,10 @@ json_t *report_json(const ReportCase *report)
     for (size_t i = 0; i < report->n_commands; i++)
         json_array_append_new(commands, json_string(report->commands[i]));
     return json_pack(
-        "{s:s, s:s?, s:s, s:s, s:s, s:o, s:o, s:o, s:o}", "verdict", worst ? "differ" : "agree",
-        "reason", worst ? worst->reason : NULL, "name", report->name, "model", report->model,
-        "tier", report->planes[PLANE_COLOR]->tolerance.tier, "planes", planes, report->a.key,
+        "{s:s, s:s?, s:s, s:s, s:s, s:o, s:o*, s:o, s:o, s:o}", "verdict",
+        reason ? "differ" : "agree", "reason", reason, "name", report->name, "model", report->model,
+        "tier", report->planes[PLANE_COLOR]->tolerance.tier, "planes", planes, "surface",
+        report->surface ? surface_check_json(report->surface) : NULL, report->a.key,
         side_json(&report->a), report->b.key, side_json(&report->b), "commands", commands);
 }
 
@@ -80,9 +89,30 @@ static void junit_case(const ReportCase *report, const CompareResult *plane, Tex
     text_puts(out, "    </testcase>\n");
 }
 
+static void junit_surface(const ReportCase *report, Text *out)
+{
+    const SurfaceCheck *surface = report->surface;
+    text_puts(out, "    <testcase classname=\"");
+    text_escaped(out, report->model);
+    text_printf(
+        out,
+        "\" name=\"surface\">\n      <properties>\n"
+        "        <property name=\"missing or extra pixels\" value=\"%zu (at most 0)\"/>\n"
+        "        <property name=\"pixels beyond the accuracy\" value=\"%zu (at most 0)\"/>\n"
+        "        <property name=\"grazing pixels\" value=\"%zu\"/>\n      </properties>\n",
+        surface->missing + surface->extra, surface->beyond, surface->grazing);
+    if (!surface->agrees) {
+        text_puts(out, "      <failure message=\"");
+        text_escaped(out, surface->reason);
+        text_puts(out, "\"/>\n");
+    }
+    text_puts(out, "    </testcase>\n");
+}
+
 void report_junit(const ReportCase *report, Text *out)
 {
-    int tests = 0, failures = 0;
+    int tests = report->surface != NULL;
+    int failures = report->surface && !report->surface->agrees;
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++) {
         tests += report->planes[kind] != NULL;
         failures += report->planes[kind] && !report->planes[kind]->agrees;
@@ -95,6 +125,8 @@ void report_junit(const ReportCase *report, Text *out)
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
         if (report->planes[kind])
             junit_case(report, report->planes[kind], out);
+    if (report->surface)
+        junit_surface(report, out);
     text_puts(out, "  </testsuite>\n</testsuites>\n");
 }
 

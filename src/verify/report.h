@@ -7,6 +7,9 @@
 /* The first plane that differs, or NULL. Borrowed. */
 const CompareResult *report_worst(const ReportCase *report);
 
+/* Why the report does not agree, a sentence, or NULL. Borrowed. */
+const char *report_reason(const ReportCase *report);
+
 /* Appends `text` with & < > " and ' as entities: for HTML and XML, in elements and attributes. */
 void text_escaped(Text *out, const char *text);
 

@@ -46,25 +46,27 @@ static const char *const part_names[PARTS] = {
 
 static void verdict_parts(const ReportCase *report, Text parts[PARTS])
 {
-    const CompareResult *worst = report_worst(report), *color = report->planes[PLANE_COLOR];
+    const char *reason = report_reason(report);
+    const CompareResult *color = report->planes[PLANE_COLOR];
     int compared = 0, differing = 0;
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++) {
         compared += report->planes[kind] != NULL;
         differing += report->planes[kind] && !report->planes[kind]->agrees;
     }
     text_escaped(&parts[PART_TITLE], report->name);
-    text_puts(&parts[PART_TITLE], worst ? ": the pictures differ" : ": the pictures agree");
-    text_puts(&parts[PART_EDGE], worst ? "bad-edge" : "good-edge");
+    text_puts(&parts[PART_TITLE], reason ? ": the pictures differ" : ": the pictures agree");
+    text_puts(&parts[PART_EDGE], reason ? "bad-edge" : "good-edge");
     text_escaped(&parts[PART_VERDICT_TITLE], report->b.name);
     text_puts(&parts[PART_VERDICT_TITLE], " and ");
     text_escaped(&parts[PART_VERDICT_TITLE], report->a.name);
     text_puts(&parts[PART_VERDICT_TITLE],
-              worst ? " <span class=\"bad\">differ</span>" : " <span class=\"good\">agree</span>");
+              reason ? " <span class=\"bad\">differ</span>" : " <span class=\"good\">agree</span>");
     Text *sentence = &parts[PART_VERDICT_SENTENCE];
-    if (worst) {
-        text_printf(sentence, "%d of %d planes differ%s. First, ", differing, compared,
-                    differing == 1 ? "s" : "");
-        text_escaped(sentence, worst->reason);
+    if (reason) {
+        if (differing)
+            text_printf(sentence, "%d of %d planes differ%s. First, ", differing, compared,
+                        differing == 1 ? "s" : "");
+        text_escaped(sentence, reason);
         text_puts(sentence, ".");
     } else {
         if (color->differing_pixels == 0)
@@ -78,6 +80,8 @@ static void verdict_parts(const ReportCase *report, Text parts[PARTS])
                     compared == 1 ? "The %d plane compared is" : "The %d planes compared are",
                     compared);
         text_puts(sentence, " within tolerance.");
+        if (report->surface)
+            text_puts(sentence, " What POV-Ray's root finder sees is the surface to its accuracy.");
     }
     Text *subject = &parts[PART_SUBJECT];
     text_puts(subject, "Scene ");
@@ -173,6 +177,27 @@ static void metric_rows(const CompareResult *plane, Text *out)
     coverage_metrics(plane, out);
 }
 
+static void surface_rows(const SurfaceCheck *surface, Text *rules, Text *metrics)
+{
+    const struct {
+        const char *name;
+        size_t pixels;
+    } rows[] = {{"missing or extra pixels, grazing ones aside", surface->missing + surface->extra},
+                {"pixels farther off than the accuracy allows", surface->beyond}};
+    for (int i = 0; i < 2; i++)
+        text_printf(rules,
+                    "<tr><th>%s</th><td class=\"verdict %s\">%s</td><td>%s</td>"
+                    "<td class=\"number\">%zu pixels</td><td class=\"number\">0 pixels</td></tr>\n",
+                    i ? "" : "surface", rows[i].pixels ? "bad" : "good",
+                    rows[i].pixels ? "✗ differ" : "✓ agree", rows[i].name, rows[i].pixels);
+    metric_row(metrics, "surface", "grazing pixels", (double)surface->grazing, "");
+    metric_row(metrics, "", "pixels judged", (double)surface->common, "");
+    metric_row(metrics, "", "median distance from the surface", surface->median_mm, "mm");
+    metric_row(metrics, "", "99th percentile", surface->p99_mm, "mm");
+    metric_row(metrics, "", "largest distance", surface->max_mm, "mm");
+    metric_row(metrics, "", "largest over what is allowed", surface->max_ratio, "");
+}
+
 static void table_parts(const ReportCase *report, Text parts[PARTS])
 {
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
@@ -180,6 +205,8 @@ static void table_parts(const ReportCase *report, Text parts[PARTS])
             rule_rows(report->planes[kind], &parts[PART_RULES]);
             metric_rows(report->planes[kind], &parts[PART_METRICS]);
         }
+    if (report->surface)
+        surface_rows(report->surface, &parts[PART_RULES], &parts[PART_METRICS]);
     for (int i = 0; i < HEAT_STEPS; i++) {
         const HeatStep *step = &heat_steps[i];
         int to = i + 1 < HEAT_STEPS ? heat_steps[i + 1].from_level - 1 : 255;

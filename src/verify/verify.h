@@ -5,7 +5,8 @@
 
 #include "base/base.h"
 #include "image/image.h"
-#include "verify/oracle.h" // IWYU pragma: export
+#include "verify/oracle.h"        // IWYU pragma: export
+#include "verify/surface_check.h" // IWYU pragma: export
 #include <jansson.h>
 
 typedef enum PlaneKind { PLANE_COLOR, PLANE_DEPTH, PLANE_NORMAL, PLANE_ID, PLANE_KINDS } PlaneKind;
@@ -294,9 +295,10 @@ typedef struct ReportCase {
     const char *const *commands; /* how to repeat it, one a line */
     size_t n_commands;
     const CompareResult *planes[PLANE_KINDS]; /* NULL where not compared; colour is required */
+    const SurfaceCheck *surface;              /* of an implicit model; NULL: of no such model */
 } ReportCase;
 
-/* Whether every plane agrees. */
+/* Whether every plane agrees, and the surface. */
 bool report_agrees(const ReportCase *report);
 /* The report as JSON, with the keys of `verify --json`. New reference, NULL when memory runs out.
  */

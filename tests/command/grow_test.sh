@@ -23,6 +23,12 @@ test_the_checker_finds_what_is_wrong() {
     run "$CHECK_TREE" crossing.swc
     expect_status 1
     expect_sentence "segments (4 and 6|6 and 4) cross"
+    # Radii four times as wide carry 256 times the flow: all laws hold, but there is no room.
+    sed 's/^# q_perf_ml_min: 500$/# q_perf_ml_min: 128000/' tree.swc |
+        awk -v CONVFMT=%.17g '!/^#/ { $6 *= 4 } { print }' >wide.swc
+    run_ok "$CHECK_TREE" wide.swc
+    expect_stdout '^short [1-9]'
+    expect_stdout '^overlaps [1-9]'
 }
 
 test_the_same_seed_gives_the_same_bytes() {
@@ -63,6 +69,18 @@ test_a_tree_in_the_ball_keeps_murray_pressures_and_domain() {
     check_tree tree.swc
     expect_stdout '^terminals 300$'
     grep -q '^# dimension: 3$' tree.swc || fail "expected the header to say dimension 3"
+}
+
+test_vessels_are_as_long_as_wide_and_clear_of_each_other_at_their_final_radii() {
+    local seed domain
+    for domain in disc:50 ball:40; do
+        for seed in 1 2 3; do
+            run_ok corcast grow --terminals 4000 --domain $domain --seed $seed -o tree.swc
+            check_tree tree.swc
+            expect_stdout '^short 0$'
+            expect_stdout '^overlaps 0$'
+        done
+    done
 }
 
 test_a_tree_in_any_convex_shape_stays_inside() {

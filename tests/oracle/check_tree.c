@@ -5,14 +5,18 @@
  *
  * Reads the header keys and the rows, derives flows and pressures again in long double, and exits
  * with status 1 and a sentence unless
- * - ids are different, parents come before children, there is one root with one child, and every
- *   other node has two children or none;
- * - r_p^gamma = r_l^gamma + r_r^gamma at every bifurcation, to 1e-12 of r_p^gamma;
- * - every terminal is at p_term, to 1e-9 of p_perf - p_term, when the inlet is at p_perf and each
- *   terminal carries q_perf / N (Poiseuille);
+ * - ids are different, parents come before children, every root has one child, and every other node
+ *   two or less;
+ * - r_p^gamma = r_l^gamma + r_r^gamma at every bifurcation, to 1e-12 of r_p^gamma, and the radius
+ *   stays where there is one child;
+ * - every terminal is at p_term, to 1e-9 of p_perf - p_term, when all inlets are at p_perf and the
+ *   terminals share q_perf evenly, or as the flow_share lines say (Poiseuille, with the viscosity
+ *   constant or by Pries 1994);
  * - every point lies in the domain (disc, ball, rect, box, ellipsoid), to 1e-9 mm;
  * - in two dimensions, no two segments share a point other than a common node.
- * Prints what `corcast info --json` should say, and the largest deviations, as "key value" lines.
+ * Prints what `corcast info --json` should say, the largest deviations, how many segments are shorter
+ * than wide, and how many pairs without a common node overlap at their real thickness, as "key
+ * value" lines.
  */
 #include <errno.h>
 #include <math.h>
@@ -29,15 +33,28 @@ typedef struct Node {
     long id;
     int parent; /* index; -1 at the root */
     int children, child[2];
-    int terminals; /* downstream, itself included */
+    int terminals;     /* downstream, itself included */
+    long double share; /* of the flow; downstream, its own included */
     int level, strahler;
     long double x, y, z, radius, length, pressure_pa;
 } Node;
 
 typedef struct Header {
     long double gamma, lambda, p_perf, p_term, q_perf, viscosity, dimension;
-    char domain[200];
+    long double hematocrit, plasma_viscosity;
+    char domain[200], viscosity_law[20];
 } Header;
+
+/* A flow_share line. */
+typedef struct Share {
+    long id;
+    long double value;
+} Share;
+
+typedef struct Shares {
+    Share *list;
+    int n;
+} Shares;
 
 __attribute__((format(printf, 1, 2), noreturn)) static void fail(const char *format, ...)
 {
@@ -50,14 +67,31 @@ __attribute__((format(printf, 1, 2), noreturn)) static void fail(const char *for
     exit(1);
 }
 
-static void read_key(Header *header, const char *line)
+static void *grown(void *list, int n, size_t size)
+{
+    if (n < 1024 ? n != 0 : (n & (n - 1)) != 0)
+        return list;
+    list = realloc(list, (n < 1024 ? 1024 : 2 * (size_t)n) * size);
+    if (!list)
+        fail("memory ran out");
+    return list;
+}
+
+static void read_key(Header *header, Shares *shares, const char *line)
 {
     static const char *const keys[] = {"gamma",       "lambda",        "p_perf_mmHg",
                                        "p_term_mmHg", "q_perf_ml_min", "viscosity_cP",
-                                       "dimension"};
-    long double *const values[] = {&header->gamma,    &header->lambda, &header->p_perf,
-                                   &header->p_term,   &header->q_perf, &header->viscosity,
-                                   &header->dimension};
+                                       "dimension",   "hematocrit",    "plasma_viscosity_cP"};
+    long double *const values[] = {
+        &header->gamma,     &header->lambda,     &header->p_perf,
+        &header->p_term,    &header->q_perf,     &header->viscosity,
+        &header->dimension, &header->hematocrit, &header->plasma_viscosity};
+    Share share;
+    if (sscanf(line, "# flow_share: %ld %Lf", &share.id, &share.value) == 2) {
+        shares->list = grown(shares->list, shares->n, sizeof *shares->list);
+        shares->list[shares->n++] = share;
+        return;
+    }
     char key[100], text[200];
     if (sscanf(line, "# %99[^:]: %199s", key, text) != 2)
         return;
@@ -67,6 +101,8 @@ static void read_key(Header *header, const char *line)
     }
     if (strcmp(key, "domain") == 0)
         snprintf(header->domain, sizeof header->domain, "%s", text);
+    if (strcmp(key, "viscosity_law") == 0)
+        snprintf(header->viscosity_law, sizeof header->viscosity_law, "%.19s", text);
 }
 
 static int find(const Node *nodes, int n, long id)
@@ -78,25 +114,20 @@ static int find(const Node *nodes, int n, long id)
     return -1;
 }
 
-static int read_tree(const char *path, Header *header, Node **out)
+static int read_tree(const char *path, Header *header, Shares *shares, Node **out)
 {
     FILE *file = fopen(path, "r");
     if (!file)
         fail("%s: %s", path, strerror(errno));
-    int n = 0, capacity = 0;
+    int n = 0;
     Node *nodes = NULL;
     char line[1000];
     while (fgets(line, sizeof line, file)) {
         if (line[0] == '#') {
-            read_key(header, line);
+            read_key(header, shares, line);
             continue;
         }
-        if (n == capacity) {
-            capacity = capacity ? 2 * capacity : 1024;
-            nodes = realloc(nodes, (size_t)capacity * sizeof *nodes);
-            if (!nodes)
-                fail("memory ran out");
-        }
+        nodes = grown(nodes, n, sizeof *nodes);
         Node node = {0};
         long parent;
         int type;
@@ -108,8 +139,6 @@ static int read_tree(const char *path, Header *header, Node **out)
         node.parent = parent == -1 ? -1 : find(nodes, n, parent);
         if (parent != -1 && node.parent < 0)
             fail("node %ld comes before its parent %ld", node.id, parent);
-        if ((n == 0) != (parent == -1))
-            fail("node %ld: one root is expected, in the first row", node.id);
         nodes[n++] = node;
     }
     fclose(file);
@@ -140,10 +169,27 @@ static void check_ids(const Node *nodes, int n)
     free(ids);
 }
 
-/* Children, lengths, terminal counts, Strahler orders, levels. */
-static void link_tree(Node *nodes, int n)
+/* Gives the nodes their own shares of the flow: those of the lines, or 1 for every terminal. */
+static void share_flow(Node *nodes, int n, const Shares *shares)
 {
-    for (int i = 1; i < n; i++) {
+    for (int i = 0; i < n && shares->n == 0; i++)
+        nodes[i].share = nodes[i].children == 0;
+    for (int k = 0; k < shares->n; k++) {
+        int i = find(nodes, n, shares->list[k].id);
+        if (i < 0)
+            fail("flow_share: no node %ld", shares->list[k].id);
+        nodes[i].share = shares->list[k].value;
+        if (nodes[i].children || !(nodes[i].share > 0))
+            fail("flow_share: node %ld is no terminal, or its share not above 0", nodes[i].id);
+    }
+}
+
+/* Children, lengths, terminal counts, flows, Strahler orders, levels. */
+static void link_tree(Node *nodes, int n, const Shares *shares)
+{
+    for (int i = 0; i < n; i++) {
+        if (nodes[i].parent < 0)
+            continue;
         Node *parent = &nodes[nodes[i].parent];
         if (parent->children == 2)
             fail("node %ld has more than two children", parent->id);
@@ -151,53 +197,75 @@ static void link_tree(Node *nodes, int n)
         nodes[i].length =
             hypotl(hypotl(nodes[i].x - parent->x, nodes[i].y - parent->y), nodes[i].z - parent->z);
     }
-    if (nodes[0].children != 1)
-        fail("the root has %d children, not one", nodes[0].children);
-    if (nodes[0].radius != nodes[1].radius)
-        fail("the root's radius is not that of the root segment");
-    for (int i = n - 1; i > 0; i--) {
+    share_flow(nodes, n, shares);
+    for (int i = n - 1; i >= 0; i--) {
         Node *node = &nodes[i];
+        if (node->parent >= 0)
+            nodes[node->parent].share += node->share;
+        else if (node->children != 1 || node->radius != nodes[node->child[0]].radius)
+            fail("root %ld has not one child of its own radius", node->id);
         if (node->children == 0) {
             node->terminals = node->strahler = 1;
             continue;
         }
-        if (node->children != 2)
-            fail("node %ld has one child", node->id);
-        const Node *a = &nodes[node->child[0]], *b = &nodes[node->child[1]];
-        node->terminals = a->terminals + b->terminals;
-        node->strahler = a->strahler == b->strahler  ? a->strahler + 1
-                         : a->strahler > b->strahler ? a->strahler
-                                                     : b->strahler;
+        const Node *a = &nodes[node->child[0]], *b = &nodes[node->child[node->children - 1]];
+        node->terminals = a->terminals + (a == b ? 0 : b->terminals);
+        node->strahler = a->strahler == b->strahler && a != b ? a->strahler + 1
+                         : a->strahler > b->strahler          ? a->strahler
+                                                              : b->strahler;
     }
-    for (int i = 2; i < n; i++)
-        nodes[i].level = nodes[nodes[i].parent].level + 1;
+    for (int i = 0; i < n; i++) {
+        const Node *parent = nodes[i].parent < 0 ? NULL : &nodes[nodes[i].parent];
+        nodes[i].level =
+            parent && parent->parent >= 0 ? parent->level + (parent->children == 2) : 0;
+    }
 }
 
 static long double murray_deviation(const Node *nodes, int n, long double gamma)
 {
     long double worst = 0;
-    for (int i = 1; i < n; i++) {
-        if (nodes[i].children != 2)
+    for (int i = 0; i < n; i++) {
+        const Node *node = &nodes[i];
+        if (node->children == 0)
             continue;
-        long double parent = powl(nodes[i].radius, gamma);
-        long double children = powl(nodes[nodes[i].child[0]].radius, gamma) +
-                               powl(nodes[nodes[i].child[1]].radius, gamma);
-        worst = fmaxl(worst, fabsl(parent - children) / parent);
+        long double sum = 0; /* of shares of the parent's radius, so that no power overflows */
+        for (int k = 0; k < node->children; k++)
+            sum += powl(nodes[node->child[k]].radius / node->radius, gamma);
+        worst = fmaxl(worst, fabsl(sum - 1));
     }
     return worst;
+}
+
+/* Pa s. The law of Pries et al., Circ. Res. 75 (1994) 904-915, in vivo, D in micrometres. */
+static long double viscosity(const Header *header, long double radius_mm)
+{
+    if (strcmp(header->viscosity_law, "pries") != 0)
+        return header->viscosity * 1e-3L;
+    long double D = 2000 * radius_mm, H = header->hematocrit;
+    long double cut = 1 / (1 + powl(10, -11) * powl(D, 12));
+    long double C = (0.8L + expl(-0.075L * D)) * (-1 + cut) + cut;
+    long double m = 6 * expl(-0.085L * D) + 3.2L - 2.44L * expl(-0.06L * powl(D, 0.645L));
+    long double w = powl(D / (D - 1.1L), 2);
+    long double part = (powl(1 - H, C) - 1) / (powl(1 - 0.45L, C) - 1);
+    return header->plasma_viscosity * 1e-3L * (1 + (m - 1) * part * w) * w;
 }
 
 /* mm, s, Pa: 1 cP = 1e-3 Pa s, 1 ml/min = 1000/60 mm^3/s. */
 static long double pressure_deviation(Node *nodes, int n, const Header *header)
 {
     long double p_term = header->p_term * PA_PER_MMHG, p_perf = header->p_perf * PA_PER_MMHG;
-    long double q_terminal = header->q_perf * (1000.0L / 60) / nodes[1].terminals;
-    long double worst = 0;
-    nodes[0].pressure_pa = p_perf;
-    for (int i = 1; i < n; i++) {
+    long double all = 0, worst = 0;
+    for (int i = 0; i < n; i++)
+        all += nodes[i].parent < 0 ? nodes[i].share : 0;
+    long double q_share = header->q_perf * (1000.0L / 60) / all;
+    for (int i = 0; i < n; i++) {
         Node *node = &nodes[i];
-        long double drop = 8 * (header->viscosity * 1e-3L) * node->length *
-                           (q_terminal * node->terminals) / (PI * powl(node->radius, 4));
+        if (node->parent < 0) {
+            node->pressure_pa = p_perf;
+            continue;
+        }
+        long double drop = 8 * viscosity(header, node->radius) * node->length *
+                           (q_share * node->share) / (PI * powl(node->radius, 4));
         node->pressure_pa = nodes[node->parent].pressure_pa - drop;
         if (node->children == 0)
             worst = fmaxl(worst, fabsl(node->pressure_pa - p_term) / (p_perf - p_term));
@@ -276,7 +344,7 @@ static bool overlap_at(const Node *node, const Node *a, const Node *b)
            (a->x - node->x) * (b->x - node->x) + (a->y - node->y) * (b->y - node->y) > 0;
 }
 
-/* A segment as the sweep sees it: its extent in x, and its distal node. */
+/* A segment as the sweep sees it: its extent in x, with its radius, and its distal node. */
 typedef struct Span {
     long double low, high;
     int node;
@@ -286,6 +354,23 @@ static int compare_spans(const void *a, const void *b)
 {
     long double x = ((const Span *)a)->low, y = ((const Span *)b)->low;
     return (x > y) - (x < y);
+}
+
+/* Every segment's extent, from the left, in a list the caller frees. */
+static Span *sorted_spans(const Node *nodes, int n, int *count)
+{
+    Span *spans = malloc((size_t)n * sizeof *spans);
+    if (!spans)
+        fail("memory ran out");
+    *count = 0;
+    for (int i = 0; i < n; i++) {
+        if (nodes[i].parent < 0)
+            continue;
+        long double a = nodes[i].x, b = nodes[nodes[i].parent].x, r = nodes[i].radius;
+        spans[(*count)++] = (Span){fminl(a, b) - r, fmaxl(a, b) + r, i};
+    }
+    qsort(spans, (size_t)*count, sizeof *spans, compare_spans);
+    return spans;
 }
 
 static bool segments_cross(const Node *nodes, int i, int j)
@@ -303,16 +388,10 @@ static bool segments_cross(const Node *nodes, int i, int j)
 /* Every pair of segments whose extents in x overlap, found by a sweep from the left. */
 static void check_crossings(const Node *nodes, int n)
 {
-    Span *spans = malloc((size_t)n * sizeof *spans);
-    if (!spans)
-        fail("memory ran out");
-    for (int i = 1; i < n; i++) {
-        long double a = nodes[i].x, b = nodes[nodes[i].parent].x;
-        spans[i - 1] = (Span){fminl(a, b), fmaxl(a, b), i};
-    }
-    qsort(spans, (size_t)(n - 1), sizeof *spans, compare_spans);
-    for (int a = 0; a < n - 1; a++) {
-        for (int b = a + 1; b < n - 1 && spans[b].low <= spans[a].high; b++) {
+    int segments;
+    Span *spans = sorted_spans(nodes, n, &segments);
+    for (int a = 0; a < segments; a++) {
+        for (int b = a + 1; b < segments && spans[b].low <= spans[a].high; b++) {
             if (segments_cross(nodes, spans[a].node, spans[b].node))
                 fail("segments %ld and %ld cross", nodes[spans[a].node].id,
                      nodes[spans[b].node].id);
@@ -321,24 +400,92 @@ static void check_crossings(const Node *nodes, int n)
     free(spans);
 }
 
+typedef struct Vector {
+    long double x, y, z;
+} Vector;
+
+static Vector between(const Node *a, const Node *b)
+{
+    return (Vector){b->x - a->x, b->y - a->y, b->z - a->z};
+}
+
+static long double dot(Vector a, Vector b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static long double point_distance(const Node *p, const Node *a, const Node *b)
+{
+    Vector u = between(a, b), w = between(a, p);
+    long double t = fminl(1, fmaxl(0, dot(u, w) / dot(u, u)));
+    return sqrtl(powl(w.x - t * u.x, 2) + powl(w.y - t * u.y, 2) + powl(w.z - t * u.z, 2));
+}
+
+/* Of two segments: that of an end from the other, unless both perpendicular feet are inside. */
+static long double distance(const Node *a, const Node *b, const Node *c, const Node *d)
+{
+    long double ends = fminl(fminl(point_distance(a, c, d), point_distance(b, c, d)),
+                             fminl(point_distance(c, a, b), point_distance(d, a, b)));
+    Vector u = between(a, b), v = between(c, d), w = between(a, c);
+    long double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), det = uu * vv - uv * uv;
+    long double s = (dot(w, u) * vv - dot(w, v) * uv) / det;
+    long double t = (dot(w, u) * uv - dot(w, v) * uu) / det;
+    if (!(det > 1e-15L * uu * vv) || s < 0 || s > 1 || t < 0 || t > 1)
+        return ends;
+    Vector apart = {w.x + t * v.x - s * u.x, w.y + t * v.y - s * u.y, w.z + t * v.z - s * u.z};
+    return fminl(ends, sqrtl(dot(apart, apart)));
+}
+
+static int count_overlaps(const Node *nodes, int n)
+{
+    int segments, count = 0;
+    Span *spans = sorted_spans(nodes, n, &segments);
+    for (int a = 0; a < segments; a++) {
+        const Node *i = &nodes[spans[a].node];
+        for (int b = a + 1; b < segments && spans[b].low <= spans[a].high; b++) {
+            const Node *j = &nodes[spans[b].node];
+            bool joined =
+                i->parent == j->parent || i->parent == spans[b].node || j->parent == spans[a].node;
+            count += !joined &&
+                     distance(&nodes[i->parent], i, &nodes[j->parent], j) < i->radius + j->radius;
+        }
+    }
+    free(spans);
+    return count;
+}
+
+static int count_short(const Node *nodes, int n)
+{
+    int count = 0;
+    for (int i = 0; i < n; i++)
+        count += nodes[i].parent >= 0 && nodes[i].length < 2 * nodes[i].radius;
+    return count;
+}
+
 static void report(const Node *nodes, int n, const Header *header)
 {
-    long double length = 0, volume = 0, target = 0, thinnest = nodes[0].radius;
-    int level = 0;
-    for (int i = 1; i < n; i++) {
+    long double length = 0, volume = 0, target = 0, thinnest = nodes[0].radius, widest = 0;
+    int segments = 0, terminals = 0, bifurcations = 0, level = 0, strahler = 0;
+    for (int i = 0; i < n; i++) {
         long double r = nodes[i].radius;
+        thinnest = fminl(thinnest, r);
+        widest = fmaxl(widest, r);
+        strahler = nodes[i].strahler > strahler ? nodes[i].strahler : strahler;
+        if (nodes[i].parent < 0)
+            continue;
+        segments++;
+        terminals += nodes[i].children == 0;
+        bifurcations += nodes[i].children == 2;
         length += nodes[i].length;
         volume += PI * r * r * nodes[i].length;
         target += nodes[i].length * powl(r, header->lambda);
-        thinnest = fminl(thinnest, r);
         level = nodes[i].level > level ? nodes[i].level : level;
     }
-    printf("segments %d\nterminals %d\nbifurcations %d\n", n - 1, nodes[1].terminals,
-           nodes[1].terminals - 1);
+    printf("segments %d\nterminals %d\nbifurcations %d\n", segments, terminals, bifurcations);
     printf("total_length_mm %.17Lg\nvolume_mm3 %.17Lg\ntarget %.17Lg\n", length, volume, target);
     printf("gamma %.17Lg\nlambda %.17Lg\n", header->gamma, header->lambda);
-    printf("root_radius_mm %.17Lg\nmin_radius_mm %.17Lg\n", nodes[1].radius, thinnest);
-    printf("max_level %d\nmax_strahler %d\n", level, nodes[1].strahler);
+    printf("root_radius_mm %.17Lg\nmin_radius_mm %.17Lg\n", widest, thinnest);
+    printf("max_level %d\nmax_strahler %d\n", level, strahler);
 }
 
 int main(int argc, char **argv)
@@ -348,11 +495,12 @@ int main(int argc, char **argv)
         return 2;
     }
     const long double none = nanl("");
-    Header header = {none, none, none, none, none, none, none, ""};
+    Header header = {none, none, none, none, none, none, none, none, none, "", ""};
+    Shares shares = {0};
     Node *nodes;
-    int n = read_tree(argv[1], &header, &nodes);
+    int n = read_tree(argv[1], &header, &shares, &nodes);
     check_ids(nodes, n);
-    link_tree(nodes, n);
+    link_tree(nodes, n, &shares);
     check_domain(nodes, n, &header);
     if (header.dimension == 2)
         check_crossings(nodes, n);
@@ -366,6 +514,8 @@ int main(int argc, char **argv)
         fail("a terminal is off p_term by %.3Lg of the pressure drop", pressure);
     report(nodes, n, &header);
     printf("murray_deviation %.3Lg\npressure_deviation %.3Lg\n", murray, pressure);
+    printf("short %d\noverlaps %d\n", count_short(nodes, n), count_overlaps(nodes, n));
     free(nodes);
+    free(shares.list);
     return 0;
 }

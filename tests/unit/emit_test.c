@@ -152,32 +152,56 @@ static void without_a_geometry_file_all_stands_in_the_scene(void **state)
     release(&out);
 }
 
-static void every_term_of_a_cell_is_declared(void **state)
+/* Each cell is one isosurface, and each function that it calls is declared. */
+static void every_function_of_a_cell_is_declared(void **state)
 {
     (void)state;
     Scene scene = make_scene(SCENE_ISOSURFACE);
     Emitted out = emit(&scene, &two_files);
     const char *text = out.geometry.chars;
     assert_true(out.report.cells > 10);
-    assert_int_equal(count(text, "\nCell_Begin() "), out.report.cells);
-    assert_int_equal(count(text, "\n#declare Fn_"), 3 + 5); /* segments, and the template's own */
-    for (const char *at = text; (at = strstr(at, "Cell_Begin() Fn_")) != NULL; at++) {
-        unsigned term = 99;
-        assert_int_equal(sscanf(at, "Cell_Begin() Fn_%u(x,y,z)", &term), 1);
-        assert_true(term < 3);
+    assert_int_equal(count(text, "\nisosurface{function{F"), out.report.cells);
+    size_t calls = 0;
+    for (const char *at = text; (at = strstr(at, "isosurface{function{")) != NULL;) {
+        const char *end = strchr(at + 20, '}');
+        for (at += 20; at < end; at++) {
+            char name[8];
+            if (at[-1] != '{' && at[-1] != '(' && at[-1] != '+')
+                continue;
+            if (sscanf(at, "%7[A-Za-z0-9]", name) != 1 || name[0] != 'F')
+                continue;
+            char declared[32];
+            snprintf(declared, sizeof declared, "#declare %s=function(", name);
+            if (!strstr(text, declared))
+                fail_msg("%s is called and not declared", name);
+            calls++;
+        }
     }
-    /* The second segment's function: axis over sqrt2 s, offset, start, 1 / (2 s^2), length. */
-    double v[9];
-    const char *declared = strstr(text, "#declare Fn_1 = Segment(");
-    assert_non_null(declared);
-    assert_int_equal(sscanf(declared,
-                            "#declare Fn_1 = Segment(%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf)", &v[0],
-                            &v[1], &v[2], &v[3], &v[4], &v[5], &v[6], &v[7], &v[8]),
-                     9);
-    double length = sqrt(16 + 49 + 1), s = 0.6, c = 1 / (sqrt(2) * s);
-    assert_true(fabs(v[0] + 4 / length * c) < 1e-12 && fabs(v[3]) < 1e-12);
-    assert_true(fabs(v[7] - c * c) < 1e-12 && fabs(v[8] - c * length) < 1e-12);
+    assert_true(calls > 2 * out.report.cells);
     release(&out);
+}
+
+static void ids_are_painted_only_when_asked_for(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_ISOSURFACE);
+    Emitted plain = emit(&scene, &two_files);
+    assert_null(strstr(plain.geometry.chars, "open Cell_One_Paint("));
+    assert_int_equal(count(plain.geometry.chars, "\nVessel_Texture(0,Vessel_Color)\n"), 1);
+    PovrayParams with_ids = two_files;
+    with_ids.ids = true;
+    Emitted painted = emit(&scene, &with_ids);
+    size_t one = count(painted.geometry.chars, "open Cell_One_Paint(");
+    size_t many = count(painted.geometry.chars, "\nCell_Top() ");
+    assert_true(one > 0 && many > 0);
+    assert_int_equal(one + many, painted.report.cells);
+    assert_non_null(strstr(painted.geometry.chars, "Cell_One_Paint(2,Vessel_Color)"));
+    release(&plain);
+    scene.uniform_color = false;
+    plain = emit(&scene, &two_files);
+    assert_non_null(strstr(plain.geometry.chars, "Cell_One_Paint(3,<0.1,0.5,0.1>)"));
+    release(&plain);
+    release(&painted);
 }
 
 static void a_missing_template_is_named(void **state)
@@ -200,7 +224,8 @@ int main(void)
         cmocka_unit_test(segments_of_different_colours_carry_their_own),
         cmocka_unit_test(the_scene_says_what_it_is_and_how_to_render_it),
         cmocka_unit_test(without_a_geometry_file_all_stands_in_the_scene),
-        cmocka_unit_test(every_term_of_a_cell_is_declared),
+        cmocka_unit_test(every_function_of_a_cell_is_declared),
+        cmocka_unit_test(ids_are_painted_only_when_asked_for),
         cmocka_unit_test(a_missing_template_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

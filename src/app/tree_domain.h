@@ -1,0 +1,12 @@
+/* The domain that a tree was grown in. */
+#ifndef CORCAST_APP_TREE_DOMAIN_H
+#define CORCAST_APP_TREE_DOMAIN_H
+
+#include "domain/domain.h"
+#include "tree/tree.h"
+
+/* The domain that the tree's header names, in *domain (owned); *found is false, and *domain as it was,
+ * when it names none. */
+MUST_CHECK Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err);
+
+#endif

@@ -1,0 +1,269 @@
+/* Numbers are printed with the digits that read back exactly, and every expression in the order of
+ * `surface`'s cellfunction.c, so that what POV-Ray evaluates is what cell_function returns. A segment has
+ * one function for each part of it that a cell feels, so that cells are short to read. */
+#include "emit/povray_text.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/* The functions of a segment: its term by TermPart, and v^2 + w^2. */
+static const char *const function_names[] = {"Fb", "Fs", "Fe", "Fm", "Ft"};
+enum { TUBE = TERM_MIDDLE + 1, N_FUNCTIONS };
+
+/* Scales are 2^(number - SCALE_ONE). */
+enum { SCALE_ONE = 64, N_SCALES = 128 };
+
+/* x*k0+y*k1-z*k2+k3 without the zeros. */
+static void put_linear(Text *text, const Linear *linear)
+{
+    static const char *const factors[] = {"x*", "y*", "z*", ""};
+    bool first = true;
+    for (int i = 0; i < 4; i++) {
+        double k = linear->k[i];
+        if (k == 0)
+            continue;
+        text_puts(text, k < 0 ? "-" : first ? "" : "+");
+        text_puts(text, factors[i]);
+        text_number(text, fabs(k));
+        first = false;
+    }
+}
+
+/* The factor of the axial part. */
+static void put_ends(Text *text, const TermForm *form, TermPart part)
+{
+    if (part == TERM_MIDDLE)
+        return;
+    text_puts(text, part == TERM_BOTH_ENDS ? "*(Fn_Step(" : "*Fn_Step(");
+    put_linear(text, part == TERM_END ? &form->end : &form->start);
+    if (part == TERM_BOTH_ENDS) {
+        text_puts(text, ")+Fn_Step(");
+        put_linear(text, &form->end);
+    }
+    text_puts(text, part == TERM_BOTH_ENDS ? ")-1)" : ")");
+}
+
+static Status put_function(Text *text, const Tmpl *template, uint32_t segment, const TermForm *form,
+                           int function, Err *err)
+{
+    Text name = TEXT_INIT, v = TEXT_INIT, w = TEXT_INIT, ends = TEXT_INIT;
+    text_printf(&name, "%s%u", function_names[function], segment);
+    put_linear(&v, &form->v);
+    put_linear(&w, &form->w);
+    text_puts(&ends, "");
+    bool tube = function == TUBE;
+    if (!tube)
+        put_ends(&ends, form, (TermPart)function);
+    const TmplValue values[] = {
+        {"name", name.chars}, {"v", v.chars}, {"w", w.chars}, {"ends", ends.chars}};
+    Status status = tmpl_apply(template, values, tube ? 3 : 4, text, err);
+    text_release(&name);
+    text_release(&v);
+    text_release(&w);
+    text_release(&ends);
+    return status;
+}
+
+static int scale_number(const Cell *cell)
+{
+    return ilogb(cell->scale) + SCALE_ONE;
+}
+
+Status put_scales(Text *text, const PovrayParams *params, const CellTree *cells, Err *err)
+{
+    Tmpl template = {0};
+    bool used[N_SCALES] = {false};
+    for (size_t i = 0; i < cells->n_cells; i++)
+        used[scale_number(&cells->cells[i])] = true;
+    Status status = load_template(&template, params, "scale.inc", err);
+    for (int number = 0; status == STATUS_OK && number < N_SCALES; number++) {
+        char digits[8], scale[NUMBER_TEXT_SIZE], low[NUMBER_TEXT_SIZE], high[NUMBER_TEXT_SIZE],
+            slope[NUMBER_TEXT_SIZE];
+        snprintf(digits, sizeof digits, "%d", number);
+        const TmplValue values[] = {{"number", digits},
+                                    {"scale", number_text(ldexp(1, number - SCALE_ONE), scale)},
+                                    {"floor", number_text(LOG_FORM_FLOOR, low)},
+                                    {"ceiling", number_text(LOG_FORM_CEILING, high)},
+                                    {"slope", number_text(TUBE_SLOPE, slope)}};
+        if (used[number])
+            status = tmpl_apply(&template, values, sizeof values / sizeof *values, text, err);
+    }
+    tmpl_release(&template);
+    return status;
+}
+
+Status put_terms(Text *text, const Scene *scene, const PovrayParams *params, const CellTree *cells,
+                 Err *err)
+{
+    Tmpl term = {0}, tube = {0};
+    uint8_t *used = NULL; /* a bit for each function of a segment */
+    Status status;
+    TRY_GOTO(load_template(&term, params, "term.inc", err));
+    TRY_GOTO(load_template(&tube, params, "tube.inc", err));
+    TRY_GOTO(mem_calloc(&used, scene->n_segments, sizeof *used, "functions", err));
+    for (size_t i = 0; i < cells->n_cells; i++) {
+        const Cell *cell = &cells->cells[i];
+        const CellTerm *terms = cells->terms + cell->first;
+        for (uint32_t k = 0; k < cell->count; k++) {
+            uint32_t function = cell_is_tube(cells, cell) ? TUBE : terms[k].part;
+            used[terms[k].segment] |= (uint8_t)(1U << function);
+        }
+    }
+    for (uint32_t i = 0; i < scene->n_segments; i++) {
+        for (int function = 0; function < N_FUNCTIONS; function++) {
+            if (used[i] & (1 << function))
+                TRY_GOTO(put_function(text, function == TUBE ? &tube : &term, i, &cells->forms[i],
+                                      function, err));
+        }
+    }
+done:
+    free(used);
+    tmpl_release(&term);
+    tmpl_release(&tube);
+    return status;
+}
+
+/* ---- cells --------------------------------------------------------------------------------------- */
+
+/* A cell's values, with room that every cell uses again. */
+typedef struct CellText {
+    Text low, high, function, paint, largest, pick, paints;
+    char max_gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE], count[NUMBER_TEXT_SIZE];
+} CellText;
+
+static void release_cell_text(CellText *part)
+{
+    Text *const texts[] = {&part->low,  &part->high,    &part->function, &part->paint,
+                           &part->pick, &part->largest, &part->paints};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        text_release(texts[i]);
+}
+
+static Text *cleared(Text *text)
+{
+    text->length = 0;
+    text_puts(text, "");
+    return text;
+}
+
+static void put_term(Text *text, const CellTerm *term)
+{
+    text_printf(text, "%s%u(x,y,z)", function_names[term->part], term->segment);
+}
+
+static void put_cell_function(Text *text, const CellTree *cells, const Cell *cell)
+{
+    const CellTerm *terms = cells->terms + cell->first;
+    if (cell_is_tube(cells, cell)) {
+        text_printf(text, "Fk%d(%s%u(x,y,z))", scale_number(cell), function_names[TUBE],
+                    terms->segment);
+        return;
+    }
+    text_printf(text, "Fl%d(", scale_number(cell));
+    for (uint32_t k = 0; k < cell->count; k++) {
+        text_puts(text, k ? "+" : "");
+        put_term(text, &terms[k]);
+    }
+    text_puts(text, ")");
+}
+
+/* Fn_Max(T1,Fn_Max(T2,...)): the largest term. */
+static void put_largest(Text *text, const CellTerm *terms, uint32_t count)
+{
+    for (uint32_t k = 0; k + 1 < count; k++) {
+        text_puts(text, "Fn_Max(");
+        put_term(text, &terms[k]);
+        text_puts(text, ",");
+    }
+    put_term(text, &terms[count - 1]);
+    for (uint32_t k = 0; k + 1 < count; k++)
+        text_puts(text, ")");
+}
+
+/* Fn_Choose(T1-Fn_Top,0,Fn_Choose(T2-Fn_Top,1,...)): the number of the first term that equals the
+ * largest, Fn_Top. */
+static void put_pick(Text *text, const CellTerm *terms, uint32_t count)
+{
+    for (uint32_t k = 0; k + 1 < count; k++) {
+        text_puts(text, "Fn_Choose(");
+        put_term(text, &terms[k]);
+        text_printf(text, "-Fn_Top(x,y,z),%u,", k);
+    }
+    text_printf(text, "%u", count - 1);
+    for (uint32_t k = 0; k + 1 < count; k++)
+        text_puts(text, ")");
+}
+
+static void put_segment_paint(Text *text, const Scene *scene, uint32_t segment)
+{
+    put_paint(text, scene, scene->segments[segment].id, scene->segments[segment].color);
+}
+
+/* Appends the paint of a cell: that of the term that is largest all over it, or of each. */
+static Status put_cell_paint(Text *text, const Tmpl *many_paints, const Scene *scene,
+                             const CellTree *cells, const Cell *cell, CellText *part, Err *err)
+{
+    const CellTerm *terms = cells->terms + cell->first;
+    if (cell->largest != CELL_MIXED) {
+        text_puts(text, " Cell_One_Paint(");
+        put_segment_paint(text, scene, cell->largest);
+        text_puts(text, ")");
+        return STATUS_OK;
+    }
+    put_largest(cleared(&part->largest), terms, cell->count);
+    put_pick(cleared(&part->pick), terms, cell->count);
+    snprintf(part->count, sizeof part->count, "%u", cell->count);
+    cleared(&part->paints);
+    for (uint32_t k = 0; k < cell->count; k++) {
+        text_printf(&part->paints, "Cell_Paint(%u,%u,", k, cell->count);
+        put_segment_paint(&part->paints, scene, terms[k].segment);
+        text_puts(&part->paints, ")");
+    }
+    const TmplValue values[] = {{"largest", part->largest.chars},
+                                {"pick", part->pick.chars},
+                                {"paints", part->paints.chars},
+                                {"count", part->count}};
+    return tmpl_apply(many_paints, values, sizeof values / sizeof *values, text, err);
+}
+
+static Status put_cell(Text *text, const Tmpl *template, const CellTree *cells, const Cell *cell,
+                       CellText *part, Err *err)
+{
+    put_vector(cleared(&part->low), cell->low);
+    put_vector(cleared(&part->high), cell->high);
+    put_cell_function(cleared(&part->function), cells, cell);
+    const TmplValue values[] = {
+        {"function", part->function.chars},
+        {"low", part->low.chars},
+        {"high", part->high.chars},
+        {"paint", part->paint.chars},
+        {"max_gradient", number_text(cell->max_gradient, part->max_gradient)},
+        {"accuracy", number_text(cell->accuracy, part->accuracy)},
+    };
+    return tmpl_apply(template, values, sizeof values / sizeof *values, text, err);
+}
+
+Status put_cells(Text *text, const Scene *scene, const PovrayParams *params, const CellTree *cells,
+                 Err *err)
+{
+    bool painted = params->ids || !scene->uniform_color;
+    Tmpl plain = {0}, many_paints = {0};
+    CellText part = {0};
+    Status status;
+    TRY_GOTO(load_template(&plain, params, "cell.inc", err));
+    TRY_GOTO(load_template(&many_paints, params, "cell_paints.inc", err));
+    text_puts(text, "Cell_Guard()\n");
+    for (size_t i = 0; i < cells->n_cells; i++) {
+        const Cell *cell = &cells->cells[i];
+        cleared(&part.paint);
+        if (painted)
+            TRY_GOTO(put_cell_paint(&part.paint, &many_paints, scene, cells, cell, &part, err));
+        TRY_GOTO(put_cell(text, &plain, cells, cell, &part, err));
+    }
+    text_puts(text, "Vessel_Texture(0,Vessel_Color)\n");
+done:
+    release_cell_text(&part);
+    tmpl_release(&plain);
+    tmpl_release(&many_paints);
+    return status;
+}

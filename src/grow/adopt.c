@@ -1,0 +1,134 @@
+/* Nodes of the tree become nodes of the network one by one, in order, and remember where they come
+ * from. A vessel that the tree makes up of several segments is told by its nodes of one child; its
+ * pieces may be much shorter than wide, so growth does not hold them to its own rules. */
+#include "grow/adopt.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+size_t adopt_inlets(const Tree *from)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < from->n; i++)
+        count += !tree_is_segment(from, i);
+    return count;
+}
+
+/* Node i, which has so many children. */
+static Status check_node(const Tree *from, size_t i, int32_t children, const Domain *domain,
+                         Err *err)
+{
+    int32_t id = from->id[i];
+    if (children > 2)
+        return err_set(
+            err, STATUS_INPUT,
+            "--from: node %d has %d children; growth goes on from trees in which no node "
+            "has more than 2",
+            id, children);
+    if (!tree_is_segment(from, i) && children == 0)
+        return err_set(err, STATUS_INPUT, "--from: node %d is an inlet without a vessel", id);
+    if (tree_is_segment(from, i) && children == 0 && !(tree_segment_length(from, i) > 0))
+        return err_set(err, STATUS_INPUT,
+                       "--from: node %d, a terminal, is where its parent is; its segment needs a "
+                       "length",
+                       id);
+    if (domain_dimension(domain) == 2 && from->position[i].z != 0)
+        return err_set(err, STATUS_INPUT,
+                       "--from: node %d is at z = %g; with a --domain of two dimensions the tree "
+                       "must lie in the plane z = 0",
+                       id, from->position[i].z);
+    return STATUS_OK;
+}
+
+Status adopt_check(const GrowParams *params, const Domain *domain, Err *err)
+{
+    const Tree *from = params->from;
+    size_t inlets = adopt_inlets(from), terminals = 0;
+    if (params->inlets > 0)
+        return err_set(err, STATUS_USAGE,
+                       "--inlet: the tree of --from has its own; give only one of the two");
+    if (inlets > GROW_MAX_INLETS)
+        return err_set(err, STATUS_INPUT, "--from: the tree has %zu roots; at most %d can grow",
+                       inlets, GROW_MAX_INLETS);
+    int32_t *children = NULL;
+    TRY(tree_child_counts(from, &children, err));
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < from->n && status == STATUS_OK; i++) {
+        status = check_node(from, i, children[i], domain, err);
+        terminals += children[i] == 0;
+    }
+    free(children);
+    if (status == STATUS_OK && params->terminals <= terminals)
+        status = err_set(err, STATUS_USAGE,
+                         "--terminals %zu: must be above the %zu that the tree of --from has",
+                         params->terminals, terminals);
+    return status;
+}
+
+/* Whether the vessel that the segment i is part of has other segments. */
+static bool is_piece(const Network *net, int32_t i)
+{
+    const Segment *segment = &net->segment[i], *above = &net->segment[segment->parent];
+    bool goes_on = segment->child[0] >= 0 && segment->child[1] < 0;
+    return goes_on || (above->parent >= 0 && above->child[1] < 0);
+}
+
+void adopt_tree(const Tree *from, Network *net)
+{
+    for (size_t i = 0; i < from->n; i++) {
+        int32_t node = network_append(net, from->parent[i], from->position[i]);
+        net->trait[node].origin = (int32_t)i;
+        net->trait[node].given = tree_is_segment(from, i);
+    }
+    for (size_t i = 0; i < net->n; i++)
+        net->trait[i].piece = net->trait[i].given && is_piece(net, (int32_t)i);
+    network_resum(net);
+}
+
+/* One bit for every id that a node of the tree has, in *taken (owned). */
+static Status mark_ids(const Tree *from, uint8_t **taken, Err *err)
+{
+    TRY(mem_calloc(taken, TREE_MAX_ID / 8 + 1, 1, "bytes of seen ids", err));
+    for (size_t i = 0; i < from->n; i++)
+        (*taken)[from->id[i] / 8] |= (uint8_t)(1u << from->id[i] % 8);
+    return STATUS_OK;
+}
+
+static Status restore_nodes(const Tree *from, const Network *net, Tree *out, Err *err)
+{
+    uint8_t *taken = NULL;
+    TRY(mark_ids(from, &taken, err));
+    int32_t id = 1;
+    for (size_t i = 0; i < out->n; i++) {
+        int32_t origin = net->trait[i].origin;
+        if (origin >= 0) {
+            out->id[i] = from->id[origin];
+            out->type[i] = from->type[origin];
+            continue;
+        }
+        while (taken[id / 8] >> id % 8 & 1)
+            id++;
+        out->id[i] = id++;
+    }
+    free(taken);
+    return STATUS_OK;
+}
+
+/* Whether some line of the tree has the key of `line`: what stands up to its colon. */
+static bool has_key_of(const Tree *tree, const char *line)
+{
+    size_t length = strcspn(line, ":");
+    for (size_t i = 0; i < tree->header.n_lines && line[length]; i++)
+        if (strncmp(tree->header.lines[i], line, length + 1) == 0)
+            return true;
+    return false;
+}
+
+Status adopt_restore(const Tree *from, const Network *net, Tree *out, Err *err)
+{
+    TRY(restore_nodes(from, net, out, err));
+    for (size_t i = 0; i < from->header.n_lines; i++)
+        if (!has_key_of(out, from->header.lines[i]))
+            TRY(tree_add_line(out, from->header.lines[i], err));
+    return STATUS_OK;
+}

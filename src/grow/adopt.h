@@ -1,0 +1,23 @@
+/* Growing on from a tree that there is. */
+#ifndef CORCAST_GROW_ADOPT_H
+#define CORCAST_GROW_ADOPT_H
+
+#include "grow/grow.h"
+#include "grow/network.h"
+
+/* The number of roots of a tree. */
+size_t adopt_inlets(const Tree *from);
+
+/* Whether growth can go on from params->from with these parameters. STATUS_USAGE and STATUS_INPUT, as
+ * grow_tree says. */
+MUST_CHECK Status adopt_check(const GrowParams *params, const Domain *domain, Err *err);
+
+/* Makes the tree, which adopt_check accepts, part of `net`, which is empty and has traits. */
+void adopt_tree(const Tree *from, Network *net);
+
+/* Gives the nodes of `out`, which are those of `net`, that were in `from` their ids and types back, and
+ * the others the smallest ids that are free; and appends those header lines of `from` whose keys `out`
+ * has no line of. */
+MUST_CHECK Status adopt_restore(const Tree *from, const Network *net, Tree *out, Err *err);
+
+#endif

@@ -1,0 +1,75 @@
+/* Trees race for tissue: where two meet, a point goes to the one that connects it at the lesser cost.
+ * One that is ahead of its share has to wait, and meanwhile the others get the points between them, so
+ * that territories come to fit the shares while vessels are still few and long. */
+#include "grow/forest.h"
+
+#include <stdlib.h>
+
+/* A tree may be ahead by as much as fits this part of the terminals there are, and some. */
+static const double lead = 1.0 / 16;
+enum { LEAD_AT_LEAST = 2 };
+
+/* The tree that is owed the most: of its share, above its quota; or the least. */
+static size_t most_owed(const Forest *forest, const double *share, double sum, double sign)
+{
+    size_t best = 0;
+    double most = -INFINITY;
+    for (size_t k = 0; k < forest->trees; k++) {
+        double owed = share[k] / sum * (double)forest->terminals - (double)forest->quota[k];
+        bool may = sign > 0 || forest->quota[k] > 1;
+        if (may && sign * owed > most) {
+            most = sign * owed;
+            best = k;
+        }
+    }
+    return best;
+}
+
+static void set_quotas(Forest *forest, const double *share)
+{
+    double sum = 0;
+    for (size_t k = 0; k < forest->trees; k++)
+        sum += share[k];
+    size_t given = 0;
+    for (size_t k = 0; k < forest->trees; k++) {
+        size_t whole = (size_t)(share[k] / sum * (double)forest->terminals);
+        given += forest->quota[k] = whole > 1 ? whole : 1;
+    }
+    for (; given < forest->terminals; given++)
+        forest->quota[most_owed(forest, share, sum, 1)]++;
+    for (; given > forest->terminals; given--)
+        forest->quota[most_owed(forest, share, sum, -1)]--;
+}
+
+Status forest_init(Forest *forest, size_t trees, const double *share, size_t terminals, Err *err)
+{
+    Forest made = {.trees = trees, .terminals = terminals};
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&made.quota, trees, sizeof *made.quota, "trees", err));
+    TRY_GOTO(mem_calloc(&made.limit, trees, sizeof *made.limit, "trees", err));
+    set_quotas(&made, share);
+    *forest = made;
+done:
+    if (status != STATUS_OK)
+        forest_release(&made);
+    return status;
+}
+
+void forest_release(Forest *forest)
+{
+    free(forest->quota);
+    free(forest->limit);
+    *forest = (Forest){0};
+}
+
+void forest_limit(Forest *forest, const Network *net)
+{
+    double terminals = (double)net->terminals;
+    double part = (terminals * (1 + lead) + LEAD_AT_LEAST) / (double)forest->terminals;
+    for (size_t k = 0; k < forest->trees; k++) {
+        size_t has = (size_t)net->segment[net->inlet[k]].terminals, may = forest->quota[k];
+        if (forest->trees > 1 && part < 1)
+            may = (size_t)ceil((double)may * part);
+        forest->limit[k] = may > has ? may - has : 0;
+    }
+}

@@ -1,0 +1,213 @@
+/* Radii change all over the tree as it grows, so rules that held when a segment was made may be
+ * broken, by a little and for few segments, at the end. Each of these has its two bifurcations moved
+ * to the best of a few places around, the nearest ones first, where the three segments that meet
+ * there break the rules least. Moves change the radii by much less than what they leave to spare, so
+ * that it is enough to look at all segments once and afterwards at those that were within that. */
+#include "grow/mend.h"
+
+#include <stdlib.h>
+
+enum { ROUNDS = 6, CHUNK = 512 };
+/* Moved segments keep to the rules with this to spare, over the radii. */
+static const double spare = 2e-3;
+/* How far bifurcations are moved, over the radius of the segment that ends there. */
+static const double steps[] = {0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
+
+typedef struct Mending {
+    Network *net;
+    Grid *grid;
+    const Domain *domain;
+    const Rules *rules;
+    bool *close; /* by segment: whether it breaks the rules or is next to doing so */
+} Mending;
+
+static Vec3 proximal(const Network *net, int32_t i)
+{
+    return net->position[net->segment[i].parent];
+}
+
+static bool are_joined(const Network *net, int32_t i, int32_t j)
+{
+    int32_t above_i = net->segment[i].parent, above_j = net->segment[j].parent;
+    return i == j || above_i == above_j || above_i == j || above_j == i;
+}
+
+static double width(const Mending *mending, int32_t i)
+{
+    return mending->rules->thickness * (double)mending->net->segment[i].radius;
+}
+
+/* How far apart segments i and j should be at a thickness: pieces of a vessel only have to keep their
+ * centrelines apart, and given segments nothing from each other. */
+static double needed(const Mending *mending, int32_t i, int32_t j, double thickness)
+{
+    const Network *net = mending->net;
+    if (network_is_given(net, i) && network_is_given(net, j))
+        return 0;
+    return mending->rules->gap +
+           (network_is_piece(net, i) || network_is_piece(net, j) ? 0 : thickness);
+}
+
+/* By how many mm segment i, its radius and the others' widened by `margin` of them, is too short or
+ * too near to another `below` an index, *with, which is unchanged when there is none. Centrelines
+ * that touch are the worst fault there is. */
+static double fault(const Mending *mending, int32_t i, double margin, int32_t below, int32_t *with)
+{
+    const Network *net = mending->net;
+    const Grid *grid = mending->grid;
+    double radius = width(mending, i), scale = 1 + margin, gap = mending->rules->gap;
+    Vec3 a = proximal(net, i), b = net->position[i];
+    double worst = network_is_piece(net, i) ? 0 : fmax(0, 2 * scale * radius - vec3_distance(a, b));
+    GridItem item = grid_item(grid, (Capsule){a, b, scale * radius + gap}, radius);
+    size_t index;
+    for (GridWalk walk = grid_walk(grid, &item); grid_walk_next(&walk, &index);) {
+        const GridCell *cell = &grid->cell[index];
+        for (uint32_t k = 0; k < cell->count; k++) {
+            int32_t other = cell->tag[k] >> 1;
+            const GridItem *there = &grid->item[other];
+            double wide = mending->rules->thickness * (double)there->radius;
+            double need = needed(mending, i, other, scale * (radius + wide));
+            if (other >= below || other == i || !grid_boxes_within(&item, there, (float)need) ||
+                are_joined(net, i, other))
+                continue;
+            double apart2 = grid_distance2(&item, there);
+            double depth = apart2 < gap * gap ? mending->rules->widest : need - sqrt(apart2);
+            if (depth > worst) {
+                worst = depth;
+                *with = other;
+            }
+        }
+    }
+    return worst;
+}
+
+/* The faults of the three segments that meet at a bifurcation. */
+static double fault_at(const Mending *mending, int32_t node)
+{
+    const int32_t *child = mending->net->segment[node].child;
+    int32_t with;
+    return fault(mending, node, spare, INT32_MAX, &with) +
+           fault(mending, child[0], spare, INT32_MAX, &with) +
+           fault(mending, child[1], spare, INT32_MAX, &with);
+}
+
+static bool is_inside(const Mending *mending, int32_t node)
+{
+    const Network *net = mending->net;
+    const int32_t *child = net->segment[node].child;
+    Vec3 place = net->position[node];
+    return domain_inside(mending->domain, place, 0) &&
+           (domain_is_convex(mending->domain) ||
+            (domain_holds_segment(mending->domain, proximal(net, node), place) &&
+             domain_holds_segment(mending->domain, place, net->position[child[0]]) &&
+             domain_holds_segment(mending->domain, place, net->position[child[1]])));
+}
+
+/* Tries the places a step away from a bifurcation's own, up to the first without fault. */
+static void try_step(const Mending *mending, int32_t node, Vec3 from, double step, Vec3 *best,
+                     double *least)
+{
+    Network *net = mending->net;
+    int depth = domain_dimension(mending->domain) == 3;
+    for (int z = -depth; z <= depth; z++)
+        for (int y = -1; y <= 1; y++)
+            for (int x = -1; x <= 1; x++) {
+                if ((x == 0 && y == 0 && z == 0) || *least == 0)
+                    continue;
+                net->position[node] = vec3_add_scaled(from, vec3_normalized(vec3(x, y, z)), step);
+                double there = is_inside(mending, node) ? fault_at(mending, node) : *least;
+                if (there < *least) {
+                    *least = there;
+                    *best = net->position[node];
+                }
+            }
+}
+
+/* The place around a bifurcation with the least fault. */
+static Vec3 best_place(const Mending *mending, int32_t node)
+{
+    Network *net = mending->net;
+    const Vec3 from = net->position[node];
+    Vec3 best = from;
+    double least = fault_at(mending, node);
+    for (size_t s = 0; s < sizeof steps / sizeof *steps && least > 0; s++)
+        try_step(mending, node, from, steps[s] * width(mending, node), &best, &least);
+    net->position[node] = from;
+    return best;
+}
+
+static Status move(const Mending *mending, int32_t node, Err *err)
+{
+    Network *net = mending->net;
+    Grid *grid = mending->grid;
+    if (net->segment[node].parent < 0 || net->segment[node].child[0] < 0 ||
+        network_is_given(net, node) || !(fault_at(mending, node) > 0))
+        return STATUS_OK;
+    Vec3 place = best_place(mending, node);
+    if (vec3_distance(place, net->position[node]) > 0) {
+        const int32_t *child = net->segment[node].child;
+        network_move(net, node, place);
+        for (int k = 0; k < 3; k++) {
+            int32_t i = k < 2 ? child[k] : node;
+            TRY(place_enter_again(grid, mending->rules, net, i, err));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Marks the segments that break the rules or are next to doing so. Of a pair the later finds it. */
+static void look_at_chunk(size_t index, int worker, void *context)
+{
+    (void)worker;
+    const Mending *mending = context;
+    size_t end = (index + 1) * CHUNK < mending->net->n ? (index + 1) * CHUNK : mending->net->n;
+    for (size_t k = index * CHUNK; k < end; k++) {
+        int32_t i = (int32_t)k, with;
+        mending->close[k] =
+            mending->net->segment[k].parent >= 0 && fault(mending, i, spare, i, &with) > 0;
+    }
+}
+
+static Status move_ends(const Mending *mending, int32_t i, Err *err)
+{
+    TRY(move(mending, mending->net->segment[i].parent, err));
+    return move(mending, i, err);
+}
+
+/* Moves the ends of the close segments that break the rules, and if need be of what they are too
+ * near to. *count were there. */
+static Status mend(const Mending *mending, size_t *count, Err *err)
+{
+    *count = 0;
+    for (size_t k = 0; k < mending->net->n; k++) {
+        int32_t i = (int32_t)k, with = -1;
+        if (!mending->close[k] || !(fault(mending, i, 0, INT32_MAX, &with) > 0))
+            continue;
+        ++*count;
+        TRY(move_ends(mending, i, err));
+        with = -1;
+        if (fault(mending, i, 0, INT32_MAX, &with) > 0 && with >= 0)
+            TRY(move_ends(mending, with, err));
+    }
+    return STATUS_OK;
+}
+
+Status mend_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules, int threads,
+                    size_t *left, Err *err)
+{
+    Mending mending = {net, grid, domain, rules, NULL};
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&mending.close, net->n, sizeof *mending.close, "segments", err));
+    for (int round = 0; round < ROUNDS; round++) {
+        network_refresh(net);
+        TRY_GOTO(place_widen(grid, rules, net, err));
+        if (round == 0)
+            threads_for((net->n + CHUNK - 1) / CHUNK, threads, look_at_chunk, &mending);
+        TRY_GOTO(mend(&mending, left, err));
+        if (*left == 0)
+            break;
+    }
+done:
+    free(mending.close);
+    return status;
+}

@@ -1,0 +1,94 @@
+/* The terminals stand in a grid of their own, as capsules without length or radius, and every
+ * lattice point goes to the nearest. Of a lattice only the points in cells that a border runs
+ * through are left to chance, so that the count of a territory with p points is off by about
+ * p^(1/4), where random points would be off by p^(1/2). Threads take rows of the lattice and count for
+ * themselves; whole numbers add up to the same sums in any order. */
+#include "grow/territory.h"
+
+#include "grow/grid.h"
+#include <stdlib.h>
+
+/* Cells of the grid a terminal. */
+static const double cells_per_terminal = 1;
+
+typedef struct Survey {
+    const Domain *domain;
+    Grid grid;
+    Vec3 low, step;  /* of the lattice, mm */
+    size_t count[3]; /* its points along each axis */
+    size_t nodes;
+    uint32_t *points; /* by worker and node: lattice points nearest to it */
+} Survey;
+
+static size_t lattice_count(double size, double spacing)
+{
+    return (size_t)fmax(1, ceil(size / spacing));
+}
+
+/* Spreads the lattice evenly over the domain's box. */
+static void lay_lattice(Survey *survey, double points)
+{
+    Box box = domain_bounds(survey->domain);
+    Vec3 size = vec3_sub(box.high, box.low);
+    double share = domain_volume(survey->domain) / points; /* of a point */
+    double spacing = domain_dimension(survey->domain) == 2 ? sqrt(share) : cbrt(share);
+    survey->count[0] = lattice_count(size.x, spacing);
+    survey->count[1] = lattice_count(size.y, spacing);
+    survey->count[2] = lattice_count(size.z, spacing);
+    survey->low = box.low;
+    survey->step = vec3(size.x / (double)survey->count[0], size.y / (double)survey->count[1],
+                        size.z / (double)survey->count[2]);
+}
+
+static Status enter_terminals(Survey *survey, const Network *net, Err *err)
+{
+    TRY(grid_reset(&survey->grid, domain_bounds(survey->domain),
+                   cells_per_terminal * (double)net->terminals, net->n, 1, err));
+    for (size_t i = 0; i < net->n; i++) {
+        if (net->segment[i].child[0] >= 0)
+            continue;
+        Capsule end = {net->position[i], net->position[i], 0};
+        TRY(grid_add(&survey->grid, 0, (int32_t)i, true, grid_item(&survey->grid, end, 0), err));
+    }
+    return STATUS_OK;
+}
+
+static void survey_row(size_t index, int worker, void *context)
+{
+    const Survey *survey = context;
+    uint32_t *points = survey->points + (size_t)worker * survey->nodes;
+    size_t y = index % survey->count[1], z = index / survey->count[1];
+    Vec3 step = survey->step;
+    Vec3 at =
+        vec3_add(survey->low, vec3(0, ((double)y + 0.5) * step.y, ((double)z + 0.5) * step.z));
+    for (size_t x = 0; x < survey->count[0]; x++) {
+        Near nearest;
+        at.x = survey->low.x + ((double)x + 0.5) * step.x;
+        if (domain_inside(survey->domain, at, 0) &&
+            grid_nearest(&survey->grid, at, 1, &nearest) == 1)
+            points[nearest.segment]++;
+    }
+}
+
+Status territory_count(const Network *net, const Domain *domain, double points, int threads,
+                       double *share, Err *err)
+{
+    Survey survey = {.domain = domain, .nodes = net->n};
+    Status status = STATUS_OK;
+    lay_lattice(&survey, points * (double)net->terminals);
+    TRY_GOTO(enter_terminals(&survey, net, err));
+    TRY_GOTO(mem_calloc(&survey.points, (size_t)threads * net->n, sizeof *survey.points,
+                        "territories", err));
+    threads_for(survey.count[1] * survey.count[2], threads, survey_row, &survey);
+    for (size_t i = 0; i < net->n; i++) {
+        bool terminal = net->segment[i].child[0] < 0;
+        uint64_t sum = 0;
+        for (int worker = 0; worker < threads; worker++)
+            sum += survey.points[(size_t)worker * net->n + i];
+        share[i] = !terminal ? 0 : sum > 0 ? (double)sum : 0.5;
+    }
+done:
+    free(survey.points);
+    grid_release(&survey.grid);
+    return status;
+}

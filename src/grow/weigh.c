@@ -1,0 +1,125 @@
+/* A weight is flow over terminals times viscosity over its reference, so that terminals times weight
+ * is the burden of the law. Growth takes weights for the radii of the last refresh, each of which
+ * moves them towards agreement; finish.c iterates until they agree. */
+#include "grow/weigh.h"
+
+#include "grow/territory.h"
+#include <stdlib.h>
+
+/* Lattice points a terminal: rough; fine, at least and at most; and fine ones in all, if that is
+ * between the two. */
+static const double rough_points = 8;
+static const double least_points = 256, most_points = 4096, all_points = 2e6;
+
+/* How often radii and weights are computed in turn for a fine result. */
+enum { FINE_ROUNDS = 3 };
+
+bool weigh_is_needed(const GrowParams *params)
+{
+    return params->viscosity_law != VISCOSITY_CONSTANT ||
+           params->terminal_flow != TERMINAL_FLOW_EQUAL;
+}
+
+double weigh_reference_pa_s(const GrowParams *params)
+{
+    return pa_s_from_cp(params->viscosity_law == VISCOSITY_PRIES ? params->plasma_viscosity_cp
+                                                                 : params->viscosity_cp);
+}
+
+static double relative_viscosity(const GrowParams *params, double radius)
+{
+    if (params->viscosity_law == VISCOSITY_CONSTANT)
+        return 1;
+    return viscosity_pries_pa_s(radius, params->hematocrit, 1);
+}
+
+/* Gives all terminals their shares; `share` has room for one a node. */
+static Status set_shares(Network *net, const GrowParams *params, const Domain *domain,
+                         WeighPrecision precision, double *share, Err *err)
+{
+    double points = rough_points;
+    if (precision == WEIGH_FINE)
+        points = fmin(fmax(all_points / (double)net->terminals, least_points), most_points);
+    int threads = params->threads > 0 ? params->threads : threads_available();
+    bool territory = params->terminal_flow == TERMINAL_FLOW_TERRITORY;
+    if (territory)
+        TRY(territory_count(net, domain, points, threads, share, err));
+    for (size_t i = 0; i < net->n; i++) {
+        const Segment *segment = &net->segment[i];
+        bool terminal = segment->child[0] < 0 && segment->parent >= 0;
+        net->trait[i].share = territory ? share[i] : terminal;
+    }
+    return STATUS_OK;
+}
+
+void weigh_gather(const Network *net, double *flow)
+{
+    double sum = 0;
+    for (size_t i = 0; i < net->n; i++)
+        flow[i] = net->trait[i].share;
+    for (size_t k = 0; k < net->inlets; k++) {
+        int32_t inlet = net->inlet[k];
+        for (int32_t i = network_first_upward(net, inlet); i != inlet;
+             i = network_next_upward(net, i))
+            flow[net->segment[i].parent] += flow[i];
+        sum += flow[inlet];
+    }
+    for (size_t i = 0; i < net->n; i++)
+        flow[i] *= (double)net->terminals / sum;
+}
+
+Status weigh_segments(Network *net, const GrowParams *params, const double *flow,
+                      const double *radius, double part, double *change, Err *err)
+{
+    double sum = 0;
+    *change = 0;
+    for (size_t i = 0; i < net->n; i++) {
+        if (net->segment[i].parent < 0)
+            continue;
+        double viscosity = relative_viscosity(params, radius[i]);
+        if (!isfinite(viscosity))
+            return err_set(err, STATUS_INFEASIBLE,
+                           "with --viscosity-law pries no blood passes a vessel %.3g um wide, and "
+                           "with %zu terminals there is one; lower --terminals or raise --q-perf",
+                           2e3 * radius[i], net->terminals);
+        double *weight = &net->trait[i].weight;
+        double ratio = flow[i] / net->segment[i].terminals * viscosity / *weight;
+        *change = fmax(*change, fabs(ratio - 1));
+        *weight *= part == 1 ? ratio : pow(ratio, part);
+        if (net->segment[i].child[0] < 0)
+            sum += viscosity;
+    }
+    net->fresh_weight = sum / (double)net->terminals;
+    return STATUS_OK;
+}
+
+/* Weights for the radii there are, and the radii for these. `radius` has room for one a node. */
+static Status reweigh(Network *net, const GrowParams *params, const double *flow, double *radius,
+                      Err *err)
+{
+    double change;
+    for (size_t i = 0; i < net->n; i++)
+        radius[i] = (double)net->segment[i].radius;
+    TRY(weigh_segments(net, params, flow, radius, 1, &change, err));
+    network_resum(net);
+    network_refresh(net);
+    return STATUS_OK;
+}
+
+Status weigh_refresh(Network *net, const GrowParams *params, const Domain *domain,
+                     WeighPrecision precision, Err *err)
+{
+    double *flow = NULL, *radius = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&flow, net->n, sizeof *flow, "flows", err));
+    TRY_GOTO(mem_calloc(&radius, net->n, sizeof *radius, "radii", err));
+    TRY_GOTO(set_shares(net, params, domain, precision, flow, err));
+    weigh_gather(net, flow);
+    network_refresh(net);
+    for (int round = 0; round < (precision == WEIGH_FINE ? FINE_ROUNDS : 1); round++)
+        TRY_GOTO(reweigh(net, params, flow, radius, err));
+done:
+    free(flow);
+    free(radius);
+    return status;
+}

@@ -1,0 +1,505 @@
+/* The first hits of a tile, several rays at once: included by each source that compiles it for its
+ * lanes, and told by FIELD_KERNEL how to call it.
+ *
+ * What field.c proves for one ray in double precision is proven here in single, for a packet of
+ * neighbouring rays; lanes whose proof would need more than that are handed back as TILE_UNSURE.
+ * In units of 1 / k and with E the distance of ray and axis line, a term on a ray is
+ * exp(-E^2 - w^2) (erf u + erf v) / 2, where w, u and v are affine in z. Its segment lies in the
+ * plane (w, u) at w = 0, 0 <= u <= u + v, and the ray is a straight line there. With d the distance
+ * of ray and segment, s and a sine and cosine of the ray to the axis, and h = 1/2 when that line
+ * passes the segment's axis beyond an end, else 1:
+ *
+ * - Peak. The term is the integral of exp(-|x - y|^2) / sqrt(pi) over the points y of the segment,
+ *   and on the ray |x - y|^2 = rho^2 + q^2 with rho >= d the distance of y from the ray. Integrated,
+ *   Phi_i <= B = exp(-d^2) min(1, h / s).
+ * - Curvature. (exp(-q^2))'' is at most 4 exp(-3/2), and its positive part and its negative part
+ *   integrate to 2 sqrt(2 / e) each: Phi_i'' <= M = k^2 exp(-d^2) min(4 exp(-3/2) h / s, 2 sqrt(2 /
+ *   e) / sqrt(pi) / a). Since (exp(-q^2))'' >= -2, also Phi_i'' >= -M exp(3/2) / 2.
+ * - Windows. Phi >= T needs a term of at least its share T B / S, S the sum of all B of the group.
+ *   Where that can be is a stretch of the ray within a distance of the segment, found from
+ *   exp(-E^2 - w^2) beside it and exp(-E^2 - w^2 - x^2) / 2 at x beyond an end. The march goes from
+ *   the first of them to the last. For a lone straight vessel the first begins at its surface.
+ * - Steps and acceptance as in field.c, with a margin about T for what single precision, erf and
+ *   the terms left out amount to: nothing is stepped over that could reach T - margin, and a hit is
+ *   one that rises through T + margin. */
+#ifndef FIELD_KERNEL
+#error "define FIELD_KERNEL, the name of the function"
+#endif
+
+#include "render/fieldtile.h"
+#include "render/lanes.h"
+#include "scene/scene.h"
+#include <assert.h>
+#include <stdlib.h>
+
+#define LEVEL ((float)FIELD_LEVEL)
+/* Lack of potential at which a certain hit is closed by Newton's method. */
+#define CLOSE_ENOUGH (1e-3f * LEVEL)
+/* The margin: a part for terms left out, one for each term's arithmetic, and one for the rounding
+ * of places, in units of the last place of the packet's extent. */
+#define MARGIN_DROPPED 2e-5f
+#define MARGIN_TERM 6e-7f
+#define MARGIN_PLACE 1.2e-7f
+/* From here on erf is 1 and its derivative 0, to 2e-8. */
+#define SATURATED 4.0f
+#define MOST_STEPS 128
+
+/* A term on the rays of a packet, in powers of dz = z - z of the term. */
+typedef struct PacketTerm {
+    Lanes w0, w1, u0, u1, v0;  /* w = w0 + w1 dz, u = u0 + u1 dz, v = v0 - u1 dz */
+    Lanes half_gauss;          /* exp(-E^2) / 2 */
+    Lanes peak, curvature;     /* B and M */
+    Lanes e2, spare;           /* E^2, and -ln B - E^2 */
+    Lanes end_z[2], end_y2[2]; /* nearest to either end: dz, and squared distance less E^2 */
+    Lanes inverse_speed2;      /* 1 / (w1^2 + u1^2) */
+} PacketTerm;
+
+/* Where a term matters on some ray of the packet. */
+typedef struct PacketSpan {
+    double on, off; /* z */
+    uint32_t place; /* in the packet's terms */
+    uint32_t term;  /* in the tile's */
+    float z;        /* of the term, relative to the group's */
+} PacketSpan;
+
+_Static_assert(sizeof(PacketTerm) + sizeof(PacketSpan) <= TILE_WORK_BYTES, "TILE_WORK_BYTES");
+
+typedef struct Packet {
+    const FieldTile *tile;
+    Lanes x, y; /* of the samples */
+    PacketTerm *terms;
+    PacketSpan *spans;
+    size_t n;
+} Packet;
+
+LANE_FN Lanes square(Lanes a)
+{
+    return a * a;
+}
+
+/* 1 / a, finite for a near 0. */
+LANE_FN Lanes inverse(Lanes a)
+{
+    return 1.0f / lanes_select(lanes_abs(a) > 1e-20f, a, lanes_set(1e-20f));
+}
+
+/* The stretch of dz within sqrt(beside2) of the axis beside the segment or sqrt(beyond2) of an end,
+ * both less E^2. Empty (low > high) when there is none. */
+LANE_FN void term_stretch(const PacketTerm *term, Lanes beside2, Lanes beyond2, Lanes *low,
+                          Lanes *high)
+{
+    const Lanes none = lanes_set(1e30f);
+    Lanes width = lanes_sqrt(lanes_max(beside2, lanes_set(0)));
+    Lanes per_w = inverse(term->w1), per_u = inverse(term->u1);
+    Lanes first = -term->u0 * per_u, last = term->v0 * per_u;
+    Lanes from = lanes_max((-width - term->w0) * per_w, lanes_min(first, last));
+    Lanes to = lanes_min((width - term->w0) * per_w, lanes_max(first, last));
+    LaneMask seen = (beside2 >= 0.0f) & (from <= to);
+    *low = lanes_select(seen, from, none);
+    *high = lanes_select(seen, to, -none);
+    for (int end = 0; end < 2; end++) {
+        Lanes chord2 = (beyond2 - term->end_y2[end]) * term->inverse_speed2;
+        Lanes half = lanes_sqrt(lanes_max(chord2, lanes_set(0)));
+        seen = chord2 >= 0.0f;
+        *low = lanes_min(*low, lanes_select(seen, term->end_z[end] - half, none));
+        *high = lanes_max(*high, lanes_select(seen, term->end_z[end] + half, -none));
+    }
+}
+
+/* Place and direction, at dz = 0, of the rays as the term sees them. */
+typedef struct TermRays {
+    Lanes o[3], d[3];
+} TermRays;
+
+LANE_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
+{
+    const FieldTile *tile = packet->tile;
+    TermRays rays = {{packet->x + term->o[0], packet->y + term->o[1], lanes_set(term->o[2])},
+                     {lanes_set(0), lanes_set(0), lanes_set(1)}};
+    if (tile->perspective) {
+        float z = (float)term->z_near;
+        rays.o[0] = packet->x * z + term->o[0];
+        rays.o[1] = packet->y * z + term->o[1];
+        rays.d[0] = packet->x + (float)tile->middle_x;
+        rays.d[1] = packet->y + (float)tile->middle_y;
+    }
+    return rays;
+}
+
+/* w, u, v and E^2 of an orthographic packet; sine and cosine are the same for all rays. */
+LANE_FN void place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out,
+                            Lanes *sine, Lanes *cosine)
+{
+    const float k = term->k, s = term->sine, a = term->cosine;
+    const float ex = term->cross[1], ey = -term->cross[0];
+    Lanes x = packet->x + term->o[0], y = packet->y + term->o[1];
+    Lanes along = lanes_fma(x, lanes_set(ex), y * ey);
+    Lanes e = lanes_fma(y, lanes_set(ex), -(x * ey)) * k;
+    out->e2 = square(e);
+    out->w0 = along * (-k * a);
+    out->w1 = lanes_set(k * s);
+    out->u0 = lanes_fma(along, lanes_set(k * s), lanes_set(term->u));
+    out->v0 = lanes_fma(along, lanes_set(-k * s), lanes_set(term->v));
+    out->u1 = lanes_set(k * a);
+    *sine = lanes_set(s);
+    *cosine = lanes_set(fabsf(a));
+}
+
+LANE_FN Lanes dot(const Lanes a[3], const float b[3])
+{
+    return lanes_fma(a[0], lanes_set(b[0]), lanes_fma(a[1], lanes_set(b[1]), a[2] * b[2]));
+}
+
+/* Likewise in perspective, where they are not. The directions' common part of cross products comes
+ * from the tile, in double, so that rays nearly along the axis lose nothing. */
+LANE_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTerm *out, Lanes *sine,
+                          Lanes *cosine)
+{
+    const float k = term->k, *axis = term->axis;
+    TermRays rays = rays_of(packet, term);
+    Lanes cx = lanes_fma(packet->y, lanes_set(axis[2]), lanes_set(term->cross[0]));
+    Lanes cy = lanes_fma(packet->x, lanes_set(-axis[2]), lanes_set(term->cross[1]));
+    Lanes cz = packet->x * axis[1] - packet->y * axis[0] + term->cross[2];
+    Lanes crossed = lanes_sqrt(square(cx) + square(cy) + square(cz));
+    Lanes per_cross = 1.0f / lanes_max(crossed, lanes_set(1e-20f));
+    cx *= per_cross;
+    cy *= per_cross;
+    cz *= per_cross;
+    /* axis x cross: across the axis, in the plane of ray and axis */
+    Lanes nx = axis[1] * cz - axis[2] * cy, ny = axis[2] * cx - axis[0] * cz,
+          nz = axis[0] * cy - axis[1] * cx;
+    Lanes along = dot(rays.o, axis), speed = dot(rays.d, axis);
+    out->e2 = square((rays.o[0] * cx + rays.o[1] * cy + rays.o[2] * cz) * k);
+    out->w0 = (rays.o[0] * nx + rays.o[1] * ny + rays.o[2] * nz) * k;
+    out->w1 = crossed * k;
+    out->u0 = lanes_fma(along, lanes_set(k), lanes_set(term->u));
+    out->v0 = lanes_fma(along, lanes_set(-k), lanes_set(term->v));
+    out->u1 = speed * k;
+    Lanes per_length = 1.0f / lanes_sqrt(square(crossed) + square(speed));
+    *sine = crossed * per_length;
+    *cosine = lanes_abs(speed) * per_length;
+}
+
+/* B, M and what term_stretch needs; the squared distance of ray and segment in *d2. */
+LANE_FN void bound_term(PacketTerm *term, Lanes sine, Lanes cosine, Lanes d2, LaneMask beyond)
+{
+    Lanes share = lanes_select(beyond, lanes_set(0.5f), lanes_set(1)) / sine;
+    Lanes speed2 = square(term->w1) + square(term->u1);
+    Lanes gauss = lanes_exp_minus(d2);
+    Lanes factor = lanes_min(share, lanes_set(1));
+    term->peak = gauss * factor;
+    term->curvature =
+        gauss * speed2 *
+        lanes_min(share * 0.8925207f, 0.9678830f / lanes_max(cosine, lanes_set(1e-20f)));
+    term->spare = d2 - term->e2;
+    term->half_gauss = gauss * 0.5f;
+    if (lanes_any(beyond)) {
+        term->spare -= lanes_log(factor);
+        term->half_gauss = lanes_exp_minus(term->e2) * 0.5f;
+    }
+}
+
+/* Appends the term unless it is below the cut-off on every ray. */
+LANE_FN void add_to_packet(Packet *packet, uint32_t number)
+{
+    const TileTerm *tile_term = &packet->tile->terms[number];
+    PacketTerm *term = &packet->terms[packet->n];
+    Lanes sine, cosine;
+    if (packet->tile->perspective)
+        place_bundle(packet, tile_term, term, &sine, &cosine);
+    else
+        place_parallel(packet, tile_term, term, &sine, &cosine);
+    Lanes per_speed2 = 1.0f / (square(term->w1) + square(term->u1));
+    Lanes cross_a = term->u0 * term->w1 - term->w0 * term->u1;
+    Lanes cross_b = term->v0 * term->w1 + term->w0 * term->u1;
+    LaneMask beyond = (cross_a < 0.0f) | (cross_b < 0.0f);
+    term->inverse_speed2 = per_speed2;
+    term->end_y2[0] = square(cross_a) * per_speed2;
+    term->end_y2[1] = square(cross_b) * per_speed2;
+    Lanes past = lanes_select(cross_a < 0.0f, term->end_y2[0], lanes_set(0));
+    past = lanes_select(cross_b < 0.0f, term->end_y2[1], past);
+    Lanes d2 = term->e2 + past;
+    LaneMask near = d2 < tile_term->reach2;
+    if (!lanes_any(near))
+        return;
+    term->end_z[0] = -(term->w0 * term->w1 + term->u0 * term->u1) * per_speed2;
+    term->end_z[1] = -(term->w0 * term->w1 - term->v0 * term->u1) * per_speed2;
+    bound_term(term, sine, cosine, d2, beyond);
+    Lanes low, high, left = tile_term->reach2 - term->e2;
+    term_stretch(term, left, left, &low, &high);
+    packet->spans[packet->n] = (PacketSpan){.on = tile_term->z_near + (double)lanes_least(low),
+                                            .off = tile_term->z_near + (double)lanes_largest(high),
+                                            .place = (uint32_t)packet->n,
+                                            .term = number};
+    packet->n++;
+}
+
+LANE_TARGET static int compare_spans(const void *a, const void *b)
+{
+    const PacketSpan *one = a, *other = b;
+    if (one->on != other->on)
+        return one->on < other->on ? -1 : 1;
+    return one->term < other->term ? -1 : 1;
+}
+
+LANE_FN void sort_spans(PacketSpan *spans, size_t n)
+{
+    if (n > 64) {
+        qsort(spans, n, sizeof *spans, compare_spans);
+        return;
+    }
+    for (size_t i = 1; i < n; i++) {
+        PacketSpan span = spans[i];
+        size_t hole = i;
+        for (; hole > 0 && spans[hole - 1].on > span.on; hole--)
+            spans[hole] = spans[hole - 1];
+        spans[hole] = span;
+    }
+}
+
+/* The axial factor of a term, twice, and exp(-u^2) - exp(-v^2). */
+LANE_FN void axial_factors(Lanes u, Lanes v, Lanes *ends, Lanes *ends_slope)
+{
+    *ends = lanes_set(2);
+    *ends_slope = lanes_set(0);
+    if (lanes_any(u < SATURATED)) {
+        Lanes gauss = lanes_exp_minus(square(u));
+        *ends = lanes_erf(u, gauss) + 1.0f;
+        *ends_slope = gauss;
+    }
+    if (lanes_any(v < SATURATED)) {
+        Lanes gauss = lanes_exp_minus(square(v));
+        *ends += lanes_erf(v, gauss) - 1.0f;
+        *ends_slope -= gauss;
+    }
+}
+
+/* Terms that overlap along the packet, and where its rays are among them. z is relative to `base`.
+ */
+typedef struct Group {
+    const Packet *packet;
+    const PacketSpan *spans;
+    size_t n;
+    double base;
+    Lanes margin;
+} Group;
+
+typedef struct Sample {
+    Lanes phi, slope,
+        curvature; /* curvature: M of the terms counted, and they are all until next */
+    float next;
+} Sample;
+
+LANE_FN Sample sample_at(const Group *group, Lanes z, LaneMask live)
+{
+    const Lanes far = lanes_set(1e30f);
+    double first = group->base + (double)lanes_least(lanes_select(live, z, far));
+    double last = group->base + (double)lanes_largest(lanes_select(live, z, -far));
+    Sample sample = {lanes_set(0), lanes_set(0), lanes_set(0), 1e30f};
+    for (size_t i = 0; i < group->n; i++) {
+        const PacketSpan *span = &group->spans[i];
+        if (span->on > last) {
+            sample.next = (float)(span->on - group->base);
+            break;
+        }
+        if (span->off < first)
+            continue;
+        const PacketTerm *term = &group->packet->terms[span->place];
+        Lanes dz = z - span->z, ends, ends_slope;
+        Lanes w = lanes_fma(term->w1, dz, term->w0);
+        axial_factors(lanes_fma(term->u1, dz, term->u0), lanes_fma(-term->u1, dz, term->v0), &ends,
+                      &ends_slope);
+        Lanes gauss = term->half_gauss * lanes_exp_minus(square(w));
+        sample.phi = lanes_fma(gauss, ends, sample.phi);
+        Lanes change = term->u1 * ends_slope * 1.12837917f - 2.0f * w * term->w1 * ends;
+        sample.slope = lanes_fma(gauss, change, sample.slope);
+        sample.curvature += term->curvature;
+    }
+    return sample;
+}
+
+/* Sets the margins and the stretch [*start, *end] outside which the group's potential is below
+ * LEVEL - margin; false when there is no ray with any. */
+LANE_FN bool group_window(Group *group, float extent, LaneMask *live, Lanes *start, Lanes *end)
+{
+    const PacketTerm *terms = group->packet->terms;
+    const TileTerm *tile_terms = group->packet->tile->terms;
+    Lanes sum = lanes_set(0), places = lanes_set(0);
+    for (size_t i = 0; i < group->n; i++) {
+        Lanes peak = terms[group->spans[i].place].peak;
+        sum += peak;
+        places = lanes_fma(peak, lanes_set(tile_terms[group->spans[i].term].k), places);
+    }
+    group->margin =
+        places * (extent * MARGIN_PLACE) + (MARGIN_DROPPED + MARGIN_TERM * (float)group->n);
+    Lanes low_level = lanes_max(LEVEL - group->margin, lanes_set(0.01f * LEVEL));
+    *live &= sum >= low_level;
+    if (!lanes_any(*live))
+        return false;
+    Lanes excess = lanes_log(lanes_max(sum / low_level, lanes_set(1)));
+    *start = lanes_set(1e30f);
+    *end = lanes_set(-1e30f);
+    for (size_t i = 0; i < group->n; i++) {
+        const PacketTerm *term = &terms[group->spans[i].place];
+        Lanes low, high, beside2 = excess + term->spare;
+        term_stretch(term, beside2, beside2 - 0.69314718f, &low, &high);
+        *start = lanes_min(*start, low + group->spans[i].z);
+        *end = lanes_max(*end, high + group->spans[i].z);
+    }
+    *live &= *start <= *end;
+    return lanes_any(*live);
+}
+
+/* Marches the live rays from z to `end`. Those that hit are in *hit, with their place in *z; those
+ * that are not decided in *unsure. */
+LANE_FN void march(const Group *group, LaneMask live, Lanes *z, Lanes end, LaneMask *hit,
+                   LaneMask *unsure)
+{
+    for (int steps = 0; lanes_any(live); steps++) {
+        Sample sample = sample_at(group, *z, live);
+        Lanes lack = LEVEL - sample.phi, safe = lack - group->margin, slope = sample.slope;
+        Lanes curvature = lanes_max(sample.curvature, lanes_set(1e-30f));
+        Lanes slope2 = square(slope);
+        LaneMask sure = (slope > 0.0f) & (lack >= -group->margin) & (lack <= CLOSE_ENOUGH) &
+                        (slope2 >= 4.6f * curvature * (lack + group->margin));
+        LaneMask met = live & sure;
+        *hit |= met;
+        *z = lanes_select(met, *z + lack / slope, *z);
+        live &= ~met;
+        Lanes root = lanes_sqrt(lanes_max(slope2 + 2.0f * curvature * safe, lanes_set(0)));
+        Lanes step =
+            lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
+        Lanes to = lanes_min(*z + step, lanes_set(sample.next));
+        LaneMask stuck = live & ~((safe > 0.0f) & (to > *z));
+        if (steps == MOST_STEPS)
+            stuck = live;
+        *unsure |= stuck;
+        live &= ~stuck & (to <= end);
+        *z = lanes_select(live, to, *z);
+    }
+}
+
+typedef struct Gradient {
+    Lanes phi, x, y, z;
+    Lanes largest; /* term */
+    LaneMask segment;
+} Gradient;
+
+/* The potential and its gradient at the rays' points z, and the index of the largest term. */
+LANE_FN Gradient gradient_at(const Group *group, Lanes z)
+{
+    Gradient sum = {.largest = lanes_set(-1)};
+    for (size_t i = 0; i < group->n; i++) {
+        const PacketSpan *span = &group->spans[i];
+        const PacketTerm *term = &group->packet->terms[span->place];
+        const TileTerm *tile_term = &group->packet->tile->terms[span->term];
+        const float k = tile_term->k, *axis = tile_term->axis;
+        TermRays rays = rays_of(group->packet, tile_term);
+        Lanes dz = z - span->z, ends, ends_slope;
+        Lanes w = lanes_fma(term->w1, dz, term->w0);
+        axial_factors(lanes_fma(term->u1, dz, term->u0), lanes_fma(-term->u1, dz, term->v0), &ends,
+                      &ends_slope);
+        Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), value = gauss * ends;
+        for (int c = 0; c < 3; c++)
+            rays.o[c] = lanes_fma(rays.d[c], dz, rays.o[c]);
+        Lanes across = value * (-2.0f * k * k);
+        Lanes along = gauss * ends_slope * (k * 1.12837917f) - across * dot(rays.o, axis);
+        sum.phi += value;
+        sum.x += lanes_fma(across, rays.o[0], along * axis[0]);
+        sum.y += lanes_fma(across, rays.o[1], along * axis[1]);
+        sum.z += lanes_fma(across, rays.o[2], along * axis[2]);
+        int32_t segment = (int32_t)tile_term->segment;
+        LaneMask larger =
+            (value > sum.largest) | ((value == sum.largest) & (segment < sum.segment));
+        sum.largest = lanes_select(larger, value, sum.largest);
+        sum.segment = (larger & segment) | (~larger & sum.segment);
+    }
+    return sum;
+}
+
+/* One more Newton step comes with the gradient. */
+LANE_FN void store_hits(const Group *group, int first, LaneMask hit, Lanes z, TileHits *hits)
+{
+    const FieldTile *tile = group->packet->tile;
+    Gradient at = gradient_at(group, z);
+    Lanes slope = at.z;
+    if (tile->perspective)
+        slope += at.x * (group->packet->x + (float)tile->middle_x) +
+                 at.y * (group->packet->y + (float)tile->middle_y);
+    z += lanes_select(slope > 0.0f, (LEVEL - at.phi) / slope, lanes_set(0));
+    Lanes outward = -1.0f / lanes_sqrt(square(at.x) + square(at.y) + square(at.z));
+    at.x *= outward;
+    at.y *= outward;
+    at.z *= outward;
+    for (int lane = 0; lane < LANES; lane++) {
+        if (!hit[lane])
+            continue;
+        int sample = first + lane;
+        hits->state[sample] = TILE_HIT;
+        hits->z[sample] = group->base + (double)z[lane];
+        hits->normal[0][sample] = at.x[lane];
+        hits->normal[1][sample] = at.y[lane];
+        hits->normal[2][sample] = at.z[lane];
+        hits->segment[sample] = (uint32_t)at.segment[lane];
+    }
+}
+
+/* Makes the spans from `first` on that overlap a group, and returns the number of the next. */
+LANE_FN size_t next_group(const Packet *packet, size_t first, Group *group, float *extent)
+{
+    PacketSpan *spans = packet->spans;
+    double end = spans[first].off;
+    size_t last = first + 1;
+    for (; last < packet->n && spans[last].on <= end; last++)
+        end = spans[last].off > end ? spans[last].off : end;
+    *group = (Group){.packet = packet, .spans = spans + first, .n = last - first};
+    group->base = packet->tile->terms[spans[first].term].z_near;
+    double reach = fmax(end - group->base, group->base - spans[first].on);
+    for (size_t i = first; i < last; i++)
+        spans[i].z = (float)(packet->tile->terms[spans[i].term].z_near - group->base);
+    double width = (double)packet->tile->half_size;
+    *extent = (float)(reach + width * (packet->tile->perspective ? fabs(end) : 1));
+    return last;
+}
+
+LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
+{
+    const FieldTile *tile = packet->tile;
+    packet->x = lanes_load(&tile->x[first]);
+    packet->y = lanes_load(&tile->y[first]);
+    packet->n = 0;
+    for (size_t i = 0; i < tile->n_terms; i++)
+        add_to_packet(packet, (uint32_t)i);
+    sort_spans(packet->spans, packet->n);
+    LaneMask open = (LaneMask){0} - 1;
+    for (size_t i = 0; i < packet->n && lanes_any(open);) {
+        Group group;
+        Lanes start, end;
+        float extent;
+        i = next_group(packet, i, &group, &extent);
+        LaneMask live = open, hit = {0}, unsure = {0};
+        if (!group_window(&group, extent, &live, &start, &end))
+            continue;
+        float z_min = (float)(tile->z_min - group.base);
+        live &= end >= z_min;
+        unsure = live & ((start <= z_min) | (group.margin > CLOSE_ENOUGH));
+        live &= ~unsure;
+        march(&group, live, &start, end, &hit, &unsure);
+        open &= ~(hit | unsure);
+        if (lanes_any(hit))
+            store_hits(&group, first, hit, start, hits);
+        for (int lane = 0; lane < LANES; lane++)
+            if (unsure[lane])
+                hits->state[first + lane] = TILE_UNSURE;
+    }
+}
+
+LANE_TARGET static void FIELD_KERNEL(const FieldTile *tile, TileWork *work, TileHits *hits)
+{
+    assert(tile->n_terms <= work->capacity);
+    Packet packet = {.tile = tile, .terms = work->memory};
+    packet.spans = (PacketSpan *)(packet.terms + tile->n_terms);
+    __builtin_memset(hits, 0, sizeof *hits);
+    for (int first = 0; first < TILE_SAMPLES; first += LANES)
+        trace_packet(&packet, first, hits);
+}

@@ -1,0 +1,433 @@
+/* Two passes over bands of one row of pixel tiles: the centre of every pixel, with geometry; then,
+ * when the picture is antialiased, the N x N further samples of the pixels that want them, whose
+ * colours wait in a band's buffer until each pixel adds up its own in POV-Ray's order. A band needs
+ * memory in proportion to its width only. */
+#include "render/fieldrender.h"
+
+#include "render/caster.h"
+#include "render/fieldtiles.h"
+#include "render/resample.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* POV-Ray's limit: crossings nearer than this are not seen. */
+static const double nearest_seen_mm = 1e-4;
+
+/* What a worker writes to. */
+typedef struct Canvas {
+    TileSurface surface;
+    uint8_t (*shadowed)[TILE_SAMPLES]; /* one a light */
+    float *band;                       /* colours of a band's samples */
+    uint8_t *wanted;                   /* tiles of a band's rows, one row of tiles */
+    Status status;
+    Err err;
+} Canvas;
+
+typedef struct FieldPicture {
+    const Scene *scene;
+    const RenderParams *params;
+    Frame *frame;
+    FieldTiles *tiles; /* of this pass */
+    SampleGrid grid;   /* of this pass */
+    TileLook look;
+    TileLight *lights;
+    Caster *caster; /* for shadows; NULL without */
+    Canvas *canvases;
+    int workers;
+    uint8_t *mask; /* pixels to antialias; NULL: all */
+} FieldPicture;
+
+static void store_vec3(float values[3][TILE_SAMPLES], int sample, Vec3 v)
+{
+    values[0][sample] = (float)v.x;
+    values[1][sample] = (float)v.y;
+    values[2][sample] = (float)v.z;
+}
+
+static Vec3 load_vec3(const float values[3][TILE_SAMPLES], int sample)
+{
+    return vec3((double)values[0][sample], (double)values[1][sample], (double)values[2][sample]);
+}
+
+static bool is_seen(const SeenTile *seen, const SampleGrid *grid, int sample)
+{
+    return seen->hits && seen->hits->state[sample] == TILE_HIT &&
+           seen->column + tile_sample_x(sample) < grid->n_columns &&
+           seen->row + tile_sample_y(sample) < grid->n_rows;
+}
+
+/* The ray of a sample. */
+static Ray sample_ray(const FieldPicture *picture, const SeenTile *seen, int sample)
+{
+    return camera_ray(&picture->scene->camera,
+                      picture->grid.columns[seen->column + tile_sample_x(sample)],
+                      picture->grid.rows[seen->row + tile_sample_y(sample)]);
+}
+
+static bool is_shadowed(const FieldPicture *picture, int worker, const Light *light, Vec3 point,
+                        Vec3 normal)
+{
+    Vec3 to_light = vec3_sub(light->location, point), towards;
+    double distance = vec3_length(to_light);
+    if (light->parallel) {
+        towards = vec3_normalized(vec3_sub(light->location, light->target));
+        distance = vec3_dot(to_light, towards);
+    } else {
+        towards = vec3_scale(to_light, 1 / distance);
+    }
+    return vec3_dot(normal, towards) >= 1e-10 &&
+           caster_shadow(picture->caster, worker, point, towards, distance);
+}
+
+static void find_shadows(const FieldPicture *picture, const SeenTile *seen, int worker,
+                         Canvas *canvas)
+{
+    const Scene *scene = picture->scene;
+    memset(canvas->shadowed, 0, scene->n_lights * sizeof *canvas->shadowed);
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        if (!is_seen(seen, &picture->grid, sample))
+            continue;
+        Ray ray = sample_ray(picture, seen, sample);
+        Vec3 point = ray_at(ray, tile_depth(seen->tile, seen->hits, sample));
+        Vec3 normal = fieldtiles_to_world(picture->tiles, load_vec3(seen->hits->normal, sample));
+        for (size_t i = 0; i < scene->n_lights; i++)
+            if (scene->lights[i].casts_shadows)
+                canvas->shadowed[i][sample] =
+                    is_shadowed(picture, worker, &scene->lights[i], point, normal);
+    }
+    canvas->surface.shadowed = (const uint8_t(*)[TILE_SAMPLES])canvas->shadowed;
+}
+
+/* Rays and places of a tile in perspective; orthographic rays never change, and lights that are not
+ * parallel need places there, too. */
+static void place_surface(const SeenTile *seen, TileSurface *surface)
+{
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        double x = seen->tile->middle_x + (double)seen->tile->x[sample];
+        double y = seen->tile->middle_y + (double)seen->tile->y[sample];
+        double z = seen->hits->z[sample];
+        if (!seen->tile->perspective) {
+            store_vec3(surface->point, sample, vec3(x, y, z));
+            continue;
+        }
+        store_vec3(surface->point, sample, vec3(x * z, y * z, z));
+        store_vec3(surface->direction, sample, vec3_normalized(vec3(x, y, 1)));
+    }
+}
+
+static void color_tile(const FieldPicture *picture, const SeenTile *seen, int worker,
+                       float color[3][TILE_SAMPLES])
+{
+    const Scene *scene = picture->scene;
+    Canvas *canvas = &picture->canvases[worker];
+    TileSurface *surface = &canvas->surface;
+    memcpy(surface->normal, seen->hits->normal, sizeof surface->normal);
+    if (!scene->uniform_color)
+        for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+            Rgb pigment = scene->segments[seen->hits->segment[sample]].color;
+            surface->pigment[0][sample] = pigment.r;
+            surface->pigment[1][sample] = pigment.g;
+            surface->pigment[2][sample] = pigment.b;
+        }
+    place_surface(seen, surface);
+    if (picture->caster)
+        find_shadows(picture, seen, worker, canvas);
+    fieldtiles_kernels(picture->tiles)->shade(&picture->look, surface, color);
+    for (int sample = 0; sample < TILE_SAMPLES; sample++)
+        if (seen->hits->state[sample] != TILE_HIT) {
+            color[0][sample] = scene->background.r;
+            color[1][sample] = scene->background.g;
+            color[2][sample] = scene->background.b;
+        }
+}
+
+/* Writes the part of a tile that is inside the grid to rows of `width` samples, the first of which
+ * is row `first_row` of the grid. */
+static void write_colors(const FieldPicture *picture, const SeenTile *seen, int worker,
+                         int first_row, float *values)
+{
+    int width = picture->grid.n_columns;
+    int columns = width - seen->column < TILE_SIDE ? width - seen->column : TILE_SIDE;
+    int rows =
+        picture->grid.n_rows - seen->row < TILE_SIDE ? picture->grid.n_rows - seen->row : TILE_SIDE;
+    float color[3][TILE_SAMPLES];
+    if (seen->hits)
+        color_tile(picture, seen, worker, color);
+    for (int j = 0; j < rows; j++) {
+        float *row = values + 3 * ((size_t)(seen->row - first_row + j) * (size_t)width +
+                                   (size_t)seen->column);
+        for (int i = 0; i < columns; i++) {
+            int sample = tile_sample_at(i, j);
+            const Rgb *background = &picture->scene->background;
+            row[3 * i] = seen->hits ? color[0][sample] : background->r;
+            row[3 * i + 1] = seen->hits ? color[1][sample] : background->g;
+            row[3 * i + 2] = seen->hits ? color[2][sample] : background->b;
+        }
+    }
+}
+
+static void write_geometry(const FieldPicture *picture, const SeenTile *seen)
+{
+    Frame *frame = picture->frame;
+    const Scene *scene = picture->scene;
+    const Camera *camera = &scene->camera;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        int i = seen->column + tile_sample_x(sample), j = seen->row + tile_sample_y(sample);
+        if (i >= camera->width || j >= camera->height)
+            continue;
+        bool hit = seen->hits && seen->hits->state[sample] == TILE_HIT;
+        size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;
+        if (frame->depth.values)
+            frame->depth.values[pixel] =
+                hit ? (float)tile_depth(seen->tile, seen->hits, sample) : INFINITY;
+        if (frame->normal.values) {
+            Vec3 local = hit ? load_vec3(seen->hits->normal, sample) : vec3(0, 0, 0);
+            Vec3 normal = fieldtiles_to_world(picture->tiles, local);
+            frame->normal.values[3 * pixel] = (float)normal.x;
+            frame->normal.values[3 * pixel + 1] = (float)normal.y;
+            frame->normal.values[3 * pixel + 2] = (float)normal.z;
+        }
+        if (frame->id.ids)
+            frame->id.ids[pixel] = hit ? scene->segments[seen->hits->segment[sample]].id : 0;
+    }
+}
+
+static void visit_center(const SeenTile *seen, int worker, void *context)
+{
+    const FieldPicture *picture = context;
+    const Frame *frame = picture->frame;
+    if (frame->depth.values || frame->normal.values || frame->id.ids)
+        write_geometry(picture, seen);
+    if (frame->color.values)
+        write_colors(picture, seen, worker, 0, frame->color.values);
+}
+
+static void report_progress(const FieldPicture *picture, size_t band, int worker)
+{
+    const RenderParams *params = picture->params;
+    double bands = (picture->scene->camera.height + TILE_SIDE - 1) / TILE_SIDE;
+    if (worker == 0 && params->progress)
+        params->progress((double)band / bands, params->progress_context);
+}
+
+static void trace_centers(size_t band, int worker, void *context)
+{
+    FieldPicture *picture = context;
+    Canvas *canvas = &picture->canvases[worker];
+    report_progress(picture, band, worker);
+    if (canvas->status == STATUS_OK)
+        canvas->status = fieldtiles_trace(picture->tiles, band, worker, NULL, visit_center, picture,
+                                          &canvas->err);
+}
+
+/* Which band a tile's samples are stored for. */
+typedef struct BandVisit {
+    const FieldPicture *picture;
+    int first_row; /* of the grid */
+} BandVisit;
+
+static void visit_further(const SeenTile *seen, int worker, void *context)
+{
+    const BandVisit *visit = context;
+    write_colors(visit->picture, seen, worker, visit->first_row,
+                 visit->picture->canvases[worker].band);
+}
+
+static bool wants_more(const FieldPicture *picture, int i, int j)
+{
+    return !picture->mask ||
+           picture->mask[(size_t)j * (size_t)picture->scene->camera.width + (size_t)i];
+}
+
+/* Marks the tiles of one row of tiles that hold samples of pixels that want more. */
+static bool mark_wanted(const FieldPicture *picture, size_t tile_row, uint8_t *wanted)
+{
+    const Camera *camera = &picture->scene->camera;
+    int n = picture->params->antialias, first = (int)tile_row * TILE_SIDE / n;
+    int last = ((int)tile_row * TILE_SIDE + TILE_SIDE - 1) / n;
+    bool any = false;
+    memset(wanted, 0, fieldtiles_columns(picture->tiles));
+    for (int j = first; j <= last && j < camera->height; j++)
+        for (int i = 0; i < camera->width; i++)
+            if (wants_more(picture, i, j)) {
+                any = true;
+                for (int tile = i * n / TILE_SIDE; tile <= (i * n + n - 1) / TILE_SIDE; tile++)
+                    wanted[tile] = 1;
+            }
+    return any;
+}
+
+/* The mean of a pixel's centre and further samples, summed row by row in float. */
+static void add_up(const FieldPicture *picture, const float *band, int band_row, int i, int j)
+{
+    int n = picture->params->antialias;
+    size_t width = (size_t)picture->grid.n_columns;
+    const Camera *camera = &picture->scene->camera;
+    float *value =
+        &picture->frame->color.values[3 * ((size_t)j * (size_t)camera->width + (size_t)i)];
+    for (int c = 0; c < 3; c++) {
+        float sum = value[c];
+        for (int y = 0; y < n; y++)
+            for (int x = 0; x < n; x++)
+                sum += band[3 * ((size_t)(band_row * n + y) * width + (size_t)(i * n + x)) + c];
+        value[c] = (float)((double)sum / (n * n + 1));
+    }
+}
+
+static void trace_further(size_t band, int worker, void *context)
+{
+    FieldPicture *picture = context;
+    Canvas *canvas = &picture->canvases[worker];
+    const Camera *camera = &picture->scene->camera;
+    size_t n = (size_t)picture->params->antialias, rows = fieldtiles_rows(picture->tiles);
+    report_progress(picture, band, worker);
+    BandVisit visit = {picture, (int)(band * n) * TILE_SIDE};
+    for (size_t row = band * n; row < (band + 1) * n && row < rows; row++)
+        if (canvas->status == STATUS_OK && mark_wanted(picture, row, canvas->wanted))
+            canvas->status = fieldtiles_trace(picture->tiles, row, worker, canvas->wanted,
+                                              visit_further, &visit, &canvas->err);
+    if (canvas->status != STATUS_OK)
+        return;
+    int first = (int)band * TILE_SIDE;
+    for (int j = first; j < first + TILE_SIDE && j < camera->height; j++)
+        for (int i = 0; i < camera->width; i++)
+            if (wants_more(picture, i, j))
+                add_up(picture, canvas->band, j - first, i, j);
+}
+
+/* One pass: `n` x `n` samples a pixel at the offsets given. */
+static Status run_pass(FieldPicture *picture, int n, const double *offsets,
+                       void (*body)(size_t band, int worker, void *context), double *prepared_s,
+                       Err *err)
+{
+    Status status;
+    const Camera *camera = &picture->scene->camera;
+    int width = camera->width * n, height = camera->height * n;
+    double *columns = NULL, *rows = NULL;
+    TRY_GOTO(mem_calloc(&columns, (size_t)width, sizeof *columns, "columns", err));
+    TRY_GOTO(mem_calloc(&rows, (size_t)height, sizeof *rows, "rows", err));
+    for (int i = 0; i < width; i++)
+        columns[i] = i / n + offsets[i % n];
+    for (int j = 0; j < height; j++)
+        rows[j] = j / n + offsets[j % n];
+    picture->grid = (SampleGrid){columns, rows, width, height, 1.0 / n};
+    double start_s = clock_seconds();
+    TRY_GOTO(fieldtiles_new(picture->scene, &picture->grid, nearest_seen_mm, picture->workers,
+                            &picture->tiles, err));
+    for (int i = 0; n > 1 && i < picture->workers; i++) {
+        Canvas *canvas = &picture->canvases[i];
+        TRY_GOTO(mem_calloc(&canvas->band, (size_t)width * TILE_SIDE * (size_t)n,
+                            3 * sizeof *canvas->band, "bands", err));
+        TRY_GOTO(mem_calloc(&canvas->wanted, fieldtiles_columns(picture->tiles), 1, "bands", err));
+    }
+    *prepared_s += clock_seconds() - start_s;
+    threads_for(((size_t)camera->height + TILE_SIDE - 1) / TILE_SIDE, picture->workers, body,
+                picture);
+    for (int i = 0; i < picture->workers && status == STATUS_OK; i++) {
+        status = picture->canvases[i].status;
+        if (status != STATUS_OK && err)
+            *err = picture->canvases[i].err;
+    }
+done:
+    fieldtiles_free(picture->tiles);
+    picture->tiles = NULL;
+    free(columns);
+    free(rows);
+    return status;
+}
+
+static Status prepare_lights(FieldPicture *picture, Err *err)
+{
+    const Scene *scene = picture->scene;
+    const Camera *camera = &scene->camera;
+    const Vec3 x = vec3_normalized(camera->right), y = vec3_normalized(camera->up);
+    TRY(mem_calloc(&picture->lights, scene->n_lights, sizeof *picture->lights, "lights", err));
+    for (size_t i = 0; i < scene->n_lights; i++) {
+        const Light *light = &scene->lights[i];
+        Vec3 v = light->parallel ? vec3_normalized(vec3_sub(light->location, light->target))
+                                 : vec3_sub(light->location, camera->location);
+        picture->lights[i] = (TileLight){.towards = {(float)vec3_dot(v, x), (float)vec3_dot(v, y),
+                                                     (float)vec3_dot(v, camera->direction)},
+                                         .color = {light->color.r, light->color.g, light->color.b},
+                                         .parallel = light->parallel};
+    }
+    picture->look = (TileLook){scene->finish, picture->lights, scene->n_lights};
+    return STATUS_OK;
+}
+
+static Status prepare_canvases(FieldPicture *picture, Err *err)
+{
+    const Scene *scene = picture->scene;
+    TRY(mem_calloc(&picture->canvases, (size_t)picture->workers, sizeof *picture->canvases,
+                   "canvases", err));
+    for (int i = 0; i < picture->workers; i++) {
+        Canvas *canvas = &picture->canvases[i];
+        TRY(mem_calloc(&canvas->shadowed, scene->n_lights, sizeof *canvas->shadowed, "lights",
+                       err));
+        for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+            canvas->surface.direction[2][sample] = 1;
+            canvas->surface.pigment[0][sample] = scene->color.r;
+            canvas->surface.pigment[1][sample] = scene->color.g;
+            canvas->surface.pigment[2][sample] = scene->color.b;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The second pass, over all pixels or those that differ from their neighbours. */
+static Status antialias(FieldPicture *picture, double *prepared_s, Err *err)
+{
+    Status status;
+    const RenderParams *params = picture->params;
+    const Plane *color = &picture->frame->color;
+    double *offsets = NULL;
+    TRY_GOTO(mem_calloc(&offsets, (size_t)params->antialias, sizeof *offsets, "samples", err));
+    refine_offsets(params->antialias, offsets);
+    if (params->antialias_threshold > 0) {
+        TRY_GOTO(mem_calloc(&picture->mask, (size_t)color->width * (size_t)color->height, 1,
+                            "masks", err));
+        resample_mask(color, (float)params->antialias_threshold, picture->workers, picture->mask);
+    }
+    TRY_GOTO(run_pass(picture, params->antialias, offsets, trace_further, prepared_s, err));
+done:
+    free(offsets);
+    return status;
+}
+
+static void release(FieldPicture *picture)
+{
+    for (int i = 0; picture->canvases && i < picture->workers; i++) {
+        free(picture->canvases[i].shadowed);
+        free(picture->canvases[i].band);
+        free(picture->canvases[i].wanted);
+    }
+    free(picture->canvases);
+    free(picture->lights);
+    free(picture->mask);
+    caster_free(picture->caster);
+}
+
+Status fieldrender(const Scene *scene, const RenderParams *params, Frame *frame, RenderStats *stats,
+                   Err *err)
+{
+    Status status;
+    FieldPicture picture = {.scene = scene, .params = params, .frame = frame};
+    const double center = 0;
+    double start_s = clock_seconds();
+    picture.workers = params->threads > 0 ? params->threads : threads_available();
+    TRY_GOTO(prepare_lights(&picture, err));
+    TRY_GOTO(prepare_canvases(&picture, err));
+    if (params->shadows)
+        TRY_GOTO(caster_new(scene, NULL, picture.workers, &picture.caster, err));
+    double prepared_s = clock_seconds() - start_s;
+    TRY_GOTO(run_pass(&picture, 1, &center, trace_centers, &prepared_s, err));
+    if (params->antialias > 1 && frame->color.values)
+        TRY_GOTO(antialias(&picture, &prepared_s, err));
+    if (stats)
+        *stats = (RenderStats){.prepare_s = prepared_s,
+                               .trace_s = clock_seconds() - start_s - prepared_s,
+                               .rays = (size_t)scene->camera.width * (size_t)scene->camera.height};
+done:
+    release(&picture);
+    return status;
+}

@@ -1,0 +1,84 @@
+/* What fieldtiles.c prepares and the kernels of fieldkernel.h trace: one tile of 8 x 8 samples, the
+ * vessels near it, and what its rays meet. Lengths in mm, in the camera's frame: x right, y up, z
+ * along the direction, its origin at the camera's location.
+ *
+ * The ray of the sample (x, y) of the camera's plane is (x, y, z) when orthographic and
+ * (x z, y z, z) when perspective: z is the parameter of both. */
+#ifndef CORCAST_RENDER_FIELDTILE_H
+#define CORCAST_RENDER_FIELDTILE_H
+
+#include "base/base.h"
+#include <stdint.h>
+
+enum { TILE_SIDE = 8, TILE_SAMPLES = TILE_SIDE * TILE_SIDE };
+
+/* Terms below this are left out. */
+#define FIELD_CUTOFF 1e-6
+
+/* A term of the potential as the tile sees it. `o` is where the middle ray passes at z = z_near:
+ * its place less the point of the axis that is nearest to the ray. k = sqrt(2) / radius. */
+typedef struct TileTerm {
+    double z_near;
+    float k;
+    float reach2; /* the term is below the cut-off where (k distance)^2 of the segment exceeds it */
+    float u, v;   /* k times the distances of that point from the two ends */
+    float o[3];
+    float axis[3];      /* unit */
+    float cross[3];     /* (middle ray's direction) x axis; orthographic: of length 1 */
+    float sine, cosine; /* orthographic: of the angle between axis and ray */
+    uint32_t segment;   /* index in the scene */
+} TileTerm;
+
+/* Samples are numbered so that each run of 8, and of 4, is a compact block: tile_sample_x/y. */
+typedef struct FieldTile {
+    const TileTerm *terms;
+    size_t n_terms;
+    bool perspective;
+    float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* of the samples, relative to the middle ray */
+    double middle_x, middle_y;
+    float half_size; /* largest distance of a sample from the middle ray */
+    double z_min;    /* nothing is seen before it */
+} FieldTile;
+
+static inline int tile_sample_x(int sample)
+{
+    return (sample >> 3 & 1) * 4 + (sample >> 2 & 1) * 2 + (sample & 1);
+}
+
+static inline int tile_sample_y(int sample)
+{
+    return (sample >> 4) * 2 + (sample >> 1 & 1);
+}
+
+/* The number of the sample at (x, y) of the tile. */
+static inline int tile_sample_at(int x, int y)
+{
+    return (y >> 1) << 4 | (x >> 2) << 3 | (x >> 1 & 1) << 2 | (y & 1) << 1 | (x & 1);
+}
+
+enum { TILE_WORK_BYTES = 512 }; /* of one term in a kernel's workspace */
+
+typedef enum TileState {
+    TILE_MISS = 0, /* proven: nothing is there */
+    TILE_HIT,      /* proven: the first hit is there */
+    TILE_UNSURE    /* within the margin of the arithmetic, or seen from inside */
+} TileState;
+
+typedef struct TileHits {
+    double z[TILE_SAMPLES];
+    float normal[3][TILE_SAMPLES]; /* unit, outward, in the camera's frame */
+    uint32_t segment[TILE_SAMPLES];
+    uint8_t state[TILE_SAMPLES]; /* TileState; z, normal and segment are 0 unless it is a hit */
+} TileHits;
+
+/* The workspace of a kernel, for up to `capacity` terms. */
+typedef struct TileWork {
+    void *memory;
+    size_t capacity;
+} TileWork;
+
+/* Makes room for `n` terms. */
+MUST_CHECK Status tilework_reserve(TileWork *work, size_t n, Err *err);
+void tilework_release(TileWork *work);
+
+#endif

@@ -1,0 +1,545 @@
+/* Segments are moved to the camera's frame once, in double precision, and counted into the rows of
+ * tiles that their support touches (a capsule: the segment, widened by its reach). A row of tiles is
+ * the unit of work. For it every segment is clipped to the slab of space that the row's rays fill,
+ * which gives the columns that it touches there, and with them the list of every tile; a list holds
+ * its segments by rising index, whatever the number of threads.
+ *
+ * A tile's terms are set out about its middle ray, so that single precision is left with small
+ * numbers however large the scene is. What the kernel leaves undecided is cast ray by ray in double
+ * precision among the same terms. */
+#include "render/fieldtiles.h"
+
+#include "render/field.h"
+#include "surface/surface.h"
+#include <limits.h>
+#include <stdlib.h>
+
+/* A segment in the camera's frame. */
+typedef struct FrameSegment {
+    Vec3 a, b, axis;
+    double length, k;
+    double reach;            /* mm from the axis, beyond which the term is below the cut-off */
+    int first_row, last_row; /* of tiles; first > last: nowhere */
+} FrameSegment;
+
+typedef struct Span {
+    int first, last;
+} Span;
+
+typedef struct Workspace {
+    Span *columns;     /* of the row's segments; as long as the longest row */
+    uint32_t *offsets; /* of the row's tiles into `lists`; one more than there are tiles */
+    uint32_t *lists;
+    size_t lists_capacity;
+    TileTerm *terms;
+    size_t terms_capacity;
+    uint32_t *candidates; /* segments of the terms; as long as `terms` */
+    size_t candidates_capacity;
+    TileWork work;
+    FieldScratch *scratch; /* made when first needed */
+    size_t scratch_capacity;
+} Workspace;
+
+struct FieldTiles {
+    const Scene *scene;
+    SampleGrid grid;
+    Vec3 axes[3];         /* of the camera's frame */
+    double width, height; /* of the picture, in the camera's plane */
+    bool perspective;
+    double z_min;
+    double *x, *y; /* of the grid's columns and rows, in the camera's plane */
+    double step_x, step_y;
+    int tile_columns, tile_rows;
+    FrameSegment *segments;
+    size_t *row_offsets; /* into row_segments; one more than there are rows */
+    uint32_t *row_segments;
+    const TileKernels *kernels;
+    Workspace *workspaces;
+    int workers;
+};
+
+typedef struct Range {
+    double low, high;
+} Range;
+
+static Range range_union(Range a, Range b)
+{
+    return (Range){fmin(a.low, b.low), fmax(a.high, b.high)};
+}
+
+/* The shadow on the camera's plane, in one of its two directions, of a ball at coordinate c in that
+ * direction and depth z. In perspective it must be in front of the camera: z > radius. */
+static Range ball_shadow(const FieldTiles *tiles, double c, double z, double radius)
+{
+    if (!tiles->perspective)
+        return (Range){c - radius, c + radius};
+    double half = radius * sqrt(fmax(c * c + z * z - radius * radius, 0));
+    double per = 1 / ((z - radius) * (z + radius));
+    return (Range){(c * z - half) * per, (c * z + half) * per};
+}
+
+/* 1: all in front of the camera, or orthographic; -1: all behind; 0: beside it. */
+static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
+{
+    if (!tiles->perspective)
+        return 1;
+    double near = fmin(segment->a.z, segment->b.z), far = fmax(segment->a.z, segment->b.z);
+    return near > segment->reach * (1 + 1e-9) ? 1 : far < -segment->reach ? -1 : 0;
+}
+
+/* The samples, and then the tiles, within a range of the camera's plane, one of whose directions has
+ * `count` samples from `first` on in steps of `step`. A thousandth of a step covers rounding. */
+static Span tiles_within(Range range, double first, double step, int count)
+{
+    double from = (range.low - first) / step, to = (range.high - first) / step;
+    double low = ceil(fmin(from, to) - 1e-3), high = floor(fmax(from, to) + 1e-3);
+    low = fmax(low, 0);
+    high = fmin(high, count - 1);
+    if (!(low <= high))
+        return (Span){1, 0};
+    return (Span){(int)low / TILE_SIDE, (int)high / TILE_SIDE};
+}
+
+Vec3 fieldtiles_to_frame(const FieldTiles *tiles, Vec3 v)
+{
+    return vec3(vec3_dot(v, tiles->axes[0]), vec3_dot(v, tiles->axes[1]),
+                vec3_dot(v, tiles->axes[2]));
+}
+
+static Span rows_of(const FieldTiles *tiles, const FrameSegment *segment)
+{
+    int side = side_of_camera(tiles, segment);
+    if (side < 0)
+        return (Span){1, 0};
+    Range range = {-HUGE_VAL, HUGE_VAL};
+    if (side > 0)
+        range = range_union(ball_shadow(tiles, segment->a.y, segment->a.z, segment->reach),
+                            ball_shadow(tiles, segment->b.y, segment->b.z, segment->reach));
+    return tiles_within(range, tiles->y[0], tiles->step_y, tiles->grid.n_rows);
+}
+
+enum { CHUNK = 2048 };
+
+static void prepare_chunk(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    FieldTiles *tiles = context;
+    const Scene *scene = tiles->scene;
+    size_t end = (chunk + 1) * CHUNK < scene->n_segments ? (chunk + 1) * CHUNK : scene->n_segments;
+    for (size_t i = chunk * CHUNK; i < end; i++) {
+        const FieldSegment *segment = &scene->segments[i];
+        Vec3 origin = scene->camera.location, span = vec3_sub(segment->b, segment->a);
+        FrameSegment *out = &tiles->segments[i];
+        *out = (FrameSegment){.a = fieldtiles_to_frame(tiles, vec3_sub(segment->a, origin)),
+                              .b = fieldtiles_to_frame(tiles, vec3_sub(segment->b, origin)),
+                              .length = vec3_length(span),
+                              .k = sqrt(2) / segment->radius_mm};
+        out->axis = vec3_scale(fieldtiles_to_frame(tiles, span), 1 / out->length);
+        double reach2 = log(potential_term_peak(segment) / FIELD_CUTOFF);
+        Span rows = {1, 0};
+        if (reach2 > 0) {
+            out->reach = sqrt(reach2) / out->k;
+            rows = rows_of(tiles, out);
+        }
+        out->first_row = rows.first;
+        out->last_row = rows.last;
+    }
+}
+
+/* Counting sort of the segments into rows. */
+static Status sort_into_rows(FieldTiles *tiles, Err *err)
+{
+    size_t n = tiles->scene->n_segments, total = 0;
+    size_t *offsets = tiles->row_offsets;
+    for (size_t i = 0; i < n; i++)
+        for (int row = tiles->segments[i].first_row; row <= tiles->segments[i].last_row; row++)
+            offsets[row + 1]++;
+    for (int row = 0; row < tiles->tile_rows; row++) {
+        total += offsets[row + 1];
+        offsets[row + 1] = total;
+    }
+    TRY(mem_calloc(&tiles->row_segments, total, sizeof *tiles->row_segments, "rows of tiles", err));
+    for (size_t i = n; i-- > 0;)
+        for (int row = tiles->segments[i].first_row; row <= tiles->segments[i].last_row; row++)
+            tiles->row_segments[--offsets[row + 1]] = (uint32_t)i;
+    for (int row = 0; row < tiles->tile_rows; row++)
+        offsets[row] = offsets[row + 1];
+    offsets[tiles->tile_rows] = total;
+    return STATUS_OK;
+}
+
+static void place_grid(FieldTiles *tiles)
+{
+    const SampleGrid *grid = &tiles->grid;
+    const Camera *camera = &tiles->scene->camera;
+    for (int i = 0; i < grid->n_columns; i++)
+        tiles->x[i] = ((grid->columns[i] + 0.5) / camera->width - 0.5) * tiles->width;
+    for (int j = 0; j < grid->n_rows; j++)
+        tiles->y[j] = (0.5 - (grid->rows[j] + 0.5) / camera->height) * tiles->height;
+    tiles->step_x = grid->spacing / camera->width * tiles->width;
+    tiles->step_y = -grid->spacing / camera->height * tiles->height;
+}
+
+static Status make_workspaces(FieldTiles *tiles, Err *err)
+{
+    size_t longest = 0;
+    for (int row = 0; row < tiles->tile_rows; row++) {
+        size_t n = tiles->row_offsets[row + 1] - tiles->row_offsets[row];
+        longest = n > longest ? n : longest;
+    }
+    TRY(mem_calloc(&tiles->workspaces, (size_t)tiles->workers, sizeof *tiles->workspaces,
+                   "workspaces", err));
+    for (int i = 0; i < tiles->workers; i++) {
+        Workspace *space = &tiles->workspaces[i];
+        TRY(mem_calloc(&space->columns, longest, sizeof *space->columns, "rows of tiles", err));
+        TRY(mem_calloc(&space->offsets, (size_t)tiles->tile_columns + 1, sizeof *space->offsets,
+                       "tiles", err));
+    }
+    return STATUS_OK;
+}
+
+Status fieldtiles_new(const Scene *scene, const SampleGrid *grid, double z_min, int workers,
+                      FieldTiles **out, Err *err)
+{
+    Status status;
+    FieldTiles *tiles = NULL;
+    const Camera *camera = &scene->camera;
+    TRY_GOTO(mem_calloc(&tiles, 1, sizeof *tiles, "tiles", err));
+    tiles->scene = scene;
+    tiles->grid = *grid;
+    tiles->z_min = z_min;
+    tiles->workers = workers;
+    tiles->kernels = tilekernels_best();
+    tiles->perspective = camera->projection == PROJECTION_PERSPECTIVE;
+    tiles->axes[0] = vec3_normalized(camera->right);
+    tiles->axes[1] = vec3_normalized(camera->up);
+    tiles->axes[2] = camera->direction;
+    tiles->width = vec3_length(camera->right);
+    tiles->height = vec3_length(camera->up);
+    tiles->tile_columns = (grid->n_columns + TILE_SIDE - 1) / TILE_SIDE;
+    tiles->tile_rows = (grid->n_rows + TILE_SIDE - 1) / TILE_SIDE;
+    TRY_GOTO(mem_calloc(&tiles->x, (size_t)grid->n_columns, sizeof *tiles->x, "columns", err));
+    TRY_GOTO(mem_calloc(&tiles->y, (size_t)grid->n_rows, sizeof *tiles->y, "rows", err));
+    place_grid(tiles);
+    TRY_GOTO(
+        mem_calloc(&tiles->segments, scene->n_segments, sizeof *tiles->segments, "segments", err));
+    TRY_GOTO(mem_calloc(&tiles->row_offsets, (size_t)tiles->tile_rows + 1,
+                        sizeof *tiles->row_offsets, "rows of tiles", err));
+    threads_for((scene->n_segments + CHUNK - 1) / CHUNK, workers, prepare_chunk, tiles);
+    TRY_GOTO(sort_into_rows(tiles, err));
+    TRY_GOTO(make_workspaces(tiles, err));
+    *out = tiles;
+    return STATUS_OK;
+done:
+    fieldtiles_free(tiles);
+    return status;
+}
+
+void fieldtiles_free(FieldTiles *tiles)
+{
+    if (!tiles)
+        return;
+    for (int i = 0; tiles->workspaces && i < tiles->workers; i++) {
+        Workspace *space = &tiles->workspaces[i];
+        free(space->columns);
+        free(space->offsets);
+        free(space->lists);
+        free(space->terms);
+        free(space->candidates);
+        tilework_release(&space->work);
+        fieldscratch_free(space->scratch);
+    }
+    free(tiles->workspaces);
+    free(tiles->x);
+    free(tiles->y);
+    free(tiles->segments);
+    free(tiles->row_offsets);
+    free(tiles->row_segments);
+    free(tiles);
+}
+
+size_t fieldtiles_rows(const FieldTiles *tiles)
+{
+    return (size_t)tiles->tile_rows;
+}
+
+void fieldtiles_use_kernels(FieldTiles *tiles, const TileKernels *kernels)
+{
+    tiles->kernels = kernels;
+}
+
+size_t fieldtiles_columns(const FieldTiles *tiles)
+{
+    return (size_t)tiles->tile_columns;
+}
+
+const TileKernels *fieldtiles_kernels(const FieldTiles *tiles)
+{
+    return tiles->kernels;
+}
+
+Vec3 fieldtiles_to_world(const FieldTiles *tiles, Vec3 direction)
+{
+    Vec3 world = vec3_scale(tiles->axes[0], direction.x);
+    world = vec3_add_scaled(world, tiles->axes[1], direction.y);
+    return vec3_add_scaled(world, tiles->axes[2], direction.z);
+}
+
+/* Height above the plane through the camera, the direction and a row at `y` of the camera's plane. */
+static double above(const FieldTiles *tiles, Vec3 p, double y)
+{
+    return tiles->perspective ? (p.y - y * p.z) / sqrt(1 + y * y) : p.y - y;
+}
+
+/* The tiles of a row, whose rays are between y_low and y_high, that the support of the segment may
+ * touch: those of the part of the segment that is within reach of the slab. */
+static Span columns_of(const FieldTiles *tiles, const FrameSegment *segment, double y_low,
+                       double y_high)
+{
+    if (side_of_camera(tiles, segment) == 0)
+        return (Span){0, tiles->tile_columns - 1};
+    double from = 0, to = 1;
+    const double heights[2][2] = {
+        {above(tiles, segment->a, y_low), above(tiles, segment->b, y_low)},
+        {-above(tiles, segment->a, y_high), -above(tiles, segment->b, y_high)}};
+    for (int plane = 0; plane < 2; plane++) {
+        double at_a = heights[plane][0] + segment->reach, at_b = heights[plane][1] + segment->reach;
+        if (at_a < 0 && at_b < 0)
+            return (Span){1, 0};
+        if (at_a < 0)
+            from = fmax(from, at_a / (at_a - at_b));
+        if (at_b < 0)
+            to = fmin(to, at_a / (at_a - at_b));
+    }
+    if (from > to)
+        return (Span){1, 0};
+    Vec3 span = vec3_sub(segment->b, segment->a);
+    Vec3 first = vec3_add_scaled(segment->a, span, from);
+    Vec3 last = vec3_add_scaled(segment->a, span, to);
+    Range range = range_union(ball_shadow(tiles, first.x, first.z, segment->reach),
+                              ball_shadow(tiles, last.x, last.z, segment->reach));
+    return tiles_within(range, tiles->x[0], tiles->step_x, tiles->grid.n_columns);
+}
+
+/* Fills offsets and lists of the row. */
+static Status list_row(const FieldTiles *tiles, size_t row, Workspace *space, Err *err)
+{
+    const uint32_t *segments = tiles->row_segments + tiles->row_offsets[row];
+    size_t n = tiles->row_offsets[row + 1] - tiles->row_offsets[row];
+    int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
+    last = last < tiles->grid.n_rows ? last : tiles->grid.n_rows - 1;
+    uint32_t *offsets = space->offsets;
+    for (int i = 0; i <= tiles->tile_columns; i++)
+        offsets[i] = 0;
+    for (size_t i = 0; i < n; i++) {
+        Span span =
+            columns_of(tiles, &tiles->segments[segments[i]], tiles->y[last], tiles->y[first]);
+        space->columns[i] = span;
+        for (int column = span.first; column <= span.last; column++)
+            offsets[column + 1]++;
+    }
+    size_t total = 0;
+    for (int i = 1; i <= tiles->tile_columns; i++) {
+        total += offsets[i];
+        if (total > UINT32_MAX)
+            return err_set(err, STATUS_MEMORY, "too many segments in one row of the picture");
+        offsets[i] = (uint32_t)total;
+    }
+    TRY(mem_reserve(&space->lists, &space->lists_capacity, total, sizeof *space->lists, "tiles",
+                    err));
+    for (size_t i = n; i-- > 0;)
+        for (int column = space->columns[i].first; column <= space->columns[i].last; column++)
+            space->lists[--offsets[column + 1]] = segments[i];
+    for (int i = 0; i < tiles->tile_columns; i++)
+        offsets[i] = offsets[i + 1];
+    offsets[tiles->tile_columns] = (uint32_t)total;
+    return STATUS_OK;
+}
+
+/* The terms of a tile need its middle ray's nearest point of the axis, at `along` mm from a. */
+static double nearest_along(const FrameSegment *segment, Vec3 origin, Vec3 direction)
+{
+    Vec3 from_a = vec3_sub(origin, segment->a);
+    Vec3 normal = vec3_cross(direction, segment->axis);
+    double cross2 = vec3_dot(normal, normal), dd = vec3_dot(direction, direction);
+    double cosine = vec3_dot(direction, segment->axis);
+    double along = dd * vec3_dot(from_a, segment->axis) - cosine * vec3_dot(from_a, direction);
+    along = cross2 > 0 ? along / cross2 : segment->length / 2;
+    return fmin(fmax(along, 0), segment->length);
+}
+
+static bool make_term(const FieldTile *tile, const FrameSegment *segment, double half_size,
+                      uint32_t number, TileTerm *term)
+{
+    double mx = tile->middle_x, my = tile->middle_y;
+    Vec3 origin = tile->perspective ? vec3(0, 0, 0) : vec3(mx, my, 0);
+    Vec3 direction = tile->perspective ? vec3(mx, my, 1) : vec3(0, 0, 1);
+    double along = nearest_along(segment, origin, direction);
+    Vec3 point = vec3_add_scaled(segment->a, segment->axis, along), axis = segment->axis;
+    double z = vec3_dot(vec3_sub(point, origin), direction) / vec3_dot(direction, direction);
+    Vec3 o = vec3_sub(vec3_add_scaled(origin, direction, z), point);
+    double widening = half_size;
+    if (tile->perspective)
+        widening *= fmax(fmax(segment->a.z, segment->b.z) + segment->reach, 0);
+    double far = segment->reach + widening;
+    if (vec3_dot(o, o) > far * far)
+        return false;
+    Vec3 cross = vec3_cross(direction, axis);
+    double sine = hypot(axis.x, axis.y);
+    if (!tile->perspective)
+        cross = sine > 0 ? vec3_scale(cross, 1 / sine) : vec3(0, 1, 0);
+    *term = (TileTerm){.z_near = z,
+                       .k = (float)segment->k,
+                       .reach2 = (float)(segment->k * segment->k * segment->reach * segment->reach),
+                       .u = (float)(segment->k * along),
+                       .v = (float)(segment->k * (segment->length - along)),
+                       .o = {(float)o.x, (float)o.y, (float)o.z},
+                       .axis = {(float)axis.x, (float)axis.y, (float)axis.z},
+                       .cross = {(float)cross.x, (float)cross.y, (float)cross.z},
+                       .sine = (float)sine,
+                       .cosine = (float)axis.z,
+                       .segment = number};
+    return true;
+}
+
+/* Sets the samples of the tile; those outside the grid repeat its last column or row. */
+static double place_samples(const FieldTiles *tiles, int column, int row, FieldTile *tile)
+{
+    int last_x = tiles->grid.n_columns - 1, last_y = tiles->grid.n_rows - 1;
+    int right = column + TILE_SIDE - 1 < last_x ? column + TILE_SIDE - 1 : last_x;
+    int bottom = row + TILE_SIDE - 1 < last_y ? row + TILE_SIDE - 1 : last_y;
+    tile->middle_x = (tiles->x[column] + tiles->x[right]) / 2;
+    tile->middle_y = (tiles->y[row] + tiles->y[bottom]) / 2;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        int i = column + tile_sample_x(sample), j = row + tile_sample_y(sample);
+        tile->x[sample] = (float)(tiles->x[i < right ? i : right] - tile->middle_x);
+        tile->y[sample] = (float)(tiles->y[j < bottom ? j : bottom] - tile->middle_y);
+    }
+    tile->half_size =
+        (float)hypot(tiles->x[right] - tile->middle_x, tiles->y[row] - tile->middle_y);
+    return (double)tile->half_size;
+}
+
+/* Sets the terms of the tile and the list of their segments. */
+static Status make_terms(const FieldTiles *tiles, size_t tile_column, double half_size,
+                         Workspace *space, FieldTile *tile, Err *err)
+{
+    const uint32_t *list = space->lists + space->offsets[tile_column];
+    size_t n = space->offsets[tile_column + 1] - space->offsets[tile_column];
+    TRY(mem_reserve(&space->terms, &space->terms_capacity, n, sizeof *space->terms, "terms", err));
+    TRY(mem_reserve(&space->candidates, &space->candidates_capacity, n, sizeof *space->candidates,
+                    "terms", err));
+    tile->terms = space->terms;
+    tile->n_terms = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (!make_term(tile, &tiles->segments[list[i]], half_size, list[i],
+                       &space->terms[tile->n_terms]))
+            continue;
+        space->candidates[tile->n_terms++] = list[i];
+    }
+    return tilework_reserve(&space->work, tile->n_terms, err);
+}
+
+static Status grow_scratch(Workspace *space, size_t n, Err *err)
+{
+    if (n <= space->scratch_capacity)
+        return STATUS_OK;
+    FieldScratch *larger;
+    size_t capacity = n > 2 * space->scratch_capacity ? n : 2 * space->scratch_capacity;
+    TRY(fieldscratch_new(capacity, &larger, err));
+    fieldscratch_free(space->scratch);
+    space->scratch = larger;
+    space->scratch_capacity = capacity;
+    return STATUS_OK;
+}
+
+/* Decides one sample in double precision. */
+static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile *tile, Ray ray,
+                     int sample, TileHits *hits, Err *err)
+{
+    TRY(grow_scratch(space, tile->n_terms, err));
+    double t;
+    Vec3 normal;
+    uint32_t segment = 0;
+    hits->state[sample] = TILE_MISS;
+    if (!field_first_hit_among(tiles->scene->segments, space->candidates, tile->n_terms,
+                               space->scratch, ray, tiles->z_min, HUGE_VAL, &t, &normal, &segment))
+        return STATUS_OK;
+    normal = fieldtiles_to_frame(tiles, normal);
+    hits->state[sample] = TILE_HIT;
+    hits->z[sample] = t * vec3_dot(ray.direction, tiles->axes[2]);
+    hits->normal[0][sample] = (float)normal.x;
+    hits->normal[1][sample] = (float)normal.y;
+    hits->normal[2][sample] = (float)normal.z;
+    hits->segment[sample] = segment;
+    return STATUS_OK;
+}
+
+static Status decide_all(const FieldTiles *tiles, Workspace *space, const SeenTile *seen,
+                         TileHits *hits, Err *err)
+{
+    const SampleGrid *grid = &tiles->grid;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        int i = seen->column + tile_sample_x(sample), j = seen->row + tile_sample_y(sample);
+        if (hits->state[sample] != TILE_UNSURE || i >= grid->n_columns || j >= grid->n_rows)
+            continue;
+        Ray ray = camera_ray(&tiles->scene->camera, grid->columns[i], grid->rows[j]);
+        TRY(decide(tiles, space, seen->tile, ray, sample, hits, err));
+    }
+    return STATUS_OK;
+}
+
+Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t *wanted,
+                        TileVisitor *visit, void *context, Err *err)
+{
+    Workspace *space = &tiles->workspaces[worker];
+    TRY(list_row(tiles, row, space, err));
+    for (int column = 0; column < tiles->tile_columns; column++) {
+        if (wanted && !wanted[column])
+            continue;
+        FieldTile tile = {.perspective = tiles->perspective, .z_min = tiles->z_min};
+        TileHits hits;
+        SeenTile seen = {.column = column * TILE_SIDE, .row = (int)row * TILE_SIDE, .tile = &tile};
+        if (space->offsets[column] < space->offsets[column + 1]) {
+            double half_size = place_samples(tiles, seen.column, seen.row, &tile);
+            TRY(make_terms(tiles, (size_t)column, half_size, space, &tile, err));
+            if (tile.n_terms) {
+                tiles->kernels->trace(&tile, &space->work, &hits);
+                TRY(decide_all(tiles, space, &seen, &hits, err));
+                seen.hits = &hits;
+            }
+        }
+        visit(&seen, worker, context);
+    }
+    return STATUS_OK;
+}
+
+double tile_depth(const FieldTile *tile, const TileHits *hits, int sample)
+{
+    if (!tile->perspective)
+        return hits->z[sample];
+    double x = tile->middle_x + (double)tile->x[sample];
+    double y = tile->middle_y + (double)tile->y[sample];
+    return hits->z[sample] * sqrt(1 + x * x + y * y);
+}
+
+Status tilework_reserve(TileWork *work, size_t n, Err *err)
+{
+    if (n <= work->capacity)
+        return STATUS_OK;
+    size_t capacity = n > 2 * work->capacity ? n : 2 * work->capacity;
+    void *memory = capacity <= SIZE_MAX / TILE_WORK_BYTES
+                       ? aligned_alloc(64, capacity * TILE_WORK_BYTES)
+                       : NULL;
+    if (!memory)
+        return err_set(err, STATUS_MEMORY, "no memory for %zu terms of the potential", capacity);
+    free(work->memory);
+    *work = (TileWork){memory, capacity};
+    return STATUS_OK;
+}
+
+void tilework_release(TileWork *work)
+{
+    free(work->memory);
+    *work = (TileWork){0};
+}

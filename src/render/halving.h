@@ -1,0 +1,26 @@
+/* Where POV-Ray 3.7 finds the cells of an implicit surface [docs/POVRAY.md section 5]: its own interval
+ * halving, repeated operation by operation, so that its pictures can be told from ours to the last code. */
+#ifndef CORCAST_RENDER_HALVING_H
+#define CORCAST_RENDER_HALVING_H
+
+#include "base/base.h"
+#include "geom/geom.h"
+#include "scene/scene.h"
+#include "surface/surface.h"
+
+/* The cells of a scene under a hierarchy of boxes; constant once built and shared by threads. */
+typedef struct Halving Halving;
+
+MUST_CHECK Status halving_new(const Scene *scene, const CellParams *params, Halving **out,
+                              Err *err);
+void halving_free(Halving *halving);
+
+/* The first hit with t >= t_min of all cells: true and *hit, with the forward-difference normal (unit, of
+ * no particular side), and the segment whose term is largest there; or false. As in POV-Ray, a cell tells
+ * of one hit alone. */
+bool halving_first_hit(const Halving *halving, Ray ray, double t_min, Hit *hit, uint32_t *segment);
+
+/* Whether the hit of any cell has t in (t_min, t_max). */
+bool halving_any_hit(const Halving *halving, Ray ray, double t_min, double t_max);
+
+#endif

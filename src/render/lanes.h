@@ -1,0 +1,177 @@
+/* Several floats at once. A source that defines LANES_AVX2 gets 8 lanes with fused multiply-adds
+ * and must run only where tilekernels_best() chooses it; any other gets 4 lanes of plain IEEE
+ * arithmetic, which every processor has. Only correctly rounded operations are used, no
+ * approximate reciprocals, so that within one of the two the results are the same everywhere.
+ *
+ * Masks hold -1 where true and 0 where false. */
+#ifndef CORCAST_RENDER_LANES_H
+#define CORCAST_RENDER_LANES_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef LANES_AVX2
+#include <immintrin.h>
+#define LANES 8
+#define LANE_TARGET __attribute__((target("avx2,fma")))
+#else
+#define LANES 4
+#define LANE_TARGET
+#endif
+#define LANE_FN LANE_TARGET static inline
+
+typedef float Lanes __attribute__((vector_size(4 * LANES)));
+typedef int32_t LaneMask __attribute__((vector_size(4 * LANES)));
+
+LANE_FN Lanes lanes_set(float value)
+{
+    return (Lanes){0} + value;
+}
+
+LANE_FN Lanes lanes_load(const float *values)
+{
+    Lanes lanes;
+    __builtin_memcpy(&lanes, values, sizeof lanes);
+    return lanes;
+}
+
+LANE_FN void lanes_store(float *values, Lanes lanes)
+{
+    __builtin_memcpy(values, &lanes, sizeof lanes);
+}
+
+#ifdef LANES_AVX2
+
+/* a b + c */
+LANE_FN Lanes lanes_fma(Lanes a, Lanes b, Lanes c)
+{
+    return (Lanes)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+}
+
+LANE_FN Lanes lanes_sqrt(Lanes a)
+{
+    return (Lanes)_mm256_sqrt_ps((__m256)a);
+}
+
+LANE_FN Lanes lanes_min(Lanes a, Lanes b)
+{
+    return (Lanes)_mm256_min_ps((__m256)a, (__m256)b);
+}
+
+LANE_FN Lanes lanes_max(Lanes a, Lanes b)
+{
+    return (Lanes)_mm256_max_ps((__m256)a, (__m256)b);
+}
+
+LANE_FN Lanes lanes_select(LaneMask mask, Lanes a, Lanes b)
+{
+    return (Lanes)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)mask);
+}
+
+LANE_FN bool lanes_any(LaneMask mask)
+{
+    return _mm256_movemask_ps((__m256)mask) != 0;
+}
+
+#else
+
+LANE_FN Lanes lanes_fma(Lanes a, Lanes b, Lanes c)
+{
+    return a * b + c;
+}
+
+LANE_FN Lanes lanes_sqrt(Lanes a)
+{
+    for (int i = 0; i < LANES; i++)
+        a[i] = sqrtf(a[i]);
+    return a;
+}
+
+LANE_FN Lanes lanes_select(LaneMask mask, Lanes a, Lanes b)
+{
+    return (Lanes)((mask & (LaneMask)a) | (~mask & (LaneMask)b));
+}
+
+LANE_FN Lanes lanes_min(Lanes a, Lanes b)
+{
+    return lanes_select(a < b, a, b);
+}
+
+LANE_FN Lanes lanes_max(Lanes a, Lanes b)
+{
+    return lanes_select(a > b, a, b);
+}
+
+LANE_FN bool lanes_any(LaneMask mask)
+{
+    return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+#endif
+
+LANE_FN Lanes lanes_abs(Lanes a)
+{
+    return (Lanes)((LaneMask)a & 0x7fffffff);
+}
+
+/* The smallest lane. */
+LANE_FN float lanes_least(Lanes a)
+{
+    float least = a[0];
+    for (int i = 1; i < LANES; i++)
+        least = a[i] < least ? a[i] : least;
+    return least;
+}
+
+LANE_FN float lanes_largest(Lanes a)
+{
+    return -lanes_least(-a);
+}
+
+/* exp(-x) of x >= 0, 0 from 87 on: 2^n times a polynomial on [-ln 2 / 2, ln 2 / 2] of relative
+ * error 7.5e-8 (Remez), with rounding at most 2.5e-7. Adding 1.5 * 2^23 rounds to a whole number
+ * and leaves it in the low bits. */
+LANE_FN Lanes lanes_exp_minus(Lanes x)
+{
+    const Lanes magic = lanes_set(12582912.0f), capped = lanes_min(x, lanes_set(87.0f));
+    Lanes shifted = lanes_fma(capped, lanes_set(-1.44269504f), magic), n = shifted - magic;
+    Lanes y = lanes_fma(n, lanes_set(-0.693359375f), -capped);
+    y = lanes_fma(n, lanes_set(2.12194440e-4f), y);
+    Lanes p = lanes_fma(y, lanes_set(0.00829765508f), lanes_set(0.041915382f));
+    p = lanes_fma(p, y, lanes_set(0.166675747f));
+    p = lanes_fma(p, y, lanes_set(0.499988949f));
+    p = lanes_fma(p, y, lanes_set(0.999999692f));
+    p = lanes_fma(p, y, lanes_set(1.00000007f));
+    LaneMask power = ((LaneMask)shifted + 127) << 23;
+    return (Lanes)((LaneMask)(p * (Lanes)power) & (x < 87.0f));
+}
+
+/* ln x of normal x > 0, to 1e-7 (1 + |ln x|), and relatively so near 1: x = 2^n m, m in [sqrt 1/2,
+ * sqrt 2), ln m = 2 artanh((m - 1) / (m + 1)). */
+LANE_FN Lanes lanes_log(Lanes x)
+{
+    LaneMask bits = (LaneMask)x - 0x3f3504f3;
+    Lanes n = __builtin_convertvector(bits >> 23, Lanes);
+    Lanes m = (Lanes)((bits & 0x007fffff) + 0x3f3504f3);
+    Lanes f = (m - 1.0f) / (m + 1.0f), f2 = f * f;
+    Lanes p = lanes_fma(f2, lanes_set(0.23f), lanes_set(0.285714286f));
+    p = lanes_fma(p, f2, lanes_set(0.4f));
+    p = lanes_fma(p, f2, lanes_set(0.666666667f));
+    Lanes ln_m = lanes_fma(p * f2, f, f + f);
+    return lanes_fma(n, lanes_set(0.693147181f), ln_m);
+}
+
+/* erf x to 3e-7, with `gauss` = exp(-x^2) [Abramowitz & Stegun 7.1.26, |error| <= 1.5e-7]. */
+LANE_FN Lanes lanes_erf(Lanes x, Lanes gauss)
+{
+    Lanes t = 1.0f / lanes_fma(lanes_abs(x), lanes_set(0.3275911f), lanes_set(1.0f));
+    Lanes p = lanes_fma(t, lanes_set(1.061405429f), lanes_set(-1.453152027f));
+    p = lanes_fma(p, t, lanes_set(1.421413741f));
+    p = lanes_fma(p, t, lanes_set(-0.284496736f));
+    p = lanes_fma(p, t, lanes_set(0.254829592f));
+    Lanes magnitude = 1.0f - p * t * gauss;
+    return (Lanes)((LaneMask)magnitude | ((LaneMask)x & INT32_MIN));
+}
+
+#endif

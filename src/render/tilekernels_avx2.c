@@ -1,0 +1,14 @@
+/* The kernels for x86 processors with AVX2 and FMA. */
+#ifdef __x86_64__
+
+#define LANES_AVX2
+#define FIELD_KERNEL trace_avx2
+#define SHADE_KERNEL shade_avx2
+#include "render/fieldkernel.h"
+#include "render/shadekernel.h"
+
+const TileKernels tilekernels_avx2 = {trace_avx2, shade_avx2};
+
+#else
+typedef int NotForThisProcessor;
+#endif

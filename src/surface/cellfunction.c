@@ -1,0 +1,118 @@
+/* A term is split into parts that POV-Ray evaluates cheaply and that lose nothing far from the origin:
+ * two axes v and w across the segment and one along it, each an affine function of x in units of 1/c
+ * = sqrt(2) s. The Gaussian is exp(-(v^2 + w^2)), a sum of squares and not a difference of large ones.
+ * v is perpendicular to the coordinate axis that the segment is least along, so that it has one
+ * coefficient less, and in a planar tree w has only one.
+ *
+ * The axial factor is (erf(start) + erf(end)) / 2, start and end being how far x is inside either end.
+ * It is step(start) + step(end) - 1 with step(u) = (1 + erf u) / 2, and where one end is so far inside
+ * that its step is 1, the other step alone, or 1. erf u is tanh(odd polynomial of u), least in the
+ * largest error over all u for its degree; then step(u) = 1 / (1 + exp(-2 polynomial)) takes one exp. */
+#include "surface/surface.h"
+
+const double erf_forms[][ERF_TERMS] = {
+    [ERF_FAST] = {-2.2593813716768, -0.199532717478024, 0, 0, 0},
+    [ERF_EXACT] = {-2.2567159143614, -0.20586869074822, 0.00099789952449538, 0.00082826271063574,
+                   -6.4207848748694e-5},
+};
+
+double erf_form_error(ErfForm form)
+{
+    return form == ERF_FAST ? 2.85e-4 : 3e-6;
+}
+
+double cell_displacement(double radius_mm, ErfForm form)
+{
+    return (3 * erf_form_error(form) + 2e-5) * radius_mm;
+}
+
+/* c (direction . x) + offset, zero at the origin given. Rounded to 12 digits of c and to 1e-10, so that equal
+ * numbers are equal to the last bit: POV-Ray's time to read a scene grows with the square of how many
+ * different ones there are. */
+static Linear linear(Vec3 direction, double c, Vec3 origin)
+{
+    double unit = pow(10, 11 - floor(log10(c)));
+    Vec3 k = {round(direction.x * c * unit) / unit, round(direction.y * c * unit) / unit,
+              round(direction.z * c * unit) / unit};
+    return (Linear){{k.x, k.y, k.z, round(-vec3_dot(k, origin) * 1e10) / 1e10}};
+}
+
+static Vec3 least_along(Vec3 axis)
+{
+    double x = fabs(axis.x), y = fabs(axis.y), z = fabs(axis.z);
+    return z <= x && z <= y ? vec3(0, 0, 1) : y <= x ? vec3(0, 1, 0) : vec3(1, 0, 0);
+}
+
+TermForm term_form(const FieldSegment *segment)
+{
+    double c = sqrt(2) / segment->radius_mm;
+    Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
+    Vec3 v = vec3_normalized(vec3_cross(axis, least_along(axis)));
+    return (TermForm){linear(v, c, segment->a), linear(vec3_cross(v, axis), c, segment->a),
+                      linear(axis, c, segment->a), linear(vec3_scale(axis, -1), c, segment->b)};
+}
+
+static double linear_at(const Linear *linear, Vec3 x)
+{
+    const double *k = linear->k;
+    return x.x * k[0] + x.y * k[1] + x.z * k[2] + k[3];
+}
+
+static double step_form(double u, ErfForm form)
+{
+    const double *k = erf_forms[form];
+    double exponent =
+        form == ERF_FAST
+            ? u * (u * u * k[1] + k[0])
+            : u * ((((u * u * k[4] + k[3]) * u * u + k[2]) * u * u + k[1]) * u * u + k[0]);
+    return 1 / (exp(exponent) + 1);
+}
+
+double term_form_value(const TermForm *term, TermPart part, ErfForm form, Vec3 x)
+{
+    double v = linear_at(&term->v, x), w = linear_at(&term->w, x);
+    double gauss = exp(-(v * v + w * w));
+    switch (part) {
+    case TERM_BOTH_ENDS:
+        return gauss * (step_form(linear_at(&term->start, x), form) +
+                        step_form(linear_at(&term->end, x), form) - 1);
+    case TERM_START:
+        return gauss * step_form(linear_at(&term->start, x), form);
+    case TERM_END:
+        return gauss * step_form(linear_at(&term->end, x), form);
+    case TERM_MIDDLE:
+        break;
+    }
+    return gauss;
+}
+
+double cell_function(const CellTree *cells, const Cell *cell, Vec3 x)
+{
+    const CellTerm *terms = cells->terms + cell->first;
+    if (cell_is_tube(cells, cell)) {
+        const TermForm *form = &cells->forms[terms->segment];
+        double v = linear_at(&form->v, x), w = linear_at(&form->w, x);
+        return (sqrt(v * v + w * w) * TUBE_SLOPE - 2) * cell->scale;
+    }
+    double phi = 0;
+    for (uint32_t i = 0; i < cell->count; i++)
+        phi += term_form_value(&cells->forms[terms[i].segment], (TermPart)terms[i].part, cells->erf,
+                               x);
+    return potential_log_form(phi) * cell->scale;
+}
+
+uint32_t cell_largest_term(const CellTree *cells, const Cell *cell, Vec3 x)
+{
+    const CellTerm *terms = cells->terms + cell->first;
+    uint32_t best = 0;
+    double largest = -1;
+    for (uint32_t i = 0; i < cell->count; i++) {
+        double value = term_form_value(&cells->forms[terms[i].segment], (TermPart)terms[i].part,
+                                       cells->erf, x);
+        if (value > largest) {
+            largest = value;
+            best = terms[i].segment;
+        }
+    }
+    return best;
+}

@@ -1,0 +1,102 @@
+#include "verify/surface_check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Classes one pixel; its error is appended to `errors` when it is common. */
+static void count_pixel(const SurfacePlanes *planes, size_t i, SurfaceCheck *check, double *errors)
+{
+    double a = (double)planes->a->values[i], b = (double)planes->b->values[i];
+    double allowed = (double)planes->allowed->values[i];
+    bool in_a = isfinite(a), in_b = isfinite(b);
+    if (!in_a && !in_b)
+        return;
+    if (isinf(allowed)) {
+        check->grazing++;
+        return;
+    }
+    check->missing += !in_b;
+    check->extra += !in_a;
+    if (!in_a || !in_b)
+        return;
+    double error = fabs(a - b);
+    errors[check->common++] = error;
+    check->beyond += !(error <= allowed);
+    if (!(error / allowed <= check->max_ratio)) {
+        check->max_ratio = error / allowed;
+        check->worst_x = (int)(i % (size_t)planes->a->width);
+        check->worst_y = (int)(i / (size_t)planes->a->width);
+    }
+}
+
+static void judge(SurfaceCheck *check)
+{
+    check->agrees = check->missing == 0 && check->extra == 0 && check->beyond == 0;
+    check->reason[0] = '\0';
+    if (check->missing || check->extra)
+        snprintf(
+            check->reason, sizeof check->reason,
+            "surface: %zu pixels are seen by POV-Ray's root finder alone and %zu by proof alone, "
+            "although the ray does not graze",
+            check->missing, check->extra);
+    else if (check->beyond)
+        snprintf(
+            check->reason, sizeof check->reason,
+            "surface: %zu pixels are farther from the surface than the accuracy allows, the worst "
+            "%.3g times, at (%d, %d)",
+            check->beyond, check->max_ratio, check->worst_x, check->worst_y);
+}
+
+Status surface_check(const SurfacePlanes *planes, SurfaceCheck *out, Err *err)
+{
+    const Plane *a = planes->a, *b = planes->b, *allowed = planes->allowed;
+    if (a->width != b->width || a->height != b->height || a->width != allowed->width ||
+        a->height != allowed->height)
+        return err_set(err, STATUS_INPUT,
+                       "the depth planes differ in size: %d x %d, %d x %d and %d x %d pixels",
+                       a->width, a->height, b->width, b->height, allowed->width, allowed->height);
+    SurfaceCheck check = {.pixels = (size_t)a->width * (size_t)a->height,
+                          .median_mm = NAN,
+                          .p99_mm = NAN,
+                          .max_mm = NAN,
+                          .worst_x = -1,
+                          .worst_y = -1};
+    double *errors;
+    TRY(mem_calloc(&errors, check.pixels, sizeof *errors, "errors of pixels", err));
+    for (size_t i = 0; i < check.pixels; i++)
+        count_pixel(planes, i, &check, errors);
+    if (check.common) {
+        qsort(errors, check.common, sizeof *errors, compare_doubles);
+        check.median_mm = errors[(check.common - 1) / 2];
+        check.p99_mm = errors[(size_t)ceil(0.99 * (double)check.common) - 1];
+        check.max_mm = errors[check.common - 1];
+    }
+    free(errors);
+    judge(&check);
+    *out = check;
+    return STATUS_OK;
+}
+
+static json_t *number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *surface_check_json(const SurfaceCheck *check)
+{
+    return json_pack(
+        "{s:s, s:s?, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "verdict",
+        check->agrees ? "agree" : "differ", "reason", check->reason[0] ? check->reason : NULL,
+        "pixels", (json_int_t)check->pixels, "common_pixels", (json_int_t)check->common,
+        "grazing_pixels", (json_int_t)check->grazing, "missing_pixels", (json_int_t)check->missing,
+        "extra_pixels", (json_int_t)check->extra, "beyond_pixels", (json_int_t)check->beyond,
+        "median_abs_mm", number(check->median_mm), "p99_abs_mm", number(check->p99_mm),
+        "max_abs_mm", number(check->max_mm), "max_ratio", number(check->max_ratio));
+}

@@ -1,0 +1,185 @@
+#!/usr/bin/env bash
+# grow --from: growing on from a tree, which stays as it is. check_tree derives the result's radii and
+# pressures again; what stays is held against the file that growth started from.
+. "$(dirname "$0")/../lib.sh"
+
+# expect_kept OLD NEW: every node of OLD is in NEW with its type and place, its nearest ancestor from OLD is
+# its old parent, and all nodes between the two lie on the straight line.
+expect_kept() {
+    awk '/^#/ { next }
+         FNR == NR { old[$1] = $2 " " $3 " " $4 " " $5; parent[$1] = $7; n++; next }
+         { row[$1] = $2 " " $3 " " $4 " " $5; above[$1] = $7; x[$1] = $3; y[$1] = $4; z[$1] = $5 }
+         END {
+             for (id in old) {
+                 if (row[id] != old[id]) { print "node " id " has changed: " row[id]; exit }
+                 if (parent[id] == -1) { if (above[id] != -1) print "no root " id; continue }
+                 p = parent[id]
+                 ux = x[id] - x[p]; uy = y[id] - y[p]; uz = z[id] - z[p]
+                 for (k = above[id]; !(k in old); k = above[k]) {
+                     if (!(k in row)) { print "node " id " has lost its way to the root"; exit }
+                     vx = x[k] - x[p]; vy = y[k] - y[p]; vz = z[k] - z[p]
+                     cross2 = (uy * vz - uz * vy) ^ 2 + (uz * vx - ux * vz) ^ 2 + (ux * vy - uy * vx) ^ 2
+                     if (cross2 > 1e-24 * (ux * ux + uy * uy + uz * uz) ^ 2) { print "node " k " is off the segment of " id; exit }
+                 }
+                 if (k != p) { print "node " id " hangs on " k ", not on " p; exit }
+             }
+             print "kept"
+         }' "$1" "$2" >kept.out
+    [ "$(cat kept.out)" = kept ] || fail "$(head -2 kept.out)"
+}
+
+stated() {
+    sed -n "s/^$1 //p" stdout
+}
+
+# A measured vessel of many pieces, bent, with one side branch; ids and types of its own.
+write_measured() {
+    cat >measured.swc <<'END'
+# measured by hand
+# domain: rect:40,40
+# who: nobody
+100 2 0 19.5 0 1 -1
+90 2 0.3 19 0 1 100
+80 2 0.5 18.4 0 1 90
+70 2 0.9 17.8 0 1 80
+60 2 1.1 17 0 1 70
+50 5 1.2 15 0 0.9 60
+40 5 1.4 11 0 0.9 50
+30 5 1 7 0 0.9 40
+20 5 -6 2 0 0.5 30
+10 5 6 2 0 0.5 30
+END
+}
+
+test_a_grown_tree_grows_on_and_stays_as_it_is() {
+    run_ok corcast grow --terminals 100 --seed 5 -o first.swc
+    run_ok corcast grow --terminals 900 --seed 5 -o whole.swc
+    check_tree whole.swc
+    local whole
+    whole=$(stated target)
+    run_ok corcast grow --from first.swc --terminals 900 --seed 5 -o second.swc
+    check_tree second.swc
+    expect_stdout '^terminals 900$'
+    [ "$(stated short)" -le 4 ] || fail "expected next to no segment shorter than wide, got $(stated short)"
+    expect_kept first.swc second.swc
+    awk -v a="$(stated target)" -v b="$whole" 'BEGIN { exit !(a < 1.03 * b) }' ||
+        fail "expected a target near that of a tree grown whole, $whole, got $(stated target)"
+    grep -v '^#' second.swc | awk '{ print $1 }' | sort -n | uniq | awk '$1 != NR { exit 1 } END { exit NR != 1800 }' ||
+        fail "expected the ids 1 to 1800"
+}
+
+test_the_checker_of_what_stays_finds_what_does_not() {
+    run_ok corcast grow --terminals 20 -o first.swc
+    run_ok corcast grow --from first.swc --terminals 60 -o second.swc
+    awk '$1 == 45 { $3 += 0.001 } { print }' second.swc >bent.swc
+    (expect_kept first.swc bent.swc) 9>/dev/null && fail "expected a bent segment to be found"
+    (expect_kept second.swc first.swc) 9>/dev/null && fail "expected lost nodes to be found"
+    return 0
+}
+
+test_a_tree_in_space_grows_on() {
+    run_ok corcast grow --terminals 50 --domain ball:30 --gamma 2.55 --lambda 1 -o first.swc
+    run_ok corcast grow --from first.swc --terminals 400 -o second.swc
+    check_tree second.swc
+    expect_kept first.swc second.swc
+    expect_stdout '^gamma 2.55$'
+    expect_stdout '^lambda 1$'
+}
+
+test_a_measured_tree_of_many_pieces_grows_on() {
+    write_measured
+    run_ok corcast grow --from measured.swc --terminals 150 --q-perf 30 -o grown.swc
+    check_tree grown.swc
+    expect_stdout '^terminals 150$'
+    expect_kept measured.swc grown.swc
+    grep -q '^# measured by hand$' grown.swc && grep -q '^# who: nobody$' grown.swc ||
+        fail "expected the comments of the tree that growth started from"
+    [ "$(grep -c '^# domain:' grown.swc)" = 1 ] || fail "expected one domain in the header"
+    [ "$(awk '!/^#/ && $1 == 1 { print $2 }' grown.swc)" = 3 ] || fail "expected a new node with the smallest free id"
+}
+
+test_radii_follow_the_flows() {
+    write_measured
+    run_ok corcast grow --from measured.swc --terminals 20 --q-perf 30 -o thin.swc
+    run_ok corcast grow --from measured.swc --terminals 20 --q-perf 480 -o thick.swc
+    check_tree thick.swc
+    local thick
+    thick=$(stated root_radius_mm)
+    check_tree thin.swc
+    awk -v a="$(stated root_radius_mm)" -v b="$thick" 'BEGIN { exit !(b > 1.9 * a && b < 2.1 * a) }' ||
+        fail "expected twice the radius for 16 times the flow"
+}
+
+test_segments_outside_the_domain_stay_and_new_ones_are_inside() {
+    run_ok corcast grow --terminals 30 --seed 2 -o first.swc
+    run_ok corcast grow --from first.swc --domain disc:25 --terminals 120 -o second.swc
+    expect_kept first.swc second.swc
+    awk '/^#/ { next } FNR == NR { old[$1]; next }
+         !($1 in old) && $3 * $3 + $4 * $4 > 625.0001 { exit 1 }' first.swc second.swc ||
+        fail "expected new nodes in the disc of radius 25"
+}
+
+test_forests_grow_on() {
+    local terminals='!/^#/ { if ($7 == -1) trees++; tree[$1] = trees; children[$7]++ }
+        END { for (id in tree) if (!(id in children)) n[tree[id]]++; print n[1], n[2] }'
+    run_ok corcast grow --inlet 0,50 --inlet 30,-40 --inlet-shares 3,1 --terminals 40 -o first.swc
+    run_ok corcast grow --from first.swc --terminals 400 -o second.swc
+    check_tree second.swc
+    expect_kept first.swc second.swc
+    [ "$(awk "$terminals" second.swc)" = '300 100' ] || fail "expected the shares the forest has"
+    run_ok corcast grow --from first.swc --inlet-shares 1,1 --terminals 400 -o second.swc
+    check_tree second.swc
+    [ "$(awk "$terminals" second.swc)" = '200 200' ] || fail "expected the shares that are given"
+}
+
+test_flow_options_go_on_from_the_header() {
+    run_ok corcast grow --terminals 30 --viscosity-law pries --terminal-flow territory --hematocrit 0.4 -o first.swc
+    run_ok corcast grow --from first.swc --terminals 120 -o second.swc
+    check_tree second.swc
+    expect_kept first.swc second.swc
+    grep -q '^# hematocrit: 0.4$' second.swc || fail "expected the hematocrit of the first tree"
+    [ "$(grep -c '^# flow_share' second.swc)" = 120 ] || fail "expected a flow share for each terminal"
+    run_ok corcast grow --from first.swc --terminals 120 --viscosity 3.6 --terminal-flow equal -o third.swc
+    check_tree third.swc
+    ! grep -qE '^# (viscosity_law|hematocrit|terminal_flow|flow_share)' third.swc ||
+        fail "expected the options to win over the header"
+}
+
+test_the_number_of_threads_does_not_change_the_tree() {
+    run_ok corcast grow --terminals 200 -o first.swc
+    run_ok corcast grow --from first.swc --terminals 2500 --threads 1 -o one.swc
+    run_ok corcast grow --from first.swc --terminals 2500 --threads 3 -o many.swc
+    expect_same one.swc many.swc
+}
+
+test_what_cannot_grow_on_is_refused() {
+    local sentence options
+    run_ok corcast grow --terminals 20 -o tree.swc
+    run_ok corcast grow --inlet 0,50 --inlet 30,-40 --terminals 40 -o forest.swc
+    run_ok corcast grow --terminals 20 --domain ball:20 -o ball.swc
+    grep -v '^# domain' tree.swc >homeless.swc
+    printf '%s\n' '1 3 0 9 0 1 -1' >bare.swc
+    printf '%s\n' '1 3 0 9 0 1 -1' '2 3 0 9 0 1 1' >point.swc
+    printf '%s\n' '# flow_share: 3 2' '# flow_share: 4 1' '1 3 0 9 0 1 -1' '2 3 0 4 0 1 1' '3 3 -4 0 0 1 2' '4 3 4 0 0 1 2' >shares.swc
+    while IFS='|' read -r sentence options; do
+        run corcast grow $options -o out.swc
+        expect_status "${sentence%% *}"
+        expect_sentence "${sentence#* }"
+        [ ! -e out.swc ] || fail "expected no output"
+    done <<END
+2 --from: node 3 has 3 children.*no node has more than 2|--from $DATA/trifurcation.swc --domain ball:50
+2 --terminals 20: must be above the 20|--from tree.swc --terminals 20
+2 missing.swc: cannot be read|--from missing.swc
+2 --inlet: the tree of --from has its own|--from tree.swc --inlet 0,50
+2 --inlet-shares: 3 shares for 2 inlets|--from forest.swc --inlet-shares 1,1,1
+2 --inlet-shares: tree 2 of --from has 20 terminals.*only 10|--from forest.swc --inlet-shares 9,1 --terminals 100
+2 names no domain; give --domain|--from homeless.swc
+2 node 2 is at z = .*plane z = 0|--from ball.swc --domain disc:50
+2 --from: node 1 is an inlet without a vessel|--from bare.swc --domain disc:50
+2 --from: node 2, a terminal, is where its parent is|--from point.swc --domain disc:50
+2 --refine: would move the tree of --from|--from tree.swc --refine geometry
+2 give --terminal-flow equal or territory|--from shares.swc --domain disc:50
+END
+}
+
+run_tests "$@"

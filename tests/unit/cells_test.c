@@ -1,0 +1,361 @@
+#include "surface/surface.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "field_scenes.h"
+#include <cmocka.h>
+#include <stdio.h>
+
+static CellTree cells_of(const TestScene *test, double beta, ErfForm erf)
+{
+    CellTree cells;
+    assert_int_equal(
+        celltree_build(&test->scene, &(CellParams){.beta = beta, .erf = erf}, &cells, NULL),
+        STATUS_OK);
+    return cells;
+}
+
+/* ---- the form of a term -------------------------------------------------------------------------- */
+
+static double odd_polynomial(ErfForm form, double u)
+{
+    double sum = 0;
+    for (int i = ERF_TERMS; i-- > 0;)
+        sum = sum * u * u + erf_forms[form][i];
+    return sum * u / -2;
+}
+
+static void erf_is_as_exact_as_it_says(void **state)
+{
+    (void)state;
+    for (int form = ERF_FAST; form <= ERF_EXACT; form++) {
+        double worst = 0, before = 0;
+        for (double u = 0; u < 30; u += 1e-4) {
+            double value = tanh(odd_polynomial((ErfForm)form, u));
+            worst = fmax(worst, fabs(value - erf(u)));
+            assert_true(value >= before); /* it does not turn back */
+            before = value;
+        }
+        assert_true(worst <= erf_form_error((ErfForm)form));
+        assert_true(worst > 0.9 * erf_form_error((ErfForm)form));
+        printf("  erf, %s: largest error %.3g\n", form ? "exact" : "fast", worst);
+    }
+}
+
+/* (1 + erf u) / 2 of a form, and its slope. */
+static double step(ErfForm form, double u, double *slope)
+{
+    double exponent = -2 * odd_polynomial(form, u), derivative = 0;
+    for (int i = ERF_TERMS; i-- > 0;)
+        derivative = derivative * u * u + (2 * i + 1) * erf_forms[form][i];
+    double value = 1 / (1 + exp(exponent));
+    *slope = -derivative * value / (1 + exp(-exponent));
+    return value;
+}
+
+/* The largest s |A'| / (A sqrt(-2 ln A)) of an axial factor A >= least, over positions and lengths. */
+static double axial_steepness(ErfForm form, double least)
+{
+    double worst = 0, slope, other_slope;
+    for (double length = 0.02; length < 40; length *= 1.07)
+        for (double t = length / 2; t < length + 7; t += 4e-3) {
+            double value = step(form, t, &slope) + step(form, length - t, &other_slope) - 1;
+            if (value >= least && value < 1 - 1e-9)
+                worst = fmax(worst,
+                             fabs(slope - other_slope) / sqrt(2) / value / sqrt(-2 * log(value)));
+        }
+    return worst;
+}
+
+static void the_tail_of_erf_is_no_steeper_than_cells_allow_for(void **state)
+{
+    (void)state;
+    assert_true(axial_steepness(ERF_FAST, 1e-3) <= 1);
+    assert_true(axial_steepness(ERF_EXACT, 1e-3) <= 1);
+    assert_true(axial_steepness(ERF_FAST, LOG_FORM_FLOOR / 10) <= 1.14);
+    assert_true(axial_steepness(ERF_EXACT, LOG_FORM_FLOOR / 10) <= 1.21);
+}
+
+static void a_term_in_its_form_is_the_term(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 51);
+    for (int i = 0; i < 20000; i++) {
+        double radius = pow(10, uniform(&random, -1.4, 0.6));
+        Vec3 a = random_point(&random, 70);
+        if (i % 3 == 0)
+            a.z = 0;
+        Vec3 axis = i % 3 ? random_direction(&random) : vec3(0.6, -0.8, 0);
+        double length = radius * pow(10, uniform(&random, -1, 1.7));
+        FieldSegment segment = {.a = a, .b = vec3_add_scaled(a, axis, length), .radius_mm = radius};
+        TermForm form = term_form(&segment);
+        Vec3 at = vec3_add_scaled(a, axis, length * uniform(&random, -0.2, 1.2));
+        Vec3 x =
+            vec3_add_scaled(at, random_direction(&random), 2 * radius * random_uniform(&random));
+        double exact = (double)exact_term(&segment, long_vec3(x), NULL);
+        for (int erf_form = ERF_FAST; erf_form <= ERF_EXACT; erf_form++) {
+            double error = erf_form_error((ErfForm)erf_form);
+            assert_true(fabs(term_form_value(&form, TERM_BOTH_ENDS, (ErfForm)erf_form, x) -
+                             exact) <= error + 1e-9);
+        }
+        double c = sqrt(2) / radius, from_a = c * vec3_dot(vec3_sub(x, a), axis);
+        double from_b = c * length - from_a;
+        TermPart part = from_a < END_REACH   ? (from_b < END_REACH ? TERM_BOTH_ENDS : TERM_START)
+                        : from_b < END_REACH ? TERM_END
+                                             : TERM_MIDDLE;
+        assert_true(fabs(term_form_value(&form, part, ERF_EXACT, x) - exact) <=
+                    erf_form_error(ERF_EXACT) + 1e-9);
+    }
+}
+
+/* ---- cells --------------------------------------------------------------------------------------- */
+
+static double potential(const TestScene *test, Vec3 x)
+{
+    double sum = 0;
+    for (size_t i = 0; i < test->scene.n_segments; i++)
+        sum += potential_term(&test->segments[i], x);
+    return sum;
+}
+
+/* A point of the surface on the line from x, or false. */
+static bool find_surface(const TestScene *test, Vec3 x, Vec3 direction, double step, Vec3 *found)
+{
+    Vec3 low = x;
+    if (potential(test, low) < FIELD_LEVEL)
+        return false;
+    for (int i = 0; i < 4000; i++) {
+        Vec3 high = vec3_add_scaled(low, direction, step);
+        if (potential(test, high) < FIELD_LEVEL) {
+            for (int k = 0; k < 50; k++) {
+                Vec3 middle = vec3_scale(vec3_add(low, high), 0.5);
+                *(potential(test, middle) < FIELD_LEVEL ? &high : &low) = middle;
+            }
+            *found = high;
+            return true;
+        }
+        low = high;
+    }
+    return false;
+}
+
+static bool holds(const Cell *cell, Vec3 x)
+{
+    return x.x >= cell->low.x && x.x <= cell->high.x && x.y >= cell->low.y && x.y <= cell->high.y &&
+           x.z >= cell->low.z && x.z <= cell->high.z;
+}
+
+static const double betas[] = {1.9, 4, 6.5};
+
+static void the_surface_lies_in_cells_whose_functions_are_zero_there(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 44);
+    double worst[] = {0, 0};
+    for (int run = 0; run < 2 * N_TAME_KINDS; run++) {
+        TestScene test;
+        make_test_scene((SceneKind)(run % N_TAME_KINDS), &random, &test);
+        ErfForm erf = (ErfForm)(run / N_TAME_KINDS);
+        CellTree cells = cells_of(&test, betas[run % 3], erf);
+        int found = 0;
+        for (int i = 0; i < 1500; i++) {
+            const FieldSegment *segment =
+                &test.segments[random_bits(&random) % test.scene.n_segments];
+            Vec3 x;
+            Vec3 from = vec3_add_scaled(segment->a, vec3_sub(segment->b, segment->a),
+                                        random_uniform(&random));
+            if (!find_surface(&test, from, random_direction(&random), 0.1 * segment->radius_mm, &x))
+                continue;
+            int cells_there = 0;
+            for (size_t k = 0; k < cells.n_cells; k++) {
+                const Cell *cell = &cells.cells[k];
+                if (!holds(cell, x))
+                    continue;
+                cells_there++;
+                uint32_t largest = cell_largest_term(&cells, cell, x);
+                assert_true(cell->largest == CELL_MIXED || cell->largest == largest);
+                double allowed =
+                    cell->max_gradient * cell_displacement(test.segments[largest].radius_mm, erf);
+                double off = fabs(cell_function(&cells, cell, x)) / allowed;
+                worst[erf] = fmax(worst[erf], off);
+                assert_true(off <= 1);
+            }
+            assert_true(cells_there > 0);
+            found++;
+        }
+        assert_true(found > 50);
+        celltree_release(&cells);
+    }
+    printf("  displacement over its bound: fast %.3f, exact %.3f\n", worst[0], worst[1]);
+}
+
+static Vec3 random_place_in(const Cell *cell, Random *random)
+{
+    return vec3(uniform(random, cell->low.x, cell->high.x),
+                uniform(random, cell->low.y, cell->high.y),
+                uniform(random, cell->low.z, cell->high.z));
+}
+
+/* |grad| of the cell's function over its bound. */
+static double steepness(const CellTree *cells, const Cell *cell, Vec3 x)
+{
+    double h = 1e-4 * cell->accuracy;
+    Vec3 rise = {cell_function(cells, cell, vec3(x.x + h, x.y, x.z)) -
+                     cell_function(cells, cell, vec3(x.x - h, x.y, x.z)),
+                 cell_function(cells, cell, vec3(x.x, x.y + h, x.z)) -
+                     cell_function(cells, cell, vec3(x.x, x.y - h, x.z)),
+                 cell_function(cells, cell, vec3(x.x, x.y, x.z + h)) -
+                     cell_function(cells, cell, vec3(x.x, x.y, x.z - h))};
+    return vec3_length(rise) / (2 * h) / cell->max_gradient;
+}
+
+static void gradient_in_a_cell_never_exceeds_its_bound(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 45);
+    double worst = 0;
+    for (int run = 0; run < 2 * N_TAME_KINDS; run++) {
+        TestScene test;
+        make_test_scene((SceneKind)(run % N_TAME_KINDS), &random, &test);
+        CellTree cells = cells_of(&test, betas[run % 3], (ErfForm)(run / N_TAME_KINDS));
+        for (int i = 0; i < 60000; i++) {
+            const Cell *cell = &cells.cells[random_bits(&random) % cells.n_cells];
+            double ratio = steepness(&cells, cell, random_place_in(cell, &random));
+            worst = fmax(worst, ratio);
+            assert_true(ratio <= 1 + 1e-6);
+        }
+        celltree_release(&cells);
+    }
+    printf("  largest gradient over its bound: %.4f\n", worst);
+}
+
+static void coincident_segments_reach_the_bound(void **state)
+{
+    (void)state;
+    TestScene test = {.scene = {.segments = test.segments}};
+    for (int i = 0; i < 4; i++)
+        put_segment(&test, vec3(-8, 0.1, 0.2), vec3(9, 0.1, 0.2), 0.73);
+    CellTree cells = cells_of(&test, 4, ERF_FAST);
+    double largest = 0;
+    for (size_t i = 0; i < cells.n_cells; i++)
+        for (double y = 0.1; y < 1.6; y += 1e-3)
+            if (holds(&cells.cells[i], vec3(0.5, y, 0.2)))
+                largest = fmax(largest, steepness(&cells, &cells.cells[i], vec3(0.5, y, 0.2)));
+    assert_true(largest <= 1 + 1e-6);
+    assert_true(largest > 0.98);
+    celltree_release(&cells);
+}
+
+static void a_long_vessel_is_made_of_tubes(void **state)
+{
+    (void)state;
+    TestScene test = {.scene = {.segments = test.segments}};
+    put_segment(&test, vec3(-38.5, 0.11, 0.23), vec3(49, 0.42, -0.71), 0.73);
+    CellTree cells = cells_of(&test, 3, ERF_FAST);
+    size_t tubes = 0;
+    for (size_t i = 0; i < cells.n_cells; i++) {
+        const Cell *cell = &cells.cells[i];
+        if (!cell_is_tube(&cells, cell))
+            continue;
+        tubes++;
+        assert_true(cell->max_gradient * 0.73 / 2 / cell->scale < 1.001);
+        Vec3 x = box_center((Box){cell->low, cell->high});
+        Vec3 from_a = vec3_sub(x, test.segments[0].a);
+        Vec3 axis = vec3_normalized(vec3_sub(test.segments[0].b, test.segments[0].a));
+        double distance = vec3_length(vec3_cross(from_a, axis));
+        assert_true(fabs(cell_function(&cells, cell, x) / cell->scale * 0.365 - (distance - 0.73)) <
+                    1e-9);
+    }
+    assert_true((double)tubes > 0.9 * (double)cells.n_cells);
+    celltree_release(&cells);
+}
+
+static void cells_come_in_order_with_what_they_promise(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 46);
+    TestScene test;
+    make_test_scene(KIND_TREE, &random, &test);
+    CellTree cells = cells_of(&test, 4, ERF_FAST), again = cells_of(&test, 4, ERF_FAST);
+    assert_int_equal(cells.n_terms, again.n_terms);
+    assert_memory_equal(cells.terms, again.terms, cells.n_terms * sizeof *cells.terms);
+    size_t next = 0;
+    for (size_t i = 0; i < cells.n_cells; i++) {
+        const Cell *cell = &cells.cells[i];
+        assert_int_equal(cell->first, next);
+        next += cell->count;
+        double smallest = HUGE_VAL;
+        for (uint32_t k = 0; k < cell->count; k++) {
+            uint32_t segment = cells.terms[cell->first + k].segment;
+            assert_true(k == 0 || segment > cells.terms[cell->first + k - 1].segment);
+            smallest = fmin(smallest, test.segments[segment].radius_mm);
+        }
+        int exponent;
+        assert_true(frexp(cell->scale, &exponent) == 0.5);
+        assert_true(cell->scale <= smallest / 8 && cell->scale > smallest / 16);
+        assert_true(cell->accuracy >= cell_accuracy(smallest));
+        assert_true(cell->high.x - cell->low.x <= 4 * 300 * cell->accuracy * 1.1);
+    }
+    assert_int_equal(next, cells.n_terms);
+    celltree_release(&cells);
+    celltree_release(&again);
+}
+
+static void accuracy_follows_the_radius_but_for_shadows(void **state)
+{
+    (void)state;
+    assert_true(fabs(cell_accuracy(2.385) - 0.00795) < 1e-9);
+    assert_true(cell_accuracy(0.1) >= 1e-3);
+    assert_true(cell_accuracy(0.006) <= 1e-4);
+    for (double radius = 1e-4; radius < 10; radius *= 1.013)
+        assert_true(cell_accuracy(radius * 1.013) >= cell_accuracy(radius));
+}
+
+static void nothing_has_no_cells(void **state)
+{
+    (void)state;
+    TestScene test = {.scene = {.model = SCENE_ISOSURFACE}};
+    CellTree cells = cells_of(&test, 4, ERF_FAST);
+    assert_int_equal(cells.n_cells, 0);
+    celltree_release(&cells);
+}
+
+static void refuses_a_scene_of_countless_cells(void **state)
+{
+    (void)state;
+    TestScene test = {.scene = {.segments = test.segments}};
+    put_segment(&test, vec3(-48.5, 3, 0), vec3(51.25, 7, 2), 1e-7);
+    CellTree cells = {0};
+    Err err;
+    assert_int_equal(celltree_build(&test.scene, &(CellParams){.beta = 4}, &cells, &err),
+                     STATUS_INFEASIBLE);
+    assert_non_null(strstr(err.text, "1000000 cells"));
+    assert_null(cells.cells);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(erf_is_as_exact_as_it_says),
+        cmocka_unit_test(the_tail_of_erf_is_no_steeper_than_cells_allow_for),
+        cmocka_unit_test(a_term_in_its_form_is_the_term),
+        cmocka_unit_test(the_surface_lies_in_cells_whose_functions_are_zero_there),
+        cmocka_unit_test(gradient_in_a_cell_never_exceeds_its_bound),
+        cmocka_unit_test(coincident_segments_reach_the_bound),
+        cmocka_unit_test(a_long_vessel_is_made_of_tubes),
+        cmocka_unit_test(cells_come_in_order_with_what_they_promise),
+        cmocka_unit_test(accuracy_follows_the_radius_but_for_shadows),
+        cmocka_unit_test(nothing_has_no_cells),
+        cmocka_unit_test(refuses_a_scene_of_countless_cells),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
