@@ -17,6 +17,7 @@ typedef struct Sums {
     uint64_t abs, squares; /* codes, codes^2 */
     int64_t signed_codes[3];
     size_t differing, beyond;
+    size_t brighter, darker; /* pixels, by the sum of their channels */
     size_t classes[PIXEL_CLASSES];
     int max, interior_max; /* codes */
     PixelPlace worst;
@@ -83,14 +84,17 @@ static PixelClass class_of_shading(const Walk *walk, const Row *row, int x, bool
 /* The largest difference over the channels of a pixel, in codes; adds to the sums. */
 static int pixel_difference(const uint16_t *a, const uint16_t *b, int channels, Sums *sums)
 {
-    int largest = 0;
+    int largest = 0, sum = 0;
     for (int c = 0; c < channels; c++) {
         int difference = b[c] - a[c], size = abs(difference);
         sums->signed_codes[c] += difference;
         sums->abs += (uint64_t)size;
         sums->squares += (uint64_t)size * (uint64_t)size;
         largest = size > largest ? size : largest;
+        sum += difference;
     }
+    sums->brighter += sum > 0;
+    sums->darker += sum < 0;
     return largest;
 }
 
@@ -243,6 +247,8 @@ static void add_sums(Sums *to, const Sums *from)
         to->classes[i] += from->classes[i];
     to->differing += from->differing;
     to->beyond += from->beyond;
+    to->brighter += from->brighter;
+    to->darker += from->darker;
     to->common += from->common;
     to->missing += from->missing;
     to->extra += from->extra;
@@ -284,6 +290,9 @@ static void take_color(const Sums *sums, double code_levels, int channels, Compa
         if (fabs(bias) > fabs(result->bias_levels))
             result->bias_levels = bias;
     }
+    double brighter = (double)sums->brighter, darker = (double)sums->darker;
+    result->sign_sigma =
+        sums->differing ? (brighter - darker) / sqrt(fmax(brighter + darker, 1)) : 0;
     memcpy(result->classes, sums->classes, sizeof result->classes);
 }
 
