@@ -103,7 +103,7 @@ typedef enum GrowRefine {
     GROW_REFINE_NONE,
     GROW_REFINE_GEOMETRY, /* every bifurcation moves to where it is best */
     GROW_REFINE_TOPOLOGY, /* subtrees are also connected elsewhere when that is better */
-    GROW_REFINE_ANNEAL,   /* and at first, less and less often, when it is worse */
+    GROW_REFINE_ANNEAL,   /* and first, less and less often, when it is worse */
 } GrowRefine;
 
 typedef struct RefineParams {
@@ -137,8 +137,9 @@ uint64_t refine_moves(GrowRefine level, size_t terminals);
  * Inlet, terminals, node types, flow shares and header stay. Nodes are in depth-first order with ids
  * 1 .. n, and radii follow from the places by Murray's law and the pressures, which hold to
  * rounding. All that moves stays in the domain; segments that are longer than wide and clear of
- * those they share no node with stay so, and where they were not it does not get worse. If more
- * than one in ten were not, all vessels count at a smaller part of their radii [report].
+ * those they share no node with stay so, and where they were not it does not get worse; the levels
+ * above geometry also try to make all of them so. If more than one in ten were not, all vessels
+ * count at a smaller part of their radii [report].
  *
  * With a budget of moves alone, the same tree and parameters give the same bits. `report` may be
  * NULL. Fails, *tree unchanged, with STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree that

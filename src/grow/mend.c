@@ -10,6 +10,8 @@
 enum { ROUNDS = 6, CHUNK = 512 };
 /* Moved segments keep to the rules with this to spare, over the radii. */
 static const double spare = 2e-3;
+/* The share of segments above which a tree is beyond mending: it is too thick for its domain. */
+static const double most_close = 0.1;
 /* How far bifurcations are moved, over the radius of the segment that ends there. */
 static const double steps[] = {0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
 
@@ -168,6 +170,14 @@ static void look_at_chunk(size_t index, int worker, void *context)
     }
 }
 
+static size_t count_close(const Mending *mending)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < mending->net->n; k++)
+        count += mending->close[k];
+    return count;
+}
+
 static Status move_ends(const Mending *mending, int32_t i, Err *err)
 {
     TRY(move(mending, mending->net->segment[i].parent, err));
@@ -199,10 +209,14 @@ Status mend_network(Network *net, Grid *grid, const Domain *domain, const Rules 
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&mending.close, net->n, sizeof *mending.close, "segments", err));
     for (int round = 0; round < ROUNDS; round++) {
-        network_refresh(net);
+        network_refresh(net, threads);
         TRY_GOTO(place_widen(grid, rules, net, err));
-        if (round == 0)
+        if (round == 0) {
             threads_for((net->n + CHUNK - 1) / CHUNK, threads, look_at_chunk, &mending);
+            *left = count_close(&mending);
+            if ((double)*left > most_close * (double)net->n)
+                break;
+        }
         TRY_GOTO(mend(&mending, left, err));
         if (*left == 0)
             break;

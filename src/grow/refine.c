@@ -1,10 +1,18 @@
-/* Refinement is local search with two moves [refine_move.h]. A round tries as many moves of
- * subtrees, drawn at random, as there are segments, and then a sweep over all bifurcations. The
- * geometry level has the sweeps alone. Annealing lets the temperature fall geometrically over the
- * budget and has it at 0 for the last part of it, so that it ends in a local optimum; it keeps a
- * copy of the best tree, which the other levels do not need, because they never accept a rise.
+/* Refinement is local search with two moves [refine_move.h]. A round moves all subtrees in random
+ * order, and then sweeps over all bifurcations. The geometry level has the sweeps alone.
  *
- * Every state between two moves is a tree that keeps all promises, so it can stop at any time. */
+ * Within the rules of room the search soon comes to a tree where vessels are in each other's way:
+ * what would be better lies behind trees that cross. The topology level therefore makes a detour:
+ * rules may be broken at a price [refine_toll.h], low at first and rising until no vessel breaks one.
+ * When little more is to be gained, only what is near a broken rule is moved, until all are mended.
+ * A detour that fails, or gains nothing, ends where it began, and the next begins dearer, closer to
+ * the rules. This is what brings a tree of little length (lambda 0) near the shortest that there is.
+ *
+ * Annealing lets the temperature fall geometrically over most of its budget, takes the best tree and
+ * goes on as topology does.
+ *
+ * Whenever refinement stops, it has a tree that keeps all promises: the present one, or on a detour
+ * or when annealing the best before. */
 #include "grow/grow.h"
 
 #include "grow/refine_arbor.h"
@@ -12,14 +20,22 @@
 #include "grow/refine_move.h"
 #include "grow/refine_result.h"
 #include "grow/refine_room.h"
+#include "grow/refine_toll.h"
 #include <stdlib.h>
 
-/* Temperatures of annealing over S_root a segment: at first, and just before the last part. */
+/* Temperatures of annealing over S_root a segment, at first and at last, and the share of the budget
+ * that is left then. */
 static const double hot = 0.2, cold = 0.03;
 static const double last_part = 0.1;
-/* A round that gains less than this of S_root is the last but for annealing. */
-static const double least_gain[] = {
-    [GROW_REFINE_GEOMETRY] = 1e-5, [GROW_REFINE_TOPOLOGY] = 2e-5, [GROW_REFINE_ANNEAL] = 0};
+/* A round that gains less than this of S_root is the last: of sweeps; before a detour, on it and
+ * after it. */
+static const double least_sweep_gain = 1e-4;
+static const double least_gain_before = 2e-3, least_gain_across = 2e-4, least_gain_after = 5e-5;
+/* The price of the first detour, over S_root a mm of vessels, and how it rises to the next. */
+static const double first_price = 0.25, price_rise = 4;
+enum { DETOURS = 3, ROUNDS_PER_DETOUR = 40 };
+/* Segments that are moved around either end of one that breaks a rule. */
+enum { NEIGHBOURS = 8 };
 /* Rounds after which vessels get their room anew. */
 enum { ROUNDS_PER_BOOKING = 4 };
 /* Moves after which the clock is read. */
@@ -32,8 +48,10 @@ typedef struct Refinement {
     double fraction; /* of the budget that is spent */
     bool stopped;
     Surgery surgery;
-    double first_cost, best_cost;
-    /* The best tree, of annealing: */
+    double first_cost;
+    int32_t *order; /* in which subtrees move, from 1 */
+    /* The tree that is remembered: */
+    double best_cost;
     int32_t *best_parent;
     Vec3 *best_place;
 } Refinement;
@@ -42,8 +60,8 @@ uint64_t refine_moves(GrowRefine level, size_t terminals)
 {
     const uint64_t moves_per_terminal[] = {[GROW_REFINE_NONE] = 0,
                                            [GROW_REFINE_GEOMETRY] = 100,
-                                           [GROW_REFINE_TOPOLOGY] = 100,
-                                           [GROW_REFINE_ANNEAL] = 2000};
+                                           [GROW_REFINE_TOPOLOGY] = 200,
+                                           [GROW_REFINE_ANNEAL] = 1600};
     return moves_per_terminal[level] * terminals;
 }
 
@@ -93,10 +111,14 @@ static Status shuffle(Refinement *refinement, bool *over, Err *err)
 {
     Surgery *surgery = &refinement->surgery;
     size_t n = surgery->arbor.n;
-    for (size_t k = 0; k < n && !*over; k++) {
-        if (k % (n / 16 + 1) == 0)
+    int32_t *order = refinement->order;
+    for (size_t k = 1; k < n && !*over; k++) {
+        if (k % (n / 16 + 1) == 1)
             arbor_look(&surgery->arbor);
-        int32_t i = 1 + (int32_t)(random_uniform(&surgery->random) * (double)(n - 1));
+        size_t drawn = k + (size_t)(random_uniform(&surgery->random) * (double)(n - k));
+        int32_t i = order[drawn];
+        order[drawn] = order[k];
+        order[k] = i;
         TRY(move_subtree(surgery, i, temperature(refinement), err));
         *over = is_over(refinement);
     }
@@ -113,25 +135,123 @@ static void remember(Refinement *refinement)
     }
 }
 
-static Status refine(Refinement *refinement, Err *err)
+/* Goes back to the tree that is remembered. */
+static Status recall(Refinement *refinement, Err *err)
 {
     Surgery *surgery = &refinement->surgery;
-    GrowRefine level = refinement->params->level;
-    bool over = is_over(refinement);
-    for (int round = 1; !over; round++) {
-        double cost = arbor_cost(&surgery->arbor);
+    arbor_arrange(&surgery->arbor, refinement->best_parent, refinement->best_place);
+    return room_book(&surgery->room, &surgery->arbor, err);
+}
+
+/* Rounds within the rules until one gains less than `least_gain` of S_root. */
+static Status descend(Refinement *refinement, double least_gain, bool *over, Err *err)
+{
+    Surgery *surgery = &refinement->surgery;
+    double before = INFINITY, cost = arbor_cost(&surgery->arbor);
+    for (int round = 1; !*over && cost < before * (1 - least_gain); round++) {
+        before = cost;
         if (round % ROUNDS_PER_BOOKING == 0)
             TRY(room_book(&surgery->room, &surgery->arbor, err));
-        if (level != GROW_REFINE_GEOMETRY)
-            TRY(shuffle(refinement, &over, err));
-        TRY(sweep(refinement, &over, err));
-        double now = arbor_cost(&surgery->arbor);
-        if (level == GROW_REFINE_ANNEAL && now < refinement->best_cost)
-            remember(refinement);
-        if (level != GROW_REFINE_ANNEAL && now > cost * (1 - least_gain[level]))
-            over = true;
+        if (refinement->params->level != GROW_REFINE_GEOMETRY)
+            TRY(shuffle(refinement, over, err));
+        TRY(sweep(refinement, over, err));
+        cost = arbor_cost(&surgery->arbor);
     }
     return STATUS_OK;
+}
+
+/* Moves segment i in all ways. */
+static Status move(Refinement *refinement, int32_t i, bool *over, Err *err)
+{
+    Surgery *surgery = &refinement->surgery;
+    TRY(move_subtree(surgery, i, 0, err));
+    *over = is_over(refinement);
+    if (*over || surgery->arbor.branch[i].child[0] < 0)
+        return STATUS_OK;
+    TRY(move_bifurcation(surgery, i, err));
+    *over = is_over(refinement);
+    return STATUS_OK;
+}
+
+/* Moves all segments that break a rule, and what is near them. */
+static Status mend(Refinement *refinement, bool *over, Err *err)
+{
+    const Surgery *surgery = &refinement->surgery;
+    for (size_t k = 0; k < surgery->tolls.n_broken && !*over; k++) {
+        int32_t i = surgery->tolls.broken[k];
+        const Shape *shape = &surgery->arbor.shape[i];
+        Near near[2 * NEIGHBOURS];
+        int count = grid_nearest(&surgery->room.grid, shape->to, NEIGHBOURS, near);
+        count += grid_nearest(&surgery->room.grid, shape->from, NEIGHBOURS, near + count);
+        TRY(move(refinement, i, over, err));
+        for (int m = 0; m < count && !*over; m++)
+            TRY(move(refinement, near[m].segment, over, err));
+    }
+    return STATUS_OK;
+}
+
+/* Rounds across the rules. *done tells whether that led to a better tree; if not, all is as it was. */
+static Status detour(Refinement *refinement, double price, bool *done, bool *over, Err *err)
+{
+    Surgery *surgery = &refinement->surgery;
+    Arbor *arbor = &surgery->arbor;
+    Tolls *tolls = &surgery->tolls;
+    bool gains = true, clear = false;
+    remember(refinement);
+    tolls_open(tolls, arbor, price);
+    for (int round = 0; round < ROUNDS_PER_DETOUR && !clear && !*over; round++) {
+        double before = arbor_cost(arbor);
+        TRY(tolls_book(&surgery->room, arbor, err));
+        if (gains) {
+            TRY(shuffle(refinement, over, err));
+            TRY(sweep(refinement, over, err));
+            gains = arbor_cost(arbor) < before * (1 - least_gain_across);
+        } else {
+            TRY(mend(refinement, over, err));
+        }
+        TRY(room_book(&surgery->room, arbor, err));
+        tolls_raise(tolls, &surgery->room, arbor);
+        clear = tolls->n_broken == 0;
+    }
+    tolls->open = false;
+    *done = clear && arbor_cost(arbor) < refinement->best_cost;
+    return *done ? STATUS_OK : recall(refinement, err);
+}
+
+static Status improve_topology(Refinement *refinement, bool *over, Err *err)
+{
+    double price = first_price;
+    bool done = refinement->surgery.room.level == 0; /* vessels of no width pay nothing */
+    TRY(descend(refinement, least_gain_before, over, err));
+    for (int k = 0; k < DETOURS && !done && !*over; k++, price *= price_rise)
+        TRY(detour(refinement, price, &done, over, err));
+    return descend(refinement, least_gain_after, over, err);
+}
+
+static Status anneal(Refinement *refinement, bool *over, Err *err)
+{
+    Surgery *surgery = &refinement->surgery;
+    remember(refinement);
+    for (int round = 1; !*over && refinement->fraction < 1 - last_part; round++) {
+        if (round % ROUNDS_PER_BOOKING == 0)
+            TRY(room_book(&surgery->room, &surgery->arbor, err));
+        TRY(shuffle(refinement, over, err));
+        TRY(sweep(refinement, over, err));
+        if (arbor_cost(&surgery->arbor) < refinement->best_cost)
+            remember(refinement);
+    }
+    return recall(refinement, err);
+}
+
+static Status refine(Refinement *refinement, Err *err)
+{
+    GrowRefine level = refinement->params->level;
+    bool over = is_over(refinement);
+    if (level == GROW_REFINE_GEOMETRY)
+        return descend(refinement, least_sweep_gain, &over, err);
+    if (level == GROW_REFINE_ANNEAL)
+        TRY(anneal(refinement, &over, err));
+    return improve_topology(refinement, &over, err);
 }
 
 /* The tree's target, mm^(1 + lambda). */
@@ -155,14 +275,17 @@ static Status start(Refinement *refinement, const Domain *domain, const Tree *tr
                        "with gamma %g and lambda %g the radii span more than a double can hold",
                        tree->header.gamma, tree->header.lambda);
     TRY(room_init(&surgery->room, domain, &surgery->arbor, err));
-    if (params->level != GROW_REFINE_ANNEAL)
+    if (params->level == GROW_REFINE_GEOMETRY)
         return STATUS_OK;
+    TRY(tolls_init(&surgery->tolls, tree->n, err));
     TRY(mem_calloc(&refinement->best_parent, tree->n, sizeof *refinement->best_parent, "nodes",
                    err));
     TRY(mem_calloc(&refinement->best_place, tree->n, sizeof *refinement->best_place, "nodes", err));
+    TRY(mem_calloc(&refinement->order, tree->n, sizeof *refinement->order, "segments", err));
+    for (size_t i = 0; i < tree->n; i++)
+        refinement->order[i] = (int32_t)i;
     refinement->best_parent[0] = TREE_NO_PARENT;
     refinement->best_place[0] = tree->position[0];
-    remember(refinement);
     return STATUS_OK;
 }
 
@@ -176,8 +299,6 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
     TRY_GOTO(start(&refinement, domain, tree, err));
     double before = target_of(&surgery->arbor);
     TRY_GOTO(refine(&refinement, err));
-    if (refinement.best_parent && refinement.best_cost < arbor_cost(&surgery->arbor))
-        arbor_arrange(&surgery->arbor, refinement.best_parent, refinement.best_place);
     double after = target_of(&surgery->arbor);
     TRY_GOTO(result_write(&surgery->arbor, tree, err));
     if (report)
@@ -189,8 +310,10 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                                  .thickness = surgery->room.level,
                                  .stopped = refinement.stopped};
 done:
+    free(refinement.order);
     free(refinement.best_parent);
     free(refinement.best_place);
+    tolls_release(&surgery->tolls);
     room_release(&surgery->room);
     arbor_release(&surgery->arbor);
     return status;

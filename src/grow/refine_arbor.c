@@ -199,6 +199,7 @@ void arbor_undo(Arbor *arbor)
         arbor->branch[arbor->saved_branch[k].i] = arbor->saved_branch[k].was;
     for (int k = 0; k < arbor->n_saved_shapes; k++)
         arbor->shape[arbor->saved_shape[k].i] = arbor->saved_shape[k].was;
+    arbor->pruned = 0;
 }
 
 /* The segment, now saved. */
@@ -270,6 +271,7 @@ void arbor_prune(Arbor *arbor, int32_t i)
     replace(arbor, fork, sibling);
     put(arbor, sibling, arbor->shape[fork].from, arbor->shape[sibling].to);
     arbor_climb(arbor, sibling);
+    arbor->pruned = i;
 }
 
 void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place)
@@ -280,6 +282,7 @@ void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place)
     child[child[0] == i] = host;
     branch_of(arbor, host)->parent = fork;
     pivot(arbor, fork, arbor->shape[host].from, place);
+    arbor->pruned = 0;
 }
 
 void arbor_book(Arbor *arbor, int32_t i, double booked, double tightness)

@@ -43,6 +43,7 @@ typedef struct Arbor {
     Branch *branch;
     Shape *shape;
     Outlook *outlook; /* of each segment; as of the last arbor_look, or of its last move */
+    int32_t pruned;   /* the segment that arbor_prune has cut off; 0: none */
     /* What the present move has changed, as it was before: */
     uint32_t move;
     struct SavedBranch {
@@ -101,6 +102,12 @@ static inline int32_t arbor_sibling(const Arbor *arbor, int32_t i)
 
 /* Whether segment i is `top` or below it. */
 bool arbor_is_below(const Arbor *arbor, int32_t i, int32_t top);
+/* False for a segment that is pruned and for the bifurcation that it came from. */
+static inline bool arbor_has(const Arbor *arbor, int32_t i)
+{
+    return arbor->pruned == 0 || (i != arbor->pruned && i != arbor->branch[arbor->pruned].parent);
+}
+
 /* Whether two different segments have a node in common. */
 bool arbor_are_joined(const Arbor *arbor, int32_t i, int32_t j);
 

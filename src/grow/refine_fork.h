@@ -29,7 +29,7 @@ typedef struct Fork {
     Outlook outlook;     /* of the proximal segment */
     double radius_unit;  /* q [law.h] */
     double least_length; /* mm; of each segment */
-    double least_widths; /* each is at least so many diameters long */
+    double least_widths; /* and diameters */
 } Fork;
 
 /* The fork with its bifurcation at one point. */
@@ -47,8 +47,5 @@ bool fork_at(const Fork *fork, Vec3 place, ForkState *out);
 /* Moves *state, the outcome of fork_at, `rounds` times to the point that is best for its weights,
  * kept off the ends. False as with fork_at. */
 bool fork_settle(const Fork *fork, int rounds, ForkState *state);
-
-/* Whether the three segments are as long as they have to be. */
-bool fork_is_long_enough(const Fork *fork, const ForkState *state);
 
 #endif

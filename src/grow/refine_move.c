@@ -4,7 +4,11 @@
  *
  * Connections are chosen from Boltzmann's distribution of their prices, so one draw stands for many
  * proposals of which all but one would be rejected; the error of the price is made up for by
- * Metropolis's rule. */
+ * Metropolis's rule.
+ *
+ * Tolls are counted exactly, but for radii that are as of the last booking: before and after, of
+ * the segments that a move changes. A subtree changes places in two steps, and what it pays in a
+ * place is what tolls rise by when it is put there from nowhere. */
 #include "grow/refine_move.h"
 
 #include <float.h>
@@ -13,9 +17,10 @@
 enum { CANDIDATES = 12, NEIGHBOURS = 20 };
 /* Rounds of settling: of a candidate, and of the one that is chosen. */
 enum { ROUGH_ROUNDS = 1, ROUNDS = 2 };
-/* A bifurcation that has no room where it should be tries shorter and shorter steps; a subtree that
- * cannot be connected where it was to be tries other candidates. */
-enum { STEPS = 3, ATTEMPTS = 4 };
+/* A bifurcation that may not be where it should tries shorter and shorter steps, and where it pays
+ * tolls, then random ones; a subtree that cannot be connected where it was to be tries other
+ * candidates. */
+enum { STEPS = 3, JOLTS = 4, ATTEMPTS = 4 };
 /* Gains of S_root, over S_root, too small to be worth a move. */
 static const double least_gain = 1e-9;
 
@@ -53,11 +58,58 @@ static Status keep(Surgery *surgery, int32_t i, Err *err)
     return room_follow(&surgery->room, arbor, err);
 }
 
+/* What the bifurcation at the end of segment i, where the present move has put it, costs beside
+ * S_root: tolls; while they are closed, nothing or more than any move can gain. */
+static double surcharge(Surgery *surgery, int32_t i)
+{
+    Arbor *arbor = &surgery->arbor;
+    if (!surgery->tolls.open)
+        return room_allows(&surgery->room, arbor) ? 0 : INFINITY;
+    if (!room_encloses(&surgery->room, arbor))
+        return INFINITY;
+    return toll_of_fork(&surgery->tolls, &surgery->room, arbor, i);
+}
+
+static double toll(Surgery *surgery, const int32_t *segment, int count)
+{
+    return toll_of(&surgery->tolls, &surgery->room, &surgery->arbor, segment, count);
+}
+
+/* Puts the bifurcation at the end of segment i to `place` if S_root and tolls then are below
+ * `cost`. */
+static bool shift(Surgery *surgery, int32_t i, Vec3 place, double cost)
+{
+    Arbor *arbor = &surgery->arbor;
+    arbor_begin(arbor);
+    arbor_shift(arbor, i, place);
+    double now = arbor_cost(arbor);
+    if (now < cost && now + surcharge(surgery, i) < cost)
+        return true;
+    arbor_undo(arbor);
+    return false;
+}
+
+/* A random step of about the size of the shortest segment at the bifurcation. */
+static Vec3 jolt(Surgery *surgery, int32_t i)
+{
+    const Arbor *arbor = &surgery->arbor;
+    const Branch *branch = &arbor->branch[i];
+    const Box *box = &surgery->room.box;
+    double size = fmin(branch->length, fmin(arbor->branch[branch->child[0]].length,
+                                            arbor->branch[branch->child[1]].length));
+    size = fmax(size, arbor->shape[i].booked);
+    Vec3 step;
+    step.x = random_uniform(&surgery->random) - 0.5;
+    step.y = random_uniform(&surgery->random) - 0.5;
+    step.z = box->high.z > box->low.z ? random_uniform(&surgery->random) - 0.5 : 0;
+    return vec3_scale(step, 2 * size * random_uniform(&surgery->random));
+}
+
 Status move_bifurcation(Surgery *surgery, int32_t i, Err *err)
 {
     Arbor *arbor = &surgery->arbor;
     const int32_t *child = arbor->branch[i].child;
-    double cost = arbor_cost(arbor);
+    const int32_t moved[] = {i, child[0], child[1]};
     Vec3 place = arbor->shape[i].to;
     Fork fork = fork_of(surgery, arbor->shape[i].from, child[0], child[1], arbor_outlook(arbor, i));
     ForkState now, best;
@@ -65,16 +117,19 @@ Status move_bifurcation(Surgery *surgery, int32_t i, Err *err)
     if (!fork_at(&fork, place, &now))
         return STATUS_OK;
     best = now;
-    if (!fork_settle(&fork, ROUNDS, &best) || !(best.cost < now.cost - least_gain * cost))
+    if (!fork_settle(&fork, ROUNDS, &best))
+        return STATUS_OK;
+    arbor_begin(arbor);
+    double due = toll(surgery, moved, 3), cost = arbor_cost(arbor);
+    if (!(best.cost < now.cost + due - least_gain * cost))
         return STATUS_OK;
     Vec3 step = vec3_sub(best.place, place);
-    for (int k = 0; k < STEPS; k++, step = vec3_scale(step, 0.5)) {
-        arbor_begin(arbor);
-        arbor_shift(arbor, i, vec3_add(place, step));
-        if (arbor_cost(arbor) < cost && room_allows(&surgery->room, arbor))
+    for (int k = 0; k < STEPS; k++, step = vec3_scale(step, 0.5))
+        if (shift(surgery, i, vec3_add(place, step), cost + due))
             return keep(surgery, i, err);
-        arbor_undo(arbor);
-    }
+    for (int k = 0; k < JOLTS && due > 0; k++)
+        if (shift(surgery, i, vec3_add(place, jolt(surgery, i)), cost + due))
+            return keep(surgery, i, err);
     return STATUS_OK;
 }
 
@@ -161,26 +216,23 @@ static int choose(Surgery *surgery, const Candidate *candidate, int count, doubl
     return best;
 }
 
-/* Whether to keep a move that raised S_root by `rise` where `expected` was expected. */
-static bool is_wanted(Surgery *surgery, double rise, double expected, double temperature)
+/* By how much the cost of a move may exceed what was expected of it, by Metropolis's rule. */
+static double tolerance(Surgery *surgery, double temperature)
 {
-    if (!(temperature > 0))
-        return rise < 0;
-    double error = rise - expected;
-    return isfinite(error) && random_uniform(&surgery->random) < exp(fmin(0, -error / temperature));
+    return -temperature * log(random_uniform(&surgery->random));
 }
 
-/* Connects `subtree`, which is pruned, as the candidate says. False when that is not wanted or when
- * there is no room; the move is then to be undone. */
-static bool connect(Surgery *surgery, int32_t subtree, Candidate *to, double cost, double expected,
-                    double temperature)
+/* Connects `subtree`, which is pruned, as the candidate says, if S_root and tolls are then below
+ * `limit`. If not, the move is to be undone. */
+static bool connect(Surgery *surgery, int32_t subtree, Candidate *to, double limit)
 {
     Arbor *arbor = &surgery->arbor;
-    if (!fork_settle(&to->fork, ROUNDS, &to->state) || !fork_is_long_enough(&to->fork, &to->state))
+    if (!fork_settle(&to->fork, ROUNDS, &to->state))
         return false;
+    limit += toll(surgery, &to->host, 1);
     arbor_graft(arbor, subtree, to->host, to->state.place);
-    return is_wanted(surgery, arbor_cost(arbor) - cost, expected, temperature) &&
-           room_allows(&surgery->room, arbor);
+    double now = arbor_cost(arbor);
+    return now < limit && now + surcharge(surgery, arbor->branch[subtree].parent) < limit;
 }
 
 Status move_subtree(Surgery *surgery, int32_t i, double temperature, Err *err)
@@ -190,18 +242,25 @@ Status move_subtree(Surgery *surgery, int32_t i, double temperature, Err *err)
     if (i == arbor_root(arbor))
         return STATUS_OK;
     int32_t fork = arbor->branch[i].parent, origin = arbor_sibling(arbor, i);
+    const int32_t here[] = {i, fork, origin};
     double cost = arbor_cost(arbor);
     Candidates candidates;
     Candidate *candidate = candidates.list;
     arbor_begin(arbor);
+    double due = toll(surgery, here, 3);
     arbor_prune(arbor, i);
+    due -= toll(surgery, &origin, 1);
     find_candidates(surgery, i, origin, &candidates);
+    if (candidates.count > 0)
+        candidate[0].price += due;
     for (int attempt = 0; attempt < ATTEMPTS && candidates.count > 1; attempt++) {
         int chosen = choose(surgery, candidate, candidates.count, temperature);
         if (chosen == 0)
             break;
-        if (connect(surgery, i, &candidate[chosen], cost,
-                    candidate[chosen].price - candidate[0].price, temperature)) {
+        double limit = cost + due;
+        if (temperature > 0)
+            limit += candidate[chosen].price - candidate[0].price + tolerance(surgery, temperature);
+        if (connect(surgery, i, &candidate[chosen], limit)) {
             TRY(keep(surgery, fork, err));
             arbor->outlook[origin] = arbor_outlook(arbor, origin);
             return STATUS_OK;

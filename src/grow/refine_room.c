@@ -99,17 +99,24 @@ static double fair_share(const Room *room, const Arbor *arbor, const double *rad
     return share;
 }
 
-/* Books at the room's level; *clear is the share of segments that have the room they should. */
-static Status book(Room *room, Arbor *arbor, double *clear, Err *err)
+/* Finds the radii of all segments and empties the grid. */
+static Status measure(Room *room, Arbor *arbor, Err *err)
 {
     TRY(grid_reset(&room->grid, room->box, cells_per_terminal * (double)(arbor->n / 2), arbor->n, 1,
                    err));
     arbor_look(arbor);
-    for (size_t i = 1; i < arbor->n; i++) {
-        const Branch *branch = &arbor->branch[i];
+    for (size_t i = 1; i < arbor->n; i++)
         room->radius[i] =
             arbor->radius_unit * arbor->outlook[i].gauge * arbor_reduce(arbor, (int32_t)i).rho;
-        arbor->shape[i].booked = booking(room, branch, room->radius[i], 1);
+    return STATUS_OK;
+}
+
+/* Books at the room's level; *clear is the share of segments that have the room they should. */
+static Status book(Room *room, Arbor *arbor, double *clear, Err *err)
+{
+    TRY(measure(room, arbor, err));
+    for (size_t i = 1; i < arbor->n; i++) {
+        arbor->shape[i].booked = booking(room, &arbor->branch[i], room->radius[i], 1);
         TRY(enter(room, arbor, (int32_t)i, err));
     }
     for (size_t i = 1; i < arbor->n; i++)
@@ -119,7 +126,7 @@ static Status book(Room *room, Arbor *arbor, double *clear, Err *err)
         Branch *branch = &arbor->branch[i];
         double radius = room->radius[i], booked = booking(room, branch, radius, room->share[i]);
         arbor->shape[i].booked = booked;
-        count += booked >= room->level * radius;
+        count += room_is_clear(room, arbor, (int32_t)i);
         branch->tightness = booked > 0 ? fmin(room->level / booked, 1 / radius) : 0;
     }
     arbor_sum(arbor);
@@ -162,6 +169,18 @@ Status room_book(Room *room, Arbor *arbor, Err *err)
     return book(room, arbor, &clear, err);
 }
 
+Status room_waive(Room *room, Arbor *arbor, double reserved, Err *err)
+{
+    TRY(measure(room, arbor, err));
+    for (size_t i = 1; i < arbor->n; i++) {
+        arbor->shape[i].booked = reserved * room->level * room->radius[i];
+        arbor->branch[i].tightness = 0;
+        TRY(enter(room, arbor, (int32_t)i, err));
+    }
+    arbor_sum(arbor);
+    return STATUS_OK;
+}
+
 /* The most that segment i can book, up to `wish`, as the others' bookings are. */
 static double most_room(const Room *room, const Arbor *arbor, int32_t i, double wish)
 {
@@ -188,13 +207,16 @@ static double most_room(const Room *room, const Arbor *arbor, int32_t i, double 
     return most;
 }
 
-static bool are_inside(const Domain *domain, const Arbor *arbor)
+bool room_encloses(const Room *room, const Arbor *arbor)
 {
-    if (!domain)
-        return true;
+    const Domain *domain = room->domain;
     for (int k = 0; k < arbor->n_saved_shapes; k++) {
-        const Shape *was = &arbor->saved_shape[k].was;
-        const Shape *shape = &arbor->shape[arbor->saved_shape[k].i];
+        int32_t i = arbor->saved_shape[k].i;
+        const Shape *was = &arbor->saved_shape[k].was, *shape = &arbor->shape[i];
+        if (!(arbor->branch[i].length >= room->least_length))
+            return false;
+        if (!domain)
+            continue;
         bool moved = vec3_distance(was->to, shape->to) > 0;
         if (moved && !domain_inside(domain, shape->to, 0))
             return false;
@@ -212,8 +234,6 @@ static bool book_moved(const Room *room, Arbor *arbor)
     for (int k = 0; k < moved; k++) {
         int32_t i = arbor->saved_shape[k].i;
         need[k] = room->level * arbor_radius(arbor, i);
-        if (!(arbor->branch[i].length >= room->least_length))
-            return false;
         arbor_book(arbor, i, need[k], 0);
     }
     for (int k = 0; k < moved; k++) {
@@ -230,7 +250,7 @@ static bool book_moved(const Room *room, Arbor *arbor)
 
 bool room_allows(const Room *room, Arbor *arbor)
 {
-    if (!are_inside(room->domain, arbor) || !book_moved(room, arbor))
+    if (!room_encloses(room, arbor) || !book_moved(room, arbor))
         return false;
     double radius;
     for (int32_t i; (i = arbor_overfull(arbor, &radius)) != 0;) {

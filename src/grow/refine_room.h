@@ -28,6 +28,19 @@ void room_release(Room *room);
 /* Books room anew for all vessels at their present radii and a little more. */
 MUST_CHECK Status room_book(Room *room, Arbor *arbor, Err *err);
 
+/* Whether segment i has the room that it should, as of the last room_book. */
+static inline bool room_is_clear(const Room *room, const Arbor *arbor, int32_t i)
+{
+    return arbor->shape[i].booked >= room->level * room->radius[i];
+}
+
+/* Books for all vessels `reserved` times their radius, whether there is room for it or not; no radius
+ * is too great then. */
+MUST_CHECK Status room_waive(Room *room, Arbor *arbor, double reserved, Err *err);
+
+/* Whether all that the present move has moved is inside the domain and not too short to be. */
+bool room_encloses(const Room *room, const Arbor *arbor);
+
 /* Whether there is room for the present move; if so, it is booked in `arbor`. The shapes that
  * moved are given room for `reserve` of their radius, and so much for those that widen. */
 bool room_allows(const Room *room, Arbor *arbor);

@@ -102,7 +102,7 @@ static Status reweigh(Network *net, const GrowParams *params, const double *flow
         radius[i] = (double)net->segment[i].radius;
     TRY(weigh_segments(net, params, flow, radius, 1, &change, err));
     network_resum(net);
-    network_refresh(net);
+    network_refresh(net, 1);
     return STATUS_OK;
 }
 
@@ -115,7 +115,7 @@ Status weigh_refresh(Network *net, const GrowParams *params, const Domain *domai
     TRY_GOTO(mem_calloc(&radius, net->n, sizeof *radius, "radii", err));
     TRY_GOTO(set_shares(net, params, domain, precision, flow, err));
     weigh_gather(net, flow);
-    network_refresh(net);
+    network_refresh(net, 1);
     for (int round = 0; round < (precision == WEIGH_FINE ? FINE_ROUNDS : 1); round++)
         TRY_GOTO(reweigh(net, params, flow, radius, err));
 done:
