@@ -20,13 +20,16 @@ ROOMS := $(filter-out app,$(notdir $(patsubst %/,%,$(wildcard src/*/))))
 ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c))
 APP_SOURCES := $(wildcard src/app/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
-FORMATTED := $(sort $(wildcard src/*/*.c src/*/*.h tests/unit/*.c tests/unit/*.h tests/oracle/*.c))
+FORMATTED := $(sort $(wildcard src/*/*.c src/*/*.h tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
+	tests/power/*.c tests/power/*.h))
 
 ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o)
 APP_OBJECTS := $(APP_SOURCES:%.c=$(BUILD)/%.o)
 TEST_OBJECTS := $(TEST_SOURCES:%.c=$(BUILD)/%.o)
 TEST_PROGRAMS := $(TEST_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
 ORACLE := $(BUILD)/tests/check_tree
+POWER_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/power/*.c))
+POWER := $(BUILD)/tests/power/power
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion \
 	-Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wvla -Wformat=2 -Wcast-qual \
@@ -37,6 +40,7 @@ OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPTIMISE_tsan := -O1 -g -fsanitize=thread
+VECTORS_release := -O3 -fno-math-errno -fno-trapping-math
 PACKAGES := libpng libdeflate libtiff-4 jansson inih
 PACKAGE_LIBS := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null)
 # libnifti2-dev has no pkg-config file, and OpenEXR's asks for the whole of it.
@@ -49,7 +53,8 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate bench-grow bench-render check program unit unit-programs layers format format-check asan tsan \
+.PHONY: all deps demo validate bench-grow bench-render bench-compare power power-program check program unit \
+	unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -81,6 +86,18 @@ bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
 
 bench-render: build/corcast ## how fast pictures are drawn, beside POV-Ray; BENCH=full|quick
 	$(Q)tools/bench-render
+
+bench-compare: ## time `compare` on large pictures, beside idiff and odiff
+	$(Q)tools/deps build check
+	$(Q)$(AGAIN) all
+	$(Q)tools/bench-compare
+
+power: ## plant faults and see what the judge finds; writes its part of docs/VALIDATION.md
+	$(Q)tools/deps build run check
+	$(Q)$(AGAIN) all power-program
+	$(Q)tools/power
+
+power-program: $(POWER)
 
 check: ## every test; ends in "N passed, N failed"
 	$(Q)tools/deps build run check
@@ -115,13 +132,21 @@ $(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/rooms.a
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka
 
+$(POWER): $(POWER_OBJECTS) $(BUILD)/rooms.a
+	$(call say,LINK,$@)
+	$(Q)mkdir -p $(@D)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
 # The oracles stand alone: they share no code with the program they check.
 $(BUILD)/tests/%: tests/oracle/%.c Makefile
 	$(call say,CC,$<)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) -D_GNU_SOURCE $(CFLAGS) $(LDFLAGS) -o $@ $< -lm
 
--include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d)
+# Loops over pixels gain from vectors.
+$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
+
+-include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d)
 
 packages:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)

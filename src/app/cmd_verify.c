@@ -232,7 +232,7 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
     *agrees = report_agrees(&report);
     char *templates = NULL, *page = NULL;
     TRY(templates_folder(&templates, err));
-    Status status = file_join(templates, "report/report.html", &page, err);
+    Status status = file_join(templates, "report", &page, err);
     if (status == STATUS_OK)
         status = report_write(&report, page, v->folder, err);
     if (status == STATUS_OK && as_json)

@@ -17,6 +17,7 @@ static const struct {
     {"render", run_render, "render a tree with the native renderer"},
     {"verify", run_verify, "prove that POV-Ray and the native renderer agree"},
     {"compare", run_compare, "compare two images or planes"},
+    {"report", run_report, "one page about several verifications"},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 

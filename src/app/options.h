@@ -46,7 +46,7 @@ typedef struct Option {
     const char *help;
 } Option;
 
-enum { MAX_OPERANDS = 8, MAX_TABLES = 4 };
+enum { MAX_OPERANDS = 512, MAX_TABLES = 4 };
 
 typedef struct Command {
     const char *name;

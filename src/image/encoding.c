@@ -6,6 +6,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 float srgb_encode(float linear)
 {
@@ -73,19 +74,24 @@ Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err)
     return STATUS_OK;
 }
 
-Status ids_from_picture(IdPlane *ids, const Picture *picture, Err *err)
+/* The ids take the picture's memory, made larger by a third: each is written at or behind the place
+ * of its bytes, so from the last on. */
+Status ids_take_picture(IdPlane *ids, Picture *picture, Err *err)
 {
     if (picture->channels != 3 || picture->bits != 8)
         return err_set(err, STATUS_INPUT,
                        "an id plane must have 3 channels of 8 bits, not %d of %d bits",
                        picture->channels, picture->bits);
-    IdPlane made;
-    TRY(idplane_init(&made, picture->width, picture->height, err));
     size_t n = (size_t)picture->width * (size_t)picture->height;
-    for (size_t i = 0; i < n; i++) {
-        const uint8_t *code = &picture->codes8[3 * i];
-        made.ids[i] = (uint32_t)code[0] << 16 | (uint32_t)code[1] << 8 | code[2];
+    uint8_t *bytes = realloc(picture->codes8, n * sizeof(uint32_t));
+    if (!bytes)
+        return err_set(err, STATUS_MEMORY, "out of memory: no room for %zu ids", n);
+    for (size_t i = n; i-- > 0;) {
+        const uint8_t *code = bytes + 3 * i;
+        uint32_t id = (uint32_t)code[0] << 16 | (uint32_t)code[1] << 8 | code[2];
+        memcpy(bytes + i * sizeof id, &id, sizeof id);
     }
-    *ids = made;
+    *ids = (IdPlane){.width = picture->width, .height = picture->height, .ids = (void *)bytes};
+    *picture = (Picture){0};
     return STATUS_OK;
 }

@@ -88,8 +88,9 @@ MUST_CHECK Status plane_from_picture(Plane *plane, const Picture *picture, Encod
                                      Err *err);
 /* Id planes as 8-bit pictures: red * 65536 + green * 256 + blue. */
 MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err);
-/* STATUS_INPUT unless the picture has 3 channels of 8 bits. */
-MUST_CHECK Status ids_from_picture(IdPlane *ids, const Picture *picture, Err *err);
+/* Leaves the picture empty: its memory becomes the ids'. STATUS_INPUT unless it has 3 channels of 8
+ * bits; it is unchanged then. */
+MUST_CHECK Status ids_take_picture(IdPlane *ids, Picture *picture, Err *err);
 
 /* Provenance written into a PNG as tEXt chunks; the other formats hold none. Never a date or a
  * path. */

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BAND_ROWS = 32 };
+enum { BAND_ROWS = 32, BLOCK = 32 };
 
 static const double px_per_edge = 0.78539816339744831; /* pi / 4 */
 
@@ -17,6 +17,7 @@ typedef struct Sums {
     uint64_t abs, squares; /* codes, codes^2 */
     int64_t signed_codes[3];
     size_t differing, beyond;
+    size_t brighter, darker; /* pixels, by the sum of their channels */
     size_t classes[PIXEL_CLASSES];
     int max, interior_max; /* codes */
     PixelPlace worst;
@@ -33,6 +34,7 @@ typedef struct Walk {
     int beyond;                /* codes a pixel may be off */
     bool common_only;
     double geometry_mm, geometry_deg; /* beyond which geometry differs */
+    uint8_t *coverage;                /* owned; a Coverage for each pixel */
     Sums *sums;                       /* owned; one for each band */
     Account *accounts;                /* owned; index->n for each worker */
     uint8_t *scratch;                 /* owned; scratch_size for each worker */
@@ -42,7 +44,8 @@ typedef struct Walk {
 /* One row being looked at. */
 typedef struct Row {
     const LabelWindow *window;
-    const uint16_t *a, *b; /* codes; the same pointer when the rows are equal */
+    const uint16_t *a, *b; /* codes; when the rows are equal the same pointer, perhaps to what has
+                            * not been read */
     int y;
 } Row;
 
@@ -81,14 +84,17 @@ static PixelClass class_of_shading(const Walk *walk, const Row *row, int x, bool
 /* The largest difference over the channels of a pixel, in codes; adds to the sums. */
 static int pixel_difference(const uint16_t *a, const uint16_t *b, int channels, Sums *sums)
 {
-    int largest = 0;
+    int largest = 0, sum = 0;
     for (int c = 0; c < channels; c++) {
         int difference = b[c] - a[c], size = abs(difference);
         sums->signed_codes[c] += difference;
         sums->abs += (uint64_t)size;
         sums->squares += (uint64_t)size * (uint64_t)size;
         largest = size > largest ? size : largest;
+        sum += difference;
     }
+    sums->brighter += sum > 0;
+    sums->darker += sum < 0;
     return largest;
 }
 
@@ -104,8 +110,12 @@ static void count_pixel(const Walk *walk, const Row *row, int x, Sums *sums)
                                           : class_of_shading(walk, row, x, common, difference);
     sums->classes[pixel_class]++;
     sums->common += common;
-    sums->missing += in_a && !in_b;
-    sums->extra += in_b && !in_a;
+    if (!in_a != !in_b) {
+        size_t pixel = (size_t)row->y * (size_t)walk->labels->width + (size_t)x;
+        walk->coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;
+        sums->missing += in_a != 0;
+        sums->extra += in_b != 0;
+    }
     sums->band += band;
     sums->band_differs += band && in_a != in_b;
     sums->differing += difference > 0;
@@ -120,18 +130,44 @@ static void count_pixel(const Walk *walk, const Row *row, int x, Sums *sums)
     }
 }
 
-/* A row that is equal in colour and label, and whose geometry nobody asked about. */
-static void count_equal_row(const LabelWindow *window, int width, Sums *sums)
+/* Pixels [from, to) of a row that are equal in colour and label, and whose geometry nobody asked
+ * about. */
+static void count_equal(const LabelWindow *window, int from, int to, Sums *sums)
 {
     const uint32_t *label = window->rows[0][1];
     unsigned common = 0, band = 0;
-    for (int x = 0; x < width; x++) {
+    for (int x = from; x < to; x++) {
         common += label[x] != 0;
         band += window->band[x];
     }
     sums->common += common;
     sums->band += band;
-    sums->classes[PIXEL_IDENTICAL] += (size_t)width;
+    sums->classes[PIXEL_IDENTICAL] += (size_t)(to - from);
+}
+
+static bool block_equal(const Row *row, int from, int to, int channels)
+{
+    const uint32_t *in_a = row->window->rows[0][1], *in_b = row->window->rows[1][1];
+    size_t start = (size_t)from * (size_t)channels, n = (size_t)(to - from);
+    return (in_a == in_b || memcmp(in_a + from, in_b + from, n * sizeof *in_a) == 0) &&
+           (row->a == row->b ||
+            memcmp(row->a + start, row->b + start, n * (size_t)channels * sizeof *row->a) == 0);
+}
+
+/* Counts a row by blocks, most of which are equal even in rows that are not. */
+static void count_row(const Walk *walk, const Row *row, Sums *sums)
+{
+    int width = walk->labels->width, channels = walk->a->picture->channels;
+    bool geometry = walk->a->depth && walk->a->normal;
+    for (int from = 0, to; from < width; from = to) {
+        to = from + BLOCK < width ? from + BLOCK : width;
+        if (!geometry && block_equal(row, from, to, channels)) {
+            count_equal(row->window, from, to, sums);
+            continue;
+        }
+        for (int x = from; x < to; x++)
+            count_pixel(walk, row, x, sums);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------- sums */
@@ -167,16 +203,10 @@ static void add_regression(const Row *row, int width, int channels, Sums *sums)
 static void walk_row(const Walk *walk, const Row *row, Sums *sums, Account *accounts)
 {
     int width = walk->labels->width, channels = walk->a->picture->channels;
-    const uint32_t *in_a = row->window->rows[0][1], *in_b = row->window->rows[1][1];
-    bool same_labels = in_a == in_b || memcmp(in_a, in_b, (size_t)width * sizeof *in_a) == 0;
-    if (row->a == row->b && same_labels && !walk->a->depth)
-        count_equal_row(row->window, width, sums);
-    else
-        for (int x = 0; x < width; x++)
-            count_pixel(walk, row, x, sums);
+    count_row(walk, row, sums);
     if (walk->labels->source == LABELS_UNKNOWN)
         return;
-    count_silhouette(in_a, row->window->rows[0][2], width, sums);
+    count_silhouette(row->window->rows[0][1], row->window->rows[0][2], width, sums);
     if (!walk->index)
         return;
     add_regression(row, width, channels, sums);
@@ -196,8 +226,11 @@ static void walk_band(size_t index, int worker, void *context)
     LabelWindow window;
     label_window_open(&window, walk->labels, top, scratch);
     for (int y = top; y < bottom; y++) {
-        Row row = {.window = &window, .y = y, .a = picture_row(a, y, codes[0])};
-        row.b = picture_rows_equal(a, b, y, 0, a->width) ? row.a : picture_row(b, y, codes[1]);
+        bool equal = picture_rows_equal(a, b, y, 0, a->width);
+        bool read = !equal || walk->index || walk->a->depth;
+        Row row = {.window = &window, .y = y};
+        row.a = read ? picture_row(a, y, codes[0]) : codes[0];
+        row.b = equal ? row.a : picture_row(b, y, codes[1]);
         walk_row(walk, &row, &walk->sums[index], accounts);
         if (y + 1 < bottom)
             label_window_next(&window);
@@ -214,6 +247,8 @@ static void add_sums(Sums *to, const Sums *from)
         to->classes[i] += from->classes[i];
     to->differing += from->differing;
     to->beyond += from->beyond;
+    to->brighter += from->brighter;
+    to->darker += from->darker;
     to->common += from->common;
     to->missing += from->missing;
     to->extra += from->extra;
@@ -255,6 +290,9 @@ static void take_color(const Sums *sums, double code_levels, int channels, Compa
         if (fabs(bias) > fabs(result->bias_levels))
             result->bias_levels = bias;
     }
+    double brighter = (double)sums->brighter, darker = (double)sums->darker;
+    result->sign_sigma =
+        sums->differing ? (brighter - darker) / sqrt(fmax(brighter + darker, 1)) : 0;
     memcpy(result->classes, sums->classes, sizeof result->classes);
 }
 
@@ -295,6 +333,7 @@ static Status walk_all(Walk *walk, int bands, Err *err)
     walk->scratch_size = label_window_size(a->width) + 2 * picture_stride(a) * sizeof(uint16_t);
     TRY(mem_calloc(&walk->sums, (size_t)bands, sizeof *walk->sums, "sums of rows", err));
     TRY(mem_calloc(&walk->accounts, accounts, sizeof *walk->accounts, "accounts", err));
+    TRY(mem_calloc(&walk->coverage, (size_t)a->width * (size_t)a->height, 1, "pixel marks", err));
     TRY(mem_calloc(&walk->scratch, (size_t)threads, walk->scratch_size, "rows", err));
     accounts_clear(walk->accounts, accounts);
     threads_for((size_t)bands, threads, walk_band, walk);
@@ -329,8 +368,8 @@ static Status take_walk(const Walk *walk, CompareResult *result, Ledger *ledger,
     if (walk->common_only)
         result->judged_pixels = result->common_pixels;
     if (result->missing_pixels + result->extra_pixels > 0)
-        TRY(labels_largest_region(walk->labels, &result->largest_region, &result->largest_region_at,
-                                  err));
+        TRY(largest_region(walk->coverage, result->width, result->height, &result->largest_region,
+                           &result->largest_region_at, err));
     if (!walk->index)
         return STATUS_OK;
     take_regression(walk->sums, code_levels, result);
@@ -377,6 +416,7 @@ Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance 
 done:
     ledger_release(&of_segments);
     segment_index_release(&index);
+    free(walk.coverage);
     free(walk.sums);
     free(walk.accounts);
     free(walk.scratch);

@@ -108,9 +108,11 @@ static void measure_errors(PlaneKind kind, const Plane *a, const Plane *b, const
 /* Coverage, regions and the band of any labels; the class of pixels whose labels differ. */
 static Status measure_labels(const Labels *labels, CompareResult *result, Err *err)
 {
-    uint8_t *scratch;
-    TRY(mem_calloc(&scratch, label_window_size(labels->width), 1, "rows of labels", err));
+    uint8_t *scratch = NULL, *coverage = NULL;
     size_t band_differs = 0;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&scratch, label_window_size(labels->width), 1, "rows of labels", err));
+    TRY_GOTO(mem_calloc(&coverage, result->pixels, 1, "pixel marks", err));
     result->has_mask = true;
     LabelWindow window;
     label_window_open(&window, labels, 0, scratch);
@@ -118,8 +120,12 @@ static Status measure_labels(const Labels *labels, CompareResult *result, Err *e
         const uint32_t *a = window.rows[0][1], *b = window.rows[1][1];
         for (int x = 0; x < labels->width; x++) {
             bool band = window.band[x], differs = a[x] != b[x];
-            result->missing_pixels += a[x] && !b[x];
-            result->extra_pixels += b[x] && !a[x];
+            if (!a[x] != !b[x]) {
+                coverage[(size_t)y * (size_t)labels->width + (size_t)x] =
+                    a[x] ? COVERED_MISSING : COVERED_EXTRA;
+                result->missing_pixels += a[x] != 0;
+                result->extra_pixels += b[x] != 0;
+            }
             result->common_pixels += a[x] && b[x];
             result->band_pixels += band;
             band_differs += band && differs;
@@ -130,16 +136,19 @@ static Status measure_labels(const Labels *labels, CompareResult *result, Err *e
         if (y + 1 < labels->height)
             label_window_next(&window);
     }
-    free(scratch);
     result->edge_mismatch_fraction =
         result->band_pixels ? (double)band_differs / (double)result->band_pixels : 0;
     if (result->kind == PLANE_ID) {
         result->band_beyond = band_differs;
         result->interior_beyond = result->differing_pixels - band_differs;
     }
-    if (result->missing_pixels + result->extra_pixels == 0)
-        return STATUS_OK;
-    return labels_largest_region(labels, &result->largest_region, &result->largest_region_at, err);
+    if (result->missing_pixels + result->extra_pixels > 0)
+        status = largest_region(coverage, labels->width, labels->height, &result->largest_region,
+                                &result->largest_region_at, err);
+done:
+    free(scratch);
+    free(coverage);
+    return status;
 }
 
 Status compare_planes(PlaneKind kind, const Plane *a, const Plane *b, const IdPlane *id_a,

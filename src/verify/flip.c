@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { HALO = FLIP_RADIUS, TILE = 64, SPAN = TILE + 2 * HALO };
+enum { HALO = FLIP_RADIUS, TILE = 48, SPAN = TILE + 2 * HALO };
 
 /* The four planes the filters are applied to. */
 typedef enum Input { IN_Y, IN_CX, IN_CZ, IN_LIGHTNESS, INPUTS } Input;
@@ -31,12 +31,22 @@ static const struct {
 } outputs[OUTPUTS] = {{F_Y, F_Y},        {F_CX, F_CX},       {F_CZ1, F_CZ1},    {F_CZ2, F_CZ2},
                       {F_EDGE, F_GAUSS}, {F_POINT, F_GAUSS}, {F_GAUSS, F_EDGE}, {F_GAUSS, F_POINT}};
 
+typedef struct Rows {
+    float of[OUTPUTS][TILE];
+} Rows;
+
+/* What is compared of a row of one image. */
+typedef struct Features {
+    float lightness[TILE], a[TILE], b[TILE], edge[TILE], point[TILE];
+} Features;
+
 /* What a worker holds of a tile. */
 typedef struct Workspace {
     float colors[3][SPAN];
     float inputs[INPUTS][SPAN];
     float filtered[2][FLIP_FILTERS][SPAN][TILE]; /* horizontally */
-    float rows[2][OUTPUTS][TILE];                /* and one row of it vertically */
+    Rows rows[2];                                /* and one row of it vertically */
+    Features features[2];
     float errors[TILE];
 } Workspace;
 
@@ -57,7 +67,7 @@ typedef struct Triple {
 } Triple;
 
 /* Linear RGB to XYZ over the illuminant D65, the matrix of sRGB's primaries. */
-static Triple xyz_from_rgb(Triple c)
+static inline Triple xyz_from_rgb(Triple c)
 {
     Triple xyz = {
         10135552.0f / 24577794 * c.x + 8788810.0f / 24577794 * c.y + 4435075.0f / 24577794 * c.z,
@@ -67,8 +77,13 @@ static Triple xyz_from_rgb(Triple c)
     return (Triple){xyz.x * (1 / 0.950428545f), xyz.y, xyz.z * (1 / 1.088900371f)};
 }
 
+static inline float within_unit(float x)
+{
+    return x < 0 ? 0 : x > 1 ? 1 : x;
+}
+
 /* Back, and into [0, 1]. */
-static Triple rgb_from_ycxcz(float y, float cx, float cz)
+static inline Triple rgb_from_ycxcz(float y, float cx, float cz)
 {
     float white_y = (y + 16) / 116;
     Triple xyz = {(white_y + cx / 500) * 0.950428545f, white_y,
@@ -76,17 +91,78 @@ static Triple rgb_from_ycxcz(float y, float cx, float cz)
     float r = 3.241003275f * xyz.x - 1.537398934f * xyz.y - 0.498615861f * xyz.z;
     float g = -0.969224334f * xyz.x + 1.875930071f * xyz.y + 0.041554224f * xyz.z;
     float b = 0.055639423f * xyz.x - 0.204011202f * xyz.y + 1.057148933f * xyz.z;
-    return (Triple){fminf(fmaxf(r, 0), 1), fminf(fmaxf(g, 0), 1), fminf(fmaxf(b, 0), 1)};
+    return (Triple){within_unit(r), within_unit(g), within_unit(b)};
 }
 
-static float lab_curve(float t)
+/* ------------------------------------------------------------------------------------- arithmetic
+ *
+ * Roots and powers without branches or calls, so that loops over pixels become vectors; in the
+ * ranges of this metric they are right to a few units of the last place. */
+
+static inline float float_of(uint32_t bits)
 {
-    const float delta = 6.0f / 29;
-    return t > delta * delta * delta ? powf(t, 1.0f / 3) : t / (3 * delta * delta) + 4.0f / 29;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static inline uint32_t bits_of(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+/* Of a positive number: a third of its logarithm, read off its bits, then two of Halley's steps. */
+static inline float cube_root(float x)
+{
+    float y = float_of(bits_of(x) / 3 + 0x2a5137a0u);
+    for (int i = 0; i < 2; i++) {
+        float cube = y * y * y;
+        y = y * (cube + 2 * x) / (2 * cube + x);
+    }
+    return y;
+}
+
+/* Of a positive number m 2^e, m in [sqrt(1/2), sqrt(2)): e + 2 artanh((m - 1) / (m + 1)) / ln 2. */
+static inline float log_2(float x)
+{
+    uint32_t bits = bits_of(x) - 0x3f3504f3u;
+    int exponent = (int)bits >> 23;
+    float m = float_of((bits & 0x007fffffu) + 0x3f3504f3u);
+    float s = (m - 1) / (m + 1), s2 = s * s;
+    float series = 1 + s2 * (1.0f / 3 + s2 * (1.0f / 5 + s2 * (1.0f / 7 + s2 * (1.0f / 9))));
+    return (float)exponent + 2.88539008f * s * series;
+}
+
+/* Of a number in [-126, 126]: 2^n by its bits, and the rest, of at most 1/2, by its series. */
+static inline float exp_2(float x)
+{
+    int n = (int)(x + (x < 0 ? -0.5f : 0.5f));
+    float r = (x - (float)n) * 0.693147181f;
+    float series =
+        1 +
+        r * (1 + r * (1.0f / 2 + r * (1.0f / 6 + r * (1.0f / 24 + r * (1.0f / 120 + r / 720)))));
+    return series * float_of((uint32_t)(n + 127) << 23);
+}
+
+/* x^y for x of at least 0 and y in [0, 1]; 0 where x is less than 1e-30. */
+static inline float power(float x, float y)
+{
+    float positive = x < 1e-30f ? 1e-30f : x;
+    float result = exp_2(y * log_2(positive));
+    return x < 1e-30f ? 0 : result;
+}
+
+static inline float lab_curve(float t)
+{
+    const float delta = 6.0f / 29, knee = delta * delta * delta;
+    float root = cube_root(t < knee ? knee : t), line = t / (3 * delta * delta) + 4.0f / 29;
+    return t > knee ? root : line;
 }
 
 /* CIELab, its chroma scaled by lightness (Hunt effect). */
-static Triple hunt_lab(Triple rgb)
+static inline Triple hunt_lab(Triple rgb)
 {
     Triple xyz = xyz_from_rgb(rgb);
     float x = lab_curve(xyz.x), y = lab_curve(xyz.y), z = lab_curve(xyz.z);
@@ -95,30 +171,50 @@ static Triple hunt_lab(Triple rgb)
                     0.01f * lightness * (200 * (y - z))};
 }
 
-/* HyAB distance to the power 0.7. */
-static float color_distance(Triple a, Triple b)
+static inline float larger(float a, float b)
 {
-    float da = a.y - b.y, db = a.z - b.z;
-    return powf(fabsf(a.x - b.x) + sqrtf(da * da + db * db), 0.7f);
+    return a > b ? a : b;
 }
 
-/* The error of one pixel from its vertically filtered values. */
-static float pixel_error(const Flip *flip, const Workspace *work, int x)
+static inline float magnitude(float x)
 {
-    Triple lab[2];
-    float edge[2], point[2];
-    for (int i = 0; i < 2; i++) {
-        const float(*row)[TILE] = work->rows[i];
-        lab[i] = hunt_lab(rgb_from_ycxcz(row[Y][x], row[CX][x], row[CZ1][x] + row[CZ2][x]));
-        edge[i] = sqrtf(row[EDGE_X][x] * row[EDGE_X][x] + row[EDGE_Y][x] * row[EDGE_Y][x]);
-        point[i] = sqrtf(row[POINT_X][x] * row[POINT_X][x] + row[POINT_Y][x] * row[POINT_Y][x]);
+    return x < 0 ? -x : x;
+}
+
+/* HyAB distance to the power 0.7. */
+static inline float color_distance(Triple a, Triple b)
+{
+    float da = a.y - b.y, db = a.z - b.z;
+    return power(magnitude(a.x - b.x) + sqrtf(da * da + db * db), 0.7f);
+}
+
+/* Colour, edge and point of a row of one image, from its vertically filtered values. */
+static void row_features(const Rows *restrict rows, Features *restrict out)
+{
+    const float(*row)[TILE] = rows->of;
+    for (int x = 0; x < TILE; x++) {
+        Triple lab = hunt_lab(rgb_from_ycxcz(row[Y][x], row[CX][x], row[CZ1][x] + row[CZ2][x]));
+        out->lightness[x] = lab.x;
+        out->a[x] = lab.y;
+        out->b[x] = lab.z;
+        out->edge[x] = sqrtf(row[EDGE_X][x] * row[EDGE_X][x] + row[EDGE_Y][x] * row[EDGE_Y][x]);
+        out->point[x] =
+            sqrtf(row[POINT_X][x] * row[POINT_X][x] + row[POINT_Y][x] * row[POINT_Y][x]);
     }
-    float color = color_distance(lab[0], lab[1]);
-    color = color < flip->color_knee
-                ? color * (0.95f / flip->color_knee)
-                : 0.95f + (color - flip->color_knee) / (flip->color_max - flip->color_knee) * 0.05f;
-    float feature = fmaxf(fabsf(edge[0] - edge[1]), fabsf(point[0] - point[1]));
-    return powf(color, 1 - sqrtf(feature / sqrtf(2)));
+}
+
+static void row_errors(const Flip *flip, const Features *restrict a, const Features *restrict b,
+                       float *restrict errors)
+{
+    const float knee = flip->color_knee, rest = flip->color_max - knee;
+    for (int x = 0; x < TILE; x++) {
+        float color = color_distance((Triple){a->lightness[x], a->a[x], a->b[x]},
+                                     (Triple){b->lightness[x], b->a[x], b->b[x]});
+        color = color < knee ? color * (0.95f / knee) : 0.95f + (color - knee) / rest * 0.05f;
+        float feature =
+            larger(magnitude(a->edge[x] - b->edge[x]), magnitude(a->point[x] - b->point[x]));
+        errors[x] = power(color, 1 - sqrtf(feature * 0.707106781f));
+    }
 }
 
 /* ---------------------------------------------------------------------------------------- tiles */
@@ -194,15 +290,16 @@ static void filter_rows(const Flip *flip, int exposure, int left, int top, int r
         }
 }
 
-/* The errors of the tile's row `row`, the larger of what they are and were. */
-static void find_errors(const Flip *flip, int row, int columns, Workspace *work)
+/* The errors of the tile's row `row`. */
+static void find_errors(const Flip *flip, int row, Workspace *work)
 {
     for (int side = 0; side < 2; side++)
         for (int i = 0; i < OUTPUTS; i++)
-            filter(work->rows[side][i], work->filtered[side][outputs[i].plane][row], TILE, flip,
+            filter(work->rows[side].of[i], work->filtered[side][outputs[i].plane][row], TILE, flip,
                    outputs[i].filter);
-    for (int x = 0; x < columns; x++)
-        work->errors[x] = pixel_error(flip, work, x);
+    for (int side = 0; side < 2; side++)
+        row_features(&work->rows[side], &work->features[side]);
+    row_errors(flip, &work->features[0], &work->features[1], work->errors);
 }
 
 static bool tile_equal(const FlipPair *pair, int left, int top, int columns, int rows)
@@ -230,9 +327,9 @@ static void do_tile(size_t index, int worker, void *context)
     for (int exposure = 0; exposure < pair->exposures; exposure++) {
         filter_rows(flip, exposure, left, top, rows, work);
         for (int row = 0; row < rows; row++) {
-            find_errors(flip, row, columns, work);
+            find_errors(flip, row, work);
             for (int x = 0; x < columns; x++)
-                largest[row][x] = fmaxf(largest[row][x], work->errors[x]);
+                largest[row][x] = larger(largest[row][x], work->errors[x]);
         }
     }
     double sum = 0, max = 0;

@@ -20,7 +20,7 @@ static float tone_map(float x)
 {
     float mapped =
         (x * (aces[0] * x + aces[1]) + aces[2]) / (x * (aces[3] * x + aces[4]) + aces[5]);
-    return fminf(fmaxf(mapped, 0), 1);
+    return mapped < 0 ? 0 : mapped > 1 ? 1 : mapped;
 }
 
 static void hdr_colors(const FlipPair *pair, int side, int exposure, int x, int y, int n,

@@ -91,6 +91,7 @@ static void add_color_rules(CompareResult *result)
     Finding inside = {"ppm", ppm(result->interior_beyond, interior), result->worst, worst};
     Finding band = {"ppm", ppm(result->band_beyond, result->band_pixels), result->worst, worst};
     Finding bias = {"levels", fabs(result->bias_levels), result->worst, worst};
+    Finding signs = {"sigma", fabs(result->sign_sigma), result->worst, worst};
     Finding matched = {"ppm", 1e6 * result->pixelmatch_pixels / (double)result->pixels,
                        result->worst, worst};
     snprintf(worst, sizeof worst, "the worst, %.4g levels, is", result->max_abs);
@@ -106,6 +107,7 @@ static void add_color_rules(CompareResult *result)
     }
     add_segment_rules(result);
     add_rule(result, bias, tolerance->bias_levels, "mean difference");
+    add_rule(result, signs, tolerance->sign_sigma, "more pixels brighter than darker, or fewer");
     if (!isnan(result->pixelmatch_pixels)) {
         snprintf(name, sizeof name, "pixels that pixelmatch finds at %g", tolerance->pixelmatch);
         add_rule(result, matched, tolerance->pixelmatch_ppm, name);

@@ -122,20 +122,6 @@ const uint32_t *labels_row(const Labels *labels, int side, int y, uint32_t *scra
     return scratch;
 }
 
-bool labels_seen_at(const Labels *labels, int side, size_t pixel)
-{
-    if (labels->source == LABELS_IDS)
-        return labels->ids[side]->ids[pixel] != 0;
-    if (labels->source == LABELS_SEEN)
-        return labels->seen[side][pixel] != 0;
-    const Picture *picture = labels->pictures[side];
-    for (size_t c = 0; c < (size_t)picture->channels; c++)
-        if (picture_code(picture, pixel * (size_t)picture->channels + c) !=
-            labels->background[side][c])
-            return true;
-    return false;
-}
-
 PixelClass labels_class(uint32_t a, uint32_t b, bool band)
 {
     return band ? PIXEL_EDGE : b == 0 ? PIXEL_MISSING : a == 0 ? PIXEL_EXTRA : PIXEL_WRONG_SEGMENT;

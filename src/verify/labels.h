@@ -35,9 +35,6 @@ void labels_release(Labels *labels);
 
 /* Row y of a side: borrowed from its ids, or in `scratch`, which has room for it. */
 const uint32_t *labels_row(const Labels *labels, int side, int y, uint32_t *scratch);
-/* Whether a pixel shows something. */
-bool labels_seen_at(const Labels *labels, int side, size_t pixel);
-
 /* Slides down the rows of both sides and tells the pixels of the band: those that touch
  * (8-neighbours), in either image, a pixel with another label. */
 typedef struct LabelWindow {
@@ -60,9 +57,12 @@ void label_window_next(LabelWindow *window);
 /* The class of a pixel whose labels differ. `band` is whether it lies in the band. */
 PixelClass labels_class(uint32_t a, uint32_t b, bool band);
 
+/* Of each pixel: whether both images show something or neither does, and which one if not. */
+typedef enum Coverage { COVERED_ALIKE, COVERED_MISSING, COVERED_EXTRA } Coverage;
+
 /* The largest 8-connected region of missing, or of extra, pixels: its size and its first pixel. 0
- * and (-1, -1) when there is none. */
-MUST_CHECK Status labels_largest_region(const Labels *labels, size_t *size, PixelPlace *at,
-                                        Err *err);
+ * and (-1, -1) when there is none. `coverage`, one byte a pixel, is used up. */
+MUST_CHECK Status largest_region(uint8_t *coverage, int width, int height, size_t *size,
+                                 PixelPlace *at, Err *err);
 
 #endif

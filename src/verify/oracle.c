@@ -337,7 +337,7 @@ Status oracle_read_ids(IdPlane *ids, const char *path, Err *err)
 {
     Picture picture;
     TRY(picture_read(&picture, path, err));
-    Status status = ids_from_picture(ids, &picture, err);
+    Status status = ids_take_picture(ids, &picture, err);
     picture_release(&picture);
     return status;
 }

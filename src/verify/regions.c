@@ -5,12 +5,9 @@
 
 #include <stdlib.h>
 
-/* Of each pixel: 0 when both images show something or neither does, else which one does. */
-typedef enum Coverage { COVERED_ALIKE, COVERED_MISSING, COVERED_EXTRA } Coverage;
-
 typedef struct Fill {
     int width, height;
-    uint8_t *coverage; /* owned; one a pixel */
+    uint8_t *coverage; /* borrowed */
     size_t *stack;     /* owned */
     size_t capacity, depth;
 } Fill;
@@ -52,29 +49,24 @@ static Status region_size(Fill *fill, size_t start, size_t *size, Err *err)
     return STATUS_OK;
 }
 
-Status labels_largest_region(const Labels *labels, size_t *size, PixelPlace *at, Err *err)
+Status largest_region(uint8_t *coverage, int width, int height, size_t *size, PixelPlace *at,
+                      Err *err)
 {
-    Fill fill = {.width = labels->width, .height = labels->height};
-    size_t n = (size_t)labels->width * (size_t)labels->height;
+    Fill fill = {.width = width, .height = height, .coverage = coverage};
+    size_t n = (size_t)width * (size_t)height;
+    Status status = STATUS_OK;
     *size = 0;
     *at = (PixelPlace){.x = -1, .y = -1};
-    Status status = mem_calloc(&fill.coverage, n, 1, "pixel marks", err);
     for (size_t i = 0; i < n && status == STATUS_OK; i++) {
-        bool a = labels_seen_at(labels, 0, i), b = labels_seen_at(labels, 1, i);
-        fill.coverage[i] = a == b ? COVERED_ALIKE : a ? COVERED_MISSING : COVERED_EXTRA;
-    }
-    for (size_t i = 0; i < n && status == STATUS_OK; i++) {
-        if (fill.coverage[i] == COVERED_ALIKE)
+        if (coverage[i] == COVERED_ALIKE)
             continue;
         size_t found;
         status = region_size(&fill, i, &found, err);
         if (status == STATUS_OK && found > *size) {
             *size = found;
-            *at = (PixelPlace){.x = (int)(i % (size_t)fill.width),
-                               .y = (int)(i / (size_t)fill.width)};
+            *at = (PixelPlace){.x = (int)(i % (size_t)width), .y = (int)(i / (size_t)width)};
         }
     }
-    free(fill.coverage);
     free(fill.stack);
     return status;
 }

@@ -26,6 +26,20 @@ bool report_agrees(const ReportCase *report)
     return report_reason(report) == NULL;
 }
 
+double report_severity(const ReportCase *report)
+{
+    double worst = 0;
+    for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
+        for (int i = 0; report->planes[kind] && i < report->planes[kind]->n_rules; i++) {
+            const Rule *rule = &report->planes[kind]->rules[i];
+            if (rule->met)
+                continue;
+            double ratio = rule->allowed > 0 ? rule->measured / rule->allowed : rule->measured;
+            worst = fmax(worst, fmin(fmax(ratio, 1), 1e12));
+        }
+    return report_reason(report) ? fmax(worst, 1) : 0;
+}
+
 static json_t *side_json(const ReportSide *side)
 {
     return json_pack("{s:s, s:s, s:f}", "name", side->name, "version", side->version, "seconds",
@@ -41,12 +55,13 @@ json_t *report_json(const ReportCase *report)
             json_object_set_new(planes, plane_kind_name(kind), compare_json(report->planes[kind]));
     for (size_t i = 0; i < report->n_commands; i++)
         json_array_append_new(commands, json_string(report->commands[i]));
-    return json_pack(
-        "{s:s, s:s?, s:s, s:s, s:s, s:o, s:o*, s:o, s:o, s:o}", "verdict",
-        reason ? "differ" : "agree", "reason", reason, "name", report->name, "model", report->model,
-        "tier", report->planes[PLANE_COLOR]->tolerance.tier, "planes", planes, "surface",
-        report->surface ? surface_check_json(report->surface) : NULL, report->a.key,
-        side_json(&report->a), report->b.key, side_json(&report->b), "commands", commands);
+    return json_pack("{s:s, s:f, s:s?, s:s, s:s, s:s, s:o, s:o*, s:o, s:o, s:o}", "verdict",
+                     reason ? "differ" : "agree", "severity", report_severity(report), "reason",
+                     reason, "name", report->name, "model", report->model, "tier",
+                     report->planes[PLANE_COLOR]->tolerance.tier, "planes", planes, "surface",
+                     report->surface ? surface_check_json(report->surface) : NULL, report->a.key,
+                     side_json(&report->a), report->b.key, side_json(&report->b), "commands",
+                     commands);
 }
 
 void text_escaped(Text *out, const char *text)
@@ -176,8 +191,7 @@ static Status write_heat(const Picture *heat, const char *folder, Err *err)
     return status;
 }
 
-Status report_write(const ReportCase *report, const char *template_path, const char *folder,
-                    Err *err)
+Status report_write(const ReportCase *report, const char *templates, const char *folder, Err *err)
 {
     Picture heat = {0};
     Status status = STATUS_OK;
@@ -185,7 +199,7 @@ Status report_write(const ReportCase *report, const char *template_path, const c
     TRY_GOTO(write_heat(&heat, folder, err));
     TRY_GOTO(write_json(report, folder, err));
     TRY_GOTO(write_junit(report, folder, err));
-    TRY_GOTO(report_page(report, &heat, template_path, folder, err));
+    TRY_GOTO(report_page(report, &heat, templates, folder, err));
 done:
     picture_release(&heat);
     return status;

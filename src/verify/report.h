@@ -16,8 +16,33 @@ void text_escaped(Text *out, const char *text);
 /* Appends the JUnit XML: a test case for each plane. */
 void report_junit(const ReportCase *report, Text *out);
 
+/* By how much the rule that is broken most is exceeded: measured over allowed, at least 1; 0 when all
+ * are met. */
+double report_severity(const ReportCase *report);
+
+/* The worst segments of a comparison as compare_json has them. New reference. */
+json_t *worst_segments_json(const CompareResult *result);
+
+/* What marks the parts of a page with one case, for report_merge to find. */
+#define REPORT_FIRST_CASE "case-1"
+#define REPORT_ROW_BEGIN "<!-- row: begin -->\n"
+#define REPORT_ROW_END "<!-- row: end -->\n"
+#define REPORT_CASE_BEGIN "<!-- case: begin -->\n"
+#define REPORT_CASE_END "<!-- case: end -->\n"
+
+/* A page about cases; all is HTML and borrowed. */
+typedef struct ReportFrame {
+    const char *title, *heading, *sentence;
+    const char *rows, *cases, *power;
+    size_t n_cases;
+    bool agrees;
+} ReportFrame;
+
+/* Appends the page; `templates` is the folder with report.html and case.html. */
+MUST_CHECK Status report_frame(const ReportFrame *frame, const char *templates, Text *out,
+                               Err *err);
 /* Writes report.html into `folder`; `heat` is the difference picture. */
-MUST_CHECK Status report_page(const ReportCase *report, const Picture *heat,
-                              const char *template_path, const char *folder, Err *err);
+MUST_CHECK Status report_page(const ReportCase *report, const Picture *heat, const char *templates,
+                              const char *folder, Err *err);
 
 #endif

@@ -9,13 +9,15 @@
 #include <string.h>
 
 typedef enum Fragment {
-    PART_TITLE,
+    PART_ID,
+    PART_SEGMENTS,
     PART_EDGE,
     PART_VERDICT_TITLE,
     PART_VERDICT_SENTENCE,
     PART_SUBJECT,
     PART_RULES,
     PART_METRICS,
+    PART_SEGMENT_LINES,
     PART_LEGEND,
     PART_SIDES,
     PART_TOLERANCE,
@@ -24,8 +26,6 @@ typedef enum Fragment {
     PART_NAME_B,
     PART_ALT_A,
     PART_ALT_B,
-    PART_LABEL_A,
-    PART_LABEL_B,
     PART_IMAGE_A,
     PART_IMAGE_B,
     PART_HEAT,
@@ -35,11 +35,10 @@ typedef enum Fragment {
 } Fragment;
 
 static const char *const part_names[PARTS] = {
-    "title",   "verdict_edge", "verdict_title", "verdict_sentence",
-    "subject", "rule_rows",    "metric_rows",   "legend",
-    "sides",   "tolerance",    "commands",      "name_a",
-    "name_b",  "alt_a",        "alt_b",         "label_a",
-    "label_b", "image_a",      "image_b",       "image_heat",
+    "id",      "segments",  "verdict_edge", "verdict_title", "verdict_sentence",
+    "subject", "rule_rows", "metric_rows",  "segment_lines", "legend",
+    "sides",   "tolerance", "commands",     "name_a",        "name_b",
+    "alt_a",   "alt_b",     "image_a",      "image_b",       "image_heat",
     "ids_a",   "ids_b"};
 
 /* ------------------------------------------------------------------------------------- verdict */
@@ -53,14 +52,13 @@ static void verdict_parts(const ReportCase *report, Text parts[PARTS])
         compared += report->planes[kind] != NULL;
         differing += report->planes[kind] && !report->planes[kind]->agrees;
     }
-    text_escaped(&parts[PART_TITLE], report->name);
-    text_puts(&parts[PART_TITLE], reason ? ": the pictures differ" : ": the pictures agree");
+    text_puts(&parts[PART_ID], REPORT_FIRST_CASE);
     text_puts(&parts[PART_EDGE], reason ? "bad-edge" : "good-edge");
-    text_escaped(&parts[PART_VERDICT_TITLE], report->b.name);
-    text_puts(&parts[PART_VERDICT_TITLE], " and ");
-    text_escaped(&parts[PART_VERDICT_TITLE], report->a.name);
-    text_puts(&parts[PART_VERDICT_TITLE],
-              reason ? " <span class=\"bad\">differ</span>" : " <span class=\"good\">agree</span>");
+    text_escaped(&parts[PART_VERDICT_TITLE], report->name);
+    text_puts(&parts[PART_VERDICT_TITLE], ", ");
+    text_escaped(&parts[PART_VERDICT_TITLE], report->model);
+    text_puts(&parts[PART_VERDICT_TITLE], reason ? ": <span class=\"bad\">differ</span>"
+                                                 : ": <span class=\"good\">agree</span>");
     Text *sentence = &parts[PART_VERDICT_SENTENCE];
     if (reason) {
         if (differing)
@@ -84,11 +82,7 @@ static void verdict_parts(const ReportCase *report, Text parts[PARTS])
             text_puts(sentence, " What POV-Ray's root finder sees is the surface to its accuracy.");
     }
     Text *subject = &parts[PART_SUBJECT];
-    text_puts(subject, "Scene ");
-    text_escaped(subject, report->name);
-    text_puts(subject, ", model ");
-    text_escaped(subject, report->model);
-    text_printf(subject, ", %d × %d pixels, tolerance tier ", color->width, color->height);
+    text_printf(subject, "%d × %d pixels, tolerance tier ", color->width, color->height);
     text_escaped(subject, color->tolerance.tier);
 }
 
@@ -133,13 +127,25 @@ static void color_metrics(const CompareResult *plane, Text *out)
     metric_row(out, "", "largest difference", plane->max_abs, "levels");
     metric_row(out, "", "largest difference off the edges", plane->interior_max_abs, "levels");
     metric_row(out, "", "mean difference", plane->mean_abs, "levels");
+    metric_row(out, "", "signed mean difference, worst channel", plane->bias_levels, "levels");
+    metric_row(out, "", "brighter pixels over darker ones", plane->sign_sigma, "σ");
     metric_row(out, "", "root mean square", plane->rmse, "levels");
+    metric_row(out, "", "outline of what is seen, outwards", plane->silhouette_px, "px");
+    metric_row(out, "", "gain", plane->gain, "");
+    metric_row(out, "", "offset", plane->offset_levels, "levels");
+    metric_row(out, "", "mean of the segment that is off most", plane->segment_levels, "levels");
+    metric_row(out, "", "outline of the segment that is off most", plane->segment_px, "px");
     metric_row(out, "", "PSNR", plane->psnr_db, "dB");
     metric_row(out, "", "SSIM of luma", plane->ssim, "");
     metric_row(out, "", "FLIP, mean", plane->flip_mean, "");
-    metric_row(out, "", "pixels off by one code (rounding)", (double)plane->classes[PIXEL_ROUNDING],
-               "");
-    metric_row(out, "", "pixels off by more (shading)", (double)plane->classes[PIXEL_SHADING], "");
+    metric_row(out, "", "FLIP, largest", plane->flip_max, "");
+    metric_row(out, "", "CIEDE2000, mean", plane->de2000_mean, "");
+    for (PixelClass i = 0; i < PIXEL_IDENTICAL; i++)
+        if (plane->classes[i]) {
+            char name[48];
+            snprintf(name, sizeof name, "pixels: %s", pixel_class_name(i));
+            metric_row(out, "", name, (double)plane->classes[i], "");
+        }
 }
 
 static void coverage_metrics(const CompareResult *plane, Text *out)
@@ -262,24 +268,11 @@ static Status ids_part(Text *part, const IdPlane *ids, Err *err)
 
 /* ---------------------------------------------------------------------------------------- words */
 
-/* A string for use inside the quotes of a script: what could end it is escaped as \uXXXX. */
-static void script_string(Text *out, const char *text)
-{
-    for (; *text; text++) {
-        if (strchr("\"\\<>&", *text) || (unsigned char)*text < ' ')
-            text_printf(out, "\\u%04x", (unsigned)(unsigned char)*text);
-        else
-            text_append(out, text, 1);
-    }
-}
-
-static void side_parts(const ReportSide *side, Fragment name, Fragment alt, Fragment label,
-                       Text parts[PARTS])
+static void side_parts(const ReportSide *side, Fragment name, Fragment alt, Text parts[PARTS])
 {
     text_escaped(&parts[name], side->name);
     text_puts(&parts[alt], "The scene as rendered by ");
     text_escaped(&parts[alt], side->name);
-    script_string(&parts[label], side->name);
     text_escaped(&parts[PART_SIDES], side->name);
     text_puts(&parts[PART_SIDES], " ");
     text_escaped(&parts[PART_SIDES], side->version);
@@ -290,23 +283,39 @@ static void tolerance_part(const Tolerance *tolerance, Text *part)
 {
     text_puts(part, "Tolerance tier ");
     text_escaped(part, tolerance->tier);
-    text_printf(part, ": at most %.4g pixels in a million%s may be off by more than %g levels",
-                tolerance->color_ppm, tolerance->color_common_only ? " seen in both pictures" : "",
-                tolerance->color_levels);
     text_puts(part, ". A is the reference; a difference is B less A, in 8-bit levels.");
+}
+
+/* The segments in words, and for the viewer's crops as JSON in an attribute. */
+static Status segment_parts(const CompareResult *color, Text parts[PARTS], Err *err)
+{
+    Text *lines = &parts[PART_SEGMENT_LINES];
+    for (int i = 0; i < color->n_worst_segments; i++)
+        text_printf(lines, "%ssegment %u with %zu", i ? ", " : "", color->worst_segments[i].id,
+                    color->worst_segments[i].differing);
+    text_puts(lines, color->n_worst_segments ? " pixels." : "No segment differs.");
+    json_t *json = worst_segments_json(color);
+    char *text = json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(9));
+    json_decref(json);
+    if (!text)
+        return err_set(err, STATUS_MEMORY, "out of memory: no room for a report");
+    text_escaped(&parts[PART_SEGMENTS], text);
+    free(text);
+    return STATUS_OK;
 }
 
 static Status fill_parts(const ReportCase *report, const Picture *heat, Text parts[PARTS], Err *err)
 {
     verdict_parts(report, parts);
     table_parts(report, parts);
-    side_parts(&report->a, PART_NAME_A, PART_ALT_A, PART_LABEL_A, parts);
-    side_parts(&report->b, PART_NAME_B, PART_ALT_B, PART_LABEL_B, parts);
+    side_parts(&report->a, PART_NAME_A, PART_ALT_A, parts);
+    side_parts(&report->b, PART_NAME_B, PART_ALT_B, parts);
     tolerance_part(&report->planes[PLANE_COLOR]->tolerance, &parts[PART_TOLERANCE]);
     for (size_t i = 0; i < report->n_commands; i++) {
         text_escaped(&parts[PART_COMMANDS], report->commands[i]);
         text_puts(&parts[PART_COMMANDS], "\n");
     }
+    TRY(segment_parts(report->planes[PLANE_COLOR], parts, err));
     TRY(picture_part(&parts[PART_IMAGE_A], report->a.picture, err));
     TRY(picture_part(&parts[PART_IMAGE_B], report->b.picture, err));
     TRY(picture_part(&parts[PART_HEAT], heat, err));
@@ -314,10 +323,10 @@ static Status fill_parts(const ReportCase *report, const Picture *heat, Text par
     return ids_part(&parts[PART_IDS_B], report->b.ids, err);
 }
 
-Status report_page(const ReportCase *report, const Picture *heat, const char *template_path,
-                   const char *folder, Err *err)
+static Status expand_case(const ReportCase *report, const Picture *heat, const char *templates,
+                          Text *out, Err *err)
 {
-    Text parts[PARTS] = {0}, page = TEXT_INIT;
+    Text parts[PARTS] = {0};
     TmplValue values[PARTS];
     char *path = NULL;
     Status status = STATUS_OK;
@@ -326,12 +335,128 @@ Status report_page(const ReportCase *report, const Picture *heat, const char *te
         TRY_GOTO(text_check(&parts[i], err));
         values[i] = (TmplValue){part_names[i], parts[i].chars ? parts[i].chars : ""};
     }
-    TRY_GOTO(tmpl_expand(template_path, values, PARTS, &page, err));
-    TRY_GOTO(file_join(folder, "report.html", &path, err));
-    status = file_write(path, page.chars, page.length, err);
+    TRY_GOTO(file_join(templates, "case.html", &path, err));
+    status = tmpl_expand(path, values, PARTS, out, err);
 done:
     for (int i = 0; i < PARTS; i++)
         text_release(&parts[i]);
+    free(path);
+    return status;
+}
+
+/* ---------------------------------------------------------------------------------- table of cases */
+
+enum { THUMBNAIL_WIDTH = 96 };
+
+/* A picture of at most THUMBNAIL_WIDTH pixels across, each the mean of a box. */
+static Status make_thumbnail(Picture *out, const Picture *picture, Err *err)
+{
+    int factor = (picture->width + THUMBNAIL_WIDTH - 1) / THUMBNAIL_WIDTH;
+    int width = picture->width / factor, height = picture->height / factor;
+    height = height ? height : 1;
+    size_t channels = (size_t)picture->channels;
+    TRY(picture_init(out, width, height, picture->channels, 8, err));
+    for (int y = 0; y < height; y++)
+        for (size_t i = 0; i < (size_t)width * channels; i++) {
+            size_t x = i / channels * (size_t)factor, sum = 0, count = 0;
+            for (int v = y * factor; v < (y + 1) * factor && v < picture->height; v++)
+                for (size_t u = x; u < x + (size_t)factor; u++, count++)
+                    sum += picture_code(picture, (size_t)v * picture_stride(picture) +
+                                                     u * channels + i % channels);
+            size_t mean = (sum + count / 2) / count;
+            picture_set(out, (size_t)y * picture_stride(out) + i,
+                        (uint16_t)(picture->bits == 8 ? mean : mean / 257));
+        }
+    return STATUS_OK;
+}
+
+static void number_cell(Text *row, double value)
+{
+    text_printf(row, "<td class=\"number\" data-value=\"%.9g\">", isnan(value) ? -1 : value);
+    if (!isnan(value))
+        text_printf(row, "%.6g", value);
+    text_puts(row, "</td>");
+}
+
+static Status case_row(const ReportCase *report, Text *row, Err *err)
+{
+    const CompareResult *color = report->planes[PLANE_COLOR];
+    bool agrees = report_agrees(report);
+    Picture thumbnail;
+    text_puts(row,
+              REPORT_ROW_BEGIN "<tr data-case=\"" REPORT_FIRST_CASE "\"><td><img alt=\"\" src=\"");
+    TRY(make_thumbnail(&thumbnail, report->b.picture, err));
+    Status status = picture_part(row, &thumbnail, err);
+    picture_release(&thumbnail);
+    TRY(status);
+    text_puts(row, "\"></td><th><a href=\"#" REPORT_FIRST_CASE "\">");
+    text_escaped(row, report->name);
+    text_puts(row, "</a></th><td>");
+    text_escaped(row, report->model);
+    text_printf(row, "</td><td class=\"verdict %s\" data-value=\"%.9g\">%s</td>",
+                agrees ? "good" : "bad", report_severity(report), agrees ? "✓ agree" : "✗ differ");
+    number_cell(row, (double)color->differing_pixels);
+    number_cell(row, color->max_abs);
+    number_cell(row, color->flip_mean);
+    number_cell(row, color->ssim);
+    text_puts(row, "</tr>\n" REPORT_ROW_END);
+    return text_check(row, err);
+}
+
+/* ------------------------------------------------------------------------------------------- page */
+
+Status report_frame(const ReportFrame *frame, const char *templates, Text *out, Err *err)
+{
+    const TmplValue values[] = {{"title", frame->title},
+                                {"edge", frame->agrees ? "good-edge" : "bad-edge"},
+                                {"heading", frame->heading},
+                                {"sentence", frame->sentence},
+                                {"table_hidden", frame->n_cases == 1 ? " hidden" : ""},
+                                {"rows", frame->rows},
+                                {"cases", frame->cases},
+                                {"power", frame->power}};
+    char *path;
+    TRY(file_join(templates, "report.html", &path, err));
+    Status status = tmpl_expand(path, values, sizeof values / sizeof *values, out, err);
+    free(path);
+    return status;
+}
+
+Status report_page(const ReportCase *report, const Picture *heat, const char *templates,
+                   const char *folder, Err *err)
+{
+    Text row = TEXT_INIT, section = TEXT_INIT, title = TEXT_INIT, heading = TEXT_INIT,
+         page = TEXT_INIT;
+    char *path = NULL;
+    bool agrees = report_agrees(report);
+    Status status = STATUS_OK;
+    TRY_GOTO(case_row(report, &row, err));
+    TRY_GOTO(expand_case(report, heat, templates, &section, err));
+    text_escaped(&title, report->name);
+    text_puts(&title, agrees ? ": the pictures agree" : ": the pictures differ");
+    text_escaped(&heading, report->b.name);
+    text_puts(&heading, " and ");
+    text_escaped(&heading, report->a.name);
+    text_puts(&heading,
+              agrees ? " <span class=\"good\">agree</span>" : " <span class=\"bad\">differ</span>");
+    TRY_GOTO(text_check(&title, err));
+    TRY_GOTO(text_check(&heading, err));
+    const ReportFrame frame = {.title = title.chars,
+                               .heading = heading.chars,
+                               .sentence = "",
+                               .rows = row.chars,
+                               .cases = section.chars,
+                               .power = "",
+                               .n_cases = 1,
+                               .agrees = agrees};
+    TRY_GOTO(report_frame(&frame, templates, &page, err));
+    TRY_GOTO(file_join(folder, "report.html", &path, err));
+    status = file_write(path, page.chars, page.length, err);
+done:
+    text_release(&row);
+    text_release(&section);
+    text_release(&title);
+    text_release(&heading);
     text_release(&page);
     free(path);
     return status;

@@ -40,6 +40,7 @@ CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane 
                            .max_code = unknown,
                            .psnr_db = unknown,
                            .bias_levels = unknown,
+                           .sign_sigma = unknown,
                            .interior_max_abs = unknown,
                            .edge_mismatch_fraction = unknown,
                            .silhouette_px = unknown,

@@ -1,6 +1,6 @@
 /* The keys of compare --json. Every kind of plane has all of them, null where a number has no
  * meaning or could not be measured, and its own beside them. */
-#include "verify/verify.h"
+#include "verify/report.h"
 
 #include <math.h>
 
@@ -62,7 +62,7 @@ static json_t *segment_json(const LedgerEntry *entry)
                      entry->top, entry->right, entry->bottom);
 }
 
-static json_t *worst_segments_json(const CompareResult *result)
+json_t *worst_segments_json(const CompareResult *result)
 {
     json_t *segments = json_array();
     for (int i = 0; i < result->n_worst_segments; i++)
@@ -78,6 +78,7 @@ static void set_color_keys(json_t *json, const CompareResult *result)
     } members[] = {
         {"classes", classes_json(result)},
         {"bias_levels", number(result->bias_levels)},
+        {"sign_sigma", number(result->sign_sigma)},
         {"silhouette_px", number(result->silhouette_px)},
         {"gain", number(result->gain)},
         {"offset_levels", number(result->offset_levels)},

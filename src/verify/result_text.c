@@ -44,6 +44,7 @@ static void put_color(const CompareResult *result, Text *out)
     put_measure(out, "largest difference off the edges", result->interior_max_abs, "levels");
     put_measure(out, "mean difference", result->mean_abs, "levels");
     put_measure(out, "signed mean difference, worst channel", result->bias_levels, "levels");
+    put_measure(out, "brighter pixels over darker ones", result->sign_sigma, "sigma");
     put_measure(out, "root mean square", result->rmse, "levels");
     put_measure(out, "outline of what is seen, outwards", result->silhouette_px, "px");
     put_measure(out, "gain", result->gain, "");

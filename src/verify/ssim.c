@@ -1,96 +1,111 @@
 /* Mean structural similarity. Five moments (a, b, aa, bb, ab) are blurred, first down the columns
- * of the eleven rows about an output row, then along it; rows are independent, and their sums are
- * added in order. */
+ * of the eleven rows about an output row, then along it. Work goes by bands of output rows, so that
+ * the luma of no more than a band is held; the sums of rows are added in order. Where eleven rows
+ * are equal in both pictures every window is 1 by its definition. */
 #include "verify/verify.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { RADIUS = 5, TAPS = 2 * RADIUS + 1, MOMENTS = 5 };
+enum { RADIUS = 5, TAPS = 2 * RADIUS + 1, MOMENTS = 5, BAND = 32, SPAN = BAND + TAPS - 1 };
 
 typedef struct Ssim {
-    int width, height;
-    double *luma[2];   /* owned; 0 to 255 */
-    double *row_sums;  /* owned; one for each row of the output */
-    double *workspace; /* owned; MOMENTS rows for each worker */
+    const Picture *pictures[2];
+    int width, rows, columns; /* of the pictures; of the output */
     double weights[TAPS];
+    double *row_sums;   /* owned; one for each row of the output */
+    double *workspaces; /* owned; workspace_size for each worker */
+    size_t workspace_size;
 } Ssim;
 
 /* Luma of ITU-R BT.601, rounded to whole codes as image libraries do, in 8-bit levels. */
-static void fill_luma(const Picture *picture, double *luma)
+static void fill_luma(const Picture *picture, int y, double *luma)
 {
-    size_t n = (size_t)picture->width * (size_t)picture->height;
     double scale = picture->bits == 8 ? 1 : 1 / 257.0;
-    for (size_t i = 0; i < n; i++) {
-        size_t first = i * (size_t)picture->channels;
-        uint64_t rounded = picture_code(picture, first);
+    size_t next = (size_t)y * picture_stride(picture);
+    for (int x = 0; x < picture->width; x++, next += (size_t)picture->channels) {
+        uint64_t rounded = picture_code(picture, next);
         if (picture->channels == 3)
-            rounded = (19595 * rounded + 38470ull * picture_code(picture, first + 1) +
-                       7471ull * picture_code(picture, first + 2) + 32768) >>
+            rounded = (19595 * rounded + 38470ull * picture_code(picture, next + 1) +
+                       7471ull * picture_code(picture, next + 2) + 32768) >>
                       16;
-        luma[i] = scale * (double)rounded;
+        luma[x] = scale * (double)rounded;
     }
 }
 
-static void blur_columns(const Ssim *ssim, size_t top, double *const moments[MOMENTS])
+/* Blurs eleven rows, from `a` and `b` on, down the columns. */
+static void blur_columns(const Ssim *ssim, const double *restrict a, const double *restrict b,
+                         double *restrict moments)
 {
     size_t width = (size_t)ssim->width;
-    memset(moments[0], 0, MOMENTS * width * sizeof **moments);
-    for (size_t k = 0; k < TAPS; k++) {
-        const double *a = ssim->luma[0] + (top + k) * width;
-        const double *b = ssim->luma[1] + (top + k) * width;
+    memset(moments, 0, MOMENTS * width * sizeof *moments);
+    for (size_t k = 0; k < TAPS; k++, a += width, b += width) {
         double weight = ssim->weights[k];
         for (size_t x = 0; x < width; x++) {
-            moments[0][x] += weight * a[x];
-            moments[1][x] += weight * b[x];
-            moments[2][x] += weight * a[x] * a[x];
-            moments[3][x] += weight * b[x] * b[x];
-            moments[4][x] += weight * a[x] * b[x];
+            moments[x] += weight * a[x];
+            moments[width + x] += weight * b[x];
+            moments[2 * width + x] += weight * a[x] * a[x];
+            moments[3 * width + x] += weight * b[x] * b[x];
+            moments[4 * width + x] += weight * a[x] * b[x];
         }
     }
 }
 
-static void do_row(size_t row, int worker, void *context)
+static double row_sum(const Ssim *ssim, const double *moments)
 {
-    Ssim *ssim = context;
     const double c1 = 0.01 * 255 * 0.01 * 255, c2 = 0.03 * 255 * 0.03 * 255;
-    double *moments[MOMENTS];
-    for (int m = 0; m < MOMENTS; m++)
-        moments[m] = ssim->workspace + ((size_t)worker * MOMENTS + (size_t)m) * (size_t)ssim->width;
-    blur_columns(ssim, row, moments);
     double sum = 0;
-    for (int x = 0; x + TAPS <= ssim->width; x++) {
+    for (int x = 0; x < ssim->columns; x++) {
         double m[MOMENTS] = {0};
         for (int i = 0; i < MOMENTS; i++)
             for (int k = 0; k < TAPS; k++)
-                m[i] += ssim->weights[k] * moments[i][x + k];
+                m[i] += ssim->weights[k] * moments[i * ssim->width + x + k];
         double variance_a = m[2] - m[0] * m[0], variance_b = m[3] - m[1] * m[1];
         double covariance = m[4] - m[0] * m[1];
         sum += (2 * m[0] * m[1] + c1) * (2 * covariance + c2) /
                ((m[0] * m[0] + m[1] * m[1] + c1) * (variance_a + variance_b + c2));
     }
-    ssim->row_sums[row] = sum;
+    return sum;
 }
 
-static Status ssim_init(Ssim *ssim, const Picture *a, const Picture *b, int threads, Err *err)
+static void do_band(size_t index, int worker, void *context)
 {
-    size_t n = (size_t)a->width * (size_t)a->height;
-    ssim->width = a->width;
-    ssim->height = a->height;
-    TRY(mem_calloc(&ssim->luma[0], n, sizeof(double), "luma values", err));
-    TRY(mem_calloc(&ssim->luma[1], n, sizeof(double), "luma values", err));
-    TRY(mem_calloc(&ssim->row_sums, (size_t)a->height, sizeof(double), "row sums", err));
-    TRY(mem_calloc(&ssim->workspace, (size_t)threads * MOMENTS * (size_t)a->width, sizeof(double),
-                   "moments of a row", err));
-    fill_luma(a, ssim->luma[0]);
-    fill_luma(b, ssim->luma[1]);
+    Ssim *ssim = context;
+    const Picture *a = ssim->pictures[0], *b = ssim->pictures[1];
+    size_t width = (size_t)ssim->width;
+    double *luma_a = ssim->workspaces + (size_t)worker * ssim->workspace_size;
+    double *luma_b = luma_a + SPAN * width, *moments = luma_b + SPAN * width;
+    int top = (int)index * BAND;
+    int rows = ssim->rows - top < BAND ? ssim->rows - top : BAND;
+    int equal = 0; /* how many of the last rows loaded are equal */
+    for (int y = 0; y < rows + TAPS - 1; y++) {
+        fill_luma(a, top + y, luma_a + (size_t)y * width);
+        fill_luma(b, top + y, luma_b + (size_t)y * width);
+        equal = picture_rows_equal(a, b, top + y, 0, ssim->width) ? equal + 1 : 0;
+        int row = y - TAPS + 1;
+        if (row < 0)
+            continue;
+        if (equal >= TAPS) {
+            ssim->row_sums[top + row] = ssim->columns;
+            continue;
+        }
+        blur_columns(ssim, luma_a + (size_t)row * width, luma_b + (size_t)row * width, moments);
+        ssim->row_sums[top + row] = row_sum(ssim, moments);
+    }
+}
+
+static Status ssim_init(Ssim *ssim, int threads, Err *err)
+{
     double sum = 0;
     for (int k = 0; k < TAPS; k++)
         sum += ssim->weights[k] = exp(-(k - RADIUS) * (k - RADIUS) / (2 * 1.5 * 1.5));
     for (int k = 0; k < TAPS; k++)
         ssim->weights[k] /= sum;
-    return STATUS_OK;
+    ssim->workspace_size = (2 * SPAN + MOMENTS) * (size_t)ssim->width;
+    TRY(mem_calloc(&ssim->row_sums, (size_t)ssim->rows, sizeof(double), "row sums", err));
+    return mem_calloc(&ssim->workspaces, (size_t)threads * ssim->workspace_size, sizeof(double),
+                      "luma of a band", err);
 }
 
 Status ssim_compute(const Picture *a, const Picture *b, double *ssim, Err *err)
@@ -99,20 +114,20 @@ Status ssim_compute(const Picture *a, const Picture *b, double *ssim, Err *err)
         *ssim = NAN;
         return STATUS_OK;
     }
-    Ssim self = {0};
+    Ssim self = {.pictures = {a, b},
+                 .width = a->width,
+                 .rows = a->height - TAPS + 1,
+                 .columns = a->width - TAPS + 1};
     int threads = threads_available();
-    size_t rows = (size_t)(a->height - TAPS + 1), columns = (size_t)(a->width - TAPS + 1);
-    Status status = ssim_init(&self, a, b, threads, err);
+    Status status = ssim_init(&self, threads, err);
     if (status == STATUS_OK) {
-        threads_for(rows, threads, do_row, &self);
+        threads_for(((size_t)self.rows + BAND - 1) / BAND, threads, do_band, &self);
         double sum = 0;
-        for (size_t row = 0; row < rows; row++)
+        for (int row = 0; row < self.rows; row++)
             sum += self.row_sums[row];
-        *ssim = sum / (double)(rows * columns);
+        *ssim = sum / ((double)self.rows * self.columns);
     }
-    free(self.luma[0]);
-    free(self.luma[1]);
     free(self.row_sums);
-    free(self.workspace);
+    free(self.workspaces);
     return status;
 }

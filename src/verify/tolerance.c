@@ -31,6 +31,7 @@ static const Field fields[] = {
     NUMBER(interior_ppm),
     NUMBER(band_ppm),
     NUMBER(bias_levels),
+    NUMBER(sign_sigma),
     NUMBER(gain),
     NUMBER(offset_levels),
     NUMBER(silhouette_px),
@@ -94,6 +95,7 @@ Tolerance tolerance_tolerant(double depth_step_mm)
     tolerance.interior_ppm = 2000;
     tolerance.band_ppm = 10000;
     tolerance.bias_levels = 0.01;
+    tolerance.sign_sigma = 6;
     tolerance.gain = 0.0005;
     tolerance.offset_levels = 0.0255;
     tolerance.silhouette_px = 0.002;

@@ -29,6 +29,8 @@ typedef struct Tolerance {
     double interior_ppm;    /* of the pixels off the band, how many may be off by more ... */
     double band_ppm;        /* ... and of those in it */
     double bias_levels;     /* mean of B - A over all pixels, the worst channel */
+    double sign_sigma;      /* |m - n| / sqrt(m + n), of m pixels brighter and n darker in B: chance
+                             * gives 1, an error of a shading model any number */
     double gain;            /* |1 - g| of b = g a + o, least squares over the pixels seen in both */
     double offset_levels;   /* |o| of it */
     double silhouette_px;   /* by how much the outline of what is seen has moved outwards */
@@ -160,6 +162,7 @@ typedef struct CompareResult {
     double max_code; /* in codes */
     double psnr_db;  /* INFINITY for equal pictures */
     double bias_levels;
+    double sign_sigma; /* signed: positive where B is brighter more often than darker */
     size_t classes[PIXEL_CLASSES];
 
     /* Where a mask is known. Lengths of outlines are counted as edges between pixels times pi / 4
@@ -303,9 +306,15 @@ bool report_agrees(const ReportCase *report);
 /* The report as JSON, with the keys of `verify --json`. New reference, NULL when memory runs out.
  */
 json_t *report_json(const ReportCase *report);
-/* Writes report.html (from `template_path`), report.json, junit.xml and diff.png into `folder`,
- * which exists. The page holds its pictures and works from disk without a network. */
-MUST_CHECK Status report_write(const ReportCase *report, const char *template_path,
-                               const char *folder, Err *err);
+/* Writes report.html (from the templates in the folder `templates`), report.json, junit.xml and
+ * diff.png into `folder`, which exists. The page holds its pictures and works from disk without a
+ * network. */
+MUST_CHECK Status report_write(const ReportCase *report, const char *templates, const char *folder,
+                               Err *err);
+/* Writes one page about all cases that report_write wrote about, worst first, to `path`. `power` is the
+ * file that `make power` leaves, or NULL; `all_agree` tells whether all of them do. STATUS_INPUT when a
+ * folder has no report of this version. */
+MUST_CHECK Status report_merge(const char *const *folders, size_t n, const char *power,
+                               const char *templates, const char *path, bool *all_agree, Err *err);
 
 #endif

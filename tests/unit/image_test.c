@@ -431,10 +431,10 @@ static void packs_ids_into_three_bytes(void **state)
     assert_int_equal(picture_from_ids(&picture, &ids, &err), STATUS_OK);
     const uint16_t codes[] = {0, 0, 0, 1, 2, 254, 255, 255, 255};
     assert_codes(&picture, codes, sizeof codes / sizeof *codes);
-    assert_int_equal(ids_from_picture(&back, &picture, &err), STATUS_OK);
+    assert_int_equal(ids_take_picture(&back, &picture, &err), STATUS_OK);
     assert_memory_equal(back.ids, ids.ids, 3 * sizeof *ids.ids);
     make(&deep, 2, 2, 3, 16);
-    assert_int_equal(ids_from_picture(&back, &deep, &err), STATUS_INPUT);
+    assert_int_equal(ids_take_picture(&back, &deep, &err), STATUS_INPUT);
     idplane_release(&ids);
     idplane_release(&back);
     picture_release(&picture);

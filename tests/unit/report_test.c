@@ -10,7 +10,7 @@
 
 static Err err;
 static const char *const folder = "build/report_test";
-static const char *const template_path = "templates/report/report.html";
+static const char *const templates = "templates/report";
 
 /* A scene of 12 x 9 grey pixels; B has one pixel brighter by `fault` levels. */
 typedef struct Scene {
@@ -74,7 +74,7 @@ static void writes_json_with_the_keys_of_the_contract(void **state)
     (void)state;
     Scene scene;
     scene_init(&scene, 0);
-    assert_int_equal(report_write(&scene.report, template_path, folder, &err), STATUS_OK);
+    assert_int_equal(report_write(&scene.report, templates, folder, &err), STATUS_OK);
     assert_true(report_agrees(&scene.report));
     char *text = read_output("report.json");
     json_t *json = json_loads(text, 0, NULL);
@@ -100,7 +100,7 @@ static void writes_a_page_that_needs_nothing_else(void **state)
     (void)state;
     Scene scene;
     scene_init(&scene, 31);
-    assert_int_equal(report_write(&scene.report, template_path, folder, &err), STATUS_OK);
+    assert_int_equal(report_write(&scene.report, templates, folder, &err), STATUS_OK);
     assert_false(report_agrees(&scene.report));
     char *page = read_output("report.html");
     assert_null(strstr(page, "http:"));
@@ -120,9 +120,9 @@ static void embeds_the_pictures_byte_for_byte(void **state)
     (void)state;
     Scene scene;
     scene_init(&scene, 31);
-    assert_int_equal(report_write(&scene.report, template_path, folder, &err), STATUS_OK);
+    assert_int_equal(report_write(&scene.report, templates, folder, &err), STATUS_OK);
     char *page = read_output("report.html");
-    const char *at = strstr(page, "id=\"image-b\" src=\"data:image/png;base64,");
+    const char *at = strstr(page, "data-role=\"b\" data-name=\"corcast\" src=\"data:image/png;base64,");
     assert_non_null(at);
     at = strchr(at, ',') + 1;
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -149,7 +149,7 @@ static void writes_a_junit_case_for_each_plane(void **state)
     (void)state;
     Scene scene;
     scene_init(&scene, 31);
-    assert_int_equal(report_write(&scene.report, template_path, folder, &err), STATUS_OK);
+    assert_int_equal(report_write(&scene.report, templates, folder, &err), STATUS_OK);
     char *xml = read_output("junit.xml");
     assert_holds(xml, "<testsuite name=\"tree &lt;1&gt; &amp; &quot;co&quot;\" tests=\"2\" "
                       "failures=\"1\" errors=\"0\" skipped=\"0\">");
@@ -168,7 +168,7 @@ static void writes_the_same_bytes_again(void **state)
     scene_init(&scene, 3);
     char *first[4];
     for (int run = 0; run < 2; run++) {
-        assert_int_equal(report_write(&scene.report, template_path, folder, &err), STATUS_OK);
+        assert_int_equal(report_write(&scene.report, templates, folder, &err), STATUS_OK);
         for (int i = 0; i < 4; i++) {
             char *again = read_output(names[i]);
             if (run == 0) {
@@ -188,10 +188,10 @@ static void says_when_the_template_is_missing(void **state)
     (void)state;
     Scene scene;
     scene_init(&scene, 0);
-    assert_int_equal(report_write(&scene.report, "templates/none.html", folder, &err),
+    assert_int_equal(report_write(&scene.report, "templates/none", folder, &err),
                      STATUS_INPUT);
-    assert_holds(err.text, "templates/none.html");
-    assert_int_equal(report_write(&scene.report, template_path, "build/no/folder", &err),
+    assert_holds(err.text, "templates/none");
+    assert_int_equal(report_write(&scene.report, templates, "build/no/folder", &err),
                      STATUS_IO);
     scene_release(&scene);
 }

@@ -1,0 +1,204 @@
+// Opens a report page in headless Chromium, over its debugging pipe, and uses it as a reader would.
+//
+//   node page.js CHROMIUM PAGE.html EXPECTED.json
+//
+// EXPECTED: {cases, worst: {id, differing, x, y, a: [r, g, b], b: [r, g, b], segment}}. Prints one line
+// for each expectation that fails; exit status 1 if any does.
+"use strict";
+const { spawn } = require("child_process");
+const fs = require("fs");
+const os = require("os");
+const path = require("path");
+
+const [chromium, page, expectedFile] = process.argv.slice(2);
+const expected = JSON.parse(fs.readFileSync(expectedFile, "utf8"));
+const profile = fs.mkdtempSync(path.join(os.tmpdir(), "page-"));
+const browser = spawn(chromium, ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe",
+  "--user-data-dir=" + profile, "--window-size=1200,900", "about:blank"],
+  { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
+const [writer, reader] = [browser.stdio[3], browser.stdio[4]];
+
+let sequence = 0, rest = "", session, failures = 0;
+const waiting = new Map(), complaints = [], requests = [];
+
+function receive(message) {
+  if (message.id) {
+    const { resolve, reject } = waiting.get(message.id);
+    waiting.delete(message.id);
+    return message.error ? reject(new Error(message.error.message)) : resolve(message.result);
+  }
+  const p = message.params;
+  if (message.method === "Runtime.exceptionThrown")
+    complaints.push(p.exceptionDetails.exception ? p.exceptionDetails.exception.description : p.exceptionDetails.text);
+  if (message.method === "Log.entryAdded" && p.entry.level === "error") complaints.push(p.entry.text);
+  if (message.method === "Runtime.consoleAPICalled" && p.type === "error") complaints.push(JSON.stringify(p.args));
+  if (message.method === "Network.requestWillBeSent" && !/^(file|data):/.test(p.request.url)) requests.push(p.request.url);
+}
+
+reader.setEncoding("utf8");
+reader.on("data", function (chunk) {
+  const messages = (rest + chunk).split("\0");
+  rest = messages.pop();
+  messages.forEach(function (text) { receive(JSON.parse(text)); });
+});
+
+function send(method, params) {
+  const id = ++sequence;
+  const message = { id, method, params: params || {} };
+  if (session) message.sessionId = session;
+  writer.write(JSON.stringify(message) + "\0");
+  return new Promise(function (resolve, reject) { waiting.set(id, { resolve, reject }); });
+}
+
+async function evaluate(expression) {
+  const answer = await send("Runtime.evaluate", { expression, returnByValue: true, awaitPromise: true });
+  if (answer.exceptionDetails) throw new Error(expression + ": " + answer.exceptionDetails.exception.description);
+  return answer.result.value;
+}
+
+function check(ok, what) {
+  if (ok) return;
+  failures++;
+  console.log(what);
+}
+
+async function key(name) {
+  await send("Input.dispatchKeyEvent", { type: "keyDown", key: name, text: name.length === 1 ? name : undefined });
+  await send("Input.dispatchKeyEvent", { type: "keyUp", key: name });
+}
+
+async function mouse(type, x, y) {
+  await send("Input.dispatchMouseEvent", { type, x, y, button: type === "mouseMoved" ? "none" : "left", clickCount: 1 });
+}
+
+const hash = "(function () { var c = document.getElementById('stage'), d = c.getContext('2d')" +
+  ".getImageData(0, 0, c.width, c.height).data, h = 0; for (var i = 0; i < d.length; i += 5) h = (h * 31 + d[i]) | 0;" +
+  " return h; })()";
+const readout = "Array.from(document.querySelectorAll('#readout div')).map(function (d) { return d.textContent; })";
+const rows = "Array.from(document.querySelectorAll('.cases tbody tr')).map(function (r) { return r.dataset.case; })";
+
+async function checkOpening() {
+  check((await evaluate(rows)).length === expected.cases, "expected " + expected.cases + " rows");
+  check((await evaluate(rows))[0] === expected.worst.id, "expected the worst case first, got " + await evaluate(rows));
+  check(await evaluate("document.querySelectorAll('.case:not([hidden])').length") === 1, "expected one case to be shown");
+  check(await evaluate("!!document.querySelector('.case:not([hidden]) #stage')"), "expected the viewer in it");
+  check(await evaluate("Array.from(document.images).every(function (i) { return i.complete; })"), "expected all pictures");
+}
+
+async function checkSorting() {
+  const head = "document.querySelectorAll('.cases th[data-sort]')[3]";
+  const values = "Array.from(document.querySelectorAll('.cases tbody tr')).map(function (r) {" +
+    " return Number(r.cells[4].dataset.value); })";
+  await evaluate(head + ".querySelector('button').click()");
+  const down = await evaluate(values);
+  check(await evaluate(head + ".getAttribute('aria-sort')") === "descending", "expected the column to be sorted");
+  check(down.every(function (v, i) { return i === 0 || v <= down[i - 1]; }), "expected falling numbers, got " + down);
+  await evaluate(head + ".querySelector('button').click()");
+  const up = await evaluate(values);
+  check(up.every(function (v, i) { return i === 0 || v >= up[i - 1]; }), "expected rising numbers, got " + up);
+  await evaluate(head + ".querySelector('button').click()");
+}
+
+async function checkHistogram() {
+  const bars = await evaluate("Array.from(document.querySelectorAll('.case:not([hidden]) .histogram text'))" +
+    ".filter(function (t, i) { return i % 2 === 0; }).map(function (t) { return Number(t.textContent); })");
+  const sum = bars.reduce(function (a, b) { return a + b; }, 0);
+  check(sum === expected.worst.differing, "expected " + expected.worst.differing + " pixels in the histogram, got " + sum);
+}
+
+async function checkZoomAndValues() {
+  const w = expected.worst;
+  await evaluate("location.hash = '#case=" + w.id + "&mode=beside&zoom=48&x=" + w.x + "&y=" + w.y + "'");
+  await evaluate("new Promise(function (r) { setTimeout(r, 300); })");
+  await evaluate("document.getElementById('stage').scrollIntoView({ block: 'center' })");
+  const box = await evaluate("(function () { var b = document.getElementById('stage').getBoundingClientRect();" +
+    " return [b.left, b.top, b.width, b.height]; })()");
+  // The pixel is in the middle of each pane; the panes of A and B read the same.
+  for (const third of [1 / 6, 1 / 2]) {
+    await mouse("mouseMoved", box[0] + box[2] * third, box[1] + box[3] / 2);
+    const cells = await evaluate(readout);
+    check(cells[0].endsWith(w.x + ", " + w.y), "expected pixel " + w.x + ", " + w.y + ", got " + cells[0]);
+    check(cells[1].includes(w.a.join(" ") + ", segment " + w.segment), "expected A to be " + w.a + ", got " + cells[1]);
+    check(cells[2].includes(w.b.join(" ")), "expected B to be " + w.b + ", got " + cells[2]);
+    const d = w.b.map(function (v, i) { return v - w.a[i]; }).join(" ");
+    check(cells[3].endsWith(d), "expected the difference " + d + ", got " + cells[3]);
+  }
+}
+
+async function checkSwipeAndBlink() {
+  await evaluate("location.hash = '#case=" + expected.worst.id + "&mode=swipe&split=0.9'");
+  await evaluate("new Promise(function (r) { setTimeout(r, 200); })");
+  const right = await evaluate(hash);
+  await evaluate("(function () { var s = document.getElementById('split'); s.value = 100; s.dispatchEvent(new Event('input')); })()");
+  check(await evaluate(hash) !== right, "expected the swipe edge to move");
+  await key("3");
+  const first = await evaluate(hash);
+  await key(" ");
+  const second = await evaluate(hash);
+  await key(" ");
+  check(second !== first, "expected blinking to show the other picture");
+  check(await evaluate(hash) === first, "expected blinking twice to come back");
+  await key("4");
+  check(await evaluate("document.querySelector('[data-mode=difference]').getAttribute('aria-pressed')") === "true",
+    "expected key 4 to show the difference");
+  await key("n");
+  const cells = await evaluate(readout);
+  check(/[1-9]/.test(cells[3].replace("Difference", "")), "expected n to go to a pixel that differs, got " + cells);
+}
+
+async function checkKeysAndCrops() {
+  const before = await evaluate("document.querySelector('tr[aria-current]').dataset.case");
+  await key("j");
+  check(await evaluate("document.querySelector('tr[aria-current]').dataset.case") !== before, "expected j to go on");
+  await key("k");
+  check(await evaluate("document.querySelector('tr[aria-current]').dataset.case") === before, "expected k to go back");
+  check(await evaluate("document.querySelectorAll('.case:not([hidden]) .crops figure').length") > 0, "expected crops");
+  const shown = await evaluate(hash);
+  await evaluate("document.querySelector('.case:not([hidden]) .crops button').click()");
+  check(await evaluate(hash) !== shown, "expected a crop to show its place");
+}
+
+async function checkColors() {
+  const colors = [];
+  for (const value of ["light", "dark"]) {
+    await send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value }] });
+    colors.push(await evaluate("getComputedStyle(document.body).backgroundColor"));
+  }
+  check(colors[0] !== colors[1], "expected a dark page, too, got " + colors);
+}
+
+async function run() {
+  const target = await send("Target.createTarget", { url: "about:blank" });
+  session = (await send("Target.attachToTarget", { targetId: target.targetId, flatten: true })).sessionId;
+  for (const domain of ["Runtime", "Log", "Network", "Page"]) await send(domain + ".enable");
+  await send("Page.navigate", { url: "file://" + path.resolve(page) });
+  await evaluate("new Promise(function (r) { if (document.readyState === 'complete') setTimeout(r, 300);" +
+    " else window.addEventListener('load', function () { setTimeout(r, 300); }); })");
+  await checkOpening();
+  await checkSorting();
+  await checkHistogram();
+  await checkZoomAndValues();
+  await checkSwipeAndBlink();
+  await checkKeysAndCrops();
+  await checkColors();
+  check(complaints.length === 0, "expected no console error, got " + complaints.join("; "));
+  check(requests.length === 0, "expected no network access, got " + requests.join(", "));
+}
+
+const patience = setTimeout(function () {
+  console.log("expected the browser to answer within a minute");
+  browser.kill("SIGKILL");
+  process.exit(1);
+}, 60000);
+
+run().catch(function (error) {
+  failures++;
+  console.log(error.message);
+}).finally(function () {
+  clearTimeout(patience);
+  browser.on("exit", function () {
+    fs.rmSync(profile, { recursive: true, force: true });
+    process.exit(failures ? 1 : 0);
+  });
+  browser.kill("SIGKILL");
+});
