@@ -22,20 +22,42 @@ typedef struct Decimal {
     int exponent;    /* of ten, of the first */
 } Decimal;
 
-static uint64_t power(uint64_t base, int exponent)
-{
-    uint64_t product = 1;
-    while (exponent-- > 0)
-        product *= base;
-    return product;
-}
+/* 5^0 to 5^27, all that 64 bits hold. */
+static const uint64_t powers_of_5[] = {1u,
+                                       5u,
+                                       25u,
+                                       125u,
+                                       625u,
+                                       3125u,
+                                       15625u,
+                                       78125u,
+                                       390625u,
+                                       1953125u,
+                                       9765625u,
+                                       48828125u,
+                                       244140625u,
+                                       1220703125u,
+                                       6103515625u,
+                                       30517578125u,
+                                       152587890625u,
+                                       762939453125u,
+                                       3814697265625u,
+                                       19073486328125u,
+                                       95367431640625u,
+                                       476837158203125u,
+                                       2384185791015625u,
+                                       11920928955078125u,
+                                       59604644775390625u,
+                                       298023223876953125u,
+                                       1490116119384765625u,
+                                       7450580596923828125u};
 
 /* Rounds m 2^e to `count` digits, the first of which stands for 10^exponent; whether they read
  * back. */
 static bool round_decimal(uint64_t m, int e, int count, int exponent, Decimal *out)
 {
     int k = count - 1 - exponent, shift = -(e + k);
-    uint64_t spacing = power(5, k);
+    uint64_t spacing = powers_of_5[k];
     Wide exact = (Wide)m * spacing, unit = (Wide)1 << shift;
     uint64_t digits = (uint64_t)(exact >> shift);
     Wide rest = exact & (unit - 1);
@@ -48,7 +70,7 @@ static bool round_decimal(uint64_t m, int e, int count, int exponent, Decimal *o
 }
 static void print_decimal(Decimal d, bool negative, char *out)
 {
-    if (d.digits == power(10, d.count)) {
+    if (d.digits == powers_of_5[d.count] << d.count) { /* 10^count: rounded up to one digit more */
         d.digits /= 10;
         d.exponent++;
     }

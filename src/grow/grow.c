@@ -23,7 +23,7 @@
 /* Cells of the grid a terminal, when the grid is made; it serves until the terminals doubled. */
 static const double cells_per_terminal = 3;
 /* The sensitivities serve until there are this many times the terminals. */
-static const double refresh_growth = 1.1;
+static const double refresh_growth = 1.2;
 /* A batch adds about one terminal for every so many there are. */
 enum { TERMINALS_PER_ADDED = 64, MAX_ADDED = 2048 };
 /* Points tossed for each terminal to be added, and the batch's size at most. */
@@ -91,7 +91,7 @@ static Status keep_up(Growth *growth, Err *err)
         if (weigh_is_needed(growth->params))
             TRY(weigh_refresh(net, growth->params, growth->domain, WEIGH_ROUGH, err));
         else
-            network_refresh(net);
+            network_refresh(net, growth->batch.threads);
         if (growth->grid.item)
             TRY(place_widen(&growth->grid, &growth->rules, net, err));
         growth->refresh_until = (size_t)(refresh_growth * (double)terminals) + 1;

@@ -199,7 +199,7 @@ Status mend_network(Network *net, Grid *grid, const Domain *domain, const Rules 
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&mending.close, net->n, sizeof *mending.close, "segments", err));
     for (int round = 0; round < ROUNDS; round++) {
-        network_refresh(net);
+        network_refresh(net, threads);
         TRY_GOTO(place_widen(grid, rules, net, err));
         if (round == 0)
             threads_for((net->n + CHUNK - 1) / CHUNK, threads, look_at_chunk, &mending);

@@ -18,6 +18,8 @@
 
 /* Splits that a thread carries at a time, and the least that are worth starting threads for. */
 enum { CHUNK = 32, LEAST_SHARED = 256 };
+/* Refreshing goes by subtrees of at most one in so many terminals, by the place where they begin. */
+enum { SUBTREES = 128, REFRESHED = 4096 };
 
 struct Arrivals {
     atomic_int gain;    /* terminals more */
@@ -276,20 +278,26 @@ void network_move(Network *net, int32_t node, Vec3 place)
         recompute(net, i);
 }
 
-/* The node after `i` in the depth-first order of its tree, -1 after the last. */
-static int32_t next_depth_first(const Network *net, int32_t i)
+/* The node after `i` in depth-first order below `top`, among those with at least so many terminals;
+ * -1 after the last. */
+static int32_t next_below(const Network *net, int32_t i, int32_t top, int32_t terminals)
 {
-    if (net->segment[i].child[0] >= 0)
-        return net->segment[i].child[0];
-    for (int32_t above; (above = net->segment[i].parent) >= 0; i = above) {
-        const int32_t *child = net->segment[above].child;
-        if (child[0] == i && child[1] >= 0)
-            return child[1];
+    for (int slot = 0; slot < 2; slot++) {
+        int32_t child = net->segment[i].child[slot];
+        if (child >= 0 && net->segment[child].terminals >= terminals)
+            return child;
+    }
+    for (; i != top; i = net->segment[i].parent) {
+        const Segment *parent = &net->segment[net->segment[i].parent];
+        int32_t sister = parent->child[1];
+        if (parent->child[0] == i && sister >= 0 && net->segment[sister].terminals >= terminals)
+            return sister;
     }
     return -1;
 }
 
-static void refresh_daughters(Network *net, int32_t i)
+/* Passes on to its daughters what a node has itself. */
+static void refresh_below(Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
     if (segment->child[0] < 0)
@@ -307,11 +315,44 @@ static void refresh_daughters(Network *net, int32_t i)
     }
 }
 
-void network_refresh(Network *net)
+typedef struct Refreshing {
+    Network *net;
+    int32_t least; /* terminals of the segments that are refreshed already */
+} Refreshing;
+
+/* Whether the subtree of segment i hangs on one that is refreshed already, and is not itself. */
+static bool is_due(const Refreshing *refreshing, int32_t i)
 {
+    const Segment *segment = &refreshing->net->segment[i];
+    if (segment->parent < 0 || segment->terminals >= refreshing->least)
+        return false;
+    const Segment *above = &refreshing->net->segment[segment->parent];
+    return above->parent < 0 || above->terminals >= refreshing->least;
+}
+
+/* Refreshes the subtrees that are due and begin in the chunk. */
+static void refresh_chunk(size_t index, int worker, void *context)
+{
+    (void)worker;
+    const Refreshing *refreshing = context;
+    Network *net = refreshing->net;
+    size_t end = (index + 1) * REFRESHED < net->n ? (index + 1) * REFRESHED : net->n;
+    for (size_t k = index * REFRESHED; k < end; k++) {
+        int32_t top = (int32_t)k;
+        if (is_due(refreshing, top))
+            for (int32_t i = top; i >= 0; i = next_below(net, i, top, 1))
+                refresh_below(net, i);
+    }
+}
+
+void network_refresh(Network *net, int threads)
+{
+    int32_t least = (int32_t)(net->terminals / SUBTREES) + 1;
     for (size_t k = 0; k < net->inlets; k++)
-        for (int32_t i = net->inlet[k]; i >= 0; i = next_depth_first(net, i))
-            refresh_daughters(net, i);
+        for (int32_t i = net->inlet[k]; i >= 0; i = next_below(net, i, net->inlet[k], least))
+            refresh_below(net, i);
+    Refreshing refreshing = {net, least};
+    threads_for((net->n + REFRESHED - 1) / REFRESHED, threads, refresh_chunk, &refreshing);
 }
 
 /* Replaces items[k] by items[order[k]] for all k. */
@@ -375,7 +416,7 @@ Status network_reorder(Network *net, Err *err)
     TRY_GOTO(mem_calloc(&place, n, sizeof *place, "nodes to renumber", err));
     int32_t count = 0;
     for (size_t k = 0; k < net->inlets; k++)
-        for (int32_t i = net->inlet[k]; i >= 0; i = next_depth_first(net, i)) {
+        for (int32_t i = net->inlet[k]; i >= 0; i = next_below(net, i, net->inlet[k], 0)) {
             place[i] = count;
             order[count++] = i;
         }

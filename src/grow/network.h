@@ -135,7 +135,7 @@ void network_move(Network *net, int32_t node, Vec3 place);
 double network_cost(const Network *net);
 
 /* Brings radius, gauge and sensitivities of all segments up to date. */
-void network_refresh(Network *net);
+void network_refresh(Network *net, int threads);
 
 /* The node after `i` in the order in which daughters come before their mother, which begins with
  * network_first_upward of the inlet and ends with the inlet. */

@@ -343,9 +343,11 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
 static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t other)
 {
     const GridItem *item = &grid->item[other];
-    double apart2 = grid_distance2(&newcomer->item, item);
     double touch = newcomer->thickness * (newcomer->radius + (double)item->radius);
     double clear = clearance_reserve * touch + newcomer->gap;
+    if (!grid_boxes_within(&newcomer->item, item, (float)clear))
+        return true;
+    double apart2 = grid_distance2(&newcomer->item, item);
     if (apart2 >= clear * clear)
         return true;
     touch = newcomer->gap + (network_is_piece(newcomer->net, other) ? 0 : touch);
