@@ -77,7 +77,7 @@ Status put_scales(Text *text, const PovrayParams *params, const CellTree *cells,
         used[scale_number(&cells->cells[i])] = true;
     Status status = load_template(&template, params, "scale.inc", err);
     for (int number = 0; status == STATUS_OK && number < N_SCALES; number++) {
-        char digits[8], scale[NUMBER_TEXT_SIZE], low[NUMBER_TEXT_SIZE], high[NUMBER_TEXT_SIZE],
+        char digits[12], scale[NUMBER_TEXT_SIZE], low[NUMBER_TEXT_SIZE], high[NUMBER_TEXT_SIZE],
             slope[NUMBER_TEXT_SIZE];
         snprintf(digits, sizeof digits, "%d", number);
         const TmplValue values[] = {{"number", digits},

@@ -297,7 +297,7 @@ static int32_t next_below(const Network *net, int32_t i, int32_t top, int32_t te
 }
 
 /* Passes on to its daughters what a node has itself. */
-static void refresh_below(Network *net, int32_t i)
+static void refresh_daughters(Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
     if (segment->child[0] < 0)
@@ -320,17 +320,15 @@ typedef struct Refreshing {
     int32_t least; /* terminals of the segments that are refreshed already */
 } Refreshing;
 
-/* Whether the subtree of segment i hangs on one that is refreshed already, and is not itself. */
-static bool is_due(const Refreshing *refreshing, int32_t i)
+/* Whether node i, no inlet, is the first on its way from the inlet that is still to be refreshed. */
+static bool begins_subtree(const Refreshing *refreshing, int32_t i)
 {
-    const Segment *segment = &refreshing->net->segment[i];
-    if (segment->parent < 0 || segment->terminals >= refreshing->least)
-        return false;
-    const Segment *above = &refreshing->net->segment[segment->parent];
-    return above->parent < 0 || above->terminals >= refreshing->least;
+    const Segment *segment = refreshing->net->segment;
+    const Segment *above = &segment[segment[i].parent];
+    return segment[i].terminals < refreshing->least &&
+           (above->parent < 0 || above->terminals >= refreshing->least);
 }
 
-/* Refreshes the subtrees that are due and begin in the chunk. */
 static void refresh_chunk(size_t index, int worker, void *context)
 {
     (void)worker;
@@ -339,19 +337,20 @@ static void refresh_chunk(size_t index, int worker, void *context)
     size_t end = (index + 1) * REFRESHED < net->n ? (index + 1) * REFRESHED : net->n;
     for (size_t k = index * REFRESHED; k < end; k++) {
         int32_t top = (int32_t)k;
-        if (is_due(refreshing, top))
-            for (int32_t i = top; i >= 0; i = next_below(net, i, top, 1))
-                refresh_below(net, i);
+        if (net->segment[k].parent < 0 || !begins_subtree(refreshing, top))
+            continue;
+        for (int32_t i = top; i >= 0; i = next_below(net, i, top, 1))
+            refresh_daughters(net, i);
     }
 }
 
 void network_refresh(Network *net, int threads)
 {
-    int32_t least = (int32_t)(net->terminals / SUBTREES) + 1;
+    Refreshing refreshing = {net, (int32_t)(net->terminals / SUBTREES) + 1};
     for (size_t k = 0; k < net->inlets; k++)
-        for (int32_t i = net->inlet[k]; i >= 0; i = next_below(net, i, net->inlet[k], least))
-            refresh_below(net, i);
-    Refreshing refreshing = {net, least};
+        for (int32_t i = net->inlet[k]; i >= 0;
+             i = next_below(net, i, net->inlet[k], refreshing.least))
+            refresh_daughters(net, i);
     threads_for((net->n + REFRESHED - 1) / REFRESHED, threads, refresh_chunk, &refreshing);
 }
 
@@ -416,7 +415,7 @@ Status network_reorder(Network *net, Err *err)
     TRY_GOTO(mem_calloc(&place, n, sizeof *place, "nodes to renumber", err));
     int32_t count = 0;
     for (size_t k = 0; k < net->inlets; k++)
-        for (int32_t i = net->inlet[k]; i >= 0; i = next_below(net, i, net->inlet[k], 0)) {
+        for (int32_t i = net->inlet[k]; i >= 0; i = next_below(net, i, net->inlet[k], 1)) {
             place[i] = count;
             order[count++] = i;
         }

@@ -44,7 +44,7 @@ static void what_it_sees_is_the_surface_to_its_accuracy(void **state)
         FieldIndex *index;
         FieldScratch *scratch;
         assert_int_equal(fieldindex_build(&test.scene, &index, NULL), STATUS_OK);
-        assert_int_equal(fieldscratch_new(index, &scratch, NULL), STATUS_OK);
+        assert_int_equal(fieldscratch_new(fieldindex_size(index), &scratch, NULL), STATUS_OK);
         for (int i = 0; i < 3000; i++) {
             Ray ray = random_ray(&test, &random);
             Hit hit;
