@@ -33,6 +33,11 @@ static double relative_viscosity(const GrowParams *params, double radius)
     return viscosity_pries_pa_s(radius, params->hematocrit, 1);
 }
 
+static int threads_of(const GrowParams *params)
+{
+    return params->threads > 0 ? params->threads : threads_available();
+}
+
 /* Gives all terminals their shares; `share` has room for one a node. */
 static Status set_shares(Network *net, const GrowParams *params, const Domain *domain,
                          WeighPrecision precision, double *share, Err *err)
@@ -40,10 +45,9 @@ static Status set_shares(Network *net, const GrowParams *params, const Domain *d
     double points = rough_points;
     if (precision == WEIGH_FINE)
         points = fmin(fmax(all_points / (double)net->terminals, least_points), most_points);
-    int threads = params->threads > 0 ? params->threads : threads_available();
     bool territory = params->terminal_flow == TERMINAL_FLOW_TERRITORY;
     if (territory)
-        TRY(territory_count(net, domain, points, threads, share, err));
+        TRY(territory_count(net, domain, points, threads_of(params), share, err));
     for (size_t i = 0; i < net->n; i++) {
         const Segment *segment = &net->segment[i];
         bool terminal = segment->child[0] < 0 && segment->parent >= 0;
@@ -102,7 +106,7 @@ static Status reweigh(Network *net, const GrowParams *params, const double *flow
         radius[i] = (double)net->segment[i].radius;
     TRY(weigh_segments(net, params, flow, radius, 1, &change, err));
     network_resum(net);
-    network_refresh(net, 1);
+    network_refresh(net, threads_of(params));
     return STATUS_OK;
 }
 
@@ -115,7 +119,7 @@ Status weigh_refresh(Network *net, const GrowParams *params, const Domain *domai
     TRY_GOTO(mem_calloc(&radius, net->n, sizeof *radius, "radii", err));
     TRY_GOTO(set_shares(net, params, domain, precision, flow, err));
     weigh_gather(net, flow);
-    network_refresh(net, 1);
+    network_refresh(net, threads_of(params));
     for (int round = 0; round < (precision == WEIGH_FINE ? FINE_ROUNDS : 1); round++)
         TRY_GOTO(reweigh(net, params, flow, radius, err));
 done:

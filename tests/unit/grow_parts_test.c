@@ -1,0 +1,107 @@
+/* Parts of growth that whole trees show only dimly: the best place on a straight segment, quotas of
+ * trees, sizes of territories. */
+#include "grow/fermat.h"
+#include "grow/forest.h"
+#include "grow/territory.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static double sum_at(const Vec3 corner[3], const double weight[3], double t)
+{
+    Vec3 at = vec3_add_scaled(corner[0], vec3_sub(corner[1], corner[0]), t);
+    double sum = 0;
+    for (int i = 0; i < 3; i++)
+        sum += weight[i] * vec3_distance(at, corner[i]);
+    return sum;
+}
+
+static void no_point_between_two_corners_is_better_than_the_one_that_is_found(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 2385);
+    for (int run = 0; run < 300; run++) {
+        Vec3 corner[3];
+        double weight[3];
+        for (int i = 0; i < 3; i++) {
+            corner[i] = vec3(random_uniform(&random), random_uniform(&random),
+                             run % 2 ? random_uniform(&random) : 0);
+            weight[i] = 0.1 + random_uniform(&random);
+        }
+        double length = vec3_distance(corner[0], corner[1]);
+        const double margin[2] = {0.1 * length, 0.2 * length};
+        Vec3 found = fermat_point_between(corner, weight, margin);
+        double t = vec3_distance(found, corner[0]) / length;
+        assert_true(t >= 0.1 - 1e-12 && t <= 0.8 + 1e-12);
+        for (double other = 0.1; other <= 0.8; other += 0.001)
+            assert_true(sum_at(corner, weight, t) <= sum_at(corner, weight, other) + 1e-12);
+    }
+}
+
+static void margins_wider_than_the_segment_leave_the_middle_between_them(void **state)
+{
+    (void)state;
+    const Vec3 corner[3] = {{0, 0, 0}, {2, 0, 0}, {1, 5, 0}};
+    const double weight[3] = {1, 1, 1}, margin[2] = {1.75, 1.25};
+    Vec3 found = fermat_point_between(corner, weight, margin);
+    assert_true(fabs(found.x - 1.25) <= 1e-15 && found.y == 0 && found.z == 0);
+}
+
+static void expect_quotas(const double *share, size_t terminals, const size_t expected[3])
+{
+    Forest forest;
+    assert_int_equal(forest_init(&forest, 3, share, terminals, NULL), STATUS_OK);
+    for (size_t k = 0; k < 3; k++)
+        assert_int_equal(forest.quota[k], expected[k]);
+    forest_release(&forest);
+}
+
+static void quotas_go_by_largest_remainders_and_leave_no_tree_without_a_terminal(void **state)
+{
+    (void)state;
+    expect_quotas((const double[]){1, 1, 1}, 9, (const size_t[]){3, 3, 3});
+    expect_quotas((const double[]){5.2, 2.7, 2.1}, 10, (const size_t[]){5, 3, 2});
+    expect_quotas((const double[]){0.25, 0.25, 0.5}, 1001, (const size_t[]){250, 250, 501});
+    expect_quotas((const double[]){1e-9, 1, 1e-9}, 10, (const size_t[]){1, 8, 1});
+    expect_quotas((const double[]){1e-9, 1, 1e-9}, 3, (const size_t[]){1, 1, 1});
+}
+
+static void a_territory_counts_the_points_that_are_nearest_whatever_the_threads(void **state)
+{
+    (void)state;
+    Domain domain;
+    Network net;
+    assert_int_equal(domain_parse(&domain, "rect:30,10", NULL), STATUS_OK);
+    assert_int_equal(network_init(&net, (Law){3, 2}, 1, 8, 1, false, NULL), STATUS_OK);
+    int32_t inlet = network_append(&net, -1, vec3(0, 5, 0));
+    int32_t fork = network_append(&net, inlet, vec3(0, 0, 0));
+    int32_t left = network_append(&net, fork, vec3(-10, 0, 0));
+    int32_t right = network_append(&net, fork, vec3(4, 1, 0));
+    network_resum(&net);
+    double one[4], many[4];
+    assert_int_equal(territory_count(&net, &domain, 5000, 1, one, NULL), STATUS_OK);
+    assert_int_equal(territory_count(&net, &domain, 5000, 3, many, NULL), STATUS_OK);
+    assert_memory_equal(one, many, sizeof one);
+    assert_true(one[inlet] == 0 && one[fork] == 0);
+    /* The points as near to (-10, 0) as to (4, 1) meet y = 0, the middle, at x = (17 - 100) / 28. */
+    double left_part = (15 - 83.0 / 28) / 30, total = one[left] + one[right];
+    assert_true(fabs(one[left] / total - left_part) <= 2e-3);
+    network_release(&net);
+    domain_release(&domain);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_point_between_two_corners_is_better_than_the_one_that_is_found),
+        cmocka_unit_test(margins_wider_than_the_segment_leave_the_middle_between_them),
+        cmocka_unit_test(quotas_go_by_largest_remainders_and_leave_no_tree_without_a_terminal),
+        cmocka_unit_test(a_territory_counts_the_points_that_are_nearest_whatever_the_threads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
