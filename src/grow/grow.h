@@ -66,7 +66,7 @@ typedef struct GrowReport {
     double target;         /* sum of l r^lambda, mm^(1 + lambda) */
     double root_radius_mm; /* the largest */
     uint64_t tosses;       /* random points drawn */
-    uint64_t rejected;     /* points far enough from the tree to which no connection was possible */
+    uint64_t rejected; /* points in vessels, in full cells, or to which no connection had room */
     /* Growth makes segments at least as long as wide, and keeps those without a common node clear
      * of each other, at this share of their radii: 1 unless the domain was too full for vessels so
      * thick, down to 0 for centrelines that do not cross. */

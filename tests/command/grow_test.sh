@@ -132,6 +132,17 @@ test_ten_thousand_terminals_take_seconds_and_give_an_exact_tree() {
     expect_stdout '^terminals 10000$'
 }
 
+test_tubes_are_longer_than_wide_and_overlap_only_where_they_meet() {
+    local options
+    for options in '' '--toss terminal' '--domain ball:28.794' '--gamma 2.55 --lambda 1'; do
+        run_ok corcast grow --seed 5 $options -o tree.swc --json grow.json
+        expect_json grow.json '.broken == 0 and .thickness == 1'
+        check_tree tree.swc
+        expect_stdout '^shorter_than_wide 0$'
+        expect_stdout '^overlapping_pairs 0$'
+    done
+}
+
 test_one_terminal_is_one_segment() {
     run_ok corcast grow --terminals 1 -o tree.swc
     check_tree tree.swc
