@@ -12,6 +12,7 @@ static const char *const models[] = {[SCENE_CYLINDERS] = "cylinders",
                                      [SCENE_ROUNDED] = "rounded",
                                      [SCENE_ISOSURFACE] = "isosurface",
                                      NULL};
+static const char *const potentials[] = {"paper", "graph", NULL};
 static const char *const projections[] = {
     [PROJECTION_ORTHOGRAPHIC] = "orthographic", [PROJECTION_PERSPECTIVE] = "perspective", NULL};
 static const char *const views[] = {
@@ -37,6 +38,8 @@ void picture_options_init(PictureOptions *options)
     const Option table[] = {
         {"model", OPTION_CHOICE, &options->model, NULL, 0, 0, models, NULL,
          "how vessels are drawn (rounded)"},
+        {"potential", OPTION_CHOICE, &options->potential, NULL, 0, 0, potentials, NULL,
+         "isosurface: all vessels blend, or only neighbours in the tree (paper)"},
         {"prune-radius", OPTION_NUMBER, &options->prune_radius_mm, NULL, 0, far, NULL, "MM",
          "drop segments thinner than this"},
         {"size", OPTION_SIZE, options->size, NULL, 1, side, NULL, NULL, "pixels (1000x1000)"},
@@ -92,6 +95,8 @@ static Status check_camera(const PictureOptions *options, Err *err)
         return err_set(err, STATUS_USAGE, "--view and --location exclude each other; give one");
     if (stage->has_look_at && !stage->has_location)
         return err_set(err, STATUS_USAGE, "--look-at needs --location");
+    if (options->potential && options->model != SCENE_ISOSURFACE)
+        return err_set(err, STATUS_USAGE, "--potential is for --model isosurface");
     if (stage->has_up && !(vec3_length(stage->up) > 0))
         return err_set(err, STATUS_USAGE, "--up: the vector must not be zero");
     return STATUS_OK;
@@ -133,6 +138,7 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
                                 srgb_decode((float)options->background.z)};
     StageParams stage = options->stage;
     stage.model = (SceneModel)options->model;
+    stage.graph = options->potential != 0;
     stage.projection = (Projection)options->projection;
     stage.view = (View)options->view;
     stage.width = options->size[0];

@@ -13,7 +13,7 @@ enum { PICTURE_OPTIONS = 24 };
 
 typedef struct PictureOptions {
     StageParams stage;
-    int model, projection, view; /* choices */
+    int model, potential, projection, view; /* choices */
     int size[2];
     int antialias;
     double prune_radius_mm;

@@ -9,6 +9,11 @@
 Status povfiles_write(const Scene *scene, const char *tree_path, const char *path, bool shadows,
                       bool ids, const CellParams *cells, Err *err)
 {
+    if (scene->blend.first)
+        return err_set(
+            err, STATUS_USAGE,
+            "--potential graph is corcast's own and has no POV-Ray scene; use --potential "
+            "paper, or render");
     bool to_stdout = strcmp(path, "-") == 0;
     Text description = TEXT_INIT, pov = TEXT_INIT, inc = TEXT_INIT;
     char *templates = NULL, *geometry_path = NULL;

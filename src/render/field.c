@@ -193,25 +193,53 @@ static bool first_hit(const FieldSegment *segments, FieldScratch *scratch, Ray r
     return false;
 }
 
-bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
-                     double t_max, double *t, Vec3 *normal, uint32_t *segment)
+/* first_hit of the sum of the terms listed. */
+static bool hit_of_sum(const Scene *scene, const uint32_t *list, size_t n, FieldScratch *scratch,
+                       Ray ray, double t_min, double t_max, double *t, Vec3 *normal,
+                       uint32_t *segment)
 {
-    t_max = fmin(t_max, DBL_MAX); /* so that "none", infinite, is beyond it */
-    passages_find(index, scratch, ray, t_min, t_max);
-    return first_hit(index->segments, scratch, ray, t_min, t_max, t, normal, segment);
-}
-
-bool field_first_hit_among(const FieldSegment *segments, const uint32_t *list, size_t n,
-                           FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
-                           Vec3 *normal, uint32_t *segment)
-{
-    t_max = fmin(t_max, DBL_MAX);
     passages_clear(scratch);
     for (size_t i = 0; i < n; i++) {
-        FieldTube tube = fieldtube_of(&segments[list[i]], list[i]);
+        FieldTube tube = fieldtube_of(&scene->segments[list[i]], list[i]);
         if (tube.reach2 > 0)
             passages_add(scratch, &tube, ray, t_min, t_max);
     }
     passages_order(scratch);
-    return first_hit(segments, scratch, ray, t_min, t_max, t, normal, segment);
+    return first_hit(scene->segments, scratch, ray, t_min, t_max, t, normal, segment);
+}
+
+bool field_first_hit_among(const Scene *scene, const uint32_t *list, size_t n,
+                           FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
+                           Vec3 *normal, uint32_t *segment)
+{
+    bool hit = false;
+    t_max = fmin(t_max, DBL_MAX); /* so that "none", infinite, is beyond it */
+    if (!scene->blend.first)
+        return hit_of_sum(scene, list, n, scratch, ray, t_min, t_max, t, normal, segment);
+    for (size_t i = 0; i < n; i++) {
+        size_t joined = 0;
+        for (size_t j = 0; j < n; j++)
+            if (blend_joins(&scene->blend, list[i], list[j]))
+                scratch->joined[joined++] = list[j];
+        if (hit_of_sum(scene, scratch->joined, joined, scratch, ray, t_min, t_max, t, normal,
+                       segment)) {
+            hit = true;
+            t_max = *t;
+        }
+    }
+    return hit;
+}
+
+bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
+                     double t_max, double *t, Vec3 *normal, uint32_t *segment)
+{
+    t_max = fmin(t_max, DBL_MAX);
+    passages_find(index, scratch, ray, t_min, t_max);
+    if (!index->scene->blend.first)
+        return first_hit(index->scene->segments, scratch, ray, t_min, t_max, t, normal, segment);
+    size_t n = scratch->n_passages;
+    for (size_t i = 0; i < n; i++)
+        scratch->near[i] = scratch->passages[i].segment;
+    return field_first_hit_among(index->scene, scratch->near, n, scratch, ray, t_min, t_max, t,
+                                 normal, segment);
 }

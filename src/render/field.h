@@ -30,12 +30,12 @@ size_t fieldindex_size(const FieldIndex *index);
  * *normal is unit and outward, -grad Phi / |grad Phi|; *segment the index of the segment whose term
  * is largest there, the lowest of equals. Terms are left out where they are below 1e-9, so the
  * surface of a lone vessel is off by at most 1.9e-9 r each; a ray that grazes within that of the
- * level may go either way. */
+ * level may go either way. Where only neighbours blend, the union of their bodies is met. */
 bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                      double t_max, double *t, Vec3 *normal, uint32_t *segment);
 
-/* The same among the `n` segments listed, without an index. `scratch` has room for n. */
-bool field_first_hit_among(const FieldSegment *segments, const uint32_t *list, size_t n,
+/* The same among the `n` segments listed of the scene, without an index. `scratch` has room for n. */
+bool field_first_hit_among(const Scene *scene, const uint32_t *list, size_t n,
                            FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
                            Vec3 *normal, uint32_t *segment);
 

@@ -88,7 +88,7 @@ Status fieldindex_build(const Scene *scene, FieldIndex **out, Err *err)
     TRY_GOTO(mem_calloc(&index, 1, sizeof *index, "field indices", err));
     TRY_GOTO(mem_calloc(&index->tubes, n, sizeof *index->tubes, "tubes", err));
     TRY_GOTO(mem_calloc(&index->nodes, 2 * n, sizeof *index->nodes, "nodes", err));
-    index->segments = scene->segments;
+    index->scene = scene;
     for (size_t i = 0; i < n; i++) {
         FieldTube tube = fieldtube_of(&scene->segments[i], (uint32_t)i);
         if (tube.reach2 > 0)

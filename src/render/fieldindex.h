@@ -30,7 +30,7 @@ typedef struct FieldNode {
 } FieldNode;
 
 struct FieldIndex {
-    const FieldSegment *segments;
+    const Scene *scene;
     FieldTube *tubes; /* without the segments whose term is below the cut-off everywhere */
     size_t n_tubes;
     FieldNode *nodes; /* depth first; at most log2(n_tubes) + 1 deep */

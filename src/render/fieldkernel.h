@@ -63,13 +63,14 @@ typedef struct PacketTerm {
     bool flat;     /* u and v are the same all along, and their factor is in half_gauss */
 } PacketTerm;
 
-_Static_assert(sizeof(PacketTerm) <= TILE_WORK_BYTES, "TILE_WORK_BYTES");
+_Static_assert(sizeof(PacketTerm) + sizeof(PacketTerm *) <= TILE_WORK_BYTES, "TILE_WORK_BYTES");
 
 typedef struct Packet {
     const FieldTile *tile;
     Lanes x, y;        /* of the samples */
     PacketTerm *terms; /* those of the tile's that matter, in their order */
-    size_t n;
+    PacketTerm **sum;  /* those of them that are added up */
+    size_t n, n_sum;
 } Packet;
 
 LANE_FN Lanes square(Lanes a)
@@ -254,7 +255,7 @@ LANE_FN void complete_term(PacketTerm *term, bool perspective)
 /* Terms that overlap along the packet. z is relative to `base`. */
 typedef struct Group {
     const Packet *packet;
-    PacketTerm *terms;
+    PacketTerm **terms;
     size_t n;
     double base;
     Lanes margin;
@@ -297,7 +298,7 @@ LANE_FN Sample sample_at(const Group *group, Lanes z, LaneMask live)
     float last = lanes_largest(lanes_select(live, z, -far));
     Sample sample = {lanes_set(0), lanes_set(0), lanes_set(0), 1e30f};
     for (size_t i = 0; i < group->n; i++) {
-        const PacketTerm *term = &group->terms[i];
+        const PacketTerm *term = group->terms[i];
         if (term->on > last) {
             sample.next = term->on;
             break;
@@ -314,7 +315,7 @@ LANE_FN bool group_window(Group *group, float extent, LaneMask *live, Lanes *sta
 {
     Lanes sum = lanes_set(0), places = lanes_set(0);
     for (size_t i = 0; i < group->n; i++) {
-        const PacketTerm *term = &group->terms[i];
+        const PacketTerm *term = group->terms[i];
         sum += term->peak;
         places = lanes_fma(term->peak, lanes_set(term->term->k), places);
     }
@@ -328,7 +329,7 @@ LANE_FN bool group_window(Group *group, float extent, LaneMask *live, Lanes *sta
     *start = lanes_set(1e30f);
     *end = lanes_set(-1e30f);
     for (size_t i = 0; i < group->n; i++) {
-        PacketTerm *term = &group->terms[i];
+        PacketTerm *term = group->terms[i];
         if (!matters(term, *live))
             continue;
         complete_term(term, group->packet->tile->perspective);
@@ -412,8 +413,8 @@ LANE_FN Gradient gradient_at(const Group *group, Lanes z, LaneMask rays)
 {
     Gradient sum = {.largest = lanes_set(-1)};
     for (size_t i = 0; i < group->n; i++)
-        if (matters(&group->terms[i], rays))
-            add_gradient(&group->terms[i], group->packet, z, &sum);
+        if (matters(group->terms[i], rays))
+            add_gradient(group->terms[i], group->packet, z, &sum);
     return sum;
 }
 
@@ -435,8 +436,12 @@ LANE_FN void store_hits(const Group *group, int first, LaneMask hit, Lanes z, Ti
         if (!hit[lane])
             continue;
         int sample = first + lane;
+        double here = group->base + (double)z[lane];
+        if (hits->state[sample] == TILE_UNSURE ||
+            (hits->state[sample] == TILE_HIT && hits->z[sample] <= here))
+            continue; /* another sum's hit is nearer */
         hits->state[sample] = TILE_HIT;
-        hits->z[sample] = group->base + (double)z[lane];
+        hits->z[sample] = here;
         hits->normal[0][sample] = at.x[lane];
         hits->normal[1][sample] = at.y[lane];
         hits->normal[2][sample] = at.z[lane];
@@ -447,16 +452,16 @@ LANE_FN void store_hits(const Group *group, int first, LaneMask hit, Lanes z, Ti
 /* Makes the terms from `first` on that overlap a group, and returns the number of the next. */
 LANE_FN size_t next_group(const Packet *packet, size_t first, Group *group, float *extent)
 {
-    PacketTerm *terms = packet->terms;
-    double begin = terms[first].term->on, end = terms[first].term->off;
-    double base = terms[first].term->z_near;
+    PacketTerm **terms = packet->sum;
+    double begin = terms[first]->term->on, end = terms[first]->term->off;
+    double base = terms[first]->term->z_near;
     size_t last = first + 1;
-    for (; last < packet->n && terms[last].term->on <= end; last++)
-        end = terms[last].term->off > end ? terms[last].term->off : end;
+    for (; last < packet->n_sum && terms[last]->term->on <= end; last++)
+        end = terms[last]->term->off > end ? terms[last]->term->off : end;
     for (size_t i = first; i < last; i++) {
-        terms[i].z = (float)(terms[i].term->z_near - base);
-        terms[i].on = (float)(terms[i].term->on - base);
-        terms[i].off = (float)(terms[i].term->off - base);
+        terms[i]->z = (float)(terms[i]->term->z_near - base);
+        terms[i]->on = (float)(terms[i]->term->on - base);
+        terms[i]->off = (float)(terms[i]->term->off - base);
     }
     double reach = end - base > base - begin ? end - base : base - begin;
     double width = (double)packet->tile->half_size;
@@ -465,16 +470,11 @@ LANE_FN size_t next_group(const Packet *packet, size_t first, Group *group, floa
     return last;
 }
 
-LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
+/* Traces the sum of the terms chosen. */
+LANE_FN void trace_sum(const Packet *packet, int first, TileHits *hits)
 {
-    const FieldTile *tile = packet->tile;
-    packet->x = lanes_load(&tile->x[first]);
-    packet->y = lanes_load(&tile->y[first]);
-    packet->n = 0;
-    for (size_t i = 0; i < tile->n_terms; i++)
-        add_to_packet(packet, &tile->terms[i]);
     LaneMask open = (LaneMask){0} - 1;
-    for (size_t i = 0; i < packet->n && lanes_any(open);) {
+    for (size_t i = 0; i < packet->n_sum && lanes_any(open);) {
         Group group;
         Lanes start, end;
         float extent;
@@ -482,7 +482,7 @@ LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
         LaneMask live = open, hit = {0}, unsure = {0};
         if (!group_window(&group, extent, &live, &start, &end))
             continue;
-        float z_min = (float)(tile->z_min - group.base);
+        float z_min = (float)(packet->tile->z_min - group.base);
         live &= end >= z_min;
         unsure = live & ((start <= z_min) | (group.margin > CLOSE_ENOUGH));
         live &= ~unsure;
@@ -496,10 +496,65 @@ LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
     }
 }
 
+/* Whether all that blends with the term numbered `part` blends with the one numbered `whole`. */
+LANE_FN bool is_part_of(const Packet *packet, size_t part, size_t whole)
+{
+    const Blend *blend = packet->tile->blend;
+    uint32_t a = packet->terms[part].term->segment, b = packet->terms[whole].term->segment;
+    bool equal = true;
+    for (size_t i = 0; i < packet->n; i++) {
+        uint32_t other = packet->terms[i].term->segment;
+        bool in_a = blend_joins(blend, a, other), in_b = blend_joins(blend, b, other);
+        if (in_a && !in_b)
+            return false;
+        equal &= in_a == in_b;
+    }
+    return !equal || whole < part;
+}
+
+/* Traces, where only neighbours blend, the sum about each term, but for sums that another holds, as
+ * far as looking for them is cheap. */
+LANE_FN void trace_union(Packet *packet, int first, TileHits *hits)
+{
+    const Blend *blend = packet->tile->blend;
+    for (size_t center = 0; center < packet->n; center++) {
+        bool held = false;
+        for (size_t i = 0; packet->n <= 32 && i < packet->n && !held; i++)
+            held = i != center && is_part_of(packet, center, i);
+        if (held)
+            continue;
+        packet->n_sum = 0;
+        for (size_t i = 0; i < packet->n; i++)
+            if (blend_joins(blend, packet->terms[center].term->segment,
+                            packet->terms[i].term->segment))
+                packet->sum[packet->n_sum++] = &packet->terms[i];
+        trace_sum(packet, first, hits);
+    }
+}
+
+LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
+{
+    const FieldTile *tile = packet->tile;
+    packet->x = lanes_load(&tile->x[first]);
+    packet->y = lanes_load(&tile->y[first]);
+    packet->n = 0;
+    for (size_t i = 0; i < tile->n_terms; i++)
+        add_to_packet(packet, &tile->terms[i]);
+    if (tile->blend->first) {
+        trace_union(packet, first, hits);
+        return;
+    }
+    packet->n_sum = packet->n;
+    for (size_t i = 0; i < packet->n; i++)
+        packet->sum[i] = &packet->terms[i];
+    trace_sum(packet, first, hits);
+}
+
 LANE_TARGET static void FIELD_KERNEL(const FieldTile *tile, TileWork *work, TileHits *hits)
 {
     assert(tile->n_terms <= work->capacity);
     Packet packet = {.tile = tile, .terms = work->memory};
+    packet.sum = (PacketTerm **)(packet.terms + tile->n_terms);
     __builtin_memset(hits, 0, sizeof *hits);
     for (int first = 0; first < TILE_SAMPLES; first += LANES)
         trace_packet(&packet, first, hits);

@@ -7,7 +7,7 @@
 #ifndef CORCAST_RENDER_FIELDTILE_H
 #define CORCAST_RENDER_FIELDTILE_H
 
-#include "base/base.h"
+#include "scene/scene.h"
 #include <stdint.h>
 
 enum { TILE_SIDE = 8, TILE_SAMPLES = TILE_SIDE * TILE_SIDE };
@@ -34,6 +34,7 @@ typedef struct TileTerm {
 typedef struct FieldTile {
     const TileTerm *terms; /* by rising `on` */
     size_t n_terms;
+    const Blend *blend;
     bool perspective;
     float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* of the samples, relative to the middle ray */
     double middle_x, middle_y;

@@ -532,8 +532,8 @@ static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile 
     Vec3 normal;
     uint32_t segment = 0;
     hits->state[sample] = TILE_MISS;
-    if (!field_first_hit_among(tiles->scene->segments, space->candidates, tile->n_terms,
-                               space->scratch, ray, tiles->z_min, HUGE_VAL, &t, &normal, &segment))
+    if (!field_first_hit_among(tiles->scene, space->candidates, tile->n_terms, space->scratch, ray,
+                               tiles->z_min, HUGE_VAL, &t, &normal, &segment))
         return STATUS_OK;
     normal = fieldtiles_to_frame(tiles, normal);
     hits->state[sample] = TILE_HIT;
@@ -577,6 +577,7 @@ Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t
             continue;
         FieldTile tile;
         tile.perspective = tiles->perspective;
+        tile.blend = &tiles->scene->blend;
         tile.z_min = tiles->z_min;
         TileHits hits;
         SeenTile seen = {.column = column * TILE_SIDE, .row = (int)row * TILE_SIDE, .tile = &tile};

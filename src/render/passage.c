@@ -17,6 +17,8 @@ Status fieldscratch_new(size_t n, FieldScratch **out, Err *err)
     TRY_GOTO(mem_calloc(&scratch->passages, n, sizeof *scratch->passages, "passages", err));
     TRY_GOTO(mem_calloc(&scratch->heap, n, sizeof *scratch->heap, "passages", err));
     TRY_GOTO(mem_calloc(&scratch->group, n, sizeof *scratch->group, "passages", err));
+    TRY_GOTO(mem_calloc(&scratch->near, n, sizeof *scratch->near, "passages", err));
+    TRY_GOTO(mem_calloc(&scratch->joined, n, sizeof *scratch->joined, "passages", err));
     *out = scratch;
     return STATUS_OK;
 done:
@@ -31,6 +33,8 @@ void fieldscratch_free(FieldScratch *scratch)
     free(scratch->passages);
     free(scratch->heap);
     free(scratch->group);
+    free(scratch->near);
+    free(scratch->joined);
     free(scratch);
 }
 

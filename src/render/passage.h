@@ -23,6 +23,7 @@ struct FieldScratch {
     Passage **heap;  /* by t0, then segment */
     Passage **group; /* by t0 */
     size_t n_passages, n_heap, n_group;
+    uint32_t *near, *joined; /* segments on a ray, and those of them that blend */
 };
 
 /* Empties the scratch. Follow with passages_add for every segment that may matter in [t_min, t_max],

@@ -32,7 +32,7 @@ static double potential_at(const FieldIndex *index, Vec3 point)
             stack[top++] = number + 1;
         }
         for (uint32_t i = node->first; i < node->first + node->n_tubes; i++)
-            sum += potential_term(&index->segments[index->tubes[i].segment], point);
+            sum += potential_term(&index->scene->segments[index->tubes[i].segment], point);
     }
     return sum;
 }

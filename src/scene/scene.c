@@ -61,11 +61,28 @@ void scene_move_to_origin(Scene *scene)
     scene->origin = vec3_sub(scene->origin, move);
 }
 
+bool blend_joins(const Blend *blend, uint32_t i, uint32_t other)
+{
+    if (!blend->first)
+        return true;
+    size_t low = blend->first[i], high = blend->first[i + 1];
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (blend->neighbors[middle] < other)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < blend->first[i + 1] && blend->neighbors[low] == other;
+}
+
 void scene_release(Scene *scene)
 {
     free(scene->lights);
     free(scene->primitives);
     free(scene->segments);
+    free(scene->blend.first);
+    free(scene->blend.neighbors);
     *scene = (Scene){0};
 }
 

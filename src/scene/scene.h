@@ -73,6 +73,17 @@ typedef struct FieldSegment {
 
 typedef enum SceneModel { SCENE_CYLINDERS, SCENE_ROUNDED, SCENE_ISOSURFACE } SceneModel;
 
+/* Which segments blend. Without `first`, all with all: the surface is where the sum of all terms is
+ * FIELD_LEVEL. Else segment i blends with neighbors[first[i] .. first[i + 1]), which rise and hold i
+ * itself, and the surface bounds the union over all i of where the sum of their terms exceeds it. */
+typedef struct Blend {
+    size_t *first;       /* owned; one more than there are segments, or NULL */
+    uint32_t *neighbors; /* owned */
+} Blend;
+
+/* Whether `other` is among those that segment `i` blends with. */
+bool blend_joins(const Blend *blend, uint32_t i, uint32_t other);
+
 typedef struct Scene {
     SceneModel model;
     Camera camera;
@@ -84,6 +95,7 @@ typedef struct Scene {
     size_t n_primitives;
     FieldSegment *segments; /* owned; empty for a primitive model */
     size_t n_segments;
+    Blend blend;
     bool uniform_color; /* every color is `color` */
     Rgb color;
     Box bounds;  /* of the geometry, mm; for the field widened by its overshoot */

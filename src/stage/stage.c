@@ -7,6 +7,7 @@
  * thick lies inside her and is left out; measured trees hold such pairs. */
 #include "stage/stage.h"
 
+#include "stage/blend.h"
 #include "stage/framing.h"
 #include <stdlib.h>
 
@@ -127,27 +128,40 @@ done:
     return status;
 }
 
-static void add_field(const Tree *tree, const Look *look, const Rgb *colors, Scene *scene)
+/* number[i] becomes the index of the segment that ends at node i, or -1. */
+static void add_field(const Tree *tree, const Look *look, const Rgb *colors, Scene *scene,
+                      int32_t *number)
 {
     for (size_t i = 0; i < tree->n; i++) {
-        if (can_be_drawn(tree, i))
-            scene->segments[scene->n_segments++] =
-                (FieldSegment){.a = tree->position[tree->parent[i]],
-                               .b = tree->position[i],
-                               .radius_mm = tree->radius_mm[i],
-                               .id = (uint32_t)tree->id[i],
-                               .color = color_of(colors, look, i)};
+        number[i] = -1;
+        if (!can_be_drawn(tree, i))
+            continue;
+        number[i] = (int32_t)scene->n_segments;
+        scene->segments[scene->n_segments++] = (FieldSegment){.a = tree->position[tree->parent[i]],
+                                                              .b = tree->position[i],
+                                                              .radius_mm = tree->radius_mm[i],
+                                                              .id = (uint32_t)tree->id[i],
+                                                              .color = color_of(colors, look, i)};
     }
 }
 
-static Status add_geometry(const Tree *tree, const Look *look, const Rgb *colors, Scene *scene,
-                           Err *err)
+static Status add_potential(const Tree *tree, const Look *look, const Rgb *colors, bool graph,
+                            Scene *scene, Err *err)
 {
-    if (scene->model == SCENE_ISOSURFACE) {
-        TRY(mem_calloc(&scene->segments, tree->n, sizeof *scene->segments, "segments", err));
-        add_field(tree, look, colors, scene);
-        return STATUS_OK;
-    }
+    int32_t *number = NULL;
+    TRY(mem_calloc(&scene->segments, tree->n, sizeof *scene->segments, "segments", err));
+    TRY(mem_calloc(&number, tree->n, sizeof *number, "segments", err));
+    add_field(tree, look, colors, scene, number);
+    Status status = graph ? blend_find(tree, number, scene, err) : STATUS_OK;
+    free(number);
+    return status;
+}
+
+static Status add_geometry(const Tree *tree, const Look *look, const Rgb *colors, bool graph,
+                           Scene *scene, Err *err)
+{
+    if (scene->model == SCENE_ISOSURFACE)
+        return add_potential(tree, look, colors, graph, scene, err);
     TRY(mem_calloc(&scene->primitives, 2 * tree->n, sizeof *scene->primitives, "primitives", err));
     int32_t *cover = NULL;
     Status status = find_covers(tree, &cover, err);
@@ -221,7 +235,7 @@ Status stage_scene(const Tree *tree, const Look *look, const Rgb *colors, const 
         return err_set(err, STATUS_INPUT,
                        "the tree has nothing to draw: no segment has both a length and a radius");
     Ball *balls = NULL;
-    Status status = add_geometry(tree, look, colors, &built, err);
+    Status status = add_geometry(tree, look, colors, params->graph, &built, err);
     if (status == STATUS_OK)
         status = mem_calloc(&balls, 2 * (built.n_primitives + built.n_segments), sizeof *balls,
                             "balls", err);

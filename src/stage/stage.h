@@ -42,6 +42,7 @@ typedef struct StageParams {
     double height_mm; /* of an orthographic picture; 0: frames the tree */
     double margin;    /* free part of the picture on each side when framing, in [0, 0.45] */
     bool shadows;
+    bool graph; /* isosurface: only neighbours in the tree blend [stage/blend.h] */
 } StageParams;
 
 /* front, orthographic, 1000 x 1000, 30 degrees, margin 0.05. */

@@ -240,4 +240,82 @@ test_a_truncated_picture_is_refused() {
     [ ! -e out.png ] && [ ! -e out.ppm ] || fail "expected no output"
 }
 
+# rows ROW ...: a tree of these SWC rows in tree.swc.
+rows() {
+    printf '%s\n' "$@" >tree.swc
+}
+
+test_adaptive_antialiasing_needs_antialiasing() {
+    grow_tree 20
+    run corcast render tree.swc --antialias-threshold 0.1 -o picture.ppm
+    expect_status 2
+    expect_sentence 'antialias-threshold needs --antialias N'
+    run_ok corcast render tree.swc --model isosurface --size 90x60 --antialias 3 -o all.ppm
+    run_ok corcast render tree.swc --model isosurface --size 90x60 --antialias 3 --antialias-threshold 0.02 -o edges.ppm
+    run_ok corcast render tree.swc --model isosurface --size 90x60 -o none.ppm
+    expect_different all.ppm edges.ppm
+    expect_different edges.ppm none.ppm
+}
+
+test_the_potential_of_the_graph_is_drawn_and_not_written_for_povray() {
+    rows '1 3 -9 1.1 0 1 -1' '2 3 9 1.1 0 1 1' '3 3 -9 -1.1 0 1 -1' '4 3 9 -1.1 0 1 3'
+    run_ok corcast render tree.swc --model isosurface --size 90x60 -o paper.ppm
+    run_ok corcast render tree.swc --model isosurface --size 90x60 --potential graph -o graph.ppm
+    expect_different paper.ppm graph.ppm
+    run corcast scene tree.swc --model isosurface --potential graph -o tree.pov
+    expect_status 2
+    expect_sentence 'potential graph is corcast.s own and has no POV-Ray scene'
+    run corcast render tree.swc --model rounded --potential graph -o picture.ppm
+    expect_status 2
+    expect_sentence 'potential is for --model isosurface'
+}
+
+test_segments_that_vanish_are_counted() {
+    rows '1 3 0 0 0 1 -1' '2 3 0.1 0 0 1 1' '3 3 50 0 0 1 -1' '4 3 60 0 0 1 3' '5 3 60 9 0 0.05 4'
+    run_ok corcast render tree.swc --model isosurface --size 20x20 --prune-radius 0.06 -o picture.ppm
+    grep -q '1 of 3 segments are pruned' stderr || fail "expected the number of pruned segments$(said)"
+    grep -q '1 of 2 segments are too short for their radius' stderr || fail "expected the number that vanish$(said)"
+    run_ok corcast render tree.swc --model isosurface --size 20x20 --quiet -o picture.ppm
+    [ ! -s stderr ] || fail "expected silence$(said)"
+}
+
+# A picture without NaN in its planes, or one sentence and status 2; never a crash or a hang.
+survives() {
+    run timeout 60 corcast render tree.swc --model isosurface --size 40x40 --planes depth,normal -o picture.ppm "$@"
+    if [ "$status" -eq 2 ]; then
+        expect_sentence '[a-z]'
+    else
+        expect_status 0
+        ! pfmtopam picture.normal.pfm | pamtopnm -plain 2>/dev/null | grep -qi nan || fail "expected numbers"
+    fi
+}
+
+test_isosurfaces_of_odd_trees_are_drawn_or_refused() {
+    local projection
+    for projection in orthographic perspective; do
+        rows '1 3 0 0 0 1 -1' '2 3 0 0 0 1 1' '3 3 5 0 0 1 2'
+        survives --projection $projection
+        expect_status 0
+        rows '1 3 0 0 0 1 -1' '2 3 5 0 0 1e-9 1' '3 3 5 5 0 1 2'
+        survives --projection $projection
+        expect_status 0
+        rows '1 3 0 0 0 1e9 -1' '2 3 5 0 0 1e9 1'
+        survives --projection $projection
+        expect_status 2
+        rows '1 3 0 0 0 1 -1' $(seq -f '%g:3:5:1:2:1:1' 2 200)
+        tr : ' ' <tree.swc >coincident.swc && mv coincident.swc tree.swc
+        survives --projection $projection
+        expect_status 0
+        rows '1 3 1e6 1e6 -1e6 1 -1' '2 3 1000005 1e6 -1e6 1 1'
+        survives --projection $projection
+        expect_status 0
+        rows '1 3 0 0 0 1 -1'
+        survives --projection $projection
+        expect_status 2
+    done
+    rows '1 3 0 0 0 1 -1' '2 3 5 0 0 1 1' '3 3 8 3 0 .5 2' '4 3 8 -3 0 .5 2'
+    survives --projection perspective --location 2.5,0,0 --look-at 8,0,0
+    expect_status 0
+}
+
 run_tests "$@"

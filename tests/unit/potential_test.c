@@ -1,0 +1,222 @@
+/* What the potential does to vessels, in numbers (docs/METHODS.md), and what --potential graph
+ * changes about it. */
+#include "render/field.h"
+#include "render/render.h"
+#include "stage/stage.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "field_scenes.h"
+#include <cmocka.h>
+
+static TestScene empty_scene(void)
+{
+    TestScene test;
+    memset(&test, 0, sizeof test);
+    test.scene.model = SCENE_ISOSURFACE;
+    return test;
+}
+
+/* Where a ray from far outside towards `center` first meets the surface: the distance from there, or
+ * -1 without a hit. */
+static double radius_towards(const Scene *scene, Vec3 center, Vec3 outwards)
+{
+    uint32_t all[MAX_SEGMENTS], segment;
+    FieldScratch *scratch;
+    double t;
+    Vec3 normal;
+    assert_int_equal(fieldscratch_new(MAX_SEGMENTS, &scratch, NULL), STATUS_OK);
+    for (uint32_t i = 0; i < scene->n_segments; i++)
+        all[i] = i;
+    Vec3 d = vec3_normalized(outwards);
+    Ray ray = {vec3_add_scaled(center, d, 50), vec3_scale(d, -1)};
+    bool hit = field_first_hit_among(scene, all, scene->n_segments, scratch, ray, 0, 100, &t,
+                                     &normal, &segment);
+    fieldscratch_free(scratch);
+    return hit ? 50 - t : -1;
+}
+
+/* Segments from the origin into the plane z = 0, at equal angles; their radius across that plane. */
+static double joint_radius(const double *radii, int n)
+{
+    TestScene test = empty_scene();
+    test.scene.segments = test.segments;
+    for (int i = 0; i < n; i++) {
+        double angle = 6.283185307179586 * i / n;
+        put_segment(&test, vec3(0, 0, 0), vec3(30 * cos(angle), 30 * sin(angle), 0), radii[i]);
+    }
+    return radius_towards(&test.scene, vec3(0, 0, 0), vec3(0, 0, 1));
+}
+
+static void free_ends_overshoot_by_half_a_radius(void **state)
+{
+    (void)state;
+    TestScene test = empty_scene();
+    test.scene.segments = test.segments;
+    put_segment(&test, vec3(-20, 0, 0), vec3(0, 0, 0), 1.7);
+    double length = radius_towards(&test.scene, vec3(0, 0, 0), vec3(1, 0, 0));
+    assert_true(fabs(length / 1.7 - 0.5508) < 1e-4);
+}
+
+static void short_segments_shrink_and_vanish(void **state)
+{
+    (void)state;
+    const struct {
+        double length, radius;
+    } cases[] = {{0.16, -1}, {0.1703, -1}, {0.5, 0.722}, {1, 0.900}, {2, 0.988}, {4, 1.000}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        TestScene test = empty_scene();
+        test.scene.segments = test.segments;
+        put_segment(&test, vec3(-cases[i].length / 2, 0, 0), vec3(cases[i].length / 2, 0, 0), 1);
+        double radius = radius_towards(&test.scene, vec3(0, 0, 0), vec3(0, 0, 1));
+        assert_true(fabs(radius - cases[i].radius) < 1e-3);
+        size_t vanished;
+        assert_int_equal(render_count_vanished(&test.scene, &vanished, NULL), STATUS_OK);
+        assert_int_equal(vanished, cases[i].radius < 0);
+    }
+}
+
+static void short_segments_of_a_chain_do_not_vanish(void **state)
+{
+    (void)state;
+    TestScene test = empty_scene();
+    test.scene.segments = test.segments;
+    for (int i = 0; i < 50; i++)
+        put_segment(&test, vec3(0.1 * i, 0, 0), vec3(0.1 * (i + 1), 0, 0), 1);
+    size_t vanished;
+    assert_int_equal(render_count_vanished(&test.scene, &vanished, NULL), STATUS_OK);
+    assert_int_equal(vanished, 0);
+}
+
+static void joints_bulge_and_neck(void **state)
+{
+    (void)state;
+    const double equal[] = {1, 1, 1, 1};
+    assert_true(fabs(joint_radius(equal, 2) - 1) < 1e-9);
+    assert_true(fabs(joint_radius(equal, 3) - 1.097) < 1e-3);
+    assert_true(fabs(joint_radius(equal, 4) - 1.160) < 1e-3);
+    const double gamma3[] = {1, 0.793701, 0.793701}, gamma2[] = {1, 0.707107, 0.707107};
+    assert_true(fabs(joint_radius(gamma3, 3) - 0.956) < 1e-3);
+    assert_true(fabs(joint_radius(gamma2, 3) - 0.904) < 1e-3);
+    const double twig[] = {1, 0.98, 0.3};
+    assert_true(fabs(joint_radius(twig, 3) - 0.990) < 1e-3);
+}
+
+static void parallel_vessels_merge_below_a_third_of_a_radius(void **state)
+{
+    (void)state;
+    for (int merged = 0; merged < 2; merged++) {
+        TestScene test = empty_scene();
+        test.scene.segments = test.segments;
+        double y = 1.3 * (2 + (merged ? 0.320 : 0.322)) / 2;
+        put_segment(&test, vec3(-20, y, 0), vec3(20, y, 0), 1.3);
+        put_segment(&test, vec3(-20, -y, 0), vec3(20, -y, 0), 1.3);
+        assert_int_equal(radius_towards(&test.scene, vec3(0, 0, 0), vec3(0, 0, 1)) > -1, merged);
+    }
+}
+
+/* A root of two vessels that run side by side, almost touching, to x = 20. */
+static void make_hairpin(Tree *tree)
+{
+    const Vec3 places[] = {{-20, 0, 0},  {-10, 0, 0},  {0, 1.1, 0},
+                           {20, 1.1, 0}, {0, -1.1, 0}, {20, -1.1, 0}};
+    const int32_t parents[] = {-1, 0, 1, 2, 1, 4};
+    assert_int_equal(tree_init(tree, 6, NULL), STATUS_OK);
+    for (int i = 0; i < 6; i++) {
+        tree->id[i] = i + 1;
+        tree->parent[i] = parents[i];
+        tree->position[i] = places[i];
+        tree->radius_mm[i] = 1;
+    }
+}
+
+static Scene staged_hairpin(bool graph)
+{
+    Tree tree;
+    Scene scene;
+    Look look = {0};
+    StageParams params = stage_defaults();
+    params.model = SCENE_ISOSURFACE;
+    params.width = 200;
+    params.height = 120;
+    params.graph = graph;
+    make_hairpin(&tree);
+    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
+    tree_release(&tree);
+    return scene;
+}
+
+static void the_graph_keeps_strangers_apart(void **state)
+{
+    (void)state;
+    Scene paper = staged_hairpin(false), graph = staged_hairpin(true);
+    Vec3 gap = vec3(15, 0, 0), joint = vec3(-10, 0, 0), up = vec3(0, 0, 1);
+    assert_true(radius_towards(&paper, gap, up) > 0);
+    assert_true(radius_towards(&graph, gap, up) < 0);
+    assert_true(fabs(radius_towards(&graph, joint, up) - radius_towards(&paper, joint, up)) < 1e-6);
+    Vec3 beside = vec3(10, 1.1, 0);
+    assert_true(fabs(radius_towards(&graph, beside, up) - 1) < 1e-6);
+    scene_release(&paper);
+    scene_release(&graph);
+}
+
+/* Neighbours along the tree within three radii, and those alone. */
+static void the_graph_joins_what_is_near_along_the_tree(void **state)
+{
+    (void)state;
+    Scene scene = staged_hairpin(true);
+    for (uint32_t i = 0; i < 5; i++)
+        for (uint32_t j = 0; j < 5; j++) {
+            bool strangers = (i == 0 && (j == 2 || j == 4)) || (i == 2 && j != 1 && j != 2) ||
+                             (i == 4 && j != 3 && j != 4) || (i == 1 && j == 4) ||
+                             (i == 3 && j == 2);
+            assert_int_equal(blend_joins(&scene.blend, i, j), !strangers);
+        }
+    scene_release(&scene);
+}
+
+static void the_picture_of_the_graph_is_that_of_single_rays(void **state)
+{
+    (void)state;
+    Scene scene = staged_hairpin(true);
+    const RenderParams params = {.threads = 2, .antialias = 1, .want_depth = true};
+    Frame frame;
+    assert_int_equal(render(&scene, &params, &frame, NULL, NULL), STATUS_OK);
+    uint32_t all[] = {0, 1, 2, 3, 4}, segment;
+    FieldScratch *scratch;
+    assert_int_equal(fieldscratch_new(5, &scratch, NULL), STATUS_OK);
+    int hits = 0;
+    for (int pixel = 0; pixel < 200 * 120; pixel++) {
+        Ray ray = camera_ray(&scene.camera, pixel % 200, pixel / 200);
+        double t;
+        Vec3 normal;
+        bool hit =
+            field_first_hit_among(&scene, all, 5, scratch, ray, 0, HUGE_VAL, &t, &normal, &segment);
+        assert_int_equal(hit, isfinite(frame.depth.values[pixel]));
+        assert_true(!hit || fabs((double)frame.depth.values[pixel] - t) < 1e-3);
+        hits += hit;
+    }
+    assert_true(hits > 2000);
+    fieldscratch_free(scratch);
+    frame_release(&frame);
+    scene_release(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(free_ends_overshoot_by_half_a_radius),
+        cmocka_unit_test(short_segments_shrink_and_vanish),
+        cmocka_unit_test(short_segments_of_a_chain_do_not_vanish),
+        cmocka_unit_test(joints_bulge_and_neck),
+        cmocka_unit_test(parallel_vessels_merge_below_a_third_of_a_radius),
+        cmocka_unit_test(the_graph_keeps_strangers_apart),
+        cmocka_unit_test(the_graph_joins_what_is_near_along_the_tree),
+        cmocka_unit_test(the_picture_of_the_graph_is_that_of_single_rays),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
