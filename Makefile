@@ -53,7 +53,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate bench-grow bench-render bench-compare power power-program check program unit \
+.PHONY: all deps demo validate bench-grow bench-render bench-compare verify-all power power-program check program unit \
 	unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
@@ -91,6 +91,11 @@ bench-compare: ## time `compare` on large pictures, beside idiff and odiff
 	$(Q)tools/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tools/bench-compare
+
+verify-all: ## verify models x trees x projections x shadows x antialiasing; report in out/verify/
+	$(Q)tools/deps build run
+	$(Q)$(AGAIN) all
+	$(Q)JOBS=$(JOBS) tools/verify-all
 
 power: ## plant faults and see what the judge finds; writes its part of docs/VALIDATION.md
 	$(Q)tools/deps build run check

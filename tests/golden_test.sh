@@ -28,9 +28,9 @@ stored_as_recorded() {
 
 # The tolerance: at most `ppm` pixels in a million off by more than `levels`.
 drawn_like() {
-    local golden=$1 name=$2
+    local golden=$1 name=$2 draw=$3
     expect_golden "$golden"
-    run_ok draw_native "$name" native.png
+    run_ok "$draw" "$name" native.png
     run corcast compare "$golden/picture.png" native.png \
         --levels "$(record "$golden" tolerance.levels)" --ppm "$(record "$golden" tolerance.ppm)"
     [ "$status" -le 1 ] || fail "compare ended with exit status $status$(said)"
@@ -65,8 +65,8 @@ tests=every_golden_has_a_case
 for name in $(golden_cases); do
     word=${name//-/_}
     eval "test_${word}_is_stored_as_recorded() { stored_as_recorded $name; }
-          test_${word}_is_drawn_like_the_oracle() { drawn_like \$GOLDEN/oracle/$name $name; }
-          test_${word}_is_drawn_like_the_snapshot() { drawn_like \$GOLDEN/snapshot/$name $name; }
+          test_${word}_is_drawn_like_the_oracle() { drawn_like \$GOLDEN/oracle/$name $name draw_like_povray; }
+          test_${word}_is_drawn_like_the_snapshot() { drawn_like \$GOLDEN/snapshot/$name $name draw_native; }
           test_${word}_has_the_oracle_of_todays_scene() { of_todays_scene $name; }"
     tests="$tests ${word}_is_stored_as_recorded ${word}_is_drawn_like_the_oracle
         ${word}_is_drawn_like_the_snapshot ${word}_has_the_oracle_of_todays_scene"

@@ -1,6 +1,6 @@
 # What golden_test.sh and golden-update share: how a case is drawn and hashed. Source tests/lib.sh
 # first.
-GOLDEN=$REPO/golden
+GOLDEN=${GOLDEN:-$REPO/golden}
 
 golden_cases() {
     sed 's/#.*//' "$REPO/tests/golden/cases" | awk 'NF { print $1 }'
@@ -17,16 +17,26 @@ case_options() {
 # The options are words: no quotes around them.
 # shellcheck disable=SC2046
 draw_native() {
-    corcast render "$REPO/$(case_tree "$1")" $(case_options "$1") -o "$2"
+    corcast render --quiet "$REPO/$(case_tree "$1")" $(case_options "$1") -o "$2"
+}
+
+# Of an implicit surface what POV-Ray's root finder sees of it, which is not quite where it is.
+# shellcheck disable=SC2046
+draw_like_povray() {
+    local hits=
+    case_options "$1" | grep -q 'isosurface' && hits="--hits povray"
+    # shellcheck disable=SC2086
+    corcast render --quiet "$REPO/$(case_tree "$1")" $(case_options "$1") $hits -o "$2"
 }
 
 # shellcheck disable=SC2046
 write_scene() {
-    corcast scene "$REPO/$(case_tree "$1")" $(case_options "$1") -o scene.pov
+    corcast scene --quiet "$REPO/$(case_tree "$1")" $(case_options "$1") -o scene.pov
 }
 
 draw_povray() {
-    corcast povray scene.pov --size "$(case_options "$1" | sed 's/.*--size \([^ ]*\).*/\1/')" -o "$2"
+    # shellcheck disable=SC2046
+    corcast povray --quiet scene.pov $(case_options "$1" | grep -oE -- '--(size|antialias) [^ ]+') -o "$2"
 }
 
 scene_hash() {

@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# golden-update, the only writer of golden/, on a folder of its own.
+. "$(dirname "$0")/../lib.sh"
+
+update() {
+    GOLDEN=$PWD/golden run "$REPO/tests/golden-update" "$@"
+}
+
+# A POV-Ray that draws another highlight.
+other_povray() {
+    printf '#!/bin/sh\nexec povray "$@" Declare=Vessel_Phong=0.5\n' >povray.sh
+    chmod +x povray.sh
+    export CORCAST_POVRAY=$PWD/povray.sh
+}
+
+test_nothing_is_written_without_a_reason() {
+    update bifurcation-rounded </dev/null
+    expect_status 2
+    update no-such-case "because"
+    expect_status 2
+    [ ! -e golden ] || fail "expected no golden"
+}
+
+test_a_case_is_written_with_its_reason_and_shows_old_and_new() {
+    update bifurcation-rounded "the first"
+    expect_status 0
+    expect_json golden/oracle/bifurcation-rounded/case.json '.reason == "the first" and .tolerance.ppm == 0 and
+        (.povray_version | startswith("3.7")) and (.scene_sha256 | length) == 64'
+    expect_file golden/snapshot/bifurcation-rounded/picture.png
+    update bifurcation-rounded "the second"
+    expect_status 0
+    expect_stdout 'old picture against new'
+    expect_file "$REPO/build/golden/bifurcation-rounded/oracle-difference.png"
+    expect_json golden/oracle/bifurcation-rounded/case.json '.reason == "the second"'
+}
+
+test_a_tolerance_widens_only_with_a_written_reason_and_shrinks_by_itself() {
+    other_povray
+    update bifurcation-rounded "another highlight"
+    expect_status 1
+    grep -q 'widened only with a reason' stderr || fail "expected the reason to be asked for$(said)"
+    [ ! -e golden ] || fail "expected no golden"
+    WIDEN="POV-Ray was changed" LEVELS=3 update bifurcation-rounded "another highlight"
+    expect_status 0
+    expect_json golden/oracle/bifurcation-rounded/case.json \
+        '.widened == "POV-Ray was changed" and .tolerance.levels == 3 and .tolerance.ppm > 0'
+    unset CORCAST_POVRAY
+    update bifurcation-rounded "as it was"
+    expect_status 0
+    expect_json golden/oracle/bifurcation-rounded/case.json '.tolerance == {levels: 0, ppm: 0} and (has("widened") | not)'
+}
+
+run_tests "$@"
