@@ -39,13 +39,18 @@ static Status read_planes(const char *list, RenderParams *params, Err *err)
 }
 
 static Status write_report(const char *path, const Scene *scene, const RenderStats *stats,
-                           int threads, Err *err)
+                           const StageReport *staged, int threads, Err *err)
 {
     json_t *report = json_pack("{s:s, s:s, s:i, s:i, s:f, s:f, s:I, s:i}", "generator", GENERATOR,
                                "model", model_name(scene->model), "width", scene->camera.width,
                                "height", scene->camera.height, "prepare_seconds", stats->prepare_s,
                                "trace_seconds", stats->trace_s, "rays", (json_int_t)stats->rays,
                                "threads", threads ? threads : threads_available());
+    if (scene->model == SCENE_JOINED && report)
+        json_object_update_new(report,
+                               json_pack("{s:I, s:I, s:I}", "joints", (json_int_t)staged->joints,
+                                         "places_short", (json_int_t)staged->places_short,
+                                         "places_sharp", (json_int_t)staged->places_sharp));
     return json_write(report, path, err);
 }
 
@@ -70,6 +75,7 @@ Status run_render(int argc, char **argv, Err *err)
     Scene scene = {0};
     Frame frame = {0};
     RenderStats stats;
+    StageReport staged;
     char *line = NULL;
     Progress progress;
     RenderParams params = {.threads = parsed.common.threads,
@@ -88,7 +94,8 @@ Status run_render(int argc, char **argv, Err *err)
     params.want_color = true;
     TRY_GOTO(frames_check_output(output, planes != NULL, err));
     TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 40, err));
-    TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, err));
+    TRY_GOTO(
+        picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, &staged, err));
     progress_start(&progress, "rendering", parsed.common.quiet);
     status = render(&scene, &params, &frame, &stats, err);
     progress_end(&progress);
@@ -96,7 +103,7 @@ Status run_render(int argc, char **argv, Err *err)
     TRY_GOTO(command_line_text("render", argc, argv, &line, err));
     TRY_GOTO(frames_write(&frame, output, bits, color_plane, line, err));
     if (json)
-        TRY_GOTO(write_report(json, &scene, &stats, params.threads, err));
+        TRY_GOTO(write_report(json, &scene, &stats, &staged, params.threads, err));
 done:
     free(line);
     frame_release(&frame);

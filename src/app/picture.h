@@ -12,14 +12,14 @@ enum { PICTURE_OPTIONS = 24 };
 
 typedef struct PictureOptions {
     StageParams stage;
-    int model, projection, view; /* choices */
+    int model, joints, projection, view; /* choices */
     int size[2];
     int antialias;
     double prune_radius_mm;
     const char *look;
     Vec3 background; /* sRGB in [0, 1] */
     bool has_background;
-    bool has_height, has_angle, has_view;
+    bool has_height, has_angle, has_view, has_joints;
     Coloring coloring;
     Option table[PICTURE_OPTIONS];
 } PictureOptions;
@@ -28,9 +28,9 @@ typedef struct PictureOptions {
 void picture_options_init(PictureOptions *options);
 
 /* Reads the tree and the look and builds the scene. Says on standard error, unless quiet, how many
- * segments could not be drawn. */
+ * segments could not be drawn and how many places not joined. `report` may be NULL. */
 MUST_CHECK Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet,
-                                Scene *scene, Err *err);
+                                Scene *scene, StageReport *report, Err *err);
 
 /* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the machine. */
 MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);

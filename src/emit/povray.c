@@ -4,6 +4,7 @@
  */
 #include "emit/emit.h"
 
+#include "emit/povray_text.h"
 #include "surface/surface.h"
 #include "tmpl/tmpl.h"
 #include <ctype.h>
@@ -11,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void put_vector(Text *text, Vec3 v)
+void put_vector(Text *text, Vec3 v)
 {
     /* Adding 0 turns -0 into 0. */
     text_puts(text, "<");
@@ -36,7 +37,7 @@ static void put_color(Text *text, Rgb color)
                 number_text_float(color.b, b));
 }
 
-static void put_paint(Text *text, const Scene *scene, uint32_t id, Rgb color)
+void put_paint(Text *text, const Scene *scene, uint32_t id, Rgb color)
 {
     text_printf(text, "%u,", id);
     if (scene->uniform_color)
@@ -45,22 +46,30 @@ static void put_paint(Text *text, const Scene *scene, uint32_t id, Rgb color)
         put_color(text, color);
 }
 
+static void put_primitive(Text *text, const Scene *scene, const Primitive *primitive)
+{
+    bool cylinder = primitive->kind == PRIMITIVE_CYLINDER;
+    text_puts(text, cylinder ? "Vessel_Cylinder(" : "Vessel_Sphere(");
+    put_vector(text, primitive->a);
+    if (cylinder) {
+        text_puts(text, ",");
+        put_vector(text, primitive->b);
+    }
+    text_puts(text, ",");
+    text_number(text, primitive->radius_mm);
+    text_puts(text, ",");
+    put_paint(text, scene, primitive->id, primitive->color);
+    text_puts(text, ")\n");
+}
+
 static void put_primitives(Text *text, const Scene *scene)
 {
     for (size_t i = 0; i < scene->n_primitives; i++) {
         const Primitive *primitive = &scene->primitives[i];
-        bool cylinder = primitive->kind == PRIMITIVE_CYLINDER;
-        text_puts(text, cylinder ? "Vessel_Cylinder(" : "Vessel_Sphere(");
-        put_vector(text, primitive->a);
-        if (cylinder) {
-            text_puts(text, ",");
-            put_vector(text, primitive->b);
-        }
-        text_puts(text, ",");
-        text_number(text, primitive->radius_mm);
-        text_puts(text, ",");
-        put_paint(text, scene, primitive->id, primitive->color);
-        text_puts(text, ")\n");
+        if (primitive->kind == PRIMITIVE_JOINT)
+            put_joint(text, scene, primitive);
+        else
+            put_primitive(text, scene, primitive);
     }
 }
 
