@@ -141,7 +141,7 @@ static void a_joint_is_given_in_the_frame_of_its_first_circle(void **state)
     assert_int_equal(
         sscanf(call,
                "\nVessel_Joint(<%lf,%lf,%lf>,<%lf,%lf,%lf>,<%lf,%lf,%lf>,<%lf,%lf,%lf>,"
-               "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%u,Vessel_Color)",
+               "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,0,%u,Vessel_Color)",
                &v[0], &v[1], &v[2], &v[3], &v[4], &v[5], &v[6], &v[7], &v[8], &v[9], &v[10], &v[11],
                &v[12], &v[13], &v[14], &v[15], &v[16], &v[17], &v[18], &v[19], &id),
         21);
