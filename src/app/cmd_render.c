@@ -42,7 +42,7 @@ static Status read_planes(const char *list, RenderParams *params, Err *err)
 }
 
 static Status write_report(const char *path, const Scene *scene, const RenderStats *stats,
-                           int threads, Err *err)
+                           const StageReport *staged, int threads, Err *err)
 {
     json_t *report =
         json_pack("{s:s, s:s, s:i, s:i, s:f, s:f, s:f, s:I, s:i}", "generator", GENERATOR, "model",
@@ -50,6 +50,11 @@ static Status write_report(const char *path, const Scene *scene, const RenderSta
                   scene->camera.height, "prepare_seconds", stats->prepare_s, "trace_seconds",
                   stats->trace_s, "cpu_seconds", stats->cpu_s, "rays", (json_int_t)stats->rays,
                   "threads", threads ? threads : threads_available());
+    if (scene->model == SCENE_JOINED && report)
+        json_object_update_new(report,
+                               json_pack("{s:I, s:I, s:I}", "joints", (json_int_t)staged->joints,
+                                         "places_short", (json_int_t)staged->places_short,
+                                         "places_sharp", (json_int_t)staged->places_sharp));
     return json_write(report, path, err);
 }
 
@@ -79,6 +84,7 @@ Status run_render(int argc, char **argv, Err *err)
     Scene scene = {0};
     Frame frame = {0};
     RenderStats stats;
+    StageReport staged;
     char *line = NULL;
     Progress progress;
     RenderParams params = {.threads = parsed.common.threads,
@@ -103,7 +109,8 @@ Status run_render(int argc, char **argv, Err *err)
     params.want_color = true;
     TRY_GOTO(frames_check_output(output, planes != NULL, err));
     TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 40, err));
-    TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, err));
+    TRY_GOTO(
+        picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, &staged, err));
     const CellParams cells = picture_cells(&picture);
     params.povray_cells = hits == HITS_POVRAY ? &cells : NULL;
     progress_start(&progress, "rendering", parsed.common.quiet);
@@ -113,7 +120,7 @@ Status run_render(int argc, char **argv, Err *err)
     TRY_GOTO(command_line_text("render", argc, argv, &line, err));
     TRY_GOTO(frames_write(&frame, output, bits, color_plane, line, err));
     if (json)
-        TRY_GOTO(write_report(json, &scene, &stats, params.threads, err));
+        TRY_GOTO(write_report(json, &scene, &stats, &staged, params.threads, err));
 done:
     free(line);
     frame_release(&frame);

@@ -38,7 +38,7 @@ Status run_scene(int argc, char **argv, Err *err)
         status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pov", output);
         goto done;
     }
-    TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, err));
+    TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, NULL, err));
     const CellParams cells = picture_cells(&picture);
     TRY_GOTO(povfiles_write(&scene, parsed.operands[0], output, picture.stage.shadows, ids, &cells,
                             err));

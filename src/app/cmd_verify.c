@@ -305,7 +305,7 @@ Status run_verify(int argc, char **argv, Err *err)
         goto done;
     }
     TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 120, err));
-    TRY_GOTO(picture_scene(&picture, v.tree, parsed.common.quiet, &v.scene, err));
+    TRY_GOTO(picture_scene(&picture, v.tree, parsed.common.quiet, &v.scene, NULL, err));
     v.cells = picture_cells(&picture);
     TRY_GOTO(file_make_folder(folder, err));
     TRY_GOTO(command_line_text("verify", argc, argv, &line, err));

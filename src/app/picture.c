@@ -9,10 +9,13 @@
 #include <unistd.h>
 
 static const char *const models[] = {[SCENE_CYLINDERS] = "cylinders",
+                                     [SCENE_JOINED] = "joined",
                                      [SCENE_ROUNDED] = "rounded",
                                      [SCENE_ISOSURFACE] = "isosurface",
                                      NULL};
 static const char *const potentials[] = {"paper", "graph", NULL};
+static const char *const joint_forms[] = {
+    [JOINTS_ROBUST] = "robust", [JOINTS_PAPER] = "paper", NULL};
 static const char *const projections[] = {
     [PROJECTION_ORTHOGRAPHIC] = "orthographic", [PROJECTION_PERSPECTIVE] = "perspective", NULL};
 static const char *const views[] = {
@@ -40,6 +43,8 @@ void picture_options_init(PictureOptions *options)
          "how vessels are drawn (rounded)"},
         {"potential", OPTION_CHOICE, &options->potential, NULL, 0, 0, potentials, NULL,
          "isosurface: all vessels blend, or only neighbours in the tree (paper)"},
+        {"joints", OPTION_CHOICE, &options->joints, &options->has_joints, 0, 0, joint_forms, NULL,
+         "joined: what is done where vessels are too short or turn too sharply (robust)"},
         {"prune-radius", OPTION_NUMBER, &options->prune_radius_mm, NULL, 0, far, NULL, "MM",
          "drop segments thinner than this"},
         {"size", OPTION_SIZE, options->size, NULL, 1, side, NULL, NULL, "pixels (1000x1000)"},
@@ -99,11 +104,14 @@ static Status check_camera(const PictureOptions *options, Err *err)
         return err_set(err, STATUS_USAGE, "--potential is for --model isosurface");
     if (stage->has_up && !(vec3_length(stage->up) > 0))
         return err_set(err, STATUS_USAGE, "--up: the vector must not be zero");
+    if (options->has_joints && options->model != SCENE_JOINED)
+        return err_set(err, STATUS_USAGE, "--joints is for --model joined");
     return STATUS_OK;
 }
 
 /* What of the tree the picture cannot show. */
-static Status warn_of_losses(const Scene *scene, const StageReport *report, size_t pruned, Err *err)
+static Status warn_of_losses(const Scene *scene, const StageReport *report, JointForm joints,
+                             size_t pruned, Err *err)
 {
     size_t vanished;
     TRY(render_count_vanished(scene, &vanished, err));
@@ -119,11 +127,17 @@ static Status warn_of_losses(const Scene *scene, const StageReport *report, size
                 "corcast: %zu of %zu segments are too short for their radius: the potential is "
                 "below e^-2 there and shows nothing\n",
                 vanished, segments);
+    if (report->places_short + report->places_sharp)
+        fprintf(stderr,
+                "corcast: at %zu places vessels are too short for joints, at %zu they turn too "
+                "sharply; these are %s\n",
+                report->places_short, report->places_sharp,
+                joints == JOINTS_PAPER ? "joined all the same" : "drawn round");
     return STATUS_OK;
 }
 
 Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet, Scene *scene,
-                     Err *err)
+                     StageReport *report, Err *err)
 {
     Look look;
     char *look_path = NULL;
@@ -139,6 +153,7 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
     StageParams stage = options->stage;
     stage.model = (SceneModel)options->model;
     stage.graph = options->potential != 0;
+    stage.joints = (JointForm)options->joints;
     stage.projection = (Projection)options->projection;
     stage.view = (View)options->view;
     stage.width = options->size[0];
@@ -155,21 +170,23 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
         }
     }
     Rgb *colors = NULL;
-    StageReport report;
+    StageReport staged;
     if (status == STATUS_OK)
         status = coloring_apply(&options->coloring, &tree, &colors, err);
     if (status == STATUS_OK)
-        status = stage_scene(&tree, &look, colors, &stage, scene, &report, err);
+        status = stage_scene(&tree, &look, colors, &stage, scene, &staged, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", tree_path);
     free(colors);
     if (status == STATUS_OK && !quiet) {
-        status = warn_of_losses(scene, &report, unpruned - tree.n, err);
+        status = warn_of_losses(scene, &staged, stage.joints, unpruned - tree.n, err);
         if (status != STATUS_OK)
             scene_release(scene);
     }
     if (status == STATUS_OK)
         scene_move_to_origin(scene);
+    if (status == STATUS_OK && report)
+        *report = staged;
     tree_release(&tree);
     return status;
 }
@@ -187,9 +204,6 @@ Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
 
 void picture_description(const Scene *scene, const char *tree_path, Text *out)
 {
-    size_t drawn = scene->n_segments;
-    for (size_t i = 0; i < scene->n_primitives; i++)
-        drawn += scene->primitives[i].kind == PRIMITIVE_CYLINDER;
-    text_printf(out, "arterial tree %s, %zu segments as %s", file_name(tree_path), drawn,
+    text_printf(out, "arterial tree %s, %zu segments as %s", file_name(tree_path), scene->drawn,
                 models[scene->model]);
 }

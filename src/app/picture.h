@@ -13,14 +13,14 @@ enum { PICTURE_OPTIONS = 24 };
 
 typedef struct PictureOptions {
     StageParams stage;
-    int model, potential, projection, view; /* choices */
+    int model, potential, joints, projection, view; /* choices */
     int size[2];
     int antialias;
     double prune_radius_mm;
     const char *look;
     Vec3 background; /* sRGB in [0, 1] */
     bool has_background;
-    bool has_height, has_angle, has_view;
+    bool has_height, has_angle, has_view, has_joints;
     int erf;          /* choice: ErfForm */
     double cell_beta; /* as in CellParams */
     Coloring coloring;
@@ -34,9 +34,10 @@ void picture_options_init(PictureOptions *options);
 CellParams picture_cells(const PictureOptions *options);
 
 /* Reads the tree and the look and builds the scene. Says on standard error, unless quiet, how many
- * segments are pruned, cannot be drawn, or have no surface. */
+ * segments are pruned, cannot be drawn, or have no surface, and how many places are not joined.
+ * `report` may be NULL. */
 MUST_CHECK Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet,
-                                Scene *scene, Err *err);
+                                Scene *scene, StageReport *report, Err *err);
 
 /* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the machine. */
 MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);

@@ -2,6 +2,7 @@
  * of one isosurface a cell [docs/POVRAY.md]. */
 #include "emit/povray_text.h"
 
+#include "surface/surface.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,22 +42,30 @@ void put_paint(Text *text, const Scene *scene, uint32_t id, Rgb color)
         put_color(text, color);
 }
 
+static void put_primitive(Text *text, const Scene *scene, const Primitive *primitive)
+{
+    bool cylinder = primitive->kind == PRIMITIVE_CYLINDER;
+    text_puts(text, cylinder ? "Vessel_Cylinder(" : "Vessel_Sphere(");
+    put_vector(text, primitive->a);
+    if (cylinder) {
+        text_puts(text, ",");
+        put_vector(text, primitive->b);
+    }
+    text_puts(text, ",");
+    text_number(text, primitive->radius_mm);
+    text_puts(text, ",");
+    put_paint(text, scene, primitive->id, primitive->color);
+    text_puts(text, ")\n");
+}
+
 static void put_primitives(Text *text, const Scene *scene)
 {
     for (size_t i = 0; i < scene->n_primitives; i++) {
         const Primitive *primitive = &scene->primitives[i];
-        bool cylinder = primitive->kind == PRIMITIVE_CYLINDER;
-        text_puts(text, cylinder ? "Vessel_Cylinder(" : "Vessel_Sphere(");
-        put_vector(text, primitive->a);
-        if (cylinder) {
-            text_puts(text, ",");
-            put_vector(text, primitive->b);
-        }
-        text_puts(text, ",");
-        text_number(text, primitive->radius_mm);
-        text_puts(text, ",");
-        put_paint(text, scene, primitive->id, primitive->color);
-        text_puts(text, ")\n");
+        if (primitive->kind == PRIMITIVE_JOINT)
+            put_joint(text, scene, primitive);
+        else
+            put_primitive(text, scene, primitive);
     }
 }
 

@@ -25,5 +25,7 @@ MUST_CHECK Status put_terms(Text *text, const Scene *scene, const PovrayParams *
 /* Appends an isosurface for each cell. */
 MUST_CHECK Status put_cells(Text *text, const Scene *scene, const PovrayParams *params,
                             const CellTree *cells, Err *err);
+/* Appends the call that draws a joint. */
+void put_joint(Text *text, const Scene *scene, const Primitive *joint);
 
 #endif

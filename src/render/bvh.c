@@ -21,9 +21,15 @@ typedef struct Item {
     uint32_t primitive;
 } Item;
 
+/* What a primitive's rays are tested against; a sphere needs none. */
+typedef union PrimitiveFrame {
+    CylinderFrame cylinder;
+    JointFrame joint;
+} PrimitiveFrame;
+
 struct Bvh {
     const Primitive *primitives;
-    CylinderFrame *frames; /* one a primitive; unused for spheres */
+    PrimitiveFrame *frames; /* one a primitive */
     Item *items;
     Node *nodes;
     size_t n_nodes;
@@ -32,7 +38,8 @@ struct Bvh {
 static Box primitive_box(const Primitive *primitive)
 {
     Box box = box_with_ball(box_empty(), primitive->a, primitive->radius_mm);
-    box = box_with_ball(box, primitive->b, primitive->radius_mm);
+    bool joint = primitive->kind == PRIMITIVE_JOINT;
+    box = box_with_ball(box, primitive->b, joint ? primitive->radius_b_mm : primitive->radius_mm);
     /* Rounding of a hit at the rim of the box must not lose it. */
     double slack = 1e-9 * (1 + vec3_length(box.low) + vec3_length(box.high));
     Vec3 pad = vec3(slack, slack, slack);
@@ -146,13 +153,16 @@ Status bvh_build(const Primitive *primitives, size_t n, Bvh **out, Err *err)
     if (status != STATUS_OK)
         return status;
     bvh->primitives = primitives;
-    TRY_GOTO(mem_calloc(&bvh->frames, n, sizeof *bvh->frames, "cylinder frames", err));
+    TRY_GOTO(mem_calloc(&bvh->frames, n, sizeof *bvh->frames, "primitives", err));
     TRY_GOTO(mem_calloc(&bvh->items, n, sizeof *bvh->items, "primitives", err));
     TRY_GOTO(mem_calloc(&bvh->nodes, 2 * n, sizeof *bvh->nodes, "nodes", err));
     for (size_t i = 0; i < n; i++) {
         const Primitive *primitive = &primitives[i];
         if (primitive->kind == PRIMITIVE_CYLINDER)
-            bvh->frames[i] = cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
+            bvh->frames[i].cylinder =
+                cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
+        else if (primitive->kind == PRIMITIVE_JOINT)
+            bvh->frames[i].joint = primitive_joint(primitive);
         bvh->items[i] = (Item){primitive_box(primitive),
                                vec3_scale(vec3_add(primitive->a, primitive->b), 0.5), (uint32_t)i};
     }
@@ -177,9 +187,15 @@ void bvh_free(Bvh *bvh)
 static int primitive_hits(const Bvh *bvh, uint32_t index, Ray ray, Hit hits[4])
 {
     const Primitive *primitive = &bvh->primitives[index];
-    if (primitive->kind == PRIMITIVE_SPHERE)
+    switch (primitive->kind) {
+    case PRIMITIVE_CYLINDER:
+        return hit_cylinder(ray, &bvh->frames[index].cylinder, hits);
+    case PRIMITIVE_SPHERE:
         return hit_sphere(ray, primitive->a, primitive->radius_mm, hits);
-    return hit_cylinder(ray, &bvh->frames[index], hits);
+    case PRIMITIVE_JOINT:
+        return hit_joint(ray, &bvh->frames[index].joint, hits);
+    }
+    return 0;
 }
 
 bool bvh_first_hit(const Bvh *bvh, Ray ray, double t_min, Hit *hit, size_t *primitive)

@@ -76,6 +76,13 @@ bool blend_joins(const Blend *blend, uint32_t i, uint32_t other)
     return low < blend->first[i + 1] && blend->neighbors[low] == other;
 }
 
+JointFrame primitive_joint(const Primitive *primitive)
+{
+    return joint_frame((const Vec3[2]){primitive->a, primitive->b},
+                       (const Vec3[2]){primitive->axis_a, primitive->axis_b},
+                       (const double[2]){primitive->radius_mm, primitive->radius_b_mm});
+}
+
 void scene_release(Scene *scene)
 {
     free(scene->lights);
@@ -112,6 +119,8 @@ Status scene_check(const Scene *scene, Err *err)
     for (size_t i = 0; i < scene->n_primitives; i++) {
         const Primitive *primitive = &scene->primitives[i];
         TRY(check_tube(primitive->a, primitive->b, primitive->radius_mm, primitive->id, err));
+        if (primitive->kind == PRIMITIVE_JOINT)
+            TRY(check_tube(primitive->b, primitive->a, primitive->radius_b_mm, primitive->id, err));
     }
     for (size_t i = 0; i < scene->n_segments; i++) {
         const FieldSegment *segment = &scene->segments[i];

@@ -49,16 +49,24 @@ typedef struct Finish {
     float ambient, diffuse, brilliance, phong, phong_size, specular, roughness;
 } Finish;
 
-typedef enum PrimitiveKind { PRIMITIVE_CYLINDER, PRIMITIVE_SPHERE } PrimitiveKind;
+typedef enum PrimitiveKind { PRIMITIVE_CYLINDER, PRIMITIVE_SPHERE, PRIMITIVE_JOINT } PrimitiveKind;
 
-/* A closed cylinder from a to b, or a sphere about a. */
+/* A closed cylinder from a to b, a sphere about a, or the ruled surface between two circles about a
+ * and b [geom/joint.h]. */
 typedef struct Primitive {
     PrimitiveKind kind;
     Vec3 a, b;
-    double radius_mm; /* > 0 */
+    double radius_mm; /* > 0; of a joint, at a */
     uint32_t id;      /* SWC id of the segment it stands for */
     Rgb color;
+    /* Of a joint alone: the radius at b, > 0, and the unit axes across which the circles lie, both
+     * leading from a on to b. */
+    double radius_b_mm;
+    Vec3 axis_a, axis_b;
 } Primitive;
+
+/* A primitive that is a joint, prepared for many rays. */
+JointFrame primitive_joint(const Primitive *primitive);
 
 /* One Gaussian line potential; METHODS section 2. */
 typedef struct FieldSegment {
@@ -71,7 +79,12 @@ typedef struct FieldSegment {
 /* e^-2, the level at which a long segment has its own radius. */
 #define FIELD_LEVEL 0.13533528323661270
 
-typedef enum SceneModel { SCENE_CYLINDERS, SCENE_ROUNDED, SCENE_ISOSURFACE } SceneModel;
+typedef enum SceneModel {
+    SCENE_CYLINDERS,
+    SCENE_JOINED,
+    SCENE_ROUNDED,
+    SCENE_ISOSURFACE
+} SceneModel;
 
 /* Which segments blend. Without `first`, all with all: the surface is where the sum of all terms is
  * FIELD_LEVEL. Else segment i blends with neighbors[first[i] .. first[i + 1]), which rise and hold i
@@ -96,6 +109,7 @@ typedef struct Scene {
     FieldSegment *segments; /* owned; empty for a primitive model */
     size_t n_segments;
     Blend blend;
+    size_t drawn;       /* vessel segments that the geometry stands for */
     bool uniform_color; /* every color is `color` */
     Rgb color;
     Box bounds;  /* of the geometry, mm; for the field widened by its overshoot */

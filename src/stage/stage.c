@@ -2,17 +2,15 @@
  * the look's lights turned from the camera's axes to the world's.
  *
  * No two surfaces of a primitive model coincide, because which of two coincident surfaces is seen is
- * nobody's to say. Nodes joined by segments of no length are one place: `rounded` puts one sphere
- * there, of the largest radius that meets. A segment that shares both ends with a sister at least as
- * thick lies inside her and is left out; measured trees hold such pairs. */
+ * nobody's to say; hence places.c. `rounded` puts one sphere at a place, of the largest radius that
+ * meets there. */
 #include "stage/stage.h"
 
 #include "stage/blend.h"
 #include "stage/framing.h"
+#include "stage/joints.h"
+#include "stage/places.h"
 #include <stdlib.h>
-
-/* POV-Ray refuses cylinders shorter than this [docs/POVRAY.md]. */
-static const double shortest_mm = 1e-9;
 
 StageParams stage_defaults(void)
 {
@@ -25,93 +23,38 @@ StageParams stage_defaults(void)
                          .margin = 0.05};
 }
 
-static bool has_length(const Tree *tree, size_t i)
-{
-    return tree_segment_length(tree, i) > shortest_mm;
-}
-
-static bool can_be_drawn(const Tree *tree, size_t i)
-{
-    return tree_is_segment(tree, i) && tree->radius_mm[i] > 0 && has_length(tree, i);
-}
-
-/* For each node the sister within whose segment its own lies, or TREE_NO_PARENT, in *cover (owned). */
-static Status find_covers(const Tree *tree, int32_t **cover, Err *err)
-{
-    int32_t *last = NULL, *previous = NULL, *found = NULL; /* child lists, latest first */
-    Status status = mem_calloc(&last, tree->n, sizeof *last, "nodes", err);
-    if (status == STATUS_OK)
-        status = mem_calloc(&previous, tree->n, sizeof *previous, "nodes", err);
-    if (status == STATUS_OK)
-        status = mem_calloc(&found, tree->n, sizeof *found, "nodes", err);
-    for (size_t i = 0; status == STATUS_OK && i < tree->n; i++) {
-        last[i] = found[i] = TREE_NO_PARENT;
-        if (!can_be_drawn(tree, i))
-            continue;
-        int32_t self = (int32_t)i, *youngest = &last[tree->parent[i]];
-        for (int32_t sister = *youngest; sister >= 0; sister = previous[sister]) {
-            if (found[sister] >= 0 ||
-                vec3_distance(tree->position[i], tree->position[sister]) > shortest_mm)
-                continue;
-            bool thicker = tree->radius_mm[i] > tree->radius_mm[sister];
-            found[thicker ? sister : self] = thicker ? self : sister;
-            break;
-        }
-        previous[i] = *youngest;
-        *youngest = self;
-    }
-    free(last);
-    free(previous);
-    if (status == STATUS_OK)
-        *cover = found;
-    return status;
-}
-
-static Rgb color_of(const Rgb *colors, const Look *look, size_t node)
-{
-    return colors ? colors[node] : look->color;
-}
-
-static void add_cylinders(const Tree *tree, const Look *look, const Rgb *colors,
-                          const int32_t *cover, Scene *scene)
+static void add_cylinders(const Tree *tree, const Paint *paint, const Places *places, Scene *scene)
 {
     for (size_t i = 0; i < tree->n; i++) {
-        if (can_be_drawn(tree, i) && cover[i] < 0)
+        if (places_draw(places, tree, i))
             scene->primitives[scene->n_primitives++] =
                 (Primitive){.kind = PRIMITIVE_CYLINDER,
                             .a = tree->position[tree->parent[i]],
                             .b = tree->position[i],
                             .radius_mm = tree->radius_mm[i],
                             .id = (uint32_t)tree->id[i],
-                            .color = color_of(colors, look, i)};
+                            .color = paint_of(paint, i)};
     }
 }
 
 /* The sphere of a place stands for the thickest segment that meets there; of equals, the one that
  * ends there. */
-static Status add_spheres(const Tree *tree, const Look *look, const Rgb *colors,
-                          const int32_t *cover, Scene *scene, Err *err)
+static Status add_spheres(const Tree *tree, const Paint *paint, const Places *places, Scene *scene,
+                          Err *err)
 {
-    int32_t *place = NULL, *thickest = NULL;
-    Status status = mem_calloc(&place, tree->n, sizeof *place, "nodes", err);
-    if (status == STATUS_OK)
-        status = mem_calloc(&thickest, tree->n, sizeof *thickest, "nodes", err);
-    if (status != STATUS_OK)
-        goto done;
+    int32_t *thickest = NULL;
+    TRY(mem_calloc(&thickest, tree->n, sizeof *thickest, "nodes", err));
+    for (size_t i = 0; i < tree->n; i++)
+        thickest[i] = segment_can_be_drawn(tree, i) ? (int32_t)i : TREE_NO_PARENT;
     for (size_t i = 0; i < tree->n; i++) {
-        bool joined = tree_is_segment(tree, i) && !has_length(tree, i);
-        place[i] = joined ? place[tree->parent[i]] : cover[i] >= 0 ? cover[i] : (int32_t)i;
-        thickest[i] = can_be_drawn(tree, i) ? (int32_t)i : TREE_NO_PARENT;
-    }
-    for (size_t i = 0; i < tree->n; i++) {
-        if (!can_be_drawn(tree, i))
+        if (!segment_can_be_drawn(tree, i))
             continue;
-        int32_t *best = &thickest[place[tree->parent[i]]];
+        int32_t *best = &thickest[places->place[tree->parent[i]]];
         if (*best < 0 || tree->radius_mm[i] > tree->radius_mm[*best])
             *best = (int32_t)i;
     }
     for (size_t i = 0; i < tree->n; i++) {
-        if (place[i] != (int32_t)i || thickest[i] < 0)
+        if (places->place[i] != (int32_t)i || thickest[i] < 0)
             continue;
         size_t segment = (size_t)thickest[i];
         scene->primitives[scene->n_primitives++] =
@@ -120,56 +63,56 @@ static Status add_spheres(const Tree *tree, const Look *look, const Rgb *colors,
                         .b = tree->position[i],
                         .radius_mm = tree->radius_mm[segment],
                         .id = (uint32_t)tree->id[segment],
-                        .color = color_of(colors, look, segment)};
+                        .color = paint_of(paint, segment)};
     }
-done:
-    free(place);
     free(thickest);
-    return status;
+    return STATUS_OK;
 }
 
 /* number[i] becomes the index of the segment that ends at node i, or -1. */
-static void add_field(const Tree *tree, const Look *look, const Rgb *colors, Scene *scene,
-                      int32_t *number)
+static void add_field(const Tree *tree, const Paint *paint, Scene *scene, int32_t *number)
 {
     for (size_t i = 0; i < tree->n; i++) {
         number[i] = -1;
-        if (!can_be_drawn(tree, i))
+        if (!segment_can_be_drawn(tree, i))
             continue;
         number[i] = (int32_t)scene->n_segments;
         scene->segments[scene->n_segments++] = (FieldSegment){.a = tree->position[tree->parent[i]],
                                                               .b = tree->position[i],
                                                               .radius_mm = tree->radius_mm[i],
                                                               .id = (uint32_t)tree->id[i],
-                                                              .color = color_of(colors, look, i)};
+                                                              .color = paint_of(paint, i)};
     }
 }
 
-static Status add_potential(const Tree *tree, const Look *look, const Rgb *colors, bool graph,
-                            Scene *scene, Err *err)
+static Status add_potential(const Tree *tree, const Paint *paint, bool graph, Scene *scene,
+                            Err *err)
 {
     int32_t *number = NULL;
     TRY(mem_calloc(&scene->segments, tree->n, sizeof *scene->segments, "segments", err));
     TRY(mem_calloc(&number, tree->n, sizeof *number, "segments", err));
-    add_field(tree, look, colors, scene, number);
+    add_field(tree, paint, scene, number);
     Status status = graph ? blend_find(tree, number, scene, err) : STATUS_OK;
     free(number);
     return status;
 }
 
-static Status add_geometry(const Tree *tree, const Look *look, const Rgb *colors, bool graph,
-                           Scene *scene, Err *err)
+static Status add_geometry(const Tree *tree, const Paint *paint, const StageParams *params,
+                           Scene *scene, StageReport *report, Err *err)
 {
     if (scene->model == SCENE_ISOSURFACE)
-        return add_potential(tree, look, colors, graph, scene, err);
+        return add_potential(tree, paint, params->graph, scene, err);
     TRY(mem_calloc(&scene->primitives, 2 * tree->n, sizeof *scene->primitives, "primitives", err));
-    int32_t *cover = NULL;
-    Status status = find_covers(tree, &cover, err);
-    if (status == STATUS_OK)
-        add_cylinders(tree, look, colors, cover, scene);
-    if (status == STATUS_OK && scene->model == SCENE_ROUNDED)
-        status = add_spheres(tree, look, colors, cover, scene, err);
-    free(cover);
+    Places places = {0};
+    TRY(places_find(tree, &places, err));
+    Status status = STATUS_OK;
+    if (scene->model == SCENE_JOINED)
+        status = joints_add(tree, paint, &places, params->joints, scene, report, err);
+    else
+        add_cylinders(tree, paint, &places, scene);
+    if (scene->model == SCENE_ROUNDED)
+        status = add_spheres(tree, paint, &places, scene, err);
+    places_release(&places);
     return status;
 }
 
@@ -181,7 +124,8 @@ static size_t end_balls(const Scene *scene, Ball *balls, Box *bounds)
     for (size_t i = 0; i < scene->n_primitives; i++) {
         const Primitive *primitive = &scene->primitives[i];
         balls[n++] = (Ball){primitive->a, primitive->radius_mm};
-        balls[n++] = (Ball){primitive->b, primitive->radius_mm};
+        bool joint = primitive->kind == PRIMITIVE_JOINT;
+        balls[n++] = (Ball){primitive->b, joint ? primitive->radius_b_mm : primitive->radius_mm};
     }
     for (size_t i = 0; i < scene->n_segments; i++) {
         const FieldSegment *segment = &scene->segments[i];
@@ -226,7 +170,7 @@ Status stage_scene(const Tree *tree, const Look *look, const Rgb *colors, const 
                    .color = look->color};
     StageReport counted = {0};
     for (size_t i = 0; i < tree->n; i++) {
-        if (can_be_drawn(tree, i))
+        if (segment_can_be_drawn(tree, i))
             counted.drawn++;
         else if (tree_is_segment(tree, i))
             counted.dropped++;
@@ -234,8 +178,10 @@ Status stage_scene(const Tree *tree, const Look *look, const Rgb *colors, const 
     if (counted.drawn == 0)
         return err_set(err, STATUS_INPUT,
                        "the tree has nothing to draw: no segment has both a length and a radius");
+    built.drawn = counted.drawn;
     Ball *balls = NULL;
-    Status status = add_geometry(tree, look, colors, params->graph, &built, err);
+    const Paint paint = {colors, look->color};
+    Status status = add_geometry(tree, &paint, params, &built, &counted, err);
     if (status == STATUS_OK)
         status = mem_calloc(&balls, 2 * (built.n_primitives + built.n_segments), sizeof *balls,
                             "balls", err);

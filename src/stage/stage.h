@@ -31,8 +31,15 @@ MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
 
 typedef enum View { VIEW_FRONT, VIEW_TOP, VIEW_LEFT, VIEW_ISO } View;
 
+/* What a joined model does where vessels are too short, or turn back too sharply, for their joints. */
+typedef enum JointForm {
+    JOINTS_ROBUST, /* draws the place as the rounded model does */
+    JOINTS_PAPER   /* follows the construction of [N] to the letter */
+} JointForm;
+
 typedef struct StageParams {
     SceneModel model;
+    JointForm joints;
     int width, height; /* pixels, >= 1 */
     Projection projection;
     View view; /* used when has_location is false */
@@ -51,6 +58,9 @@ StageParams stage_defaults(void);
 typedef struct StageReport {
     size_t drawn;   /* segments in the scene */
     size_t dropped; /* segments without length or radius, which cannot be drawn */
+    /* Of a joined model: joints drawn; places where the construction breaks down because a vessel is
+     * too short, and, of the others, because it turns back too sharply. */
+    size_t joints, places_short, places_sharp;
 } StageReport;
 
 /* Builds the scene of a tree. `colors` has one linear colour a node, for the segment that ends

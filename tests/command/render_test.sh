@@ -2,7 +2,7 @@
 # render and the image formats, read back by netpbm, which shares no code with corcast.
 . "$(dirname "$0")/../lib.sh"
 
-MODELS="cylinders rounded isosurface"
+MODELS="cylinders joined rounded isosurface"
 
 # colours FILE.ppm: how many different pixels there are.
 colours() {
@@ -15,6 +15,11 @@ pixels() {
     *.png) pngtopnm "$1" ;;
     *) cat "$1" ;;
     esac | pnmtoplainpnm
+}
+
+colours_of_png() {
+    pngtopnm "$1" >colours.ppm
+    colours colours.ppm
 }
 
 expect_same_pixels() {
@@ -189,6 +194,54 @@ test_the_background_is_the_colour_asked_for() {
     run_ok corcast render tree.swc --size 40x40 --background 0,0,0 -o black.ppm
     [ "$(tail -c 3 black.ppm | od -A n -t u1 | tr -s ' ')" = " 0 0 0" ] ||
         fail "expected a black corner, got $(tail -c 3 black.ppm | od -A n -t u1)"
+}
+
+test_places_without_joints_are_counted_and_said() {
+    run_ok corcast grow --terminals 600 --seed 3 --lambda 0 -o tree.swc
+    run_ok corcast render tree.swc --model joined --size 60x60 --json report.json -o picture.png
+    expect_sentence 'at [0-9]+ places vessels are too short for joints, at [0-9]+ they turn too sharply.*drawn round'
+    expect_json report.json '.joints > 1000 and .places_short > 0 and .places_sharp > 0'
+    expect_json report.json '.joints == 1198 - 2 * (.places_short + .places_sharp)'
+    run_ok corcast render tree.swc --model joined --joints paper --size 60x60 --json report.json -o paper.png
+    expect_sentence 'joined all the same'
+    expect_json report.json '.joints == 1198'
+    expect_different picture.png paper.png
+    run corcast render tree.swc --model rounded --joints paper -o picture.png
+    expect_status 2
+    expect_sentence '--joints is for --model joined'
+}
+
+# star N: N daughters at one node, in all directions, each shorter than it is wide where THICK is given.
+star() {
+    awk -v n="$1" -v thick="${2:-0}" 'BEGIN {
+        print "1 3 0 30 0 2 -1"
+        print "2 3 0 0 0 2 1"
+        for (i = 0; i < n; i++) {
+            z = 1 - 2 * (i + 0.5) / n; a = 2.399963229728653 * i; r = sqrt(1 - z * z)
+            print i + 3, 3, 20 * r * cos(a), 20 * r * sin(a), 20 * z, (thick ? 25 : 0.3), 2
+        }
+    }'
+}
+
+test_more_than_a_thousand_daughters_at_one_node_are_drawn() {
+    star 1200 >star.swc
+    run_ok corcast render star.swc --model joined --size 100x100 --json report.json -o star.png
+    expect_json report.json '.places_short + .places_sharp == 1'
+    [ "$(colours_of_png star.png)" -gt 100 ] || fail "expected a shaded picture"
+}
+
+test_vessels_wider_than_long_are_drawn() {
+    star 12 thick >star.swc
+    run_ok corcast render star.swc --model joined --size 100x100 --json report.json -o star.png
+    expect_json report.json '.places_short + .places_sharp == 1 and .joints == 0'
+}
+
+test_collinear_trees_are_drawn() {
+    awk 'BEGIN { for (i = 1; i <= 20; i++) print i, 3, 0, 3 * i, 0, 2 - i * 0.05, (i > 1 ? i - 1 : -1)
+                 for (i = 21; i <= 30; i++) print i, 3, 0, 3 * (40 - i) - 1.5, 0, 0.4, (i > 21 ? i - 1 : 20) }' >line.swc
+    run_ok corcast render line.swc --model joined --size 80x100 --json report.json -o line.png
+    expect_json report.json '.joints == 0'
+    run_ok corcast render line.swc --model joined --joints paper --size 80x100 -o paper.png
 }
 
 test_a_picture_beyond_memory_is_refused_and_the_old_one_stays() {

@@ -44,6 +44,33 @@ test_rounded_in_the_plane_agree() {
     agrees rounded
 }
 
+test_joined_in_the_plane_agree() {
+    tree_2d
+    agrees joined
+}
+
+test_joined_in_perspective_with_shadows_agree() {
+    tree_3d
+    agrees joined --projection perspective --view iso --shadows on
+}
+
+test_antialiased_joined_agree() {
+    tree_3d 30
+    agrees joined --antialias 3
+}
+
+test_joined_trees_of_least_length_agree() {
+    run_ok corcast grow --terminals 150 --seed 3 --lambda 0 -o tree.swc
+    agrees joined --view iso --shadows on
+}
+
+test_joints_seen_close_up_agree() {
+    tree_3d 30
+    agrees joined --location 3,14,40 --look-at 2,12,1 --height 9
+    rm -r report
+    agrees joined --projection perspective --location 12,25,9 --look-at 1,16,2 --angle 30 --shadows on
+}
+
 test_isosurface_in_the_plane_agrees() {
     tree_2d
     agrees isosurface
@@ -135,7 +162,7 @@ test_a_picture_wider_than_high_and_one_higher_than_wide_agree() {
 test_a_tree_drawn_by_hand_agrees_in_every_model() {
     local model
     cp "$DATA/bifurcation.swc" tree.swc
-    for model in cylinders rounded isosurface; do
+    for model in cylinders joined rounded isosurface; do
         agrees $model
         rm -r report
     done
@@ -167,12 +194,14 @@ test_a_measured_tree_agrees() {
     [ -d "$SHARED/brava" ] || skip "the measured trees of ../shared/data/brava are not here"
     cp "$SHARED/brava/BG0002records.swc" tree.swc
     agrees rounded --view left
+    rm -r report
+    agrees joined --view left
 }
 
 test_colours_by_a_field_agree_in_every_model() {
     local model
     tree_2d 20
-    for model in cylinders rounded isosurface; do
+    for model in cylinders joined rounded isosurface; do
         agrees $model --color-by pressure
         rm -r report
     done
@@ -223,6 +252,25 @@ test_another_finish_is_found_out() {
         [ "$status" -eq 1 ] || fail "expected exit status 1 with $change, got $status$(said)"
         expect_json report/report.json '.verdict == "differ"'
     done
+}
+
+test_joints_as_meshes_look_like_the_exact_ones() {
+    cp "$DATA/bifurcation.swc" tree.swc
+    povray_with Declare=Joint_Sides=64
+    run corcast verify tree.swc --model joined --size 240x180 -o report
+    [ "$status" -le 1 ] || fail "expected a comparison, got exit status $status$(said)"
+    [ "$(differing report/povray.png report/native.png)" -gt 0 ] || fail "expected no mesh to be exact"
+    [ "$(differing report/povray.png report/native.png 2)" -le 4 ] ||
+        fail "expected meshes of 64 sides to be within 2 levels, but for 4 pixels"
+}
+
+test_joints_that_break_down_are_drawn_alike_to_the_letter() {
+    run_ok corcast grow --terminals 600 --seed 3 --lambda 0 -o tree.swc
+    run corcast verify tree.swc --model joined --joints paper --size 300x225 -o report
+    [ "$status" -le 1 ] || fail "expected a comparison, got exit status $status$(said)"
+    grep -q ',1,[0-9]*,Vessel_Color)' report/scene.inc || fail "expected folded joints in the scene"
+    [ "$(differing report/povray.png report/native.png 8)" -le 10 ] ||
+        fail "expected at most 10 pixels off by more than 8 levels"
 }
 
 test_a_missing_segment_is_found_out() {

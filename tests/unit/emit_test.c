@@ -11,9 +11,30 @@
 #include <stdio.h>
 
 static Primitive primitives[] = {
-    {PRIMITIVE_CYLINDER, {0, 50, 0}, {1.0 / 3, 12.5, -2.385}, 2.385, 2, {0.56f, 0.055f, 0.045f}},
-    {PRIMITIVE_SPHERE, {0, 50, 0}, {0, 50, 0}, 2.385, 70000, {0.1f, 0.2f, 0.3f}},
+    {.kind = PRIMITIVE_CYLINDER,
+     .a = {0, 50, 0},
+     .b = {1.0 / 3, 12.5, -2.385},
+     .radius_mm = 2.385,
+     .id = 2,
+     .color = {0.56f, 0.055f, 0.045f}},
+    {.kind = PRIMITIVE_SPHERE,
+     .a = {0, 50, 0},
+     .b = {0, 50, 0},
+     .radius_mm = 2.385,
+     .id = 70000,
+     .color = {0.1f, 0.2f, 0.3f}},
 };
+
+/* A thick circle across y and, at right angles to it, one a third as large. */
+static Primitive joint = {.kind = PRIMITIVE_JOINT,
+                          .a = {0, 2, 0},
+                          .b = {5, -1, 0},
+                          .radius_mm = 3,
+                          .radius_b_mm = 1,
+                          .axis_a = {0, -1, 0},
+                          .axis_b = {1, 0, 0},
+                          .id = 9,
+                          .color = {0.1f, 0.2f, 0.3f}};
 
 static FieldSegment segments[] = {
     {{0, 9, 0}, {0, 0, 0}, 1.5, 2, {0.5f, 0.1f, 0.1f}},
@@ -103,6 +124,37 @@ static void the_numbers_of_a_cylinder_read_back_exactly(void **state)
     assert_int_equal(id, 2);
     assert_string_equal(paint, "Vessel_Color");
     assert_int_equal(count(out.geometry.chars, "\nVessel_Sphere("), 1);
+    release(&out);
+}
+
+static void a_joint_is_given_in_the_frame_of_its_first_circle(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_JOINED);
+    scene.primitives = &joint;
+    scene.n_primitives = 1;
+    Emitted out = emit(&scene, &two_files);
+    const char *call = strstr(out.geometry.chars, "\nVessel_Joint(");
+    assert_non_null(call);
+    double v[20];
+    unsigned id;
+    assert_int_equal(
+        sscanf(call,
+               "\nVessel_Joint(<%lf,%lf,%lf>,<%lf,%lf,%lf>,<%lf,%lf,%lf>,<%lf,%lf,%lf>,"
+               "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,0,%u,Vessel_Color)",
+               &v[0], &v[1], &v[2], &v[3], &v[4], &v[5], &v[6], &v[7], &v[8], &v[9], &v[10], &v[11],
+               &v[12], &v[13], &v[14], &v[15], &v[16], &v[17], &v[18], &v[19], &id),
+        21);
+    /* Centre, x towards the bend, y across both axes, z along the first axis, radius. */
+    const double expected[] = {0, 2, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 3};
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++)
+        assert_true(fabs(v[i] - expected[i]) < 1e-15);
+    /* The second circle's diameter, over the radius: away from the bend first. */
+    const double ends[] = {5.0 / 3, 4.0 / 3, 5.0 / 3, 2.0 / 3, 1.0 / 3};
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+        assert_true(fabs(v[13 + i] - ends[i]) < 1e-15);
+    assert_true(v[18] > 0 && v[19] >= 2);
+    assert_int_equal(id, 9);
     release(&out);
 }
 
@@ -221,6 +273,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_numbers_of_a_cylinder_read_back_exactly),
+        cmocka_unit_test(a_joint_is_given_in_the_frame_of_its_first_circle),
         cmocka_unit_test(segments_of_different_colours_carry_their_own),
         cmocka_unit_test(the_scene_says_what_it_is_and_how_to_render_it),
         cmocka_unit_test(without_a_geometry_file_all_stands_in_the_scene),

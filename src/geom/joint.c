@@ -1,0 +1,195 @@
+/* A line x(t) = o + t D meets the ruling of angle p where the two are coplanar:
+ *   g(p) = D . ((C_1(p) - o) x (C_2(p) - C_1(p))) = 0,
+ * a trigonometric polynomial of degree 2 without a sin^2 term. At a root, dg/dp = D . (S_p x S_l): it is
+ * simple unless the line touches the surface, whatever the view, face-on and end-on included.
+ *
+ * With tan(p / 2) or its complement in [-1, 1], g is a quartic on each half of the circle. Its roots are
+ * isolated in Bernstein form: a quartic has as many roots in an interval as its coefficients change
+ * sign, or fewer by an even number, so no change proves that there is none, and one that there is just
+ * one; more are decided by halving [Lane & Riesenfeld 1981, Bounds on a polynomial, BIT 21, 112]. Zero
+ * counts as positive, which gives a root at the end of an interval to one of the two that share it. */
+#include "geom/joint.h"
+
+/* Halvings after which two roots that are still together are a line that grazes. */
+enum { MAX_HALVINGS = 32, NEWTON_STEPS = 64 };
+
+/* Below this sine of the angle between the axes they are parallel. */
+static const double parallel = 1e-12;
+/* How far, over the size of the joint, a crossing may lie off its line, and off the ends in l. */
+static const double off_line = 1e-6, off_end = 1e-12;
+
+static Vec3 any_square(Vec3 axis)
+{
+    Vec3 other = fabs(axis.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    return vec3_cross(axis, other);
+}
+
+JointFrame joint_frame(const Vec3 center[2], const Vec3 axis[2], const double radius[2])
+{
+    Vec3 side = vec3_cross(axis[0], axis[1]);
+    if (vec3_length(side) < parallel)
+        side = any_square(axis[0]);
+    side = vec3_normalized(side);
+    /* The cross product of nearly parallel axes is square to neither; what is left of it is. */
+    side = vec3_normalized(vec3_add_scaled(side, axis[0], -vec3_dot(side, axis[0])));
+    Vec3 across = vec3_scale(vec3_cross(side, axis[0]), radius[0]);
+    return (JointFrame){.base = center[0],
+                        .span = vec3_sub(center[1], center[0]),
+                        .side = side,
+                        .across = across,
+                        .across_change =
+                            vec3_sub(vec3_scale(vec3_cross(side, axis[1]), radius[1]), across),
+                        .radius = radius[0],
+                        .radius_change = radius[1] - radius[0]};
+}
+
+/* C_1(p) and C_2(p) - C_1(p). */
+static void joint_ruling(const JointFrame *joint, double cosine, double sine, Vec3 *start,
+                         Vec3 *run)
+{
+    *start = vec3_add_scaled(joint->base, joint->across, cosine);
+    *start = vec3_add_scaled(*start, joint->side, sine * joint->radius);
+    *run = vec3_add_scaled(joint->span, joint->across_change, cosine);
+    *run = vec3_add_scaled(*run, joint->side, sine * joint->radius_change);
+}
+
+Vec3 joint_point(const JointFrame *joint, double cosine, double sine, double l)
+{
+    Vec3 start, run;
+    joint_ruling(joint, cosine, sine, &start, &run);
+    return vec3_add_scaled(start, run, l);
+}
+
+static double triple(Vec3 a, Vec3 b, Vec3 c)
+{
+    return vec3_dot(a, vec3_cross(b, c));
+}
+
+/* The value and slope at x in [0, 1] of a quartic in Bernstein form, by de Casteljau's scheme. */
+static double quartic_at(const double b[5], double x, double *slope)
+{
+    double c[5] = {b[0], b[1], b[2], b[3], b[4]};
+    for (int last = 4; last > 1; last--)
+        for (int i = 0; i < last; i++)
+            c[i] += (c[i + 1] - c[i]) * x;
+    *slope = 4 * (c[1] - c[0]);
+    return c[0] + (c[1] - c[0]) * x;
+}
+
+/* The one root of a quartic whose ends 0 and 1 differ in sign: Newton's method, kept inside the bracket
+ * by halving it. An end where it is 0 is not the root: that counts as positive. */
+static double quartic_root(const double b[5])
+{
+    double low = 0, high = 1, x = 0.5;
+    for (int step = 0; step < NEWTON_STEPS; step++) {
+        double slope, value = quartic_at(b, x, &slope);
+        if ((value < 0) == (b[0] < 0))
+            low = x;
+        else
+            high = x;
+        double next = x - value / slope;
+        if (fabs(next - x) <= 1e-16)
+            return next;
+        x = next > low && next < high ? next : (low + high) / 2;
+    }
+    return x;
+}
+
+static int sign_changes(const double b[5])
+{
+    int changes = 0;
+    for (int i = 0; i < 4; i++)
+        changes += (b[i] < 0) != (b[i + 1] < 0);
+    return changes;
+}
+
+/* Splits at the middle: `b` becomes its first half, `second` the other. */
+static void quartic_halve(double b[5], double second[5])
+{
+    double first[5];
+    for (int i = 0; i < 5; i++)
+        second[i] = b[i];
+    for (int k = 0; k < 5; k++) {
+        first[k] = second[0];
+        for (int i = 0; i < 4 - k; i++)
+            second[i] = (second[i] + second[i + 1]) / 2;
+    }
+    for (int i = 0; i < 5; i++)
+        b[i] = first[i];
+}
+
+/* Appends the roots of the quartic, which is that of [low, high], to the `n` at `roots`: how many there
+ * are then. */
+static int isolate_roots(double b[5], double low, double high, int halvings, double roots[4], int n)
+{
+    int changes = sign_changes(b);
+    if (changes == 0 || n == 4)
+        return n;
+    if (changes == 1) {
+        roots[n] = low + (high - low) * quartic_root(b);
+        return n + 1;
+    }
+    if (halvings == MAX_HALVINGS)
+        return n;
+    double second[5], middle = (low + high) / 2;
+    quartic_halve(b, second);
+    n = isolate_roots(b, low, middle, halvings + 1, roots, n);
+    return isolate_roots(second, middle, high, halvings + 1, roots, n);
+}
+
+/* Where the line meets the ruling of an angle at which g is 0: false when that is off the ends, or when
+ * the ruling runs along the line beside it. The line starts near the joint. */
+static bool ruling_hit(const JointFrame *joint, Ray line, double cosine, double sine, Hit *hit)
+{
+    Vec3 start, run;
+    joint_ruling(joint, cosine, sine, &start, &run);
+    Vec3 from = vec3_sub(start, line.origin);
+    Vec3 run_across = vec3_cross(line.direction, run), off = vec3_cross(line.direction, from);
+    double l = -vec3_dot(off, run_across) / vec3_dot(run_across, run_across);
+    if (!(l >= -off_end && l <= 1 + off_end))
+        return false;
+    Vec3 miss = vec3_add_scaled(off, run_across, l);
+    double limit = off_line * (joint->radius + vec3_length(joint->span));
+    if (vec3_dot(miss, miss) > limit * limit)
+        return false;
+    /* S_p x S_l leads outwards. */
+    Vec3 turn = vec3_scale(vec3_add_scaled(joint->across, joint->across_change, l), -sine);
+    turn = vec3_add_scaled(turn, joint->side, cosine * (joint->radius + joint->radius_change * l));
+    Vec3 normal = vec3_cross(turn, run);
+    double length = vec3_length(normal);
+    hit->t = vec3_dot(vec3_add_scaled(from, run, l), line.direction);
+    hit->normal = vec3_scale(normal, 1 / length);
+    return length > 0;
+}
+
+int hit_joint(Ray ray, const JointFrame *joint, Hit hits[4])
+{
+    /* From the point of the line that is nearest to the joint, numbers are as small as it is. */
+    Vec3 d = ray.direction;
+    double nearest = vec3_dot(vec3_sub(joint->base, ray.origin), d);
+    Ray line = {ray_at(ray, nearest), d};
+    Vec3 from = vec3_sub(joint->base, line.origin), side = joint->side;
+    /* g = one + cos by_cos + sin by_sin + cos^2 by_cos2 + cos sin by_both */
+    double one = triple(d, from, joint->span);
+    double by_cos = triple(d, from, joint->across_change) + triple(d, joint->across, joint->span);
+    double by_sin =
+        joint->radius_change * triple(d, from, side) + joint->radius * triple(d, side, joint->span);
+    double by_cos2 = triple(d, joint->across, joint->across_change);
+    double by_both = joint->radius_change * triple(d, joint->across, side) +
+                     joint->radius * triple(d, side, joint->across_change);
+    int count = 0;
+    for (int half = 1; half >= -1; half -= 2) { /* the sign of the cosine */
+        double c = half * by_cos, both = half * by_both;
+        double b[5] = {2 * (one - by_sin), c - both, 2.0 / 3 * (one + 2 * by_cos2), c + both,
+                       2 * (one + by_sin)};
+        double roots[4];
+        int n = isolate_roots(b, -1, 1, 0, roots, 0);
+        for (int i = 0; i < n && count < 4; i++) {
+            double square = roots[i] * roots[i];
+            double cosine = half * (1 - square) / (1 + square), sine = 2 * roots[i] / (1 + square);
+            if (ruling_hit(joint, line, cosine, sine, &hits[count]))
+                hits[count++].t += nearest;
+        }
+    }
+    return count;
+}

@@ -1,0 +1,296 @@
+/* At each place the ends of vessels meet: that of the parent, the trunk, and those of the daughters; where
+ * a tree begins with several vessels, the thickest is the trunk. All are cut back (cuts.c), and a ruled
+ * surface leads from the rim of the trunk to that of each daughter. Cylinders stay closed, so every joint
+ * is a solid between two discs, whose wall neither folds nor has holes as long as each disc lies on one
+ * side of the other's plane, which the cuts see to.
+ *
+ * The construction breaks down at a place whose cuts do not fit into its vessels, or where a daughter
+ * leaves at less than 60 degrees from the trunk's own direction, so that the joint would be pinched to
+ * less than half its width. A robust model draws such a place as `rounded` does: cylinders that are
+ * not cut, and one sphere. Both ends of a vessel need room on it; places take their turns, those that
+ * need the smallest part of a vessel first, so that few are lost. */
+#include "stage/joints.h"
+
+#include "stage/cuts.h"
+#include <stdlib.h>
+
+static const double sharp_cosine = 0.5;   /* of the angle between trunk and daughter */
+static const double usable_part = 0.999;  /* of a vessel, for the cuts at its ends */
+static const double straight_part = 1e-6; /* cuts below this part of the radius are none */
+
+typedef enum PlaceKind { PLACE_OPEN, PLACE_JOINED, PLACE_SHORT, PLACE_SHARP } PlaceKind;
+
+/* End 2 i is where segment i begins, 2 i + 1 where it ends. */
+typedef struct Builder {
+    const Tree *tree;
+    const Places *places;
+    size_t *first;    /* n + 1: where each place's ends stand in `ends` */
+    size_t *ends;     /* by place, ascending */
+    double *cut;      /* one an end, mm */
+    PlaceKind *kinds; /* one a node; of those that stand for a place */
+} Builder;
+
+typedef struct Demand {
+    double part; /* the largest part of a vessel that a cut at the place takes */
+    size_t place;
+} Demand;
+
+static size_t place_of(const Builder *builder, size_t end)
+{
+    size_t node = end / 2;
+    return (size_t)builder->places->place[end % 2 ? node : (size_t)builder->tree->parent[node]];
+}
+
+/* The point at an end before it is cut, and the unit axis from there along the vessel. */
+static Vec3 end_axis(const Builder *builder, size_t end, Vec3 *at)
+{
+    const Tree *tree = builder->tree;
+    Vec3 distal = tree->position[end / 2], proximal = tree->position[tree->parent[end / 2]];
+    *at = end % 2 ? distal : proximal;
+    return vec3_normalized(end % 2 ? vec3_sub(proximal, distal) : vec3_sub(distal, proximal));
+}
+
+/* The centre of the disc at an end. */
+static Vec3 end_center(const Builder *builder, size_t end)
+{
+    Vec3 at, axis = end_axis(builder, end, &at);
+    return vec3_add_scaled(at, axis, builder->cut[end]);
+}
+
+static Status collect_ends(Builder *builder, Err *err)
+{
+    const Tree *tree = builder->tree;
+    TRY(mem_calloc(&builder->first, tree->n + 2, sizeof *builder->first, "places", err));
+    TRY(mem_calloc(&builder->ends, 2 * tree->n, sizeof *builder->ends, "vessel ends", err));
+    TRY(mem_calloc(&builder->cut, 2 * tree->n, sizeof *builder->cut, "vessel ends", err));
+    TRY(mem_calloc(&builder->kinds, tree->n, sizeof *builder->kinds, "places", err));
+    size_t *first = builder->first;
+    for (size_t end = 0; end < 2 * tree->n; end++)
+        if (places_draw(builder->places, tree, end / 2))
+            first[place_of(builder, end) + 2]++;
+    for (size_t i = 2; i < tree->n + 2; i++)
+        first[i] += first[i - 1];
+    /* What counts up to the end of each place's ends is then the beginning of the next one's. */
+    for (size_t end = 0; end < 2 * tree->n; end++)
+        if (places_draw(builder->places, tree, end / 2))
+            builder->ends[first[place_of(builder, end) + 1]++] = end;
+    return STATUS_OK;
+}
+
+/* The end that all joints of a place begin at. */
+static size_t trunk_of(const Builder *builder, size_t place)
+{
+    size_t trunk = builder->ends[builder->first[place]];
+    for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
+        size_t end = builder->ends[k];
+        if (end % 2)
+            return end;
+        if (builder->tree->radius_mm[end / 2] > builder->tree->radius_mm[trunk / 2])
+            trunk = end;
+    }
+    return trunk;
+}
+
+/* Cuts the ends of a place as its joints ask for, and tells what kind of place that makes it and which
+ * part of a vessel it takes. `ends` and `cut` have room for those of any place. */
+static Status cut_place(Builder *builder, size_t place, VesselEnd *ends, double *cut,
+                        double *demand, Err *err)
+{
+    size_t first = builder->first[place], n = builder->first[place + 1] - first;
+    size_t trunk = trunk_of(builder, place);
+    Vec3 at, trunk_axis = end_axis(builder, trunk, &at);
+    double largest_radius = 0, largest_cut = 0;
+    PlaceKind kind = PLACE_JOINED;
+    for (size_t k = 0; k < n; k++) {
+        size_t end = builder->ends[first + k];
+        ends[k] = (VesselEnd){end_axis(builder, end, &at), builder->tree->radius_mm[end / 2]};
+        largest_radius = fmax(largest_radius, ends[k].radius);
+        if (end != trunk && vec3_dot(ends[k].axis, trunk_axis) > sharp_cosine)
+            kind = PLACE_SHARP;
+    }
+    TRY(cuts_compute(ends, n, cut, err));
+    *demand = 0;
+    for (size_t k = 0; k < n; k++) {
+        size_t end = builder->ends[first + k];
+        builder->cut[end] = cut[k];
+        largest_cut = fmax(largest_cut, cut[k]);
+        *demand = fmax(*demand, cut[k] / tree_segment_length(builder->tree, end / 2));
+    }
+    bool straight = kind == PLACE_JOINED && largest_cut <= straight_part * largest_radius;
+    builder->kinds[place] = straight ? PLACE_OPEN : kind;
+    return STATUS_OK;
+}
+
+static int by_demand(const void *a, const void *b)
+{
+    const Demand *first = a, *second = b;
+    if (first->part != second->part)
+        return first->part < second->part ? -1 : 1;
+    return first->place < second->place ? -1 : 1;
+}
+
+/* Whether the cuts of a place fit beside those already made at the other ends of its vessels. */
+static bool cuts_fit(const Builder *builder, size_t place, const bool *made)
+{
+    for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
+        size_t end = builder->ends[k], other = end ^ 1;
+        double taken = builder->cut[end] + (made[other] ? builder->cut[other] : 0);
+        if (taken > usable_part * tree_segment_length(builder->tree, end / 2))
+            return false;
+    }
+    return true;
+}
+
+/* Decides the places whose cuts are known, in the order of their demands. */
+static Status settle_places(Builder *builder, Demand *demands, size_t n, Err *err)
+{
+    bool *made = NULL; /* one an end */
+    TRY(mem_calloc(&made, 2 * builder->tree->n, sizeof *made, "vessel ends", err));
+    qsort(demands, n, sizeof *demands, by_demand);
+    for (size_t d = 0; d < n; d++) {
+        size_t place = demands[d].place;
+        PlaceKind *kind = &builder->kinds[place];
+        if (*kind != PLACE_OPEN && !cuts_fit(builder, place, made))
+            *kind = PLACE_SHORT;
+        for (size_t k = builder->first[place];
+             *kind == PLACE_JOINED && k < builder->first[place + 1]; k++)
+            made[builder->ends[k]] = true;
+    }
+    free(made);
+    return STATUS_OK;
+}
+
+static Status cut_places(Builder *builder, Err *err)
+{
+    size_t n = builder->tree->n, n_demands = 0, most = 0;
+    VesselEnd *ends = NULL;
+    double *cut = NULL;
+    Demand *demands = NULL;
+    Status status = STATUS_OK;
+    for (size_t place = 0; place < n; place++) {
+        size_t count = builder->first[place + 1] - builder->first[place];
+        most = count > most ? count : most;
+    }
+    TRY_GOTO(mem_calloc(&ends, most, sizeof *ends, "vessel ends", err));
+    TRY_GOTO(mem_calloc(&cut, most, sizeof *cut, "vessel ends", err));
+    TRY_GOTO(mem_calloc(&demands, n, sizeof *demands, "places", err));
+    for (size_t place = 0; place < n; place++) {
+        if (builder->first[place + 1] - builder->first[place] < 2)
+            continue;
+        Demand *demand = &demands[n_demands++];
+        demand->place = place;
+        TRY_GOTO(cut_place(builder, place, ends, cut, &demand->part, err));
+    }
+    status = settle_places(builder, demands, n_demands, err);
+done:
+    free(ends);
+    free(cut);
+    free(demands);
+    return status;
+}
+
+/* Makes the cuts final: none where there is no joint, and never more than the vessel. */
+static void trim_cuts(Builder *builder, JointForm form)
+{
+    for (size_t place = 0; place < builder->tree->n; place++) {
+        PlaceKind kind = builder->kinds[place];
+        bool joined = kind == PLACE_JOINED || (form == JOINTS_PAPER && kind != PLACE_OPEN);
+        for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
+            size_t end = builder->ends[k];
+            double length = tree_segment_length(builder->tree, end / 2);
+            builder->cut[end] = joined ? fmin(builder->cut[end], length) : 0;
+        }
+    }
+}
+
+static void add_cylinder(const Builder *builder, const Paint *paint, size_t i, Scene *scene)
+{
+    double left = tree_segment_length(builder->tree, i);
+    left -= builder->cut[2 * i] + builder->cut[2 * i + 1];
+    if (left <= (1 - usable_part) / 2 * tree_segment_length(builder->tree, i))
+        return;
+    scene->primitives[scene->n_primitives++] = (Primitive){.kind = PRIMITIVE_CYLINDER,
+                                                           .a = end_center(builder, 2 * i),
+                                                           .b = end_center(builder, 2 * i + 1),
+                                                           .radius_mm = builder->tree->radius_mm[i],
+                                                           .id = (uint32_t)builder->tree->id[i],
+                                                           .color = paint_of(paint, i)};
+}
+
+static void add_joint(const Builder *builder, const Paint *paint, size_t trunk, size_t end,
+                      Scene *scene)
+{
+    const Tree *tree = builder->tree;
+    Vec3 at;
+    scene->primitives[scene->n_primitives++] =
+        (Primitive){.kind = PRIMITIVE_JOINT,
+                    .a = end_center(builder, trunk),
+                    .b = end_center(builder, end),
+                    .radius_mm = tree->radius_mm[trunk / 2],
+                    .radius_b_mm = tree->radius_mm[end / 2],
+                    .axis_a = vec3_scale(end_axis(builder, trunk, &at), -1),
+                    .axis_b = end_axis(builder, end, &at),
+                    .id = (uint32_t)tree->id[end / 2],
+                    .color = paint_of(paint, end / 2)};
+}
+
+/* The sphere of a place that cannot be joined; of equals, the trunk gives it its size and colour. */
+static void add_sphere(const Builder *builder, const Paint *paint, size_t place, Scene *scene)
+{
+    const Tree *tree = builder->tree;
+    size_t thickest = trunk_of(builder, place) / 2;
+    for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
+        size_t segment = builder->ends[k] / 2;
+        if (tree->radius_mm[segment] > tree->radius_mm[thickest])
+            thickest = segment;
+    }
+    scene->primitives[scene->n_primitives++] = (Primitive){.kind = PRIMITIVE_SPHERE,
+                                                           .a = tree->position[place],
+                                                           .b = tree->position[place],
+                                                           .radius_mm = tree->radius_mm[thickest],
+                                                           .id = (uint32_t)tree->id[thickest],
+                                                           .color = paint_of(paint, thickest)};
+}
+
+static void add_place(const Builder *builder, const Paint *paint, size_t place, JointForm form,
+                      Scene *scene, StageReport *report)
+{
+    PlaceKind kind = builder->kinds[place];
+    report->places_short += kind == PLACE_SHORT;
+    report->places_sharp += kind == PLACE_SHARP;
+    if (kind == PLACE_OPEN)
+        return;
+    if (kind != PLACE_JOINED && form == JOINTS_ROBUST) {
+        add_sphere(builder, paint, place, scene);
+        return;
+    }
+    size_t trunk = trunk_of(builder, place);
+    for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
+        if (builder->ends[k] == trunk)
+            continue;
+        add_joint(builder, paint, trunk, builder->ends[k], scene);
+        report->joints++;
+    }
+}
+
+Status joints_add(const Tree *tree, const Paint *paint, const Places *places, JointForm form,
+                  Scene *scene, StageReport *report, Err *err)
+{
+    Builder builder = {.tree = tree, .places = places};
+    Status status = collect_ends(&builder, err);
+    if (status == STATUS_OK)
+        status = cut_places(&builder, err);
+    if (status == STATUS_OK) {
+        trim_cuts(&builder, form);
+        for (size_t i = 0; i < tree->n; i++)
+            if (places_draw(places, tree, i))
+                add_cylinder(&builder, paint, i, scene);
+        for (size_t place = 0; place < tree->n; place++)
+            add_place(&builder, paint, place, form, scene, report);
+    }
+    free(builder.first);
+    free(builder.ends);
+    free(builder.cut);
+    free(builder.kinds);
+    return status;
+}
