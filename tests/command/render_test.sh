@@ -334,7 +334,7 @@ test_segments_that_vanish_are_counted() {
 
 # A picture without NaN in its planes, or one sentence and status 2; never a crash or a hang.
 survives() {
-    run timeout 60 corcast render tree.swc --model isosurface --size 40x40 --planes depth,normal -o picture.ppm "$@"
+    run timeout 60 "$CORCAST" render tree.swc --model isosurface --size 40x40 --planes depth,normal -o picture.ppm "$@"
     if [ "$status" -eq 2 ]; then
         expect_sentence '[a-z]'
     else
