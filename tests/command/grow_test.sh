@@ -138,8 +138,8 @@ test_tubes_are_longer_than_wide_and_overlap_only_where_they_meet() {
         run_ok corcast grow --seed 5 $options -o tree.swc --json grow.json
         expect_json grow.json '.broken == 0 and .thickness == 1'
         check_tree tree.swc
-        expect_stdout '^shorter_than_wide 0$'
-        expect_stdout '^overlapping_pairs 0$'
+        expect_stdout '^short 0$'
+        expect_stdout '^overlaps 0$'
     done
 }
 
