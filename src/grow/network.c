@@ -55,6 +55,14 @@ void network_release(Network *net)
     *net = (Network){0};
 }
 
+void network_retire(Network *net)
+{
+    free(net->sensitivity);
+    free(net->coming);
+    net->sensitivity = NULL;
+    net->coming = NULL;
+}
+
 static void set_nodes(Network *net, size_t n)
 {
     net->n = n;
@@ -353,7 +361,8 @@ Status network_reorder(Network *net, Err *err)
         i = next_below(net, i, 0, 1);
     } while (i != 0);
     TRY_GOTO(permute(net->segment, sizeof *net->segment, order, n, err));
-    TRY_GOTO(permute(net->sensitivity, sizeof *net->sensitivity, order, n, err));
+    if (net->sensitivity)
+        TRY_GOTO(permute(net->sensitivity, sizeof *net->sensitivity, order, n, err));
     TRY_GOTO(permute(net->position, sizeof *net->position, order, n, err));
     for (size_t k = 0; k < n; k++) {
         Segment *segment = &net->segment[k];

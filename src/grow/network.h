@@ -98,6 +98,9 @@ double network_cost(const Network *net);
 /* Brings radius, gauge and sensitivities of all segments up to date. */
 void network_refresh(Network *net, int threads);
 
+/* Frees what only growth needs: no more splits and refreshing from here on. */
+void network_retire(Network *net);
+
 /* Sums up lengths, flares and costs anew from the positions; parents come before children. */
 void network_resum(Network *net);
 
