@@ -9,7 +9,9 @@
 
 /* Points or connections that a thread takes at a time, and the least that are worth starting threads
  * for. */
-enum { CHUNK = 32, LEAST_SHARED = 256 };
+enum { CHUNK = 64, LEAST_SHARED = 256 };
+/* How many points ahead memory is asked for. */
+enum { AHEAD = 2 };
 
 Status batch_init(Batch *batch, size_t capacity, int candidates, int threads, Err *err)
 {
@@ -88,7 +90,15 @@ static void plan_chunk(size_t index, int worker, void *context)
 {
     const Planning *planning = context;
     Batch *batch = planning->batch;
-    for (size_t i = index * CHUNK; i < chunk_end(index, batch->n); i++) {
+    const Grid *grid = planning->site->grid;
+    size_t end = chunk_end(index, batch->n);
+    for (size_t i = index * CHUNK; i < end; i++) {
+        if (i + 3 * AHEAD < end)
+            grid_fetch_cell(grid, batch->plan[i + 3 * AHEAD].terminal);
+        if (i + 2 * AHEAD < end)
+            grid_fetch_tags(grid, batch->plan[i + 2 * AHEAD].terminal);
+        if (i + AHEAD < end)
+            grid_fetch_items(grid, batch->plan[i + AHEAD].terminal);
         batch->plan[i].planner = worker;
         plan_make(planning->site, &batch->planner[worker], &batch->plan[i]);
     }

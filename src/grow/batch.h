@@ -18,7 +18,7 @@ typedef struct Batch {
 } Batch;
 
 /* A cell with so many misses counts as full. */
-enum { BATCH_FULL = 3 };
+enum { BATCH_FULL = 2 };
 
 /* Room for `capacity` points at a time. */
 MUST_CHECK Status batch_init(Batch *batch, size_t capacity, int candidates, int threads, Err *err);

@@ -172,6 +172,7 @@ static Status write_header(const GrowParams *params, const Domain *domain, Tree 
 Status finish_tree(Network *net, const GrowParams *params, const Domain *domain, Tree *out,
                    Err *err)
 {
+    network_retire(net);
     TRY(network_reorder(net, err));
     network_resum(net);
     Tree made = {0};

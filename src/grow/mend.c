@@ -8,10 +8,10 @@
 #include <stdlib.h>
 
 enum { ROUNDS = 6, CHUNK = 512 };
+/* Where more than one segment in so many is broken, the domain is too full for small moves. */
+enum { FEW = 20 };
 /* Moved segments keep to the rules with this to spare, over the radii. */
 static const double spare = 2e-3;
-/* The share of segments above which a tree is beyond mending: it is too thick for its domain. */
-static const double most_close = 0.1;
 /* How far bifurcations are moved, over the radius of the segment that ends there. */
 static const double steps[] = {0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
 
@@ -170,35 +170,31 @@ static void look_at_chunk(size_t index, int worker, void *context)
     }
 }
 
-static size_t count_close(const Mending *mending)
-{
-    size_t count = 0;
-    for (size_t k = 0; k < mending->net->n; k++)
-        count += mending->close[k];
-    return count;
-}
-
 static Status move_ends(const Mending *mending, int32_t i, Err *err)
 {
     TRY(move(mending, mending->net->segment[i].parent, err));
     return move(mending, i, err);
 }
 
-/* Moves the ends of the close segments that break the rules, and if need be of what they are too
- * near to. *count were there. */
-static Status mend(const Mending *mending, size_t *count, Err *err)
+/* Lists the close segments that break the rules in `broken`. */
+static size_t find_broken(const Mending *mending, int32_t *broken)
 {
-    *count = 0;
+    size_t count = 0;
     for (size_t k = 0; k < mending->net->n; k++) {
-        int32_t i = (int32_t)k, with = -1;
-        if (!mending->close[k] || !(fault(mending, i, 0, INT32_MAX, &with) > 0))
-            continue;
-        ++*count;
-        TRY(move_ends(mending, i, err));
-        with = -1;
-        if (fault(mending, i, 0, INT32_MAX, &with) > 0 && with >= 0)
-            TRY(move_ends(mending, with, err));
+        int32_t with;
+        if (mending->close[k] && fault(mending, (int32_t)k, 0, INT32_MAX, &with) > 0)
+            broken[count++] = (int32_t)k;
     }
+    return count;
+}
+
+/* Moves the ends of a broken segment, and if need be of what it is too near to. */
+static Status mend(const Mending *mending, int32_t i, Err *err)
+{
+    int32_t with = -1;
+    TRY(move_ends(mending, i, err));
+    if (fault(mending, i, 0, INT32_MAX, &with) > 0 && with >= 0)
+        TRY(move_ends(mending, with, err));
     return STATUS_OK;
 }
 
@@ -206,22 +202,23 @@ Status mend_network(Network *net, Grid *grid, const Domain *domain, const Rules 
                     size_t *left, Err *err)
 {
     Mending mending = {net, grid, domain, rules, NULL};
+    int32_t *broken = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&mending.close, net->n, sizeof *mending.close, "segments", err));
-    for (int round = 0; round < ROUNDS; round++) {
+    TRY_GOTO(mem_calloc(&broken, net->n, sizeof *broken, "segments", err));
+    for (int round = 0;; round++) {
         network_refresh(net, threads);
         TRY_GOTO(place_widen(grid, rules, net, err));
-        if (round == 0) {
+        if (round == 0)
             threads_for((net->n + CHUNK - 1) / CHUNK, threads, look_at_chunk, &mending);
-            *left = count_close(&mending);
-            if ((double)*left > most_close * (double)net->n)
-                break;
-        }
-        TRY_GOTO(mend(&mending, left, err));
-        if (*left == 0)
+        *left = find_broken(&mending, broken);
+        if (*left == 0 || *left > net->n / FEW || round == ROUNDS)
             break;
+        for (size_t k = 0; k < *left; k++)
+            TRY_GOTO(mend(&mending, broken[k], err));
     }
 done:
     free(mending.close);
+    free(broken);
     return status;
 }

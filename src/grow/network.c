@@ -58,6 +58,14 @@ void network_release(Network *net)
     *net = (Network){0};
 }
 
+void network_retire(Network *net)
+{
+    free(net->sensitivity);
+    free(net->coming);
+    net->sensitivity = NULL;
+    net->coming = NULL;
+}
+
 static void set_terminals(Network *net, size_t terminals)
 {
     net->terminals = terminals;
@@ -422,7 +430,8 @@ Status network_reorder(Network *net, Err *err)
     for (size_t k = 0; k < net->inlets; k++)
         net->inlet[k] = place[net->inlet[k]];
     TRY_GOTO(permute(net->segment, sizeof *net->segment, order, n, err));
-    TRY_GOTO(permute(net->sensitivity, sizeof *net->sensitivity, order, n, err));
+    if (net->sensitivity)
+        TRY_GOTO(permute(net->sensitivity, sizeof *net->sensitivity, order, n, err));
     if (net->trait)
         TRY_GOTO(permute(net->trait, sizeof *net->trait, order, n, err));
     TRY_GOTO(permute(net->position, sizeof *net->position, order, n, err));

@@ -137,6 +137,9 @@ double network_cost(const Network *net);
 /* Brings radius, gauge and sensitivities of all segments up to date. */
 void network_refresh(Network *net, int threads);
 
+/* Frees what only growth needs: no more splits and refreshing from here on. */
+void network_retire(Network *net);
+
 /* The node after `i` in the order in which daughters come before their mother, which begins with
  * network_first_upward of the inlet and ends with the inlet. */
 int32_t network_next_upward(const Network *net, int32_t i);
