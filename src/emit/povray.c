@@ -302,7 +302,8 @@ static void put_lights(Text *text, const Scene *scene)
 {
     for (size_t i = 0; i < scene->n_lights; i++) {
         const Light *light = &scene->lights[i];
-        text_puts(text, light->parallel ? "  Light_Parallel(" : "  Light_Point(");
+        bool area = light->samples > 1;
+        text_printf(text, "  Light_%s(", light->parallel ? "Parallel" : area ? "Area" : "Point");
         put_vector(text, light->location);
         if (light->parallel) {
             text_puts(text, ", ");
@@ -310,6 +311,12 @@ static void put_lights(Text *text, const Scene *scene)
         }
         text_puts(text, ", ");
         put_color(text, light->color);
+        for (int side = 0; area && side < 2; side++) {
+            text_puts(text, ", ");
+            put_vector(text, light->sides[side]);
+        }
+        if (area)
+            text_printf(text, ", %d", light->samples);
         text_puts(text, ")\n");
     }
 }
