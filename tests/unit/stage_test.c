@@ -14,7 +14,7 @@
 static const Look look = {.color = {0.5f, 0.1f, 0.2f},
                           .background = {1, 1, 1},
                           .finish = {.ambient = 0.1f, .diffuse = 0.6f, .brilliance = 1},
-                          .lights = {{{1, 2, 3}, {1, 1, 1}}},
+                          .lights = {{.direction = {1, 2, 3}, .color = {1, 1, 1}}},
                           .n_lights = 1};
 
 /* A parent along y that splits into a thick and a thin daughter, with a step of no length in the thick
