@@ -260,8 +260,11 @@ static Status expand(Values *values, const PovrayParams *params, const char *nam
 static Status put_macros(const Scene *scene, const PovrayParams *params, Text *out, Err *err)
 {
     Values values = {0};
-    if (scene->model != SCENE_ISOSURFACE)
-        return expand(&values, params, "primitives.inc", out, err);
+    if (scene->model != SCENE_ISOSURFACE) {
+        TRY(expand(&values, params, "primitives.inc", out, err));
+        return scene->model == SCENE_JOINED ? expand(&values, params, "joints.inc", out, err)
+                                            : STATUS_OK;
+    }
     text_puts(add_value(&values, "many_colors"), scene->uniform_color ? "0" : "1");
     text_number(add_value(&values, "log_floor"), LOG_FORM_FLOOR);
     text_number(add_value(&values, "log_ceiling"), LOG_FORM_CEILING);
