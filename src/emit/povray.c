@@ -137,8 +137,11 @@ static Status put_macros(const Scene *scene, const PovrayParams *params, const C
                          Text *out, Err *err)
 {
     Values values = {0};
-    if (scene->model != SCENE_ISOSURFACE)
-        return expand(&values, params, "primitives.inc", out, err);
+    if (scene->model != SCENE_ISOSURFACE) {
+        TRY(expand(&values, params, "primitives.inc", out, err));
+        return scene->model == SCENE_JOINED ? expand(&values, params, "joints.inc", out, err)
+                                            : STATUS_OK;
+    }
     static const char *const names[ERF_TERMS] = {"erf1", "erf3", "erf5", "erf7", "erf9"};
     for (int i = 0; i < ERF_TERMS; i++)
         text_number(add_value(&values, names[i]), erf_forms[cells->erf][i]);
@@ -201,7 +204,8 @@ static void put_lights(Text *text, const Scene *scene)
 {
     for (size_t i = 0; i < scene->n_lights; i++) {
         const Light *light = &scene->lights[i];
-        text_puts(text, light->parallel ? "  Light_Parallel(" : "  Light_Point(");
+        bool area = light->samples > 1;
+        text_printf(text, "  Light_%s(", light->parallel ? "Parallel" : area ? "Area" : "Point");
         put_vector(text, light->location);
         if (light->parallel) {
             text_puts(text, ", ");
@@ -209,6 +213,12 @@ static void put_lights(Text *text, const Scene *scene)
         }
         text_puts(text, ", ");
         put_color(text, light->color);
+        for (int side = 0; area && side < 2; side++) {
+            text_puts(text, ", ");
+            put_vector(text, light->sides[side]);
+        }
+        if (area)
+            text_printf(text, ", %d", light->samples);
         text_puts(text, ")\n");
     }
 }

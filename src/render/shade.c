@@ -43,19 +43,39 @@ static double specular_intensity(const Finish *finish, Vec3 direction, Vec3 norm
     return cosine > 0 ? (double)finish->specular * pow(cosine, (double)exponent) : 0;
 }
 
-static Rgb lit_by(const Light *light, const Finish *finish, Rgb pigment, Vec3 normal,
-                  Vec3 direction, Vec3 towards, double cosine)
+static Rgb lit_by(Rgb light, const Finish *finish, Rgb pigment, Vec3 normal, Vec3 direction,
+                  Vec3 towards, double cosine)
 {
     double diffuse = (double)finish->diffuse;
     diffuse *= finish->brilliance == 1 ? cosine : pow(cosine, (double)finish->brilliance);
-    Rgb color = rgb_multiply(rgb_scale(pigment, diffuse), light->color);
+    Rgb color = rgb_multiply(rgb_scale(pigment, diffuse), light);
     if (finish->phong > 0)
-        color = rgb_add(
-            color, rgb_scale(light->color, phong_intensity(finish, direction, normal, towards)));
+        color =
+            rgb_add(color, rgb_scale(light, phong_intensity(finish, direction, normal, towards)));
     if (finish->specular > 0)
-        color = rgb_add(
-            color, rgb_scale(light->color, specular_intensity(finish, direction, normal, towards)));
+        color = rgb_add(color,
+                        rgb_scale(light, specular_intensity(finish, direction, normal, towards)));
     return color;
+}
+
+/* The part of a light's samples that reach the point, from 0 to 1. */
+static double visible_part(const Light *light, Vec3 point, Vec3 towards, double distance,
+                           ShadowTest *shadow, void *context)
+{
+    int n = light->samples, reach = 0;
+    if (!shadow || !light->casts_shadows)
+        return 1;
+    if (n < 2)
+        return shadow(context, point, towards, distance) ? 0 : 1;
+    for (int v = 0; v < n; v++)
+        for (int u = 0; u < n; u++) {
+            Vec3 sample = vec3_add_scaled(light->location, light->sides[0], u / (n - 1.0) - 0.5);
+            sample = vec3_add_scaled(sample, light->sides[1], v / (n - 1.0) - 0.5);
+            Vec3 to_sample = vec3_sub(sample, point);
+            double far = vec3_length(to_sample);
+            reach += !shadow(context, point, vec3_scale(to_sample, 1 / far), far);
+        }
+    return (double)reach / (n * n);
 }
 
 Rgb shade(const Scene *scene, Rgb pigment, Vec3 point, Vec3 normal, Vec3 direction,
@@ -75,9 +95,10 @@ Rgb shade(const Scene *scene, Rgb pigment, Vec3 point, Vec3 normal, Vec3 directi
         double cosine = vec3_dot(normal, towards);
         if (cosine < 1e-10)
             continue;
-        if (shadow && light->casts_shadows && shadow(context, point, towards, distance))
-            continue;
-        color = rgb_add(color, lit_by(light, finish, pigment, normal, direction, towards, cosine));
+        double part = visible_part(light, point, towards, distance, shadow, context);
+        if (part > 0)
+            color = rgb_add(color, lit_by(rgb_scale(light->color, part), finish, pigment, normal,
+                                          direction, towards, cosine));
     }
     return color;
 }

@@ -35,13 +35,17 @@ typedef struct Camera {
 Ray camera_ray(const Camera *camera, double i, double j);
 
 /* A point light at `location`, or, when `parallel`, light that travels from `location` towards
- * `target` everywhere. */
+ * `target` everywhere. With `samples` of 2 or more, a power of 2, its shadows are those of samples x
+ * samples points, from edge to edge of the parallelogram of these sides about its location; all else is
+ * that of the point. */
 typedef struct Light {
     Vec3 location;
     Vec3 target;
     Rgb color;
     bool parallel;
     bool casts_shadows;
+    int samples; /* 0 or 1: one point */
+    Vec3 sides[2];
 } Light;
 
 /* POV-Ray's finish; METHODS section 3. */

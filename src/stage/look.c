@@ -75,20 +75,34 @@ static bool read_light(Reading *reading, const char *section, const char *name, 
         if (look->n_lights == LOOK_MAX_LIGHTS || strlen(section) >= sizeof reading->light_section)
             return false;
         strcpy(reading->light_section, section);
-        look->lights[look->n_lights++] = (LookLight){{0, 0, 1}, {1, 1, 1}};
+        look->lights[look->n_lights++] =
+            (LookLight){.direction = {0, 0, 1}, .samples = 4, .color = {1, 1, 1}};
     }
     LookLight *light = &look->lights[look->n_lights - 1];
     if (strcmp(name, "color") == 0)
         return read_color(reading, value, &light->color);
-    if (strcmp(name, "direction") == 0) {
+    if (strcmp(name, "size") == 0) {
+        reading->problem = "a number from 0 to 100, of a light that has a position";
+        return light->is_point && read_numbers(value, 1, 0, 100, &light->size);
+    }
+    if (strcmp(name, "samples") == 0) {
+        double samples;
+        reading->problem = "2, 4, 8 or 16";
+        if (!read_numbers(value, 1, 2, 16, &samples))
+            return false;
+        light->samples = (int)samples;
+        return samples == 2 || samples == 4 || samples == 8 || samples == 16;
+    }
+    if (strcmp(name, "direction") == 0 || strcmp(name, "position") == 0) {
         double xyz[3];
+        light->is_point = strcmp(name, "position") == 0;
         reading->problem = "three numbers, right up viewer, not all zero";
         if (!read_numbers(value, 3, -1e6, 1e6, xyz) || (xyz[0] == 0 && xyz[1] == 0 && xyz[2] == 0))
             return false;
         light->direction = vec3(xyz[0], xyz[1], xyz[2]);
         return true;
     }
-    reading->problem = "direction or color";
+    reading->problem = "direction, position, color, size or samples";
     return false;
 }
 

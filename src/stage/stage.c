@@ -138,25 +138,39 @@ static size_t end_balls(const Scene *scene, Ball *balls, Box *bounds)
     return n;
 }
 
-/* Parallel lights stand ten diagonals away, in front of everything they light. */
+/* A light in the world. Parallel lights stand ten diagonals away, in front of everything they light. */
+static Light place_light(const LookLight *light, const Scene *scene, bool shadows)
+{
+    Vec3 right = vec3_normalized(scene->camera.right), up = vec3_normalized(scene->camera.up);
+    Vec3 center = box_center(scene->bounds), direction = light->direction;
+    double diagonal = vec3_distance(scene->bounds.low, scene->bounds.high);
+    if (!light->is_point)
+        direction = vec3_normalized(direction);
+    Vec3 offset = vec3_scale(right, direction.x);
+    offset = vec3_add_scaled(offset, up, direction.y);
+    offset = vec3_add_scaled(offset, scene->camera.direction, -direction.z);
+    Light placed = {
+        .location = vec3_add_scaled(center, offset, light->is_point ? diagonal / 2 : 10 * diagonal),
+        .target = center,
+        .color = light->color,
+        .parallel = !light->is_point,
+        .casts_shadows = shadows};
+    if (light->size > 0) {
+        /* Square to the way to the tree, one side level in the picture where that can be. */
+        Vec3 towards = vec3_normalized(offset), level = vec3_cross(up, towards);
+        level = vec3_length(level) > 1e-6 ? vec3_normalized(level) : right;
+        placed.samples = light->samples;
+        placed.sides[0] = vec3_scale(level, light->size * diagonal / 2);
+        placed.sides[1] = vec3_scale(vec3_cross(towards, level), light->size * diagonal / 2);
+    }
+    return placed;
+}
+
 static Status add_lights(const Look *look, bool shadows, Scene *scene, Err *err)
 {
     TRY(mem_calloc(&scene->lights, (size_t)look->n_lights, sizeof *scene->lights, "lights", err));
-    Vec3 right = vec3_normalized(scene->camera.right), up = vec3_normalized(scene->camera.up);
-    Vec3 towards = vec3_scale(scene->camera.direction, -1), center = box_center(scene->bounds);
-    double distance = 10 * vec3_distance(scene->bounds.low, scene->bounds.high);
-    for (int i = 0; i < look->n_lights; i++) {
-        Vec3 local = vec3_normalized(look->lights[i].direction);
-        Vec3 world = vec3_scale(right, local.x);
-        world = vec3_add_scaled(world, up, local.y);
-        world = vec3_add_scaled(world, towards, local.z);
-        scene->lights[scene->n_lights++] =
-            (Light){.location = vec3_add_scaled(center, world, distance),
-                    .target = center,
-                    .color = look->lights[i].color,
-                    .parallel = true,
-                    .casts_shadows = shadows};
-    }
+    for (int i = 0; i < look->n_lights; i++)
+        scene->lights[scene->n_lights++] = place_light(&look->lights[i], scene, shadows);
     return STATUS_OK;
 }
 

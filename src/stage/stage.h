@@ -10,7 +10,14 @@
 /* What a picture looks like whatever it shows: a file of templates/looks. Colours are linear RGB.
  */
 typedef struct LookLight {
-    Vec3 direction; /* towards the light: x right, y up, z towards the viewer; any length */
+    bool is_point;
+    /* x right, y up, z towards the viewer. Of a parallel light: towards it, of any length. Of a point
+     * light: its place from the middle of the tree, in half diagonals of the tree's box. */
+    Vec3 direction;
+    double
+        size; /* of a point light: the side of the square, facing the tree, that casts its shadows, in
+                  * half diagonals; 0: a point */
+    int samples; /* along that side: 2, 4, 8 or 16 */
     Rgb color;
 } LookLight;
 
@@ -20,13 +27,13 @@ typedef struct Look {
     Finish finish;
     Rgb color; /* of vessels that no field colours */
     Rgb background;
-    LookLight lights[LOOK_MAX_LIGHTS]; /* parallel */
+    LookLight lights[LOOK_MAX_LIGHTS];
     int n_lights;
 } Look;
 
 /* Reads an INI file with the sections [vessel] color, [background] color, [finish] ambient diffuse
- * brilliance phong phong_size specular roughness, and [light NAME] direction color. STATUS_INPUT
- * naming file and line on an unknown section or key and on a bad value. */
+ * brilliance phong phong_size specular roughness, and [light NAME] direction or position, color, size,
+ * samples. STATUS_INPUT naming file and line on an unknown section or key and on a bad value. */
 MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
 
 typedef enum View { VIEW_FRONT, VIEW_TOP, VIEW_LEFT, VIEW_ISO } View;

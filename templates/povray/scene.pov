@@ -50,6 +50,9 @@ camera {
 #macro Light_Point(Location, Color)
   light_source { Location, rgb Color * Light_Intensity }
 #end
+#macro Light_Area(Location, Color, Side_A, Side_B, Samples)
+  light_source { Location, rgb Color * Light_Intensity area_light Side_A, Side_B, Samples, Samples }
+#end
 
 #if (Corcast_Plane = 0)
   background { rgb Background_Color }

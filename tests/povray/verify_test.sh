@@ -207,6 +207,57 @@ test_colours_by_a_field_agree_in_every_model() {
     done
 }
 
+point_lights() {
+    cat >lights.ini <<'END'
+[vessel]
+color = 0.56 0.055 0.045
+[background]
+color = 0.9 1 1
+[finish]
+ambient = 0.12
+diffuse = 0.72
+brilliance = 1.5
+phong = 0.32
+phong_size = 72
+specular = 0.2
+roughness = 0.03
+[light near]
+position = 1.5 0.3 1
+color = 0.3 0.3 0.4
+[light far]
+direction = 0 1 1
+color = 0.2 0.1 0.2
+[light soft]
+position = -1.5 2 2.5
+color = 0.7 0.7 0.6
+END
+}
+
+test_point_lights_and_highlights_agree() {
+    tree_3d
+    point_lights
+    agrees rounded --look ./lights.ini --shadows on
+    rm -r report
+    agrees joined --look ./lights.ini --shadows on --projection perspective
+}
+
+test_soft_shadows_are_within_a_level() {
+    local pixels
+    tree_3d
+    point_lights
+    printf 'size = 0.8\nsamples = 4\n' >>lights.ini
+    run corcast verify tree.swc --model rounded --look ./lights.ini --shadows on --size 240x180 -o report
+    [ "$status" -le 1 ] || fail "expected a comparison, got exit status $status$(said)"
+    pixels=$(differing report/povray.png report/native.png)
+    [ "$pixels" -le 20 ] || fail "expected at most 20 pixels to differ, got $pixels"
+    pixels=$(differing report/povray.png report/native.png 1)
+    [ "$pixels" -eq 0 ] || fail "expected none to differ by more than a level, got $pixels"
+    corcast render tree.swc --model rounded --look ./lights.ini --shadows on --size 240x180 -o soft.ppm
+    sed -i '/^size/d' lights.ini
+    corcast render tree.swc --model rounded --look ./lights.ini --shadows on --size 240x180 -o hard.ppm
+    expect_different soft.ppm hard.ppm
+}
+
 test_verify_writes_what_the_contract_names() {
     local file
     tree_2d 10

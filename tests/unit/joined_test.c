@@ -12,7 +12,7 @@
 
 static const Look look = {.color = {0.5f, 0.1f, 0.2f},
                           .finish = {.ambient = 0.1f, .diffuse = 0.6f, .brilliance = 1},
-                          .lights = {{{1, 2, 3}, {1, 1, 1}}},
+                          .lights = {{.direction = {1, 2, 3}, .color = {1, 1, 1}}},
                           .n_lights = 1};
 
 static double number(Random *random, double low, double high)

@@ -140,6 +140,30 @@ static void a_shadow_leaves_the_ambient_light(void **state)
     assert_true(fabs((double)seen.r - (0.125 + 0.25 * 0.8)) < 1e-6);
 }
 
+/* Hides what lies to the left. */
+static bool left(void *context, Vec3 at, Vec3 towards, double distance)
+{
+    (void)context;
+    return at.x + towards.x * distance < -0.1;
+}
+
+static void a_soft_shadow_weighs_the_points_of_the_light_alike(void **state)
+{
+    (void)state;
+    Light light = {.location = {0, 0, 5},
+                   .color = {1, 1, 1},
+                   .casts_shadows = true,
+                   .samples = 4,
+                   .sides = {{3, 0, 0}, {0, 3, 0}}};
+    Scene scene = {.finish = {.diffuse = 0.5f, .brilliance = 1}, .lights = &light, .n_lights = 1};
+    Rgb white = {1, 1, 1};
+    Rgb seen = shade(&scene, white, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), left, NULL);
+    assert_true(seen.r == 0.25f); /* columns at -1.5, -0.5, 0.5, 1.5: two of four */
+    light.sides[0].x = 0.15;
+    seen = shade(&scene, white, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), left, NULL);
+    assert_true(seen.r == 0.5f);
+}
+
 static void the_back_of_a_surface_gets_no_light(void **state)
 {
     (void)state;
@@ -252,6 +276,7 @@ int main(void)
         cmocka_unit_test(the_hierarchy_finds_what_trying_all_finds),
         cmocka_unit_test(shading_is_the_formula),
         cmocka_unit_test(a_shadow_leaves_the_ambient_light),
+        cmocka_unit_test(a_soft_shadow_weighs_the_points_of_the_light_alike),
         cmocka_unit_test(the_back_of_a_surface_gets_no_light),
         cmocka_unit_test(the_planes_of_a_sphere_are_the_sphere),
         cmocka_unit_test(the_picture_does_not_depend_on_the_number_of_threads),

@@ -14,7 +14,7 @@
 static const Look look = {.color = {0.5f, 0.1f, 0.2f},
                           .background = {1, 1, 1},
                           .finish = {.ambient = 0.1f, .diffuse = 0.6f, .brilliance = 1},
-                          .lights = {{{1, 2, 3}, {1, 1, 1}}},
+                          .lights = {{.direction = {1, 2, 3}, .color = {1, 1, 1}}},
                           .n_lights = 1};
 
 /* A parent along y that splits into a thick and a thin daughter, with a step of no length in the thick
@@ -237,6 +237,31 @@ static void the_rays_of_a_camera_go_through_pixel_centres(void **state)
     assert_true(ray.direction.z == -1);
 }
 
+static void a_point_light_stands_in_half_diagonals_from_the_middle(void **state)
+{
+    (void)state;
+    Tree tree = make_tree();
+    Look soft = look;
+    soft.lights[0] = (LookLight){
+        .is_point = true, .direction = {0, 0, 3}, .size = 0.5, .samples = 4, .color = {1, 1, 1}};
+    StageParams params = stage_defaults();
+    Scene scene;
+    assert_int_equal(stage_scene(&tree, &soft, NULL, &params, &scene, NULL, NULL), STATUS_OK);
+    const Light *light = &scene.lights[0];
+    double half = vec3_distance(scene.bounds.low, scene.bounds.high) / 2;
+    Vec3 center = box_center(scene.bounds);
+    assert_false(light->parallel);
+    assert_true(vec3_distance(light->location, vec3(center.x, center.y, center.z + 3 * half)) <
+                1e-12);
+    assert_int_equal(light->samples, 4);
+    for (int side = 0; side < 2; side++) {
+        assert_true(fabs(vec3_length(light->sides[side]) - half / 2) < 1e-12);
+        assert_true(fabs(light->sides[side].z) < 1e-12);
+    }
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
 /* ---- looks -------------------------------------------------------------------------------------- */
 
 static Status read_look_text(const char *text, Look *out, Err *err)
@@ -258,14 +283,18 @@ static void a_look_is_read(void **state)
     Err err = {{0}};
     Status status =
         read_look_text("; a comment\n[vessel]\ncolor = 0.25 0.5 0.125\n[finish]\nphong = 0.375\n"
-                       "[light a]\ndirection = 0 1 2\n[light b]\ncolor = 0 0 1\n",
+                       "[light a]\ndirection = 0 1 2\n[light b]\ncolor = 0 0 1\n"
+                       "[light c]\nposition = 1 2 -3\nsize = 0.75\nsamples = 8\n",
                        &read, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(status, STATUS_OK);
     assert_true(read.color.r == 0.25f && read.color.g == 0.5f && read.color.b == 0.125f);
     assert_true(read.finish.phong == 0.375f);
-    assert_int_equal(read.n_lights, 2);
+    assert_int_equal(read.n_lights, 3);
     assert_true(read.lights[0].direction.z == 2 && read.lights[1].color.b == 1);
+    assert_true(!read.lights[1].is_point && read.lights[2].is_point);
+    assert_true(read.lights[2].direction.z == -3 && read.lights[2].size == 0.75);
+    assert_int_equal(read.lights[2].samples, 8);
 }
 
 static void a_bad_look_names_its_line(void **state)
@@ -280,6 +309,9 @@ static void a_bad_look_names_its_line(void **state)
         {"[finish]\ndiffuse = much\n", ":2:", "from 0 to 1"},
         {"[table]\ncolor = 1 1 1\n", ":2:", "sections"},
         {"[light a]\ndirection = 0 0 0\n", ":2:", "not all zero"},
+        {"[light a]\ndirection = 0 0 1\nsize = 2\n", ":3:", "has a position"},
+        {"[light a]\nposition = 0 0 1\nsamples = 3\n", ":3:", "2, 4, 8 or 16"},
+        {"[light a]\nplace = 0 0 1\n", ":2:", "direction, position"},
         {"[finish]\nphong\n", ":2:", "expected"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -305,6 +337,7 @@ int main(void)
         cmocka_unit_test(a_tree_with_nothing_to_draw_is_refused),
         cmocka_unit_test(lights_turn_with_the_camera),
         cmocka_unit_test(the_rays_of_a_camera_go_through_pixel_centres),
+        cmocka_unit_test(a_point_light_stands_in_half_diagonals_from_the_middle),
         cmocka_unit_test(a_look_is_read),
         cmocka_unit_test(a_bad_look_names_its_line),
     };
