@@ -122,7 +122,8 @@ static void embeds_the_pictures_byte_for_byte(void **state)
     scene_init(&scene, 31);
     assert_int_equal(report_write(&scene.report, templates, folder, &err), STATUS_OK);
     char *page = read_output("report.html");
-    const char *at = strstr(page, "data-role=\"b\" data-name=\"corcast\" src=\"data:image/png;base64,");
+    const char *at =
+        strstr(page, "data-role=\"b\" data-name=\"corcast\" src=\"data:image/png;base64,");
     assert_non_null(at);
     at = strchr(at, ',') + 1;
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -188,11 +189,9 @@ static void says_when_the_template_is_missing(void **state)
     (void)state;
     Scene scene;
     scene_init(&scene, 0);
-    assert_int_equal(report_write(&scene.report, "templates/none", folder, &err),
-                     STATUS_INPUT);
+    assert_int_equal(report_write(&scene.report, "templates/none", folder, &err), STATUS_INPUT);
     assert_holds(err.text, "templates/none");
-    assert_int_equal(report_write(&scene.report, templates, "build/no/folder", &err),
-                     STATUS_IO);
+    assert_int_equal(report_write(&scene.report, templates, "build/no/folder", &err), STATUS_IO);
     scene_release(&scene);
 }
 
