@@ -12,6 +12,7 @@
  * metric is local. Sums are kept by tile and added in order. */
 #include "verify/flip.h"
 
+#include "verify/flip_math.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,66 +95,6 @@ static inline Triple rgb_from_ycxcz(float y, float cx, float cz)
     return (Triple){within_unit(r), within_unit(g), within_unit(b)};
 }
 
-/* ------------------------------------------------------------------------------------- arithmetic
- *
- * Roots and powers without branches or calls, so that loops over pixels become vectors; in the
- * ranges of this metric they are right to a few units of the last place. */
-
-static inline float float_of(uint32_t bits)
-{
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-static inline uint32_t bits_of(float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return bits;
-}
-
-/* Of a positive number: a third of its logarithm, read off its bits, then two of Halley's steps. */
-static inline float cube_root(float x)
-{
-    float y = float_of(bits_of(x) / 3 + 0x2a5137a0u);
-    for (int i = 0; i < 2; i++) {
-        float cube = y * y * y;
-        y = y * (cube + 2 * x) / (2 * cube + x);
-    }
-    return y;
-}
-
-/* Of a positive number m 2^e, m in [sqrt(1/2), sqrt(2)): e + 2 artanh((m - 1) / (m + 1)) / ln 2. */
-static inline float log_2(float x)
-{
-    uint32_t bits = bits_of(x) - 0x3f3504f3u;
-    int exponent = (int)bits >> 23;
-    float m = float_of((bits & 0x007fffffu) + 0x3f3504f3u);
-    float s = (m - 1) / (m + 1), s2 = s * s;
-    float series = 1 + s2 * (1.0f / 3 + s2 * (1.0f / 5 + s2 * (1.0f / 7 + s2 * (1.0f / 9))));
-    return (float)exponent + 2.88539008f * s * series;
-}
-
-/* Of a number in [-126, 126]: 2^n by its bits, and the rest, of at most 1/2, by its series. */
-static inline float exp_2(float x)
-{
-    int n = (int)(x + (x < 0 ? -0.5f : 0.5f));
-    float r = (x - (float)n) * 0.693147181f;
-    float series =
-        1 +
-        r * (1 + r * (1.0f / 2 + r * (1.0f / 6 + r * (1.0f / 24 + r * (1.0f / 120 + r / 720)))));
-    return series * float_of((uint32_t)(n + 127) << 23);
-}
-
-/* x^y for x of at least 0 and y in [0, 1]; 0 where x is less than 1e-30. */
-static inline float power(float x, float y)
-{
-    float positive = x < 1e-30f ? 1e-30f : x;
-    float result = exp_2(y * log_2(positive));
-    return x < 1e-30f ? 0 : result;
-}
-
 static inline float lab_curve(float t)
 {
     const float delta = 6.0f / 29, knee = delta * delta * delta;
@@ -169,16 +110,6 @@ static inline Triple hunt_lab(Triple rgb)
     float lightness = 116 * y - 16;
     return (Triple){lightness, 0.01f * lightness * (500 * (x - y)),
                     0.01f * lightness * (200 * (y - z))};
-}
-
-static inline float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
-static inline float magnitude(float x)
-{
-    return x < 0 ? -x : x;
 }
 
 /* HyAB distance to the power 0.7. */

@@ -23,6 +23,16 @@ double report_severity(const ReportCase *report);
 /* The worst segments of a comparison as compare_json has them. New reference. */
 json_t *worst_segments_json(const CompareResult *result);
 
+/* Rows of HTML tables about one plane: its rules, and its measures. */
+void report_rule_rows(const CompareResult *plane, Text *out);
+void report_metric_rows(const CompareResult *plane, Text *out);
+void report_surface_rows(const SurfaceCheck *surface, Text *rules, Text *metrics);
+
+/* Appends a picture as a data: URI. */
+MUST_CHECK Status report_picture(Text *out, const Picture *picture, Err *err);
+/* A small copy of a picture, at most 96 pixels across, each the mean of a box. */
+MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *err);
+
 /* What marks the parts of a page with one case, for report_merge to find. */
 #define REPORT_FIRST_CASE "case-1"
 #define REPORT_ROW_BEGIN "<!-- row: begin -->\n"

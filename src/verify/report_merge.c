@@ -96,27 +96,25 @@ static void append_numbered(Text *out, const char *part, size_t size, size_t num
 
 /* ------------------------------------------------------------------------------------------ power */
 
+/* A string of an object, "" where there is none. Borrowed. */
+static const char *text_of(json_t *row, const char *key)
+{
+    const char *text = json_string_value(json_object_get(row, key));
+    return text ? text : "";
+}
+
 static const char *mark(json_t *row, const char *rule)
 {
     json_t *value = json_object_get(row, rule);
     return !value ? "" : json_is_true(value) ? "✓" : "–";
 }
 
-/* The kill matrix of `make power` and its smallest faults. */
-static Status power_section(const char *path, Text *out, Err *err)
+static void put_faults(json_t *json, Text *out)
 {
     static const char *const rules[] = {"A", "B", "pixelmatch", "flip", "psnr", "blender", "ssim"};
     enum { RULES = sizeof rules / sizeof *rules };
-    json_t *json = NULL, *row;
+    json_t *row;
     size_t i;
-    TRY(read_json(&json, path, err));
-    text_puts(out, "<section>\n<h2>What the judge finds</h2>\n<p>Faults planted in one side, and "
-                   "the rules that find them: the tiers, and pixelmatch at 0.1, FLIP mean above "
-                   "0.01, PSNR below 40, Blender's 1 % of pixels off by 0.016, SSIM below 0.99. ");
-    text_printf(out, "%zu false alarms about %lld clean scenes.</p>\n",
-                json_array_size(json_object_get(json, "alarms")),
-                json_integer_value(json_object_get(json, "clean_scenes")) +
-                    json_integer_value(json_object_get(json, "povray_scenes")));
     text_puts(out, "<div class=\"scroll\"><table class=\"kills\"><thead><tr><th>Fault</th>"
                    "<th>Model</th>");
     for (size_t k = 0; k < RULES; k++)
@@ -125,28 +123,36 @@ static Status power_section(const char *path, Text *out, Err *err)
     json_array_foreach(json_object_get(json, "faults"), i, row)
     {
         text_puts(out, "<tr><th>");
-        text_escaped(out, json_string_value(json_object_get(row, "fault")));
+        text_escaped(out, text_of(row, "fault"));
         text_puts(out, "</th><td>");
-        text_escaped(out, json_string_value(json_object_get(row, "model")));
+        text_escaped(out, text_of(row, "model"));
         text_puts(out, "</td>");
         for (size_t k = 0; k < RULES; k++)
             text_printf(out, "<td>%s</td>", mark(row, rules[k]));
         text_puts(out, "</tr>\n");
     }
-    text_puts(out,
-              "</tbody></table></div>\n<h3>The smallest fault found</h3>\n"
-              "<div class=\"scroll\"><table><thead><tr><th>Parameter</th><th>Model</th><th>Unit"
-              "</th><th class=\"number\">tier A</th><th class=\"number\">tier B</th><th "
-              "class=\"number\">pixelmatch</th><th class=\"number\">Blender</th></tr></thead>"
-              "<tbody>\n");
+    text_puts(out, "</tbody></table></div>\n");
+}
+
+static void put_limits(json_t *json, Text *out)
+{
+    static const char *const texts[] = {"parameter", "model", "unit"};
+    static const char *const limits[] = {"A", "B", "pixelmatch", "blender"};
+    json_t *row;
+    size_t i;
+    text_puts(out, "<h3>The smallest fault found</h3>\n<div class=\"scroll\"><table><thead><tr>"
+                   "<th>Parameter</th><th>Model</th><th>Unit</th><th class=\"number\">tier A</th>"
+                   "<th class=\"number\">tier B</th><th class=\"number\">pixelmatch</th>"
+                   "<th class=\"number\">Blender</th></tr></thead><tbody>\n");
     json_array_foreach(json_object_get(json, "limits"), i, row)
     {
-        static const char *const limits[] = {"A", "B", "pixelmatch", "blender"};
-        text_printf(out, "<tr><th>%s</th><td>%s</td><td>%s</td>",
-                    json_string_value(json_object_get(row, "parameter")),
-                    json_string_value(json_object_get(row, "model")),
-                    json_string_value(json_object_get(row, "unit")));
-        for (size_t k = 0; k < 4; k++) {
+        text_puts(out, "<tr>");
+        for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
+            text_puts(out, "<td>");
+            text_escaped(out, text_of(row, texts[k]));
+            text_puts(out, "</td>");
+        }
+        for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
             json_t *limit = json_object_get(row, limits[k]);
             if (json_is_number(limit))
                 text_printf(out, "<td class=\"number\">%.2g</td>", json_number_value(limit));
@@ -155,7 +161,24 @@ static Status power_section(const char *path, Text *out, Err *err)
         }
         text_puts(out, "</tr>\n");
     }
-    text_puts(out, "</tbody></table></div>\n</section>\n");
+    text_puts(out, "</tbody></table></div>\n");
+}
+
+/* The kill matrix of `make power` and its smallest faults. */
+static Status power_section(const char *path, Text *out, Err *err)
+{
+    json_t *json = NULL;
+    TRY(read_json(&json, path, err));
+    text_puts(out, "<section>\n<h2>What the judge finds</h2>\n<p>Faults planted in one side, and "
+                   "the rules that find them: the tiers, and pixelmatch at 0.1, FLIP mean above "
+                   "0.01, PSNR below 40, Blender's 1 % of pixels off by 0.016, SSIM below 0.99. ");
+    text_printf(out, "%zu false alarms about %lld clean scenes.</p>\n",
+                json_array_size(json_object_get(json, "alarms")),
+                json_integer_value(json_object_get(json, "clean_scenes")) +
+                    json_integer_value(json_object_get(json, "povray_scenes")));
+    put_faults(json, out);
+    put_limits(json, out);
+    text_puts(out, "</section>\n");
     json_decref(json);
     return text_check(out, err);
 }

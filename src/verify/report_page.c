@@ -86,133 +86,17 @@ static void verdict_parts(const ReportCase *report, Text parts[PARTS])
     text_escaped(subject, color->tolerance.tier);
 }
 
-/* -------------------------------------------------------------------------------------- tables */
-
-static void rule_rows(const CompareResult *plane, Text *out)
-{
-    for (int i = 0; i < plane->n_rules; i++) {
-        const Rule *rule = &plane->rules[i];
-        text_printf(out, "<tr><th>%s</th>", i == 0 ? plane_kind_name(plane->kind) : "");
-        text_printf(out, "<td class=\"verdict %s\">%s</td><td>", rule->met ? "good" : "bad",
-                    rule->met ? "✓ agree" : "✗ differ");
-        text_escaped(out, rule->name);
-        text_printf(
-            out, "</td><td class=\"number\">%.6g %s</td><td class=\"number\">%.6g %s</td></tr>\n",
-            rule->measured, rule->unit, rule->allowed, rule->unit);
-    }
-    if (plane->n_rules == 0)
-        text_printf(out,
-                    "<tr><th>%s</th><td class=\"verdict quiet\">not judged</td><td>the tolerance "
-                    "sets no limit</td><td></td><td></td></tr>\n",
-                    plane_kind_name(plane->kind));
-}
-
-/* A row of the table of measurements; rows of what could not be measured are left out. */
-static void metric_row(Text *out, const char *plane, const char *name, double value,
-                       const char *unit)
-{
-    if (isnan(value))
-        return;
-    text_printf(out, "<tr><th>%s</th><td>%s</td><td class=\"number\">", plane, name);
-    if (isinf(value))
-        text_puts(out, "∞");
-    else
-        text_printf(out, value == floor(value) && fabs(value) < 1e15 ? "%.0f" : "%.6g", value);
-    text_printf(out, "%s%s</td></tr>\n", *unit ? " " : "", unit);
-}
-
-static void color_metrics(const CompareResult *plane, Text *out)
-{
-    metric_row(out, "color", "differing pixels", (double)plane->differing_pixels, "");
-    metric_row(out, "", "largest difference", plane->max_abs, "levels");
-    metric_row(out, "", "largest difference off the edges", plane->interior_max_abs, "levels");
-    metric_row(out, "", "mean difference", plane->mean_abs, "levels");
-    metric_row(out, "", "signed mean difference, worst channel", plane->bias_levels, "levels");
-    metric_row(out, "", "brighter pixels over darker ones", plane->sign_sigma, "σ");
-    metric_row(out, "", "root mean square", plane->rmse, "levels");
-    metric_row(out, "", "outline of what is seen, outwards", plane->silhouette_px, "px");
-    metric_row(out, "", "gain", plane->gain, "");
-    metric_row(out, "", "offset", plane->offset_levels, "levels");
-    metric_row(out, "", "mean of the segment that is off most", plane->segment_levels, "levels");
-    metric_row(out, "", "outline of the segment that is off most", plane->segment_px, "px");
-    metric_row(out, "", "PSNR", plane->psnr_db, "dB");
-    metric_row(out, "", "SSIM of luma", plane->ssim, "");
-    metric_row(out, "", "FLIP, mean", plane->flip_mean, "");
-    metric_row(out, "", "FLIP, largest", plane->flip_max, "");
-    metric_row(out, "", "CIEDE2000, mean", plane->de2000_mean, "");
-    for (PixelClass i = 0; i < PIXEL_IDENTICAL; i++)
-        if (plane->classes[i]) {
-            char name[48];
-            snprintf(name, sizeof name, "pixels: %s", pixel_class_name(i));
-            metric_row(out, "", name, (double)plane->classes[i], "");
-        }
-}
-
-static void coverage_metrics(const CompareResult *plane, Text *out)
-{
-    if (!plane->has_mask)
-        return;
-    metric_row(out, "", "missing pixels (seen in A only)", (double)plane->missing_pixels, "");
-    metric_row(out, "", "extra pixels (seen in B only)", (double)plane->extra_pixels, "");
-    metric_row(out, "", "pixels seen in both", (double)plane->common_pixels, "");
-}
-
-static void metric_rows(const CompareResult *plane, Text *out)
-{
-    const char *unit = plane->kind == PLANE_DEPTH ? "mm" : "deg";
-    const char *name = plane_kind_name(plane->kind);
-    switch (plane->kind) {
-    case PLANE_COLOR:
-        color_metrics(plane, out);
-        break;
-    case PLANE_DEPTH:
-    case PLANE_NORMAL:
-        metric_row(out, name, "values that are not a number",
-                   (double)(plane->nan_pixels_a + plane->nan_pixels_b), "");
-        metric_row(out, "", "median difference", plane->median, unit);
-        metric_row(out, "", "99th percentile", plane->p99, unit);
-        metric_row(out, "", "largest difference", plane->max, unit);
-        break;
-    case PLANE_ID:
-        metric_row(out, name, "pixels with different ids", (double)plane->differing_pixels, "");
-        metric_row(out, "", "of the pixels at edges", 100 * plane->edge_mismatch_fraction, "%");
-        break;
-    case PLANE_KINDS:
-        break;
-    }
-    coverage_metrics(plane, out);
-}
-
-static void surface_rows(const SurfaceCheck *surface, Text *rules, Text *metrics)
-{
-    const struct {
-        const char *name;
-        size_t pixels;
-    } rows[] = {{"missing or extra pixels, grazing ones aside", surface->missing + surface->extra},
-                {"pixels farther off than the accuracy allows", surface->beyond}};
-    for (int i = 0; i < 2; i++)
-        text_printf(rules,
-                    "<tr><th>%s</th><td class=\"verdict %s\">%s</td><td>%s</td>"
-                    "<td class=\"number\">%zu pixels</td><td class=\"number\">0 pixels</td></tr>\n",
-                    i ? "" : "surface", rows[i].pixels ? "bad" : "good",
-                    rows[i].pixels ? "✗ differ" : "✓ agree", rows[i].name, rows[i].pixels);
-    metric_row(metrics, "surface", "grazing pixels", (double)surface->grazing, "");
-    metric_row(metrics, "", "pixels judged", (double)surface->common, "");
-    metric_row(metrics, "", "median distance from the surface", surface->median_mm, "mm");
-    metric_row(metrics, "", "99th percentile", surface->p99_mm, "mm");
-    metric_row(metrics, "", "largest distance", surface->max_mm, "mm");
-    metric_row(metrics, "", "largest over what is allowed", surface->max_ratio, "");
-}
+/* --------------------------------------------------------------------------------------- parts */
 
 static void table_parts(const ReportCase *report, Text parts[PARTS])
 {
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
         if (report->planes[kind]) {
-            rule_rows(report->planes[kind], &parts[PART_RULES]);
-            metric_rows(report->planes[kind], &parts[PART_METRICS]);
+            report_rule_rows(report->planes[kind], &parts[PART_RULES]);
+            report_metric_rows(report->planes[kind], &parts[PART_METRICS]);
         }
     if (report->surface)
-        surface_rows(report->surface, &parts[PART_RULES], &parts[PART_METRICS]);
+        report_surface_rows(report->surface, &parts[PART_RULES], &parts[PART_METRICS]);
     for (int i = 0; i < HEAT_STEPS; i++) {
         const HeatStep *step = &heat_steps[i];
         int to = i + 1 < HEAT_STEPS ? heat_steps[i + 1].from_level - 1 : 255;
@@ -224,34 +108,6 @@ static void table_parts(const ReportCase *report, Text parts[PARTS])
     }
 }
 
-/* ------------------------------------------------------------------------------------- pictures */
-
-static void base64(Text *out, const char *bytes, size_t size)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < size; i += 3) {
-        uint32_t bits = 0;
-        for (size_t k = 0; k < 3; k++)
-            bits = bits << 8 | (i + k < size ? (uint8_t)bytes[i + k] : 0u);
-        char four[4];
-        for (int k = 0; k < 4; k++)
-            four[k] = i + (size_t)k <= size ? digits[bits >> (18 - 6 * k) & 63] : '=';
-        text_append(out, four, 4);
-    }
-}
-
-static Status picture_part(Text *part, const Picture *picture, Err *err)
-{
-    Text png = TEXT_INIT;
-    Status status = picture_to_png(picture, ENCODING_SRGB, NULL, &png, err);
-    if (status == STATUS_OK) {
-        text_puts(part, "data:image/png;base64,");
-        base64(part, png.chars, png.length);
-    }
-    text_release(&png);
-    return status;
-}
-
 /* "data:," is an empty document: the viewer then knows no ids. */
 static Status ids_part(Text *part, const IdPlane *ids, Err *err)
 {
@@ -261,7 +117,7 @@ static Status ids_part(Text *part, const IdPlane *ids, Err *err)
     }
     Picture picture;
     TRY(picture_from_ids(&picture, ids, err));
-    Status status = picture_part(part, &picture, err);
+    Status status = report_picture(part, &picture, err);
     picture_release(&picture);
     return status;
 }
@@ -316,9 +172,9 @@ static Status fill_parts(const ReportCase *report, const Picture *heat, Text par
         text_puts(&parts[PART_COMMANDS], "\n");
     }
     TRY(segment_parts(report->planes[PLANE_COLOR], parts, err));
-    TRY(picture_part(&parts[PART_IMAGE_A], report->a.picture, err));
-    TRY(picture_part(&parts[PART_IMAGE_B], report->b.picture, err));
-    TRY(picture_part(&parts[PART_HEAT], heat, err));
+    TRY(report_picture(&parts[PART_IMAGE_A], report->a.picture, err));
+    TRY(report_picture(&parts[PART_IMAGE_B], report->b.picture, err));
+    TRY(report_picture(&parts[PART_HEAT], heat, err));
     TRY(ids_part(&parts[PART_IDS_A], report->a.ids, err));
     return ids_part(&parts[PART_IDS_B], report->b.ids, err);
 }
@@ -346,30 +202,6 @@ done:
 
 /* ---------------------------------------------------------------------------------- table of cases */
 
-enum { THUMBNAIL_WIDTH = 96 };
-
-/* A picture of at most THUMBNAIL_WIDTH pixels across, each the mean of a box. */
-static Status make_thumbnail(Picture *out, const Picture *picture, Err *err)
-{
-    int factor = (picture->width + THUMBNAIL_WIDTH - 1) / THUMBNAIL_WIDTH;
-    int width = picture->width / factor, height = picture->height / factor;
-    height = height ? height : 1;
-    size_t channels = (size_t)picture->channels;
-    TRY(picture_init(out, width, height, picture->channels, 8, err));
-    for (int y = 0; y < height; y++)
-        for (size_t i = 0; i < (size_t)width * channels; i++) {
-            size_t x = i / channels * (size_t)factor, sum = 0, count = 0;
-            for (int v = y * factor; v < (y + 1) * factor && v < picture->height; v++)
-                for (size_t u = x; u < x + (size_t)factor; u++, count++)
-                    sum += picture_code(picture, (size_t)v * picture_stride(picture) +
-                                                     u * channels + i % channels);
-            size_t mean = (sum + count / 2) / count;
-            picture_set(out, (size_t)y * picture_stride(out) + i,
-                        (uint16_t)(picture->bits == 8 ? mean : mean / 257));
-        }
-    return STATUS_OK;
-}
-
 static void number_cell(Text *row, double value)
 {
     text_printf(row, "<td class=\"number\" data-value=\"%.9g\">", isnan(value) ? -1 : value);
@@ -385,8 +217,8 @@ static Status case_row(const ReportCase *report, Text *row, Err *err)
     Picture thumbnail;
     text_puts(row,
               REPORT_ROW_BEGIN "<tr data-case=\"" REPORT_FIRST_CASE "\"><td><img alt=\"\" src=\"");
-    TRY(make_thumbnail(&thumbnail, report->b.picture, err));
-    Status status = picture_part(row, &thumbnail, err);
+    TRY(report_thumbnail(&thumbnail, report->b.picture, err));
+    Status status = report_picture(row, &thumbnail, err);
     picture_release(&thumbnail);
     TRY(status);
     text_puts(row, "\"></td><th><a href=\"#" REPORT_FIRST_CASE "\">");

@@ -1,0 +1,269 @@
+/* Bands of rows are walked by threads; each gathers whole numbers into sums of its own, which are
+ * added in order, so that no result depends on the number of threads. Rows that are equal in both
+ * pictures and both labels take a short path, because equal pictures are what is hoped for. */
+#include "verify/walk.h"
+
+#include "verify/result.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BAND_ROWS = 32, BLOCK = 32 };
+
+/* One row being looked at. */
+typedef struct Row {
+    const LabelWindow *window;
+    const uint16_t *a, *b; /* codes; when the rows are equal the same pointer, perhaps to what has
+                            * not been read */
+    int y;
+} Row;
+
+/* ------------------------------------------------------------------------------------- classes */
+
+static bool geometry_differs(const Walk *walk, size_t pixel)
+{
+    const float *depth_a = walk->a->depth->values, *depth_b = walk->b->depth->values;
+    const float *normal_a = walk->a->normal->values, *normal_b = walk->b->normal->values;
+    double depth = fabs((double)depth_a[pixel] - (double)depth_b[pixel]);
+    return !(depth <= walk->geometry_mm) ||
+           !(angle_deg(normal_a + 3 * pixel, normal_b + 3 * pixel) <= walk->geometry_deg);
+}
+
+/* Of a pixel whose labels agree. */
+static PixelClass class_of_shading(const Walk *walk, const Row *row, int x, bool seen,
+                                   int difference)
+{
+    size_t pixel = (size_t)row->y * (size_t)walk->labels->width + (size_t)x;
+    bool known = walk->a->depth && walk->a->normal;
+    if (known && seen && geometry_differs(walk, pixel))
+        return PIXEL_GEOMETRY;
+    if (known && seen && difference > 1) {
+        double sum_a = 0, sum_b = 0;
+        int channels = walk->a->picture->channels;
+        for (int c = 0; c < channels; c++) {
+            sum_a += row->a[x * channels + c];
+            sum_b += row->b[x * channels + c];
+        }
+        if (sum_a > 1.5 * sum_b || sum_b > 1.5 * sum_a)
+            return PIXEL_SHADOW;
+    }
+    return difference > 1 ? PIXEL_SHADING : difference == 1 ? PIXEL_ROUNDING : PIXEL_IDENTICAL;
+}
+
+/* The largest difference over the channels of a pixel, in codes; adds to the sums. */
+static int pixel_difference(const uint16_t *a, const uint16_t *b, int channels, Sums *sums)
+{
+    int largest = 0, sum = 0;
+    for (int c = 0; c < channels; c++) {
+        int difference = b[c] - a[c], size = abs(difference);
+        sums->signed_codes[c] += difference;
+        sums->abs += (uint64_t)size;
+        sums->squares += (uint64_t)size * (uint64_t)size;
+        largest = size > largest ? size : largest;
+        sum += difference;
+    }
+    sums->brighter += sum > 0;
+    sums->darker += sum < 0;
+    return largest;
+}
+
+static void count_pixel(const Walk *walk, const Row *row, int x, Sums *sums)
+{
+    const LabelWindow *window = row->window;
+    int channels = walk->a->picture->channels;
+    uint32_t in_a = window->rows[0][1][x], in_b = window->rows[1][1][x];
+    bool band = window->band[x];
+    int difference = pixel_difference(row->a + x * channels, row->b + x * channels, channels, sums);
+    bool common = in_a && in_b, beyond = difference > walk->beyond;
+    PixelClass pixel_class = in_a != in_b ? labels_class(in_a, in_b, band)
+                                          : class_of_shading(walk, row, x, common, difference);
+    sums->classes[pixel_class]++;
+    sums->common += common;
+    if (!in_a != !in_b) {
+        size_t pixel = (size_t)row->y * (size_t)walk->labels->width + (size_t)x;
+        walk->coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;
+        sums->missing += in_a != 0;
+        sums->extra += in_b != 0;
+    }
+    sums->band += band;
+    sums->band_differs += band && in_a != in_b;
+    sums->differing += difference > 0;
+    sums->beyond += beyond && (common || !walk->common_only);
+    sums->band_beyond += beyond && band;
+    sums->interior_beyond += beyond && !band;
+    if (!band && difference > sums->interior_max)
+        sums->interior_max = difference;
+    if (difference > sums->max) {
+        sums->max = difference;
+        sums->worst = (PixelPlace){.x = x, .y = row->y};
+    }
+}
+
+/* Pixels [from, to) of a row that are equal in colour and label, and whose geometry nobody asked
+ * about. */
+static void count_equal(const LabelWindow *window, int from, int to, Sums *sums)
+{
+    const uint32_t *label = window->rows[0][1];
+    unsigned common = 0, band = 0;
+    for (int x = from; x < to; x++) {
+        common += label[x] != 0;
+        band += window->band[x];
+    }
+    sums->common += common;
+    sums->band += band;
+    sums->classes[PIXEL_IDENTICAL] += (size_t)(to - from);
+}
+
+static bool block_equal(const Row *row, int from, int to, int channels)
+{
+    const uint32_t *in_a = row->window->rows[0][1], *in_b = row->window->rows[1][1];
+    size_t start = (size_t)from * (size_t)channels, n = (size_t)(to - from);
+    return (in_a == in_b || memcmp(in_a + from, in_b + from, n * sizeof *in_a) == 0) &&
+           (row->a == row->b ||
+            memcmp(row->a + start, row->b + start, n * (size_t)channels * sizeof *row->a) == 0);
+}
+
+/* Counts a row by blocks, most of which are equal even in rows that are not. */
+static void count_row(const Walk *walk, const Row *row, Sums *sums)
+{
+    int width = walk->labels->width, channels = walk->a->picture->channels;
+    bool geometry = walk->a->depth && walk->a->normal;
+    for (int from = 0, to; from < width; from = to) {
+        to = from + BLOCK < width ? from + BLOCK : width;
+        if (!geometry && block_equal(row, from, to, channels)) {
+            count_equal(row->window, from, to, sums);
+            continue;
+        }
+        for (int x = from; x < to; x++)
+            count_pixel(walk, row, x, sums);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------- sums */
+
+static void count_silhouette(const uint32_t *row, const uint32_t *below, int width, Sums *sums)
+{
+    unsigned edges = 0;
+    for (int x = 0; x < width; x++)
+        edges += (row[x] != 0) != (below[x] != 0);
+    for (int x = 0; x + 1 < width; x++)
+        edges += (row[x] != 0) != (row[x + 1] != 0);
+    sums->silhouette += edges;
+}
+
+/* What the straight line through the colours seen in both needs. */
+static void add_regression(const Row *row, int width, int channels, Sums *sums)
+{
+    const uint32_t *in_a = row->window->rows[0][1], *in_b = row->window->rows[1][1];
+    for (int x = 0; x < width; x++) {
+        if (!in_a[x] || !in_b[x])
+            continue;
+        for (int i = x * channels; i < (x + 1) * channels; i++) {
+            int64_t a = row->a[i], d = row->b[i] - a;
+            sums->a += (uint64_t)a;
+            sums->aa += (uint64_t)(a * a);
+            sums->d += d;
+            sums->ad += a * d;
+        }
+        sums->n += (uint64_t)channels;
+    }
+}
+
+static void walk_row(const Walk *walk, const Row *row, Sums *sums, Account *accounts)
+{
+    int width = walk->labels->width, channels = walk->a->picture->channels;
+    count_row(walk, row, sums);
+    if (walk->labels->source == LABELS_UNKNOWN)
+        return;
+    count_silhouette(row->window->rows[0][1], row->window->rows[0][2], width, sums);
+    if (!walk->index)
+        return;
+    add_regression(row, width, channels, sums);
+    accounts_book(accounts, walk->index, row->window, row->a, row->b, channels);
+}
+
+static void walk_band(size_t index, int worker, void *context)
+{
+    Walk *walk = context;
+    const Picture *a = walk->a->picture, *b = walk->b->picture;
+    uint8_t *scratch = walk->scratch + (size_t)worker * walk->scratch_size;
+    uint16_t *codes[2] = {(uint16_t *)(scratch + label_window_size(a->width))};
+    codes[1] = codes[0] + picture_stride(a);
+    Account *accounts = walk->index ? walk->accounts + (size_t)worker * walk->index->n : NULL;
+    int top = (int)index * BAND_ROWS;
+    int bottom = top + BAND_ROWS < a->height ? top + BAND_ROWS : a->height;
+    LabelWindow window;
+    label_window_open(&window, walk->labels, top, scratch);
+    for (int y = top; y < bottom; y++) {
+        bool equal = picture_rows_equal(a, b, y, 0, a->width);
+        bool read = !equal || walk->index || walk->a->depth;
+        Row row = {.window = &window, .y = y};
+        row.a = read ? picture_row(a, y, codes[0]) : codes[0];
+        row.b = equal ? row.a : picture_row(b, y, codes[1]);
+        walk_row(walk, &row, &walk->sums[index], accounts);
+        if (y + 1 < bottom)
+            label_window_next(&window);
+    }
+}
+
+static void add_sums(Sums *to, const Sums *from)
+{
+    to->abs += from->abs;
+    to->squares += from->squares;
+    for (int c = 0; c < 3; c++)
+        to->signed_codes[c] += from->signed_codes[c];
+    for (int i = 0; i < PIXEL_CLASSES; i++)
+        to->classes[i] += from->classes[i];
+    to->differing += from->differing;
+    to->beyond += from->beyond;
+    to->brighter += from->brighter;
+    to->darker += from->darker;
+    to->common += from->common;
+    to->missing += from->missing;
+    to->extra += from->extra;
+    to->band += from->band;
+    to->band_differs += from->band_differs;
+    to->band_beyond += from->band_beyond;
+    to->interior_beyond += from->interior_beyond;
+    to->silhouette += from->silhouette;
+    to->n += from->n;
+    to->a += from->a;
+    to->aa += from->aa;
+    to->d += from->d;
+    to->ad += from->ad;
+    if (from->interior_max > to->interior_max)
+        to->interior_max = from->interior_max;
+    if (from->max > to->max) {
+        to->max = from->max;
+        to->worst = from->worst;
+    }
+}
+
+Status walk_all(Walk *walk, Err *err)
+{
+    int bands = (walk->labels->height + BAND_ROWS - 1) / BAND_ROWS;
+    int threads = threads_available();
+    threads = threads < bands ? threads : bands;
+    const Picture *a = walk->a->picture;
+    size_t accounts = walk->index ? (size_t)threads * walk->index->n : 0;
+    walk->scratch_size = label_window_size(a->width) + 2 * picture_stride(a) * sizeof(uint16_t);
+    TRY(mem_calloc(&walk->sums, (size_t)bands, sizeof *walk->sums, "sums of rows", err));
+    TRY(mem_calloc(&walk->accounts, accounts, sizeof *walk->accounts, "accounts", err));
+    TRY(mem_calloc(&walk->coverage, (size_t)a->width * (size_t)a->height, 1, "pixel marks", err));
+    TRY(mem_calloc(&walk->scratch, (size_t)threads, walk->scratch_size, "rows", err));
+    accounts_clear(walk->accounts, accounts);
+    threads_for((size_t)bands, threads, walk_band, walk);
+    for (int i = 1; i < bands; i++)
+        add_sums(&walk->sums[0], &walk->sums[i]);
+    for (int t = 1; t < threads && walk->index; t++)
+        accounts_add(walk->accounts, walk->accounts + (size_t)t * walk->index->n, walk->index->n);
+    return STATUS_OK;
+}
+
+void walk_release(Walk *walk)
+{
+    free(walk->coverage);
+    free(walk->sums);
+    free(walk->accounts);
+    free(walk->scratch);
+}

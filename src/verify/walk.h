@@ -1,0 +1,41 @@
+/* The one pass over two pictures in which everything is counted; private to the room verify. */
+#ifndef CORCAST_VERIFY_WALK_H
+#define CORCAST_VERIFY_WALK_H
+
+#include "verify/ledger.h"
+
+/* What is gathered over a band of rows. */
+typedef struct Sums {
+    uint64_t abs, squares; /* codes, codes^2 */
+    int64_t signed_codes[3];
+    size_t differing, beyond;
+    size_t brighter, darker; /* pixels, by the sum of their channels */
+    size_t classes[PIXEL_CLASSES];
+    int max, interior_max; /* codes */
+    PixelPlace worst;
+    size_t common, missing, extra, band, band_differs, band_beyond, interior_beyond;
+    uint64_t silhouette; /* sides of A's pixels that part something from nothing */
+    uint64_t n, a, aa;   /* over samples seen in both: count, a, a a */
+    int64_t d, ad;       /* ... d = b - a, a d */
+} Sums;
+
+typedef struct Walk {
+    const Rendering *a, *b;
+    const Labels *labels;
+    const SegmentIndex *index; /* NULL without ids */
+    int beyond;                /* codes a pixel may be off */
+    bool common_only;
+    double geometry_mm, geometry_deg; /* beyond which geometry differs */
+    uint8_t *coverage;                /* owned; a Coverage for each pixel */
+    Sums *sums;                       /* owned; one for each band */
+    Account *accounts;                /* owned; index->n for each worker */
+    uint8_t *scratch;                 /* owned; scratch_size for each worker */
+    size_t scratch_size;
+} Walk;
+
+/* Walks all rows; walk->sums[0] and walk->accounts hold the whole then. The rest of `walk` is filled in by
+ * the caller. */
+MUST_CHECK Status walk_all(Walk *walk, Err *err);
+void walk_release(Walk *walk);
+
+#endif
