@@ -8,10 +8,13 @@ command -v "${CORCAST_POVRAY:-povray}" >/dev/null || {
     exit 3
 }
 
-# differing A.png B.png: how many pixels differ.
+# differing A.png B.png: how many pixels differ by more than $3 levels (0) in some channel.
 differing() {
     cmp -l <(pngtopnm "$1") <(pngtopnm "$2") |
-        awk '{ seen[int(($1 - 16) / 3)] = 1 } END { for (p in seen) n++; print n + 0 }'
+        awk -v limit="${3:-0}" '
+            function level(octal) { return int(octal / 100) * 64 + int(octal / 10) % 10 * 8 + octal % 10 }
+            { d = level($2) - level($3); if (d > limit || -d > limit) seen[int(($1 - 16) / 3)] = 1 }
+            END { for (p in seen) n++; print n + 0 }'
 }
 
 tree_2d() {
