@@ -3,7 +3,7 @@
 . "$(dirname "$0")/../lib.sh"
 
 update() {
-    GOLDEN=$PWD/golden run "$REPO/tests/golden-update" "$@"
+    GOLDEN=$PWD/golden SHOWN=$PWD/shown run "$REPO/tests/golden-update" "$@"
 }
 
 # A POV-Ray that draws another highlight.
@@ -30,7 +30,7 @@ test_a_case_is_written_with_its_reason_and_shows_old_and_new() {
     update bifurcation-rounded "the second"
     expect_status 0
     expect_stdout 'old picture against new'
-    expect_file "$REPO/build/golden/bifurcation-rounded/oracle-difference.png"
+    expect_file shown/bifurcation-rounded/oracle-difference.png
     expect_json golden/oracle/bifurcation-rounded/case.json '.reason == "the second"'
 }
 
