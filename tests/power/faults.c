@@ -17,6 +17,7 @@ static void change_parts(Subject *subject, uint32_t id, double radius_factor, Ve
         if (id && p->id != id)
             continue;
         p->radius_mm *= radius_factor;
+        p->radius_b_mm *= radius_factor;
         p->a = vec3_add(p->a, shift);
         p->b = vec3_add(p->b, shift);
     }
@@ -85,6 +86,22 @@ static void drop_joint(Subject *subject, double unused)
 {
     (void)unused;
     drop_primitives(&subject->scene, subject->target, PRIMITIVE_SPHERE);
+    drop_primitives(&subject->scene, subject->target, PRIMITIVE_JOINT);
+}
+
+/* The ruled surfaces of a segment with their ends confused. */
+static void flip_joint(Subject *subject, double unused)
+{
+    (void)unused;
+    Scene *scene = &subject->scene;
+    for (size_t i = 0; i < scene->n_primitives; i++) {
+        Primitive *p = &scene->primitives[i];
+        if (p->id != subject->target || p->kind != PRIMITIVE_JOINT)
+            continue;
+        double radius = p->radius_mm;
+        p->radius_mm = p->radius_b_mm;
+        p->radius_b_mm = radius;
+    }
 }
 
 /* Wider by `by` at one end and thinner at the other, in two halves. */
@@ -133,6 +150,7 @@ static void few_digits(Subject *subject, double step)
         p->a = (Vec3){rounded_to(p->a.x, step), rounded_to(p->a.y, step), rounded_to(p->a.z, step)};
         p->b = (Vec3){rounded_to(p->b.x, step), rounded_to(p->b.y, step), rounded_to(p->b.z, step)};
         p->radius_mm = fmax(rounded_to(p->radius_mm, step), step);
+        p->radius_b_mm = fmax(rounded_to(p->radius_b_mm, step), step);
     }
     for (size_t i = 0; i < scene->n_segments; i++) {
         FieldSegment *s = &scene->segments[i];
@@ -504,7 +522,8 @@ const Fault faults[] = {
     {"all radii + 0.1 %", OF_ALL, 1, all_radii, NULL, 0.001},
     {"radius of one segment + 1 %", OF_ALL, 1, one_radius, NULL, 0.01},
     {"a segment dropped", OF_ALL, 1, drop_segment, NULL, 0},
-    {"a joint dropped", OF_ROUNDED, 1, drop_joint, NULL, 0},
+    {"a joint dropped", OF_ROUNDED | OF_JOINED, 1, drop_joint, NULL, 0},
+    {"a joint's ends swapped", OF_JOINED, 1, flip_joint, NULL, 0},
     {"one segment shifted by 0.05 px", OF_ALL, 1, shift_one, NULL, 0.05},
     {"picture shifted by 0.01 px", OF_ALL, 1, shift_image, NULL, 0.01},
     {"pixel corners instead of centres", OF_ALL, 1, shift_image, NULL, 0.5},

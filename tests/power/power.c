@@ -15,6 +15,7 @@
 enum { WIDTH = 320, HEIGHT = 240, STEPS = 16 };
 
 static const char *const model_names[] = {[SCENE_CYLINDERS] = "cylinders",
+                                          [SCENE_JOINED] = "joined",
                                           [SCENE_ROUNDED] = "rounded",
                                           [SCENE_ISOSURFACE] = "isosurface"};
 enum { MODELS = sizeof model_names / sizeof *model_names };
