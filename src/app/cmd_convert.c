@@ -53,8 +53,8 @@ static FileKind kind_of(const char *path)
     static const struct {
         const char *extension;
         FileKind kind;
-    } known[] = {
-        {"png", FILE_PICTURE}, {"ppm", FILE_PICTURE}, {"pgm", FILE_PICTURE}, {"pfm", FILE_PLANE}};
+    } known[] = {{"png", FILE_PICTURE}, {"ppm", FILE_PICTURE},  {"pgm", FILE_PICTURE},
+                 {"tif", FILE_PICTURE}, {"tiff", FILE_PICTURE}, {"pfm", FILE_PLANE}};
     if (strcmp(path, "-") == 0 || tree_format_known(path))
         return FILE_TREE;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
@@ -76,7 +76,7 @@ Status run_convert(int argc, char **argv, Err *err)
     if (kind_of(from) == FILE_UNKNOWN || kind == FILE_UNKNOWN)
         status = err_set(err, STATUS_USAGE,
                          "'%s' has an unknown extension; known are .swc for trees, and .png, .ppm, "
-                         ".pgm and .pfm for images",
+                         ".pgm, .tif and .pfm for images",
                          kind == FILE_UNKNOWN ? to : from);
     else if (kind_of(from) != kind)
         status = err_set(err, STATUS_USAGE,

@@ -66,7 +66,8 @@ Status run_render(int argc, char **argv, Err *err)
     int bits = 8, hits = HITS_EXACT;
     double threshold = 0;
     const Option own[] = {
-        {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P", "the picture: .png, .ppm or .pfm"},
+        {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P",
+         "the picture: .png, .ppm, .tif or .pfm"},
         {"planes", OPTION_TEXT, &planes, NULL, 0, 0, NULL, "LIST",
          "planes beside it: color,depth,normal,id"},
         {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16", "of a PNG or PPM (8)"},

@@ -11,11 +11,11 @@ Status frames_check_output(const char *path, bool planes, Err *err)
             return err_set(err, STATUS_USAGE, "--planes needs -o FILE, to name the planes after");
         return STATUS_OK;
     }
-    static const char *const known[] = {"png", "ppm", "pfm"};
+    static const char *const known[] = {"png", "ppm", "pfm", "tif", "tiff"};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcmp(file_extension(path), known[i]) == 0)
             return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png, .ppm or .pfm", path);
+    return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png, .ppm, .tif or .pfm", path);
 }
 
 Status frames_write_color(const Plane *color, const char *path, int bits, const char *provenance,

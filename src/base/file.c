@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 enum { MAX_TEMPORARIES = 64 };
@@ -258,6 +259,18 @@ void outfile_discard(OutFile *file)
     file_forget(file->temporary);
     free(file->path);
     *file = (OutFile){0};
+}
+
+Status outfile_check_room(const OutFile *file, double bytes, Err *err)
+{
+    struct statvfs disk;
+    if (!file->temporary || fstatvfs(fileno(file->stream), &disk) != 0)
+        return STATUS_OK;
+    double left = (double)disk.f_bavail * (double)disk.f_frsize;
+    if (bytes <= left)
+        return STATUS_OK;
+    return err_set(err, STATUS_IO, "%s: needs %.1f GB, and its disk has %.1f GB left", file->path,
+                   bytes * 1e-9, left * 1e-9);
 }
 
 Status file_write(const char *path, const void *bytes, size_t size, Err *err)

@@ -27,6 +27,10 @@ MUST_CHECK Status outfile_open(OutFile *file, const char *path, Err *err);
 MUST_CHECK Status outfile_commit(OutFile *file, Err *err);
 void outfile_discard(OutFile *file);
 
+/* STATUS_IO when the disk that `file` goes to has fewer than `bytes` left; always STATUS_OK for what is
+ * no file. */
+MUST_CHECK Status outfile_check_room(const OutFile *file, double bytes, Err *err);
+
 /* Writes all of `bytes` to `path` through an OutFile. */
 MUST_CHECK Status file_write(const char *path, const void *bytes, size_t size, Err *err);
 

@@ -33,9 +33,15 @@ Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encodin
 {
     Picture made;
     TRY(picture_init(&made, plane->width, plane->height, plane->channels, bits, err));
-    size_t n = (size_t)plane->width * (size_t)plane->height * (size_t)plane->channels;
-    for (size_t i = 0; i < n; i++)
-        picture_set(&made, i, image_code(plane->values[i], encoding, bits));
+    size_t channels = (size_t)plane->channels;
+    size_t n = (size_t)plane->width * (size_t)plane->height * channels;
+    for (size_t i = 0; i < n; i++) {
+        /* Most pixels are like the one before. */
+        bool again = i >= channels && plane->values[i] == plane->values[i - channels];
+        picture_set(&made, i,
+                    again ? picture_code(&made, i - channels)
+                          : image_code(plane->values[i], encoding, bits));
+    }
     *picture = made;
     return STATUS_OK;
 }

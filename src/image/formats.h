@@ -1,5 +1,4 @@
-/* The file formats behind image_read, picture_write and plane_write; private to the
- * room image. Readers take a whole file and its name for the error sentence; no size a header
+/* The file formats behind image_read and ImageWriter; private to the room image. Readers take a whole file and its name for the error sentence; no size a header
  * claims is believed before it has been held against the size of the file. */
 #ifndef CORCAST_IMAGE_FORMATS_H
 #define CORCAST_IMAGE_FORMATS_H
@@ -36,9 +35,21 @@ void header_word(HeaderCursor *cursor, char *word, size_t size);
  * follow it. */
 MUST_CHECK Status header_end(HeaderCursor *cursor, size_t needed, Err *err);
 
+/* How a format is written. Rows come from the top down, `n` at a time, the first of them row `first`;
+ * values are codes of 8 or 16 bits or floats, as the form says. */
+typedef struct RowEncoder {
+    /* Writes what comes first; *self is owned by the caller, who releases it, also on failure. */
+    Status (*begin)(FILE *stream, const ImageForm *form, void **self, Err *err);
+    Status (*rows)(void *self, const void *values, int first, int n, Err *err);
+    Status (*end)(void *self, Err *err); /* writes what comes last */
+    void (*release)(void *self);         /* NULL is allowed */
+    bool plain;                          /* the file has the size of its values, and a header */
+} RowEncoder;
+
+extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, pfm_encoder;
+
 bool pnm_is(const ImageBytes *file);
 MUST_CHECK Status pnm_decode(const ImageBytes *file, Picture *picture, Err *err);
-MUST_CHECK Status pnm_encode(FILE *stream, const Picture *picture, int channels, Err *err);
 
 /* Deflate shrinks at most 1032-fold, which bounds what a PNG's header may claim. */
 enum { DEFLATE_MAX_RATIO = 1032 };
@@ -48,8 +59,6 @@ bool png_is(const ImageBytes *file);
  * included. */
 bool png_decode_plain(const ImageBytes *file, Picture *picture);
 MUST_CHECK Status png_decode(const ImageBytes *file, Picture *picture, Err *err);
-MUST_CHECK Status png_encode(FILE *stream, const Picture *picture, Encoding encoding,
-                             const ImageNotes *notes, Err *err);
 
 bool pfm_is(const ImageBytes *file);
 MUST_CHECK Status pfm_decode(const ImageBytes *file, Plane *plane, Err *err);

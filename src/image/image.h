@@ -105,10 +105,36 @@ typedef struct ImageNotes {
     double dpi; /* pHYs of a PNG; 0: not written */
 } ImageNotes;
 
-/* Writes by extension: .ppm (P6; a grey picture with its channel three times), .pgm (P5, 1
- * channel), .png; "-" writes PPM. `notes` may be NULL. PNG carries an sRGB chunk when `encoding` is
- * sRGB and gAMA 1.0 when it is linear, and no tIME. STATUS_USAGE on another extension and on a
- * colour picture that is to be a .pgm. */
+/* What is to be written. */
+typedef struct ImageForm {
+    int width, height;
+    int channels;            /* 1 or 3 */
+    int bits;                /* 8 or 16: codes; 32: floats */
+    Encoding encoding;       /* of codes */
+    const ImageNotes *notes; /* borrowed; may be NULL */
+} ImageForm;
+
+/* An image being written a few rows at a time from the top down, whatever order its file has. It
+ * has its final name only after imagewriter_commit. */
+typedef struct ImageWriter ImageWriter;
+
+/* Floats go to PFM ("PF" 3 channels, "Pf" 1), little-endian, rows bottom-up in the file. Codes go by
+ * extension: .ppm (P6; a grey picture with its channel three times), .pgm (P5, 1 channel), .png, .tif
+ * or .tiff (deflated strips; BigTIFF above 4 GB); "-" is standard output and a PPM. PNG carries an sRGB
+ * chunk when `encoding` is sRGB and gAMA 1.0 when it is linear, and no tIME. STATUS_USAGE on another
+ * extension and on a colour picture that is to be a .pgm; STATUS_IO when the disk has no room for what
+ * is certain to be written. Follow with exactly one of imagewriter_commit and imagewriter_discard, each
+ * of which frees the writer, also on failure. */
+MUST_CHECK Status imagewriter_open(ImageWriter **out, const char *path, const ImageForm *form,
+                                   Err *err);
+/* The next rows, all of the form's width, channels and bits. PFM and TIFF in parts need a file, not a
+ * pipe. */
+MUST_CHECK Status imagewriter_codes(ImageWriter *writer, const Picture *rows, Err *err);
+MUST_CHECK Status imagewriter_floats(ImageWriter *writer, const Plane *rows, Err *err);
+MUST_CHECK Status imagewriter_commit(ImageWriter *writer, Err *err);
+void imagewriter_discard(ImageWriter *writer);
+
+/* Writes a whole picture, as imagewriter_open says. `notes` may be NULL. */
 MUST_CHECK Status picture_write(const Picture *picture, const char *path, Encoding encoding,
                                 const ImageNotes *notes, Err *err);
 /* Appends the bytes of the PNG file that picture_write would write to `out`. */
@@ -135,8 +161,7 @@ MUST_CHECK Status image_read(Image *image, const char *path, Err *err);
 MUST_CHECK Status picture_read(Picture *picture, const char *path, Err *err);
 MUST_CHECK Status plane_read(Plane *plane, const char *path, Err *err);
 
-/* PFM ("PF" 3 channels, "Pf" 1), little-endian, rows bottom-up in the file; "-" is standard
- * output. */
+/* Writes a whole plane of 1 or 3 channels as PFM; "-" is standard output. */
 MUST_CHECK Status plane_write(const Plane *plane, const char *path, Err *err);
 /* What a renderer delivers, or what is read back from another's files. Planes that were not asked
  * for have NULL values. */

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
 
 bool pfm_is(const ImageBytes *file)
 {
@@ -59,27 +60,62 @@ Status pfm_decode(const ImageBytes *file, Plane *plane, Err *err)
     return STATUS_OK;
 }
 
-Status plane_write(const Plane *plane, const char *path, Err *err)
+/* ------------------------------------------------------------------------------------ writing */
+
+typedef struct PfmWriter {
+    FILE *stream;
+    int height;
+    size_t row_values;
+    off_t start;  /* of the pixels */
+    uint8_t *row; /* owned */
+} PfmWriter;
+
+static void release_writer(void *self)
 {
-    if (plane->channels != 1 && plane->channels != 3)
-        return err_set(err, STATUS_USAGE, "%s: PFM holds 1 or 3 channels, not %d", path,
-                       plane->channels);
-    size_t row_values = (size_t)plane->width * (size_t)plane->channels;
-    uint8_t *row;
-    TRY(mem_calloc(&row, row_values, 4, "bytes of a row", err));
-    OutFile file;
-    Status status = outfile_open(&file, path, err);
-    if (status == STATUS_OK) {
-        fprintf(file.stream, "%s\n%d %d\n-1.0\n", plane->channels == 3 ? "PF" : "Pf", plane->width,
-                plane->height);
-        for (int y = plane->height - 1; y >= 0; y--) {
-            const float *from = plane->values + (size_t)y * row_values;
-            for (size_t i = 0; i < row_values; i++)
-                write_float(row + 4 * i, from[i]);
-            fwrite(row, 4, row_values, file.stream);
-        }
-        status = outfile_commit(&file, err);
-    }
-    free(row);
-    return status;
+    PfmWriter *writer = self;
+    if (writer)
+        free(writer->row);
+    free(writer);
 }
+
+static Status begin(FILE *stream, const ImageForm *form, void **self, Err *err)
+{
+    PfmWriter *writer;
+    TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
+    *self = writer;
+    *writer = (PfmWriter){.stream = stream,
+                          .height = form->height,
+                          .row_values = (size_t)form->width * (size_t)form->channels};
+    writer->start = fprintf(stream, "%s\n%d %d\n-1.0\n", form->channels == 3 ? "PF" : "Pf",
+                            form->width, form->height);
+    return mem_calloc(&writer->row, writer->row_values, 4, "bytes of a row", err);
+}
+
+/* The file begins with the last row, so all but whole planes need a file with places. */
+static Status write_rows(void *self, const void *values, int first, int n, Err *err)
+{
+    PfmWriter *writer = self;
+    off_t rows_below = writer->height - first - n;
+    if (n < writer->height &&
+        fseeko(writer->stream, writer->start + rows_below * (off_t)writer->row_values * 4,
+               SEEK_SET) != 0)
+        return err_set(err, STATUS_IO,
+                       "a PFM begins with its last row, so one that does not fit into memory needs "
+                       "a file, not a pipe");
+    for (int y = n - 1; y >= 0; y--) {
+        const float *from = (const float *)values + (size_t)y * writer->row_values;
+        for (size_t i = 0; i < writer->row_values; i++)
+            write_float(writer->row + 4 * i, from[i]);
+        fwrite(writer->row, 4, writer->row_values, writer->stream);
+    }
+    return STATUS_OK;
+}
+
+static Status end(void *self, Err *err)
+{
+    (void)self;
+    (void)err;
+    return STATUS_OK;
+}
+
+const RowEncoder pfm_encoder = {begin, write_rows, end, release_writer, true};

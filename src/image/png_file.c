@@ -148,90 +148,127 @@ Status png_decode(const ImageBytes *file, Picture *picture, Err *err)
 
 typedef struct Writer {
     FILE *stream;
-    const Picture *picture;
-    Encoding encoding;
-    const ImageNotes *notes; /* or NULL */
+    ImageForm form;
     png_structp png;
     png_infop info;
-    uint8_t *row;     /* owned */
-    uint16_t *codes;  /* owned; a row */
+    uint8_t *row;     /* owned; of 16-bit codes */
     png_text *chunks; /* owned */
     Complaint complaint;
 } Writer;
 
-static void set_provenance(Writer *self)
+static void set_provenance(Writer *self, const ImageNotes *notes)
 {
-    for (int i = 0; i < self->notes->count; i++) {
-        const ImageNote *note = &self->notes->notes[i];
+    for (int i = 0; i < notes->count; i++) {
+        const ImageNote *note = &notes->notes[i];
         /* libpng copies both; its struct merely lacks the const. */
         png_text *chunk = &self->chunks[i];
         memcpy(&chunk->key, &note->key, sizeof chunk->key);
         memcpy(&chunk->text, &note->text, sizeof chunk->text);
         chunk->compression = PNG_TEXT_COMPRESSION_NONE;
     }
-    png_set_text(self->png, self->info, self->chunks, self->notes->count);
-    if (self->notes->dpi > 0) {
-        png_uint_32 per_metre = (png_uint_32)(self->notes->dpi / 0.0254 + 0.5);
+    png_set_text(self->png, self->info, self->chunks, notes->count);
+    if (notes->dpi > 0) {
+        png_uint_32 per_metre = (png_uint_32)(notes->dpi / 0.0254 + 0.5);
         png_set_pHYs(self->png, self->info, per_metre, per_metre, PNG_RESOLUTION_METER);
     }
 }
 
-static void write_picture(Writer *self)
+static void write_header(Writer *self)
 {
-    const Picture *picture = self->picture;
+    const ImageForm *form = &self->form;
     png_init_io(self->png, self->stream);
     png_set_user_limits(self->png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);
-    png_set_IHDR(self->png, self->info, (png_uint_32)picture->width, (png_uint_32)picture->height,
-                 picture->bits, picture->channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB,
+    png_set_IHDR(self->png, self->info, (png_uint_32)form->width, (png_uint_32)form->height,
+                 form->bits, form->channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    if (self->encoding == ENCODING_SRGB)
+    if (form->encoding == ENCODING_SRGB)
         png_set_sRGB(self->png, self->info, PNG_sRGB_INTENT_PERCEPTUAL);
     else
         png_set_gAMA(self->png, self->info, 1.0);
-    if (self->notes)
-        set_provenance(self);
+    if (form->notes)
+        set_provenance(self, form->notes);
     png_write_info(self->png, self->info);
-    size_t samples = (size_t)picture->width * (size_t)picture->channels;
-    for (int y = 0; y < picture->height; y++) {
-        const uint16_t *code = picture_row(picture, y, self->codes);
-        uint8_t *at = self->row;
+}
+
+/* 16-bit codes go with the high byte first. */
+static void put_rows(Writer *self, const void *values, int n)
+{
+    size_t samples = (size_t)self->form.width * (size_t)self->form.channels;
+    const uint8_t *codes8 = values;
+    const uint16_t *codes16 = values;
+    for (int y = 0; y < n; y++) {
+        if (self->form.bits == 8) {
+            png_write_row(self->png, codes8 + (size_t)y * samples);
+            continue;
+        }
         for (size_t i = 0; i < samples; i++) {
-            if (picture->bits == 16)
-                *at++ = (uint8_t)(code[i] >> 8);
-            *at++ = (uint8_t)(code[i] & 255);
+            self->row[2 * i] = (uint8_t)(codes16[(size_t)y * samples + i] >> 8);
+            self->row[2 * i + 1] = (uint8_t)(codes16[(size_t)y * samples + i] & 255);
         }
         png_write_row(self->png, self->row);
     }
-    png_write_end(self->png, NULL);
 }
 
-static Status write_guarded(Writer *self, Err *err)
+static Status failed(const Writer *self, Err *err)
+{
+    return err_set(err, STATUS_IO, "writing the PNG failed: %s", self->complaint.text);
+}
+
+static Status begin_guarded(Writer *self, Err *err)
 {
     if (setjmp(png_jmpbuf(self->png)))
-        return err_set(err, STATUS_IO, "writing the PNG failed: %s", self->complaint.text);
-    write_picture(self);
+        return failed(self, err);
+    write_header(self);
     return STATUS_OK;
 }
 
-Status png_encode(FILE *stream, const Picture *picture, Encoding encoding, const ImageNotes *notes,
-                  Err *err)
+static Status write_rows(void *self, const void *values, int first, int n, Err *err)
 {
-    Writer self = {.stream = stream, .picture = picture, .encoding = encoding, .notes = notes};
-    Status status = STATUS_OK;
-    size_t row_size = (size_t)picture->width * (size_t)picture->channels * 2;
-    TRY_GOTO(mem_calloc(&self.row, row_size, 1, "bytes of a row", err));
-    TRY_GOTO(mem_calloc(&self.codes, row_size, 1, "codes of a row", err));
-    TRY_GOTO(mem_calloc(&self.chunks, notes ? (size_t)notes->count : 0, sizeof *self.chunks,
-                        "PNG texts", err));
-    self.png =
-        png_create_write_struct(PNG_LIBPNG_VER_STRING, &self.complaint, on_error, on_warning);
-    self.info = self.png ? png_create_info_struct(self.png) : NULL;
-    status = self.info ? write_guarded(&self, err)
-                       : err_set(err, STATUS_MEMORY, "out of memory: no room to write a PNG");
-done:
-    png_destroy_write_struct(&self.png, &self.info);
-    free(self.chunks);
-    free(self.codes);
-    free(self.row);
-    return status;
+    (void)first;
+    Writer *writer = self;
+    if (setjmp(png_jmpbuf(writer->png)))
+        return failed(writer, err);
+    put_rows(writer, values, n);
+    return STATUS_OK;
 }
+
+static Status end(void *self, Err *err)
+{
+    Writer *writer = self;
+    if (setjmp(png_jmpbuf(writer->png)))
+        return failed(writer, err);
+    png_write_end(writer->png, NULL);
+    return STATUS_OK;
+}
+
+static Status begin(FILE *stream, const ImageForm *form, void **self, Err *err)
+{
+    Writer *writer;
+    TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
+    *self = writer;
+    writer->stream = stream;
+    writer->form = *form;
+    if (form->bits == 16)
+        TRY(mem_calloc(&writer->row, (size_t)form->width * (size_t)form->channels, 2,
+                       "bytes of a row", err));
+    TRY(mem_calloc(&writer->chunks, form->notes ? (size_t)form->notes->count : 0,
+                   sizeof *writer->chunks, "PNG texts", err));
+    writer->png =
+        png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer->complaint, on_error, on_warning);
+    writer->info = writer->png ? png_create_info_struct(writer->png) : NULL;
+    return writer->info ? begin_guarded(writer, err)
+                        : err_set(err, STATUS_MEMORY, "out of memory: no room to write a PNG");
+}
+
+static void release_writer(void *self)
+{
+    Writer *writer = self;
+    if (!writer)
+        return;
+    png_destroy_write_struct(&writer->png, &writer->info);
+    free(writer->chunks);
+    free(writer->row);
+    free(writer);
+}
+
+const RowEncoder png_encoder = {begin, write_rows, end, release_writer, false};

@@ -110,28 +110,78 @@ Status pnm_decode(const ImageBytes *file, Picture *picture, Err *err)
     return STATUS_OK;
 }
 
-/* No comment lines: libvips stumbles over them. */
-Status pnm_encode(FILE *stream, const Picture *picture, int channels, Err *err)
+/* ------------------------------------------------------------------------------------ writing */
+
+typedef struct PnmWriter {
+    FILE *stream;
+    size_t samples; /* a row, in memory */
+    int copies;     /* of each in the file */
+    bool deep;
+    uint8_t *row; /* owned */
+} PnmWriter;
+
+static void release_writer(void *self)
 {
-    int bytes = picture->bits / 8;
-    size_t row_size = (size_t)picture->width * (size_t)channels * (size_t)bytes;
-    uint8_t *row;
-    TRY(mem_calloc(&row, row_size, 1, "bytes of a row", err));
-    fprintf(stream, "P%c\n", channels == 1 ? '5' : '6');
-    fprintf(stream, "%d %d\n%d\n", picture->width, picture->height, bytes == 1 ? 255 : 65535);
-    size_t pixel = 0;
-    for (int y = 0; y < picture->height; y++) {
-        uint8_t *at = row;
-        for (int x = 0; x < picture->width; x++, pixel += (size_t)picture->channels)
-            for (int c = 0; c < channels; c++) {
-                uint16_t value =
-                    picture_code(picture, pixel + (picture->channels == 1 ? 0 : (size_t)c));
-                if (bytes == 2)
-                    *at++ = (uint8_t)(value >> 8);
-                *at++ = (uint8_t)(value & 255);
+    PnmWriter *writer = self;
+    if (writer)
+        free(writer->row);
+    free(writer);
+}
+
+/* No comment lines: libvips stumbles over them. */
+static Status begin(FILE *stream, const ImageForm *form, int channels, void **self, Err *err)
+{
+    PnmWriter *writer;
+    TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
+    *self = writer;
+    *writer = (PnmWriter){.stream = stream,
+                          .samples = (size_t)form->width * (size_t)form->channels,
+                          .copies = channels / form->channels,
+                          .deep = form->bits == 16};
+    fprintf(stream, "P%c\n%d %d\n%d\n", channels == 1 ? '5' : '6', form->width, form->height,
+            writer->deep ? 65535 : 255);
+    return mem_calloc(&writer->row, writer->samples, (size_t)writer->copies * 2, "bytes of a row",
+                      err);
+}
+
+static Status begin_ppm(FILE *stream, const ImageForm *form, void **self, Err *err)
+{
+    return begin(stream, form, 3, self, err);
+}
+
+static Status begin_pgm(FILE *stream, const ImageForm *form, void **self, Err *err)
+{
+    return begin(stream, form, 1, self, err);
+}
+
+static Status write_rows(void *self, const void *values, int first, int n, Err *err)
+{
+    (void)first;
+    (void)err;
+    PnmWriter *writer = self;
+    const uint8_t *codes8 = values;
+    const uint16_t *codes16 = values;
+    for (int y = 0; y < n; y++) {
+        uint8_t *at = writer->row;
+        for (size_t i = 0; i < writer->samples; i++) {
+            uint16_t code = writer->deep ? *codes16++ : *codes8++;
+            for (int copy = 0; copy < writer->copies; copy++) {
+                if (writer->deep)
+                    *at++ = (uint8_t)(code >> 8);
+                *at++ = (uint8_t)(code & 255);
             }
-        fwrite(row, 1, row_size, stream);
+        }
+        fwrite(writer->row, 1, (size_t)(at - writer->row), writer->stream);
     }
-    free(row);
     return STATUS_OK;
 }
+
+static Status end(void *self, Err *err)
+{
+    (void)self;
+    (void)err;
+    return STATUS_OK;
+}
+
+const RowEncoder ppm_encoder = {begin_ppm, write_rows, end, release_writer, true};
+const RowEncoder pgm_encoder = {begin_pgm, write_rows, end, release_writer, true};

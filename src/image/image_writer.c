@@ -1,0 +1,200 @@
+/* What a writer adds to the format's encoder: the file, under a temporary name until it is whole, and
+ * the number of the next row. Whole pictures and planes go the same way in one step. */
+#include "image/formats.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+struct ImageWriter {
+    const RowEncoder *encoder;
+    void *state;
+    OutFile file;
+    char *path; /* owned; for sentences */
+    ImageForm form;
+    int next; /* row */
+};
+
+static Status choose_encoder(const char *path, const ImageForm *form, const RowEncoder **encoder,
+                             Err *err)
+{
+    const char *extension = file_extension(path);
+    if (form->bits == 32)
+        *encoder = &pfm_encoder;
+    else if (strcmp(path, "-") == 0 || strcasecmp(extension, "ppm") == 0)
+        *encoder = &ppm_encoder;
+    else if (strcasecmp(extension, "pgm") == 0)
+        *encoder = &pgm_encoder;
+    else if (strcasecmp(extension, "png") == 0)
+        *encoder = &png_encoder;
+    else if (strcasecmp(extension, "tif") == 0 || strcasecmp(extension, "tiff") == 0)
+        *encoder = &tiff_encoder;
+    else
+        return err_set(err, STATUS_USAGE,
+                       "%s: the extension of a picture must be .ppm, .pgm, .png or .tif", path);
+    if (*encoder == &pgm_encoder && form->channels != 1)
+        return err_set(err, STATUS_USAGE,
+                       "%s: a colour picture cannot be a .pgm; use .ppm, .png or .tif", path);
+    if (*encoder == &pfm_encoder && form->channels != 1 && form->channels != 3)
+        return err_set(err, STATUS_USAGE, "%s: PFM holds 1 or 3 channels, not %d", path,
+                       form->channels);
+    return STATUS_OK;
+}
+
+static Status begin(ImageWriter *writer, Err *err)
+{
+    const ImageForm *form = &writer->form;
+    int channels = writer->encoder == &ppm_encoder ? 3 : form->channels;
+    double bytes = (double)form->width * form->height * channels * form->bits / 8;
+    if (writer->encoder->plain)
+        TRY(outfile_check_room(&writer->file, bytes, err));
+    Status status = writer->encoder->begin(writer->file.stream, form, &writer->state, err);
+    if (status != STATUS_OK)
+        err_prefix(err, "%s: ", writer->path);
+    return status;
+}
+
+Status imagewriter_open(ImageWriter **out, const char *path, const ImageForm *form, Err *err)
+{
+    const RowEncoder *encoder = NULL;
+    TRY(choose_encoder(path, form, &encoder, err));
+    ImageWriter *writer;
+    TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
+    *writer = (ImageWriter){.encoder = encoder, .form = *form};
+    Status status = mem_strdup(&writer->path, path, err);
+    if (status == STATUS_OK)
+        status = outfile_open(&writer->file, path, err);
+    if (status == STATUS_OK)
+        status = begin(writer, err);
+    if (status != STATUS_OK) {
+        imagewriter_discard(writer);
+        return status;
+    }
+    *out = writer;
+    return STATUS_OK;
+}
+
+static void release(ImageWriter *writer)
+{
+    free(writer->path);
+    free(writer);
+}
+
+static Status write_rows(ImageWriter *writer, const void *values, int n, Err *err)
+{
+    assert(n >= 0 && writer->next + n <= writer->form.height);
+    Status status = writer->encoder->rows(writer->state, values, writer->next, n, err);
+    writer->next += n;
+    if (status == STATUS_OK && ferror(writer->file.stream))
+        status = err_set(err, STATUS_IO, "writing failed: %s", strerror(errno));
+    if (status != STATUS_OK)
+        err_prefix(err, "%s: ", writer->path);
+    return status;
+}
+
+Status imagewriter_codes(ImageWriter *writer, const Picture *rows, Err *err)
+{
+    assert(rows->width == writer->form.width && rows->channels == writer->form.channels &&
+           rows->bits == writer->form.bits);
+    const void *values = rows->bits == 8 ? (const void *)rows->codes8 : (const void *)rows->codes16;
+    return write_rows(writer, values, rows->height, err);
+}
+
+Status imagewriter_floats(ImageWriter *writer, const Plane *rows, Err *err)
+{
+    assert(rows->width == writer->form.width && rows->channels == writer->form.channels &&
+           writer->form.bits == 32);
+    return write_rows(writer, rows->values, rows->height, err);
+}
+
+/* An encoder's last words go to the file, so it is released first. */
+Status imagewriter_commit(ImageWriter *writer, Err *err)
+{
+    assert(writer->next == writer->form.height);
+    Status status = writer->encoder->end(writer->state, err);
+    writer->encoder->release(writer->state);
+    if (status == STATUS_OK) {
+        status = outfile_commit(&writer->file, err);
+    } else {
+        err_prefix(err, "%s: ", writer->path);
+        outfile_discard(&writer->file);
+    }
+    release(writer);
+    return status;
+}
+
+void imagewriter_discard(ImageWriter *writer)
+{
+    if (!writer)
+        return;
+    writer->encoder->release(writer->state);
+    outfile_discard(&writer->file);
+    release(writer);
+}
+
+static ImageForm form_of(const Picture *picture, Encoding encoding, const ImageNotes *notes)
+{
+    return (ImageForm){.width = picture->width,
+                       .height = picture->height,
+                       .channels = picture->channels,
+                       .bits = picture->bits,
+                       .encoding = encoding,
+                       .notes = notes};
+}
+
+/* The last step of writing a whole image. */
+static Status finish(ImageWriter *writer, Status status, Err *err)
+{
+    if (status == STATUS_OK)
+        return imagewriter_commit(writer, err);
+    imagewriter_discard(writer);
+    return status;
+}
+
+Status picture_write(const Picture *picture, const char *path, Encoding encoding,
+                     const ImageNotes *notes, Err *err)
+{
+    const ImageForm form = form_of(picture, encoding, notes);
+    ImageWriter *writer;
+    TRY(imagewriter_open(&writer, path, &form, err));
+    return finish(writer, imagewriter_codes(writer, picture, err), err);
+}
+
+Status plane_write(const Plane *plane, const char *path, Err *err)
+{
+    const ImageForm form = {
+        .width = plane->width, .height = plane->height, .channels = plane->channels, .bits = 32};
+    ImageWriter *writer;
+    TRY(imagewriter_open(&writer, path, &form, err));
+    return finish(writer, imagewriter_floats(writer, plane, err), err);
+}
+
+Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNotes *notes, Text *out,
+                      Err *err)
+{
+    const ImageForm form = form_of(picture, encoding, notes);
+    const void *codes =
+        picture->bits == 8 ? (const void *)picture->codes8 : (const void *)picture->codes16;
+    char *bytes = NULL;
+    size_t size = 0;
+    void *state = NULL;
+    FILE *stream = open_memstream(&bytes, &size);
+    if (!stream)
+        return err_set(err, STATUS_MEMORY, "out of memory: no room for a PNG: %s", strerror(errno));
+    Status status = png_encoder.begin(stream, &form, &state, err);
+    if (status == STATUS_OK)
+        status = png_encoder.rows(state, codes, 0, picture->height, err);
+    if (status == STATUS_OK)
+        status = png_encoder.end(state, err);
+    png_encoder.release(state);
+    if (fclose(stream) != 0 && status == STATUS_OK)
+        status = err_set(err, STATUS_MEMORY, "out of memory: no room for a PNG of %zu bytes", size);
+    if (status == STATUS_OK) {
+        text_append(out, bytes, size);
+        status = text_check(out, err);
+    }
+    free(bytes);
+    return status;
+}

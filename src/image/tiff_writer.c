@@ -1,0 +1,187 @@
+/* TIFF through libtiff, strip by strip: little-endian whatever the machine, deflated with the
+ * horizontal predictor, no date, so that equal pictures are equal files. BigTIFF where offsets could
+ * need more than 32 bits. libtiff goes back to the header at the end, so it needs a file with places. */
+#include "image/formats.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/types.h>
+#include <tiffio.h>
+
+enum { STRIP_BYTES = 1 << 18 };
+static const double classic_bytes = 4.0e9; /* deflate may add a little to 4 GB less that */
+
+typedef struct Writer {
+    FILE *stream;
+    TIFF *handle;
+    size_t row_bytes;
+    int rows_per_strip, height;
+    uint8_t *strip; /* owned */
+    int filled;     /* rows of it */
+    uint32_t next;  /* strip */
+    char complaint[200];
+} Writer;
+
+/* -------------------------------------------------------------------------------- what libtiff calls */
+
+static tmsize_t on_read(thandle_t user, void *out, tmsize_t size)
+{
+    (void)user;
+    (void)out;
+    (void)size;
+    return -1;
+}
+
+static tmsize_t on_write(thandle_t user, void *bytes, tmsize_t size)
+{
+    Writer *self = user;
+    return (tmsize_t)fwrite(bytes, 1, (size_t)size, self->stream);
+}
+
+static toff_t on_seek(thandle_t user, toff_t offset, int whence)
+{
+    Writer *self = user;
+    if (fseeko(self->stream, (off_t)offset, whence) != 0)
+        return (toff_t)-1;
+    return (toff_t)ftello(self->stream);
+}
+
+static int on_close(thandle_t user)
+{
+    (void)user;
+    return 0;
+}
+
+static toff_t on_size(thandle_t user)
+{
+    Writer *self = user;
+    off_t here = ftello(self->stream);
+    fseeko(self->stream, 0, SEEK_END);
+    off_t size = ftello(self->stream);
+    fseeko(self->stream, here, SEEK_SET);
+    return (toff_t)size;
+}
+
+static int on_complaint(TIFF *handle, void *user, const char *module, const char *format,
+                        va_list values) PRINTF_LIKE(4, 0);
+static int on_complaint(TIFF *handle, void *user, const char *module, const char *format,
+                        va_list values)
+{
+    (void)handle;
+    (void)module;
+    Writer *self = user;
+    if (!*self->complaint)
+        vsnprintf(self->complaint, sizeof self->complaint, format, values);
+    return 1;
+}
+
+static TIFF *open_handle(Writer *self, bool big)
+{
+    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    if (!options)
+        return NULL;
+    TIFFOpenOptionsSetErrorHandlerExtR(options, on_complaint, self);
+    TIFFOpenOptionsSetWarningHandlerExtR(options, on_complaint, self);
+    TIFF *handle = TIFFClientOpenExt("picture", big ? "wl8" : "wl", self, on_read, on_write,
+                                     on_seek, on_close, on_size, NULL, NULL, options);
+    TIFFOpenOptionsFree(options);
+    return handle;
+}
+
+/* ---------------------------------------------------------------------------------------- writing */
+
+static Status failed(Writer *self, Err *err)
+{
+    image_plain_text(self->complaint);
+    return err_set(err, STATUS_IO, "writing the TIFF failed: %s",
+                   *self->complaint ? self->complaint : strerror(errno));
+}
+
+static bool set_fields(TIFF *handle, const ImageForm *form, int rows_per_strip)
+{
+    bool set = TIFFSetField(handle, TIFFTAG_IMAGEWIDTH, (uint32_t)form->width) &&
+               TIFFSetField(handle, TIFFTAG_IMAGELENGTH, (uint32_t)form->height) &&
+               TIFFSetField(handle, TIFFTAG_SAMPLESPERPIXEL, form->channels) &&
+               TIFFSetField(handle, TIFFTAG_BITSPERSAMPLE, form->bits) &&
+               TIFFSetField(handle, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT) &&
+               TIFFSetField(handle, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) &&
+               TIFFSetField(handle, TIFFTAG_PHOTOMETRIC,
+                            form->channels == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK) &&
+               TIFFSetField(handle, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT) &&
+               TIFFSetField(handle, TIFFTAG_ROWSPERSTRIP, (uint32_t)rows_per_strip) &&
+               TIFFSetField(handle, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE) &&
+               TIFFSetField(handle, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
+    for (int i = 0; form->notes && set && i < form->notes->count; i++) {
+        const ImageNote *note = &form->notes->notes[i];
+        bool software = strcmp(note->key, "Software") == 0;
+        set = TIFFSetField(handle, software ? TIFFTAG_SOFTWARE : TIFFTAG_IMAGEDESCRIPTION,
+                           note->text);
+    }
+    return set;
+}
+
+static Status begin(FILE *stream, const ImageForm *form, void **self, Err *err)
+{
+    Writer *writer;
+    TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
+    *self = writer;
+    writer->stream = stream;
+    writer->height = form->height;
+    writer->row_bytes = (size_t)form->width * (size_t)form->channels * (size_t)(form->bits / 8);
+    writer->rows_per_strip = (int)(STRIP_BYTES / writer->row_bytes);
+    if (writer->rows_per_strip < 1)
+        writer->rows_per_strip = 1;
+    if (writer->rows_per_strip > form->height)
+        writer->rows_per_strip = form->height;
+    if (fseeko(stream, 0, SEEK_CUR) != 0)
+        return err_set(err, STATUS_IO, "a TIFF needs a file, not a pipe");
+    TRY(mem_calloc(&writer->strip, (size_t)writer->rows_per_strip, writer->row_bytes, "strips",
+                   err));
+    writer->handle = open_handle(writer, (double)writer->row_bytes * form->height > classic_bytes);
+    if (!writer->handle || !set_fields(writer->handle, form, writer->rows_per_strip))
+        return failed(writer, err);
+    return STATUS_OK;
+}
+
+/* libtiff may change the strip that it is given. */
+static Status write_strip(Writer *self, Err *err)
+{
+    tmsize_t size = (tmsize_t)((size_t)self->filled * self->row_bytes);
+    self->filled = 0;
+    if (TIFFWriteEncodedStrip(self->handle, self->next++, self->strip, size) != size)
+        return failed(self, err);
+    return STATUS_OK;
+}
+
+static Status write_rows(void *self, const void *values, int first, int n, Err *err)
+{
+    Writer *writer = self;
+    const uint8_t *bytes = values;
+    for (int y = 0; y < n; y++) {
+        memcpy(writer->strip + (size_t)writer->filled++ * writer->row_bytes,
+               bytes + (size_t)y * writer->row_bytes, writer->row_bytes);
+        if (writer->filled == writer->rows_per_strip || first + y + 1 == writer->height)
+            TRY(write_strip(writer, err));
+    }
+    return STATUS_OK;
+}
+
+static Status end(void *self, Err *err)
+{
+    Writer *writer = self;
+    return TIFFWriteDirectory(writer->handle) == 1 ? STATUS_OK : failed(writer, err);
+}
+
+static void release_writer(void *self)
+{
+    Writer *writer = self;
+    if (!writer)
+        return;
+    if (writer->handle)
+        TIFFCleanup(writer->handle);
+    free(writer->strip);
+    free(writer);
+}
+
+const RowEncoder tiff_encoder = {begin, write_rows, end, release_writer, false};
