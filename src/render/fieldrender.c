@@ -4,7 +4,6 @@
  * memory in proportion to its width only. */
 #include "render/fieldrender.h"
 
-#include "render/caster.h"
 #include "render/fieldtiles.h"
 #include "render/resample.h"
 #include <stdlib.h>
@@ -27,6 +26,7 @@ typedef struct Canvas {
 typedef struct FieldPicture {
     const Scene *scene;
     const RenderParams *params;
+    const Band *rows; /* of the picture that the frame has */
     Frame *frame;
     FieldTiles *tiles; /* of this pass */
     SampleGrid grid;   /* of this pass */
@@ -186,7 +186,7 @@ static void write_geometry(const FieldPicture *picture, const SeenTile *seen)
     const Camera *camera = &scene->camera;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         int i = seen->column + tile_sample_x(sample), j = seen->row + tile_sample_y(sample);
-        if (i >= camera->width || j >= camera->height)
+        if (i >= camera->width || j >= picture->rows->rows)
             continue;
         bool hit = seen->hits && seen->hits->state[sample] == TILE_HIT;
         size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;
@@ -217,10 +217,9 @@ static void visit_center(const SeenTile *seen, int worker, void *context)
 
 static void report_progress(const FieldPicture *picture, size_t band, int worker)
 {
-    const RenderParams *params = picture->params;
-    double bands = (picture->scene->camera.height + TILE_SIDE - 1) / TILE_SIDE;
-    if (worker == 0 && params->progress)
-        params->progress((double)band / bands, params->progress_context);
+    if (worker == 0)
+        band_progress(picture->rows, picture->params, picture->scene->camera.height,
+                      picture->grid.spacing < 1, (double)band * TILE_SIDE / picture->rows->rows);
 }
 
 static void trace_centers(size_t band, int worker, void *context)
@@ -260,7 +259,7 @@ static bool mark_wanted(const FieldPicture *picture, size_t tile_row, uint8_t *w
     int last = ((int)tile_row * TILE_SIDE + TILE_SIDE - 1) / n;
     bool any = false;
     memset(wanted, 0, fieldtiles_columns(picture->tiles));
-    for (int j = first; j <= last && j < camera->height; j++)
+    for (int j = first; j <= last && j < picture->rows->rows; j++)
         for (int i = 0; i < camera->width; i++)
             if (wants_more(picture, i, j)) {
                 any = true;
@@ -302,7 +301,7 @@ static void trace_further(size_t band, int worker, void *context)
     if (canvas->status != STATUS_OK)
         return;
     int first = (int)band * TILE_SIDE;
-    for (int j = first; j < first + TILE_SIDE && j < camera->height; j++)
+    for (int j = first; j < first + TILE_SIDE && j < picture->rows->rows; j++)
         for (int i = 0; i < camera->width; i++)
             if (wants_more(picture, i, j))
                 add_up(picture, canvas->band, j - first, i, j);
@@ -315,15 +314,15 @@ static Status run_pass(FieldPicture *picture, int n, const double *offsets,
 {
     Status status;
     const Camera *camera = &picture->scene->camera;
-    int width = camera->width * n, height = camera->height * n;
+    int first = picture->rows->first, width = camera->width * n, height = picture->rows->rows * n;
     double *columns = NULL, *rows = NULL;
     TRY_GOTO(mem_calloc(&columns, (size_t)width, sizeof *columns, "columns", err));
     TRY_GOTO(mem_calloc(&rows, (size_t)height, sizeof *rows, "rows", err));
     for (int i = 0; i < width; i++)
         columns[i] = i / n + offsets[i % n];
     for (int j = 0; j < height; j++)
-        rows[j] = j / n + offsets[j % n];
-    picture->grid = (SampleGrid){columns, rows, width, height, 1.0 / n};
+        rows[j] = first + j / n + offsets[j % n];
+    picture->grid = (SampleGrid){columns, rows, width, height, 1.0 / n, first * n, offsets[0]};
     double start_s = clock_seconds();
     TRY_GOTO(fieldtiles_new(picture->scene, &picture->grid, nearest_seen_mm, picture->workers,
                             &picture->tiles, err));
@@ -334,7 +333,7 @@ static Status run_pass(FieldPicture *picture, int n, const double *offsets,
         TRY_GOTO(mem_calloc(&canvas->wanted, fieldtiles_columns(picture->tiles), 1, "bands", err));
     }
     *prepared_s += clock_seconds() - start_s;
-    threads_for(((size_t)camera->height + TILE_SIDE - 1) / TILE_SIDE, picture->workers, body,
+    threads_for(((size_t)picture->rows->rows + TILE_SIDE - 1) / TILE_SIDE, picture->workers, body,
                 picture);
     for (int i = 0; i < picture->workers && status == STATUS_OK; i++) {
         status = picture->canvases[i].status;
@@ -407,7 +406,8 @@ static Status antialias(FieldPicture *picture, double *prepared_s, Err *err)
     if (params->antialias_threshold > 0) {
         TRY_GOTO(mem_calloc(&picture->mask, (size_t)color->width * (size_t)color->height, 1,
                             "masks", err));
-        resample_mask(color, (float)params->antialias_threshold, picture->workers, picture->mask);
+        resample_mask(color, picture->rows->above, picture->rows->below,
+                      (float)params->antialias_threshold, picture->workers, picture->mask);
     }
     TRY_GOTO(run_pass(picture, params->antialias, offsets, trace_further, prepared_s, err));
 done:
@@ -425,29 +425,25 @@ static void release(FieldPicture *picture)
     free(picture->canvases);
     free(picture->lights);
     free(picture->mask);
-    caster_free(picture->caster);
 }
 
-Status fieldrender(const Scene *scene, const RenderParams *params, Frame *frame, RenderStats *stats,
-                   Err *err)
+Status fieldrender(const Scene *scene, const RenderParams *params, Caster *caster, const Band *rows,
+                   Frame *frame, RenderStats *stats, Err *err)
 {
     Status status;
-    FieldPicture picture = {.scene = scene, .params = params, .frame = frame};
+    FieldPicture picture = {
+        .scene = scene, .params = params, .rows = rows, .frame = frame, .caster = caster};
     const double center = 0;
     double start_s = clock_seconds();
     picture.workers = params->threads > 0 ? params->threads : threads_available();
     TRY_GOTO(prepare_lights(&picture, err));
     TRY_GOTO(prepare_canvases(&picture, err));
-    if (params->shadows)
-        TRY_GOTO(caster_new(scene, NULL, picture.workers, &picture.caster, err));
     double prepared_s = clock_seconds() - start_s;
     TRY_GOTO(run_pass(&picture, 1, &center, trace_centers, &prepared_s, err));
     if (params->antialias > 1 && frame->color.values)
         TRY_GOTO(antialias(&picture, &prepared_s, err));
-    if (stats)
-        *stats = (RenderStats){.prepare_s = prepared_s,
-                               .trace_s = clock_seconds() - start_s - prepared_s,
-                               .rays = (size_t)scene->camera.width * (size_t)scene->camera.height};
+    stats->prepare_s += prepared_s;
+    stats->trace_s += clock_seconds() - start_s - prepared_s;
 done:
     release(&picture);
     return status;

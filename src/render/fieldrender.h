@@ -2,10 +2,12 @@
 #ifndef CORCAST_RENDER_FIELDRENDER_H
 #define CORCAST_RENDER_FIELDRENDER_H
 
-#include "render/render.h"
+#include "render/band.h"
+#include "render/caster.h"
 
-/* render() for implicit scenes, into planes that are there. `stats` may be NULL. */
-MUST_CHECK Status fieldrender(const Scene *scene, const RenderParams *params, Frame *frame,
-                              RenderStats *stats, Err *err);
+/* renderer_rows() for implicit scenes, into planes that are there. `caster` is for shadows; NULL without.
+ * Adds the seconds taken to *stats. */
+MUST_CHECK Status fieldrender(const Scene *scene, const RenderParams *params, Caster *caster,
+                              const Band *rows, Frame *frame, RenderStats *stats, Err *err);
 
 #endif

@@ -48,6 +48,7 @@ struct FieldTiles {
     bool perspective;
     double z_min;
     double *x, *y; /* of the grid's columns and rows, in the camera's plane */
+    double y_top;  /* of the picture's first row of samples */
     double step_x, step_y;
     int tile_columns, tile_rows;
     FrameSegment *segments;
@@ -98,13 +99,14 @@ static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
 }
 
 /* The samples, and then the tiles, within a range of the camera's plane, one of whose directions has
- * `count` samples from `first` on in steps of `step`. A thousandth of a step covers rounding. */
-static Span tiles_within(Range range, double first, double step, int count)
+ * samples from `first` on in steps of `step`: `skipped` of them first, which do not count, and then
+ * `count`. A thousandth of a step covers rounding. */
+static Span tiles_within(Range range, double first, double step, int skipped, int count)
 {
     double from = (range.low - first) / step, to = (range.high - first) / step;
     double low = ceil(min_of(from, to) - 1e-3), high = floor(max_of(from, to) + 1e-3);
-    low = max_of(low, 0);
-    high = min_of(high, count - 1);
+    low = max_of(low - skipped, 0);
+    high = min_of(high - skipped, count - 1);
     if (!(low <= high))
         return (Span){1, 0};
     return (Span){(int)low / TILE_SIDE, (int)high / TILE_SIDE};
@@ -125,7 +127,7 @@ static Span rows_of(const FieldTiles *tiles, const FrameSegment *segment)
     if (side > 0)
         range = range_union(ball_shadow(tiles, segment->a.y, segment->a.z, segment->reach),
                             ball_shadow(tiles, segment->b.y, segment->b.z, segment->reach));
-    return tiles_within(range, tiles->y[0], tiles->step_y, tiles->grid.n_rows);
+    return tiles_within(range, tiles->y_top, tiles->step_y, tiles->grid.above, tiles->grid.n_rows);
 }
 
 enum { CHUNK = 2048 };
@@ -178,6 +180,11 @@ static Status sort_into_rows(FieldTiles *tiles, Err *err)
     return STATUS_OK;
 }
 
+static double row_height(const FieldTiles *tiles, double row)
+{
+    return (0.5 - (row + 0.5) / tiles->scene->camera.height) * tiles->height;
+}
+
 static void place_grid(FieldTiles *tiles)
 {
     const SampleGrid *grid = &tiles->grid;
@@ -185,7 +192,8 @@ static void place_grid(FieldTiles *tiles)
     for (int i = 0; i < grid->n_columns; i++)
         tiles->x[i] = ((grid->columns[i] + 0.5) / camera->width - 0.5) * tiles->width;
     for (int j = 0; j < grid->n_rows; j++)
-        tiles->y[j] = (0.5 - (grid->rows[j] + 0.5) / camera->height) * tiles->height;
+        tiles->y[j] = row_height(tiles, grid->rows[j]);
+    tiles->y_top = row_height(tiles, grid->above ? grid->top : grid->rows[0]);
     tiles->step_x = grid->spacing / camera->width * tiles->width;
     tiles->step_y = -grid->spacing / camera->height * tiles->height;
 }
@@ -328,7 +336,7 @@ static Span columns_of(const FieldTiles *tiles, const FrameSegment *segment, dou
     Vec3 last = vec3_add_scaled(segment->a, span, to);
     Range range = range_union(ball_shadow(tiles, first.x, first.z, segment->reach),
                               ball_shadow(tiles, last.x, last.z, segment->reach));
-    return tiles_within(range, tiles->x[0], tiles->step_x, tiles->grid.n_columns);
+    return tiles_within(range, tiles->x[0], tiles->step_x, 0, tiles->grid.n_columns);
 }
 
 /* Fills offsets and lists of the row. */

@@ -4,17 +4,29 @@
  * of 3.7.0.10: every pixel is supersampled when the threshold is 0). */
 #include "render/render.h"
 
+#include "render/band.h"
 #include "render/caster.h"
 #include "render/fieldrender.h"
 #include "render/resample.h"
 #include "render/shade.h"
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+struct Renderer {
+    const Scene *scene;
+    RenderParams params;
+    int threads;
+    Caster *caster; /* NULL when the potential is drawn without shadows */
+    RenderStats stats;
+};
 
 typedef struct Job {
     const Scene *scene;
     const RenderParams *params;
     Caster *caster;
+    const Band *band;
     Frame *frame;
     double *offsets; /* of a pixel's further samples */
     uint8_t *mask;   /* pixels that get them; NULL: all */
@@ -79,15 +91,21 @@ static void store_geometry(Frame *frame, size_t pixel, const Surfel *surfel)
         frame->id.ids[pixel] = surfel ? surfel->id : 0;
 }
 
+static void report_progress(const Job *job, bool further, size_t row, int worker)
+{
+    if (worker == 0)
+        band_progress(job->band, job->params, job->scene->camera.height, further,
+                      (double)row / job->band->rows);
+}
+
 static void render_row(size_t row, int worker, void *context)
 {
     const Job *job = context;
     const Camera *camera = &job->scene->camera;
-    if (worker == 0 && job->params->progress)
-        job->params->progress((double)row / camera->height, job->params->progress_context);
+    report_progress(job, false, row, worker);
     for (int i = 0; i < camera->width; i++) {
         size_t pixel = row * (size_t)camera->width + (size_t)i;
-        Ray ray = camera_ray(camera, i, (double)row);
+        Ray ray = camera_ray(camera, i, job->band->first + (int)row);
         Surfel surfel;
         bool seen = caster_first(job->caster, worker, ray, &surfel);
         store_geometry(job->frame, pixel, seen ? &surfel : NULL);
@@ -107,14 +125,14 @@ static void resample_row(size_t row, int worker, void *context)
 {
     const Job *job = context;
     const Camera *camera = &job->scene->camera;
-    if (worker == 0 && job->params->progress)
-        job->params->progress((double)row / camera->height, job->params->progress_context);
+    report_progress(job, true, row, worker);
     for (int i = 0; i < camera->width; i++) {
         size_t pixel = row * (size_t)camera->width + (size_t)i;
         if (job->mask && !job->mask[pixel])
             continue;
         float *value = &job->frame->color.values[3 * pixel];
-        Rgb color = antialiased(job, worker, i, (int)row, (Rgb){value[0], value[1], value[2]});
+        Rgb color = antialiased(job, worker, i, job->band->first + (int)row,
+                                (Rgb){value[0], value[1], value[2]});
         value[0] = color.r;
         value[1] = color.g;
         value[2] = color.b;
@@ -130,15 +148,79 @@ static Status resample(Job *job, int threads, Err *err)
     resample_offsets(params->antialias, job->offsets);
     if (params->antialias_threshold > 0) {
         TRY(mem_calloc(&job->mask, (size_t)color->width * (size_t)color->height, 1, "masks", err));
-        resample_mask(color, (float)params->antialias_threshold, threads, job->mask);
+        resample_mask(color, job->band->above, job->band->below, (float)params->antialias_threshold,
+                      threads, job->mask);
     }
     threads_for((size_t)color->height, threads, resample_row, job);
     return STATUS_OK;
 }
 
-static Status make_planes(const Camera *camera, const RenderParams *params, Frame *frame, Err *err)
+static Status rayrender(const Renderer *renderer, const Band *band, Frame *frame, Err *err)
 {
-    int width = camera->width, height = camera->height;
+    const RenderParams *params = &renderer->params;
+    Job job = {renderer->scene, params, renderer->caster, band, frame, NULL, NULL};
+    Status status = STATUS_OK;
+    threads_for((size_t)band->rows, renderer->threads, render_row, &job);
+    if (params->antialias > 1 && frame->color.values)
+        status = resample(&job, renderer->threads, err);
+    free(job.offsets);
+    free(job.mask);
+    return status;
+}
+
+void band_progress(const Band *band, const RenderParams *params, int height, bool further,
+                   double part)
+{
+    if (!params->progress)
+        return;
+    double more = params->want_color && params->antialias > 1
+                      ? (double)params->antialias * params->antialias
+                      : 0;
+    double done = (further ? 1 + more * part : part) / (1 + more);
+    params->progress((band->first + done * band->rows) / height, params->progress_context);
+}
+
+/* ---- bands -------------------------------------------------------------------------------------- */
+
+static bool has_tiles(const Renderer *renderer)
+{
+    return renderer->scene->model == SCENE_ISOSURFACE && !renderer->params.povray_cells;
+}
+
+Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **out, Err *err)
+{
+    Renderer *renderer;
+    double start_s = clock_seconds(), start_cpu_s = clock_cpu_seconds();
+    TRY(mem_calloc(&renderer, 1, sizeof *renderer, "renderers", err));
+    *renderer = (Renderer){.scene = scene, .params = *params};
+    renderer->threads = params->threads > 0 ? params->threads : threads_available();
+    Status status = STATUS_OK;
+    if (!has_tiles(renderer) || params->shadows)
+        status = caster_new(scene, params->povray_cells, renderer->threads, &renderer->caster, err);
+    if (status != STATUS_OK) {
+        renderer_free(renderer);
+        return status;
+    }
+    renderer->stats.prepare_s = clock_seconds() - start_s;
+    renderer->stats.cpu_s = clock_cpu_seconds() - start_cpu_s;
+    *out = renderer;
+    return STATUS_OK;
+}
+
+void renderer_free(Renderer *renderer)
+{
+    if (renderer)
+        caster_free(renderer->caster);
+    free(renderer);
+}
+
+RenderStats renderer_stats(const Renderer *renderer)
+{
+    return renderer->stats;
+}
+
+static Status make_planes(int width, int height, const RenderParams *params, Frame *frame, Err *err)
+{
     if (params->want_color)
         TRY(plane_init(&frame->color, width, height, 3, err));
     if (params->want_depth)
@@ -150,45 +232,86 @@ static Status make_planes(const Camera *camera, const RenderParams *params, Fram
     return STATUS_OK;
 }
 
-static Status rayrender(const Scene *scene, const RenderParams *params, Frame *frame,
-                        RenderStats *stats, Err *err)
+static Status draw(Renderer *renderer, const Band *band, Frame *frame, Err *err)
 {
-    Caster *caster = NULL;
-    int threads = params->threads > 0 ? params->threads : threads_available();
     double start_s = clock_seconds();
-    TRY(caster_new(scene, params->povray_cells, threads, &caster, err));
-    double built_s = clock_seconds();
-    Job job = {scene, params, caster, frame, NULL, NULL};
-    Status status = STATUS_OK;
-    threads_for((size_t)scene->camera.height, threads, render_row, &job);
-    if (params->antialias > 1 && frame->color.values)
-        status = resample(&job, threads, err);
-    free(job.offsets);
-    free(job.mask);
-    caster_free(caster);
-    if (stats)
-        *stats = (RenderStats){.prepare_s = built_s - start_s,
-                               .trace_s = clock_seconds() - built_s,
-                               .rays = (size_t)scene->camera.width * (size_t)scene->camera.height};
-    return status;
+    TRY(make_planes(renderer->scene->camera.width, band->rows, &renderer->params, frame, err));
+    if (has_tiles(renderer))
+        return fieldrender(renderer->scene, &renderer->params, renderer->caster, band, frame,
+                           &renderer->stats, err);
+    TRY(rayrender(renderer, band, frame, err));
+    renderer->stats.trace_s += clock_seconds() - start_s;
+    return STATUS_OK;
+}
+
+static void cut_plane(Plane *plane, const Band *band)
+{
+    if (!plane->values)
+        return;
+    size_t row = (size_t)plane->width * (size_t)plane->channels;
+    plane->height = band->rows - band->above - band->below;
+    memmove(plane->values, plane->values + (size_t)band->above * row,
+            (size_t)plane->height * row * sizeof *plane->values);
+}
+
+/* Takes the neighbours away. */
+static void cut_frame(Frame *frame, const Band *band)
+{
+    cut_plane(&frame->color, band);
+    cut_plane(&frame->depth, band);
+    cut_plane(&frame->normal, band);
+    if (!frame->id.ids)
+        return;
+    size_t width = (size_t)frame->id.width;
+    frame->id.height = band->rows - band->above - band->below;
+    memmove(frame->id.ids, frame->id.ids + (size_t)band->above * width,
+            (size_t)frame->id.height * width * sizeof *frame->id.ids);
+}
+
+/* The band with the neighbours that adaptive antialiasing looks at. */
+static Band band_of(const Renderer *renderer, int first, int rows)
+{
+    const RenderParams *params = &renderer->params;
+    Band band = {.first = first, .rows = rows};
+    int left = renderer->scene->camera.height - first - rows;
+    if (params->antialias > 1 && params->antialias_threshold > 0) {
+        band.above = first > 0 ? RENDER_BAND_STEP : 0;
+        band.below = left < RENDER_BAND_STEP ? left : RENDER_BAND_STEP;
+    }
+    band.first -= band.above;
+    band.rows += band.above + band.below;
+    return band;
+}
+
+Status renderer_rows(Renderer *renderer, int first, int rows, Frame *frame, Err *err)
+{
+    const Camera *camera = &renderer->scene->camera;
+    assert(first >= 0 && rows > 0 && first + rows <= camera->height &&
+           first % RENDER_BAND_STEP == 0);
+    Frame made = {0};
+    double start_cpu_s = clock_cpu_seconds();
+    const Band band = band_of(renderer, first, rows);
+    Status status = draw(renderer, &band, &made, err);
+    renderer->stats.cpu_s += clock_cpu_seconds() - start_cpu_s;
+    renderer->stats.rays += (size_t)camera->width * (size_t)band.rows;
+    if (status != STATUS_OK) {
+        frame_release(&made);
+        return status;
+    }
+    if (band.above + band.below)
+        cut_frame(&made, &band);
+    *frame = made;
+    return STATUS_OK;
 }
 
 Status render(const Scene *scene, const RenderParams *params, Frame *frame, RenderStats *stats,
               Err *err)
 {
-    Frame made = {0};
-    double start_s = clock_cpu_seconds();
-    Status status = make_planes(&scene->camera, params, &made, err);
-    if (status == STATUS_OK)
-        status = scene->model == SCENE_ISOSURFACE && !params->povray_cells
-                     ? fieldrender(scene, params, &made, stats, err)
-                     : rayrender(scene, params, &made, stats, err);
-    if (status != STATUS_OK) {
-        frame_release(&made);
-        return status;
-    }
-    *frame = made;
-    if (stats)
-        stats->cpu_s = clock_cpu_seconds() - start_s;
-    return STATUS_OK;
+    Renderer *renderer;
+    TRY(renderer_new(scene, params, &renderer, err));
+    Status status = renderer_rows(renderer, 0, scene->camera.height, frame, err);
+    if (status == STATUS_OK && stats)
+        *stats = renderer->stats;
+    renderer_free(renderer);
+    return status;
 }

@@ -31,7 +31,28 @@ typedef struct RenderStats {
     size_t rays; /* primary */
 } RenderStats;
 
-/* Renders into *frame (owned). The same bytes for any number of threads. STATUS_MEMORY when the
+/* Bands begin at multiples of so many rows. */
+enum { RENDER_BAND_STEP = 8 };
+
+/* A scene made ready to be drawn, whole or band by band. */
+typedef struct Renderer Renderer;
+
+/* Builds what the geometry needs; the scene is borrowed, and `params` as long as this call. Until
+ * renderer_free, camera, lights and colours of the scene may change between calls, geometry may
+ * not. */
+MUST_CHECK Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **out,
+                               Err *err);
+void renderer_free(Renderer *renderer);
+
+/* Renders the rows first .. first + rows of the picture into *frame (owned), which has as many: the very
+ * bytes that those rows have in the whole picture. `first` is a multiple of RENDER_BAND_STEP, and so is
+ * `rows` unless they end with the picture. STATUS_MEMORY when the planes do not fit. */
+MUST_CHECK Status renderer_rows(Renderer *renderer, int first, int rows, Frame *frame, Err *err);
+
+/* Of all calls so far, renderer_new included. */
+RenderStats renderer_stats(const Renderer *renderer);
+
+/* Renders the whole picture into *frame (owned). The same bytes for any number of threads. STATUS_MEMORY when the
  * planes do not fit. `stats` may be NULL. */
 MUST_CHECK Status render(const Scene *scene, const RenderParams *params, Frame *frame,
                          RenderStats *stats, Err *err);

@@ -1,6 +1,7 @@
 #include "render/resample.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct MaskJob {
     const Plane *color;
@@ -34,10 +35,14 @@ static void mask_row(size_t row, int worker, void *context)
     }
 }
 
-void resample_mask(const Plane *color, float threshold, int threads, uint8_t *mask)
+void resample_mask(const Plane *color, int above, int below, float threshold, int threads,
+                   uint8_t *mask)
 {
     MaskJob job = {color, threshold, mask};
-    threads_for((size_t)color->height, threads, mask_row, &job);
+    size_t width = (size_t)color->width, height = (size_t)color->height;
+    threads_for(height, threads, mask_row, &job);
+    memset(mask, 0, (size_t)above * width);
+    memset(mask + (height - (size_t)below) * width, 0, (size_t)below * width);
 }
 
 void resample_offsets(int n, double *offsets)

@@ -209,7 +209,7 @@ static void adaptive_antialiasing_changes_edges_alone(void **state)
     Frame adaptive = drawn(staged.scene, 2, 3, 0.1);
     uint8_t *mask = calloc(WIDTH * HEIGHT, 1);
     assert_non_null(mask);
-    resample_mask(&plain.color, 0.1f, 1, mask);
+    resample_mask(&plain.color, 0, 0, 0.1f, 1, mask);
     int refined = 0;
     for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
         const Frame *expected = mask[pixel] ? &full : &plain;
@@ -266,7 +266,7 @@ static void both_kernels_agree(void **state)
     double places[64];
     for (int i = 0; i < 64; i++)
         places[i] = i;
-    const SampleGrid grid = {places, places, 64, 64, 1};
+    const SampleGrid grid = {places, places, 64, 64, 1, 0, 0};
     const TileKernels *kernels[2] = {&tilekernels_portable, tilekernels_best()};
     static Tile tiles[2][64];
     for (int k = 0; k < 2; k++) {

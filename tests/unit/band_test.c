@@ -1,0 +1,172 @@
+/* Bands have the very bytes of the whole picture. */
+#include "render/render.h"
+
+#include "stage/stage.h"
+#include "treeio/treeio.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <stdio.h>
+
+enum { WIDTH = 83, HEIGHT = 61 };
+
+static Err err;
+
+static const Look look = {
+    .color = {0.5f, 0.1f, 0.2f},
+    .background = {0.9f, 1, 1},
+    .finish = {.ambient = 0.1f,
+               .diffuse = 0.6f,
+               .brilliance = 1,
+               .phong = 0.3f,
+               .phong_size = 31,
+               .roughness = 0.05f},
+    .lights = {{.direction = {-0.5, 0.7, 1}, .color = {0.8f, 0.8f, 0.8f}},
+               {.is_point = true, .direction = {1.5, 0.3, 1}, .color = {0.2f, 0.3f, 0.3f}}},
+    .n_lights = 2};
+
+static Scene staged(SceneModel model, Projection projection)
+{
+    Tree tree;
+    Scene scene;
+    StageParams params = stage_defaults();
+    params.model = model;
+    params.projection = projection;
+    params.view = VIEW_ISO;
+    params.shadows = true;
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    assert_int_equal(tree_read(&tree, "tests/golden/ball60.swc", &err), STATUS_OK);
+    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, &err), STATUS_OK);
+    tree_release(&tree);
+    return scene;
+}
+
+static void assert_same_rows(const Frame *whole, const Frame *band, int first)
+{
+    size_t start = (size_t)first * WIDTH, n = (size_t)band->color.height * WIDTH;
+    assert_memory_equal(whole->color.values + 3 * start, band->color.values, 3 * n * sizeof(float));
+    assert_memory_equal(whole->depth.values + start, band->depth.values, n * sizeof(float));
+    assert_memory_equal(whole->normal.values + 3 * start, band->normal.values,
+                        3 * n * sizeof(float));
+    assert_memory_equal(whole->id.ids + start, band->id.ids, n * sizeof(uint32_t));
+}
+
+/* `step` rows at a time. */
+static void assert_bands_are_the_whole(const Scene *scene, const RenderParams *params, int step)
+{
+    Frame whole;
+    RenderStats stats;
+    Renderer *renderer;
+    assert_int_equal(render(scene, params, &whole, &stats, &err), STATUS_OK);
+    assert_int_equal(whole.color.height, HEIGHT);
+    assert_int_equal(renderer_new(scene, params, &renderer, &err), STATUS_OK);
+    for (int first = 0; first < HEIGHT; first += step) {
+        Frame band;
+        int rows = step < HEIGHT - first ? step : HEIGHT - first;
+        assert_int_equal(renderer_rows(renderer, first, rows, &band, &err), STATUS_OK);
+        assert_int_equal(band.color.height, rows);
+        assert_int_equal(band.id.height, rows);
+        assert_same_rows(&whole, &band, first);
+        frame_release(&band);
+    }
+    assert_true(renderer_stats(renderer).rays >= stats.rays);
+    renderer_free(renderer);
+    frame_release(&whole);
+}
+
+static void bands_have_the_bytes_of_the_whole(void **state)
+{
+    (void)state;
+    static const struct {
+        int antialias, step;
+        double threshold;
+    } cases[] = {{1, 8, 0}, {3, 16, 0}, {2, 8, 0.05}, {3, 24, 0.2}};
+    for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_ISOSURFACE; model++)
+        for (int projection = 0; projection < 2; projection++) {
+            Scene scene = staged(model, (Projection)projection);
+            for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+                const RenderParams params = {.threads = 2,
+                                             .antialias = cases[i].antialias,
+                                             .antialias_threshold = cases[i].threshold,
+                                             .shadows = i % 2 == 0,
+                                             .want_color = true,
+                                             .want_depth = true,
+                                             .want_normal = true,
+                                             .want_id = true};
+                assert_bands_are_the_whole(&scene, &params, cases[i].step);
+            }
+            scene_release(&scene);
+        }
+}
+
+/* As POV-Ray sees it. */
+static void bands_of_povrays_view_have_the_bytes_of_the_whole(void **state)
+{
+    (void)state;
+    Scene scene = staged(SCENE_ISOSURFACE, PROJECTION_ORTHOGRAPHIC);
+    const CellParams cells = {0};
+    const RenderParams params = {.threads = 2,
+                                 .antialias = 2,
+                                 .antialias_threshold = 0.05,
+                                 .povray_cells = &cells,
+                                 .want_color = true,
+                                 .want_depth = true,
+                                 .want_normal = true,
+                                 .want_id = true};
+    assert_bands_are_the_whole(&scene, &params, 40);
+    scene_release(&scene);
+}
+
+typedef struct Said {
+    double last;
+    int calls;
+} Said;
+
+static void rises(double fraction, void *context)
+{
+    Said *said = context;
+    assert_true(fraction >= said->last && fraction <= 1);
+    said->last = fraction;
+    said->calls++;
+}
+
+static void progress_rises_from_band_to_band(void **state)
+{
+    (void)state;
+    for (SceneModel model = SCENE_ROUNDED; model <= SCENE_ISOSURFACE; model++) {
+        Scene scene = staged(model, PROJECTION_ORTHOGRAPHIC);
+        Said said = {0};
+        const RenderParams params = {.threads = 1,
+                                     .antialias = 2,
+                                     .want_color = true,
+                                     .progress = rises,
+                                     .progress_context = &said};
+        Renderer *renderer;
+        assert_int_equal(renderer_new(&scene, &params, &renderer, &err), STATUS_OK);
+        for (int first = 0; first < HEIGHT; first += 32) {
+            Frame band;
+            int rows = first + 32 < HEIGHT ? 32 : HEIGHT - first;
+            assert_int_equal(renderer_rows(renderer, first, rows, &band, &err), STATUS_OK);
+            frame_release(&band);
+        }
+        assert_true(said.calls >= 16 && said.last > 0.8);
+        renderer_free(renderer);
+        scene_release(&scene);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bands_have_the_bytes_of_the_whole),
+        cmocka_unit_test(bands_of_povrays_view_have_the_bytes_of_the_whole),
+        cmocka_unit_test(progress_rises_from_band_to_band),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
