@@ -58,13 +58,57 @@ static Status write_report(const char *path, const Scene *scene, const RenderSta
     return json_write(report, path, err);
 }
 
+/* Rows of a band so that it takes about `memory_mb`: floats, codes and masks. */
+static int band_rows(const FramesForm *form, double memory_mb)
+{
+    int bytes = 12 + form->bits / 8 * 3 + 1 + 4 * form->depth + 12 * form->normal + 7 * form->id;
+    double rows = memory_mb * 1e6 / ((double)bytes * form->width);
+    if (rows >= form->height)
+        return form->height;
+    return rows < 2 * RENDER_BAND_STEP ? RENDER_BAND_STEP
+                                       : (int)rows / RENDER_BAND_STEP * RENDER_BAND_STEP;
+}
+
+/* Draws band after band and writes each before the next. */
+static Status draw_bands(Renderer *renderer, FramesWriter *writer, int height, int step, Err *err)
+{
+    for (int first = 0; first < height; first += step) {
+        Frame band;
+        int rows = step < height - first ? step : height - first;
+        TRY(renderer_rows(renderer, first, rows, &band, err));
+        Status status = frames_rows(writer, &band, err);
+        frame_release(&band);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+static Status draw(const Scene *scene, const RenderParams *params, const FramesForm *form,
+                   double memory_mb, RenderStats *stats, Err *err)
+{
+    int step = band_rows(form, memory_mb);
+    TRY(picture_fits(form->width, step, 40, err));
+    Renderer *renderer;
+    TRY(renderer_new(scene, params, &renderer, err));
+    FramesWriter *writer = NULL;
+    Status status = frames_open(&writer, form, err);
+    if (status == STATUS_OK)
+        status = draw_bands(renderer, writer, form->height, step, err);
+    *stats = renderer_stats(renderer);
+    renderer_free(renderer);
+    if (status == STATUS_OK)
+        return frames_commit(writer, err);
+    frames_discard(writer);
+    return status;
+}
+
 Status run_render(int argc, char **argv, Err *err)
 {
     PictureOptions picture;
     picture_options_init(&picture);
     const char *output = NULL, *planes = NULL, *json = NULL;
     int bits = 8, hits = HITS_EXACT;
-    double threshold = 0;
+    double threshold = 0, memory_mb = 128;
     const Option own[] = {
         {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P",
          "the picture: .png, .ppm, .tif or .pfm"},
@@ -75,6 +119,8 @@ Status run_render(int argc, char **argv, Err *err)
          "isosurface: where it is, or where POV-Ray's root finder sees it (exact)"},
         {"antialias-threshold", OPTION_NUMBER, &threshold, NULL, 0, 1, NULL, "T",
          "antialias only pixels that differ by T from a neighbour (0: all, as POV-Ray)"},
+        {"memory", OPTION_NUMBER, &memory_mb, NULL, 1e-3, 1e9, NULL, "MB",
+         "of a band; larger pictures are drawn and written band by band (128)"},
         {"json", OPTION_TEXT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
         {0},
     };
@@ -83,7 +129,6 @@ Status run_render(int argc, char **argv, Err *err)
     TRY(options_parse(&command, tables, argc, argv, &parsed, err));
     Status status = STATUS_OK;
     Scene scene = {0};
-    Frame frame = {0};
     RenderStats stats;
     StageReport staged;
     char *line = NULL;
@@ -106,25 +151,31 @@ Status run_render(int argc, char **argv, Err *err)
     }
     params.antialias_threshold = threshold;
     TRY_GOTO(read_planes(planes, &params, err));
-    bool color_plane = params.want_color;
+    FramesForm form = {.width = picture.size[0],
+                       .height = picture.size[1],
+                       .path = output,
+                       .bits = bits,
+                       .picture = true,
+                       .color = params.want_color,
+                       .depth = params.want_depth,
+                       .normal = params.want_normal,
+                       .id = params.want_id};
     params.want_color = true;
     TRY_GOTO(frames_check_output(output, planes != NULL, err));
-    TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 40, err));
     TRY_GOTO(
         picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, &staged, err));
     const CellParams cells = picture_cells(&picture);
     params.povray_cells = hits == HITS_POVRAY ? &cells : NULL;
+    TRY_GOTO(command_line_text("render", argc, argv, &line, err));
+    form.provenance = line;
     progress_start(&progress, "rendering", parsed.common.quiet);
-    status = render(&scene, &params, &frame, &stats, err);
+    status = draw(&scene, &params, &form, memory_mb, &stats, err);
     progress_end(&progress);
     TRY_GOTO(status);
-    TRY_GOTO(command_line_text("render", argc, argv, &line, err));
-    TRY_GOTO(frames_write(&frame, output, bits, color_plane, line, err));
     if (json)
         TRY_GOTO(write_report(json, &scene, &stats, &staged, params.threads, err));
 done:
     free(line);
-    frame_release(&frame);
     scene_release(&scene);
     parsed_release(&parsed);
     return status;

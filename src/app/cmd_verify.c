@@ -85,7 +85,7 @@ static Status write_frame(const Verification *v, const Frame *frame, const char 
 {
     char *path = NULL;
     TRY(file_join(v->folder, name, &path, err));
-    Status status = frames_write(frame, path, 8, false, provenance, err);
+    Status status = frames_write(frame, path, 8, provenance, err);
     free(path);
     return status;
 }
@@ -181,7 +181,7 @@ static Status run_oracle(Verification *v, Err *err)
     if (status == STATUS_OK)
         status = file_join(v->folder, "povray.png", &picture, err);
     if (status == STATUS_OK)
-        status = frames_write_planes(&v->povray, picture, err);
+        status = frames_write(&v->povray, picture, 0, NULL, err);
     free(picture);
     return status;
 }

@@ -1,3 +1,5 @@
+/* One writer a file. The planes take their final names first and the picture last, so that a picture
+ * never stands beside planes of another. */
 #include "app/frames.h"
 
 #include "app/commands.h"
@@ -18,58 +20,148 @@ Status frames_check_output(const char *path, bool planes, Err *err)
     return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png, .ppm, .tif or .pfm", path);
 }
 
-Status frames_write_color(const Plane *color, const char *path, int bits, const char *provenance,
-                          Err *err)
+typedef enum FrameFile { FILE_COLOR, FILE_DEPTH, FILE_NORMAL, FILE_ID, FILE_PICTURE } FrameFile;
+enum { FRAME_FILES = FILE_PICTURE + 1 };
+
+struct FramesWriter {
+    const FramesForm *form;
+    ImageWriter *files[FRAME_FILES]; /* NULL: not wanted */
+};
+
+static bool is_wanted(const FramesForm *form, int file)
 {
-    if (strcmp(file_extension(path), "pfm") == 0)
-        return plane_write(color, path, err);
-    const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", provenance}};
+    const bool wanted[FRAME_FILES] = {form->color, form->depth, form->normal, form->id,
+                                      form->picture};
+    return wanted[file];
+}
+
+static bool is_linear(const FramesForm *form)
+{
+    return strcmp(file_extension(form->path), "pfm") == 0;
+}
+
+static Status open_picture(FramesWriter *writer, Err *err)
+{
+    const FramesForm *form = writer->form;
+    const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", form->provenance}};
     const ImageNotes all = {.notes = notes, .count = 2};
-    Picture picture;
-    TRY(picture_from_plane(&picture, color, ENCODING_SRGB, bits, err));
-    Status status = picture_write(&picture, path, ENCODING_SRGB, &all, err);
-    picture_release(&picture);
-    return status;
+    const ImageForm image = {.width = form->width,
+                             .height = form->height,
+                             .channels = 3,
+                             .bits = is_linear(form) ? 32 : form->bits,
+                             .encoding = ENCODING_SRGB,
+                             .notes = &all};
+    return imagewriter_open(&writer->files[FILE_PICTURE], form->path, &image, err);
 }
 
-static Status write_plane(const Plane *plane, const char *path, const char *suffix, Err *err)
+static Status open_plane(FramesWriter *writer, int file, Err *err)
 {
+    static const struct {
+        const char *suffix;
+        int channels, bits;
+    } planes[] = {[FILE_COLOR] = {".color.pfm", 3, 32},
+                  [FILE_DEPTH] = {".depth.pfm", 1, 32},
+                  [FILE_NORMAL] = {".normal.pfm", 3, 32},
+                  [FILE_ID] = {".id.ppm", 3, 8}};
+    const ImageForm image = {.width = writer->form->width,
+                             .height = writer->form->height,
+                             .channels = planes[file].channels,
+                             .bits = planes[file].bits,
+                             .encoding = ENCODING_LINEAR};
     char *name = NULL;
-    TRY(file_with_suffix(path, suffix, &name, err));
-    Status status = plane_write(plane, name, err);
+    TRY(file_with_suffix(writer->form->path, planes[file].suffix, &name, err));
+    Status status = imagewriter_open(&writer->files[file], name, &image, err);
     free(name);
     return status;
 }
 
-static Status write_ids(const IdPlane *ids, const char *path, Err *err)
+Status frames_open(FramesWriter **out, const FramesForm *form, Err *err)
 {
-    Picture picture;
-    TRY(picture_from_ids(&picture, ids, err));
-    char *name = NULL;
-    Status status = file_with_suffix(path, ".id.ppm", &name, err);
-    if (status == STATUS_OK)
-        status = picture_write(&picture, name, ENCODING_LINEAR, NULL, err);
-    free(name);
-    picture_release(&picture);
-    return status;
-}
-
-Status frames_write_planes(const Frame *frame, const char *path, Err *err)
-{
-    if (frame->depth.values)
-        TRY(write_plane(&frame->depth, path, ".depth.pfm", err));
-    if (frame->normal.values)
-        TRY(write_plane(&frame->normal, path, ".normal.pfm", err));
-    if (frame->id.ids)
-        TRY(write_ids(&frame->id, path, err));
+    FramesWriter *writer;
+    TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
+    writer->form = form;
+    Status status = STATUS_OK;
+    for (int file = 0; file < FRAME_FILES && status == STATUS_OK; file++)
+        if (is_wanted(form, file))
+            status =
+                file == FILE_PICTURE ? open_picture(writer, err) : open_plane(writer, file, err);
+    if (status != STATUS_OK) {
+        frames_discard(writer);
+        return status;
+    }
+    *out = writer;
     return STATUS_OK;
 }
 
-Status frames_write(const Frame *frame, const char *path, int bits, bool color_plane,
-                    const char *provenance, Err *err)
+static Status write_codes(ImageWriter *file, Picture *codes, Err *err)
 {
-    if (color_plane)
-        TRY(write_plane(&frame->color, path, ".color.pfm", err));
-    TRY(frames_write_planes(frame, path, err));
-    return frames_write_color(&frame->color, path, bits, provenance, err);
+    Status status = imagewriter_codes(file, codes, err);
+    picture_release(codes);
+    return status;
+}
+
+static Status write_picture(FramesWriter *writer, const Plane *color, Err *err)
+{
+    ImageWriter *file = writer->files[FILE_PICTURE];
+    if (is_linear(writer->form))
+        return imagewriter_floats(file, color, err);
+    Picture codes;
+    TRY(picture_from_plane(&codes, color, ENCODING_SRGB, writer->form->bits, err));
+    return write_codes(file, &codes, err);
+}
+
+Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err)
+{
+    const Plane *const planes[] = {
+        [FILE_COLOR] = &rows->color, [FILE_DEPTH] = &rows->depth, [FILE_NORMAL] = &rows->normal};
+    for (int file = FILE_COLOR; file <= FILE_NORMAL; file++)
+        if (writer->files[file])
+            TRY(imagewriter_floats(writer->files[file], planes[file], err));
+    if (writer->files[FILE_ID]) {
+        Picture codes;
+        TRY(picture_from_ids(&codes, &rows->id, err));
+        TRY(write_codes(writer->files[FILE_ID], &codes, err));
+    }
+    return writer->files[FILE_PICTURE] ? write_picture(writer, &rows->color, err) : STATUS_OK;
+}
+
+Status frames_commit(FramesWriter *writer, Err *err)
+{
+    Status status = STATUS_OK;
+    for (int file = 0; file < FRAME_FILES && status == STATUS_OK; file++) {
+        if (!writer->files[file])
+            continue;
+        status = imagewriter_commit(writer->files[file], err);
+        writer->files[file] = NULL;
+    }
+    frames_discard(writer);
+    return status;
+}
+
+void frames_discard(FramesWriter *writer)
+{
+    for (int file = 0; writer && file < FRAME_FILES; file++)
+        imagewriter_discard(writer->files[file]);
+    free(writer);
+}
+
+Status frames_write(const Frame *frame, const char *path, int bits, const char *provenance,
+                    Err *err)
+{
+    const FramesForm form = {.width = bits ? frame->color.width : frame->id.width,
+                             .height = bits ? frame->color.height : frame->id.height,
+                             .path = path,
+                             .bits = bits,
+                             .picture = bits != 0,
+                             .depth = frame->depth.values != NULL,
+                             .normal = frame->normal.values != NULL,
+                             .id = frame->id.ids != NULL,
+                             .provenance = provenance};
+    FramesWriter *writer;
+    TRY(frames_open(&writer, &form, err));
+    Status status = frames_rows(writer, frame, err);
+    if (status == STATUS_OK)
+        return frames_commit(writer, err);
+    frames_discard(writer);
+    return status;
 }

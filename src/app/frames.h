@@ -8,17 +8,30 @@
 /* STATUS_USAGE when `path` is no image file, or is standard output although planes are wanted. */
 MUST_CHECK Status frames_check_output(const char *path, bool planes, Err *err);
 
-/* Writes the planes that the frame has beside the picture `path`: P.depth.pfm, P.normal.pfm and
- * P.id.ppm for P.png. */
-MUST_CHECK Status frames_write_planes(const Frame *frame, const char *path, Err *err);
+/* Which files are to be written for a frame. */
+typedef struct FramesForm {
+    int width, height; /* of the whole picture */
+    const char *path;  /* of the picture; the planes of P.png are P.color.pfm, P.depth.pfm,
+                        * P.normal.pfm and P.id.ppm */
+    int bits;          /* of a picture that is no .pfm: 8 or 16, sRGB; .pfm is linear */
+    bool picture, color, depth, normal, id;
+    const char *provenance; /* the command line; of the picture */
+} FramesForm;
 
-/* Writes these planes, the linear colour as P.color.pfm when `color_plane`, and last the picture itself
- * (.png and .ppm sRGB, .pfm linear). `provenance` is the command line. */
-MUST_CHECK Status frames_write(const Frame *frame, const char *path, int bits, bool color_plane,
+/* Files being written band by band; none has its final name before frames_commit. */
+typedef struct FramesWriter FramesWriter;
+
+/* `form` is borrowed until the end. Follow with exactly one of frames_commit and frames_discard, each
+ * of which frees the writer, also on failure. */
+MUST_CHECK Status frames_open(FramesWriter **out, const FramesForm *form, Err *err);
+/* The next rows, with all the planes that are to be written. */
+MUST_CHECK Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err);
+MUST_CHECK Status frames_commit(FramesWriter *writer, Err *err);
+void frames_discard(FramesWriter *writer);
+
+/* Writes a whole frame: the planes that it has but for the colour, and the picture if `bits` is not 0.
+ */
+MUST_CHECK Status frames_write(const Frame *frame, const char *path, int bits,
                                const char *provenance, Err *err);
-
-/* Writes a picture as PNG or PPM with sRGB encoding and provenance. */
-MUST_CHECK Status frames_write_color(const Plane *color, const char *path, int bits,
-                                     const char *provenance, Err *err);
 
 #endif

@@ -13,6 +13,7 @@ colours() {
 pixels() {
     case $1 in
     *.png) pngtopnm "$1" ;;
+    *.tif) tifftopnm "$1" 2>/dev/null ;;
     *) cat "$1" ;;
     esac | pnmtoplainpnm
 }
@@ -244,15 +245,54 @@ test_collinear_trees_are_drawn() {
     run_ok corcast render line.swc --model joined --joints paper --size 80x100 -o paper.png
 }
 
-test_a_picture_beyond_memory_is_refused_and_the_old_one_stays() {
+test_a_picture_beyond_the_disk_is_refused_and_the_old_one_stays() {
     grow_tree 3
     echo precious >picture.ppm
     cp picture.ppm before
     run corcast render tree.swc --size 1000000x1000000 -o picture.ppm
     expect_status 3
-    expect_sentence "[Mm]emory"
+    expect_sentence 'picture\.ppm: needs 3000\.0 GB, and its disk has [0-9.]+ GB left'
     expect_same picture.ppm before
     expect_only before picture.ppm tree.swc
+}
+
+test_a_band_beyond_memory_is_refused() {
+    grow_tree 3
+    run corcast render tree.swc --size 1000000x1000000 --memory 1e9 -o picture.png
+    expect_status 3
+    expect_sentence "out of memory"
+    expect_only tree.swc
+}
+
+test_bands_give_the_bytes_of_the_whole() {
+    local model extension
+    grow_tree 60
+    for model in $MODELS; do
+        for extension in ppm png pfm tif; do
+            run_ok corcast render tree.swc --model $model --size 90x70 --antialias 2 --antialias-threshold 0.05 \
+                --planes color,depth,normal,id --memory 1000 -o picture.$extension
+            for file in picture.*; do mv "$file" "whole.${file#picture.}"; done
+            run_ok corcast render tree.swc --model $model --size 90x70 --antialias 2 --antialias-threshold 0.05 \
+                --planes color,depth,normal,id --memory 0.001 -o picture.$extension
+            for file in picture.*; do
+                case $file in
+                *.png | *.tif) expect_same_pixels "$file" "whole.${file#picture.}" ;;
+                *) expect_same "$file" "whole.${file#picture.}" ;;
+                esac
+            done
+            rm -f picture.* whole.*
+        done
+    done
+}
+
+# Whole, its floats alone would take 192 MB.
+test_a_large_picture_needs_the_memory_of_a_band() {
+    grow_tree 60
+    (ulimit -v 150000 && "$CORCAST" render tree.swc --size 4000x4000 --memory 20 --quiet -o picture.ppm) 2>stderr ||
+        fail "expected 16 megapixels in 150 MB of addresses$(said)"
+    pnmfile picture.ppm | grep -q 'PPM raw, 4000 by 4000' || fail "expected 4000 x 4000, got $(pnmfile picture.ppm)"
+    run_ok corcast render tree.swc --size 4000x4000 --memory 1000 -o whole.ppm
+    expect_same picture.ppm whole.ppm
 }
 
 test_a_side_beyond_the_largest_picture_is_refused() {
