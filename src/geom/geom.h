@@ -2,9 +2,10 @@
 #ifndef CORCAST_GEOM_GEOM_H
 #define CORCAST_GEOM_GEOM_H
 
-#include "geom/box.h"   // IWYU pragma: export
-#include "geom/hit.h"   // IWYU pragma: export
-#include "geom/joint.h" // IWYU pragma: export
-#include "geom/vec3.h"  // IWYU pragma: export
+#include "geom/box.h"     // IWYU pragma: export
+#include "geom/hit.h"     // IWYU pragma: export
+#include "geom/joint.h"   // IWYU pragma: export
+#include "geom/quartic.h" // IWYU pragma: export
+#include "geom/vec3.h"    // IWYU pragma: export
 
 #endif

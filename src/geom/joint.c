@@ -3,15 +3,11 @@
  * a trigonometric polynomial of degree 2 without a sin^2 term. At a root, dg/dp = D . (S_p x S_l): it is
  * simple unless the line touches the surface, whatever the view, face-on and end-on included.
  *
- * With tan(p / 2) or its complement in [-1, 1], g is a quartic on each half of the circle. Its roots are
- * isolated in Bernstein form: a quartic has as many roots in an interval as its coefficients change
- * sign, or fewer by an even number, so no change proves that there is none, and one that there is just
- * one; more are decided by halving [Lane & Riesenfeld 1981, Bounds on a polynomial, BIT 21, 112]. Zero
- * counts as positive, which gives a root at the end of an interval to one of the two that share it. */
+ * With tan(p / 2) or its complement in [-1, 1], g is a quartic on each half of the circle, whose roots
+ * quartic.c isolates. */
 #include "geom/joint.h"
 
-/* Halvings after which two roots that are still together are a line that grazes. */
-enum { MAX_HALVINGS = 32, NEWTON_STEPS = 64 };
+#include "geom/quartic.h"
 
 /* Below this sine of the angle between the axes they are parallel. */
 static const double parallel = 1e-12;
@@ -65,78 +61,6 @@ static double triple(Vec3 a, Vec3 b, Vec3 c)
     return vec3_dot(a, vec3_cross(b, c));
 }
 
-/* The value and slope at x in [0, 1] of a quartic in Bernstein form, by de Casteljau's scheme. */
-static double quartic_at(const double b[5], double x, double *slope)
-{
-    double c[5] = {b[0], b[1], b[2], b[3], b[4]};
-    for (int last = 4; last > 1; last--)
-        for (int i = 0; i < last; i++)
-            c[i] += (c[i + 1] - c[i]) * x;
-    *slope = 4 * (c[1] - c[0]);
-    return c[0] + (c[1] - c[0]) * x;
-}
-
-/* The one root of a quartic whose ends 0 and 1 differ in sign: Newton's method, kept inside the bracket
- * by halving it. An end where it is 0 is not the root: that counts as positive. */
-static double quartic_root(const double b[5])
-{
-    double low = 0, high = 1, x = 0.5;
-    for (int step = 0; step < NEWTON_STEPS; step++) {
-        double slope, value = quartic_at(b, x, &slope);
-        if ((value < 0) == (b[0] < 0))
-            low = x;
-        else
-            high = x;
-        double next = x - value / slope;
-        if (fabs(next - x) <= 1e-16)
-            return next;
-        x = next > low && next < high ? next : (low + high) / 2;
-    }
-    return x;
-}
-
-static int sign_changes(const double b[5])
-{
-    int changes = 0;
-    for (int i = 0; i < 4; i++)
-        changes += (b[i] < 0) != (b[i + 1] < 0);
-    return changes;
-}
-
-/* Splits at the middle: `b` becomes its first half, `second` the other. */
-static void quartic_halve(double b[5], double second[5])
-{
-    double first[5];
-    for (int i = 0; i < 5; i++)
-        second[i] = b[i];
-    for (int k = 0; k < 5; k++) {
-        first[k] = second[0];
-        for (int i = 0; i < 4 - k; i++)
-            second[i] = (second[i] + second[i + 1]) / 2;
-    }
-    for (int i = 0; i < 5; i++)
-        b[i] = first[i];
-}
-
-/* Appends the roots of the quartic, which is that of [low, high], to the `n` at `roots`: how many there
- * are then. */
-static int isolate_roots(double b[5], double low, double high, int halvings, double roots[4], int n)
-{
-    int changes = sign_changes(b);
-    if (changes == 0 || n == 4)
-        return n;
-    if (changes == 1) {
-        roots[n] = low + (high - low) * quartic_root(b);
-        return n + 1;
-    }
-    if (halvings == MAX_HALVINGS)
-        return n;
-    double second[5], middle = (low + high) / 2;
-    quartic_halve(b, second);
-    n = isolate_roots(b, low, middle, halvings + 1, roots, n);
-    return isolate_roots(second, middle, high, halvings + 1, roots, n);
-}
-
 /* Where the line meets the ruling of an angle at which g is 0: false when that is off the ends, or when
  * the ruling runs along the line beside it. The line starts near the joint. */
 static bool ruling_hit(const JointFrame *joint, Ray line, double cosine, double sine, Hit *hit)
@@ -183,7 +107,7 @@ int hit_joint(Ray ray, const JointFrame *joint, Hit hits[4])
         double b[5] = {2 * (one - by_sin), c - both, 2.0 / 3 * (one + 2 * by_cos2), c + both,
                        2 * (one + by_sin)};
         double roots[4];
-        int n = isolate_roots(b, -1, 1, 0, roots, 0);
+        int n = quartic_roots(b, -1, 1, roots);
         for (int i = 0; i < n && count < 4; i++) {
             double square = roots[i] * roots[i];
             double cosine = half * (1 - square) / (1 + square), sine = 2 * roots[i] / (1 + square);
