@@ -53,7 +53,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate bench-grow bench-render bench-compare verify-all power power-program check program unit \
+.PHONY: all deps demo validate bench bench-grow bench-render bench-compare verify-all power power-program check program unit \
 	unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
@@ -79,12 +79,17 @@ validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
 	$(Q)$(AGAIN) all
 	$(Q)tools/validate
 
+bench: ## the benchmarks, one after another
+	$(Q)for part in grow render compare; do $(MAKE) --no-print-directory bench-$$part || exit; done
+
 bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
 	$(Q)tools/deps build bench
 	$(Q)$(AGAIN) all
 	$(Q)tools/bench-grow
 
-bench-render: build/corcast ## how fast pictures are drawn, beside POV-Ray; BENCH=full|quick
+bench-render: ## how fast pictures are drawn, beside POV-Ray; BENCH=full|quick
+	$(Q)tools/deps build run bench
+	$(Q)$(AGAIN) all
 	$(Q)tools/bench-render
 
 bench-compare: ## time `compare` on large pictures, beside idiff and odiff
