@@ -120,8 +120,10 @@ static Status make_tolerance(const CompareOptions *options, Tolerance *tolerance
                                         : tolerance_none();
     if (options->tolerance)
         TRY(tolerance_read(tolerance, name, options->tolerance, err));
-    if (options->has_levels)
+    if (options->has_levels) {
         tolerance->color_levels = options->levels;
+        tolerance->interior_levels = (double)INFINITY;
+    }
     if (options->has_ppm)
         tolerance->color_ppm = tolerance->id_ppm = tolerance->depth_ppm = tolerance->normal_ppm =
             tolerance->coverage_ppm = tolerance->pixelmatch_ppm = options->ppm;

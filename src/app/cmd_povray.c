@@ -1,4 +1,5 @@
 #include "app/commands.h"
+#include "app/frames.h"
 #include "app/options.h"
 #include "verify/verify.h"
 #include <stdio.h>
@@ -36,13 +37,15 @@ Status run_povray(int argc, char **argv, Err *err)
 {
     static const char *const planes[] = {"color", "depth", "normal", "id", NULL};
     const char *output = NULL;
-    int size[2] = {0, 0}, antialias = 1, plane = ORACLE_COLOR;
+    int size[2] = {0, 0}, antialias = 1, plane = ORACLE_COLOR, bits = 8;
     bool has_size = false;
     const Option own[] = {
         {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P.png", "the picture"},
         {"size", OPTION_SIZE, size, &has_size, 1, IMAGE_MAX_SIDE, NULL, NULL,
          "pixels (what the scene says)"},
         {"antialias", OPTION_WHOLE, &antialias, NULL, 1, 9, NULL, "N", "N x N samples a pixel (1)"},
+        {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16",
+         "of the colours: 8, sRGB, or 16, linear (8)"},
         {"plane", OPTION_CHOICE, &plane, NULL, 0, 0, planes, NULL,
          "what a scene of ours shows (color)"},
         {0},
@@ -59,6 +62,7 @@ Status run_povray(int argc, char **argv, Err *err)
         status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png", output);
         goto done;
     }
+    TRY_GOTO(bits_check(bits, err));
     if (!has_size)
         TRY_GOTO(size_of_scene(parsed.operands[0], size, err));
     OracleParams params = {.program = getenv("CORCAST_POVRAY"),
@@ -69,6 +73,7 @@ Status run_povray(int argc, char **argv, Err *err)
                            .antialias = antialias,
                            .threads = parsed.common.threads,
                            .plane = (OraclePlane)plane,
+                           .bits = bits,
                            .progress = progress_report,
                            .progress_context = &progress};
     progress_start(&progress, "POV-Ray", parsed.common.quiet);

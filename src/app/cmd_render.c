@@ -140,10 +140,7 @@ Status run_render(int argc, char **argv, Err *err)
                            .shadows = picture.stage.shadows};
     if (parsed.common.help)
         goto done;
-    if (bits != 8 && bits != 16) {
-        status = err_set(err, STATUS_USAGE, "--bits: '%d' is not 8 or 16", bits);
-        goto done;
-    }
+    TRY_GOTO(bits_check(bits, err));
     if (threshold > 0 && picture.antialias == 1) {
         status = err_set(err, STATUS_USAGE,
                          "--antialias-threshold needs --antialias N, with N from 2 to 9");

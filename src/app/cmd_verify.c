@@ -33,9 +33,11 @@ typedef struct Verification {
     CellParams cells;
     Frame native, povray,
         exact; /* `exact` of an isosurface, whose `native` is POV-Ray's view of it */
-    Picture native_picture, povray_picture;
-    RenderStats stats; /* of the exact frame, where there is one */
-    OracleRun run;     /* of the colour plane */
+    int bits;  /* of the colours that are compared */
+    Picture native_picture, povray_picture; /* sRGB of 8 bits, or linear of 16 */
+    Picture native_shown, povray_shown;     /* of 16 bits, in sRGB of 8 bits */
+    RenderStats stats;                      /* of the exact frame, where there is one */
+    OracleRun run;                          /* of the colour plane */
     CompareResult results[PLANE_KINDS];
     SurfaceCheck surface;
     char *commands[8]; /* owned */
@@ -50,6 +52,8 @@ static void verification_release(Verification *v)
     frame_release(&v->exact);
     picture_release(&v->native_picture);
     picture_release(&v->povray_picture);
+    picture_release(&v->native_shown);
+    picture_release(&v->povray_shown);
     for (size_t i = 0; i < v->n_commands; i++)
         free(v->commands[i]);
 }
@@ -80,12 +84,29 @@ static Status render_frame(Verification *v, const CellParams *povray_cells, Fram
     return status;
 }
 
-static Status write_frame(const Verification *v, const Frame *frame, const char *name,
-                          const char *provenance, Err *err)
+static Encoding encoding_of(const Verification *v)
+{
+    return v->bits == 16 ? ENCODING_LINEAR : ENCODING_SRGB;
+}
+
+static Status write_native(const Verification *v, const char *provenance, Err *err)
+{
+    const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", provenance}};
+    const ImageNotes all = {.notes = notes, .count = 2};
+    char *path = NULL;
+    TRY(file_join(v->folder, "native.png", &path, err));
+    Status status = frames_write(&v->native, path, 0, NULL, err);
+    if (status == STATUS_OK)
+        status = picture_write(&v->native_picture, path, encoding_of(v), &all, err);
+    free(path);
+    return status;
+}
+
+static Status write_exact(const Verification *v, const char *provenance, Err *err)
 {
     char *path = NULL;
-    TRY(file_join(v->folder, name, &path, err));
-    Status status = frames_write(frame, path, 8, provenance, err);
+    TRY(file_join(v->folder, "exact.png", &path, err));
+    Status status = frames_write(&v->exact, path, v->bits, provenance, err);
     free(path);
     return status;
 }
@@ -93,12 +114,30 @@ static Status write_frame(const Verification *v, const Frame *frame, const char 
 static Status render_native(Verification *v, const char *provenance, Err *err)
 {
     TRY(render_frame(v, is_isosurface(v) ? &v->cells : NULL, &v->native, err));
-    TRY(picture_from_plane(&v->native_picture, &v->native.color, ENCODING_SRGB, 8, err));
-    TRY(write_frame(v, &v->native, "native.png", provenance, err));
+    TRY(picture_from_plane(&v->native_picture, &v->native.color, encoding_of(v), v->bits, err));
+    TRY(write_native(v, provenance, err));
     if (!is_isosurface(v))
         return STATUS_OK;
     TRY(render_frame(v, NULL, &v->exact, err));
-    return write_frame(v, &v->exact, "exact.png", provenance, err);
+    return write_exact(v, provenance, err);
+}
+
+/* What a screen shows of linear codes. */
+static Status show(const Picture *linear, Picture *shown, Err *err)
+{
+    Plane plane;
+    TRY(plane_from_picture(&plane, linear, ENCODING_LINEAR, err));
+    Status status = picture_from_plane(shown, &plane, ENCODING_SRGB, 8, err);
+    plane_release(&plane);
+    return status;
+}
+
+static Status show_both(Verification *v, Err *err)
+{
+    if (v->bits == 8)
+        return STATUS_OK;
+    TRY(show(&v->povray_picture, &v->povray_shown, err));
+    return show(&v->native_picture, &v->native_shown, err);
 }
 
 static Status read_plane(Verification *v, OraclePlane plane, const char *path, Err *err)
@@ -144,6 +183,7 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
                                  .antialias = v->picture->antialias,
                                  .threads = v->common->threads,
                                  .plane = plane,
+                                 .bits = v->bits,
                                  .progress = progress_report,
                                  .progress_context = &progress};
     Status status = oracle_command(&params, &v->commands[v->n_commands], err);
@@ -188,6 +228,16 @@ static Status run_oracle(Verification *v, Err *err)
 
 /* ---- the verdict -------------------------------------------------------------------------------- */
 
+static const Picture *shown_by_povray(const Verification *v)
+{
+    return v->bits == 8 ? &v->povray_picture : &v->povray_shown;
+}
+
+static const Picture *shown_natively(const Verification *v)
+{
+    return v->bits == 8 ? &v->native_picture : &v->native_shown;
+}
+
 static Status compare_sides(Verification *v, Err *err)
 {
     double near_mm, far_mm;
@@ -197,7 +247,7 @@ static Status compare_sides(Verification *v, Err *err)
     const Rendering view_a = {&v->povray_picture, a, &v->povray.depth, &v->povray.normal};
     const Rendering view_b = {&v->native_picture, b, &v->native.depth, &v->native.normal};
     TRY(compare_pictures(&view_a, &view_b, &tolerance, &v->results[PLANE_COLOR], NULL, err));
-    TRY(compare_perception(view_a.picture, view_b.picture, &v->results[PLANE_COLOR], err));
+    TRY(compare_perception(shown_by_povray(v), shown_natively(v), &v->results[PLANE_COLOR], err));
     TRY(compare_planes(PLANE_DEPTH, &v->povray.depth, &v->native.depth, a, b, &tolerance,
                        &v->results[PLANE_DEPTH], err));
     TRY(compare_planes(PLANE_NORMAL, &v->povray.normal, &v->native.normal, a, b, &tolerance,
@@ -216,13 +266,13 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
                                .key = "povray",
                                .version = v->run.version,
                                .seconds = v->run.seconds,
-                               .picture = &v->povray_picture,
+                               .picture = shown_by_povray(v),
                                .ids = &v->povray.id},
                          .b = {.name = "corcast",
                                .key = "native",
                                .version = CORCAST_VERSION,
                                .seconds = v->stats.prepare_s + v->stats.trace_s,
-                               .picture = &v->native_picture,
+                               .picture = shown_natively(v),
                                .ids = &v->native.id},
                          .commands = (const char *const *)v->commands,
                          .n_commands = v->n_commands};
@@ -282,9 +332,12 @@ Status run_verify(int argc, char **argv, Err *err)
     picture_options_init(&picture);
     const char *folder = NULL;
     bool as_json = false;
+    int bits = 8;
     const Option own[] = {
         {"output", OPTION_TEXT, &folder, NULL, 0, 0, NULL, "DIR",
          "folder for the report, the scene and all planes"},
+        {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16",
+         "of the colours compared: 8, sRGB, or 16, linear (8)"},
         {"json", OPTION_FLAG, &as_json, NULL, 0, 0, NULL, NULL, "the report on standard output"},
         {0},
     };
@@ -304,6 +357,8 @@ Status run_verify(int argc, char **argv, Err *err)
         status = err_set(err, STATUS_USAGE, "-o: a report is a folder, not standard output");
         goto done;
     }
+    TRY_GOTO(bits_check(bits, err));
+    v.bits = bits;
     TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 120, err));
     TRY_GOTO(picture_scene(&picture, v.tree, parsed.common.quiet, &v.scene, NULL, err));
     v.cells = picture_cells(&picture);
@@ -313,6 +368,7 @@ Status run_verify(int argc, char **argv, Err *err)
     v.n_commands = 1;
     TRY_GOTO(run_oracle(&v, err));
     TRY_GOTO(render_native(&v, line, err));
+    TRY_GOTO(show_both(&v, err));
     TRY_GOTO(compare_sides(&v, err));
     TRY_GOTO(write_report(&v, as_json, &agrees, err));
     if (!as_json && !parsed.common.quiet)

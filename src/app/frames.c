@@ -20,6 +20,13 @@ Status frames_check_output(const char *path, bool planes, Err *err)
     return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png, .ppm, .tif or .pfm", path);
 }
 
+Status bits_check(int bits, Err *err)
+{
+    if (bits == 8 || bits == 16)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "--bits: '%d' is not 8 or 16", bits);
+}
+
 typedef enum FrameFile { FILE_COLOR, FILE_DEPTH, FILE_NORMAL, FILE_ID, FILE_PICTURE } FrameFile;
 enum { FRAME_FILES = FILE_PICTURE + 1 };
 

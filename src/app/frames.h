@@ -8,6 +8,9 @@
 /* STATUS_USAGE when `path` is no image file, or is standard output although planes are wanted. */
 MUST_CHECK Status frames_check_output(const char *path, bool planes, Err *err);
 
+/* STATUS_USAGE unless 8 or 16. */
+MUST_CHECK Status bits_check(int bits, Err *err);
+
 /* Which files are to be written for a frame. */
 typedef struct FramesForm {
     int width, height; /* of the whole picture */

@@ -86,23 +86,24 @@ static void add_color_rules(CompareResult *result)
     const Tolerance *tolerance = &result->tolerance;
     char name[sizeof result->rules->name], worst[sizeof result->rules->at_what];
     size_t interior = result->pixels - result->band_pixels;
+    double levels = result->bits == 8 ? floor(tolerance->color_levels) : tolerance->color_levels;
     Finding beyond = {"ppm", ppm(result->beyond_pixels, result->judged_pixels), result->worst,
                       worst};
     Finding inside = {"ppm", ppm(result->interior_beyond, interior), result->worst, worst};
+    Finding furthest = {"levels", result->interior_max_abs, result->worst, worst};
     Finding band = {"ppm", ppm(result->band_beyond, result->band_pixels), result->worst, worst};
     Finding bias = {"levels", fabs(result->bias_levels), result->worst, worst};
     Finding signs = {"sigma", fabs(result->sign_sigma), result->worst, worst};
     Finding matched = {"ppm", 1e6 * result->pixelmatch_pixels / (double)result->pixels,
                        result->worst, worst};
     snprintf(worst, sizeof worst, "the worst, %.4g levels, is", result->max_abs);
-    snprintf(name, sizeof name, "pixels off by more than %g levels", tolerance->color_levels);
+    snprintf(name, sizeof name, "pixels off by more than %.3g levels", levels);
     add_rule(result, beyond, tolerance->color_ppm, name);
     if (result->has_mask) {
-        snprintf(name, sizeof name, "pixels off the edges, off by more than %g levels",
-                 tolerance->color_levels);
+        add_rule(result, furthest, tolerance->interior_levels, "largest difference off the edges");
+        snprintf(name, sizeof name, "pixels off the edges, off by more than %.3g levels", levels);
         add_rule(result, inside, tolerance->interior_ppm, name);
-        snprintf(name, sizeof name, "pixels at edges, off by more than %g levels",
-                 tolerance->color_levels);
+        snprintf(name, sizeof name, "pixels at edges, off by more than %.3g levels", levels);
         add_rule(result, band, tolerance->band_ppm, name);
     }
     add_segment_rules(result);

@@ -62,14 +62,15 @@ static Status make_arguments(const OracleParams *params, const char *scene, cons
                              Arguments *arguments, Err *err)
 {
     bool color = params->plane == ORACLE_COLOR,
-         deep = params->plane == ORACLE_DEPTH || params->plane == ORACLE_NORMAL;
+         deep = color ? params->bits == 16
+                      : params->plane == ORACLE_DEPTH || params->plane == ORACLE_NORMAL;
     TRY(add_argument(arguments, err, "%s", params->program ? params->program : "povray"));
     TRY(add_path(arguments, "+I", scene, err));
     TRY(add_path(arguments, "+O", output, err));
     TRY(add_argument(arguments, err, "+W%d", params->width));
     TRY(add_argument(arguments, err, "+H%d", params->height));
     TRY(add_argument(arguments, err, "+FN%d", deep ? 16 : 8));
-    TRY(add_argument(arguments, err, "File_Gamma=%s", color ? "srgb" : "1.0"));
+    TRY(add_argument(arguments, err, "File_Gamma=%s", color && !deep ? "srgb" : "1.0"));
     TRY(add_argument(arguments, err, "Declare=Corcast_Plane=%d", (int)params->plane));
     if (color && params->antialias > 1) {
         TRY(add_argument(arguments, err, "+A0.0"));

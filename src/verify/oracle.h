@@ -15,7 +15,8 @@ typedef struct OracleParams {
     int width, height;   /* pixels */
     int antialias;       /* of the colour plane: 1, or N for +A0.0 +AM1 +RN -J */
     int threads;         /* 0: POV-Ray's own choice */
-    OraclePlane plane;   /* colour is 8-bit sRGB, depth and normal 16-bit linear, id 8-bit linear */
+    OraclePlane plane;   /* depth and normal are 16-bit linear, id 8-bit linear */
+    int bits;            /* of the colour plane: 8, sRGB, or 16, linear */
     void (*progress)(double fraction, void *context); /* may be NULL */
     void *progress_context;
 } OracleParams;

@@ -28,6 +28,7 @@ static const Field fields[] = {
     NUMBER(color_levels),
     NUMBER(color_ppm),
     {"color_common_only", FIELD_SWITCH, offsetof(Tolerance, color_common_only)},
+    NUMBER(interior_levels),
     NUMBER(interior_ppm),
     NUMBER(band_ppm),
     NUMBER(bias_levels),
@@ -77,13 +78,15 @@ Tolerance tolerance_identity(double depth_step_mm)
 {
     Tolerance tolerance = tolerance_none();
     tolerance.tier = "A";
-    tolerance.color_ppm = 5;
-    tolerance.id_ppm = 5;
+    tolerance.color_levels = 1 / 257.0;
+    tolerance.color_ppm = 2;
+    tolerance.interior_levels = 1;
+    tolerance.id_ppm = 2;
     tolerance.depth_max_mm = depth_step_mm;
-    tolerance.depth_ppm = 5;
+    tolerance.depth_ppm = 2;
     tolerance.normal_max_deg = 0.03;
-    tolerance.normal_ppm = 5;
-    tolerance.coverage_ppm = 5;
+    tolerance.normal_ppm = 2;
+    tolerance.coverage_ppm = 2;
     return tolerance;
 }
 

@@ -26,7 +26,9 @@ typedef struct Tolerance {
     double color_levels;    /* 8-bit levels a pixel may be off and count as the same ... */
     double color_ppm;       /* ... and how many may be off by more */
     bool color_common_only; /* judge the colour only of pixels seen in both */
-    double interior_ppm;    /* of the pixels off the band, how many may be off by more ... */
+    double interior_levels; /* 8-bit levels a pixel off the band may be off at most */
+    double interior_ppm;    /* of the pixels off the band, how many may be off by more than
+                             * color_levels ... */
     double band_ppm;        /* ... and of those in it */
     double bias_levels;     /* mean of B - A over all pixels, the worst channel */
     double sign_sigma;      /* |m - n| / sqrt(m + n), of m pixels brighter and n darker in B: chance
@@ -54,8 +56,9 @@ typedef struct Tolerance {
 
 /* Nothing is judged but NaN; `tier` is "none". */
 Tolerance tolerance_none(void);
-/* Tier A, identity: at most 5 pixels in a million differ in colour or id, and depth is nowhere off
- * by more than one step of the reference's quantisation. */
+/* Tier A, identity: but for 2 pixels in a million colours are off by no code of 8 bits and by at most
+ * one of 16, ids are equal, depth is within one step of the reference's quantisation and normals
+ * within 0.03 degrees; and off the edges no colour is off by more than a level. */
 Tolerance tolerance_identity(double depth_step_mm);
 /* Tier B: what a renderer in single precision keeps, whatever the scene. */
 Tolerance tolerance_tolerant(double depth_step_mm);

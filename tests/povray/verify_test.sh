@@ -134,15 +134,19 @@ test_isosurface_with_an_exact_erf_agrees() {
     agrees isosurface --erf exact --shadows on
 }
 
-# The root finder's 16-bit linear codes, too.
-test_isosurface_agrees_in_16_bits() {
-    tree_3d 60
-    run_ok corcast scene tree.swc --model isosurface --size 160x120 --shadows on -o scene.pov
-    run povray +Iscene.pov +Opovray.png +W160 +H120 -D -A +FN16 File_Gamma=srgb
-    expect_status 0
-    run_ok corcast render tree.swc --model isosurface --size 160x120 --shadows on --hits povray \
-        --bits 16 -o native.png
-    [ "$(differing povray.png native.png)" -eq 0 ] || fail "expected the same 16-bit codes"
+test_linear_codes_of_16_bits_agree_in_every_model() {
+    local model
+    tree_3d 30
+    for model in cylinders joined rounded isosurface; do
+        rm -rf report
+        agrees $model --bits 16 --view iso --shadows on
+        expect_json report/report.json '.planes.color.bits == 16 and .planes.color.max_code <= 1'
+    done
+    rm -r report
+    agrees rounded --bits 16 --projection perspective --antialias 3
+    run corcast verify tree.swc --bits 12 -o twelve
+    expect_status 2
+    expect_sentence "--bits: '12' is not 8 or 16"
 }
 
 test_a_camera_of_ones_own_agrees() {
