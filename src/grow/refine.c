@@ -12,7 +12,8 @@
  * goes on as topology does.
  *
  * Whenever refinement stops, it has a tree that keeps all promises: the present one, or on a detour
- * or when annealing the best before. */
+ * or when annealing the best before. Viscosities that follow the radii stay as they are within a round and
+ * are computed anew after it; should vessels then have come into each other, the tree stays as it was. */
 #include "grow/grow.h"
 
 #include "grow/refine_arbor.h"
@@ -135,12 +136,28 @@ static void remember(Refinement *refinement)
     }
 }
 
+/* Brings viscosities and bookings to the present radii. */
+static Status settle(Surgery *surgery, Err *err)
+{
+    TRY(arbor_thin(&surgery->arbor, err));
+    return room_book(&surgery->room, &surgery->arbor, err);
+}
+
+/* How many segments lack the room that they should have, as of the last room_book. */
+static size_t count_unclear(const Surgery *surgery)
+{
+    size_t count = 0;
+    for (size_t i = 1; i < surgery->arbor.n; i++)
+        count += !room_is_clear(&surgery->room, &surgery->arbor, (int32_t)i);
+    return count;
+}
+
 /* Goes back to the tree that is remembered. */
 static Status recall(Refinement *refinement, Err *err)
 {
     Surgery *surgery = &refinement->surgery;
     arbor_arrange(&surgery->arbor, refinement->best_parent, refinement->best_place);
-    return room_book(&surgery->room, &surgery->arbor, err);
+    return settle(surgery, err);
 }
 
 /* Rounds within the rules until one gains less than `least_gain` of S_root. */
@@ -150,8 +167,8 @@ static Status descend(Refinement *refinement, double least_gain, bool *over, Err
     double before = INFINITY, cost = arbor_cost(&surgery->arbor);
     for (int round = 1; !*over && cost < before * (1 - least_gain); round++) {
         before = cost;
-        if (round % ROUNDS_PER_BOOKING == 0)
-            TRY(room_book(&surgery->room, &surgery->arbor, err));
+        if (round % ROUNDS_PER_BOOKING == 0 || surgery->arbor.viscosity)
+            TRY(settle(surgery, err));
         if (refinement->params->level != GROW_REFINE_GEOMETRY)
             TRY(shuffle(refinement, over, err));
         TRY(sweep(refinement, over, err));
@@ -209,7 +226,7 @@ static Status detour(Refinement *refinement, double price, bool *done, bool *ove
         } else {
             TRY(mend(refinement, over, err));
         }
-        TRY(room_book(&surgery->room, arbor, err));
+        TRY(settle(surgery, err));
         tolls_raise(tolls, &surgery->room, arbor);
         clear = tolls->n_broken == 0;
     }
@@ -233,8 +250,8 @@ static Status anneal(Refinement *refinement, bool *over, Err *err)
     Surgery *surgery = &refinement->surgery;
     remember(refinement);
     for (int round = 1; !*over && refinement->fraction < 1 - last_part; round++) {
-        if (round % ROUNDS_PER_BOOKING == 0)
-            TRY(room_book(&surgery->room, &surgery->arbor, err));
+        if (round % ROUNDS_PER_BOOKING == 0 || surgery->arbor.viscosity)
+            TRY(settle(surgery, err));
         TRY(shuffle(refinement, over, err));
         TRY(sweep(refinement, over, err));
         if (arbor_cost(&surgery->arbor) < refinement->best_cost)
@@ -297,10 +314,15 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
     Surgery *surgery = &refinement.surgery;
     Status status = STATUS_OK;
     TRY_GOTO(start(&refinement, domain, tree, err));
-    double before = target_of(&surgery->arbor);
+    double before = target_of(&surgery->arbor), after = before;
+    size_t unclear = count_unclear(surgery);
     TRY_GOTO(refine(&refinement, err));
-    double after = target_of(&surgery->arbor);
-    TRY_GOTO(result_write(&surgery->arbor, tree, err));
+    if (surgery->arbor.viscosity)
+        TRY_GOTO(settle(surgery, err));
+    if (!surgery->arbor.viscosity || count_unclear(surgery) <= unclear) {
+        after = target_of(&surgery->arbor);
+        TRY_GOTO(result_write(&surgery->arbor, tree, err));
+    }
     if (report)
         *report = (RefineReport){.seconds = clock_seconds() - refinement.begun,
                                  .target_before = before,

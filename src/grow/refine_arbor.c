@@ -7,15 +7,19 @@
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
+/* The greatest relative change of a viscosity that is none, and rounds until there is none greater. */
+static const double settled = 1e-13;
+enum { MOST_ROUNDS = 100 };
 
 Reduced arbor_reduce(const Arbor *arbor, int32_t i)
 {
     const Branch *branch = &arbor->branch[i];
+    double viscosity = arbor_viscosity(arbor, i);
     if (branch->child[0] < 0)
-        return law_reduce(&arbor->law, branch->flow, branch->length, 0, 0);
+        return law_reduce(&arbor->law, branch->flow * viscosity, branch->length, 0, 0);
     const Branch *left = &arbor->branch[branch->child[0]];
     const Branch *right = &arbor->branch[branch->child[1]];
-    return law_reduce(&arbor->law, left->flow + right->flow, branch->length,
+    return law_reduce(&arbor->law, (left->flow + right->flow) * viscosity, branch->length,
                       left->flare + right->flare, left->cost + right->cost);
 }
 
@@ -40,10 +44,13 @@ Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
 {
     const TreeHeader *header = &tree->header;
     double drop = pa_from_mmhg(header->p_perf_mmhg) - pa_from_mmhg(header->p_term_mmhg);
-    double resistance = 8 * pa_s_from_cp(header->viscosity_cp) / pi;
+    bool pries = header->has.viscosity_law && header->viscosity_law == VISCOSITY_PRIES;
+    double reference_cp = pries ? header->plasma_viscosity_cp : header->viscosity_cp;
+    double resistance = 8 * pa_s_from_cp(reference_cp) / pi;
     double flow = mm3_s_from_ml_min(header->q_perf_ml_min) / (double)(tree->n / 2);
     Arbor made = {.law = {header->gamma, header->lambda},
                   .n = tree->n,
+                  .hematocrit = header->hematocrit,
                   .radius_unit = sqrt(sqrt(resistance * flow / drop))};
     double *share = NULL;
     Status status = STATUS_OK;
@@ -51,6 +58,11 @@ Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
     TRY_GOTO(mem_calloc(&made.shape, made.n, sizeof *made.shape, "segments", err));
     TRY_GOTO(mem_calloc(&made.outlook, made.n, sizeof *made.outlook, "segments", err));
     TRY_GOTO(mem_calloc(&made.saved_branch, made.n, sizeof *made.saved_branch, "segments", err));
+    if (pries) {
+        TRY_GOTO(mem_calloc(&made.viscosity, made.n, sizeof *made.viscosity, "segments", err));
+        for (size_t i = 1; i < made.n; i++)
+            made.viscosity[i] = viscosity_pries_pa_s(tree->radius_mm[i], header->hematocrit, 1);
+    }
     TRY_GOTO(tree_flow_shares(tree, &share, err));
     double total = 0;
     for (size_t i = 0; i < tree->n; i++)
@@ -58,6 +70,7 @@ Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
     for (size_t i = 0; i < tree->n; i++)
         made.branch[i].flow = share[i] / total * (double)(tree->n / 2);
     arbor_arrange(&made, tree->parent, tree->position);
+    TRY_GOTO(arbor_thin(&made, err));
     *arbor = made;
 done:
     free(share);
@@ -71,6 +84,7 @@ void arbor_release(Arbor *arbor)
     free(arbor->branch);
     free(arbor->shape);
     free(arbor->outlook);
+    free(arbor->viscosity);
     free(arbor->saved_branch);
     *arbor = (Arbor){0};
 }
@@ -124,7 +138,8 @@ Outlook arbor_outlook(const Arbor *arbor, int32_t i)
     return (Outlook){law_descend(&arbor->law, &mother, above->adjoint, &daughter),
                      above->gauge * mother.widening,
                      above->extra + law_total(&arbor->law, &mother, above->adjoint) *
-                                        arbor->branch[parent].length};
+                                        arbor->branch[parent].length *
+                                        arbor_viscosity(arbor, parent)};
 }
 
 int32_t arbor_next(const Arbor *arbor, int32_t i)
@@ -135,6 +150,33 @@ int32_t arbor_next(const Arbor *arbor, int32_t i)
         if (arbor->branch[parent].child[0] == i)
             return arbor->branch[parent].child[1];
     return 0;
+}
+
+static Status too_thin(Err *err)
+{
+    return err_set(err, STATUS_INFEASIBLE,
+                   "vessels are too thin for the viscosity law pries: radii and viscosities do not "
+                   "settle");
+}
+
+Status arbor_thin(Arbor *arbor, Err *err)
+{
+    double change = arbor->viscosity ? INFINITY : 0;
+    for (int round = 0; round < MOST_ROUNDS && change > settled; round++) {
+        change = 0;
+        arbor_look(arbor);
+        for (size_t i = 1; i < arbor->n; i++) {
+            double radius =
+                arbor->radius_unit * arbor->outlook[i].gauge * arbor_reduce(arbor, (int32_t)i).rho;
+            double viscosity = viscosity_pries_pa_s(radius, arbor->hematocrit, 1);
+            if (!isfinite(viscosity))
+                return too_thin(err);
+            change = fmax(change, fabs(viscosity / arbor->viscosity[i] - 1));
+            arbor->viscosity[i] = viscosity;
+        }
+        arbor_sum(arbor);
+    }
+    return change <= settled ? STATUS_OK : too_thin(err);
 }
 
 double arbor_radius(const Arbor *arbor, int32_t i)
@@ -191,6 +233,7 @@ void arbor_begin(Arbor *arbor)
     }
     arbor->n_saved_branches = 0;
     arbor->n_saved_shapes = 0;
+    arbor->grafted = 0;
 }
 
 void arbor_undo(Arbor *arbor)
@@ -199,6 +242,9 @@ void arbor_undo(Arbor *arbor)
         arbor->branch[arbor->saved_branch[k].i] = arbor->saved_branch[k].was;
     for (int k = 0; k < arbor->n_saved_shapes; k++)
         arbor->shape[arbor->saved_shape[k].i] = arbor->saved_shape[k].was;
+    if (arbor->grafted)
+        arbor->viscosity[arbor->grafted] = arbor->saved_viscosity;
+    arbor->grafted = 0;
     arbor->pruned = 0;
 }
 
@@ -281,6 +327,11 @@ void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place)
     int32_t *child = branch_of(arbor, fork)->child;
     child[child[0] == i] = host;
     branch_of(arbor, host)->parent = fork;
+    if (arbor->viscosity) { /* the fork's segment was the first part of the host */
+        arbor->grafted = fork;
+        arbor->saved_viscosity = arbor->viscosity[fork];
+        arbor->viscosity[fork] = arbor->viscosity[host];
+    }
     pivot(arbor, fork, arbor->shape[host].from, place);
     arbor->pruned = 0;
 }

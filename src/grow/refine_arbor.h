@@ -43,7 +43,10 @@ typedef struct Arbor {
     Branch *branch;
     Shape *shape;
     Outlook *outlook; /* of each segment; as of the last arbor_look, or of its last move */
-    int32_t pruned;   /* the segment that arbor_prune has cut off; 0: none */
+    /* Of each segment, over the reference, as of the last arbor_thin; NULL where it is constant. */
+    double *viscosity;
+    double hematocrit;
+    int32_t pruned; /* the segment that arbor_prune has cut off; 0: none */
     /* What the present move has changed, as it was before: */
     uint32_t move;
     struct SavedBranch {
@@ -56,6 +59,8 @@ typedef struct Arbor {
         int32_t i;
     } saved_shape[ARBOR_MOVE_SHAPES];
     int n_saved_shapes;
+    int32_t grafted; /* the bifurcation that took over its host's viscosity; 0: none */
+    double saved_viscosity;
 } Arbor;
 
 /* Makes *arbor (owned; arbor_release) from a tree that refine_check accepts. */
@@ -66,12 +71,21 @@ void arbor_release(Arbor *arbor);
 void arbor_arrange(Arbor *arbor, const int32_t *parent, const Vec3 *place);
 /* Sums up all segments anew. */
 void arbor_sum(Arbor *arbor);
+/* Where viscosity follows the radius, computes both in turn until they agree to 1e-13, and sums up
+ * anew. STATUS_INFEASIBLE where vessels are too narrow for that. */
+MUST_CHECK Status arbor_thin(Arbor *arbor, Err *err);
 /* Brings the outlook of all segments up to date. */
 void arbor_look(Arbor *arbor);
 
 static inline int32_t arbor_root(const Arbor *arbor)
 {
     return arbor->branch[0].child[0];
+}
+
+/* How viscous the blood in segment i is, over the reference. */
+static inline double arbor_viscosity(const Arbor *arbor, int32_t i)
+{
+    return arbor->viscosity ? arbor->viscosity[i] : 1;
 }
 
 /* S_root; not finite, or 0, when the radii span more than a double can hold. */

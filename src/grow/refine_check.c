@@ -13,15 +13,18 @@ static Status check_range(const char *key, double value, bool fits, const char *
 
 static Status check_header(const TreeHeader *header, Err *err)
 {
+    bool pries = header->has.viscosity_law && header->viscosity_law == VISCOSITY_PRIES;
     const struct {
         const char *key;
         bool has;
-    } needed[] = {{"gamma", header->has.gamma},          {"lambda", header->has.lambda},
-                  {"p_perf_mmHg", header->has.p_perf},   {"p_term_mmHg", header->has.p_term},
-                  {"q_perf_ml_min", header->has.q_perf}, {"viscosity_cP", header->has.viscosity}};
-    if (header->has.viscosity_law && header->viscosity_law != VISCOSITY_CONSTANT)
-        return err_set(err, STATUS_INPUT,
-                       "header key viscosity_law: refinement knows the constant law only");
+    } needed[] = {{"gamma", header->has.gamma},
+                  {"lambda", header->has.lambda},
+                  {"p_perf_mmHg", header->has.p_perf},
+                  {"p_term_mmHg", header->has.p_term},
+                  {"q_perf_ml_min", header->has.q_perf},
+                  {"viscosity_cP", header->has.viscosity || pries},
+                  {"hematocrit", header->has.hematocrit || !pries},
+                  {"plasma_viscosity_cP", header->has.plasma_viscosity || !pries}};
     for (size_t k = 0; k < sizeof needed / sizeof *needed; k++)
         if (!needed[k].has)
             return err_set(err, STATUS_INPUT,
@@ -35,8 +38,14 @@ static Status check_header(const TreeHeader *header, Err *err)
                     "a finite number below p_perf_mmHg", err));
     TRY(check_range("q_perf_ml_min", header->q_perf_ml_min, header->q_perf_ml_min > 0,
                     "a finite number above 0", err));
-    return check_range("viscosity_cP", header->viscosity_cp, header->viscosity_cp > 0,
-                       "a finite number above 0", err);
+    if (!pries)
+        return check_range("viscosity_cP", header->viscosity_cp, header->viscosity_cp > 0,
+                           "a finite number above 0", err);
+    TRY(check_range("hematocrit", header->hematocrit,
+                    header->hematocrit >= 0 && header->hematocrit < 1, "a number from 0, below 1",
+                    err));
+    return check_range("plasma_viscosity_cP", header->plasma_viscosity_cp,
+                       header->plasma_viscosity_cp > 0, "a finite number above 0", err);
 }
 
 /* Node i, which has so many children. */

@@ -20,18 +20,20 @@ bool fork_at(const Fork *fork, Vec3 place, ForkState *out)
     for (int i = 0; i < FORK_ENDS; i++)
         state.length[i] = vec3_distance(fork->end[i], place);
 
-    Reduced l =
-        law_reduce(law, left->flow, state.length[FORK_LEFT], left->flare_below, left->cost_below);
-    Reduced r = law_reduce(law, right->flow, state.length[FORK_RIGHT], right->flare_below,
+    double carries[FORK_ENDS] = {(left->flow + right->flow) * fork->viscosity,
+                                 left->flow * left->viscosity, right->flow * right->viscosity};
+    Reduced l = law_reduce(law, carries[FORK_LEFT], state.length[FORK_LEFT], left->flare_below,
+                           left->cost_below);
+    Reduced r = law_reduce(law, carries[FORK_RIGHT], state.length[FORK_RIGHT], right->flare_below,
                            right->cost_below);
-    double flow = left->flow + right->flow;
-    Reduced p =
-        law_reduce(law, flow, state.length[FORK_PROXIMAL], l.flare + r.flare, l.cost + r.cost);
+    Reduced p = law_reduce(law, carries[FORK_PROXIMAL], state.length[FORK_PROXIMAL],
+                           l.flare + r.flare, l.cost + r.cost);
     state.cost = top.load * p.load + top.cost * p.cost;
-    state.weight[FORK_PROXIMAL] = law_length_weight(law, &p, top, flow);
-    state.weight[FORK_LEFT] = law_length_weight(law, &l, law_descend(law, &p, top, &l), left->flow);
+    state.weight[FORK_PROXIMAL] = law_length_weight(law, &p, top, carries[FORK_PROXIMAL]);
+    state.weight[FORK_LEFT] =
+        law_length_weight(law, &l, law_descend(law, &p, top, &l), carries[FORK_LEFT]);
     state.weight[FORK_RIGHT] =
-        law_length_weight(law, &r, law_descend(law, &p, top, &r), right->flow);
+        law_length_weight(law, &r, law_descend(law, &p, top, &r), carries[FORK_RIGHT]);
 
     double unit = fork->radius_unit * fork->outlook.gauge;
     state.radius[FORK_PROXIMAL] = unit * p.rho;

@@ -11,7 +11,8 @@ enum { FORK_PROXIMAL, FORK_LEFT, FORK_RIGHT, FORK_ENDS };
 
 /* What hangs on the far end of a segment that leaves. */
 typedef struct Burden {
-    double flow; /* relative to the others */
+    double flow;      /* relative to the others */
+    double viscosity; /* of the segment itself, over the reference */
     double flare_below, cost_below;
 } Burden;
 
@@ -26,6 +27,7 @@ typedef struct Fork {
     const Law *law;
     Vec3 end[FORK_ENDS]; /* mm; they differ */
     Burden burden[2];
+    double viscosity;    /* of the proximal segment */
     Outlook outlook;     /* of the proximal segment */
     double radius_unit;  /* q [law.h] */
     double least_length; /* mm; of each segment */

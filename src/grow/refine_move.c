@@ -27,19 +27,24 @@ static const double least_gain = 1e-9;
 static Burden burden_of(const Arbor *arbor, int32_t i)
 {
     const Branch *branch = &arbor->branch[i];
+    double viscosity = arbor_viscosity(arbor, i);
     if (branch->child[0] < 0)
-        return (Burden){branch->flow, 0, 0};
+        return (Burden){branch->flow, viscosity, 0, 0};
     const Branch *left = &arbor->branch[branch->child[0]];
     const Branch *right = &arbor->branch[branch->child[1]];
-    return (Burden){left->flow + right->flow, left->flare + right->flare, left->cost + right->cost};
+    return (Burden){left->flow + right->flow, viscosity, left->flare + right->flare,
+                    left->cost + right->cost};
 }
 
-static Fork fork_of(const Surgery *surgery, Vec3 from, int32_t left, int32_t right, Outlook outlook)
+/* The fork of segments `left` and `right` from where `proximal` begins. */
+static Fork fork_of(const Surgery *surgery, int32_t proximal, int32_t left, int32_t right,
+                    Outlook outlook)
 {
     const Arbor *arbor = &surgery->arbor;
     return (Fork){&arbor->law,
-                  {from, arbor->shape[left].to, arbor->shape[right].to},
+                  {arbor->shape[proximal].from, arbor->shape[left].to, arbor->shape[right].to},
                   {burden_of(arbor, left), burden_of(arbor, right)},
+                  arbor_viscosity(arbor, proximal),
                   outlook,
                   arbor->radius_unit,
                   surgery->room.least_length,
@@ -111,7 +116,7 @@ Status move_bifurcation(Surgery *surgery, int32_t i, Err *err)
     const int32_t *child = arbor->branch[i].child;
     const int32_t moved[] = {i, child[0], child[1]};
     Vec3 place = arbor->shape[i].to;
-    Fork fork = fork_of(surgery, arbor->shape[i].from, child[0], child[1], arbor_outlook(arbor, i));
+    Fork fork = fork_of(surgery, i, child[0], child[1], arbor_outlook(arbor, i));
     ForkState now, best;
     surgery->tried++;
     if (!fork_at(&fork, place, &now))
@@ -148,7 +153,7 @@ static bool price(const Surgery *surgery, int32_t subtree, int32_t host, Candida
     Outlook outlook = arbor_outlook(arbor, host);
     Reduced before = arbor_reduce(arbor, host);
     out->host = host;
-    out->fork = fork_of(surgery, shape->from, host, subtree, outlook);
+    out->fork = fork_of(surgery, host, host, subtree, outlook);
     Vec3 middle = vec3_scale(vec3_add(shape->from, shape->to), 0.5);
     Vec3 place = vec3_add_scaled(vec3_scale(middle, 0.75), arbor->shape[subtree].to, 0.25);
     if (!fork_at(&out->fork, place, &out->state) ||

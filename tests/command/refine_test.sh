@@ -23,6 +23,21 @@ test_each_level_lowers_the_target_and_keeps_the_promises_of_a_tree() {
     expect_lower topology.swc geometry.swc 1
 }
 
+test_trees_whose_viscosity_follows_the_radius_are_refined() {
+    local flow
+    for flow in '' '--q-perf 0.5 --terminal-flow territory'; do
+        # shellcheck disable=SC2086
+        run_ok corcast grow --terminals 300 --seed 5 --viscosity-law pries $flow -o plain.swc
+        run_ok corcast refine plain.swc -o refined.swc
+        check_tree refined.swc
+        expect_lower refined.swc plain.swc 0.98
+    done
+    grep -v '^# hematocrit' plain.swc >without.swc
+    run corcast refine without.swc -o refused.swc
+    expect_status 2
+    expect_sentence 'no header line "hematocrit'
+}
+
 test_annealing_stays_within_its_moves_and_is_repeatable() {
     run_ok corcast grow --terminals 120 --seed 6 -o plain.swc
     run_ok corcast refine plain.swc --refine anneal --refine-moves 30000 --seed 3 -o a.swc
