@@ -19,6 +19,7 @@ static const Command command = {
 
 enum { HITS_EXACT, HITS_POVRAY };
 static const char *const hits_names[] = {"exact", "povray", NULL};
+static const char *const methods[] = {[RENDER_TRACE] = "trace", [RENDER_RASTER] = "raster", NULL};
 
 /* --planes: which planes are written beside the picture. */
 static Status read_planes(const char *list, RenderParams *params, Err *err)
@@ -107,7 +108,7 @@ Status run_render(int argc, char **argv, Err *err)
     PictureOptions picture;
     picture_options_init(&picture);
     const char *output = NULL, *planes = NULL, *json = NULL;
-    int bits = 8, hits = HITS_EXACT;
+    int bits = 8, hits = HITS_EXACT, method = RENDER_TRACE;
     double threshold = 0, memory_mb = 128;
     const Option own[] = {
         {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P",
@@ -115,6 +116,8 @@ Status run_render(int argc, char **argv, Err *err)
         {"planes", OPTION_TEXT, &planes, NULL, 0, 0, NULL, "LIST",
          "planes beside it: color,depth,normal,id"},
         {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16", "of a PNG or PPM (8)"},
+        {"method", OPTION_CHOICE, &method, NULL, 0, 0, methods, NULL,
+         "how all but isosurfaces are drawn: as POV-Ray does, or fast (trace)"},
         {"hits", OPTION_CHOICE, &hits, NULL, 0, 0, hits_names, NULL,
          "isosurface: where it is, or where POV-Ray's root finder sees it (exact)"},
         {"antialias-threshold", OPTION_NUMBER, &threshold, NULL, 0, 1, NULL, "T",
@@ -146,6 +149,18 @@ Status run_render(int argc, char **argv, Err *err)
                          "--antialias-threshold needs --antialias N, with N from 2 to 9");
         goto done;
     }
+    if (method != RENDER_TRACE && picture.model == SCENE_ISOSURFACE) {
+        status = err_set(err, STATUS_USAGE,
+                         "--method %s is for cylinders, joined and rounded; an isosurface is drawn "
+                         "by tiles of its own",
+                         methods[method]);
+        goto done;
+    }
+    if (method != RENDER_TRACE && params.shadows) {
+        status = err_set(err, STATUS_USAGE, "--shadows needs --method trace");
+        goto done;
+    }
+    params.method = (RenderMethod)method;
     params.antialias_threshold = threshold;
     TRY_GOTO(read_planes(planes, &params, err));
     FramesForm form = {.width = picture.size[0],

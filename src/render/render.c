@@ -7,6 +7,7 @@
 #include "render/band.h"
 #include "render/caster.h"
 #include "render/fieldrender.h"
+#include "render/rasterrender.h"
 #include "render/resample.h"
 #include "render/shade.h"
 #include <assert.h>
@@ -182,9 +183,14 @@ void band_progress(const Band *band, const RenderParams *params, int height, boo
 
 /* ---- bands -------------------------------------------------------------------------------------- */
 
-static bool has_tiles(const Renderer *renderer)
+static bool is_field(const Renderer *renderer)
 {
     return renderer->scene->model == SCENE_ISOSURFACE && !renderer->params.povray_cells;
+}
+
+static bool is_raster(const Renderer *renderer)
+{
+    return renderer->scene->model != SCENE_ISOSURFACE && renderer->params.method == RENDER_RASTER;
 }
 
 Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **out, Err *err)
@@ -195,7 +201,7 @@ Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **o
     *renderer = (Renderer){.scene = scene, .params = *params};
     renderer->threads = params->threads > 0 ? params->threads : threads_available();
     Status status = STATUS_OK;
-    if (!has_tiles(renderer) || params->shadows)
+    if (!is_raster(renderer) && (!is_field(renderer) || params->shadows))
         status = caster_new(scene, params->povray_cells, renderer->threads, &renderer->caster, err);
     if (status != STATUS_OK) {
         renderer_free(renderer);
@@ -236,7 +242,9 @@ static Status draw(Renderer *renderer, const Band *band, Frame *frame, Err *err)
 {
     double start_s = clock_seconds();
     TRY(make_planes(renderer->scene->camera.width, band->rows, &renderer->params, frame, err));
-    if (has_tiles(renderer))
+    if (is_raster(renderer))
+        return rasterrender(renderer->scene, &renderer->params, band, frame, &renderer->stats, err);
+    if (is_field(renderer))
         return fieldrender(renderer->scene, &renderer->params, renderer->caster, band, frame,
                            &renderer->stats, err);
     TRY(rayrender(renderer, band, frame, err));

@@ -8,8 +8,15 @@
 #include "scene/scene.h"
 #include "surface/surface.h"
 
+/* How primitives are drawn. */
+typedef enum RenderMethod {
+    RENDER_TRACE, /* ray by ray in double precision, as POV-Ray does */
+    RENDER_RASTER /* tile by tile in single precision: the same picture but for rounding */
+} RenderMethod;
+
 typedef struct RenderParams {
-    int threads;   /* 0: all processors */
+    RenderMethod method; /* RENDER_TRACE for an implicit model, which has tiles of its own */
+    int threads;         /* 0: all processors */
     int antialias; /* 1: one ray through each pixel's centre; N > 1: that ray and N x N more, the
                     * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
     double antialias_threshold; /* 0: every pixel gets the N x N more, as in POV-Ray; else, in

@@ -113,6 +113,7 @@ typedef struct Scene {
     FieldSegment *segments; /* owned; empty for a primitive model */
     size_t n_segments;
     Blend blend;
+    bool open_joints;   /* rays may see the inside of a joint, where its discs are not covered */
     size_t drawn;       /* vessel segments that the geometry stands for */
     bool uniform_color; /* every color is `color` */
     Rgb color;

@@ -180,6 +180,7 @@ Status stage_scene(const Tree *tree, const Look *look, const Rgb *colors, const 
     Scene built = {.model = params->model,
                    .background = look->background,
                    .finish = look->finish,
+                   .open_joints = params->joints == JOINTS_PAPER,
                    .uniform_color = colors == NULL,
                    .color = look->color};
     StageReport counted = {0};

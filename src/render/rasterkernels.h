@@ -1,0 +1,32 @@
+/* What is done to a tile of primitives several samples at once, in one version for each kind of
+ * processor. */
+#ifndef CORCAST_RENDER_RASTERKERNELS_H
+#define CORCAST_RENDER_RASTERKERNELS_H
+
+#include "render/rastertile.h"
+
+/* Lines of sight that belong to no grid, and depths on them. */
+typedef struct RasterProbes {
+    int n;
+    double x[TILE_SAMPLES], y[TILE_SAMPLES]; /* in the plane of the view */
+    float z[TILE_SAMPLES];                   /* less z_middle */
+    uint8_t covered[TILE_SAMPLES];           /* whether an item is seen before that depth */
+} RasterProbes;
+
+typedef struct RasterKernels {
+    /* Finds the first items of the tile; false when there is none. */
+    bool (*trace)(const RasterTile *tile, RasterHits *hits);
+    /* Depth, normal and primitive (as `segment`) of the hits. */
+    void (*resolve)(const RasterTile *tile, const RasterHits *hits, TileHits *surface);
+    /* Sets `covered` of the probes from `first` to below `last`, which lie in this tile, where an item of the tile is seen. */
+    void (*cover)(const RasterTile *tile, RasterProbes *probes, int first, int last);
+} RasterKernels;
+
+extern const RasterKernels rasterkernels_portable;
+#ifdef __x86_64__
+extern const RasterKernels rasterkernels_avx2;
+#endif
+/* The fastest that this processor can run. */
+const RasterKernels *rasterkernels_best(void);
+
+#endif

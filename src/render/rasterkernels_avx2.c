@@ -1,0 +1,12 @@
+/* The kernels for x86 processors with AVX2 and FMA. */
+#ifdef __x86_64__
+
+#define LANES_AVX2
+#define RASTER_KERNEL(name) name##_avx2
+#include "render/rasterkernel.h"
+
+const RasterKernels rasterkernels_avx2 = {trace_avx2, resolve_avx2, cover_avx2};
+
+#else
+typedef int NotForThisProcessor;
+#endif

@@ -1,0 +1,426 @@
+/* A row of tiles is the unit of work: its lists are made, and tile by tile primitives are found, shaded
+ * and written, so that a pixel is written once and what is empty is filled row by row. Further samples of a tile's pixels
+ * use its list: pass after pass, each with all samples of the tile moved by the same part of a pixel,
+ * in POV-Ray's order. With a threshold that takes the colours of neighbours, and so a second round. */
+#include "render/rasterrender.h"
+
+#include "render/rasterkernels.h"
+#include "render/rasterview.h"
+#include "render/resample.h"
+#include "render/tilekernels.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* What a worker writes to. */
+typedef struct Canvas {
+    RasterRow row;
+    RasterHits hits;
+    TileHits surfels;
+    TileSurface surface;
+    float color[3][TILE_SAMPLES], sum[3][TILE_SAMPLES];
+    Status status;
+    Err err;
+} Canvas;
+
+typedef struct RasterPicture {
+    const Scene *scene;
+    const RenderParams *params;
+    const Band *band; /* that the frame holds */
+    Frame *frame;
+    RasterBins *bins;
+    const RasterKernels *kernels;
+    const TileKernels *shading;
+    RasterGrid center;
+    RasterGrid *further; /* n x n, row by row */
+    int n_further;
+    TileLook look;
+    TileLight *lights;
+    bool needs_places;           /* rays or lights differ from sample to sample */
+    float *background;           /* a row of the picture */
+    float *resampled_background; /* the mean of as many backgrounds as there are samples */
+    uint8_t *mask;               /* pixels that get further samples; NULL: all */
+    bool second_round;
+    Canvas *canvases;
+    int workers;
+} RasterPicture;
+
+/* A tile of the picture and the part of it that is inside. */
+typedef struct Place {
+    int column, row;       /* of its first pixel */
+    int n_columns, n_rows; /* pixels of it inside the picture */
+} Place;
+
+static size_t pixel_at(const RasterPicture *picture, const Place *place, int i, int j)
+{
+    size_t width = (size_t)picture->scene->camera.width;
+    return (size_t)(place->row + j) * width + (size_t)(place->column + i);
+}
+
+/* ---- one sample a pixel -------------------------------------------------------------------------- */
+
+/* Rays and places in perspective; parallel rays never change, and lights that are not parallel need
+ * places there, too. */
+static void place_surface(const RasterTile *tile, const TileHits *surfels, TileSurface *surface)
+{
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        if (surfels->state[sample] != TILE_HIT)
+            continue;
+        double x = tile->x + (double)tile->grid->x[sample];
+        double y = tile->y + (double)tile->grid->y[sample], z = surfels->z[sample];
+        double scale = tile->perspective ? z : 1, per = 1 / sqrt(1 + x * x + y * y);
+        surface->point[0][sample] = (float)(x * scale);
+        surface->point[1][sample] = (float)(y * scale);
+        surface->point[2][sample] = (float)z;
+        if (!tile->perspective)
+            continue;
+        surface->direction[0][sample] = (float)(x * per);
+        surface->direction[1][sample] = (float)(y * per);
+        surface->direction[2][sample] = (float)per;
+    }
+}
+
+/* The colours that the samples of a tile see; false when it is the background alone. */
+static bool color_tile(const RasterPicture *picture, const RasterTile *tile, Canvas *canvas)
+{
+    const Scene *scene = picture->scene;
+    TileSurface *surface = &canvas->surface;
+    TileHits *surfels = &canvas->surfels;
+    if (!picture->kernels->trace(tile, &canvas->hits))
+        return false;
+    picture->kernels->resolve(tile, &canvas->hits, surfels);
+    if (!picture->frame->color.values)
+        return true;
+    surface->hits = surfels;
+    if (!scene->uniform_color)
+        for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+            if (surfels->state[sample] != TILE_HIT)
+                continue;
+            Rgb pigment = scene->primitives[surfels->segment[sample]].color;
+            surface->pigment[0][sample] = pigment.r;
+            surface->pigment[1][sample] = pigment.g;
+            surface->pigment[2][sample] = pigment.b;
+        }
+    if (picture->needs_places)
+        place_surface(tile, surfels, surface);
+    picture->shading->shade(&picture->look, surface, canvas->color);
+    const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
+    for (int c = 0; c < 3; c++)
+        for (int sample = 0; sample < TILE_SAMPLES; sample++)
+            canvas->color[c][sample] =
+                surfels->state[sample] == TILE_HIT ? canvas->color[c][sample] : background[c];
+    return true;
+}
+
+static void write_colors(const RasterPicture *picture, const Place *place,
+                         float color[3][TILE_SAMPLES])
+{
+    for (int j = 0; j < place->n_rows; j++) {
+        float *pixel = &picture->frame->color.values[3 * pixel_at(picture, place, 0, j)];
+        for (int i = 0; i < place->n_columns; i++, pixel += 3) {
+            int sample = tile_sample_at(i, j);
+            pixel[0] = color[0][sample];
+            pixel[1] = color[1][sample];
+            pixel[2] = color[2][sample];
+        }
+    }
+}
+
+/* The normal in the world, facing the viewer. */
+static Vec3 seen_normal(const RasterPicture *picture, const RasterTile *tile,
+                        const TileHits *surfels, int sample)
+{
+    Vec3 normal = {(double)surfels->normal[0][sample], (double)surfels->normal[1][sample],
+                   (double)surfels->normal[2][sample]};
+    Vec3 sight = {0, 0, 1};
+    if (tile->perspective)
+        sight = vec3(tile->x + (double)tile->grid->x[sample],
+                     tile->y + (double)tile->grid->y[sample], 1);
+    if (vec3_dot(normal, sight) > 0)
+        normal = vec3_scale(normal, -1);
+    return rasterview_to_world(&picture->bins->view, normal);
+}
+
+static double seen_depth(const RasterTile *tile, const TileHits *surfels, int sample)
+{
+    double x = tile->x + (double)tile->grid->x[sample];
+    double y = tile->y + (double)tile->grid->y[sample];
+    return surfels->z[sample] * (tile->perspective ? sqrt(1 + x * x + y * y) : 1);
+}
+
+/* `surfels` NULL: nothing is seen in the whole tile. */
+static void write_geometry(const RasterPicture *picture, const Place *place, const RasterTile *tile,
+                           const TileHits *surfels)
+{
+    const Frame *frame = picture->frame;
+    for (int j = 0; j < place->n_rows; j++)
+        for (int i = 0; i < place->n_columns; i++) {
+            int sample = tile_sample_at(i, j);
+            bool hit = surfels && surfels->state[sample] == TILE_HIT;
+            size_t pixel = pixel_at(picture, place, i, j);
+            if (frame->depth.values)
+                frame->depth.values[pixel] =
+                    hit ? (float)seen_depth(tile, surfels, sample) : HUGE_VALF;
+            if (frame->normal.values) {
+                Vec3 normal = hit ? seen_normal(picture, tile, surfels, sample) : vec3(0, 0, 0);
+                frame->normal.values[3 * pixel] = (float)normal.x;
+                frame->normal.values[3 * pixel + 1] = (float)normal.y;
+                frame->normal.values[3 * pixel + 2] = (float)normal.z;
+            }
+            if (frame->id.ids)
+                frame->id.ids[pixel] =
+                    hit ? picture->scene->primitives[surfels->segment[sample]].id : 0;
+        }
+}
+
+/* ---- further samples ----------------------------------------------------------------------------- */
+
+static bool wants_more(const RasterPicture *picture, const Place *place, int i, int j)
+{
+    return !picture->mask || picture->mask[pixel_at(picture, place, i, j)];
+}
+
+static bool any_wants_more(const RasterPicture *picture, const Place *place)
+{
+    for (int j = 0; j < place->n_rows; j++)
+        for (int i = 0; i < place->n_columns; i++)
+            if (wants_more(picture, place, i, j))
+                return true;
+    return false;
+}
+
+/* The means of the centre samples, which the picture holds, and all others, summed in float in POV-Ray's
+ * order. */
+static void resample_tile(const RasterPicture *picture, const Place *place, RasterTile *tile,
+                          Canvas *canvas)
+{
+    const Scene *scene = picture->scene;
+    const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
+    float *values = picture->frame->color.values;
+    for (int j = 0; j < place->n_rows; j++)
+        for (int i = 0; i < place->n_columns; i++)
+            for (int c = 0; c < 3; c++)
+                canvas->sum[c][tile_sample_at(i, j)] =
+                    values[3 * pixel_at(picture, place, i, j) + (size_t)c];
+    for (int pass = 0; pass < picture->n_further; pass++) {
+        tile->grid = &picture->further[pass];
+        bool seen = color_tile(picture, tile, canvas);
+        for (int c = 0; c < 3; c++)
+            for (int sample = 0; sample < TILE_SAMPLES; sample++)
+                canvas->sum[c][sample] += seen ? canvas->color[c][sample] : background[c];
+    }
+    for (int j = 0; j < place->n_rows; j++)
+        for (int i = 0; i < place->n_columns; i++)
+            for (int c = 0; c < 3 && wants_more(picture, place, i, j); c++)
+                values[3 * pixel_at(picture, place, i, j) + (size_t)c] =
+                    (float)((double)canvas->sum[c][tile_sample_at(i, j)] /
+                            (picture->n_further + 1));
+}
+
+/* ---- rows ---------------------------------------------------------------------------------------- */
+
+/* Columns of tiles from `first` to below `last`, which see nothing. */
+static void fill_background(const RasterPicture *picture, int row, int first, int last,
+                            const float *background)
+{
+    const Camera *camera = &picture->scene->camera;
+    int end = last * TILE_SIDE < camera->width ? last * TILE_SIDE : camera->width;
+    int n_rows = picture->band->rows - row * TILE_SIDE;
+    Place place = {first * TILE_SIDE, row * TILE_SIDE, end - first * TILE_SIDE,
+                   n_rows < TILE_SIDE ? n_rows : TILE_SIDE};
+    if (place.n_columns <= 0)
+        return;
+    const Frame *frame = picture->frame;
+    for (int j = 0; j < place.n_rows && frame->color.values; j++)
+        memcpy(&frame->color.values[3 * pixel_at(picture, &place, 0, j)], background,
+               3 * (size_t)place.n_columns * sizeof *background);
+    if (frame->depth.values || frame->normal.values || frame->id.ids)
+        write_geometry(picture, &place, NULL, NULL);
+}
+
+static void draw_tile(const RasterPicture *picture, const Place *place, RasterTile *tile,
+                      Canvas *canvas)
+{
+    const Frame *frame = picture->frame;
+    const float *background = picture->background;
+    bool seen = color_tile(picture, tile, canvas);
+    if (frame->color.values && seen)
+        write_colors(picture, place, canvas->color);
+    for (int j = 0; j < place->n_rows && frame->color.values && !seen; j++)
+        memcpy(&frame->color.values[3 * pixel_at(picture, place, 0, j)], background,
+               3 * (size_t)place->n_columns * sizeof *background);
+    if (frame->depth.values || frame->normal.values || frame->id.ids)
+        write_geometry(picture, place, tile, seen ? &canvas->surfels : NULL);
+}
+
+static void draw_row(size_t row, int worker, void *context)
+{
+    const RasterPicture *picture = context;
+    const RasterBins *bins = picture->bins;
+    const Camera *camera = &picture->scene->camera;
+    Canvas *canvas = &picture->canvases[worker];
+    bool further = picture->n_further > 0 && picture->frame->color.values &&
+                   (picture->second_round || picture->params->antialias_threshold == 0);
+    if (worker == 0)
+        band_progress(picture->band, picture->params, camera->height, picture->second_round,
+                      (double)row / bins->tile_rows);
+    if (canvas->status != STATUS_OK)
+        return;
+    canvas->status = rasterbins_list(bins, row, &canvas->row, &canvas->err);
+    if (canvas->status != STATUS_OK)
+        return;
+    const uint32_t *offsets = canvas->row.offsets;
+    const float *background = further ? picture->resampled_background : picture->background;
+    int empty = 0; /* the first column of a run of empty tiles */
+    for (int column = 0; column < bins->tile_columns; column++) {
+        uint32_t n = offsets[column + 1] - offsets[column];
+        if (n == 0)
+            continue;
+        if (!picture->second_round)
+            fill_background(picture, (int)row, empty, column, background);
+        empty = column + 1;
+        Place place = {column * TILE_SIDE, (int)row * TILE_SIDE, camera->width - column * TILE_SIDE,
+                       picture->band->rows - (int)row * TILE_SIDE};
+        place.n_columns = place.n_columns < TILE_SIDE ? place.n_columns : TILE_SIDE;
+        place.n_rows = place.n_rows < TILE_SIDE ? place.n_rows : TILE_SIDE;
+        RasterTile tile = rasterbins_tile(bins, column, (int)row,
+                                          canvas->row.lists + offsets[column], n, &picture->center);
+        if (!picture->second_round)
+            draw_tile(picture, &place, &tile, canvas);
+        if (further && any_wants_more(picture, &place))
+            resample_tile(picture, &place, &tile, canvas);
+    }
+    if (!picture->second_round)
+        fill_background(picture, (int)row, empty, bins->tile_columns, background);
+}
+
+/* ---- the picture --------------------------------------------------------------------------------- */
+
+static Status prepare_lights(RasterPicture *picture, const RasterView *view, Err *err)
+{
+    const Scene *scene = picture->scene;
+    TRY(mem_calloc(&picture->lights, scene->n_lights, sizeof *picture->lights, "lights", err));
+    picture->needs_places = view->perspective;
+    for (size_t i = 0; i < scene->n_lights; i++) {
+        const Light *light = &scene->lights[i];
+        Vec3 v = light->parallel ? vec3_normalized(vec3_sub(light->location, light->target))
+                                 : vec3_sub(light->location, view->location);
+        v = rasterview_to_frame(view, v);
+        picture->lights[i] = (TileLight){.towards = {(float)v.x, (float)v.y, (float)v.z},
+                                         .color = {light->color.r, light->color.g, light->color.b},
+                                         .parallel = light->parallel};
+        picture->needs_places |= !light->parallel;
+    }
+    picture->look = (TileLook){scene->finish, picture->lights, scene->n_lights};
+    return STATUS_OK;
+}
+
+static Status make_background(const RasterPicture *picture, int samples, float **row, Err *err)
+{
+    const Scene *scene = picture->scene;
+    const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
+    TRY(mem_calloc(row, 3 * (size_t)scene->camera.width, sizeof **row, "background", err));
+    for (int c = 0; c < 3; c++) {
+        float sum = background[c];
+        for (int i = 1; i < samples; i++)
+            sum += background[c];
+        for (int i = 0; i < scene->camera.width; i++)
+            (*row)[3 * i + c] = (float)((double)sum / samples);
+    }
+    return STATUS_OK;
+}
+
+static Status prepare_samples(RasterPicture *picture, const RasterView *view, Err *err)
+{
+    int n = picture->params->antialias > 1 ? picture->params->antialias : 0;
+    double *offsets = NULL;
+    picture->center = rastergrid_make(view, 0, 0);
+    TRY(mem_calloc(&picture->further, (size_t)n * (size_t)n, sizeof *picture->further, "samples",
+                   err));
+    TRY(mem_calloc(&offsets, (size_t)n, sizeof *offsets, "samples", err));
+    picture->n_further = n * n;
+    if (n > 0)
+        resample_offsets(n, offsets);
+    for (int i = 0; i < n * n; i++)
+        picture->further[i] = rastergrid_make(view, offsets[i % n], offsets[i / n]);
+    free(offsets);
+    return STATUS_OK;
+}
+
+static Status prepare_canvases(RasterPicture *picture, Err *err)
+{
+    const Scene *scene = picture->scene;
+    TRY(mem_calloc(&picture->canvases, (size_t)picture->workers, sizeof *picture->canvases,
+                   "canvases", err));
+    for (int i = 0; i < picture->workers; i++) {
+        TileSurface *surface = &picture->canvases[i].surface;
+        for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+            surface->direction[2][sample] = 1;
+            surface->pigment[0][sample] = scene->color.r;
+            surface->pigment[1][sample] = scene->color.g;
+            surface->pigment[2][sample] = scene->color.b;
+        }
+    }
+    return STATUS_OK;
+}
+
+static Status draw_rows(RasterPicture *picture, Err *err)
+{
+    threads_for((size_t)picture->bins->tile_rows, picture->workers, draw_row, picture);
+    for (int i = 0; i < picture->workers; i++)
+        if (picture->canvases[i].status != STATUS_OK) {
+            if (err)
+                *err = picture->canvases[i].err;
+            return picture->canvases[i].status;
+        }
+    return STATUS_OK;
+}
+
+static Status second_round(RasterPicture *picture, Err *err)
+{
+    const Plane *color = &picture->frame->color;
+    TRY(mem_calloc(&picture->mask, (size_t)color->width * (size_t)color->height, 1, "masks", err));
+    resample_mask(color, picture->band->above, picture->band->below,
+                  (float)picture->params->antialias_threshold, picture->workers, picture->mask);
+    picture->second_round = true;
+    return draw_rows(picture, err);
+}
+
+static void release(RasterPicture *picture)
+{
+    for (int i = 0; picture->canvases && i < picture->workers; i++)
+        rasterrow_release(&picture->canvases[i].row);
+    free(picture->canvases);
+    free(picture->further);
+    free(picture->lights);
+    free(picture->background);
+    free(picture->resampled_background);
+    free(picture->mask);
+    rasterbins_free(picture->bins);
+}
+
+Status rasterrender(const Scene *scene, const RenderParams *params, const Band *band, Frame *frame,
+                    RenderStats *stats, Err *err)
+{
+    Status status;
+    RasterPicture picture = {.scene = scene, .params = params, .band = band, .frame = frame};
+    RasterView view = rasterview_of_camera(scene, band->first, band->rows, params->antialias);
+    double start_s = clock_seconds();
+    picture.workers = params->threads > 0 ? params->threads : threads_available();
+    picture.kernels = rasterkernels_best();
+    picture.shading = tilekernels_best();
+    TRY_GOTO(prepare_lights(&picture, &view, err));
+    TRY_GOTO(prepare_samples(&picture, &view, err));
+    TRY_GOTO(prepare_canvases(&picture, err));
+    TRY_GOTO(make_background(&picture, 1, &picture.background, err));
+    TRY_GOTO(make_background(&picture, picture.n_further + 1, &picture.resampled_background, err));
+    TRY_GOTO(rasterbins_new(scene, &view, picture.workers, &picture.bins, err));
+    double prepared_s = clock_seconds() - start_s;
+    TRY_GOTO(draw_rows(&picture, err));
+    if (picture.n_further > 0 && params->antialias_threshold > 0 && frame->color.values)
+        TRY_GOTO(second_round(&picture, err));
+    stats->prepare_s += prepared_s;
+    stats->trace_s += clock_seconds() - start_s - prepared_s;
+done:
+    release(&picture);
+    return status;
+}

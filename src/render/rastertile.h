@@ -1,0 +1,84 @@
+/* What a kernel is given to find the first primitive at each sample of a tile, and what it finds.
+ *
+ * Places are in the frame of the view: x to the right, y up, z along it. A line of sight is told by the
+ * point (x, y) of the view's plane: parallel views look along (0, 0, 1) from (x, y, 0), others along
+ * (x, y, 1) from the origin. */
+#ifndef CORCAST_RENDER_RASTERTILE_H
+#define CORCAST_RENDER_RASTERTILE_H
+
+#include "render/fieldtile.h"
+
+typedef enum RasterKind {
+    RASTER_CYLINDER, /* closed */
+    RASTER_SPHERE,
+    RASTER_JOINT, /* of a solid: no line of sight sees it from inside */
+    RASTER_EXACT  /* too near, too large or too odd for single precision */
+} RasterKind;
+
+/* A primitive, or a capsule about it. Its axis is (sine ex, sine ey, cosine). */
+typedef struct RasterItem {
+    double x, y, z; /* its middle */
+    float ex, ey;   /* unit */
+    float sine, cosine;
+    float radius, half; /* mm; half its length, 0 of a sphere */
+    uint32_t primitive; /* index in the scene */
+    uint32_t joint;     /* index of its RasterJoint */
+    uint32_t kind;      /* RasterKind */
+} RasterItem;
+
+/* Whether an item is about the eye's plane, or so close that its outline tells nothing. */
+static inline bool item_is_close(const RasterItem *item)
+{
+    double near = item->z - (double)item->cosine * (double)item->half - (double)item->radius;
+    return near < 1e-3 * (1 + (double)item->radius);
+}
+
+/* A ruled joint about the middle of its item:
+ *   C_1(q) = base + cos q a + sin q b,  C_2(q) - C_1(q) = span + cos q da + sin q db,
+ * q counted from the ruling that faces the view most. A line of sight of direction D that passes (X, Y) at the depth of the
+ * middle meets the ruling q where g(q) = k0 + k1 cos q + k2 sin q + k3 cos^2 q + k4 cos q sin q = 0,
+ *   k_i = D . (by[i] - (X, Y, 0) x R_i),  R = span, da, db, 0, 0. */
+typedef struct RasterJoint {
+    float base[3], span[3], a[3], b[3], da[3], db[3];
+    float by[5][3];
+} RasterJoint;
+
+/* Where samples lie, from the middle of their tile, in the plane of the view. */
+typedef struct RasterGrid {
+    float x[TILE_SAMPLES], y[TILE_SAMPLES];
+    /* Middles of the blocks of 8 and of 4 samples, and of a block's half sides. */
+    float block8_x[TILE_SAMPLES / 8], block8_y[TILE_SAMPLES / 8], block8_half[2];
+    float block4_x[TILE_SAMPLES / 4], block4_y[TILE_SAMPLES / 4], block4_half[2];
+} RasterGrid;
+
+struct RasterBins;
+
+typedef struct RasterTile {
+    const struct RasterBins *bins;
+    const RasterItem *items;
+    const RasterJoint *joints;
+    const uint32_t *list; /* items, ascending */
+    size_t n;
+    const RasterGrid *grid;
+    bool perspective;
+    double x, y; /* the middle of the tile, in the plane of the view */
+    double z_middle;
+} RasterTile;
+
+#define RASTER_NOTHING UINT32_MAX
+/* Set in `item` where a sample was decided in double precision. */
+#define RASTER_DECIDED 0x80000000u
+
+/* The first item at each sample. */
+typedef struct RasterHits {
+    float z[TILE_SAMPLES]; /* depth along the view less z_middle; infinite: nothing is there */
+    uint32_t item[TILE_SAMPLES]; /* index, perhaps with RASTER_DECIDED; or RASTER_NOTHING */
+    float ruling[TILE_SAMPLES];  /* of a joint: tan(q / 2) */
+} RasterHits;
+
+/* Meets an item in double precision with the line of sight at (x, y) of the view's plane: its depth z
+ * along the view, INFINITY when it is not met, and if `normal` is not NULL the surface's normal in the view's frame. */
+double raster_decide(const struct RasterBins *bins, uint32_t item, double x, double y,
+                     Vec3 *normal);
+
+#endif

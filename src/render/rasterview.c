@@ -1,0 +1,526 @@
+/* A primitive becomes an item: its middle in double precision, all else in single precision about that
+ * middle, so that single precision is left with numbers as small as the primitive. Items are counted into
+ * the rows of tiles that a capsule about them touches; chunks of items have counters of their own, so
+ * that threads fill the rows without waiting and in the order of the items. The list of a row's tiles is
+ * made when the row is drawn, from the part of each capsule that is within reach of the row's slab.
+ *
+ * What single precision cannot hold to a thousandth of a pixel, or the kernels do not solve, is an item
+ * of the kind RASTER_EXACT: what is near the eye or about it, longer than 16384 pixels, or looked at along
+ * its axis, and joints that need not be the wall of a solid. */
+#include "render/rasterview.h"
+
+#include <stdlib.h>
+
+enum { LEAST_CHUNK = 4096, MOST_CHUNKS = 64 };
+
+static const double most_pixels = 16384; /* 2^-24 of it are a thousandth of a pixel */
+static const double least_sine =
+    0.02; /* of the angle at which a wall is looked at along its axis */
+static const double slack_pixels = 1e-3; /* covers rounding where tiles are told apart */
+
+RasterView rasterview_of_camera(const Scene *scene, int first, int rows, int antialias)
+{
+    const Camera *camera = &scene->camera;
+    double width = vec3_length(camera->right), height = vec3_length(camera->up);
+    double near, far;
+    scene_depth_range(scene, &near, &far);
+    return (RasterView){.location = camera->location,
+                        .axes = {vec3_normalized(camera->right), vec3_normalized(camera->up),
+                                 vec3_normalized(camera->direction)},
+                        .perspective = camera->projection == PROJECTION_PERSPECTIVE,
+                        .left = (0.5 / camera->width - 0.5) * width,
+                        .top = (0.5 - 0.5 / camera->height) * height,
+                        .step_x = width / camera->width,
+                        .step_y = -height / camera->height,
+                        .columns = camera->width,
+                        .rows = rows,
+                        .first = first,
+                        .stray = antialias > 1 ? 0.5 : 0,
+                        .z_middle = (near + far) / 2};
+}
+
+Ray rasterview_ray(const RasterView *view, double x, double y)
+{
+    Vec3 across = vec3_add_scaled(vec3_scale(view->axes[0], x), view->axes[1], y);
+    if (view->perspective)
+        return (Ray){view->location, vec3_normalized(vec3_add(view->axes[2], across))};
+    return (Ray){vec3_add(view->location, across), view->axes[2]};
+}
+
+Vec3 rasterview_to_frame(const RasterView *view, Vec3 v)
+{
+    return vec3(vec3_dot(v, view->axes[0]), vec3_dot(v, view->axes[1]), vec3_dot(v, view->axes[2]));
+}
+
+Vec3 rasterview_to_world(const RasterView *view, Vec3 v)
+{
+    Vec3 world = vec3_add_scaled(vec3_scale(view->axes[0], v.x), view->axes[1], v.y);
+    return vec3_add_scaled(world, view->axes[2], v.z);
+}
+
+/* ---- items --------------------------------------------------------------------------------------- */
+
+static void store_vec3(float to[3], Vec3 v)
+{
+    to[0] = (float)v.x;
+    to[1] = (float)v.y;
+    to[2] = (float)v.z;
+}
+
+/* Turns the angle p of a joint by that of the ruling that faces `sight`, a direction in the frame, most:
+ * where the first harmonic of sight . (S_p x S_l) at l = 1/2 is least. */
+static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
+{
+    Vec3 a = joint->across, b = vec3_scale(joint->side, joint->radius);
+    Vec3 da = joint->across_change, db = vec3_scale(joint->side, joint->radius_change);
+    double along_a = vec3_dot(sight, vec3_cross(vec3_add_scaled(a, da, 0.5), joint->span));
+    double along_b = vec3_dot(sight, vec3_cross(vec3_add_scaled(b, db, 0.5), joint->span));
+    double size = hypot(along_a, along_b), cosine = 1, sine = 0;
+    if (size > 0) {
+        cosine = -along_b / size;
+        sine = along_a / size;
+    }
+    out[0] = joint->base;
+    out[1] = joint->span;
+    out[2] = vec3_add_scaled(vec3_scale(a, cosine), b, sine);
+    out[3] = vec3_add_scaled(vec3_scale(b, cosine), a, -sine);
+    out[4] = vec3_add_scaled(vec3_scale(da, cosine), db, sine);
+    out[5] = vec3_add_scaled(vec3_scale(db, cosine), da, -sine);
+}
+
+static RasterJoint make_joint(const RasterView *view, const Primitive *primitive, Vec3 middle)
+{
+    RasterJoint made;
+    JointFrame joint = primitive_joint(primitive);
+    Vec3 from_eye = vec3_sub(joint.base, view->location), part[6];
+    joint.base = vec3_sub(rasterview_to_frame(view, from_eye), middle);
+    joint.span = rasterview_to_frame(view, joint.span);
+    /* The frame is left-handed; turning the other way round keeps S_p x S_l outward in it. */
+    joint.side = vec3_scale(rasterview_to_frame(view, joint.side), -1);
+    joint.across = rasterview_to_frame(view, joint.across);
+    joint.across_change = rasterview_to_frame(view, joint.across_change);
+    face_sight(&joint, view->perspective ? middle : vec3(0, 0, 1), part);
+    Vec3 base = part[0], span = part[1], a = part[2], b = part[3], da = part[4], db = part[5];
+    store_vec3(made.base, base);
+    store_vec3(made.span, span);
+    store_vec3(made.a, a);
+    store_vec3(made.b, b);
+    store_vec3(made.da, da);
+    store_vec3(made.db, db);
+    store_vec3(made.by[0], vec3_add(vec3_cross(base, span), vec3_cross(b, db)));
+    store_vec3(made.by[1], vec3_add(vec3_cross(base, da), vec3_cross(a, span)));
+    store_vec3(made.by[2], vec3_add(vec3_cross(base, db), vec3_cross(b, span)));
+    store_vec3(made.by[3], vec3_sub(vec3_cross(a, da), vec3_cross(b, db)));
+    store_vec3(made.by[4], vec3_add(vec3_cross(a, db), vec3_cross(b, da)));
+    return made;
+}
+
+/* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its two discs
+ * bound a solid. */
+static bool joint_is_solid(const Primitive *primitive)
+{
+    Vec3 span = vec3_sub(primitive->b, primitive->a);
+    double sine = vec3_length(vec3_cross(primitive->axis_a, primitive->axis_b));
+    double slack = 1e-9 * (primitive->radius_mm + primitive->radius_b_mm);
+    return vec3_dot(span, primitive->axis_a) >= primitive->radius_b_mm * sine - slack &&
+           vec3_dot(span, primitive->axis_b) >= primitive->radius_mm * sine - slack;
+}
+
+/* The item of a primitive; *joint is set if it is one. */
+static RasterItem make_item(const RasterBins *bins, uint32_t number, RasterJoint *joint)
+{
+    const RasterView *view = &bins->view;
+    const Primitive *primitive = &bins->scene->primitives[number];
+    Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
+    middle = rasterview_to_frame(view, vec3_sub(middle, view->location));
+    Vec3 span = rasterview_to_frame(view, vec3_sub(primitive->b, primitive->a));
+    double length = vec3_length(span), radius = primitive->radius_mm, cosine = 0, sine = 1;
+    double ex = 1, ey = 0;
+    if (length > 0) {
+        double turn = span.z < 0 ? -1 : 1, across = sqrt(span.x * span.x + span.y * span.y);
+        cosine = turn * span.z / length;
+        sine = across / length;
+        ex = across > 0 ? turn * span.x / across : 1;
+        ey = across > 0 ? turn * span.y / across : 0;
+    }
+    RasterKind kind = RASTER_SPHERE;
+    if (primitive->kind == PRIMITIVE_CYLINDER)
+        kind = !view->perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
+    if (primitive->kind == PRIMITIVE_JOINT) {
+        kind = bins->scene->open_joints || !joint_is_solid(primitive) ? RASTER_EXACT : RASTER_JOINT;
+        radius = fmax(radius, primitive->radius_b_mm);
+        if (kind == RASTER_JOINT)
+            *joint = make_joint(view, primitive, middle);
+    }
+    RasterItem item = {.x = middle.x,
+                       .y = middle.y,
+                       .z = middle.z,
+                       .ex = (float)ex,
+                       .ey = (float)ey,
+                       .sine = (float)sine,
+                       .cosine = (float)cosine,
+                       .radius = (float)radius,
+                       .half = (float)(length / 2),
+                       .primitive = number,
+                       .kind = (uint32_t)kind};
+    double near = middle.z - cosine * length / 2 - radius;
+    double pixel = fmin(view->step_x, -view->step_y) * (view->perspective ? near : 1);
+    if (item_is_close(&item) || length / 2 + radius > most_pixels * pixel)
+        item.kind = RASTER_EXACT;
+    return item;
+}
+
+double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal)
+{
+    static const double nearest_seen_mm = 1e-4; /* POV-Ray's, as in caster.c */
+    const Primitive *primitive = &bins->scene->primitives[bins->items[item].primitive];
+    Ray ray = rasterview_ray(&bins->view, x, y);
+    Hit hits[4];
+    int n = 0;
+    double nearest = HUGE_VAL;
+    if (primitive->kind == PRIMITIVE_SPHERE) {
+        n = hit_sphere(ray, primitive->a, primitive->radius_mm, hits);
+    } else if (primitive->kind == PRIMITIVE_CYLINDER) {
+        CylinderFrame cylinder = cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
+        n = hit_cylinder(ray, &cylinder, hits);
+    } else {
+        JointFrame joint = primitive_joint(primitive);
+        n = hit_joint(ray, &joint, hits);
+    }
+    for (int i = 0; i < n; i++)
+        if (hits[i].t >= nearest_seen_mm && hits[i].t < nearest) {
+            nearest = hits[i].t;
+            if (normal)
+                *normal = rasterview_to_frame(&bins->view, hits[i].normal);
+        }
+    return nearest * vec3_dot(ray.direction, bins->view.axes[2]);
+}
+
+/* ---- where items are seen ------------------------------------------------------------------------ */
+
+typedef struct Range {
+    double low, high;
+} Range;
+
+typedef struct Span {
+    int first, last;
+} Span;
+
+static const Span nowhere = {1, 0};
+
+static double min_of(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double max_of(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* Of `count` pixels from pixel `least` on, the tiles within a range; pixel 0 is at `first`. */
+static Span tiles_within(Range range, double first, double step, double stray, int least, int count)
+{
+    double from = (range.low - first) / step, to = (range.high - first) / step;
+    double low = max_of(min_of(from, to) - stray - slack_pixels, least);
+    double high = min_of(max_of(from, to) + stray + slack_pixels, least + count - 1);
+    if (!(low <= high))
+        return nowhere;
+    int first_pixel = (int)low - least, last_pixel = (int)high - least;
+    first_pixel += first_pixel + least < low;
+    return first_pixel <= last_pixel ? (Span){first_pixel / TILE_SIDE, last_pixel / TILE_SIDE}
+                                     : nowhere;
+}
+
+/* What a ball at coordinate c in one direction of the view's plane, and at depth z > radius, covers
+ * there. */
+static Range ball_shadow(bool perspective, double c, double z, double radius)
+{
+    if (!perspective)
+        return (Range){c - radius, c + radius};
+    double half = radius * sqrt(max_of(c * c + z * z - radius * radius, 0));
+    double per = 1 / ((z - radius) * (z + radius));
+    return (Range){(c * z - half) * per, (c * z + half) * per};
+}
+
+static Vec3 item_axis(const RasterItem *item)
+{
+    double sine = (double)item->sine;
+    return vec3(sine * (double)item->ex, sine * (double)item->ey, (double)item->cosine);
+}
+
+static Vec3 item_point(const RasterItem *item, double along)
+{
+    return vec3_add_scaled(vec3(item->x, item->y, item->z), item_axis(item), along);
+}
+
+static Range capsule_shadow(bool perspective, double c0, double z0, double c1, double z1,
+                            double radius)
+{
+    Range one = ball_shadow(perspective, c0, z0, radius);
+    Range other = ball_shadow(perspective, c1, z1, radius);
+    return (Range){min_of(one.low, other.low), max_of(one.high, other.high)};
+}
+
+static bool may_be_anywhere(const RasterView *view, const RasterItem *item)
+{
+    return view->perspective && item_is_close(item);
+}
+
+static Span rows_of(const RasterView *view, const RasterItem *item)
+{
+    double half = (double)item->half, radius = (double)item->radius;
+    if (item->z + (double)item->cosine * half + radius < 0)
+        return nowhere;
+    if (may_be_anywhere(view, item))
+        return (Span){0, (view->rows - 1) / TILE_SIDE};
+    Vec3 a = item_point(item, -half), b = item_point(item, half);
+    return tiles_within(capsule_shadow(view->perspective, a.y, a.z, b.y, b.z, radius), view->top,
+                        view->step_y, view->stray, view->first, view->rows);
+}
+
+/* Height above the plane through the eye, the view's direction and a row at `y` of its plane. */
+static double above(const RasterView *view, Vec3 p, double y, double per_length)
+{
+    return view->perspective ? (p.y - y * p.z) * per_length : p.y - y;
+}
+
+/* The slab that the lines of sight of a row of tiles fill. */
+typedef struct Slab {
+    double y[2], per_length[2]; /* lowest and highest */
+} Slab;
+
+static Slab slab_of(const RasterView *view, size_t row)
+{
+    int first = view->first + (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
+    Slab slab;
+    slab.y[0] = view->top + (last + view->stray + slack_pixels) * view->step_y;
+    slab.y[1] = view->top + (first - view->stray - slack_pixels) * view->step_y;
+    for (int i = 0; i < 2; i++)
+        slab.per_length[i] = 1 / sqrt(1 + slab.y[i] * slab.y[i]);
+    return slab;
+}
+
+/* The tiles of a row that the part of the capsule within reach of its slab may touch. */
+static Span columns_of(const RasterView *view, const RasterItem *item, const Slab *slab)
+{
+    double half = (double)item->half, radius = (double)item->radius, from = 0, to = 1;
+    if (may_be_anywhere(view, item))
+        return (Span){0, (view->columns - 1) / TILE_SIDE};
+    Vec3 a = item_point(item, -half), span = vec3_scale(item_axis(item), 2 * half);
+    Vec3 b = vec3_add(a, span);
+    for (int plane = 0; plane < 2; plane++) {
+        double sign = plane ? -1 : 1;
+        double at_a = sign * above(view, a, slab->y[plane], slab->per_length[plane]) + radius;
+        double at_b = sign * above(view, b, slab->y[plane], slab->per_length[plane]) + radius;
+        if (at_a < 0 && at_b < 0)
+            return nowhere;
+        if (at_a < 0)
+            from = max_of(from, at_a / (at_a - at_b));
+        else if (at_b < 0)
+            to = min_of(to, at_a / (at_a - at_b));
+    }
+    if (from > to)
+        return nowhere;
+    Vec3 first = vec3_add_scaled(a, span, from), last = vec3_add_scaled(a, span, to);
+    return tiles_within(capsule_shadow(view->perspective, first.x, first.z, last.x, last.z, radius),
+                        view->left, view->step_x, view->stray, 0, view->columns);
+}
+
+/* ---- rows ---------------------------------------------------------------------------------------- */
+
+typedef struct Build {
+    RasterBins *bins;
+    Span *rows;     /* one an item */
+    size_t *counts; /* chunk by chunk, of each row; then where the chunk's items go */
+    size_t chunk;   /* items */
+} Build;
+
+static size_t chunk_end(const Build *build, size_t chunk)
+{
+    size_t end = (chunk + 1) * build->chunk, n = build->bins->scene->n_primitives;
+    return end < n ? end : n;
+}
+
+static void make_chunk(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Build *build = context;
+    RasterBins *bins = build->bins;
+    size_t *counts = build->counts + chunk * (size_t)bins->tile_rows;
+    for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++) {
+        uint32_t joint = bins->items[i].joint;
+        bins->items[i] = make_item(bins, (uint32_t)i, &bins->joints[joint]);
+        bins->items[i].joint = joint;
+        build->rows[i] = rows_of(&bins->view, &bins->items[i]);
+        for (int row = build->rows[i].first; row <= build->rows[i].last; row++)
+            counts[row]++;
+    }
+}
+
+static void fill_chunk(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Build *build = context;
+    size_t *places = build->counts + chunk * (size_t)build->bins->tile_rows;
+    for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++)
+        for (int row = build->rows[i].first; row <= build->rows[i].last; row++)
+            build->bins->row_items[places[row]++] = (uint32_t)i;
+}
+
+static Status sort_into_rows(Build *build, int threads, Err *err)
+{
+    RasterBins *bins = build->bins;
+    size_t n = bins->scene->n_primitives, rows = (size_t)bins->tile_rows, total = 0;
+    build->chunk = n / MOST_CHUNKS + 1 > LEAST_CHUNK ? n / MOST_CHUNKS + 1 : LEAST_CHUNK;
+    size_t chunks = (n + build->chunk - 1) / build->chunk;
+    TRY(mem_calloc(&build->rows, n, sizeof *build->rows, "items", err));
+    TRY(mem_calloc(&build->counts, chunks * rows, sizeof *build->counts, "rows of tiles", err));
+    threads_for(chunks, threads, make_chunk, build);
+    for (size_t row = 0; row < rows; row++) {
+        bins->row_offsets[row] = total;
+        for (size_t chunk = 0; chunk < chunks; chunk++) {
+            size_t count = build->counts[chunk * rows + row];
+            build->counts[chunk * rows + row] = total;
+            total += count;
+        }
+    }
+    bins->row_offsets[rows] = total;
+    TRY(mem_calloc(&bins->row_items, total, sizeof *bins->row_items, "rows of tiles", err));
+    threads_for(chunks, threads, fill_chunk, build);
+    return STATUS_OK;
+}
+
+static Status make_bins(RasterBins *bins, int threads, Err *err)
+{
+    const Scene *scene = bins->scene;
+    uint32_t n_joints = 0;
+    if (scene->n_primitives >= RASTER_DECIDED)
+        return err_set(err, STATUS_MEMORY, "too many primitives for --method raster");
+    TRY(mem_calloc(&bins->items, scene->n_primitives, sizeof *bins->items, "items", err));
+    TRY(mem_calloc(&bins->row_offsets, (size_t)bins->tile_rows + 1, sizeof *bins->row_offsets,
+                   "rows of tiles", err));
+    if (scene->model == SCENE_JOINED)
+        for (size_t i = 0; i < scene->n_primitives; i++) {
+            bins->items[i].joint = n_joints;
+            n_joints += scene->primitives[i].kind == PRIMITIVE_JOINT;
+        }
+    TRY(mem_calloc(&bins->joints, (size_t)n_joints + 1, sizeof *bins->joints, "joints", err));
+    Build build = {.bins = bins};
+    Status status = sort_into_rows(&build, threads, err);
+    free(build.rows);
+    free(build.counts);
+    return status;
+}
+
+Status rasterbins_new(const Scene *scene, const RasterView *view, int threads, RasterBins **out,
+                      Err *err)
+{
+    RasterBins *bins = NULL;
+    TRY(mem_calloc(&bins, 1, sizeof *bins, "tiles", err));
+    bins->scene = scene;
+    bins->view = *view;
+    bins->tile_columns = (view->columns + TILE_SIDE - 1) / TILE_SIDE;
+    bins->tile_rows = (view->rows + TILE_SIDE - 1) / TILE_SIDE;
+    Status status = make_bins(bins, threads, err);
+    if (status != STATUS_OK) {
+        rasterbins_free(bins);
+        return status;
+    }
+    *out = bins;
+    return STATUS_OK;
+}
+
+void rasterbins_free(RasterBins *bins)
+{
+    if (!bins)
+        return;
+    free(bins->items);
+    free(bins->joints);
+    free(bins->row_offsets);
+    free(bins->row_items);
+    free(bins);
+}
+
+/* ---- tiles --------------------------------------------------------------------------------------- */
+
+Status rasterbins_list(const RasterBins *bins, size_t number, RasterRow *row, Err *err)
+{
+    const uint32_t *items = bins->row_items + bins->row_offsets[number];
+    size_t n = bins->row_offsets[number + 1] - bins->row_offsets[number], total = 0;
+    size_t columns = (size_t)bins->tile_columns;
+    if (!row->offsets)
+        TRY(mem_calloc(&row->offsets, columns + 1, sizeof *row->offsets, "tiles", err));
+    TRY(mem_reserve(&row->spans, &row->spans_capacity, 2 * n, sizeof *row->spans, "tiles", err));
+    uint32_t *offsets = row->offsets;
+    for (size_t i = 0; i <= columns; i++)
+        offsets[i] = 0;
+    const Slab slab = slab_of(&bins->view, number);
+    for (size_t i = 0; i < n; i++) {
+        Span span = columns_of(&bins->view, &bins->items[items[i]], &slab);
+        row->spans[2 * i] = span.first;
+        row->spans[2 * i + 1] = span.last;
+        for (int column = span.first; column <= span.last; column++)
+            offsets[column]++;
+    }
+    for (size_t i = 0; i <= columns; i++) {
+        total += offsets[i];
+        if (total > UINT32_MAX)
+            return err_set(err, STATUS_MEMORY, "too many primitives in one row of the picture");
+        offsets[i] = (uint32_t)total;
+    }
+    TRY(mem_reserve(&row->lists, &row->lists_capacity, total, sizeof *row->lists, "tiles", err));
+    for (size_t i = n; i-- > 0;)
+        for (int column = row->spans[2 * i]; column <= row->spans[2 * i + 1]; column++)
+            row->lists[--offsets[column]] = items[i];
+    return STATUS_OK;
+}
+
+void rasterrow_release(RasterRow *row)
+{
+    free(row->offsets);
+    free(row->lists);
+    free(row->spans);
+    *row = (RasterRow){0};
+}
+
+RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const uint32_t *list,
+                           size_t n, const RasterGrid *grid)
+{
+    const RasterView *view = &bins->view;
+    const double middle = (TILE_SIDE - 1) / 2.0;
+    return (RasterTile){.bins = bins,
+                        .items = bins->items,
+                        .joints = bins->joints,
+                        .list = list,
+                        .n = n,
+                        .grid = grid,
+                        .perspective = view->perspective,
+                        .x = view->left + (column * TILE_SIDE + middle) * view->step_x,
+                        .y = view->top + (view->first + row * TILE_SIDE + middle) * view->step_y,
+                        .z_middle = view->z_middle};
+}
+
+static void set_blocks(const RasterGrid *grid, int size, float *x, float *y, float half[2])
+{
+    for (int block = 0; block < TILE_SAMPLES / size; block++) {
+        int first = block * size, last = first + size - 1;
+        x[block] = (grid->x[first] + grid->x[last]) / 2;
+        y[block] = (grid->y[first] + grid->y[last]) / 2;
+    }
+    half[0] = (grid->x[size - 1] - grid->x[0]) / 2;
+    half[1] = (grid->y[0] - grid->y[size - 1]) / 2;
+}
+
+RasterGrid rastergrid_make(const RasterView *view, double x, double y)
+{
+    const double middle = (TILE_SIDE - 1) / 2.0;
+    RasterGrid grid;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        grid.x[sample] = (float)((tile_sample_x(sample) - middle + x) * view->step_x);
+        grid.y[sample] = (float)((tile_sample_y(sample) - middle + y) * view->step_y);
+    }
+    set_blocks(&grid, 8, grid.block8_x, grid.block8_y, grid.block8_half);
+    set_blocks(&grid, 4, grid.block4_x, grid.block4_y, grid.block4_half);
+    return grid;
+}

@@ -1,0 +1,408 @@
+/* Pictures drawn tile by tile in single precision: those that single rays give in double precision but for
+ * rounding, whatever the kernel, the same whatever the threads, and right where single precision is not. */
+#include "render/render.h"
+
+#include "render/rasterkernels.h"
+#include "render/rasterview.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { WIDTH = 203, HEIGHT = 141, PIXELS = WIDTH * HEIGHT, N_TUBES = 60 };
+
+static double number(Random *random, double low, double high)
+{
+    return low + (high - low) * random_uniform(random);
+}
+
+static Vec3 point(Random *random, double size)
+{
+    double x = number(random, -size, size), y = number(random, -size, size);
+    return vec3(x, y, number(random, -size, size));
+}
+
+typedef struct Staged {
+    Primitive primitives[3 * N_TUBES + 8];
+    Light lights[2];
+    Scene scene;
+} Staged;
+
+static Primitive *add(Staged *staged, PrimitiveKind kind, Vec3 a, Vec3 b, double radius)
+{
+    Scene *scene = &staged->scene;
+    Primitive *primitive = &staged->primitives[scene->n_primitives++];
+    float shade = (float)scene->n_primitives / (3 * N_TUBES);
+    *primitive = (Primitive){.kind = kind,
+                             .a = a,
+                             .b = b,
+                             .radius_mm = radius,
+                             .id = (uint32_t)scene->n_primitives,
+                             .color = {shade, 0.5f, 1 - shade}};
+    return primitive;
+}
+
+/* Two cylinders and the joint between them, by the cut that makes their inner edges meet. */
+static void add_elbow(Staged *staged, Random *random)
+{
+    Vec3 middle = point(random, 8), in = vec3_normalized(point(random, 1));
+    Vec3 out = vec3_normalized(vec3_add_scaled(in, vec3_normalized(point(random, 1)), 1.1));
+    double r_in = number(random, 0.1, 0.7), r_out = number(random, 0.1, r_in);
+    double cosine = vec3_dot(in, out), sine = sqrt(1 - cosine * cosine);
+    /* In terms of the axes that lead away from the place, of which the first is -in. */
+    double cut_in = fmax(0, (r_out - r_in * cosine) / sine);
+    double cut_out = fmax(0, (r_in - r_out * cosine) / sine);
+    if (cut_in == 0)
+        cut_out = r_in * sine;
+    if (cut_out == 0)
+        cut_in = r_out * sine;
+    Vec3 a = vec3_add_scaled(middle, in, -cut_in * 1.0001);
+    Vec3 b = vec3_add_scaled(middle, out, cut_out * 1.0001);
+    add(staged, PRIMITIVE_CYLINDER, vec3_add_scaled(a, in, -number(random, 0.5, 4)), a, r_in);
+    add(staged, PRIMITIVE_CYLINDER, b, vec3_add_scaled(b, out, number(random, 0.5, 4)), r_out);
+    Primitive *joint = add(staged, PRIMITIVE_JOINT, a, b, r_in);
+    joint->radius_b_mm = r_out;
+    joint->axis_a = in;
+    joint->axis_b = out;
+}
+
+static void set_camera(Scene *scene, Projection projection, Vec3 direction)
+{
+    Vec3 right = vec3_normalized(vec3_cross(direction, vec3(0.1, 1, 0)));
+    Vec3 up = vec3_cross(right, direction);
+    double height = 22, distance = 40;
+    scene->camera = (Camera){.projection = projection,
+                             .direction = direction,
+                             .location = vec3_scale(direction, -distance),
+                             .width = WIDTH,
+                             .height = HEIGHT};
+    if (projection == PROJECTION_PERSPECTIVE)
+        height /= distance;
+    scene->camera.right = vec3_scale(right, height * WIDTH / HEIGHT);
+    scene->camera.up = vec3_scale(up, height);
+}
+
+static void bound(Scene *scene)
+{
+    scene->bounds = box_empty();
+    for (size_t i = 0; i < scene->n_primitives; i++) {
+        const Primitive *primitive = &scene->primitives[i];
+        scene->bounds = box_with_ball(scene->bounds, primitive->a, primitive->radius_mm);
+        scene->bounds = box_with_ball(scene->bounds, primitive->b, primitive->radius_mm);
+    }
+}
+
+/* Elbows, spheres and cylinders thrown into a cube, of a fixed seed, under two lights. */
+static void stage(Staged *staged, Projection projection)
+{
+    Random random;
+    random_seed(&random, 2385);
+    memset(staged, 0, sizeof *staged);
+    Scene *scene = &staged->scene;
+    scene->model = SCENE_JOINED;
+    scene->primitives = staged->primitives;
+    for (int i = 0; i < N_TUBES / 2; i++) {
+        add_elbow(staged, &random);
+        Vec3 a = point(&random, 10);
+        Vec3 b = vec3_add(a, point(&random, 2.5));
+        add(staged, PRIMITIVE_SPHERE, a, a, number(&random, 0.05, 0.8));
+        add(staged, PRIMITIVE_CYLINDER, a, b, number(&random, 0.02, 0.5));
+    }
+    staged->lights[0] = (Light){.location = {30, 80, 90},
+                                .color = {0.9f, 0.8f, 0.7f},
+                                .parallel = true,
+                                .casts_shadows = true};
+    staged->lights[1] =
+        (Light){.location = {-60, 20, 75}, .color = {0.2f, 0.3f, 0.4f}, .casts_shadows = true};
+    scene->lights = staged->lights;
+    scene->n_lights = 2;
+    scene->background = (Rgb){0.25f, 0.5f, 1};
+    scene->finish = (Finish){.ambient = 0.1f,
+                             .diffuse = 0.7f,
+                             .brilliance = 1.3f,
+                             .phong = 0.4f,
+                             .phong_size = 35,
+                             .specular = 0.1f,
+                             .roughness = 0.07f};
+    set_camera(scene, projection, vec3_normalized(vec3(-0.3, -0.4, -1)));
+    bound(scene);
+}
+
+typedef struct Settings {
+    RenderMethod method;
+    int threads, antialias;
+    double threshold;
+    bool shadows;
+} Settings;
+
+static Frame drawn(const Scene *scene, Settings settings)
+{
+    const RenderParams params = {.method = settings.method,
+                                 .threads = settings.threads,
+                                 .antialias = settings.antialias,
+                                 .antialias_threshold = settings.threshold,
+                                 .shadows = settings.shadows,
+                                 .want_color = true,
+                                 .want_depth = true,
+                                 .want_normal = true,
+                                 .want_id = true};
+    Frame frame;
+    assert_int_equal(render(scene, &params, &frame, NULL, NULL), STATUS_OK);
+    return frame;
+}
+
+/* Of two frames: pixels that show other segments, and among the rest the largest differences. */
+typedef struct Gap {
+    int seen, ids;
+    double depth, normal, color;
+} Gap;
+
+static Gap gap_of(const Frame *a, const Frame *b)
+{
+    Gap gap = {0};
+    for (size_t i = 0; i < PIXELS; i++) {
+        gap.seen += a->id.ids[i] != 0;
+        if (a->id.ids[i] != b->id.ids[i]) {
+            gap.ids++;
+            continue;
+        }
+        for (size_t c = 0; c < 3; c++) {
+            gap.normal =
+                fmax(gap.normal,
+                     fabs((double)(a->normal.values[3 * i + c] - b->normal.values[3 * i + c])));
+            gap.color = fmax(
+                gap.color, fabs((double)(a->color.values[3 * i + c] - b->color.values[3 * i + c])));
+        }
+        if (a->id.ids[i] != 0)
+            gap.depth = fmax(gap.depth, fabs((double)(a->depth.values[i] - b->depth.values[i])));
+        else
+            assert_true(a->depth.values[i] == b->depth.values[i]);
+    }
+    return gap;
+}
+
+static Gap gap_to_trace(const Scene *scene)
+{
+    Frame traced = drawn(scene, (Settings){RENDER_TRACE, 2, 1, 0, false});
+    Frame tiles = drawn(scene, (Settings){RENDER_RASTER, 2, 1, 0, false});
+    Gap gap = gap_of(&traced, &tiles);
+    frame_release(&traced);
+    frame_release(&tiles);
+    return gap;
+}
+
+static void tiles_show_what_rays_show(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++) {
+        Staged staged;
+        stage(&staged, (Projection)projection);
+        Gap gap = gap_to_trace(&staged.scene);
+        printf("  %d seen, %d of other segments; depth %.1e mm, normal %.1e, color %.1e\n",
+               gap.seen, gap.ids, gap.depth, gap.normal, gap.color);
+        assert_true(gap.seen > 4000);
+        assert_true(gap.ids <= 1);
+        assert_true(gap.depth < 1e-4);
+        assert_true(gap.normal < 5e-3);
+        assert_true(gap.color < 2e-3);
+    }
+}
+
+static void a_camera_among_the_vessels_sees_what_rays_see(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++) {
+        Staged staged;
+        stage(&staged, (Projection)projection);
+        staged.scene.camera.location = vec3(0.1, 0.2, 0.3);
+        Gap gap = gap_to_trace(&staged.scene);
+        printf("  %d seen, %d, %g\n", gap.seen, gap.ids, gap.depth);
+        assert_true(gap.seen > 1000);
+        assert_true(gap.ids <= 2);
+        assert_true(gap.depth < 1e-4);
+    }
+}
+
+static void joints_that_bound_no_solid_are_seen_from_both_sides(void **state)
+{
+    (void)state;
+    Staged staged;
+    stage(&staged, PROJECTION_ORTHOGRAPHIC);
+    staged.scene.open_joints = true;
+    size_t n = 0;
+    for (size_t i = 0; i < staged.scene.n_primitives; i++)
+        if (staged.primitives[i].kind == PRIMITIVE_JOINT)
+            staged.primitives[n++] = staged.primitives[i];
+    staged.scene.n_primitives = n;
+    Gap gap = gap_to_trace(&staged.scene);
+    assert_true(gap.seen > 300);
+    assert_int_equal(gap.ids, 0);
+    assert_true(gap.depth < 1e-5);
+}
+
+static void vessels_along_the_view_are_seen_end_on(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++) {
+        Staged staged;
+        stage(&staged, (Projection)projection);
+        Scene *scene = &staged.scene;
+        scene->n_primitives = 0;
+        for (int i = 0; i < 20; i++) {
+            Vec3 a = vec3_add_scaled(vec3(i - 10, 0.3 * i - 3, 0), scene->camera.direction, -3);
+            Vec3 lean = vec3(i % 4 ? pow(10, -i / 3.0) : 0, 0, 0);
+            Vec3 along = vec3_normalized(vec3_add(scene->camera.direction, lean));
+            add(&staged, PRIMITIVE_CYLINDER, a, vec3_add_scaled(a, along, 9), 0.43);
+        }
+        bound(scene);
+        Gap gap = gap_to_trace(scene);
+        printf("  %d seen, %d, %g\n", gap.seen, gap.ids, gap.depth);
+        assert_true(gap.seen > 200);
+        assert_true(gap.ids <= 1);
+        assert_true(gap.depth < 1e-4);
+    }
+}
+
+static void assert_same_frames(const Frame *a, const Frame *b)
+{
+    assert_memory_equal(a->color.values, b->color.values, 3 * PIXELS * sizeof(float));
+    assert_memory_equal(a->depth.values, b->depth.values, PIXELS * sizeof(float));
+    assert_memory_equal(a->normal.values, b->normal.values, 3 * PIXELS * sizeof(float));
+    assert_memory_equal(a->id.ids, b->id.ids, PIXELS * sizeof(uint32_t));
+}
+
+static void tiles_do_not_depend_on_the_number_of_threads(void **state)
+{
+    (void)state;
+    const Settings cases[] = {{RENDER_RASTER, 1, 1, 0, false},
+                              {RENDER_RASTER, 1, 2, 0, false},
+                              {RENDER_RASTER, 1, 3, 0.05, false}};
+    for (int projection = 0; projection < 2; projection++)
+        for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+            Staged staged;
+            stage(&staged, (Projection)projection);
+            Frame one = drawn(&staged.scene, cases[i]);
+            for (int threads = 2; threads <= 7; threads += 5) {
+                Settings settings = cases[i];
+                settings.threads = threads;
+                Frame many = drawn(&staged.scene, settings);
+                assert_same_frames(&one, &many);
+                frame_release(&many);
+            }
+            frame_release(&one);
+        }
+}
+
+static void bands_are_the_rows_of_the_whole(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++) {
+        Staged staged;
+        stage(&staged, (Projection)projection);
+        Frame whole = drawn(&staged.scene, (Settings){RENDER_RASTER, 2, 2, 0.05, false});
+        const RenderParams params = {.method = RENDER_RASTER,
+                                     .threads = 2,
+                                     .antialias = 2,
+                                     .antialias_threshold = 0.05,
+                                     .want_color = true,
+                                     .want_depth = true};
+        Renderer *renderer;
+        assert_int_equal(renderer_new(&staged.scene, &params, &renderer, NULL), STATUS_OK);
+        for (int first = 0, rows; first < HEIGHT; first += rows) {
+            Frame band;
+            rows = first + 24 < HEIGHT ? 24 : HEIGHT - first;
+            assert_int_equal(renderer_rows(renderer, first, rows, &band, NULL), STATUS_OK);
+            size_t start = (size_t)first * WIDTH, n = (size_t)rows * WIDTH;
+            assert_memory_equal(band.color.values, whole.color.values + 3 * start,
+                                3 * n * sizeof(float));
+            assert_memory_equal(band.depth.values, whole.depth.values + start, n * sizeof(float));
+            frame_release(&band);
+        }
+        renderer_free(renderer);
+        frame_release(&whole);
+    }
+}
+
+static void antialiased_tiles_are_what_antialiased_rays_are(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++)
+        for (int n = 2; n <= 3; n++) {
+            Staged staged;
+            stage(&staged, (Projection)projection);
+            double threshold = n == 3 ? 0.05 : 0;
+            Frame traced = drawn(&staged.scene, (Settings){RENDER_TRACE, 2, n, threshold, false});
+            Frame tiles = drawn(&staged.scene, (Settings){RENDER_RASTER, 2, n, threshold, false});
+            int different = 0;
+            for (size_t i = 0; i < 3 * (size_t)PIXELS; i++)
+                different += fabs((double)(traced.color.values[i] - tiles.color.values[i])) > 2e-3;
+            assert_true(different <= 9);
+            frame_release(&traced);
+            frame_release(&tiles);
+        }
+}
+
+/* Every tile of a picture by one set of kernels. */
+static void trace_all(const RasterBins *bins, const RasterKernels *kernels, RasterHits *all)
+{
+    RasterRow row = {0};
+    RasterGrid grid = rastergrid_make(&bins->view, 0, 0);
+    for (int j = 0; j < bins->tile_rows; j++) {
+        assert_int_equal(rasterbins_list(bins, (size_t)j, &row, NULL), STATUS_OK);
+        for (int i = 0; i < bins->tile_columns; i++) {
+            const uint32_t *offsets = row.offsets + i;
+            RasterTile tile =
+                rasterbins_tile(bins, i, j, row.lists + offsets[0], offsets[1] - offsets[0], &grid);
+            kernels->trace(&tile, &all[j * bins->tile_columns + i]);
+        }
+    }
+    rasterrow_release(&row);
+}
+
+static void all_kernels_see_the_same(void **state)
+{
+    (void)state;
+    if (rasterkernels_best() == &rasterkernels_portable)
+        skip();
+    for (int projection = 0; projection < 2; projection++) {
+        Staged staged;
+        stage(&staged, (Projection)projection);
+        RasterView view = rasterview_of_camera(&staged.scene, 0, HEIGHT, 1);
+        RasterBins *bins;
+        assert_int_equal(rasterbins_new(&staged.scene, &view, 1, &bins, NULL), STATUS_OK);
+        size_t n = (size_t)bins->tile_columns * (size_t)bins->tile_rows;
+        RasterHits *best = calloc(n, sizeof *best), *portable = calloc(n, sizeof *portable);
+        trace_all(bins, rasterkernels_best(), best);
+        trace_all(bins, &rasterkernels_portable, portable);
+        int different = 0;
+        for (size_t i = 0; i < n; i++)
+            for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+                float depth = best[i].z[sample], other = portable[i].z[sample];
+                different += depth != other && !(fabsf(depth - other) < 1e-4f);
+            }
+        assert_true(different <= 2);
+        free(best);
+        free(portable);
+        rasterbins_free(bins);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tiles_show_what_rays_show),
+        cmocka_unit_test(a_camera_among_the_vessels_sees_what_rays_see),
+        cmocka_unit_test(joints_that_bound_no_solid_are_seen_from_both_sides),
+        cmocka_unit_test(vessels_along_the_view_are_seen_end_on),
+        cmocka_unit_test(tiles_do_not_depend_on_the_number_of_threads),
+        cmocka_unit_test(bands_are_the_rows_of_the_whole),
+        cmocka_unit_test(antialiased_tiles_are_what_antialiased_rays_are),
+        cmocka_unit_test(all_kernels_see_the_same),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
