@@ -128,6 +128,17 @@ RASTER_FN Sight sight_of(const Near *near, Lanes x, Lanes y)
     return sight;
 }
 
+/* Whether lines of sight may touch the item's capsule. */
+RASTER_FN LaneMask within_outline(const Near *near, const Sight *sight)
+{
+    if (near->perspective)
+        return ~(LaneMask){0};
+    Lanes x = lanes_set(near->along_x), y = lanes_set(near->along_y);
+    Lanes off = lanes_abs(lanes_fma(sight->y, x, -(sight->x * y)));
+    Lanes on = lanes_abs(lanes_fma(sight->x, x, sight->y * y));
+    return (off <= near->reach_across * 1.00001f) & (on <= near->reach_along * 1.00001f);
+}
+
 /* ---- spheres and cylinders ----------------------------------------------------------------------- */
 
 /* Where the lines enter the sphere, as depth from its middle. */
@@ -270,12 +281,10 @@ RASTER_FN Signs judge_signs(const Ruling *g)
     Lanes b[5] = {ends + ends, k[1] - k[4], middle, k[1] + k[4], k[0] + k[2]};
     b[4] += b[4];
     Lanes back[5] = {b[0], -b[1], b[2], -b[3], b[4]};
-    LaneMask front =
-        changes(b[0], b[1]) + changes(b[1], b[2]) + changes(b[2], b[3]) + changes(b[3], b[4]);
     LaneMask in_front = changes_of_halves(b), behind = changes_of_halves(back);
     Signs signs;
-    signs.single = (front == -1) & (behind == -1) & (b[0] >= 0.0f);
-    signs.misses = ((front == 0) | (in_front == 0)) & (behind == 0);
+    signs.single = (in_front == -1) & (behind == -1) & (b[0] >= 0.0f);
+    signs.misses = (in_front == 0) & (behind == 0);
     return signs;
 }
 
@@ -443,7 +452,8 @@ RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
         decide_block(state, near, block, ~(LaneMask){0});
     } else {
         Lanes ruling;
-        LaneMask unsure, met = joint_entry(near, &sight, ~(LaneMask){0}, &z, &ruling, &unsure);
+        LaneMask unsure, within = within_outline(near, &sight);
+        LaneMask met = joint_entry(near, &sight, within, &z, &ruling, &unsure);
         keep_nearer(state, near, block, met, z, &ruling);
         if (lanes_any(unsure))
             decide_block(state, near, block, unsure);
@@ -654,7 +664,8 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, RasterP
         met = sphere_entry(near, &sight, &entry);
     } else if (near->kind == RASTER_JOINT) {
         Lanes ruling;
-        met = joint_entry(near, &sight, among, &entry, &ruling, &unsure);
+        met = joint_entry(near, &sight, among & within_outline(near, &sight), &entry, &ruling,
+                          &unsure);
     } else {
         unsure = among;
         met = (LaneMask){0};
