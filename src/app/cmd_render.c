@@ -162,6 +162,7 @@ Status run_render(int argc, char **argv, Err *err)
     }
     params.method = (RenderMethod)method;
     params.antialias_threshold = threshold;
+    params.occlusion = picture.occlusion;
     TRY_GOTO(read_planes(planes, &params, err));
     FramesForm form = {.width = picture.size[0],
                        .height = picture.size[1],

@@ -34,6 +34,7 @@ Status run_scene(int argc, char **argv, Err *err)
     Scene scene = {0};
     if (parsed.common.help)
         goto done;
+    TRY_GOTO(picture_check_povray(&picture, err));
     if (strcmp(output, "-") != 0 && strcmp(file_extension(output), "pov") != 0) {
         status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pov", output);
         goto done;

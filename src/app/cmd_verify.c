@@ -359,6 +359,7 @@ Status run_verify(int argc, char **argv, Err *err)
     }
     TRY_GOTO(bits_check(bits, err));
     v.bits = bits;
+    TRY_GOTO(picture_check_povray(&picture, err));
     TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 120, err));
     TRY_GOTO(picture_scene(&picture, v.tree, parsed.common.quiet, &v.scene, NULL, err));
     v.cells = picture_cells(&picture);

@@ -66,6 +66,8 @@ void picture_options_init(PictureOptions *options)
          "free part on each side when the tree is framed (0.05)"},
         {"antialias", OPTION_WHOLE, &options->antialias, NULL, 1, 9, NULL, "N",
          "N x N samples a pixel (1)"},
+        {"ao", OPTION_WHOLE, &options->occlusion, NULL, 0, 4096, NULL, "N",
+         "ambient occlusion by N rays a sample, best with --look print (0: none)"},
         {"look", OPTION_TEXT, &options->look, NULL, 0, huge, NULL, "NAME",
          "a file of templates/looks, or a path (cast)"},
         {"erf", OPTION_CHOICE, &options->erf, NULL, 0, 0, erf_names, NULL,
@@ -107,6 +109,14 @@ static Status check_camera(const PictureOptions *options, Err *err)
     if (options->has_joints && options->model != SCENE_JOINED)
         return err_set(err, STATUS_USAGE, "--joints is for --model joined");
     return STATUS_OK;
+}
+
+Status picture_check_povray(const PictureOptions *options, Err *err)
+{
+    if (options->occlusion == 0)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "--ao is corcast's own: POV-Ray has no ambient occlusion to hold it against");
 }
 
 /* What of the tree the picture cannot show. */

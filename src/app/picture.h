@@ -16,6 +16,7 @@ typedef struct PictureOptions {
     int model, potential, joints, projection, view; /* choices */
     int size[2];
     int antialias;
+    int occlusion; /* rays a sample; 0: none */
     double prune_radius_mm;
     const char *look;
     Vec3 background; /* sRGB in [0, 1] */
@@ -32,6 +33,9 @@ void picture_options_init(PictureOptions *options);
 
 /* How POV-Ray's isosurface is cut into cells. */
 CellParams picture_cells(const PictureOptions *options);
+
+/* STATUS_USAGE when an option is given that only the native renderer knows. */
+MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 
 /* Reads the tree and the look and builds the scene. Says on standard error, unless quiet, how many
  * segments are pruned, cannot be drawn, or have no surface, and how many places are not joined.

@@ -223,6 +223,20 @@ static void put_lights(Text *text, const Scene *scene)
     }
 }
 
+static Status put_ground(Text *text, const Scene *scene, const PovrayParams *params, Err *err)
+{
+    const Ground *ground = &scene->ground;
+    if (!ground->present)
+        return STATUS_OK;
+    Values values = {0};
+    put_vector(add_value(&values, "normal"), ground->normal);
+    text_number(add_value(&values, "offset"), ground->offset_mm);
+    put_color(add_value(&values, "color"), ground->color);
+    put_float(add_value(&values, "ambient"), ground->finish.ambient);
+    put_float(add_value(&values, "diffuse"), ground->finish.diffuse);
+    return expand(&values, params, "ground.inc", text, err);
+}
+
 static Status put_scene(const Scene *scene, const PovrayParams *params, const Text *geometry,
                         Text *out, Err *err)
 {
@@ -249,7 +263,9 @@ static Status put_scene(const Scene *scene, const PovrayParams *params, const Te
     put_vector(add_value(&values, "direction"), camera->direction);
     text_puts(add_value(&values, "shadows"), params->shadows ? "1" : "0");
     put_color(add_value(&values, "background"), scene->background);
-    put_lights(add_value(&values, "lights"), scene);
+    Text *lights = add_value(&values, "lights");
+    put_lights(lights, scene);
+    Status status = put_ground(lights, scene, params, err);
     text_number(add_value(&values, "depth_near"), near_mm);
     text_number(add_value(&values, "depth_far"), far_mm);
     Text *where = add_value(&values, "geometry");
@@ -257,7 +273,8 @@ static Status put_scene(const Scene *scene, const PovrayParams *params, const Te
         text_printf(where, "#include \"%s\"", params->geometry_file);
     else
         text_append(where, geometry->chars, geometry->length);
-    return expand(&values, params, "scene.pov", out, err);
+    Status expanded = expand(&values, params, "scene.pov", out, status == STATUS_OK ? err : NULL);
+    return status == STATUS_OK ? expanded : status;
 }
 
 Status emit_povray(const Scene *scene, const PovrayParams *params, Text *scene_text,

@@ -91,12 +91,13 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
 bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double distance)
 {
     Ray ray = {point, towards};
-    double far = distance - shadow_slack_mm;
+    double far = distance - shadow_slack_mm, t;
+    if (ground_hit(&caster->scene->ground, ray, shadow_slack_mm, far, &t))
+        return true;
     if (caster->bvh)
         return bvh_any_hit(caster->bvh, ray, shadow_slack_mm, far);
     if (caster->halving)
         return halving_any_hit(caster->halving, ray, shadow_slack_mm, far);
-    double t;
     Vec3 normal;
     uint32_t index;
     return field_first_hit(caster->field, caster->scratch[worker], ray, shadow_slack_mm, far, &t,

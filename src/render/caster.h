@@ -24,6 +24,8 @@ void caster_free(Caster *caster);
 
 /* `worker` in [0, workers) is the calling thread's own. */
 bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel);
+/* Whether anything, the ground included, is in the way from `point` for `distance` mm (or HUGE_VAL) along
+ * `towards` (unit). */
 bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double distance);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "render/fieldtiles.h"
 #include "render/resample.h"
+#include "render/sight.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,6 +35,7 @@ typedef struct FieldPicture {
     TileLight *lights;
     bool needs_places; /* rays or lights differ from sample to sample */
     Caster *caster;    /* for shadows; NULL without */
+    bool by_sample;    /* colours are sight_color()'s, not the kernel's */
     Canvas *canvases;
     int workers;
     uint8_t *mask; /* pixels to antialias; NULL: all */
@@ -117,6 +119,34 @@ static void place_surface(const SeenTile *seen, TileSurface *surface)
     }
 }
 
+/* Every sample on its own, with all that the kernel does not know. */
+static void color_samples(const FieldPicture *picture, const SeenTile *seen, int worker,
+                          float color[3][TILE_SAMPLES])
+{
+    const Scene *scene = picture->scene;
+    const SampleGrid *grid = &picture->grid;
+    const Sight sight = {scene, picture->params, picture->caster};
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        int column = seen->column + tile_sample_x(sample), row = seen->row + tile_sample_y(sample);
+        if (column >= grid->n_columns || row >= grid->n_rows)
+            continue;
+        Surfel surfel, *hit = NULL;
+        if (seen->hits && seen->hits->state[sample] == TILE_HIT) {
+            const FieldSegment *segment = &scene->segments[seen->hits->segment[sample]];
+            Vec3 normal =
+                fieldtiles_to_world(picture->tiles, load_vec3(seen->hits->normal, sample));
+            surfel = (Surfel){tile_depth(seen->tile, seen->hits, sample), vec3_normalized(normal),
+                              segment->color, segment->id};
+            hit = &surfel;
+        }
+        Rgb rgb = sight_color(&sight, worker, sample_ray(picture, seen, sample),
+                              grid->columns[column], grid->rows[row], hit);
+        color[0][sample] = rgb.r;
+        color[1][sample] = rgb.g;
+        color[2][sample] = rgb.b;
+    }
+}
+
 static void color_tile(const FieldPicture *picture, const SeenTile *seen, int worker,
                        float color[3][TILE_SAMPLES])
 {
@@ -168,14 +198,17 @@ static void write_colors(const FieldPicture *picture, const SeenTile *seen, int 
     int rows = grid->n_rows - seen->row < TILE_SIDE ? grid->n_rows - seen->row : TILE_SIDE;
     size_t width = (size_t)grid->n_columns;
     float *to = values + 3 * ((size_t)(seen->row - first_row) * width + (size_t)seen->column);
-    if (!seen->hits) {
+    if (!seen->hits && !picture->by_sample) {
         const float *background = picture->canvases[worker].background;
         for (int j = 0; j < rows; j++)
             memcpy(to + 3 * width * (size_t)j, background, 3 * (size_t)columns * sizeof *to);
         return;
     }
     float color[3][TILE_SAMPLES];
-    color_tile(picture, seen, worker, color);
+    if (picture->by_sample)
+        color_samples(picture, seen, worker, color);
+    else
+        color_tile(picture, seen, worker, color);
     copy_tile(color, columns, rows, width, to);
 }
 
@@ -433,6 +466,7 @@ Status fieldrender(const Scene *scene, const RenderParams *params, Caster *caste
     Status status;
     FieldPicture picture = {
         .scene = scene, .params = params, .rows = rows, .frame = frame, .caster = caster};
+    picture.by_sample = sight_is_needed(scene, params);
     const double center = 0;
     double start_s = clock_seconds();
     picture.workers = params->threads > 0 ? params->threads : threads_available();

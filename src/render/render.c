@@ -5,11 +5,10 @@
 #include "render/render.h"
 
 #include "render/band.h"
-#include "render/caster.h"
 #include "render/fieldrender.h"
 #include "render/rasterrender.h"
 #include "render/resample.h"
-#include "render/shade.h"
+#include "render/sight.h"
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -19,45 +18,27 @@ struct Renderer {
     const Scene *scene;
     RenderParams params;
     int threads;
-    Caster *caster; /* NULL when the potential is drawn without shadows */
+    Caster
+        *caster; /* NULL when the potential is drawn and nothing asks what is in the way of light */
     RenderStats stats;
 };
 
 typedef struct Job {
     const Scene *scene;
     const RenderParams *params;
-    Caster *caster;
+    Sight sight;
     const Band *band;
     Frame *frame;
     double *offsets; /* of a pixel's further samples */
     uint8_t *mask;   /* pixels that get them; NULL: all */
 } Job;
 
-typedef struct ShadowContext {
-    Caster *caster;
-    int worker;
-} ShadowContext;
-
-static bool shadowed(void *context, Vec3 point, Vec3 towards, double distance)
-{
-    const ShadowContext *shadow = context;
-    return caster_shadow(shadow->caster, shadow->worker, point, towards, distance);
-}
-
-static Rgb surfel_color(const Job *job, int worker, Ray ray, const Surfel *surfel)
-{
-    ShadowContext context = {job->caster, worker};
-    return shade(job->scene, surfel->pigment, ray_at(ray, surfel->t), surfel->normal, ray.direction,
-                 job->params->shadows ? shadowed : NULL, &context);
-}
-
 static Rgb sample_color(const Job *job, int worker, double i, double j)
 {
     Ray ray = camera_ray(&job->scene->camera, i, j);
     Surfel surfel;
-    if (!caster_first(job->caster, worker, ray, &surfel))
-        return job->scene->background;
-    return surfel_color(job, worker, ray, &surfel);
+    bool seen = caster_first(job->sight.caster, worker, ray, &surfel);
+    return sight_color(&job->sight, worker, ray, i, j, seen ? &surfel : NULL);
 }
 
 /* The mean of the centre sample and the grid around it, summed row by row in float. */
@@ -108,13 +89,12 @@ static void render_row(size_t row, int worker, void *context)
         size_t pixel = row * (size_t)camera->width + (size_t)i;
         Ray ray = camera_ray(camera, i, job->band->first + (int)row);
         Surfel surfel;
-        bool seen = caster_first(job->caster, worker, ray, &surfel);
+        bool seen = caster_first(job->sight.caster, worker, ray, &surfel);
         store_geometry(job->frame, pixel, seen ? &surfel : NULL);
         if (!job->frame->color.values)
             continue;
-        Rgb color = job->scene->background;
-        if (seen)
-            color = surfel_color(job, worker, ray, &surfel);
+        Rgb color = sight_color(&job->sight, worker, ray, i, job->band->first + (int)row,
+                                seen ? &surfel : NULL);
         float *value = &job->frame->color.values[3 * pixel];
         value[0] = color.r;
         value[1] = color.g;
@@ -159,7 +139,11 @@ static Status resample(Job *job, int threads, Err *err)
 static Status rayrender(const Renderer *renderer, const Band *band, Frame *frame, Err *err)
 {
     const RenderParams *params = &renderer->params;
-    Job job = {renderer->scene, params, renderer->caster, band, frame, NULL, NULL};
+    Job job = {.scene = renderer->scene,
+               .params = params,
+               .sight = {renderer->scene, params, renderer->caster},
+               .band = band,
+               .frame = frame};
     Status status = STATUS_OK;
     threads_for((size_t)band->rows, renderer->threads, render_row, &job);
     if (params->antialias > 1 && frame->color.values)
@@ -188,9 +172,11 @@ static bool is_field(const Renderer *renderer)
     return renderer->scene->model == SCENE_ISOSURFACE && !renderer->params.povray_cells;
 }
 
+/* The ground and ambient occlusion are for rays to find. */
 static bool is_raster(const Renderer *renderer)
 {
-    return renderer->scene->model != SCENE_ISOSURFACE && renderer->params.method == RENDER_RASTER;
+    return renderer->scene->model != SCENE_ISOSURFACE && !renderer->scene->ground.present &&
+           renderer->params.occlusion == 0 && renderer->params.method == RENDER_RASTER;
 }
 
 Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **out, Err *err)
@@ -201,7 +187,7 @@ Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **o
     *renderer = (Renderer){.scene = scene, .params = *params};
     renderer->threads = params->threads > 0 ? params->threads : threads_available();
     Status status = STATUS_OK;
-    if (!is_raster(renderer) && (!is_field(renderer) || params->shadows))
+    if (!is_raster(renderer) && (!is_field(renderer) || params->shadows || params->occlusion > 0))
         status = caster_new(scene, params->povray_cells, renderer->threads, &renderer->caster, err);
     if (status != STATUS_OK) {
         renderer_free(renderer);

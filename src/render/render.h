@@ -23,6 +23,8 @@ typedef struct RenderParams {
                                  * (0, 1], those only that differ from a neighbour by so much in
                                  * the square root of a channel, which no POV-Ray picture repeats */
     bool shadows;
+    int occlusion; /* 0: ambient light is the same everywhere; N: the part of it that reaches a point is
+                    * found by N rays, which no POV-Ray picture repeats */
     const CellParams *povray_cells; /* of an implicit model: where POV-Ray's root finder sees it in
                                      * these cells; NULL: where it is, by proof */
     bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */

@@ -78,27 +78,32 @@ static double visible_part(const Light *light, Vec3 point, Vec3 towards, double 
     return (double)reach / (n * n);
 }
 
-Rgb shade(const Scene *scene, Rgb pigment, Vec3 point, Vec3 normal, Vec3 direction,
-          ShadowTest *shadow, void *context)
+Rgb shade_point(const Scene *scene, const ShadePoint *at, ShadowTest *shadow, void *context)
 {
-    const Finish *finish = &scene->finish;
-    Rgb color = rgb_scale(pigment, (double)finish->ambient);
+    Rgb color = rgb_scale(at->pigment, (double)at->finish->ambient * at->open);
     for (size_t i = 0; i < scene->n_lights; i++) {
         const Light *light = &scene->lights[i];
-        Vec3 to_light = vec3_sub(light->location, point);
+        Vec3 to_light = vec3_sub(light->location, at->point);
         double distance = vec3_length(to_light);
         Vec3 towards = vec3_scale(to_light, 1 / distance);
         if (light->parallel) {
             towards = vec3_normalized(vec3_sub(light->location, light->target));
             distance = vec3_dot(to_light, towards);
         }
-        double cosine = vec3_dot(normal, towards);
+        double cosine = vec3_dot(at->normal, towards);
         if (cosine < 1e-10)
             continue;
-        double part = visible_part(light, point, towards, distance, shadow, context);
+        double part = visible_part(light, at->point, towards, distance, shadow, context);
         if (part > 0)
-            color = rgb_add(color, lit_by(rgb_scale(light->color, part), finish, pigment, normal,
-                                          direction, towards, cosine));
+            color = rgb_add(color, lit_by(rgb_scale(light->color, part), at->finish, at->pigment,
+                                          at->normal, at->direction, towards, cosine));
     }
     return color;
+}
+
+Rgb shade(const Scene *scene, Rgb pigment, Vec3 point, Vec3 normal, Vec3 direction,
+          ShadowTest *shadow, void *context)
+{
+    const ShadePoint at = {&scene->finish, pigment, point, normal, direction, 1};
+    return shade_point(scene, &at, shadow, context);
 }

@@ -9,8 +9,20 @@
  * `distance` mm. */
 typedef bool ShadowTest(void *context, Vec3 point, Vec3 towards, double distance);
 
-/* The colour seen along `direction` (unit) at a point whose normal (unit) faces the viewer.
- * `shadow` may be NULL: no shadows. */
+/* What is seen at a point. */
+typedef struct ShadePoint {
+    const Finish *finish;
+    Rgb pigment;
+    Vec3 point;
+    Vec3 normal;    /* unit, facing the viewer */
+    Vec3 direction; /* unit, of the ray that sees it */
+    double open;    /* the part of the ambient light that reaches it */
+} ShadePoint;
+
+/* The colour of a point. `shadow` may be NULL: no shadows. */
+Rgb shade_point(const Scene *scene, const ShadePoint *at, ShadowTest *shadow, void *context);
+
+/* That of an open point of the scene's vessels. */
 Rgb shade(const Scene *scene, Rgb pigment, Vec3 point, Vec3 normal, Vec3 direction,
           ShadowTest *shadow, void *context);
 

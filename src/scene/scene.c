@@ -15,6 +15,20 @@ Ray camera_ray(const Camera *camera, double i, double j)
     return (Ray){camera->location, vec3_normalized(vec3_add(camera->direction, across))};
 }
 
+bool ground_hit(const Ground *ground, Ray ray, double near_mm, double far_mm, double *t)
+{
+    if (!ground->present)
+        return false;
+    double along = vec3_dot(ground->normal, ray.direction);
+    if (fabs(along) < 1e-10)
+        return false;
+    double distance = -(vec3_dot(ground->normal, ray.origin) - ground->offset_mm) / along;
+    if (!(distance > near_mm && distance < far_mm && distance <= farthest_mm))
+        return false;
+    *t = distance;
+    return true;
+}
+
 void scene_depth_range(const Scene *scene, double *near_mm, double *far_mm)
 {
     const Camera *camera = &scene->camera;
@@ -46,6 +60,7 @@ void scene_move_to_origin(Scene *scene)
     Vec3 *const places[] = {&scene->camera.location, &scene->bounds.low, &scene->bounds.high};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++)
         *places[i] = vec3_add(*places[i], move);
+    scene->ground.offset_mm += vec3_dot(scene->ground.normal, move);
     for (size_t i = 0; i < scene->n_lights; i++) {
         scene->lights[i].location = vec3_add(scene->lights[i].location, move);
         scene->lights[i].target = vec3_add(scene->lights[i].target, move);
@@ -116,6 +131,8 @@ Status scene_check(const Scene *scene, Err *err)
     if (vec3_length(camera->location) > farthest_mm)
         return err_set(err, STATUS_INPUT, "the camera is farther than %g mm from the origin",
                        farthest_mm);
+    if (scene->ground.present && !isfinite(scene->ground.offset_mm))
+        return err_set(err, STATUS_INPUT, "the ground has no place");
     for (size_t i = 0; i < scene->n_primitives; i++) {
         const Primitive *primitive = &scene->primitives[i];
         TRY(check_tube(primitive->a, primitive->b, primitive->radius_mm, primitive->id, err));

@@ -53,6 +53,20 @@ typedef struct Finish {
     float ambient, diffuse, brilliance, phong, phong_size, specular, roughness;
 } Finish;
 
+/* A plane under or behind the vessels: the points x with normal . x = offset_mm. Only colour knows of
+ * it; depth, normals and ids are of vessels. */
+typedef struct Ground {
+    bool present;
+    Vec3 normal; /* unit, towards the vessels */
+    double offset_mm;
+    Rgb color;
+    Finish finish;
+} Ground;
+
+/* Where a ray meets the ground, if it does so between `near_mm` and `far_mm`; POV-Ray's plane, order of
+ * evaluation included (plane.cpp of 3.7.0.10). */
+bool ground_hit(const Ground *ground, Ray ray, double near_mm, double far_mm, double *t);
+
 typedef enum PrimitiveKind { PRIMITIVE_CYLINDER, PRIMITIVE_SPHERE, PRIMITIVE_JOINT } PrimitiveKind;
 
 /* A closed cylinder from a to b, a sphere about a, or the ruled surface between two circles about a
@@ -108,6 +122,7 @@ typedef struct Scene {
     Finish finish;
     Light *lights; /* owned */
     size_t n_lights;
+    Ground ground;
     Primitive *primitives; /* owned; empty for an implicit model */
     size_t n_primitives;
     FieldSegment *segments; /* owned; empty for a primitive model */

@@ -67,6 +67,16 @@ static bool read_finish(Reading *reading, const char *name, const char *value)
     return false;
 }
 
+static bool read_vector(Reading *reading, const char *value, Vec3 *out)
+{
+    double xyz[3];
+    reading->problem = "three numbers, not all zero";
+    if (!read_numbers(value, 3, -1e6, 1e6, xyz) || (xyz[0] == 0 && xyz[1] == 0 && xyz[2] == 0))
+        return false;
+    *out = vec3(xyz[0], xyz[1], xyz[2]);
+    return true;
+}
+
 static bool read_light(Reading *reading, const char *section, const char *name, const char *value)
 {
     Look *look = &reading->look;
@@ -94,15 +104,33 @@ static bool read_light(Reading *reading, const char *section, const char *name, 
         return samples == 2 || samples == 4 || samples == 8 || samples == 16;
     }
     if (strcmp(name, "direction") == 0 || strcmp(name, "position") == 0) {
-        double xyz[3];
         light->is_point = strcmp(name, "position") == 0;
-        reading->problem = "three numbers, right up viewer, not all zero";
-        if (!read_numbers(value, 3, -1e6, 1e6, xyz) || (xyz[0] == 0 && xyz[1] == 0 && xyz[2] == 0))
-            return false;
-        light->direction = vec3(xyz[0], xyz[1], xyz[2]);
-        return true;
+        return read_vector(reading, value, &light->direction);
     }
     reading->problem = "direction, position, color, size or samples";
+    return false;
+}
+
+static bool read_ground(Reading *reading, const char *name, const char *value)
+{
+    LookGround *ground = &reading->look.ground;
+    ground->present = true;
+    if (strcmp(name, "color") == 0)
+        return read_color(reading, value, &ground->color);
+    if (strcmp(name, "normal") == 0 || strcmp(name, "axis") == 0) {
+        ground->in_world = strcmp(name, "axis") == 0;
+        return read_vector(reading, value, &ground->normal);
+    }
+    if (strcmp(name, "gap") == 0) {
+        reading->problem = "a number from 0 to 100";
+        return read_numbers(value, 1, 0, 100, &ground->gap);
+    }
+    bool ambient = strcmp(name, "ambient") == 0;
+    if (ambient || strcmp(name, "diffuse") == 0) {
+        reading->problem = "a number from 0 to 1";
+        return read_numbers(value, 1, 0, 1, ambient ? &ground->ambient : &ground->diffuse);
+    }
+    reading->problem = "normal, axis, gap, color, ambient or diffuse";
     return false;
 }
 
@@ -119,7 +147,9 @@ static int read_pair(void *user, const char *section, const char *name, const ch
         return read_finish(reading, name, value);
     if (strncmp(section, "light ", 6) == 0)
         return read_light(reading, section, name, value);
-    reading->problem = "in one of the sections vessel, background, finish, light NAME";
+    if (strcmp(section, "ground") == 0)
+        return read_ground(reading, name, value);
+    reading->problem = "in one of the sections vessel, background, finish, light NAME, ground";
     return 0;
 }
 
@@ -129,12 +159,14 @@ Status look_read(Look *look, const char *path, Err *err)
     size_t size;
     TRY(file_read(path, &text, &size, err));
     Reading reading = {
-        .look = {.finish = {.ambient = 0.1f,
-                            .diffuse = 0.6f,
-                            .brilliance = 1,
-                            .phong_size = 40,
-                            .roughness = 0.05f},
-                 .color = {1, 1, 1}},
+        .look =
+            {.finish = {.ambient = 0.1f,
+                        .diffuse = 0.6f,
+                        .brilliance = 1,
+                        .phong_size = 40,
+                        .roughness = 0.05f},
+             .color = {1, 1, 1},
+             .ground = {.normal = {0, 0, 1}, .color = {1, 1, 1}, .ambient = 0.1, .diffuse = 0.6}},
         .problem = "name = value",
     };
     int line = ini_parse_string(text, read_pair, &reading);

@@ -138,6 +138,36 @@ static size_t end_balls(const Scene *scene, Ball *balls, Box *bounds)
     return n;
 }
 
+/* A vector of right, up and towards the viewer, in the world. */
+static Vec3 from_camera(const Camera *camera, Vec3 v)
+{
+    Vec3 world = vec3_scale(vec3_normalized(camera->right), v.x);
+    world = vec3_add_scaled(world, vec3_normalized(camera->up), v.y);
+    return vec3_add_scaled(world, camera->direction, -v.z);
+}
+
+/* The ground lies just beyond the last ball along its normal, and farther by the gap. */
+static Ground place_ground(const LookGround *look, const Ball *balls, size_t n, const Scene *scene)
+{
+    if (!look->present)
+        return (Ground){0};
+    Vec3 normal = look->in_world ? look->normal : from_camera(&scene->camera, look->normal);
+    Ground ground = {.present = true,
+                     .normal = vec3_normalized(normal),
+                     .offset_mm = HUGE_VAL,
+                     .color = look->color,
+                     .finish = {.ambient = (float)look->ambient,
+                                .diffuse = (float)look->diffuse,
+                                .brilliance = 1,
+                                .phong_size = 40,
+                                .roughness = 0.05f}};
+    for (size_t i = 0; i < n; i++)
+        ground.offset_mm =
+            fmin(ground.offset_mm, vec3_dot(ground.normal, balls[i].center) - balls[i].radius);
+    ground.offset_mm -= look->gap * vec3_distance(scene->bounds.low, scene->bounds.high) / 2;
+    return ground;
+}
+
 /* A light in the world. Parallel lights stand ten diagonals away, in front of everything they light. */
 static Light place_light(const LookLight *light, const Scene *scene, bool shadows)
 {
@@ -146,9 +176,7 @@ static Light place_light(const LookLight *light, const Scene *scene, bool shadow
     double diagonal = vec3_distance(scene->bounds.low, scene->bounds.high);
     if (!light->is_point)
         direction = vec3_normalized(direction);
-    Vec3 offset = vec3_scale(right, direction.x);
-    offset = vec3_add_scaled(offset, up, direction.y);
-    offset = vec3_add_scaled(offset, scene->camera.direction, -direction.z);
+    Vec3 offset = from_camera(&scene->camera, direction);
     Light placed = {
         .location = vec3_add_scaled(center, offset, light->is_point ? diagonal / 2 : 10 * diagonal),
         .target = center,
@@ -203,6 +231,8 @@ Status stage_scene(const Tree *tree, const Look *look, const Rgb *colors, const 
     if (status == STATUS_OK) {
         size_t n = end_balls(&built, balls, &built.bounds);
         status = framing_camera(balls, n, built.bounds, params, &built.camera, err);
+        if (status == STATUS_OK)
+            built.ground = place_ground(&look->ground, balls, n, &built);
     }
     if (status == STATUS_OK)
         status = add_lights(look, params->shadows, &built, err);

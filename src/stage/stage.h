@@ -23,17 +23,28 @@ typedef struct LookLight {
 
 enum { LOOK_MAX_LIGHTS = 8 };
 
+/* A plane beyond the tree, on which shadows fall. */
+typedef struct LookGround {
+    bool present;
+    bool in_world; /* `normal` is in the tree's axes: x, y, z; else right, up, towards the viewer */
+    Vec3 normal;   /* towards the tree, of any length */
+    double gap;    /* from the tree, in half diagonals of its box, at least 0 */
+    Rgb color;
+    double ambient, diffuse;
+} LookGround;
+
 typedef struct Look {
     Finish finish;
     Rgb color; /* of vessels that no field colours */
     Rgb background;
     LookLight lights[LOOK_MAX_LIGHTS];
     int n_lights;
+    LookGround ground;
 } Look;
 
 /* Reads an INI file with the sections [vessel] color, [background] color, [finish] ambient diffuse
- * brilliance phong phong_size specular roughness, and [light NAME] direction or position, color, size,
- * samples. STATUS_INPUT naming file and line on an unknown section or key and on a bad value. */
+ * brilliance phong phong_size specular roughness, [light NAME] direction or position, color, size,
+ * samples, and [ground] normal or axis, gap, color, ambient, diffuse. STATUS_INPUT naming file and line on an unknown section or key and on a bad value. */
 MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
 
 typedef enum View { VIEW_FRONT, VIEW_TOP, VIEW_LEFT, VIEW_ISO } View;

@@ -212,6 +212,25 @@ test_places_without_joints_are_counted_and_said() {
     expect_sentence '--joints is for --model joined'
 }
 
+test_ambient_occlusion_darkens_every_model_alike_for_any_number_of_threads() {
+    local model threads
+    run_ok corcast grow --terminals 40 --domain ball:20 -o tree.swc
+    for model in $MODELS; do
+        run_ok corcast render tree.swc --model $model --look print --size 90x70 --antialias 2 -o none.ppm
+        for threads in 1 3; do
+            run_ok corcast render tree.swc --model $model --look print --size 90x70 --ao 9 --antialias 2 \
+                --threads $threads -o ao$threads.ppm
+        done
+        expect_same ao1.ppm ao3.ppm
+        [ "$(brightness ao1.ppm)" -lt "$(brightness none.ppm)" ] || fail "expected a darker picture of $model"
+    done
+}
+
+# brightness FILE.ppm: the sum of all levels.
+brightness() {
+    pnmtoplainpnm "$1" | tail -n +4 | awk '{ for (i = 1; i <= NF; i++) sum += $i } END { print sum }'
+}
+
 # star N: N daughters at one node, in all directions, each shorter than it is wide where THICK is given.
 star() {
     awk -v n="$1" -v thick="${2:-0}" 'BEGIN {

@@ -248,6 +248,60 @@ test_point_lights_and_highlights_agree() {
     agrees joined --look ./lights.ini --shadows on --projection perspective
 }
 
+# ground WHERE: a look with a ground plane there.
+ground() {
+    point_lights
+    printf '[ground]\n%s\ncolor = 0.8 0.75 0.9\ndiffuse = 0.7\n' "$1" >>lights.ini
+}
+
+test_shadows_on_the_ground_agree() {
+    local model
+    tree_3d
+    ground 'axis = 0 1 0'
+    for model in cylinders joined rounded isosurface; do
+        agrees $model --look ./lights.ini --shadows on --projection perspective \
+            --location 40,10,90 --look-at 0,-10,0 --angle 50
+        rm -r report
+    done
+    agrees rounded --look ./lights.ini --projection perspective --location 40,10,90 --look-at 0,-10,0 --antialias 2
+    corcast render tree.swc --look ./lights.ini --size 90x90 --view iso -o ground.ppm
+    sed -i '/ground/,$d' lights.ini
+    corcast render tree.swc --look ./lights.ini --size 90x90 --view iso -o none.ppm
+    expect_different ground.ppm none.ppm
+}
+
+test_a_sheet_behind_the_tree_agrees() {
+    tree_3d
+    ground 'normal = 0.2 0.1 1'
+    agrees rounded --look ./lights.ini --shadows on --view iso
+    rm -r report
+    agrees isosurface --look ./lights.ini --shadows on --antialias 2
+}
+
+# The ground hides the tree from below, and from the lights above it nothing.
+test_a_ground_seen_from_below_agrees() {
+    tree_3d
+    ground 'axis = 0 1 0'
+    agrees rounded --look ./lights.ini --shadows on --location 20,-60,50 --look-at 0,0,0
+}
+
+test_a_horizon_agrees() {
+    tree_3d
+    ground 'axis = 0 1 0'
+    agrees rounded --look ./lights.ini --shadows on --projection perspective --location 400,-10,900 --look-at 0,80,0 \
+        --angle 50
+}
+
+test_ambient_occlusion_is_not_held_against_povray() {
+    tree_2d 5
+    run corcast verify tree.swc --ao 8 -o report
+    expect_status 2
+    expect_sentence "--ao is corcast's own: POV-Ray has no ambient occlusion"
+    run corcast scene tree.swc --ao 8 -o scene.pov
+    expect_status 2
+    expect_sentence "--ao is corcast's own"
+}
+
 test_soft_shadows_are_within_a_level() {
     local pixels
     tree_3d
@@ -263,6 +317,22 @@ test_soft_shadows_are_within_a_level() {
     sed -i '/^size/d' lights.ini
     corcast render tree.swc --model rounded --look ./lights.ini --shadows on --size 240x180 -o hard.ppm
     expect_different soft.ppm hard.ppm
+}
+
+# The guaranteed picture against the one that finds the surface as POV-Ray does.
+test_soft_shadows_fall_on_isosurfaces() {
+    local hits
+    tree_3d
+    point_lights
+    printf 'size = 0.8\nsamples = 4\n' >>lights.ini
+    for hits in exact povray; do
+        run_ok corcast render tree.swc --model isosurface --hits $hits --look ./lights.ini --shadows on \
+            --size 160x120 -o $hits.png
+    done
+    [ "$(differing exact.png povray.png 3)" -le 20 ] || fail "expected the same soft shadows on both"
+    sed -i '/^size/d' lights.ini
+    run_ok corcast render tree.swc --model isosurface --look ./lights.ini --shadows on --size 160x120 -o hard.png
+    [ "$(differing exact.png hard.png 3)" -gt 40 ] || fail "expected soft shadows to differ from hard ones"
 }
 
 test_verify_writes_what_the_contract_names() {

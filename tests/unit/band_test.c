@@ -17,7 +17,7 @@ enum { WIDTH = 83, HEIGHT = 61 };
 
 static Err err;
 
-static const Look look = {
+static Look look = {
     .color = {0.5f, 0.1f, 0.2f},
     .background = {0.9f, 1, 1},
     .finish = {.ambient = 0.1f,
@@ -28,7 +28,9 @@ static const Look look = {
                .roughness = 0.05f},
     .lights = {{.direction = {-0.5, 0.7, 1}, .color = {0.8f, 0.8f, 0.8f}},
                {.is_point = true, .direction = {1.5, 0.3, 1}, .color = {0.2f, 0.3f, 0.3f}}},
-    .n_lights = 2};
+    .n_lights = 2,
+    .ground = {
+        .normal = {0.1, 0.3, 1}, .color = {0.8f, 0.7f, 0.9f}, .ambient = 0.3, .diffuse = 0.5}};
 
 static Scene staged(SceneModel model, Projection projection)
 {
@@ -86,15 +88,18 @@ static void bands_have_the_bytes_of_the_whole(void **state)
     static const struct {
         int antialias, step;
         double threshold;
-    } cases[] = {{1, 8, 0}, {3, 16, 0}, {2, 8, 0.05}, {3, 24, 0.2}};
+        int occlusion;
+    } cases[] = {{1, 8, 0, 5}, {3, 16, 0, 0}, {2, 8, 0.05, 2}, {3, 24, 0.2, 0}};
     for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_ISOSURFACE; model++)
         for (int projection = 0; projection < 2; projection++) {
+            look.ground.present = projection == 1;
             Scene scene = staged(model, (Projection)projection);
             for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
                 const RenderParams params = {.threads = 2,
                                              .antialias = cases[i].antialias,
                                              .antialias_threshold = cases[i].threshold,
                                              .shadows = i % 2 == 0,
+                                             .occlusion = cases[i].occlusion,
                                              .want_color = true,
                                              .want_depth = true,
                                              .want_normal = true,

@@ -262,6 +262,55 @@ static void a_point_light_stands_in_half_diagonals_from_the_middle(void **state)
     tree_release(&tree);
 }
 
+static void the_ground_lies_just_beyond_the_tree(void **state)
+{
+    (void)state;
+    Tree tree = make_tree();
+    for (int in_world = 0; in_world < 2; in_world++)
+        for (int view = VIEW_FRONT; view <= VIEW_ISO; view++) {
+            Look grounded = look;
+            grounded.ground = (LookGround){.present = true,
+                                           .in_world = in_world,
+                                           .normal = {0, 0, 2.5},
+                                           .gap = 0.25,
+                                           .color = {0.5f, 0.25f, 1},
+                                           .ambient = 0.375,
+                                           .diffuse = 0.5};
+            StageParams params = stage_defaults();
+            params.view = (View)view;
+            Scene scene;
+            assert_int_equal(stage_scene(&tree, &grounded, NULL, &params, &scene, NULL, NULL),
+                             STATUS_OK);
+            const Ground *ground = &scene.ground;
+            Vec3 expected = in_world ? vec3(0, 0, 1) : vec3_scale(scene.camera.direction, -1);
+            assert_true(vec3_distance(ground->normal, expected) < 1e-12);
+            assert_true(ground->finish.ambient == 0.375f && ground->color.b == 1);
+            double nearest = HUGE_VAL;
+            for (size_t i = 0; i < scene.n_primitives; i++)
+                for (int end = 0; end < 2; end++) {
+                    const Primitive *primitive = &scene.primitives[i];
+                    Vec3 place = end ? primitive->b : primitive->a;
+                    nearest = fmin(nearest, vec3_dot(ground->normal, place) - primitive->radius_mm -
+                                                ground->offset_mm);
+                }
+            double half = vec3_distance(scene.bounds.low, scene.bounds.high) / 2;
+            assert_true(fabs(nearest - half / 4) < 1e-9);
+            scene_release(&scene);
+        }
+    tree_release(&tree);
+}
+
+static void a_ground_moves_with_its_scene(void **state)
+{
+    (void)state;
+    Scene scene = {.bounds = {{1e6, 0, 0}, {1e6 + 10, 9, 8}},
+                   .ground = {.present = true, .normal = {0.6, 0, 0.8}, .offset_mm = 600000 + 7}};
+    scene_move_to_origin(&scene);
+    assert_true(fabs(scene.ground.offset_mm -
+                     (600007 - 0.6 * scene.origin.x - 0.8 * scene.origin.z)) < 1e-6);
+    assert_true(scene.origin.x > 9e5);
+}
+
 /* ---- looks -------------------------------------------------------------------------------------- */
 
 static Status read_look_text(const char *text, Look *out, Err *err)
@@ -284,7 +333,8 @@ static void a_look_is_read(void **state)
     Status status =
         read_look_text("; a comment\n[vessel]\ncolor = 0.25 0.5 0.125\n[finish]\nphong = 0.375\n"
                        "[light a]\ndirection = 0 1 2\n[light b]\ncolor = 0 0 1\n"
-                       "[light c]\nposition = 1 2 -3\nsize = 0.75\nsamples = 8\n",
+                       "[light c]\nposition = 1 2 -3\nsize = 0.75\nsamples = 8\n"
+                       "[ground]\naxis = 0 2 0\ngap = 0.5\ncolor = 1 0.5 0\ndiffuse = 0.25\n",
                        &read, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(status, STATUS_OK);
@@ -295,6 +345,11 @@ static void a_look_is_read(void **state)
     assert_true(!read.lights[1].is_point && read.lights[2].is_point);
     assert_true(read.lights[2].direction.z == -3 && read.lights[2].size == 0.75);
     assert_int_equal(read.lights[2].samples, 8);
+    assert_true(read.ground.present && read.ground.in_world && read.ground.normal.y == 2);
+    assert_true(read.ground.gap == 0.5 && read.ground.color.g == 0.5f);
+    assert_true(read.ground.ambient == 0.1 && read.ground.diffuse == 0.25);
+    assert_int_equal(read_look_text("[vessel]\ncolor = 1 1 1\n", &read, &err), STATUS_OK);
+    assert_false(read.ground.present);
 }
 
 static void a_bad_look_names_its_line(void **state)
@@ -313,6 +368,10 @@ static void a_bad_look_names_its_line(void **state)
         {"[light a]\nposition = 0 0 1\nsamples = 3\n", ":3:", "2, 4, 8 or 16"},
         {"[light a]\nplace = 0 0 1\n", ":2:", "direction, position"},
         {"[finish]\nphong\n", ":2:", "expected"},
+        {"[ground]\nnormal = 0 0 0\n", ":2:", "not all zero"},
+        {"[ground]\ngap = -1\n", ":2:", "from 0 to 100"},
+        {"[ground]\nambient = 2\n", ":2:", "from 0 to 1"},
+        {"[ground]\nphong = 1\n", ":2:", "normal, axis, gap"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Look read;
@@ -338,6 +397,8 @@ int main(void)
         cmocka_unit_test(lights_turn_with_the_camera),
         cmocka_unit_test(the_rays_of_a_camera_go_through_pixel_centres),
         cmocka_unit_test(a_point_light_stands_in_half_diagonals_from_the_middle),
+        cmocka_unit_test(the_ground_lies_just_beyond_the_tree),
+        cmocka_unit_test(a_ground_moves_with_its_scene),
         cmocka_unit_test(a_look_is_read),
         cmocka_unit_test(a_bad_look_names_its_line),
     };
