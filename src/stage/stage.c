@@ -194,12 +194,43 @@ static Light place_light(const LookLight *light, const Scene *scene, bool shadow
     return placed;
 }
 
-static Status add_lights(const Look *look, bool shadows, Scene *scene, Err *err)
+/* Camera, ground and lights about the geometry, whose bounds it sets. */
+static Status set_stage(const Look *look, const StageParams *params, Scene *scene, Err *err)
 {
-    TRY(mem_calloc(&scene->lights, (size_t)look->n_lights, sizeof *scene->lights, "lights", err));
-    for (int i = 0; i < look->n_lights; i++)
-        scene->lights[scene->n_lights++] = place_light(&look->lights[i], scene, shadows);
-    return STATUS_OK;
+    Ball *balls = NULL;
+    Status status = mem_calloc(&balls, 2 * (scene->n_primitives + scene->n_segments), sizeof *balls,
+                               "balls", err);
+    if (status == STATUS_OK) {
+        size_t n = end_balls(scene, balls, &scene->bounds);
+        status = framing_camera(balls, n, scene->bounds, params, &scene->camera, err);
+        if (status == STATUS_OK)
+            scene->ground = place_ground(&look->ground, balls, n, scene);
+    }
+    free(balls);
+    if (status == STATUS_OK && !scene->lights)
+        status = mem_calloc(&scene->lights, (size_t)look->n_lights, sizeof *scene->lights, "lights",
+                            err);
+    if (status == STATUS_OK) {
+        scene->n_lights = (size_t)look->n_lights;
+        for (int i = 0; i < look->n_lights; i++)
+            scene->lights[i] = place_light(&look->lights[i], scene, params->shadows);
+        status = scene_check(scene, err);
+    }
+    return status;
+}
+
+Status stage_aim(const Look *look, const StageParams *params, Scene *scene, Err *err)
+{
+    StageParams moved = *params;
+    moved.location = vec3_sub(params->location, scene->origin);
+    moved.look_at = vec3_sub(params->look_at, scene->origin);
+    Scene aimed = *scene;
+    aimed.lights = NULL;
+    Status status = set_stage(look, &moved, &aimed, err);
+    free(status == STATUS_OK ? scene->lights : aimed.lights);
+    if (status == STATUS_OK)
+        *scene = aimed;
+    return status;
 }
 
 Status stage_scene(const Tree *tree, const Look *look, const Rgb *colors, const StageParams *params,
@@ -222,23 +253,10 @@ Status stage_scene(const Tree *tree, const Look *look, const Rgb *colors, const 
         return err_set(err, STATUS_INPUT,
                        "the tree has nothing to draw: no segment has both a length and a radius");
     built.drawn = counted.drawn;
-    Ball *balls = NULL;
     const Paint paint = {colors, look->color};
     Status status = add_geometry(tree, &paint, params, &built, &counted, err);
     if (status == STATUS_OK)
-        status = mem_calloc(&balls, 2 * (built.n_primitives + built.n_segments), sizeof *balls,
-                            "balls", err);
-    if (status == STATUS_OK) {
-        size_t n = end_balls(&built, balls, &built.bounds);
-        status = framing_camera(balls, n, built.bounds, params, &built.camera, err);
-        if (status == STATUS_OK)
-            built.ground = place_ground(&look->ground, balls, n, &built);
-    }
-    if (status == STATUS_OK)
-        status = add_lights(look, params->shadows, &built, err);
-    if (status == STATUS_OK)
-        status = scene_check(&built, err);
-    free(balls);
+        status = set_stage(look, params, &built, err);
     if (status != STATUS_OK) {
         scene_release(&built);
         return status;

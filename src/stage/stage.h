@@ -88,8 +88,30 @@ MUST_CHECK Status stage_scene(const Tree *tree, const Look *look, const Rgb *col
                               const StageParams *params, Scene *scene, StageReport *report,
                               Err *err);
 
+/* Aims the scene's camera anew, with lights and ground as they stand to it: all that stage_scene does for
+ * these params, whose model, joints, graph and shadows must be those that the scene was built with, but
+ * for the geometry. STATUS_USAGE when the vectors given make no camera, STATUS_INPUT when it is too far
+ * away; the scene is unchanged then. */
+MUST_CHECK Status stage_aim(const Look *look, const StageParams *params, Scene *scene, Err *err);
+
 /* Unit direction and up vector of a named view: front looks along -z with y up, top along -y with
  * -z up, left along +x with y up, iso along (-1, -1, -1) with y up. */
 void view_axes(View view, Vec3 *direction, Vec3 *up);
+
+/* ---- a camera that is moved about what it looks at: the parameters that make it, location, look_at, up,
+ * projection, and height_mm or angle_deg, all of them given */
+
+/* Sets these from the camera of a scene; it looks at the point of its axis nearest to the middle of
+ * the geometry. */
+void orbit_begin(StageParams *params, const Scene *scene);
+
+/* Turns what is seen to the right and up, in radians. */
+void orbit_turn(StageParams *params, double right, double up);
+/* Makes what is seen larger by the factor, > 0: a picture of less height, or a nearer camera. */
+void orbit_zoom(StageParams *params, double factor);
+/* Moves what is seen to the right and up, in heights of the picture. */
+void orbit_pan(StageParams *params, double right, double up);
+/* Changes the projection; what is looked at keeps its size. */
+void orbit_project(StageParams *params, Projection projection, const Scene *scene);
 
 #endif

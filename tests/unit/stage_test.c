@@ -311,6 +311,164 @@ static void a_ground_moves_with_its_scene(void **state)
     assert_true(scene.origin.x > 9e5);
 }
 
+/* ---- cameras that move -------------------------------------------------------------------------- */
+
+/* A scene of the tree, and the parameters that make its camera. */
+static Scene orbit_about(Tree *tree, StageParams *params)
+{
+    Scene scene;
+    *tree = make_tree();
+    assert_int_equal(stage_scene(tree, &look, NULL, params, &scene, NULL, NULL), STATUS_OK);
+    orbit_begin(params, &scene);
+    return scene;
+}
+
+static void assert_near(Vec3 a, Vec3 b, double within)
+{
+    if (!(vec3_distance(a, b) <= within))
+        fail_msg("%.12g %.12g %.12g is not %.12g %.12g %.12g", a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+static void a_camera_that_has_not_moved_is_what_it_was(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++)
+        for (int view = VIEW_FRONT; view <= VIEW_ISO; view++) {
+            Tree tree;
+            StageParams params = stage_defaults();
+            params.projection = (Projection)projection;
+            params.view = (View)view;
+            params.width = 700;
+            Scene scene = orbit_about(&tree, &params);
+            const Camera before = scene.camera;
+            const Light light = scene.lights[0];
+            assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_OK);
+            assert_near(scene.camera.location, before.location, 1e-9);
+            assert_near(scene.camera.right, before.right, 1e-9);
+            assert_near(scene.camera.up, before.up, 1e-9);
+            assert_near(scene.camera.direction, before.direction, 1e-12);
+            assert_near(scene.lights[0].location, light.location, 1e-6);
+            scene_release(&scene);
+            tree_release(&tree);
+        }
+}
+
+static void what_is_turned_moves_with_the_hand(void **state)
+{
+    (void)state;
+    Tree tree;
+    StageParams params = stage_defaults();
+    Scene scene = orbit_about(&tree, &params);
+    const Camera before = scene.camera;
+    const Vec3 target = params.look_at, in_front = vec3_add_scaled(target, before.direction, -3);
+    const struct {
+        double right, up;
+    } cases[] = {{0.2, 0}, {0, 0.2}, {-0.3, 0.1}};
+    for (size_t i = 0; i < 3; i++) {
+        StageParams moved = params;
+        orbit_turn(&moved, cases[i].right, cases[i].up);
+        assert_true(fabs(vec3_distance(moved.location, target) -
+                         vec3_distance(params.location, target)) < 1e-9);
+        assert_int_equal(stage_aim(&look, &moved, &scene, NULL), STATUS_OK);
+        Vec3 v = vec3_sub(in_front, scene.camera.location);
+        double right = vec3_dot(v, vec3_normalized(scene.camera.right));
+        double up = vec3_dot(v, vec3_normalized(scene.camera.up));
+        assert_true(right * cases[i].right >= 0 && up * cases[i].up >= 0);
+        assert_true(fabs(right) + fabs(up) > 0.1);
+        assert_true(fabs(vec3_dot(moved.up, scene.camera.direction)) < 1e-9);
+    }
+    for (int step = 0; step < 1000; step++)
+        orbit_turn(&params, 0.013, -0.007);
+    assert_true(fabs(vec3_length(params.up) - 1) < 1e-12);
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
+/* Height over half of what is shown, of a point beside the one that is looked at. */
+static double seen_height(const Scene *scene, Vec3 point)
+{
+    const Camera *camera = &scene->camera;
+    Vec3 v = vec3_sub(vec3_add(point, vec3_scale(scene->origin, -1)), camera->location);
+    double up = vec3_dot(v, camera->up) / vec3_dot(camera->up, camera->up);
+    if (camera->projection == PROJECTION_PERSPECTIVE)
+        up /= vec3_dot(v, camera->direction);
+    return up;
+}
+
+static void zooming_and_panning_are_by_what_is_looked_at(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++) {
+        Tree tree;
+        StageParams params = stage_defaults();
+        params.projection = (Projection)projection;
+        Scene scene = orbit_about(&tree, &params);
+        const Vec3 beside = vec3_add_scaled(params.look_at, params.up, 0.5);
+        double before = seen_height(&scene, beside);
+        orbit_zoom(&params, 1.5);
+        assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_OK);
+        assert_true(fabs(seen_height(&scene, beside) / before - 1.5) < 1e-9);
+        orbit_pan(&params, 0, 0.125);
+        assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_OK);
+        assert_true(fabs(seen_height(&scene, beside) - 1.5 * before - 0.125) < 1e-9);
+        scene_release(&scene);
+        tree_release(&tree);
+    }
+}
+
+static void another_projection_keeps_the_size_of_what_is_looked_at(void **state)
+{
+    (void)state;
+    Tree tree;
+    StageParams params = stage_defaults();
+    params.width = 1500;
+    Scene scene = orbit_about(&tree, &params);
+    const Vec3 beside = vec3_add_scaled(params.look_at, params.up, 0.5);
+    double before = seen_height(&scene, beside);
+    for (int i = 0; i < 2; i++) {
+        orbit_project(&params, i ? PROJECTION_ORTHOGRAPHIC : PROJECTION_PERSPECTIVE, &scene);
+        assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_OK);
+        assert_true(fabs(seen_height(&scene, beside) / before - 1) < 1e-9);
+    }
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
+static void a_scene_is_aimed_where_it_was_moved_to(void **state)
+{
+    (void)state;
+    Tree tree = make_tree();
+    for (size_t i = 0; i < tree.n; i++)
+        tree.position[i].x += 5e5;
+    StageParams params = stage_defaults();
+    Scene scene;
+    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
+    scene_move_to_origin(&scene);
+    assert_true(scene.origin.x > 4e5);
+    orbit_begin(&params, &scene);
+    assert_true(params.location.x > 4e5 && params.look_at.x > 4e5);
+    const Camera before = scene.camera;
+    assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_OK);
+    assert_near(scene.camera.location, before.location, 1e-6);
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
+static void a_camera_without_direction_leaves_the_scene_as_it_is(void **state)
+{
+    (void)state;
+    Tree tree;
+    StageParams params = stage_defaults();
+    Scene scene = orbit_about(&tree, &params);
+    const Vec3 before = scene.camera.location;
+    params.location = params.look_at;
+    assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_USAGE);
+    assert_near(scene.camera.location, before, 0);
+    assert_int_equal(scene.n_lights, look.n_lights);
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
 /* ---- looks -------------------------------------------------------------------------------------- */
 
 static Status read_look_text(const char *text, Look *out, Err *err)
@@ -399,6 +557,12 @@ int main(void)
         cmocka_unit_test(a_point_light_stands_in_half_diagonals_from_the_middle),
         cmocka_unit_test(the_ground_lies_just_beyond_the_tree),
         cmocka_unit_test(a_ground_moves_with_its_scene),
+        cmocka_unit_test(a_camera_that_has_not_moved_is_what_it_was),
+        cmocka_unit_test(what_is_turned_moves_with_the_hand),
+        cmocka_unit_test(zooming_and_panning_are_by_what_is_looked_at),
+        cmocka_unit_test(another_projection_keeps_the_size_of_what_is_looked_at),
+        cmocka_unit_test(a_scene_is_aimed_where_it_was_moved_to),
+        cmocka_unit_test(a_camera_without_direction_leaves_the_scene_as_it_is),
         cmocka_unit_test(a_look_is_read),
         cmocka_unit_test(a_bad_look_names_its_line),
     };

@@ -1,0 +1,118 @@
+/* A camera is moved by moving the parameters that make it, so that what a window shows can be said in
+ * the options that draw it again. Turning is about the camera's own axes: what is under the hand follows
+ * it, whatever is up. */
+#include "stage/stage.h"
+
+static const double degrees_pi = 3.14159265358979323846 / 180;
+static const double least_angle = 0.01, largest_height_mm = 1e7, least_height_mm = 1e-6;
+
+typedef struct Axes {
+    Vec3 right, up, back; /* unit; back leads from what is looked at to the camera */
+    double distance;
+} Axes;
+
+static Axes axes_of(const StageParams *params)
+{
+    Vec3 back = vec3_sub(params->location, params->look_at);
+    Axes axes = {.distance = vec3_length(back)};
+    axes.back = vec3_scale(back, 1 / axes.distance);
+    axes.right = vec3_normalized(vec3_cross(params->up, axes.back));
+    axes.up = vec3_cross(axes.back, axes.right);
+    return axes;
+}
+
+static void set_axes(StageParams *params, Axes axes)
+{
+    params->location = vec3_add_scaled(params->look_at, axes.back, axes.distance);
+    params->up = axes.up;
+}
+
+/* Of a perspective picture: its width, over the distance of what has it. */
+static double width_per_distance(const StageParams *params)
+{
+    return 2 * tan(params->angle_deg * degrees_pi / 2);
+}
+
+/* Height of the picture where it is looked at. */
+static double height_mm(const StageParams *params, double distance)
+{
+    if (params->projection == PROJECTION_ORTHOGRAPHIC)
+        return params->height_mm;
+    return width_per_distance(params) * distance * params->height / params->width;
+}
+
+void orbit_begin(StageParams *params, const Scene *scene)
+{
+    const Camera *camera = &scene->camera;
+    Vec3 center = box_center(scene->bounds);
+    double along = vec3_dot(vec3_sub(center, camera->location), camera->direction);
+    if (!(along > 0))
+        along = vec3_distance(scene->bounds.low, scene->bounds.high);
+    params->location = vec3_add(camera->location, scene->origin);
+    params->look_at = vec3_add_scaled(params->location, camera->direction, along);
+    params->up = vec3_normalized(camera->up);
+    params->has_location = params->has_look_at = params->has_up = true;
+    params->projection = camera->projection;
+    if (camera->projection == PROJECTION_ORTHOGRAPHIC)
+        params->height_mm = vec3_length(camera->up);
+}
+
+/* v turned about the unit axis. */
+static Vec3 turned(Vec3 v, Vec3 axis, double angle)
+{
+    Vec3 result = vec3_scale(v, cos(angle));
+    result = vec3_add_scaled(result, vec3_cross(axis, v), sin(angle));
+    return vec3_add_scaled(result, axis, vec3_dot(axis, v) * (1 - cos(angle)));
+}
+
+void orbit_turn(StageParams *params, double right, double up)
+{
+    Axes axes = axes_of(params);
+    axes.back = turned(axes.back, axes.up, -right);
+    axes.right = turned(axes.right, axes.up, -right);
+    axes.back = vec3_normalized(turned(axes.back, axes.right, up));
+    axes.up = vec3_normalized(vec3_cross(axes.back, axes.right));
+    set_axes(params, axes);
+}
+
+void orbit_zoom(StageParams *params, double factor)
+{
+    if (params->projection == PROJECTION_ORTHOGRAPHIC) {
+        params->height_mm =
+            fmin(fmax(params->height_mm / factor, least_height_mm), largest_height_mm);
+        return;
+    }
+    Axes axes = axes_of(params);
+    axes.distance = fmin(fmax(axes.distance / factor, least_height_mm), largest_height_mm / 2);
+    set_axes(params, axes);
+}
+
+void orbit_pan(StageParams *params, double right, double up)
+{
+    Axes axes = axes_of(params);
+    double height = height_mm(params, axes.distance);
+    Vec3 move = vec3_scale(axes.right, -right * height);
+    move = vec3_add_scaled(move, axes.up, -up * height);
+    params->location = vec3_add(params->location, move);
+    params->look_at = vec3_add(params->look_at, move);
+}
+
+void orbit_project(StageParams *params, Projection projection, const Scene *scene)
+{
+    if (params->projection == projection)
+        return;
+    Axes axes = axes_of(params);
+    double height = height_mm(params, axes.distance);
+    if (projection == PROJECTION_PERSPECTIVE) {
+        params->angle_deg = fmax(params->angle_deg, least_angle);
+        axes.distance = height * params->width / params->height / width_per_distance(params);
+    } else {
+        /* In front of everything. */
+        params->height_mm = height;
+        Vec3 center = vec3_add(box_center(scene->bounds), scene->origin);
+        axes.distance = vec3_distance(center, params->look_at) +
+                        vec3_distance(scene->bounds.low, scene->bounds.high);
+    }
+    params->projection = projection;
+    set_axes(params, axes);
+}
