@@ -32,6 +32,28 @@ static const float steep_sine2 = 4e-4f;
 static const float off_joint_end = 1e-5f, off_joint_line = 1e-4f;
 enum { RULING_STEPS = 12 };
 
+/* Bit i is set where lane i is true. */
+RASTER_FN unsigned mask_bits(LaneMask mask)
+{
+#ifdef LANES_AVX2
+    return (unsigned)_mm256_movemask_ps((__m256)mask);
+#else
+    return (unsigned)((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
+#endif
+}
+
+RASTER_FN LaneMask load_items(const uint32_t *items)
+{
+    LaneMask lanes;
+    __builtin_memcpy(&lanes, items, sizeof lanes);
+    return lanes;
+}
+
+RASTER_FN void store_items(uint32_t *items, LaneMask lanes)
+{
+    __builtin_memcpy(items, &lanes, sizeof lanes);
+}
+
 /* Lines of sight beside an item. */
 typedef struct Sight {
     Lanes x, y;   /* where they pass its middle's depth, from the middle */
@@ -108,7 +130,6 @@ RASTER_FN Near approach(const RasterTile *tile, uint32_t number, bool perspectiv
         near.x = (float)(tile->x - item->x);
         near.y = (float)(tile->y - item->y);
     }
-    outline(&near);
     return near;
 }
 
@@ -210,12 +231,18 @@ RASTER_FN LaneMask cylinder_entry(const Near *near, const Sight *sight, Lanes *z
     float half = near->item->half;
     *passage = pass_cylinder(near, sight);
     /* Counted from the end that a line comes to first, lengths grow with depth. */
-    Lanes grows = lanes_select(passage->rate < 0.0f, lanes_set(-1), lanes_set(1));
-    Lanes first = passage->along * grows + half;
-    Lanes rise = passage->rate * grows * passage->half, enters = first - rise;
-    *on_disc = (enters < 0.0f) & (first + rise >= 0.0f);
-    *z = passage->middle + lanes_select(*on_disc, -first / (passage->rate * grows), -passage->half);
-    return passage->met & (enters <= 2 * half) & (*on_disc | (enters >= 0.0f));
+    Lanes along = passage->along, rate = passage->rate;
+    if (near->perspective) {
+        Lanes grows = lanes_select(rate < 0.0f, lanes_set(-1), lanes_set(1));
+        along *= grows;
+        rate *= grows;
+    }
+    Lanes first = along + half, rise = rate * passage->half, enters = first - rise;
+    *on_disc = passage->met & (enters < 0.0f) & (first + rise >= 0.0f);
+    *z = passage->middle - passage->half;
+    if (lanes_any(*on_disc))
+        *z = lanes_select(*on_disc, passage->middle - first / rate, *z);
+    return *on_disc | (passage->met & (enters >= 0.0f) & (enters <= 2 * half));
 }
 
 /* ---- joints -------------------------------------------------------------------------------------- */
@@ -399,12 +426,11 @@ RASTER_FN void keep_nearer(RasterState *state, const Near *near, int block, Lane
     LaneMask nearer = met & (depth < before);
     if (!lanes_any(nearer))
         return;
-    Lanes item = (Lanes)((LaneMask){0} + (int32_t)near->number), kept;
+    Lanes kept = (Lanes)load_items(&hits->item[first]);
+    Lanes item = (Lanes)((LaneMask){0} + (int32_t)near->number);
     depth = lanes_select(nearer, depth, before);
     lanes_store(&hits->z[first], depth);
-    __builtin_memcpy(&kept, &hits->item[first], sizeof kept);
-    kept = lanes_select(nearer, item, kept);
-    __builtin_memcpy(&hits->item[first], &kept, sizeof kept);
+    store_items(&hits->item[first], (LaneMask)lanes_select(nearer, item, kept));
     if (ruling)
         lanes_store(&hits->ruling[first],
                     lanes_select(nearer, *ruling, lanes_load(&hits->ruling[first])));
@@ -491,8 +517,7 @@ RASTER_FN unsigned touched_blocks(const RasterState *state, const Near *near)
         Lanes on = lanes_abs(lanes_fma(x, lanes_set(near->along_x), y * near->along_y));
         LaneMask touched =
             (off <= across) & (on <= along) & (lanes_load(&state->farthest[first]) > near->z_near);
-        for (int lane = 0; lane < LANES; lane++)
-            bits |= (unsigned)(touched[lane] & 1) << (first + lane);
+        bits |= mask_bits(touched) << first;
     }
     return bits;
 }
@@ -502,6 +527,7 @@ RASTER_FN void trace_items(RasterState *state, bool perspective)
     const RasterTile *tile = state->tile;
     for (size_t i = 0; i < tile->n; i++) {
         Near near = approach(tile, tile->list[i], perspective);
+        outline(&near);
         unsigned blocks = touched_blocks(state, &near);
         if (item_is_close(near.item))
             blocks = (1u << BLOCKS) - 1;
@@ -515,10 +541,9 @@ LANE_TARGET static bool RASTER_KERNEL(trace)(const RasterTile *tile, RasterHits 
     RasterState state = {.tile = tile, .hits = hits};
     for (int sample = 0; sample < TILE_SAMPLES; sample += LANES) {
         lanes_store(&hits->z[sample], lanes_set(HUGE_VALF));
+        store_items(&hits->item[sample], (LaneMask){0} + (int32_t)RASTER_NOTHING);
         state.farthest[sample / LANES] = HUGE_VALF;
     }
-    for (int sample = 0; sample < TILE_SAMPLES; sample++)
-        hits->item[sample] = RASTER_NOTHING;
     if (tile->perspective)
         trace_items(&state, true);
     else
@@ -528,15 +553,13 @@ LANE_TARGET static bool RASTER_KERNEL(trace)(const RasterTile *tile, RasterHits 
 
 /* ---- normals ------------------------------------------------------------------------------------- */
 
-RASTER_FN void joint_normal(const Near *near, const Sight *sight, Lanes u, Lanes *z,
-                            Lanes normal[3])
+RASTER_FN void joint_normal(const Near *near, const Sight *sight, Lanes u, Lanes normal[3])
 {
     const RasterJoint *joint = near->joint;
     Lanes u2 = u * u, per = 1.0f / (1.0f + u2), off[2], run[2];
     Lanes cosine = (1.0f - u2) * per, sine = 2.0f * u * per;
     Line3 line = ruling_line(joint, cosine, sine);
     Lanes place = ruling_place(near, sight, &line, off, run), turn[3];
-    *z = lanes_fma(place, line.run[2], line.start[2]);
     for (int c = 0; c < 3; c++) {
         Lanes a = lanes_fma(place, lanes_set(joint->da[c]), lanes_set(joint->a[c]));
         Lanes b = lanes_fma(place, lanes_set(joint->db[c]), lanes_set(joint->b[c]));
@@ -553,56 +576,58 @@ RASTER_FN void joint_normal(const Near *near, const Sight *sight, Lanes u, Lanes
         normal[c] *= scale;
 }
 
-RASTER_FN void cylinder_normal(const Near *near, const Sight *sight, Lanes *z, Lanes normal[3])
+RASTER_FN void sphere_normal(const Near *near, const Sight *sight, Lanes normal[3])
+{
+    Lanes z;
+    sphere_entry(near, sight, &z);
+    float per = 1 / near->item->radius;
+    normal[0] = lanes_fma(z, sight->dx, sight->x) * per;
+    normal[1] = lanes_fma(z, sight->dy, sight->y) * per;
+    normal[2] = z * per;
+}
+
+RASTER_FN void cylinder_normal(const Near *near, const Sight *sight, Lanes normal[3])
 {
     LaneMask on_disc;
     Passage passage;
-    cylinder_entry(near, sight, z, &on_disc, &passage);
-    Lanes along = lanes_fma(*z - passage.middle, passage.rate, passage.along);
+    Lanes z;
+    cylinder_entry(near, sight, &z, &on_disc, &passage);
+    Lanes along = lanes_fma(-passage.half, passage.rate, passage.along);
     float per = 1 / near->item->radius;
-    Lanes at[3] = {lanes_fma(*z, sight->dx, sight->x), lanes_fma(*z, sight->dy, sight->y), *z};
+    Lanes at[3] = {lanes_fma(z, sight->dx, sight->x), lanes_fma(z, sight->dy, sight->y), z};
+    for (int c = 0; c < 3; c++)
+        normal[c] = lanes_fma(-along, lanes_set(near->axis[c]), at[c]) * per;
+    if (!lanes_any(on_disc))
+        return;
     Lanes facing = lanes_select(passage.rate > 0.0f, lanes_set(-1), lanes_set(1));
-    for (int c = 0; c < 3; c++) {
-        Lanes wall = lanes_fma(-along, lanes_set(near->axis[c]), at[c]) * per;
-        normal[c] = lanes_select(on_disc, facing * near->axis[c], wall);
-    }
+    for (int c = 0; c < 3; c++)
+        normal[c] = lanes_select(on_disc, facing * near->axis[c], normal[c]);
 }
 
-/* Depth and normal of the samples `of` a block, which see the item. */
+/* The normals of the samples `of` a block, which see the item. */
 RASTER_FN void resolve_item(const RasterTile *tile, const RasterHits *hits, int block, LaneMask of,
-                            const Near *near, Lanes normal[3], TileHits *surface)
+                            const Near *near, Lanes normal[3])
 {
     int first = block * LANES;
     Sight sight =
         sight_of(near, lanes_load(&tile->grid->x[first]), lanes_load(&tile->grid->y[first]));
-    Lanes z, own[3];
-    if (near->kind == RASTER_SPHERE) {
-        sphere_entry(near, &sight, &z);
-        float per = 1 / near->item->radius;
-        own[0] = lanes_fma(z, sight.dx, sight.x) * per;
-        own[1] = lanes_fma(z, sight.dy, sight.y) * per;
-        own[2] = z * per;
-    } else if (near->kind == RASTER_CYLINDER) {
-        cylinder_normal(near, &sight, &z, own);
-    } else {
-        joint_normal(near, &sight, lanes_load(&hits->ruling[first]), &z, own);
-    }
+    Lanes own[3];
+    if (near->kind == RASTER_SPHERE)
+        sphere_normal(near, &sight, own);
+    else if (near->kind == RASTER_CYLINDER)
+        cylinder_normal(near, &sight, own);
+    else
+        joint_normal(near, &sight, lanes_load(&hits->ruling[first]), own);
     for (int c = 0; c < 3; c++)
         normal[c] = lanes_select(of, own[c], normal[c]);
-    for (int lane = 0; lane < LANES; lane++)
-        if (of[lane]) {
-            surface->z[first + lane] = near->item->z + (double)z[lane];
-            surface->segment[first + lane] = near->item->primitive;
-        }
 }
 
 LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number, int sample,
-                                        Lanes normal[3], TileHits *surface)
+                                        Lanes normal[3])
 {
     Vec3 found = {0, 0, 0};
-    surface->z[sample] = raster_decide(tile->bins, number, tile->x + (double)tile->grid->x[sample],
-                                       tile->y + (double)tile->grid->y[sample], &found);
-    surface->segment[sample] = tile->items[number].primitive;
+    raster_decide(tile->bins, number, tile->x + (double)tile->grid->x[sample],
+                  tile->y + (double)tile->grid->y[sample], &found);
     normal[0][sample % LANES] = (float)found.x;
     normal[1][sample % LANES] = (float)found.y;
     normal[2][sample % LANES] = (float)found.z;
@@ -612,29 +637,29 @@ RASTER_FN void resolve_block(const RasterTile *tile, const RasterHits *hits, int
                              bool perspective, TileHits *surface)
 {
     int first = block * LANES;
-    LaneMask items, left;
-    __builtin_memcpy(&items, &hits->item[first], sizeof items);
-    left = items != (int32_t)RASTER_NOTHING;
+    LaneMask items = load_items(&hits->item[first]);
+    unsigned left = mask_bits(items != (int32_t)RASTER_NOTHING);
     Lanes normal[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
     for (int lane = 0; lane < LANES; lane++)
-        surface->state[first + lane] = left[lane] ? TILE_HIT : TILE_MISS;
-    if (!lanes_any(left))
+        surface->state[first + lane] = left >> lane & 1 ? TILE_HIT : TILE_MISS;
+    if (!left)
         return;
-    for (int lane = 0; lane < LANES; lane++) {
-        if (!left[lane])
-            continue;
+    while (left) {
+        int lane = __builtin_ctz(left);
         uint32_t number = hits->item[first + lane];
         if (number & RASTER_DECIDED) {
-            resolve_decided(tile, number & ~RASTER_DECIDED, first + lane, normal, surface);
+            resolve_decided(tile, number & ~RASTER_DECIDED, first + lane, normal);
+            left &= left - 1;
             continue;
         }
         LaneMask of = items == (int32_t)number;
-        left &= ~of;
+        left &= ~mask_bits(of);
         Near near = approach(tile, number, perspective);
-        resolve_item(tile, hits, block, of, &near, normal, surface);
+        resolve_item(tile, hits, block, of, &near, normal);
     }
     for (int c = 0; c < 3; c++)
         lanes_store(&surface->normal[c][first], normal[c]);
+    store_items(&surface->segment[first], items & (int32_t)~RASTER_DECIDED);
 }
 
 LANE_TARGET static void RASTER_KERNEL(resolve)(const RasterTile *tile, const RasterHits *hits,
@@ -645,6 +670,55 @@ LANE_TARGET static void RASTER_KERNEL(resolve)(const RasterTile *tile, const Ras
             resolve_block(tile, hits, block, true, surface);
         else
             resolve_block(tile, hits, block, false, surface);
+}
+
+/* ---- pixels -------------------------------------------------------------------------------------- */
+
+typedef float Quad __attribute__((vector_size(16)));
+
+/* Four pixels of three channels each. */
+LANE_FN void store_pixels(float *to, Quad r, Quad g, Quad b)
+{
+    Quad low = __builtin_shufflevector(r, g, 0, 4, 1, 5);
+    Quad high = __builtin_shufflevector(r, g, 2, 6, 3, 7);
+    Quad middle = __builtin_shufflevector(low, b, 3, 5, 3, 5);
+    Quad first = __builtin_shufflevector(low, b, 0, 1, 4, 2);
+    Quad second = __builtin_shufflevector(middle, high, 0, 1, 4, 5);
+    Quad third = __builtin_shufflevector(b, high, 2, 6, 7, 3);
+    __builtin_memcpy(to, &first, sizeof first);
+    __builtin_memcpy(to + 4, &second, sizeof second);
+    __builtin_memcpy(to + 8, &third, sizeof third);
+}
+
+LANE_TARGET static void RASTER_KERNEL(paint)(float color[3][TILE_SAMPLES], float *pixels,
+                                             size_t stride)
+{
+    for (int block = 0; block < TILE_SAMPLES / 8; block++) {
+        Quad upper[3], lower[3];
+        for (int c = 0; c < 3; c++) {
+            Quad left, right;
+            __builtin_memcpy(&left, &color[c][8 * block], sizeof left);
+            __builtin_memcpy(&right, &color[c][8 * block + 4], sizeof right);
+            upper[c] = __builtin_shufflevector(left, right, 0, 1, 4, 5);
+            lower[c] = __builtin_shufflevector(left, right, 2, 3, 6, 7);
+        }
+        float *to =
+            pixels + (size_t)tile_sample_y(8 * block) * stride + 3 * tile_sample_x(8 * block);
+        store_pixels(to, upper[0], upper[1], upper[2]);
+        store_pixels(to + stride, lower[0], lower[1], lower[2]);
+    }
+}
+
+/* Gives the samples that see nothing the background. */
+LANE_TARGET static void RASTER_KERNEL(clear)(const RasterHits *hits, const float background[3],
+                                             float color[3][TILE_SAMPLES])
+{
+    for (int first = 0; first < TILE_SAMPLES; first += LANES) {
+        LaneMask seen = load_items(&hits->item[first]) != (int32_t)RASTER_NOTHING;
+        for (int c = 0; c < 3; c++)
+            lanes_store(&color[c][first],
+                        lanes_select(seen, lanes_load(&color[c][first]), lanes_set(background[c])));
+    }
 }
 
 /* ---- shadows ------------------------------------------------------------------------------------- */
@@ -693,6 +767,7 @@ RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int fir
     }
     for (size_t i = 0; i < tile->n && lanes_any(open); i++) {
         Near near = approach(tile, tile->list[i], perspective);
+        outline(&near);
         LaneMask among = open & (z > near.z_near);
         if (near.kind == RASTER_EXACT || lanes_any(among))
             open &= ~item_covers(&near, tile, probes, first, x, y, z, among);

@@ -2,7 +2,8 @@
 #define RASTER_KERNEL(name) name##_portable
 #include "render/rasterkernel.h"
 
-const RasterKernels rasterkernels_portable = {trace_portable, resolve_portable, cover_portable};
+const RasterKernels rasterkernels_portable = {trace_portable, resolve_portable, clear_portable,
+                                              paint_portable, cover_portable};
 
 const RasterKernels *rasterkernels_best(void)
 {

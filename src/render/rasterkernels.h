@@ -16,8 +16,12 @@ typedef struct RasterProbes {
 typedef struct RasterKernels {
     /* Finds the first items of the tile; false when there is none. */
     bool (*trace)(const RasterTile *tile, RasterHits *hits);
-    /* Depth, normal and primitive (as `segment`) of the hits. */
+    /* State, normal and item (as `segment`) of the hits. */
     void (*resolve)(const RasterTile *tile, const RasterHits *hits, TileHits *surface);
+    /* Gives the samples that see nothing the background. */
+    void (*clear)(const RasterHits *hits, const float background[3], float color[3][TILE_SAMPLES]);
+    /* Stores a whole tile's colours as rows of pixels, `stride` floats from row to row. */
+    void (*paint)(float color[3][TILE_SAMPLES], float *pixels, size_t stride);
     /* Sets `covered` of the probes from `first` to below `last`, which lie in this tile, where an item of the tile is seen. */
     void (*cover)(const RasterTile *tile, RasterProbes *probes, int first, int last);
 } RasterKernels;

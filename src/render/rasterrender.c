@@ -58,15 +58,20 @@ static size_t pixel_at(const RasterPicture *picture, const Place *place, int i, 
 
 /* ---- one sample a pixel -------------------------------------------------------------------------- */
 
+static double seen_z(const RasterTile *tile, const RasterHits *hits, int sample)
+{
+    return tile->z_middle + (double)hits->z[sample];
+}
+
 /* Rays and places in perspective; parallel rays never change, and lights that are not parallel need
  * places there, too. */
-static void place_surface(const RasterTile *tile, const TileHits *surfels, TileSurface *surface)
+static void place_surface(const RasterTile *tile, const RasterHits *hits, TileSurface *surface)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        if (surfels->state[sample] != TILE_HIT)
+        if (hits->item[sample] == RASTER_NOTHING)
             continue;
         double x = tile->x + (double)tile->grid->x[sample];
-        double y = tile->y + (double)tile->grid->y[sample], z = surfels->z[sample];
+        double y = tile->y + (double)tile->grid->y[sample], z = seen_z(tile, hits, sample);
         double scale = tile->perspective ? z : 1, per = 1 / sqrt(1 + x * x + y * y);
         surface->point[0][sample] = (float)(x * scale);
         surface->point[1][sample] = (float)(y * scale);
@@ -101,19 +106,22 @@ static bool color_tile(const RasterPicture *picture, const RasterTile *tile, Can
             surface->pigment[2][sample] = pigment.b;
         }
     if (picture->needs_places)
-        place_surface(tile, surfels, surface);
+        place_surface(tile, &canvas->hits, surface);
     picture->shading->shade(&picture->look, surface, canvas->color);
     const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
-    for (int c = 0; c < 3; c++)
-        for (int sample = 0; sample < TILE_SAMPLES; sample++)
-            canvas->color[c][sample] =
-                surfels->state[sample] == TILE_HIT ? canvas->color[c][sample] : background[c];
+    picture->kernels->clear(&canvas->hits, background, canvas->color);
     return true;
 }
 
 static void write_colors(const RasterPicture *picture, const Place *place,
                          float color[3][TILE_SAMPLES])
 {
+    if (place->n_columns == TILE_SIDE && place->n_rows == TILE_SIDE) {
+        picture->kernels->paint(color,
+                                &picture->frame->color.values[3 * pixel_at(picture, place, 0, 0)],
+                                3 * (size_t)picture->scene->camera.width);
+        return;
+    }
     for (int j = 0; j < place->n_rows; j++) {
         float *pixel = &picture->frame->color.values[3 * pixel_at(picture, place, 0, j)];
         for (int i = 0; i < place->n_columns; i++, pixel += 3) {
@@ -140,35 +148,36 @@ static Vec3 seen_normal(const RasterPicture *picture, const RasterTile *tile,
     return rasterview_to_world(&picture->bins->view, normal);
 }
 
-static double seen_depth(const RasterTile *tile, const TileHits *surfels, int sample)
+static double seen_depth(const RasterTile *tile, const RasterHits *hits, int sample)
 {
     double x = tile->x + (double)tile->grid->x[sample];
     double y = tile->y + (double)tile->grid->y[sample];
-    return surfels->z[sample] * (tile->perspective ? sqrt(1 + x * x + y * y) : 1);
+    return seen_z(tile, hits, sample) * (tile->perspective ? sqrt(1 + x * x + y * y) : 1);
 }
 
-/* `surfels` NULL: nothing is seen in the whole tile. */
+/* `canvas` NULL: nothing is seen in the whole tile. */
 static void write_geometry(const RasterPicture *picture, const Place *place, const RasterTile *tile,
-                           const TileHits *surfels)
+                           const Canvas *canvas)
 {
     const Frame *frame = picture->frame;
     for (int j = 0; j < place->n_rows; j++)
         for (int i = 0; i < place->n_columns; i++) {
             int sample = tile_sample_at(i, j);
-            bool hit = surfels && surfels->state[sample] == TILE_HIT;
+            bool hit = canvas && canvas->hits.item[sample] != RASTER_NOTHING;
             size_t pixel = pixel_at(picture, place, i, j);
             if (frame->depth.values)
                 frame->depth.values[pixel] =
-                    hit ? (float)seen_depth(tile, surfels, sample) : HUGE_VALF;
+                    hit ? (float)seen_depth(tile, &canvas->hits, sample) : HUGE_VALF;
             if (frame->normal.values) {
-                Vec3 normal = hit ? seen_normal(picture, tile, surfels, sample) : vec3(0, 0, 0);
+                Vec3 normal =
+                    hit ? seen_normal(picture, tile, &canvas->surfels, sample) : vec3(0, 0, 0);
                 frame->normal.values[3 * pixel] = (float)normal.x;
                 frame->normal.values[3 * pixel + 1] = (float)normal.y;
                 frame->normal.values[3 * pixel + 2] = (float)normal.z;
             }
             if (frame->id.ids)
                 frame->id.ids[pixel] =
-                    hit ? picture->scene->primitives[surfels->segment[sample]].id : 0;
+                    hit ? picture->scene->primitives[canvas->surfels.segment[sample]].id : 0;
         }
 }
 
@@ -249,7 +258,7 @@ static void draw_tile(const RasterPicture *picture, const Place *place, RasterTi
         memcpy(&frame->color.values[3 * pixel_at(picture, place, 0, j)], background,
                3 * (size_t)place->n_columns * sizeof *background);
     if (frame->depth.values || frame->normal.values || frame->id.ids)
-        write_geometry(picture, place, tile, seen ? &canvas->surfels : NULL);
+        write_geometry(picture, place, tile, seen ? canvas : NULL);
 }
 
 static void draw_row(size_t row, int worker, void *context)
