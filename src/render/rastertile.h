@@ -46,6 +46,7 @@ typedef struct RasterJoint {
 /* Where samples lie, from the middle of their tile, in the plane of the view. */
 typedef struct RasterGrid {
     float x[TILE_SAMPLES], y[TILE_SAMPLES];
+    float reach; /* no sample is farther from the middle */
     /* Middles of the blocks of 8 and of 4 samples, and of a block's half sides. */
     float block8_x[TILE_SAMPLES / 8], block8_y[TILE_SAMPLES / 8], block8_half[2];
     float block4_x[TILE_SAMPLES / 4], block4_y[TILE_SAMPLES / 4], block4_half[2];

@@ -520,6 +520,8 @@ RasterGrid rastergrid_make(const RasterView *view, double x, double y)
         grid.x[sample] = (float)((tile_sample_x(sample) - middle + x) * view->step_x);
         grid.y[sample] = (float)((tile_sample_y(sample) - middle + y) * view->step_y);
     }
+    grid.reach =
+        (float)((middle + fabs(x)) * view->step_x - (middle + fabs(y)) * view->step_y) * 1.0001f;
     set_blocks(&grid, 8, grid.block8_x, grid.block8_y, grid.block8_half);
     set_blocks(&grid, 4, grid.block4_x, grid.block4_y, grid.block4_half);
     return grid;

@@ -1,0 +1,255 @@
+/* Where lines of sight enter spheres and cylinders, several at once: a part of rasterkernel.h. A line passes an item's middle, at the
+ * middle's depth, in (X, Y) = (x, y) depth - middle, which is taken in double precision for the tile and stays
+ * small. */
+#ifndef CORCAST_RENDER_RASTERSIGHT_H
+#define CORCAST_RENDER_RASTERSIGHT_H
+
+#include "render/lanes.h"
+#include "render/rastertile.h"
+
+#define RASTER_FN LANE_FN __attribute__((always_inline))
+
+/* Below this squared sine a wall is looked at along its axis. */
+static const float steep_sine2 = 4e-4f;
+/* Bit i is set where lane i is true. */
+RASTER_FN unsigned mask_bits(LaneMask mask)
+{
+#ifdef LANES_AVX2
+    return (unsigned)_mm256_movemask_ps((__m256)mask);
+#else
+    return (unsigned)((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
+#endif
+}
+
+RASTER_FN LaneMask load_items(const uint32_t *items)
+{
+    LaneMask lanes;
+    __builtin_memcpy(&lanes, items, sizeof lanes);
+    return lanes;
+}
+
+RASTER_FN void store_items(uint32_t *items, LaneMask lanes)
+{
+    __builtin_memcpy(items, &lanes, sizeof lanes);
+}
+
+/* Lines of sight beside an item. */
+typedef struct Sight {
+    Lanes x, y;   /* where they pass its middle's depth, from the middle */
+    Lanes dx, dy; /* directions (dx, dy, 1); only in perspective */
+} Sight;
+
+/* An item as one tile sees it. */
+typedef struct Near {
+    const RasterItem *item;
+    const RasterJoint *joint;
+    bool perspective;
+    uint32_t kind;
+    uint32_t number;
+    float x, y;   /* where the tile's middle passes it, from its middle */
+    float depth;  /* of its middle, along the view; 1 when parallel */
+    float dx, dy; /* direction of the tile's middle */
+    float z;      /* of its middle, less z_middle */
+    float z_near; /* nothing of it is nearer */
+    float along_x, along_y, reach_along,
+        reach_across; /* its capsule's outline at the middle's depth */
+    float axis[3], per_sine;
+} Near;
+
+/* The outline of the capsule in the plane of its middle's depth, looked at along the tile's middle; wider in perspective,
+ * where what is nearer or farther than the middle is seen at another scale. */
+RASTER_FN void outline(const RasterTile *tile, Near *near)
+{
+    const RasterItem *item = near->item;
+    near->along_x = item->ex;
+    near->along_y = item->ey;
+    near->reach_across = item->radius;
+    near->reach_along = item->sine * item->half + item->radius;
+    if (!near->perspective)
+        return;
+    float x = near->axis[0] - near->dx * near->axis[2];
+    float y = near->axis[1] - near->dy * near->axis[2], size = sqrtf(x * x + y * y);
+    float stretch = sqrtf(1 + near->dx * near->dx + near->dy * near->dy);
+    near->along_x = size > 0 ? x / size : 1;
+    near->along_y = size > 0 ? y / size : 0;
+    float deep = item->cosine * item->half + item->radius;
+    near->reach_across = item->radius * stretch + deep * tile->grid->reach;
+    near->reach_along = size * item->half + near->reach_across;
+}
+
+RASTER_FN Near approach(const RasterTile *tile, uint32_t number, bool perspective)
+{
+    const RasterItem *item = &tile->items[number];
+    Near near;
+    near.item = item;
+    near.joint = &tile->joints[item->joint];
+    near.perspective = perspective;
+    near.kind = item->kind;
+    near.number = number;
+    near.depth = 1;
+    near.dx = near.dy = 0;
+    near.axis[0] = item->sine * item->ex;
+    near.axis[1] = item->sine * item->ey;
+    near.axis[2] = item->cosine;
+    near.per_sine = 1 / item->sine;
+    near.z = (float)(item->z - tile->z_middle);
+    near.z_near = near.z - item->cosine * item->half - item->radius;
+    if (perspective) {
+        near.x = (float)(tile->x * item->z - item->x);
+        near.y = (float)(tile->y * item->z - item->y);
+        near.depth = (float)item->z;
+        near.dx = (float)tile->x;
+        near.dy = (float)tile->y;
+        float nx = near.dy * near.axis[2] - near.axis[1],
+              ny = near.axis[0] - near.dx * near.axis[2];
+        float nz = near.dx * near.axis[1] - near.dy * near.axis[0];
+        float sine2 = nx * nx + ny * ny + nz * nz;
+        if (near.kind == RASTER_CYLINDER &&
+            sine2 < steep_sine2 * (1 + near.dx * near.dx + near.dy * near.dy))
+            near.kind = RASTER_EXACT;
+    } else {
+        near.x = (float)(tile->x - item->x);
+        near.y = (float)(tile->y - item->y);
+    }
+    return near;
+}
+
+RASTER_FN Sight sight_of(const Near *near, Lanes x, Lanes y)
+{
+    Sight sight;
+    if (near->perspective) {
+        sight.x = lanes_fma(x, lanes_set(near->depth), lanes_set(near->x));
+        sight.y = lanes_fma(y, lanes_set(near->depth), lanes_set(near->y));
+        sight.dx = x + near->dx;
+        sight.dy = y + near->dy;
+    } else {
+        sight.x = x + near->x;
+        sight.y = y + near->y;
+        sight.dx = sight.dy = lanes_set(0);
+    }
+    return sight;
+}
+
+/* Whether lines of sight may touch the item's capsule. */
+RASTER_FN LaneMask within_outline(const Near *near, const Sight *sight)
+{
+    Lanes x = lanes_set(near->along_x), y = lanes_set(near->along_y);
+    Lanes off = lanes_abs(lanes_fma(sight->y, x, -(sight->x * y)));
+    Lanes on = lanes_abs(lanes_fma(sight->x, x, sight->y * y));
+    return (off <= near->reach_across * 1.00001f) & (on <= near->reach_along * 1.00001f);
+}
+
+/* ---- spheres and cylinders ----------------------------------------------------------------------- */
+
+/* Where the lines enter the sphere, as depth from its middle. */
+RASTER_FN LaneMask sphere_entry(const Near *near, const Sight *sight, Lanes *z)
+{
+    float radius2 = near->item->radius * near->item->radius;
+    if (!near->perspective) {
+        Lanes left = lanes_set(radius2) - lanes_fma(sight->x, sight->x, sight->y * sight->y);
+        *z = -lanes_sqrt(lanes_max(left, lanes_set(0)));
+        return left > 0.0f;
+    }
+    /* About the line's nearest point: n = D x (X, Y, 0), |n|^2 / |D|^2 the squared distance. */
+    Lanes size2 = lanes_fma(sight->dx, sight->dx, lanes_fma(sight->dy, sight->dy, lanes_set(1)));
+    Lanes nz = lanes_fma(sight->dx, sight->y, -(sight->dy * sight->x));
+    Lanes n2 = lanes_fma(nz, nz, lanes_fma(sight->x, sight->x, sight->y * sight->y));
+    Lanes left = lanes_fma(lanes_set(radius2), size2, -n2), per = 1.0f / size2;
+    Lanes along = lanes_fma(sight->dx, sight->x, sight->dy * sight->y);
+    *z = -(along + lanes_sqrt(lanes_max(left, lanes_set(0)))) * per;
+    return left > 0.0f;
+}
+
+/* How lines of sight run through an endless cylinder. */
+typedef struct Passage {
+    LaneMask met;
+    Lanes middle; /* depth where they are nearest to the axis, from that of the cylinder's middle */
+    Lanes half;   /* of what is inside, in depth */
+    Lanes along;  /* at that place, along the axis from its middle */
+    Lanes rate;   /* of that with depth */
+} Passage;
+
+RASTER_FN Passage pass_cylinder(const Near *near, const Sight *sight)
+{
+    Passage passage;
+    const RasterItem *item = near->item;
+    float radius2 = item->radius * item->radius;
+    Lanes zero = lanes_set(0);
+    if (!near->perspective) {
+        Lanes off = lanes_fma(sight->y, lanes_set(item->ex), -(sight->x * item->ey));
+        Lanes left = lanes_fma(-off, off, lanes_set(radius2));
+        passage.met = left > 0.0f;
+        passage.half = lanes_sqrt(lanes_max(left, zero)) * near->per_sine;
+        passage.along =
+            lanes_fma(sight->x, lanes_set(item->ex), sight->y * item->ey) * near->per_sine;
+        passage.middle = passage.along * item->cosine;
+        passage.rate = lanes_set(item->cosine);
+        return passage;
+    }
+    Lanes ux = lanes_set(near->axis[0]), uy = lanes_set(near->axis[1]);
+    Lanes uz = lanes_set(near->axis[2]);
+    Lanes nx = lanes_fma(sight->dy, uz, -uy), ny = lanes_fma(-sight->dx, uz, ux);
+    Lanes nz = lanes_fma(sight->dx, uy, -(sight->dy * ux));
+    Lanes n2 = lanes_fma(nx, nx, lanes_fma(ny, ny, nz * nz)), per = 1.0f / n2;
+    Lanes off = lanes_fma(nx, sight->x, ny * sight->y);
+    Lanes left = lanes_fma(lanes_set(radius2), n2, -(off * off));
+    Lanes cross = lanes_fma(nx, sight->y, -(ny * sight->x));
+    Lanes turn = lanes_fma(nz, lanes_fma(sight->x, uy, -(sight->y * ux)), uz * cross);
+    passage.met = left > 0.0f;
+    passage.half = lanes_sqrt(lanes_max(left, zero)) * per;
+    passage.middle = -turn * per;
+    passage.rate = lanes_fma(sight->dx, ux, lanes_fma(sight->dy, uy, uz));
+    passage.along = lanes_fma(sight->x, ux, lanes_fma(sight->y, uy, passage.middle * passage.rate));
+    return passage;
+}
+
+/* Where the lines enter the cylinder; *on_disc is set where that is its end. */
+RASTER_FN LaneMask cylinder_entry(const Near *near, const Sight *sight, Lanes *z, LaneMask *on_disc,
+                                  Passage *passage)
+{
+    float half = near->item->half;
+    *passage = pass_cylinder(near, sight);
+    /* Counted from the end that a line comes to first, lengths grow with depth. */
+    Lanes along = passage->along, rate = passage->rate;
+    if (near->perspective) {
+        Lanes grows = lanes_select(rate < 0.0f, lanes_set(-1), lanes_set(1));
+        along *= grows;
+        rate *= grows;
+    }
+    Lanes first = along + half, rise = rate * passage->half, enters = first - rise;
+    *on_disc = passage->met & (enters < 0.0f) & (first + rise >= 0.0f);
+    *z = passage->middle - passage->half;
+    if (lanes_any(*on_disc))
+        *z = lanes_select(*on_disc, passage->middle - first / rate, *z);
+    return *on_disc | (passage->met & (enters >= 0.0f) & (enters <= 2 * half));
+}
+
+RASTER_FN void sphere_normal(const Near *near, const Sight *sight, Lanes normal[3])
+{
+    Lanes z;
+    sphere_entry(near, sight, &z);
+    float per = 1 / near->item->radius;
+    normal[0] = lanes_fma(z, sight->dx, sight->x) * per;
+    normal[1] = lanes_fma(z, sight->dy, sight->y) * per;
+    normal[2] = z * per;
+}
+
+RASTER_FN void cylinder_normal(const Near *near, const Sight *sight, Lanes normal[3])
+{
+    LaneMask on_disc;
+    Passage passage;
+    Lanes z;
+    cylinder_entry(near, sight, &z, &on_disc, &passage);
+    Lanes along = lanes_fma(-passage.half, passage.rate, passage.along);
+    float per = 1 / near->item->radius;
+    Lanes at[3] = {lanes_fma(z, sight->dx, sight->x), lanes_fma(z, sight->dy, sight->y), z};
+    for (int c = 0; c < 3; c++)
+        normal[c] = lanes_fma(-along, lanes_set(near->axis[c]), at[c]) * per;
+    if (!lanes_any(on_disc))
+        return;
+    Lanes facing = lanes_select(passage.rate > 0.0f, lanes_set(-1), lanes_set(1));
+    for (int c = 0; c < 3; c++)
+        normal[c] = lanes_select(on_disc, facing * near->axis[c], normal[c]);
+}
+
+#endif
