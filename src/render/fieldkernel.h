@@ -26,22 +26,11 @@
 #error "define FIELD_KERNEL, the name of the function"
 #endif
 
-#include "render/fieldtile.h"
-#include "render/lanes.h"
-#include "scene/scene.h"
+#include "render/fieldplane.h"
 #include <assert.h>
 
-#define LEVEL ((float)FIELD_LEVEL)
-/* Lack of potential at which a certain hit is closed by Newton's method. */
-#define CLOSE_ENOUGH (1e-3f * LEVEL)
+/* Lack of potential at which a hit that is very certain is closed by Newton's method. */
 #define NEAR_ENOUGH (2e-2f * LEVEL)
-/* The margin: a part for terms left out, one for each term's arithmetic, and one for the rounding
- * of places, in units of the last place of the packet's extent. */
-#define MARGIN_DROPPED 2e-5f
-#define MARGIN_TERM 6e-7f
-#define MARGIN_PLACE 1.2e-7f
-/* From here on erf is 1 and its derivative 0, to 2e-8. */
-#define SATURATED 4.0f
 #define MOST_STEPS 128
 
 /* A term on the rays of a packet, in powers of dz = z - z of the term. The last four Lanes are set
@@ -72,11 +61,6 @@ typedef struct Packet {
     PacketTerm **sum;  /* those of them that are added up */
     size_t n, n_sum;
 } Packet;
-
-LANE_FN Lanes square(Lanes a)
-{
-    return a * a;
-}
 
 /* 1 / a, finite for a near 0. */
 LANE_FN Lanes inverse(Lanes a)
@@ -209,23 +193,6 @@ LANE_FN void add_to_packet(Packet *packet, const TileTerm *tile_term)
     term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
     term->term = tile_term;
     packet->n++;
-}
-
-/* The axial factor of a term, twice, and exp(-u^2) - exp(-v^2). */
-LANE_FN void axial_factors(Lanes u, Lanes v, Lanes *ends, Lanes *ends_slope)
-{
-    *ends = lanes_set(2);
-    *ends_slope = lanes_set(0);
-    if (lanes_any(u < SATURATED)) {
-        Lanes gauss = lanes_exp_minus(square(u));
-        *ends = lanes_erf(u, gauss) + 1.0f;
-        *ends_slope = gauss;
-    }
-    if (lanes_any(v < SATURATED)) {
-        Lanes gauss = lanes_exp_minus(square(v));
-        *ends += lanes_erf(v, gauss) - 1.0f;
-        *ends_slope -= gauss;
-    }
 }
 
 /* Sets what only packets need that may hit something. */
@@ -372,13 +339,8 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, Lanes end, LaneM
     }
 }
 
-typedef struct Gradient {
-    Lanes phi, x, y, z;
-    Lanes largest; /* term */
-    LaneMask segment;
-} Gradient;
-
-LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Gradient *sum)
+LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Lanes *phi,
+                          Gradient *sum)
 {
     const TileTerm *tile_term = term->term;
     const float k = tile_term->k, *axis = tile_term->axis;
@@ -398,55 +360,36 @@ LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z,
         rays.o[c] = lanes_fma(rays.d[c], dz, rays.o[c]);
     Lanes across = value * (-2.0f * k * k);
     Lanes along = gauss * ends_slope * (k * 1.12837917f) - across * dot(rays.o, axis);
-    sum->phi += value;
+    *phi += value;
     sum->x += lanes_fma(across, rays.o[0], along * axis[0]);
     sum->y += lanes_fma(across, rays.o[1], along * axis[1]);
     sum->z += lanes_fma(across, rays.o[2], along * axis[2]);
-    int32_t segment = (int32_t)tile_term->segment;
-    LaneMask larger = (value > sum->largest) | ((value == sum->largest) & (segment < sum->segment));
-    sum->largest = lanes_select(larger, value, sum->largest);
-    sum->segment = (larger & segment) | (~larger & sum->segment);
+    name_largest(tile_term, value, sum);
 }
 
 /* The potential and its gradient at the points z of the rays, and the index of the largest term. */
-LANE_FN Gradient gradient_at(const Group *group, Lanes z, LaneMask rays)
+LANE_FN Gradient gradient_at(const Group *group, Lanes z, LaneMask rays, Lanes *phi)
 {
     Gradient sum = {.largest = lanes_set(-1)};
+    *phi = lanes_set(0);
     for (size_t i = 0; i < group->n; i++)
         if (matters(group->terms[i], rays))
-            add_gradient(group->terms[i], group->packet, z, &sum);
+            add_gradient(group->terms[i], group->packet, z, phi, &sum);
     return sum;
 }
 
 /* One more Newton step comes with the gradient. */
-LANE_FN void store_hits(const Group *group, int first, LaneMask hit, Lanes z, TileHits *hits)
+LANE_FN void describe_hits(const Group *group, int first, LaneMask hit, Lanes z, TileHits *hits)
 {
     const FieldTile *tile = group->packet->tile;
-    Gradient at = gradient_at(group, z, hit);
+    Lanes phi;
+    Gradient at = gradient_at(group, z, hit, &phi);
     Lanes slope = at.z;
     if (tile->perspective)
         slope += at.x * (group->packet->x + (float)tile->middle_x) +
                  at.y * (group->packet->y + (float)tile->middle_y);
-    z += lanes_select(slope > 0.0f, (LEVEL - at.phi) / slope, lanes_set(0));
-    Lanes outward = -1.0f / lanes_sqrt(square(at.x) + square(at.y) + square(at.z));
-    at.x *= outward;
-    at.y *= outward;
-    at.z *= outward;
-    for (int lane = 0; lane < LANES; lane++) {
-        if (!hit[lane])
-            continue;
-        int sample = first + lane;
-        double here = group->base + (double)z[lane];
-        if (hits->state[sample] == TILE_UNSURE ||
-            (hits->state[sample] == TILE_HIT && hits->z[sample] <= here))
-            continue; /* another sum's hit is nearer */
-        hits->state[sample] = TILE_HIT;
-        hits->z[sample] = here;
-        hits->normal[0][sample] = at.x[lane];
-        hits->normal[1][sample] = at.y[lane];
-        hits->normal[2][sample] = at.z[lane];
-        hits->segment[sample] = (uint32_t)at.segment[lane];
-    }
+    z += lanes_select(slope > 0.0f, (LEVEL - phi) / slope, lanes_set(0));
+    store_hits(tile, first, hit, group->base, z, &at, hits);
 }
 
 /* Makes the terms from `first` on that overlap a group, and returns the number of the next. */
@@ -489,10 +432,9 @@ LANE_FN void trace_sum(const Packet *packet, int first, TileHits *hits)
         march(&group, live, &start, end, &hit, &unsure);
         open &= ~(hit | unsure);
         if (lanes_any(hit))
-            store_hits(&group, first, hit, start, hits);
-        for (int lane = 0; lane < LANES; lane++)
-            if (unsure[lane])
-                hits->state[first + lane] = TILE_UNSURE;
+            describe_hits(&group, first, hit, start, hits);
+        if (lanes_any(unsure))
+            give_up(first, unsure, hits);
     }
 }
 
@@ -553,9 +495,13 @@ LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
 LANE_TARGET static void FIELD_KERNEL(const FieldTile *tile, TileWork *work, TileHits *hits)
 {
     assert(tile->n_terms <= work->capacity);
+    __builtin_memset(hits, 0, sizeof *hits);
+    if (tile->plane && !tile->blend->first) {
+        PLANE_KERNEL(tile, work->memory, hits);
+        return;
+    }
     Packet packet = {.tile = tile, .terms = work->memory};
     packet.sum = (PacketTerm **)(packet.terms + tile->n_terms);
-    __builtin_memset(hits, 0, sizeof *hits);
     for (int first = 0; first < TILE_SAMPLES; first += LANES)
         trace_packet(&packet, first, hits);
 }

@@ -36,6 +36,7 @@ typedef struct FieldTile {
     size_t n_terms;
     const Blend *blend;
     bool perspective;
+    bool plane;                             /* all segments lie in one plane, square to all rays */
     float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* of the samples, relative to the middle ray */
     double middle_x, middle_y;
     float half_size; /* largest distance of a sample from the middle ray */

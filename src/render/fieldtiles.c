@@ -497,6 +497,14 @@ static double place_samples(const FieldTiles *tiles, int column, int row, FieldT
     return (double)tile->half_size;
 }
 
+/* Whether the term lies square to an orthographic view in the same plane as the first, to 1e-7 of
+ * its own unit of length. */
+static bool is_in_plane(const TileTerm *first, const TileTerm *term)
+{
+    return fabsf(term->cosine) < 1e-8f &&
+           fabs(term->z_near - first->z_near) * (double)term->k <= 1e-7;
+}
+
 /* Sets the terms of the tile and the list of their segments. */
 static Status make_terms(const FieldTiles *tiles, size_t tile_column, double half_size,
                          Workspace *space, FieldTile *tile, Err *err)
@@ -508,10 +516,12 @@ static Status make_terms(const FieldTiles *tiles, size_t tile_column, double hal
                     "terms", err));
     tile->terms = space->terms;
     tile->n_terms = 0;
+    tile->plane = !tile->perspective;
     for (size_t i = 0; i < n; i++) {
         if (!make_term(tile, &tiles->segments[list[i]], half_size, list[i],
                        &space->terms[tile->n_terms]))
             continue;
+        tile->plane &= is_in_plane(&space->terms[0], &space->terms[tile->n_terms]);
         space->candidates[tile->n_terms++] = list[i];
     }
     sort_terms(space->terms, tile->n_terms);

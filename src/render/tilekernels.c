@@ -1,5 +1,6 @@
 /* The kernels for any processor, and the choice between the two. */
 #define FIELD_KERNEL trace_portable
+#define PLANE_KERNEL trace_plane_portable
 #define SHADE_KERNEL shade_portable
 #include "render/fieldkernel.h"
 #include "render/shadekernel.h"

@@ -3,6 +3,7 @@
 
 #define LANES_AVX2
 #define FIELD_KERNEL trace_avx2
+#define PLANE_KERNEL trace_plane_avx2
 #define SHADE_KERNEL shade_avx2
 #include "render/fieldkernel.h"
 #include "render/shadekernel.h"

@@ -262,7 +262,8 @@ typedef enum Aim {
     AIM_TANGENT, /* along the silhouette of a vessel */
     AIM_AXIAL,   /* along its axis, exactly or nearly */
     AIM_ALIGNED, /* along x, y or z */
-    N_AIMS
+    N_AIMS,
+    AIM_FACING = N_AIMS /* along z, orthographic: scenes in a plane have a kernel of their own */
 } Aim;
 
 static Camera aim(Aim kind, const Scene *scene, double extent, Random *random)
@@ -285,11 +286,18 @@ static Camera aim(Aim kind, const Scene *scene, double extent, Random *random)
         target = vec3_add_scaled(target, vec3_normalized(side), off);
         pixel = r * pow(10, uniform(random, -6, -1));
     }
+    if (kind == AIM_FACING) {
+        d = vec3(0, 0, random_bits(random) % 2 ? 1 : -1);
+        double off =
+            r * (1 + pow(10, uniform(random, -7, -1)) * (random_bits(random) % 2 ? 1 : -1));
+        bool tangent = random_bits(random) % 3 == 0;
+        target = vec3_add_scaled(target, vec3_cross(axis, d), tangent ? off : 0);
+    }
     Vec3 right = random_normal_to(random, d), up = vec3_cross(right, d);
     Camera camera = {.direction = d, .width = 8, .height = 8};
     double distance = extent * uniform(random, 2, 4);
     camera.location = vec3_add_scaled(target, d, -distance);
-    if (random_bits(random) % 2) {
+    if (kind != AIM_FACING && random_bits(random) % 2) {
         camera.projection = PROJECTION_PERSPECTIVE;
         pixel /= distance;
     }
@@ -298,7 +306,7 @@ static Camera aim(Aim kind, const Scene *scene, double extent, Random *random)
     return camera;
 }
 
-static void try_cameras(Scene *scene, int cameras, Random *random, Tally *tally)
+static void try_cameras(Scene *scene, int cameras, bool facing, Random *random, Tally *tally)
 {
     double extent = 0;
     for (size_t i = 0; i < scene->n_segments; i++)
@@ -308,7 +316,7 @@ static void try_cameras(Scene *scene, int cameras, Random *random, Tally *tally)
     assert_non_null(near);
     Answer portable, fastest;
     for (int i = 0; i < cameras; i++) {
-        scene->camera = aim((Aim)(i % N_AIMS), scene, extent, random);
+        scene->camera = aim(facing ? AIM_FACING : (Aim)(i % N_AIMS), scene, extent, random);
         ask(scene, tilekernels_best(), &fastest);
         for (int sample = 0; sample < TILE_SAMPLES; sample++)
             judge(scene, &fastest, sample, near, tally);
@@ -333,7 +341,7 @@ static void finish(const Tally *tally)
     assert_true(tally->worst_degrees < 0.2);
 }
 
-static void try_tree(const Tree *tree, const char *name, uint64_t seed)
+static void try_tree(const Tree *tree, const char *name, bool facing, uint64_t seed)
 {
     Scene scene = {.model = SCENE_ISOSURFACE};
     scene.segments = calloc(tree->n, sizeof *scene.segments);
@@ -347,12 +355,12 @@ static void try_tree(const Tree *tree, const char *name, uint64_t seed)
     Random random;
     random_seed(&random, seed);
     Tally tally = {.name = name};
-    try_cameras(&scene, 240 / SHARE, &random, &tally);
+    try_cameras(&scene, facing ? 80 / SHARE : 240 / SHARE, facing, &random, &tally);
     finish(&tally);
     free(scene.segments);
 }
 
-static void try_grown(const char *name, const char *spec, double lambda)
+static void try_grown(const char *name, const char *spec, double lambda, bool facing)
 {
     Domain domain;
     Tree tree;
@@ -361,7 +369,7 @@ static void try_grown(const char *name, const char *spec, double lambda)
     params.lambda = lambda;
     assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
     assert_int_equal(grow_tree(&params, &domain, &tree, NULL, NULL), STATUS_OK);
-    try_tree(&tree, name, 61);
+    try_tree(&tree, name, facing, 61);
     tree_release(&tree);
     domain_release(&domain);
 }
@@ -369,19 +377,19 @@ static void try_grown(const char *name, const char *spec, double lambda)
 static void holds_for_a_tree_of_least_volume(void **state)
 {
     (void)state;
-    try_grown("lambda 2", "disc:50", 2);
+    try_grown("lambda 2", "disc:50", 2, false);
 }
 
 static void holds_for_a_tree_of_least_length(void **state)
 {
     (void)state;
-    try_grown("lambda 0", "disc:50", 0);
+    try_grown("lambda 0", "disc:50", 0, false);
 }
 
 static void holds_for_a_tree_in_space(void **state)
 {
     (void)state;
-    try_grown("in space", "ball:28.794", 2);
+    try_grown("in space", "ball:28.794", 2, false);
 }
 
 static void holds_for_a_measured_tree(void **state)
@@ -396,7 +404,7 @@ static void holds_for_a_measured_tree(void **state)
     }
     Tree tree;
     assert_int_equal(tree_read(&tree, path, NULL), STATUS_OK);
-    try_tree(&tree, "measured", 62);
+    try_tree(&tree, "measured", false, 62);
     tree_release(&tree);
 }
 
@@ -410,7 +418,34 @@ static void holds_for_adversarial_scenes(void **state)
         for (int run = 0; run < 10; run++) {
             TestScene test;
             make_test_scene((SceneKind)kind, &random, &test);
-            try_cameras(&test.scene, 8 / (SHARE > 1 ? 2 : 1), &random, &tally);
+            try_cameras(&test.scene, 8 / (SHARE > 1 ? 2 : 1), false, &random, &tally);
+        }
+        finish(&tally);
+    }
+}
+
+static void holds_for_trees_in_a_disc_seen_face_on(void **state)
+{
+    (void)state;
+    try_grown("lambda 2", "disc:50", 2, true);
+    try_grown("lambda 0", "disc:50", 0, true);
+}
+
+/* The adversarial scenes pressed into a plane. */
+static void holds_for_adversarial_scenes_in_a_plane(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 64);
+    for (int kind = 0; kind < N_KINDS; kind++) {
+        Tally tally = {.name = kind_names[kind]};
+        for (int run = 0; run < 10; run++) {
+            TestScene test;
+            make_test_scene((SceneKind)kind, &random, &test);
+            double height = uniform(&random, -30, 30);
+            for (size_t i = 0; i < test.scene.n_segments; i++)
+                test.segments[i].a.z = test.segments[i].b.z = height;
+            try_cameras(&test.scene, 8 / (SHARE > 1 ? 2 : 1), true, &random, &tally);
         }
         finish(&tally);
     }
@@ -424,6 +459,8 @@ int main(void)
         cmocka_unit_test(holds_for_a_tree_in_space),
         cmocka_unit_test(holds_for_a_measured_tree),
         cmocka_unit_test(holds_for_adversarial_scenes),
+        cmocka_unit_test(holds_for_trees_in_a_disc_seen_face_on),
+        cmocka_unit_test(holds_for_adversarial_scenes_in_a_plane),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
