@@ -75,6 +75,7 @@ LANE_FN void store_hits(const FieldTile *tile, int first, LaneMask hit, double b
         __builtin_memcpy(&depth[lane], &here, sizeof here);
         state[lane] |= (uint8_t)(hit[lane] & TILE_HIT);
     }
+    hits->any_hit |= lanes_any(hit);
     Lanes outward = -1.0f / lanes_sqrt(square(at->x) + square(at->y) + square(at->z));
     const Lanes normal[3] = {at->x * outward, at->y * outward, at->z * outward};
     for (int c = 0; c < 3; c++) {
@@ -93,6 +94,7 @@ LANE_FN void give_up(int first, LaneMask unsure, TileHits *hits)
     for (int lane = 0; lane < LANES; lane++)
         if (unsure[lane])
             hits->state[first + lane] = TILE_UNSURE;
+    hits->any_unsure = true;
 }
 
 #endif

@@ -21,16 +21,71 @@ typedef struct PlaneTerm {
     const TileTerm *term;
 } PlaneTerm;
 
-_Static_assert(sizeof(PlaneTerm) <= TILE_WORK_BYTES, "TILE_WORK_BYTES");
+_Static_assert(sizeof(PlaneTerm) + sizeof(uint32_t) <= TILE_WORK_BYTES, "TILE_WORK_BYTES");
 
-/* A packet's rays, and sums of A exp(-k^2 q) times powers of k^2. */
+/* Sums of A exp(-k^2 q) times powers of k^2 on the rays of a packet. */
 typedef struct PlanePacket {
     PlaneTerm *terms;
     size_t n;
-    float extent;   /* mm */
-    Lanes nearest2; /* least squared distance of a segment, in its units */
+    float extent; /* mm */
     Lanes q, sum, sum_k2, sum_k4;
 } PlanePacket;
+
+enum { PLANE_PACKETS = TILE_SAMPLES / LANES };
+
+/* What a tile's packets are, several at once: a place in the middle of each, and how far its rays
+ * are from there at most. */
+typedef struct PlaneMiddles {
+    Lanes x[PLANE_PACKETS / LANES], y[PLANE_PACKETS / LANES], half[PLANE_PACKETS / LANES];
+} PlaneMiddles;
+
+LANE_FN PlaneMiddles plane_middles(const FieldTile *tile)
+{
+    float x[PLANE_PACKETS], y[PLANE_PACKETS], half[PLANE_PACKETS];
+    for (int i = 0; i < PLANE_PACKETS; i++) {
+        int first = i * LANES, last = first + LANES - 1; /* opposite corners */
+        x[i] = 0.5f * (tile->x[first] + tile->x[last]);
+        y[i] = 0.5f * (tile->y[first] + tile->y[last]);
+        float dx = tile->x[last] - tile->x[first], dy = tile->y[last] - tile->y[first];
+        half[i] = 0.2501f * (dx * dx + dy * dy);
+    }
+    PlaneMiddles middles;
+    __builtin_memcpy(middles.x, x, sizeof x);
+    __builtin_memcpy(middles.y, y, sizeof y);
+    __builtin_memcpy(middles.half, half, sizeof half);
+    for (int part = 0; part < PLANE_PACKETS / LANES; part++)
+        middles.half[part] = lanes_sqrt(middles.half[part]);
+    return middles;
+}
+
+/* Sets of `touched`, one for each term, the bits of those packets on whose rays it may be above the
+ * cut-off, and returns the bits of those that may hit something: some term must be at least its
+ * part, 1 / n, of the level, so near enough; the 0.02 is for the margin. */
+LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
+{
+    const PlaneMiddles middles = plane_middles(tile);
+    uint32_t hopeful = 0;
+    for (int part = 0; part < PLANE_PACKETS / LANES; part++) {
+        Lanes nearest2 = lanes_set(1e30f), count = lanes_set(0);
+        for (size_t i = 0; i < tile->n_terms; i++) {
+            const TileTerm *term = &tile->terms[i];
+            const float k = term->k, *axis = term->axis;
+            Lanes x = middles.x[part] + term->o[0], y = middles.y[part] + term->o[1];
+            Lanes e = lanes_fma(y, lanes_set(axis[0]), -(x * axis[1])) * k;
+            Lanes along = lanes_fma(x, lanes_set(axis[0]), y * axis[1]) * k;
+            Lanes past = lanes_min(lanes_min(along + term->u, term->v - along), lanes_set(0));
+            Lanes d = lanes_sqrt(lanes_fma(e, e, square(past))) - middles.half[part] * k;
+            Lanes d2 = square(lanes_max(d, lanes_set(0)));
+            LaneMask touches = d2 < term->reach2;
+            nearest2 = lanes_min(nearest2, d2);
+            count += lanes_select(touches, lanes_set(1), lanes_set(0));
+            touched[i] = (part ? touched[i] : 0) | lanes_bits(touches) << part * LANES;
+        }
+        Lanes most2 = lanes_log(lanes_max(count, lanes_set(1))) + 2.02f;
+        hopeful |= lanes_bits(nearest2 <= most2) << part * LANES;
+    }
+    return hopeful;
+}
 
 /* Appends the term unless it is below the cut-off on every ray. */
 LANE_FN void place_in_plane(PlanePacket *packet, const TileTerm *term, Lanes x, Lanes y)
@@ -45,12 +100,10 @@ LANE_FN void place_in_plane(PlanePacket *packet, const TileTerm *term, Lanes x, 
     out->v = term->v - along;
     Lanes past = lanes_min(lanes_min(out->u, out->v), lanes_set(0));
     Lanes d2 = lanes_fma(out->e, out->e, square(past));
-    packet->nearest2 = lanes_min(packet->nearest2, d2);
     out->term = term;
     float reach = (float)(term->off - term->z_near);
-    bool counts = lanes_any(d2 < term->reach2);
-    packet->extent = counts && reach > packet->extent ? reach : packet->extent;
-    packet->n += counts;
+    packet->extent = reach > packet->extent ? reach : packet->extent;
+    packet->n += lanes_any(d2 < term->reach2);
 }
 
 /* The amplitudes and their sums, and the margin of the potential's arithmetic. */
@@ -134,16 +187,15 @@ LANE_FN Gradient plane_gradient(const PlanePacket *packet, Lanes height)
     return sum;
 }
 
-LANE_FN void trace_plane(const FieldTile *tile, int first, PlaneTerm *memory, TileHits *hits)
+LANE_FN void trace_plane(const FieldTile *tile, int number, const uint32_t *touched,
+                         PlaneTerm *memory, TileHits *hits)
 {
+    const int first = number * LANES;
     Lanes x = lanes_load(&tile->x[first]), y = lanes_load(&tile->y[first]);
-    PlanePacket packet = {.terms = memory, .nearest2 = lanes_set(1e30f)};
+    PlanePacket packet = {.terms = memory};
     for (size_t i = 0; i < tile->n_terms; i++)
-        place_in_plane(&packet, &tile->terms[i], x, y);
-    /* Some term must be at least the n-th part of the level; the rest is for the margin. */
-    float most2 = packet.n > 1 ? 2.02f + logf((float)packet.n) : 2.02f;
-    if (!packet.n || !lanes_any(packet.nearest2 <= most2))
-        return;
+        if (touched[i] >> number & 1)
+            place_in_plane(&packet, &tile->terms[i], x, y);
     Lanes margin = sum_up_plane(&packet, tile->half_size);
     LaneMask hit = (packet.sum >= LEVEL + margin) & (margin <= CLOSE_ENOUGH);
     LaneMask unsure = ~hit & (packet.sum >= LEVEL - margin);
@@ -163,6 +215,9 @@ LANE_FN void trace_plane(const FieldTile *tile, int first, PlaneTerm *memory, Ti
 LANE_TARGET static __attribute__((noinline)) void PLANE_KERNEL(const FieldTile *tile, void *memory,
                                                                TileHits *hits)
 {
-    for (int first = 0; first < TILE_SAMPLES; first += LANES)
-        trace_plane(tile, first, memory, hits);
+    uint32_t *touched = (uint32_t *)((PlaneTerm *)memory + tile->n_terms);
+    uint32_t hopeful = find_touched(tile, touched);
+    for (int number = 0; number < PLANE_PACKETS; number++)
+        if (hopeful >> number & 1)
+            trace_plane(tile, number, touched, memory, hits);
 }

@@ -72,6 +72,7 @@ typedef struct TileHits {
     float normal[3][TILE_SAMPLES]; /* unit, outward, in the camera's frame */
     uint32_t segment[TILE_SAMPLES];
     uint8_t state[TILE_SAMPLES]; /* TileState; z, normal and segment are 0 unless it is a hit */
+    bool any_hit, any_unsure;    /* whether a state is such, or was before it was decided */
 } TileHits;
 
 /* The workspace of a kernel, for up to `capacity` terms. */

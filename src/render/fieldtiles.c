@@ -13,6 +13,7 @@
 #include "surface/surface.h"
 #include <limits.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* A segment in the camera's frame. */
 typedef struct FrameSegment {
@@ -40,6 +41,12 @@ typedef struct Workspace {
     size_t scratch_capacity;
 } Workspace;
 
+/* Where the samples of a column or a row of tiles are in the camera's plane. */
+typedef struct TilePlaces {
+    double middle, half;
+    float offset[TILE_SIDE]; /* from the middle */
+} TilePlaces;
+
 struct FieldTiles {
     const Scene *scene;
     SampleGrid grid;
@@ -50,6 +57,7 @@ struct FieldTiles {
     double *x, *y; /* of the grid's columns and rows, in the camera's plane */
     double y_top;  /* of the picture's first row of samples */
     double step_x, step_y;
+    TilePlaces *tile_x, *tile_y;
     int tile_columns, tile_rows;
     FrameSegment *segments;
     size_t *row_offsets; /* into row_segments; one more than there are rows */
@@ -104,12 +112,15 @@ static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
 static Span tiles_within(Range range, double first, double step, int skipped, int count)
 {
     double from = (range.low - first) / step, to = (range.high - first) / step;
-    double low = ceil(min_of(from, to) - 1e-3), high = floor(max_of(from, to) + 1e-3);
-    low = max_of(low - skipped, 0);
-    high = min_of(high - skipped, count - 1);
-    if (!(low <= high))
+    double low = max_of(min_of(from, to) - 1e-3 - skipped, 0);
+    double high = max_of(from, to) + 1e-3 - skipped;
+    if (!(low <= count - 1) || !(high >= low))
         return (Span){1, 0};
-    return (Span){(int)low / TILE_SIDE, (int)high / TILE_SIDE};
+    int begin = (int)low, end = (int)min_of(high, count - 1);
+    begin += begin < low; /* rounds up */
+    if (begin > end)
+        return (Span){1, 0};
+    return (Span){begin / TILE_SIDE, end / TILE_SIDE};
 }
 
 Vec3 fieldtiles_to_frame(const FieldTiles *tiles, Vec3 v)
@@ -198,6 +209,18 @@ static void place_grid(FieldTiles *tiles)
     tiles->step_y = -grid->spacing / camera->height * tiles->height;
 }
 
+static void place_tiles(const double *places, int count, TilePlaces *tiles)
+{
+    for (int first = 0; first < count; first += TILE_SIDE) {
+        TilePlaces *tile = &tiles[first / TILE_SIDE];
+        int last = first + TILE_SIDE - 1 < count - 1 ? first + TILE_SIDE - 1 : count - 1;
+        tile->middle = (places[first] + places[last]) / 2;
+        tile->half = fabs(places[last] - tile->middle);
+        for (int i = 0; i < TILE_SIDE; i++)
+            tile->offset[i] = (float)(places[first + i < last ? first + i : last] - tile->middle);
+    }
+}
+
 static Status make_workspaces(FieldTiles *tiles, Err *err)
 {
     size_t longest = 0;
@@ -238,7 +261,13 @@ Status fieldtiles_new(const Scene *scene, const SampleGrid *grid, double z_min, 
     tiles->tile_rows = (grid->n_rows + TILE_SIDE - 1) / TILE_SIDE;
     TRY_GOTO(mem_calloc(&tiles->x, (size_t)grid->n_columns, sizeof *tiles->x, "columns", err));
     TRY_GOTO(mem_calloc(&tiles->y, (size_t)grid->n_rows, sizeof *tiles->y, "rows", err));
+    TRY_GOTO(mem_calloc(&tiles->tile_x, (size_t)tiles->tile_columns, sizeof *tiles->tile_x,
+                        "columns", err));
+    TRY_GOTO(
+        mem_calloc(&tiles->tile_y, (size_t)tiles->tile_rows, sizeof *tiles->tile_y, "rows", err));
     place_grid(tiles);
+    place_tiles(tiles->x, grid->n_columns, tiles->tile_x);
+    place_tiles(tiles->y, grid->n_rows, tiles->tile_y);
     TRY_GOTO(
         mem_calloc(&tiles->segments, scene->n_segments, sizeof *tiles->segments, "segments", err));
     TRY_GOTO(mem_calloc(&tiles->row_offsets, (size_t)tiles->tile_rows + 1,
@@ -270,6 +299,8 @@ void fieldtiles_free(FieldTiles *tiles)
     free(tiles->workspaces);
     free(tiles->x);
     free(tiles->y);
+    free(tiles->tile_x);
+    free(tiles->tile_y);
     free(tiles->segments);
     free(tiles->row_offsets);
     free(tiles->row_segments);
@@ -475,26 +506,29 @@ static void sort_terms(TileTerm *terms, size_t n)
     }
 }
 
-/* Sets the samples of the tile; those outside the grid repeat its last column or row. */
-static double place_samples(const FieldTiles *tiles, int column, int row, FieldTile *tile)
+/* Sets the part of a tile that all of its row share; samples outside the grid repeat its last. */
+static void place_row(const FieldTiles *tiles, int row, FieldTile *tile)
 {
-    int last_x = tiles->grid.n_columns - 1, last_y = tiles->grid.n_rows - 1;
-    int right = column + TILE_SIDE - 1 < last_x ? column + TILE_SIDE - 1 : last_x;
-    int bottom = row + TILE_SIDE - 1 < last_y ? row + TILE_SIDE - 1 : last_y;
-    tile->middle_x = (tiles->x[column] + tiles->x[right]) / 2;
-    tile->middle_y = (tiles->y[row] + tiles->y[bottom]) / 2;
-    float x[TILE_SIDE], y[TILE_SIDE];
-    for (int i = 0; i < TILE_SIDE; i++) {
-        x[i] = (float)(tiles->x[column + i < right ? column + i : right] - tile->middle_x);
-        y[i] = (float)(tiles->y[row + i < bottom ? row + i : bottom] - tile->middle_y);
-    }
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        tile->x[sample] = x[tile_sample_x(sample)];
-        tile->y[sample] = y[tile_sample_y(sample)];
-    }
-    double half_x = tiles->x[right] - tile->middle_x, half_y = tiles->y[row] - tile->middle_y;
-    tile->half_size = (float)sqrt(half_x * half_x + half_y * half_y);
-    return (double)tile->half_size;
+    const TilePlaces *y = &tiles->tile_y[row];
+    *tile = (FieldTile){.blend = &tiles->scene->blend,
+                        .perspective = tiles->perspective,
+                        .middle_y = y->middle,
+                        .z_min = tiles->z_min};
+    for (int sample = 0; sample < TILE_SAMPLES; sample++)
+        tile->y[sample] = y->offset[tile_sample_y(sample)];
+}
+
+/* Sets the rest of its samples. */
+static void place_column(const FieldTiles *tiles, int column, int row, FieldTile *tile)
+{
+    enum { PERIOD = 16 }; /* tile_sample_x(n + 16) = tile_sample_x(n) */
+    const TilePlaces *x = &tiles->tile_x[column], *y = &tiles->tile_y[row];
+    tile->middle_x = x->middle;
+    for (int sample = 0; sample < PERIOD; sample++)
+        tile->x[sample] = x->offset[tile_sample_x(sample)];
+    for (int sample = PERIOD; sample < TILE_SAMPLES; sample += PERIOD)
+        memcpy(&tile->x[sample], tile->x, PERIOD * sizeof *tile->x);
+    tile->half_size = (float)sqrt(x->half * x->half + y->half * y->half);
 }
 
 /* Whether the term lies square to an orthographic view in the same plane as the first, to 1e-7 of
@@ -506,14 +540,15 @@ static bool is_in_plane(const TileTerm *first, const TileTerm *term)
 }
 
 /* Sets the terms of the tile and the list of their segments. */
-static Status make_terms(const FieldTiles *tiles, size_t tile_column, double half_size,
-                         Workspace *space, FieldTile *tile, Err *err)
+static Status make_terms(const FieldTiles *tiles, size_t tile_column, Workspace *space,
+                         FieldTile *tile, Err *err)
 {
     const uint32_t *list = space->lists + space->offsets[tile_column];
     size_t n = space->offsets[tile_column + 1] - space->offsets[tile_column];
     TRY(mem_reserve(&space->terms, &space->terms_capacity, n, sizeof *space->terms, "terms", err));
     TRY(mem_reserve(&space->candidates, &space->candidates_capacity, n, sizeof *space->candidates,
                     "terms", err));
+    double half_size = (double)tile->half_size;
     tile->terms = space->terms;
     tile->n_terms = 0;
     tile->plane = !tile->perspective;
@@ -554,6 +589,7 @@ static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile 
                                tiles->z_min, HUGE_VAL, &t, &normal, &segment))
         return STATUS_OK;
     normal = fieldtiles_to_frame(tiles, normal);
+    hits->any_hit = true;
     hits->state[sample] = TILE_HIT;
     hits->z[sample] = t * vec3_dot(ray.direction, tiles->axes[2]);
     hits->normal[0][sample] = (float)normal.x;
@@ -567,7 +603,7 @@ static Status decide_all(const FieldTiles *tiles, Workspace *space, const SeenTi
                          TileHits *hits, Err *err)
 {
     const SampleGrid *grid = &tiles->grid;
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+    for (int sample = 0; hits->any_unsure && sample < TILE_SAMPLES; sample++) {
         int i = seen->column + tile_sample_x(sample), j = seen->row + tile_sample_y(sample);
         if (hits->state[sample] != TILE_UNSURE || i >= grid->n_columns || j >= grid->n_rows)
             continue;
@@ -577,35 +613,25 @@ static Status decide_all(const FieldTiles *tiles, Workspace *space, const SeenTi
     return STATUS_OK;
 }
 
-static bool any_hit(const TileHits *hits)
-{
-    uint8_t any = 0;
-    for (int sample = 0; sample < TILE_SAMPLES; sample++)
-        any |= hits->state[sample];
-    return any != TILE_MISS;
-}
-
 Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t *wanted,
                         TileVisitor *visit, void *context, Err *err)
 {
     Workspace *space = &tiles->workspaces[worker];
+    FieldTile tile;
     TRY(list_row(tiles, row, space, err));
+    place_row(tiles, (int)row, &tile);
     for (int column = 0; column < tiles->tile_columns; column++) {
         if (wanted && !wanted[column])
             continue;
-        FieldTile tile;
-        tile.perspective = tiles->perspective;
-        tile.blend = &tiles->scene->blend;
-        tile.z_min = tiles->z_min;
         TileHits hits;
         SeenTile seen = {.column = column * TILE_SIDE, .row = (int)row * TILE_SIDE, .tile = &tile};
         if (space->offsets[column] < space->offsets[column + 1]) {
-            double half_size = place_samples(tiles, seen.column, seen.row, &tile);
-            TRY(make_terms(tiles, (size_t)column, half_size, space, &tile, err));
+            place_column(tiles, column, (int)row, &tile);
+            TRY(make_terms(tiles, (size_t)column, space, &tile, err));
             if (tile.n_terms) {
                 tiles->kernels->trace(&tile, &space->work, &hits);
                 TRY(decide_all(tiles, space, &seen, &hits, err));
-                seen.hits = any_hit(&hits) ? &hits : NULL;
+                seen.hits = hits.any_hit ? &hits : NULL;
             }
         }
         visit(&seen, worker, context);

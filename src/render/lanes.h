@@ -78,9 +78,15 @@ LANE_FN float lanes_least(Lanes a)
     return _mm_cvtss_f32(_mm_min_ss(least, _mm_shuffle_ps(least, least, 1)));
 }
 
+/* Bit i: lane i. */
+LANE_FN uint32_t lanes_bits(LaneMask mask)
+{
+    return (uint32_t)_mm256_movemask_ps((__m256)mask);
+}
+
 LANE_FN bool lanes_any(LaneMask mask)
 {
-    return _mm256_movemask_ps((__m256)mask) != 0;
+    return lanes_bits(mask) != 0;
 }
 
 #else
@@ -118,6 +124,11 @@ LANE_FN float lanes_least(Lanes a)
     for (int i = 1; i < LANES; i++)
         least = a[i] < least ? a[i] : least;
     return least;
+}
+
+LANE_FN uint32_t lanes_bits(LaneMask mask)
+{
+    return (uint32_t)((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
 }
 
 LANE_FN bool lanes_any(LaneMask mask)
