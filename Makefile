@@ -42,14 +42,16 @@ OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -
 OPTIMISE_tsan := -O1 -g -fsanitize=thread
 VECTORS_release := -O3 -fno-math-errno -fno-trapping-math
 PACKAGES := libpng libdeflate libtiff-4 jansson inih
-PACKAGE_LIBS := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null)
+# `view` loads SDL 2 when it opens a window; only its header is needed here.
+HEADERS := sdl2
+PACKAGE_LIBS := $(shell pkg-config --exists $(HEADERS) && pkg-config --libs $(PACKAGES) 2>/dev/null)
 # libnifti2-dev has no pkg-config file, and OpenEXR's asks for the whole of it.
 NIFTI := /usr/include/nifti
 EXR := /usr/include/OpenEXR
 PLAIN_HEADERS := $(and $(wildcard $(NIFTI)/nifti2_io.h),$(wildcard $(EXR)/openexr.h))
 # Same seed, same bytes with every compiler: no contraction of a * b + c, no reassociation.
 CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -ffp-contract=off $(WARNINGS)
-CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-config --cflags $(PACKAGES) 2>/dev/null)
+CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-config --cflags $(PACKAGES) $(HEADERS) 2>/dev/null)
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
@@ -160,7 +162,7 @@ $(filter $(BUILD)/src/image/% $(BUILD)/src/verify/%,$(ROOM_OBJECTS)): CFLAGS += 
 
 packages:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
-	@echo 'corcast needs $(PACKAGES), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
+	@echo 'corcast needs $(PACKAGES) $(HEADERS), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
 endif
 
 unit-programs: $(TEST_PROGRAMS) $(ORACLE)

@@ -8,7 +8,7 @@
 typedef Status CommandRun(int argc, char **argv, Err *err);
 
 CommandRun run_grow, run_refine, run_info, run_convert, run_scene, run_povray, run_render,
-    run_compare, run_verify, run_report;
+    run_compare, run_verify, run_report, run_view;
 
 #define GENERATOR "corcast " CORCAST_VERSION
 

@@ -15,6 +15,7 @@ static const struct {
     {"scene", run_scene, "write a tree as a POV-Ray scene"},
     {"povray", run_povray, "run POV-Ray on a scene"},
     {"render", run_render, "render a tree with the native renderer"},
+    {"view", run_view, "look at a tree in a window"},
     {"verify", run_verify, "prove that POV-Ray and the native renderer agree"},
     {"compare", run_compare, "compare two images or planes"},
     {"report", run_report, "one page about several verifications"},

@@ -146,58 +146,89 @@ static Status warn_of_losses(const Scene *scene, const StageReport *report, Join
     return STATUS_OK;
 }
 
-Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet, Scene *scene,
-                     StageReport *report, Err *err)
+static Status read_look(const PictureOptions *options, Look *look, Err *err)
 {
-    Look look;
-    char *look_path = NULL;
-    TRY(check_camera(options, err));
-    TRY(template_file("look", "looks", options->look, ".ini", &look_path, err));
-    Status status = look_read(&look, look_path, err);
-    free(look_path);
-    TRY(status);
+    char *path = NULL;
+    TRY(template_file("look", "looks", options->look, ".ini", &path, err));
+    Status status = look_read(look, path, err);
+    free(path);
     if (options->has_background)
-        look.background = (Rgb){srgb_decode((float)options->background.x),
-                                srgb_decode((float)options->background.y),
-                                srgb_decode((float)options->background.z)};
+        look->background = (Rgb){srgb_decode((float)options->background.x),
+                                 srgb_decode((float)options->background.y),
+                                 srgb_decode((float)options->background.z)};
+    return status;
+}
+
+Status picture_read_source(const PictureOptions *options, const char *tree_path,
+                           PictureSource *source, Err *err)
+{
+    PictureSource made = {0};
+    TRY(check_camera(options, err));
+    TRY(read_look(options, &made.look, err));
+    TRY(tree_read(&made.tree, tree_path, err));
+    if (options->prune_radius_mm > 0) {
+        Tree pruned;
+        Status status = tree_pruned(&made.tree, options->prune_radius_mm, &pruned, err);
+        if (status != STATUS_OK) {
+            tree_release(&made.tree);
+            return status;
+        }
+        made.pruned = made.tree.n - pruned.n;
+        tree_release(&made.tree);
+        made.tree = pruned;
+    }
+    *source = made;
+    return STATUS_OK;
+}
+
+void picture_source_release(PictureSource *source)
+{
+    tree_release(&source->tree);
+}
+
+StageParams picture_stage(const PictureOptions *options)
+{
     StageParams stage = options->stage;
     stage.model = (SceneModel)options->model;
-    stage.graph = options->potential != 0;
+    stage.graph = options->potential != 0 && options->model == SCENE_ISOSURFACE;
     stage.joints = (JointForm)options->joints;
     stage.projection = (Projection)options->projection;
     stage.view = (View)options->view;
     stage.width = options->size[0];
     stage.height = options->size[1];
-    Tree tree;
-    TRY(tree_read(&tree, tree_path, err));
-    size_t unpruned = tree.n;
-    if (options->prune_radius_mm > 0) {
-        Tree pruned;
-        status = tree_pruned(&tree, options->prune_radius_mm, &pruned, err);
-        if (status == STATUS_OK) {
-            tree_release(&tree);
-            tree = pruned;
-        }
-    }
+    return stage;
+}
+
+Status picture_build(const PictureOptions *options, const PictureSource *source, Scene *scene,
+                     StageReport *report, Err *err)
+{
     Rgb *colors = NULL;
+    const StageParams stage = picture_stage(options);
+    TRY(coloring_apply(&options->coloring, &source->tree, &colors, err));
+    Status status = stage_scene(&source->tree, &source->look, colors, &stage, scene, report, err);
+    free(colors);
+    if (status == STATUS_OK)
+        scene_move_to_origin(scene);
+    return status;
+}
+
+Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet, Scene *scene,
+                     StageReport *report, Err *err)
+{
+    PictureSource source;
     StageReport staged;
-    if (status == STATUS_OK)
-        status = coloring_apply(&options->coloring, &tree, &colors, err);
-    if (status == STATUS_OK)
-        status = stage_scene(&tree, &look, colors, &stage, scene, &staged, err);
+    TRY(picture_read_source(options, tree_path, &source, err));
+    Status status = picture_build(options, &source, scene, &staged, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", tree_path);
-    free(colors);
     if (status == STATUS_OK && !quiet) {
-        status = warn_of_losses(scene, &staged, stage.joints, unpruned - tree.n, err);
+        status = warn_of_losses(scene, &staged, (JointForm)options->joints, source.pruned, err);
         if (status != STATUS_OK)
             scene_release(scene);
     }
-    if (status == STATUS_OK)
-        scene_move_to_origin(scene);
     if (status == STATUS_OK && report)
         *report = staged;
-    tree_release(&tree);
+    picture_source_release(&source);
     return status;
 }
 

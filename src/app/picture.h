@@ -37,6 +37,23 @@ CellParams picture_cells(const PictureOptions *options);
 /* STATUS_USAGE when an option is given that only the native renderer knows. */
 MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 
+/* What a picture is made from. */
+typedef struct PictureSource {
+    Look look;
+    Tree tree;
+    size_t pruned; /* segments that were cut off */
+} PictureSource;
+
+/* Reads look and tree. STATUS_USAGE when options fight each other. */
+MUST_CHECK Status picture_read_source(const PictureOptions *options, const char *tree_path,
+                                      PictureSource *source, Err *err);
+void picture_source_release(PictureSource *source);
+/* The parameters of the stage that the options ask for. */
+StageParams picture_stage(const PictureOptions *options);
+/* Builds the scene, moved next to the origin. */
+MUST_CHECK Status picture_build(const PictureOptions *options, const PictureSource *source,
+                                Scene *scene, StageReport *report, Err *err);
+
 /* Reads the tree and the look and builds the scene. Says on standard error, unless quiet, how many
  * segments are pruned, cannot be drawn, or have no surface, and how many places are not joined.
  * `report` may be NULL. */

@@ -206,6 +206,11 @@ void renderer_free(Renderer *renderer)
     free(renderer);
 }
 
+void renderer_antialias(Renderer *renderer, int antialias)
+{
+    renderer->params.antialias = antialias;
+}
+
 RenderStats renderer_stats(const Renderer *renderer)
 {
     return renderer->stats;

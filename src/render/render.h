@@ -58,6 +58,9 @@ void renderer_free(Renderer *renderer);
  * `rows` unless they end with the picture. STATUS_MEMORY when the planes do not fit. */
 MUST_CHECK Status renderer_rows(Renderer *renderer, int first, int rows, Frame *frame, Err *err);
 
+/* What comes next has `antialias` of RenderParams. */
+void renderer_antialias(Renderer *renderer, int antialias);
+
 /* Of all calls so far, renderer_new included. */
 RenderStats renderer_stats(const Renderer *renderer);
 

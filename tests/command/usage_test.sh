@@ -2,7 +2,7 @@
 # The command line itself: help, versions, and what is refused.
 . "$(dirname "$0")/../lib.sh"
 
-COMMANDS="grow info convert scene povray render compare verify"
+COMMANDS="grow info convert scene povray render view compare verify"
 
 test_help_names_every_command() {
     local command

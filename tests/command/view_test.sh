@@ -1,0 +1,177 @@
+#!/usr/bin/env bash
+# view in a window of its own on a display of its own (Xvfb); hands are xdotool's, eyes xwd's and netpbm's.
+. "$(dirname "$0")/../lib.sh"
+
+for tool in Xvfb xdotool xwd; do
+    command -v $tool >/dev/null || {
+        echo "$tool is not installed: run make deps" >&2
+        exit 3
+    }
+done
+
+# open_view OPTION ...: a display, and on it a view of tree.swc; waits for its window.
+open_view() {
+    Xvfb -displayfd 3 -screen 0 1000x800x24 -nolisten tcp 3>display >/dev/null 2>&1 &
+    display_pid=$!
+    trap 'kill $view_pid $display_pid 2>/dev/null; wait' EXIT
+    wait_for 30 test -s display || fail "expected a display"
+    DISPLAY=:$(cat display)
+    export DISPLAY
+    "$CORCAST" view tree.swc "$@" >view.out 2>view.err &
+    view_pid=$!
+    wait_for 30 find_window || fail "expected a window: $(cat view.err)"
+    xdotool mousemove --window "$window" 150 120
+}
+
+find_window() {
+    window=$(xdotool search --onlyvisible --name tree.swc 2>/dev/null | head -1)
+    [ -n "$window" ]
+}
+
+# press KEY [LINES]: waits until the view has said so many lines in all.
+press() {
+    xdotool key "$1"
+    [ -z "${2:-}" ] || wait_for 20 said_lines "$2" || fail "expected $2 lines after key $1, got $(cat view.out view.err)"
+}
+
+said_lines() {
+    [ "$(wc -l <view.out)" -ge "$1" ]
+}
+
+# last_options: those printed last, without the picture's name.
+last_options() {
+    tail -1 view.out | sed 's/^corcast render tree.swc //; s/ -o P\.png$//'
+}
+
+# window_shows PICTURE.ppm: within 2 levels, on all but 2 % of its values.
+window_shows() {
+    local X Y WIDTH HEIGHT
+    eval "$(xdotool getwindowgeometry --shell "$window")"
+    xwd -silent -root | xwdtopnm 2>/dev/null | pamcut -left "$X" -top "$Y" -width "$WIDTH" -height "$HEIGHT" |
+        pamdepth 255 | levels >window.levels
+    levels <"$1" >drawn.levels
+    [ "$(wc -l <window.levels)" -eq "$(wc -l <drawn.levels)" ] || return 1
+    paste window.levels drawn.levels | awk '{ d = $1 - $2; if (d > 2 || d < -2) off++ } END { exit !(off <= 0.02 * NR) }'
+}
+
+levels() {
+    pnmtoplainpnm | tail -n +4 | tr -s ' ' '\n' | grep -v '^$'
+}
+
+# shows_what_render_draws: with the options printed last.
+shows_what_render_draws() {
+    # The options are words.
+    # shellcheck disable=SC2046
+    run_ok corcast render tree.swc $(last_options) -o drawn.ppm
+    wait_for 30 window_shows drawn.ppm ||
+        fail "expected the window to show what render draws with: $(last_options)"
+}
+
+close_view() {
+    press q
+    wait $view_pid
+    status=$?
+    [ "$status" -eq 0 ] || fail "expected exit status 0 of view, got $status (it said: $(tr "\n" " " <view.err))"
+}
+
+test_without_a_display_view_says_so() {
+    grow_tree 5
+    unset DISPLAY WAYLAND_DISPLAY SDL_VIDEODRIVER
+    run corcast view tree.swc
+    expect_status 3
+    expect_sentence 'there is no display to open a window on'
+}
+
+test_a_display_that_does_not_answer_is_no_display() {
+    grow_tree 5
+    unset WAYLAND_DISPLAY SDL_VIDEODRIVER
+    DISPLAY=:4711 run corcast view tree.swc
+    expect_status 3
+    grep -q 'there is no display to open a window on' stderr || fail "expected a sentence$(said)"
+}
+
+test_a_tree_that_is_missing_opens_no_window() {
+    run corcast view none.swc
+    expect_status 2
+    expect_sentence 'none\.swc'
+}
+
+test_the_window_shows_what_its_options_draw() {
+    grow_tree 40
+    open_view --size 300x240 --antialias 2
+    press o 1
+    last_options | grep -q -e '--model rounded --size 300x240 --projection orthographic' ||
+        fail "expected the options of the picture, got $(cat view.out)"
+    shows_what_render_draws
+    cp drawn.ppm before.ppm
+    xdotool mousemove --window "$window" 120 100 mousedown 1 mousemove_relative 30 10 mousemove_relative 40 15 mouseup 1
+    xdotool click 4 click 4 click 5 click 4
+    xdotool mousedown 3 mousemove_relative 5 20 mouseup 3
+    press o 2
+    shows_what_render_draws
+    expect_different before.ppm drawn.ppm
+    press r
+    press o 3
+    shows_what_render_draws
+    expect_same before.ppm drawn.ppm
+    close_view
+}
+
+test_keys_switch_model_colour_projection_and_shadows() {
+    grow_tree 40
+    open_view --size 200x160
+    press 1
+    press c
+    press o 1
+    last_options | grep -q -e '--model cylinders .*--color-by radius' || fail "expected cylinders by radius: $(last_options)"
+    shows_what_render_draws
+    press 4
+    press p
+    press s
+    press o 2
+    last_options | grep -q -e '--model isosurface .*--projection perspective.*--angle 30 --shadows on' ||
+        fail "expected an isosurface in perspective with shadows: $(last_options)"
+    shows_what_render_draws
+    press 2
+    press a
+    press o 3
+    last_options | grep -q -e '--model joined.*--ao 16' || fail "expected ambient occlusion: $(last_options)"
+    shows_what_render_draws
+    close_view
+}
+
+test_a_window_of_another_size_shows_a_picture_of_that_size() {
+    grow_tree 20
+    open_view --size 300x240
+    xdotool windowsize --sync "$window" 220 260
+    sleep 0.3
+    press o 1
+    last_options | grep -q -e '--size 220x260' || fail "expected the new size: $(last_options)"
+    shows_what_render_draws
+    close_view
+}
+
+test_a_view_is_written_as_a_recipe() {
+    grow_tree 20
+    open_view --size 200x160 --save mine.ini --look print
+    xdotool mousemove --window "$window" 120 100 mousedown 1 mousemove_relative 40 15 mouseup 1
+    press 2
+    press w
+    wait_for 20 test -s mine.ini || fail "expected a recipe: $(cat view.err)"
+    press o 1
+    close_view
+    run_ok corcast render tree.swc --recipe mine.ini -o recipe.ppm
+    # shellcheck disable=SC2046
+    run_ok corcast render tree.swc $(last_options) -o options.ppm
+    expect_same recipe.ppm options.ppm
+    run_ok corcast scene tree.swc --recipe mine.ini -o scene.pov
+}
+
+test_a_turn_says_how_many_pictures_a_second() {
+    grow_tree 20
+    open_view --size 200x160 --turn 40
+    wait $view_pid || fail "expected exit status 0: $(cat view.err)"
+    grep -qE '^[0-9.]+ pictures a second, each pixel [0-9.]+ x' view.out || fail "expected a speed, got $(cat view.out)"
+}
+
+run_tests "$@"
