@@ -3,6 +3,7 @@
  * that territories come to fit the shares while vessels are still few and long. */
 #include "grow/forest.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* A tree may be ahead by as much as fits this part of the terminals there are, and some. */
@@ -46,7 +47,9 @@ Status forest_init(Forest *forest, size_t trees, const double *share, size_t ter
     Forest made = {.trees = trees, .terminals = terminals};
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&made.quota, trees, sizeof *made.quota, "trees", err));
+    TRY_GOTO(mem_calloc(&made.has, trees, sizeof *made.has, "trees", err));
     TRY_GOTO(mem_calloc(&made.limit, trees, sizeof *made.limit, "trees", err));
+    TRY_GOTO(mem_calloc(&made.grant, trees, sizeof *made.grant, "trees", err));
     set_quotas(&made, share);
     *forest = made;
 done:
@@ -58,18 +61,25 @@ done:
 void forest_release(Forest *forest)
 {
     free(forest->quota);
+    free(forest->has);
     free(forest->limit);
+    free(forest->grant);
     *forest = (Forest){0};
 }
 
-void forest_limit(Forest *forest, const Network *net)
+void forest_limit(Forest *forest, size_t terminals)
 {
-    double terminals = (double)net->terminals;
-    double part = (terminals * (1 + lead) + LEAD_AT_LEAST) / (double)forest->terminals;
+    double part = ((double)terminals * (1 + lead) + LEAD_AT_LEAST) / (double)forest->terminals;
     for (size_t k = 0; k < forest->trees; k++) {
-        size_t has = (size_t)net->segment[net->inlet[k]].terminals, may = forest->quota[k];
+        size_t has = forest->has[k], may = forest->quota[k];
         if (forest->trees > 1 && part < 1)
             may = (size_t)ceil((double)may * part);
-        forest->limit[k] = may > has ? may - has : 0;
+        forest->limit[k] = forest->grant[k] = may > has ? may - has : 0;
     }
+}
+
+void forest_count(Forest *forest)
+{
+    for (size_t k = 0; k < forest->trees; k++)
+        forest->has[k] += forest->grant[k] - forest->limit[k];
 }

@@ -3,12 +3,13 @@
 #define CORCAST_GROW_FOREST_H
 
 #include "base/base.h"
-#include "grow/network.h"
 
 typedef struct Forest {
     size_t trees, terminals;
     size_t *quota; /* terminals of each tree in the end */
-    size_t *limit; /* how many more each may get in the batch at hand */
+    size_t *has;   /* and so far */
+    size_t *limit; /* how many more each may get in the pass at hand */
+    size_t *grant; /* the limit that it began with */
 } Forest;
 
 /* `terminals`, not fewer than trees, go to the trees in proportion to `share`, rounded by largest
@@ -17,8 +18,11 @@ MUST_CHECK Status forest_init(Forest *forest, size_t trees, const double *share,
                               Err *err);
 void forest_release(Forest *forest);
 
-/* Sets the limits, so that no tree gets far ahead of its share of the terminals there are. Some tree
+/* Sets the limits when there are so many terminals, so that no tree gets far ahead of its share of the terminals there are. Some tree
  * that lacks terminals is always allowed more. */
-void forest_limit(Forest *forest, const Network *net);
+void forest_limit(Forest *forest, size_t terminals);
+
+/* Counts what was taken off the limits. */
+void forest_count(Forest *forest);
 
 #endif

@@ -108,6 +108,36 @@ static void store(const Grid *grid, Vec3 v, float out[3])
     out[2] = (float)(v.z - grid->low.z);
 }
 
+Box grid_zone(const Grid *grid, GridBox box)
+{
+    double low[3], high[3], inset = 4 * grid->rounding;
+    for (int axis = 0; axis < 3; axis++) {
+        double from = component(grid->low, axis);
+        bool first = box.low[axis] <= 0, last = box.high[axis] >= grid->count[axis] - 1;
+        low[axis] = first ? -(double)INFINITY : from + box.low[axis] * grid->edge + inset;
+        high[axis] = last ? (double)INFINITY : from + (box.high[axis] + 1) * grid->edge - inset;
+    }
+    return (Box){vec3(low[0], low[1], low[2]), vec3(high[0], high[1], high[2])};
+}
+
+double grid_clearance(Box zone, Vec3 point)
+{
+    Vec3 low = vec3_sub(point, zone.low), high = vec3_sub(zone.high, point);
+    return least(least(least(low.x, high.x), least(low.y, high.y)), least(low.z, high.z));
+}
+
+bool grid_zone_holds(const Grid *grid, Box zone, const GridItem *item)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        double from = component(grid->low, axis), reach = (double)item->reach;
+        double a = from + (double)item->proximal[axis], b = from + (double)item->distal[axis];
+        if (least(a, b) - reach < component(zone.low, axis) ||
+            greatest(a, b) + reach > component(zone.high, axis))
+            return false;
+    }
+    return true;
+}
+
 GridItem grid_item(const Grid *grid, Capsule capsule, double radius)
 {
     GridItem item = {.radius = (float)radius, .reach = (float)capsule.radius};
@@ -460,7 +490,7 @@ static void gather_ring(Search *search, int ring)
         }
 }
 
-int grid_nearest(const Grid *grid, Vec3 point, int limit, Near *out)
+int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *out)
 {
     Search search = {.grid = grid, .limit = limit, .list = out};
     store(grid, point, search.at);
@@ -477,6 +507,8 @@ int grid_nearest(const Grid *grid, Vec3 point, int limit, Near *out)
         if (search.count == limit && clear > 0 &&
             clear * clear > (double)out[search.count - 1].distance2)
             break;
+        if ((ring + 1) * grid->edge > within)
+            return -1;
         gather_ring(&search, ring);
     }
     return search.count;

@@ -41,6 +41,11 @@ typedef struct Grid {
     int workers;
 } Grid;
 
+/* A box of cells, both ends included. */
+typedef struct GridBox {
+    int low[3], high[3];
+} GridBox;
+
 typedef struct Near {
     float distance2; /* mm^2 */
     int32_t segment;
@@ -85,6 +90,14 @@ static inline void grid_fetch_items(const Grid *grid, Vec3 point)
         __builtin_prefetch(&grid->item[cell->tag[i] >> 1]);
 }
 
+/* What lies inside these cells, by more than rounding; without bounds where they are the grid's first
+ * or last. */
+Box grid_zone(const Grid *grid, GridBox box);
+/* How far `point`, in the zone, is from its bounds, along the axes, mm. */
+double grid_clearance(Box zone, Vec3 point);
+/* Whether all cells that an item's capsule may meet are in the zone. */
+bool grid_zone_holds(const Grid *grid, Box zone, const GridItem *item);
+
 /* The item of a vessel of `radius` from capsule.a (proximal) to capsule.b that reaches as far as
  * the capsule. */
 GridItem grid_item(const Grid *grid, Capsule capsule, double radius);
@@ -102,8 +115,9 @@ GridRoom grid_room(const Grid *grid, Vec3 point, double distance, bool terminals
                    double thickness);
 
 /* The up to `limit` segments whose centrelines are nearest to `point`, nearest first; returns how
- * many. Equal distances are ordered by segment. */
-int grid_nearest(const Grid *grid, Vec3 point, int limit, Near *out);
+ * many. Equal distances are ordered by segment. -1 when it takes cells that are not wholly within
+ * `within` mm, along each axis, to tell. */
+int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *out);
 
 /* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
  * Detection, 2005, sec. 5.1.9]. */
@@ -127,11 +141,6 @@ static inline bool grid_boxes_within(const GridItem *a, const GridItem *b, float
     }
     return true;
 }
-
-/* A box of cells, both ends included. */
-typedef struct GridBox {
-    int low[3], high[3];
-} GridBox;
 
 /* The cells that meet the cube of twice `distance` about `point`. */
 GridBox grid_box(const Grid *grid, Vec3 point, double distance);

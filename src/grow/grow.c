@@ -1,9 +1,9 @@
-/* Terminals are added in batches [METHODS 1]: random points are tossed; each that is far enough from
+/* Terminals are added in passes [METHODS 1.2]: random points are tossed; each that is far enough from
  * the tree is connected to that of the nearest segments where it is cheapest, at the bifurcation
- * that is best there, if there is room [plan.c, batch.c]. A batch is small against the tree, so that
- * it does what adding one by one would do, but for points that get in each other's way, which wait
- * for the next. The domain has its final size throughout: scaling all lengths scales all costs
- * alike, so this chooses as a domain that grows with the tree does.
+ * that is best there, if there is room [plan.c]. Points of a pass are taken one by one, not in the order
+ * of tossing but neighbourhood after neighbourhood when the tree is large [pass.c]. The domain has its
+ * final size throughout: scaling all lengths scales all costs alike, so this chooses as a domain that
+ * grows with the tree does.
  *
  * The toss distance is controlled so that a fixed share of the points is far enough. It follows the
  * filling of the domain by itself, and falls, too, when points have no way to the tree within the
@@ -12,10 +12,10 @@
 #include "grow/grow.h"
 
 #include "grow/adopt.h"
-#include "grow/batch.h"
 #include "grow/finish.h"
 #include "grow/forest.h"
 #include "grow/mend.h"
+#include "grow/pass.h"
 #include "grow/plant.h"
 #include "grow/weigh.h"
 #include <stdlib.h>
@@ -24,12 +24,12 @@
 static const double cells_per_terminal = 2;
 /* The sensitivities serve until there are this many times the terminals. */
 static const double refresh_growth = 1.2;
-/* A batch adds about one terminal for every so many there are. */
-enum { TERMINALS_PER_ADDED = 64, MAX_ADDED = 2048 };
-/* Points tossed for each terminal to be added, and the batch's size at most. */
-enum { TOSSES_PER_ADDED = 3, MAX_BATCH = 2 * TOSSES_PER_ADDED * MAX_ADDED };
-/* How far the toss distance falls after a batch in which no point is far enough from the tree. */
-static const double toss_notch = 0.1;
+/* A pass adds about one terminal for every so many there are; in tiles, more. */
+enum { TERMINALS_PER_ADDED = 64, TERMINALS_PER_ADDED_IN_TILES = 12 };
+/* Points tossed for each terminal to be added. */
+enum { TOSSES_PER_ADDED = 3 };
+/* How far the toss distance falls after a pass in which no point is far enough from the tree. */
+static const double toss_notch = 0.1, toss_notch_in_tiles = 0.5;
 /* Segments are no shorter than this share of the toss distance. */
 static const double least_length_share = 0.1;
 /* Trees with fewer terminals than this have cells too large to be full after a few misses. */
@@ -50,17 +50,17 @@ typedef struct Growth {
     size_t grid_until, refresh_until; /* terminals */
     double toss_distance;             /* mm */
     Rules rules;
-    Batch batch;
+    Pass pass;
+    double skipped; /* the share of points that was, in the last pass */
     uint64_t tosses, rejected;
     size_t crowded, outside; /* points far enough from the tree since one was connected */
 } Growth;
 
-/* What became of the new points of a batch. */
-typedef struct Tally {
-    size_t skipped; /* in cells that are full; not among the others */
-    size_t tossed, in_vessel, ahead, outside, crowded;
-    size_t far; /* as far from the tree as asked, with a way to it within the tissue */
-} Tally;
+/* Terminals that a pass connects at most, where it is to connect so many. */
+static size_t most_added(size_t terminals)
+{
+    return 2 * (terminals / TERMINALS_PER_ADDED_IN_TILES + 1);
+}
 
 static Status make_grid(Growth *growth, Err *err)
 {
@@ -69,13 +69,13 @@ static Status make_grid(Growth *growth, Err *err)
     grid_release(&growth->grid);
     TRY(network_reorder(net, err));
     growth->grid_until = 2 * terminals;
-    size_t most = growth->grid_until + MAX_BATCH;
+    size_t most = growth->grid_until + most_added(growth->grid_until);
     if (most > growth->params->terminals)
         most = growth->params->terminals;
     TRY(grid_reset(&growth->grid, domain_bounds(growth->domain),
                    cells_per_terminal * (double)terminals, net->n + 2 * (most - terminals),
-                   growth->batch.threads, err));
-    TRY(batch_use_grid(&growth->batch, &growth->grid, err));
+                   growth->pass.threads, err));
+    TRY(pass_use_grid(&growth->pass, &growth->grid, err));
     for (size_t i = 0; i < net->n; i++)
         if (net->segment[i].parent >= 0)
             TRY(place_enter(&growth->grid, &growth->rules, net, (int32_t)i, err));
@@ -91,7 +91,7 @@ static Status keep_up(Growth *growth, Err *err)
         if (weigh_is_needed(growth->params))
             TRY(weigh_refresh(net, growth->params, growth->domain, WEIGH_ROUGH, err));
         else
-            network_refresh(net, growth->batch.threads);
+            network_refresh(net, growth->pass.threads);
         if (growth->grid.item)
             TRY(place_widen(&growth->grid, &growth->rules, net, err));
         growth->refresh_until = (size_t)(refresh_growth * (double)terminals) + 1;
@@ -111,33 +111,24 @@ static Vec3 toss(Growth *growth)
     return domain_sample(growth->domain, &growth->random);
 }
 
-/* Tosses the new points of a batch, from plan[first] on. */
-static void fill_batch(Growth *growth, size_t first, Tally *tally)
+/* How many terminals the next pass should add. */
+static size_t to_be_added(const Growth *growth, bool tiled)
 {
-    Batch *batch = &growth->batch;
-    bool skip = growth->net.terminals >= LEAST_WITH_FULL_CELLS;
-    size_t i = first;
-    while (i < batch->n && tally->skipped < LAST_PATIENCE * (i - first + 1)) {
-        Vec3 point = toss(growth);
-        if (skip && batch_is_full(batch, &growth->grid, point))
-            tally->skipped++;
-        else
-            batch->plan[i++].terminal = point;
-    }
-    batch->n = i;
-    tally->tossed = i - first;
+    size_t terminals = growth->net.terminals, left = growth->params->terminals - terminals;
+    size_t added = terminals / (tiled ? TERMINALS_PER_ADDED_IN_TILES : TERMINALS_PER_ADDED);
+    added = added < 1 ? 1 : added;
+    return added < left ? added : left;
 }
 
-/* Tosses a batch of points and connects those that can be. */
-static Status add_batch(Growth *growth, Tally *tally, Err *err)
+/* Tosses points and connects those that can be. */
+static Status run_pass(Growth *growth, size_t added, size_t *made, Err *err)
 {
-    Batch *batch = &growth->batch;
-    size_t terminals = growth->net.terminals, added = terminals / TERMINALS_PER_ADDED;
-    added = added < 1 ? 1 : added > MAX_ADDED ? MAX_ADDED : added;
-    size_t first = batch_start(batch, TOSSES_PER_ADDED * added);
-    *tally = (Tally){0};
-    fill_batch(growth, first, tally);
-    forest_limit(&growth->forest, &growth->net);
+    size_t left = growth->params->terminals - growth->net.terminals;
+    size_t points = (size_t)(TOSSES_PER_ADDED * (double)added / (1 - fmin(growth->skipped, 0.75)));
+    TRY(pass_start(&growth->pass, points, err));
+    for (size_t i = 0; i < points; i++)
+        growth->pass.point[i] = toss(growth);
+    forest_limit(&growth->forest, growth->net.terminals);
     Site site = {.net = &growth->net,
                  .limit = growth->forest.limit,
                  .grid = &growth->grid,
@@ -146,45 +137,44 @@ static Status add_batch(Growth *growth, Tally *tally, Err *err)
                  .toss_distance = growth->toss_distance,
                  .terminals_only = growth->params->toss == GROW_TOSS_TERMINAL,
                  .candidates = growth->params->candidates};
-    TRY(batch_plan(batch, &site, err));
-    for (size_t i = first; i < batch->n; i++) {
-        PlanState state = batch->plan[i].state;
-        tally->in_vessel += state == PLAN_IN_VESSEL;
-        tally->ahead += state == PLAN_AHEAD;
-        tally->outside += state == PLAN_OUTSIDE;
-        tally->crowded += state == PLAN_CROWDED;
-        tally->far += state >= PLAN_CROWDED;
-    }
-    batch_accept(batch, &growth->net, &growth->grid, growth->forest.limit);
-    return batch_carry_out(batch, &growth->net, &growth->grid, &growth->rules, err);
+    TRY(pass_run(&growth->pass, &site, 2 * added < left ? 2 * added : left,
+                 growth->net.terminals >= LEAST_WITH_FULL_CELLS, made, err));
+    forest_count(&growth->forest);
+    network_grown(&growth->net, *made);
+    growth->skipped = (double)growth->pass.tally.skipped / (double)points;
+    return STATUS_OK;
 }
 
 /* Holds the share of points that are far enough from the tree at one in TOSSES_PER_ADDED. */
-static void adapt_toss_distance(Growth *growth, const Tally *tally)
+static void adapt_toss_distance(Growth *growth, bool tiled)
 {
-    double free = (double)(tally->tossed - tally->in_vessel - tally->ahead);
+    const size_t *count = growth->pass.tally.count;
+    size_t far = count[PLAN_CROWDED] + count[PLAN_READY];
+    double free = (double)(far + count[PLAN_TOO_NEAR] + count[PLAN_OUTSIDE]);
     if (free > 0) {
-        double share = TOSSES_PER_ADDED * (double)tally->far / free;
-        set_toss_distance(growth, growth->toss_distance * (1 + toss_notch * (share - 1)));
+        double share = TOSSES_PER_ADDED * (double)far / free;
+        double notch = tiled ? toss_notch_in_tiles : toss_notch;
+        set_toss_distance(growth, growth->toss_distance * (1 + notch * (share - 1)));
     }
 }
 
 /* Gives thick vessels up, and at last the search, when next to nothing finds room. */
-static Status be_patient(Growth *growth, const Tally *tally, Err *err)
+static Status be_patient(Growth *growth, size_t made, Err *err)
 {
     Rules *rules = &growth->rules;
-    size_t before = growth->crowded;
-    size_t crowded = tally->skipped + tally->in_vessel + tally->crowded;
-    growth->rejected += crowded + tally->outside;
+    const Tally *tally = &growth->pass.tally;
+    size_t before = growth->crowded, troubled = growth->crowded + growth->outside;
+    size_t crowded = tally->skipped + tally->count[PLAN_IN_VESSEL] + tally->count[PLAN_CROWDED];
+    growth->rejected += crowded + tally->count[PLAN_OUTSIDE];
     growth->crowded += crowded;
-    growth->outside += tally->outside + tally->ahead;
-    if (growth->batch.n_accepted * PATIENCE > growth->crowded) {
+    growth->outside += tally->count[PLAN_OUTSIDE] + tally->count[PLAN_AHEAD];
+    if (made * PATIENCE > growth->crowded) {
         growth->crowded = growth->outside = 0;
     } else if (growth->crowded / PATIENCE > before / PATIENCE) {
         rules->thickness = rules->thickness > least_thickness ? rules->thickness / 2 : 0;
-        TRY(batch_use_grid(&growth->batch, &growth->grid, err));
+        TRY(pass_use_grid(&growth->pass, &growth->grid, err));
     }
-    if (growth->crowded + growth->outside < LAST_PATIENCE)
+    if (troubled == 0 || growth->crowded + growth->outside < LAST_PATIENCE)
         return STATUS_OK;
     return err_set(err, STATUS_INFEASIBLE,
                    "no room for terminal %zu of --terminals %zu in %zu tries: lower --terminals, "
@@ -206,12 +196,13 @@ static Status check_range(const Growth *growth, Err *err)
 
 static Status add_terminals(Growth *growth, Err *err)
 {
-    Tally tally;
+    size_t made;
     TRY(check_range(growth, err));
     TRY(keep_up(growth, err));
-    TRY(add_batch(growth, &tally, err));
-    adapt_toss_distance(growth, &tally);
-    return be_patient(growth, &tally, err);
+    bool tiled = growth->pass.is_tiled && growth->crowded + growth->outside == 0;
+    TRY(run_pass(growth, to_be_added(growth, tiled), &made, err));
+    adapt_toss_distance(growth, tiled);
+    return be_patient(growth, made, err);
 }
 
 /* New trees at the inlets. */
@@ -243,6 +234,7 @@ static Status start_forest(Growth *growth, Err *err)
     TRY(forest_init(forest, net->inlets, share, params->terminals, err));
     for (size_t k = 0; k < net->inlets; k++) {
         int has = net->segment[net->inlet[k]].terminals;
+        forest->has[k] = (size_t)has;
         if ((size_t)has > forest->quota[k])
             return err_set(err, STATUS_USAGE,
                            "--inlet-shares: tree %zu of --from has %d terminals, and its share of "
@@ -265,16 +257,17 @@ static Status start(Growth *growth, Err *err)
     uint64_t turn = params->from ? 0x9e3779b97f4a7c15 * (uint64_t)params->from->n : 0;
     random_seed(&growth->random, params->seed ^ turn);
     int threads = params->threads > 0 ? params->threads : threads_available();
-    TRY(batch_init(&growth->batch, MAX_BATCH, params->candidates, threads, err));
+    size_t inlets = params->from ? adopt_inlets(params->from) : params->inlets;
+    inlets = inlets > 0 ? inlets : 1;
+    TRY(pass_init(&growth->pass, params->candidates, inlets, threads, err));
 
     double drop = pa_from_mmhg(params->p_perf_mmhg) - pa_from_mmhg(params->p_term_mmhg);
     double resistance = 8 * weigh_reference_pa_s(params) / pi;
     double scale = sqrt(sqrt(resistance * mm3_s_from_ml_min(params->q_perf_ml_min) / drop));
     bool traits = params->from || params->inlets > 1 || weigh_is_needed(params);
-    size_t inlets = params->from ? adopt_inlets(params->from) : params->inlets;
     size_t given = params->from ? params->from->n : 0;
     TRY(network_init(&growth->net, (Law){params->gamma, params->lambda}, scale,
-                     given + 2 * params->terminals, inlets > 0 ? inlets : 1, traits, err));
+                     given + 2 * params->terminals, inlets, traits, err));
     if (params->from)
         adopt_tree(params->from, &growth->net);
     else
@@ -324,13 +317,15 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
         report_progress(&growth, terminals);
     }
     bool complete = status == STATUS_OK;
-    TRY_GOTO(check_range(&growth, err));
     size_t broken = 0;
     if (weigh_is_needed(params))
         TRY_GOTO(weigh_refresh(&growth.net, params, domain, WEIGH_FINE, err));
+    else
+        network_refresh(&growth.net, growth.pass.threads);
+    TRY_GOTO(check_range(&growth, err));
     if (growth.grid.item)
-        TRY_GOTO(mend_network(&growth.net, &growth.grid, domain, &growth.rules,
-                              growth.batch.threads, &broken, err));
+        TRY_GOTO(mend_network(&growth.net, &growth.grid, domain, &growth.rules, growth.pass.threads,
+                              &broken, err));
     grid_release(&growth.grid);
     TRY_GOTO(finish_tree(&growth.net, params, domain, out, err));
     if (report)
@@ -344,7 +339,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
                                .broken = broken,
                                .complete = complete};
 done:
-    batch_release(&growth.batch);
+    pass_release(&growth.pass);
     grid_release(&growth.grid);
     forest_release(&growth.forest);
     network_release(&growth.net);

@@ -207,7 +207,8 @@ Status mend_network(Network *net, Grid *grid, const Domain *domain, const Rules 
     TRY_GOTO(mem_calloc(&mending.close, net->n, sizeof *mending.close, "segments", err));
     TRY_GOTO(mem_calloc(&broken, net->n, sizeof *broken, "segments", err));
     for (int round = 0;; round++) {
-        network_refresh(net, threads);
+        if (round > 0)
+            network_refresh(net, threads);
         TRY_GOTO(place_widen(grid, rules, net, err));
         if (round == 0)
             threads_for((net->n + CHUNK - 1) / CHUNK, threads, look_at_chunk, &mending);

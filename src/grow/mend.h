@@ -7,7 +7,7 @@
 #include "grow/network.h"
 #include "grow/place.h"
 
-/* Brings all radii up to date and moves bifurcations until, at those radii times rules->thickness,
+/* Moves bifurcations until, at all radii as of the last refresh times rules->thickness,
  * every segment is longer than wide and clear of those it shares no node with, as far as small moves
  * can bring that about. *left: the number of segments for which it is still not so. `grid` holds the
  * segments of `net`. `threads` do not change the result. */

@@ -1,11 +1,8 @@
-/* Every segment holds flare and cost of its daughters, so a change at one place is carried to the
- * root by recomputing the segments on the way and nothing else: O(depth), one cache line each, and
- * exact, because nothing is added to or taken from a running sum.
- *
- * Splits come in batches, whose ways to the root soon join. First every changed segment announces
- * itself to its parent, up to one that others have announced before; then values go up, and at a
- * node where more than one way arrives only the last to come goes on. So every segment is recomputed
- * once and sees final daughters, whatever thread comes last.
+/* Every segment holds flare and cost of its daughters, so a change at one place is carried towards the
+ * root by recomputing the segments on the way and nothing else: one cache line each, and exact,
+ * because nothing is added to or taken from a running sum. A split is carried up a few levels at
+ * once, where it is a large part of what hangs there; further up, where it is a small one, sums wait
+ * until all are refreshed, as the sensitivities do.
  *
  * The sensitivities are the derivatives of the root's cost, carried down by the chain rule. They
  * price a change below a segment in O(1). They age as the tree grows, which only blurs the choice
@@ -13,19 +10,12 @@
 #include "grow/network.h"
 
 #include <float.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 
-/* Splits that a thread carries at a time, and the least that are worth starting threads for. */
-enum { CHUNK = 32, LEAST_SHARED = 256 };
-/* Refreshing goes by subtrees of at most one in so many terminals, by the place where they begin. */
-enum { SUBTREES = 128, REFRESHED = 4096 };
-
-struct Arrivals {
-    atomic_int gain;    /* terminals more */
-    atomic_schar below; /* changed daughters that have not arrived */
-    atomic_bool announced;
-};
+/* How far up a split is carried at once. */
+enum { LEVELS = 8 };
+/* Refreshing goes by subtrees of at most one in so many terminals. */
+enum { SUBTREES = 128 };
 
 Status network_init(Network *net, Law law, double radius_scale, size_t capacity, size_t inlets,
                     bool traits, Err *err)
@@ -38,7 +28,8 @@ Status network_init(Network *net, Law law, double radius_scale, size_t capacity,
     if (traits)
         TRY_GOTO(mem_calloc(&made.trait, capacity, sizeof *made.trait, "segments", err));
     TRY_GOTO(mem_calloc(&made.position, capacity, sizeof *made.position, "positions", err));
-    TRY_GOTO(mem_calloc(&made.coming, capacity, sizeof *made.coming, "segments", err));
+    TRY_GOTO(mem_calloc(&made.spare, capacity, sizeof *made.spare, "segments", err));
+    TRY_GOTO(mem_calloc(&made.tops, capacity, sizeof *made.tops, "segments", err));
     TRY_GOTO(mem_calloc(&made.inlet, inlets, sizeof *made.inlet, "inlets", err));
     *net = made;
 done:
@@ -53,7 +44,8 @@ void network_release(Network *net)
     free(net->sensitivity);
     free(net->trait);
     free(net->position);
-    free(net->coming);
+    free(net->spare);
+    free(net->tops);
     free(net->inlet);
     *net = (Network){0};
 }
@@ -61,9 +53,10 @@ void network_release(Network *net)
 void network_retire(Network *net)
 {
     free(net->sensitivity);
-    free(net->coming);
+    free(net->spare);
+    free(net->tops);
     net->sensitivity = NULL;
-    net->coming = NULL;
+    net->spare = net->tops = NULL;
 }
 
 static void set_terminals(Network *net, size_t terminals)
@@ -151,27 +144,56 @@ int32_t network_append(Network *net, int32_t parent, Vec3 position)
     return i;
 }
 
-void network_extend(Network *net, size_t splits)
+void network_spare(Network *net, size_t nodes)
 {
-    net->n += 2 * splits;
-    set_terminals(net, net->terminals + splits);
+    while (net->spares < nodes) {
+        net->segment[net->n] = (Segment){.child = {-1, -1}, .parent = -1};
+        net->spare[net->spares++] = (int32_t)net->n++;
+    }
 }
 
-void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal, int32_t fresh)
+void network_grown(Network *net, size_t terminals)
+{
+    set_terminals(net, net->terminals + terminals);
+}
+
+static bool holds(Box zone, Vec3 p)
+{
+    return p.x >= zone.low.x && p.x <= zone.high.x && p.y >= zone.low.y && p.y <= zone.high.y &&
+           p.z >= zone.low.z && p.z <= zone.high.z;
+}
+
+/* Tells the segments above `i`, which reduced to this, that one more terminal hangs there. */
+static void rise(Network *net, int32_t i, const Reduced *reduced, Box zone)
+{
+    Reduced here = *reduced;
+    for (int level = 0; level < LEVELS; level++) {
+        int32_t above = net->segment[i].parent;
+        if (!holds(zone, net->position[above]))
+            return;
+        report(net, i, &here);
+        net->segment[above].terminals++;
+        if (net->segment[above].parent < 0)
+            return;
+        i = above;
+        here = network_reduce(net, i);
+    }
+}
+
+void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal,
+                   const int32_t made[2], Box zone)
 {
     Segment *distal = &net->segment[segment];
-    int32_t above = distal->parent, proximal = fresh - 1;
+    int32_t above = distal->parent, proximal = made[0], fresh = made[1];
     net->position[proximal] = bifurcation;
     net->position[fresh] = terminal;
     net->segment[above].child[net->segment[above].child[1] == segment] = proximal;
     net->segment[proximal] = (Segment){.length = vec3_distance(net->position[above], bifurcation),
                                        .child = {segment, fresh},
                                        .parent = above,
-                                       .terminals = distal->terminals,
+                                       .terminals = distal->terminals + 1,
                                        .gauge = distal->gauge};
     net->sensitivity[proximal] = net->sensitivity[segment];
-    atomic_init(&net->coming[proximal].gain, 1); /* the new terminal, on its way up */
-    atomic_init(&net->coming[proximal].below, 1);
     net->segment[fresh] = (Segment){.length = vec3_distance(bifurcation, terminal),
                                     .child = {-1, -1},
                                     .parent = proximal,
@@ -188,89 +210,12 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
     Reduced daughters[2] = {network_reduce(net, segment), network_reduce(net, fresh)};
     report(net, segment, &daughters[0]);
     report(net, fresh, &daughters[1]);
-    Below below = network_below(net, proximal);
-    Reduced mother =
-        law_extend(&net->law, network_burden(net, proximal, net->segment[proximal].terminals + 1),
-                   net->segment[proximal].length, &below);
+    Reduced mother = network_reduce(net, proximal);
     net->segment[proximal].radius =
         narrow(net->radius_unit * (double)net->segment[proximal].gauge * mother.rho);
     adopt(net, segment, &daughters[0], proximal, &mother);
     adopt(net, fresh, &daughters[1], proximal, &mother);
-}
-
-static size_t chunk_end(size_t index, size_t count)
-{
-    size_t end = (index + 1) * CHUNK;
-    return end < count ? end : count;
-}
-
-/* The splits of one call of network_carry. */
-typedef struct Carrying {
-    Network *net;
-    size_t splits;
-} Carrying;
-
-/* The proximal segment that the k-th of them made. */
-static int32_t split_proximal(const Carrying *carrying, size_t k)
-{
-    return (int32_t)(carrying->net->n - 2 * (carrying->splits - k));
-}
-
-static void announce(size_t index, int worker, void *context)
-{
-    (void)worker;
-    const Carrying *carrying = context;
-    Network *net = carrying->net;
-    size_t end = chunk_end(index, carrying->splits);
-    for (size_t k = index * CHUNK; k < end; k++) {
-        int32_t i = split_proximal(carrying, k);
-        while (net->segment[i].parent >= 0 &&
-               !atomic_exchange_explicit(&net->coming[i].announced, true, memory_order_relaxed)) {
-            i = net->segment[i].parent;
-            atomic_fetch_add_explicit(&net->coming[i].below, 1, memory_order_relaxed);
-        }
-    }
-}
-
-/* Whether nothing that `i` waits for is missing, now that one more has come. */
-static bool arrive(Network *net, int32_t i)
-{
-    return atomic_fetch_sub_explicit(&net->coming[i].below, 1, memory_order_acq_rel) == 1;
-}
-
-static void ascend(size_t index, int worker, void *context)
-{
-    (void)worker;
-    const Carrying *carrying = context;
-    Network *net = carrying->net;
-    size_t end = chunk_end(index, carrying->splits);
-    for (size_t k = index * CHUNK; k < end; k++)
-        for (int32_t i = split_proximal(carrying, k);
-             arrive(net, i) && net->segment[i].parent >= 0;) {
-            Arrivals *here = &net->coming[i];
-            int gain = atomic_load_explicit(&here->gain, memory_order_relaxed);
-            atomic_store_explicit(&here->gain, 0, memory_order_relaxed);
-            atomic_store_explicit(&here->announced, false, memory_order_relaxed);
-            net->segment[i].terminals += gain;
-            recompute(net, i);
-            i = net->segment[i].parent;
-            atomic_fetch_add_explicit(&net->coming[i].gain, gain, memory_order_relaxed);
-        }
-}
-
-void network_carry(Network *net, size_t splits, int threads)
-{
-    Carrying carrying = {net, splits};
-    size_t chunks = (splits + CHUNK - 1) / CHUNK;
-    if (splits < LEAST_SHARED)
-        threads = 1;
-    threads_for(chunks, threads, announce, &carrying);
-    threads_for(chunks, threads, ascend, &carrying);
-    for (size_t k = 0; k < net->inlets; k++) {
-        int32_t inlet = net->inlet[k];
-        net->segment[inlet].terminals +=
-            atomic_exchange_explicit(&net->coming[inlet].gain, 0, memory_order_relaxed);
-    }
+    rise(net, proximal, &mother, zone);
 }
 
 void network_move(Network *net, int32_t node, Vec3 place)
@@ -302,64 +247,6 @@ static int32_t next_below(const Network *net, int32_t i, int32_t top, int32_t te
             return sister;
     }
     return -1;
-}
-
-/* Passes on to its daughters what a node has itself. */
-static void refresh_daughters(Network *net, int32_t i)
-{
-    const Segment *segment = &net->segment[i];
-    if (segment->child[0] < 0)
-        return;
-    Reduced mother = {0};
-    if (segment->parent >= 0)
-        mother = network_reduce(net, i);
-    for (int slot = 0; slot < 2 && segment->child[slot] >= 0; slot++) {
-        int32_t child = segment->child[slot];
-        Reduced daughter = network_reduce(net, child);
-        if (segment->parent >= 0)
-            adopt(net, child, &daughter, i, &mother);
-        else
-            adopt_root(net, child, &daughter);
-    }
-}
-
-typedef struct Refreshing {
-    Network *net;
-    int32_t least; /* terminals of the segments that are refreshed already */
-} Refreshing;
-
-/* Whether node i, no inlet, is the first on its way from the inlet that is still to be refreshed. */
-static bool begins_subtree(const Refreshing *refreshing, int32_t i)
-{
-    const Segment *segment = refreshing->net->segment;
-    const Segment *above = &segment[segment[i].parent];
-    return segment[i].terminals < refreshing->least &&
-           (above->parent < 0 || above->terminals >= refreshing->least);
-}
-
-static void refresh_chunk(size_t index, int worker, void *context)
-{
-    (void)worker;
-    const Refreshing *refreshing = context;
-    Network *net = refreshing->net;
-    size_t end = (index + 1) * REFRESHED < net->n ? (index + 1) * REFRESHED : net->n;
-    for (size_t k = index * REFRESHED; k < end; k++) {
-        int32_t top = (int32_t)k;
-        if (net->segment[k].parent < 0 || !begins_subtree(refreshing, top))
-            continue;
-        for (int32_t i = top; i >= 0; i = next_below(net, i, top, 1))
-            refresh_daughters(net, i);
-    }
-}
-
-void network_refresh(Network *net, int threads)
-{
-    Refreshing refreshing = {net, (int32_t)(net->terminals / SUBTREES) + 1};
-    for (size_t k = 0; k < net->inlets; k++)
-        for (int32_t i = net->inlet[k]; i >= 0;
-             i = next_below(net, i, net->inlet[k], refreshing.least))
-            refresh_daughters(net, i);
-    threads_for((net->n + REFRESHED - 1) / REFRESHED, threads, refresh_chunk, &refreshing);
 }
 
 /* Replaces items[k] by items[order[k]] for all k. */
@@ -397,6 +284,95 @@ static void count_terminals(Network *net, int32_t i)
         segment->terminals += net->segment[segment->child[slot]].terminals;
 }
 
+/* Sums up what hangs on node i, no inlet, and tells its parent. Keeps rho where the sensitivity will
+ * be. */
+static void sum_up(Network *net, int32_t i)
+{
+    count_terminals(net, i);
+    Reduced reduced = network_reduce(net, i);
+    report(net, i, &reduced);
+    net->sensitivity[i].load = reduced.rho;
+}
+
+/* Node i, a daughter that was summed up. */
+static Reduced summed(const Network *net, const Segment *mother, int slot)
+{
+    double rho = net->sensitivity[mother->child[slot]].load, rho2 = rho * rho;
+    return (Reduced){.load = rho2 * rho2, .flare = mother->flare[slot], .rho = rho};
+}
+
+/* Passes on to its daughters what a node has itself. */
+static void refresh_daughters(Network *net, int32_t i)
+{
+    const Segment *segment = &net->segment[i];
+    if (segment->child[0] < 0)
+        return;
+    Reduced mother = {0};
+    if (segment->parent >= 0)
+        mother = network_reduce(net, i);
+    for (int slot = 0; slot < 2 && segment->child[slot] >= 0; slot++) {
+        Reduced daughter = summed(net, segment, slot);
+        if (segment->parent >= 0)
+            adopt(net, segment->child[slot], &daughter, i, &mother);
+        else
+            adopt_root(net, segment->child[slot], &daughter);
+    }
+}
+
+static void sum_up_subtree(size_t index, int worker, void *context)
+{
+    (void)worker;
+    Network *net = context;
+    int32_t top = net->tops[index];
+    for (int32_t i = network_first_upward(net, top); i != top; i = network_next_upward(net, i))
+        sum_up(net, i);
+    sum_up(net, top);
+}
+
+static void refresh_subtree(size_t index, int worker, void *context)
+{
+    (void)worker;
+    Network *net = context;
+    int32_t top = net->tops[index];
+    for (int32_t i = top; i >= 0; i = next_below(net, i, top, 1))
+        refresh_daughters(net, i);
+}
+
+/* Lists the nodes with at least so many terminals, all on the way from an inlet, from the workspace's
+ * end on, mothers first; and from its beginning on the daughters of theirs that have less. Returns
+ * how many there are of these. */
+static size_t find_tops(const Network *net, int32_t least, size_t *upper)
+{
+    size_t count = 0;
+    *upper = 0;
+    for (size_t k = 0; k < net->inlets; k++)
+        for (int32_t i = net->inlet[k]; i >= 0; i = next_below(net, i, net->inlet[k], least)) {
+            net->tops[net->capacity - ++*upper] = i;
+            for (int slot = 0; slot < 2; slot++) {
+                int32_t child = net->segment[i].child[slot];
+                if (child >= 0 && net->segment[child].terminals < least)
+                    net->tops[count++] = child;
+            }
+        }
+    return count;
+}
+
+void network_refresh(Network *net, int threads)
+{
+    size_t upper, count = find_tops(net, (int32_t)(net->terminals / SUBTREES) + 1, &upper);
+    const int32_t *end = net->tops + net->capacity, *first = end - upper;
+    threads_for(count, threads, sum_up_subtree, net);
+    for (const int32_t *i = first; i < end; i++) {
+        if (net->segment[*i].parent >= 0)
+            sum_up(net, *i);
+        else
+            count_terminals(net, *i);
+    }
+    while (end-- > first)
+        refresh_daughters(net, *end);
+    threads_for(count, threads, refresh_subtree, net);
+}
+
 void network_resum(Network *net)
 {
     size_t terminals = 0;
@@ -417,10 +393,10 @@ void network_resum(Network *net)
 Status network_reorder(Network *net, Err *err)
 {
     int32_t *order = NULL, *place = NULL; /* old index of the new one, and new of the old */
-    size_t n = net->n;
+    size_t n = net->n - net->spares;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&order, n, sizeof *order, "nodes to renumber", err));
-    TRY_GOTO(mem_calloc(&place, n, sizeof *place, "nodes to renumber", err));
+    TRY_GOTO(mem_calloc(&place, net->n, sizeof *place, "nodes to renumber", err));
     int32_t count = 0;
     for (size_t k = 0; k < net->inlets; k++)
         for (int32_t i = net->inlet[k]; i >= 0; i = next_below(net, i, net->inlet[k], 1)) {
@@ -435,6 +411,8 @@ Status network_reorder(Network *net, Err *err)
     if (net->trait)
         TRY_GOTO(permute(net->trait, sizeof *net->trait, order, n, err));
     TRY_GOTO(permute(net->position, sizeof *net->position, order, n, err));
+    net->n = n;
+    net->spares = 0;
     for (size_t k = 0; k < n; k++) {
         Segment *segment = &net->segment[k];
         if (segment->parent >= 0)

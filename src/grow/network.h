@@ -42,14 +42,11 @@ typedef struct Trait {
     bool piece;     /* on one of several that make up a vessel of that tree; given, too */
 } Trait;
 
-/* What a node waits for while changes are carried towards the root. */
-typedef struct Arrivals Arrivals;
-
 typedef struct Network {
     Law law;
     double radius_scale; /* q N^(1/4), mm^(3/4) */
     double radius_unit;  /* q, mm^(3/4): r = q * gauge * rho */
-    size_t n, capacity;  /* nodes */
+    size_t n, capacity;  /* nodes, spare ones included */
     size_t terminals;
     int32_t *inlet; /* nodes */
     size_t inlets;
@@ -58,7 +55,9 @@ typedef struct Network {
     Trait *trait;        /* NULL: all weights are 1, there is one tree, and nothing is given */
     double fresh_weight; /* of a new terminal's segment */
     Vec3 *position;      /* mm */
-    Arrivals *coming;    /* at rest between calls */
+    int32_t *spare;      /* nodes that are part of no tree */
+    size_t spares;
+    int32_t *tops; /* workspace */
 } Network;
 
 /* Room for so many nodes, of them so many inlets; `traits`: whether segments have them. */
@@ -82,6 +81,12 @@ static inline bool network_is_given(const Network *net, int32_t i)
 static inline bool network_is_piece(const Network *net, int32_t i)
 {
     return net->trait && net->trait[i].piece;
+}
+
+/* Whether node i is a terminal. */
+static inline bool network_is_end(const Network *net, int32_t i)
+{
+    return net->segment[i].child[0] < 0 && net->segment[i].parent >= 0;
 }
 
 /* What `terminals` more on segment i add to its load, over its length. */
@@ -116,17 +121,19 @@ static inline Capsule network_capsule(const Network *net, int32_t i)
 /* Appends a node that hangs on `parent`, or for -1 an inlet, and returns it. All sums are due. */
 int32_t network_append(Network *net, int32_t parent, Vec3 position);
 
-/* Makes room for so many splits. The radii of what they make are those for as many more terminals. */
-void network_extend(Network *net, size_t splits);
+/* Sees to it that at least so many nodes are spare. */
+void network_spare(Network *net, size_t nodes);
 
 /* Splits `segment` at `bifurcation` and hangs a new segment to `terminal` there. Its proximal part
- * becomes segment `fresh` - 1 and the new one `fresh`, both among those that network_extend made.
- * What is above does not know of it until network_carry. Threads may split at a time segments that
- * have no node in common. */
-void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal, int32_t fresh);
+ * becomes segment made[0] and the new one made[1], which are spare. What is above learns of it for a
+ * few levels, while distal ends are in `zone`, all from network_refresh. The caller takes the two off
+ * the spare nodes and tells network_grown. Threads may split at a time in zones without common
+ * points, segments whose ends are in their own. */
+void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal,
+                   const int32_t made[2], Box zone);
 
-/* Carries all splits since network_extend up to the inlets, on `threads` threads. */
-void network_carry(Network *net, size_t splits, int threads);
+/* Tells that so many terminals were added: radii from here on are those for as many more. */
+void network_grown(Network *net, size_t terminals);
 
 /* Moves a bifurcation, and brings all sums up to date. */
 void network_move(Network *net, int32_t node, Vec3 place);
@@ -134,7 +141,7 @@ void network_move(Network *net, int32_t node, Vec3 place);
 /* S_root, over all trees; not finite, or 0, when radii span more than a double can hold. */
 double network_cost(const Network *net);
 
-/* Brings radius, gauge and sensitivities of all segments up to date. */
+/* Brings the sums of all segments up to date, and radii, gauges and sensitivities. */
 void network_refresh(Network *net, int threads);
 
 /* Frees what only growth needs: no more splits and refreshing from here on. */
@@ -150,7 +157,7 @@ int32_t network_first_upward(const Network *net, int32_t i);
 void network_resum(Network *net);
 
 /* Renumbers the nodes depth first, tree after tree, so that parents come before children and neighbours in the tree
- * are neighbours in memory. On failure `net` is only fit for network_release. */
+ * are neighbours in memory, and none is spare. On failure `net` is only fit for network_release. */
 MUST_CHECK Status network_reorder(Network *net, Err *err);
 
 #endif

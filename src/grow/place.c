@@ -283,30 +283,6 @@ bool place_is_inside(const Network *net, const Domain *domain, const Connection 
              domain_holds_segment(domain, fork, net->position[host])));
 }
 
-void footprint_release(Footprint *footprint)
-{
-    free(footprint->cell);
-    *footprint = (Footprint){0};
-}
-
-static Status append_cell(Footprint *footprint, size_t cell, Err *err)
-{
-    if (footprint->n == footprint->capacity)
-        TRY(mem_reserve(&footprint->cell, &footprint->capacity, footprint->n + 1,
-                        sizeof *footprint->cell, "grid cells", err));
-    footprint->cell[footprint->n++] = (uint32_t)cell;
-    return STATUS_OK;
-}
-
-Status footprint_add_box(Footprint *footprint, const Grid *grid, GridBox box, Err *err)
-{
-    for (int z = box.low[2]; z <= box.high[2]; z++)
-        for (int y = box.low[1]; y <= box.high[1]; y++)
-            for (int x = box.low[0]; x <= box.high[0]; x++)
-                TRY(append_cell(footprint, grid_index(grid, x, y, z), err));
-    return STATUS_OK;
-}
-
 /* A new segment that is to keep clear of all but its kin. */
 typedef struct Newcomer {
     const Network *net;
@@ -366,28 +342,25 @@ static bool is_clear(const Grid *grid, const Newcomer *newcomer, const GridCell 
     return true;
 }
 
-Status place_is_free(const Network *net, const Grid *grid, const Rules *rules,
-                     const Connection *connection, Vec3 terminal, Footprint *footprint, bool *out,
-                     Err *err)
+static bool is_clear_all_along(const Grid *grid, const Newcomer *newcomer)
 {
-    size_t cell, n = footprint->n;
-    bool is_free = true;
-    for (int part = 0; part < PARTS && is_free; part++) {
+    size_t cell;
+    for (GridWalk walk = grid_walk(grid, &newcomer->item); grid_walk_next(&walk, &cell);)
+        if (!is_clear(grid, newcomer, &grid->cell[cell]))
+            return false;
+    return true;
+}
+
+PlaceRoom place_room(const Network *net, const Grid *grid, const Rules *rules, Box zone,
+                     const Connection *connection, Vec3 terminal)
+{
+    for (int part = 0; part < PARTS; part++) {
         Newcomer part_of = newcomer(net, grid, rules, connection, terminal, part);
+        if (!grid_zone_holds(grid, zone, &part_of.item))
+            return PLACE_BEYOND;
         bool is_given = part != FRESH && network_is_given(net, connection->segment);
-        for (GridWalk walk = grid_walk(grid, &part_of.item);
-             is_free && grid_walk_next(&walk, &cell);) {
-            is_free = is_given || is_clear(grid, &part_of, &grid->cell[cell]);
-            TRY(append_cell(footprint, cell, err));
-        }
+        if (!is_given && !is_clear_all_along(grid, &part_of))
+            return PLACE_TAKEN;
     }
-    if (is_free) {
-        GridWalk walk = grid_walk(grid, &grid->item[connection->segment]);
-        while (grid_walk_next(&walk, &cell))
-            TRY(append_cell(footprint, cell, err));
-    } else {
-        footprint->n = n;
-    }
-    *out = is_free;
-    return STATUS_OK;
+    return PLACE_FREE;
 }

@@ -25,16 +25,6 @@ typedef struct Connection {
     double radius[PARTS]; /* mm */
 } Connection;
 
-/* Cells of a grid, some perhaps more than once. Starts as (Footprint){0}; ends with
- * footprint_release. */
-typedef struct Footprint {
-    uint32_t *cell;
-    size_t n, capacity;
-} Footprint;
-
-void footprint_release(Footprint *footprint);
-MUST_CHECK Status footprint_add_box(Footprint *footprint, const Grid *grid, GridBox box, Err *err);
-
 /* The radius of the capsule that stands in the grid for a vessel of `radius`: with room to widen
  * until the grid is made anew. */
 double place_reach(const Rules *rules, double radius);
@@ -69,10 +59,13 @@ bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connect
 bool place_is_inside(const Network *net, const Domain *domain, const Connection *connection,
                      Vec3 terminal);
 
-/* Whether the segments of a settled connection that are not given keep clear of all others, in *out.
- * If so, appends the cells in which they or the segment they replace are to `footprint`. */
-MUST_CHECK Status place_is_free(const Network *net, const Grid *grid, const Rules *rules,
-                                const Connection *connection, Vec3 terminal, Footprint *footprint,
-                                bool *out, Err *err);
+/* Whether the segments of a settled connection that are not given keep clear of all others. */
+typedef enum PlaceRoom {
+    PLACE_FREE,
+    PLACE_TAKEN,
+    PLACE_BEYOND, /* they, or the one that they replace, are not all in the zone */
+} PlaceRoom;
+PlaceRoom place_room(const Network *net, const Grid *grid, const Rules *rules, Box zone,
+                     const Connection *connection, Vec3 terminal);
 
 #endif

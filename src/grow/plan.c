@@ -6,7 +6,6 @@
 Status planner_init(Planner *planner, int candidates, Err *err)
 {
     size_t n = (size_t)candidates;
-    *planner = (Planner){.status = STATUS_OK};
     TRY(mem_calloc(&planner->near, n, sizeof *planner->near, "candidates", err));
     return mem_calloc(&planner->connection, n, sizeof *planner->connection, "candidates", err);
 }
@@ -15,7 +14,6 @@ void planner_release(Planner *planner)
 {
     free(planner->near);
     free(planner->connection);
-    footprint_release(&planner->footprint);
     *planner = (Planner){0};
 }
 
@@ -28,65 +26,67 @@ static int cheapest(const Connection *connection, int count)
     return best;
 }
 
-/* Whether plan->connection is free. If so, notes the cells in which nothing may change before it is
- * made: those it changes itself, and those in which a segment would be too near to the terminal. */
-static Status claim(const Site *site, Planner *planner, Plan *plan, bool *is_free, Err *err)
+/* What the nearest segments have to offer to a terminal. */
+typedef struct Offers {
+    int count; /* connections, in the planner */
+    bool ahead, beyond;
+} Offers;
+
+static Offers collect(const Site *site, Planner *planner, Box zone, const size_t *left,
+                      Vec3 terminal)
 {
-    Footprint *footprint = &planner->footprint;
-    plan->first_cell = footprint->n;
-    TRY(place_is_free(site->net, site->grid, site->rules, &plan->connection, plan->terminal,
-                      footprint, is_free, err));
-    plan->end_changed = footprint->n;
-    if (*is_free)
-        TRY(footprint_add_box(footprint, site->grid,
-                              grid_box(site->grid, plan->terminal, site->toss_distance), err));
-    plan->end_cell = footprint->n;
-    return STATUS_OK;
+    Offers out = {0};
+    int near = grid_nearest(site->grid, terminal, grid_clearance(zone, terminal), site->candidates,
+                            planner->near);
+    out.beyond = near < 0;
+    for (int i = 0; i < near && !out.beyond; i++) {
+        int32_t segment = planner->near[i].segment, tree = network_tree(site->net, segment);
+        bool spent = left[tree] == 0;
+        out.ahead |= spent;
+        out.beyond = (spent && site->limit[tree] > 0) ||
+                     !grid_zone_holds(site->grid, zone, &site->grid->item[segment]);
+        if (!spent && !out.beyond &&
+            place_is_splittable(site->net, site->grid, site->rules, segment) &&
+            place_connection(site->net, site->rules, segment, terminal,
+                             &planner->connection[out.count]))
+            out.count++;
+    }
+    return out;
 }
 
-/* Sets plan->connection to the cheapest with room, or tells why there is none. */
-static Status choose(const Site *site, Planner *planner, Plan *plan, Err *err)
+/* The cheapest of the planner's connections with room, or why there is none. */
+static PlanState choose(const Site *site, Planner *planner, Box zone, Vec3 terminal, Offers offers,
+                        Connection *out)
 {
     Connection *connection = planner->connection;
-    int near = grid_nearest(site->grid, plan->terminal, site->candidates, planner->near);
-    int count = 0;
-    bool ahead = false;
-    for (int i = 0; i < near; i++) {
-        int32_t segment = planner->near[i].segment;
-        if (site->limit[network_tree(site->net, segment)] == 0)
-            ahead = true;
-        else if (place_is_splittable(site->net, site->grid, site->rules, segment) &&
-                 place_connection(site->net, site->rules, segment, plan->terminal,
-                                  &connection[count]))
-            count++;
-    }
-    bool inside = false, outside = false, is_free = false;
-    for (; count > 0 && !is_free; count--) {
+    bool inside = false, outside = false;
+    for (int count = offers.count; count > 0; count--) {
         int best = cheapest(connection, count);
-        plan->connection = connection[best];
+        *out = connection[best];
         connection[best] = connection[count - 1];
-        if (!place_settle(site->net, site->rules, plan->terminal, &plan->connection))
+        if (!place_settle(site->net, site->rules, terminal, out))
             continue;
-        if (place_is_inside(site->net, site->domain, &plan->connection, plan->terminal)) {
-            inside = true;
-            TRY(claim(site, planner, plan, &is_free, err));
-        } else {
+        if (!place_is_inside(site->net, site->domain, out, terminal)) {
             outside = true;
+            continue;
         }
+        inside = true;
+        PlaceRoom room = place_room(site->net, site->grid, site->rules, zone, out, terminal);
+        if (room != PLACE_TAKEN)
+            return room == PLACE_FREE ? PLAN_READY : PLAN_BEYOND;
     }
-    plan->state = is_free              ? PLAN_READY
-                  : ahead              ? PLAN_AHEAD
-                  : outside && !inside ? PLAN_OUTSIDE
-                                       : PLAN_CROWDED;
-    return STATUS_OK;
+    return offers.ahead ? PLAN_AHEAD : outside && !inside ? PLAN_OUTSIDE : PLAN_CROWDED;
 }
 
-void plan_make(const Site *site, Planner *planner, Plan *plan)
+PlanState plan_make(const Site *site, Planner *planner, Box zone, const size_t *left, Vec3 terminal,
+                    Connection *out)
 {
-    GridRoom room = grid_room(site->grid, plan->terminal, site->toss_distance, site->terminals_only,
+    if (!(grid_clearance(zone, terminal) > site->toss_distance))
+        return PLAN_BEYOND;
+    GridRoom room = grid_room(site->grid, terminal, site->toss_distance, site->terminals_only,
                               site->rules->thickness);
-    plan->state = room == GRID_TOO_NEAR ? PLAN_TOO_NEAR : PLAN_IN_VESSEL;
-    if (room != GRID_FREE || planner->status != STATUS_OK)
-        return;
-    planner->status = choose(site, planner, plan, &planner->err);
+    if (room != GRID_FREE)
+        return room == GRID_TOO_NEAR ? PLAN_TOO_NEAR : PLAN_IN_VESSEL;
+    Offers offers = collect(site, planner, zone, left, terminal);
+    return offers.beyond ? PLAN_BEYOND : choose(site, planner, zone, terminal, offers, out);
 }

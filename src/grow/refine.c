@@ -198,8 +198,8 @@ static Status mend(Refinement *refinement, bool *over, Err *err)
         int32_t i = surgery->tolls.broken[k];
         const Shape *shape = &surgery->arbor.shape[i];
         Near near[2 * NEIGHBOURS];
-        int count = grid_nearest(&surgery->room.grid, shape->to, NEIGHBOURS, near);
-        count += grid_nearest(&surgery->room.grid, shape->from, NEIGHBOURS, near + count);
+        int count = grid_nearest(&surgery->room.grid, shape->to, INFINITY, NEIGHBOURS, near);
+        count += grid_nearest(&surgery->room.grid, shape->from, INFINITY, NEIGHBOURS, near + count);
         TRY(move(refinement, i, over, err));
         for (int m = 0; m < count && !*over; m++)
             TRY(move(refinement, near[m].segment, over, err));

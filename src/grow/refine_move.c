@@ -197,7 +197,8 @@ static void find_candidates(const Surgery *surgery, int32_t subtree, int32_t ori
     }
     for (int side = 0; side < 2 && below[0] >= 0; side++)
         propose(surgery, subtree, below[side], out);
-    int found = grid_nearest(&surgery->room.grid, arbor->shape[subtree].to, NEIGHBOURS, near);
+    int found =
+        grid_nearest(&surgery->room.grid, arbor->shape[subtree].to, INFINITY, NEIGHBOURS, near);
     for (int k = 0; k < found; k++)
         if (near[k].segment != fork && !arbor_is_below(arbor, near[k].segment, subtree))
             propose(surgery, subtree, near[k].segment, out);

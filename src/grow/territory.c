@@ -45,7 +45,7 @@ static Status enter_terminals(Survey *survey, const Network *net, Err *err)
     TRY(grid_reset(&survey->grid, domain_bounds(survey->domain),
                    cells_per_terminal * (double)net->terminals, net->n, 1, err));
     for (size_t i = 0; i < net->n; i++) {
-        if (net->segment[i].child[0] >= 0)
+        if (!network_is_end(net, (int32_t)i))
             continue;
         Capsule end = {net->position[i], net->position[i], 0};
         TRY(grid_add(&survey->grid, 0, (int32_t)i, true, grid_item(&survey->grid, end, 0), err));
@@ -65,7 +65,7 @@ static void survey_row(size_t index, int worker, void *context)
         Near nearest;
         at.x = survey->low.x + ((double)x + 0.5) * step.x;
         if (domain_inside(survey->domain, at, 0) &&
-            grid_nearest(&survey->grid, at, 1, &nearest) == 1)
+            grid_nearest(&survey->grid, at, INFINITY, 1, &nearest) == 1)
             points[nearest.segment]++;
     }
 }
@@ -81,7 +81,7 @@ Status territory_count(const Network *net, const Domain *domain, double points, 
                         "territories", err));
     threads_for(survey.count[1] * survey.count[2], threads, survey_row, &survey);
     for (size_t i = 0; i < net->n; i++) {
-        bool terminal = net->segment[i].child[0] < 0;
+        bool terminal = network_is_end(net, (int32_t)i);
         uint64_t sum = 0;
         for (int worker = 0; worker < threads; worker++)
             sum += survey.points[(size_t)worker * net->n + i];

@@ -49,9 +49,7 @@ static Status set_shares(Network *net, const GrowParams *params, const Domain *d
     if (territory)
         TRY(territory_count(net, domain, points, threads_of(params), share, err));
     for (size_t i = 0; i < net->n; i++) {
-        const Segment *segment = &net->segment[i];
-        bool terminal = segment->child[0] < 0 && segment->parent >= 0;
-        net->trait[i].share = territory ? share[i] : terminal;
+        net->trait[i].share = territory ? share[i] : network_is_end(net, (int32_t)i);
     }
     return STATUS_OK;
 }
@@ -105,7 +103,6 @@ static Status reweigh(Network *net, const GrowParams *params, const double *flow
     for (size_t i = 0; i < net->n; i++)
         radius[i] = (double)net->segment[i].radius;
     TRY(weigh_segments(net, params, flow, radius, 1, &change, err));
-    network_resum(net);
     network_refresh(net, threads_of(params));
     return STATUS_OK;
 }

@@ -1,0 +1,358 @@
+/* Tossed points are sorted into square tiles of grid cells, and each tile's are planned and connected
+ * one by one. What they need of the tree then stays in the processor's cache, however large the tree
+ * is.
+ *
+ * Tiles are worked on side by side. A tile's points may look at, and change, what lies in its zone,
+ * which reaches half a tile further to all sides; tiles are taken in 2 x 2 (x 2) colours, so that zones
+ * worked on at a time have nothing in common, and a tree does not depend on how many threads there
+ * are. The few points that would need more than the zone are left over, and connected at the end.
+ * Seams move from pass to pass. Small trees are one tile. */
+#include "grow/pass.h"
+
+#include <stdlib.h>
+
+/* Cells along a tile: about 1,500 terminals. */
+enum { EDGE_2D = 48, EDGE_3D = 12 };
+/* The least number of tiles that are worth it, and points in each. */
+enum { LEAST_TILES = 4, LEAST_POINTS = 16 };
+/* Of a tile's points, one in so many may be connected there; a third is to be expected. */
+enum { POINTS_PER_CONNECTED = 2 };
+/* How many points ahead memory is asked for. */
+enum { AHEAD = 2 };
+
+struct Tile {
+    size_t first, end; /* points in `order` */
+    Box zone;
+    const int32_t *spare; /* nodes that it may use */
+    size_t most, made;    /* terminals */
+    size_t over;          /* points left over, which are then the first ones */
+    size_t *left;         /* by tree */
+    Tally tally;
+    Status status;
+    Err err;
+};
+
+Status pass_init(Pass *pass, int candidates, size_t trees, int threads, Err *err)
+{
+    *pass = (Pass){.trees = trees, .threads = threads};
+    TRY(mem_calloc(&pass->planner, (size_t)threads, sizeof *pass->planner, "threads", err));
+    for (int i = 0; i < threads; i++)
+        TRY(planner_init(&pass->planner[i], candidates, err));
+    return STATUS_OK;
+}
+
+void pass_release(Pass *pass)
+{
+    for (int i = 0; pass->planner && i < pass->threads; i++)
+        planner_release(&pass->planner[i]);
+    free(pass->planner);
+    free(pass->point);
+    free(pass->tile_of);
+    free(pass->order);
+    free(pass->tile);
+    free(pass->left);
+    free(pass->misses);
+    *pass = (Pass){0};
+}
+
+Status pass_use_grid(Pass *pass, const Grid *grid, Err *err)
+{
+    free(pass->misses);
+    free(pass->tile);
+    free(pass->left);
+    pass->misses = NULL;
+    pass->tile = NULL;
+    pass->left = NULL;
+    pass->tile_edge = grid->count[2] > 1 ? EDGE_3D : EDGE_2D;
+    pass->tiles = 1;
+    size_t whole = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        size_t tiles = (size_t)(grid->count[axis] / pass->tile_edge);
+        whole *= tiles > 1 ? tiles : 1;
+        pass->tiles *= grid->count[axis] > 1 ? tiles + 2 : 1; /* with those that stick out */
+    }
+    pass->is_tiled = whole >= LEAST_TILES;
+    TRY(mem_calloc(&pass->tile, pass->tiles, sizeof *pass->tile, "tiles", err));
+    TRY(mem_calloc(&pass->left, pass->tiles * pass->trees, sizeof *pass->left, "tiles", err));
+    return mem_calloc(&pass->misses, grid_cells(grid), sizeof *pass->misses, "grid cells", err);
+}
+
+Status pass_start(Pass *pass, size_t points, Err *err)
+{
+    pass->n = points;
+    pass->number++;
+    if (points <= pass->capacity)
+        return STATUS_OK;
+    free(pass->tile_of);
+    free(pass->order);
+    pass->tile_of = pass->order = NULL;
+    TRY(mem_reserve(&pass->point, &pass->capacity, points, sizeof *pass->point, "points", err));
+    TRY(mem_calloc(&pass->tile_of, pass->capacity, sizeof *pass->tile_of, "points", err));
+    return mem_calloc(&pass->order, pass->capacity, sizeof *pass->order, "points", err);
+}
+
+/* Connects a terminal; `made` are the nodes to be used. */
+static Status connect(const Site *site, int worker, Box zone, const Connection *connection,
+                      Vec3 terminal, const int32_t made[2], Err *err)
+{
+    const int32_t segment[PARTS] = {made[0], connection->segment, made[1]};
+    GridItem item[PARTS];
+    for (int i = 0; i < PARTS; i++)
+        item[i] = place_item(site->net, site->grid, site->rules, connection, terminal, i);
+    grid_remove(site->grid, connection->segment);
+    network_split(site->net, connection->segment, connection->bifurcation, terminal, made, zone);
+    for (int i = 0; i < PARTS; i++) {
+        bool is_end = site->net->segment[segment[i]].child[0] < 0;
+        TRY(grid_add(site->grid, worker, segment[i], is_end, item[i], err));
+    }
+    return STATUS_OK;
+}
+
+/* What is done by one thread at a time. */
+typedef struct Running {
+    Pass *pass;
+    const Site *site;
+    bool skip;
+    const uint32_t *turn; /* the tiles of one colour */
+} Running;
+
+/* Asks for memory that points further on will need. */
+static void fetch(const Pass *pass, const Tile *tile, const Grid *grid, size_t k)
+{
+    if (k + 3 * AHEAD < tile->end)
+        grid_fetch_cell(grid, pass->point[pass->order[k + 3 * AHEAD]]);
+    if (k + 2 * AHEAD < tile->end)
+        grid_fetch_tags(grid, pass->point[pass->order[k + 2 * AHEAD]]);
+    if (k + AHEAD < tile->end)
+        grid_fetch_items(grid, pass->point[pass->order[k + AHEAD]]);
+}
+
+static PlanState run_point(const Running *running, int worker, Tile *tile, Vec3 point)
+{
+    const Site *site = running->site;
+    uint8_t *misses = &running->pass->misses[grid_cell_at(site->grid, point)];
+    if (running->skip && *misses == PASS_FULL) {
+        tile->tally.skipped++;
+        return PLAN_STATES;
+    }
+    Connection connection;
+    if (tile->made == tile->most)
+        return PLAN_BEYOND;
+    PlanState state = plan_make(site, &running->pass->planner[worker], tile->zone, tile->left,
+                                point, &connection);
+    if (state == PLAN_CROWDED)
+        *misses = (uint8_t)(*misses + (*misses < PASS_FULL));
+    if (state == PLAN_READY) {
+        *misses = 0;
+        tile->left[network_tree(site->net, connection.segment)]--;
+        tile->status = connect(site, worker, tile->zone, &connection, point,
+                               tile->spare + 2 * tile->made++, &tile->err);
+    }
+    return state;
+}
+
+static void run_tile(const Running *running, int worker, Tile *tile)
+{
+    Pass *pass = running->pass;
+    for (size_t k = tile->first; k < tile->end && tile->status == STATUS_OK; k++) {
+        fetch(pass, tile, running->site->grid, k);
+        PlanState state = run_point(running, worker, tile, pass->point[pass->order[k]]);
+        if (state == PLAN_BEYOND)
+            pass->order[tile->first + tile->over++] = pass->order[k];
+        else if (state < PLAN_STATES)
+            tile->tally.count[state]++;
+    }
+}
+
+static void run_turn(size_t index, int worker, void *context)
+{
+    const Running *running = context;
+    run_tile(running, worker, &running->pass->tile[running->turn[index]]);
+}
+
+/* How the grid is cut into tiles for one pass. */
+typedef struct Cut {
+    int edge, shift[3], count[3];
+} Cut;
+
+/* Every pass moves the seams on by the golden section of a tile, along each axis. */
+static Cut make_cut(const Pass *pass, const Grid *grid)
+{
+    const double golden = 0.618033988749895;
+    Cut cut = {.edge = pass->tile_edge};
+    double at = golden * pass->number;
+    for (int axis = 0; axis < 3; axis++) {
+        int cells = grid->count[axis];
+        cut.shift[axis] = cells > 1 ? (int)((at - floor(at)) * cut.edge) : 0;
+        cut.count[axis] = (cells - 1 + cut.shift[axis]) / cut.edge + 1;
+    }
+    return cut;
+}
+
+static size_t tile_at(const Cut *cut, const Grid *grid, Vec3 point)
+{
+    GridBox own = grid_box(grid, point, 0);
+    size_t index = 0;
+    for (int axis = 2; axis >= 0; axis--)
+        index = index * cut->count[axis] + (own.low[axis] + cut->shift[axis]) / cut->edge;
+    return index;
+}
+
+static Box zone_of(const Cut *cut, const Grid *grid, size_t index)
+{
+    GridBox box;
+    for (int axis = 0; axis < 3; axis++) {
+        int at = (int)(index % cut->count[axis]) * cut->edge - cut->shift[axis];
+        index /= cut->count[axis];
+        box.low[axis] = at - cut->edge / 2;
+        box.high[axis] = at + cut->edge + cut->edge / 2 - 1;
+    }
+    return grid_zone(grid, box);
+}
+
+static int colour_of(const Cut *cut, size_t index)
+{
+    int x = (int)(index % cut->count[0]), y = (int)(index / cut->count[0] % cut->count[1]);
+    int z = (int)(index / cut->count[0] / cut->count[1]);
+    return (x & 1) | (y & 1) << 1 | (z & 1) << 2;
+}
+
+/* Sorts the points by tile. */
+static void sort(Pass *pass, const Cut *cut, const Grid *grid, size_t tiles)
+{
+    for (size_t t = 0; t < tiles; t++)
+        pass->tile[t] = (Tile){0};
+    for (size_t i = 0; i < pass->n; i++) {
+        size_t t = tile_at(cut, grid, pass->point[i]);
+        pass->tile_of[i] = (uint32_t)t;
+        pass->tile[t].end++;
+    }
+    size_t sum = 0;
+    for (size_t t = 0; t < tiles; t++) {
+        size_t points = pass->tile[t].end;
+        pass->tile[t].first = pass->tile[t].end = sum;
+        sum += points;
+    }
+    for (size_t i = 0; i < pass->n; i++)
+        pass->order[pass->tile[pass->tile_of[i]].end++] = (uint32_t)i;
+}
+
+/* A tile's part of a whole, by its points. */
+static size_t part_of(const Pass *pass, const Tile *tile, size_t whole)
+{
+    return whole * (tile->end - tile->first) / pass->n;
+}
+
+/* Gives every tile its zone, nodes, and its part of what may be connected. */
+static void endow(Pass *pass, const Site *site, const Cut *cut, size_t tiles, size_t most)
+{
+    size_t nodes = 0;
+    for (size_t t = 0; t < tiles; t++) {
+        Tile *tile = &pass->tile[t];
+        size_t points = tile->end - tile->first, part = part_of(pass, tile, most);
+        tile->zone = zone_of(cut, site->grid, t);
+        tile->most = points / POINTS_PER_CONNECTED < part ? points / POINTS_PER_CONNECTED : part;
+        tile->left = pass->left + t * pass->trees;
+        for (size_t k = 0; k < pass->trees; k++)
+            tile->left[k] = part_of(pass, tile, site->limit[k]);
+        nodes += 2 * tile->most;
+    }
+    network_spare(site->net, nodes);
+    nodes = 0;
+    for (size_t t = 0; t < tiles; t++) {
+        pass->tile[t].spare = site->net->spare + nodes;
+        nodes += 2 * pass->tile[t].most;
+    }
+}
+
+/* Takes the nodes that tiles have used off the spare ones. */
+static void settle_nodes(Pass *pass, Network *net, size_t tiles)
+{
+    size_t kept = 0, k = 0;
+    for (size_t t = 0; t < tiles; t++) {
+        const Tile *tile = &pass->tile[t];
+        for (k += 2 * tile->made; net->spare + k < tile->spare + 2 * tile->most; k++)
+            net->spare[kept++] = net->spare[k];
+    }
+    for (; k < net->spares; k++)
+        net->spare[kept++] = net->spare[k];
+    net->spares = kept;
+}
+
+/* Takes off the limits what trees got in tiles. */
+static void settle_limits(const Pass *pass, const Site *site, size_t tiles)
+{
+    for (size_t k = 0; k < pass->trees; k++) {
+        size_t got = 0;
+        for (size_t t = 0; t < tiles; t++) {
+            const Tile *tile = &pass->tile[t];
+            got += part_of(pass, tile, site->limit[k]) - tile->left[k];
+        }
+        site->limit[k] -= got;
+    }
+}
+
+/* Adds up what became of the points; those left over are listed at the beginning of `order`. */
+static Status gather(Pass *pass, const Site *site, size_t tiles, size_t *made, size_t *over,
+                     Err *err)
+{
+    *over = 0;
+    for (size_t t = 0; t < tiles; t++) {
+        const Tile *tile = &pass->tile[t];
+        if (tile->status != STATUS_OK)
+            return err_set(err, tile->status, "%s", tile->err.text);
+        *made += tile->made;
+        pass->tally.skipped += tile->tally.skipped;
+        for (int state = 0; state < PLAN_STATES; state++)
+            pass->tally.count[state] += tile->tally.count[state];
+        for (size_t k = 0; k < tile->over; k++)
+            pass->order[(*over)++] = pass->order[tile->first + k];
+    }
+    settle_nodes(pass, site->net, tiles);
+    return STATUS_OK;
+}
+
+/* Connects the points in tiles, and lists those left over. */
+static Status run_tiles(Pass *pass, const Site *site, size_t most, bool skip, size_t *made,
+                        size_t *over, Err *err)
+{
+    enum { COLOURS = 8 };
+    Cut cut = make_cut(pass, site->grid);
+    size_t tiles = (size_t)cut.count[0] * cut.count[1] * cut.count[2];
+    sort(pass, &cut, site->grid, tiles);
+    endow(pass, site, &cut, tiles, most);
+    uint32_t *turn = pass->tile_of; /* has served */
+    for (int colour = 0; colour < COLOURS; colour++) {
+        size_t count = 0;
+        for (size_t t = 0; t < tiles; t++)
+            if (colour_of(&cut, t) == colour)
+                turn[count++] = (uint32_t)t;
+        Running running = {pass, site, skip, turn};
+        threads_for(count, pass->threads, run_turn, &running);
+    }
+    settle_limits(pass, site, tiles);
+    return gather(pass, site, tiles, made, over, err);
+}
+
+Status pass_run(Pass *pass, const Site *site, size_t most, bool skip, size_t *made, Err *err)
+{
+    *made = 0;
+    pass->tally = (Tally){0};
+    size_t over = pass->n;
+    if (pass->is_tiled && pass->n >= LEAST_POINTS * pass->tiles)
+        TRY(run_tiles(pass, site, most, skip, made, &over, err));
+    else
+        for (size_t i = 0; i < pass->n; i++)
+            pass->order[i] = (uint32_t)i;
+    size_t rest = most - *made < over ? most - *made : over;
+    network_spare(site->net, 2 * rest);
+    const Vec3 everywhere = vec3(INFINITY, INFINITY, INFINITY);
+    pass->tile[0] = (Tile){.end = over,
+                           .zone = {vec3_scale(everywhere, -1), everywhere},
+                           .spare = site->net->spare,
+                           .most = rest,
+                           .left = site->limit};
+    Running running = {pass, site, skip, NULL};
+    run_tile(&running, 0, &pass->tile[0]);
+    return gather(pass, site, 1, made, &over, err);
+}
