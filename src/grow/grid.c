@@ -16,10 +16,12 @@
  * holds a cell, and in what order, has no influence on any answer. */
 #include "grow/grid.h"
 
+#include <assert.h>
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK_SIZES = 56, SLAB_TAGS = 1 << 14, SMALL_BOX = 4 };
+enum { BLOCK_SIZES = 56, SLAB_TAGS = 1 << 14, SMALL_BOX = 4, CATCH = 64 };
 
 /* Memory for blocks that never moves. */
 typedef struct GridSlab {
@@ -340,7 +342,10 @@ static inline float point_distance2(const GridItem *item, const float point[3])
     float wx = point[0] - a[0], wy = point[1] - a[1], wz = point[2] - a[2];
     float dot = ux * wx + uy * wy + uz * wz;
     float length2 = ux * ux + uy * uy + uz * uz;
-    float t = dot <= 0 ? 0 : dot >= length2 ? 1 : dot / length2;
+    float along =
+        dot > 0 ? dot : 0; /* selected, not branched to: which end is near is anyone's guess */
+    along = along < length2 ? along : length2;
+    float t = along / (length2 > FLT_MIN ? length2 : FLT_MIN);
     float dx = wx - t * ux, dy = wy - t * uy, dz = wz - t * uz;
     return dx * dx + dy * dy + dz * dz;
 }
@@ -350,6 +355,73 @@ static inline float end_distance2(const GridItem *item, const float point[3])
     const float *end = item->distal;
     float dx = point[0] - end[0], dy = point[1] - end[1], dz = point[2] - end[2];
     return dx * dx + dy * dy + dz * dz;
+}
+
+/* A few numbers at a time; every compiler knows how, on any machine. */
+enum { LANES = 4 };
+typedef float Floats __attribute__((vector_size(16)));
+typedef int32_t Ints __attribute__((vector_size(16)));
+
+/* The points of segments next to a point. */
+typedef struct Foot {
+    Ints segment;
+    Floats at[3], distance2, radius;
+} Foot;
+
+static inline void transpose(Floats row[LANES])
+{
+    Floats a = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5);
+    Floats b = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5);
+    Floats c = __builtin_shufflevector(row[0], row[1], 2, 6, 3, 7);
+    Floats d = __builtin_shufflevector(row[2], row[3], 2, 6, 3, 7);
+    row[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
+    row[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
+    row[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
+    row[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
+}
+
+static inline Floats pick(Ints mask, Floats yes, Floats no)
+{
+    return (Floats)((mask & (Ints)yes) | (~mask & (Ints)no));
+}
+
+/* As point_distance2, of the k-th and the next segments of a cell; the last one's again where there are
+ * no more. */
+static inline Foot foot_of(const Grid *grid, const GridCell *cell, uint32_t k, const float point[3])
+{
+    static_assert(sizeof(GridItem) == 2 * sizeof(Floats), "two rows of a matrix");
+    Foot out;
+    Floats front[LANES], back[LANES];
+    for (uint32_t lane = 0; lane < LANES; lane++) {
+        int32_t segment = cell->tag[k + lane < cell->count ? k + lane : cell->count - 1] >> 1;
+        const char *item = (const char *)&grid->item[segment];
+        out.segment[lane] = segment;
+        memcpy(&front[lane], item, sizeof front[lane]);
+        memcpy(&back[lane], item + sizeof front[lane], sizeof back[lane]);
+    }
+    transpose(front);
+    transpose(back);
+    Floats ux = front[3] - front[0], uy = back[0] - front[1], uz = back[1] - front[2];
+    Floats wx = point[0] - front[0], wy = point[1] - front[1], wz = point[2] - front[2];
+    Floats dot = ux * wx + uy * wy + uz * wz, length2 = ux * ux + uy * uy + uz * uz;
+    Floats zero = {0}, least = zero + FLT_MIN;
+    Floats along = pick(dot > 0, dot, zero);
+    along = pick(along < length2, along, length2);
+    Floats t = along / pick(length2 > least, length2, least);
+    Floats dx = wx - t * ux, dy = wy - t * uy, dz = wz - t * uz;
+    out.at[0] = front[0] + t * ux;
+    out.at[1] = front[1] + t * uy;
+    out.at[2] = front[2] + t * uz;
+    out.distance2 = dx * dx + dy * dy + dz * dz;
+    out.radius = back[2];
+    return out;
+}
+
+static inline bool any(Ints mask)
+{
+    uint64_t half[2];
+    memcpy(half, &mask, sizeof half);
+    return (half[0] | half[1]) != 0;
 }
 
 size_t grid_cell_at(const Grid *grid, Vec3 point)
@@ -377,16 +449,30 @@ typedef struct Query {
     bool terminals_only;
 } Query;
 
+/* As cell_room, with distances from segments. */
+static GridRoom cell_room_along(const Grid *grid, const GridCell *cell, const Query *query)
+{
+    Ints in = {0};
+    for (uint32_t k = 0; k < cell->count; k += LANES) {
+        Foot foot = foot_of(grid, cell, k, query->at);
+        if (any(foot.distance2 < query->distance2))
+            return GRID_TOO_NEAR;
+        Floats radius = query->thickness * foot.radius;
+        in |= foot.distance2 < radius * radius;
+    }
+    return any(in) ? GRID_IN_VESSEL : GRID_FREE;
+}
+
 static GridRoom cell_room(const Grid *grid, size_t index, const Query *query)
 {
     const GridCell *cell = &grid->cell[index];
+    if (!query->terminals_only)
+        return cell_room_along(grid, cell, query);
     GridRoom room = GRID_FREE;
     for (uint32_t i = 0; i < cell->count; i++) {
         const GridItem *item = &grid->item[cell->tag[i] >> 1];
         float distance2 = point_distance2(item, query->at);
-        if (query->terminals_only
-                ? (cell->tag[i] & 1) && end_distance2(item, query->at) < query->distance2
-                : distance2 < query->distance2)
+        if ((cell->tag[i] & 1) && end_distance2(item, query->at) < query->distance2)
             return GRID_TOO_NEAR;
         float radius = query->thickness * item->radius;
         if (distance2 < radius * radius)
@@ -512,4 +598,78 @@ int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *o
         gather_ring(&search, ring);
     }
     return search.count;
+}
+
+/* Segments found, as numbers that order like nearer(): the bits of a distance that is not negative,
+ * then the segment. */
+typedef struct Catch {
+    uint64_t key[CATCH + LANES];
+    size_t n;
+} Catch;
+
+/* The bounds of a cell along an axis; the outermost ones have none. */
+static void bounds_of(const Grid *grid, int cell, int axis, float out[2])
+{
+    out[0] = cell > 0 ? (float)(cell * grid->edge) : -FLT_MAX;
+    out[1] = cell < grid->count[axis] - 1 ? (float)((cell + 1) * grid->edge) : FLT_MAX;
+}
+
+/* Catches those segments of a cell whose point next to `point` is in this very cell, so each once. */
+static void catch_cell(const Grid *grid, const GridCell *cell, float bounds[3][2],
+                       const float point[3], float reach2, Catch *out)
+{
+    size_t n = out->n;
+    for (uint32_t k = 0; k < cell->count; k += LANES) {
+        Foot foot = foot_of(grid, cell, k, point);
+        Ints in = foot.distance2 <= reach2;
+        for (int axis = 0; axis < 3; axis++)
+            in &= (foot.at[axis] >= bounds[axis][0]) & (foot.at[axis] < bounds[axis][1]);
+        Ints bits = (Ints)foot.distance2;
+        for (int lane = 0; lane < LANES; lane++) {
+            out->key[n] = (uint64_t)(uint32_t)bits[lane] << 32 | (uint32_t)foot.segment[lane];
+            n += (k + lane < cell->count) & in[lane];
+        }
+    }
+    out->n = n;
+}
+
+/* Sorts by counting how many are less, which needs no branches. */
+static void sort_catch(const Catch *found, int limit, Near *out)
+{
+    for (size_t i = 0; i < found->n; i++) {
+        int less = 0;
+        for (size_t j = 0; j < found->n; j++)
+            less += found->key[j] < found->key[i];
+        if (less < limit) {
+            uint32_t bits = (uint32_t)(found->key[i] >> 32);
+            out[less].segment = (int32_t)(uint32_t)found->key[i];
+            memcpy(&out[less].distance2, &bits, sizeof bits);
+        }
+    }
+}
+
+bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, Near *out)
+{
+    Catch found;
+    float at[3], reach2 = (float)(reach * reach), bounds[3][2];
+    found.n = 0;
+    store(grid, point, at);
+    GridBox box = grid_box(grid, point, reach * (1 + 1e-6) + grid->rounding);
+    for (int z = box.low[2]; z <= box.high[2]; z++) {
+        bounds_of(grid, z, 2, bounds[2]);
+        for (int y = box.low[1]; y <= box.high[1]; y++) {
+            bounds_of(grid, y, 1, bounds[1]);
+            for (int x = box.low[0]; x <= box.high[0]; x++) {
+                const GridCell *cell = &grid->cell[grid_index(grid, x, y, z)];
+                bounds_of(grid, x, 0, bounds[0]);
+                if (found.n + cell->count > CATCH)
+                    return false;
+                catch_cell(grid, cell, bounds, at, reach2, &found);
+            }
+        }
+    }
+    if (found.n < (size_t)limit)
+        return false;
+    sort_catch(&found, limit, out);
+    return true;
 }

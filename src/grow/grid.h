@@ -119,6 +119,10 @@ GridRoom grid_room(const Grid *grid, Vec3 point, double distance, bool terminals
  * `within` mm, along each axis, to tell. */
 int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *out);
 
+/* The same if there are `limit` within `reach` mm, and not very many more; else false, with *out
+ * undefined. */
+bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, Near *out);
+
 /* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
  * Detection, 2005, sec. 5.1.9]. */
 double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);

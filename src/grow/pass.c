@@ -23,6 +23,8 @@ enum { AHEAD = 2 };
 struct Tile {
     size_t first, end; /* points in `order` */
     Box zone;
+    GridBox box; /* a little more than its own cells */
+    bool warm;
     const int32_t *spare; /* nodes that it may use */
     size_t most, made;    /* terminals */
     size_t over;          /* points left over, which are then the first ones */
@@ -151,9 +153,32 @@ static PlanState run_point(const Running *running, int worker, Tile *tile, Vec3 
     return state;
 }
 
+/* Asks for all that lies in the cells of a zone, in one go: found one by one it would be late. */
+static void warm(const Site *site, const GridBox *box)
+{
+    const Grid *grid = site->grid;
+    for (int step = 0; step < 2; step++)
+        for (int z = box->low[2]; z <= box->high[2]; z++)
+            for (int y = box->low[1]; y <= box->high[1]; y++)
+                for (int x = box->low[0]; x <= box->high[0]; x++) {
+                    const GridCell *cell = &grid->cell[grid_index(grid, x, y, z)];
+                    if (step == 0)
+                        __builtin_prefetch(cell->tag);
+                    for (uint32_t i = 0; step == 1 && i < cell->count; i++) {
+                        int32_t segment = cell->tag[i] >> 1;
+                        __builtin_prefetch(&grid->item[segment]);
+                        __builtin_prefetch(&site->net->segment[segment]);
+                        __builtin_prefetch(&site->net->sensitivity[segment]);
+                        __builtin_prefetch(&site->net->position[segment]);
+                    }
+                }
+}
+
 static void run_tile(const Running *running, int worker, Tile *tile)
 {
     Pass *pass = running->pass;
+    if (tile->warm)
+        warm(running->site, &tile->box);
     for (size_t k = tile->first; k < tile->end && tile->status == STATUS_OK; k++) {
         fetch(pass, tile, running->site->grid, k);
         PlanState state = run_point(running, worker, tile, pass->point[pass->order[k]]);
@@ -210,6 +235,21 @@ static Box zone_of(const Cut *cut, const Grid *grid, size_t index)
     return grid_zone(grid, box);
 }
 
+/* A tile's cells and those next to them, as far as there are any. */
+static GridBox box_of(const Cut *cut, const Grid *grid, size_t index)
+{
+    enum { MARGIN = 1 };
+    GridBox box;
+    for (int axis = 0; axis < 3; axis++) {
+        int at = (int)(index % cut->count[axis]) * cut->edge - cut->shift[axis];
+        int low = at - MARGIN, high = at + cut->edge - 1 + MARGIN, last = grid->count[axis] - 1;
+        index /= cut->count[axis];
+        box.low[axis] = low > 0 ? low : 0;
+        box.high[axis] = high < last ? high : last;
+    }
+    return box;
+}
+
 static int colour_of(const Cut *cut, size_t index)
 {
     int x = (int)(index % cut->count[0]), y = (int)(index / cut->count[0] % cut->count[1]);
@@ -251,6 +291,8 @@ static void endow(Pass *pass, const Site *site, const Cut *cut, size_t tiles, si
         Tile *tile = &pass->tile[t];
         size_t points = tile->end - tile->first, part = part_of(pass, tile, most);
         tile->zone = zone_of(cut, site->grid, t);
+        tile->box = box_of(cut, site->grid, t);
+        tile->warm = true;
         tile->most = points / POINTS_PER_CONNECTED < part ? points / POINTS_PER_CONNECTED : part;
         tile->left = pass->left + t * pass->trees;
         for (size_t k = 0; k < pass->trees; k++)

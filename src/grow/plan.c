@@ -26,6 +26,23 @@ static int cheapest(const Connection *connection, int count)
     return best;
 }
 
+/* The nearest segments. Looks first as far as was enough for the last points, and a little more. */
+static int find_near(const Site *site, Planner *planner, double within, Vec3 terminal)
+{
+    const Grid *grid = site->grid;
+    int limit = site->candidates;
+    double reach = planner->reach;
+    int count = limit;
+    if (!(reach + grid->edge < within) ||
+        !grid_nearest_quick(grid, terminal, reach, limit, planner->near))
+        count = grid_nearest(grid, terminal, within, limit, planner->near);
+    if (count < limit)
+        return count;
+    double last = sqrt((double)planner->near[limit - 1].distance2);
+    planner->reach += (reach > 0 ? 0.1 : 1) * (1.25 * last - reach);
+    return last + 2 * grid->edge < within ? count : -1; /* whichever search it was */
+}
+
 /* What the nearest segments have to offer to a terminal. */
 typedef struct Offers {
     int count; /* connections, in the planner */
@@ -36,8 +53,7 @@ static Offers collect(const Site *site, Planner *planner, Box zone, const size_t
                       Vec3 terminal)
 {
     Offers out = {0};
-    int near = grid_nearest(site->grid, terminal, grid_clearance(zone, terminal), site->candidates,
-                            planner->near);
+    int near = find_near(site, planner, grid_clearance(zone, terminal), terminal);
     out.beyond = near < 0;
     for (int i = 0; i < near && !out.beyond; i++) {
         int32_t segment = planner->near[i].segment, tree = network_tree(site->net, segment);

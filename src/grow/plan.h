@@ -34,6 +34,7 @@ typedef struct Site {
 typedef struct Planner {
     Near *near; /* candidates of each */
     Connection *connection;
+    double reach; /* mm; a guess of how far away they are */
 } Planner;
 
 MUST_CHECK Status planner_init(Planner *planner, int candidates, Err *err);
