@@ -358,7 +358,7 @@ static inline float end_distance2(const GridItem *item, const float point[3])
 }
 
 /* A few numbers at a time; every compiler knows how, on any machine. */
-enum { LANES = 4 };
+enum { LANES = GRID_LANES };
 typedef float Floats __attribute__((vector_size(16)));
 typedef int32_t Ints __attribute__((vector_size(16)));
 
@@ -385,35 +385,42 @@ static inline Floats pick(Ints mask, Floats yes, Floats no)
     return (Floats)((mask & (Ints)yes) | (~mask & (Ints)no));
 }
 
-/* As point_distance2, of the k-th and the next segments of a cell; the last one's again where there are
- * no more. */
-static inline Foot foot_of(const Grid *grid, const GridCell *cell, uint32_t k, const float point[3])
+/* The items of the k-th and the next segments of a cell, number by number; the last one's again where
+ * there are no more. */
+static inline void load_items(const Grid *grid, const GridCell *cell, uint32_t k,
+                              Floats out[2 * LANES], Ints *segments)
 {
     static_assert(sizeof(GridItem) == 2 * sizeof(Floats), "two rows of a matrix");
-    Foot out;
-    Floats front[LANES], back[LANES];
     for (uint32_t lane = 0; lane < LANES; lane++) {
         int32_t segment = cell->tag[k + lane < cell->count ? k + lane : cell->count - 1] >> 1;
         const char *item = (const char *)&grid->item[segment];
-        out.segment[lane] = segment;
-        memcpy(&front[lane], item, sizeof front[lane]);
-        memcpy(&back[lane], item + sizeof front[lane], sizeof back[lane]);
+        (*segments)[lane] = segment;
+        memcpy(&out[lane], item, sizeof *out);
+        memcpy(&out[LANES + lane], item + sizeof *out, sizeof *out);
     }
-    transpose(front);
-    transpose(back);
-    Floats ux = front[3] - front[0], uy = back[0] - front[1], uz = back[1] - front[2];
-    Floats wx = point[0] - front[0], wy = point[1] - front[1], wz = point[2] - front[2];
+    transpose(out);
+    transpose(out + LANES);
+}
+
+/* As point_distance2, of such segments. */
+static inline Foot foot_of(const Grid *grid, const GridCell *cell, uint32_t k, const float point[3])
+{
+    Foot out;
+    Floats item[2 * LANES];
+    load_items(grid, cell, k, item, &out.segment);
+    Floats ux = item[3] - item[0], uy = item[4] - item[1], uz = item[5] - item[2];
+    Floats wx = point[0] - item[0], wy = point[1] - item[1], wz = point[2] - item[2];
     Floats dot = ux * wx + uy * wy + uz * wz, length2 = ux * ux + uy * uy + uz * uz;
     Floats zero = {0}, least = zero + FLT_MIN;
     Floats along = pick(dot > 0, dot, zero);
     along = pick(along < length2, along, length2);
     Floats t = along / pick(length2 > least, length2, least);
     Floats dx = wx - t * ux, dy = wy - t * uy, dz = wz - t * uz;
-    out.at[0] = front[0] + t * ux;
-    out.at[1] = front[1] + t * uy;
-    out.at[2] = front[2] + t * uz;
+    out.at[0] = item[0] + t * ux;
+    out.at[1] = item[1] + t * uy;
+    out.at[2] = item[2] + t * uz;
     out.distance2 = dx * dx + dy * dy + dz * dz;
-    out.radius = back[2];
+    out.radius = item[6];
     return out;
 }
 
@@ -422,6 +429,36 @@ static inline bool any(Ints mask)
     uint64_t half[2];
     memcpy(half, &mask, sizeof half);
     return (half[0] | half[1]) != 0;
+}
+
+GridProbe grid_probe(const GridItem *item, double apart, double per_radius)
+{
+    const double more = 1 + 1e-5;
+    GridProbe out = {.apart = (float)(apart * more), .per_radius = (float)(per_radius * more)};
+    for (int axis = 0; axis < 3; axis++) {
+        float a = item->proximal[axis], b = item->distal[axis];
+        out.low[axis] = a < b ? a : b;
+        out.high[axis] = a < b ? b : a;
+    }
+    return out;
+}
+
+unsigned grid_meet(const Grid *grid, const GridCell *cell, uint32_t k, const GridProbe *probe)
+{
+    Ints segments;
+    Floats item[2 * LANES];
+    load_items(grid, cell, k, item, &segments);
+    Floats need = probe->apart + probe->per_radius * item[6];
+    Ints off = {0};
+    for (int axis = 0; axis < 3; axis++) {
+        Floats a = item[axis], b = item[3 + axis];
+        Floats low = pick(a < b, a, b), high = pick(a < b, b, a);
+        off |= (probe->low[axis] - high > need) | (low - probe->high[axis] > need);
+    }
+    unsigned bits = 0;
+    for (uint32_t lane = 0; lane < LANES && k + lane < cell->count; lane++)
+        bits |= (unsigned)(1 + off[lane]) << lane;
+    return bits;
 }
 
 size_t grid_cell_at(const Grid *grid, Vec3 point)

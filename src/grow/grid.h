@@ -131,20 +131,18 @@ double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
 double grid_distance2(const GridItem *a, const GridItem *b);
 double grid_length2(const GridItem *item);
 
-/* Whether the boxes around two items' centrelines are within `distance` of each other; a little more
- * is allowed for rounding. */
-static inline bool grid_boxes_within(const GridItem *a, const GridItem *b, float distance)
-{
-    for (int i = 0; i < 3; i++) {
-        float a_low = a->proximal[i] < a->distal[i] ? a->proximal[i] : a->distal[i];
-        float a_high = a->proximal[i] < a->distal[i] ? a->distal[i] : a->proximal[i];
-        float b_low = b->proximal[i] < b->distal[i] ? b->proximal[i] : b->distal[i];
-        float b_high = b->proximal[i] < b->distal[i] ? b->distal[i] : b->proximal[i];
-        if ((a_low - b_high) * 0.999999f > distance || (b_low - a_high) * 0.999999f > distance)
-            return false;
-    }
-    return true;
-}
+/* What is to be met: the box around an item's centreline, and how near to it, mm: `apart` and
+ * `per_radius` of the other's radius. */
+typedef struct GridProbe {
+    float low[3], high[3], apart, per_radius;
+} GridProbe;
+
+GridProbe grid_probe(const GridItem *item, double apart, double per_radius);
+
+/* Which of the next GRID_LANES segments of a cell, from its k-th on, have boxes that near, as bits; a
+ * little more is allowed for rounding. */
+enum { GRID_LANES = 4 };
+unsigned grid_meet(const Grid *grid, const GridCell *cell, uint32_t k, const GridProbe *probe);
 
 /* The cells that meet the cube of twice `distance` about `point`. */
 GridBox grid_box(const Grid *grid, Vec3 point, double distance);

@@ -39,6 +39,11 @@ static double width(const Mending *mending, int32_t i)
     return mending->rules->thickness * (double)mending->net->segment[i].radius;
 }
 
+static double width_there(const Mending *mending, int32_t i)
+{
+    return mending->rules->thickness * (double)mending->grid->item[i].radius;
+}
+
 /* How far apart segments i and j should be at a thickness: pieces of a vessel only have to keep their
  * centrelines apart, and given segments nothing from each other. */
 static double needed(const Mending *mending, int32_t i, int32_t j, double thickness)
@@ -50,9 +55,19 @@ static double needed(const Mending *mending, int32_t i, int32_t j, double thickn
            (network_is_piece(net, i) || network_is_piece(net, j) ? 0 : thickness);
 }
 
+/* By how many mm segment i is too near to another, radii widened by `scale`. Centrelines that touch
+ * are the worst fault there is. */
+static double overlap(const Mending *mending, int32_t i, const GridItem *item, double radius,
+                      double scale, int32_t other)
+{
+    double gap = mending->rules->gap;
+    double need = needed(mending, i, other, scale * (radius + width_there(mending, other)));
+    double apart2 = grid_distance2(item, &mending->grid->item[other]);
+    return apart2 < gap * gap ? mending->rules->widest : need - sqrt(apart2);
+}
+
 /* By how many mm segment i, its radius and the others' widened by `margin` of them, is too short or
- * too near to another `below` an index, *with, which is unchanged when there is none. Centrelines
- * that touch are the worst fault there is. */
+ * too near to another `below` an index, *with, which is unchanged when there is none. */
 static double fault(const Mending *mending, int32_t i, double margin, int32_t below, int32_t *with)
 {
     const Network *net = mending->net;
@@ -61,22 +76,21 @@ static double fault(const Mending *mending, int32_t i, double margin, int32_t be
     Vec3 a = proximal(net, i), b = net->position[i];
     double worst = network_is_piece(net, i) ? 0 : fmax(0, 2 * scale * radius - vec3_distance(a, b));
     GridItem item = grid_item(grid, (Capsule){a, b, scale * radius + gap}, radius);
+    GridProbe probe = grid_probe(&item, scale * radius + gap, scale * mending->rules->thickness);
     size_t index;
     for (GridWalk walk = grid_walk(grid, &item); grid_walk_next(&walk, &index);) {
         const GridCell *cell = &grid->cell[index];
-        for (uint32_t k = 0; k < cell->count; k++) {
-            int32_t other = cell->tag[k] >> 1;
-            const GridItem *there = &grid->item[other];
-            double wide = mending->rules->thickness * (double)there->radius;
-            double need = needed(mending, i, other, scale * (radius + wide));
-            if (other >= below || other == i || !grid_boxes_within(&item, there, (float)need) ||
-                are_joined(net, i, other))
-                continue;
-            double apart2 = grid_distance2(&item, there);
-            double depth = apart2 < gap * gap ? mending->rules->widest : need - sqrt(apart2);
-            if (depth > worst) {
-                worst = depth;
-                *with = other;
+        for (uint32_t k = 0; k < cell->count; k += GRID_LANES) {
+            unsigned near = grid_meet(grid, cell, k, &probe);
+            for (const int32_t *tag = cell->tag + k; near; near >>= 1, tag++) {
+                int32_t other = *tag >> 1;
+                if (!(near & 1) || other >= below || are_joined(net, i, other))
+                    continue;
+                double depth = overlap(mending, i, &item, radius, scale, other);
+                if (depth > worst) {
+                    worst = depth;
+                    *with = other;
+                }
             }
         }
     }

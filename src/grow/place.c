@@ -287,6 +287,7 @@ bool place_is_inside(const Network *net, const Domain *domain, const Connection 
 typedef struct Newcomer {
     const Network *net;
     GridItem item;
+    GridProbe probe;
     double radius;    /* mm */
     double thickness; /* at which all radii count */
     double gap;       /* mm */
@@ -304,6 +305,8 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
                     .thickness = rules->thickness,
                     .gap = rules->gap,
                     .kin = {host, host, host, host}};
+    double per_radius = clearance_reserve * rules->thickness;
+    out.probe = grid_probe(&out.item, per_radius * out.radius + rules->gap, per_radius);
     if (part != FRESH) {
         int32_t node = part == PROXIMAL ? net->segment[host].parent : host;
         out.kin[1] = node;
@@ -321,8 +324,6 @@ static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t othe
     const GridItem *item = &grid->item[other];
     double touch = newcomer->thickness * (newcomer->radius + (double)item->radius);
     double clear = clearance_reserve * touch + newcomer->gap;
-    if (!grid_boxes_within(&newcomer->item, item, (float)clear))
-        return true;
     double apart2 = grid_distance2(&newcomer->item, item);
     if (apart2 >= clear * clear)
         return true;
@@ -333,11 +334,14 @@ static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t othe
 static bool is_clear(const Grid *grid, const Newcomer *newcomer, const GridCell *cell)
 {
     const int32_t *kin = newcomer->kin;
-    for (uint32_t i = 0; i < cell->count; i++) {
-        int32_t other = cell->tag[i] >> 1;
-        if (other != kin[0] && other != kin[1] && other != kin[2] && other != kin[3] &&
-            !is_clear_of(grid, newcomer, other))
-            return false;
+    for (uint32_t k = 0; k < cell->count; k += GRID_LANES) {
+        unsigned near = grid_meet(grid, cell, k, &newcomer->probe);
+        for (const int32_t *tag = cell->tag + k; near; near >>= 1, tag++) {
+            int32_t other = *tag >> 1;
+            if ((near & 1) && other != kin[0] && other != kin[1] && other != kin[2] &&
+                other != kin[3] && !is_clear_of(grid, newcomer, other))
+                return false;
+        }
     }
     return true;
 }
