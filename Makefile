@@ -21,7 +21,7 @@ ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c))
 APP_SOURCES := $(wildcard src/app/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
 FORMATTED := $(sort $(wildcard src/*/*.c src/*/*.h tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
-	tests/power/*.c tests/power/*.h))
+	tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h))
 
 ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o)
 APP_OBJECTS := $(APP_SOURCES:%.c=$(BUILD)/%.o)
@@ -30,6 +30,7 @@ TEST_PROGRAMS := $(TEST_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
 ORACLE := $(BUILD)/tests/check_tree
 POWER_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/power/*.c))
 POWER := $(BUILD)/tests/power/power
+FIT := $(BUILD)/tests/fit/fit_blob
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion \
 	-Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wvla -Wformat=2 -Wcast-qual \
@@ -55,7 +56,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate bench bench-grow bench-render bench-compare verify-all power power-program check program unit \
+.PHONY: all deps demo validate bench bench-grow bench-render bench-compare verify-all power power-program fit-blob check program unit \
 	unit-programs layers format format-check asan tsan \
 	golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
@@ -111,6 +112,9 @@ power: ## plant faults and see what the judge finds; writes its part of docs/VAL
 
 power-program: $(POWER)
 
+fit-blob: $(FIT) ## how far the blob is from the potential; HOW=fit finds its numbers again
+	$(Q)$(FIT) $(HOW)
+
 check: ## every test; ends in "N passed, N failed"
 	$(Q)tools/deps build run check
 	$(Q)JOBS=$(JOBS) tests/check
@@ -144,6 +148,11 @@ $(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/rooms.a
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka
 
+$(FIT): $(BUILD)/tests/fit/fit_blob.o $(BUILD)/rooms.a
+	$(call say,LINK,$@)
+	$(Q)mkdir -p $(@D)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
 $(POWER): $(POWER_OBJECTS) $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
@@ -158,7 +167,7 @@ $(BUILD)/tests/%: tests/oracle/%.c Makefile
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
 $(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
 
--include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d)
+-include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(FIT).d
 
 packages:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
