@@ -266,3 +266,26 @@ bool bvh_any_hit(const Bvh *bvh, Ray ray, double t_min, double t_max)
     }
     return false;
 }
+
+size_t bvh_candidates(const Bvh *bvh, Ray ray, double t_min, double t_max, uint32_t *found)
+{
+    Vec3 inverse = vec3_inverse(ray.direction);
+    uint32_t stack[MAX_DEPTH + 2];
+    int top = 0;
+    size_t n = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+        uint32_t index = stack[--top];
+        const Node *node = &bvh->nodes[index];
+        double t0 = t_min, t1 = t_max;
+        if (!hit_box(ray.origin, inverse, &node->box, &t0, &t1))
+            continue;
+        if (node->n_items == 0) {
+            stack[top++] = node->first;
+            stack[top++] = index + 1;
+        }
+        for (uint32_t i = node->first; i < node->first + node->n_items; i++)
+            found[n++] = bvh->items[i].primitive;
+    }
+    return n;
+}

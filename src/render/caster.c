@@ -1,5 +1,6 @@
 #include "render/caster.h"
 
+#include "render/blobcast.h"
 #include "render/bvh.h"
 #include "render/field.h"
 #include "render/halving.h"
@@ -9,6 +10,8 @@
  * blockers within the second of the lit point or of the light cast no shadow. */
 static const double nearest_seen_mm = 1e-4;
 static const double shadow_slack_mm = 1e-3;
+/* Of a blob neither sees anything nearer than this. */
+static const double blob_nearest_mm = 1e-2;
 
 struct Caster {
     const Scene *scene;
@@ -16,6 +19,8 @@ struct Caster {
     Halving *halving;       /* an implicit model as POV-Ray finds it, or NULL */
     FieldIndex *field;      /* an implicit model by proof, or NULL */
     FieldScratch **scratch; /* one a worker */
+    BlobCast *blob;         /* or NULL */
+    BlobScratch **blob_scratch;
     int workers;
 };
 
@@ -26,7 +31,13 @@ Status caster_new(const Scene *scene, const CellParams *cells, int workers, Cast
     caster->scene = scene;
     caster->workers = workers;
     Status status = STATUS_OK;
-    if (scene->model != SCENE_ISOSURFACE) {
+    if (scene->model == SCENE_BLOB) {
+        TRY_GOTO(blobcast_new(scene, &caster->blob, err));
+        TRY_GOTO(mem_calloc(&caster->blob_scratch, (size_t)workers, sizeof *caster->blob_scratch,
+                            "workspaces", err));
+        for (int i = 0; i < workers; i++)
+            TRY_GOTO(blobscratch_new(caster->blob, &caster->blob_scratch[i], err));
+    } else if (scene->model != SCENE_ISOSURFACE) {
         TRY_GOTO(bvh_build(scene->primitives, scene->n_primitives, &caster->bvh, err));
     } else if (cells) {
         TRY_GOTO(halving_new(scene, cells, &caster->halving, err));
@@ -51,6 +62,10 @@ void caster_free(Caster *caster)
     for (int i = 0; caster->scratch && i < caster->workers; i++)
         fieldscratch_free(caster->scratch[i]);
     free(caster->scratch);
+    for (int i = 0; caster->blob_scratch && i < caster->workers; i++)
+        blobscratch_free(caster->blob_scratch[i]);
+    free(caster->blob_scratch);
+    blobcast_free(caster->blob);
     fieldindex_free(caster->field);
     halving_free(caster->halving);
     bvh_free(caster->bvh);
@@ -77,8 +92,12 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
         double t;
         Vec3 normal;
         uint32_t index;
-        if (!field_first_hit(caster->field, caster->scratch[worker], ray, nearest_seen_mm, INFINITY,
-                             &t, &normal, &index))
+        bool found = caster->blob
+                         ? blobcast_first_hit(caster->blob, caster->blob_scratch[worker], ray,
+                                              blob_nearest_mm, INFINITY, &t, &normal, &index)
+                         : field_first_hit(caster->field, caster->scratch[worker], ray,
+                                           nearest_seen_mm, INFINITY, &t, &normal, &index);
+        if (!found)
             return false;
         const FieldSegment *segment = &caster->scene->segments[index];
         *surfel = (Surfel){t, normal, segment->color, segment->id};
@@ -98,6 +117,9 @@ bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double 
         return bvh_any_hit(caster->bvh, ray, shadow_slack_mm, far);
     if (caster->halving)
         return halving_any_hit(caster->halving, ray, shadow_slack_mm, far);
+    if (caster->blob)
+        return blobcast_any_hit(caster->blob, caster->blob_scratch[worker], ray, blob_nearest_mm,
+                                far);
     Vec3 normal;
     uint32_t index;
     return field_first_hit(caster->field, caster->scratch[worker], ray, shadow_slack_mm, far, &t,

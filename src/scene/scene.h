@@ -86,7 +86,7 @@ typedef struct Primitive {
 /* A primitive that is a joint, prepared for many rays. */
 JointFrame primitive_joint(const Primitive *primitive);
 
-/* One Gaussian line potential; METHODS section 2. */
+/* One Gaussian line potential, or what stands in for it in a blob; METHODS section 2. */
 typedef struct FieldSegment {
     Vec3 a, b;        /* different */
     double radius_mm; /* > 0 */
@@ -101,7 +101,8 @@ typedef enum SceneModel {
     SCENE_CYLINDERS,
     SCENE_JOINED,
     SCENE_ROUNDED,
-    SCENE_ISOSURFACE
+    SCENE_ISOSURFACE,
+    SCENE_BLOB
 } SceneModel;
 
 /* Which segments blend. Without `first`, all with all: the surface is where the sum of all terms is

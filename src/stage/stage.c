@@ -100,7 +100,7 @@ static Status add_potential(const Tree *tree, const Paint *paint, bool graph, Sc
 static Status add_geometry(const Tree *tree, const Paint *paint, const StageParams *params,
                            Scene *scene, StageReport *report, Err *err)
 {
-    if (scene->model == SCENE_ISOSURFACE)
+    if (scene->model == SCENE_ISOSURFACE || scene->model == SCENE_BLOB)
         return add_potential(tree, paint, params->graph, scene, err);
     TRY(mem_calloc(&scene->primitives, 2 * tree->n, sizeof *scene->primitives, "primitives", err));
     Places places = {0};

@@ -1,0 +1,352 @@
+/* The blob: its numbers (docs/METHODS.md section 2.5), and its first hits against a walk in small steps
+ * over a field written down once more, from POV-Ray's definition. */
+#include "render/blobcast.h"
+#include "stage/stage.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "../fit/blob_deviation.h"
+#include "field_scenes.h"
+#include <cmocka.h>
+
+typedef struct Cast {
+    BlobCast *cast;
+    BlobScratch *scratch;
+} Cast;
+
+static Cast cast_of(const Scene *scene)
+{
+    Cast cast;
+    assert_int_equal(blobcast_new(scene, &cast.cast, NULL), STATUS_OK);
+    assert_int_equal(blobscratch_new(cast.cast, &cast.scratch, NULL), STATUS_OK);
+    return cast;
+}
+
+static void release(Cast *cast)
+{
+    blobscratch_free(cast->scratch);
+    blobcast_free(cast->cast);
+}
+
+static TestScene empty_scene(void)
+{
+    TestScene test;
+    memset(&test, 0, sizeof test);
+    test.scene.model = SCENE_BLOB;
+    return test;
+}
+
+/* Where a ray from far outside towards `center` first meets the blob: the distance from there, or -1. */
+static double radius_towards(const Scene *scene, Vec3 center, Vec3 outwards)
+{
+    Cast cast = cast_of(scene);
+    Vec3 d = vec3_normalized(outwards), normal;
+    Ray ray = {vec3_add_scaled(center, d, 50), vec3_scale(d, -1)};
+    double t;
+    uint32_t segment;
+    bool hit = blobcast_first_hit(cast.cast, cast.scratch, ray, 0, 100, &t, &normal, &segment);
+    release(&cast);
+    return hit ? 50 - t : -1;
+}
+
+/* ---- the field in long double, component by component -------------------------------------------- */
+
+static long double component_at(LongVec3 a, LongVec3 b, long double radius, long double strength,
+                                LongVec3 x)
+{
+    long double sx = b.x - a.x, sy = b.y - a.y, sz = b.z - a.z;
+    long double px = x.x - a.x, py = x.y - a.y, pz = x.z - a.z;
+    long double square = sx * sx + sy * sy + sz * sz;
+    long double t = square > 0 ? (px * sx + py * sy + pz * sz) / square : 0;
+    t = t < 0 ? 0 : t > 1 ? 1 : t;
+    px -= t * sx;
+    py -= t * sy;
+    pz -= t * sz;
+    long double d2 = px * px + py * py + pz * pz, inside = 1 - d2 / (radius * radius);
+    return inside > 0 ? strength * inside * inside : 0;
+}
+
+static long double segment_at(const FieldSegment *segment, LongVec3 x)
+{
+    LongVec3 a = long_vec3(segment->a), b = long_vec3(segment->b);
+    long double r = (long double)segment->radius_mm, sum = 0;
+    long double length =
+        sqrtl((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y) + (b.z - a.z) * (b.z - a.z));
+    for (int i = 0; i < BLOB_TUBES; i++) {
+        long double radius = (long double)blob_shape.tube[i].radius * r;
+        long double strength = (long double)blob_shape.tube[i].strength;
+        sum += component_at(a, b, radius, strength, x);
+        sum += component_at(a, a, radius, -strength / 2, x);
+        sum += component_at(b, b, radius, -strength / 2, x);
+    }
+    for (int i = 0; i < BLOB_BEADS; i++)
+        for (int side = -1; side <= 1; side += 2) {
+            long double h = side * (long double)blob_shape.bead[i].offset * r / length;
+            long double radius = (long double)blob_shape.bead[i].radius * r;
+            long double strength = side * (long double)blob_shape.bead[i].strength;
+            LongVec3 at_a = {a.x + h * (b.x - a.x), a.y + h * (b.y - a.y), a.z + h * (b.z - a.z)};
+            LongVec3 at_b = {b.x - h * (b.x - a.x), b.y - h * (b.y - a.y), b.z - h * (b.z - a.z)};
+            sum += component_at(at_a, at_a, radius, strength, x);
+            sum += component_at(at_b, at_b, radius, strength, x);
+        }
+    return sum;
+}
+
+static long double field_at(const Scene *scene, LongVec3 x)
+{
+    long double sum = 0;
+    for (size_t i = 0; i < scene->n_segments; i++)
+        sum += segment_at(&scene->segments[i], x);
+    return sum;
+}
+
+static LongVec3 long_at(Ray ray, long double t)
+{
+    return (LongVec3){(long double)ray.origin.x + t * (long double)ray.direction.x,
+                      (long double)ray.origin.y + t * (long double)ray.direction.y,
+                      (long double)ray.origin.z + t * (long double)ray.direction.z};
+}
+
+/* ---- what the fit promises ----------------------------------------------------------------------- */
+
+static void a_long_vessel_has_its_own_radius(void **state)
+{
+    (void)state;
+    TestScene test = empty_scene();
+    test.scene.segments = test.segments;
+    put_segment(&test, vec3(-20, 3, 1), vec3(20, -3, 2), 1.7);
+    Vec3 middle = vec3(0.4, -0.06, 1.51);
+    double radius = radius_towards(&test.scene, middle, vec3(0.15, 1, 0));
+    assert_true(fabs(radius - 1.7) < 1e-10);
+    assert_true(fabs(blob_first_strength(&blob_shape) - blob_shape.tube[0].strength) < 1e-12);
+}
+
+/* Also where segments are much shorter than their radius. */
+static void a_chain_of_one_radius_is_one_vessel(void **state)
+{
+    (void)state;
+    const double nodes[] = {-11, -6.2, -6.15, -5, -0.3, 0.02, 4.1, 7.7, 12};
+    TestScene chain = empty_scene(), whole = empty_scene();
+    chain.scene.segments = chain.segments;
+    whole.scene.segments = whole.segments;
+    Vec3 axis = vec3_normalized(vec3(1, -0.4, 0.3)), side = vec3_normalized(vec3(0.4, 1, 0));
+    for (int i = 0; i < 8; i++)
+        put_segment(&chain, vec3_scale(axis, nodes[i]), vec3_scale(axis, nodes[i + 1]), 1.3);
+    put_segment(&whole, vec3_scale(axis, nodes[0]), vec3_scale(axis, nodes[8]), 1.3);
+    for (double t = -8; t < 8; t += 0.013) {
+        double radius = radius_towards(&chain.scene, vec3_scale(axis, t), side);
+        assert_true(fabs(radius - 1.3) < 1.3e-6);
+    }
+    Random random;
+    random_seed(&random, 81);
+    for (int i = 0; i < 20000; i++) {
+        Vec3 x = vec3_add(vec3_scale(axis, uniform(&random, -14, 14)), random_point(&random, 2));
+        long double one = field_at(&whole.scene, long_vec3(x));
+        assert_true(fabsl(field_at(&chain.scene, long_vec3(x)) - one) < 1e-12L);
+    }
+}
+
+static void free_ends_overshoot_as_those_of_the_potential(void **state)
+{
+    (void)state;
+    TestScene test = empty_scene();
+    test.scene.segments = test.segments;
+    put_segment(&test, vec3(-20, 0, 0), vec3(0, 0, 0), 1.7);
+    double reach = radius_towards(&test.scene, vec3(0, 0, 0), vec3(1, 0, 0)) / 1.7;
+    assert_true(fabs(reach - 0.551) < 0.1);
+    assert_true(fabs(reach - overshoot_of(&blob_shape)) < 1e-9);
+}
+
+static void the_blob_is_near_the_potential_at_bifurcations(void **state)
+{
+    (void)state;
+    static Spot spots[MAX_SPOTS];
+    const struct {
+        double length, limit;
+    } forks[] = {{8, 0.03}, {2, 0.036}};
+    for (int l = 0; l < 2; l++)
+        for (int i = 0; i < N_RATIOS; i++)
+            for (int j = 0; j < N_ANGLES; j++) {
+                Fork fork = fork_of(deviation_ratios[i], deviation_angles[j], forks[l].length);
+                int n = find_spots(&fork, 0.3, spots);
+                Deviation worst = worst_deviation(&blob_shape, &fork, spots, n);
+                assert_true(n > 200 / (l + 1));
+                if (!(fabs(worst.radii) < forks[l].limit))
+                    fail_msg("off by %g of the radius at ratio %g, angle %g, length %g",
+                             worst.radii, deviation_ratios[i], deviation_angles[j],
+                             forks[l].length);
+            }
+}
+
+static void components_add_up_to_the_term_and_its_gradient(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 82);
+    for (int i = 0; i < 2000; i++) {
+        FieldSegment segment = {.a = random_point(&random, 3),
+                                .b = random_point(&random, 3),
+                                .radius_mm = uniform(&random, 0.2, 2)};
+        Vec3 x = random_point(&random, 4), gradient;
+        BlobComponent components[BLOB_COMPONENTS];
+        blob_components(&blob_shape, &segment, components);
+        double term = blob_components_at(components, x, &gradient);
+        assert_true(term == blob_term(&segment, x));
+        assert_true(fabsl((long double)term - segment_at(&segment, long_vec3(x))) < 1e-13L);
+        const double h = 1e-6;
+        Vec3 by = {blob_term(&segment, vec3(x.x + h, x.y, x.z)) -
+                       blob_term(&segment, vec3(x.x - h, x.y, x.z)),
+                   blob_term(&segment, vec3(x.x, x.y + h, x.z)) -
+                       blob_term(&segment, vec3(x.x, x.y - h, x.z)),
+                   blob_term(&segment, vec3(x.x, x.y, x.z + h)) -
+                       blob_term(&segment, vec3(x.x, x.y, x.z - h))};
+        assert_true(vec3_distance(vec3_scale(by, 0.5 / h), gradient) < 1e-4);
+        double reach = blob_reach(&blob_shape) * segment.radius_mm;
+        Vec3 away = vec3_add_scaled(segment.a, random_direction(&random), reach * 1.0001);
+        if (vec3_dot(vec3_sub(away, segment.a), vec3_sub(segment.b, segment.a)) < 0)
+            assert_true(blob_term(&segment, away) == 0);
+    }
+}
+
+/* ---- first hits ---------------------------------------------------------------------------------- */
+
+/* Rays at random, along a vessel, across one, and along an axis of the world. */
+static Ray random_ray(Random *random, const TestScene *test, int i)
+{
+    const FieldSegment *segment = &test->segments[i % (int)test->scene.n_segments];
+    Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
+    Vec3 through =
+        vec3_add_scaled(segment->a, vec3_sub(segment->b, segment->a), uniform(random, -0.2, 1.2));
+    through = vec3_add_scaled(through, random_direction(random),
+                              segment->radius_mm * uniform(random, 0, 1.6));
+    Vec3 d = random_direction(random);
+    if (i % 5 == 1)
+        d = axis;
+    else if (i % 5 == 2)
+        d = random_normal_to(random, axis);
+    else if (i % 5 == 3)
+        d = vec3(0, 0, -1);
+    return (Ray){vec3_add_scaled(through, d, -60), d};
+}
+
+typedef struct Tally {
+    int rays, hits, grazing;
+} Tally;
+
+/* No sample before the hit is inside, none that is missed is; the hit is on the surface. Samples
+ * are `step` apart; what is inside by less than `slack` grazes. */
+static void check_ray(const Cast *cast, const TestScene *test, Ray ray, long double step,
+                      Tally *tally)
+{
+    const long double slack = 1e-9L;
+    double t, t_max = 120;
+    Vec3 normal;
+    uint32_t segment;
+    bool hit = blobcast_first_hit(cast->cast, cast->scratch, ray, 0, t_max, &t, &normal, &segment);
+    assert_true(blobcast_any_hit(cast->cast, cast->scratch, ray, 0, t_max) == hit);
+    tally->rays++;
+    tally->hits += hit;
+    for (long double s = 45; s < (hit ? (long double)t - 1e-6L : 75); s += step) {
+        long double value = field_at(&test->scene, long_at(ray, s));
+        tally->grazing += value > 1 && value <= 1 + slack;
+        if (value > 1 + slack)
+            fail_msg("inside at %Lg, before the hit at %g", s, hit ? t : -1);
+    }
+    if (!hit)
+        return;
+    LongVec3 x = long_at(ray, (long double)t);
+    assert_true(fabsl(field_at(&test->scene, x) - 1) < 1e-9L);
+    assert_true(fabs(vec3_length(normal) - 1) < 1e-12);
+    const long double h = 1e-5L;
+    long double inwards = 0;
+    LongVec3 back = {x.x - h * (long double)normal.x, x.y - h * (long double)normal.y,
+                     x.z - h * (long double)normal.z};
+    inwards = field_at(&test->scene, back);
+    assert_true(inwards > 1 - 1e-9L);
+    long double most = segment_at(&test->segments[segment], x);
+    for (size_t i = 0; i < test->scene.n_segments; i++)
+        assert_true(segment_at(&test->segments[i], x) <= most + 1e-9L);
+}
+
+static void first_hits_are_those_of_a_walk_in_small_steps(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 83);
+    Tally tally = {0};
+    for (int kind = 0; kind < N_TAME_KINDS; kind++)
+        for (int scene = 0; scene < 2; scene++) {
+            TestScene test;
+            make_test_scene((SceneKind)kind, &random, &test);
+            Cast cast = cast_of(&test.scene);
+            for (int i = 0; i < 60; i++)
+                check_ray(&cast, &test, random_ray(&random, &test, i), 0.03L, &tally);
+            release(&cast);
+        }
+    print_message("%d rays, %d hits, %d samples graze\n", tally.rays, tally.hits, tally.grazing);
+    assert_true(tally.hits > tally.rays / 3 && tally.hits < tally.rays);
+}
+
+static void a_ray_from_within_finds_its_way_out(void **state)
+{
+    (void)state;
+    TestScene test = empty_scene();
+    test.scene.segments = test.segments;
+    put_segment(&test, vec3(-20, 0, 0), vec3(20, 0, 0), 1.7);
+    Cast cast = cast_of(&test.scene);
+    double t;
+    Vec3 normal;
+    uint32_t segment;
+    const Ray ray = {{0.3, 0.4, 0}, {0, 1, 0}};
+    assert_true(
+        blobcast_first_hit(cast.cast, cast.scratch, ray, 1e-2, INFINITY, &t, &normal, &segment));
+    assert_true(fabs(t - 1.3) < 1e-12);
+    assert_true(vec3_distance(normal, vec3(0, 1, 0)) < 1e-12);
+    assert_false(blobcast_any_hit(cast.cast, cast.scratch, ray, 1.3 + 1e-9, INFINITY));
+    assert_false(blobcast_any_hit(cast.cast, cast.scratch, ray, 1e-2, 1.3 - 1e-9));
+    release(&cast);
+}
+
+/* Radii over four decades, all through one point. */
+static void many_segments_in_one_place_are_no_trouble(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 84);
+    TestScene test;
+    make_test_scene(KIND_WIDE_STAR, &random, &test);
+    Cast cast = cast_of(&test.scene);
+    int hits = 0;
+    for (int i = 0; i < 3000; i++) {
+        Ray ray = random_ray(&random, &test, i);
+        double t;
+        Vec3 normal;
+        uint32_t segment;
+        if (!blobcast_first_hit(cast.cast, cast.scratch, ray, 0, INFINITY, &t, &normal, &segment))
+            continue;
+        hits++;
+        assert_true(isfinite(t) && fabs(vec3_length(normal) - 1) < 1e-12);
+        assert_true(fabsl(field_at(&test.scene, long_at(ray, (long double)t)) - 1) < 1e-4L);
+    }
+    assert_true(hits > 500);
+    release(&cast);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_long_vessel_has_its_own_radius),
+        cmocka_unit_test(a_chain_of_one_radius_is_one_vessel),
+        cmocka_unit_test(free_ends_overshoot_as_those_of_the_potential),
+        cmocka_unit_test(the_blob_is_near_the_potential_at_bifurcations),
+        cmocka_unit_test(components_add_up_to_the_term_and_its_gradient),
+        cmocka_unit_test(first_hits_are_those_of_a_walk_in_small_steps),
+        cmocka_unit_test(a_ray_from_within_finds_its_way_out),
+        cmocka_unit_test(many_segments_in_one_place_are_no_trouble),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
