@@ -149,11 +149,11 @@ Status run_render(int argc, char **argv, Err *err)
                          "--antialias-threshold needs --antialias N, with N from 2 to 9");
         goto done;
     }
-    if (method != RENDER_TRACE && picture.model == SCENE_ISOSURFACE) {
+    if (method != RENDER_TRACE &&
+        (picture.model == SCENE_ISOSURFACE || picture.model == SCENE_BLOB)) {
         status = err_set(err, STATUS_USAGE,
-                         "--method %s is for cylinders, joined and rounded; an isosurface is drawn "
-                         "by tiles of its own",
-                         methods[method]);
+                         "--method %s is for cylinders, joined and rounded, not for %s",
+                         methods[method], model_name((SceneModel)picture.model));
         goto done;
     }
     if (method != RENDER_TRACE && params.shadows) {

@@ -24,7 +24,7 @@ Status run_scene(int argc, char **argv, Err *err)
         {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "S.pov",
          "the scene; its geometry goes to S.inc beside it"},
         {"ids", OPTION_SWITCH, &ids, NULL, 0, 0, NULL, NULL,
-         "isosurface: with what POV-Ray needs for the id plane (off)"},
+         "isosurface, blob: with what POV-Ray needs for the id plane (off)"},
         {0},
     };
     const Option *const tables[] = {own, picture.table, picture.coloring.table, NULL};

@@ -65,6 +65,12 @@ static bool is_isosurface(const Verification *v)
     return v->scene.model == SCENE_ISOSURFACE;
 }
 
+/* Whether POV-Ray needs a scene of its own to paint ids. */
+static bool has_id_scene(const Verification *v)
+{
+    return is_isosurface(v) || v->scene.model == SCENE_BLOB;
+}
+
 static Status render_frame(Verification *v, const CellParams *povray_cells, Frame *frame, Err *err)
 {
     Progress progress;
@@ -198,7 +204,8 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
     return status;
 }
 
-/* Writes the scene; the ids of an isosurface are painted in a scene of their own, as they take most of it. */
+/* Writes the scene; the ids of an implicit surface are painted in a scene of their own, as they take most of
+ * it. */
 static Status write_scene(Verification *v, bool ids, char **scene, Err *err)
 {
     TRY(file_join(v->folder, ids ? "ids.pov" : "scene.pov", scene, err));
@@ -210,7 +217,7 @@ static Status run_oracle(Verification *v, Err *err)
 {
     char *scene = NULL, *ids = NULL;
     Status status = write_scene(v, false, &scene, err);
-    if (status == STATUS_OK && is_isosurface(v))
+    if (status == STATUS_OK && has_id_scene(v))
         status = write_scene(v, true, &ids, err);
     for (int plane = ORACLE_COLOR; status == STATUS_OK && plane <= ORACLE_ID; plane++)
         status =

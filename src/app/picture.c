@@ -8,11 +8,9 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char *const models[] = {[SCENE_CYLINDERS] = "cylinders",
-                                     [SCENE_JOINED] = "joined",
-                                     [SCENE_ROUNDED] = "rounded",
-                                     [SCENE_ISOSURFACE] = "isosurface",
-                                     NULL};
+static const char *const models[] = {
+    [SCENE_CYLINDERS] = "cylinders",   [SCENE_JOINED] = "joined", [SCENE_ROUNDED] = "rounded",
+    [SCENE_ISOSURFACE] = "isosurface", [SCENE_BLOB] = "blob",     NULL};
 static const char *const potentials[] = {"paper", "graph", NULL};
 static const char *const joint_forms[] = {
     [JOINTS_ROBUST] = "robust", [JOINTS_PAPER] = "paper", NULL};

@@ -14,12 +14,12 @@ typedef struct PovrayParams {
     const char *description;   /* one line: what the scene shows */
     const char *generator;     /* program and version */
     bool shadows;
-    bool ids;         /* isosurface: give cells the paint that the id plane needs */
+    bool ids;         /* isosurface, blob: with the paint that the id plane needs */
     CellParams cells; /* isosurface */
 } PovrayParams;
 
 typedef struct PovrayReport {
-    size_t cells; /* of an isosurface */
+    size_t cells; /* of an isosurface; of a blob that is cut into cells, else 0 */
 } PovrayReport;
 
 /* Writes a scene for POV-Ray 3.7 and its geometry include (appended to *scene and *geometry; the

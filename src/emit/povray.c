@@ -1,5 +1,5 @@
-/* Two files: the scene (camera, lights) and the geometry, a union of one macro call a primitive or
- * of one isosurface a cell [docs/POVRAY.md]. */
+/* Two files: the scene (camera, lights) and the geometry, a union of one macro call a primitive, of one
+ * isosurface a cell, or of a blob [docs/POVRAY.md]. */
 #include "emit/povray_text.h"
 
 #include "surface/surface.h"
@@ -18,6 +18,21 @@ void put_vector(Text *text, Vec3 v)
     text_puts(text, ",");
     text_number(text, v.z + 0);
     text_puts(text, ">");
+}
+
+void put_linear(Text *text, const Linear *linear)
+{
+    static const char *const factors[] = {"x*", "y*", "z*", ""};
+    bool first = true;
+    for (int i = 0; i < 4; i++) {
+        double k = linear->k[i];
+        if (k == 0)
+            continue;
+        text_puts(text, k < 0 ? "-" : first ? "" : "+");
+        text_puts(text, factors[i]);
+        text_number(text, fabs(k));
+        first = false;
+    }
 }
 
 static void put_float(Text *text, float value)
@@ -133,15 +148,10 @@ static Status expand(Values *values, const PovrayParams *params, const char *nam
     return status;
 }
 
-static Status put_macros(const Scene *scene, const PovrayParams *params, const CellTree *cells,
-                         Text *out, Err *err)
+static Status put_cell_macros(const Scene *scene, const PovrayParams *params, const CellTree *cells,
+                              Text *out, Err *err)
 {
     Values values = {0};
-    if (scene->model != SCENE_ISOSURFACE) {
-        TRY(expand(&values, params, "primitives.inc", out, err));
-        return scene->model == SCENE_JOINED ? expand(&values, params, "joints.inc", out, err)
-                                            : STATUS_OK;
-    }
     static const char *const names[ERF_TERMS] = {"erf1", "erf3", "erf5", "erf7", "erf9"};
     for (int i = 0; i < ERF_TERMS; i++)
         text_number(add_value(&values, names[i]), erf_forms[cells->erf][i]);
@@ -157,23 +167,67 @@ static Status put_macros(const Scene *scene, const PovrayParams *params, const C
     return status == STATUS_OK ? expanded : status;
 }
 
+static Status put_blob_macros(const Scene *scene, const PovrayParams *params, Text *out, Err *err)
+{
+    Values values = {0};
+    const BlobTube *tube = blob_shape.tube;
+    const BlobBead *bead = blob_shape.bead;
+    const struct {
+        const char *name;
+        double value;
+    } numbers[] = {{"r1", tube[0].radius},   {"s1", tube[0].strength}, {"r2", tube[1].radius},
+                   {"s2", tube[1].strength}, {"h1", bead[0].offset},   {"q1", bead[0].radius},
+                   {"c1", bead[0].strength}, {"h2", bead[1].offset},   {"q2", bead[1].radius},
+                   {"c2", bead[1].strength}};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        text_number(add_value(&values, numbers[i].name), numbers[i].value);
+    bool painted = !scene->uniform_color || params->ids;
+    text_puts(add_value(&values, "painted"), painted ? "1" : "0");
+    text_puts(add_value(&values, "many_colors"), scene->uniform_color ? "0" : "1");
+    Text *paint = add_value(&values, "paint"), *top = add_value(&values, "top");
+    Text *groups = add_value(&values, "groups"), *n_groups = add_value(&values, "n_groups");
+    Status status = STATUS_OK;
+    if (painted)
+        status = put_blob_paint(scene, paint, top, groups, n_groups, err);
+    Status expanded = expand(&values, params, "blob.inc", out, status == STATUS_OK ? err : NULL);
+    return status == STATUS_OK ? expanded : status;
+}
+
+static Status put_primitive_macros(const Scene *scene, const PovrayParams *params, Text *out,
+                                   Err *err)
+{
+    Values values = {0};
+    TRY(expand(&values, params, "primitives.inc", out, err));
+    return scene->model == SCENE_JOINED ? expand(&values, params, "joints.inc", out, err)
+                                        : STATUS_OK;
+}
+
+static Status put_cell_members(const Scene *scene, const PovrayParams *params, Text *macros,
+                               Text *body, PovrayReport *report, Err *err)
+{
+    CellTree cells = {0};
+    Status status = celltree_build(scene, &params->cells, &cells, err);
+    if (status == STATUS_OK)
+        status = put_cell_macros(scene, params, &cells, macros, err);
+    if (status == STATUS_OK)
+        status = put_cells(body, scene, params, &cells, err);
+    report->cells = cells.n_cells;
+    celltree_release(&cells);
+    return status;
+}
+
 /* The macros, and the members of the union that they make. */
 static Status put_members(const Scene *scene, const PovrayParams *params, Text *macros, Text *body,
                           PovrayReport *report, Err *err)
 {
-    CellTree cells = {0};
-    Status status = STATUS_OK;
     if (scene->model == SCENE_ISOSURFACE)
-        status = celltree_build(scene, &params->cells, &cells, err);
-    if (status == STATUS_OK)
-        status = put_macros(scene, params, &cells, macros, err);
-    if (status == STATUS_OK && scene->model == SCENE_ISOSURFACE)
-        status = put_cells(body, scene, params, &cells, err);
-    else if (status == STATUS_OK)
-        put_primitives(body, scene);
-    report->cells = cells.n_cells;
-    celltree_release(&cells);
-    return status;
+        return put_cell_members(scene, params, macros, body, report, err);
+    if (scene->model == SCENE_BLOB) {
+        TRY(put_blob(body, scene, &report->cells, err));
+        return put_blob_macros(scene, params, macros, err);
+    }
+    put_primitives(body, scene);
+    return put_primitive_macros(scene, params, macros, err);
 }
 
 static Status put_geometry(const Scene *scene, const PovrayParams *params, const char *file,
@@ -195,7 +249,9 @@ static Status put_geometry(const Scene *scene, const PovrayParams *params, const
     put_float(add_value(&values, "specular"), finish->specular);
     put_float(add_value(&values, "roughness"), finish->roughness);
     Text *macros = add_value(&values, "macros"), *body = add_value(&values, "body");
+    Text *kind = add_value(&values, "kind");
     Status status = put_members(scene, params, macros, body, report, err);
+    text_puts(kind, scene->model == SCENE_BLOB && report->cells == 0 ? "blob" : "union");
     Status expanded = expand(&values, params, "vessels.inc", out, status == STATUS_OK ? err : NULL);
     return status == STATUS_OK ? expanded : status;
 }

@@ -13,22 +13,6 @@ enum { TUBE = TERM_MIDDLE + 1, N_FUNCTIONS };
 /* Scales are 2^(number - SCALE_ONE). */
 enum { SCALE_ONE = 64, N_SCALES = 128 };
 
-/* x*k0+y*k1-z*k2+k3 without the zeros. */
-static void put_linear(Text *text, const Linear *linear)
-{
-    static const char *const factors[] = {"x*", "y*", "z*", ""};
-    bool first = true;
-    for (int i = 0; i < 4; i++) {
-        double k = linear->k[i];
-        if (k == 0)
-            continue;
-        text_puts(text, k < 0 ? "-" : first ? "" : "+");
-        text_puts(text, factors[i]);
-        text_number(text, fabs(k));
-        first = false;
-    }
-}
-
 /* The factor of the axial part. */
 static void put_ends(Text *text, const TermForm *form, TermPart part)
 {

@@ -12,6 +12,9 @@ void put_color(Text *text, Rgb color);
 /* The last two arguments of the macros: id,color */
 void put_paint(Text *text, const Scene *scene, uint32_t id, Rgb color);
 
+/* x*k0+y*k1-z*k2+k3 without the zeros; nothing when all are 0. */
+void put_linear(Text *text, const Linear *linear);
+
 /* Loads povray/NAME. Release with tmpl_release. */
 MUST_CHECK Status load_template(Tmpl *template, const PovrayParams *params, const char *name,
                                 Err *err);
@@ -25,6 +28,13 @@ MUST_CHECK Status put_terms(Text *text, const Scene *scene, const PovrayParams *
 /* Appends an isosurface for each cell. */
 MUST_CHECK Status put_cells(Text *text, const Scene *scene, const PovrayParams *params,
                             const CellTree *cells, Err *err);
+/* Appends the calls that make a blob, of which *n_cells is 0, or so many of them. STATUS_INFEASIBLE when
+ * POV-Ray cannot hold them. */
+MUST_CHECK Status put_blob(Text *text, const Scene *scene, size_t *n_cells, Err *err);
+/* Appends what tells the segments of a blob apart: the functions that find the largest term, the name of
+ * the one for all, and the segments' paints in groups, and how many groups. */
+MUST_CHECK Status put_blob_paint(const Scene *scene, Text *functions, Text *top, Text *groups,
+                                 Text *n_groups, Err *err);
 /* Appends the call that draws a joint. */
 void put_joint(Text *text, const Scene *scene, const Primitive *joint);
 

@@ -175,7 +175,7 @@ static bool is_field(const Renderer *renderer)
 /* The ground and ambient occlusion are for rays to find. */
 static bool is_raster(const Renderer *renderer)
 {
-    return renderer->scene->model != SCENE_ISOSURFACE && !renderer->scene->ground.present &&
+    return renderer->scene->n_primitives > 0 && !renderer->scene->ground.present &&
            renderer->params.occlusion == 0 && renderer->params.method == RENDER_RASTER;
 }
 

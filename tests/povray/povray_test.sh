@@ -15,12 +15,15 @@ test_a_scene_is_drawn_in_the_size_asked_for() {
 }
 
 test_the_scene_needs_no_switch_but_the_size() {
-    scene --model isosurface
-    run povray +Iscene.pov +Oplain.png +W80 +H60 -D
-    expect_status 0
-    ! grep -iE '(parse|render|shutdown) (warning|error)|max_gradient' stderr || fail "expected neither warnings nor errors$(said)"
-    run_ok corcast povray scene.pov -o picture.png --size 80x60
-    cmp -s <(pngtopnm plain.png) <(pngtopnm picture.png) || fail "expected the same pixels"
+    local model
+    for model in isosurface blob; do
+        scene --model $model
+        run povray +Iscene.pov +Oplain.png +W80 +H60 -D
+        expect_status 0
+        ! grep -iE '(parse|render|shutdown) (warning|error)|max_gradient' stderr || fail "expected neither warnings nor errors$(said)"
+        run_ok corcast povray scene.pov -o picture.png --size 80x60
+        cmp -s <(pngtopnm plain.png) <(pngtopnm picture.png) || fail "expected the same pixels"
+    done
 }
 
 test_two_runs_give_the_same_pixels() {

@@ -134,10 +134,32 @@ test_isosurface_with_an_exact_erf_agrees() {
     agrees isosurface --erf exact --shadows on
 }
 
+test_blobs_in_the_plane_agree() {
+    tree_2d
+    agrees blob
+}
+
+test_blobs_in_perspective_with_shadows_agree() {
+    tree_3d
+    agrees blob --projection perspective --view iso --shadows on
+}
+
+test_antialiased_blobs_agree() {
+    tree_3d 30
+    agrees blob --antialias 3 --shadows on
+}
+
+# More segments than fit into one of the cells that the scene is cut into, and some shorter than their radius.
+test_blobs_in_many_cells_agree() {
+    run_ok corcast grow --terminals 300 --seed 3 --lambda 0 -o tree.swc
+    agrees blob --view iso --shadows on
+    [ "$(grep -c '^Blob_Cell()' report/scene.inc)" -gt 2 ] || fail "expected a scene in several cells"
+}
+
 test_linear_codes_of_16_bits_agree_in_every_model() {
     local model
     tree_3d 30
-    for model in cylinders joined rounded isosurface; do
+    for model in cylinders joined rounded isosurface blob; do
         rm -rf report
         agrees $model --bits 16 --view iso --shadows on
         expect_json report/report.json '.planes.color.bits == 16 and .planes.color.max_code <= 1'
@@ -169,7 +191,7 @@ test_a_picture_wider_than_high_and_one_higher_than_wide_agree() {
 test_a_tree_drawn_by_hand_agrees_in_every_model() {
     local model
     cp "$DATA/bifurcation.swc" tree.swc
-    for model in cylinders joined rounded isosurface; do
+    for model in cylinders joined rounded isosurface blob; do
         agrees $model
         rm -r report
     done
@@ -191,7 +213,7 @@ test_a_tree_far_from_the_origin_agrees() {
     awk '/^#/ { if (!/domain/) print; next }
          { $3 += 1000000; $4 -= 500000; $5 += 200000; print }' CONVFMT=%.15g OFMT=%.15g tree.swc >far.swc
     mv far.swc tree.swc
-    for model in rounded isosurface; do
+    for model in rounded isosurface blob; do
         agrees $model
         rm -r report
     done
@@ -208,7 +230,7 @@ test_a_measured_tree_agrees() {
 test_colours_by_a_field_agree_in_every_model() {
     local model
     tree_2d 20
-    for model in cylinders joined rounded isosurface; do
+    for model in cylinders joined rounded isosurface blob; do
         agrees $model --color-by pressure
         rm -r report
     done

@@ -60,7 +60,7 @@ static Scene make_scene(SceneModel model)
                    .uniform_color = true,
                    .color = {0.56f, 0.055f, 0.045f},
                    .bounds = {{-3, 10, -5}, {3, 53, 3}}};
-    if (model == SCENE_ISOSURFACE) {
+    if (model == SCENE_ISOSURFACE || model == SCENE_BLOB) {
         scene.segments = segments;
         scene.n_segments = 3;
     } else {
@@ -256,6 +256,97 @@ static void ids_are_painted_only_when_asked_for(void **state)
     release(&painted);
 }
 
+static void a_blob_is_given_by_the_ends_and_radii_of_its_segments(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_BLOB);
+    Emitted out = emit(&scene, &two_files);
+    assert_non_null(strstr(out.geometry.chars, "#declare Tree = blob {\nBlob_Start()\n"));
+    assert_int_equal(count(out.geometry.chars, "\nVessel_Blob("), 3);
+    assert_int_equal(count(out.geometry.chars, "\nBlob_Cell()"), 0);
+    const char *call = strstr(out.geometry.chars, "\nVessel_Blob(<0,0,0>,<-4");
+    double v[7];
+    assert_non_null(call);
+    assert_int_equal(sscanf(call, "\nVessel_Blob(<%lf,%lf,%lf>,<%lf,%lf,%lf>,%lf)", &v[0], &v[1],
+                            &v[2], &v[3], &v[4], &v[5], &v[6]),
+                     7);
+    assert_true(v[3] == -4 && v[4] == -7 && v[5] == 1 && v[6] == 1.2);
+    release(&out);
+}
+
+/* Each cell holds every segment that reaches into it, and all cells together all of space that any does. */
+static void a_large_blob_is_cut_into_cells_that_miss_nothing(void **state)
+{
+    (void)state;
+    enum { MANY = 1500 };
+    FieldSegment *many = calloc(MANY, sizeof *many);
+    assert_non_null(many);
+    Random random;
+    random_seed(&random, 91);
+    for (int i = 0; i < MANY; i++) {
+        Vec3 a = vec3(30 * random_uniform(&random), 30 * random_uniform(&random),
+                      30 * random_uniform(&random));
+        Vec3 span = vec3(random_uniform(&random), random_uniform(&random), -0.7);
+        many[i] = (FieldSegment){.a = a, .b = vec3_add_scaled(a, span, 2.7), .radius_mm = 0.23};
+    }
+    Scene scene = make_scene(SCENE_BLOB);
+    scene.segments = many;
+    scene.n_segments = MANY;
+    Emitted out = emit(&scene, &two_files);
+    size_t cells = 0;
+    double volume = 0, reach = blob_reach(&blob_shape) * 0.23;
+    Box whole = box_empty();
+    for (const char *at = out.geometry.chars; (at = strstr(at, "\nBlob_Cell()\n")) != NULL;
+         cells++) {
+        const char *clip = strstr(++at, "\nBlob_Cell_End(");
+        Box box;
+        assert_non_null(clip);
+        assert_int_equal(sscanf(clip, "\nBlob_Cell_End(<%lf,%lf,%lf>,<%lf,%lf,%lf>)", &box.low.x,
+                                &box.low.y, &box.low.z, &box.high.x, &box.high.y, &box.high.z),
+                         6);
+        size_t inside = 0, written = 0;
+        for (const char *call = at; (call = strstr(call, "\nVessel_Blob(")) != NULL && call < clip;
+             call++)
+            written++;
+        for (int i = 0; i < MANY; i++) {
+            Box own = box_with_ball(box_with_ball(box_empty(), many[i].a, reach), many[i].b, reach);
+            whole = box_union(whole, own);
+            inside += own.low.x <= box.high.x && own.high.x >= box.low.x &&
+                      own.low.y <= box.high.y && own.high.y >= box.low.y &&
+                      own.low.z <= box.high.z && own.high.z >= box.low.z;
+        }
+        /* Boxes are written a little larger than they are. */
+        assert_true(written >= inside - 2 && written <= inside);
+        Vec3 size = vec3_sub(box.high, box.low);
+        volume += size.x * size.y * size.z;
+    }
+    Vec3 size = vec3_sub(whole.high, whole.low);
+    assert_true(cells > 5 && cells == out.report.cells);
+    assert_true(volume >= size.x * size.y * size.z);
+    assert_true(volume < 1.01 * size.x * size.y * size.z);
+    release(&out);
+    free(many);
+}
+
+static void the_segments_of_a_blob_are_painted_only_when_asked_for(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_BLOB);
+    Emitted plain = emit(&scene, &two_files);
+    assert_null(strstr(plain.geometry.chars, "\nBlob_Color("));
+    PovrayParams with_ids = two_files;
+    with_ids.ids = true;
+    Emitted painted = emit(&scene, &with_ids);
+    assert_int_equal(count(painted.geometry.chars, "\nBlob_Color("), 3);
+    assert_non_null(strstr(painted.geometry.chars, "\nBlob_Color(1,3,Vessel_Color)"));
+    release(&plain);
+    scene.uniform_color = false;
+    plain = emit(&scene, &two_files);
+    assert_non_null(strstr(plain.geometry.chars, "\nBlob_Color(1,3,<0.1,0.5,0.1>)"));
+    release(&plain);
+    release(&painted);
+}
+
 static void a_missing_template_is_named(void **state)
 {
     (void)state;
@@ -279,6 +370,9 @@ int main(void)
         cmocka_unit_test(without_a_geometry_file_all_stands_in_the_scene),
         cmocka_unit_test(every_function_of_a_cell_is_declared),
         cmocka_unit_test(ids_are_painted_only_when_asked_for),
+        cmocka_unit_test(a_blob_is_given_by_the_ends_and_radii_of_its_segments),
+        cmocka_unit_test(a_large_blob_is_cut_into_cells_that_miss_nothing),
+        cmocka_unit_test(the_segments_of_a_blob_are_painted_only_when_asked_for),
         cmocka_unit_test(a_missing_template_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
