@@ -156,10 +156,6 @@ Status run_render(int argc, char **argv, Err *err)
                          methods[method], model_name((SceneModel)picture.model));
         goto done;
     }
-    if (method != RENDER_TRACE && params.shadows) {
-        status = err_set(err, STATUS_USAGE, "--shadows needs --method trace");
-        goto done;
-    }
     params.method = (RenderMethod)method;
     params.antialias_threshold = threshold;
     params.occlusion = picture.occlusion;

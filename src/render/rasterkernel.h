@@ -321,14 +321,13 @@ RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int fir
             open &= ~item_covers(&near, tile, probes, first, x, y, z, among);
     }
     for (int lane = 0; lane < n; lane++)
-        probes->covered[first + lane] |= !open[lane];
+        probes->covered[first + lane] = !open[lane];
 }
 
-LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, RasterProbes *probes,
-                                             int first, int last)
+LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, RasterProbes *probes)
 {
-    for (; first < last; first += LANES) {
-        int n = last - first < LANES ? last - first : LANES;
+    for (int first = 0; first < probes->n; first += LANES) {
+        int n = probes->n - first < LANES ? probes->n - first : LANES;
         if (tile->perspective)
             cover_block(tile, probes, first, n, true);
         else

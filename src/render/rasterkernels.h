@@ -10,7 +10,7 @@ typedef struct RasterProbes {
     int n;
     double x[TILE_SAMPLES], y[TILE_SAMPLES]; /* in the plane of the view */
     float z[TILE_SAMPLES];                   /* less z_middle */
-    uint8_t covered[TILE_SAMPLES];           /* whether an item is seen before that depth */
+    uint8_t covered[TILE_SAMPLES];           /* 1 where an item is seen before that depth, else 0 */
 } RasterProbes;
 
 typedef struct RasterKernels {
@@ -22,8 +22,8 @@ typedef struct RasterKernels {
     void (*clear)(const RasterHits *hits, const float background[3], float color[3][TILE_SAMPLES]);
     /* Stores a whole tile's colours as rows of pixels, `stride` floats from row to row. */
     void (*paint)(float color[3][TILE_SAMPLES], float *pixels, size_t stride);
-    /* Sets `covered` of the probes from `first` to below `last`, which lie in this tile, where an item of the tile is seen. */
-    void (*cover)(const RasterTile *tile, RasterProbes *probes, int first, int last);
+    /* Sets `covered` of the probes, all of which lie in this tile. */
+    void (*cover)(const RasterTile *tile, RasterProbes *probes);
 } RasterKernels;
 
 extern const RasterKernels rasterkernels_portable;

@@ -4,7 +4,9 @@
  * in POV-Ray's order. With a threshold that takes the colours of neighbours, and so a second round. */
 #include "render/rasterrender.h"
 
+#include "render/caster.h"
 #include "render/rasterkernels.h"
+#include "render/rastershadow.h"
 #include "render/rasterview.h"
 #include "render/resample.h"
 #include "render/tilekernels.h"
@@ -17,6 +19,7 @@ typedef struct Canvas {
     RasterHits hits;
     TileHits surfels;
     TileSurface surface;
+    uint8_t (*shadowed)[TILE_SAMPLES]; /* one a light */
     float color[3][TILE_SAMPLES], sum[3][TILE_SAMPLES];
     Status status;
     Err err;
@@ -35,6 +38,8 @@ typedef struct RasterPicture {
     int n_further;
     TileLook look;
     TileLight *lights;
+    RasterShadow **shadows;      /* one a light; NULL where it casts none, or rays do */
+    Caster *caster;              /* for lights too near for a view of their own; NULL without */
     bool needs_places;           /* rays or lights differ from sample to sample */
     float *background;           /* a row of the picture */
     float *resampled_background; /* the mean of as many backgrounds as there are samples */
@@ -84,8 +89,86 @@ static void place_surface(const RasterTile *tile, const RasterHits *hits, TileSu
     }
 }
 
+/* The normal in the world, facing the viewer. */
+static Vec3 seen_normal(const RasterPicture *picture, const RasterTile *tile,
+                        const TileHits *surfels, int sample)
+{
+    Vec3 normal = {(double)surfels->normal[0][sample], (double)surfels->normal[1][sample],
+                   (double)surfels->normal[2][sample]};
+    Vec3 sight = {0, 0, 1};
+    if (tile->perspective)
+        sight = vec3(tile->x + (double)tile->grid->x[sample],
+                     tile->y + (double)tile->grid->y[sample], 1);
+    if (vec3_dot(normal, sight) > 0)
+        normal = vec3_scale(normal, -1);
+    return rasterview_to_world(&picture->bins->view, normal);
+}
+
+/* The places that the samples of a tile see, in the world. */
+static void world_places(const RasterPicture *picture, const RasterTile *tile,
+                         const RasterHits *hits, Vec3 at[TILE_SAMPLES])
+{
+    const RasterView *view = &picture->bins->view;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        if (hits->item[sample] == RASTER_NOTHING)
+            continue;
+        double x = tile->x + (double)tile->grid->x[sample];
+        double y = tile->y + (double)tile->grid->y[sample], z = seen_z(tile, hits, sample);
+        double scale = tile->perspective ? z : 1;
+        at[sample] =
+            vec3_add(view->location, rasterview_to_world(view, vec3(x * scale, y * scale, z)));
+    }
+}
+
+/* One light, ray by ray. */
+static void cast_shadows(const RasterPicture *picture, const Light *light, int worker,
+                         const Vec3 at[TILE_SAMPLES], const uint8_t wanted[TILE_SAMPLES],
+                         uint8_t shadowed[TILE_SAMPLES])
+{
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        if (!wanted[sample])
+            continue;
+        Vec3 to_light = vec3_sub(light->location, at[sample]);
+        double distance = vec3_length(to_light);
+        shadowed[sample] = caster_shadow(picture->caster, worker, at[sample],
+                                         vec3_scale(to_light, 1 / distance), distance);
+    }
+}
+
+static void find_shadows(const RasterPicture *picture, const RasterTile *tile, int worker,
+                         Canvas *canvas)
+{
+    const Scene *scene = picture->scene;
+    Vec3 at[TILE_SAMPLES];
+    uint8_t wanted[TILE_SAMPLES];
+    world_places(picture, tile, &canvas->hits, at);
+    memset(canvas->shadowed, 0, scene->n_lights * sizeof *canvas->shadowed);
+    for (size_t i = 0; i < scene->n_lights; i++) {
+        const Light *light = &scene->lights[i];
+        if (!light->casts_shadows)
+            continue;
+        Vec3 towards = vec3_sub(light->location, light->target);
+        for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+            wanted[sample] = canvas->hits.item[sample] != RASTER_NOTHING;
+            if (!wanted[sample])
+                continue;
+            if (!light->parallel)
+                towards = vec3_sub(light->location, at[sample]);
+            Vec3 normal = seen_normal(picture, tile, &canvas->surfels, sample);
+            wanted[sample] = vec3_dot(normal, towards) > 0;
+        }
+        if (picture->shadows[i])
+            rastershadow_test(picture->shadows[i], picture->kernels, at, wanted,
+                              canvas->shadowed[i]);
+        else
+            cast_shadows(picture, light, worker, at, wanted, canvas->shadowed[i]);
+    }
+    canvas->surface.shadowed = (const uint8_t(*)[TILE_SAMPLES])canvas->shadowed;
+}
+
 /* The colours that the samples of a tile see; false when it is the background alone. */
-static bool color_tile(const RasterPicture *picture, const RasterTile *tile, Canvas *canvas)
+static bool color_tile(const RasterPicture *picture, const RasterTile *tile, int worker,
+                       Canvas *canvas)
 {
     const Scene *scene = picture->scene;
     TileSurface *surface = &canvas->surface;
@@ -107,6 +190,8 @@ static bool color_tile(const RasterPicture *picture, const RasterTile *tile, Can
         }
     if (picture->needs_places)
         place_surface(tile, &canvas->hits, surface);
+    if (picture->shadows)
+        find_shadows(picture, tile, worker, canvas);
     picture->shading->shade(&picture->look, surface, canvas->color);
     const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
     picture->kernels->clear(&canvas->hits, background, canvas->color);
@@ -131,21 +216,6 @@ static void write_colors(const RasterPicture *picture, const Place *place,
             pixel[2] = color[2][sample];
         }
     }
-}
-
-/* The normal in the world, facing the viewer. */
-static Vec3 seen_normal(const RasterPicture *picture, const RasterTile *tile,
-                        const TileHits *surfels, int sample)
-{
-    Vec3 normal = {(double)surfels->normal[0][sample], (double)surfels->normal[1][sample],
-                   (double)surfels->normal[2][sample]};
-    Vec3 sight = {0, 0, 1};
-    if (tile->perspective)
-        sight = vec3(tile->x + (double)tile->grid->x[sample],
-                     tile->y + (double)tile->grid->y[sample], 1);
-    if (vec3_dot(normal, sight) > 0)
-        normal = vec3_scale(normal, -1);
-    return rasterview_to_world(&picture->bins->view, normal);
 }
 
 static double seen_depth(const RasterTile *tile, const RasterHits *hits, int sample)
@@ -200,7 +270,7 @@ static bool any_wants_more(const RasterPicture *picture, const Place *place)
 /* The means of the centre samples, which the picture holds, and all others, summed in float in POV-Ray's
  * order. */
 static void resample_tile(const RasterPicture *picture, const Place *place, RasterTile *tile,
-                          Canvas *canvas)
+                          int worker, Canvas *canvas)
 {
     const Scene *scene = picture->scene;
     const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
@@ -212,7 +282,7 @@ static void resample_tile(const RasterPicture *picture, const Place *place, Rast
                     values[3 * pixel_at(picture, place, i, j) + (size_t)c];
     for (int pass = 0; pass < picture->n_further; pass++) {
         tile->grid = &picture->further[pass];
-        bool seen = color_tile(picture, tile, canvas);
+        bool seen = color_tile(picture, tile, worker, canvas);
         for (int c = 0; c < 3; c++)
             for (int sample = 0; sample < TILE_SAMPLES; sample++)
                 canvas->sum[c][sample] += seen ? canvas->color[c][sample] : background[c];
@@ -247,11 +317,11 @@ static void fill_background(const RasterPicture *picture, int row, int first, in
 }
 
 static void draw_tile(const RasterPicture *picture, const Place *place, RasterTile *tile,
-                      Canvas *canvas)
+                      int worker, Canvas *canvas)
 {
     const Frame *frame = picture->frame;
     const float *background = picture->background;
-    bool seen = color_tile(picture, tile, canvas);
+    bool seen = color_tile(picture, tile, worker, canvas);
     if (frame->color.values && seen)
         write_colors(picture, place, canvas->color);
     for (int j = 0; j < place->n_rows && frame->color.values && !seen; j++)
@@ -294,9 +364,9 @@ static void draw_row(size_t row, int worker, void *context)
         RasterTile tile = rasterbins_tile(bins, column, (int)row,
                                           canvas->row.lists + offsets[column], n, &picture->center);
         if (!picture->second_round)
-            draw_tile(picture, &place, &tile, canvas);
+            draw_tile(picture, &place, &tile, worker, canvas);
         if (further && any_wants_more(picture, &place))
-            resample_tile(picture, &place, &tile, canvas);
+            resample_tile(picture, &place, &tile, worker, canvas);
     }
     if (!picture->second_round)
         fill_background(picture, (int)row, empty, bins->tile_columns, background);
@@ -321,6 +391,29 @@ static Status prepare_lights(RasterPicture *picture, const RasterView *view, Err
     }
     picture->look = (TileLook){scene->finish, picture->lights, scene->n_lights};
     return STATUS_OK;
+}
+
+static Status prepare_shadows(RasterPicture *picture, Err *err)
+{
+    const Scene *scene = picture->scene;
+    bool rays = false;
+    if (!picture->params->shadows || !picture->frame->color.values)
+        return STATUS_OK;
+    TRY(mem_calloc(&picture->shadows, scene->n_lights, sizeof *picture->shadows, "lights", err));
+    for (size_t i = 0; i < scene->n_lights; i++) {
+        const Light *light = &scene->lights[i];
+        if (!light->casts_shadows)
+            continue;
+        if (light->samples > 1)
+            return err_set(
+                err, STATUS_USAGE,
+                "a light of this look casts soft shadows, which only --method trace draws");
+        if (rastershadow_can(scene, light))
+            TRY(rastershadow_new(scene, light, picture->workers, &picture->shadows[i], err));
+        else
+            rays = true;
+    }
+    return rays ? caster_new(scene, NULL, picture->workers, &picture->caster, err) : STATUS_OK;
 }
 
 static Status make_background(const RasterPicture *picture, int samples, float **row, Err *err)
@@ -362,6 +455,8 @@ static Status prepare_canvases(RasterPicture *picture, Err *err)
                    "canvases", err));
     for (int i = 0; i < picture->workers; i++) {
         TileSurface *surface = &picture->canvases[i].surface;
+        TRY(mem_calloc(&picture->canvases[i].shadowed, scene->n_lights,
+                       sizeof *picture->canvases[i].shadowed, "lights", err));
         for (int sample = 0; sample < TILE_SAMPLES; sample++) {
             surface->direction[2][sample] = 1;
             surface->pigment[0][sample] = scene->color.r;
@@ -396,8 +491,14 @@ static Status second_round(RasterPicture *picture, Err *err)
 
 static void release(RasterPicture *picture)
 {
-    for (int i = 0; picture->canvases && i < picture->workers; i++)
+    for (int i = 0; picture->canvases && i < picture->workers; i++) {
         rasterrow_release(&picture->canvases[i].row);
+        free(picture->canvases[i].shadowed);
+    }
+    for (size_t i = 0; picture->shadows && i < picture->scene->n_lights; i++)
+        rastershadow_free(picture->shadows[i]);
+    free(picture->shadows);
+    caster_free(picture->caster);
     free(picture->canvases);
     free(picture->further);
     free(picture->lights);
@@ -422,6 +523,7 @@ Status rasterrender(const Scene *scene, const RenderParams *params, const Band *
     TRY_GOTO(prepare_canvases(&picture, err));
     TRY_GOTO(make_background(&picture, 1, &picture.background, err));
     TRY_GOTO(make_background(&picture, picture.n_further + 1, &picture.resampled_background, err));
+    TRY_GOTO(prepare_shadows(&picture, err));
     TRY_GOTO(rasterbins_new(scene, &view, picture.workers, &picture.bins, err));
     double prepared_s = clock_seconds() - start_s;
     TRY_GOTO(draw_rows(&picture, err));

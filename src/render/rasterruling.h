@@ -84,8 +84,16 @@ RASTER_FN void halve(Bernstein *piece, Bernstein *second)
     Lanes c[4] = {b[0] + b[1], b[1] + b[2], b[2] + b[3], b[3] + b[4]};
     Lanes d[3] = {c[0] + c[1], c[1] + c[2], c[2] + c[3]};
     Lanes e[2] = {d[0] + d[1], d[1] + d[2]}, middle = (e[0] + e[1]) * 0.0625f;
-    *second = (Bernstein){{middle, e[1] * 0.125f, d[2] * 0.25f, c[3] * 0.5f, b[4]}};
-    *piece = (Bernstein){{b[0], c[0] * 0.5f, d[0] * 0.25f, e[0] * 0.125f, middle}};
+    Lanes *s = second->b;
+    s[0] = middle;
+    s[1] = e[1] * 0.125f;
+    s[2] = d[2] * 0.25f;
+    s[3] = c[3] * 0.5f;
+    s[4] = b[4];
+    b[1] = c[0] * 0.5f;
+    b[2] = d[0] * 0.25f;
+    b[3] = e[0] * 0.125f;
+    b[4] = middle;
 }
 
 /* Where rulings that face the view are: u in [low, high] of a half. */
@@ -133,19 +141,19 @@ LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, 
             falls->unsure |= several;
             n--;
         } else {
+            /* The second half goes on top. */
             piece->among = several;
             piece->size /= 2;
-            pieces[n] = *piece;
-            /* The first half goes on top. */
-            halve(&pieces[n].g, &piece->g);
-            piece->low += piece->size;
-            n++;
+            pieces[n].among = several;
+            pieces[n].size = piece->size;
+            pieces[n].low = piece->low + piece->size;
+            halve(&piece->g, &pieces[n++].g);
         }
     }
 }
 
 /* Finds the falls of the lines `among`. */
-RASTER_FN Falls find_falls(const Ruling *g, LaneMask among)
+RASTER_FN void find_falls(const Ruling *g, LaneMask among, Falls *falls)
 {
     Lanes one = lanes_set(1);
     Bernstein front = half_circle(g, 1), back = half_circle(g, -1), front2, back2;
@@ -156,12 +164,16 @@ RASTER_FN Falls find_falls(const Ruling *g, LaneMask among)
     LaneMask behind = changes_of(&back) + changes_of(&back2);
     LaneMask single = among & (in_front == -1) & (behind == -1) & falls_over;
     LaneMask open = among & ~single & ~((in_front == 0) & (behind == 0));
-    Falls falls = {{single, (LaneMask){0}}, {-one, -one}, {one, one}, {one, one}, (LaneMask){0}};
-    if (lanes_any(open)) {
-        part_falls(g, open, 1, &falls);
-        part_falls(g, open, -1, &falls);
+    for (int i = 0; i < 2; i++) {
+        falls->there[i] = i ? (LaneMask){0} : single;
+        falls->low[i] = -one;
+        falls->high[i] = falls->half[i] = one;
     }
-    return falls;
+    falls->unsure = (LaneMask){0};
+    if (lanes_any(open)) {
+        part_falls(g, open, 1, falls);
+        part_falls(g, open, -1, falls);
+    }
 }
 
 /* Fall number i as tan(q / 2), by Newton's method inside its bracket, from where it
@@ -245,7 +257,8 @@ RASTER_FN LaneMask joint_entry(const Near *near, const Sight *sight, LaneMask am
                                Lanes *ruling, LaneMask *unsure)
 {
     Ruling g = ruling_of(near, sight);
-    Falls falls = find_falls(&g, among);
+    Falls falls;
+    find_falls(&g, among, &falls);
     LaneMask met = (LaneMask){0};
     *unsure = falls.unsure;
     *z = lanes_set(HUGE_VALF);

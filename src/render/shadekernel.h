@@ -7,9 +7,22 @@
 #include "render/lanes.h"
 #include "render/tilekernels.h"
 
-/* x^y of x in (0, 1], y >= 0. */
+/* x^y of x in (0, 1], y >= 0: by squaring where y is a small whole number, as it mostly is. What is below
+ * 1e-15 need not be right, and so never comes near the slow arithmetic of tiny numbers. */
 LANE_FN Lanes lanes_power(Lanes x, float y)
 {
+    const Lanes least = lanes_set(1e-15f);
+    unsigned whole = y <= 256 ? (unsigned)y : 0;
+    if (whole > 0 && (float)whole == y) {
+        x = lanes_max(x, least);
+        Lanes power = whole & 1 ? x : lanes_set(1);
+        while (whole >>= 1) {
+            x = lanes_max(x * x, least);
+            if (whole & 1)
+                power = lanes_max(power * x, least);
+        }
+        return power;
+    }
     return lanes_exp_minus(-y * lanes_log(lanes_max(x, lanes_set(1e-30f))));
 }
 
@@ -103,7 +116,10 @@ LANE_TARGET static void SHADE_KERNEL(const TileLook *look, const TileSurface *su
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
         if (!any_hit_among(surface->hits->state + first))
             continue;
-        Shading shading = {.look = look, .surface = surface, .first = first};
+        Shading shading;
+        shading.look = look;
+        shading.surface = surface;
+        shading.first = first;
         for (int c = 0; c < 3; c++) {
             shading.normal[c] = lanes_load(&surface->hits->normal[c][first]);
             shading.direction[c] = lanes_load(&surface->direction[c][first]);

@@ -1,0 +1,25 @@
+/* What stands between a light and the places that it may light. */
+#ifndef CORCAST_RENDER_RASTERSHADOW_H
+#define CORCAST_RENDER_RASTERSHADOW_H
+
+#include "render/rasterkernels.h"
+#include "render/rasterview.h"
+
+/* The scene as one light sees it; constant once built. */
+typedef struct RasterShadow RasterShadow;
+
+/* Whether the light sees all of the scene in one view: it is parallel, or well outside. */
+bool rastershadow_can(const Scene *scene, const Light *light);
+
+/* Borrows the scene, which must not change; rastershadow_can(). */
+MUST_CHECK Status rastershadow_new(const Scene *scene, const Light *light, int threads,
+                                   RasterShadow **out, Err *err);
+void rastershadow_free(RasterShadow *shadow);
+
+/* Of the places at[i] in the world with wanted[i] set, sets shadowed[i] to 1 where a primitive stands
+ * farther than POV-Ray's 0.001 mm, or the rounding of the light's view, before them. */
+void rastershadow_test(const RasterShadow *shadow, const RasterKernels *kernels,
+                       const Vec3 at[TILE_SAMPLES], const uint8_t wanted[TILE_SAMPLES],
+                       uint8_t shadowed[TILE_SAMPLES]);
+
+#endif
