@@ -315,7 +315,8 @@ RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int fir
     }
     for (size_t i = 0; i < tile->n && lanes_any(open); i++) {
         Near near = approach(tile, tile->list[i], perspective);
-        outline(tile, &near);
+        if (near.kind == RASTER_JOINT)
+            outline(tile, &near);
         LaneMask among = open & (z > near.z_near);
         if (near.kind == RASTER_EXACT || lanes_any(among))
             open &= ~item_covers(&near, tile, probes, first, x, y, z, among);

@@ -104,19 +104,41 @@ static Vec3 seen_normal(const RasterPicture *picture, const RasterTile *tile,
     return rasterview_to_world(&picture->bins->view, normal);
 }
 
-/* The places that the samples of a tile see, in the world. */
-static void world_places(const RasterPicture *picture, const RasterTile *tile,
-                         const RasterHits *hits, Vec3 at[TILE_SAMPLES])
+/* The places that the samples of a tile see, in the camera's frame. */
+static void seen_places(const RasterTile *tile, const RasterHits *hits, Vec3 at[TILE_SAMPLES])
 {
-    const RasterView *view = &picture->bins->view;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (hits->item[sample] == RASTER_NOTHING)
             continue;
         double x = tile->x + (double)tile->grid->x[sample];
         double y = tile->y + (double)tile->grid->y[sample], z = seen_z(tile, hits, sample);
         double scale = tile->perspective ? z : 1;
-        at[sample] =
-            vec3_add(view->location, rasterview_to_world(view, vec3(x * scale, y * scale, z)));
+        at[sample] = vec3(x * scale, y * scale, z);
+    }
+}
+
+/* Which of the samples face the light. */
+static void find_facing(const RasterTile *tile, const Canvas *canvas, const TileLight *light,
+                        const Vec3 at[TILE_SAMPLES], uint8_t facing[TILE_SAMPLES])
+{
+    const float(*normal)[TILE_SAMPLES] = canvas->surfels.normal;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        facing[sample] = 0;
+        if (canvas->hits.item[sample] == RASTER_NOTHING)
+            continue;
+        float towards[3] = {light->towards[0], light->towards[1], light->towards[2]};
+        if (!light->parallel) {
+            towards[0] -= (float)at[sample].x;
+            towards[1] -= (float)at[sample].y;
+            towards[2] -= (float)at[sample].z;
+        }
+        float x = normal[0][sample], y = normal[1][sample], z = normal[2][sample];
+        float away = z; /* from the viewer */
+        if (tile->perspective)
+            away += x * ((float)tile->x + tile->grid->x[sample]) +
+                    y * ((float)tile->y + tile->grid->y[sample]);
+        float along = x * towards[0] + y * towards[1] + z * towards[2];
+        facing[sample] = away > 0 ? along < 0 : along > 0;
     }
 }
 
@@ -125,12 +147,14 @@ static void cast_shadows(const RasterPicture *picture, const Light *light, int w
                          const Vec3 at[TILE_SAMPLES], const uint8_t wanted[TILE_SAMPLES],
                          uint8_t shadowed[TILE_SAMPLES])
 {
+    const RasterView *view = &picture->bins->view;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (!wanted[sample])
             continue;
-        Vec3 to_light = vec3_sub(light->location, at[sample]);
+        Vec3 place = vec3_add(view->location, rasterview_to_world(view, at[sample]));
+        Vec3 to_light = vec3_sub(light->location, place);
         double distance = vec3_length(to_light);
-        shadowed[sample] = caster_shadow(picture->caster, worker, at[sample],
+        shadowed[sample] = caster_shadow(picture->caster, worker, place,
                                          vec3_scale(to_light, 1 / distance), distance);
     }
 }
@@ -141,22 +165,13 @@ static void find_shadows(const RasterPicture *picture, const RasterTile *tile, i
     const Scene *scene = picture->scene;
     Vec3 at[TILE_SAMPLES];
     uint8_t wanted[TILE_SAMPLES];
-    world_places(picture, tile, &canvas->hits, at);
+    seen_places(tile, &canvas->hits, at);
     memset(canvas->shadowed, 0, scene->n_lights * sizeof *canvas->shadowed);
     for (size_t i = 0; i < scene->n_lights; i++) {
         const Light *light = &scene->lights[i];
         if (!light->casts_shadows)
             continue;
-        Vec3 towards = vec3_sub(light->location, light->target);
-        for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-            wanted[sample] = canvas->hits.item[sample] != RASTER_NOTHING;
-            if (!wanted[sample])
-                continue;
-            if (!light->parallel)
-                towards = vec3_sub(light->location, at[sample]);
-            Vec3 normal = seen_normal(picture, tile, &canvas->surfels, sample);
-            wanted[sample] = vec3_dot(normal, towards) > 0;
-        }
+        find_facing(tile, canvas, &picture->lights[i], at, wanted);
         if (picture->shadows[i])
             rastershadow_test(picture->shadows[i], picture->kernels, at, wanted,
                               canvas->shadowed[i]);
@@ -393,7 +408,7 @@ static Status prepare_lights(RasterPicture *picture, const RasterView *view, Err
     return STATUS_OK;
 }
 
-static Status prepare_shadows(RasterPicture *picture, Err *err)
+static Status prepare_shadows(RasterPicture *picture, const RasterView *view, Err *err)
 {
     const Scene *scene = picture->scene;
     bool rays = false;
@@ -409,7 +424,7 @@ static Status prepare_shadows(RasterPicture *picture, Err *err)
                 err, STATUS_USAGE,
                 "a light of this look casts soft shadows, which only --method trace draws");
         if (rastershadow_can(scene, light))
-            TRY(rastershadow_new(scene, light, picture->workers, &picture->shadows[i], err));
+            TRY(rastershadow_new(scene, light, view, picture->workers, &picture->shadows[i], err));
         else
             rays = true;
     }
@@ -523,7 +538,7 @@ Status rasterrender(const Scene *scene, const RenderParams *params, const Band *
     TRY_GOTO(prepare_canvases(&picture, err));
     TRY_GOTO(make_background(&picture, 1, &picture.background, err));
     TRY_GOTO(make_background(&picture, picture.n_further + 1, &picture.resampled_background, err));
-    TRY_GOTO(prepare_shadows(&picture, err));
+    TRY_GOTO(prepare_shadows(&picture, &view, err));
     TRY_GOTO(rasterbins_new(scene, &view, picture.workers, &picture.bins, err));
     double prepared_s = clock_seconds() - start_s;
     TRY_GOTO(draw_rows(&picture, err));

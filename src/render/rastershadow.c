@@ -18,6 +18,8 @@ struct RasterShadow {
     RasterGrid grid;
     RasterRow *rows;
     double slack;
+    /* The light's axes in the camera's frame, and the camera's location in the light's. */
+    Vec3 axes[3], offset;
 };
 
 static double scene_radius(const Scene *scene, Vec3 *center)
@@ -107,8 +109,8 @@ static Status list_rows(RasterShadow *shadow, int threads, Err *err)
                                : err_set(err, status, "out of memory: no room for shadows");
 }
 
-Status rastershadow_new(const Scene *scene, const Light *light, int threads, RasterShadow **out,
-                        Err *err)
+Status rastershadow_new(const Scene *scene, const Light *light, const RasterView *camera,
+                        int threads, RasterShadow **out, Err *err)
 {
     RasterShadow *shadow = NULL;
     TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
@@ -116,6 +118,9 @@ Status rastershadow_new(const Scene *scene, const Light *light, int threads, Ras
     Vec3 center;
     /* Places and depths are rounded to 2^-24 of the scene's size, thrice. */
     shadow->slack = slack_mm + 0x3p-23 * scene_radius(scene, &center);
+    for (int i = 0; i < 3; i++)
+        shadow->axes[i] = rasterview_to_frame(camera, view.axes[i]);
+    shadow->offset = rasterview_to_frame(&view, vec3_sub(camera->location, view.location));
     shadow->grid = rastergrid_make(&view, 0.5, 0.5);
     Status status = rasterbins_new(scene, &view, threads, &shadow->bins, err);
     if (status == STATUS_OK)
@@ -155,7 +160,9 @@ static Spot spot_of(const RasterShadow *shadow, Vec3 at)
 {
     const RasterBins *bins = shadow->bins;
     const RasterView *view = &bins->view;
-    Vec3 v = rasterview_to_frame(view, vec3_sub(at, view->location));
+    Vec3 v = {vec3_dot(at, shadow->axes[0]), vec3_dot(at, shadow->axes[1]),
+              vec3_dot(at, shadow->axes[2])};
+    v = vec3_add(v, shadow->offset);
     double slack = shadow->slack;
     Spot spot = {.x = v.x, .y = v.y};
     if (view->perspective) {
@@ -164,9 +171,10 @@ static Spot spot_of(const RasterShadow *shadow, Vec3 at)
         slack /= sqrt(1 + spot.x * spot.x + spot.y * spot.y);
     }
     spot.z = (float)(v.z - slack - view->z_middle);
-    int column =
-        clamped(((spot.x - view->left) / view->step_x + 0.5) / TILE_SIDE, bins->tile_columns);
-    int row = clamped(((spot.y - view->top) / view->step_y + 0.5) / TILE_SIDE, bins->tile_rows);
+    int column = clamped(((spot.x - view->left) * view->per_x + 0.5) * (1.0 / TILE_SIDE),
+                         bins->tile_columns);
+    int row =
+        clamped(((spot.y - view->top) * view->per_y + 0.5) * (1.0 / TILE_SIDE), bins->tile_rows);
     spot.tile = row * bins->tile_columns + column;
     return spot;
 }
@@ -195,7 +203,8 @@ void rastershadow_test(const RasterShadow *shadow, const RasterKernels *kernels,
             left[n_left++] = i;
         }
     while (n_left > 0) {
-        RasterProbes probes = {.n = 0};
+        RasterProbes probes;
+        probes.n = 0;
         int own[TILE_SAMPLES], tile = spots[left[0]].tile, kept = 0;
         for (int i = 0; i < n_left; i++) {
             const Spot *spot = &spots[left[i]];

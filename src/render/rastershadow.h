@@ -11,12 +11,12 @@ typedef struct RasterShadow RasterShadow;
 /* Whether the light sees all of the scene in one view: it is parallel, or well outside. */
 bool rastershadow_can(const Scene *scene, const Light *light);
 
-/* Borrows the scene, which must not change; rastershadow_can(). */
-MUST_CHECK Status rastershadow_new(const Scene *scene, const Light *light, int threads,
-                                   RasterShadow **out, Err *err);
+/* For places in the frame of `camera`. Borrows the scene, which must not change; rastershadow_can(). */
+MUST_CHECK Status rastershadow_new(const Scene *scene, const Light *light, const RasterView *camera,
+                                   int threads, RasterShadow **out, Err *err);
 void rastershadow_free(RasterShadow *shadow);
 
-/* Of the places at[i] in the world with wanted[i] set, sets shadowed[i] to 1 where a primitive stands
+/* Of the places at[i] with wanted[i] set, sets shadowed[i] to 1 where a primitive stands
  * farther than POV-Ray's 0.001 mm, or the rounding of the light's view, before them. */
 void rastershadow_test(const RasterShadow *shadow, const RasterKernels *kernels,
                        const Vec3 at[TILE_SAMPLES], const uint8_t wanted[TILE_SAMPLES],

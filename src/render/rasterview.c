@@ -218,10 +218,11 @@ static double max_of(double a, double b)
     return a > b ? a : b;
 }
 
-/* Of `count` pixels from pixel `least` on, the tiles within a range; pixel 0 is at `first`. */
-static Span tiles_within(Range range, double first, double step, double stray, int least, int count)
+/* Of `count` pixels from pixel `least` on, the tiles within a range; pixel 0 is at `first`, and `per`
+ * pixels follow in a unit. */
+static Span tiles_within(Range range, double first, double per, double stray, int least, int count)
 {
-    double from = (range.low - first) / step, to = (range.high - first) / step;
+    double from = (range.low - first) * per, to = (range.high - first) * per;
     double low = max_of(min_of(from, to) - stray - slack_pixels, least);
     double high = min_of(max_of(from, to) + stray + slack_pixels, least + count - 1);
     if (!(low <= high))
@@ -232,12 +233,10 @@ static Span tiles_within(Range range, double first, double step, double stray, i
                                      : nowhere;
 }
 
-/* What a ball at coordinate c in one direction of the view's plane, and at depth z > radius, covers
- * there. */
-static Range ball_shadow(bool perspective, double c, double z, double radius)
+/* What a ball at coordinate c in one direction of a perspective view's plane, and at depth z > radius,
+ * covers there. */
+static Range ball_shadow(double c, double z, double radius)
 {
-    if (!perspective)
-        return (Range){c - radius, c + radius};
     double half = radius * sqrt(max_of(c * c + z * z - radius * radius, 0));
     double per = 1 / ((z - radius) * (z + radius));
     return (Range){(c * z - half) * per, (c * z + half) * per};
@@ -254,11 +253,9 @@ static Vec3 item_point(const RasterItem *item, double along)
     return vec3_add_scaled(vec3(item->x, item->y, item->z), item_axis(item), along);
 }
 
-static Range capsule_shadow(bool perspective, double c0, double z0, double c1, double z1,
-                            double radius)
+static Range capsule_shadow(double c0, double z0, double c1, double z1, double radius)
 {
-    Range one = ball_shadow(perspective, c0, z0, radius);
-    Range other = ball_shadow(perspective, c1, z1, radius);
+    Range one = ball_shadow(c0, z0, radius), other = ball_shadow(c1, z1, radius);
     return (Range){min_of(one.low, other.low), max_of(one.high, other.high)};
 }
 
@@ -274,15 +271,13 @@ static Span rows_of(const RasterView *view, const RasterItem *item)
         return nowhere;
     if (may_be_anywhere(view, item))
         return (Span){0, (view->rows - 1) / TILE_SIDE};
-    Vec3 a = item_point(item, -half), b = item_point(item, half);
-    return tiles_within(capsule_shadow(view->perspective, a.y, a.z, b.y, b.z, radius), view->top,
-                        view->step_y, view->stray, view->first, view->rows);
-}
-
-/* Height above the plane through the eye, the view's direction and a row at `y` of its plane. */
-static double above(const RasterView *view, Vec3 p, double y, double per_length)
-{
-    return view->perspective ? (p.y - y * p.z) * per_length : p.y - y;
+    double reach = fabs((double)item->ey) * (double)item->sine * half + radius;
+    Range range = {item->y - reach, item->y + reach};
+    if (view->perspective) {
+        Vec3 a = item_point(item, -half), b = item_point(item, half);
+        range = capsule_shadow(a.y, a.z, b.y, b.z, radius);
+    }
+    return tiles_within(range, view->top, view->per_y, view->stray, view->first, view->rows);
 }
 
 /* The slab that the lines of sight of a row of tiles fill. */
@@ -301,30 +296,59 @@ static Slab slab_of(const RasterView *view, size_t row)
     return slab;
 }
 
-/* The tiles of a row that the part of the capsule within reach of its slab may touch. */
-static Span columns_of(const RasterView *view, const RasterItem *item, const Slab *slab)
+/* The part [*from, *to] of the way where something that is at_a at its beginning and at_b at its end is not
+ * below 0. */
+static void clip_part(double at_a, double at_b, double *from, double *to)
+{
+    if (at_a < 0)
+        *from = at_b < 0 ? HUGE_VAL : max_of(*from, at_a / (at_a - at_b));
+    else if (at_b < 0)
+        *to = min_of(*to, at_a / (at_a - at_b));
+}
+
+/* What the part of the capsule within reach of the slab covers of a row; empty: nothing. */
+static Range parallel_range(const RasterItem *item, const Slab *slab)
+{
+    double radius = (double)item->radius, ex = (double)item->ex, ey = (double)item->ey;
+    double half = (double)item->sine * (double)item->half, low = -half, high = half;
+    double below = slab->y[0] - radius - item->y, over = slab->y[1] + radius - item->y;
+    double rise = fabs(ey) * half;
+    if (-rise > over || rise < below)
+        return (Range){1, 0};
+    if (-rise < below || rise > over) {
+        double per = 1 / ey, one = below * per, other = over * per;
+        low = max_of(low, min_of(one, other));
+        high = min_of(high, max_of(one, other));
+    }
+    double from = ex * low, to = ex * high;
+    return (Range){item->x + min_of(from, to) - radius, item->x + max_of(from, to) + radius};
+}
+
+static Range perspective_range(const RasterItem *item, const Slab *slab)
 {
     double half = (double)item->half, radius = (double)item->radius, from = 0, to = 1;
-    if (may_be_anywhere(view, item))
-        return (Span){0, (view->columns - 1) / TILE_SIDE};
     Vec3 a = item_point(item, -half), span = vec3_scale(item_axis(item), 2 * half);
     Vec3 b = vec3_add(a, span);
     for (int plane = 0; plane < 2; plane++) {
-        double sign = plane ? -1 : 1;
-        double at_a = sign * above(view, a, slab->y[plane], slab->per_length[plane]) + radius;
-        double at_b = sign * above(view, b, slab->y[plane], slab->per_length[plane]) + radius;
-        if (at_a < 0 && at_b < 0)
-            return nowhere;
-        if (at_a < 0)
-            from = max_of(from, at_a / (at_a - at_b));
-        else if (at_b < 0)
-            to = min_of(to, at_a / (at_a - at_b));
+        double sign = plane ? -slab->per_length[plane] : slab->per_length[plane];
+        double y = slab->y[plane];
+        clip_part(sign * (a.y - y * a.z) + radius, sign * (b.y - y * b.z) + radius, &from, &to);
     }
     if (from > to)
-        return nowhere;
+        return (Range){1, 0};
     Vec3 first = vec3_add_scaled(a, span, from), last = vec3_add_scaled(a, span, to);
-    return tiles_within(capsule_shadow(view->perspective, first.x, first.z, last.x, last.z, radius),
-                        view->left, view->step_x, view->stray, 0, view->columns);
+    return capsule_shadow(first.x, first.z, last.x, last.z, radius);
+}
+
+/* The tiles of a row that the part of the capsule within reach of its slab may touch. */
+static Span columns_of(const RasterView *view, const RasterItem *item, const Slab *slab)
+{
+    if (may_be_anywhere(view, item))
+        return (Span){0, (view->columns - 1) / TILE_SIDE};
+    Range range = view->perspective ? perspective_range(item, slab) : parallel_range(item, slab);
+    if (range.low > range.high)
+        return nowhere;
+    return tiles_within(range, view->left, view->per_x, view->stray, 0, view->columns);
 }
 
 /* ---- rows ---------------------------------------------------------------------------------------- */
@@ -420,6 +444,8 @@ Status rasterbins_new(const Scene *scene, const RasterView *view, int threads, R
     TRY(mem_calloc(&bins, 1, sizeof *bins, "tiles", err));
     bins->scene = scene;
     bins->view = *view;
+    bins->view.per_x = 1 / view->step_x;
+    bins->view.per_y = 1 / view->step_y;
     bins->tile_columns = (view->columns + TILE_SIDE - 1) / TILE_SIDE;
     bins->tile_rows = (view->rows + TILE_SIDE - 1) / TILE_SIDE;
     Status status = make_bins(bins, threads, err);

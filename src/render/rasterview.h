@@ -13,6 +13,7 @@ typedef struct RasterView {
     bool perspective;
     double left, top; /* the middle of the first pixel: mm from the location, or per mm of depth */
     double step_x, step_y; /* from pixel to pixel, to the right and down: above and below 0 */
+    double per_x, per_y;   /* 1 / step, set by rasterbins_new */
     int columns, rows;     /* pixels */
     int first;             /* pixels above the first row, a multiple of TILE_SIDE */
     double stray;          /* how far samples lie off the middles of their pixels, in pixels */

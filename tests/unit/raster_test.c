@@ -221,7 +221,6 @@ static void a_camera_among_the_vessels_sees_what_rays_see(void **state)
         stage(&staged, (Projection)projection);
         staged.scene.camera.location = vec3(0.1, 0.2, 0.3);
         Gap gap = gap_to_trace(&staged.scene);
-        printf("  %d seen, %d, %g\n", gap.seen, gap.ids, gap.depth);
         assert_true(gap.seen > 1000);
         assert_true(gap.ids <= 2);
         assert_true(gap.depth < 1e-4);
@@ -261,7 +260,6 @@ static void vessels_along_the_view_are_seen_end_on(void **state)
         }
         bound(scene);
         Gap gap = gap_to_trace(scene);
-        printf("  %d seen, %d, %g\n", gap.seen, gap.ids, gap.depth);
         assert_true(gap.seen > 200);
         assert_true(gap.ids <= 1);
         assert_true(gap.depth < 1e-4);
@@ -280,7 +278,7 @@ static void tiles_do_not_depend_on_the_number_of_threads(void **state)
 {
     (void)state;
     const Settings cases[] = {{RENDER_RASTER, 1, 1, 0, false},
-                              {RENDER_RASTER, 1, 2, 0, false},
+                              {RENDER_RASTER, 1, 2, 0, true},
                               {RENDER_RASTER, 1, 3, 0.05, false}};
     for (int projection = 0; projection < 2; projection++)
         for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -347,6 +345,32 @@ static void antialiased_tiles_are_what_antialiased_rays_are(void **state)
         }
 }
 
+static void shadows_of_tiles_are_shadows_of_rays(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++)
+        for (int near = 0; near < 2; near++) {
+            Staged staged;
+            stage(&staged, (Projection)projection);
+            if (near) /* too near for a view of its own */
+                staged.lights[1].location = vec3(1, 2, 11);
+            Frame lit = drawn(&staged.scene, (Settings){RENDER_TRACE, 2, 1, 0, false});
+            Frame traced = drawn(&staged.scene, (Settings){RENDER_TRACE, 2, 1, 0, true});
+            Frame tiles = drawn(&staged.scene, (Settings){RENDER_RASTER, 2, 1, 0, true});
+            int dark = 0, different = 0;
+            for (size_t i = 0; i < 3 * (size_t)PIXELS; i++) {
+                dark += lit.color.values[i] - traced.color.values[i] > 0.01f;
+                different += fabs((double)(traced.color.values[i] - tiles.color.values[i])) > 2e-3;
+            }
+            printf("  %d in shadow, %d different\n", dark, different);
+            assert_true(dark > 400);
+            assert_true(different <= 9);
+            frame_release(&lit);
+            frame_release(&traced);
+            frame_release(&tiles);
+        }
+}
+
 /* Every tile of a picture by one set of kernels. */
 static void trace_all(const RasterBins *bins, const RasterKernels *kernels, RasterHits *all)
 {
@@ -402,6 +426,7 @@ int main(void)
         cmocka_unit_test(tiles_do_not_depend_on_the_number_of_threads),
         cmocka_unit_test(bands_are_the_rows_of_the_whole),
         cmocka_unit_test(antialiased_tiles_are_what_antialiased_rays_are),
+        cmocka_unit_test(shadows_of_tiles_are_shadows_of_rays),
         cmocka_unit_test(all_kernels_see_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
