@@ -128,9 +128,6 @@ Status scene_check(const Scene *scene, Err *err)
         !(vec3_length(camera->direction) > 0) || !(vec3_length(camera->right) > 0) ||
         !(vec3_length(camera->up) > 0))
         return err_set(err, STATUS_INPUT, "the camera has no direction or no extent");
-    if (vec3_length(camera->location) > farthest_mm)
-        return err_set(err, STATUS_INPUT, "the camera is farther than %g mm from the origin",
-                       farthest_mm);
     if (scene->ground.present && !isfinite(scene->ground.offset_mm))
         return err_set(err, STATUS_INPUT, "the ground has no place");
     for (size_t i = 0; i < scene->n_primitives; i++) {
@@ -143,5 +140,8 @@ Status scene_check(const Scene *scene, Err *err)
         const FieldSegment *segment = &scene->segments[i];
         TRY(check_tube(segment->a, segment->b, segment->radius_mm, segment->id, err));
     }
+    if (vec3_length(camera->location) > farthest_mm)
+        return err_set(err, STATUS_INPUT, "the camera is farther than %g mm from the origin",
+                       farthest_mm);
     return STATUS_OK;
 }
