@@ -50,7 +50,8 @@ typedef struct Viewer {
 static Status make_display(Viewer *viewer, Err *err)
 {
     int coarseness = viewer->display ? display_coarseness(viewer->display) : 0;
-    const RenderParams params = {.method = RENDER_RASTER,
+    const RenderParams params = {.method =
+                                     viewer->options->stage.shadows ? RENDER_TRACE : RENDER_RASTER,
                                  .threads = viewer->common->threads,
                                  .antialias = viewer->options->antialias,
                                  .shadows = viewer->options->stage.shadows,

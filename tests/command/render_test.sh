@@ -231,37 +231,14 @@ brightness() {
     pnmtoplainpnm "$1" | tail -n +4 | awk '{ for (i = 1; i <= NF; i++) sum += $i } END { print sum }'
 }
 
-# star N: N daughters at one node, in all directions, each shorter than it is wide where THICK is given.
-star() {
-    awk -v n="$1" -v thick="${2:-0}" 'BEGIN {
-        print "1 3 0 30 0 2 -1"
-        print "2 3 0 0 0 2 1"
-        for (i = 0; i < n; i++) {
-            z = 1 - 2 * (i + 0.5) / n; a = 2.399963229728653 * i; r = sqrt(1 - z * z)
-            print i + 3, 3, 20 * r * cos(a), 20 * r * sin(a), 20 * z, (thick ? 25 : 0.3), 2
-        }
-    }'
-}
-
-test_more_than_a_thousand_daughters_at_one_node_are_drawn() {
-    star 1200 >star.swc
-    run_ok corcast render star.swc --model joined --size 100x100 --json report.json -o star.png
+# What --model joined says of trees where joints cannot be; odd_trees_test.sh draws them in every way.
+test_places_of_odd_trees_that_have_no_joints_are_counted() {
+    run_ok corcast render "$DATA/star.swc" --model joined --size 100x100 --json report.json -o picture.png
     expect_json report.json '.places_short + .places_sharp == 1'
-    [ "$(colours_of_png star.png)" -gt 100 ] || fail "expected a shaded picture"
-}
-
-test_vessels_wider_than_long_are_drawn() {
-    star 12 thick >star.swc
-    run_ok corcast render star.swc --model joined --size 100x100 --json report.json -o star.png
-    expect_json report.json '.places_short + .places_sharp == 1 and .joints == 0'
-}
-
-test_collinear_trees_are_drawn() {
-    awk 'BEGIN { for (i = 1; i <= 20; i++) print i, 3, 0, 3 * i, 0, 2 - i * 0.05, (i > 1 ? i - 1 : -1)
-                 for (i = 21; i <= 30; i++) print i, 3, 0, 3 * (40 - i) - 1.5, 0, 0.4, (i > 21 ? i - 1 : 20) }' >line.swc
-    run_ok corcast render line.swc --model joined --size 80x100 --json report.json -o line.png
+    run_ok corcast render "$DATA/collinear.swc" --model joined --size 80x100 --json report.json -o picture.png
     expect_json report.json '.joints == 0'
-    run_ok corcast render line.swc --model joined --joints paper --size 80x100 -o paper.png
+    run_ok corcast render "$DATA/stout.swc" --model joined --size 80x100 --json report.json -o picture.png
+    expect_json report.json '.joints == 1 and .places_short == 19'
 }
 
 test_a_picture_beyond_the_disk_is_refused_and_the_old_one_stays() {

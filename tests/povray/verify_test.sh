@@ -219,6 +219,17 @@ test_a_tree_far_from_the_origin_agrees() {
     done
 }
 
+test_odd_trees_agree() {
+    local tree model
+    for tree in star collinear stout; do
+        cp "$DATA/$tree.swc" tree.swc
+        for model in cylinders rounded joined; do
+            agrees $model --shadows on
+            rm -r report
+        done
+    done
+}
+
 test_a_measured_tree_agrees() {
     [ -d "$SHARED/brava" ] || skip "the measured trees of ../shared/data/brava are not here"
     cp "$SHARED/brava/BG0002records.swc" tree.swc

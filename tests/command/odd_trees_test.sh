@@ -1,0 +1,116 @@
+#!/usr/bin/env bash
+# Trees that nobody grows but that somebody reads: every model of objects draws them, traced and as tiles, or
+# says in a sentence why not. tests/povray holds some of the pictures against POV-Ray's.
+. "$(dirname "$0")/../lib.sh"
+
+# rows ROW ...: a tree of these SWC rows in tree.swc.
+rows() {
+    printf '%s\n' "$@" >tree.swc
+}
+
+each_way() {
+    local model projection
+    for model in 'cylinders' 'rounded' 'joined' 'joined --joints paper'; do
+        for projection in orthographic perspective; do
+            "$@" --model $model --projection $projection
+        done
+    done
+}
+
+# draws OPTION ...: a picture, numbers in all planes, and the same from both methods within two levels, on
+# all but 3 pixels.
+draws() {
+    local method
+    for method in trace raster; do
+        run timeout 60 "$CORCAST" render tree.swc --size 120x120 --quiet --method $method \
+            --planes depth,normal,id "$@" -o $method.ppm
+        expect_status 0
+        ! tail -n +4 $method.normal.pfm | od -A n -t f4 -v | grep -qi nan || fail "expected no NaN with $method $*"
+    done
+    levels trace.ppm >trace.levels
+    levels raster.ppm >raster.levels
+    paste trace.levels raster.levels | awk '
+        { d = $1 - $2; if (d > 2 || d < -2) off[int((NR - 1) / 3)] = 1 }
+        END { for (p in off) n++; exit n > 3 }' || fail "expected trace and raster to agree with $*"
+    [ "$(sort -u trace.levels | wc -l)" -gt 20 ] || fail "expected a shaded picture with $*"
+}
+
+levels() {
+    pnmtoplainpnm "$1" | tail -n +4 | tr -s ' ' '\n' | grep -v '^$'
+}
+
+# refuses PATTERN OPTION ...
+refuses() {
+    local sentence=$1
+    shift
+    run timeout 60 "$CORCAST" render tree.swc --size 40x40 "$@" -o picture.ppm
+    expect_status 2
+    expect_sentence "$sentence"
+    [ ! -e picture.ppm ] || fail "expected no picture"
+}
+
+test_twelve_hundred_daughters_at_one_node() {
+    cp "$DATA/star.swc" tree.swc
+    [ "$(grep -c ' 2$' tree.swc)" -ge 1200 ] || fail "expected 1200 daughters"
+    each_way draws
+}
+
+test_all_segments_on_one_line() {
+    cp "$DATA/collinear.swc" tree.swc
+    each_way draws
+}
+
+test_every_vessel_wider_than_long() {
+    cp "$DATA/stout.swc" tree.swc
+    each_way draws
+}
+
+test_segments_without_length() {
+    rows '1 3 0 0 0 1 -1' '2 3 0 0 0 1 1' '3 3 5 0 0 1 2' '4 3 5 0 0 0.5 3' '5 3 8 3 0 0.5 4'
+    each_way draws
+}
+
+test_a_radius_of_a_millionth_of_a_micrometre() {
+    rows '1 3 0 0 0 1 -1' '2 3 5 0 0 1e-9 1' '3 3 5 5 0 1 2'
+    each_way draws
+}
+
+test_a_radius_of_a_thousand_kilometres() {
+    rows '1 3 0 0 0 1e9 -1' '2 3 5 0 0 1e9 1'
+    each_way refuses 'the segment of node 2 lies farther than 1e\+07 mm from the origin'
+}
+
+test_two_hundred_segments_at_one_place() {
+    rows '1 3 0 0 0 1 -1'
+    seq -f '%g 3 5 1 2 1 1' 2 200 >>tree.swc
+    each_way draws
+}
+
+test_a_vessel_that_turns_back_into_itself() {
+    rows '1 3 0 0 0 1 -1' '2 3 5 0 0 1 1' '3 3 0 0 0 1 2'
+    each_way draws
+}
+
+test_a_camera_inside_a_vessel() {
+    local model
+    rows '1 3 0 0 0 1 -1' '2 3 5 0 0 1 1' '3 3 8 3 0 .5 2' '4 3 8 -3 0 .5 2'
+    for model in cylinders rounded joined; do
+        run_ok corcast render tree.swc --model $model --projection perspective --location 2.5,0,0 --look-at 8,0,0 \
+            --size 40x40 --planes depth -o picture.ppm
+        ! tail -n +4 picture.depth.pfm | od -A n -t f4 -v | grep -qiE 'nan|inf' ||
+            fail "expected to see the vessel's wall everywhere in $model"
+    done
+}
+
+test_a_tree_a_kilometre_away() {
+    rows '1 3 1e6 1e6 -1e6 1 -1' '2 3 1000005 1e6 -1e6 1 1' '3 3 1000008 1000003 -1e6 0.5 2' \
+        '4 3 1000008 999997 -1e6 0.5 2'
+    each_way draws
+}
+
+test_a_tree_without_segments() {
+    rows '1 3 0 0 0 1 -1'
+    each_way refuses 'the tree has nothing to draw'
+}
+
+run_tests "$@"
