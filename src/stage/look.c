@@ -81,7 +81,7 @@ static bool read_light(Reading *reading, const char *section, const char *name, 
 {
     Look *look = &reading->look;
     if (strcmp(section, reading->light_section) != 0) {
-        reading->problem = "one of at most 8 lights with names of at most 63 letters";
+        reading->problem = "one of at most 64 lights with names of at most 63 letters";
         if (look->n_lights == LOOK_MAX_LIGHTS || strlen(section) >= sizeof reading->light_section)
             return false;
         strcpy(reading->light_section, section);

@@ -21,7 +21,7 @@ typedef struct LookLight {
     Rgb color;
 } LookLight;
 
-enum { LOOK_MAX_LIGHTS = 8 };
+enum { LOOK_MAX_LIGHTS = 64 };
 
 /* A plane beyond the tree, on which shadows fall. */
 typedef struct LookGround {

@@ -281,6 +281,19 @@ test_point_lights_and_highlights_agree() {
     agrees joined --look ./lights.ini --shadows on --projection perspective
 }
 
+test_many_lights_of_both_kinds_agree() {
+    local i
+    tree_3d
+    point_lights
+    for i in $(seq 40); do
+        printf '[light %d]\n%s = %d.5 %d 2\ncolor = 0.03 0.02 0.01\n' $i \
+            "$([ $((i % 2)) -eq 0 ] && echo position || echo direction)" $((i % 7 - 3)) $((i % 5 - 2))
+    done >>lights.ini
+    agrees rounded --look ./lights.ini --shadows on
+    rm -r report
+    agrees isosurface --look ./lights.ini --shadows on --projection perspective
+}
+
 # ground WHERE: a look with a ground plane there.
 ground() {
     point_lights
