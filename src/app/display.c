@@ -12,13 +12,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double frame_s = 1.0 / 36, refine_s = 1.0 / 40;
+/* For drawing; the rest of a thirtieth of a second goes into the window. */
+static const double frame_s = 1.0 / 45, refine_s = 1.0 / 40;
 enum { LEVELS = 1 << 14, MAX_COARSENESS = 16 };
 
 struct Display {
     Scene *scene;
     Renderer *renderer;
-    int antialias;
+    int antialias, threads;
     int coarseness;
     uint8_t codes[LEVELS + 1]; /* of linear colours, as parts of LEVELS */
     uint8_t *rgb;              /* owned */
@@ -33,8 +34,11 @@ Status display_new(Scene *scene, const RenderParams *params, Display **out, Err 
 {
     Display *display;
     TRY(mem_calloc(&display, 1, sizeof *display, "displays", err));
-    *display = (Display){
-        .scene = scene, .antialias = params->antialias, .coarseness = 2, .rows = RENDER_BAND_STEP};
+    *display = (Display){.scene = scene,
+                         .antialias = params->antialias,
+                         .threads = params->threads,
+                         .coarseness = 2,
+                         .rows = RENDER_BAND_STEP};
     for (int i = 0; i <= LEVELS; i++)
         display->codes[i] = (uint8_t)image_code((float)i / LEVELS, ENCODING_SRGB, 8);
     Status status = renderer_new(scene, params, &display->renderer, err);
@@ -74,13 +78,22 @@ static Status set_size(Display *display, int width, int height, Err *err)
     return STATUS_OK;
 }
 
-static void encode_rows(Display *display, const Plane *color, int first)
+typedef struct EncodeJob {
+    const Display *display;
+    const Plane *color;
+    int first;
+} EncodeJob;
+
+static void encode_row(size_t row, int worker, void *context)
 {
-    size_t row = (size_t)display->width * 3, n = (size_t)color->height * row;
-    uint8_t *to = display->rgb + (size_t)first * row;
+    (void)worker;
+    const EncodeJob *job = context;
+    size_t n = (size_t)job->color->width * 3;
+    const float *from = job->color->values + row * n;
+    uint8_t *to = job->display->rgb + ((size_t)job->first + row) * n;
     for (size_t i = 0; i < n; i++) {
-        float value = color->values[i];
-        to[i] = display->codes[value > 0 ? value < 1 ? (int)(value * LEVELS + 0.5f) : LEVELS : 0];
+        float part = from[i] * LEVELS + 0.5f;
+        to[i] = job->display->codes[part > 0 ? part < LEVELS ? (int)part : LEVELS : 0];
     }
 }
 
@@ -90,7 +103,8 @@ static Status draw_rows(Display *display, int first, int rows, int antialias, Er
     Frame band;
     renderer_antialias(display->renderer, antialias);
     TRY(renderer_rows(display->renderer, first, rows, &band, err));
-    encode_rows(display, &band.color, first);
+    EncodeJob job = {display, &band.color, first};
+    threads_for((size_t)rows, display->threads, encode_row, &job);
     frame_release(&band);
     return STATUS_OK;
 }
