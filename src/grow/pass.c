@@ -29,6 +29,7 @@ struct Tile {
     size_t most, made;    /* terminals */
     size_t over;          /* points left over, which are then the first ones */
     size_t *left;         /* by tree */
+    double reach;         /* what its planner had come to */
     Tally tally;
     Status status;
     Err err;
@@ -121,6 +122,8 @@ typedef struct Running {
 /* Asks for memory that points further on will need. */
 static void fetch(const Pass *pass, const Tile *tile, const Grid *grid, size_t k)
 {
+    if (k + 8 * AHEAD < tile->end)
+        __builtin_prefetch(&pass->point[pass->order[k + 8 * AHEAD]]);
     if (k + 3 * AHEAD < tile->end)
         grid_fetch_cell(grid, pass->point[pass->order[k + 3 * AHEAD]]);
     if (k + 2 * AHEAD < tile->end)
@@ -168,8 +171,6 @@ static void warm(const Site *site, const GridBox *box)
                         int32_t segment = cell->tag[i] >> 1;
                         __builtin_prefetch(&grid->item[segment]);
                         __builtin_prefetch(&site->net->segment[segment]);
-                        __builtin_prefetch(&site->net->sensitivity[segment]);
-                        __builtin_prefetch(&site->net->position[segment]);
                     }
                 }
 }
@@ -177,6 +178,8 @@ static void warm(const Site *site, const GridBox *box)
 static void run_tile(const Running *running, int worker, Tile *tile)
 {
     Pass *pass = running->pass;
+    Planner *planner = &pass->planner[worker];
+    planner->reach = pass->reach;
     if (tile->warm)
         warm(running->site, &tile->box);
     for (size_t k = tile->first; k < tile->end && tile->status == STATUS_OK; k++) {
@@ -187,6 +190,7 @@ static void run_tile(const Running *running, int worker, Tile *tile)
         else if (state < PLAN_STATES)
             tile->tally.count[state]++;
     }
+    tile->reach = planner->reach;
 }
 
 static void run_turn(size_t index, int worker, void *context)
@@ -338,9 +342,13 @@ static void settle_limits(const Pass *pass, const Site *site, size_t tiles)
 static Status gather(Pass *pass, const Site *site, size_t tiles, size_t *made, size_t *over,
                      Err *err)
 {
+    double reach = 0;
+    size_t points = 0;
     *over = 0;
     for (size_t t = 0; t < tiles; t++) {
         const Tile *tile = &pass->tile[t];
+        reach += tile->reach * (double)(tile->end - tile->first);
+        points += tile->end - tile->first;
         if (tile->status != STATUS_OK)
             return err_set(err, tile->status, "%s", tile->err.text);
         *made += tile->made;
@@ -350,6 +358,8 @@ static Status gather(Pass *pass, const Site *site, size_t tiles, size_t *made, s
         for (size_t k = 0; k < tile->over; k++)
             pass->order[(*over)++] = pass->order[tile->first + k];
     }
+    if (points > 0)
+        pass->reach = reach / (double)points;
     settle_nodes(pass, site->net, tiles);
     return STATUS_OK;
 }

@@ -26,6 +26,7 @@ typedef struct Pass {
     Planner *planner;    /* by thread */
     int threads;
     uint32_t number; /* of passes so far */
+    double reach;    /* mm; what planners begin with */
     uint8_t *misses; /* by cell: crowded points in it since one was connected, up to PASS_FULL */
     Tally tally;
 } Pass;

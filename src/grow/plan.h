@@ -34,7 +34,7 @@ typedef struct Site {
 typedef struct Planner {
     Near *near; /* candidates of each */
     Connection *connection;
-    double reach; /* mm; a guess of how far away they are */
+    double reach; /* mm; a guess of how far away they are, 0: none; the caller's to begin with */
 } Planner;
 
 MUST_CHECK Status planner_init(Planner *planner, int candidates, Err *err);

@@ -95,12 +95,67 @@ static void a_territory_counts_the_points_that_are_nearest_whatever_the_threads(
     domain_release(&domain);
 }
 
+/* Where in a box, its bounds included, a cell's bounds more often than chance has it. */
+static Vec3 random_place(Random *random, const Grid *grid, Box box)
+{
+    double t[3], size[3] = {box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z};
+    for (int axis = 0; axis < 3; axis++) {
+        t[axis] = random_uniform(random) * size[axis];
+        if (random_uniform(random) < 0.3)
+            t[axis] = fmin(round(t[axis] / grid->edge) * grid->edge, size[axis]);
+    }
+    return vec3_add(box.low, vec3(t[0], t[1], t[2]));
+}
+
+static void expect_nearest(const char *spec, size_t segments, double longest)
+{
+    enum { LIMIT = 8 };
+    Domain domain;
+    Random random;
+    Grid grid = {0};
+    assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
+    Box box = domain_bounds(&domain);
+    assert_int_equal(grid_reset(&grid, box, (double)segments, segments, 1, NULL), STATUS_OK);
+    random_seed(&random, 2385);
+    for (size_t i = 0; i < segments; i++) {
+        Vec3 a = random_place(&random, &grid, box), b = random_place(&random, &grid, box);
+        Vec3 to = vec3_add_scaled(a, vec3_sub(b, a), longest * random_uniform(&random));
+        GridItem item = grid_item(&grid, (Capsule){a, to, 0.1 * grid.edge}, 0.05 * grid.edge);
+        assert_int_equal(grid_add(&grid, 0, (int32_t)i, i % 2, item, NULL), STATUS_OK);
+    }
+    int quick = 0;
+    for (int k = 0; k < 2000; k++) {
+        Near one[LIMIT], many[LIMIT];
+        Vec3 point = random_place(&random, &grid, box);
+        assert_int_equal(grid_nearest(&grid, point, INFINITY, LIMIT, one), LIMIT);
+        double last = sqrt((double)one[LIMIT - 1].distance2);
+        assert_false(grid_nearest_quick(&grid, point, 0.99 * last, LIMIT, many));
+        if (!grid_nearest_quick(&grid, point, 1.1 * last + 1e-5, LIMIT, many))
+            continue;
+        quick++;
+        assert_memory_equal(one, many, sizeof one);
+    }
+    assert_true(quick > 1900);
+    grid_release(&grid);
+    domain_release(&domain);
+}
+
+static void the_quick_search_finds_what_the_other_finds(void **state)
+{
+    (void)state;
+    expect_nearest("disc:50", 3000, 0.03);
+    expect_nearest("disc:50", 300, 0.4);
+    expect_nearest("ball:50", 3000, 0.05);
+    expect_nearest("rect:30,10", 1000, 0.02);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_point_between_two_corners_is_better_than_the_one_that_is_found),
         cmocka_unit_test(margins_wider_than_the_segment_leave_the_middle_between_them),
         cmocka_unit_test(quotas_go_by_largest_remainders_and_leave_no_tree_without_a_terminal),
+        cmocka_unit_test(the_quick_search_finds_what_the_other_finds),
         cmocka_unit_test(a_territory_counts_the_points_that_are_nearest_whatever_the_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
