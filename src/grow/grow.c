@@ -21,7 +21,7 @@
 #include <stdlib.h>
 
 /* Cells of the grid a terminal, when the grid is made; it serves until the terminals doubled. */
-static const double cells_per_terminal = 2;
+static const double cells_per_terminal = 1;
 /* The sensitivities serve until there are this many times the terminals. */
 static const double refresh_growth = 1.2;
 /* A pass adds about one terminal for every so many there are; in tiles, more. */

@@ -11,8 +11,8 @@
 
 #include <stdlib.h>
 
-/* Cells along a tile: about 1,500 terminals. */
-enum { EDGE_2D = 48, EDGE_3D = 12 };
+/* Cells along a tile: about 1,000 terminals. */
+enum { EDGE_2D = 34, EDGE_3D = 10 };
 /* The least number of tiles that are worth it, and points in each. */
 enum { LEAST_TILES = 4, LEAST_POINTS = 16 };
 /* Of a tile's points, one in so many may be connected there; a third is to be expected. */
