@@ -5,6 +5,8 @@
  * that it is enough to look at all segments once and afterwards at those that were within that. */
 #include "grow/mend.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 
 enum { ROUNDS = 6, CHUNK = 512 };
@@ -97,14 +99,16 @@ static double fault(const Mending *mending, int32_t i, double margin, int32_t be
     return worst;
 }
 
-/* The faults of the three segments that meet at a bifurcation. */
-static double fault_at(const Mending *mending, int32_t node)
+/* The faults of the three segments that meet at a bifurcation; anything from `enough` on when they are
+ * that much. */
+static double fault_at(const Mending *mending, int32_t node, double enough)
 {
     const int32_t *child = mending->net->segment[node].child;
     int32_t with;
-    return fault(mending, node, spare, INT32_MAX, &with) +
-           fault(mending, child[0], spare, INT32_MAX, &with) +
-           fault(mending, child[1], spare, INT32_MAX, &with);
+    double sum = fault(mending, node, spare, INT32_MAX, &with);
+    for (int slot = 0; slot < 2 && sum < enough; slot++)
+        sum += fault(mending, child[slot], spare, INT32_MAX, &with);
+    return sum;
 }
 
 static bool is_inside(const Mending *mending, int32_t node)
@@ -131,7 +135,7 @@ static void try_step(const Mending *mending, int32_t node, Vec3 from, double ste
                 if ((x == 0 && y == 0 && z == 0) || *least == 0)
                     continue;
                 net->position[node] = vec3_add_scaled(from, vec3_normalized(vec3(x, y, z)), step);
-                double there = is_inside(mending, node) ? fault_at(mending, node) : *least;
+                double there = is_inside(mending, node) ? fault_at(mending, node, *least) : *least;
                 if (there < *least) {
                     *least = there;
                     *best = net->position[node];
@@ -145,7 +149,7 @@ static Vec3 best_place(const Mending *mending, int32_t node)
     Network *net = mending->net;
     const Vec3 from = net->position[node];
     Vec3 best = from;
-    double least = fault_at(mending, node);
+    double least = fault_at(mending, node, INFINITY);
     for (size_t s = 0; s < sizeof steps / sizeof *steps && least > 0; s++)
         try_step(mending, node, from, steps[s] * width(mending, node), &best, &least);
     net->position[node] = from;
@@ -157,7 +161,7 @@ static Status move(const Mending *mending, int32_t node, Err *err)
     Network *net = mending->net;
     Grid *grid = mending->grid;
     if (net->segment[node].parent < 0 || net->segment[node].child[0] < 0 ||
-        network_is_given(net, node) || !(fault_at(mending, node) > 0))
+        network_is_given(net, node) || !(fault_at(mending, node, DBL_MIN) > 0))
         return STATUS_OK;
     Vec3 place = best_place(mending, node);
     if (vec3_distance(place, net->position[node]) > 0) {
