@@ -147,6 +147,14 @@ unsigned grid_meet(const Grid *grid, const GridCell *cell, uint32_t k, const Gri
 /* The cells that meet the cube of twice `distance` about `point`. */
 GridBox grid_box(const Grid *grid, Vec3 point, double distance);
 
+/* A place as items have it. */
+static inline void grid_store(const Grid *grid, Vec3 v, float out[3])
+{
+    out[0] = (float)(v.x - grid->low.x);
+    out[1] = (float)(v.y - grid->low.y);
+    out[2] = (float)(v.z - grid->low.z);
+}
+
 static inline size_t grid_index(const Grid *grid, int x, int y, int z)
 {
     return ((size_t)z * grid->count[1] + y) * grid->count[0] + x;
