@@ -169,6 +169,7 @@ Status run_render(int argc, char **argv, Err *err)
                        .depth = params.want_depth,
                        .normal = params.want_normal,
                        .id = params.want_id};
+    params.codes_suffice = bits == 8 && !form.color && strcmp(file_extension(output), "pfm") != 0;
     params.want_color = true;
     TRY_GOTO(frames_check_output(output, planes != NULL, err));
     TRY_GOTO(

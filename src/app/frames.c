@@ -107,13 +107,15 @@ static Status write_codes(ImageWriter *file, Picture *codes, Err *err)
     return status;
 }
 
-static Status write_picture(FramesWriter *writer, const Plane *color, Err *err)
+static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
 {
     ImageWriter *file = writer->files[FILE_PICTURE];
     if (is_linear(writer->form))
-        return imagewriter_floats(file, color, err);
+        return imagewriter_floats(file, &rows->color, err);
+    if (rows->codes.codes8)
+        return imagewriter_codes(file, &rows->codes, err);
     Picture codes;
-    TRY(picture_from_plane(&codes, color, ENCODING_SRGB, writer->form->bits, err));
+    TRY(picture_from_plane(&codes, &rows->color, ENCODING_SRGB, writer->form->bits, err));
     return write_codes(file, &codes, err);
 }
 
@@ -129,7 +131,7 @@ Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err)
         TRY(picture_from_ids(&codes, &rows->id, err));
         TRY(write_codes(writer->files[FILE_ID], &codes, err));
     }
-    return writer->files[FILE_PICTURE] ? write_picture(writer, &rows->color, err) : STATUS_OK;
+    return writer->files[FILE_PICTURE] ? write_picture(writer, rows, err) : STATUS_OK;
 }
 
 Status frames_commit(FramesWriter *writer, Err *err)

@@ -28,6 +28,39 @@ uint16_t image_code(float linear, Encoding encoding, int bits)
     return (uint16_t)(code < maximum ? code : maximum);
 }
 
+/* By bisection of the floats, which are in the order of their bits: image_code never falls. */
+static float first_of_code(int code)
+{
+    uint32_t low = 0, high = 0x3f800000; /* 0 and 1 */
+    float value = 0;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        memcpy(&value, &middle, sizeof value);
+        if (image_code(value, ENCODING_SRGB, 8) >= code)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    memcpy(&value, &low, sizeof value);
+    return value;
+}
+
+void srgb_codes_init(SrgbCodes *codes)
+{
+    for (int code = 0; code < 256; code++)
+        codes->first[code] = first_of_code(code);
+    codes->first[256] = INFINITY;
+    int code = 0;
+    for (int cell = 0; cell < SRGB_CELLS; cell++) {
+        int32_t bits = SRGB_CELLS_BEGIN + cell * SRGB_CELL;
+        float value;
+        memcpy(&value, &bits, sizeof value);
+        while (value >= codes->first[code + 1])
+            code++;
+        codes->at[cell] = (uint8_t)code;
+    }
+}
+
 Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encoding, int bits,
                           Err *err)
 {
@@ -35,7 +68,15 @@ Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encodin
     TRY(picture_init(&made, plane->width, plane->height, plane->channels, bits, err));
     size_t channels = (size_t)plane->channels;
     size_t n = (size_t)plane->width * (size_t)plane->height * channels;
+    SrgbCodes table;
+    bool tabled = encoding == ENCODING_SRGB && bits == 8;
+    if (tabled)
+        srgb_codes_init(&table);
     for (size_t i = 0; i < n; i++) {
+        if (tabled) {
+            made.codes8[i] = srgb_code(&table, plane->values[i]);
+            continue;
+        }
         /* Most pixels are like the one before. */
         bool again = i >= channels && plane->values[i] == plane->values[i - channels];
         picture_set(&made, i,

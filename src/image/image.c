@@ -130,6 +130,7 @@ Status plane_drop_alpha(Plane *plane, const char *name, Err *err)
 void frame_release(Frame *frame)
 {
     plane_release(&frame->color);
+    picture_release(&frame->codes);
     plane_release(&frame->depth);
     plane_release(&frame->normal);
     idplane_release(&frame->id);

@@ -10,6 +10,7 @@
 #include "base/base.h"
 #include "image/colormap.h" // IWYU pragma: export
 #include <stdint.h>
+#include <string.h>
 
 enum { IMAGE_MAX_SIDE = 1 << 20 };
 
@@ -80,6 +81,33 @@ typedef enum Encoding { ENCODING_SRGB, ENCODING_LINEAR } Encoding;
  * encoding.h of 3.7.0.10), so that equal floats give equal codes. NaN becomes 0. `bits` is 8 or
  * 16. */
 uint16_t image_code(float linear, Encoding encoding, int bits);
+
+/* Tables for image_code(., ENCODING_SRGB, 8) of many values: the floats from 2^-13 to 1 in cells of
+ * 1/128 of an octave, in none of which the code rises twice. */
+enum {
+    SRGB_CELL = 1 << 16,           /* floats in a cell */
+    SRGB_CELLS_BEGIN = 0x39000000, /* the bits of 2^-13 */
+    SRGB_CELLS = (0x3f800000 - SRGB_CELLS_BEGIN) / SRGB_CELL
+};
+
+typedef struct SrgbCodes {
+    float first[257];       /* least value of a code; infinity for 256 */
+    uint8_t at[SRGB_CELLS]; /* code of the least value in a cell */
+} SrgbCodes;
+
+void srgb_codes_init(SrgbCodes *codes);
+/* The code that image_code gives. */
+static inline uint8_t srgb_code(const SrgbCodes *codes, float linear)
+{
+    int32_t bits;
+    memcpy(&bits, &linear, sizeof bits);
+    if (!(linear < 1))
+        return linear >= 1 ? 255 : 0;
+    if (bits < SRGB_CELLS_BEGIN)
+        return 0;
+    uint8_t code = codes->at[(bits - SRGB_CELLS_BEGIN) / SRGB_CELL];
+    return (uint8_t)(code + (linear >= codes->first[code + 1]));
+}
 
 /* New picture of a colour plane (1 or 3 channels). */
 MUST_CHECK Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encoding,
@@ -166,9 +194,10 @@ MUST_CHECK Status plane_write(const Plane *plane, const char *path, Err *err);
 /* What a renderer delivers, or what is read back from another's files. Planes that were not asked
  * for have NULL values. */
 typedef struct Frame {
-    Plane color;  /* linear */
-    Plane depth;  /* mm */
-    Plane normal; /* unit, world, towards the viewer */
+    Plane color;   /* linear */
+    Picture codes; /* 8-bit sRGB codes in its place, if they suffice and the renderer chose so */
+    Plane depth;   /* mm */
+    Plane normal;  /* unit, world, towards the viewer */
     IdPlane id;
 } Frame;
 

@@ -18,8 +18,9 @@ typedef struct Canvas {
     TileSurface surface;
     uint8_t (*shadowed)[TILE_SAMPLES]; /* one a light */
     float background[3 * TILE_SIDE];   /* a row of it */
-    float *band;                       /* colours of a band's samples */
-    uint8_t *wanted;                   /* tiles of a band's rows, one row of tiles */
+    uint8_t background_codes[3 * TILE_SIDE];
+    float *band;     /* colours of a band's samples */
+    uint8_t *wanted; /* tiles of a band's rows, one row of tiles */
     Status status;
     Err err;
 } Canvas;
@@ -38,7 +39,8 @@ typedef struct FieldPicture {
     bool by_sample;    /* colours are sight_color()'s, not the kernel's */
     Canvas *canvases;
     int workers;
-    uint8_t *mask; /* pixels to antialias; NULL: all */
+    uint8_t *mask;   /* pixels to antialias; NULL: all */
+    SrgbCodes codes; /* set if the frame is to have codes */
 } FieldPicture;
 
 static void store_vec3(float values[3][TILE_SAMPLES], int sample, Vec3 v)
@@ -187,16 +189,60 @@ static void copy_tile(float color[3][TILE_SAMPLES], int columns, int rows, size_
         }
 }
 
+/* How many columns and rows of a tile are inside the grid. */
+static void tile_extent(const FieldPicture *picture, const SeenTile *seen, int *columns, int *rows)
+{
+    const SampleGrid *grid = &picture->grid;
+    int right = grid->n_columns - seen->column, below = grid->n_rows - seen->row;
+    *columns = right < TILE_SIDE ? right : TILE_SIDE;
+    *rows = below < TILE_SIDE ? below : TILE_SIDE;
+}
+
+static void color_all(const FieldPicture *picture, const SeenTile *seen, int worker,
+                      float color[3][TILE_SAMPLES])
+{
+    if (picture->by_sample)
+        color_samples(picture, seen, worker, color);
+    else
+        color_tile(picture, seen, worker, color);
+}
+
+/* Writes the codes of a pixel's tile to the picture. */
+static void write_codes(const FieldPicture *picture, const SeenTile *seen, int worker)
+{
+    const Canvas *canvas = &picture->canvases[worker];
+    size_t width = (size_t)picture->grid.n_columns;
+    uint8_t *to =
+        picture->frame->codes.codes8 + 3 * ((size_t)seen->row * width + (size_t)seen->column);
+    int columns, rows;
+    tile_extent(picture, seen, &columns, &rows);
+    if (!seen->hits && !picture->by_sample) {
+        for (int j = 0; j < rows; j++)
+            memcpy(to + 3 * width * (size_t)j, canvas->background_codes, 3 * (size_t)columns);
+        return;
+    }
+    float color[3][TILE_SAMPLES];
+    color_all(picture, seen, worker, color);
+    for (int j = 0; j < rows; j++)
+        for (int i = 0; i < columns; i++) {
+            int sample = tile_sample_at(i, j);
+            uint8_t *pixel = to + 3 * ((size_t)j * width + (size_t)i);
+            if (!picture->by_sample && seen->hits->state[sample] != TILE_HIT)
+                memcpy(pixel, canvas->background_codes, 3);
+            else
+                for (int c = 0; c < 3; c++)
+                    pixel[c] = srgb_code(&picture->codes, color[c][sample]);
+        }
+}
+
 /* Writes the part of a tile that is inside the grid to rows of samples, the first of which is row
  * `first_row` of the grid. */
 static void write_colors(const FieldPicture *picture, const SeenTile *seen, int worker,
                          int first_row, float *values)
 {
-    const SampleGrid *grid = &picture->grid;
-    int columns =
-        grid->n_columns - seen->column < TILE_SIDE ? grid->n_columns - seen->column : TILE_SIDE;
-    int rows = grid->n_rows - seen->row < TILE_SIDE ? grid->n_rows - seen->row : TILE_SIDE;
-    size_t width = (size_t)grid->n_columns;
+    int columns, rows;
+    tile_extent(picture, seen, &columns, &rows);
+    size_t width = (size_t)picture->grid.n_columns;
     float *to = values + 3 * ((size_t)(seen->row - first_row) * width + (size_t)seen->column);
     if (!seen->hits && !picture->by_sample) {
         const float *background = picture->canvases[worker].background;
@@ -205,10 +251,7 @@ static void write_colors(const FieldPicture *picture, const SeenTile *seen, int 
         return;
     }
     float color[3][TILE_SAMPLES];
-    if (picture->by_sample)
-        color_samples(picture, seen, worker, color);
-    else
-        color_tile(picture, seen, worker, color);
+    color_all(picture, seen, worker, color);
     copy_tile(color, columns, rows, width, to);
 }
 
@@ -246,6 +289,8 @@ static void visit_center(const SeenTile *seen, int worker, void *context)
         write_geometry(picture, seen);
     if (frame->color.values)
         write_colors(picture, seen, worker, 0, frame->color.values);
+    if (frame->codes.codes8)
+        write_codes(picture, seen, worker);
 }
 
 static void report_progress(const FieldPicture *picture, size_t band, int worker)
@@ -417,6 +462,8 @@ static Status prepare_canvases(FieldPicture *picture, Err *err)
             canvas->background[3 * pixel + 1] = scene->background.g;
             canvas->background[3 * pixel + 2] = scene->background.b;
         }
+        for (int value = 0; picture->frame->codes.codes8 && value < 3 * TILE_SIDE; value++)
+            canvas->background_codes[value] = srgb_code(&picture->codes, canvas->background[value]);
         for (int sample = 0; sample < TILE_SAMPLES; sample++) {
             canvas->surface.direction[2][sample] = 1;
             canvas->surface.pigment[0][sample] = scene->color.r;
@@ -470,6 +517,8 @@ Status fieldrender(const Scene *scene, const RenderParams *params, Caster *caste
     const double center = 0;
     double start_s = clock_seconds();
     picture.workers = params->threads > 0 ? params->threads : threads_available();
+    if (frame->codes.codes8)
+        srgb_codes_init(&picture.codes);
     TRY_GOTO(prepare_lights(&picture, err));
     TRY_GOTO(prepare_canvases(&picture, err));
     double prepared_s = clock_seconds() - start_s;

@@ -216,9 +216,12 @@ RenderStats renderer_stats(const Renderer *renderer)
     return renderer->stats;
 }
 
-static Status make_planes(int width, int height, const RenderParams *params, Frame *frame, Err *err)
+static Status make_planes(int width, int height, const RenderParams *params, bool codes,
+                          Frame *frame, Err *err)
 {
-    if (params->want_color)
+    if (params->want_color && codes)
+        TRY(picture_init(&frame->codes, width, height, 3, 8, err));
+    else if (params->want_color)
         TRY(plane_init(&frame->color, width, height, 3, err));
     if (params->want_depth)
         TRY(plane_init(&frame->depth, width, height, 1, err));
@@ -232,7 +235,9 @@ static Status make_planes(int width, int height, const RenderParams *params, Fra
 static Status draw(Renderer *renderer, const Band *band, Frame *frame, Err *err)
 {
     double start_s = clock_seconds();
-    TRY(make_planes(renderer->scene->camera.width, band->rows, &renderer->params, frame, err));
+    const RenderParams *params = &renderer->params;
+    bool codes = params->codes_suffice && params->antialias == 1 && is_field(renderer);
+    TRY(make_planes(renderer->scene->camera.width, band->rows, params, codes, frame, err));
     if (is_raster(renderer))
         return rasterrender(renderer->scene, &renderer->params, band, frame, &renderer->stats, err);
     if (is_field(renderer))

@@ -27,6 +27,8 @@ typedef struct RenderParams {
                     * found by N rays, which no POV-Ray picture repeats */
     const CellParams *povray_cells; /* of an implicit model: where POV-Ray's root finder sees it in
                                      * these cells; NULL: where it is, by proof */
+    bool
+        codes_suffice; /* the frame may have 8-bit codes instead of colours, where that is faster */
     bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
     void (*progress)(double fraction, void *context);  /* called by one thread; may be NULL */
     void *progress_context;

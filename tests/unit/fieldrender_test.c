@@ -119,6 +119,32 @@ static void the_picture_does_not_depend_on_the_number_of_threads(void **state)
         }
 }
 
+static void codes_are_those_of_the_colors(void **state)
+{
+    (void)state;
+    Staged staged;
+    stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
+    for (int occlusion = 0; occlusion <= 4; occlusion += 4) {
+        RenderParams params = {.threads = 2,
+                               .antialias = 1,
+                               .shadows = true,
+                               .occlusion = occlusion,
+                               .want_color = true};
+        Frame colors, codes;
+        Picture picture;
+        assert_int_equal(render(staged.scene, &params, &colors, NULL, NULL), STATUS_OK);
+        params.codes_suffice = true;
+        assert_int_equal(render(staged.scene, &params, &codes, NULL, NULL), STATUS_OK);
+        assert_int_equal(picture_from_plane(&picture, &colors.color, ENCODING_SRGB, 8, NULL),
+                         STATUS_OK);
+        assert_null(codes.color.values);
+        assert_memory_equal(codes.codes.codes8, picture.codes8, 3 * WIDTH * HEIGHT);
+        picture_release(&picture);
+        frame_release(&colors);
+        frame_release(&codes);
+    }
+}
+
 typedef struct Shadows {
     Caster *caster;
 } Shadows;
@@ -421,6 +447,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_picture_does_not_depend_on_the_number_of_threads),
+        cmocka_unit_test(codes_are_those_of_the_colors),
         cmocka_unit_test(the_picture_is_that_of_single_rays),
         cmocka_unit_test(antialiasing_weighs_the_centre_and_the_grid_alike),
         cmocka_unit_test(adaptive_antialiasing_changes_edges_alone),

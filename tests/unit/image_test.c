@@ -387,6 +387,31 @@ static void encodes_as_povray_does(void **state)
     assert_float_equal(srgb_decode(srgb_encode(0.001f)), 0.001f, 1e-9f);
 }
 
+static void tables_give_the_same_codes(void **state)
+{
+    (void)state;
+    SrgbCodes codes;
+    srgb_codes_init(&codes);
+    const float odd[] = {0, -0.0f, -3.7f, 1, 2.385f, INFINITY, -INFINITY, NAN, 1e-40f};
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++)
+        assert_int_equal(srgb_code(&codes, odd[i]), image_code(odd[i], ENCODING_SRGB, 8));
+    for (uint32_t bits = 0; bits <= 0x3f800000; bits += 2385) {
+        float value;
+        memcpy(&value, &bits, sizeof value);
+        assert_int_equal(srgb_code(&codes, value), image_code(value, ENCODING_SRGB, 8));
+    }
+    /* Every float about each step. */
+    for (int code = 1; code < 256; code++) {
+        uint32_t step;
+        memcpy(&step, &codes.first[code], sizeof step);
+        for (uint32_t bits = step - 2000; bits < step + 2000; bits++) {
+            float value;
+            memcpy(&value, &bits, sizeof value);
+            assert_int_equal(srgb_code(&codes, value), image_code(value, ENCODING_SRGB, 8));
+        }
+    }
+}
+
 /* Codes of POV-Ray 3.7.0.10 (+FP16 File_Gamma=srgb) for colours where a power in double precision
  * rounds the other way. */
 static void rounds_like_povray_where_double_precision_would_not(void **state)
@@ -521,6 +546,7 @@ int main(void)
         cmocka_unit_test(refuses_a_png_that_announces_more_than_it_can_hold),
         cmocka_unit_test(refuses_sides_of_zero_and_images_beyond_memory),
         cmocka_unit_test(encodes_as_povray_does),
+        cmocka_unit_test(tables_give_the_same_codes),
         cmocka_unit_test(rounds_like_povray_where_double_precision_would_not),
         cmocka_unit_test(returns_every_code_through_a_plane),
         cmocka_unit_test(packs_ids_into_three_bytes),
