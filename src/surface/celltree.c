@@ -364,7 +364,7 @@ static Status build(Builder *builder, size_t n_segments, Err *err)
 /* Finer cells are traced faster but take longer to read; docs/POVRAY.md has the measurements. */
 static double chosen_beta(size_t n_segments)
 {
-    return n_segments <= 3000 ? 3 : n_segments <= 6000 ? 4 : 6;
+    return n_segments <= 3000 ? 3 : 6;
 }
 
 Status celltree_build(const Scene *scene, const CellParams *params, CellTree *cells, Err *err)
