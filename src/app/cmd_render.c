@@ -19,7 +19,8 @@ static const Command command = {
 
 enum { HITS_EXACT, HITS_POVRAY };
 static const char *const hits_names[] = {"exact", "povray", NULL};
-static const char *const methods[] = {[RENDER_TRACE] = "trace", [RENDER_RASTER] = "raster", NULL};
+static const char *const methods[] = {
+    [RENDER_TRACE] = "trace", [RENDER_RASTER] = "raster", [RENDER_ZBUFFER] = "zbuffer", NULL};
 
 /* --planes: which planes are written beside the picture. */
 static Status read_planes(const char *list, RenderParams *params, Err *err)
@@ -117,7 +118,7 @@ Status run_render(int argc, char **argv, Err *err)
          "planes beside it: color,depth,normal,id"},
         {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16", "of a PNG or PPM (8)"},
         {"method", OPTION_CHOICE, &method, NULL, 0, 0, methods, NULL,
-         "how all but isosurfaces are drawn: as POV-Ray does, or fast (trace)"},
+         "all but isosurfaces: as POV-Ray does, fast, or as the paper does (trace)"},
         {"hits", OPTION_CHOICE, &hits, NULL, 0, 0, hits_names, NULL,
          "isosurface: where it is, or where POV-Ray's root finder sees it (exact)"},
         {"antialias-threshold", OPTION_NUMBER, &threshold, NULL, 0, 1, NULL, "T",
@@ -154,6 +155,11 @@ Status run_render(int argc, char **argv, Err *err)
         status = err_set(err, STATUS_USAGE,
                          "--method %s is for cylinders, joined and rounded, not for %s",
                          methods[method], model_name((SceneModel)picture.model));
+        goto done;
+    }
+    if (method == RENDER_ZBUFFER && (params.shadows || picture.antialias > 1)) {
+        status = err_set(err, STATUS_USAGE,
+                         "--method zbuffer draws neither shadows nor antialiased pictures");
         goto done;
     }
     params.method = (RenderMethod)method;

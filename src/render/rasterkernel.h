@@ -1,9 +1,9 @@
-/* The first primitive at each sample of a tile, several samples at once: included by each source that
- * compiles it for its lanes, RASTER_KERNEL(name) making the names of its functions.
+/* The first primitive at each sample of a tile, several samples at once: included by each source
+ * that compiles it for its lanes, RASTER_KERNEL(name) making the names of its functions.
  *
- * For every item of the tile's list the blocks of LANES samples that its capsule may touch are found all
- * at once, and the item is met with those. A sample keeps the nearest item and, of a joint, the ruling;
- * normals are left to the end, when an item's samples are known. */
+ * For every item of the tile's list the blocks of LANES samples that its capsule may touch are
+ * found all at once, and the item is met with those. A sample keeps the nearest item and, of a
+ * joint, the ruling; normals are left to the end, when an item's samples are known. */
 #ifndef RASTER_KERNEL
 #error "define RASTER_KERNEL(name), the name of a function"
 #endif
@@ -13,7 +13,8 @@
 
 enum { BLOCKS = TILE_SAMPLES / LANES };
 
-/* ---- tiles --------------------------------------------------------------------------------------- */
+/* ---- tiles
+ * --------------------------------------------------------------------------------------- */
 
 typedef struct RasterState {
     const RasterTile *tile;
@@ -92,8 +93,8 @@ RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
     }
 }
 
-/* The blocks of the tile that the item's capsule may touch and that do not all see something nearer, as
- * bits. */
+/* The blocks of the tile that the item's capsule may touch and that do not all see something
+ * nearer, as bits. */
 RASTER_FN unsigned touched_blocks(const RasterState *state, const Near *near)
 {
     const RasterGrid *grid = state->tile->grid;
@@ -150,7 +151,8 @@ LANE_TARGET static bool RASTER_KERNEL(trace)(const RasterTile *tile, RasterHits 
     return state.any;
 }
 
-/* ---- normals ------------------------------------------------------------------------------------- */
+/* ---- normals
+ * ------------------------------------------------------------------------------------- */
 
 /* The normals of the samples `of` a block, which see the item. */
 RASTER_FN void resolve_item(const RasterTile *tile, const RasterHits *hits, int block, LaneMask of,
@@ -220,7 +222,8 @@ LANE_TARGET static void RASTER_KERNEL(resolve)(const RasterTile *tile, const Ras
             resolve_block(tile, hits, block, false, surface);
 }
 
-/* ---- pixels -------------------------------------------------------------------------------------- */
+/* ---- pixels
+ * -------------------------------------------------------------------------------------- */
 
 typedef float Quad __attribute__((vector_size(16)));
 
@@ -269,7 +272,8 @@ LANE_TARGET static void RASTER_KERNEL(clear)(const RasterHits *hits, const float
     }
 }
 
-/* ---- shadows ------------------------------------------------------------------------------------- */
+/* ---- shadows
+ * ------------------------------------------------------------------------------------- */
 
 /* Whether the item is seen before the probes' depths. */
 RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, RasterProbes *probes,

@@ -1,7 +1,8 @@
-/* A row of tiles is the unit of work: its lists are made, and tile by tile primitives are found, shaded
- * and written, so that a pixel is written once and what is empty is filled row by row. Further samples of a tile's pixels
- * use its list: pass after pass, each with all samples of the tile moved by the same part of a pixel,
- * in POV-Ray's order. With a threshold that takes the colours of neighbours, and so a second round. */
+/* A row of tiles is the unit of work: its lists are made, and tile by tile primitives are found,
+ * shaded and written, so that a pixel is written once and what is empty is filled row by row.
+ * Further samples of a tile's pixels use its list: pass after pass, each with all samples of the
+ * tile moved by the same part of a pixel, in POV-Ray's order. With a threshold that takes the
+ * colours of neighbours, and so a second round. */
 #include "render/rasterrender.h"
 
 #include "render/caster.h"
@@ -61,7 +62,8 @@ static size_t pixel_at(const RasterPicture *picture, const Place *place, int i, 
     return (size_t)(place->row + j) * width + (size_t)(place->column + i);
 }
 
-/* ---- one sample a pixel -------------------------------------------------------------------------- */
+/* ---- one sample a pixel
+ * -------------------------------------------------------------------------- */
 
 static double seen_z(const RasterTile *tile, const RasterHits *hits, int sample)
 {
@@ -266,7 +268,8 @@ static void write_geometry(const RasterPicture *picture, const Place *place, con
         }
 }
 
-/* ---- further samples ----------------------------------------------------------------------------- */
+/* ---- further samples
+ * ----------------------------------------------------------------------------- */
 
 static bool wants_more(const RasterPicture *picture, const Place *place, int i, int j)
 {
@@ -282,8 +285,8 @@ static bool any_wants_more(const RasterPicture *picture, const Place *place)
     return false;
 }
 
-/* The means of the centre samples, which the picture holds, and all others, summed in float in POV-Ray's
- * order. */
+/* The means of the centre samples, which the picture holds, and all others, summed in float in
+ * POV-Ray's order. */
 static void resample_tile(const RasterPicture *picture, const Place *place, RasterTile *tile,
                           int worker, Canvas *canvas)
 {
@@ -310,7 +313,8 @@ static void resample_tile(const RasterPicture *picture, const Place *place, Rast
                             (picture->n_further + 1));
 }
 
-/* ---- rows ---------------------------------------------------------------------------------------- */
+/* ---- rows
+ * ---------------------------------------------------------------------------------------- */
 
 /* Columns of tiles from `first` to below `last`, which see nothing. */
 static void fill_background(const RasterPicture *picture, int row, int first, int last,
@@ -387,7 +391,8 @@ static void draw_row(size_t row, int worker, void *context)
         fill_background(picture, (int)row, empty, bins->tile_columns, background);
 }
 
-/* ---- the picture --------------------------------------------------------------------------------- */
+/* ---- the picture
+ * --------------------------------------------------------------------------------- */
 
 static Status prepare_lights(RasterPicture *picture, const RasterView *view, Err *err)
 {
@@ -419,10 +424,6 @@ static Status prepare_shadows(RasterPicture *picture, const RasterView *view, Er
         const Light *light = &scene->lights[i];
         if (!light->casts_shadows)
             continue;
-        if (light->samples > 1)
-            return err_set(
-                err, STATUS_USAGE,
-                "a light of this look casts soft shadows, which only --method trace draws");
         if (rastershadow_can(scene, light))
             TRY(rastershadow_new(scene, light, view, picture->workers, &picture->shadows[i], err));
         else

@@ -1,19 +1,21 @@
 /* Where lines of sight enter a ruled joint, several at once: a part of rasterkernel.h.
  *
  * Joints are walls of solids, so only a ruling that faces the view can be seen: one at which g
- * [rastertile.h] falls as q grows. Multiplied by (1 + u^2)^2, u = tan(q / 2) in [-1, 1], g is a quartic on
- * each half of the circle: the front, q in [-90, 90] degrees, and the back, q less half a turn in there. In
- * Bernstein form a quartic has as many roots as its coefficients change sign, or fewer by an even number
- * [geom/joint.c]. Most lines show one fall in front, counted quarter by quarter, and one rise at the
- * back; or no change at all, and miss. For the others, next to the outline, pieces are halved until falls and
- * rises part. Newton's method, kept inside its bracket, finds the ruling, and a hit counts if it lies on its
- * line to 1e-4 of the joint's size. What is still open then is decided in double precision. */
+ * [rastertile.h] falls as q grows. Multiplied by (1 + u^2)^2, u = tan(q / 2) in [-1, 1], g is a
+ * quartic on each half of the circle: the front, q in [-90, 90] degrees, and the back, q less
+ * half a turn in there. In Bernstein form a quartic has as many roots as its coefficients change
+ * sign, or fewer by an even number [geom/joint.c]. Most lines show one fall in front, counted
+ * quarter by quarter, and one rise at the back; or no change at all, and miss. For the others,
+ * next to the outline, pieces are halved until falls and rises part. Newton's method, kept
+ * inside its bracket, finds the ruling, and a hit counts if it lies on its line to 1e-4 of the
+ * joint's size. What is still open then is decided in double precision. */
 #ifndef CORCAST_RENDER_RASTERRULING_H
 #define CORCAST_RENDER_RASTERRULING_H
 
 #include "render/rastersight.h"
 
-/* How far a crossing may lie off a joint's ends, over its length, and off its line, over its size. */
+/* How far a crossing may lie off a joint's ends, over its length, and off its line, over its
+ * size. */
 static const float off_joint_end = 1e-5f, off_joint_line = 1e-4f;
 enum { RULING_STEPS = 12, MOST_HALVINGS = 5, MOST_PIECES = MOST_HALVINGS + 2 };
 
@@ -271,8 +273,9 @@ RASTER_FN LaneMask joint_entry(const Near *near, const Sight *sight, LaneMask am
         Lanes depth = lanes_fma(place, line.run[2], line.start[2]);
         float most = off_joint_line * near->item->radius;
         LaneMask sound = lanes_fma(x, x, y * y) <= most * most;
-        /* A line that starts farther from the ruling than that is long misses it all the same: so do nearly all
-         * where the two rims touch, at a ruling of no length, which is a root for every line. */
+        /* A line that starts farther from the ruling than that is long misses it all the same:
+         * so do nearly all where the two rims touch, at a ruling of no length, which is a root
+         * for every line. */
         Lanes off2 = lanes_fma(off[0], off[0], off[1] * off[1]);
         Lanes run2 = lanes_fma(run[0], run[0], run[1] * run[1]);
         *unsure |= falls.there[i] & ~sound &

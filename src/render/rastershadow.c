@@ -1,15 +1,15 @@
-/* A light has a view of its own, a grid of tiles over the scene with lists as the camera's have. A place
- * lies in shadow if the first thing that the light sees on the way to it is something else: so the same
- * kernels find first hits, at places instead of on a grid. The samples of a tile of the picture lie in few
- * tiles of a light and are tested tile by tile. */
+/* A light has a view of its own, a grid of tiles over the scene with lists as the camera's have.
+ * A place lies in shadow if the first thing that the light sees on the way to it is something
+ * else: so the same kernels find first hits, at places instead of on a grid. The samples of a
+ * tile of the picture lie in few tiles of a light and are tested tile by tile. */
 #include "render/rastershadow.h"
 
 #include <stdlib.h>
 
 /* Blockers nearer than this to the lit place cast no shadow [docs/POVRAY.md section 3]. */
 static const double slack_mm = 1e-3;
-/* A point light must be as far from the middle of the scene, in radii of the scene: it sees less than 60
- * degrees to each side then. */
+/* A point light must be as far from the middle of the scene, in radii of the scene: it sees less
+ * than 60 degrees to each side then. */
 static const double least_radii = 1.16;
 enum { LEAST_SIDE = 16, MOST_SIDE = 512 };
 

@@ -11,7 +11,8 @@ typedef struct RasterShadow RasterShadow;
 /* Whether the light sees all of the scene in one view: it is parallel, or well outside. */
 bool rastershadow_can(const Scene *scene, const Light *light);
 
-/* For places in the frame of `camera`. Borrows the scene, which must not change; rastershadow_can(). */
+/* For places in the frame of `camera`. Borrows the scene, which must not change;
+ * rastershadow_can(). */
 MUST_CHECK Status rastershadow_new(const Scene *scene, const Light *light, const RasterView *camera,
                                    int threads, RasterShadow **out, Err *err);
 void rastershadow_free(RasterShadow *shadow);

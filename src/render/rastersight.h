@@ -1,6 +1,6 @@
-/* Where lines of sight enter spheres and cylinders, several at once: a part of rasterkernel.h. A line passes an item's middle, at the
- * middle's depth, in (X, Y) = (x, y) depth - middle, which is taken in double precision for the tile and stays
- * small. */
+/* Where lines of sight enter spheres and cylinders, several at once: a part of rasterkernel.h. A
+ * line passes an item's middle, at the middle's depth, in (X, Y) = (x, y) depth - middle, which
+ * is taken in double precision for the tile and stays small. */
 #ifndef CORCAST_RENDER_RASTERSIGHT_H
 #define CORCAST_RENDER_RASTERSIGHT_H
 
@@ -56,8 +56,9 @@ typedef struct Near {
     float axis[3], per_sine;
 } Near;
 
-/* The outline of the capsule in the plane of its middle's depth, looked at along the tile's middle; wider in perspective,
- * where what is nearer or farther than the middle is seen at another scale. */
+/* The outline of the capsule in the plane of its middle's depth, looked at along the tile's
+ * middle; wider in perspective, where what is nearer or farther than the middle is seen at
+ * another scale. */
 RASTER_FN void outline(const RasterTile *tile, Near *near)
 {
     const RasterItem *item = near->item;
@@ -139,7 +140,8 @@ RASTER_FN LaneMask within_outline(const Near *near, const Sight *sight)
     return (off <= near->reach_across * 1.00001f) & (on <= near->reach_along * 1.00001f);
 }
 
-/* ---- spheres and cylinders ----------------------------------------------------------------------- */
+/* ---- spheres and cylinders
+ * ----------------------------------------------------------------------- */
 
 /* Where the lines enter the sphere, as depth from its middle. */
 RASTER_FN LaneMask sphere_entry(const Near *near, const Sight *sight, Lanes *z)

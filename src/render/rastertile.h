@@ -1,8 +1,9 @@
-/* What a kernel is given to find the first primitive at each sample of a tile, and what it finds.
+/* What a kernel is given to find the first primitive at each sample of a tile, and what it
+ * finds.
  *
- * Places are in the frame of the view: x to the right, y up, z along it. A line of sight is told by the
- * point (x, y) of the view's plane: parallel views look along (0, 0, 1) from (x, y, 0), others along
- * (x, y, 1) from the origin. */
+ * Places are in the frame of the view: x to the right, y up, z along it. A line of sight is told
+ * by the point (x, y) of the view's plane: parallel views look along (0, 0, 1) from (x, y, 0),
+ * others along (x, y, 1) from the origin. */
 #ifndef CORCAST_RENDER_RASTERTILE_H
 #define CORCAST_RENDER_RASTERTILE_H
 
@@ -35,8 +36,9 @@ static inline bool item_is_close(const RasterItem *item)
 
 /* A ruled joint about the middle of its item:
  *   C_1(q) = base + cos q a + sin q b,  C_2(q) - C_1(q) = span + cos q da + sin q db,
- * q counted from the ruling that faces the view most. A line of sight of direction D that passes (X, Y) at the depth of the
- * middle meets the ruling q where g(q) = k0 + k1 cos q + k2 sin q + k3 cos^2 q + k4 cos q sin q = 0,
+ * q counted from the ruling that faces the view most. A line of sight of direction D that passes
+ * (X, Y) at the depth of the middle meets the ruling q where g(q) = k0 + k1 cos q + k2 sin q + k3
+ * cos^2 q + k4 cos q sin q = 0,
  *   k_i = D . (by[i] - (X, Y, 0) x R_i),  R = span, da, db, 0, 0. */
 typedef struct RasterJoint {
     float base[3], span[3], a[3], b[3], da[3], db[3];
@@ -77,8 +79,9 @@ typedef struct RasterHits {
     float ruling[TILE_SAMPLES];  /* of a joint: tan(q / 2) */
 } RasterHits;
 
-/* Meets an item in double precision with the line of sight at (x, y) of the view's plane: its depth z
- * along the view, INFINITY when it is not met, and if `normal` is not NULL the surface's normal in the view's frame. */
+/* Meets an item in double precision with the line of sight at (x, y) of the view's plane: its
+ * depth z along the view, INFINITY when it is not met, and if `normal` is not NULL the surface's
+ * normal in the view's frame. */
 double raster_decide(const struct RasterBins *bins, uint32_t item, double x, double y,
                      Vec3 *normal);
 

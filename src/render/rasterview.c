@@ -1,12 +1,13 @@
-/* A primitive becomes an item: its middle in double precision, all else in single precision about that
- * middle, so that single precision is left with numbers as small as the primitive. Items are counted into
- * the rows of tiles that a capsule about them touches; chunks of items have counters of their own, so
- * that threads fill the rows without waiting and in the order of the items. The list of a row's tiles is
- * made when the row is drawn, from the part of each capsule that is within reach of the row's slab.
+/* A primitive becomes an item: its middle in double precision, all else in single precision
+ * about that middle, so that single precision is left with numbers as small as the primitive.
+ * Items are counted into the rows of tiles that a capsule about them touches; chunks of items
+ * have counters of their own, so that threads fill the rows without waiting and in the order of
+ * the items. The list of a row's tiles is made when the row is drawn, from the part of each
+ * capsule that is within reach of the row's slab.
  *
- * What single precision cannot hold to a thousandth of a pixel, or the kernels do not solve, is an item
- * of the kind RASTER_EXACT: what is near the eye or about it, longer than 16384 pixels, or looked at along
- * its axis, and joints that need not be the wall of a solid. */
+ * What single precision cannot hold to a thousandth of a pixel, or the kernels do not solve, is
+ * an item of the kind RASTER_EXACT: what is near the eye or about it, longer than 16384 pixels,
+ * or looked at along its axis, and joints that need not be the wall of a solid. */
 #include "render/rasterview.h"
 
 #include <stdlib.h>
@@ -58,7 +59,8 @@ Vec3 rasterview_to_world(const RasterView *view, Vec3 v)
     return vec3_add_scaled(world, view->axes[2], v.z);
 }
 
-/* ---- items --------------------------------------------------------------------------------------- */
+/* ---- items
+ * --------------------------------------------------------------------------------------- */
 
 static void store_vec3(float to[3], Vec3 v)
 {
@@ -67,8 +69,8 @@ static void store_vec3(float to[3], Vec3 v)
     to[2] = (float)v.z;
 }
 
-/* Turns the angle p of a joint by that of the ruling that faces `sight`, a direction in the frame, most:
- * where the first harmonic of sight . (S_p x S_l) at l = 1/2 is least. */
+/* Turns the angle p of a joint by that of the ruling that faces `sight`, a direction in the
+ * frame, most: where the first harmonic of sight . (S_p x S_l) at l = 1/2 is least. */
 static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
 {
     Vec3 a = joint->across, b = vec3_scale(joint->side, joint->radius);
@@ -115,8 +117,8 @@ static RasterJoint make_joint(const RasterView *view, const Primitive *primitive
     return made;
 }
 
-/* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its two discs
- * bound a solid. */
+/* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its
+ * two discs bound a solid. */
 static bool joint_is_solid(const Primitive *primitive)
 {
     Vec3 span = vec3_sub(primitive->b, primitive->a);
@@ -196,7 +198,8 @@ double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, 
     return nearest * vec3_dot(ray.direction, bins->view.axes[2]);
 }
 
-/* ---- where items are seen ------------------------------------------------------------------------ */
+/* ---- where items are seen
+ * ------------------------------------------------------------------------ */
 
 typedef struct Range {
     double low, high;
@@ -218,8 +221,8 @@ static double max_of(double a, double b)
     return a > b ? a : b;
 }
 
-/* Of `count` pixels from pixel `least` on, the tiles within a range; pixel 0 is at `first`, and `per`
- * pixels follow in a unit. */
+/* Of `count` pixels from pixel `least` on, the tiles within a range; pixel 0 is at `first`, and
+ * `per` pixels follow in a unit. */
 static Span tiles_within(Range range, double first, double per, double stray, int least, int count)
 {
     double from = (range.low - first) * per, to = (range.high - first) * per;
@@ -233,8 +236,8 @@ static Span tiles_within(Range range, double first, double per, double stray, in
                                      : nowhere;
 }
 
-/* What a ball at coordinate c in one direction of a perspective view's plane, and at depth z > radius,
- * covers there. */
+/* What a ball at coordinate c in one direction of a perspective view's plane, and at depth z >
+ * radius, covers there. */
 static Range ball_shadow(double c, double z, double radius)
 {
     double half = radius * sqrt(max_of(c * c + z * z - radius * radius, 0));
@@ -296,8 +299,8 @@ static Slab slab_of(const RasterView *view, size_t row)
     return slab;
 }
 
-/* The part [*from, *to] of the way where something that is at_a at its beginning and at_b at its end is not
- * below 0. */
+/* The part [*from, *to] of the way where something that is at_a at its beginning and at_b at its
+ * end is not below 0. */
 static void clip_part(double at_a, double at_b, double *from, double *to)
 {
     if (at_a < 0)
@@ -351,7 +354,8 @@ static Span columns_of(const RasterView *view, const RasterItem *item, const Sla
     return tiles_within(range, view->left, view->per_x, view->stray, 0, view->columns);
 }
 
-/* ---- rows ---------------------------------------------------------------------------------------- */
+/* ---- rows
+ * ---------------------------------------------------------------------------------------- */
 
 typedef struct Build {
     RasterBins *bins;
@@ -468,7 +472,8 @@ void rasterbins_free(RasterBins *bins)
     free(bins);
 }
 
-/* ---- tiles --------------------------------------------------------------------------------------- */
+/* ---- tiles
+ * --------------------------------------------------------------------------------------- */
 
 Status rasterbins_list(const RasterBins *bins, size_t number, RasterRow *row, Err *err)
 {

@@ -1,5 +1,5 @@
-/* Primitives as a view sees them, that of the camera or of a light, and in which tiles of its picture
- * they may be seen. */
+/* Primitives as a view sees them, that of the camera or of a light, and in which tiles of its
+ * picture they may be seen. */
 #ifndef CORCAST_RENDER_RASTERVIEW_H
 #define CORCAST_RENDER_RASTERVIEW_H
 
@@ -44,7 +44,8 @@ MUST_CHECK Status rasterbins_new(const Scene *scene, const RasterView *view, int
                                  RasterBins **out, Err *err);
 void rasterbins_free(RasterBins *bins);
 
-/* The items of each tile of one row: lists[offsets[i] .. offsets[i + 1]) for column i, ascending. */
+/* The items of each tile of one row: lists[offsets[i] .. offsets[i + 1]) for column i,
+ * ascending. */
 typedef struct RasterRow {
     uint32_t *offsets;
     uint32_t *lists;

@@ -9,6 +9,7 @@
 #include "render/rasterrender.h"
 #include "render/resample.h"
 #include "render/sight.h"
+#include "render/zbuffer.h"
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -172,11 +173,11 @@ static bool is_field(const Renderer *renderer)
     return renderer->scene->model == SCENE_ISOSURFACE && !renderer->params.povray_cells;
 }
 
-/* The ground and ambient occlusion are for rays to find. */
-static bool is_raster(const Renderer *renderer)
+/* Soft shadows, occlusion and the ground are for rays to find. */
+static bool is_traced(const Renderer *renderer)
 {
-    return renderer->scene->n_primitives > 0 && !renderer->scene->ground.present &&
-           renderer->params.occlusion == 0 && renderer->params.method == RENDER_RASTER;
+    return renderer->scene->n_primitives == 0 || renderer->params.method == RENDER_TRACE ||
+           sight_is_needed(renderer->scene, &renderer->params);
 }
 
 Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **out, Err *err)
@@ -187,7 +188,7 @@ Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **o
     *renderer = (Renderer){.scene = scene, .params = *params};
     renderer->threads = params->threads > 0 ? params->threads : threads_available();
     Status status = STATUS_OK;
-    if (!is_raster(renderer) && (!is_field(renderer) || params->shadows || params->occlusion > 0))
+    if (is_traced(renderer) && (!is_field(renderer) || params->shadows || params->occlusion > 0))
         status = caster_new(scene, params->povray_cells, renderer->threads, &renderer->caster, err);
     if (status != STATUS_OK) {
         renderer_free(renderer);
@@ -238,8 +239,9 @@ static Status draw(Renderer *renderer, const Band *band, Frame *frame, Err *err)
     const RenderParams *params = &renderer->params;
     bool codes = params->codes_suffice && params->antialias == 1 && is_field(renderer);
     TRY(make_planes(renderer->scene->camera.width, band->rows, params, codes, frame, err));
-    if (is_raster(renderer))
-        return rasterrender(renderer->scene, &renderer->params, band, frame, &renderer->stats, err);
+    if (!is_traced(renderer))
+        return (params->method == RENDER_RASTER ? rasterrender : zbuffer_render)(
+            renderer->scene, params, band, frame, &renderer->stats, err);
     if (is_field(renderer))
         return fieldrender(renderer->scene, &renderer->params, renderer->caster, band, frame,
                            &renderer->stats, err);

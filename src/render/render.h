@@ -10,13 +10,16 @@
 
 /* How primitives are drawn. */
 typedef enum RenderMethod {
-    RENDER_TRACE, /* ray by ray in double precision, as POV-Ray does */
-    RENDER_RASTER /* tile by tile in single precision: the same picture but for rounding */
+    RENDER_TRACE,  /* ray by ray in double precision, as POV-Ray does */
+    RENDER_RASTER, /* tile by tile in single precision: the same picture but for rounding */
+    RENDER_ZBUFFER /* by points of the surfaces and a depth buffer, as the paper does */
 } RenderMethod;
 
 typedef struct RenderParams {
-    RenderMethod method; /* RENDER_TRACE for an implicit model, which has tiles of its own */
-    int threads;         /* 0: all processors */
+    /* An implicit model has tiles of its own and takes none of these. What needs rays, soft shadows,
+     * occlusion and ground, is traced whatever the method. */
+    RenderMethod method;
+    int threads;   /* 0: all processors */
     int antialias; /* 1: one ray through each pixel's centre; N > 1: that ray and N x N more, the
                     * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
     double antialias_threshold; /* 0: every pixel gets the N x N more, as in POV-Ray; else, in

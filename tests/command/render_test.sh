@@ -346,6 +346,50 @@ test_adaptive_antialiasing_needs_antialiasing() {
     expect_different edges.ppm none.ppm
 }
 
+# The floor: what single precision costs these pictures is at most a pixel or two of 160,000.
+test_tiles_agree_with_rays_to_tier_b_and_to_the_measured_floor() {
+    local model projection tree method
+    for tree in disc200 disc200-lambda0 ball60; do
+        for model in cylinders rounded joined; do
+            for projection in orthographic perspective; do
+                for method in trace raster; do
+                    run_ok corcast render "$REPO/tests/golden/$tree.swc" --model $model --projection $projection \
+                        --view iso --shadows on --antialias 2 --size 400x400 --method $method \
+                        --planes color,depth,normal,id -o $method.png
+                done
+                run_ok corcast compare trace.png raster.png --ids-a trace.id.ppm --ids-b raster.id.ppm --tier B --json
+                expect_json stdout '.differing_pixels <= 6'
+                run_ok corcast compare trace.depth.pfm raster.depth.pfm --depth-mm 0.0001
+                run_ok corcast compare trace.normal.pfm raster.normal.pfm --tier B
+            done
+        done
+    done
+}
+
+test_joints_to_the_letter_are_the_same_by_every_method() {
+    local method
+    for method in trace raster; do
+        run_ok corcast render "$REPO/tests/golden/disc200-lambda0.swc" --model joined --joints paper --size 500x500 \
+            --method $method -o $method.ppm
+    done
+    run_ok corcast compare trace.ppm raster.ppm --json --tier none
+    expect_json stdout '.differing_pixels <= 6'
+}
+
+test_methods_say_what_they_do_not_draw() {
+    grow_tree 20
+    run corcast render tree.swc --method raster --model isosurface -o picture.ppm
+    expect_status 2
+    expect_sentence 'raster is for cylinders, joined and rounded, not for isosurface'
+    run corcast render tree.swc --method zbuffer --shadows on -o picture.ppm
+    expect_status 2
+    expect_sentence 'zbuffer draws neither shadows nor antialiased pictures'
+    run corcast render tree.swc --method zbuffer --antialias 2 -o picture.ppm
+    expect_status 2
+    run_ok corcast render tree.swc --method zbuffer --size 90x60 -o picture.ppm
+    [ "$(colours picture.ppm)" -gt 20 ] || fail "expected a shaded picture"
+}
+
 test_the_potential_of_the_graph_is_drawn_and_not_written_for_povray() {
     rows '1 3 -9 1.1 0 1 -1' '2 3 9 1.1 0 1 1' '3 3 -9 -1.1 0 1 -1' '4 3 9 -1.1 0 1 3'
     run_ok corcast render tree.swc --model isosurface --size 90x60 -o paper.ppm

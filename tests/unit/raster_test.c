@@ -1,5 +1,6 @@
-/* Pictures drawn tile by tile in single precision: those that single rays give in double precision but for
- * rounding, whatever the kernel, the same whatever the threads, and right where single precision is not. */
+/* Pictures drawn tile by tile in single precision: those that single rays give in double
+ * precision but for rounding, whatever the kernel, the same whatever the threads, and right
+ * where single precision is not. */
 #include "render/render.h"
 
 #include "render/rasterkernels.h"
@@ -371,6 +372,69 @@ static void shadows_of_tiles_are_shadows_of_rays(void **state)
         }
 }
 
+/* Whether the pixel and its neighbours show the same. */
+static bool inside(const IdPlane *ids, int pixel)
+{
+    int x = pixel % WIDTH, y = pixel / WIDTH;
+    for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < HEIGHT; j++)
+        for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < WIDTH; i++)
+            if (ids->ids[j * WIDTH + i] != ids->ids[pixel])
+                return false;
+    return true;
+}
+
+/* 0.177 pixels, within which a pixel's point lies, are this much in space. */
+static double caught_mm(const Scene *scene)
+{
+    double pixel = vec3_length(scene->camera.up) / HEIGHT;
+    return 0.177 * pixel * (scene->camera.projection == PROJECTION_PERSPECTIVE ? 55 : 1);
+}
+
+static void a_depth_buffer_of_points_has_no_holes(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++) {
+        Staged staged;
+        stage(&staged, (Projection)projection);
+        Frame points = drawn(&staged.scene, (Settings){RENDER_ZBUFFER, 2, 1, 0, false});
+        Frame tiles = drawn(&staged.scene, (Settings){RENDER_RASTER, 2, 1, 0, false});
+        double caught = caught_mm(&staged.scene);
+        int seen = 0, more = 0, others = 0;
+        for (int i = 0; i < PIXELS; i++) {
+            seen += tiles.id.ids[i] != 0;
+            /* What tiles see at the middle of the pixel has a point in it that is not much
+             * farther. */
+            if (tiles.id.ids[i] != 0)
+                assert_true((double)points.depth.values[i] <=
+                            (double)tiles.depth.values[i] + caught);
+            more += tiles.id.ids[i] == 0 && points.id.ids[i] != 0;
+            others += points.id.ids[i] != tiles.id.ids[i] && inside(&tiles.id, i);
+        }
+        printf("  %d seen by tiles, %d more by points; inside %d other ids\n", seen, more, others);
+        assert_true(seen > 4000);
+        assert_true(more < seen / 10); /* outlines are 0.177 pixels farther out */
+        assert_true(others <= seen / 500);
+        frame_release(&points);
+        frame_release(&tiles);
+    }
+}
+
+static void a_depth_buffer_does_not_depend_on_the_number_of_threads(void **state)
+{
+    (void)state;
+    Staged staged;
+    stage(&staged, PROJECTION_PERSPECTIVE);
+    Frame one = drawn(&staged.scene, (Settings){RENDER_ZBUFFER, 1, 1, 0, false});
+    Frame three = drawn(&staged.scene, (Settings){RENDER_ZBUFFER, 3, 1, 0, false});
+    assert_same_frames(&one, &three);
+    frame_release(&one);
+    frame_release(&three);
+    staged.scene.camera.location = vec3(0.1, 0.2, 0.3);
+    const RenderParams params = {.method = RENDER_ZBUFFER, .antialias = 1, .want_color = true};
+    Err err;
+    assert_int_equal(render(&staged.scene, &params, &one, NULL, &err), STATUS_USAGE);
+}
+
 /* Every tile of a picture by one set of kernels. */
 static void trace_all(const RasterBins *bins, const RasterKernels *kernels, RasterHits *all)
 {
@@ -427,6 +491,8 @@ int main(void)
         cmocka_unit_test(bands_are_the_rows_of_the_whole),
         cmocka_unit_test(antialiased_tiles_are_what_antialiased_rays_are),
         cmocka_unit_test(shadows_of_tiles_are_shadows_of_rays),
+        cmocka_unit_test(a_depth_buffer_of_points_has_no_holes),
+        cmocka_unit_test(a_depth_buffer_does_not_depend_on_the_number_of_threads),
         cmocka_unit_test(all_kernels_see_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

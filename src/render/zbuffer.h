@@ -1,0 +1,14 @@
+/* Pictures of primitives by sampled surfaces and a depth buffer, as the paper draws them [N,
+ * section 3]. */
+#ifndef CORCAST_RENDER_ZBUFFER_H
+#define CORCAST_RENDER_ZBUFFER_H
+
+#include "render/band.h"
+
+/* Draws the band of a scene of primitives into planes that are there, and adds the time it takes
+ * to *stats: one sample a pixel, without shadows. STATUS_USAGE when the camera is among the
+ * vessels. */
+MUST_CHECK Status zbuffer_render(const Scene *scene, const RenderParams *params, const Band *band,
+                                 Frame *frame, RenderStats *stats, Err *err);
+
+#endif
