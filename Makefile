@@ -21,7 +21,7 @@ ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c))
 APP_SOURCES := $(wildcard src/app/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
 FORMATTED := $(sort $(wildcard src/*/*.c src/*/*.h tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
-	tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h))
+	tests/bench/*.c tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h))
 
 ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o)
 APP_OBJECTS := $(APP_SOURCES:%.c=$(BUILD)/%.o)
@@ -30,6 +30,7 @@ TEST_PROGRAMS := $(TEST_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
 ORACLE := $(BUILD)/tests/check_tree
 POWER_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/power/*.c))
 POWER := $(BUILD)/tests/power/power
+EMBREE := $(BUILD)/tests/bench/embree
 FIT := $(BUILD)/tests/fit/fit_blob
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion \
@@ -90,9 +91,9 @@ bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
 	$(Q)$(AGAIN) all
 	$(Q)tools/bench-grow
 
-bench-render: ## how fast pictures are drawn, beside POV-Ray; BENCH=full|quick
+bench-render: ## how fast pictures are drawn, beside POV-Ray and others; BENCH=full|quick
 	$(Q)tools/deps build run bench
-	$(Q)$(AGAIN) all
+	$(Q)$(AGAIN) all $(EMBREE)
 	$(Q)tools/bench-render
 
 bench-compare: ## time `compare` on large pictures, beside idiff and odiff
@@ -153,6 +154,11 @@ $(FIT): $(BUILD)/tests/fit/fit_blob.o $(BUILD)/rooms.a
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
+# A peer to measure against; libembree-dev is a package of `make deps FOR=bench`.
+$(EMBREE): $(BUILD)/tests/bench/embree.o $(BUILD)/rooms.a
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lembree3
+
 $(POWER): $(POWER_OBJECTS) $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
@@ -167,7 +173,7 @@ $(BUILD)/tests/%: tests/oracle/%.c Makefile
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
 $(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
 
--include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(FIT).d
+-include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FIT).d
 
 packages:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
