@@ -9,14 +9,18 @@ for tool in Xvfb xdotool xwd; do
     }
 done
 
-# open_view OPTION ...: a display, and on it a view of tree.swc; waits for its window.
-open_view() {
+open_display() {
     Xvfb -displayfd 3 -screen 0 1000x800x24 -nolisten tcp 3>display >/dev/null 2>&1 &
     display_pid=$!
-    trap 'kill $view_pid $display_pid 2>/dev/null; wait' EXIT
+    trap 'kill ${view_pid:-} $display_pid 2>/dev/null; wait' EXIT
     wait_for 30 test -s display || fail "expected a display"
     DISPLAY=:$(cat display)
     export DISPLAY
+}
+
+# open_view OPTION ...: a display, and on it a view of tree.swc; waits for its window.
+open_view() {
+    open_display
     "$CORCAST" view tree.swc "$@" >view.out 2>view.err &
     view_pid=$!
     wait_for 30 find_window || fail "expected a window: $(cat view.err)"
@@ -169,9 +173,9 @@ test_a_view_is_written_as_a_recipe() {
 
 test_a_turn_says_how_many_pictures_a_second() {
     grow_tree 20
-    open_view --size 200x160 --turn 40
-    wait $view_pid || fail "expected exit status 0: $(cat view.err)"
-    grep -qE '^[0-9.]+ pictures a second, each pixel [0-9.]+ x' view.out || fail "expected a speed, got $(cat view.out)"
+    open_display
+    run_ok corcast view tree.swc --size 200x160 --turn 40
+    expect_stdout '^[0-9.]+ pictures a second, each pixel [0-9.]+ x'
 }
 
 run_tests "$@"
