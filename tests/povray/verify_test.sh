@@ -219,6 +219,16 @@ test_a_tree_far_from_the_origin_agrees() {
     done
 }
 
+# Their inner sides are lit as their outer ones are.
+test_walls_seen_from_inside_agree() {
+    local model
+    printf '%s\n' '1 3 0 0 0 1 -1' '2 3 5 0 0 1 1' '3 3 8 3 0 .5 2' '4 3 8 -3 0 .5 2' >tree.swc
+    for model in cylinders rounded; do
+        agrees $model --projection perspective --location 2.5,0.2,0.1 --look-at 0,0,0 --angle 60
+        rm -r report
+    done
+}
+
 test_odd_trees_agree() {
     local tree model
     for tree in star collinear stout; do
