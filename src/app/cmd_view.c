@@ -17,7 +17,7 @@ static const Command command = {
                 "  corcast view tree.swc --model isosurface --color-by pressure --antialias 3\n"
                 "in the window:\n"
                 "  drag turns, drag with the right button or shift moves, the wheel zooms\n"
-                "  1 2 3 4    cylinders, joined, rounded, isosurface\n"
+                "  1 ... 5    cylinders, joined, rounded, isosurface, blob\n"
                 "  c          the next field that colours the vessels, or none\n"
                 "  p s a      projection, shadows, ambient occlusion\n"
                 "  r          back to where the camera was\n"
@@ -50,8 +50,7 @@ typedef struct Viewer {
 static Status make_display(Viewer *viewer, Err *err)
 {
     int coarseness = viewer->display ? display_coarseness(viewer->display) : 0;
-    const RenderParams params = {.method =
-                                     viewer->options->stage.shadows ? RENDER_TRACE : RENDER_RASTER,
+    const RenderParams params = {.method = RENDER_RASTER,
                                  .threads = viewer->common->threads,
                                  .antialias = viewer->options->antialias,
                                  .shadows = viewer->options->stage.shadows,
@@ -264,6 +263,7 @@ static Status on_key(Viewer *viewer, int key, Err *err)
     case '2':
     case '3':
     case '4':
+    case '5':
         return use_model(viewer, (SceneModel)(SCENE_CYLINDERS + key - '1'), err);
     case 'c':
         return use_next_field(viewer, err);

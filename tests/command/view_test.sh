@@ -136,9 +136,14 @@ test_keys_switch_model_colour_projection_and_shadows() {
     last_options | grep -q -e '--model isosurface .*--projection perspective.*--angle 30 --shadows on' ||
         fail "expected an isosurface in perspective with shadows: $(last_options)"
     shows_what_render_draws
+    press 5
+    press s
+    press o 3
+    last_options | grep -q -e '--model blob' || fail "expected a blob: $(last_options)"
+    shows_what_render_draws
     press 2
     press a
-    press o 3
+    press o 4
     last_options | grep -q -e '--model joined.*--ao 16' || fail "expected ambient occlusion: $(last_options)"
     shows_what_render_draws
     close_view

@@ -90,7 +90,7 @@ static void bands_have_the_bytes_of_the_whole(void **state)
         double threshold;
         int occlusion;
     } cases[] = {{1, 8, 0, 5}, {3, 16, 0, 0}, {2, 8, 0.05, 2}, {3, 24, 0.2, 0}};
-    for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_ISOSURFACE; model++)
+    for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_BLOB; model++)
         for (int projection = 0; projection < 2; projection++) {
             look.ground.present = projection == 1;
             Scene scene = staged(model, (Projection)projection);
@@ -100,6 +100,33 @@ static void bands_have_the_bytes_of_the_whole(void **state)
                                              .antialias_threshold = cases[i].threshold,
                                              .shadows = i % 2 == 0,
                                              .occlusion = cases[i].occlusion,
+                                             .want_color = true,
+                                             .want_depth = true,
+                                             .want_normal = true,
+                                             .want_id = true};
+                assert_bands_are_the_whole(&scene, &params, cases[i].step);
+            }
+            scene_release(&scene);
+        }
+}
+
+static void bands_of_tiles_have_the_bytes_of_the_whole(void **state)
+{
+    (void)state;
+    static const struct {
+        int antialias, step;
+        double threshold;
+    } cases[] = {{1, 8, 0}, {3, 16, 0}, {2, 8, 0.05}};
+    look.ground.present = false;
+    for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_ROUNDED; model++)
+        for (int projection = 0; projection < 2; projection++) {
+            Scene scene = staged(model, (Projection)projection);
+            for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+                const RenderParams params = {.method = RENDER_RASTER,
+                                             .threads = 2,
+                                             .antialias = cases[i].antialias,
+                                             .antialias_threshold = cases[i].threshold,
+                                             .shadows = i != 1,
                                              .want_color = true,
                                              .want_depth = true,
                                              .want_normal = true,
@@ -170,6 +197,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bands_have_the_bytes_of_the_whole),
+        cmocka_unit_test(bands_of_tiles_have_the_bytes_of_the_whole),
         cmocka_unit_test(bands_of_povrays_view_have_the_bytes_of_the_whole),
         cmocka_unit_test(progress_rises_from_band_to_band),
     };
