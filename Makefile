@@ -113,7 +113,7 @@ power: ## plant faults and see what the judge finds; writes its part of docs/VAL
 
 power-program: $(POWER)
 
-fit-blob: $(FIT) ## how far the blob is from the potential; HOW=fit finds its numbers again
+fit-blob: $(FIT) ## how far the blob is from the potential; HOW=fit searches for its numbers anew
 	$(Q)$(FIT) $(HOW)
 
 check: ## every test; ends in "N passed, N failed"

@@ -414,7 +414,7 @@ test_segments_that_vanish_are_counted() {
 
 # A picture without NaN in its planes, or one sentence and status 2; never a crash or a hang.
 survives() {
-    run timeout 60 "$CORCAST" render tree.swc --model isosurface --size 40x40 --planes depth,normal -o picture.ppm "$@"
+    run timeout 60 "$CORCAST" render tree.swc --size 40x40 --planes depth,normal -o picture.ppm "$@"
     if [ "$status" -eq 2 ]; then
         expect_sentence '[a-z]'
     else
@@ -423,32 +423,34 @@ survives() {
     fi
 }
 
-test_isosurfaces_of_odd_trees_are_drawn_or_refused() {
-    local projection
-    for projection in orthographic perspective; do
+test_implicit_surfaces_of_odd_trees_are_drawn_or_refused() {
+    local how
+    for how in {isosurface,blob}\ --projection\ {orthographic,perspective}; do
         rows '1 3 0 0 0 1 -1' '2 3 0 0 0 1 1' '3 3 5 0 0 1 2'
-        survives --projection $projection
+        survives --model $how
         expect_status 0
         rows '1 3 0 0 0 1 -1' '2 3 5 0 0 1e-9 1' '3 3 5 5 0 1 2'
-        survives --projection $projection
+        survives --model $how
         expect_status 0
         rows '1 3 0 0 0 1e9 -1' '2 3 5 0 0 1e9 1'
-        survives --projection $projection
+        survives --model $how
         expect_status 2
         rows '1 3 0 0 0 1 -1' $(seq -f '%g:3:5:1:2:1:1' 2 200)
         tr : ' ' <tree.swc >coincident.swc && mv coincident.swc tree.swc
-        survives --projection $projection
+        survives --model $how
         expect_status 0
         rows '1 3 1e6 1e6 -1e6 1 -1' '2 3 1000005 1e6 -1e6 1 1'
-        survives --projection $projection
+        survives --model $how
         expect_status 0
         rows '1 3 0 0 0 1 -1'
-        survives --projection $projection
+        survives --model $how
         expect_status 2
     done
     rows '1 3 0 0 0 1 -1' '2 3 5 0 0 1 1' '3 3 8 3 0 .5 2' '4 3 8 -3 0 .5 2'
-    survives --projection perspective --location 2.5,0,0 --look-at 8,0,0
-    expect_status 0
+    for how in isosurface blob; do
+        survives --model $how --projection perspective --location 2.5,0,0 --look-at 8,0,0
+        expect_status 0
+    done
 }
 
 run_tests "$@"

@@ -1,9 +1,9 @@
 /* The numbers of blob_shape [src/surface/blob.c; docs/METHODS.md section 2.5].
  *
  *   fit_blob                  how far its surface is from the potential's
- *   fit_blob fit [ROUNDS]     finds it again: the least p-norm, p rising from 24 to 96, over all spots of
+ *   fit_blob fit [ROUNDS]     searches anew: the least p-norm, p rising from 24 to 96, over all spots of
  *                             all forks, of distance / DISTANCE and of angle / ANGLE, by the simplex
- *                             method [Nelder & Mead 1965], from the shape that follows from one tube
+ *                             method [Nelder & Mead 1965], from a shape of round numbers; minutes a round
  */
 #include "blob_deviation.h"
 
@@ -183,10 +183,9 @@ static void print_table(const BlobShape *shape)
 int main(int argc, char **argv)
 {
     if (argc > 1 && strcmp(argv[1], "fit") == 0) {
-        /* One tube with the potential's value and slope at r, in two halves that part; small beads. */
-        BlobShape shape = {.tube = {{1.3, 0}, {1.7, 1}}, .bead = {{0.1, 1.1, 1}, {0.3, 1.6, 0.4}}};
+        BlobShape shape = {.tube = {{1.2, 0}, {1.6, 2}}, .bead = {{0.05, 1, 2}, {0.2, 1.4, 1}}};
         double x[NUMBERS];
-        int rounds = argc > 2 ? atoi(argv[2]) : 3;
+        int rounds = argc > 2 ? atoi(argv[2]) : 1;
         make_forks(0.09);
         numbers_of(&shape, x);
         for (double power = 24; power <= 96; power *= 2)

@@ -314,7 +314,7 @@ test_shadows_on_the_ground_agree() {
     local model
     tree_3d
     ground 'axis = 0 1 0'
-    for model in cylinders joined rounded isosurface; do
+    for model in cylinders joined rounded isosurface blob; do
         agrees $model --look ./lights.ini --shadows on --projection perspective \
             --location 40,10,90 --look-at 0,-10,0 --angle 50
         rm -r report
