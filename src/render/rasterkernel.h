@@ -317,7 +317,12 @@ RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int fir
         z[lane] = probes->z[first + lane];
         open[lane] = -1;
     }
+    float deepest = probes->z[first];
+    for (int lane = 1; lane < n; lane++)
+        deepest = probes->z[first + lane] > deepest ? probes->z[first + lane] : deepest;
     for (size_t i = 0; i < tile->n && lanes_any(open); i++) {
+        if (tile->nears[i] > deepest)
+            continue;
         Near near = approach(tile, tile->list[i], perspective);
         if (near.kind == RASTER_JOINT)
             outline(tile, &near);

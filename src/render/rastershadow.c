@@ -17,6 +17,7 @@ struct RasterShadow {
     RasterBins *bins;
     RasterGrid grid;
     RasterRow *rows;
+    float **nears; /* row by row, one for each of the lists: spares a look at what is behind */
     double slack;
     /* The light's axes in the camera's frame, and the camera's location in the light's. */
     Vec3 axes[3], offset;
@@ -84,6 +85,20 @@ typedef struct Lister {
     Status *status; /* one a row */
 } Lister;
 
+static Status find_nears(RasterShadow *shadow, size_t row)
+{
+    const RasterRow *lists = &shadow->rows[row];
+    size_t n = lists->offsets[shadow->bins->tile_columns];
+    TRY(mem_calloc(&shadow->nears[row], n, sizeof **shadow->nears, "shadows", NULL));
+    for (size_t i = 0; i < n; i++) {
+        const RasterItem *item = &shadow->bins->items[lists->lists[i]];
+        double deep = (double)item->cosine * (double)item->half + (double)item->radius;
+        double near = item->z - deep - shadow->bins->view.z_middle;
+        shadow->nears[row][i] = (float)(near - 1e-6 * fabs(near));
+    }
+    return STATUS_OK;
+}
+
 static void list_row(size_t row, int worker, void *context)
 {
     (void)worker;
@@ -92,6 +107,8 @@ static void list_row(size_t row, int worker, void *context)
     lister->status[row] = rasterbins_list(shadow->bins, row, &shadow->rows[row], NULL);
     free(shadow->rows[row].spans);
     shadow->rows[row].spans = NULL;
+    if (lister->status[row] == STATUS_OK)
+        lister->status[row] = find_nears(shadow, row);
 }
 
 static Status list_rows(RasterShadow *shadow, int threads, Err *err)
@@ -99,6 +116,7 @@ static Status list_rows(RasterShadow *shadow, int threads, Err *err)
     size_t n = (size_t)shadow->bins->tile_rows;
     Lister lister = {.shadow = shadow};
     TRY(mem_calloc(&shadow->rows, n, sizeof *shadow->rows, "rows of tiles", err));
+    TRY(mem_calloc(&shadow->nears, n, sizeof *shadow->nears, "rows of tiles", err));
     TRY(mem_calloc(&lister.status, n, sizeof *lister.status, "rows of tiles", err));
     threads_for(n, threads, list_row, &lister);
     Status status = STATUS_OK;
@@ -139,7 +157,10 @@ void rastershadow_free(RasterShadow *shadow)
         return;
     for (int i = 0; shadow->rows && i < shadow->bins->tile_rows; i++)
         rasterrow_release(&shadow->rows[i]);
+    for (int i = 0; shadow->nears && i < shadow->bins->tile_rows; i++)
+        free(shadow->nears[i]);
     free(shadow->rows);
+    free(shadow->nears);
     rasterbins_free(shadow->bins);
     free(shadow);
 }
@@ -188,6 +209,7 @@ static void test_tile(const RasterShadow *shadow, const RasterKernels *kernels, 
     uint32_t first = lists->offsets[column], last = lists->offsets[column + 1];
     RasterTile tile =
         rasterbins_tile(bins, column, row, lists->lists + first, last - first, &shadow->grid);
+    tile.nears = shadow->nears[row] + first;
     kernels->cover(&tile, probes);
 }
 

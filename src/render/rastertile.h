@@ -62,6 +62,9 @@ typedef struct RasterTile {
     const RasterJoint *joints;
     const uint32_t *list; /* items, ascending */
     size_t n;
+    const float
+        *nears; /* of each of the list, a depth before which nothing of it is, less z_middle;
+                         * only for RasterKernels.cover */
     const RasterGrid *grid;
     bool perspective;
     double x, y; /* the middle of the tile, in the plane of the view */
