@@ -42,7 +42,9 @@ typedef struct RasterPicture {
     RasterShadow **shadows;      /* one a light; NULL where it casts none, or rays do */
     Caster *caster;              /* for lights too near for a view of their own; NULL without */
     bool needs_places;           /* rays or lights differ from sample to sample */
+    SrgbCodes codes;             /* set if the frame is to have codes */
     float *background;           /* a row of the picture */
+    uint8_t *background_codes;   /* likewise, if the frame is to have them */
     float *resampled_background; /* the mean of as many backgrounds as there are samples */
     uint8_t *mask;               /* pixels that get further samples; NULL: all */
     bool second_round;
@@ -183,6 +185,11 @@ static void find_shadows(const RasterPicture *picture, const RasterTile *tile, i
     canvas->surface.shadowed = (const uint8_t(*)[TILE_SAMPLES])canvas->shadowed;
 }
 
+static bool wants_color(const Frame *frame)
+{
+    return frame->color.values || frame->codes.codes8;
+}
+
 /* The colours that the samples of a tile see; false when it is the background alone. */
 static bool color_tile(const RasterPicture *picture, const RasterTile *tile, int worker,
                        Canvas *canvas)
@@ -193,7 +200,7 @@ static bool color_tile(const RasterPicture *picture, const RasterTile *tile, int
     if (!picture->kernels->trace(tile, &canvas->hits))
         return false;
     picture->kernels->resolve(tile, &canvas->hits, surfels);
-    if (!picture->frame->color.values)
+    if (!wants_color(picture->frame))
         return true;
     surface->hits = surfels;
     if (!scene->uniform_color)
@@ -213,6 +220,32 @@ static bool color_tile(const RasterPicture *picture, const RasterTile *tile, int
     const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
     picture->kernels->clear(&canvas->hits, background, canvas->color);
     return true;
+}
+
+static void write_codes(const RasterPicture *picture, const Place *place,
+                        float color[3][TILE_SAMPLES])
+{
+    for (int j = 0; j < place->n_rows; j++) {
+        uint8_t *pixel = &picture->frame->codes.codes8[3 * pixel_at(picture, place, 0, j)];
+        for (int i = 0; i < place->n_columns; i++)
+            for (int c = 0; c < 3; c++)
+                *pixel++ = srgb_code(&picture->codes, color[c][tile_sample_at(i, j)]);
+    }
+}
+
+/* Rows of the background, or of its codes. */
+static void write_background(const RasterPicture *picture, const Place *place,
+                             const float *background)
+{
+    const Frame *frame = picture->frame;
+    size_t n = 3 * (size_t)place->n_columns;
+    for (int j = 0; j < place->n_rows; j++) {
+        size_t first = 3 * pixel_at(picture, place, 0, j);
+        if (frame->color.values)
+            memcpy(frame->color.values + first, background, n * sizeof *background);
+        if (frame->codes.codes8)
+            memcpy(frame->codes.codes8 + first, picture->background_codes, n);
+    }
 }
 
 static void write_colors(const RasterPicture *picture, const Place *place,
@@ -328,9 +361,7 @@ static void fill_background(const RasterPicture *picture, int row, int first, in
     if (place.n_columns <= 0)
         return;
     const Frame *frame = picture->frame;
-    for (int j = 0; j < place.n_rows && frame->color.values; j++)
-        memcpy(&frame->color.values[3 * pixel_at(picture, &place, 0, j)], background,
-               3 * (size_t)place.n_columns * sizeof *background);
+    write_background(picture, &place, background);
     if (frame->depth.values || frame->normal.values || frame->id.ids)
         write_geometry(picture, &place, NULL, NULL);
 }
@@ -339,13 +370,13 @@ static void draw_tile(const RasterPicture *picture, const Place *place, RasterTi
                       int worker, Canvas *canvas)
 {
     const Frame *frame = picture->frame;
-    const float *background = picture->background;
     bool seen = color_tile(picture, tile, worker, canvas);
     if (frame->color.values && seen)
         write_colors(picture, place, canvas->color);
-    for (int j = 0; j < place->n_rows && frame->color.values && !seen; j++)
-        memcpy(&frame->color.values[3 * pixel_at(picture, place, 0, j)], background,
-               3 * (size_t)place->n_columns * sizeof *background);
+    if (frame->codes.codes8 && seen)
+        write_codes(picture, place, canvas->color);
+    if (!seen)
+        write_background(picture, place, picture->background);
     if (frame->depth.values || frame->normal.values || frame->id.ids)
         write_geometry(picture, place, tile, seen ? canvas : NULL);
 }
@@ -417,7 +448,7 @@ static Status prepare_shadows(RasterPicture *picture, const RasterView *view, Er
 {
     const Scene *scene = picture->scene;
     bool rays = false;
-    if (!picture->params->shadows || !picture->frame->color.values)
+    if (!picture->params->shadows || !wants_color(picture->frame))
         return STATUS_OK;
     TRY(mem_calloc(&picture->shadows, scene->n_lights, sizeof *picture->shadows, "lights", err));
     for (size_t i = 0; i < scene->n_lights; i++) {
@@ -444,6 +475,18 @@ static Status make_background(const RasterPicture *picture, int samples, float *
         for (int i = 0; i < scene->camera.width; i++)
             (*row)[3 * i + c] = (float)((double)sum / samples);
     }
+    return STATUS_OK;
+}
+
+static Status make_codes(RasterPicture *picture, Err *err)
+{
+    size_t n = 3 * (size_t)picture->scene->camera.width;
+    if (!picture->frame->codes.codes8)
+        return STATUS_OK;
+    srgb_codes_init(&picture->codes);
+    TRY(mem_calloc(&picture->background_codes, n, 1, "background", err));
+    for (size_t i = 0; i < n; i++)
+        picture->background_codes[i] = srgb_code(&picture->codes, picture->background[i]);
     return STATUS_OK;
 }
 
@@ -519,6 +562,7 @@ static void release(RasterPicture *picture)
     free(picture->further);
     free(picture->lights);
     free(picture->background);
+    free(picture->background_codes);
     free(picture->resampled_background);
     free(picture->mask);
     rasterbins_free(picture->bins);
@@ -538,6 +582,7 @@ Status rasterrender(const Scene *scene, const RenderParams *params, const Band *
     TRY_GOTO(prepare_samples(&picture, &view, err));
     TRY_GOTO(prepare_canvases(&picture, err));
     TRY_GOTO(make_background(&picture, 1, &picture.background, err));
+    TRY_GOTO(make_codes(&picture, err));
     TRY_GOTO(make_background(&picture, picture.n_further + 1, &picture.resampled_background, err));
     TRY_GOTO(prepare_shadows(&picture, &view, err));
     TRY_GOTO(rasterbins_new(scene, &view, picture.workers, &picture.bins, err));

@@ -237,7 +237,8 @@ static Status draw(Renderer *renderer, const Band *band, Frame *frame, Err *err)
 {
     double start_s = clock_seconds();
     const RenderParams *params = &renderer->params;
-    bool codes = params->codes_suffice && params->antialias == 1 && is_field(renderer);
+    bool tiles = is_traced(renderer) ? is_field(renderer) : params->method == RENDER_RASTER;
+    bool codes = params->codes_suffice && params->antialias == 1 && tiles;
     TRY(make_planes(renderer->scene->camera.width, band->rows, params, codes, frame, err));
     if (!is_traced(renderer))
         return (params->method == RENDER_RASTER ? rasterrender : zbuffer_render)(

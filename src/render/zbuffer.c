@@ -103,10 +103,10 @@ static void draw_cylinder(const Brush *brush, Vec3 a, Vec3 b, double radius)
             put_point(brush, vec3_add_scaled(center, out, radius), out);
         }
     }
-    int rings = steps_through(brush, radius);
+    int rings = steps_through(brush, radius); /* the rim is the wall's */
     for (int end = 0; end < 2; end++) {
         Vec3 center = end ? b : a, normal = vec3_scale(axis, end ? 1 : -1);
-        for (int ring = 0; ring <= rings && touches_row(brush, center, radius); ring++) {
+        for (int ring = 0; ring < rings && touches_row(brush, center, radius); ring++) {
             double part = radius * ring / rings;
             int points = steps_through(brush, 6.283185307179586 * part);
             for (int i = 0; i < points; i++)

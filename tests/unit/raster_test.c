@@ -346,6 +346,27 @@ static void antialiased_tiles_are_what_antialiased_rays_are(void **state)
         }
 }
 
+static void codes_of_tiles_are_those_of_their_colors(void **state)
+{
+    (void)state;
+    Staged staged;
+    stage(&staged, PROJECTION_PERSPECTIVE);
+    Frame colors = drawn(&staged.scene, (Settings){RENDER_RASTER, 2, 1, 0, true}), codes;
+    const RenderParams params = {.method = RENDER_RASTER,
+                                 .threads = 2,
+                                 .antialias = 1,
+                                 .shadows = true,
+                                 .codes_suffice = true,
+                                 .want_color = true};
+    assert_int_equal(render(&staged.scene, &params, &codes, NULL, NULL), STATUS_OK);
+    assert_non_null(codes.codes.codes8);
+    for (size_t i = 0; i < 3 * (size_t)PIXELS; i++)
+        assert_int_equal(codes.codes.codes8[i],
+                         image_code(colors.color.values[i], ENCODING_SRGB, 8));
+    frame_release(&colors);
+    frame_release(&codes);
+}
+
 static void shadows_of_tiles_are_shadows_of_rays(void **state)
 {
     (void)state;
@@ -490,6 +511,7 @@ int main(void)
         cmocka_unit_test(tiles_do_not_depend_on_the_number_of_threads),
         cmocka_unit_test(bands_are_the_rows_of_the_whole),
         cmocka_unit_test(antialiased_tiles_are_what_antialiased_rays_are),
+        cmocka_unit_test(codes_of_tiles_are_those_of_their_colors),
         cmocka_unit_test(shadows_of_tiles_are_shadows_of_rays),
         cmocka_unit_test(a_depth_buffer_of_points_has_no_holes),
         cmocka_unit_test(a_depth_buffer_does_not_depend_on_the_number_of_threads),
