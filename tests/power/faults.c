@@ -529,7 +529,7 @@ const Fault faults[] = {
     {"pixel corners instead of centres", OF_ALL, 1, shift_image, NULL, 0.5},
     {"one segment tapered by 1 %", OF_ALL, 1, taper, NULL, 0.01},
     {"coordinates to 0.01 mm", OF_ALL, 1, few_digits, NULL, 0.01},
-    {"threshold + 1 %", OF_ISOSURFACE, 1, threshold, NULL, 0.01},
+    {"threshold + 1 %", OF_FIELDS, 1, threshold, NULL, 0.01},
     {"phong 1 % stronger", OF_ALL, 1, phong, NULL, 0.01},
     {"phong_size 32 to 33", OF_ALL, 1, phong_size, NULL, 1 / 32.0},
     {"diffuse + 1 %", OF_ALL, 1, diffuse, NULL, 0.01},

@@ -17,7 +17,8 @@ enum { WIDTH = 320, HEIGHT = 240, STEPS = 16 };
 static const char *const model_names[] = {[SCENE_CYLINDERS] = "cylinders",
                                           [SCENE_JOINED] = "joined",
                                           [SCENE_ROUNDED] = "rounded",
-                                          [SCENE_ISOSURFACE] = "isosurface"};
+                                          [SCENE_ISOSURFACE] = "isosurface",
+                                          [SCENE_BLOB] = "blob"};
 enum { MODELS = sizeof model_names / sizeof *model_names };
 
 /* The rules asked: the two tiers, and what others do [their published defaults]. */
