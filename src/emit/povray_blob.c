@@ -17,6 +17,10 @@ enum { GROUP = 256, MAX_PAINTED = GROUP * GROUP, LEAF = 4 };
 /* How many segments a cell holds at most, unless halving it would leave most of them in both halves. */
 enum { CELL = 128 };
 
+/* POV-Ray's time for a ray grows with the square of the segments that it passes; so many in one another,
+ * looked for about so many of a cell, take minutes for a picture. */
+enum { CROWD = 64, PROBES = 64 };
+
 /* Cells reach into their neighbours, so that no ray slips between them. */
 static const double overlap_mm = 1e-3;
 
@@ -50,6 +54,34 @@ static bool reaches_into(const FieldSegment *segment, Box box)
            reach.high.y >= box.low.y && reach.low.z <= box.high.z && reach.high.z >= box.low.z;
 }
 
+/* How many segments of a list are felt at x. */
+static size_t count_felt(const Cells *cells, const uint32_t *list, size_t n, Vec3 x)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++)
+        count += blob_term(&cells->scene->segments[list[i]], x) != 0;
+    return count;
+}
+
+static Status check_crowd(const Cells *cells, const uint32_t *list, size_t n, Err *err)
+{
+    if (n <= CROWD)
+        return STATUS_OK;
+    for (size_t i = 0; i < n; i += n / PROBES) {
+        const FieldSegment *segment = &cells->scene->segments[list[i]];
+        Vec3 middle = vec3_scale(vec3_add(segment->a, segment->b), 0.5);
+        size_t felt = count_felt(cells, list, n, middle);
+        if (felt > CROWD)
+            return err_set(
+                err, STATUS_INFEASIBLE,
+                "%zu segments lie in one another at (%.6g, %.6g, %.6g), more than POV-Ray "
+                "draws as a blob in good time; leave out thin ones (--prune-radius) or "
+                "choose another model",
+                felt, middle.x, middle.y, middle.z);
+    }
+    return STATUS_OK;
+}
+
 /* Writes the blob of lists[first .. first + n), clipped to a box or whole. */
 static Status put_cell(Cells *cells, size_t first, size_t n, const Box *clip, Err *err)
 {
@@ -61,6 +93,7 @@ static Status put_cell(Cells *cells, size_t first, size_t n, const Box *clip, Er
             "%zu segments overlap in one place, more than POV-Ray draws in one blob; leave "
             "out thin ones (--prune-radius) or choose another model",
             n);
+    TRY(check_crowd(cells, list, n, err));
     text_puts(text, clip ? "Blob_Cell()\n" : "Blob_Start()\n");
     for (size_t i = 0; i < n; i++) {
         const FieldSegment *segment = &cells->scene->segments[list[i]];

@@ -84,6 +84,9 @@ test_two_hundred_segments_at_one_place() {
     rows '1 3 0 0 0 1 -1'
     seq -f '%g 3 5 1 2 1 1' 2 200 >>tree.swc
     each_way draws
+    run corcast scene tree.swc --model blob -o scene.pov
+    expect_status 2
+    expect_sentence '[0-9]+ segments lie in one another at \('
 }
 
 test_a_vessel_that_turns_back_into_itself() {
