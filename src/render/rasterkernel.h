@@ -20,7 +20,6 @@ typedef struct RasterState {
     const RasterTile *tile;
     RasterHits *hits;
     float farthest[BLOCKS]; /* depth behind which a block needs nothing */
-    bool any;
 } RasterState;
 
 /* Keeps what is nearer. */
@@ -42,7 +41,6 @@ RASTER_FN void keep_nearer(RasterState *state, const Near *near, int block, Lane
         lanes_store(&hits->ruling[first],
                     lanes_select(nearer, *ruling, lanes_load(&hits->ruling[first])));
     state->farthest[block] = lanes_largest(depth);
-    state->any = true;
 }
 
 /* Decides the samples `unsure` of a block in double precision. */
@@ -62,7 +60,6 @@ LANE_TARGET static void decide_block(RasterState *state, const Near *near, int b
             continue;
         hits->z[sample] = depth;
         hits->item[sample] = near->number | RASTER_DECIDED;
-        state->any = true;
     }
     state->farthest[block] = lanes_largest(lanes_load(&hits->z[block * LANES]));
 }
@@ -70,7 +67,7 @@ LANE_TARGET static void decide_block(RasterState *state, const Near *near, int b
 RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
 {
     const RasterGrid *grid = state->tile->grid;
-    Sight sight =
+    SightLines sight =
         sight_of(near, lanes_load(&grid->x[block * LANES]), lanes_load(&grid->y[block * LANES]));
     Lanes z;
     if (near->kind == RASTER_CYLINDER) {
@@ -136,7 +133,7 @@ RASTER_FN void trace_items(RasterState *state, bool perspective)
     }
 }
 
-LANE_TARGET static bool RASTER_KERNEL(trace)(const RasterTile *tile, RasterHits *hits)
+LANE_TARGET static uint64_t RASTER_KERNEL(trace)(const RasterTile *tile, RasterHits *hits)
 {
     RasterState state = {.tile = tile, .hits = hits};
     for (int sample = 0; sample < TILE_SAMPLES; sample += LANES) {
@@ -148,7 +145,11 @@ LANE_TARGET static bool RASTER_KERNEL(trace)(const RasterTile *tile, RasterHits 
         trace_items(&state, true);
     else
         trace_items(&state, false);
-    return state.any;
+    uint64_t seen = 0;
+    for (int first = 0; first < TILE_SAMPLES; first += LANES)
+        seen |= (uint64_t)mask_bits(load_items(&hits->item[first]) != (int32_t)RASTER_NOTHING)
+                << first;
+    return seen;
 }
 
 /* ---- normals
@@ -159,7 +160,7 @@ RASTER_FN void resolve_item(const RasterTile *tile, const RasterHits *hits, int 
                             const Near *near, Lanes normal[3])
 {
     int first = block * LANES;
-    Sight sight =
+    SightLines sight =
         sight_of(near, lanes_load(&tile->grid->x[first]), lanes_load(&tile->grid->y[first]));
     Lanes own[3];
     if (near->kind == RASTER_SPHERE)
@@ -279,7 +280,7 @@ LANE_TARGET static void RASTER_KERNEL(clear)(const RasterHits *hits, const float
 RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, RasterProbes *probes,
                                int first, Lanes x, Lanes y, Lanes z, LaneMask among)
 {
-    Sight sight = sight_of(near, x, y);
+    SightLines sight = sight_of(near, x, y);
     Lanes entry = lanes_set(0);
     LaneMask met, unsure = (LaneMask){0};
     if (near->kind == RASTER_CYLINDER) {

@@ -14,8 +14,8 @@ typedef struct RasterProbes {
 } RasterProbes;
 
 typedef struct RasterKernels {
-    /* Finds the first items of the tile; false when there is none. */
-    bool (*trace)(const RasterTile *tile, RasterHits *hits);
+    /* Finds the first items of the tile; bit i is set where sample i sees one. */
+    uint64_t (*trace)(const RasterTile *tile, RasterHits *hits);
     /* State, normal and item (as `segment`) of the hits. */
     void (*resolve)(const RasterTile *tile, const RasterHits *hits, TileHits *surface);
     /* Gives the samples that see nothing the background. */

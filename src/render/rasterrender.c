@@ -18,6 +18,7 @@
 typedef struct Canvas {
     RasterRow row;
     RasterHits hits;
+    uint64_t seen; /* bit i: sample i sees something */
     TileHits surfels;
     TileSurface surface;
     uint8_t (*shadowed)[TILE_SAMPLES]; /* one a light */
@@ -197,7 +198,8 @@ static bool color_tile(const RasterPicture *picture, const RasterTile *tile, int
     const Scene *scene = picture->scene;
     TileSurface *surface = &canvas->surface;
     TileHits *surfels = &canvas->surfels;
-    if (!picture->kernels->trace(tile, &canvas->hits))
+    canvas->seen = picture->kernels->trace(tile, &canvas->hits);
+    if (!canvas->seen)
         return false;
     picture->kernels->resolve(tile, &canvas->hits, surfels);
     if (!wants_color(picture->frame))
@@ -218,18 +220,23 @@ static bool color_tile(const RasterPicture *picture, const RasterTile *tile, int
         find_shadows(picture, tile, worker, canvas);
     picture->shading->shade(&picture->look, surface, canvas->color);
     const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
-    picture->kernels->clear(&canvas->hits, background, canvas->color);
+    if (picture->frame->color.values)
+        picture->kernels->clear(&canvas->hits, background, canvas->color);
     return true;
 }
 
-static void write_codes(const RasterPicture *picture, const Place *place,
-                        float color[3][TILE_SAMPLES])
+/* The codes of what is seen; the background is there. */
+static void write_codes(const RasterPicture *picture, const Place *place, const Canvas *canvas)
 {
-    for (int j = 0; j < place->n_rows; j++) {
-        uint8_t *pixel = &picture->frame->codes.codes8[3 * pixel_at(picture, place, 0, j)];
-        for (int i = 0; i < place->n_columns; i++)
-            for (int c = 0; c < 3; c++)
-                *pixel++ = srgb_code(&picture->codes, color[c][tile_sample_at(i, j)]);
+    uint8_t *pixels = &picture->frame->codes.codes8[3 * pixel_at(picture, place, 0, 0)];
+    size_t stride = 3 * (size_t)picture->scene->camera.width;
+    for (uint64_t left = canvas->seen; left; left &= left - 1) {
+        int sample = __builtin_ctzll(left), i = tile_sample_x(sample), j = tile_sample_y(sample);
+        if (i >= place->n_columns || j >= place->n_rows)
+            continue;
+        uint8_t *pixel = pixels + (size_t)j * stride + 3 * i;
+        for (int c = 0; c < 3; c++)
+            pixel[c] = srgb_code(&picture->codes, canvas->color[c][sample]);
     }
 }
 
@@ -373,10 +380,10 @@ static void draw_tile(const RasterPicture *picture, const Place *place, RasterTi
     bool seen = color_tile(picture, tile, worker, canvas);
     if (frame->color.values && seen)
         write_colors(picture, place, canvas->color);
-    if (frame->codes.codes8 && seen)
-        write_codes(picture, place, canvas->color);
-    if (!seen)
+    if (!seen || frame->codes.codes8)
         write_background(picture, place, picture->background);
+    if (frame->codes.codes8 && seen)
+        write_codes(picture, place, canvas);
     if (frame->depth.values || frame->normal.values || frame->id.ids)
         write_geometry(picture, place, tile, seen ? canvas : NULL);
 }

@@ -24,7 +24,7 @@ typedef struct Ruling {
     Lanes k[5];
 } Ruling;
 
-RASTER_FN Lanes ruling_part(const Near *near, const Sight *sight, const float by[3],
+RASTER_FN Lanes ruling_part(const Near *near, const SightLines *sight, const float by[3],
                             const float *run)
 {
     if (!near->perspective) {
@@ -42,7 +42,7 @@ RASTER_FN Lanes ruling_part(const Near *near, const Sight *sight, const float by
     return lanes_fma(sight->y, lanes_fma(-sight->dx, rz, lanes_set(run[0])), part);
 }
 
-RASTER_FN Ruling ruling_of(const Near *near, const Sight *sight)
+RASTER_FN Ruling ruling_of(const Near *near, const SightLines *sight)
 {
     const RasterJoint *joint = near->joint;
     return (Ruling){{ruling_part(near, sight, joint->by[0], joint->span),
@@ -237,8 +237,8 @@ RASTER_FN Line3 ruling_line(const RasterJoint *joint, Lanes cosine, Lanes sine)
 }
 
 /* How far along the ruling, in its length, the lines pass it. */
-RASTER_FN Lanes ruling_place(const Near *near, const Sight *sight, const Line3 *line, Lanes off[2],
-                             Lanes run[2])
+RASTER_FN Lanes ruling_place(const Near *near, const SightLines *sight, const Line3 *line,
+                             Lanes off[2], Lanes run[2])
 {
     off[0] = line->start[0] - sight->x;
     off[1] = line->start[1] - sight->y;
@@ -255,7 +255,7 @@ RASTER_FN Lanes ruling_place(const Near *near, const Sight *sight, const Line3 *
 }
 
 /* Where the lines `among` enter the joint; *unsure is set where that takes double precision. */
-RASTER_FN LaneMask joint_entry(const Near *near, const Sight *sight, LaneMask among, Lanes *z,
+RASTER_FN LaneMask joint_entry(const Near *near, const SightLines *sight, LaneMask among, Lanes *z,
                                Lanes *ruling, LaneMask *unsure)
 {
     Ruling g = ruling_of(near, sight);
@@ -289,7 +289,7 @@ RASTER_FN LaneMask joint_entry(const Near *near, const Sight *sight, LaneMask am
     return met & ~*unsure;
 }
 
-RASTER_FN void joint_normal(const Near *near, const Sight *sight, Lanes u, Lanes normal[3])
+RASTER_FN void joint_normal(const Near *near, const SightLines *sight, Lanes u, Lanes normal[3])
 {
     const RasterJoint *joint = near->joint;
     Lanes u2 = u * u, per = 1.0f / (1.0f + u2), off[2], run[2];

@@ -34,10 +34,10 @@ RASTER_FN void store_items(uint32_t *items, LaneMask lanes)
 }
 
 /* Lines of sight beside an item. */
-typedef struct Sight {
+typedef struct SightLines {
     Lanes x, y;   /* where they pass its middle's depth, from the middle */
     Lanes dx, dy; /* directions (dx, dy, 1); only in perspective */
-} Sight;
+} SightLines;
 
 /* An item as one tile sees it. */
 typedef struct Near {
@@ -115,9 +115,9 @@ RASTER_FN Near approach(const RasterTile *tile, uint32_t number, bool perspectiv
     return near;
 }
 
-RASTER_FN Sight sight_of(const Near *near, Lanes x, Lanes y)
+RASTER_FN SightLines sight_of(const Near *near, Lanes x, Lanes y)
 {
-    Sight sight;
+    SightLines sight;
     if (near->perspective) {
         sight.x = lanes_fma(x, lanes_set(near->depth), lanes_set(near->x));
         sight.y = lanes_fma(y, lanes_set(near->depth), lanes_set(near->y));
@@ -132,7 +132,7 @@ RASTER_FN Sight sight_of(const Near *near, Lanes x, Lanes y)
 }
 
 /* Whether lines of sight may touch the item's capsule. */
-RASTER_FN LaneMask within_outline(const Near *near, const Sight *sight)
+RASTER_FN LaneMask within_outline(const Near *near, const SightLines *sight)
 {
     Lanes x = lanes_set(near->along_x), y = lanes_set(near->along_y);
     Lanes off = lanes_abs(lanes_fma(sight->y, x, -(sight->x * y)));
@@ -144,7 +144,7 @@ RASTER_FN LaneMask within_outline(const Near *near, const Sight *sight)
  * ----------------------------------------------------------------------- */
 
 /* Where the lines enter the sphere, as depth from its middle. */
-RASTER_FN LaneMask sphere_entry(const Near *near, const Sight *sight, Lanes *z)
+RASTER_FN LaneMask sphere_entry(const Near *near, const SightLines *sight, Lanes *z)
 {
     float radius2 = near->item->radius * near->item->radius;
     if (!near->perspective) {
@@ -171,7 +171,7 @@ typedef struct Passage {
     Lanes rate;   /* of that with depth */
 } Passage;
 
-RASTER_FN Passage pass_cylinder(const Near *near, const Sight *sight)
+RASTER_FN Passage pass_cylinder(const Near *near, const SightLines *sight)
 {
     Passage passage;
     const RasterItem *item = near->item;
@@ -206,8 +206,8 @@ RASTER_FN Passage pass_cylinder(const Near *near, const Sight *sight)
 }
 
 /* Where the lines enter the cylinder; *on_disc is set where that is its end. */
-RASTER_FN LaneMask cylinder_entry(const Near *near, const Sight *sight, Lanes *z, LaneMask *on_disc,
-                                  Passage *passage)
+RASTER_FN LaneMask cylinder_entry(const Near *near, const SightLines *sight, Lanes *z,
+                                  LaneMask *on_disc, Passage *passage)
 {
     float half = near->item->half;
     *passage = pass_cylinder(near, sight);
@@ -226,7 +226,7 @@ RASTER_FN LaneMask cylinder_entry(const Near *near, const Sight *sight, Lanes *z
     return *on_disc | (passage->met & (enters >= 0.0f) & (enters <= 2 * half));
 }
 
-RASTER_FN void sphere_normal(const Near *near, const Sight *sight, Lanes normal[3])
+RASTER_FN void sphere_normal(const Near *near, const SightLines *sight, Lanes normal[3])
 {
     Lanes z;
     sphere_entry(near, sight, &z);
@@ -236,7 +236,7 @@ RASTER_FN void sphere_normal(const Near *near, const Sight *sight, Lanes normal[
     normal[2] = z * per;
 }
 
-RASTER_FN void cylinder_normal(const Near *near, const Sight *sight, Lanes normal[3])
+RASTER_FN void cylinder_normal(const Near *near, const SightLines *sight, Lanes normal[3])
 {
     LaneMask on_disc;
     Passage passage;
