@@ -120,8 +120,5 @@ bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double 
     if (caster->blob)
         return blobcast_any_hit(caster->blob, caster->blob_scratch[worker], ray, blob_nearest_mm,
                                 far);
-    Vec3 normal;
-    uint32_t index;
-    return field_first_hit(caster->field, caster->scratch[worker], ray, shadow_slack_mm, far, &t,
-                           &normal, &index);
+    return field_is_shadowed(caster->field, caster->scratch[worker], ray, shadow_slack_mm, far);
 }

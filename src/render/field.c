@@ -18,7 +18,8 @@
  *   If slope^2 >= 2 N lack, Phi reaches T, and rises all the way, before the smaller root of lack =
  *   slope x - N x^2 / 2: a bracket with one crossing, which Newton's method closes.
  *
- * The way out of a vessel in which a ray starts is the same with the sign of Phi - T turned. */
+ * The way out of a vessel in which a ray starts is the same with the sign of Phi - T turned, and needs
+ * no windows. Of a union of bodies it is found by leaving one after the other until none is left. */
 #include "render/field.h"
 
 #include "render/passage.h"
@@ -146,100 +147,206 @@ static double march(const FieldScratch *scratch, double t, double t_max, double 
     }
 }
 
-/* The first entry of the group from t_min on; infinite when there is none. */
-static double first_entry(const FieldScratch *scratch, double t_min, double t_max)
+/* What is asked of a ray, and the answer. */
+typedef struct Search {
+    const Scene *scene;
+    FieldScratch *scratch;
+    Ray ray;
+    double t_min, t_max; /* t_max is finite, so that "none", infinite, is beyond it */
+    bool off_surface;    /* the ray starts on a surface: see is_skin */
+    double t;
+    Vec3 normal;
+    uint32_t segment;
+} Search;
+
+static bool is_inside(const Sample *sample)
 {
-    double t = fmax(t_min, scratch->group[0]->t0);
-    if (t == t_min && sample_at(scratch, t).phi > FIELD_LEVEL + touch)
-        t = march(scratch, t, t_max, -1);
-    return march(scratch, t, t_max, 1);
+    return sample->phi > FIELD_LEVEL + touch;
 }
 
-static void describe_hit(const FieldSegment *segments, const FieldScratch *scratch, Ray ray,
-                         double t, Vec3 *normal, uint32_t *segment)
+/* Whether a ray that starts on a surface is inside only because that place is not exact: hits are
+ * within 10^-3 r, so that Phi is within 0.4 % of the level, and the ray is on its way out. */
+static bool is_skin(const Search *search, const Sample *sample)
 {
-    Vec3 x = ray_at(ray, t), sum = vec3(0, 0, 0);
+    return search->off_surface && sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0;
+}
+
+/* The first crossing of the group in the search's limits; infinite when there is none. */
+static double first_crossing(const Search *search)
+{
+    const FieldScratch *scratch = search->scratch;
+    double t = fmax(search->t_min, scratch->group[0]->t0);
+    if (t == search->t_min) {
+        Sample start = sample_at(scratch, t);
+        if (is_inside(&start)) {
+            t = march(scratch, t, search->t_max, -1);
+            if (!is_skin(search, &start))
+                return t;
+        }
+    }
+    return march(scratch, t, search->t_max, 1);
+}
+
+/* Sets the answer to the place t of the group. */
+static void describe_hit(Search *search, double t)
+{
+    const FieldScratch *scratch = search->scratch;
+    Vec3 x = ray_at(search->ray, t), sum = vec3(0, 0, 0);
     double largest = -1;
+    search->t = t;
     for (size_t i = 0; i < scratch->n_group; i++) {
         const Passage *passage = scratch->group[i];
         if (passage->t0 > t || passage->t1 < t)
             continue;
         Vec3 gradient;
         uint32_t number = passage->segment;
-        double term = potential_term_gradient(&segments[number], x, &gradient);
+        double term = potential_term_gradient(&search->scene->segments[number], x, &gradient);
         sum = vec3_add(sum, gradient);
-        if (term > largest || (term == largest && number < *segment)) {
+        if (term > largest || (term == largest && number < search->segment)) {
             largest = term;
-            *segment = number;
+            search->segment = number;
         }
     }
     double steepness = vec3_length(sum);
-    *normal = vec3_scale(steepness > 0 ? sum : ray.direction, steepness > 0 ? -1 / steepness : -1);
+    search->normal = vec3_scale(steepness > 0 ? sum : search->ray.direction,
+                                steepness > 0 ? -1 / steepness : -1);
 }
 
-static bool first_hit(const FieldSegment *segments, FieldScratch *scratch, Ray ray, double t_min,
-                      double t_max, double *t, Vec3 *normal, uint32_t *segment)
+/* The first hit of the sum of the passages that the scratch holds. */
+static bool hit_of_sum(Search *search)
 {
-    while (passages_next_group(scratch)) {
-        if (!passages_find_windows(scratch))
+    while (passages_next_group(search->scratch)) {
+        if (!passages_find_windows(search->scratch))
             continue;
-        double hit = first_entry(scratch, t_min, t_max);
-        if (hit <= t_max) {
-            *t = hit;
-            describe_hit(segments, scratch, ray, hit, normal, segment);
+        double t = first_crossing(search);
+        if (t <= search->t_max) {
+            describe_hit(search, t);
             return true;
         }
     }
     return false;
 }
 
-/* first_hit of the sum of the terms listed. */
-static bool hit_of_sum(const Scene *scene, const uint32_t *list, size_t n, FieldScratch *scratch,
-                       Ray ray, double t_min, double t_max, double *t, Vec3 *normal,
-                       uint32_t *segment)
+/* Makes the terms listed the scratch's passages. */
+static void pass_all(const Search *search, const uint32_t *list, size_t n)
 {
-    passages_clear(scratch);
+    passages_clear(search->scratch);
     for (size_t i = 0; i < n; i++) {
-        FieldTube tube = fieldtube_of(&scene->segments[list[i]], list[i]);
+        FieldTube tube = fieldtube_of(&search->scene->segments[list[i]], list[i]);
         if (tube.reach2 > 0)
-            passages_add(scratch, &tube, ray, t_min, t_max);
+            passages_add(search->scratch, &tube, search->ray, search->t_min, search->t_max);
     }
-    passages_order(scratch);
-    return first_hit(scene->segments, scratch, ray, t_min, t_max, t, normal, segment);
+    passages_order(search->scratch);
+}
+
+/* The same for those of the terms that blend with the one numbered i. */
+static void pass_joined(const Search *search, const uint32_t *list, size_t n, size_t i)
+{
+    size_t joined = 0;
+    for (size_t j = 0; j < n; j++)
+        if (blend_joins(&search->scene->blend, list[i], list[j]))
+            search->scratch->joined[joined++] = list[j];
+    pass_all(search, search->scratch->joined, joined);
+}
+
+/* If the ray is at t_min inside the body that the scratch's passages make, moves t_min to where it
+ * leaves, infinite if that is beyond t_max, describes that place and returns true. *deep tells whether
+ * it was more than skin there, and is left alone if not. */
+static bool leave_body(Search *search, bool *deep)
+{
+    const FieldScratch *scratch = search->scratch;
+    while (passages_next_group(search->scratch) && scratch->group[0]->t0 <= search->t_min) {
+        if (!passages_find_windows(search->scratch))
+            continue;
+        Sample start = sample_at(scratch, search->t_min);
+        if (!is_inside(&start))
+            continue;
+        double t = march(scratch, search->t_min, search->t_max, -1);
+        if (t <= search->t_min)
+            return false;
+        search->t_min = t;
+        if (t <= search->t_max)
+            describe_hit(search, t);
+        *deep |= !is_skin(search, &start);
+        return true;
+    }
+    return false;
+}
+
+/* Moves t_min out of the union of the bodies about each term listed. True if it was inside, and not
+ * just for being on the surface. */
+static bool leave_union(Search *search, const uint32_t *list, size_t n)
+{
+    bool deep = false, moved = true;
+    while (moved && search->t_min <= search->t_max) {
+        moved = false;
+        for (size_t i = 0; i < n && search->t_min <= search->t_max; i++) {
+            pass_joined(search, list, n, i);
+            moved |= leave_body(search, &deep);
+        }
+    }
+    return deep;
+}
+
+/* The first hit of the union of the bodies about each term listed. */
+static bool hit_of_union(Search *search, const uint32_t *list, size_t n)
+{
+    if (leave_union(search, list, n))
+        return search->t_min <= search->t_max;
+    bool hit = false;
+    for (size_t i = 0; i < n; i++) {
+        pass_joined(search, list, n, i);
+        if (hit_of_sum(search)) {
+            hit = true;
+            search->t_max = search->t;
+        }
+    }
+    return hit;
+}
+
+static bool answer(const Search *search, bool hit, double *t, Vec3 *normal, uint32_t *segment)
+{
+    if (hit) {
+        *t = search->t;
+        *normal = search->normal;
+        *segment = search->segment;
+    }
+    return hit;
 }
 
 bool field_first_hit_among(const Scene *scene, const uint32_t *list, size_t n,
                            FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
                            Vec3 *normal, uint32_t *segment)
 {
-    bool hit = false;
-    t_max = fmin(t_max, DBL_MAX); /* so that "none", infinite, is beyond it */
-    if (!scene->blend.first)
-        return hit_of_sum(scene, list, n, scratch, ray, t_min, t_max, t, normal, segment);
-    for (size_t i = 0; i < n; i++) {
-        size_t joined = 0;
-        for (size_t j = 0; j < n; j++)
-            if (blend_joins(&scene->blend, list[i], list[j]))
-                scratch->joined[joined++] = list[j];
-        if (hit_of_sum(scene, scratch->joined, joined, scratch, ray, t_min, t_max, t, normal,
-                       segment)) {
-            hit = true;
-            t_max = *t;
-        }
-    }
-    return hit;
+    Search search = {scene, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
+    if (scene->blend.first)
+        return answer(&search, hit_of_union(&search, list, n), t, normal, segment);
+    pass_all(&search, list, n);
+    return answer(&search, hit_of_sum(&search), t, normal, segment);
+}
+
+static bool search_index(const FieldIndex *index, Search *search)
+{
+    FieldScratch *scratch = search->scratch;
+    passages_find(index, scratch, search->ray, search->t_min, search->t_max);
+    if (!index->scene->blend.first)
+        return hit_of_sum(search);
+    size_t n = scratch->n_passages;
+    for (size_t i = 0; i < n; i++)
+        scratch->near[i] = scratch->passages[i].segment;
+    return hit_of_union(search, scratch->near, n);
 }
 
 bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                      double t_max, double *t, Vec3 *normal, uint32_t *segment)
 {
-    t_max = fmin(t_max, DBL_MAX);
-    passages_find(index, scratch, ray, t_min, t_max);
-    if (!index->scene->blend.first)
-        return first_hit(index->scene->segments, scratch, ray, t_min, t_max, t, normal, segment);
-    size_t n = scratch->n_passages;
-    for (size_t i = 0; i < n; i++)
-        scratch->near[i] = scratch->passages[i].segment;
-    return field_first_hit_among(index->scene, scratch->near, n, scratch, ray, t_min, t_max, t,
-                                 normal, segment);
+    Search search = {index->scene, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
+    return answer(&search, search_index(index, &search), t, normal, segment);
+}
+
+bool field_is_shadowed(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
+                       double t_max)
+{
+    Search search = {index->scene, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = true};
+    return search_index(index, &search);
 }

@@ -23,9 +23,10 @@ void fieldscratch_free(FieldScratch *scratch);
 /* How many segments the index holds: what a ray may need room for. */
 size_t fieldindex_size(const FieldIndex *index);
 
-/* The first point at t in [t_min, t_max] where Phi rises through FIELD_LEVEL along the ray; t_min
- * is finite, t_max may be infinite. False when there is none. A ray that starts inside first leaves
- * the vessel, and meets what it enters next, if anything.
+/* The first point at t in [t_min, t_max] where Phi crosses FIELD_LEVEL along the ray; t_min is
+ * finite, t_max may be infinite. False when there is none. That is where Phi rises through it, but for
+ * a ray that starts inside a vessel: that meets the wall from within, where Phi first falls to the
+ * level.
  *
  * *normal is unit and outward, -grad Phi / |grad Phi|; *segment the index of the segment whose term
  * is largest there, the lowest of equals. Terms are left out where they are below 1e-9, so the
@@ -38,5 +39,10 @@ bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, do
 bool field_first_hit_among(const Scene *scene, const uint32_t *list, size_t n,
                            FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
                            Vec3 *normal, uint32_t *segment);
+
+/* Whether there is such a point on a ray that starts on the surface, up to 1e-3 r off it. So the wall
+ * that the ray leaves outwards, but starts just within, does not count. */
+bool field_is_shadowed(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
+                       double t_max);
 
 #endif

@@ -69,7 +69,7 @@ typedef enum TileState {
 
 typedef struct TileHits {
     double z[TILE_SAMPLES];
-    float normal[3][TILE_SAMPLES]; /* unit, outward, in the camera's frame */
+    float normal[3][TILE_SAMPLES]; /* unit, facing the viewer, in the camera's frame */
     uint32_t segment[TILE_SAMPLES];
     uint8_t state[TILE_SAMPLES]; /* TileState; z, normal and segment are 0 unless it is a hit */
     bool any_hit, any_unsure;    /* whether a state is such, or was before it was decided */

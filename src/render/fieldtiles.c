@@ -588,7 +588,8 @@ static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile 
     if (!field_first_hit_among(tiles->scene, space->candidates, tile->n_terms, space->scratch, ray,
                                tiles->z_min, HUGE_VAL, &t, &normal, &segment))
         return STATUS_OK;
-    normal = fieldtiles_to_frame(tiles, normal);
+    bool within = vec3_dot(normal, ray.direction) > 0;
+    normal = fieldtiles_to_frame(tiles, within ? vec3_scale(normal, -1) : normal);
     hits->any_hit = true;
     hits->state[sample] = TILE_HIT;
     hits->z[sample] = t * vec3_dot(ray.direction, tiles->axes[2]);

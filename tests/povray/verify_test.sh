@@ -222,10 +222,11 @@ test_a_tree_far_from_the_origin_agrees() {
 test_walls_seen_from_inside_agree() {
     local model
     printf '%s\n' '1 3 0 0 0 1 -1' '2 3 5 0 0 1 1' '3 3 8 3 0 .5 2' '4 3 8 -3 0 .5 2' >tree.swc
-    for model in cylinders rounded; do
+    for model in cylinders rounded isosurface; do
         agrees $model --projection perspective --location 2.5,0.2,0.1 --look-at 0,0,0 --angle 60
         rm -r report
     done
+    agrees isosurface --projection perspective --location 2.5,0.2,0.1 --look-at 8,0,0 --angle 60 --shadows on
 }
 
 test_odd_trees_agree() {

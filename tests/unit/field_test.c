@@ -91,42 +91,43 @@ static long double brute_excess(const Brute *brute, long double t, LongVec3 *gra
     return sum;
 }
 
-/* The first rise through the level that fine steps see; *highest is the largest excess seen before
- * it. */
-static bool brute_first_hit(const Brute *brute, double *t, long double *highest)
+/* Whether the ray starts inside: 1, else -1. */
+static int brute_side(const Brute *brute)
 {
-    long double step = 0.05L * (long double)brute->smallest_radius;
+    return brute->n_terms && brute_excess(brute, 0, NULL) >= 0 ? 1 : -1;
+}
+
+/* The first crossing of the level that fine steps see. */
+static bool brute_first_hit(const Brute *brute, double *t)
+{
+    long double side = brute_side(brute), step = 0.05L * (long double)brute->smallest_radius;
     if (step < (long double)(brute->t1 - brute->t0) / 3000)
         step = (long double)(brute->t1 - brute->t0) / 3000;
-    *highest = -1;
     if (!brute->n_terms)
         return false;
     long double low = (long double)brute->t0;
-    bool was_outside = brute_excess(brute, low, NULL) < 0;
     while (low < (long double)brute->t1) {
-        long double high = low + step, excess = brute_excess(brute, high, NULL);
-        if (excess >= 0 && was_outside) {
+        long double high = low + step;
+        if (side * brute_excess(brute, high, NULL) < 0) {
             for (int i = 0; i < 60; i++) {
                 long double middle = (low + high) / 2;
-                *(brute_excess(brute, middle, NULL) < 0 ? &low : &high) = middle;
+                *(side * brute_excess(brute, middle, NULL) >= 0 ? &low : &high) = middle;
             }
             *t = (double)high;
             return true;
         }
-        was_outside = excess < 0;
-        if (was_outside && excess > *highest)
-            *highest = excess;
         low = high;
     }
     return false;
 }
 
 typedef struct Tally {
-    int rays, hits, grazing, steps_too_coarse;
+    int rays, within, hits, grazing, steps_too_coarse;
     double worst_mm, worst_normal;
 } Tally;
 
-/* The hit satisfies the definition to 1e-7 of the level and the ray goes inwards there. */
+/* The hit satisfies the definition to 1e-7 of the level and the ray goes inwards there, or outwards if it
+ * starts inside. */
 static void check_hit(const Setup *setup, const Brute *brute, double t, Vec3 normal,
                       uint32_t segment, Tally *tally)
 {
@@ -139,7 +140,7 @@ static void check_hit(const Setup *setup, const Brute *brute, double t, Vec3 nor
     Vec3 turned = vec3_add_scaled(normal, g, 1 / steepness);
     if (steepness > 0.1 * FIELD_LEVEL)
         tally->worst_normal = fmax(tally->worst_normal, vec3_length(turned));
-    assert_true(vec3_dot(g, brute->ray.direction) > -1e-4 * steepness);
+    assert_true(-brute_side(brute) * vec3_dot(g, brute->ray.direction) > -1e-4 * steepness);
     LongVec3 x = long_vec3(ray_at(brute->ray, t));
     long double largest = exact_term(&setup->test.segments[segment], x, NULL);
     for (size_t i = 0; i < setup->test.scene.n_segments; i++)
@@ -150,22 +151,22 @@ static void compare_with_brute_force(Setup *setup, Ray ray, Tally *tally)
 {
     Brute brute = brute_start(&setup->test, ray);
     double t = -1, expected = -1;
-    long double highest;
     Vec3 normal;
     uint32_t segment;
     bool hit =
         field_first_hit(setup->index, setup->scratch, ray, 0, HUGE_VAL, &t, &normal, &segment);
-    bool exists = brute_first_hit(&brute, &expected, &highest);
+    bool exists = brute_first_hit(&brute, &expected);
     tally->rays++;
+    tally->within += brute_side(&brute) > 0;
     if (hit) {
         tally->hits++;
         check_hit(setup, &brute, t, normal, segment, tally);
     }
     if (exists && (!hit || t > expected + 1e-4)) {
-        /* Only a vessel barely touched may be passed by. */
-        long double peak = 0;
+        /* Only a vessel, or from within one a gap, barely touched may be passed by. */
+        long double peak = 0, side = -brute_side(&brute);
         for (double at = expected; at < expected + 0.1; at += 1e-5)
-            peak = fmaxl(peak, brute_excess(&brute, (long double)at, NULL));
+            peak = fmaxl(peak, side * brute_excess(&brute, (long double)at, NULL));
         assert_true(peak < 1e-7L);
         tally->grazing++;
     } else if (hit && (!exists || t < expected - 1e-4)) {
@@ -188,6 +189,7 @@ typedef enum RayKind {
     RAY_AXIAL,   /* along a segment, exactly or nearly */
     RAY_ALIGNED, /* along x, y or z */
     RAY_BUNDLE,  /* from one distant point */
+    RAY_WITHIN,  /* from a place in or near a segment */
     N_RAY_KINDS
 } RayKind;
 
@@ -222,6 +224,8 @@ static Ray random_ray(RayKind kind, const TestScene *test, Random *random)
         Vec3 eye = vec3(131.5, -47.25, 312.75);
         return (Ray){eye, vec3_normalized(vec3_sub(place, eye))};
     }
+    case RAY_WITHIN:
+        return (Ray){place, random_direction(random)};
     default:
         return ray_through(place, random_direction(random), uniform(random, 40, 90));
     }
@@ -244,11 +248,13 @@ static void agrees_with_brute_force_in_long_double(void **state)
             }
             finish(&setup);
         }
-        printf("  %-11s %d rays, %d hits; off by %.1e mm, normals by %.1e at most; %d grazing, "
+        printf("  %-11s %d rays, %d from within, %d hits; off by %.1e mm, normals by %.1e at most; "
+               "%d grazing, "
                "%d between the steps of the brute force\n",
-               kind_names[kind], tally.rays, tally.hits, tally.worst_mm, tally.worst_normal,
-               tally.grazing, tally.steps_too_coarse);
+               kind_names[kind], tally.rays, tally.within, tally.hits, tally.worst_mm,
+               tally.worst_normal, tally.grazing, tally.steps_too_coarse);
         assert_true(tally.hits > tally.rays / 5);
+        assert_true(tally.within > tally.rays / 40);
         assert_true(tally.worst_mm < 1e-4);
         assert_true(tally.worst_normal < 1e-6);
     }
@@ -324,7 +330,7 @@ static void a_segment_shorter_than_a_sixth_of_its_radius_vanishes(void **state)
     }
 }
 
-static void a_ray_from_inside_meets_what_it_enters_next(void **state)
+static void a_ray_from_inside_meets_the_wall_from_within(void **state)
 {
     (void)state;
     Setup setup;
@@ -338,13 +344,38 @@ static void a_ray_from_inside_meets_what_it_enters_next(void **state)
     Ray ray = {{0.7, 0, -0.4}, {0, 0, 1}};
     assert_true(
         field_first_hit(setup.index, setup.scratch, ray, 0, HUGE_VAL, &t, &normal, &segment));
-    assert_true(fabs(t - (7.5 - 0.61 + 0.4)) < 1e-12);
-    assert_int_equal(segment, 1);
-    assert_true(vec3_distance(normal, vec3(0, 0, -1)) < 1e-12);
-    assert_false(first_hit(&setup, (Ray){{0.7, 0, -0.4}, {0, 0, -1}}, &t));
+    assert_true(fabs(t - 1.63) < 1e-12);
+    assert_int_equal(segment, 0);
+    assert_true(vec3_distance(normal, vec3(0, 0, 1)) < 1e-12);
+    assert_false(field_first_hit(setup.index, setup.scratch, ray, 0, 1.62, &t, &normal, &segment));
     /* From the surface outwards, and from it inwards. */
     assert_false(first_hit(&setup, (Ray){{0.7, 0, -1.23}, {0, 0, -1}}, &t));
     assert_true(first_hit(&setup, (Ray){{0.7, 0, -1.23}, {0, 0, 1}}, &t));
+    finish(&setup);
+}
+
+static bool is_shadowed(Setup *setup, Vec3 from, Vec3 towards, double far)
+{
+    return field_is_shadowed(setup->index, setup->scratch, (Ray){from, towards}, 1e-3, far);
+}
+
+static void a_wall_is_lit_from_its_own_side_alone(void **state)
+{
+    (void)state;
+    Setup setup;
+    begin_empty(&setup);
+    double r = 12.3;
+    put_segment(&setup.test, vec3(-200, 0, 0), vec3(200, 0, 0), r);
+    start(&setup);
+    const Vec3 up = {0, 0, 1};
+    /* The lit place is on the surface, or off it by less than 1e-3 r to either side. */
+    for (int off = -1; off <= 1; off++) {
+        Vec3 bottom = vec3(0.7, 0, -r * (1 + 9e-4 * off)), top = vec3_scale(bottom, -1);
+        assert_false(is_shadowed(&setup, top, up, HUGE_VAL));
+        assert_true(is_shadowed(&setup, bottom, up, HUGE_VAL));
+        if (off < 0)
+            assert_false(is_shadowed(&setup, bottom, up, 1.9 * r));
+    }
     finish(&setup);
 }
 
@@ -408,7 +439,8 @@ int main(void)
         cmocka_unit_test(a_long_vessel_is_met_at_its_radius_and_overshoots_its_ends),
         cmocka_unit_test(a_chain_of_one_radius_is_one_long_segment),
         cmocka_unit_test(a_segment_shorter_than_a_sixth_of_its_radius_vanishes),
-        cmocka_unit_test(a_ray_from_inside_meets_what_it_enters_next),
+        cmocka_unit_test(a_ray_from_inside_meets_the_wall_from_within),
+        cmocka_unit_test(a_wall_is_lit_from_its_own_side_alone),
         cmocka_unit_test(looks_only_between_its_limits),
         cmocka_unit_test(of_equal_terms_the_lowest_segment_is_named),
         cmocka_unit_test(nothing_is_never_hit),

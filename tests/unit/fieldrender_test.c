@@ -359,28 +359,39 @@ static void assert_finite(const Frame *frame)
     }
 }
 
-/* The middle pixel's ray starts in the vessel's axis, leaves it, and meets the second vessel. */
-static void a_camera_inside_a_vessel_sees_what_is_beyond(void **state)
+/* The second vessel is behind the first one's wall. Where its kernel looks along z, the first lies in one
+ * plane with it. */
+static void a_camera_inside_a_vessel_sees_its_wall(void **state)
 {
     (void)state;
-    for (int projection = 0; projection < 2; projection++) {
-        Staged staged;
-        stage(&staged, KIND_TREE, (Projection)projection);
-        staged.test.scene.n_segments = 0;
-        put_segment(&staged.test, vec3(-20, 0, 0), vec3(20, 0, 0), 1.23);
-        put_segment(&staged.test, vec3(-20, 0, -7.5), vec3(20, 0, -7.5), 0.61);
-        Camera *camera = &staged.scene->camera;
-        camera->location = vec3(0.3, 0, 0.2);
-        camera->direction = vec3(0, 0, -1);
-        camera->right = vec3(0.9, 0, 0);
-        camera->up = vec3(0, 0.6, 0);
-        Frame frame = drawn(staged.scene, 1, 1, 0);
-        assert_finite(&frame);
-        int middle = HEIGHT / 2 * WIDTH + WIDTH / 2;
-        assert_int_equal(frame.id.ids[middle], 3);
-        assert_true(fabs((double)frame.depth.values[middle] - (7.5 + 0.2 - 0.61)) < 1e-5);
-        frame_release(&frame);
-    }
+    for (int projection = 0; projection < 2; projection++)
+        for (int tilted = 0; tilted < 2; tilted++) {
+            Staged staged;
+            stage(&staged, KIND_TREE, (Projection)projection);
+            staged.test.scene.n_segments = 0;
+            put_segment(&staged.test, vec3(-20, 0, tilted), vec3(20, 0, -tilted), 1.23);
+            put_segment(&staged.test, vec3(-20, 0, -7.5), vec3(20, 0, -7.5), 0.61);
+            Camera *camera = &staged.scene->camera;
+            camera->location = vec3(0, 0, 0.2);
+            camera->direction = vec3(0, 0, -1);
+            camera->right = vec3(0.9, 0, 0);
+            camera->up = vec3(0, 0.6, 0);
+            Frame frame = drawn(staged.scene, 1, 1, 0);
+            assert_finite(&frame);
+            for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
+                Ray ray = camera_ray(camera, pixel % WIDTH, pixel / WIDTH);
+                double t = (double)frame.depth.values[pixel];
+                const float *n = &frame.normal.values[3 * pixel];
+                Vec3 x = ray_at(ray, t), normal = vec3((double)n[0], (double)n[1], (double)n[2]);
+                Vec3 axis = vec3_normalized(vec3(20, 0, -tilted));
+                Vec3 across = vec3_add_scaled(x, axis, -vec3_dot(x, axis));
+                assert_int_equal(frame.id.ids[pixel], 2);
+                assert_true(fabs(vec3_length(across) - 1.23) < 1e-5);
+                assert_true(vec3_dot(normal, ray.direction) < 0);
+                assert_true(vec3_distance(vec3_scale(across, -1 / 1.23), normal) < 1e-5);
+            }
+            frame_release(&frame);
+        }
 }
 
 static void extremes_are_drawn_without_harm(void **state)
@@ -453,7 +464,7 @@ int main(void)
         cmocka_unit_test(adaptive_antialiasing_changes_edges_alone),
         cmocka_unit_test(both_kernels_agree),
         cmocka_unit_test(a_distant_scene_is_the_same_scene),
-        cmocka_unit_test(a_camera_inside_a_vessel_sees_what_is_beyond),
+        cmocka_unit_test(a_camera_inside_a_vessel_sees_its_wall),
         cmocka_unit_test(extremes_are_drawn_without_harm),
         cmocka_unit_test(coincident_segments_add_up),
         cmocka_unit_test(nothing_is_background),

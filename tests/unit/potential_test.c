@@ -206,6 +206,49 @@ static void the_picture_of_the_graph_is_that_of_single_rays(void **state)
     scene_release(&scene);
 }
 
+/* Whether any of the sums about one segment reaches the level, from the definition. */
+static bool is_in_graph(const Scene *scene, Vec3 x)
+{
+    for (uint32_t i = 0; i < scene->n_segments; i++) {
+        double sum = 0;
+        for (uint32_t j = 0; j < scene->n_segments; j++) {
+            Vec3 gradient;
+            if (blend_joins(&scene->blend, i, j))
+                sum += potential_term_gradient(&scene->segments[j], x, &gradient);
+        }
+        if (sum >= FIELD_LEVEL)
+            return true;
+    }
+    return false;
+}
+
+/* From inside the union of bodies that overlap, the wall is that of the union. */
+static void the_graph_is_left_where_all_its_bodies_are_left(void **state)
+{
+    (void)state;
+    Scene scene = staged_hairpin(true);
+    uint32_t all[] = {0, 1, 2, 3, 4}, segment;
+    FieldScratch *scratch;
+    assert_int_equal(fieldscratch_new(5, &scratch, NULL), STATUS_OK);
+    Random random;
+    random_seed(&random, 74);
+    for (int i = 0; i < 2000; i++) {
+        const FieldSegment *in = &scene.segments[i % 5];
+        Vec3 span = vec3_sub(in->b, in->a), d = random_direction(&random);
+        Ray ray = {vec3_add_scaled(in->a, span, uniform(&random, 0.1, 0.9)), d};
+        double t, step = 0.02 * in->radius_mm;
+        Vec3 normal;
+        assert_true(field_first_hit_among(&scene, all, 5, scratch, ray, 0, HUGE_VAL, &t, &normal,
+                                          &segment));
+        for (double at = 0; at < t - 1e-6; at += step)
+            assert_true(is_in_graph(&scene, ray_at(ray, at)));
+        assert_true(is_in_graph(&scene, ray_at(ray, t - 1e-6)));
+        assert_false(is_in_graph(&scene, ray_at(ray, t + 1e-6)));
+    }
+    fieldscratch_free(scratch);
+    scene_release(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -217,6 +260,7 @@ int main(void)
         cmocka_unit_test(the_graph_keeps_strangers_apart),
         cmocka_unit_test(the_graph_joins_what_is_near_along_the_tree),
         cmocka_unit_test(the_picture_of_the_graph_is_that_of_single_rays),
+        cmocka_unit_test(the_graph_is_left_where_all_its_bodies_are_left),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
