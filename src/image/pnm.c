@@ -161,6 +161,10 @@ static Status write_rows(void *self, const void *values, int first, int n, Err *
     PnmWriter *writer = self;
     const uint8_t *codes8 = values;
     const uint16_t *codes16 = values;
+    if (!writer->deep && writer->copies == 1) { /* the file's own bytes */
+        fwrite(codes8, writer->samples, (size_t)n, writer->stream);
+        return STATUS_OK;
+    }
     for (int y = 0; y < n; y++) {
         uint8_t *at = writer->row;
         for (size_t i = 0; i < writer->samples; i++) {
