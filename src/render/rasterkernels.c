@@ -2,8 +2,11 @@
 #define RASTER_KERNEL(name) name##_portable
 #include "render/rasterkernel.h"
 
+#include "render/rastercover.h"
+
 const RasterKernels rasterkernels_portable = {trace_portable, resolve_portable, clear_portable,
-                                              paint_portable, cover_portable};
+                                              paint_portable, locate_portable,  face_portable,
+                                              aim_portable,   cover_portable};
 
 const RasterKernels *rasterkernels_best(void)
 {

@@ -4,6 +4,28 @@
 #define CORCAST_RENDER_RASTERKERNELS_H
 
 #include "render/rastertile.h"
+#include "render/tilekernels.h"
+
+/* Where the samples of a tile see something, in the frame of the view; senseless for others. */
+typedef struct RasterPlaces {
+    double x[TILE_SAMPLES], y[TILE_SAMPLES], z[TILE_SAMPLES];
+} RasterPlaces;
+
+/* How a light looks at places in the frame of the camera. */
+typedef struct RasterAim {
+    Vec3 axes[3], offset; /* the light's axes there, and the camera's location in the light's */
+    bool perspective;
+    double left, top, per_x, per_y; /* edge of the first tile, tiles per unit */
+    double columns, rows;           /* tiles */
+    double slack, z_middle;
+} RasterAim;
+
+/* Places as the light sees them. */
+typedef struct RasterSpots {
+    double x[TILE_SAMPLES], y[TILE_SAMPLES];
+    float z[TILE_SAMPLES];      /* before which a blocker must stand, less z_middle */
+    int32_t tile[TILE_SAMPLES]; /* row by row */
+} RasterSpots;
 
 /* Lines of sight that belong to no grid, and depths on them. */
 typedef struct RasterProbes {
@@ -22,6 +44,13 @@ typedef struct RasterKernels {
     void (*clear)(const RasterHits *hits, const float background[3], float color[3][TILE_SAMPLES]);
     /* Stores a whole tile's colours as rows of pixels, `stride` floats from row to row. */
     void (*paint)(float color[3][TILE_SAMPLES], float *pixels, size_t stride);
+    /* The places that the hits are at. */
+    void (*locate)(const RasterTile *tile, const RasterHits *hits, RasterPlaces *places);
+    /* facing[i] is 1 where the visible side of the surface at a place faces the light, else 0. */
+    void (*face)(const RasterTile *tile, const RasterPlaces *places,
+                 const float normal[3][TILE_SAMPLES], const TileLight *light,
+                 uint8_t facing[TILE_SAMPLES]);
+    void (*aim)(const RasterAim *aim, const RasterPlaces *places, RasterSpots *spots);
     /* Sets `covered` of the probes, all of which lie in this tile. */
     void (*cover)(const RasterTile *tile, RasterProbes *probes);
 } RasterKernels;

@@ -109,54 +109,31 @@ static Vec3 seen_normal(const RasterPicture *picture, const RasterTile *tile,
     return rasterview_to_world(&picture->bins->view, normal);
 }
 
-/* The places that the samples of a tile see, in the camera's frame. */
-static void seen_places(const RasterTile *tile, const RasterHits *hits, Vec3 at[TILE_SAMPLES])
+/* Of the samples that see something, as bits, those whose surface faces the light. */
+static uint64_t find_facing(const RasterPicture *picture, const RasterTile *tile,
+                            const Canvas *canvas, const TileLight *light,
+                            const RasterPlaces *places)
 {
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        if (hits->item[sample] == RASTER_NOTHING)
-            continue;
-        double x = tile->x + (double)tile->grid->x[sample];
-        double y = tile->y + (double)tile->grid->y[sample], z = seen_z(tile, hits, sample);
-        double scale = tile->perspective ? z : 1;
-        at[sample] = vec3(x * scale, y * scale, z);
+    uint8_t facing[TILE_SAMPLES];
+    uint64_t wanted = 0;
+    picture->kernels->face(tile, places, canvas->surfels.normal, light, facing);
+    for (uint64_t left = canvas->seen; left; left &= left - 1) {
+        int sample = __builtin_ctzll(left);
+        wanted |= (uint64_t)facing[sample] << sample;
     }
-}
-
-/* Which of the samples face the light. */
-static void find_facing(const RasterTile *tile, const Canvas *canvas, const TileLight *light,
-                        const Vec3 at[TILE_SAMPLES], uint8_t facing[TILE_SAMPLES])
-{
-    const float(*normal)[TILE_SAMPLES] = canvas->surfels.normal;
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        facing[sample] = 0;
-        if (canvas->hits.item[sample] == RASTER_NOTHING)
-            continue;
-        float towards[3] = {light->towards[0], light->towards[1], light->towards[2]};
-        if (!light->parallel) {
-            towards[0] -= (float)at[sample].x;
-            towards[1] -= (float)at[sample].y;
-            towards[2] -= (float)at[sample].z;
-        }
-        float x = normal[0][sample], y = normal[1][sample], z = normal[2][sample];
-        float away = z; /* from the viewer */
-        if (tile->perspective)
-            away += x * ((float)tile->x + tile->grid->x[sample]) +
-                    y * ((float)tile->y + tile->grid->y[sample]);
-        float along = x * towards[0] + y * towards[1] + z * towards[2];
-        facing[sample] = away > 0 ? along < 0 : along > 0;
-    }
+    return wanted;
 }
 
 /* One light, ray by ray. */
 static void cast_shadows(const RasterPicture *picture, const Light *light, int worker,
-                         const Vec3 at[TILE_SAMPLES], const uint8_t wanted[TILE_SAMPLES],
+                         const RasterPlaces *places, uint64_t wanted,
                          uint8_t shadowed[TILE_SAMPLES])
 {
     const RasterView *view = &picture->bins->view;
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        if (!wanted[sample])
-            continue;
-        Vec3 place = vec3_add(view->location, rasterview_to_world(view, at[sample]));
+    for (; wanted; wanted &= wanted - 1) {
+        int sample = __builtin_ctzll(wanted);
+        Vec3 at = {places->x[sample], places->y[sample], places->z[sample]};
+        Vec3 place = vec3_add(view->location, rasterview_to_world(view, at));
         Vec3 to_light = vec3_sub(light->location, place);
         double distance = vec3_length(to_light);
         shadowed[sample] = caster_shadow(picture->caster, worker, place,
@@ -168,20 +145,19 @@ static void find_shadows(const RasterPicture *picture, const RasterTile *tile, i
                          Canvas *canvas)
 {
     const Scene *scene = picture->scene;
-    Vec3 at[TILE_SAMPLES];
-    uint8_t wanted[TILE_SAMPLES];
-    seen_places(tile, &canvas->hits, at);
+    RasterPlaces places;
+    picture->kernels->locate(tile, &canvas->hits, &places);
     memset(canvas->shadowed, 0, scene->n_lights * sizeof *canvas->shadowed);
     for (size_t i = 0; i < scene->n_lights; i++) {
         const Light *light = &scene->lights[i];
         if (!light->casts_shadows)
             continue;
-        find_facing(tile, canvas, &picture->lights[i], at, wanted);
+        uint64_t wanted = find_facing(picture, tile, canvas, &picture->lights[i], &places);
         if (picture->shadows[i])
-            rastershadow_test(picture->shadows[i], picture->kernels, at, wanted,
+            rastershadow_test(picture->shadows[i], picture->kernels, &places, wanted,
                               canvas->shadowed[i]);
         else
-            cast_shadows(picture, light, worker, at, wanted, canvas->shadowed[i]);
+            cast_shadows(picture, light, worker, &places, wanted, canvas->shadowed[i]);
     }
     canvas->surface.shadowed = (const uint8_t(*)[TILE_SAMPLES])canvas->shadowed;
 }

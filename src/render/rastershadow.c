@@ -18,9 +18,7 @@ struct RasterShadow {
     RasterGrid grid;
     RasterRow *rows;
     float **nears; /* row by row, one for each of the lists: spares a look at what is behind */
-    double slack;
-    /* The light's axes in the camera's frame, and the camera's location in the light's. */
-    Vec3 axes[3], offset;
+    RasterAim aim;
 };
 
 static double scene_radius(const Scene *scene, Vec3 *center)
@@ -42,10 +40,10 @@ static Vec3 corner(const Box *box, int number)
                 number & 4 ? box->high.z : box->low.z);
 }
 
-/* Tiles on a side: about as many tiles as a few times the primitives. */
+/* Tiles on a side: about as many tiles as primitives. */
 static int tiles_for(const Scene *scene)
 {
-    double side = 2 * sqrt((double)scene->n_primitives);
+    double side = sqrt((double)scene->n_primitives);
     return side < LEAST_SIDE ? LEAST_SIDE : side > MOST_SIDE ? MOST_SIDE : (int)side;
 }
 
@@ -127,18 +125,32 @@ static Status list_rows(RasterShadow *shadow, int threads, Err *err)
                                : err_set(err, status, "out of memory: no room for shadows");
 }
 
+static RasterAim aim_of(const Scene *scene, const RasterView *view, const RasterView *camera)
+{
+    Vec3 center;
+    RasterAim aim = {.perspective = view->perspective,
+                     .left = view->left - view->step_x / 2,
+                     .top = view->top - view->step_y / 2,
+                     .per_x = 1 / (TILE_SIDE * view->step_x),
+                     .per_y = 1 / (TILE_SIDE * view->step_y),
+                     .columns = view->columns / TILE_SIDE,
+                     .rows = view->rows / TILE_SIDE,
+                     .z_middle = view->z_middle};
+    /* Places and depths are rounded to 2^-24 of the scene's size, thrice. */
+    aim.slack = slack_mm + 0x3p-23 * scene_radius(scene, &center);
+    for (int i = 0; i < 3; i++)
+        aim.axes[i] = rasterview_to_frame(camera, view->axes[i]);
+    aim.offset = rasterview_to_frame(view, vec3_sub(camera->location, view->location));
+    return aim;
+}
+
 Status rastershadow_new(const Scene *scene, const Light *light, const RasterView *camera,
                         int threads, RasterShadow **out, Err *err)
 {
     RasterShadow *shadow = NULL;
     TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
     RasterView view = light_view(scene, light);
-    Vec3 center;
-    /* Places and depths are rounded to 2^-24 of the scene's size, thrice. */
-    shadow->slack = slack_mm + 0x3p-23 * scene_radius(scene, &center);
-    for (int i = 0; i < 3; i++)
-        shadow->axes[i] = rasterview_to_frame(camera, view.axes[i]);
-    shadow->offset = rasterview_to_frame(&view, vec3_sub(camera->location, view.location));
+    shadow->aim = aim_of(scene, &view, camera);
     shadow->grid = rastergrid_make(&view, 0.5, 0.5);
     Status status = rasterbins_new(scene, &view, threads, &shadow->bins, err);
     if (status == STATUS_OK)
@@ -165,41 +177,6 @@ void rastershadow_free(RasterShadow *shadow)
     free(shadow);
 }
 
-/* Where a place is in the view of the light. */
-typedef struct Spot {
-    double x, y;
-    float z;  /* before which a blocker must stand */
-    int tile; /* row by row */
-} Spot;
-
-static int clamped(double value, int count)
-{
-    return value < 0 ? 0 : value >= count ? count - 1 : (int)value;
-}
-
-static Spot spot_of(const RasterShadow *shadow, Vec3 at)
-{
-    const RasterBins *bins = shadow->bins;
-    const RasterView *view = &bins->view;
-    Vec3 v = {vec3_dot(at, shadow->axes[0]), vec3_dot(at, shadow->axes[1]),
-              vec3_dot(at, shadow->axes[2])};
-    v = vec3_add(v, shadow->offset);
-    double slack = shadow->slack;
-    Spot spot = {.x = v.x, .y = v.y};
-    if (view->perspective) {
-        spot.x /= v.z;
-        spot.y /= v.z;
-        slack /= sqrt(1 + spot.x * spot.x + spot.y * spot.y);
-    }
-    spot.z = (float)(v.z - slack - view->z_middle);
-    int column = clamped(((spot.x - view->left) * view->per_x + 0.5) * (1.0 / TILE_SIDE),
-                         bins->tile_columns);
-    int row =
-        clamped(((spot.y - view->top) * view->per_y + 0.5) * (1.0 / TILE_SIDE), bins->tile_rows);
-    spot.tile = row * bins->tile_columns + column;
-    return spot;
-}
-
 static void test_tile(const RasterShadow *shadow, const RasterKernels *kernels, int number,
                       RasterProbes *probes)
 {
@@ -214,34 +191,27 @@ static void test_tile(const RasterShadow *shadow, const RasterKernels *kernels, 
 }
 
 void rastershadow_test(const RasterShadow *shadow, const RasterKernels *kernels,
-                       const Vec3 at[TILE_SAMPLES], const uint8_t wanted[TILE_SAMPLES],
-                       uint8_t shadowed[TILE_SAMPLES])
+                       const RasterPlaces *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
 {
-    Spot spots[TILE_SAMPLES];
-    int left[TILE_SAMPLES], n_left = 0;
-    for (int i = 0; i < TILE_SAMPLES; i++)
-        if (wanted[i]) {
-            spots[i] = spot_of(shadow, at[i]);
-            left[n_left++] = i;
-        }
-    while (n_left > 0) {
+    RasterSpots spots;
+    if (wanted)
+        kernels->aim(&shadow->aim, places, &spots);
+    while (wanted) {
         RasterProbes probes;
         probes.n = 0;
-        int own[TILE_SAMPLES], tile = spots[left[0]].tile, kept = 0;
-        for (int i = 0; i < n_left; i++) {
-            const Spot *spot = &spots[left[i]];
-            if (spot->tile != tile) {
-                left[kept++] = left[i];
+        int own[TILE_SAMPLES], tile = spots.tile[__builtin_ctzll(wanted)];
+        for (uint64_t left = wanted; left; left &= left - 1) {
+            int sample = __builtin_ctzll(left);
+            if (spots.tile[sample] != tile)
                 continue;
-            }
-            own[probes.n] = left[i];
-            probes.x[probes.n] = spot->x;
-            probes.y[probes.n] = spot->y;
-            probes.z[probes.n++] = spot->z;
+            wanted &= ~((uint64_t)1 << sample);
+            own[probes.n] = sample;
+            probes.x[probes.n] = spots.x[sample];
+            probes.y[probes.n] = spots.y[sample];
+            probes.z[probes.n++] = spots.z[sample];
         }
         test_tile(shadow, kernels, tile, &probes);
         for (int i = 0; i < probes.n; i++)
             shadowed[own[i]] = probes.covered[i];
-        n_left = kept;
     }
 }

@@ -17,10 +17,10 @@ MUST_CHECK Status rastershadow_new(const Scene *scene, const Light *light, const
                                    int threads, RasterShadow **out, Err *err);
 void rastershadow_free(RasterShadow *shadow);
 
-/* Of the places at[i] with wanted[i] set, sets shadowed[i] to 1 where a primitive stands
- * farther than POV-Ray's 0.001 mm, or the rounding of the light's view, before them. */
+/* Of the places with a bit set in `wanted`, bit i for place i, sets shadowed[i] to 1 where a
+ * primitive stands farther than POV-Ray's 0.001 mm, or the rounding of the light's view, before
+ * them, and to 0 elsewhere. */
 void rastershadow_test(const RasterShadow *shadow, const RasterKernels *kernels,
-                       const Vec3 at[TILE_SAMPLES], const uint8_t wanted[TILE_SAMPLES],
-                       uint8_t shadowed[TILE_SAMPLES]);
+                       const RasterPlaces *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES]);
 
 #endif

@@ -1,0 +1,146 @@
+/* What a light sees of the places that a tile of the picture sees, several at once: included by
+ * each source that compiles it for its lanes, after rasterkernel.h. Loops over samples have no
+ * branches, for compilers to make vectors of. */
+#ifndef RASTER_KERNEL
+#error "define RASTER_KERNEL(name), the name of a function"
+#endif
+
+#include "render/rasterkernels.h"
+#include "render/rastersight.h"
+
+/* ---- aiming
+ * -------------------------------------------------------------------------------------- */
+
+LANE_TARGET static void RASTER_KERNEL(locate)(const RasterTile *tile, const RasterHits *hits,
+                                              RasterPlaces *places)
+{
+    const RasterGrid *grid = tile->grid;
+    double middle_x = tile->x, middle_y = tile->y, z_middle = tile->z_middle;
+    bool perspective = tile->perspective;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        double z = z_middle + (double)hits->z[sample], scale = perspective ? z : 1;
+        places->x[sample] = (middle_x + (double)grid->x[sample]) * scale;
+        places->y[sample] = (middle_y + (double)grid->y[sample]) * scale;
+        places->z[sample] = z;
+    }
+}
+
+LANE_TARGET static void RASTER_KERNEL(face)(const RasterTile *tile, const RasterPlaces *places,
+                                            const float normal[3][TILE_SAMPLES],
+                                            const TileLight *light, uint8_t facing[TILE_SAMPLES])
+{
+    const RasterGrid *grid = tile->grid;
+    const float to_x = light->towards[0], to_y = light->towards[1], to_z = light->towards[2];
+    float near = light->parallel ? 0 : 1, slant = tile->perspective ? 1 : 0;
+    float middle_x = (float)tile->x, middle_y = (float)tile->y;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        float nx = normal[0][sample], ny = normal[1][sample], nz = normal[2][sample];
+        float along = nx * (to_x - near * (float)places->x[sample]) +
+                      ny * (to_y - near * (float)places->y[sample]) +
+                      nz * (to_z - near * (float)places->z[sample]);
+        float away =
+            nz + slant * (nx * (middle_x + grid->x[sample]) + ny * (middle_y + grid->y[sample]));
+        facing[sample] = (uint8_t)((away > 0 ? -along : along) > 0);
+    }
+}
+
+/* The tile, of `count`, that a place in tiles lies in. */
+RASTER_FN int32_t tile_at(double place, double count)
+{
+    place = place > 0 ? place : 0;
+    return (int32_t)(place < count ? place : count - 1);
+}
+
+LANE_TARGET static void RASTER_KERNEL(aim)(const RasterAim *aim, const RasterPlaces *places,
+                                           RasterSpots *spots)
+{
+    const RasterAim a = *aim;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        double px = places->x[sample], py = places->y[sample], pz = places->z[sample];
+        double x = px * a.axes[0].x + py * a.axes[0].y + pz * a.axes[0].z + a.offset.x;
+        double y = px * a.axes[1].x + py * a.axes[1].y + pz * a.axes[1].z + a.offset.y;
+        double z = px * a.axes[2].x + py * a.axes[2].y + pz * a.axes[2].z + a.offset.z;
+        double depth = a.perspective ? z : 1;
+        x /= depth;
+        y /= depth;
+        double slope2 = a.perspective ? x * x + y * y : 0;
+        spots->x[sample] = x;
+        spots->y[sample] = y;
+        spots->z[sample] = (float)(z - a.slack / sqrt(1 + slope2) - a.z_middle);
+        spots->tile[sample] = tile_at((y - a.top) * a.per_y, a.rows) * (int32_t)a.columns +
+                              tile_at((x - a.left) * a.per_x, a.columns);
+    }
+}
+
+/* ---- what is in the way
+ * -------------------------------------------------------------------------- */
+
+/* Whether the item is seen before the probes' depths. */
+RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, RasterProbes *probes,
+                               int first, Lanes x, Lanes y, Lanes z, LaneMask among)
+{
+    SightLines sight = sight_of(near, x, y);
+    Lanes entry = lanes_set(0);
+    LaneMask met, unsure = (LaneMask){0};
+    if (near->kind == RASTER_CYLINDER) {
+        LaneMask on_disc;
+        Passage passage;
+        met = cylinder_entry(near, &sight, &entry, &on_disc, &passage);
+    } else if (near->kind == RASTER_SPHERE) {
+        met = sphere_entry(near, &sight, &entry);
+    } else if (near->kind == RASTER_JOINT) {
+        Lanes ruling;
+        met = joint_entry(near, &sight, among & within_outline(near, &sight), &entry, &ruling,
+                          &unsure);
+    } else {
+        unsure = among;
+        met = (LaneMask){0};
+    }
+    LaneMask covered = met & among & (entry + near->z < z);
+    for (int lane = 0; lane < LANES; lane++)
+        if (unsure[lane] && !covered[lane])
+            covered[lane] = -(raster_decide(tile->bins, near->number, probes->x[first + lane],
+                                            probes->y[first + lane], NULL) -
+                                  tile->z_middle <
+                              (double)probes->z[first + lane]);
+    return covered;
+}
+
+RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int first, int n,
+                           bool perspective)
+{
+    Lanes x = lanes_set(0), y = lanes_set(0), z = lanes_set(0);
+    LaneMask open = (LaneMask){0};
+    for (int lane = 0; lane < n; lane++) {
+        x[lane] = (float)(probes->x[first + lane] - tile->x);
+        y[lane] = (float)(probes->y[first + lane] - tile->y);
+        z[lane] = probes->z[first + lane];
+        open[lane] = -1;
+    }
+    float deepest = probes->z[first];
+    for (int lane = 1; lane < n; lane++)
+        deepest = probes->z[first + lane] > deepest ? probes->z[first + lane] : deepest;
+    for (size_t i = 0; i < tile->n && lanes_any(open); i++) {
+        if (tile->nears[i] > deepest)
+            continue;
+        Near near = approach(tile, tile->list[i], perspective);
+        if (near.kind == RASTER_JOINT)
+            outline(tile, &near);
+        LaneMask among = open & (z > near.z_near);
+        if (near.kind == RASTER_EXACT || lanes_any(among))
+            open &= ~item_covers(&near, tile, probes, first, x, y, z, among);
+    }
+    for (int lane = 0; lane < n; lane++)
+        probes->covered[first + lane] = !open[lane];
+}
+
+LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, RasterProbes *probes)
+{
+    for (int first = 0; first < probes->n; first += LANES) {
+        int n = probes->n - first < LANES ? probes->n - first : LANES;
+        if (tile->perspective)
+            cover_block(tile, probes, first, n, true);
+        else
+            cover_block(tile, probes, first, n, false);
+    }
+}
