@@ -52,7 +52,7 @@ RASTER_FN int32_t tile_at(double place, double count)
 }
 
 LANE_TARGET static void RASTER_KERNEL(aim)(const RasterAim *aim, const RasterPlaces *places,
-                                           RasterSpots *spots)
+                                           RasterSpots *restrict spots)
 {
     const RasterAim a = *aim;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
@@ -67,8 +67,11 @@ LANE_TARGET static void RASTER_KERNEL(aim)(const RasterAim *aim, const RasterPla
         spots->x[sample] = x;
         spots->y[sample] = y;
         spots->z[sample] = (float)(z - a.slack / sqrt(1 + slope2) - a.z_middle);
-        spots->tile[sample] = tile_at((y - a.top) * a.per_y, a.rows) * (int32_t)a.columns +
-                              tile_at((x - a.left) * a.per_x, a.columns);
+    }
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        int32_t row = tile_at((spots->y[sample] - a.top) * a.per_y, a.rows);
+        int32_t column = tile_at((spots->x[sample] - a.left) * a.per_x, a.columns);
+        spots->tile[sample] = row * (int32_t)a.columns + column;
     }
 }
 

@@ -5,19 +5,41 @@
 #include "render/rastershadow.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Blockers nearer than this to the lit place cast no shadow [docs/POVRAY.md section 3]. */
 static const double slack_mm = 1e-3;
 /* A point light must be as far from the middle of the scene, in radii of the scene: it sees less
  * than 60 degrees to each side then. */
 static const double least_radii = 1.16;
-enum { LEAST_SIDE = 16, MOST_SIDE = 512 };
+enum { LEAST_SIDE = 16, MOST_SIDE = 512, BLOCK_WORDS = 1 << 18 };
+
+/* The lists of a row of tiles, as in RasterRow, and for each of the lists a depth before which
+ * nothing of the item is: spares a look at what is behind. */
+typedef struct ShadowRow {
+    const uint32_t *offsets, *lists;
+    const float *nears;
+} ShadowRow;
+
+typedef struct Block {
+    struct Block *next;
+    uint32_t words[];
+} Block;
+
+/* Where a worker puts rows: in few large pieces, for each of which threads wait for one another. */
+typedef struct Store {
+    Block *blocks;
+    size_t used, size; /* words of the first block */
+    RasterRow row;     /* the one being made */
+    Status status;
+} Store;
 
 struct RasterShadow {
     RasterBins *bins;
     RasterGrid grid;
-    RasterRow *rows;
-    float **nears; /* row by row, one for each of the lists: spares a look at what is behind */
+    ShadowRow *rows;
+    Store *stores; /* one a worker */
+    int workers;
     RasterAim aim;
 };
 
@@ -78,51 +100,64 @@ static RasterView light_view(const Scene *scene, const Light *light)
     return view;
 }
 
-typedef struct Lister {
-    RasterShadow *shadow;
-    Status *status; /* one a row */
-} Lister;
-
-static Status find_nears(RasterShadow *shadow, size_t row)
+static Status take_words(Store *store, size_t n, uint32_t **out)
 {
-    const RasterRow *lists = &shadow->rows[row];
-    size_t n = lists->offsets[shadow->bins->tile_columns];
-    TRY(mem_calloc(&shadow->nears[row], n, sizeof **shadow->nears, "shadows", NULL));
-    for (size_t i = 0; i < n; i++) {
-        const RasterItem *item = &shadow->bins->items[lists->lists[i]];
-        double deep = (double)item->cosine * (double)item->half + (double)item->radius;
-        double near = item->z - deep - shadow->bins->view.z_middle;
-        shadow->nears[row][i] = (float)(near - 1e-6 * fabs(near));
+    if (n > store->size - store->used) {
+        size_t size = n > BLOCK_WORDS ? n : BLOCK_WORDS;
+        Block *block;
+        TRY(mem_calloc(&block, 1, sizeof *block + size * sizeof *block->words, "shadows", NULL));
+        block->next = store->blocks;
+        store->blocks = block;
+        store->used = 0;
+        store->size = size;
     }
+    *out = store->blocks->words + store->used;
+    store->used += n;
+    return STATUS_OK;
+}
+
+static Status store_row(RasterShadow *shadow, Store *store, size_t row)
+{
+    const RasterBins *bins = shadow->bins;
+    TRY(rasterbins_list(bins, row, &store->row, NULL));
+    size_t n_offsets = (size_t)bins->tile_columns + 1, n = store->row.offsets[n_offsets - 1];
+    uint32_t *words;
+    TRY(take_words(store, n_offsets + 2 * n, &words));
+    uint32_t *offsets = words, *lists = words + n_offsets;
+    float *nears = (float *)(void *)(lists + n);
+    memcpy(offsets, store->row.offsets, n_offsets * sizeof *offsets);
+    memcpy(lists, store->row.lists, n * sizeof *lists);
+    for (size_t i = 0; i < n; i++) {
+        const RasterItem *item = &bins->items[lists[i]];
+        double deep = (double)item->cosine * (double)item->half + (double)item->radius;
+        double near = item->z - deep - bins->view.z_middle;
+        nears[i] = (float)(near - 1e-6 * fabs(near));
+    }
+    shadow->rows[row] = (ShadowRow){offsets, lists, nears};
     return STATUS_OK;
 }
 
 static void list_row(size_t row, int worker, void *context)
 {
-    (void)worker;
-    const Lister *lister = context;
-    RasterShadow *shadow = lister->shadow;
-    lister->status[row] = rasterbins_list(shadow->bins, row, &shadow->rows[row], NULL);
-    free(shadow->rows[row].spans);
-    shadow->rows[row].spans = NULL;
-    if (lister->status[row] == STATUS_OK)
-        lister->status[row] = find_nears(shadow, row);
+    RasterShadow *shadow = context;
+    Store *store = &shadow->stores[worker];
+    if (store->status == STATUS_OK)
+        store->status = store_row(shadow, store, row);
 }
 
-static Status list_rows(RasterShadow *shadow, int threads, Err *err)
+static Status list_rows(RasterShadow *shadow, Err *err)
 {
     size_t n = (size_t)shadow->bins->tile_rows;
-    Lister lister = {.shadow = shadow};
     TRY(mem_calloc(&shadow->rows, n, sizeof *shadow->rows, "rows of tiles", err));
-    TRY(mem_calloc(&shadow->nears, n, sizeof *shadow->nears, "rows of tiles", err));
-    TRY(mem_calloc(&lister.status, n, sizeof *lister.status, "rows of tiles", err));
-    threads_for(n, threads, list_row, &lister);
-    Status status = STATUS_OK;
-    for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        status = lister.status[i];
-    free(lister.status);
-    return status == STATUS_OK ? status
-                               : err_set(err, status, "out of memory: no room for shadows");
+    TRY(mem_calloc(&shadow->stores, (size_t)shadow->workers, sizeof *shadow->stores, "shadows",
+                   err));
+    threads_for(n, shadow->workers, list_row, shadow);
+    for (int i = 0; i < shadow->workers; i++) {
+        rasterrow_release(&shadow->stores[i].row);
+        if (shadow->stores[i].status != STATUS_OK)
+            return err_set(err, shadow->stores[i].status, "out of memory: no room for shadows");
+    }
+    return STATUS_OK;
 }
 
 static RasterAim aim_of(const Scene *scene, const RasterView *view, const RasterView *camera)
@@ -152,9 +187,10 @@ Status rastershadow_new(const Scene *scene, const Light *light, const RasterView
     RasterView view = light_view(scene, light);
     shadow->aim = aim_of(scene, &view, camera);
     shadow->grid = rastergrid_make(&view, 0.5, 0.5);
+    shadow->workers = threads;
     Status status = rasterbins_new(scene, &view, threads, &shadow->bins, err);
     if (status == STATUS_OK)
-        status = list_rows(shadow, threads, err);
+        status = list_rows(shadow, err);
     if (status != STATUS_OK) {
         rastershadow_free(shadow);
         return status;
@@ -167,12 +203,15 @@ void rastershadow_free(RasterShadow *shadow)
 {
     if (!shadow)
         return;
-    for (int i = 0; shadow->rows && i < shadow->bins->tile_rows; i++)
-        rasterrow_release(&shadow->rows[i]);
-    for (int i = 0; shadow->nears && i < shadow->bins->tile_rows; i++)
-        free(shadow->nears[i]);
+    for (int i = 0; shadow->stores && i < shadow->workers; i++) {
+        rasterrow_release(&shadow->stores[i].row);
+        for (Block *block = shadow->stores[i].blocks, *next; block; block = next) {
+            next = block->next;
+            free(block);
+        }
+    }
+    free(shadow->stores);
     free(shadow->rows);
-    free(shadow->nears);
     rasterbins_free(shadow->bins);
     free(shadow);
 }
@@ -182,11 +221,11 @@ static void test_tile(const RasterShadow *shadow, const RasterKernels *kernels, 
 {
     const RasterBins *bins = shadow->bins;
     int row = number / bins->tile_columns, column = number % bins->tile_columns;
-    const RasterRow *lists = &shadow->rows[row];
+    const ShadowRow *lists = &shadow->rows[row];
     uint32_t first = lists->offsets[column], last = lists->offsets[column + 1];
     RasterTile tile =
         rasterbins_tile(bins, column, row, lists->lists + first, last - first, &shadow->grid);
-    tile.nears = shadow->nears[row] + first;
+    tile.nears = lists->nears + first;
     kernels->cover(&tile, probes);
 }
 
