@@ -41,10 +41,13 @@ typedef struct Workspace {
     size_t scratch_capacity;
 } Workspace;
 
+enum { SAMPLE_PERIOD = 16 }; /* tile_sample_x(n + 16) = tile_sample_x(n) */
+
 /* Where the samples of a column or a row of tiles are in the camera's plane. */
 typedef struct TilePlaces {
     double middle, half;
-    float offset[TILE_SIDE]; /* from the middle */
+    float offset[TILE_SIDE];       /* from the middle */
+    float sample_x[SAMPLE_PERIOD]; /* offset[tile_sample_x(n)] */
 } TilePlaces;
 
 struct FieldTiles {
@@ -218,6 +221,8 @@ static void place_tiles(const double *places, int count, TilePlaces *tiles)
         tile->half = fabs(places[last] - tile->middle);
         for (int i = 0; i < TILE_SIDE; i++)
             tile->offset[i] = (float)(places[first + i < last ? first + i : last] - tile->middle);
+        for (int n = 0; n < SAMPLE_PERIOD; n++)
+            tile->sample_x[n] = tile->offset[tile_sample_x(n)];
     }
 }
 
@@ -521,13 +526,10 @@ static void place_row(const FieldTiles *tiles, int row, FieldTile *tile)
 /* Sets the rest of its samples. */
 static void place_column(const FieldTiles *tiles, int column, int row, FieldTile *tile)
 {
-    enum { PERIOD = 16 }; /* tile_sample_x(n + 16) = tile_sample_x(n) */
     const TilePlaces *x = &tiles->tile_x[column], *y = &tiles->tile_y[row];
     tile->middle_x = x->middle;
-    for (int sample = 0; sample < PERIOD; sample++)
-        tile->x[sample] = x->offset[tile_sample_x(sample)];
-    for (int sample = PERIOD; sample < TILE_SAMPLES; sample += PERIOD)
-        memcpy(&tile->x[sample], tile->x, PERIOD * sizeof *tile->x);
+    for (int sample = 0; sample < TILE_SAMPLES; sample += SAMPLE_PERIOD)
+        memcpy(&tile->x[sample], x->sample_x, sizeof x->sample_x);
     tile->half_size = (float)sqrt(x->half * x->half + y->half * y->half);
 }
 
