@@ -128,8 +128,8 @@ static bool joint_is_solid(const Primitive *primitive)
            vec3_dot(span, primitive->axis_b) >= primitive->radius_mm * sine - slack;
 }
 
-/* The item of a primitive; *joint is set if it is one. */
-static RasterItem make_item(const RasterBins *bins, uint32_t number, RasterJoint *joint)
+/* The item of a primitive; the joint of this index is set if it is one. */
+static RasterItem make_item(const RasterBins *bins, uint32_t number, uint32_t joint)
 {
     const RasterView *view = &bins->view;
     const Primitive *primitive = &bins->scene->primitives[number];
@@ -152,7 +152,7 @@ static RasterItem make_item(const RasterBins *bins, uint32_t number, RasterJoint
         kind = bins->scene->open_joints || !joint_is_solid(primitive) ? RASTER_EXACT : RASTER_JOINT;
         radius = fmax(radius, primitive->radius_b_mm);
         if (kind == RASTER_JOINT)
-            *joint = make_joint(view, primitive, middle);
+            bins->joints[joint] = make_joint(view, primitive, middle);
     }
     RasterItem item = {.x = middle.x,
                        .y = middle.y,
@@ -164,6 +164,7 @@ static RasterItem make_item(const RasterBins *bins, uint32_t number, RasterJoint
                        .radius = (float)radius,
                        .half = (float)(length / 2),
                        .primitive = number,
+                       .joint = joint,
                        .kind = (uint32_t)kind};
     double near = middle.z - cosine * length / 2 - radius;
     double pixel = fmin(view->step_x, -view->step_y) * (view->perspective ? near : 1);
@@ -359,9 +360,10 @@ static Span columns_of(const RasterView *view, const RasterItem *item, const Sla
 
 typedef struct Build {
     RasterBins *bins;
-    Span *rows;     /* one an item */
-    size_t *counts; /* chunk by chunk, of each row; then where the chunk's items go */
-    size_t chunk;   /* items */
+    Span *rows;             /* one an item */
+    size_t *counts;         /* chunk by chunk, of each row; then where the chunk's items go */
+    uint32_t *joints;       /* chunk by chunk: their number; then that of the first */
+    size_t chunk, n_chunks; /* items in a chunk; chunks */
 } Build;
 
 static size_t chunk_end(const Build *build, size_t chunk)
@@ -370,16 +372,45 @@ static size_t chunk_end(const Build *build, size_t chunk)
     return end < n ? end : n;
 }
 
+static bool is_joint(const RasterBins *bins, size_t number)
+{
+    return bins->scene->model == SCENE_JOINED &&
+           bins->scene->primitives[number].kind == PRIMITIVE_JOINT;
+}
+
+static void count_joints(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Build *build = context;
+    for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++)
+        build->joints[chunk] += is_joint(build->bins, i);
+}
+
+static Status make_room_for_joints(Build *build, int threads, Err *err)
+{
+    RasterBins *bins = build->bins;
+    uint32_t n = 0;
+    TRY(mem_calloc(&build->joints, build->n_chunks, sizeof *build->joints, "joints", err));
+    if (bins->scene->model == SCENE_JOINED)
+        threads_for(build->n_chunks, threads, count_joints, build);
+    for (size_t chunk = 0; chunk < build->n_chunks; chunk++) {
+        uint32_t count = build->joints[chunk];
+        build->joints[chunk] = n;
+        n += count;
+    }
+    return mem_calloc(&bins->joints, (size_t)n + 1, sizeof *bins->joints, "joints", err);
+}
+
 static void make_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
     const Build *build = context;
     RasterBins *bins = build->bins;
     size_t *counts = build->counts + chunk * (size_t)bins->tile_rows;
+    uint32_t joint = build->joints[chunk];
     for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++) {
-        uint32_t joint = bins->items[i].joint;
-        bins->items[i] = make_item(bins, (uint32_t)i, &bins->joints[joint]);
-        bins->items[i].joint = joint;
+        bins->items[i] = make_item(bins, (uint32_t)i, joint);
+        joint += is_joint(bins, i);
         build->rows[i] = rows_of(&bins->view, &bins->items[i]);
         for (int row = build->rows[i].first; row <= build->rows[i].last; row++)
             counts[row]++;
@@ -400,8 +431,7 @@ static Status sort_into_rows(Build *build, int threads, Err *err)
 {
     RasterBins *bins = build->bins;
     size_t n = bins->scene->n_primitives, rows = (size_t)bins->tile_rows, total = 0;
-    build->chunk = n / MOST_CHUNKS + 1 > LEAST_CHUNK ? n / MOST_CHUNKS + 1 : LEAST_CHUNK;
-    size_t chunks = (n + build->chunk - 1) / build->chunk;
+    size_t chunks = build->n_chunks;
     TRY(mem_calloc(&build->rows, n, sizeof *build->rows, "items", err));
     TRY(mem_calloc(&build->counts, chunks * rows, sizeof *build->counts, "rows of tiles", err));
     threads_for(chunks, threads, make_chunk, build);
@@ -422,21 +452,19 @@ static Status sort_into_rows(Build *build, int threads, Err *err)
 static Status make_bins(RasterBins *bins, int threads, Err *err)
 {
     const Scene *scene = bins->scene;
-    uint32_t n_joints = 0;
     if (scene->n_primitives >= RASTER_DECIDED)
         return err_set(err, STATUS_MEMORY, "too many primitives for --method raster");
     TRY(mem_calloc(&bins->items, scene->n_primitives, sizeof *bins->items, "items", err));
     TRY(mem_calloc(&bins->row_offsets, (size_t)bins->tile_rows + 1, sizeof *bins->row_offsets,
                    "rows of tiles", err));
-    if (scene->model == SCENE_JOINED)
-        for (size_t i = 0; i < scene->n_primitives; i++) {
-            bins->items[i].joint = n_joints;
-            n_joints += scene->primitives[i].kind == PRIMITIVE_JOINT;
-        }
-    TRY(mem_calloc(&bins->joints, (size_t)n_joints + 1, sizeof *bins->joints, "joints", err));
-    Build build = {.bins = bins};
-    Status status = sort_into_rows(&build, threads, err);
+    size_t n = scene->n_primitives, chunk = n / MOST_CHUNKS + 1;
+    chunk = chunk > LEAST_CHUNK ? chunk : LEAST_CHUNK;
+    Build build = {.bins = bins, .chunk = chunk, .n_chunks = (n + chunk - 1) / chunk};
+    Status status = make_room_for_joints(&build, threads, err);
+    if (status == STATUS_OK)
+        status = sort_into_rows(&build, threads, err);
     free(build.rows);
+    free(build.joints);
     free(build.counts);
     return status;
 }
