@@ -1,22 +1,14 @@
-/* A primitive becomes an item: its middle in double precision, all else in single precision
- * about that middle, so that single precision is left with numbers as small as the primitive.
- * Items are counted into the rows of tiles that a capsule about them touches; chunks of items
+/* Items are counted into the rows of tiles that a capsule about them touches; chunks of items
  * have counters of their own, so that threads fill the rows without waiting and in the order of
  * the items. The list of a row's tiles is made when the row is drawn, from the part of each
- * capsule that is within reach of the row's slab.
- *
- * What single precision cannot hold to a thousandth of a pixel, or the kernels do not solve, is
- * an item of the kind RASTER_EXACT: what is near the eye or about it, longer than 16384 pixels,
- * or looked at along its axis, and joints that need not be the wall of a solid. */
+ * capsule that is within reach of the row's slab. */
 #include "render/rasterview.h"
 
+#include "render/rasteritem.h"
 #include <stdlib.h>
 
 enum { LEAST_CHUNK = 4096, MOST_CHUNKS = 64 };
 
-static const double most_pixels = 16384; /* 2^-24 of it are a thousandth of a pixel */
-static const double least_sine =
-    0.02; /* of the angle at which a wall is looked at along its axis */
 static const double slack_pixels = 1e-3; /* covers rounding where tiles are told apart */
 
 RasterView rasterview_of_camera(const Scene *scene, int first, int rows, int antialias)
@@ -57,146 +49,6 @@ Vec3 rasterview_to_world(const RasterView *view, Vec3 v)
 {
     Vec3 world = vec3_add_scaled(vec3_scale(view->axes[0], v.x), view->axes[1], v.y);
     return vec3_add_scaled(world, view->axes[2], v.z);
-}
-
-/* ---- items
- * --------------------------------------------------------------------------------------- */
-
-static void store_vec3(float to[3], Vec3 v)
-{
-    to[0] = (float)v.x;
-    to[1] = (float)v.y;
-    to[2] = (float)v.z;
-}
-
-/* Turns the angle p of a joint by that of the ruling that faces `sight`, a direction in the
- * frame, most: where the first harmonic of sight . (S_p x S_l) at l = 1/2 is least. */
-static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
-{
-    Vec3 a = joint->across, b = vec3_scale(joint->side, joint->radius);
-    Vec3 da = joint->across_change, db = vec3_scale(joint->side, joint->radius_change);
-    double along_a = vec3_dot(sight, vec3_cross(vec3_add_scaled(a, da, 0.5), joint->span));
-    double along_b = vec3_dot(sight, vec3_cross(vec3_add_scaled(b, db, 0.5), joint->span));
-    double size = hypot(along_a, along_b), cosine = 1, sine = 0;
-    if (size > 0) {
-        cosine = -along_b / size;
-        sine = along_a / size;
-    }
-    out[0] = joint->base;
-    out[1] = joint->span;
-    out[2] = vec3_add_scaled(vec3_scale(a, cosine), b, sine);
-    out[3] = vec3_add_scaled(vec3_scale(b, cosine), a, -sine);
-    out[4] = vec3_add_scaled(vec3_scale(da, cosine), db, sine);
-    out[5] = vec3_add_scaled(vec3_scale(db, cosine), da, -sine);
-}
-
-static RasterJoint make_joint(const RasterView *view, const Primitive *primitive, Vec3 middle)
-{
-    RasterJoint made;
-    JointFrame joint = primitive_joint(primitive);
-    Vec3 from_eye = vec3_sub(joint.base, view->location), part[6];
-    joint.base = vec3_sub(rasterview_to_frame(view, from_eye), middle);
-    joint.span = rasterview_to_frame(view, joint.span);
-    /* The frame is left-handed; turning the other way round keeps S_p x S_l outward in it. */
-    joint.side = vec3_scale(rasterview_to_frame(view, joint.side), -1);
-    joint.across = rasterview_to_frame(view, joint.across);
-    joint.across_change = rasterview_to_frame(view, joint.across_change);
-    face_sight(&joint, view->perspective ? middle : vec3(0, 0, 1), part);
-    Vec3 base = part[0], span = part[1], a = part[2], b = part[3], da = part[4], db = part[5];
-    store_vec3(made.base, base);
-    store_vec3(made.span, span);
-    store_vec3(made.a, a);
-    store_vec3(made.b, b);
-    store_vec3(made.da, da);
-    store_vec3(made.db, db);
-    store_vec3(made.by[0], vec3_add(vec3_cross(base, span), vec3_cross(b, db)));
-    store_vec3(made.by[1], vec3_add(vec3_cross(base, da), vec3_cross(a, span)));
-    store_vec3(made.by[2], vec3_add(vec3_cross(base, db), vec3_cross(b, span)));
-    store_vec3(made.by[3], vec3_sub(vec3_cross(a, da), vec3_cross(b, db)));
-    store_vec3(made.by[4], vec3_add(vec3_cross(a, db), vec3_cross(b, da)));
-    return made;
-}
-
-/* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its
- * two discs bound a solid. */
-static bool joint_is_solid(const Primitive *primitive)
-{
-    Vec3 span = vec3_sub(primitive->b, primitive->a);
-    double sine = vec3_length(vec3_cross(primitive->axis_a, primitive->axis_b));
-    double slack = 1e-9 * (primitive->radius_mm + primitive->radius_b_mm);
-    return vec3_dot(span, primitive->axis_a) >= primitive->radius_b_mm * sine - slack &&
-           vec3_dot(span, primitive->axis_b) >= primitive->radius_mm * sine - slack;
-}
-
-/* The item of a primitive; the joint of this index is set if it is one. */
-static RasterItem make_item(const RasterBins *bins, uint32_t number, uint32_t joint)
-{
-    const RasterView *view = &bins->view;
-    const Primitive *primitive = &bins->scene->primitives[number];
-    Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
-    middle = rasterview_to_frame(view, vec3_sub(middle, view->location));
-    Vec3 span = rasterview_to_frame(view, vec3_sub(primitive->b, primitive->a));
-    double length = vec3_length(span), radius = primitive->radius_mm, cosine = 0, sine = 1;
-    double ex = 1, ey = 0;
-    if (length > 0) {
-        double turn = span.z < 0 ? -1 : 1, across = sqrt(span.x * span.x + span.y * span.y);
-        cosine = turn * span.z / length;
-        sine = across / length;
-        ex = across > 0 ? turn * span.x / across : 1;
-        ey = across > 0 ? turn * span.y / across : 0;
-    }
-    RasterKind kind = RASTER_SPHERE;
-    if (primitive->kind == PRIMITIVE_CYLINDER)
-        kind = !view->perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
-    if (primitive->kind == PRIMITIVE_JOINT) {
-        kind = bins->scene->open_joints || !joint_is_solid(primitive) ? RASTER_EXACT : RASTER_JOINT;
-        radius = fmax(radius, primitive->radius_b_mm);
-        if (kind == RASTER_JOINT)
-            bins->joints[joint] = make_joint(view, primitive, middle);
-    }
-    RasterItem item = {.x = middle.x,
-                       .y = middle.y,
-                       .z = middle.z,
-                       .ex = (float)ex,
-                       .ey = (float)ey,
-                       .sine = (float)sine,
-                       .cosine = (float)cosine,
-                       .radius = (float)radius,
-                       .half = (float)(length / 2),
-                       .primitive = number,
-                       .joint = joint,
-                       .kind = (uint32_t)kind};
-    double near = middle.z - cosine * length / 2 - radius;
-    double pixel = fmin(view->step_x, -view->step_y) * (view->perspective ? near : 1);
-    if (item_is_close(&item) || length / 2 + radius > most_pixels * pixel)
-        item.kind = RASTER_EXACT;
-    return item;
-}
-
-double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal)
-{
-    static const double nearest_seen_mm = 1e-4; /* POV-Ray's, as in caster.c */
-    const Primitive *primitive = &bins->scene->primitives[bins->items[item].primitive];
-    Ray ray = rasterview_ray(&bins->view, x, y);
-    Hit hits[4];
-    int n = 0;
-    double nearest = HUGE_VAL;
-    if (primitive->kind == PRIMITIVE_SPHERE) {
-        n = hit_sphere(ray, primitive->a, primitive->radius_mm, hits);
-    } else if (primitive->kind == PRIMITIVE_CYLINDER) {
-        CylinderFrame cylinder = cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
-        n = hit_cylinder(ray, &cylinder, hits);
-    } else {
-        JointFrame joint = primitive_joint(primitive);
-        n = hit_joint(ray, &joint, hits);
-    }
-    for (int i = 0; i < n; i++)
-        if (hits[i].t >= nearest_seen_mm && hits[i].t < nearest) {
-            nearest = hits[i].t;
-            if (normal)
-                *normal = rasterview_to_frame(&bins->view, hits[i].normal);
-        }
-    return nearest * vec3_dot(ray.direction, bins->view.axes[2]);
 }
 
 /* ---- where items are seen
@@ -409,7 +261,8 @@ static void make_chunk(size_t chunk, int worker, void *context)
     size_t *counts = build->counts + chunk * (size_t)bins->tile_rows;
     uint32_t joint = build->joints[chunk];
     for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++) {
-        bins->items[i] = make_item(bins, (uint32_t)i, joint);
+        bins->items[i] =
+            rasteritem_make(bins->scene, &bins->view, (uint32_t)i, joint, bins->joints);
         joint += is_joint(bins, i);
         build->rows[i] = rows_of(&bins->view, &bins->items[i]);
         for (int row = build->rows[i].first; row <= build->rows[i].last; row++)
