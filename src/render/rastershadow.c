@@ -126,8 +126,8 @@ static Status store_row(RasterShadow *shadow, Store *store, size_t row)
     uint32_t *offsets = words, *lists = words + n_offsets;
     float *nears = (float *)(void *)(lists + n);
     memcpy(offsets, store->row.offsets, n_offsets * sizeof *offsets);
-    memcpy(lists, store->row.lists, n * sizeof *lists);
     for (size_t i = 0; i < n; i++) {
+        lists[i] = store->row.lists[i];
         const RasterItem *item = &bins->items[lists[i]];
         double deep = (double)item->cosine * (double)item->half + (double)item->radius;
         double near = item->z - deep - bins->view.z_middle;
