@@ -170,6 +170,7 @@ Status run_render(int argc, char **argv, Err *err)
                        .height = picture.size[1],
                        .path = output,
                        .bits = bits,
+                       .encoding = ENCODING_SRGB,
                        .picture = true,
                        .color = params.want_color,
                        .depth = params.want_depth,

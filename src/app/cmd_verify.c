@@ -95,24 +95,12 @@ static Encoding encoding_of(const Verification *v)
     return v->bits == 16 ? ENCODING_LINEAR : ENCODING_SRGB;
 }
 
-static Status write_native(const Verification *v, const char *provenance, Err *err)
-{
-    const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", provenance}};
-    const ImageNotes all = {.notes = notes, .count = 2};
-    char *path = NULL;
-    TRY(file_join(v->folder, "native.png", &path, err));
-    Status status = frames_write(&v->native, path, 0, NULL, err);
-    if (status == STATUS_OK)
-        status = picture_write(&v->native_picture, path, encoding_of(v), &all, err);
-    free(path);
-    return status;
-}
-
-static Status write_exact(const Verification *v, const char *provenance, Err *err)
+static Status write_frame(const Verification *v, const Frame *frame, const char *name,
+                          Encoding encoding, const char *provenance, Err *err)
 {
     char *path = NULL;
-    TRY(file_join(v->folder, "exact.png", &path, err));
-    Status status = frames_write(&v->exact, path, v->bits, provenance, err);
+    TRY(file_join(v->folder, name, &path, err));
+    Status status = frames_write(frame, path, v->bits, encoding, provenance, err);
     free(path);
     return status;
 }
@@ -121,11 +109,11 @@ static Status render_native(Verification *v, const char *provenance, Err *err)
 {
     TRY(render_frame(v, is_isosurface(v) ? &v->cells : NULL, &v->native, err));
     TRY(picture_from_plane(&v->native_picture, &v->native.color, encoding_of(v), v->bits, err));
-    TRY(write_native(v, provenance, err));
+    TRY(write_frame(v, &v->native, "native.png", encoding_of(v), provenance, err));
     if (!is_isosurface(v))
         return STATUS_OK;
     TRY(render_frame(v, NULL, &v->exact, err));
-    return write_exact(v, provenance, err);
+    return write_frame(v, &v->exact, "exact.png", ENCODING_SRGB, provenance, err);
 }
 
 /* What a screen shows of linear codes. */
@@ -228,7 +216,7 @@ static Status run_oracle(Verification *v, Err *err)
     if (status == STATUS_OK)
         status = file_join(v->folder, "povray.png", &picture, err);
     if (status == STATUS_OK)
-        status = frames_write(&v->povray, picture, 0, NULL, err);
+        status = frames_write(&v->povray, picture, 0, ENCODING_SRGB, NULL, err);
     free(picture);
     return status;
 }

@@ -56,7 +56,7 @@ static Status open_picture(FramesWriter *writer, Err *err)
                              .height = form->height,
                              .channels = 3,
                              .bits = is_linear(form) ? 32 : form->bits,
-                             .encoding = ENCODING_SRGB,
+                             .encoding = form->encoding,
                              .notes = &all};
     return imagewriter_open(&writer->files[FILE_PICTURE], form->path, &image, err);
 }
@@ -115,7 +115,7 @@ static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
     if (rows->codes.codes8)
         return imagewriter_codes(file, &rows->codes, err);
     Picture codes;
-    TRY(picture_from_plane(&codes, &rows->color, ENCODING_SRGB, writer->form->bits, err));
+    TRY(picture_from_plane(&codes, &rows->color, writer->form->encoding, writer->form->bits, err));
     return write_codes(file, &codes, err);
 }
 
@@ -154,13 +154,14 @@ void frames_discard(FramesWriter *writer)
     free(writer);
 }
 
-Status frames_write(const Frame *frame, const char *path, int bits, const char *provenance,
-                    Err *err)
+Status frames_write(const Frame *frame, const char *path, int bits, Encoding encoding,
+                    const char *provenance, Err *err)
 {
     const FramesForm form = {.width = bits ? frame->color.width : frame->id.width,
                              .height = bits ? frame->color.height : frame->id.height,
                              .path = path,
                              .bits = bits,
+                             .encoding = encoding,
                              .picture = bits != 0,
                              .depth = frame->depth.values != NULL,
                              .normal = frame->normal.values != NULL,

@@ -16,7 +16,8 @@ typedef struct FramesForm {
     int width, height; /* of the whole picture */
     const char *path;  /* of the picture; the planes of P.png are P.color.pfm, P.depth.pfm,
                         * P.normal.pfm and P.id.ppm */
-    int bits;          /* of a picture that is no .pfm: 8 or 16, sRGB; .pfm is linear */
+    int bits;          /* of a picture that is no .pfm: 8 or 16 */
+    Encoding encoding; /* of its codes; .pfm is linear */
     bool picture, color, depth, normal, id;
     const char *provenance; /* the command line; of the picture */
 } FramesForm;
@@ -34,7 +35,7 @@ void frames_discard(FramesWriter *writer);
 
 /* Writes a whole frame: the planes that it has but for the colour, and the picture if `bits` is not 0.
  */
-MUST_CHECK Status frames_write(const Frame *frame, const char *path, int bits,
+MUST_CHECK Status frames_write(const Frame *frame, const char *path, int bits, Encoding encoding,
                                const char *provenance, Err *err);
 
 #endif

@@ -32,22 +32,17 @@ static Box widened(Box box)
     return (Box){vec3_sub(box.low, pad), vec3_add(box.high, pad)};
 }
 
-static double along(Vec3 v, int axis)
-{
-    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
 /* Reorders the items so that none before the one at `middle` is above it and none after it below. */
 static void split_at(Item *items, int64_t n, int64_t middle, int axis)
 {
     int64_t low = 0, high = n - 1;
     while (low < high) {
-        double pivot = along(items[middle].center, axis);
+        double pivot = vec3_component(items[middle].center, axis);
         int64_t i = low, j = high;
         while (i <= j) {
-            while (along(items[i].center, axis) < pivot)
+            while (vec3_component(items[i].center, axis) < pivot)
                 i++;
-            while (along(items[j].center, axis) > pivot)
+            while (vec3_component(items[j].center, axis) > pivot)
                 j--;
             if (i > j)
                 break;
@@ -73,9 +68,7 @@ static uint32_t build_node(BoxTree *tree, const Box *boxes, uint32_t first, uint
     tree->nodes[index] = (Node){box, first, n};
     if (n <= LEAF_SIZE)
         return index;
-    Vec3 size = vec3_sub(centers.high, centers.low);
-    int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    split_at(tree->items + first, n, n / 2, axis);
+    split_at(tree->items + first, n, n / 2, box_longest_axis(centers));
     build_node(tree, boxes, first, n / 2);
     uint32_t second = build_node(tree, boxes, first + n / 2, n - n / 2);
     tree->nodes[index].first = second;
@@ -137,15 +130,9 @@ BoxWalk boxwalk_segment(const BoxTree *tree, Vec3 a, Vec3 b)
     return walk;
 }
 
-static bool overlap(const Box *a, const Box *b)
-{
-    return a->low.x <= b->high.x && b->low.x <= a->high.x && a->low.y <= b->high.y &&
-           b->low.y <= a->high.y && a->low.z <= b->high.z && b->low.z <= a->high.z;
-}
-
 static bool meets(const BoxWalk *walk, const Box *box)
 {
-    if (!overlap(&walk->around, box))
+    if (!box_meets(walk->around, *box))
         return false;
     double t0 = 0, t1 = 1;
     return !walk->is_segment || hit_box(walk->origin, walk->inverse, box, &t0, &t1);

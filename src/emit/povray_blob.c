@@ -24,12 +24,6 @@ enum { CROWD = 64, PROBES = 64 };
 /* Cells reach into their neighbours, so that no ray slips between them. */
 static const double overlap_mm = 1e-3;
 
-static int longest_axis(Box box)
-{
-    Vec3 size = vec3_sub(box.high, box.low);
-    return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-}
-
 static Box reach_of(const FieldSegment *segment)
 {
     double reach = blob_reach(&blob_shape) * segment->radius_mm;
@@ -46,13 +40,6 @@ typedef struct Cells {
     size_t room;
     size_t written; /* none when all is one blob */
 } Cells;
-
-static bool reaches_into(const FieldSegment *segment, Box box)
-{
-    Box reach = reach_of(segment);
-    return reach.low.x <= box.high.x && reach.high.x >= box.low.x && reach.low.y <= box.high.y &&
-           reach.high.y >= box.low.y && reach.low.z <= box.high.z && reach.high.z >= box.low.z;
-}
 
 /* How many segments of a list are felt at x. */
 static size_t count_felt(const Cells *cells, const uint32_t *list, size_t n, Vec3 x)
@@ -125,7 +112,7 @@ static size_t take_those_in(Cells *cells, size_t first, size_t n, Box box)
     uint32_t *list = cells->lists + first;
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
-        if (reaches_into(&cells->scene->segments[list[i]], box))
+        if (box_meets(reach_of(&cells->scene->segments[list[i]]), box))
             list[n + count++] = list[i];
     return count;
 }
@@ -133,11 +120,13 @@ static size_t take_those_in(Cells *cells, size_t first, size_t n, Box box)
 /* Writes the cells of a box into which lists[first .. first + n) reach. */
 static Status put_cells_of(Cells *cells, size_t first, size_t n, Box box, bool whole, Err *err)
 {
+    if (n <= CELL)
+        return put_cell(cells, first, n, whole ? NULL : &box, err);
     TRY(mem_reserve(&cells->lists, &cells->room, first + 2 * n, sizeof *cells->lists, "cells",
                     err));
     Box half[2] = {box, box};
     Vec3 middle = box_center(box);
-    switch (longest_axis(box)) {
+    switch (box_longest_axis(box)) {
     case 0:
         half[0].high.x = half[1].low.x = middle.x;
         break;
@@ -149,7 +138,7 @@ static Status put_cells_of(Cells *cells, size_t first, size_t n, Box box, bool w
     }
     size_t in_halves = take_those_in(cells, first, n, half[0]);
     in_halves += take_those_in(cells, first, n, half[1]);
-    if (n <= CELL || 2 * in_halves > 3 * n)
+    if (2 * in_halves > 3 * n)
         return put_cell(cells, first, n, whole ? NULL : &box, err);
     for (int i = 0; i < 2; i++) {
         size_t count = take_those_in(cells, first, n, half[i]);
@@ -188,11 +177,6 @@ typedef struct Paints {
     unsigned nodes;
 } Paints;
 
-static double coordinate(Vec3 v, int axis)
-{
-    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
 static int by_key(const void *a, const void *b)
 {
     const Item *x = a, *y = b;
@@ -229,10 +213,10 @@ static unsigned put_node(Paints *paints, size_t first, size_t n)
         box = box_union(box, reach_of(&paints->scene->segments[items[i].segment]));
     unsigned half[2] = {0, 0};
     if (n > LEAF) {
-        int axis = longest_axis(box);
+        int axis = box_longest_axis(box);
         for (size_t i = 0; i < n; i++) {
             const FieldSegment *segment = &paints->scene->segments[items[i].segment];
-            items[i].key = coordinate(vec3_add(segment->a, segment->b), axis);
+            items[i].key = vec3_component(vec3_add(segment->a, segment->b), axis);
         }
         qsort(items, n, sizeof *items, by_key);
         half[0] = put_node(paints, first, n / 2);

@@ -38,6 +38,20 @@ static inline Box box_union(Box a, Box b)
                  {fmax(a.high.x, b.high.x), fmax(a.high.y, b.high.y), fmax(a.high.z, b.high.z)}};
 }
 
+/* Whether they have a point in common. */
+static inline bool box_meets(Box a, Box b)
+{
+    return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y &&
+           b.low.y <= a.high.y && a.low.z <= b.high.z && b.low.z <= a.high.z;
+}
+
+/* The axis along which it is longest, the first of equals. */
+static inline int box_longest_axis(Box box)
+{
+    Vec3 size = vec3_sub(box.high, box.low);
+    return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
 static inline Vec3 box_center(Box box)
 {
     return vec3_scale(vec3_add(box.low, box.high), 0.5);

@@ -14,6 +14,12 @@ static inline Vec3 vec3(double x, double y, double z)
     return (Vec3){x, y, z};
 }
 
+/* Along axis 0, 1 or 2. */
+static inline double vec3_component(Vec3 v, int axis)
+{
+    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
 static inline Vec3 vec3_add(Vec3 a, Vec3 b)
 {
     return vec3(a.x + b.x, a.y + b.y, a.z + b.z);

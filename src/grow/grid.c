@@ -34,11 +34,6 @@ struct GridArena {
         *free[BLOCK_SIZES]; /* a free block of each size; it begins with the next one's address */
 };
 
-static double component(Vec3 v, int axis)
-{
-    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
 static double least(double a, double b)
 {
     return a < b ? a : b;
@@ -62,7 +57,7 @@ Status grid_reset(Grid *grid, Box box, double cells, size_t segments, int worker
     made.edge = size.z > 0 ? cbrt(size.x * size.y * size.z / cells) : sqrt(size.x * size.y / cells);
     made.inverse = 1 / made.edge;
     for (int axis = 0; axis < 3; axis++)
-        made.count[axis] = (int)(component(size, axis) / made.edge) + 1;
+        made.count[axis] = (int)(vec3_component(size, axis) / made.edge) + 1;
     made.rounding = 1e-7 * vec3_length(size);
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&made.item, segments, sizeof *made.item, "segments", err));
@@ -105,7 +100,7 @@ Box grid_zone(const Grid *grid, GridBox box)
 {
     double low[3], high[3], inset = 4 * grid->rounding;
     for (int axis = 0; axis < 3; axis++) {
-        double from = component(grid->low, axis);
+        double from = vec3_component(grid->low, axis);
         bool first = box.low[axis] <= 0, last = box.high[axis] >= grid->count[axis] - 1;
         low[axis] = first ? -(double)INFINITY : from + box.low[axis] * grid->edge + inset;
         high[axis] = last ? (double)INFINITY : from + (box.high[axis] + 1) * grid->edge - inset;
@@ -122,10 +117,10 @@ double grid_clearance(Box zone, Vec3 point)
 bool grid_zone_holds(const Grid *grid, Box zone, const GridItem *item)
 {
     for (int axis = 0; axis < 3; axis++) {
-        double from = component(grid->low, axis), reach = (double)item->reach;
+        double from = vec3_component(grid->low, axis), reach = (double)item->reach;
         double a = from + (double)item->proximal[axis], b = from + (double)item->distal[axis];
-        if (least(a, b) - reach < component(zone.low, axis) ||
-            greatest(a, b) + reach > component(zone.high, axis))
+        if (least(a, b) - reach < vec3_component(zone.low, axis) ||
+            greatest(a, b) + reach > vec3_component(zone.high, axis))
             return false;
     }
     return true;
@@ -337,7 +332,7 @@ GridBox grid_box(const Grid *grid, Vec3 point, double distance)
 {
     GridBox box;
     for (int axis = 0; axis < 3; axis++) {
-        double at = component(point, axis) - component(grid->low, axis);
+        double at = vec3_component(point, axis) - vec3_component(grid->low, axis);
         box.low[axis] = cell_of(grid, at - distance, axis);
         box.high[axis] = cell_of(grid, at + distance, axis);
     }

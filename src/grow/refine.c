@@ -143,6 +143,13 @@ static Status settle(Surgery *surgery, Err *err)
     return room_book(&surgery->room, &surgery->arbor, err);
 }
 
+/* Bookings may age for some rounds, viscosities for one. */
+static Status settle_for_round(Surgery *surgery, int round, Err *err)
+{
+    bool is_due = round % ROUNDS_PER_BOOKING == 0 || surgery->arbor.viscosity;
+    return is_due ? settle(surgery, err) : STATUS_OK;
+}
+
 /* How many segments lack the room that they should have, as of the last room_book. */
 static size_t count_unclear(const Surgery *surgery)
 {
@@ -167,8 +174,7 @@ static Status descend(Refinement *refinement, double least_gain, bool *over, Err
     double before = INFINITY, cost = arbor_cost(&surgery->arbor);
     for (int round = 1; !*over && cost < before * (1 - least_gain); round++) {
         before = cost;
-        if (round % ROUNDS_PER_BOOKING == 0 || surgery->arbor.viscosity)
-            TRY(settle(surgery, err));
+        TRY(settle_for_round(surgery, round, err));
         if (refinement->params->level != GROW_REFINE_GEOMETRY)
             TRY(shuffle(refinement, over, err));
         TRY(sweep(refinement, over, err));
@@ -250,8 +256,7 @@ static Status anneal(Refinement *refinement, bool *over, Err *err)
     Surgery *surgery = &refinement->surgery;
     remember(refinement);
     for (int round = 1; !*over && refinement->fraction < 1 - last_part; round++) {
-        if (round % ROUNDS_PER_BOOKING == 0 || surgery->arbor.viscosity)
-            TRY(settle(surgery, err));
+        TRY(settle_for_round(surgery, round, err));
         TRY(shuffle(refinement, over, err));
         TRY(sweep(refinement, over, err));
         if (arbor_cost(&surgery->arbor) < refinement->best_cost)

@@ -152,6 +152,11 @@ int32_t arbor_next(const Arbor *arbor, int32_t i)
     return 0;
 }
 
+double arbor_radius_seen(const Arbor *arbor, int32_t i)
+{
+    return arbor->radius_unit * arbor->outlook[i].gauge * arbor_reduce(arbor, i).rho;
+}
+
 static Status too_thin(Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
@@ -166,8 +171,7 @@ Status arbor_thin(Arbor *arbor, Err *err)
         change = 0;
         arbor_look(arbor);
         for (size_t i = 1; i < arbor->n; i++) {
-            double radius =
-                arbor->radius_unit * arbor->outlook[i].gauge * arbor_reduce(arbor, (int32_t)i).rho;
+            double radius = arbor_radius_seen(arbor, (int32_t)i);
             double viscosity = viscosity_pries_pa_s(radius, arbor->hematocrit, 1);
             if (!isfinite(viscosity))
                 return too_thin(err);

@@ -102,7 +102,9 @@ Reduced arbor_reduce(const Arbor *arbor, int32_t i);
 /* The outlook of segment i from what its parent is now and that one's outlook. */
 Outlook arbor_outlook(const Arbor *arbor, int32_t i);
 
-/* The radius of segment i, mm. O(depth). */
+/* The radius of segment i, mm, as of the last arbor_look. */
+double arbor_radius_seen(const Arbor *arbor, int32_t i);
+/* The same as of now. O(depth). */
 double arbor_radius(const Arbor *arbor, int32_t i);
 /* A segment whose radius times its tightness is above 1, and that radius in *radius; 0 when
  * there is none. O(depth). */

@@ -106,8 +106,7 @@ static Status measure(Room *room, Arbor *arbor, Err *err)
                    err));
     arbor_look(arbor);
     for (size_t i = 1; i < arbor->n; i++)
-        room->radius[i] =
-            arbor->radius_unit * arbor->outlook[i].gauge * arbor_reduce(arbor, (int32_t)i).rho;
+        room->radius[i] = arbor_radius_seen(arbor, (int32_t)i);
     return STATUS_OK;
 }
 

@@ -46,11 +46,6 @@ static Box primitive_box(const Primitive *primitive)
     return (Box){vec3_sub(box.low, pad), vec3_add(box.high, pad)};
 }
 
-static double along(Vec3 v, int axis)
-{
-    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
 /* Half the surface of a box: the chance that a ray meets it. */
 static double box_area(Box box)
 {
@@ -67,8 +62,8 @@ typedef struct Split {
 
 static int bin_of(const Item *item, int axis, Box centers)
 {
-    double low = along(centers.low, axis), size = along(centers.high, axis) - low;
-    int bin = size > 0 ? (int)((along(item->center, axis) - low) / size * BINS) : 0;
+    double low = vec3_component(centers.low, axis), size = vec3_component(centers.high, axis) - low;
+    int bin = size > 0 ? (int)((vec3_component(item->center, axis) - low) / size * BINS) : 0;
     return bin < BINS ? bin : BINS - 1;
 }
 
@@ -198,31 +193,57 @@ static int primitive_hits(const Bvh *bvh, uint32_t index, Ray ray, Hit hits[4])
     return 0;
 }
 
+/* A ray on its way through the tree, the nodes still to be looked at on a stack. */
+typedef struct Descent {
+    const Bvh *bvh;
+    Ray ray;
+    Vec3 inverse;
+    double t_min;
+    bool near_first; /* the child whose centre is nearer comes before the other */
+    uint32_t stack[MAX_DEPTH + 2];
+    int top;
+} Descent;
+
+static void descent_start(Descent *descent, const Bvh *bvh, Ray ray, double t_min, bool near_first)
+{
+    descent->bvh = bvh;
+    descent->ray = ray;
+    descent->inverse = vec3_inverse(ray.direction);
+    descent->t_min = t_min;
+    descent->near_first = near_first;
+    descent->stack[0] = 0;
+    descent->top = 1;
+}
+
+/* The next leaf that the ray meets by t_max; NULL: no more. */
+static const Node *descent_next(Descent *descent, double t_max)
+{
+    const Node *nodes = descent->bvh->nodes;
+    while (descent->top > 0) {
+        uint32_t index = descent->stack[--descent->top];
+        const Node *node = &nodes[index];
+        double t0 = descent->t_min, t1 = t_max;
+        if (!hit_box(descent->ray.origin, descent->inverse, &node->box, &t0, &t1))
+            continue;
+        if (node->n_items > 0)
+            return node;
+        uint32_t near = index + 1, far = node->first;
+        Vec3 apart = vec3_sub(box_center(nodes[far].box), box_center(nodes[near].box));
+        bool swap = descent->near_first && vec3_dot(apart, descent->ray.direction) < 0;
+        descent->stack[descent->top++] = swap ? near : far;
+        descent->stack[descent->top++] = swap ? far : near;
+    }
+    return NULL;
+}
+
 bool bvh_first_hit(const Bvh *bvh, Ray ray, double t_min, Hit *hit, size_t *primitive)
 {
-    Vec3 inverse = vec3_inverse(ray.direction);
-    uint32_t stack[MAX_DEPTH + 2];
-    int top = 0;
+    Descent descent;
     uint32_t best = UINT32_MAX;
     hit->t = INFINITY;
-    stack[top++] = 0;
-    while (top > 0) {
-        uint32_t index = stack[--top];
-        const Node *node = &bvh->nodes[index];
-        double t0 = t_min, t1 = hit->t;
-        if (!hit_box(ray.origin, inverse, &node->box, &t0, &t1))
-            continue;
-        if (node->n_items == 0) {
-            /* The child whose centre is nearer goes on top. */
-            uint32_t near = index + 1, far = node->first;
-            Vec3 apart =
-                vec3_sub(box_center(bvh->nodes[far].box), box_center(bvh->nodes[near].box));
-            bool swap = vec3_dot(apart, ray.direction) < 0;
-            stack[top++] = swap ? near : far;
-            stack[top++] = swap ? far : near;
-            continue;
-        }
-        for (uint32_t i = node->first; i < node->first + node->n_items; i++) {
+    descent_start(&descent, bvh, ray, t_min, true);
+    for (const Node *leaf; (leaf = descent_next(&descent, hit->t));)
+        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
             uint32_t candidate = bvh->items[i].primitive;
             Hit hits[4];
             int n = primitive_hits(bvh, candidate, ray, hits);
@@ -234,58 +255,32 @@ bool bvh_first_hit(const Bvh *bvh, Ray ray, double t_min, Hit *hit, size_t *prim
                 }
             }
         }
-    }
     *primitive = best;
     return best != UINT32_MAX;
 }
 
 bool bvh_any_hit(const Bvh *bvh, Ray ray, double t_min, double t_max)
 {
-    Vec3 inverse = vec3_inverse(ray.direction);
-    uint32_t stack[MAX_DEPTH + 2];
-    int top = 0;
-    stack[top++] = 0;
-    while (top > 0) {
-        uint32_t index = stack[--top];
-        const Node *node = &bvh->nodes[index];
-        double t0 = t_min, t1 = t_max;
-        if (!hit_box(ray.origin, inverse, &node->box, &t0, &t1))
-            continue;
-        if (node->n_items == 0) {
-            stack[top++] = node->first;
-            stack[top++] = index + 1;
-            continue;
-        }
-        for (uint32_t i = node->first; i < node->first + node->n_items; i++) {
+    Descent descent;
+    descent_start(&descent, bvh, ray, t_min, false);
+    for (const Node *leaf; (leaf = descent_next(&descent, t_max));)
+        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
             Hit hits[4];
             int n = primitive_hits(bvh, bvh->items[i].primitive, ray, hits);
             for (int k = 0; k < n; k++)
                 if (hits[k].t > t_min && hits[k].t < t_max)
                     return true;
         }
-    }
     return false;
 }
 
 size_t bvh_candidates(const Bvh *bvh, Ray ray, double t_min, double t_max, uint32_t *found)
 {
-    Vec3 inverse = vec3_inverse(ray.direction);
-    uint32_t stack[MAX_DEPTH + 2];
-    int top = 0;
+    Descent descent;
     size_t n = 0;
-    stack[top++] = 0;
-    while (top > 0) {
-        uint32_t index = stack[--top];
-        const Node *node = &bvh->nodes[index];
-        double t0 = t_min, t1 = t_max;
-        if (!hit_box(ray.origin, inverse, &node->box, &t0, &t1))
-            continue;
-        if (node->n_items == 0) {
-            stack[top++] = node->first;
-            stack[top++] = index + 1;
-        }
-        for (uint32_t i = node->first; i < node->first + node->n_items; i++)
+    descent_start(&descent, bvh, ray, t_min, false);
+    for (const Node *leaf; (leaf = descent_next(&descent, t_max));)
+        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++)
             found[n++] = bvh->items[i].primitive;
-    }
     return n;
 }

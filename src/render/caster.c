@@ -6,9 +6,8 @@
 #include "render/halving.h"
 #include <stdlib.h>
 
-/* POV-Ray's limits [docs/POVRAY.md section 3]: crossings nearer than the first are not seen,
- * blockers within the second of the lit point or of the light cast no shadow. */
-static const double nearest_seen_mm = 1e-4;
+/* POV-Ray's limit [docs/POVRAY.md section 3]: blockers within it of the lit point or of the light cast no
+ * shadow. */
 static const double shadow_slack_mm = 1e-3;
 /* Of a blob neither sees anything nearer than this. */
 static const double blob_nearest_mm = 1e-2;
@@ -77,14 +76,14 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
     if (caster->bvh) {
         Hit hit;
         size_t index;
-        if (!bvh_first_hit(caster->bvh, ray, nearest_seen_mm, &hit, &index))
+        if (!bvh_first_hit(caster->bvh, ray, NEAREST_SEEN_MM, &hit, &index))
             return false;
         const Primitive *primitive = &caster->scene->primitives[index];
         *surfel = (Surfel){hit.t, hit.normal, primitive->color, primitive->id};
     } else if (caster->halving) {
         Hit hit;
         uint32_t index;
-        if (!halving_first_hit(caster->halving, ray, nearest_seen_mm, &hit, &index))
+        if (!halving_first_hit(caster->halving, ray, NEAREST_SEEN_MM, &hit, &index))
             return false;
         const FieldSegment *segment = &caster->scene->segments[index];
         *surfel = (Surfel){hit.t, hit.normal, segment->color, segment->id};
@@ -96,7 +95,7 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
                          ? blobcast_first_hit(caster->blob, caster->blob_scratch[worker], ray,
                                               blob_nearest_mm, INFINITY, &t, &normal, &index)
                          : field_first_hit(caster->field, caster->scratch[worker], ray,
-                                           nearest_seen_mm, INFINITY, &t, &normal, &index);
+                                           NEAREST_SEEN_MM, INFINITY, &t, &normal, &index);
         if (!found)
             return false;
         const FieldSegment *segment = &caster->scene->segments[index];

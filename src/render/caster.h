@@ -6,6 +6,9 @@
 #include "scene/scene.h"
 #include "surface/surface.h"
 
+/* POV-Ray's limit [docs/POVRAY.md section 3]: crossings nearer than this are not seen. */
+#define NEAREST_SEEN_MM 1e-4
+
 typedef struct Caster Caster;
 
 /* A visible point. */

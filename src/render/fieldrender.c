@@ -7,11 +7,9 @@
 #include "render/fieldtiles.h"
 #include "render/resample.h"
 #include "render/sight.h"
+#include "render/tilelook.h"
 #include <stdlib.h>
 #include <string.h>
-
-/* POV-Ray's limit: crossings nearer than this are not seen. */
-static const double nearest_seen_mm = 1e-4;
 
 /* What a worker writes to. */
 typedef struct Canvas {
@@ -402,7 +400,7 @@ static Status run_pass(FieldPicture *picture, int n, const double *offsets,
         rows[j] = first + j / n + offsets[j % n];
     picture->grid = (SampleGrid){columns, rows, width, height, 1.0 / n, first * n, offsets[0]};
     double start_s = clock_seconds();
-    TRY_GOTO(fieldtiles_new(picture->scene, &picture->grid, nearest_seen_mm, picture->workers,
+    TRY_GOTO(fieldtiles_new(picture->scene, &picture->grid, NEAREST_SEEN_MM, picture->workers,
                             &picture->tiles, err));
     for (int i = 0; n > 1 && i < picture->workers; i++) {
         Canvas *canvas = &picture->canvases[i];
@@ -426,28 +424,6 @@ done:
     return status;
 }
 
-static Status prepare_lights(FieldPicture *picture, Err *err)
-{
-    const Scene *scene = picture->scene;
-    const Camera *camera = &scene->camera;
-    const Vec3 x = vec3_normalized(camera->right), y = vec3_normalized(camera->up);
-    TRY(mem_calloc(&picture->lights, scene->n_lights, sizeof *picture->lights, "lights", err));
-    for (size_t i = 0; i < scene->n_lights; i++) {
-        const Light *light = &scene->lights[i];
-        Vec3 v = light->parallel ? vec3_normalized(vec3_sub(light->location, light->target))
-                                 : vec3_sub(light->location, camera->location);
-        picture->lights[i] = (TileLight){.towards = {(float)vec3_dot(v, x), (float)vec3_dot(v, y),
-                                                     (float)vec3_dot(v, camera->direction)},
-                                         .color = {light->color.r, light->color.g, light->color.b},
-                                         .parallel = light->parallel};
-    }
-    picture->needs_places = camera->projection == PROJECTION_PERSPECTIVE;
-    for (size_t i = 0; i < scene->n_lights; i++)
-        picture->needs_places |= !scene->lights[i].parallel;
-    picture->look = (TileLook){scene->finish, picture->lights, scene->n_lights};
-    return STATUS_OK;
-}
-
 static Status prepare_canvases(FieldPicture *picture, Err *err)
 {
     const Scene *scene = picture->scene;
@@ -464,12 +440,7 @@ static Status prepare_canvases(FieldPicture *picture, Err *err)
         }
         for (int value = 0; picture->frame->codes.codes8 && value < 3 * TILE_SIDE; value++)
             canvas->background_codes[value] = srgb_code(&picture->codes, canvas->background[value]);
-        for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-            canvas->surface.direction[2][sample] = 1;
-            canvas->surface.pigment[0][sample] = scene->color.r;
-            canvas->surface.pigment[1][sample] = scene->color.g;
-            canvas->surface.pigment[2][sample] = scene->color.b;
-        }
+        tilesurface_init(scene, &canvas->surface);
     }
     return STATUS_OK;
 }
@@ -515,11 +486,15 @@ Status fieldrender(const Scene *scene, const RenderParams *params, Caster *caste
         .scene = scene, .params = params, .rows = rows, .frame = frame, .caster = caster};
     picture.by_sample = sight_is_needed(scene, params);
     const double center = 0;
+    const Camera *camera = &scene->camera;
+    const Vec3 axes[3] = {vec3_normalized(camera->right), vec3_normalized(camera->up),
+                          camera->direction};
     double start_s = clock_seconds();
     picture.workers = params->threads > 0 ? params->threads : threads_available();
     if (frame->codes.codes8)
         srgb_codes_init(&picture.codes);
-    TRY_GOTO(prepare_lights(&picture, err));
+    picture.needs_places = tilelook_needs_places(scene);
+    TRY_GOTO(tilelook_make(scene, camera->location, axes, &picture.lights, &picture.look, err));
     TRY_GOTO(prepare_canvases(&picture, err));
     double prepared_s = clock_seconds() - start_s;
     TRY_GOTO(run_pass(&picture, 1, &center, trace_centers, &prepared_s, err));

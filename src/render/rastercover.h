@@ -8,8 +8,7 @@
 #include "render/rasterkernels.h"
 #include "render/rastersight.h"
 
-/* ---- aiming
- * -------------------------------------------------------------------------------------- */
+/* ---- aiming ---------------------------------------------------------------------------------- */
 
 LANE_TARGET static void RASTER_KERNEL(locate)(const RasterTile *tile, const RasterHits *hits,
                                               RasterPlaces *places)
@@ -75,8 +74,7 @@ LANE_TARGET static void RASTER_KERNEL(aim)(const RasterAim *aim, const RasterPla
     }
 }
 
-/* ---- what is in the way
- * -------------------------------------------------------------------------- */
+/* ---- what is in the way ---------------------------------------------------------------------- */
 
 /* Whether the item is seen before the probes' depths. */
 RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, RasterProbes *probes,

@@ -6,6 +6,7 @@
  * or looked at along its axis, and joints that need not be the wall of a solid. */
 #include "render/rasteritem.h"
 
+#include "render/caster.h"
 static const double most_pixels = 16384; /* 2^-24 of it are a thousandth of a pixel */
 static const double least_sine =
     0.02; /* of the angle at which a wall is looked at along its axis */
@@ -122,7 +123,6 @@ RasterItem rasteritem_make(const Scene *scene, const RasterView *view, uint32_t 
 
 double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal)
 {
-    static const double nearest_seen_mm = 1e-4; /* POV-Ray's, as in caster.c */
     const Primitive *primitive = &bins->scene->primitives[bins->items[item].primitive];
     Ray ray = rasterview_ray(&bins->view, x, y);
     Hit hits[4];
@@ -138,7 +138,7 @@ double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, 
         n = hit_joint(ray, &joint, hits);
     }
     for (int i = 0; i < n; i++)
-        if (hits[i].t >= nearest_seen_mm && hits[i].t < nearest) {
+        if (hits[i].t >= NEAREST_SEEN_MM && hits[i].t < nearest) {
             nearest = hits[i].t;
             if (normal)
                 *normal = rasterview_to_frame(&bins->view, hits[i].normal);

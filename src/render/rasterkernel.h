@@ -13,8 +13,7 @@
 
 enum { BLOCKS = TILE_SAMPLES / LANES };
 
-/* ---- tiles
- * --------------------------------------------------------------------------------------- */
+/* ---- tiles ----------------------------------------------------------------------------------- */
 
 typedef struct RasterState {
     const RasterTile *tile;
@@ -114,7 +113,7 @@ RASTER_FN unsigned touched_blocks(const RasterState *state, const Near *near)
         Lanes on = lanes_abs(lanes_fma(x, lanes_set(near->along_x), y * near->along_y));
         LaneMask touched =
             (off <= across) & (on <= along) & (lanes_load(&state->farthest[first]) > near->z_near);
-        bits |= mask_bits(touched) << first;
+        bits |= lanes_bits(touched) << first;
     }
     return bits;
 }
@@ -147,13 +146,12 @@ LANE_TARGET static uint64_t RASTER_KERNEL(trace)(const RasterTile *tile, RasterH
         trace_items(&state, false);
     uint64_t seen = 0;
     for (int first = 0; first < TILE_SAMPLES; first += LANES)
-        seen |= (uint64_t)mask_bits(load_items(&hits->item[first]) != (int32_t)RASTER_NOTHING)
+        seen |= (uint64_t)lanes_bits(load_items(&hits->item[first]) != (int32_t)RASTER_NOTHING)
                 << first;
     return seen;
 }
 
-/* ---- normals
- * ------------------------------------------------------------------------------------- */
+/* ---- normals --------------------------------------------------------------------------------- */
 
 /* The normals of the samples `of` a block, which see the item. */
 RASTER_FN void resolve_item(const RasterTile *tile, const RasterHits *hits, int block, LaneMask of,
@@ -189,7 +187,7 @@ RASTER_FN void resolve_block(const RasterTile *tile, const RasterHits *hits, int
 {
     int first = block * LANES;
     LaneMask items = load_items(&hits->item[first]);
-    unsigned left = mask_bits(items != (int32_t)RASTER_NOTHING);
+    uint32_t left = lanes_bits(items != (int32_t)RASTER_NOTHING);
     Lanes normal[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
     for (int lane = 0; lane < LANES; lane++)
         surface->state[first + lane] = left >> lane & 1 ? TILE_HIT : TILE_MISS;
@@ -204,7 +202,7 @@ RASTER_FN void resolve_block(const RasterTile *tile, const RasterHits *hits, int
             continue;
         }
         LaneMask of = items == (int32_t)number;
-        left &= ~mask_bits(of);
+        left &= ~lanes_bits(of);
         Near near = approach(tile, number, perspective);
         resolve_item(tile, hits, block, of, &near, normal);
     }
@@ -223,8 +221,7 @@ LANE_TARGET static void RASTER_KERNEL(resolve)(const RasterTile *tile, const Ras
             resolve_block(tile, hits, block, false, surface);
 }
 
-/* ---- pixels
- * -------------------------------------------------------------------------------------- */
+/* ---- pixels ---------------------------------------------------------------------------------- */
 
 typedef float Quad __attribute__((vector_size(16)));
 

@@ -10,7 +10,7 @@
 #include "render/rastershadow.h"
 #include "render/rasterview.h"
 #include "render/resample.h"
-#include "render/tilekernels.h"
+#include "render/tilelook.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,8 +65,7 @@ static size_t pixel_at(const RasterPicture *picture, const Place *place, int i, 
     return (size_t)(place->row + j) * width + (size_t)(place->column + i);
 }
 
-/* ---- one sample a pixel
- * -------------------------------------------------------------------------- */
+/* ---- one sample a pixel ---------------------------------------------------------------------- */
 
 static double seen_z(const RasterTile *tile, const RasterHits *hits, int sample)
 {
@@ -284,8 +283,7 @@ static void write_geometry(const RasterPicture *picture, const Place *place, con
         }
 }
 
-/* ---- further samples
- * ----------------------------------------------------------------------------- */
+/* ---- further samples ------------------------------------------------------------------------- */
 
 static bool wants_more(const RasterPicture *picture, const Place *place, int i, int j)
 {
@@ -329,8 +327,7 @@ static void resample_tile(const RasterPicture *picture, const Place *place, Rast
                             (picture->n_further + 1));
 }
 
-/* ---- rows
- * ---------------------------------------------------------------------------------------- */
+/* ---- rows ------------------------------------------------------------------------------------ */
 
 /* Columns of tiles from `first` to below `last`, which see nothing. */
 static void fill_background(const RasterPicture *picture, int row, int first, int last,
@@ -405,27 +402,7 @@ static void draw_row(size_t row, int worker, void *context)
         fill_background(picture, (int)row, empty, bins->tile_columns, background);
 }
 
-/* ---- the picture
- * --------------------------------------------------------------------------------- */
-
-static Status prepare_lights(RasterPicture *picture, const RasterView *view, Err *err)
-{
-    const Scene *scene = picture->scene;
-    TRY(mem_calloc(&picture->lights, scene->n_lights, sizeof *picture->lights, "lights", err));
-    picture->needs_places = view->perspective;
-    for (size_t i = 0; i < scene->n_lights; i++) {
-        const Light *light = &scene->lights[i];
-        Vec3 v = light->parallel ? vec3_normalized(vec3_sub(light->location, light->target))
-                                 : vec3_sub(light->location, view->location);
-        v = rasterview_to_frame(view, v);
-        picture->lights[i] = (TileLight){.towards = {(float)v.x, (float)v.y, (float)v.z},
-                                         .color = {light->color.r, light->color.g, light->color.b},
-                                         .parallel = light->parallel};
-        picture->needs_places |= !light->parallel;
-    }
-    picture->look = (TileLook){scene->finish, picture->lights, scene->n_lights};
-    return STATUS_OK;
-}
+/* ---- the picture ----------------------------------------------------------------------------- */
 
 static Status prepare_shadows(RasterPicture *picture, const RasterView *view, Err *err)
 {
@@ -496,15 +473,9 @@ static Status prepare_canvases(RasterPicture *picture, Err *err)
     TRY(mem_calloc(&picture->canvases, (size_t)picture->workers, sizeof *picture->canvases,
                    "canvases", err));
     for (int i = 0; i < picture->workers; i++) {
-        TileSurface *surface = &picture->canvases[i].surface;
         TRY(mem_calloc(&picture->canvases[i].shadowed, scene->n_lights,
                        sizeof *picture->canvases[i].shadowed, "lights", err));
-        for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-            surface->direction[2][sample] = 1;
-            surface->pigment[0][sample] = scene->color.r;
-            surface->pigment[1][sample] = scene->color.g;
-            surface->pigment[2][sample] = scene->color.b;
-        }
+        tilesurface_init(scene, &picture->canvases[i].surface);
     }
     return STATUS_OK;
 }
@@ -561,7 +532,8 @@ Status rasterrender(const Scene *scene, const RenderParams *params, const Band *
     picture.workers = params->threads > 0 ? params->threads : threads_available();
     picture.kernels = rasterkernels_best();
     picture.shading = tilekernels_best();
-    TRY_GOTO(prepare_lights(&picture, &view, err));
+    picture.needs_places = tilelook_needs_places(scene);
+    TRY_GOTO(tilelook_make(scene, view.location, view.axes, &picture.lights, &picture.look, err));
     TRY_GOTO(prepare_samples(&picture, &view, err));
     TRY_GOTO(prepare_canvases(&picture, err));
     TRY_GOTO(make_background(&picture, 1, &picture.background, err));

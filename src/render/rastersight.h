@@ -11,15 +11,6 @@
 
 /* Below this squared sine a wall is looked at along its axis. */
 static const float steep_sine2 = 4e-4f;
-/* Bit i is set where lane i is true. */
-RASTER_FN unsigned mask_bits(LaneMask mask)
-{
-#ifdef LANES_AVX2
-    return (unsigned)_mm256_movemask_ps((__m256)mask);
-#else
-    return (unsigned)((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
-#endif
-}
 
 RASTER_FN LaneMask load_items(const uint32_t *items)
 {
@@ -140,8 +131,7 @@ RASTER_FN LaneMask within_outline(const Near *near, const SightLines *sight)
     return (off <= near->reach_across * 1.00001f) & (on <= near->reach_along * 1.00001f);
 }
 
-/* ---- spheres and cylinders
- * ----------------------------------------------------------------------- */
+/* ---- spheres and cylinders ------------------------------------------------------------------- */
 
 /* Where the lines enter the sphere, as depth from its middle. */
 RASTER_FN LaneMask sphere_entry(const Near *near, const SightLines *sight, Lanes *z)

@@ -51,8 +51,7 @@ Vec3 rasterview_to_world(const RasterView *view, Vec3 v)
     return vec3_add_scaled(world, view->axes[2], v.z);
 }
 
-/* ---- where items are seen
- * ------------------------------------------------------------------------ */
+/* ---- where items are seen -------------------------------------------------------------------- */
 
 typedef struct Range {
     double low, high;
@@ -207,8 +206,7 @@ static Span columns_of(const RasterView *view, const RasterItem *item, const Sla
     return tiles_within(range, view->left, view->per_x, view->stray, 0, view->columns);
 }
 
-/* ---- rows
- * ---------------------------------------------------------------------------------------- */
+/* ---- rows ------------------------------------------------------------------------------------ */
 
 typedef struct Build {
     RasterBins *bins;
@@ -353,8 +351,7 @@ void rasterbins_free(RasterBins *bins)
     free(bins);
 }
 
-/* ---- tiles
- * --------------------------------------------------------------------------------------- */
+/* ---- tiles ----------------------------------------------------------------------------------- */
 
 Status rasterbins_list(const RasterBins *bins, size_t number, RasterRow *row, Err *err)
 {

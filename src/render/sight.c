@@ -6,9 +6,6 @@
 #include "render/shade.h"
 #include <math.h>
 
-/* POV-Ray's: what is nearer than that is not seen. */
-static const double nearest_seen_mm = 1e-4;
-
 typedef struct ShadowContext {
     Caster *caster;
     int worker;
@@ -33,7 +30,7 @@ Rgb sight_color(const Sight *sight, int worker, Ray ray, double i, double j, con
     const Scene *scene = sight->scene;
     const Ground *ground = &scene->ground;
     double t = surfel ? surfel->t : HUGE_VAL;
-    bool on_ground = ground_hit(ground, ray, nearest_seen_mm, t, &t);
+    bool on_ground = ground_hit(ground, ray, NEAREST_SEEN_MM, t, &t);
     if (!on_ground && !surfel)
         return scene->background;
     ShadowContext context = {sight->caster, worker};

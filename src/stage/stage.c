@@ -207,7 +207,7 @@ static Status set_stage(const Look *look, const StageParams *params, Scene *scen
             scene->ground = place_ground(&look->ground, balls, n, scene);
     }
     free(balls);
-    if (status == STATUS_OK && !scene->lights)
+    if (status == STATUS_OK)
         status = mem_calloc(&scene->lights, (size_t)look->n_lights, sizeof *scene->lights, "lights",
                             err);
     if (status == STATUS_OK) {

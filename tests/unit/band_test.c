@@ -82,6 +82,17 @@ static void assert_bands_are_the_whole(const Scene *scene, const RenderParams *p
     frame_release(&whole);
 }
 
+static RenderParams all_planes(int antialias, double threshold)
+{
+    return (RenderParams){.threads = 2,
+                          .antialias = antialias,
+                          .antialias_threshold = threshold,
+                          .want_color = true,
+                          .want_depth = true,
+                          .want_normal = true,
+                          .want_id = true};
+}
+
 static void bands_have_the_bytes_of_the_whole(void **state)
 {
     (void)state;
@@ -95,15 +106,9 @@ static void bands_have_the_bytes_of_the_whole(void **state)
             look.ground.present = projection == 1;
             Scene scene = staged(model, (Projection)projection);
             for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-                const RenderParams params = {.threads = 2,
-                                             .antialias = cases[i].antialias,
-                                             .antialias_threshold = cases[i].threshold,
-                                             .shadows = i % 2 == 0,
-                                             .occlusion = cases[i].occlusion,
-                                             .want_color = true,
-                                             .want_depth = true,
-                                             .want_normal = true,
-                                             .want_id = true};
+                RenderParams params = all_planes(cases[i].antialias, cases[i].threshold);
+                params.shadows = i % 2 == 0;
+                params.occlusion = cases[i].occlusion;
                 assert_bands_are_the_whole(&scene, &params, cases[i].step);
             }
             scene_release(&scene);
@@ -122,15 +127,9 @@ static void bands_of_tiles_have_the_bytes_of_the_whole(void **state)
         for (int projection = 0; projection < 2; projection++) {
             Scene scene = staged(model, (Projection)projection);
             for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-                const RenderParams params = {.method = RENDER_RASTER,
-                                             .threads = 2,
-                                             .antialias = cases[i].antialias,
-                                             .antialias_threshold = cases[i].threshold,
-                                             .shadows = i != 1,
-                                             .want_color = true,
-                                             .want_depth = true,
-                                             .want_normal = true,
-                                             .want_id = true};
+                RenderParams params = all_planes(cases[i].antialias, cases[i].threshold);
+                params.method = RENDER_RASTER;
+                params.shadows = i != 1;
                 assert_bands_are_the_whole(&scene, &params, cases[i].step);
             }
             scene_release(&scene);
@@ -143,14 +142,8 @@ static void bands_of_povrays_view_have_the_bytes_of_the_whole(void **state)
     (void)state;
     Scene scene = staged(SCENE_ISOSURFACE, PROJECTION_ORTHOGRAPHIC);
     const CellParams cells = {0};
-    const RenderParams params = {.threads = 2,
-                                 .antialias = 2,
-                                 .antialias_threshold = 0.05,
-                                 .povray_cells = &cells,
-                                 .want_color = true,
-                                 .want_depth = true,
-                                 .want_normal = true,
-                                 .want_id = true};
+    RenderParams params = all_planes(2, 0.05);
+    params.povray_cells = &cells;
     assert_bands_are_the_whole(&scene, &params, 40);
     scene_release(&scene);
 }

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 
 #include "field_scenes.h"
+#include "test_lights.h"
 #include <cmocka.h>
 #include <stdio.h>
 
@@ -49,22 +50,7 @@ static void stage(Staged *staged, SceneKind kind, Projection projection)
     Scene *scene = staged->scene = &staged->test.scene;
     for (size_t i = 0; i < scene->n_segments; i++)
         staged->test.segments[i].color = (Rgb){0.2f + 0.01f * (float)i, 0.3f, 0.7f};
-    staged->lights[0] = (Light){.location = {30, 80, 90},
-                                .color = {0.9f, 0.8f, 0.7f},
-                                .parallel = true,
-                                .casts_shadows = true};
-    staged->lights[1] =
-        (Light){.location = {-60, 20, 75}, .color = {0.2f, 0.3f, 0.4f}, .casts_shadows = true};
-    scene->lights = staged->lights;
-    scene->n_lights = 2;
-    scene->background = (Rgb){0.25f, 0.5f, 1};
-    scene->finish = (Finish){.ambient = 0.1f,
-                             .diffuse = 0.7f,
-                             .brilliance = 1.3f,
-                             .phong = 0.4f,
-                             .phong_size = 35,
-                             .specular = 0.1f,
-                             .roughness = 0.07f};
+    light_test_scene(scene, staged->lights);
     scene->camera.width = WIDTH;
     scene->camera.height = HEIGHT;
     Vec3 center = vec3(0, 0, 0);

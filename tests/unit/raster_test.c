@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "test_lights.h"
 #include <cmocka.h>
 
 enum { WIDTH = 203, HEIGHT = 141, PIXELS = WIDTH * HEIGHT, N_TUBES = 60 };
@@ -114,22 +115,7 @@ static void stage(Staged *staged, Projection projection)
         add(staged, PRIMITIVE_SPHERE, a, a, number(&random, 0.05, 0.8));
         add(staged, PRIMITIVE_CYLINDER, a, b, number(&random, 0.02, 0.5));
     }
-    staged->lights[0] = (Light){.location = {30, 80, 90},
-                                .color = {0.9f, 0.8f, 0.7f},
-                                .parallel = true,
-                                .casts_shadows = true};
-    staged->lights[1] =
-        (Light){.location = {-60, 20, 75}, .color = {0.2f, 0.3f, 0.4f}, .casts_shadows = true};
-    scene->lights = staged->lights;
-    scene->n_lights = 2;
-    scene->background = (Rgb){0.25f, 0.5f, 1};
-    scene->finish = (Finish){.ambient = 0.1f,
-                             .diffuse = 0.7f,
-                             .brilliance = 1.3f,
-                             .phong = 0.4f,
-                             .phong_size = 35,
-                             .specular = 0.1f,
-                             .roughness = 0.07f};
+    light_test_scene(scene, staged->lights);
     set_camera(scene, projection, vec3_normalized(vec3(-0.3, -0.4, -1)));
     bound(scene);
 }
