@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 static Status out_of_memory(size_t count, size_t size, const char *what, Err *err)
 {
@@ -15,10 +16,9 @@ static Status out_of_memory(size_t count, size_t size, const char *what, Err *er
 static void prefer_huge_pages(void *memory, size_t size)
 {
     const size_t huge = (size_t)1 << 21;
-    uintptr_t begin = ((uintptr_t)memory + huge - 1) & ~(uintptr_t)(huge - 1);
-    uintptr_t end = ((uintptr_t)memory + size) & ~(uintptr_t)(huge - 1);
-    if (begin < end)
-        (void)madvise((char *)memory + (begin - (uintptr_t)memory), end - begin, MADV_HUGEPAGE);
+    uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), skip = (uintptr_t)memory % page;
+    if (size >= huge)
+        (void)madvise((char *)memory - skip, size + skip, MADV_HUGEPAGE);
 }
 
 Status mem_calloc(void *out, size_t count, size_t size, const char *what, Err *err)
