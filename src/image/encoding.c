@@ -28,36 +28,45 @@ uint16_t image_code(float linear, Encoding encoding, int bits)
     return (uint16_t)(code < maximum ? code : maximum);
 }
 
-/* By bisection of the floats, which are in the order of their bits: image_code never falls. */
-static float first_of_code(int code)
+static int32_t bits_of(float value)
 {
-    uint32_t low = 0, high = 0x3f800000; /* 0 and 1 */
-    float value = 0;
+    int32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static int code_of_bits(int32_t bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return image_code(value, ENCODING_SRGB, 8);
+}
+
+/* The bits of the least float of a code, by bisection: floats are in the order of their bits, and
+ * image_code never falls. */
+static int32_t first_of_code(int code)
+{
+    int32_t low = SRGB_CELLS_BEGIN, high = bits_of(1);
     while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        memcpy(&value, &middle, sizeof value);
-        if (image_code(value, ENCODING_SRGB, 8) >= code)
+        int32_t middle = low + (high - low) / 2;
+        if (code_of_bits(middle) >= code)
             high = middle;
         else
             low = middle + 1;
     }
-    memcpy(&value, &low, sizeof value);
-    return value;
+    return low;
 }
 
 void srgb_codes_init(SrgbCodes *codes)
 {
-    for (int code = 0; code < 256; code++)
-        codes->first[code] = first_of_code(code);
-    codes->first[256] = INFINITY;
     int code = 0;
+    int32_t next = first_of_code(1);
     for (int cell = 0; cell < SRGB_CELLS; cell++) {
-        int32_t bits = SRGB_CELLS_BEGIN + cell * SRGB_CELL;
-        float value;
-        memcpy(&value, &bits, sizeof value);
-        while (value >= codes->first[code + 1])
+        int32_t begin = SRGB_CELLS_BEGIN + cell * SRGB_CELL;
+        for (; next <= begin; next = first_of_code(code + 1))
             code++;
-        codes->at[cell] = (uint8_t)code;
+        int32_t rest = next - begin < SRGB_CELL ? next - begin : SRGB_CELL;
+        codes->cells[cell] = (uint32_t)(code * SRGB_CELL + SRGB_CELL - rest);
     }
 }
 

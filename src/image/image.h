@@ -82,31 +82,32 @@ typedef enum Encoding { ENCODING_SRGB, ENCODING_LINEAR } Encoding;
  * 16. */
 uint16_t image_code(float linear, Encoding encoding, int bits);
 
-/* Tables for image_code(., ENCODING_SRGB, 8) of many values: the floats from 2^-13 to 1 in cells of
- * 1/128 of an octave, in none of which the code rises twice. */
+/* Table for image_code(., ENCODING_SRGB, 8) of many values: the floats from 2^-13 to 1 in cells of
+ * 1/128 of an octave, in none of which the code rises twice. Added to the place in its cell, a
+ * cell's entry has the code in its third byte. */
 enum {
-    SRGB_CELL = 1 << 16,           /* floats in a cell */
-    SRGB_CELLS_BEGIN = 0x39000000, /* the bits of 2^-13 */
+    SRGB_CELL_BITS = 16,
+    SRGB_CELL = 1 << SRGB_CELL_BITS, /* floats in a cell */
+    SRGB_CELLS_BEGIN = 0x39000000,   /* the bits of 2^-13 */
     SRGB_CELLS = (0x3f800000 - SRGB_CELLS_BEGIN) / SRGB_CELL
 };
+#define SRGB_LEAST 0x1p-13f      /* has code 0 */
+#define SRGB_MOST 0x1.fffffep-1f /* the float before 1; has code 255 */
 
 typedef struct SrgbCodes {
-    float first[257];       /* least value of a code; infinity for 256 */
-    uint8_t at[SRGB_CELLS]; /* code of the least value in a cell */
+    uint32_t cells[SRGB_CELLS];
 } SrgbCodes;
 
 void srgb_codes_init(SrgbCodes *codes);
 /* The code that image_code gives. */
 static inline uint8_t srgb_code(const SrgbCodes *codes, float linear)
 {
-    int32_t bits;
-    memcpy(&bits, &linear, sizeof bits);
-    if (!(linear < 1))
-        return linear >= 1 ? 255 : 0;
-    if (bits < SRGB_CELLS_BEGIN)
-        return 0;
-    uint8_t code = codes->at[(bits - SRGB_CELLS_BEGIN) / SRGB_CELL];
-    return (uint8_t)(code + (linear >= codes->first[code + 1]));
+    float value = linear > SRGB_LEAST ? linear : SRGB_LEAST;
+    value = value < SRGB_MOST ? value : SRGB_MOST;
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    bits -= SRGB_CELLS_BEGIN;
+    return (uint8_t)((codes->cells[bits / SRGB_CELL] + bits % SRGB_CELL) / SRGB_CELL);
 }
 
 /* New picture of a colour plane (1 or 3 channels). */
