@@ -31,17 +31,18 @@ typedef struct PlanePacket {
     Lanes q, sum, sum_k2, sum_k4;
 } PlanePacket;
 
-enum { PLANE_PACKETS = TILE_SAMPLES / LANES };
+enum { PLANE_PACKETS = TILE_SAMPLES / LANES, PLANE_PARTS = (PLANE_PACKETS + LANES - 1) / LANES };
 
 /* What a tile's packets are, several at once: a place in the middle of each, and how far its rays
  * are from there at most. */
 typedef struct PlaneMiddles {
-    Lanes x[PLANE_PACKETS / LANES], y[PLANE_PACKETS / LANES], half[PLANE_PACKETS / LANES];
+    Lanes x[PLANE_PARTS], y[PLANE_PARTS], half[PLANE_PARTS];
 } PlaneMiddles;
 
 LANE_FN PlaneMiddles plane_middles(const FieldTile *tile)
 {
-    float x[PLANE_PACKETS], y[PLANE_PACKETS], half[PLANE_PACKETS];
+    float x[PLANE_PARTS * LANES] = {0}, y[PLANE_PARTS * LANES] = {0},
+                          half[PLANE_PARTS * LANES] = {0};
     for (int i = 0; i < PLANE_PACKETS; i++) {
         int first = i * LANES, last = first + LANES - 1; /* opposite corners */
         x[i] = 0.5f * (tile->x[first] + tile->x[last]);
@@ -53,7 +54,7 @@ LANE_FN PlaneMiddles plane_middles(const FieldTile *tile)
     __builtin_memcpy(middles.x, x, sizeof x);
     __builtin_memcpy(middles.y, y, sizeof y);
     __builtin_memcpy(middles.half, half, sizeof half);
-    for (int part = 0; part < PLANE_PACKETS / LANES; part++)
+    for (int part = 0; part < PLANE_PARTS; part++)
         middles.half[part] = lanes_sqrt(middles.half[part]);
     return middles;
 }
@@ -65,7 +66,7 @@ LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
 {
     const PlaneMiddles middles = plane_middles(tile);
     uint32_t hopeful = 0;
-    for (int part = 0; part < PLANE_PACKETS / LANES; part++) {
+    for (int part = 0; part < PLANE_PARTS; part++) {
         Lanes nearest2 = lanes_set(1e30f), count = lanes_set(0);
         for (size_t i = 0; i < tile->n_terms; i++) {
             const TileTerm *term = &tile->terms[i];

@@ -220,17 +220,10 @@ static void write_codes(const FieldPicture *picture, const SeenTile *seen, int w
         return;
     }
     float color[3][TILE_SAMPLES];
+    const uint8_t *state = picture->by_sample ? NULL : seen->hits->state;
     color_all(picture, seen, worker, color);
-    for (int j = 0; j < rows; j++)
-        for (int i = 0; i < columns; i++) {
-            int sample = tile_sample_at(i, j);
-            uint8_t *pixel = to + 3 * ((size_t)j * width + (size_t)i);
-            if (!picture->by_sample && seen->hits->state[sample] != TILE_HIT)
-                memcpy(pixel, canvas->background_codes, 3);
-            else
-                for (int c = 0; c < 3; c++)
-                    pixel[c] = srgb_code(&picture->codes, color[c][sample]);
-        }
+    tilelook_encode(fieldtiles_kernels(picture->tiles), &picture->codes, color, state,
+                    canvas->background_codes, columns, rows, to, 3 * width);
 }
 
 /* Writes the part of a tile that is inside the grid to rows of samples, the first of which is row

@@ -30,7 +30,7 @@ typedef struct TileTerm {
     uint32_t segment;             /* index in the scene */
 } TileTerm;
 
-/* Samples are numbered so that each run of 8, and of 4, is a compact block: tile_sample_x/y. */
+/* Samples are numbered so that each run of 16, of 8, and of 4, is a compact block: tile_sample_x/y. */
 typedef struct FieldTile {
     const TileTerm *terms; /* by rising `on` */
     size_t n_terms;
@@ -45,21 +45,22 @@ typedef struct FieldTile {
 
 static inline int tile_sample_x(int sample)
 {
-    return (sample >> 3 & 1) * 4 + (sample >> 2 & 1) * 2 + (sample & 1);
+    return (sample >> 4 & 1) * 4 + (sample >> 2 & 1) * 2 + (sample & 1);
 }
 
 static inline int tile_sample_y(int sample)
 {
-    return (sample >> 4) * 2 + (sample >> 1 & 1);
+    return (sample >> 5) * 4 + (sample >> 3 & 1) * 2 + (sample >> 1 & 1);
 }
 
 /* The number of the sample at (x, y) of the tile. */
 static inline int tile_sample_at(int x, int y)
 {
-    return (y >> 1) << 4 | (x >> 2) << 3 | (x >> 1 & 1) << 2 | (y & 1) << 1 | (x & 1);
+    return (y >> 2) << 5 | (x >> 2) << 4 | (y >> 1 & 1) << 3 | (x >> 1 & 1) << 2 | (y & 1) << 1 |
+           (x & 1);
 }
 
-enum { TILE_WORK_BYTES = 704 }; /* of one term in a kernel's workspace */
+enum { TILE_WORK_BYTES = 1344 }; /* of one term in a kernel's workspace */
 
 typedef enum TileState {
     TILE_MISS = 0, /* proven: nothing is there */

@@ -41,7 +41,7 @@ typedef struct Workspace {
     size_t scratch_capacity;
 } Workspace;
 
-enum { SAMPLE_PERIOD = 16 }; /* tile_sample_x(n + 16) = tile_sample_x(n) */
+enum { SAMPLE_PERIOD = 32 }; /* tile_sample_x(n + 32) = tile_sample_x(n) */
 
 /* Where the samples of a column or a row of tiles are in the camera's plane. */
 typedef struct TilePlaces {

@@ -1,7 +1,8 @@
-/* Several floats at once. A source that defines LANES_AVX2 gets 8 lanes with fused multiply-adds
- * and must run only where tilekernels_best() chooses it; any other gets 4 lanes of plain IEEE
- * arithmetic, which every processor has. Only correctly rounded operations are used, no
- * approximate reciprocals, so that within one of the two the results are the same everywhere.
+/* Several floats at once. A source that defines LANES_AVX512 gets 16 lanes, one that defines
+ * LANES_AVX2 gets 8, both with fused multiply-adds; they must run only where tilekernels_usable()
+ * names them. Any other gets 4 lanes of plain IEEE arithmetic, which every processor has. Only
+ * correctly rounded operations are used, no approximate reciprocals, so that within one of the
+ * three the results are the same everywhere.
  *
  * Masks hold -1 where true and 0 where false. */
 #ifndef CORCAST_RENDER_LANES_H
@@ -11,7 +12,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#ifdef LANES_AVX2
+/* Whether this processor has what the lanes take. */
+#define LANES_AVX512_RUN                                                                           \
+    (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&                   \
+     __builtin_cpu_supports("avx512vl"))
+#define LANES_AVX2_RUN (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+
+#if defined LANES_AVX512
+#include <immintrin.h>
+#define LANES 16
+#define LANE_TARGET __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,fma")))
+#elif defined LANES_AVX2
 #include <immintrin.h>
 #define LANES 8
 #define LANE_TARGET __attribute__((target("avx2,fma")))
@@ -41,7 +52,58 @@ LANE_FN void lanes_store(float *values, Lanes lanes)
     __builtin_memcpy(values, &lanes, sizeof lanes);
 }
 
-#ifdef LANES_AVX2
+#if defined LANES_AVX512
+
+/* a b + c */
+LANE_FN Lanes lanes_fma(Lanes a, Lanes b, Lanes c)
+{
+    return (Lanes)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+}
+
+LANE_FN Lanes lanes_sqrt(Lanes a)
+{
+    return (Lanes)_mm512_sqrt_ps((__m512)a);
+}
+
+LANE_FN Lanes lanes_min(Lanes a, Lanes b)
+{
+    return (Lanes)_mm512_min_ps((__m512)a, (__m512)b);
+}
+
+LANE_FN Lanes lanes_max(Lanes a, Lanes b)
+{
+    return (Lanes)_mm512_max_ps((__m512)a, (__m512)b);
+}
+
+/* Bit i: lane i. */
+LANE_FN uint32_t lanes_bits(LaneMask mask)
+{
+    return _mm512_movepi32_mask((__m512i)mask);
+}
+
+LANE_FN bool lanes_any(LaneMask mask)
+{
+    return lanes_bits(mask) != 0;
+}
+
+LANE_FN Lanes lanes_select(LaneMask mask, Lanes a, Lanes b)
+{
+    return (Lanes)_mm512_mask_blend_ps((__mmask16)lanes_bits(mask), (__m512)b, (__m512)a);
+}
+
+/* The smallest lane. */
+LANE_FN float lanes_least(Lanes a)
+{
+    return _mm512_reduce_min_ps((__m512)a);
+}
+
+/* table[index] */
+LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
+{
+    return (LaneMask)_mm512_i32gather_epi32((__m512i)index, table, 4);
+}
+
+#elif defined LANES_AVX2
 
 /* a b + c */
 LANE_FN Lanes lanes_fma(Lanes a, Lanes b, Lanes c)
@@ -76,6 +138,12 @@ LANE_FN float lanes_least(Lanes a)
     __m128 least = _mm_min_ps(low, high);
     least = _mm_min_ps(least, _mm_movehl_ps(least, least));
     return _mm_cvtss_f32(_mm_min_ss(least, _mm_shuffle_ps(least, least, 1)));
+}
+
+/* table[index] */
+LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
+{
+    return (LaneMask)_mm256_i32gather_epi32((const int *)table, (__m256i)index, 4);
 }
 
 /* Bit i: lane i. */
@@ -126,6 +194,13 @@ LANE_FN float lanes_least(Lanes a)
     return least;
 }
 
+LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
+{
+    for (int i = 0; i < LANES; i++)
+        index[i] = (int32_t)table[index[i]];
+    return index;
+}
+
 LANE_FN uint32_t lanes_bits(LaneMask mask)
 {
     return (uint32_t)((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
@@ -137,6 +212,15 @@ LANE_FN bool lanes_any(LaneMask mask)
 }
 
 #endif
+
+/* Which bytes are not 0. */
+LANE_FN LaneMask lanes_of_bytes(const uint8_t *bytes)
+{
+    typedef uint8_t LaneBytes __attribute__((vector_size(LANES)));
+    LaneBytes lanes;
+    __builtin_memcpy(&lanes, bytes, sizeof lanes);
+    return __builtin_convertvector(lanes, LaneMask) != 0;
+}
 
 LANE_FN Lanes lanes_abs(Lanes a)
 {

@@ -11,15 +11,27 @@
 #include "render/rasterkernels.h"
 #include "render/rasterruling.h"
 
-enum { BLOCKS = TILE_SAMPLES / LANES };
+/* What an item may touch is told by parts of 8 samples or 4, as many as make the most of lanes. */
+enum {
+    BLOCKS = TILE_SAMPLES / LANES,
+    PART = LANES == 8 ? 8 : 4,
+    PARTS = TILE_SAMPLES / PART,
+    PARTS_OF_BLOCK = LANES / PART
+};
 
 /* ---- tiles ----------------------------------------------------------------------------------- */
 
 typedef struct RasterState {
     const RasterTile *tile;
     RasterHits *hits;
-    float farthest[BLOCKS]; /* depth behind which a block needs nothing */
+    float farthest[PARTS]; /* depth behind which a part needs nothing */
 } RasterState;
+
+RASTER_FN void set_farthest(RasterState *state, int block, float depth)
+{
+    for (int part = 0; part < PARTS_OF_BLOCK; part++)
+        state->farthest[block * PARTS_OF_BLOCK + part] = depth;
+}
 
 /* Keeps what is nearer. */
 RASTER_FN void keep_nearer(RasterState *state, const Near *near, int block, LaneMask met, Lanes z,
@@ -39,7 +51,7 @@ RASTER_FN void keep_nearer(RasterState *state, const Near *near, int block, Lane
     if (ruling)
         lanes_store(&hits->ruling[first],
                     lanes_select(nearer, *ruling, lanes_load(&hits->ruling[first])));
-    state->farthest[block] = lanes_largest(depth);
+    set_farthest(state, block, lanes_largest(depth));
 }
 
 /* Decides the samples `unsure` of a block in double precision. */
@@ -60,7 +72,7 @@ LANE_TARGET static void decide_block(RasterState *state, const Near *near, int b
         hits->z[sample] = depth;
         hits->item[sample] = near->number | RASTER_DECIDED;
     }
-    state->farthest[block] = lanes_largest(lanes_load(&hits->z[block * LANES]));
+    set_farthest(state, block, lanes_largest(lanes_load(&hits->z[block * LANES])));
 }
 
 RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
@@ -89,14 +101,14 @@ RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
     }
 }
 
-/* The blocks of the tile that the item's capsule may touch and that do not all see something
+/* The parts of the tile that the item's capsule may touch and that do not all see something
  * nearer, as bits. */
-RASTER_FN unsigned touched_blocks(const RasterState *state, const Near *near)
+RASTER_FN unsigned touched_parts(const RasterState *state, const Near *near)
 {
     const RasterGrid *grid = state->tile->grid;
-    const float *xs = LANES == 8 ? grid->block8_x : grid->block4_x;
-    const float *ys = LANES == 8 ? grid->block8_y : grid->block4_y;
-    const float *half = LANES == 8 ? grid->block8_half : grid->block4_half;
+    const float *xs = PART == 8 ? grid->block8_x : grid->block4_x;
+    const float *ys = PART == 8 ? grid->block8_y : grid->block4_y;
+    const float *half = PART == 8 ? grid->block8_half : grid->block4_half;
     float half_x = half[0] * near->depth, half_y = half[1] * near->depth;
     float ax = near->along_x < 0 ? -near->along_x : near->along_x;
     float ay = near->along_y < 0 ? -near->along_y : near->along_y;
@@ -106,7 +118,7 @@ RASTER_FN unsigned touched_blocks(const RasterState *state, const Near *near)
     across += rounding;
     along += rounding;
     unsigned bits = 0;
-    for (int first = 0; first < BLOCKS; first += LANES) {
+    for (int first = 0; first < PARTS; first += LANES) {
         Lanes x = lanes_fma(lanes_load(&xs[first]), lanes_set(near->depth), lanes_set(near->x));
         Lanes y = lanes_fma(lanes_load(&ys[first]), lanes_set(near->depth), lanes_set(near->y));
         Lanes off = lanes_abs(lanes_fma(y, lanes_set(near->along_x), -(x * near->along_y)));
@@ -124,11 +136,14 @@ RASTER_FN void trace_items(RasterState *state, bool perspective)
     for (size_t i = 0; i < tile->n; i++) {
         Near near = approach(tile, tile->list[i], perspective);
         outline(tile, &near);
-        unsigned blocks = touched_blocks(state, &near);
+        unsigned parts = touched_parts(state, &near);
         if (item_is_close(near.item))
-            blocks = (1u << BLOCKS) - 1;
-        for (; blocks; blocks &= blocks - 1)
-            meet_block(state, &near, __builtin_ctz(blocks));
+            parts = (1u << PARTS) - 1;
+        while (parts) {
+            int block = __builtin_ctz(parts) / PARTS_OF_BLOCK;
+            meet_block(state, &near, block);
+            parts &= ~(((1u << PARTS_OF_BLOCK) - 1) << block * PARTS_OF_BLOCK);
+        }
     }
 }
 
@@ -138,7 +153,7 @@ LANE_TARGET static uint64_t RASTER_KERNEL(trace)(const RasterTile *tile, RasterH
     for (int sample = 0; sample < TILE_SAMPLES; sample += LANES) {
         lanes_store(&hits->z[sample], lanes_set(HUGE_VALF));
         store_items(&hits->item[sample], (LaneMask){0} + (int32_t)RASTER_NOTHING);
-        state.farthest[sample / LANES] = HUGE_VALF;
+        set_farthest(&state, sample / LANES, HUGE_VALF);
     }
     if (tile->perspective)
         trace_items(&state, true);

@@ -57,9 +57,10 @@ typedef struct RasterKernels {
 
 extern const RasterKernels rasterkernels_portable;
 #ifdef __x86_64__
-extern const RasterKernels rasterkernels_avx2;
+extern const RasterKernels rasterkernels_avx2, rasterkernels_avx512;
 #endif
-/* The fastest that this processor can run. */
+/* As tilekernels_usable(). */
+int rasterkernels_usable(const RasterKernels *kernels[KINDS_OF_KERNELS]);
 const RasterKernels *rasterkernels_best(void);
 
 #endif

@@ -200,19 +200,12 @@ static bool color_tile(const RasterPicture *picture, const RasterTile *tile, int
     return true;
 }
 
-/* The codes of what is seen; the background is there. */
-static void write_codes(const RasterPicture *picture, const Place *place, const Canvas *canvas)
+static void write_codes(const RasterPicture *picture, const Place *place, Canvas *canvas)
 {
-    uint8_t *pixels = &picture->frame->codes.codes8[3 * pixel_at(picture, place, 0, 0)];
-    size_t stride = 3 * (size_t)picture->scene->camera.width;
-    for (uint64_t left = canvas->seen; left; left &= left - 1) {
-        int sample = __builtin_ctzll(left), i = tile_sample_x(sample), j = tile_sample_y(sample);
-        if (i >= place->n_columns || j >= place->n_rows)
-            continue;
-        uint8_t *pixel = pixels + (size_t)j * stride + 3 * i;
-        for (int c = 0; c < 3; c++)
-            pixel[c] = srgb_code(&picture->codes, canvas->color[c][sample]);
-    }
+    tilelook_encode(picture->shading, &picture->codes, canvas->color, canvas->surfels.state,
+                    picture->background_codes, place->n_columns, place->n_rows,
+                    &picture->frame->codes.codes8[3 * pixel_at(picture, place, 0, 0)],
+                    3 * (size_t)picture->scene->camera.width);
 }
 
 /* Rows of the background, or of its codes. */
@@ -353,7 +346,7 @@ static void draw_tile(const RasterPicture *picture, const Place *place, RasterTi
     bool seen = color_tile(picture, tile, worker, canvas);
     if (frame->color.values && seen)
         write_colors(picture, place, canvas->color);
-    if (!seen || frame->codes.codes8)
+    if (!seen)
         write_background(picture, place, picture->background);
     if (frame->codes.codes8 && seen)
         write_codes(picture, place, canvas);

@@ -1,11 +1,13 @@
-/* shade.c's model for the samples of a tile, several at once and in single precision: included by
- * each source that compiles it for its lanes, SHADE_KERNEL being the name of the function. */
+/* shade.c's model for the samples of a tile, and the codes of the colours, several at once and in
+ * single precision: included by each source that compiles it for its lanes, SHADE_KERNEL and
+ * ENCODE_KERNEL being the names of the functions. */
 #ifndef SHADE_KERNEL
-#error "define SHADE_KERNEL, the name of the function"
+#error "define SHADE_KERNEL and ENCODE_KERNEL, the names of the functions"
 #endif
 
 #include "render/lanes.h"
 #include "render/tilekernels.h"
+#include <endian.h>
 
 /* x^y of x in (0, 1], y >= 0: by squaring where y is a small whole number, as it mostly is. What is below
  * 1e-15 need not be right, and so never comes near the slow arithmetic of tiny numbers. */
@@ -83,9 +85,8 @@ LANE_FN void add_light(Shading *shading, size_t number)
     to_light(shading, light, towards);
     Lanes cosine = inner(shading->normal, towards);
     LaneMask lit = cosine >= 1e-10f;
-    for (int lane = 0; shading->surface->shadowed && lane < LANES; lane++)
-        if (shading->surface->shadowed[number][shading->first + lane])
-            lit[lane] = 0;
+    if (shading->surface->shadowed)
+        lit &= ~lanes_of_bytes(&shading->surface->shadowed[number][shading->first]);
     if (!lanes_any(lit))
         return;
     Lanes diffuse = finish->brilliance == 1 ? cosine : lanes_power(cosine, finish->brilliance);
@@ -102,19 +103,11 @@ LANE_FN void add_light(Shading *shading, size_t number)
     }
 }
 
-LANE_FN bool any_hit_among(const uint8_t *state)
-{
-    uint8_t any = 0;
-    for (int lane = 0; lane < LANES; lane++)
-        any |= state[lane];
-    return any != TILE_MISS;
-}
-
 LANE_TARGET static void SHADE_KERNEL(const TileLook *look, const TileSurface *surface,
                                      float color[3][TILE_SAMPLES])
 {
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
-        if (!any_hit_among(surface->hits->state + first))
+        if (!lanes_any(lanes_of_bytes(&surface->hits->state[first])))
             continue;
         Shading shading;
         shading.look = look;
@@ -132,5 +125,53 @@ LANE_TARGET static void SHADE_KERNEL(const TileLook *look, const TileSurface *su
             add_light(&shading, i);
         for (int c = 0; c < 3; c++)
             lanes_store(&color[c][first], shading.color[c]);
+    }
+}
+
+LANE_FN LaneMask srgb_lanes(const SrgbCodes *codes, const float *linear)
+{
+    Lanes value =
+        lanes_min(lanes_max(lanes_load(linear), lanes_set(SRGB_LEAST)), lanes_set(SRGB_MOST));
+    LaneMask bits = (LaneMask)value - SRGB_CELLS_BEGIN;
+    LaneMask cell = lanes_gather(codes->cells, bits >> SRGB_CELL_BITS);
+    return (cell + (bits & (SRGB_CELL - 1))) >> SRGB_CELL_BITS;
+}
+
+/* Two pixels of three bytes each. */
+LANE_FN uint64_t two_pixels(const uint32_t *pixels)
+{
+    return pixels[0] | (uint64_t)pixels[1] << 24;
+}
+
+LANE_FN void store_eight_bytes(uint8_t *to, uint64_t bytes)
+{
+    bytes = htole64(bytes);
+    __builtin_memcpy(to, &bytes, sizeof bytes);
+}
+
+LANE_TARGET static void ENCODE_KERNEL(const SrgbCodes *codes, float color[3][TILE_SAMPLES],
+                                      const uint8_t *state, const uint8_t background[3],
+                                      uint8_t *to, size_t stride)
+{
+    uint32_t pixels[TILE_SAMPLES];
+    int32_t other = background[0] | background[1] << 8 | background[2] << 16;
+    for (int first = 0; first < TILE_SAMPLES; first += LANES) {
+        LaneMask pixel = srgb_lanes(codes, &color[0][first]) |
+                         srgb_lanes(codes, &color[1][first]) << 8 |
+                         srgb_lanes(codes, &color[2][first]) << 16;
+        if (state) {
+            LaneMask seen = lanes_of_bytes(&state[first]);
+            pixel = (pixel & seen) | (other & ~seen);
+        }
+        __builtin_memcpy(&pixels[first], &pixel, sizeof pixel);
+    }
+    for (int row = 0; row < TILE_SIDE; row++, to += stride) {
+        uint64_t left = two_pixels(&pixels[tile_sample_at(0, row)]);
+        uint64_t middle = two_pixels(&pixels[tile_sample_at(2, row)]);
+        uint64_t right = two_pixels(&pixels[tile_sample_at(4, row)]);
+        uint64_t last = two_pixels(&pixels[tile_sample_at(6, row)]);
+        store_eight_bytes(to, left | middle << 48);
+        store_eight_bytes(to + 8, middle >> 16 | right << 32);
+        store_eight_bytes(to + 16, right >> 32 | last << 16);
     }
 }

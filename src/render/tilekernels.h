@@ -2,6 +2,7 @@
 #ifndef CORCAST_RENDER_TILEKERNELS_H
 #define CORCAST_RENDER_TILEKERNELS_H
 
+#include "image/image.h"
 #include "render/fieldtile.h"
 #include "scene/scene.h"
 
@@ -33,13 +34,20 @@ typedef struct TileKernels {
     void (*trace)(const FieldTile *tile, TileWork *work, TileHits *hits);
     /* Colours of the hits as shade() gives, to 2e-5 of the light's colour. */
     void (*shade)(const TileLook *look, const TileSurface *surface, float color[3][TILE_SAMPLES]);
+    /* Stores the codes of a whole tile's colours as rows of pixels, `stride` bytes from row to row:
+     * the background's where a TileState is TILE_MISS. `state` NULL: none is. */
+    void (*encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES], const uint8_t *state,
+                   const uint8_t background[3], uint8_t *pixels, size_t stride);
 } TileKernels;
 
 extern const TileKernels tilekernels_portable;
 #ifdef __x86_64__
-extern const TileKernels tilekernels_avx2;
+extern const TileKernels tilekernels_avx2, tilekernels_avx512;
 #endif
-/* The fastest that this processor can run. */
+enum { KINDS_OF_KERNELS = 3 };
+/* Those that this processor can run, the fastest first and the portable ones last; returns how
+ * many. */
+int tilekernels_usable(const TileKernels *kernels[KINDS_OF_KERNELS]);
 const TileKernels *tilekernels_best(void);
 
 #endif

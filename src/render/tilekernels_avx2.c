@@ -5,10 +5,11 @@
 #define FIELD_KERNEL trace_avx2
 #define PLANE_KERNEL trace_plane_avx2
 #define SHADE_KERNEL shade_avx2
+#define ENCODE_KERNEL encode_avx2
 #include "render/fieldkernel.h"
 #include "render/shadekernel.h"
 
-const TileKernels tilekernels_avx2 = {trace_avx2, shade_avx2};
+const TileKernels tilekernels_avx2 = {trace_avx2, shade_avx2, encode_avx2};
 
 #else
 typedef int NotForThisProcessor;

@@ -1,5 +1,7 @@
 #include "render/tilelook.h"
 
+#include <string.h>
+
 Status tilelook_make(const Scene *scene, Vec3 location, const Vec3 axes[3], TileLight **lights,
                      TileLook *look, Err *err)
 {
@@ -35,4 +37,19 @@ void tilesurface_init(const Scene *scene, TileSurface *surface)
         surface->pigment[1][sample] = scene->color.g;
         surface->pigment[2][sample] = scene->color.b;
     }
+}
+
+void tilelook_encode(const TileKernels *kernels, const SrgbCodes *codes,
+                     float color[3][TILE_SAMPLES], const uint8_t *state,
+                     const uint8_t background[3], int columns, int rows, uint8_t *pixels,
+                     size_t stride)
+{
+    if (columns == TILE_SIDE && rows == TILE_SIDE) {
+        kernels->encode(codes, color, state, background, pixels, stride);
+        return;
+    }
+    uint8_t whole[TILE_SIDE][3 * TILE_SIDE];
+    kernels->encode(codes, color, state, background, whole[0], sizeof whole[0]);
+    for (int row = 0; row < rows; row++)
+        memcpy(pixels + (size_t)row * stride, whole[row], 3 * (size_t)columns);
 }

@@ -12,5 +12,10 @@ MUST_CHECK Status tilelook_make(const Scene *scene, Vec3 location, const Vec3 ax
 bool tilelook_needs_places(const Scene *scene);
 /* A surface in the scene's one colour, seen along the third axis. */
 void tilesurface_init(const Scene *scene, TileSurface *surface);
+/* TileKernels.encode of the part of a tile, `columns` by `rows` pixels, that is inside a picture. */
+void tilelook_encode(const TileKernels *kernels, const SrgbCodes *codes,
+                     float color[3][TILE_SAMPLES], const uint8_t *state,
+                     const uint8_t background[3], int columns, int rows, uint8_t *pixels,
+                     size_t stride);
 
 #endif

@@ -314,17 +314,16 @@ static void try_cameras(Scene *scene, int cameras, bool facing, Random *random, 
                                   4 * scene->segments[i].radius_mm);
     Near *near = calloc(scene->n_segments, sizeof *near);
     assert_non_null(near);
-    Answer portable, fastest;
+    Answer answer;
+    const TileKernels *kernels[KINDS_OF_KERNELS];
+    int n_kernels = tilekernels_usable(kernels);
     for (int i = 0; i < cameras; i++) {
         scene->camera = aim(facing ? AIM_FACING : (Aim)(i % N_AIMS), scene, extent, random);
-        ask(scene, tilekernels_best(), &fastest);
-        for (int sample = 0; sample < TILE_SAMPLES; sample++)
-            judge(scene, &fastest, sample, near, tally);
-        if (i % 8 || tilekernels_best() == &tilekernels_portable)
-            continue;
-        ask(scene, &tilekernels_portable, &portable);
-        for (int sample = 0; sample < TILE_SAMPLES; sample++)
-            judge(scene, &portable, sample, near, tally);
+        for (int k = 0; k < (i % 8 ? 1 : n_kernels); k++) {
+            ask(scene, kernels[k], &answer);
+            for (int sample = 0; sample < TILE_SAMPLES; sample++)
+                judge(scene, &answer, sample, near, tally);
+        }
     }
     free(near);
 }

@@ -267,7 +267,7 @@ static void keep_tile(const SeenTile *seen, int worker, void *context)
     visit->kernels->shade(visit->look, &surface, tile->color);
 }
 
-static void both_kernels_agree(void **state)
+static void all_kernels_agree(void **state)
 {
     (void)state;
     const TileLight light = {
@@ -279,9 +279,10 @@ static void both_kernels_agree(void **state)
     for (int i = 0; i < 64; i++)
         places[i] = i;
     const SampleGrid grid = {places, places, 64, 64, 1, 0, 0};
-    const TileKernels *kernels[2] = {&tilekernels_portable, tilekernels_best()};
-    static Tile tiles[2][64];
-    for (int k = 0; k < 2; k++) {
+    const TileKernels *kernels[KINDS_OF_KERNELS];
+    int n_kernels = tilekernels_usable(kernels);
+    static Tile tiles[KINDS_OF_KERNELS][64];
+    for (int k = 0; k < n_kernels; k++) {
         FieldTiles *field;
         KernelVisit visit = {kernels[k], &look, tiles[k], 0};
         assert_int_equal(fieldtiles_new(staged.scene, &grid, 0, 1, &field, NULL), STATUS_OK);
@@ -292,9 +293,9 @@ static void both_kernels_agree(void **state)
         fieldtiles_free(field);
     }
     int hits = 0;
-    for (int n = 0; n < 64 * TILE_SAMPLES; n++) {
-        const Tile *a = &tiles[0][n / TILE_SAMPLES], *b = &tiles[1][n / TILE_SAMPLES];
-        int sample = n % TILE_SAMPLES;
+    for (int n = 0; n < 64 * TILE_SAMPLES * n_kernels; n++) {
+        int tile = n / TILE_SAMPLES % 64, sample = n % TILE_SAMPLES;
+        const Tile *a = &tiles[0][tile], *b = &tiles[n / TILE_SAMPLES / 64][tile];
         assert_int_equal(a->hits.state[sample], b->hits.state[sample]);
         hits += a->hits.state[sample] == TILE_HIT;
         assert_true(fabs(a->hits.z[sample] - b->hits.z[sample]) < 1e-4);
@@ -306,6 +307,45 @@ static void both_kernels_agree(void **state)
         }
     }
     assert_true(hits > 200);
+}
+
+static void all_kernels_give_the_codes_of_colors(void **state)
+{
+    (void)state;
+    enum { STRIDE = 3 * TILE_SIDE + 1 };
+    SrgbCodes codes;
+    srgb_codes_init(&codes);
+    Random random;
+    random_seed(&random, 5);
+    float color[3][TILE_SAMPLES];
+    uint8_t seen[TILE_SAMPLES];
+    const uint8_t background[3] = {7, 200, 255};
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        seen[sample] = random_bits(&random) % 2 ? TILE_HIT : TILE_MISS;
+        for (int c = 0; c < 3; c++)
+            color[c][sample] = (float)(1.2 * random_uniform(&random) - 0.1);
+    }
+    color[0][5] = NAN;
+    color[1][6] = INFINITY;
+    color[2][7] = -INFINITY;
+    const TileKernels *kernels[KINDS_OF_KERNELS];
+    int n_kernels = tilekernels_usable(kernels);
+    for (int n = 0; n < 2 * n_kernels; n++) {
+        uint8_t pixels[TILE_SIDE * STRIDE];
+        memset(pixels, 99, sizeof pixels);
+        const uint8_t *states = n % 2 ? seen : NULL;
+        kernels[n / 2]->encode(&codes, color, states, background, pixels, STRIDE);
+        for (int y = 0; y < TILE_SIDE; y++) {
+            for (int i = 0; i < 3 * TILE_SIDE; i++) {
+                int sample = tile_sample_at(i / 3, y);
+                bool is_seen = !states || seen[sample] == TILE_HIT;
+                assert_int_equal(pixels[y * STRIDE + i],
+                                 is_seen ? srgb_code(&codes, color[i % 3][sample])
+                                         : background[i % 3]);
+            }
+            assert_int_equal(pixels[y * STRIDE + 3 * TILE_SIDE], 99);
+        }
+    }
 }
 
 static void a_distant_scene_is_the_same_scene(void **state)
@@ -448,7 +488,8 @@ int main(void)
         cmocka_unit_test(the_picture_is_that_of_single_rays),
         cmocka_unit_test(antialiasing_weighs_the_centre_and_the_grid_alike),
         cmocka_unit_test(adaptive_antialiasing_changes_edges_alone),
-        cmocka_unit_test(both_kernels_agree),
+        cmocka_unit_test(all_kernels_agree),
+        cmocka_unit_test(all_kernels_give_the_codes_of_colors),
         cmocka_unit_test(a_distant_scene_is_the_same_scene),
         cmocka_unit_test(a_camera_inside_a_vessel_sees_its_wall),
         cmocka_unit_test(extremes_are_drawn_without_harm),
