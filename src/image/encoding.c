@@ -42,11 +42,11 @@ static int code_of_bits(int32_t bits)
     return image_code(value, ENCODING_SRGB, 8);
 }
 
-/* The bits of the least float of a code, by bisection: floats are in the order of their bits, and
- * image_code never falls. */
+/* The bits of the least float of a code, by bisection about where decoding says it is: floats are
+ * in the order of their bits, and image_code never falls. */
 static int32_t first_of_code(int code)
 {
-    int32_t low = SRGB_CELLS_BEGIN, high = bits_of(1);
+    int32_t low = bits_of(srgb_decode(((float)code - 0.5f) / 255)) - 256, high = low + 512;
     while (low < high) {
         int32_t middle = low + (high - low) / 2;
         if (code_of_bits(middle) >= code)
