@@ -213,10 +213,18 @@ LANE_FN bool lanes_any(LaneMask mask)
 
 #endif
 
+typedef uint8_t LaneBytes __attribute__((vector_size(LANES)));
+
+/* Bytes that are 1 where true and 0 where false. */
+LANE_FN void lanes_to_bytes(uint8_t *bytes, LaneMask mask)
+{
+    LaneBytes lanes = __builtin_convertvector(mask & 1, LaneBytes);
+    __builtin_memcpy(bytes, &lanes, sizeof lanes);
+}
+
 /* Which bytes are not 0. */
 LANE_FN LaneMask lanes_of_bytes(const uint8_t *bytes)
 {
-    typedef uint8_t LaneBytes __attribute__((vector_size(LANES)));
     LaneBytes lanes;
     __builtin_memcpy(&lanes, bytes, sizeof lanes);
     return __builtin_convertvector(lanes, LaneMask) != 0;

@@ -2,8 +2,8 @@
  * that compiles it for its lanes, RASTER_KERNEL(name) making the names of its functions.
  *
  * For every item of the tile's list the blocks of LANES samples that its capsule may touch are
- * found all at once, and the item is met with those. A sample keeps the nearest item and, of a
- * joint, the ruling; normals are left to the end, when an item's samples are known. */
+ * found all at once, and the item is met with those. A sample keeps the nearest item and its
+ * normal or, of a joint, the ruling; normals of joints are left to the end. */
 #ifndef RASTER_KERNEL
 #error "define RASTER_KERNEL(name), the name of a function"
 #endif
@@ -24,6 +24,7 @@ enum {
 typedef struct RasterState {
     const RasterTile *tile;
     RasterHits *hits;
+    TileHits *surface;
     float farthest[PARTS]; /* depth behind which a part needs nothing */
 } RasterState;
 
@@ -33,25 +34,35 @@ RASTER_FN void set_farthest(RasterState *state, int block, float depth)
         state->farthest[block * PARTS_OF_BLOCK + part] = depth;
 }
 
-/* Keeps what is nearer. */
-RASTER_FN void keep_nearer(RasterState *state, const Near *near, int block, LaneMask met, Lanes z,
-                           const Lanes *ruling)
+/* Keeps what is nearer, and returns where that is. */
+RASTER_FN LaneMask keep_nearer(RasterState *state, const Near *near, int block, LaneMask met,
+                               Lanes z)
 {
     RasterHits *hits = state->hits;
     int first = block * LANES;
     Lanes depth = z + near->z, before = lanes_load(&hits->z[first]);
     LaneMask nearer = met & (depth < before);
     if (!lanes_any(nearer))
-        return;
+        return nearer;
     Lanes kept = (Lanes)load_items(&hits->item[first]);
     Lanes item = (Lanes)((LaneMask){0} + (int32_t)near->number);
     depth = lanes_select(nearer, depth, before);
     lanes_store(&hits->z[first], depth);
     store_items(&hits->item[first], (LaneMask)lanes_select(nearer, item, kept));
-    if (ruling)
-        lanes_store(&hits->ruling[first],
-                    lanes_select(nearer, *ruling, lanes_load(&hits->ruling[first])));
-    set_farthest(state, block, lanes_largest(depth));
+    if (state->tile->n > 4) /* else it saves nothing */
+        set_farthest(state, block, lanes_largest(depth));
+    return nearer;
+}
+
+RASTER_FN void keep_lanes(float *values, LaneMask of, Lanes lanes)
+{
+    lanes_store(values, lanes_select(of, lanes, lanes_load(values)));
+}
+
+RASTER_FN void keep_normal(TileHits *surface, int block, LaneMask of, const Lanes normal[3])
+{
+    for (int c = 0; c < 3; c++)
+        keep_lanes(&surface->normal[c][block * LANES], of, normal[c]);
 }
 
 /* Decides the samples `unsure` of a block in double precision. */
@@ -80,22 +91,31 @@ RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
     const RasterGrid *grid = state->tile->grid;
     SightLines sight =
         sight_of(near, lanes_load(&grid->x[block * LANES]), lanes_load(&grid->y[block * LANES]));
-    Lanes z;
+    Lanes z, normal[3];
     if (near->kind == RASTER_CYLINDER) {
         LaneMask on_disc;
         Passage passage;
         LaneMask met = cylinder_entry(near, &sight, &z, &on_disc, &passage);
-        keep_nearer(state, near, block, met, z, NULL);
+        met = keep_nearer(state, near, block, met, z);
+        if (lanes_any(met)) {
+            cylinder_normal(near, &sight, z, on_disc, &passage, normal);
+            keep_normal(state->surface, block, met, normal);
+        }
     } else if (near->kind == RASTER_SPHERE) {
         LaneMask met = sphere_entry(near, &sight, &z);
-        keep_nearer(state, near, block, met, z, NULL);
+        met = keep_nearer(state, near, block, met, z);
+        if (lanes_any(met)) {
+            sphere_normal(near, &sight, z, normal);
+            keep_normal(state->surface, block, met, normal);
+        }
     } else if (near->kind == RASTER_EXACT) {
         decide_block(state, near, block, ~(LaneMask){0});
     } else {
         Lanes ruling;
         LaneMask unsure, within = within_outline(near, &sight);
         LaneMask met = joint_entry(near, &sight, within, &z, &ruling, &unsure);
-        keep_nearer(state, near, block, met, z, &ruling);
+        met = keep_nearer(state, near, block, met, z);
+        keep_lanes(&state->hits->ruling[block * LANES], met, ruling);
         if (lanes_any(unsure))
             decide_block(state, near, block, unsure);
     }
@@ -147,9 +167,10 @@ RASTER_FN void trace_items(RasterState *state, bool perspective)
     }
 }
 
-LANE_TARGET static uint64_t RASTER_KERNEL(trace)(const RasterTile *tile, RasterHits *hits)
+LANE_TARGET static uint64_t RASTER_KERNEL(trace)(const RasterTile *tile, RasterHits *hits,
+                                                 TileHits *surface)
 {
-    RasterState state = {.tile = tile, .hits = hits};
+    RasterState state = {.tile = tile, .hits = hits, .surface = surface};
     for (int sample = 0; sample < TILE_SAMPLES; sample += LANES) {
         lanes_store(&hits->z[sample], lanes_set(HUGE_VALF));
         store_items(&hits->item[sample], (LaneMask){0} + (int32_t)RASTER_NOTHING);
@@ -168,62 +189,50 @@ LANE_TARGET static uint64_t RASTER_KERNEL(trace)(const RasterTile *tile, RasterH
 
 /* ---- normals --------------------------------------------------------------------------------- */
 
-/* The normals of the samples `of` a block, which see the item. */
-RASTER_FN void resolve_item(const RasterTile *tile, const RasterHits *hits, int block, LaneMask of,
-                            const Near *near, Lanes normal[3])
+LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number, int sample,
+                                        TileHits *surface)
 {
-    int first = block * LANES;
-    SightLines sight =
-        sight_of(near, lanes_load(&tile->grid->x[first]), lanes_load(&tile->grid->y[first]));
-    Lanes own[3];
-    if (near->kind == RASTER_SPHERE)
-        sphere_normal(near, &sight, own);
-    else if (near->kind == RASTER_CYLINDER)
-        cylinder_normal(near, &sight, own);
-    else
-        joint_normal(near, &sight, lanes_load(&hits->ruling[first]), own);
-    for (int c = 0; c < 3; c++)
-        normal[c] = lanes_select(of, own[c], normal[c]);
+    Vec3 normal = {0, 0, 0};
+    raster_decide(tile->bins, number, tile->x + (double)tile->grid->x[sample],
+                  tile->y + (double)tile->grid->y[sample], &normal);
+    surface->normal[0][sample] = (float)normal.x;
+    surface->normal[1][sample] = (float)normal.y;
+    surface->normal[2][sample] = (float)normal.z;
 }
 
-LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number, int sample,
-                                        Lanes normal[3])
+/* The normals of the samples `of` a block, which see the joint. */
+RASTER_FN void resolve_joint(const RasterTile *tile, const RasterHits *hits, uint32_t number,
+                             int block, LaneMask of, bool perspective, TileHits *surface)
 {
-    Vec3 found = {0, 0, 0};
-    raster_decide(tile->bins, number, tile->x + (double)tile->grid->x[sample],
-                  tile->y + (double)tile->grid->y[sample], &found);
-    normal[0][sample % LANES] = (float)found.x;
-    normal[1][sample % LANES] = (float)found.y;
-    normal[2][sample % LANES] = (float)found.z;
+    int first = block * LANES;
+    Near near = approach(tile, number, perspective);
+    SightLines sight =
+        sight_of(&near, lanes_load(&tile->grid->x[first]), lanes_load(&tile->grid->y[first]));
+    Lanes normal[3];
+    joint_normal(&near, &sight, lanes_load(&hits->ruling[first]), normal);
+    keep_normal(surface, block, of, normal);
 }
 
 RASTER_FN void resolve_block(const RasterTile *tile, const RasterHits *hits, int block,
                              bool perspective, TileHits *surface)
 {
     int first = block * LANES;
-    LaneMask items = load_items(&hits->item[first]);
-    uint32_t left = lanes_bits(items != (int32_t)RASTER_NOTHING);
-    Lanes normal[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
-    for (int lane = 0; lane < LANES; lane++)
-        surface->state[first + lane] = left >> lane & 1 ? TILE_HIT : TILE_MISS;
-    if (!left)
-        return;
-    while (left) {
-        int lane = __builtin_ctz(left);
-        uint32_t number = hits->item[first + lane];
+    LaneMask items = load_items(&hits->item[first]), seen = items != (int32_t)RASTER_NOTHING;
+    lanes_to_bytes(&surface->state[first], seen); /* TILE_HIT or TILE_MISS */
+    store_items(&surface->segment[first], items & (int32_t)~RASTER_DECIDED);
+    for (uint32_t left = lanes_bits(seen); left;) {
+        int sample = first + __builtin_ctz(left);
+        uint32_t number = hits->item[sample];
+        LaneMask of = items == (int32_t)number;
         if (number & RASTER_DECIDED) {
-            resolve_decided(tile, number & ~RASTER_DECIDED, first + lane, normal);
+            resolve_decided(tile, number & ~RASTER_DECIDED, sample, surface);
             left &= left - 1;
             continue;
         }
-        LaneMask of = items == (int32_t)number;
         left &= ~lanes_bits(of);
-        Near near = approach(tile, number, perspective);
-        resolve_item(tile, hits, block, of, &near, normal);
+        if (tile->items[number].kind == RASTER_JOINT)
+            resolve_joint(tile, hits, number, block, of, perspective, surface);
     }
-    for (int c = 0; c < 3; c++)
-        lanes_store(&surface->normal[c][first], normal[c]);
-    store_items(&surface->segment[first], items & (int32_t)~RASTER_DECIDED);
 }
 
 LANE_TARGET static void RASTER_KERNEL(resolve)(const RasterTile *tile, const RasterHits *hits,

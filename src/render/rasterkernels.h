@@ -36,9 +36,10 @@ typedef struct RasterProbes {
 } RasterProbes;
 
 typedef struct RasterKernels {
-    /* Finds the first items of the tile; bit i is set where sample i sees one. */
-    uint64_t (*trace)(const RasterTile *tile, RasterHits *hits);
-    /* State, normal and item (as `segment`) of the hits. */
+    /* Finds the first items of the tile, and of spheres and cylinders the normals; bit i is set
+     * where sample i sees one. */
+    uint64_t (*trace)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
+    /* State, item (as `segment`) and all other normals of the hits. */
     void (*resolve)(const RasterTile *tile, const RasterHits *hits, TileHits *surface);
     /* Gives the samples that see nothing the background. */
     void (*clear)(const RasterHits *hits, const float background[3], float color[3][TILE_SAMPLES]);

@@ -173,7 +173,7 @@ static bool color_tile(const RasterPicture *picture, const RasterTile *tile, int
     const Scene *scene = picture->scene;
     TileSurface *surface = &canvas->surface;
     TileHits *surfels = &canvas->surfels;
-    canvas->seen = picture->kernels->trace(tile, &canvas->hits);
+    canvas->seen = picture->kernels->trace(tile, &canvas->hits, surfels);
     if (!canvas->seen)
         return false;
     picture->kernels->resolve(tile, &canvas->hits, surfels);

@@ -216,30 +216,27 @@ RASTER_FN LaneMask cylinder_entry(const Near *near, const SightLines *sight, Lan
     return *on_disc | (passage->met & (enters >= 0.0f) & (enters <= 2 * half));
 }
 
-RASTER_FN void sphere_normal(const Near *near, const SightLines *sight, Lanes normal[3])
+/* The normals where the lines enter the sphere at depths z. */
+RASTER_FN void sphere_normal(const Near *near, const SightLines *sight, Lanes z, Lanes normal[3])
 {
-    Lanes z;
-    sphere_entry(near, sight, &z);
     float per = 1 / near->item->radius;
     normal[0] = lanes_fma(z, sight->dx, sight->x) * per;
     normal[1] = lanes_fma(z, sight->dy, sight->y) * per;
     normal[2] = z * per;
 }
 
-RASTER_FN void cylinder_normal(const Near *near, const SightLines *sight, Lanes normal[3])
+/* The normals where the lines enter the cylinder at depths z. */
+RASTER_FN void cylinder_normal(const Near *near, const SightLines *sight, Lanes z, LaneMask on_disc,
+                               const Passage *passage, Lanes normal[3])
 {
-    LaneMask on_disc;
-    Passage passage;
-    Lanes z;
-    cylinder_entry(near, sight, &z, &on_disc, &passage);
-    Lanes along = lanes_fma(-passage.half, passage.rate, passage.along);
+    Lanes along = lanes_fma(-passage->half, passage->rate, passage->along);
     float per = 1 / near->item->radius;
     Lanes at[3] = {lanes_fma(z, sight->dx, sight->x), lanes_fma(z, sight->dy, sight->y), z};
     for (int c = 0; c < 3; c++)
         normal[c] = lanes_fma(-along, lanes_set(near->axis[c]), at[c]) * per;
     if (!lanes_any(on_disc))
         return;
-    Lanes facing = lanes_select(passage.rate > 0.0f, lanes_set(-1), lanes_set(1));
+    Lanes facing = lanes_select(passage->rate > 0.0f, lanes_set(-1), lanes_set(1));
     for (int c = 0; c < 3; c++)
         normal[c] = lanes_select(on_disc, facing * near->axis[c], normal[c]);
 }

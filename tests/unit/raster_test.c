@@ -446,6 +446,7 @@ static void a_depth_buffer_does_not_depend_on_the_number_of_threads(void **state
 static void trace_all(const RasterBins *bins, const RasterKernels *kernels, RasterHits *all)
 {
     RasterRow row = {0};
+    TileHits surface;
     RasterGrid grid = rastergrid_make(&bins->view, 0, 0);
     for (int j = 0; j < bins->tile_rows; j++) {
         assert_int_equal(rasterbins_list(bins, (size_t)j, &row, NULL), STATUS_OK);
@@ -453,7 +454,7 @@ static void trace_all(const RasterBins *bins, const RasterKernels *kernels, Rast
             const uint32_t *offsets = row.offsets + i;
             RasterTile tile =
                 rasterbins_tile(bins, i, j, row.lists + offsets[0], offsets[1] - offsets[0], &grid);
-            kernels->trace(&tile, &all[j * bins->tile_columns + i]);
+            kernels->trace(&tile, &all[j * bins->tile_columns + i], &surface);
         }
     }
     rasterrow_release(&row);
