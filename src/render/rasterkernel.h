@@ -35,8 +35,8 @@ RASTER_FN void set_farthest(RasterState *state, int block, float depth)
 }
 
 /* Keeps what is nearer, and returns where that is. */
-RASTER_FN LaneMask keep_nearer(RasterState *state, const Near *near, int block, LaneMask met,
-                               Lanes z)
+RASTER_FN LaneMask keep_nearer(RasterState *state, const Near *near, uint32_t number, int block,
+                               LaneMask met, Lanes z)
 {
     RasterHits *hits = state->hits;
     int first = block * LANES;
@@ -45,7 +45,7 @@ RASTER_FN LaneMask keep_nearer(RasterState *state, const Near *near, int block, 
     if (!lanes_any(nearer))
         return nearer;
     Lanes kept = (Lanes)load_items(&hits->item[first]);
-    Lanes item = (Lanes)((LaneMask){0} + (int32_t)near->number);
+    Lanes item = (Lanes)((LaneMask){0} + (int32_t)number);
     depth = lanes_select(nearer, depth, before);
     lanes_store(&hits->z[first], depth);
     store_items(&hits->item[first], (LaneMask)lanes_select(nearer, item, kept));
@@ -96,14 +96,14 @@ RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
         LaneMask on_disc;
         Passage passage;
         LaneMask met = cylinder_entry(near, &sight, &z, &on_disc, &passage);
-        met = keep_nearer(state, near, block, met, z);
+        met = keep_nearer(state, near, near->number, block, met, z);
         if (lanes_any(met)) {
             cylinder_normal(near, &sight, z, on_disc, &passage, normal);
             keep_normal(state->surface, block, met, normal);
         }
     } else if (near->kind == RASTER_SPHERE) {
         LaneMask met = sphere_entry(near, &sight, &z);
-        met = keep_nearer(state, near, block, met, z);
+        met = keep_nearer(state, near, near->number, block, met, z);
         if (lanes_any(met)) {
             sphere_normal(near, &sight, z, normal);
             keep_normal(state->surface, block, met, normal);
@@ -114,7 +114,7 @@ RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
         Lanes ruling;
         LaneMask unsure, within = within_outline(near, &sight);
         LaneMask met = joint_entry(near, &sight, within, &z, &ruling, &unsure);
-        met = keep_nearer(state, near, block, met, z);
+        met = keep_nearer(state, near, near->number | RASTER_RULED, block, met, z);
         keep_lanes(&state->hits->ruling[block * LANES], met, ruling);
         if (lanes_any(unsure))
             decide_block(state, near, block, unsure);
@@ -219,19 +219,19 @@ RASTER_FN void resolve_block(const RasterTile *tile, const RasterHits *hits, int
     int first = block * LANES;
     LaneMask items = load_items(&hits->item[first]), seen = items != (int32_t)RASTER_NOTHING;
     lanes_to_bytes(&surface->state[first], seen); /* TILE_HIT or TILE_MISS */
-    store_items(&surface->segment[first], items & (int32_t)~RASTER_DECIDED);
-    for (uint32_t left = lanes_bits(seen); left;) {
+    store_items(&surface->segment[first], items & (int32_t)RASTER_NUMBER);
+    LaneMask open = seen & ((items & (int32_t)~RASTER_NUMBER) != 0);
+    for (uint32_t left = lanes_bits(open); left;) {
         int sample = first + __builtin_ctz(left);
-        uint32_t number = hits->item[sample];
-        LaneMask of = items == (int32_t)number;
-        if (number & RASTER_DECIDED) {
-            resolve_decided(tile, number & ~RASTER_DECIDED, sample, surface);
+        uint32_t item = hits->item[sample];
+        LaneMask of = items == (int32_t)item;
+        if (item & RASTER_DECIDED) {
+            resolve_decided(tile, item & RASTER_NUMBER, sample, surface);
             left &= left - 1;
-            continue;
+        } else {
+            resolve_joint(tile, hits, item & RASTER_NUMBER, block, of, perspective, surface);
+            left &= ~lanes_bits(of);
         }
-        left &= ~lanes_bits(of);
-        if (tile->items[number].kind == RASTER_JOINT)
-            resolve_joint(tile, hits, number, block, of, perspective, surface);
     }
 }
 

@@ -72,13 +72,16 @@ typedef struct RasterTile {
 } RasterTile;
 
 #define RASTER_NOTHING UINT32_MAX
-/* Set in `item` where a sample was decided in double precision. */
+/* Set in `item` where a sample was decided in double precision, and where it sees a joint; the rest
+ * is the index. */
 #define RASTER_DECIDED 0x80000000u
+#define RASTER_RULED 0x40000000u
+#define RASTER_NUMBER 0x3fffffffu
 
 /* The first item at each sample. */
 typedef struct RasterHits {
     float z[TILE_SAMPLES]; /* depth along the view less z_middle; infinite: nothing is there */
-    uint32_t item[TILE_SAMPLES]; /* index, perhaps with RASTER_DECIDED; or RASTER_NOTHING */
+    uint32_t item[TILE_SAMPLES]; /* index, perhaps with flags; or RASTER_NOTHING */
     float ruling[TILE_SAMPLES];  /* of a joint: tan(q / 2) */
 } RasterHits;
 

@@ -303,7 +303,7 @@ static Status sort_into_rows(Build *build, int threads, Err *err)
 static Status make_bins(RasterBins *bins, int threads, Err *err)
 {
     const Scene *scene = bins->scene;
-    if (scene->n_primitives >= RASTER_DECIDED)
+    if (scene->n_primitives >= RASTER_NUMBER)
         return err_set(err, STATUS_MEMORY, "too many primitives for --method raster");
     TRY(mem_calloc(&bins->items, scene->n_primitives, sizeof *bins->items, "items", err));
     TRY(mem_calloc(&bins->row_offsets, (size_t)bins->tile_rows + 1, sizeof *bins->row_offsets,
