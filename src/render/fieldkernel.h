@@ -389,7 +389,9 @@ LANE_FN void describe_hits(const Group *group, int first, LaneMask hit, Lanes z,
         slope += at.x * (group->packet->x + (float)tile->middle_x) +
                  at.y * (group->packet->y + (float)tile->middle_y);
     z += lanes_select(slope > 0.0f, (LEVEL - phi) / slope, lanes_set(0));
-    store_hits(tile, first, hit, group->base, z, &at, hits);
+    Lanes normal[3];
+    outward_normal(&at, normal);
+    store_hits(tile, first, hit, group->base, z, normal, at.segment, hits);
 }
 
 /* Makes the terms from `first` on that overlap a group, and returns the number of the next. */

@@ -56,9 +56,56 @@ LANE_FN void name_largest(const TileTerm *term, Lanes value, Gradient *sum)
     sum->segment = (larger & segment) | (~larger & sum->segment);
 }
 
+/* The gradient's opposite, of length 1. */
+LANE_FN void outward_normal(const Gradient *at, Lanes normal[3])
+{
+    Lanes outward = -1.0f / lanes_sqrt(square(at->x) + square(at->y) + square(at->z));
+    normal[0] = at->x * outward;
+    normal[1] = at->y * outward;
+    normal[2] = at->z * outward;
+}
+
+/* Sets the depths of the hits to base + z, one half of the lanes at a time. */
+LANE_FN void store_depths(LaneMask hit, double base, Lanes z, double *depths)
+{
+    enum { HALF = LANES / 2 };
+    typedef float Floats __attribute__((vector_size(4 * HALF)));
+    typedef int32_t Masks __attribute__((vector_size(4 * HALF)));
+    typedef double Doubles __attribute__((vector_size(8 * HALF)));
+    typedef int64_t LongMasks __attribute__((vector_size(8 * HALF)));
+    Floats floats[2];
+    Masks masks[2];
+    __builtin_memcpy(floats, &z, sizeof z);
+    __builtin_memcpy(masks, &hit, sizeof hit);
+    for (int half = 0; half < 2; half++) {
+        Doubles here = __builtin_convertvector(floats[half], Doubles) + base, old;
+        LongMasks mine = __builtin_convertvector(masks[half], LongMasks);
+        __builtin_memcpy(&old, depths + half * HALF, sizeof old);
+        here = (Doubles)(((LongMasks)here & mine) | ((LongMasks)old & ~mine));
+        __builtin_memcpy(depths + half * HALF, &here, sizeof here);
+    }
+}
+
+/* Makes hits of those lanes that are no other state, four at a time. */
+LANE_FN void store_states(LaneMask hit, uint8_t *states)
+{
+    static const uint8_t sets[16][4] = {{0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0},
+                                        {0, 0, 1, 0}, {1, 0, 1, 0}, {0, 1, 1, 0}, {1, 1, 1, 0},
+                                        {0, 0, 0, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}, {1, 1, 0, 1},
+                                        {0, 0, 1, 1}, {1, 0, 1, 1}, {0, 1, 1, 1}, {1, 1, 1, 1}};
+    _Static_assert(TILE_HIT == 1, "the sets are of hits");
+    for (int i = 0; i < LANES; i += 4) {
+        uint32_t set, old;
+        __builtin_memcpy(&set, sets[lanes_bits(hit) >> i & 15], sizeof set);
+        __builtin_memcpy(&old, states + i, sizeof old);
+        old |= set;
+        __builtin_memcpy(states + i, &old, sizeof old);
+    }
+}
+
 /* Stores the hits at base + z of the packet that begins at sample `first`. */
 LANE_FN void store_hits(const FieldTile *tile, int first, LaneMask hit, double base, Lanes z,
-                        const Gradient *at, TileHits *hits)
+                        const Lanes normal[3], LaneMask segment, TileHits *hits)
 {
     double *depth = &hits->z[first];
     uint8_t *state = &hits->state[first];
@@ -66,25 +113,16 @@ LANE_FN void store_hits(const FieldTile *tile, int first, LaneMask hit, double b
         if (state[lane] == TILE_UNSURE ||
             (state[lane] == TILE_HIT && depth[lane] <= base + (double)z[lane]))
             hit[lane] = 0; /* another sum's hit is nearer */
-    for (int lane = 0; lane < LANES; lane++) {
-        uint64_t here, old, mine = (uint64_t)(int64_t)hit[lane];
-        double place = base + (double)z[lane];
-        __builtin_memcpy(&here, &place, sizeof here);
-        __builtin_memcpy(&old, &depth[lane], sizeof old);
-        here = (here & mine) | (old & ~mine);
-        __builtin_memcpy(&depth[lane], &here, sizeof here);
-        state[lane] |= (uint8_t)(hit[lane] & TILE_HIT);
-    }
+    store_depths(hit, base, z, depth);
+    store_states(hit, state);
     hits->any_hit |= lanes_any(hit);
-    Lanes outward = -1.0f / lanes_sqrt(square(at->x) + square(at->y) + square(at->z));
-    const Lanes normal[3] = {at->x * outward, at->y * outward, at->z * outward};
     for (int c = 0; c < 3; c++) {
         float *to = &hits->normal[c][first];
         lanes_store(to, lanes_select(hit, normal[c], lanes_load(to)));
     }
-    LaneMask segment;
-    __builtin_memcpy(&segment, &hits->segment[first], sizeof segment);
-    segment = (hit & at->segment) | (~hit & segment);
+    LaneMask old;
+    __builtin_memcpy(&old, &hits->segment[first], sizeof old);
+    segment = (hit & segment) | (~hit & old);
     __builtin_memcpy(&hits->segment[first], &segment, sizeof segment);
 }
 
