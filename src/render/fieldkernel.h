@@ -498,7 +498,7 @@ LANE_TARGET static void FIELD_KERNEL(const FieldTile *tile, TileWork *work, Tile
 {
     assert(tile->n_terms <= work->capacity);
     __builtin_memset(hits, 0, sizeof *hits);
-    if (tile->plane && !tile->blend->first) {
+    if (tile->plane) {
         PLANE_KERNEL(tile, work->memory, hits);
         return;
     }

@@ -32,12 +32,12 @@ typedef struct TileTerm {
 
 /* Samples are numbered so that each run of 16, of 8, and of 4, is a compact block: tile_sample_x/y. */
 typedef struct FieldTile {
-    const TileTerm *terms; /* by rising `on` */
+    const TileTerm *terms; /* by rising `on`, unless in a plane */
     size_t n_terms;
     const Blend *blend;
     bool perspective;
-    bool plane;                             /* all segments lie in one plane, square to all rays */
-    float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* of the samples, relative to the middle ray */
+    bool plane;         /* all blend, and lie in one plane, square to all rays */
+    const float *x, *y; /* of the samples, relative to the middle ray */
     double middle_x, middle_y;
     float half_size; /* largest distance of a sample from the middle ray */
     double z_min;    /* nothing is seen before it */

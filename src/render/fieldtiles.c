@@ -2,26 +2,16 @@
  * tiles that their support touches (a capsule: the segment, widened by its reach). A row of tiles is
  * the unit of work. For it every segment is clipped to the slab of space that the row's rays fill,
  * which gives the columns that it touches there, and with them the list of every tile; a list holds
- * its segments by rising index, whatever the number of threads.
- *
- * A tile's terms are set out about its middle ray, so that single precision is left with small
- * numbers however large the scene is. What the kernel leaves undecided is cast ray by ray in double
- * precision among the same terms. */
+ * its segments by rising index, whatever the number of threads. What the kernel leaves undecided is
+ * cast ray by ray in double precision among the terms of the tile. */
 #include "render/fieldtiles.h"
 
 #include "render/field.h"
+#include "render/fieldterms.h"
 #include "surface/surface.h"
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A segment in the camera's frame. */
-typedef struct FrameSegment {
-    Vec3 a, b, axis;
-    double length, k;
-    double reach;            /* mm from the axis, beyond which the term is below the cut-off */
-    int first_row, last_row; /* of tiles; first > last: nowhere */
-} FrameSegment;
 
 typedef struct Span {
     int first, last;
@@ -41,13 +31,10 @@ typedef struct Workspace {
     size_t scratch_capacity;
 } Workspace;
 
-enum { SAMPLE_PERIOD = 32 }; /* tile_sample_x(n + 32) = tile_sample_x(n) */
-
 /* Where the samples of a column or a row of tiles are in the camera's plane. */
 typedef struct TilePlaces {
     double middle, half;
-    float offset[TILE_SIDE];       /* from the middle */
-    float sample_x[SAMPLE_PERIOD]; /* offset[tile_sample_x(n)] */
+    float samples[TILE_SAMPLES]; /* from the middle; those outside the grid repeat its last */
 } TilePlaces;
 
 struct FieldTiles {
@@ -69,20 +56,6 @@ struct FieldTiles {
     Workspace *workspaces;
     int workers;
 };
-
-static double min_of(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static double max_of(double a, double b)
-{
-    return a > b ? a : b;
-}
-
-typedef struct Range {
-    double low, high;
-} Range;
 
 static Range range_union(Range a, Range b)
 {
@@ -161,6 +134,8 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
                               .length = vec3_length(span),
                               .k = sqrt(2) / segment->radius_mm};
         out->axis = vec3_scale(fieldtiles_to_frame(tiles, span), 1 / out->length);
+        out->sine = sqrt(out->axis.x * out->axis.x + out->axis.y * out->axis.y);
+        out->per_sine = out->sine > 0 ? 1 / out->sine : 0;
         double reach2 = log(potential_term_peak(segment) / FIELD_CUTOFF);
         Span rows = {1, 0};
         if (reach2 > 0) {
@@ -212,17 +187,18 @@ static void place_grid(FieldTiles *tiles)
     tiles->step_y = -grid->spacing / camera->height * tiles->height;
 }
 
-static void place_tiles(const double *places, int count, TilePlaces *tiles)
+static void place_tiles(const double *places, int count, int (*place_of)(int sample),
+                        TilePlaces *tiles)
 {
     for (int first = 0; first < count; first += TILE_SIDE) {
         TilePlaces *tile = &tiles[first / TILE_SIDE];
         int last = first + TILE_SIDE - 1 < count - 1 ? first + TILE_SIDE - 1 : count - 1;
         tile->middle = (places[first] + places[last]) / 2;
         tile->half = fabs(places[last] - tile->middle);
-        for (int i = 0; i < TILE_SIDE; i++)
-            tile->offset[i] = (float)(places[first + i < last ? first + i : last] - tile->middle);
-        for (int n = 0; n < SAMPLE_PERIOD; n++)
-            tile->sample_x[n] = tile->offset[tile_sample_x(n)];
+        for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+            int place = first + place_of(sample);
+            tile->samples[sample] = (float)(places[place < last ? place : last] - tile->middle);
+        }
     }
 }
 
@@ -271,8 +247,8 @@ Status fieldtiles_new(const Scene *scene, const SampleGrid *grid, double z_min, 
     TRY_GOTO(
         mem_calloc(&tiles->tile_y, (size_t)tiles->tile_rows, sizeof *tiles->tile_y, "rows", err));
     place_grid(tiles);
-    place_tiles(tiles->x, grid->n_columns, tiles->tile_x);
-    place_tiles(tiles->y, grid->n_rows, tiles->tile_y);
+    place_tiles(tiles->x, grid->n_columns, tile_sample_x, tiles->tile_x);
+    place_tiles(tiles->y, grid->n_rows, tile_sample_y, tiles->tile_y);
     TRY_GOTO(
         mem_calloc(&tiles->segments, scene->n_segments, sizeof *tiles->segments, "segments", err));
     TRY_GOTO(mem_calloc(&tiles->row_offsets, (size_t)tiles->tile_rows + 1,
@@ -375,7 +351,7 @@ static Span columns_of(const FieldTiles *tiles, const FrameSegment *segment, dou
     return tiles_within(range, tiles->x[0], tiles->step_x, 0, tiles->grid.n_columns);
 }
 
-/* Fills offsets and lists of the row. */
+/* Fills offsets and lists of the row, and makes room for the terms of its longest. */
 static Status list_row(const FieldTiles *tiles, size_t row, Workspace *space, Err *err)
 {
     const uint32_t *segments = tiles->row_segments + tiles->row_offsets[row];
@@ -392,8 +368,9 @@ static Status list_row(const FieldTiles *tiles, size_t row, Workspace *space, Er
         for (int column = span.first; column <= span.last; column++)
             offsets[column + 1]++;
     }
-    size_t total = 0;
+    size_t total = 0, longest = 0;
     for (int i = 1; i <= tiles->tile_columns; i++) {
+        longest = offsets[i] > longest ? offsets[i] : longest;
         total += offsets[i];
         if (total > UINT32_MAX)
             return err_set(err, STATUS_MEMORY, "too many segments in one row of the picture");
@@ -401,6 +378,11 @@ static Status list_row(const FieldTiles *tiles, size_t row, Workspace *space, Er
     }
     TRY(mem_reserve(&space->lists, &space->lists_capacity, total, sizeof *space->lists, "tiles",
                     err));
+    TRY(mem_reserve(&space->terms, &space->terms_capacity, longest, sizeof *space->terms, "terms",
+                    err));
+    TRY(mem_reserve(&space->candidates, &space->candidates_capacity, longest,
+                    sizeof *space->candidates, "terms", err));
+    TRY(tilework_reserve(&space->work, longest, err));
     for (size_t i = n; i-- > 0;)
         for (int column = space->columns[i].first; column <= space->columns[i].last; column++)
             space->lists[--offsets[column + 1]] = segments[i];
@@ -410,159 +392,24 @@ static Status list_row(const FieldTiles *tiles, size_t row, Workspace *space, Er
     return STATUS_OK;
 }
 
-/* The depths at which a ray of the tile may be within reach of the segment: those of the part of the
- * axis, from along - half to along + half, that is near enough to the middle ray, widened by the
- * reach. */
-static Range depths_of(const FrameSegment *segment, double along, double half)
-{
-    double first = max_of(along - half, 0), last = min_of(along + half, segment->length);
-    double z_first = segment->a.z + first * segment->axis.z;
-    double z_last = segment->a.z + last * segment->axis.z;
-    return (Range){min_of(z_first, z_last) - segment->reach,
-                   max_of(z_first, z_last) + segment->reach};
-}
-
-/* How a segment lies to the middle ray of a tile. */
-typedef struct Encounter {
-    double along;       /* mm from a to where the lines are nearest; the middle when parallel */
-    double per_sine;    /* 1 / sine of their angle; 0 when parallel */
-    Vec3 normal;        /* direction of the ray x axis */
-    double per_length2; /* 1 / |direction|^2 */
-} Encounter;
-
-static Encounter encounter(const FrameSegment *segment, Vec3 origin, Vec3 direction)
-{
-    Vec3 from_a = vec3_sub(origin, segment->a);
-    Encounter met = {.normal = vec3_cross(direction, segment->axis),
-                     .per_length2 = 1 / vec3_dot(direction, direction),
-                     .along = segment->length / 2};
-    double cross2 = vec3_dot(met.normal, met.normal);
-    if (cross2 > 0) {
-        double cosine = vec3_dot(direction, segment->axis) * met.per_length2;
-        double along = vec3_dot(from_a, segment->axis) - cosine * vec3_dot(from_a, direction);
-        met.per_sine = 1 / sqrt(cross2 * met.per_length2);
-        met.along = along * met.per_sine * met.per_sine;
-    }
-    return met;
-}
-
-static bool make_term(const FieldTile *tile, const FrameSegment *segment, double half_size,
-                      uint32_t number, TileTerm *term)
-{
-    double mx = tile->middle_x, my = tile->middle_y, widening = half_size;
-    Vec3 origin = tile->perspective ? vec3(0, 0, 0) : vec3(mx, my, 0), axis = segment->axis;
-    Vec3 direction = tile->perspective ? vec3(mx, my, 1) : vec3(0, 0, 1);
-    Encounter met = encounter(segment, origin, direction);
-    double along = min_of(max_of(met.along, 0), segment->length);
-    Vec3 point = vec3_add_scaled(segment->a, axis, along);
-    double z = vec3_dot(vec3_sub(point, origin), direction) * met.per_length2;
-    Vec3 o = vec3_sub(vec3_add_scaled(origin, direction, z), point);
-    if (tile->perspective)
-        widening *= max_of(max_of(segment->a.z, segment->b.z) + segment->reach, 0);
-    double far = segment->reach + widening;
-    if (vec3_dot(o, o) > far * far)
-        return false;
-    Range depths = depths_of(segment, met.along, met.per_sine > 0 ? far * met.per_sine : HUGE_VAL);
-    double sine = met.per_sine > 0 ? 1 / met.per_sine : 0, k = segment->k;
-    Vec3 cross = met.normal;
-    if (!tile->perspective)
-        cross = sine > 0 ? vec3_scale(cross, met.per_sine) : vec3(0, 1, 0);
-    *term = (TileTerm){.z_near = z,
-                       .on = depths.low,
-                       .off = depths.high,
-                       .k = (float)k,
-                       .per_k2 = (float)(1 / (k * k)),
-                       .reach2 = (float)(k * k * segment->reach * segment->reach),
-                       .u = (float)(k * along),
-                       .v = (float)(k * (segment->length - along)),
-                       .o = {(float)o.x, (float)o.y, (float)o.z},
-                       .axis = {(float)axis.x, (float)axis.y, (float)axis.z},
-                       .cross = {(float)cross.x, (float)cross.y, (float)cross.z},
-                       .sine = (float)sine,
-                       .per_sine = (float)min_of(1 / sine, 1e20),
-                       .cosine = (float)axis.z,
-                       .segment = number};
-    return true;
-}
-
-static int compare_terms(const void *a, const void *b)
-{
-    const TileTerm *one = a, *other = b;
-    if (one->on != other->on)
-        return one->on < other->on ? -1 : 1;
-    return one->segment < other->segment ? -1 : 1;
-}
-
-/* By rising `on`. Most lists are short. */
-static void sort_terms(TileTerm *terms, size_t n)
-{
-    if (n > 64) {
-        qsort(terms, n, sizeof *terms, compare_terms);
-        return;
-    }
-    for (size_t i = 1; i < n; i++) {
-        if (terms[i - 1].on <= terms[i].on)
-            continue;
-        TileTerm term = terms[i];
-        size_t hole = i;
-        for (; hole > 0 && terms[hole - 1].on > term.on; hole--)
-            terms[hole] = terms[hole - 1];
-        terms[hole] = term;
-    }
-}
-
-/* Sets the part of a tile that all of its row share; samples outside the grid repeat its last. */
-static void place_row(const FieldTiles *tiles, int row, FieldTile *tile)
+/* Sets what all tiles of a row share. */
+static void place_row(const FieldTiles *tiles, size_t row, FieldTile *tile)
 {
     const TilePlaces *y = &tiles->tile_y[row];
     *tile = (FieldTile){.blend = &tiles->scene->blend,
                         .perspective = tiles->perspective,
+                        .y = y->samples,
                         .middle_y = y->middle,
                         .z_min = tiles->z_min};
-    for (int sample = 0; sample < TILE_SAMPLES; sample++)
-        tile->y[sample] = y->offset[tile_sample_y(sample)];
 }
 
-/* Sets the rest of its samples. */
-static void place_column(const FieldTiles *tiles, int column, int row, FieldTile *tile)
+/* Sets the rest but for the terms. */
+static void place_column(const FieldTiles *tiles, size_t column, size_t row, FieldTile *tile)
 {
     const TilePlaces *x = &tiles->tile_x[column], *y = &tiles->tile_y[row];
+    tile->x = x->samples;
     tile->middle_x = x->middle;
-    for (int sample = 0; sample < TILE_SAMPLES; sample += SAMPLE_PERIOD)
-        memcpy(&tile->x[sample], x->sample_x, sizeof x->sample_x);
     tile->half_size = (float)sqrt(x->half * x->half + y->half * y->half);
-}
-
-/* Whether the term lies square to an orthographic view in the same plane as the first, to 1e-7 of
- * its own unit of length. */
-static bool is_in_plane(const TileTerm *first, const TileTerm *term)
-{
-    return fabsf(term->cosine) < 1e-8f &&
-           fabs(term->z_near - first->z_near) * (double)term->k <= 1e-7;
-}
-
-/* Sets the terms of the tile and the list of their segments. */
-static Status make_terms(const FieldTiles *tiles, size_t tile_column, Workspace *space,
-                         FieldTile *tile, Err *err)
-{
-    const uint32_t *list = space->lists + space->offsets[tile_column];
-    size_t n = space->offsets[tile_column + 1] - space->offsets[tile_column];
-    TRY(mem_reserve(&space->terms, &space->terms_capacity, n, sizeof *space->terms, "terms", err));
-    TRY(mem_reserve(&space->candidates, &space->candidates_capacity, n, sizeof *space->candidates,
-                    "terms", err));
-    double half_size = (double)tile->half_size;
-    tile->terms = space->terms;
-    tile->n_terms = 0;
-    tile->plane = !tile->perspective;
-    for (size_t i = 0; i < n; i++) {
-        if (!make_term(tile, &tiles->segments[list[i]], half_size, list[i],
-                       &space->terms[tile->n_terms]))
-            continue;
-        tile->plane &= is_in_plane(&space->terms[0], &space->terms[tile->n_terms]);
-        space->candidates[tile->n_terms++] = list[i];
-    }
-    sort_terms(space->terms, tile->n_terms);
-    return tilework_reserve(&space->work, tile->n_terms, err);
 }
 
 static Status grow_scratch(Workspace *space, size_t n, Err *err)
@@ -622,15 +469,17 @@ Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t
     Workspace *space = &tiles->workspaces[worker];
     FieldTile tile;
     TRY(list_row(tiles, row, space, err));
-    place_row(tiles, (int)row, &tile);
+    place_row(tiles, row, &tile);
     for (int column = 0; column < tiles->tile_columns; column++) {
         if (wanted && !wanted[column])
             continue;
         TileHits hits;
         SeenTile seen = {.column = column * TILE_SIDE, .row = (int)row * TILE_SIDE, .tile = &tile};
         if (space->offsets[column] < space->offsets[column + 1]) {
-            place_column(tiles, column, (int)row, &tile);
-            TRY(make_terms(tiles, (size_t)column, space, &tile, err));
+            place_column(tiles, (size_t)column, row, &tile);
+            uint32_t list = space->offsets[column];
+            fieldterms_make(tiles->segments, space->lists + list, space->offsets[column + 1] - list,
+                            &tile, space->terms, space->candidates);
             if (tile.n_terms) {
                 tiles->kernels->trace(&tile, &space->work, &hits);
                 TRY(decide_all(tiles, space, &seen, &hits, err));
