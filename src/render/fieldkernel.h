@@ -117,18 +117,16 @@ LANE_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
  * rays pass the axis beyond reach. */
 LANE_FN bool place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
-    const float k = term->k, s = term->sine, a = term->cosine;
-    const float ex = term->cross[1], ey = -term->cross[0];
+    const float k = term->k, s = term->sine, a = term->cosine, *cross = term->cross;
     Lanes x = packet->x + term->o[0], y = packet->y + term->o[1];
-    Lanes along = lanes_fma(x, lanes_set(ex), y * ey);
-    Lanes e = lanes_fma(y, lanes_set(ex), -(x * ey)) * k;
-    out->e2 = square(e);
+    Lanes along = lanes_fma(x, lanes_set(cross[1]), -(y * cross[0]));
+    out->e2 = square(lanes_fma(y, lanes_set(cross[1]), x * cross[0]));
     if (!lanes_any(out->e2 < term->reach2))
         return false;
-    out->w0 = along * (-k * a);
+    out->w0 = along * -a;
     out->w1 = lanes_set(k * s);
-    out->u0 = lanes_fma(along, lanes_set(k * s), lanes_set(term->u));
-    out->v0 = lanes_fma(along, lanes_set(-k * s), lanes_set(term->v));
+    out->u0 = lanes_fma(along, lanes_set(s), lanes_set(term->u));
+    out->v0 = lanes_fma(along, lanes_set(-s), lanes_set(term->v));
     out->u1 = lanes_set(k * a);
     out->share = lanes_set(term->per_sine);
     out->cosine = lanes_set(fabsf(a));

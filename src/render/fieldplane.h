@@ -4,20 +4,29 @@
  * With q the square of the distance from the plane, a term is A exp(-k^2 q), A = exp(-E^2) (erf u +
  * erf v) / 2. So the potential falls strictly with q: a ray hits if the sum of A exceeds the level,
  * once on its way to the plane, and needs no search. About a lone vessel ln Phi = ln A - k^2 q gives
- * q at once. Else Halley's method finds it, in units of 1 / K^2, K the largest k of the packet:
- * ln Phi is convex in q, its first derivative is the mean m and its second the variance v of
+ * q at once. Else Halley's method finds it, in units of 1 / K^2, K the largest k of the tile: ln Phi
+ * is convex in q, its first derivative is -m, m the mean, and its second v, the variance, of
  * p = (k / K)^2 among the terms.
  *
- * With R the range of p, a step d of Halley's method leaves ln Phi off by less than 0.081 (R d)^3:
- * the parabola it solves by v^2 d^3 / (4 m (1 + v d / (2 m))), of which v <= m R [Bhatia & Davis
- * 2000] and v <= R^2 / 4, and what the parabola leaves out is at most |d|^3 / 6 times the third
- * central moment, R^3 / (6 sqrt 3). Rays that start between surface and plane, and those within the
- * margin of the level, are handed back. */
+ * A step d of Halley's method solves a parabola but for v^2 |d|^3 / (4 m (1 + v d / (2 m))), and the
+ * parabola leaves out |d|^3 / 6 of the third central moment somewhere on the way. With R the range
+ * of p, that is at most R v there, so v grows by exp(R |d|) at most; and v <= m R [Bhatia & Davis
+ * 2000]. Where R |d| <= 1 the step thus leaves ln Phi off by less than R v |d|^3. Rays that start
+ * between surface and plane, and those within the margin of the level, are handed back. */
 #include "render/fieldlanes.h"
 
-/* The last step, times the range of p: it leaves Phi within 4e-6 of the level, in parts of it. */
-#define PLANE_CLOSE 0.035f
+/* What the last step may leave ln Phi off by; 1e-6 more are for rounding. */
+#define PLANE_CLOSE 3e-6f
 #define PLANE_STEPS 32
+
+/* A tile in a plane. */
+typedef struct FlatTile {
+    const FieldTile *tile;
+    TileHits *hits;
+    double base;  /* z of the plane */
+    float extent; /* mm, of places */
+    float k;      /* K */
+} FlatTile;
 
 typedef struct PlaneTerm {
     Lanes e;
@@ -25,15 +34,17 @@ typedef struct PlaneTerm {
     Lanes slope;     /* A's derivative along the axis, 1 / (2 k) of it */
     Lanes fall;      /* exp(-k^2 q) */
     const TileTerm *term;
+    float p;
 } PlaneTerm;
 
 _Static_assert(sizeof(PlaneTerm) + sizeof(uint32_t) <= TILE_WORK_BYTES, "TILE_WORK_BYTES");
 
 typedef struct PlanePacket {
+    const FlatTile *plane;
     PlaneTerm *terms;
     size_t n;
-    float per_k;         /* 1 / K, mm */
-    float middle, range; /* of p */
+    int first;        /* sample */
+    float low, range; /* of p */
     Lanes q;
     Lanes step;               /* of q, the last, which the terms have not taken */
     Lanes sum, sum_p, sum_p2; /* of A exp(-k^2 q) times powers of p */
@@ -51,11 +62,11 @@ typedef struct PlanePlace {
 
 LANE_FN PlanePlace place_in_plane(const TileTerm *term, Lanes x, Lanes y)
 {
-    const float axis_x = term->k * term->axis[0], axis_y = term->k * term->axis[1];
+    const float *cross = term->cross;
     x += term->o[0];
     y += term->o[1];
-    Lanes along = lanes_fma(x, lanes_set(axis_x), y * axis_y);
-    return (PlanePlace){.e = lanes_fma(y, lanes_set(axis_x), x * -axis_y),
+    Lanes along = lanes_fma(x, lanes_set(cross[1]), -(y * cross[0]));
+    return (PlanePlace){.e = lanes_fma(y, lanes_set(cross[1]), x * cross[0]),
                         .u = along + term->u,
                         .v = term->v - along};
 }
@@ -64,9 +75,11 @@ LANE_FN PlanePlace place_in_plane(const TileTerm *term, Lanes x, Lanes y)
  * cut-off, and returns the bits of those that may hit something: some term must be at least its
  * part, 1 / n, of the level, so near enough; the 0.02 is for the margin. A packet's rays are all
  * within `half` of its middle; those of the first, which is nowhere cut off before another, are the
- * farthest apart. */
+ * farthest apart. A lone term need not be looked at: trace_lone() finds out as fast. */
 LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
 {
+    if (tile->n_terms == 1)
+        return touched[0] = UINT32_MAX;
     const float half_x = 0.5f * (tile->x[LANES - 1] - tile->x[0]);
     const float half_y = 0.5f * (tile->y[LANES - 1] - tile->y[0]);
     const float half = 1.001f * sqrtf(half_x * half_x + half_y * half_y);
@@ -103,23 +116,23 @@ LANE_FN float fixed_margin(size_t n)
 
 /* Leaves rays that start beyond their hits at -height to double precision, too, and returns the
  * other hits. */
-LANE_FN LaneMask hits_in_front(const FieldTile *tile, int first, LaneMask hit, LaneMask unsure,
-                               Lanes height, TileHits *hits)
+LANE_FN LaneMask hits_in_front(const FlatTile *plane, int first, LaneMask hit, LaneMask unsure,
+                               Lanes height)
 {
-    LaneMask behind = hit & (-height <= (float)(tile->z_min - tile->terms[0].z_near));
+    LaneMask behind = hit & (-height <= (float)(plane->tile->z_min - plane->base));
     unsure |= behind;
     if (lanes_any(unsure))
-        give_up(first, unsure, hits);
+        give_up(first, unsure, plane->hits);
     return hit & ~behind;
 }
 
 /* Traces a packet that only one term touches: with k^2 q = ln(A / C) the gradient is, but for a
  * factor, that of A / A and sqrt q. False if it needs a wider margin than that allows. */
-LANE_FN bool trace_lone(const FieldTile *tile, int first, const TileTerm *term, float extent,
-                        TileHits *hits)
+LANE_FN bool trace_lone(const FlatTile *plane, int first, const TileTerm *term)
 {
+    const FieldTile *tile = plane->tile;
     const float *axis = term->axis;
-    const float margin = (term->k * extent * MARGIN_PLACE + fixed_margin(1)) * (1 / LEVEL);
+    const float margin = (term->k * plane->extent * MARGIN_PLACE + fixed_margin(1)) * (1 / LEVEL);
     if (margin > CLOSE_ENOUGH * (1 / LEVEL))
         return false;
     PlanePlace at = place_in_plane(term, lanes_load(&tile->x[first]), lanes_load(&tile->y[first]));
@@ -138,12 +151,12 @@ LANE_FN bool trace_lone(const FieldTile *tile, int first, const TileTerm *term, 
         return true;
     Lanes depth = lanes_sqrt(lanes_max(above, lanes_set(0)));
     Lanes height = depth * (1 / term->k);
-    hit = hits_in_front(tile, first, hit, unsure, height, hits);
+    hit = hits_in_front(plane, first, hit, unsure, height);
     const Lanes normal[3] = {outward * lanes_fma(at.e, lanes_set(axis[1]), slope * axis[0]),
                              outward * lanes_fma(slope, lanes_set(axis[1]), -at.e * axis[0]),
                              outward * depth};
-    store_hits(tile, first, hit, tile->terms[0].z_near, -height, normal,
-               (LaneMask){0} + (int32_t)term->segment, hits);
+    store_hits(tile, first, hit, plane->base, -height, normal,
+               (LaneMask){0} + (int32_t)term->segment, plane->hits);
     return true;
 }
 
@@ -154,45 +167,42 @@ LANE_FN void clear_sums(PlanePacket *packet)
 
 LANE_FN void add_value(PlanePacket *packet, Lanes value, float p)
 {
+    Lanes value_p = value * p;
     packet->sum += value;
-    packet->sum_p = lanes_fma(value, lanes_set(p), packet->sum_p);
-    packet->sum_p2 = lanes_fma(value, lanes_set(p * p), packet->sum_p2);
+    packet->sum_p += value_p;
+    packet->sum_p2 = lanes_fma(value_p, lanes_set(p), packet->sum_p2);
 }
 
-LANE_FN float square_of(float a)
+/* Sets the terms of the packet and their sums in the plane, and returns the margin. */
+LANE_FN Lanes sum_up_plane(PlanePacket *packet)
 {
-    return a * a;
-}
-
-/* Sets the terms of the packet and their sums in the plane, and returns the sum of k exp(-E^2). */
-LANE_FN Lanes sum_up_plane(const FieldTile *tile, int first, PlanePacket *packet)
-{
-    Lanes x = lanes_load(&tile->x[first]), y = lanes_load(&tile->y[first]), places = lanes_set(0);
-    float low = packet->terms[0].term->k, high = low;
-    for (size_t i = 1; i < packet->n; i++) {
-        const float k = packet->terms[i].term->k;
-        low = k < low ? k : low;
-        high = k > high ? k : high;
-    }
-    packet->per_k = 1 / high;
-    float least = square_of(low * packet->per_k);
-    packet->range = 1 - least;
-    packet->middle = 0.5f * (1 + least);
+    const FlatTile *plane = packet->plane;
+    Lanes x = lanes_load(&plane->tile->x[packet->first]);
+    Lanes y = lanes_load(&plane->tile->y[packet->first]), places = lanes_set(0);
+    const float per_k = 1 / plane->k;
+    float low = 1, high = 0;
     packet->q = lanes_set(0);
     clear_sums(packet);
     for (size_t i = 0; i < packet->n; i++) {
         PlaneTerm *term = &packet->terms[i];
+        const float k = term->term->k, part = k * per_k;
+        term->p = part * part;
+        low = term->p < low ? term->p : low;
+        high = term->p > high ? term->p : high;
         PlanePlace at = place_in_plane(term->term, x, y);
         Lanes gauss = lanes_exp_minus(square(at.e)), ends, ends_slope;
         axial_factors(at.u, at.v, &ends, &ends_slope);
+        Lanes half = 0.5f * gauss;
         term->e = at.e;
-        term->amplitude = 0.5f * gauss * ends;
-        term->slope = 0.28209479f * gauss * ends_slope;
+        term->amplitude = half * ends;
+        term->slope = half * ends_slope * 0.56418958f;
         term->fall = lanes_set(1);
-        places = lanes_fma(gauss, lanes_set(term->term->k), places);
-        add_value(packet, term->amplitude, square_of(term->term->k * packet->per_k));
+        places = lanes_fma(gauss, lanes_set(k), places);
+        add_value(packet, term->amplitude, term->p);
     }
-    return places;
+    packet->low = low;
+    packet->range = high - low;
+    return places * (plane->extent * MARGIN_PLACE) + fixed_margin(packet->n);
 }
 
 LANE_FN void fall_to(PlanePacket *packet)
@@ -200,101 +210,111 @@ LANE_FN void fall_to(PlanePacket *packet)
     clear_sums(packet);
     for (size_t i = 0; i < packet->n; i++) {
         PlaneTerm *term = &packet->terms[i];
-        const float p = square_of(term->term->k * packet->per_k);
-        term->fall = lanes_exp_minus(packet->q * p);
-        add_value(packet, term->amplitude * term->fall, p);
+        term->fall = lanes_exp_minus(packet->q * term->p);
+        add_value(packet, term->amplitude * term->fall, term->p);
     }
 }
 
-/* Halley's step of q, of at most twice Newton's: one so cut short is far from close. */
-LANE_FN Lanes plane_step(const PlanePacket *packet)
+/* Takes Halley's step, of at most twice Newton's. Returns where it is the last: nowhere where it is cut
+ * short, as v d > 2 m there. */
+LANE_FN LaneMask plane_step(PlanePacket *packet, LaneMask hit)
 {
     Lanes sum = packet->sum, above = lanes_log(lanes_max(sum * (1 / LEVEL), lanes_set(1e-30f)));
     Lanes mean2 = square(packet->sum_p);
     Lanes variance = lanes_fma(packet->sum_p2, sum, -mean2);
-    Lanes divisor = lanes_fma(above * -0.5f, variance, mean2);
-    return above * sum * packet->sum_p / lanes_max(divisor, 0.5f * mean2);
+    Lanes divisor = lanes_max(lanes_fma(above * -0.5f, variance, mean2), 0.5f * mean2);
+    Lanes step = lanes_select(hit, above * sum * packet->sum_p / divisor, lanes_set(0));
+    Lanes change = lanes_abs(step) * packet->range;
+    packet->step = step;
+    packet->q = lanes_max(packet->q + step, lanes_set(0));
+    return (change <= 1.0f) & (change * square(step) * variance <= PLANE_CLOSE * square(sum));
 }
 
 /* Finds q of the rays that hit, whose potential exceeds the level in the plane. Returns those for
  * which it has not succeeded. */
 LANE_FN LaneMask solve_plane(PlanePacket *packet, LaneMask hit)
 {
-    const Lanes zero = lanes_set(0);
-    for (int steps = 0;; steps++) {
-        packet->step = lanes_select(hit, plane_step(packet), zero);
-        packet->q = lanes_max(packet->q + packet->step, zero);
-        LaneMask close = lanes_abs(packet->step) * packet->range <= PLANE_CLOSE;
-        if (!lanes_any(~close) || steps == PLANE_STEPS)
-            return hit & ~close;
+    LaneMask close = plane_step(packet, hit);
+    for (int steps = 0; lanes_any(~close) && steps < PLANE_STEPS; steps++) {
         fall_to(packet);
+        close = plane_step(packet, hit);
     }
+    return hit & ~close;
 }
 
-/* The gradient, 1 / (2 K) of it, at q; what the last step has changed in the terms' proportions is
- * taken as linear, which is right to 2e-4 of each. */
-LANE_FN Gradient plane_gradient(const PlanePacket *packet)
+/* The gradient, half of it, at a height; what the last step has changed in the terms' proportions is
+ * taken as linear. */
+LANE_FN Gradient plane_gradient(const PlanePacket *packet, Lanes height)
 {
     Gradient sum = {.largest = lanes_set(-1)};
+    const float middle = packet->low + 0.5f * packet->range, k = packet->plane->k;
     Lanes flat = lanes_set(0);
     for (size_t i = 0; i < packet->n; i++) {
         const PlaneTerm *term = &packet->terms[i];
-        const float k = term->term->k * packet->per_k, *axis = term->term->axis;
-        Lanes change = lanes_fma(packet->step, lanes_set(packet->middle - k * k), lanes_set(1));
+        const float *cross = term->term->cross;
+        Lanes change = lanes_fma(packet->step, lanes_set(middle - term->p), lanes_set(1));
         Lanes fall = term->fall * change, value = term->amplitude * fall;
-        Lanes across = value * term->e * k, along = term->slope * fall * k;
-        sum.x += lanes_fma(along, lanes_set(axis[0]), across * axis[1]);
-        sum.y += lanes_fma(along, lanes_set(axis[1]), across * -axis[0]);
-        flat = lanes_fma(value, lanes_set(k * k), flat);
+        Lanes across = value * term->e, along = term->slope * fall;
+        sum.x += lanes_fma(along, lanes_set(cross[1]), -(across * cross[0]));
+        sum.y -= lanes_fma(along, lanes_set(cross[0]), across * cross[1]);
+        flat = lanes_fma(value, lanes_set(term->p), flat);
         name_largest(term->term, value, &sum);
     }
-    sum.z = lanes_sqrt(packet->q) * flat;
+    sum.z = height * flat * (k * k);
     return sum;
 }
 
-LANE_FN void trace_several(const FieldTile *tile, int first, PlanePacket *packet, float extent,
-                           TileHits *hits)
+LANE_FN void trace_several(PlanePacket *packet)
 {
-    Lanes places = sum_up_plane(tile, first, packet);
-    Lanes margin = places * (extent * MARGIN_PLACE) + fixed_margin(packet->n);
+    const FlatTile *plane = packet->plane;
+    Lanes margin = sum_up_plane(packet), normal[3];
     LaneMask hit = (packet->sum >= LEVEL + margin) & (margin <= CLOSE_ENOUGH);
     LaneMask unsure = ~hit & (packet->sum >= LEVEL - margin);
     if (!lanes_any(hit | unsure))
         return;
     LaneMask unsolved = solve_plane(packet, hit);
-    Lanes height = lanes_sqrt(packet->q) * packet->per_k, normal[3];
-    hit = hits_in_front(tile, first, hit & ~unsolved, unsure | unsolved, height, hits);
-    Gradient at = plane_gradient(packet);
+    Lanes height = lanes_sqrt(packet->q) * (1 / plane->k);
+    hit = hits_in_front(plane, packet->first, hit & ~unsolved, unsure | unsolved, height);
+    Gradient at = plane_gradient(packet, height);
     outward_normal(&at, normal);
-    store_hits(tile, first, hit, tile->terms[0].z_near, -height, normal, at.segment, hits);
+    store_hits(plane->tile, packet->first, hit, plane->base, -height, normal, at.segment,
+               plane->hits);
 }
 
-LANE_FN void trace_plane(const FieldTile *tile, int number, const uint32_t *touched, float extent,
-                         PlaneTerm *memory, TileHits *hits)
+LANE_FN void trace_plane(const FlatTile *plane, int number, const uint32_t *touched,
+                         PlaneTerm *terms)
 {
-    PlanePacket packet = {.terms = memory};
+    const FieldTile *tile = plane->tile;
+    size_t n = 0;
     for (size_t i = 0; i < tile->n_terms; i++) {
-        memory[packet.n].term = &tile->terms[i];
-        packet.n += touched[i] >> number & 1;
+        terms[n].term = &tile->terms[i];
+        n += touched[i] >> number & 1;
     }
-    if (packet.n == 0 ||
-        (packet.n == 1 && trace_lone(tile, number * LANES, memory[0].term, extent, hits)))
+    if (n == 0 || (n == 1 && trace_lone(plane, number * LANES, terms[0].term)))
         return;
-    trace_several(tile, number * LANES, &packet, extent, hits);
+    PlanePacket packet;
+    packet.plane = plane;
+    packet.terms = terms;
+    packet.n = n;
+    packet.first = number * LANES;
+    trace_several(&packet);
 }
 
 LANE_TARGET static __attribute__((noinline)) void PLANE_KERNEL(const FieldTile *tile, void *memory,
                                                                TileHits *hits)
 {
-    uint32_t *touched = (uint32_t *)((PlaneTerm *)memory + tile->n_terms);
+    PlaneTerm *terms = memory;
+    uint32_t *touched = (uint32_t *)(terms + tile->n_terms);
     uint32_t hopeful = find_touched(tile, touched);
-    float extent = 0;
+    FlatTile plane = {.tile = tile, .hits = hits, .base = tile->terms[0].z_near};
     for (size_t i = 0; i < tile->n_terms; i++) {
-        float reach = (float)(tile->terms[i].off - tile->terms[i].z_near);
-        extent = reach > extent ? reach : extent;
+        const TileTerm *term = &tile->terms[i];
+        float reach = (float)(term->off - term->z_near);
+        plane.extent = reach > plane.extent ? reach : plane.extent;
+        plane.k = term->k > plane.k ? term->k : plane.k;
     }
-    extent += tile->half_size;
+    plane.extent += tile->half_size;
     for (int number = 0; number < PLANE_PACKETS; number++)
         if (hopeful >> number & 1)
-            trace_plane(tile, number, touched, extent, memory, hits);
+            trace_plane(&plane, number, touched, terms);
 }

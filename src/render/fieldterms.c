@@ -37,10 +37,10 @@ static Encounter meet_parallel(const FrameSegment *segment, double x, double y)
     Encounter met = {.line = segment->length / 2,
                      .sine = segment->sine,
                      .per_sine = per,
-                     .cross = vec3(0, 1, 0)};
+                     .cross = vec3(0, segment->k, 0)};
     if (per > 0) {
         met.line = (dx * axis.x + dy * axis.y) * per * per;
-        met.cross = vec3(-axis.y * per, axis.x * per, 0);
+        met.cross = vec3_scale(vec3(-axis.y, axis.x, 0), per * segment->k);
     }
     met.along = clamp_to(segment, met.line);
     met.z = a.z + met.along * axis.z;

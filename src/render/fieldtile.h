@@ -25,7 +25,7 @@ typedef struct TileTerm {
     float u, v;   /* k times the distances of that point from the two ends */
     float o[3];
     float axis[3];                /* unit */
-    float cross[3];               /* (middle ray's direction) x axis; orthographic: of length 1 */
+    float cross[3];               /* (middle ray's direction) x axis; orthographic: of length k */
     float sine, per_sine, cosine; /* orthographic: of the angle between axis and ray */
     uint32_t segment;             /* index in the scene */
 } TileTerm;
