@@ -147,6 +147,7 @@ static void color_samples(const FieldPicture *picture, const SeenTile *seen, int
     }
 }
 
+/* Sets the colours of the tile's hits. */
 static void color_tile(const FieldPicture *picture, const SeenTile *seen, int worker,
                        float color[3][TILE_SAMPLES])
 {
@@ -165,25 +166,23 @@ static void color_tile(const FieldPicture *picture, const SeenTile *seen, int wo
         place_surface(seen, surface);
     if (picture->caster)
         find_shadows(picture, seen, worker, canvas);
+    memset(color, 0, 3 * sizeof *color);
     fieldtiles_kernels(picture->tiles)->shade(&picture->look, surface, color);
-    for (int sample = 0; sample < TILE_SAMPLES; sample++)
-        if (seen->hits->state[sample] != TILE_HIT) {
-            color[0][sample] = scene->background.r;
-            color[1][sample] = scene->background.g;
-            color[2][sample] = scene->background.b;
-        }
 }
 
-/* Copies a tile's colours to rows of `width` pixels, as far as they reach. */
-static void copy_tile(float color[3][TILE_SAMPLES], int columns, int rows, size_t width, float *to)
+/* Copies a tile's colours to rows of `width` pixels, as far as they reach: where `state` is TILE_MISS
+ * the background's, which is nowhere when it is NULL. */
+static void copy_tile(float color[3][TILE_SAMPLES], const uint8_t *state, Rgb background,
+                      int columns, int rows, size_t width, float *to)
 {
     for (int j = 0; j < rows; j++)
         for (int i = 0; i < columns; i++) {
             int sample = tile_sample_at(i, j);
+            bool seen = !state || state[sample] == TILE_HIT;
             float *pixel = to + 3 * ((size_t)j * width + (size_t)i);
-            pixel[0] = color[0][sample];
-            pixel[1] = color[1][sample];
-            pixel[2] = color[2][sample];
+            pixel[0] = seen ? color[0][sample] : background.r;
+            pixel[1] = seen ? color[1][sample] : background.g;
+            pixel[2] = seen ? color[2][sample] : background.b;
         }
 }
 
@@ -242,8 +241,9 @@ static void write_colors(const FieldPicture *picture, const SeenTile *seen, int 
         return;
     }
     float color[3][TILE_SAMPLES];
+    const uint8_t *state = picture->by_sample ? NULL : seen->hits->state;
     color_all(picture, seen, worker, color);
-    copy_tile(color, columns, rows, width, to);
+    copy_tile(color, state, picture->scene->background, columns, rows, width, to);
 }
 
 static void write_geometry(const FieldPicture *picture, const SeenTile *seen)
@@ -280,8 +280,21 @@ static void visit_center(const SeenTile *seen, int worker, void *context)
         write_geometry(picture, seen);
     if (frame->color.values)
         write_colors(picture, seen, worker, 0, frame->color.values);
-    if (frame->codes.codes8)
+    if (frame->codes.codes8 && (seen->hits || picture->by_sample))
         write_codes(picture, seen, worker);
+}
+
+/* Fills a band with the codes of the background. */
+static void clear_codes(const FieldPicture *picture, size_t band, int worker)
+{
+    size_t row = 3 * (size_t)picture->grid.n_columns, first = band * TILE_SIDE;
+    size_t rows = (size_t)picture->grid.n_rows - first;
+    size_t size = row * (rows < TILE_SIDE ? rows : TILE_SIDE);
+    size_t done = size < 3 * TILE_SIDE ? size : 3 * TILE_SIDE;
+    uint8_t *to = picture->frame->codes.codes8 + row * first;
+    memcpy(to, picture->canvases[worker].background_codes, done);
+    for (; done < size; done *= 2)
+        memcpy(to + done, to, done < size - done ? done : size - done);
 }
 
 static void report_progress(const FieldPicture *picture, size_t band, int worker)
@@ -296,6 +309,8 @@ static void trace_centers(size_t band, int worker, void *context)
     FieldPicture *picture = context;
     Canvas *canvas = &picture->canvases[worker];
     report_progress(picture, band, worker);
+    if (picture->frame->codes.codes8)
+        clear_codes(picture, band, worker);
     if (canvas->status == STATUS_OK)
         canvas->status = fieldtiles_trace(picture->tiles, band, worker, NULL, visit_center, picture,
                                           &canvas->err);
