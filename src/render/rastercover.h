@@ -7,6 +7,7 @@
 
 #include "render/rasterkernels.h"
 #include "render/rastersight.h"
+#include "render/rasterview.h"
 
 /* ---- aiming ---------------------------------------------------------------------------------- */
 
@@ -90,9 +91,14 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, RasterP
     } else if (near->kind == RASTER_SPHERE) {
         met = sphere_entry(near, &sight, &entry);
     } else if (near->kind == RASTER_JOINT) {
-        Lanes ruling;
-        met = joint_entry(near, &sight, among & within_outline(near, &sight), &entry, &ruling,
-                          &unsure);
+        /* Joints take longest: out with lines that enter the wall of the capsule behind the probe.
+         * A hit may lie off its line by off_joint_line, and so before that wall by the root of
+         * twice that at most, in radii. */
+        Lanes ruling, margin = lanes_set(0.015f * near->item->radius * near->per_sine);
+        Passage passage = pass_cylinder(near, &sight);
+        among &=
+            within_outline(near, &sight) & ~(passage.middle - passage.half + near->z >= z + margin);
+        met = joint_entry(near, &sight, among, &entry, &ruling, &unsure);
     } else {
         unsure = among;
         met = (LaneMask){0};
@@ -107,41 +113,83 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, RasterP
     return covered;
 }
 
-RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int first, int n,
-                           bool perspective)
+/* LANES probes as floats about the tile's middle. */
+typedef struct ProbeBlock {
+    Lanes x, y, z;
+    float deepest;
+    uint32_t box; /* compared with those of items [RasterBox] */
+} ProbeBlock;
+
+RASTER_FN uint32_t parts_of(Lanes at, double per)
 {
-    Lanes x = lanes_set(0), y = lanes_set(0), z = lanes_set(0);
-    LaneMask open = (LaneMask){0};
-    for (int lane = 0; lane < n; lane++) {
+    const float middle = RASTERBOX_PARTS / 2, last = RASTERBOX_PARTS - 1;
+    Lanes scale = lanes_set((float)per * (RASTERBOX_PARTS / TILE_SIDE));
+    Lanes part = lanes_fma(at, scale, lanes_set(middle));
+    part = lanes_max(lanes_min(part, lanes_set(last)), lanes_set(0));
+    return (uint32_t)lanes_least(part) | (RASTERBOX_PARTS - 1 - (uint32_t)lanes_largest(part)) << 8;
+}
+
+RASTER_FN ProbeBlock load_probes(const RasterTile *tile, const RasterProbes *probes, int first)
+{
+    float x[LANES], y[LANES];
+    for (int lane = 0; lane < LANES; lane++) {
         x[lane] = (float)(probes->x[first + lane] - tile->x);
         y[lane] = (float)(probes->y[first + lane] - tile->y);
-        z[lane] = probes->z[first + lane];
-        open[lane] = -1;
     }
-    float deepest = probes->z[first];
-    for (int lane = 1; lane < n; lane++)
-        deepest = probes->z[first + lane] > deepest ? probes->z[first + lane] : deepest;
-    for (size_t i = 0; i < tile->n && lanes_any(open); i++) {
-        if (tile->nears[i] > deepest)
-            continue;
-        Near near = approach(tile, tile->list[i], perspective);
-        if (near.kind == RASTER_JOINT)
-            outline(tile, &near);
-        LaneMask among = open & (z > near.z_near);
-        if (near.kind == RASTER_EXACT || lanes_any(among))
-            open &= ~item_covers(&near, tile, probes, first, x, y, z, among);
+    const RasterView *view = &tile->bins->view;
+    ProbeBlock block = {lanes_load(x), lanes_load(y), lanes_load(&probes->z[first]), 0, 0};
+    block.deepest = lanes_largest(block.z);
+    block.box = parts_of(block.x, view->per_x) | parts_of(block.y, view->per_y) << 16;
+    return block;
+}
+
+/* Of LANES items from `first` of the list on, as bits, those that may be before a probe. */
+RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const ProbeBlock *block)
+{
+    typedef uint32_t LaneWords __attribute__((vector_size(4 * LANES)));
+    LaneWords boxes;
+    __builtin_memcpy(&boxes, tile->list + tile->n + first, sizeof boxes);
+    LaneMask touched = ((boxes - block->box) & RASTERBOX_GUARDS) == RASTERBOX_GUARDS;
+    uint32_t bits = lanes_bits(touched & (lanes_load(tile->nears + first) <= block->deepest));
+    size_t left = tile->n - first;
+    return left < LANES ? bits & ((1u << left) - 1) : bits;
+}
+
+RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int first,
+                           bool perspective)
+{
+    const ProbeBlock block = load_probes(tile, probes, first);
+    LaneMask open = lanes_of_bytes(&probes->covered[first]);
+    for (size_t i = 0; i < tile->n && lanes_any(open); i += LANES) {
+        uint32_t bits = items_before(tile, i, &block);
+        for (uint32_t left = bits; left; left &= left - 1)
+            __builtin_prefetch(&tile->items[tile->list[i + (size_t)__builtin_ctz(left)]]);
+        for (; bits; bits &= bits - 1) {
+            Near near = approach(tile, tile->list[i + (size_t)__builtin_ctz(bits)], perspective);
+            if (near.kind == RASTER_JOINT)
+                outline(tile, &near);
+            LaneMask among = open & (block.z > near.z_near);
+            if (near.kind == RASTER_EXACT || lanes_any(among))
+                open &= ~item_covers(&near, tile, probes, first, block.x, block.y, block.z, among);
+        }
     }
-    for (int lane = 0; lane < n; lane++)
+    for (int lane = 0; lane < LANES; lane++)
         probes->covered[first + lane] = !open[lane];
 }
 
 LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, RasterProbes *probes)
 {
-    for (int first = 0; first < probes->n; first += LANES) {
-        int n = probes->n - first < LANES ? probes->n - first : LANES;
-        if (tile->perspective)
-            cover_block(tile, probes, first, n, true);
-        else
-            cover_block(tile, probes, first, n, false);
+    /* The last block is filled up with probes that are like the first and not asked for. */
+    for (int i = 0; i < probes->n || i % LANES; i++) {
+        bool asked = i < probes->n;
+        probes->x[i] = probes->x[asked ? i : 0];
+        probes->y[i] = probes->y[asked ? i : 0];
+        probes->z[i] = probes->z[asked ? i : 0];
+        probes->covered[i] = asked;
     }
+    for (int first = 0; first < probes->n; first += LANES)
+        if (tile->perspective)
+            cover_block(tile, probes, first, true);
+        else
+            cover_block(tile, probes, first, false);
 }

@@ -11,6 +11,11 @@ static const double most_pixels = 16384; /* 2^-24 of it are a thousandth of a pi
 static const double least_sine =
     0.02; /* of the angle at which a wall is looked at along its axis */
 
+static double min_of(double a, double b)
+{
+    return a < b ? a : b;
+}
+
 static void store_vec3(float to[3], Vec3 v)
 {
     to[0] = (float)v.x;
@@ -98,7 +103,7 @@ RasterItem rasteritem_make(const Scene *scene, const RasterView *view, uint32_t 
         kind = !view->perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
     if (primitive->kind == PRIMITIVE_JOINT) {
         kind = scene->open_joints || !joint_is_solid(primitive) ? RASTER_EXACT : RASTER_JOINT;
-        radius = fmax(radius, primitive->radius_b_mm);
+        radius = -min_of(-radius, -primitive->radius_b_mm);
         if (kind == RASTER_JOINT)
             joints[joint] = make_joint(view, primitive, middle);
     }
@@ -115,7 +120,7 @@ RasterItem rasteritem_make(const Scene *scene, const RasterView *view, uint32_t 
                        .joint = joint,
                        .kind = (uint32_t)kind};
     double near = middle.z - cosine * length / 2 - radius;
-    double pixel = fmin(view->step_x, -view->step_y) * (view->perspective ? near : 1);
+    double pixel = min_of(view->step_x, -view->step_y) * (view->perspective ? near : 1);
     if (item_is_close(&item) || length / 2 + radius > most_pixels * pixel)
         item.kind = RASTER_EXACT;
     return item;

@@ -1,7 +1,9 @@
 /* A light has a view of its own, a grid of tiles over the scene with lists as the camera's have.
  * A place lies in shadow if the first thing that the light sees on the way to it is something
  * else: so the same kernels find first hits, at places instead of on a grid. The samples of a
- * tile of the picture lie in few tiles of a light and are tested tile by tile. */
+ * tile of the picture lie in few tiles of a light and are tested tile by tile. Lists hold boxes
+ * and depths, several of which are compared with those of the places at once: few items are left
+ * to be looked at, and memory is asked for them and for the next list ahead. */
 #include "render/rastershadow.h"
 
 #include <stdlib.h>
@@ -12,13 +14,17 @@ static const double slack_mm = 1e-3;
 /* A point light must be as far from the middle of the scene, in radii of the scene: it sees less
  * than 60 degrees to each side then. */
 static const double least_radii = 1.16;
+/* Kernels load as many words from a list's end on, whatever they are. */
+enum { MOST_LANES = 16 };
+/* What is asked of memory ahead of its use: the beginning of the next list. */
+enum { LINE_WORDS = 16, MOST_FETCHED = 8 * LINE_WORDS };
 enum { LEAST_SIDE = 16, MOST_SIDE = 512, BLOCK_WORDS = 1 << 18 };
 
-/* The lists of a row of tiles, as in RasterRow, and for each of the lists a depth before which
- * nothing of the item is: spares a look at what is behind. */
+/* The lists of a row of tiles. That of column i, of n = offsets[i + 1] - offsets[i] items, begins at
+ * words[3 offsets[i]]: n items, their boxes, as RasterBox but in this tile, and the floats of their
+ * RasterBox.near. */
 typedef struct ShadowRow {
-    const uint32_t *offsets, *lists;
-    const float *nears;
+    const uint32_t *offsets, *words;
 } ShadowRow;
 
 typedef struct Block {
@@ -30,7 +36,7 @@ typedef struct Block {
 typedef struct Store {
     Block *blocks;
     size_t used, size; /* words of the first block */
-    RasterRow row;     /* the one being made */
+    uint32_t *taken;   /* items that each column of the row being made has */
     Status status;
 } Store;
 
@@ -62,17 +68,17 @@ static Vec3 corner(const Box *box, int number)
                 number & 4 ? box->high.z : box->low.z);
 }
 
-/* Tiles on a side: about as many tiles as primitives. */
+/* Tiles on a side: about four primitives a tile. */
 static int tiles_for(const Scene *scene)
 {
-    double side = sqrt((double)scene->n_primitives);
+    double side = sqrt((double)scene->n_primitives) / 2;
     return side < LEAST_SIDE ? LEAST_SIDE : side > MOST_SIDE ? MOST_SIDE : (int)side;
 }
 
 /* The view of a light, just wide enough for the scene. */
 static RasterView light_view(const Scene *scene, const Light *light)
 {
-    RasterView view = {.location = light->location, .perspective = !light->parallel};
+    RasterView view = {.location = light->location, .perspective = !light->parallel, .boxes = true};
     Vec3 center, towards = vec3_sub(light->target, light->location);
     scene_radius(scene, &center);
     if (!light->parallel)
@@ -105,7 +111,8 @@ static Status take_words(Store *store, size_t n, uint32_t **out)
     if (n > store->size - store->used) {
         size_t size = n > BLOCK_WORDS ? n : BLOCK_WORDS;
         Block *block;
-        TRY(mem_calloc(&block, 1, sizeof *block + size * sizeof *block->words, "shadows", NULL));
+        TRY(mem_calloc(&block, 1, sizeof *block + (size + MOST_LANES) * sizeof *block->words,
+                       "shadows", NULL));
         block->next = store->blocks;
         store->blocks = block;
         store->used = 0;
@@ -119,21 +126,25 @@ static Status take_words(Store *store, size_t n, uint32_t **out)
 static Status store_row(RasterShadow *shadow, Store *store, size_t row)
 {
     const RasterBins *bins = shadow->bins;
-    TRY(rasterbins_list(bins, row, &store->row, NULL));
-    size_t n_offsets = (size_t)bins->tile_columns + 1, n = store->row.offsets[n_offsets - 1];
-    uint32_t *words;
-    TRY(take_words(store, n_offsets + 2 * n, &words));
-    uint32_t *offsets = words, *lists = words + n_offsets;
-    float *nears = (float *)(void *)(lists + n);
-    memcpy(offsets, store->row.offsets, n_offsets * sizeof *offsets);
-    for (size_t i = 0; i < n; i++) {
-        lists[i] = store->row.lists[i];
-        const RasterItem *item = &bins->items[lists[i]];
-        double deep = (double)item->cosine * (double)item->half + (double)item->radius;
-        double near = item->z - deep - bins->view.z_middle;
-        nears[i] = (float)(near - 1e-6 * fabs(near));
+    size_t columns = (size_t)bins->tile_columns;
+    uint32_t *offsets, *words;
+    TRY(take_words(store, columns + 1, &offsets));
+    TRY(rasterbins_count(bins, row, offsets, NULL));
+    TRY(take_words(store, 3 * (size_t)offsets[columns], &words));
+    memset(store->taken, 0, columns * sizeof *store->taken);
+    for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++) {
+        const RasterSpan span = bins->row_columns[i];
+        const RasterBox *box = &bins->row_boxes[i];
+        for (int column = span.first; column <= span.last; column++) {
+            size_t n = offsets[column + 1] - offsets[column];
+            uint32_t *place = words + 3 * (size_t)offsets[column] + store->taken[column]++;
+            place[0] = bins->row_items[i];
+            place[n] = box->box | (column < span.last ? RASTERBOX_HIGH_X : 0) |
+                       (column > span.first ? RASTERBOX_LOW_X : 0);
+            memcpy(&place[2 * n], &box->near, sizeof box->near);
+        }
     }
-    shadow->rows[row] = (ShadowRow){offsets, lists, nears};
+    shadow->rows[row] = (ShadowRow){offsets, words};
     return STATUS_OK;
 }
 
@@ -151,12 +162,14 @@ static Status list_rows(RasterShadow *shadow, Err *err)
     TRY(mem_calloc(&shadow->rows, n, sizeof *shadow->rows, "rows of tiles", err));
     TRY(mem_calloc(&shadow->stores, (size_t)shadow->workers, sizeof *shadow->stores, "shadows",
                    err));
+    for (int i = 0; i < shadow->workers; i++)
+        TRY(mem_calloc(&shadow->stores[i].taken, (size_t)shadow->bins->tile_columns,
+                       sizeof *shadow->stores[i].taken, "shadows", err));
     threads_for(n, shadow->workers, list_row, shadow);
-    for (int i = 0; i < shadow->workers; i++) {
-        rasterrow_release(&shadow->stores[i].row);
+    rasterbins_forget_rows(shadow->bins);
+    for (int i = 0; i < shadow->workers; i++)
         if (shadow->stores[i].status != STATUS_OK)
             return err_set(err, shadow->stores[i].status, "out of memory: no room for shadows");
-    }
     return STATUS_OK;
 }
 
@@ -204,7 +217,7 @@ void rastershadow_free(RasterShadow *shadow)
     if (!shadow)
         return;
     for (int i = 0; shadow->stores && i < shadow->workers; i++) {
-        rasterrow_release(&shadow->stores[i].row);
+        free(shadow->stores[i].taken);
         for (Block *block = shadow->stores[i].blocks, *next; block; block = next) {
             next = block->next;
             free(block);
@@ -216,41 +229,75 @@ void rastershadow_free(RasterShadow *shadow)
     free(shadow);
 }
 
-static void test_tile(const RasterShadow *shadow, const RasterKernels *kernels, int number,
-                      RasterProbes *probes)
+/* The places that lie in one tile of the light, as bits. */
+typedef struct Group {
+    int tile;
+    uint64_t places;
+} Group;
+
+/* Parts the wanted places by tiles, in the order of their first; returns the number of groups. */
+static int group_places(const RasterSpots *spots, uint64_t wanted, Group groups[TILE_SAMPLES])
+{
+    int n = 0;
+    for (Group *group = groups; wanted; wanted &= wanted - 1) {
+        int place = __builtin_ctzll(wanted), tile = spots->tile[place];
+        if (n == 0 || group->tile != tile)
+            for (group = groups; group < groups + n && group->tile != tile; group++)
+                ;
+        if (group == groups + n)
+            groups[n++] = (Group){tile, 0};
+        group->places |= (uint64_t)1 << place;
+    }
+    return n;
+}
+
+/* A tile of the light with its list. */
+static RasterTile tile_of(const RasterShadow *shadow, int number)
 {
     const RasterBins *bins = shadow->bins;
     int row = number / bins->tile_columns, column = number % bins->tile_columns;
-    const ShadowRow *lists = &shadow->rows[row];
-    uint32_t first = lists->offsets[column], last = lists->offsets[column + 1];
-    RasterTile tile =
-        rasterbins_tile(bins, column, row, lists->lists + first, last - first, &shadow->grid);
-    tile.nears = lists->nears + first;
-    kernels->cover(&tile, probes);
+    const uint32_t *offsets = shadow->rows[row].offsets + column;
+    const uint32_t *list = shadow->rows[row].words + 3 * (size_t)offsets[0];
+    size_t n = offsets[1] - offsets[0];
+    RasterTile tile = rasterbins_tile(bins, column, row, list, n, &shadow->grid);
+    tile.nears = (const float *)(const void *)(list + 2 * n);
+    for (size_t word = 0; word < 3 * n && word < MOST_FETCHED; word += LINE_WORDS)
+        __builtin_prefetch(list + word);
+    return tile;
+}
+
+static void test_group(const RasterKernels *kernels, const RasterTile *tile, uint64_t places,
+                       const RasterSpots *spots, uint8_t shadowed[TILE_SAMPLES])
+{
+    RasterProbes probes;
+    int own[TILE_SAMPLES];
+    probes.n = 0;
+    for (; places; places &= places - 1) {
+        int place = __builtin_ctzll(places);
+        own[probes.n] = place;
+        probes.x[probes.n] = spots->x[place];
+        probes.y[probes.n] = spots->y[place];
+        probes.z[probes.n++] = spots->z[place];
+    }
+    kernels->cover(tile, &probes);
+    for (int i = 0; i < probes.n; i++)
+        shadowed[own[i]] = probes.covered[i];
 }
 
 void rastershadow_test(const RasterShadow *shadow, const RasterKernels *kernels,
                        const RasterPlaces *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
 {
     RasterSpots spots;
-    if (wanted)
-        kernels->aim(&shadow->aim, places, &spots);
-    while (wanted) {
-        RasterProbes probes;
-        probes.n = 0;
-        int own[TILE_SAMPLES], tile = spots.tile[__builtin_ctzll(wanted)];
-        for (uint64_t left = wanted; left; left &= left - 1) {
-            int sample = __builtin_ctzll(left);
-            if (spots.tile[sample] != tile)
-                continue;
-            wanted &= ~((uint64_t)1 << sample);
-            own[probes.n] = sample;
-            probes.x[probes.n] = spots.x[sample];
-            probes.y[probes.n] = spots.y[sample];
-            probes.z[probes.n++] = spots.z[sample];
-        }
-        test_tile(shadow, kernels, tile, &probes);
-        for (int i = 0; i < probes.n; i++)
-            shadowed[own[i]] = probes.covered[i];
+    Group groups[TILE_SAMPLES];
+    if (!wanted)
+        return;
+    kernels->aim(&shadow->aim, places, &spots);
+    int n = group_places(&spots, wanted, groups);
+    RasterTile next = tile_of(shadow, groups[0].tile);
+    for (int i = 0; i < n; i++) {
+        RasterTile tile = next;
+        if (i + 1 < n)
+            next = tile_of(shadow, groups[i + 1].tile);
+        test_group(kernels, &tile, groups[i].places, &spots, shadowed);
     }
 }

@@ -18,6 +18,7 @@ typedef struct RasterView {
     int first;             /* pixels above the first row, a multiple of TILE_SIDE */
     double stray;          /* how far samples lie off the middles of their pixels, in pixels */
     double z_middle;       /* depths in single precision are relative to it, mm */
+    bool boxes;            /* whether the bins shall have boxes */
 } RasterView;
 
 /* That of a camera, rows from `first` on; `antialias` as in RenderParams. */
@@ -25,24 +26,58 @@ RasterView rasterview_of_camera(const Scene *scene, int first, int rows, int ant
 
 /* The line of sight at a point of the view's plane, its direction a unit vector. */
 Ray rasterview_ray(const RasterView *view, double x, double y);
-Vec3 rasterview_to_frame(const RasterView *view, Vec3 v);
+
+static inline Vec3 rasterview_to_frame(const RasterView *view, Vec3 v)
+{
+    return vec3(vec3_dot(v, view->axes[0]), vec3_dot(v, view->axes[1]), vec3_dot(v, view->axes[2]));
+}
+
 Vec3 rasterview_to_world(const RasterView *view, Vec3 v);
+
+/* The tiles that an item may touch of a row, or the rows; none if first > last. */
+typedef struct RasterSpan {
+    int first, last;
+} RasterSpan;
+
+/* A box within a tile in 128ths of its sides, from the left and the top, for one subtraction to
+ * compare with another: 7 bits each of the greatest x, 127 less the least x, the greatest y and
+ * 127 less the least y, below guards that are set in boxes of items. */
+#define RASTERBOX_GUARDS 0x80808080u
+#define RASTERBOX_HIGH_X 0x7fu
+#define RASTERBOX_LOW_X 0x7f00u
+enum { RASTERBOX_PARTS = 128 };
+
+/* Where in its tiles of a row an item may be. */
+typedef struct RasterBox {
+    uint32_t box; /* its x are the least in the first tile and the greatest in the last */
+    float near;   /* a depth before which nothing of the item is, less z_middle */
+} RasterBox;
 
 /* The primitives of a scene, sorted into the rows of tiles of a view. Constant once built. */
 typedef struct RasterBins {
     const Scene *scene; /* borrowed */
     RasterView view;
-    RasterItem *items;   /* one a primitive */
+    void *item_memory;   /* holds the items */
+    RasterItem *items;   /* one a primitive, in a line of the cache */
     RasterJoint *joints; /* of items that are joints */
     int tile_columns, tile_rows;
     size_t *row_offsets; /* into row_items; one more than there are rows */
     uint32_t *row_items; /* ascending within a row */
+    RasterSpan *row_columns;
+    RasterBox *row_boxes; /* NULL unless the view asks for boxes */
 } RasterBins;
 
 /* Borrows the scene. STATUS_MEMORY when there is no room. */
 MUST_CHECK Status rasterbins_new(const Scene *scene, const RasterView *view, int threads,
                                  RasterBins **out, Err *err);
 void rasterbins_free(RasterBins *bins);
+/* Frees row_items, row_columns and row_boxes, of which nothing may be asked any more. */
+void rasterbins_forget_rows(RasterBins *bins);
+
+/* Counts the items of each tile of one row: those of column i are to be
+ * [offsets[i], offsets[i + 1]) of as many as the last offset says. */
+MUST_CHECK Status rasterbins_count(const RasterBins *bins, size_t number, uint32_t *offsets,
+                                   Err *err);
 
 /* The items of each tile of one row: lists[offsets[i] .. offsets[i + 1]) for column i,
  * ascending. */
@@ -50,8 +85,6 @@ typedef struct RasterRow {
     uint32_t *offsets;
     uint32_t *lists;
     size_t lists_capacity;
-    int32_t *spans;
-    size_t spans_capacity;
 } RasterRow;
 
 /* Fills *row, which is zeroed or has been used for these bins before. */

@@ -494,6 +494,58 @@ static void all_kernels_see_the_same(void **state)
     }
 }
 
+/* Whether the row's entry of an item has the column, and there a box that holds the place, in parts
+ * of the tile from the left and the top, and a depth before it. */
+static bool entry_holds(const RasterBins *bins, int row, uint32_t item, int column,
+                        const double part[2], double z)
+{
+    for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++) {
+        const RasterSpan span = bins->row_columns[i];
+        const RasterBox *box = &bins->row_boxes[i];
+        if (bins->row_items[i] != item)
+            continue;
+        double high[2] = {box->box & 127, box->box >> 16 & 127};
+        double low[2] = {127 - (box->box >> 8 & 127), 127 - (box->box >> 24 & 127)};
+        return span.first <= column && column <= span.last && box->near <= (float)z &&
+               (column > span.first || low[0] <= part[0]) &&
+               (column < span.last || part[0] < high[0] + 1) && low[1] <= part[1] &&
+               part[1] < high[1] + 1;
+    }
+    return false;
+}
+
+static void boxes_hold_the_axes_of_vessels(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++) {
+        Staged staged;
+        stage(&staged, (Projection)projection);
+        RasterView view = rasterview_of_camera(&staged.scene, 0, HEIGHT, 2);
+        view.boxes = true;
+        RasterBins *bins;
+        assert_int_equal(rasterbins_new(&staged.scene, &view, 2, &bins, NULL), STATUS_OK);
+        int held = 0;
+        for (uint32_t i = 0; i < staged.scene.n_primitives; i++)
+            for (int step = 0; step <= 8; step++) {
+                const Primitive *primitive = &staged.scene.primitives[i];
+                Vec3 span = vec3_sub(primitive->b, primitive->a);
+                Vec3 at = vec3_add_scaled(primitive->a, span, step / 8.0);
+                at = rasterview_to_frame(&view, vec3_sub(at, view.location));
+                double depth = view.perspective ? at.z : 1;
+                double x = ((at.x / depth - view.left) / view.step_x + 0.5) / TILE_SIDE;
+                double y = ((at.y / depth - view.top) / view.step_y + 0.5) / TILE_SIDE;
+                if (at.z <= 0 || x < 0 || x >= WIDTH / TILE_SIDE || y < 0 ||
+                    y >= HEIGHT / TILE_SIDE)
+                    continue;
+                double part[2] = {(x - (int)x) * RASTERBOX_PARTS, (y - (int)y) * RASTERBOX_PARTS};
+                assert_true(entry_holds(bins, (int)y, i, (int)x, part, at.z - view.z_middle));
+                held++;
+            }
+        assert_true(held > 500);
+        rasterbins_free(bins);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -509,6 +561,7 @@ int main(void)
         cmocka_unit_test(a_depth_buffer_of_points_has_no_holes),
         cmocka_unit_test(a_depth_buffer_does_not_depend_on_the_number_of_threads),
         cmocka_unit_test(all_kernels_see_the_same),
+        cmocka_unit_test(boxes_hold_the_axes_of_vessels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
