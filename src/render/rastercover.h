@@ -104,12 +104,13 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, RasterP
         met = (LaneMask){0};
     }
     LaneMask covered = met & among & (entry + near->z < z);
-    for (int lane = 0; lane < LANES; lane++)
-        if (unsure[lane] && !covered[lane])
-            covered[lane] = -(raster_decide(tile->bins, near->number, probes->x[first + lane],
-                                            probes->y[first + lane], NULL) -
-                                  tile->z_middle <
-                              (double)probes->z[first + lane]);
+    unsure &= ~covered;
+    for (uint32_t left = lanes_bits(unsure); left; left &= left - 1) {
+        int lane = __builtin_ctz(left), probe = first + lane;
+        double at =
+            raster_decide(tile->bins, near->number, probes->x[probe], probes->y[probe], NULL);
+        covered[lane] = -(at - tile->z_middle < (double)probes->z[probe]);
+    }
     return covered;
 }
 

@@ -3,10 +3,13 @@
 #include "render/rasterreach.h"
 
 static const double slack_pixels = 1e-3; /* covers rounding where tiles are told apart */
-enum { FEW_TILES = 2 };
+
+typedef struct Range {
+    double low, high;
+} Range;
 
 static const RasterSpan nowhere = {1, 0};
-static const RasterRange everywhere = {-HUGE_VAL, HUGE_VAL}, nothing = {HUGE_VAL, -HUGE_VAL};
+static const Range everywhere = {-HUGE_VAL, HUGE_VAL}, nothing = {HUGE_VAL, -HUGE_VAL};
 
 static double min_of(double a, double b)
 {
@@ -20,14 +23,14 @@ static double max_of(double a, double b)
 
 /* A range as pixels, whose middles are whole numbers; pixel 0 is at `first`, and `per` pixels follow
  * in a unit. */
-static RasterRange pixels_within(RasterRange range, double first, double per)
+static Range pixels_within(Range range, double first, double per)
 {
     double from = (range.low - first) * per, to = (range.high - first) * per;
-    return (RasterRange){min_of(from, to) - slack_pixels, max_of(from, to) + slack_pixels};
+    return (Range){min_of(from, to) - slack_pixels, max_of(from, to) + slack_pixels};
 }
 
 /* The tiles of `count` pixels from pixel `least` on that samples in a range of pixels lie in. */
-static RasterSpan tiles_within(RasterRange pixels, double stray, int least, int count)
+static RasterSpan tiles_within(Range pixels, double stray, int least, int count)
 {
     double low = max_of(pixels.low - stray, least);
     double high = min_of(pixels.high + stray, least + count - 1);
@@ -41,11 +44,11 @@ static RasterSpan tiles_within(RasterRange pixels, double stray, int least, int 
 
 /* What a ball at coordinate c in one direction of a perspective view's plane, and at depth z >
  * radius, covers there. */
-static RasterRange ball_shadow(double c, double z, double radius)
+static Range ball_shadow(double c, double z, double radius)
 {
     double half = radius * sqrt(max_of(c * c + z * z - radius * radius, 0));
     double per = 1 / ((z - radius) * (z + radius));
-    return (RasterRange){(c * z - half) * per, (c * z + half) * per};
+    return (Range){(c * z - half) * per, (c * z + half) * per};
 }
 
 static Vec3 item_axis(const RasterItem *item)
@@ -59,49 +62,10 @@ static Vec3 item_point(const RasterItem *item, double along)
     return vec3_add_scaled(vec3(item->x, item->y, item->z), item_axis(item), along);
 }
 
-/* How far it reaches to both sides of its middle in depth. */
-static double item_depth(const RasterItem *item)
+static Range capsule_shadow(double c0, double z0, double c1, double z1, double radius)
 {
-    return (double)item->cosine * (double)item->half + (double)item->radius;
-}
-
-static RasterRange capsule_shadow(double c0, double z0, double c1, double z1, double radius)
-{
-    RasterRange one = ball_shadow(c0, z0, radius), other = ball_shadow(c1, z1, radius);
-    return (RasterRange){min_of(one.low, other.low), max_of(one.high, other.high)};
-}
-
-static bool may_be_anywhere(const RasterView *view, const RasterItem *item)
-{
-    return view->perspective && item_is_close(item);
-}
-
-/* What the whole of it covers, across the view or up it. */
-static RasterRange whole_range(const RasterView *view, const RasterItem *item, bool across)
-{
-    double half = (double)item->half, radius = (double)item->radius;
-    if (view->perspective) {
-        Vec3 a = item_point(item, -half), b = item_point(item, half);
-        return capsule_shadow(across ? a.x : a.y, a.z, across ? b.x : b.y, b.z, radius);
-    }
-    double middle = across ? item->x : item->y;
-    double slope = (double)(across ? item->ex : item->ey) * (double)item->sine;
-    double reach = fabs(slope) * half + radius;
-    return (RasterRange){middle - reach, middle + reach};
-}
-
-static RasterRange pixels_down(const RasterView *view, const RasterItem *item)
-{
-    if (may_be_anywhere(view, item))
-        return everywhere;
-    return pixels_within(whole_range(view, item, false), view->top, view->per_y);
-}
-
-RasterSpan rasterreach_rows(const RasterView *view, const RasterItem *item)
-{
-    if (item->z + item_depth(item) < 0)
-        return nowhere;
-    return tiles_within(pixels_down(view, item), view->stray, view->first, view->rows);
+    Range one = ball_shadow(c0, z0, radius), other = ball_shadow(c1, z1, radius);
+    return (Range){min_of(one.low, other.low), max_of(one.high, other.high)};
 }
 
 RasterSlab rasterslab_of(const RasterView *view, size_t row)
@@ -126,7 +90,7 @@ static void clip_part(double at_a, double at_b, double *from, double *to)
 }
 
 /* What the part of the capsule within reach of the slab covers of a row. */
-static RasterRange parallel_range(const RasterItem *item, const RasterSlab *slab)
+static Range parallel_range(const RasterItem *item, const RasterSlab *slab)
 {
     double radius = (double)item->radius, ex = (double)item->ex, ey = (double)item->ey;
     double half = (double)item->sine * (double)item->half, low = -half, high = half;
@@ -140,10 +104,10 @@ static RasterRange parallel_range(const RasterItem *item, const RasterSlab *slab
         high = min_of(high, max_of(one, other));
     }
     double from = ex * low, to = ex * high;
-    return (RasterRange){item->x + min_of(from, to) - radius, item->x + max_of(from, to) + radius};
+    return (Range){item->x + min_of(from, to) - radius, item->x + max_of(from, to) + radius};
 }
 
-static RasterRange perspective_range(const RasterItem *item, const RasterSlab *slab)
+static Range perspective_range(const RasterItem *item, const RasterSlab *slab)
 {
     double half = (double)item->half, radius = (double)item->radius, from = 0, to = 1;
     Vec3 a = item_point(item, -half), span = vec3_scale(item_axis(item), 2 * half);
@@ -159,28 +123,9 @@ static RasterRange perspective_range(const RasterItem *item, const RasterSlab *s
     return capsule_shadow(first.x, first.z, last.x, last.z, radius);
 }
 
-/* The pixels across the picture that the part of the capsule within reach of a row's slab covers;
- * `slab` NULL: that the whole of it covers. */
-static RasterRange pixels_across(const RasterView *view, const RasterItem *item,
-                                 const RasterSlab *slab)
-{
-    if (may_be_anywhere(view, item))
-        return everywhere;
-    RasterRange range = !slab               ? whole_range(view, item, true)
-                        : view->perspective ? perspective_range(item, slab)
-                                            : parallel_range(item, slab);
-    return range.low > range.high ? range : pixels_within(range, view->left, view->per_x);
-}
-
-static RasterSpan columns_of(const RasterView *view, RasterRange across)
+static RasterSpan columns_of(const RasterView *view, Range across)
 {
     return tiles_within(across, view->stray, 0, view->columns);
-}
-
-RasterSpan rasterreach_columns(const RasterView *view, const RasterItem *item,
-                               const RasterSlab *slab)
-{
-    return columns_of(view, pixels_across(view, item, slab));
 }
 
 /* ---- boxes ----------------------------------------------------------------------------------- */
@@ -192,35 +137,65 @@ static uint32_t part_of(double pixel, int tile)
     return (uint32_t)(int)min_of(max_of(part, 0), RASTERBOX_PARTS - 1);
 }
 
-/* The box in the tiles of a row, counted from that of pixel 0. */
-static uint32_t box_of(RasterSpan columns, RasterRange across, int row, RasterRange down)
+/* From where in the first tile to where in the last. */
+static uint32_t parts_of(Range pixels, RasterSpan tiles)
 {
-    const uint32_t last = RASTERBOX_PARTS - 1;
-    return RASTERBOX_GUARDS | part_of(across.high, columns.last) |
-           (last - part_of(across.low, columns.first)) << 8 | part_of(down.high, row) << 16 |
-           (last - part_of(down.low, row)) << 24;
+    return part_of(pixels.high, tiles.last) |
+           (RASTERBOX_PARTS - 1 - part_of(pixels.low, tiles.first)) << 8;
 }
+
+/* ---- items ----------------------------------------------------------------------------------- */
 
 RasterReach rasterreach_of(const RasterView *view, const RasterItem *item)
 {
-    RasterReach reach = {.down = pixels_down(view, item),
-                         .across = pixels_across(view, item, NULL)};
-    double near = item->z - item_depth(item) - view->z_middle;
-    reach.near = (float)(near - 1e-6 * fabs(near));
-    reach.columns = columns_of(view, reach.across);
+    double half = (double)item->half, radius = (double)item->radius;
+    double deep = (double)item->cosine * half + radius;
+    RasterReach reach = {.rows = nowhere, .columns = nowhere};
+    if (item->z + deep < 0)
+        return reach;
+    Range across = everywhere, down = everywhere;
+    if (!view->perspective) {
+        double sine = (double)item->sine;
+        double reach_x = fabs((double)item->ex) * sine * half + radius;
+        double reach_y = fabs((double)item->ey) * sine * half + radius;
+        across = (Range){item->x - reach_x, item->x + reach_x};
+        down = (Range){item->y - reach_y, item->y + reach_y};
+    } else if (!item_is_close(item)) {
+        Vec3 a = item_point(item, -half), b = item_point(item, half);
+        across = capsule_shadow(a.x, a.z, b.x, b.z, radius);
+        down = capsule_shadow(a.y, a.z, b.y, b.z, radius);
+    }
+    across = pixels_within(across, view->left, view->per_x);
+    down = pixels_within(down, view->top, view->per_y);
+    reach.rows = tiles_within(down, view->stray, view->first, view->rows);
+    reach.columns = columns_of(view, across);
+    if (view->boxes) {
+        double near = item->z - deep - view->z_middle;
+        Range from_first = {down.low - view->first, down.high - view->first};
+        reach.box = RASTERBOX_GUARDS | parts_of(across, reach.columns) |
+                    parts_of(from_first, reach.rows) << 16;
+        reach.near = (float)(near - 1e-6 * fabs(near));
+    }
     return reach;
 }
 
-RasterSpan rasterreach_box(const RasterReach *reach, const RasterView *view, const RasterItem *item,
-                           RasterSpan rows, int row, const RasterSlab *slab, RasterBox *box)
+RasterSpan rasterreach_in_row(const RasterReach *reach, const RasterView *view,
+                              const RasterItem *item, int row, const RasterSlab *slab,
+                              uint32_t *box)
 {
-    RasterSpan columns = reach->columns;
-    RasterRange across = reach->across;
-    if (rows.last - rows.first >= FEW_TILES || columns.last - columns.first >= FEW_TILES) {
-        across = pixels_across(view, item, slab);
-        columns = columns_of(view, across);
-    }
-    *box = (RasterBox){box_of(columns, across, view->first / TILE_SIDE + row, reach->down),
-                       reach->near};
+    RasterSpan rows = reach->rows, columns = reach->columns;
+    *box = reach->box | (row < rows.last ? RASTERBOX_HIGH_X << 16 : 0) |
+           (row > rows.first ? RASTERBOX_LOW_X << 16 : 0);
+    int few = view->boxes ? 1 : 0;
+    if (rows.last - rows.first <= few || columns.last - columns.first <= few ||
+        (view->perspective && item_is_close(item)))
+        return columns;
+    Range range = view->perspective ? perspective_range(item, slab) : parallel_range(item, slab);
+    if (range.low > range.high)
+        return nowhere;
+    range = pixels_within(range, view->left, view->per_x);
+    columns = columns_of(view, range);
+    if (view->boxes)
+        *box = (*box & ~(RASTERBOX_HIGH_X | RASTERBOX_LOW_X)) | parts_of(range, columns);
     return columns;
 }

@@ -11,25 +11,18 @@ typedef struct RasterSlab {
 
 RasterSlab rasterslab_of(const RasterView *view, size_t row);
 
-RasterSpan rasterreach_rows(const RasterView *view, const RasterItem *item);
-/* Those of one row, the slab of which is given. */
-RasterSpan rasterreach_columns(const RasterView *view, const RasterItem *item,
-                               const RasterSlab *slab);
-
-typedef struct RasterRange {
-    double low, high;
-} RasterRange;
-
-/* What the boxes of an item have in common. */
+/* Where the whole of an item is seen. */
 typedef struct RasterReach {
-    RasterRange down, across; /* pixels that the whole of it covers */
-    RasterSpan columns;
-    float near; /* as in RasterBox */
+    RasterSpan rows, columns;
+    uint32_t box; /* RasterBox, its y the least in the first row and the greatest in the last */
+    float near;
 } RasterReach;
 
+/* Box and depth only if the view asks for boxes. */
 RasterReach rasterreach_of(const RasterView *view, const RasterItem *item);
-/* The columns of a row, one of `rows`, and the box of the item there. */
-RasterSpan rasterreach_box(const RasterReach *reach, const RasterView *view, const RasterItem *item,
-                           RasterSpan rows, int row, const RasterSlab *slab, RasterBox *box);
+/* The columns of a row, one of reach->rows, and the box there. */
+RasterSpan rasterreach_in_row(const RasterReach *reach, const RasterView *view,
+                              const RasterItem *item, int row, const RasterSlab *slab,
+                              uint32_t *box);
 
 #endif

@@ -68,10 +68,10 @@ static Vec3 corner(const Box *box, int number)
                 number & 4 ? box->high.z : box->low.z);
 }
 
-/* Tiles on a side: about four primitives a tile. */
+/* Tiles on a side: about sixteen primitives a tile. */
 static int tiles_for(const Scene *scene)
 {
-    double side = sqrt((double)scene->n_primitives) / 2;
+    double side = sqrt((double)scene->n_primitives) / 4;
     return side < LEAST_SIDE ? LEAST_SIDE : side > MOST_SIDE ? MOST_SIDE : (int)side;
 }
 

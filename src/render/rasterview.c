@@ -51,7 +51,7 @@ Vec3 rasterview_to_world(const RasterView *view, Vec3 v)
 
 typedef struct Build {
     RasterBins *bins;
-    RasterSpan *rows;       /* one an item */
+    RasterReach *reaches;   /* one an item */
     RasterSlab *slabs;      /* one a row */
     size_t *counts;         /* chunk by chunk, of each row; then where the chunk's items go */
     uint32_t *joints;       /* chunk by chunk: their number; then that of the first */
@@ -104,8 +104,9 @@ static void make_chunk(size_t chunk, int worker, void *context)
         bins->items[i] =
             rasteritem_make(bins->scene, &bins->view, (uint32_t)i, joint, bins->joints);
         joint += is_joint(bins, i);
-        build->rows[i] = rasterreach_rows(&bins->view, &bins->items[i]);
-        for (int row = build->rows[i].first; row <= build->rows[i].last; row++)
+        const RasterReach reach = rasterreach_of(&bins->view, &bins->items[i]);
+        build->reaches[i] = reach;
+        for (int row = reach.rows.first; row <= reach.rows.last; row++)
             counts[row]++;
     }
 }
@@ -114,19 +115,15 @@ static void make_chunk(size_t chunk, int worker, void *context)
 static void fill_item(const Build *build, size_t *places, size_t number)
 {
     RasterBins *bins = build->bins;
-    const RasterItem *item = &bins->items[number];
-    const RasterSpan rows = build->rows[number];
-    RasterReach reach;
-    if (bins->view.boxes && rows.first <= rows.last)
-        reach = rasterreach_of(&bins->view, item);
-    for (int row = rows.first; row <= rows.last; row++) {
-        const RasterSlab *slab = &build->slabs[row];
+    const RasterReach *reach = &build->reaches[number];
+    for (int row = reach->rows.first; row <= reach->rows.last; row++) {
         size_t place = places[row]++;
+        uint32_t box;
         bins->row_items[place] = (uint32_t)number;
-        bins->row_columns[place] = bins->view.boxes
-                                       ? rasterreach_box(&reach, &bins->view, item, rows, row, slab,
-                                                         &bins->row_boxes[place])
-                                       : rasterreach_columns(&bins->view, item, slab);
+        bins->row_columns[place] = rasterreach_in_row(reach, &bins->view, &bins->items[number], row,
+                                                      &build->slabs[row], &box);
+        if (bins->row_boxes)
+            bins->row_boxes[place] = (RasterBox){box, reach->near};
     }
 }
 
@@ -144,7 +141,7 @@ static Status sort_into_rows(Build *build, int threads, Err *err)
     RasterBins *bins = build->bins;
     size_t n = bins->scene->n_primitives, rows = (size_t)bins->tile_rows, total = 0;
     size_t chunks = build->n_chunks;
-    TRY(mem_calloc(&build->rows, n, sizeof *build->rows, "items", err));
+    TRY(mem_calloc(&build->reaches, n, sizeof *build->reaches, "items", err));
     TRY(mem_calloc(&build->counts, chunks * rows, sizeof *build->counts, "rows of tiles", err));
     threads_for(chunks, threads, make_chunk, build);
     for (size_t row = 0; row < rows; row++) {
@@ -183,7 +180,7 @@ static Status make_bins(RasterBins *bins, int threads, Err *err)
     Status status = make_room_for_joints(&build, threads, err);
     if (status == STATUS_OK)
         status = sort_into_rows(&build, threads, err);
-    free(build.rows);
+    free(build.reaches);
     free(build.slabs);
     free(build.joints);
     free(build.counts);
