@@ -77,11 +77,20 @@ LANE_TARGET static void RASTER_KERNEL(aim)(const RasterAim *aim, const RasterPla
 
 /* ---- what is in the way ---------------------------------------------------------------------- */
 
+/* LANES probes as floats about the tile's middle. */
+typedef struct ProbeBlock {
+    Lanes x, y, z;
+    LaneMask item;
+    float deepest;
+    uint32_t box; /* compared with those of items [RasterBox] */
+} ProbeBlock;
+
 /* Whether the item is seen before the probes' depths. */
-RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, RasterProbes *probes,
-                               int first, Lanes x, Lanes y, Lanes z, LaneMask among)
+RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const RasterProbes *probes,
+                               int first, const ProbeBlock *block, LaneMask among)
 {
-    SightLines sight = sight_of(near, x, y);
+    const Lanes z = block->z;
+    SightLines sight = sight_of(near, block->x, block->y);
     Lanes entry = lanes_set(0);
     LaneMask met, unsure = (LaneMask){0};
     if (near->kind == RASTER_CYLINDER) {
@@ -114,13 +123,6 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, RasterP
     return covered;
 }
 
-/* LANES probes as floats about the tile's middle. */
-typedef struct ProbeBlock {
-    Lanes x, y, z;
-    float deepest;
-    uint32_t box; /* compared with those of items [RasterBox] */
-} ProbeBlock;
-
 RASTER_FN uint32_t parts_of(Lanes at, double per)
 {
     const float middle = RASTERBOX_PARTS / 2, last = RASTERBOX_PARTS - 1;
@@ -138,7 +140,10 @@ RASTER_FN ProbeBlock load_probes(const RasterTile *tile, const RasterProbes *pro
         y[lane] = (float)(probes->y[first + lane] - tile->y);
     }
     const RasterView *view = &tile->bins->view;
-    ProbeBlock block = {lanes_load(x), lanes_load(y), lanes_load(&probes->z[first]), 0, 0};
+    ProbeBlock block = {.x = lanes_load(x),
+                        .y = lanes_load(y),
+                        .z = lanes_load(&probes->z[first]),
+                        .item = load_items(&probes->item[first])};
     block.deepest = lanes_largest(block.z);
     block.box = parts_of(block.x, view->per_x) | parts_of(block.y, view->per_y) << 16;
     return block;
@@ -169,9 +174,9 @@ RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int fir
             Near near = approach(tile, tile->list[i + (size_t)__builtin_ctz(bits)], perspective);
             if (near.kind == RASTER_JOINT)
                 outline(tile, &near);
-            LaneMask among = open & (block.z > near.z_near);
-            if (near.kind == RASTER_EXACT || lanes_any(among))
-                open &= ~item_covers(&near, tile, probes, first, block.x, block.y, block.z, among);
+            LaneMask among = open & (block.z > near.z_near) & (block.item != (int32_t)near.number);
+            if (lanes_any(among))
+                open &= ~item_covers(&near, tile, probes, first, &block, among);
         }
     }
     for (int lane = 0; lane < LANES; lane++)
@@ -186,6 +191,7 @@ LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, RasterProbe
         probes->x[i] = probes->x[asked ? i : 0];
         probes->y[i] = probes->y[asked ? i : 0];
         probes->z[i] = probes->z[asked ? i : 0];
+        probes->item[i] = probes->item[asked ? i : 0];
         probes->covered[i] = asked;
     }
     for (int first = 0; first < probes->n; first += LANES)

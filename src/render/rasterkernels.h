@@ -27,12 +27,17 @@ typedef struct RasterSpots {
     int32_t tile[TILE_SAMPLES]; /* row by row */
 } RasterSpots;
 
+/* Tiles of the picture whose places a light is asked about together. */
+enum { RASTER_BATCH = 64, MOST_PROBES = RASTER_BATCH * TILE_SAMPLES };
+
 /* Lines of sight that belong to no grid, and depths on them. */
 typedef struct RasterProbes {
     int n;
-    double x[TILE_SAMPLES], y[TILE_SAMPLES]; /* in the plane of the view */
-    float z[TILE_SAMPLES];                   /* less z_middle */
-    uint8_t covered[TILE_SAMPLES];           /* 1 where an item is seen before that depth, else 0 */
+    double x[MOST_PROBES], y[MOST_PROBES]; /* in the plane of the view */
+    float z[MOST_PROBES];                  /* less z_middle */
+    uint32_t item[MOST_PROBES];   /* that the place is on, as in RasterHits: no sphere or cylinder
+                                   * seen in single precision shadows itself */
+    uint8_t covered[MOST_PROBES]; /* 1 where an item is seen before that depth, else 0 */
 } RasterProbes;
 
 typedef struct RasterKernels {

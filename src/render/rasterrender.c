@@ -1,5 +1,6 @@
 /* A row of tiles is the unit of work: its lists are made, and tile by tile primitives are found,
- * shaded and written, so that a pixel is written once and what is empty is filled row by row.
+ * shaded and written, so that a pixel is written once and what is empty is filled row by row. With
+ * shadows that is done for batches of tiles, whose places are many enough in each tile of a light.
  * Further samples of a tile's pixels use its list: pass after pass, each with all samples of the
  * tile moved by the same part of a pixel, in POV-Ray's order. With a threshold that takes the
  * colours of neighbours, and so a second round. */
@@ -14,15 +15,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a worker writes to. */
-typedef struct Canvas {
-    RasterRow row;
+/* A tile of the picture and the part of it that is inside. */
+typedef struct Place {
+    int column, row;       /* of its first pixel */
+    int n_columns, n_rows; /* pixels of it inside the picture */
+} Place;
+
+/* A tile and what it sees. */
+typedef struct Sheet {
+    Place place;
+    RasterTile tile;
     RasterHits hits;
     uint64_t seen; /* bit i: sample i sees something */
     TileHits surfels;
+    uint8_t (*shadowed)[TILE_SAMPLES]; /* one a light; of the canvas */
+    float sum[3][TILE_SAMPLES];        /* of all samples of a pixel */
+} Sheet;
+
+/* What a worker writes to. */
+typedef struct Canvas {
+    RasterRow row;
+    Sheet *sheets; /* a batch */
+    int n_sheets;
+    uint8_t (*shadowed)[TILE_SAMPLES]; /* sheet by sheet, one a light */
+    RasterQueue **queues;              /* one a light; NULL where the light has no RasterShadow */
     TileSurface surface;
-    uint8_t (*shadowed)[TILE_SAMPLES]; /* one a light */
-    float color[3][TILE_SAMPLES], sum[3][TILE_SAMPLES];
+    float color[3][TILE_SAMPLES];
     Status status;
     Err err;
 } Canvas;
@@ -51,13 +69,8 @@ typedef struct RasterPicture {
     bool second_round;
     Canvas *canvases;
     int workers;
+    int batch; /* tiles */
 } RasterPicture;
-
-/* A tile of the picture and the part of it that is inside. */
-typedef struct Place {
-    int column, row;       /* of its first pixel */
-    int n_columns, n_rows; /* pixels of it inside the picture */
-} Place;
 
 static size_t pixel_at(const RasterPicture *picture, const Place *place, int i, int j)
 {
@@ -109,14 +122,13 @@ static Vec3 seen_normal(const RasterPicture *picture, const RasterTile *tile,
 }
 
 /* Of the samples that see something, as bits, those whose surface faces the light. */
-static uint64_t find_facing(const RasterPicture *picture, const RasterTile *tile,
-                            const Canvas *canvas, const TileLight *light,
-                            const RasterPlaces *places)
+static uint64_t find_facing(const RasterPicture *picture, const Sheet *sheet,
+                            const TileLight *light, const RasterPlaces *places)
 {
     uint8_t facing[TILE_SAMPLES];
     uint64_t wanted = 0;
-    picture->kernels->face(tile, places, canvas->surfels.normal, light, facing);
-    for (uint64_t left = canvas->seen; left; left &= left - 1) {
+    picture->kernels->face(&sheet->tile, places, sheet->surfels.normal, light, facing);
+    for (uint64_t left = sheet->seen; left; left &= left - 1) {
         int sample = __builtin_ctzll(left);
         wanted |= (uint64_t)facing[sample] << sample;
     }
@@ -140,25 +152,35 @@ static void cast_shadows(const RasterPicture *picture, const Light *light, int w
     }
 }
 
-static void find_shadows(const RasterPicture *picture, const RasterTile *tile, int worker,
-                         Canvas *canvas)
+static void ask_lights(const RasterPicture *picture, const Sheet *sheet, int worker, Canvas *canvas)
 {
     const Scene *scene = picture->scene;
     RasterPlaces places;
-    picture->kernels->locate(tile, &canvas->hits, &places);
-    memset(canvas->shadowed, 0, scene->n_lights * sizeof *canvas->shadowed);
+    picture->kernels->locate(&sheet->tile, &sheet->hits, &places);
     for (size_t i = 0; i < scene->n_lights; i++) {
         const Light *light = &scene->lights[i];
         if (!light->casts_shadows)
             continue;
-        uint64_t wanted = find_facing(picture, tile, canvas, &picture->lights[i], &places);
-        if (picture->shadows[i])
-            rastershadow_test(picture->shadows[i], picture->kernels, &places, wanted,
-                              canvas->shadowed[i]);
+        uint64_t wanted = find_facing(picture, sheet, &picture->lights[i], &places);
+        size_t answer = (size_t)(sheet->shadowed + i - canvas->shadowed) * TILE_SAMPLES;
+        if (canvas->queues[i])
+            rasterqueue_ask(canvas->queues[i], picture->kernels, &places, sheet->hits.item, wanted,
+                            (uint32_t)answer);
         else
-            cast_shadows(picture, light, worker, &places, wanted, canvas->shadowed[i]);
+            cast_shadows(picture, light, worker, &places, wanted, sheet->shadowed[i]);
     }
-    canvas->surface.shadowed = (const uint8_t(*)[TILE_SAMPLES])canvas->shadowed;
+}
+
+static void find_shadows(const RasterPicture *picture, int worker, Canvas *canvas)
+{
+    size_t n_lights = picture->scene->n_lights;
+    memset(canvas->shadowed, 0, (size_t)canvas->n_sheets * n_lights * sizeof *canvas->shadowed);
+    for (int i = 0; i < canvas->n_sheets; i++)
+        if (canvas->sheets[i].seen)
+            ask_lights(picture, &canvas->sheets[i], worker, canvas);
+    for (size_t i = 0; i < n_lights; i++)
+        if (canvas->queues[i])
+            rasterqueue_answer(canvas->queues[i], picture->kernels, canvas->shadowed[0]);
 }
 
 static bool wants_color(const Frame *frame)
@@ -166,43 +188,51 @@ static bool wants_color(const Frame *frame)
     return frame->color.values || frame->codes.codes8;
 }
 
-/* The colours that the samples of a tile see; false when it is the background alone. */
-static bool color_tile(const RasterPicture *picture, const RasterTile *tile, int worker,
-                       Canvas *canvas)
+/* What the tiles of the batch see with their samples at the places of a grid. */
+static void see_batch(const RasterPicture *picture, const RasterGrid *grid, int worker,
+                      Canvas *canvas)
+{
+    const RasterKernels *kernels = picture->kernels;
+    for (int i = 0; i < canvas->n_sheets; i++) {
+        Sheet *sheet = &canvas->sheets[i];
+        sheet->tile.grid = grid;
+        sheet->seen = kernels->trace(&sheet->tile, &sheet->hits, &sheet->surfels);
+        if (sheet->seen)
+            kernels->resolve(&sheet->tile, &sheet->hits, &sheet->surfels);
+    }
+    if (picture->shadows)
+        find_shadows(picture, worker, canvas);
+}
+
+/* The colours that the samples of a tile see, which sees something, in canvas->color. */
+static void color_sheet(const RasterPicture *picture, const Sheet *sheet, Canvas *canvas)
 {
     const Scene *scene = picture->scene;
     TileSurface *surface = &canvas->surface;
-    TileHits *surfels = &canvas->surfels;
-    canvas->seen = picture->kernels->trace(tile, &canvas->hits, surfels);
-    if (!canvas->seen)
-        return false;
-    picture->kernels->resolve(tile, &canvas->hits, surfels);
-    if (!wants_color(picture->frame))
-        return true;
-    surface->hits = surfels;
+    surface->hits = &sheet->surfels;
     if (!scene->uniform_color)
         for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-            if (surfels->state[sample] != TILE_HIT)
+            if (sheet->surfels.state[sample] != TILE_HIT)
                 continue;
-            Rgb pigment = scene->primitives[surfels->segment[sample]].color;
+            Rgb pigment = scene->primitives[sheet->surfels.segment[sample]].color;
             surface->pigment[0][sample] = pigment.r;
             surface->pigment[1][sample] = pigment.g;
             surface->pigment[2][sample] = pigment.b;
         }
     if (picture->needs_places)
-        place_surface(tile, &canvas->hits, surface);
+        place_surface(&sheet->tile, &sheet->hits, surface);
     if (picture->shadows)
-        find_shadows(picture, tile, worker, canvas);
+        surface->shadowed = (const uint8_t(*)[TILE_SAMPLES])sheet->shadowed;
     picture->shading->shade(&picture->look, surface, canvas->color);
     const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
     if (picture->frame->color.values)
-        picture->kernels->clear(&canvas->hits, background, canvas->color);
-    return true;
+        picture->kernels->clear(&sheet->hits, background, canvas->color);
 }
 
-static void write_codes(const RasterPicture *picture, const Place *place, Canvas *canvas)
+static void write_codes(const RasterPicture *picture, const Sheet *sheet, Canvas *canvas)
 {
-    tilelook_encode(picture->shading, &picture->codes, canvas->color, canvas->surfels.state,
+    const Place *place = &sheet->place;
+    tilelook_encode(picture->shading, &picture->codes, canvas->color, sheet->surfels.state,
                     picture->background_codes, place->n_columns, place->n_rows,
                     &picture->frame->codes.codes8[3 * pixel_at(picture, place, 0, 0)],
                     3 * (size_t)picture->scene->camera.width);
@@ -250,29 +280,28 @@ static double seen_depth(const RasterTile *tile, const RasterHits *hits, int sam
     return seen_z(tile, hits, sample) * (tile->perspective ? sqrt(1 + x * x + y * y) : 1);
 }
 
-/* `canvas` NULL: nothing is seen in the whole tile. */
-static void write_geometry(const RasterPicture *picture, const Place *place, const RasterTile *tile,
-                           const Canvas *canvas)
+/* `sheet` NULL: nothing is seen in the whole place. */
+static void write_geometry(const RasterPicture *picture, const Place *place, const Sheet *sheet)
 {
     const Frame *frame = picture->frame;
     for (int j = 0; j < place->n_rows; j++)
         for (int i = 0; i < place->n_columns; i++) {
             int sample = tile_sample_at(i, j);
-            bool hit = canvas && canvas->hits.item[sample] != RASTER_NOTHING;
+            bool hit = sheet && sheet->hits.item[sample] != RASTER_NOTHING;
             size_t pixel = pixel_at(picture, place, i, j);
             if (frame->depth.values)
                 frame->depth.values[pixel] =
-                    hit ? (float)seen_depth(tile, &canvas->hits, sample) : HUGE_VALF;
+                    hit ? (float)seen_depth(&sheet->tile, &sheet->hits, sample) : HUGE_VALF;
             if (frame->normal.values) {
-                Vec3 normal =
-                    hit ? seen_normal(picture, tile, &canvas->surfels, sample) : vec3(0, 0, 0);
+                Vec3 normal = hit ? seen_normal(picture, &sheet->tile, &sheet->surfels, sample)
+                                  : vec3(0, 0, 0);
                 frame->normal.values[3 * pixel] = (float)normal.x;
                 frame->normal.values[3 * pixel + 1] = (float)normal.y;
                 frame->normal.values[3 * pixel + 2] = (float)normal.z;
             }
             if (frame->id.ids)
                 frame->id.ids[pixel] =
-                    hit ? picture->scene->primitives[canvas->surfels.segment[sample]].id : 0;
+                    hit ? picture->scene->primitives[sheet->surfels.segment[sample]].id : 0;
         }
 }
 
@@ -292,32 +321,52 @@ static bool any_wants_more(const RasterPicture *picture, const Place *place)
     return false;
 }
 
-/* The means of the centre samples, which the picture holds, and all others, summed in float in
- * POV-Ray's order. */
-static void resample_tile(const RasterPicture *picture, const Place *place, RasterTile *tile,
-                          int worker, Canvas *canvas)
+static void begin_sum(const RasterPicture *picture, Sheet *sheet)
 {
-    const Scene *scene = picture->scene;
-    const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
-    float *values = picture->frame->color.values;
+    const Place *place = &sheet->place;
+    const float *values = picture->frame->color.values;
     for (int j = 0; j < place->n_rows; j++)
         for (int i = 0; i < place->n_columns; i++)
             for (int c = 0; c < 3; c++)
-                canvas->sum[c][tile_sample_at(i, j)] =
+                sheet->sum[c][tile_sample_at(i, j)] =
                     values[3 * pixel_at(picture, place, i, j) + (size_t)c];
-    for (int pass = 0; pass < picture->n_further; pass++) {
-        tile->grid = &picture->further[pass];
-        bool seen = color_tile(picture, tile, worker, canvas);
-        for (int c = 0; c < 3; c++)
-            for (int sample = 0; sample < TILE_SAMPLES; sample++)
-                canvas->sum[c][sample] += seen ? canvas->color[c][sample] : background[c];
-    }
+}
+
+static void add_to_sum(const RasterPicture *picture, Sheet *sheet, Canvas *canvas)
+{
+    const Scene *scene = picture->scene;
+    const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
+    if (sheet->seen)
+        color_sheet(picture, sheet, canvas);
+    for (int c = 0; c < 3; c++)
+        for (int sample = 0; sample < TILE_SAMPLES; sample++)
+            sheet->sum[c][sample] += sheet->seen ? canvas->color[c][sample] : background[c];
+}
+
+static void write_mean(const RasterPicture *picture, const Sheet *sheet)
+{
+    const Place *place = &sheet->place;
+    float *values = picture->frame->color.values;
     for (int j = 0; j < place->n_rows; j++)
         for (int i = 0; i < place->n_columns; i++)
             for (int c = 0; c < 3 && wants_more(picture, place, i, j); c++)
                 values[3 * pixel_at(picture, place, i, j) + (size_t)c] =
-                    (float)((double)canvas->sum[c][tile_sample_at(i, j)] /
-                            (picture->n_further + 1));
+                    (float)((double)sheet->sum[c][tile_sample_at(i, j)] / (picture->n_further + 1));
+}
+
+/* The means of the centre samples, which the picture holds, and all others, summed in float in
+ * POV-Ray's order. */
+static void resample_batch(const RasterPicture *picture, int worker, Canvas *canvas)
+{
+    for (int i = 0; i < canvas->n_sheets; i++)
+        begin_sum(picture, &canvas->sheets[i]);
+    for (int pass = 0; pass < picture->n_further; pass++) {
+        see_batch(picture, &picture->further[pass], worker, canvas);
+        for (int i = 0; i < canvas->n_sheets; i++)
+            add_to_sum(picture, &canvas->sheets[i], canvas);
+    }
+    for (int i = 0; i < canvas->n_sheets; i++)
+        write_mean(picture, &canvas->sheets[i]);
 }
 
 /* ---- rows ------------------------------------------------------------------------------------ */
@@ -336,22 +385,43 @@ static void fill_background(const RasterPicture *picture, int row, int first, in
     const Frame *frame = picture->frame;
     write_background(picture, &place, background);
     if (frame->depth.values || frame->normal.values || frame->id.ids)
-        write_geometry(picture, &place, NULL, NULL);
+        write_geometry(picture, &place, NULL);
 }
 
-static void draw_tile(const RasterPicture *picture, const Place *place, RasterTile *tile,
-                      int worker, Canvas *canvas)
+static void draw_sheet(const RasterPicture *picture, const Sheet *sheet, Canvas *canvas)
 {
     const Frame *frame = picture->frame;
-    bool seen = color_tile(picture, tile, worker, canvas);
-    if (frame->color.values && seen)
-        write_colors(picture, place, canvas->color);
-    if (!seen)
-        write_background(picture, place, picture->background);
-    if (frame->codes.codes8 && seen)
-        write_codes(picture, place, canvas);
+    if (!sheet->seen)
+        write_background(picture, &sheet->place, picture->background);
+    else if (wants_color(frame))
+        color_sheet(picture, sheet, canvas);
+    if (frame->color.values && sheet->seen)
+        write_colors(picture, &sheet->place, canvas->color);
+    if (frame->codes.codes8 && sheet->seen)
+        write_codes(picture, sheet, canvas);
     if (frame->depth.values || frame->normal.values || frame->id.ids)
-        write_geometry(picture, place, tile, seen ? canvas : NULL);
+        write_geometry(picture, &sheet->place, sheet->seen ? sheet : NULL);
+}
+
+static void draw_batch(const RasterPicture *picture, bool further, int worker, Canvas *canvas)
+{
+    if (!picture->second_round) {
+        see_batch(picture, &picture->center, worker, canvas);
+        for (int i = 0; i < canvas->n_sheets; i++)
+            draw_sheet(picture, &canvas->sheets[i], canvas);
+    }
+    if (further)
+        resample_batch(picture, worker, canvas);
+    canvas->n_sheets = 0;
+}
+
+static Place place_of(const RasterPicture *picture, int column, int row)
+{
+    int n_columns = picture->scene->camera.width - column * TILE_SIDE;
+    int n_rows = picture->band->rows - row * TILE_SIDE;
+    return (Place){column * TILE_SIDE, row * TILE_SIDE,
+                   n_columns < TILE_SIDE ? n_columns : TILE_SIDE,
+                   n_rows < TILE_SIDE ? n_rows : TILE_SIDE};
 }
 
 static void draw_row(size_t row, int worker, void *context)
@@ -380,17 +450,16 @@ static void draw_row(size_t row, int worker, void *context)
         if (!picture->second_round)
             fill_background(picture, (int)row, empty, column, background);
         empty = column + 1;
-        Place place = {column * TILE_SIDE, (int)row * TILE_SIDE, camera->width - column * TILE_SIDE,
-                       picture->band->rows - (int)row * TILE_SIDE};
-        place.n_columns = place.n_columns < TILE_SIDE ? place.n_columns : TILE_SIDE;
-        place.n_rows = place.n_rows < TILE_SIDE ? place.n_rows : TILE_SIDE;
-        RasterTile tile = rasterbins_tile(bins, column, (int)row,
-                                          canvas->row.lists + offsets[column], n, &picture->center);
-        if (!picture->second_round)
-            draw_tile(picture, &place, &tile, worker, canvas);
-        if (further && any_wants_more(picture, &place))
-            resample_tile(picture, &place, &tile, worker, canvas);
+        Sheet *sheet = &canvas->sheets[canvas->n_sheets];
+        sheet->place = place_of(picture, column, (int)row);
+        sheet->tile = rasterbins_tile(bins, column, (int)row, canvas->row.lists + offsets[column],
+                                      n, &picture->center);
+        if (picture->second_round && !any_wants_more(picture, &sheet->place))
+            continue;
+        if (++canvas->n_sheets == picture->batch)
+            draw_batch(picture, further, worker, canvas);
     }
+    draw_batch(picture, further, worker, canvas);
     if (!picture->second_round)
         fill_background(picture, (int)row, empty, bins->tile_columns, background);
 }
@@ -460,16 +529,30 @@ static Status prepare_samples(RasterPicture *picture, const RasterView *view, Er
     return STATUS_OK;
 }
 
-static Status prepare_canvases(RasterPicture *picture, Err *err)
+static Status prepare_canvas(const RasterPicture *picture, Canvas *canvas, Err *err)
 {
     const Scene *scene = picture->scene;
+    size_t batch = (size_t)picture->batch;
+    tilesurface_init(scene, &canvas->surface);
+    TRY(mem_calloc(&canvas->sheets, batch, sizeof *canvas->sheets, "tiles", err));
+    TRY(mem_calloc(&canvas->queues, scene->n_lights, sizeof *canvas->queues, "lights", err));
+    TRY(mem_calloc(&canvas->shadowed, batch * scene->n_lights, sizeof *canvas->shadowed, "lights",
+                   err));
+    for (size_t i = 0; i < batch; i++)
+        canvas->sheets[i].shadowed = canvas->shadowed + i * scene->n_lights;
+    for (size_t i = 0; picture->shadows && i < scene->n_lights; i++)
+        if (picture->shadows[i])
+            TRY(rasterqueue_new(picture->shadows[i], &canvas->queues[i], err));
+    return STATUS_OK;
+}
+
+static Status prepare_canvases(RasterPicture *picture, Err *err)
+{
+    picture->batch = picture->shadows ? RASTER_BATCH : 1;
     TRY(mem_calloc(&picture->canvases, (size_t)picture->workers, sizeof *picture->canvases,
                    "canvases", err));
-    for (int i = 0; i < picture->workers; i++) {
-        TRY(mem_calloc(&picture->canvases[i].shadowed, scene->n_lights,
-                       sizeof *picture->canvases[i].shadowed, "lights", err));
-        tilesurface_init(scene, &picture->canvases[i].surface);
-    }
+    for (int i = 0; i < picture->workers; i++)
+        TRY(prepare_canvas(picture, &picture->canvases[i], err));
     return STATUS_OK;
 }
 
@@ -498,8 +581,13 @@ static Status second_round(RasterPicture *picture, Err *err)
 static void release(RasterPicture *picture)
 {
     for (int i = 0; picture->canvases && i < picture->workers; i++) {
-        rasterrow_release(&picture->canvases[i].row);
-        free(picture->canvases[i].shadowed);
+        Canvas *canvas = &picture->canvases[i];
+        rasterrow_release(&canvas->row);
+        free(canvas->sheets);
+        free(canvas->shadowed);
+        for (size_t light = 0; canvas->queues && light < picture->scene->n_lights; light++)
+            rasterqueue_free(canvas->queues[light]);
+        free(canvas->queues);
     }
     for (size_t i = 0; picture->shadows && i < picture->scene->n_lights; i++)
         rastershadow_free(picture->shadows[i]);
@@ -528,11 +616,11 @@ Status rasterrender(const Scene *scene, const RenderParams *params, const Band *
     picture.needs_places = tilelook_needs_places(scene);
     TRY_GOTO(tilelook_make(scene, view.location, view.axes, &picture.lights, &picture.look, err));
     TRY_GOTO(prepare_samples(&picture, &view, err));
-    TRY_GOTO(prepare_canvases(&picture, err));
     TRY_GOTO(make_background(&picture, 1, &picture.background, err));
     TRY_GOTO(make_codes(&picture, err));
     TRY_GOTO(make_background(&picture, picture.n_further + 1, &picture.resampled_background, err));
     TRY_GOTO(prepare_shadows(&picture, &view, err));
+    TRY_GOTO(prepare_canvases(&picture, err));
     TRY_GOTO(rasterbins_new(scene, &view, picture.workers, &picture.bins, err));
     double prepared_s = clock_seconds() - start_s;
     TRY_GOTO(draw_rows(&picture, err));

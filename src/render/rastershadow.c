@@ -1,7 +1,7 @@
 /* A light has a view of its own, a grid of tiles over the scene with lists as the camera's have.
  * A place lies in shadow if the first thing that the light sees on the way to it is something
- * else: so the same kernels find first hits, at places instead of on a grid. The samples of a
- * tile of the picture lie in few tiles of a light and are tested tile by tile. Lists hold boxes
+ * else: so the same kernels find first hits, at places instead of on a grid. The places of many
+ * tiles of the picture are asked about together, and tested tile by tile of the light. Lists hold boxes
  * and depths, several of which are compared with those of the places at once: few items are left
  * to be looked at, and memory is asked for them and for the next list ahead. */
 #include "render/rastershadow.h"
@@ -71,7 +71,7 @@ static Vec3 corner(const Box *box, int number)
 /* Tiles on a side: about sixteen primitives a tile. */
 static int tiles_for(const Scene *scene)
 {
-    double side = sqrt((double)scene->n_primitives) / 4;
+    double side = sqrt((double)scene->n_primitives) / 3;
     return side < LEAST_SIDE ? LEAST_SIDE : side > MOST_SIDE ? MOST_SIDE : (int)side;
 }
 
@@ -229,26 +229,62 @@ void rastershadow_free(RasterShadow *shadow)
     free(shadow);
 }
 
-/* The places that lie in one tile of the light, as bits. */
-typedef struct Group {
-    int tile;
-    uint64_t places;
-} Group;
+/* ---- asking ---------------------------------------------------------------------------------- */
 
-/* Parts the wanted places by tiles, in the order of their first; returns the number of groups. */
-static int group_places(const RasterSpots *spots, uint64_t wanted, Group groups[TILE_SAMPLES])
+struct RasterQueue {
+    const RasterShadow *shadow;
+    int32_t *last;  /* of each tile of the light, the last place asked about there, or -1 */
+    int32_t *tiles; /* that have any, in the order of their first */
+    int n, n_tiles;
+    RasterSpots spots; /* of the tile of the picture that is asked about */
+    double x[MOST_PROBES], y[MOST_PROBES];
+    float z[MOST_PROBES];
+    uint32_t item[MOST_PROBES], answer[MOST_PROBES];
+    int32_t
+        before[MOST_PROBES]; /* the place asked about before it in the tile of the light, or -1 */
+    RasterProbes probes;
+};
+
+Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out, Err *err)
 {
-    int n = 0;
-    for (Group *group = groups; wanted; wanted &= wanted - 1) {
-        int place = __builtin_ctzll(wanted), tile = spots->tile[place];
-        if (n == 0 || group->tile != tile)
-            for (group = groups; group < groups + n && group->tile != tile; group++)
-                ;
-        if (group == groups + n)
-            groups[n++] = (Group){tile, 0};
-        group->places |= (uint64_t)1 << place;
+    RasterQueue *queue;
+    size_t n = (size_t)shadow->bins->tile_columns * (size_t)shadow->bins->tile_rows;
+    TRY(mem_calloc(&queue, 1, sizeof *queue, "shadows", err));
+    *out = queue;
+    queue->shadow = shadow;
+    TRY(mem_calloc(&queue->last, n, sizeof *queue->last, "shadows", err));
+    TRY(mem_calloc(&queue->tiles, MOST_PROBES, sizeof *queue->tiles, "shadows", err));
+    memset(queue->last, -1, n * sizeof *queue->last);
+    return STATUS_OK;
+}
+
+void rasterqueue_free(RasterQueue *queue)
+{
+    if (!queue)
+        return;
+    free(queue->last);
+    free(queue->tiles);
+    free(queue);
+}
+
+void rasterqueue_ask(RasterQueue *queue, const RasterKernels *kernels, const RasterPlaces *places,
+                     const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer)
+{
+    const RasterSpots *spots = &queue->spots;
+    if (wanted)
+        kernels->aim(&queue->shadow->aim, places, &queue->spots);
+    for (; wanted; wanted &= wanted - 1) {
+        int place = __builtin_ctzll(wanted), tile = spots->tile[place], n = queue->n++;
+        if (queue->last[tile] < 0)
+            queue->tiles[queue->n_tiles++] = tile;
+        queue->before[n] = queue->last[tile];
+        queue->last[tile] = n;
+        queue->x[n] = spots->x[place];
+        queue->y[n] = spots->y[place];
+        queue->z[n] = spots->z[place];
+        queue->item[n] = items[place];
+        queue->answer[n] = answer + (uint32_t)place;
     }
-    return n;
 }
 
 /* A tile of the light with its list. */
@@ -266,38 +302,35 @@ static RasterTile tile_of(const RasterShadow *shadow, int number)
     return tile;
 }
 
-static void test_group(const RasterKernels *kernels, const RasterTile *tile, uint64_t places,
-                       const RasterSpots *spots, uint8_t shadowed[TILE_SAMPLES])
+static void test_tile(RasterQueue *queue, const RasterKernels *kernels, const RasterTile *tile,
+                      int last, uint8_t *shadowed)
 {
-    RasterProbes probes;
-    int own[TILE_SAMPLES];
-    probes.n = 0;
-    for (; places; places &= places - 1) {
-        int place = __builtin_ctzll(places);
-        own[probes.n] = place;
-        probes.x[probes.n] = spots->x[place];
-        probes.y[probes.n] = spots->y[place];
-        probes.z[probes.n++] = spots->z[place];
+    RasterProbes *probes = &queue->probes;
+    probes->n = 0;
+    for (int i = last; i >= 0; i = queue->before[i]) {
+        probes->x[probes->n] = queue->x[i];
+        probes->y[probes->n] = queue->y[i];
+        probes->z[probes->n] = queue->z[i];
+        probes->item[probes->n++] = queue->item[i];
     }
-    kernels->cover(tile, &probes);
-    for (int i = 0; i < probes.n; i++)
-        shadowed[own[i]] = probes.covered[i];
+    kernels->cover(tile, probes);
+    const uint8_t *covered = probes->covered;
+    for (int i = last; i >= 0; i = queue->before[i])
+        shadowed[queue->answer[i]] = *covered++;
 }
 
-void rastershadow_test(const RasterShadow *shadow, const RasterKernels *kernels,
-                       const RasterPlaces *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
+void rasterqueue_answer(RasterQueue *queue, const RasterKernels *kernels, uint8_t *shadowed)
 {
-    RasterSpots spots;
-    Group groups[TILE_SAMPLES];
-    if (!wanted)
-        return;
-    kernels->aim(&shadow->aim, places, &spots);
-    int n = group_places(&spots, wanted, groups);
-    RasterTile next = tile_of(shadow, groups[0].tile);
-    for (int i = 0; i < n; i++) {
+    RasterTile next = {0};
+    if (queue->n_tiles > 0)
+        next = tile_of(queue->shadow, queue->tiles[0]);
+    for (int i = 0; i < queue->n_tiles; i++) {
         RasterTile tile = next;
-        if (i + 1 < n)
-            next = tile_of(shadow, groups[i + 1].tile);
-        test_group(kernels, &tile, groups[i].places, &spots, shadowed);
+        int32_t *last = &queue->last[queue->tiles[i]];
+        if (i + 1 < queue->n_tiles)
+            next = tile_of(queue->shadow, queue->tiles[i + 1]);
+        test_tile(queue, kernels, &tile, *last, shadowed);
+        *last = -1;
     }
+    queue->n = queue->n_tiles = 0;
 }

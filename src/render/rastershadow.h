@@ -17,10 +17,20 @@ MUST_CHECK Status rastershadow_new(const Scene *scene, const Light *light, const
                                    int threads, RasterShadow **out, Err *err);
 void rastershadow_free(RasterShadow *shadow);
 
-/* Of the places with a bit set in `wanted`, bit i for place i, sets shadowed[i] to 1 where a
- * primitive stands farther than POV-Ray's 0.001 mm, or the rounding of the light's view, before
- * them, and to 0 elsewhere. */
-void rastershadow_test(const RasterShadow *shadow, const RasterKernels *kernels,
-                       const RasterPlaces *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES]);
+/* Places that a light is asked about, of up to RASTER_BATCH tiles of the picture; a worker needs
+ * one of its own for each light. */
+typedef struct RasterQueue RasterQueue;
+
+/* Borrows the shadow. The queue is the caller's even when this fails. */
+MUST_CHECK Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out, Err *err);
+void rasterqueue_free(RasterQueue *queue);
+
+/* Asks about the places with a bit set in `wanted`, bit i for place i, which are on these items, as
+ * in RasterHits; the answer to place i is to be the one numbered answer + i. */
+void rasterqueue_ask(RasterQueue *queue, const RasterKernels *kernels, const RasterPlaces *places,
+                     const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer);
+/* Answers what was asked, and empties the queue: 1 where a primitive stands farther than POV-Ray's
+ * 0.001 mm, or the rounding of the light's view, before the place, else 0. */
+void rasterqueue_answer(RasterQueue *queue, const RasterKernels *kernels, uint8_t *shadowed);
 
 #endif
