@@ -37,14 +37,13 @@ typedef struct PlaneTerm {
     float p;
 } PlaneTerm;
 
-_Static_assert(sizeof(PlaneTerm) + sizeof(uint32_t) <= TILE_WORK_BYTES, "TILE_WORK_BYTES");
-
 typedef struct PlanePacket {
     const FlatTile *plane;
     PlaneTerm *terms;
     size_t n;
-    int first;        /* sample */
-    float low, range; /* of p */
+    int first;                    /* sample */
+    LaneMask hit, unsure, solved; /* whether its potential exceeds the level, may, and q is found */
+    float low, range;             /* of p */
     Lanes q;
     Lanes step;               /* of q, the last, which the terms have not taken */
     Lanes sum, sum_p, sum_p2; /* of A exp(-k^2 q) times powers of p */
@@ -54,6 +53,9 @@ enum {
     PLANE_PACKETS = TILE_SAMPLES / LANES,
     PLANE_PARTS = (PLANE_PACKETS + LANES - 1) / LANES /* vectors with a lane for each packet */
 };
+
+_Static_assert(PLANE_PACKETS * sizeof(PlaneTerm) + sizeof(uint32_t) <= TILE_WORK_BYTES,
+               "TILE_WORK_BYTES");
 
 /* Where the rays of a packet pass a term: E, and the distances, times k, from the two ends. */
 typedef struct PlanePlace {
@@ -173,8 +175,8 @@ LANE_FN void add_value(PlanePacket *packet, Lanes value, float p)
     packet->sum_p2 = lanes_fma(value_p, lanes_set(p), packet->sum_p2);
 }
 
-/* Sets the terms of the packet and their sums in the plane, and returns the margin. */
-LANE_FN Lanes sum_up_plane(PlanePacket *packet)
+/* Sets the terms of the packet, their sums in the plane, and which rays hit. */
+LANE_FN void sum_up_plane(PlanePacket *packet)
 {
     const FlatTile *plane = packet->plane;
     Lanes x = lanes_load(&plane->tile->x[packet->first]);
@@ -202,7 +204,9 @@ LANE_FN Lanes sum_up_plane(PlanePacket *packet)
     }
     packet->low = low;
     packet->range = high - low;
-    return places * (plane->extent * MARGIN_PLACE) + fixed_margin(packet->n);
+    Lanes margin = places * (plane->extent * MARGIN_PLACE) + fixed_margin(packet->n);
+    packet->hit = (packet->sum >= LEVEL + margin) & (margin <= CLOSE_ENOUGH);
+    packet->unsure = ~packet->hit & (packet->sum >= LEVEL - margin);
 }
 
 LANE_FN void fall_to(PlanePacket *packet)
@@ -215,31 +219,31 @@ LANE_FN void fall_to(PlanePacket *packet)
     }
 }
 
-/* Takes Halley's step, of at most twice Newton's. Returns where it is the last: nowhere where it is cut
- * short, as v d > 2 m there. */
-LANE_FN LaneMask plane_step(PlanePacket *packet, LaneMask hit)
+/* Takes Halley's step, of at most twice Newton's, and sets where it is the last: nowhere where it is
+ * cut short, as v d > 2 m there. */
+LANE_FN void plane_step(PlanePacket *packet)
 {
     Lanes sum = packet->sum, above = lanes_log(lanes_max(sum * (1 / LEVEL), lanes_set(1e-30f)));
     Lanes mean2 = square(packet->sum_p);
     Lanes variance = lanes_fma(packet->sum_p2, sum, -mean2);
     Lanes divisor = lanes_max(lanes_fma(above * -0.5f, variance, mean2), 0.5f * mean2);
-    Lanes step = lanes_select(hit, above * sum * packet->sum_p / divisor, lanes_set(0));
+    Lanes step = lanes_select(packet->hit, above * sum * packet->sum_p / divisor, lanes_set(0));
     Lanes change = lanes_abs(step) * packet->range;
     packet->step = step;
     packet->q = lanes_max(packet->q + step, lanes_set(0));
-    return (change <= 1.0f) & (change * square(step) * variance <= PLANE_CLOSE * square(sum));
+    packet->solved =
+        (change <= 1.0f) & (change * square(step) * variance <= PLANE_CLOSE * square(sum));
 }
 
-/* Finds q of the rays that hit, whose potential exceeds the level in the plane. Returns those for
- * which it has not succeeded. */
-LANE_FN LaneMask solve_plane(PlanePacket *packet, LaneMask hit)
+/* Takes the steps that are left after the first. */
+LANE_FN void solve_plane(PlanePacket *packet)
 {
-    LaneMask close = plane_step(packet, hit);
-    for (int steps = 0; lanes_any(~close) && steps < PLANE_STEPS; steps++) {
+    for (int steps = 0; lanes_any(~packet->solved) && steps < PLANE_STEPS; steps++) {
         fall_to(packet);
-        close = plane_step(packet, hit);
+        plane_step(packet);
     }
-    return hit & ~close;
+    packet->unsure |= packet->hit & ~packet->solved;
+    packet->hit &= packet->solved;
 }
 
 /* The gradient, half of it, at a height; what the last step has changed in the terms' proportions is
@@ -264,25 +268,21 @@ LANE_FN Gradient plane_gradient(const PlanePacket *packet, Lanes height)
     return sum;
 }
 
-LANE_FN void trace_several(PlanePacket *packet)
+LANE_FN void describe_plane_hits(const PlanePacket *packet)
 {
     const FlatTile *plane = packet->plane;
-    Lanes margin = sum_up_plane(packet), normal[3];
-    LaneMask hit = (packet->sum >= LEVEL + margin) & (margin <= CLOSE_ENOUGH);
-    LaneMask unsure = ~hit & (packet->sum >= LEVEL - margin);
-    if (!lanes_any(hit | unsure))
-        return;
-    LaneMask unsolved = solve_plane(packet, hit);
-    Lanes height = lanes_sqrt(packet->q) * (1 / plane->k);
-    hit = hits_in_front(plane, packet->first, hit & ~unsolved, unsure | unsolved, height);
+    Lanes height = lanes_sqrt(packet->q) * (1 / plane->k), normal[3];
+    LaneMask hit = hits_in_front(plane, packet->first, packet->hit, packet->unsure, height);
     Gradient at = plane_gradient(packet, height);
     outward_normal(&at, normal);
     store_hits(plane->tile, packet->first, hit, plane->base, -height, normal, at.segment,
                plane->hits);
 }
 
-LANE_FN void trace_plane(const FlatTile *plane, int number, const uint32_t *touched,
-                         PlaneTerm *terms)
+/* Collects the terms of the packet of this number, and their sums; false if nothing is left to do,
+ * as when it is touched by one term. */
+LANE_FN bool begin_packet(const FlatTile *plane, int number, const uint32_t *touched,
+                          PlaneTerm *terms, PlanePacket *packet)
 {
     const FieldTile *tile = plane->tile;
     size_t n = 0;
@@ -291,20 +291,22 @@ LANE_FN void trace_plane(const FlatTile *plane, int number, const uint32_t *touc
         n += touched[i] >> number & 1;
     }
     if (n == 0 || (n == 1 && trace_lone(plane, number * LANES, terms[0].term)))
-        return;
-    PlanePacket packet;
-    packet.plane = plane;
-    packet.terms = terms;
-    packet.n = n;
-    packet.first = number * LANES;
-    trace_several(&packet);
+        return false;
+    packet->plane = plane;
+    packet->terms = terms;
+    packet->n = n;
+    packet->first = number * LANES;
+    sum_up_plane(packet);
+    return lanes_any(packet->hit | packet->unsure);
 }
 
+/* What a packet needs is a long chain of operations, each waiting for the one before: so every stage
+ * is done for all packets before the next begins. */
 LANE_TARGET static __attribute__((noinline)) void PLANE_KERNEL(const FieldTile *tile, void *memory,
                                                                TileHits *hits)
 {
     PlaneTerm *terms = memory;
-    uint32_t *touched = (uint32_t *)(terms + tile->n_terms);
+    uint32_t *touched = (uint32_t *)(terms + PLANE_PACKETS * tile->n_terms);
     uint32_t hopeful = find_touched(tile, touched);
     FlatTile plane = {.tile = tile, .hits = hits, .base = tile->terms[0].z_near};
     for (size_t i = 0; i < tile->n_terms; i++) {
@@ -314,7 +316,15 @@ LANE_TARGET static __attribute__((noinline)) void PLANE_KERNEL(const FieldTile *
         plane.k = term->k > plane.k ? term->k : plane.k;
     }
     plane.extent += tile->half_size;
+    PlanePacket packets[PLANE_PACKETS];
+    int n = 0;
     for (int number = 0; number < PLANE_PACKETS; number++)
-        if (hopeful >> number & 1)
-            trace_plane(&plane, number, touched, terms);
+        if (hopeful >> number & 1 && begin_packet(&plane, number, touched, terms, &packets[n]))
+            terms += packets[n++].n;
+    for (int i = 0; i < n; i++)
+        plane_step(&packets[i]);
+    for (int i = 0; i < n; i++)
+        solve_plane(&packets[i]);
+    for (int i = 0; i < n; i++)
+        describe_plane_hits(&packets[i]);
 }
