@@ -246,8 +246,8 @@ LANE_FN void solve_plane(PlanePacket *packet)
     packet->hit &= packet->solved;
 }
 
-/* The gradient, half of it, at a height; what the last step has changed in the terms' proportions is
- * taken as linear. */
+/* The gradient, half of it, at a height. What the last step has changed in the terms' proportions,
+ * exp(y) with |y| <= R |d| / 2, is taken to second order. */
 LANE_FN Gradient plane_gradient(const PlanePacket *packet, Lanes height)
 {
     Gradient sum = {.largest = lanes_set(-1)};
@@ -256,8 +256,9 @@ LANE_FN Gradient plane_gradient(const PlanePacket *packet, Lanes height)
     for (size_t i = 0; i < packet->n; i++) {
         const PlaneTerm *term = &packet->terms[i];
         const float *cross = term->term->cross;
-        Lanes change = lanes_fma(packet->step, lanes_set(middle - term->p), lanes_set(1));
-        Lanes fall = term->fall * change, value = term->amplitude * fall;
+        Lanes y = packet->step * (middle - term->p), one = lanes_set(1);
+        Lanes fall = term->fall * lanes_fma(y, lanes_fma(y, lanes_set(0.5f), one), one);
+        Lanes value = term->amplitude * fall;
         Lanes across = value * term->e, along = term->slope * fall;
         sum.x += lanes_fma(along, lanes_set(cross[1]), -(across * cross[0]));
         sum.y -= lanes_fma(along, lanes_set(cross[0]), across * cross[1]);
