@@ -146,31 +146,50 @@ static uint32_t parts_of(Range pixels, RasterSpan tiles)
 
 /* ---- items ----------------------------------------------------------------------------------- */
 
-RasterReach rasterreach_of(const RasterView *view, const RasterItem *item)
+static double item_depth(const RasterItem *item)
+{
+    return (double)item->cosine * (double)item->half + (double)item->radius;
+}
+
+/* The pixels that the whole of it covers, across the picture or down it. */
+static inline Range whole_pixels(const RasterView *view, const RasterItem *item, bool across)
 {
     double half = (double)item->half, radius = (double)item->radius;
-    double deep = (double)item->cosine * half + radius;
-    RasterReach reach = {.rows = nowhere, .columns = nowhere};
-    if (item->z + deep < 0)
-        return reach;
-    Range across = everywhere, down = everywhere;
-    if (!view->perspective) {
-        double sine = (double)item->sine;
-        double reach_x = fabs((double)item->ex) * sine * half + radius;
-        double reach_y = fabs((double)item->ey) * sine * half + radius;
-        across = (Range){item->x - reach_x, item->x + reach_x};
-        down = (Range){item->y - reach_y, item->y + reach_y};
-    } else if (!item_is_close(item)) {
+    double middle = across ? item->x : item->y, slope = (double)(across ? item->ex : item->ey);
+    double reach = fabs(slope) * (double)item->sine * half + radius;
+    Range range = {middle - reach, middle + reach};
+    if (view->perspective) {
+        if (item_is_close(item))
+            return everywhere;
         Vec3 a = item_point(item, -half), b = item_point(item, half);
-        across = capsule_shadow(a.x, a.z, b.x, b.z, radius);
-        down = capsule_shadow(a.y, a.z, b.y, b.z, radius);
+        range = capsule_shadow(across ? a.x : a.y, a.z, across ? b.x : b.y, b.z, radius);
     }
-    across = pixels_within(across, view->left, view->per_x);
-    down = pixels_within(down, view->top, view->per_y);
+    return across ? pixels_within(range, view->left, view->per_x)
+                  : pixels_within(range, view->top, view->per_y);
+}
+
+static bool is_behind(const RasterItem *item)
+{
+    return item->z + item_depth(item) < 0;
+}
+
+RasterSpan rasterreach_rows(const RasterView *view, const RasterItem *item)
+{
+    if (is_behind(item))
+        return nowhere;
+    return tiles_within(whole_pixels(view, item, false), view->stray, view->first, view->rows);
+}
+
+RasterReach rasterreach_of(const RasterView *view, const RasterItem *item)
+{
+    RasterReach reach = {.rows = nowhere, .columns = nowhere};
+    if (is_behind(item))
+        return reach;
+    Range across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
     reach.rows = tiles_within(down, view->stray, view->first, view->rows);
     reach.columns = columns_of(view, across);
     if (view->boxes) {
-        double near = item->z - deep - view->z_middle;
+        double near = item->z - item_depth(item) - view->z_middle;
         Range from_first = {down.low - view->first, down.high - view->first};
         reach.box = RASTERBOX_GUARDS | parts_of(across, reach.columns) |
                     parts_of(from_first, reach.rows) << 16;

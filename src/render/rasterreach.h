@@ -18,6 +18,8 @@ typedef struct RasterReach {
     float near;
 } RasterReach;
 
+/* The rows alone. */
+RasterSpan rasterreach_rows(const RasterView *view, const RasterItem *item);
 /* Box and depth only if the view asks for boxes. */
 RasterReach rasterreach_of(const RasterView *view, const RasterItem *item);
 /* The columns of a row, one of reach->rows, and the box there. */

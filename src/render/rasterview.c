@@ -51,7 +51,6 @@ Vec3 rasterview_to_world(const RasterView *view, Vec3 v)
 
 typedef struct Build {
     RasterBins *bins;
-    RasterReach *reaches;   /* one an item */
     RasterSlab *slabs;      /* one a row */
     size_t *counts;         /* chunk by chunk, of each row; then where the chunk's items go */
     uint32_t *joints;       /* chunk by chunk: their number; then that of the first */
@@ -104,26 +103,34 @@ static void make_chunk(size_t chunk, int worker, void *context)
         bins->items[i] =
             rasteritem_make(bins->scene, &bins->view, (uint32_t)i, joint, bins->joints);
         joint += is_joint(bins, i);
-        const RasterReach reach = rasterreach_of(&bins->view, &bins->items[i]);
-        build->reaches[i] = reach;
-        for (int row = reach.rows.first; row <= reach.rows.last; row++)
+        const RasterSpan rows = rasterreach_rows(&bins->view, &bins->items[i]);
+        for (int row = rows.first; row <= rows.last; row++)
             counts[row]++;
     }
+}
+
+static RasterColumns pack_columns(RasterSpan span)
+{
+    int count = span.last - span.first + 1;
+    return (RasterColumns){(uint32_t)span.first & ((1u << 17) - 1),
+                           (uint32_t)(count < RASTERCOLUMNS_MANY ? count : RASTERCOLUMNS_MANY) &
+                               RASTERCOLUMNS_MANY};
 }
 
 /* Puts an item into its rows, at the next of their places. */
 static void fill_item(const Build *build, size_t *places, size_t number)
 {
     RasterBins *bins = build->bins;
-    const RasterReach *reach = &build->reaches[number];
-    for (int row = reach->rows.first; row <= reach->rows.last; row++) {
+    const RasterItem *item = &bins->items[number];
+    const RasterReach reach = rasterreach_of(&bins->view, item);
+    for (int row = reach.rows.first; row <= reach.rows.last; row++) {
         size_t place = places[row]++;
         uint32_t box;
         bins->row_items[place] = (uint32_t)number;
-        bins->row_columns[place] = rasterreach_in_row(reach, &bins->view, &bins->items[number], row,
-                                                      &build->slabs[row], &box);
+        bins->row_columns[place] = pack_columns(
+            rasterreach_in_row(&reach, &bins->view, item, row, &build->slabs[row], &box));
         if (bins->row_boxes)
-            bins->row_boxes[place] = (RasterBox){box, reach->near};
+            bins->row_boxes[place] = (RasterBox){box, reach.near};
     }
 }
 
@@ -139,9 +146,8 @@ static void fill_chunk(size_t chunk, int worker, void *context)
 static Status sort_into_rows(Build *build, int threads, Err *err)
 {
     RasterBins *bins = build->bins;
-    size_t n = bins->scene->n_primitives, rows = (size_t)bins->tile_rows, total = 0;
+    size_t rows = (size_t)bins->tile_rows, total = 0;
     size_t chunks = build->n_chunks;
-    TRY(mem_calloc(&build->reaches, n, sizeof *build->reaches, "items", err));
     TRY(mem_calloc(&build->counts, chunks * rows, sizeof *build->counts, "rows of tiles", err));
     threads_for(chunks, threads, make_chunk, build);
     for (size_t row = 0; row < rows; row++) {
@@ -180,7 +186,6 @@ static Status make_bins(RasterBins *bins, int threads, Err *err)
     Status status = make_room_for_joints(&build, threads, err);
     if (status == STATUS_OK)
         status = sort_into_rows(&build, threads, err);
-    free(build.reaches);
     free(build.slabs);
     free(build.joints);
     free(build.counts);
@@ -236,8 +241,8 @@ Status rasterbins_count(const RasterBins *bins, size_t number, uint32_t *offsets
     for (size_t i = 0; i <= columns; i++)
         offsets[i] = 0;
     for (size_t i = bins->row_offsets[number]; i < bins->row_offsets[number + 1]; i++)
-        for (int column = bins->row_columns[i].first; column <= bins->row_columns[i].last; column++)
-            offsets[column]++;
+        for (RasterSpan span = rasterbins_columns(bins, i); span.first <= span.last; span.first++)
+            offsets[span.first]++;
     for (size_t i = 0; i <= columns; i++) {
         size_t count = offsets[i];
         offsets[i] = (uint32_t)total;
@@ -258,8 +263,8 @@ Status rasterbins_list(const RasterBins *bins, size_t number, RasterRow *row, Er
     TRY(mem_reserve(&row->lists, &row->lists_capacity, offsets[columns], sizeof *row->lists,
                     "tiles", err));
     for (size_t i = bins->row_offsets[number]; i < bins->row_offsets[number + 1]; i++)
-        for (int column = bins->row_columns[i].first; column <= bins->row_columns[i].last; column++)
-            row->lists[offsets[column]++] = bins->row_items[i];
+        for (RasterSpan span = rasterbins_columns(bins, i); span.first <= span.last; span.first++)
+            row->lists[offsets[span.first]++] = bins->row_items[i];
     /* Each has become that of the next column. */
     for (size_t i = columns; i > 0; i--)
         offsets[i] = offsets[i - 1];
