@@ -25,23 +25,37 @@ LANE_TARGET static void RASTER_KERNEL(locate)(const RasterTile *tile, const Rast
     }
 }
 
+/* `near`: the light is not parallel; `slanted`: the camera's view is not. */
+RASTER_FN void face_samples(const RasterTile *tile, const RasterPlaces *places,
+                            const float normal[3][TILE_SAMPLES], const TileLight *light, bool near,
+                            bool slanted, uint8_t facing[TILE_SAMPLES])
+{
+    const RasterGrid *grid = tile->grid;
+    const float to_x = light->towards[0], to_y = light->towards[1], to_z = light->towards[2];
+    float middle_x = (float)tile->x, middle_y = (float)tile->y;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        float nx = normal[0][sample], ny = normal[1][sample], nz = normal[2][sample];
+        float x = to_x, y = to_y, z = to_z, away = nz;
+        if (near) {
+            x -= (float)places->x[sample];
+            y -= (float)places->y[sample];
+            z -= (float)places->z[sample];
+        }
+        if (slanted)
+            away += nx * (middle_x + grid->x[sample]) + ny * (middle_y + grid->y[sample]);
+        float along = nx * x + ny * y + nz * z;
+        facing[sample] = (uint8_t)((away > 0 ? -along : along) > 0);
+    }
+}
+
 LANE_TARGET static void RASTER_KERNEL(face)(const RasterTile *tile, const RasterPlaces *places,
                                             const float normal[3][TILE_SAMPLES],
                                             const TileLight *light, uint8_t facing[TILE_SAMPLES])
 {
-    const RasterGrid *grid = tile->grid;
-    const float to_x = light->towards[0], to_y = light->towards[1], to_z = light->towards[2];
-    float near = light->parallel ? 0 : 1, slant = tile->perspective ? 1 : 0;
-    float middle_x = (float)tile->x, middle_y = (float)tile->y;
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        float nx = normal[0][sample], ny = normal[1][sample], nz = normal[2][sample];
-        float along = nx * (to_x - near * (float)places->x[sample]) +
-                      ny * (to_y - near * (float)places->y[sample]) +
-                      nz * (to_z - near * (float)places->z[sample]);
-        float away =
-            nz + slant * (nx * (middle_x + grid->x[sample]) + ny * (middle_y + grid->y[sample]));
-        facing[sample] = (uint8_t)((away > 0 ? -along : along) > 0);
-    }
+    if (light->parallel && !tile->perspective)
+        face_samples(tile, places, normal, light, false, false, facing);
+    else
+        face_samples(tile, places, normal, light, !light->parallel, tile->perspective, facing);
 }
 
 /* The tile, of `count`, that a place in tiles lies in. */
@@ -75,6 +89,17 @@ LANE_TARGET static void RASTER_KERNEL(aim)(const RasterAim *aim, const RasterPla
     }
 }
 
+LANE_TARGET static uint64_t RASTER_KERNEL(within)(const RasterSpots *spots, int32_t tile)
+{
+    uint64_t bits = 0;
+    for (int first = 0; first < TILE_SAMPLES; first += LANES) {
+        LaneMask tiles;
+        __builtin_memcpy(&tiles, &spots->tile[first], sizeof tiles);
+        bits |= (uint64_t)lanes_bits(tiles == tile) << first;
+    }
+    return bits;
+}
+
 /* ---- what is in the way ---------------------------------------------------------------------- */
 
 /* LANES probes as floats about the tile's middle. */
@@ -84,6 +109,16 @@ typedef struct ProbeBlock {
     float deepest;
     uint32_t box; /* compared with those of items [RasterBox] */
 } ProbeBlock;
+
+/* As item_covers() of one probe, in double precision. */
+LANE_TARGET static bool decide_probe(const Near *near, const RasterTile *tile,
+                                     const RasterProbes *probes, int probe)
+{
+    uint32_t place = probes->place[probe], sample = place % TILE_SAMPLES;
+    const RasterSpots *spots = &probes->spots[place / TILE_SAMPLES];
+    double z = raster_decide(tile->bins, near->number, spots->x[sample], spots->y[sample], NULL);
+    return z - tile->z_middle < (double)probes->z[probe];
+}
 
 /* Whether the item is seen before the probes' depths. */
 RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const RasterProbes *probes,
@@ -107,6 +142,8 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const R
         Passage passage = pass_cylinder(near, &sight);
         among &=
             within_outline(near, &sight) & ~(passage.middle - passage.half + near->z >= z + margin);
+        if (!lanes_any(among))
+            return among;
         met = joint_entry(near, &sight, among, &entry, &ruling, &unsure);
     } else {
         unsure = among;
@@ -115,10 +152,8 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const R
     LaneMask covered = met & among & (entry + near->z < z);
     unsure &= ~covered;
     for (uint32_t left = lanes_bits(unsure); left; left &= left - 1) {
-        int lane = __builtin_ctz(left), probe = first + lane;
-        double at =
-            raster_decide(tile->bins, near->number, probes->x[probe], probes->y[probe], NULL);
-        covered[lane] = -(at - tile->z_middle < (double)probes->z[probe]);
+        int lane = __builtin_ctz(left);
+        covered[lane] = -decide_probe(near, tile, probes, first + lane);
     }
     return covered;
 }
@@ -134,14 +169,9 @@ RASTER_FN uint32_t parts_of(Lanes at, double per)
 
 RASTER_FN ProbeBlock load_probes(const RasterTile *tile, const RasterProbes *probes, int first)
 {
-    float x[LANES], y[LANES];
-    for (int lane = 0; lane < LANES; lane++) {
-        x[lane] = (float)(probes->x[first + lane] - tile->x);
-        y[lane] = (float)(probes->y[first + lane] - tile->y);
-    }
     const RasterView *view = &tile->bins->view;
-    ProbeBlock block = {.x = lanes_load(x),
-                        .y = lanes_load(y),
+    ProbeBlock block = {.x = lanes_load(&probes->x[first]),
+                        .y = lanes_load(&probes->y[first]),
                         .z = lanes_load(&probes->z[first]),
                         .item = load_items(&probes->item[first])};
     block.deepest = lanes_largest(block.z);
@@ -185,14 +215,14 @@ RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int fir
 
 LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, RasterProbes *probes)
 {
+    __builtin_memset(probes->covered, 1, (size_t)probes->n);
     /* The last block is filled up with probes that are like the first and not asked for. */
-    for (int i = 0; i < probes->n || i % LANES; i++) {
-        bool asked = i < probes->n;
-        probes->x[i] = probes->x[asked ? i : 0];
-        probes->y[i] = probes->y[asked ? i : 0];
-        probes->z[i] = probes->z[asked ? i : 0];
-        probes->item[i] = probes->item[asked ? i : 0];
-        probes->covered[i] = asked;
+    for (int i = probes->n; i % LANES; i++) {
+        probes->x[i] = probes->x[0];
+        probes->y[i] = probes->y[0];
+        probes->z[i] = probes->z[0];
+        probes->item[i] = probes->item[0];
+        probes->covered[i] = 0;
     }
     for (int first = 0; first < probes->n; first += LANES)
         if (tile->perspective)

@@ -6,7 +6,7 @@
 
 const RasterKernels rasterkernels_portable = {trace_portable, resolve_portable, clear_portable,
                                               paint_portable, locate_portable,  face_portable,
-                                              aim_portable,   cover_portable};
+                                              aim_portable,   within_portable,  cover_portable};
 
 int rasterkernels_usable(const RasterKernels *kernels[KINDS_OF_KERNELS])
 {

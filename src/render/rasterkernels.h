@@ -30,11 +30,13 @@ typedef struct RasterSpots {
 /* Tiles of the picture whose places a light is asked about together. */
 enum { RASTER_BATCH = 64, MOST_PROBES = RASTER_BATCH * TILE_SAMPLES };
 
-/* Lines of sight that belong to no grid, and depths on them. */
+/* Lines of sight of a light through places, all in one tile of its view, and depths on them. */
 typedef struct RasterProbes {
     int n;
-    double x[MOST_PROBES], y[MOST_PROBES]; /* in the plane of the view */
-    float z[MOST_PROBES];                  /* less z_middle */
+    const RasterSpots *spots;
+    uint32_t place[MOST_PROBES]; /* TILE_SAMPLES times the number in `spots`, and the sample's */
+    float x[MOST_PROBES], y[MOST_PROBES]; /* in the plane of the view, less the tile's middle */
+    float z[MOST_PROBES];                 /* less z_middle */
     uint32_t item[MOST_PROBES];   /* that the place is on, as in RasterHits: no sphere or cylinder
                                    * seen in single precision shadows itself */
     uint8_t covered[MOST_PROBES]; /* 1 where an item is seen before that depth, else 0 */
@@ -57,6 +59,8 @@ typedef struct RasterKernels {
                  const float normal[3][TILE_SAMPLES], const TileLight *light,
                  uint8_t facing[TILE_SAMPLES]);
     void (*aim)(const RasterAim *aim, const RasterPlaces *places, RasterSpots *spots);
+    /* Of the samples, as bits, those that lie in a tile. */
+    uint64_t (*within)(const RasterSpots *spots, int32_t tile);
     /* Sets `covered` of the probes, all of which lie in this tile. */
     void (*cover)(const RasterTile *tile, RasterProbes *probes);
 } RasterKernels;

@@ -7,8 +7,9 @@
 
 #include "render/rastercover.h"
 
-const RasterKernels rasterkernels_avx2 = {trace_avx2,  resolve_avx2, clear_avx2, paint_avx2,
-                                          locate_avx2, face_avx2,    aim_avx2,   cover_avx2};
+const RasterKernels rasterkernels_avx2 = {trace_avx2, resolve_avx2, clear_avx2,
+                                          paint_avx2, locate_avx2,  face_avx2,
+                                          aim_avx2,   within_avx2,  cover_avx2};
 
 #else
 typedef int NotForThisProcessor;

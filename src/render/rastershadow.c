@@ -231,17 +231,23 @@ void rastershadow_free(RasterShadow *shadow)
 
 /* ---- asking ---------------------------------------------------------------------------------- */
 
+/* Places of one tile of the picture that lie in one tile of the light. */
+typedef struct Request {
+    uint64_t places; /* as bits */
+    int tile;        /* of the picture: its number in the queue */
+    int before;      /* the request before it in the tile of the light, or -1 */
+} Request;
+
 struct RasterQueue {
     const RasterShadow *shadow;
-    int32_t *last;  /* of each tile of the light, the last place asked about there, or -1 */
-    int32_t *tiles; /* that have any, in the order of their first */
-    int n, n_tiles;
-    RasterSpots spots; /* of the tile of the picture that is asked about */
-    double x[MOST_PROBES], y[MOST_PROBES];
-    float z[MOST_PROBES];
-    uint32_t item[MOST_PROBES], answer[MOST_PROBES];
-    int32_t
-        before[MOST_PROBES]; /* the place asked about before it in the tile of the light, or -1 */
+    int n; /* tiles of the picture */
+    RasterSpots spots[RASTER_BATCH];
+    const uint32_t *items[RASTER_BATCH];
+    uint32_t answer[RASTER_BATCH];
+    Request requests[MOST_PROBES];
+    int n_requests, n_tiles;
+    int tiles[MOST_PROBES]; /* of the light, that are asked, in the order of their first request */
+    int *last;              /* of each tile of the light, the last request there, or -1 */
     RasterProbes probes;
 };
 
@@ -252,8 +258,8 @@ Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out, Err *err)
     TRY(mem_calloc(&queue, 1, sizeof *queue, "shadows", err));
     *out = queue;
     queue->shadow = shadow;
+    queue->probes.spots = queue->spots;
     TRY(mem_calloc(&queue->last, n, sizeof *queue->last, "shadows", err));
-    TRY(mem_calloc(&queue->tiles, MOST_PROBES, sizeof *queue->tiles, "shadows", err));
     memset(queue->last, -1, n * sizeof *queue->last);
     return STATUS_OK;
 }
@@ -263,27 +269,27 @@ void rasterqueue_free(RasterQueue *queue)
     if (!queue)
         return;
     free(queue->last);
-    free(queue->tiles);
     free(queue);
 }
 
 void rasterqueue_ask(RasterQueue *queue, const RasterKernels *kernels, const RasterPlaces *places,
                      const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer)
 {
-    const RasterSpots *spots = &queue->spots;
-    if (wanted)
-        kernels->aim(&queue->shadow->aim, places, &queue->spots);
-    for (; wanted; wanted &= wanted - 1) {
-        int place = __builtin_ctzll(wanted), tile = spots->tile[place], n = queue->n++;
+    if (!wanted)
+        return;
+    int number = queue->n++;
+    RasterSpots *spots = &queue->spots[number];
+    kernels->aim(&queue->shadow->aim, places, spots);
+    queue->items[number] = items;
+    queue->answer[number] = answer;
+    while (wanted) {
+        int tile = spots->tile[__builtin_ctzll(wanted)], n = queue->n_requests++;
+        uint64_t within = wanted & kernels->within(spots, tile);
         if (queue->last[tile] < 0)
             queue->tiles[queue->n_tiles++] = tile;
-        queue->before[n] = queue->last[tile];
+        queue->requests[n] = (Request){within, number, queue->last[tile]};
         queue->last[tile] = n;
-        queue->x[n] = spots->x[place];
-        queue->y[n] = spots->y[place];
-        queue->z[n] = spots->z[place];
-        queue->item[n] = items[place];
-        queue->answer[n] = answer + (uint32_t)place;
+        wanted &= ~within;
     }
 }
 
@@ -302,21 +308,33 @@ static RasterTile tile_of(const RasterShadow *shadow, int number)
     return tile;
 }
 
+static void add_probes(RasterQueue *queue, const RasterTile *tile, const Request *request)
+{
+    RasterProbes *probes = &queue->probes;
+    const RasterSpots *spots = &queue->spots[request->tile];
+    const uint32_t *items = queue->items[request->tile];
+    for (uint64_t places = request->places; places; places &= places - 1) {
+        int place = __builtin_ctzll(places), n = probes->n++;
+        probes->place[n] = (uint32_t)(request->tile * TILE_SAMPLES + place);
+        probes->x[n] = (float)(spots->x[place] - tile->x);
+        probes->y[n] = (float)(spots->y[place] - tile->y);
+        probes->z[n] = spots->z[place];
+        probes->item[n] = items[place];
+    }
+}
+
 static void test_tile(RasterQueue *queue, const RasterKernels *kernels, const RasterTile *tile,
                       int last, uint8_t *shadowed)
 {
     RasterProbes *probes = &queue->probes;
     probes->n = 0;
-    for (int i = last; i >= 0; i = queue->before[i]) {
-        probes->x[probes->n] = queue->x[i];
-        probes->y[probes->n] = queue->y[i];
-        probes->z[probes->n] = queue->z[i];
-        probes->item[probes->n++] = queue->item[i];
-    }
+    for (int i = last; i >= 0; i = queue->requests[i].before)
+        add_probes(queue, tile, &queue->requests[i]);
     kernels->cover(tile, probes);
-    const uint8_t *covered = probes->covered;
-    for (int i = last; i >= 0; i = queue->before[i])
-        shadowed[queue->answer[i]] = *covered++;
+    for (int i = 0; i < probes->n; i++) {
+        uint32_t place = probes->place[i];
+        shadowed[queue->answer[place / TILE_SAMPLES] + place % TILE_SAMPLES] = probes->covered[i];
+    }
 }
 
 void rasterqueue_answer(RasterQueue *queue, const RasterKernels *kernels, uint8_t *shadowed)
@@ -326,11 +344,11 @@ void rasterqueue_answer(RasterQueue *queue, const RasterKernels *kernels, uint8_
         next = tile_of(queue->shadow, queue->tiles[0]);
     for (int i = 0; i < queue->n_tiles; i++) {
         RasterTile tile = next;
-        int32_t *last = &queue->last[queue->tiles[i]];
+        int *last = &queue->last[queue->tiles[i]];
         if (i + 1 < queue->n_tiles)
             next = tile_of(queue->shadow, queue->tiles[i + 1]);
         test_tile(queue, kernels, &tile, *last, shadowed);
         *last = -1;
     }
-    queue->n = queue->n_tiles = 0;
+    queue->n = queue->n_requests = queue->n_tiles = 0;
 }
