@@ -169,10 +169,9 @@ LANE_FN void clear_sums(PlanePacket *packet)
 
 LANE_FN void add_value(PlanePacket *packet, Lanes value, float p)
 {
-    Lanes value_p = value * p;
     packet->sum += value;
-    packet->sum_p += value_p;
-    packet->sum_p2 = lanes_fma(value_p, lanes_set(p), packet->sum_p2);
+    packet->sum_p = lanes_fma(value, lanes_set(p), packet->sum_p);
+    packet->sum_p2 = lanes_fma(value * p, lanes_set(p), packet->sum_p2);
 }
 
 /* Sets the terms of the packet, their sums in the plane, and which rays hit. */
