@@ -144,7 +144,9 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const R
             within_outline(near, &sight) & ~(passage.middle - passage.half + near->z >= z + margin);
         if (!lanes_any(among))
             return among;
-        met = joint_entry(near, &sight, among, &entry, &ruling, &unsure);
+        met =
+            joint_entry(near, &sight, among, block->item == (int32_t)(near->number | RASTER_RULED),
+                        &entry, &ruling, &unsure);
     } else {
         unsure = among;
         met = (LaneMask){0};

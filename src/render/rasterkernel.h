@@ -113,7 +113,7 @@ RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
     } else {
         Lanes ruling;
         LaneMask unsure, within = within_outline(near, &sight);
-        LaneMask met = joint_entry(near, &sight, within, &z, &ruling, &unsure);
+        LaneMask met = joint_entry(near, &sight, within, (LaneMask){0}, &z, &ruling, &unsure);
         met = keep_nearer(state, near, near->number | RASTER_RULED, block, met, z);
         keep_lanes(&state->hits->ruling[block * LANES], met, ruling);
         if (lanes_any(unsure))

@@ -254,13 +254,15 @@ RASTER_FN Lanes ruling_place(const Near *near, const SightLines *sight, const Li
     return -along / lanes_fma(run[0], run[0], run[1] * run[1]);
 }
 
-/* Where the lines `among` enter the joint; *unsure is set where that takes double precision. */
-RASTER_FN LaneMask joint_entry(const Near *near, const SightLines *sight, LaneMask among, Lanes *z,
-                               Lanes *ruling, LaneMask *unsure)
+/* Where the lines `among` enter the joint; *unsure is set where that takes double precision. Of the
+ * lines `known` one entry is known, and only others count. */
+RASTER_FN LaneMask joint_entry(const Near *near, const SightLines *sight, LaneMask among,
+                               LaneMask known, Lanes *z, Lanes *ruling, LaneMask *unsure)
 {
     Ruling g = ruling_of(near, sight);
     Falls falls;
     find_falls(&g, among, &falls);
+    falls.there[0] &= ~known | falls.there[1] | falls.unsure;
     LaneMask met = (LaneMask){0};
     *unsure = falls.unsure;
     *z = lanes_set(HUGE_VALF);
