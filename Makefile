@@ -171,7 +171,7 @@ $(BUILD)/tests/%: tests/oracle/%.c Makefile
 	$(Q)$(CC) -D_GNU_SOURCE $(CFLAGS) $(LDFLAGS) -o $@ $< -lm
 
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
-$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/rasterkernels%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
+$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
 
 -include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FIT).d
 

@@ -31,7 +31,7 @@ static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
     Vec3 da = joint->across_change, db = vec3_scale(joint->side, joint->radius_change);
     double along_a = vec3_dot(sight, vec3_cross(vec3_add_scaled(a, da, 0.5), joint->span));
     double along_b = vec3_dot(sight, vec3_cross(vec3_add_scaled(b, db, 0.5), joint->span));
-    double size = hypot(along_a, along_b), cosine = 1, sine = 0;
+    double size = sqrt(along_a * along_a + along_b * along_b), cosine = 1, sine = 0;
     if (size > 0) {
         cosine = -along_b / size;
         sine = along_a / size;
