@@ -82,8 +82,8 @@ static bool joint_is_solid(const Primitive *primitive)
            vec3_dot(span, primitive->axis_b) >= primitive->radius_mm * sine - slack;
 }
 
-RasterItem rasteritem_make(const Scene *scene, const RasterView *view, uint32_t number,
-                           uint32_t joint, RasterJoint *joints)
+void rasteritem_make(const Scene *scene, const RasterView *view, uint32_t number, uint32_t joint,
+                     RasterJoint *joints, RasterItem *item)
 {
     const Primitive *primitive = &scene->primitives[number];
     Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
@@ -107,28 +107,25 @@ RasterItem rasteritem_make(const Scene *scene, const RasterView *view, uint32_t 
         if (kind == RASTER_JOINT)
             joints[joint] = make_joint(view, primitive, middle);
     }
-    RasterItem item = {.x = middle.x,
-                       .y = middle.y,
-                       .z = middle.z,
-                       .ex = (float)ex,
-                       .ey = (float)ey,
-                       .sine = (float)sine,
-                       .cosine = (float)cosine,
-                       .radius = (float)radius,
-                       .half = (float)(length / 2),
-                       .primitive = number,
-                       .joint = joint,
-                       .kind = (uint32_t)kind};
+    item->x = middle.x;
+    item->y = middle.y;
+    item->z = middle.z;
+    item->ex = (float)ex;
+    item->ey = (float)ey;
+    item->sine = (float)sine;
+    item->cosine = (float)cosine;
+    item->radius = (float)radius;
+    item->half = (float)(length / 2);
+    item->joint = joint & RASTER_NUMBER;
     double near = middle.z - cosine * length / 2 - radius;
     double pixel = min_of(view->step_x, -view->step_y) * (view->perspective ? near : 1);
-    if (item_is_close(&item) || length / 2 + radius > most_pixels * pixel)
-        item.kind = RASTER_EXACT;
-    return item;
+    bool odd = item_is_close(item) || length / 2 + radius > most_pixels * pixel;
+    item->kind = (unsigned)(odd ? RASTER_EXACT : kind) & 3;
 }
 
 double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal)
 {
-    const Primitive *primitive = &bins->scene->primitives[bins->items[item].primitive];
+    const Primitive *primitive = &bins->scene->primitives[item];
     Ray ray = rasterview_ray(&bins->view, x, y);
     Hit hits[4];
     int n = 0;

@@ -4,8 +4,9 @@
 
 #include "render/rasterview.h"
 
-/* The item of a scene's primitive. joints[joint] is set if the item is a RASTER_JOINT. */
-RasterItem rasteritem_make(const Scene *scene, const RasterView *view, uint32_t number,
-                           uint32_t joint, RasterJoint *joints);
+/* Makes the item of a scene's primitive, but for its tiles and box. joints[joint] is set if it is a
+ * RASTER_JOINT. */
+void rasteritem_make(const Scene *scene, const RasterView *view, uint32_t number, uint32_t joint,
+                     RasterJoint *joints, RasterItem *item);
 
 #endif

@@ -173,40 +173,42 @@ static bool is_behind(const RasterItem *item)
     return item->z + item_depth(item) < 0;
 }
 
-RasterSpan rasterreach_rows(const RasterView *view, const RasterItem *item)
+static void store_tiles(uint16_t tiles[2], RasterSpan span)
 {
-    if (is_behind(item))
-        return nowhere;
-    return tiles_within(whole_pixels(view, item, false), view->stray, view->first, view->rows);
+    tiles[0] = (uint16_t)span.first;
+    tiles[1] = (uint16_t)span.last;
 }
 
-RasterReach rasterreach_of(const RasterView *view, const RasterItem *item)
+void rasterreach_set(const RasterView *view, RasterItem *item)
 {
-    RasterReach reach = {.rows = nowhere, .columns = nowhere};
-    if (is_behind(item))
-        return reach;
-    Range across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
-    reach.rows = tiles_within(down, view->stray, view->first, view->rows);
-    reach.columns = columns_of(view, across);
-    if (view->boxes) {
-        double near = item->z - item_depth(item) - view->z_middle;
+    RasterSpan rows = nowhere, columns = nowhere;
+    if (!is_behind(item)) {
+        Range across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
+        rows = tiles_within(down, view->stray, view->first, view->rows);
+        columns = columns_of(view, across);
         Range from_first = {down.low - view->first, down.high - view->first};
-        reach.box = RASTERBOX_GUARDS | parts_of(across, reach.columns) |
-                    parts_of(from_first, reach.rows) << 16;
-        reach.near = (float)(near - 1e-6 * fabs(near));
+        if (view->boxes)
+            item->box =
+                RASTERBOX_GUARDS | parts_of(across, columns) | parts_of(from_first, rows) << 16;
     }
-    return reach;
+    store_tiles(item->rows, rows);
+    store_tiles(item->columns, columns);
 }
 
-RasterSpan rasterreach_in_row(const RasterReach *reach, const RasterView *view,
-                              const RasterItem *item, int row, const RasterSlab *slab,
-                              uint32_t *box)
+float rasterreach_near(const RasterView *view, const RasterItem *item)
 {
-    RasterSpan rows = reach->rows, columns = reach->columns;
-    *box = reach->box | (row < rows.last ? RASTERBOX_HIGH_X << 16 : 0) |
-           (row > rows.first ? RASTERBOX_LOW_X << 16 : 0);
+    double near = item->z - item_depth(item) - view->z_middle;
+    return (float)(near - 1e-6 * fabs(near));
+}
+
+RasterSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int row,
+                              const RasterSlab *slab, uint32_t *box)
+{
+    RasterSpan columns = {item->columns[0], item->columns[1]};
+    *box = item->box | (row < item->rows[1] ? RASTERBOX_HIGH_X << 16 : 0) |
+           (row > item->rows[0] ? RASTERBOX_LOW_X << 16 : 0);
     int few = view->boxes ? 1 : 0;
-    if (rows.last - rows.first <= few || columns.last - columns.first <= few ||
+    if (item->rows[1] - item->rows[0] <= few || columns.last - columns.first <= few ||
         (view->perspective && item_is_close(item)))
         return columns;
     Range range = view->perspective ? perspective_range(item, slab) : parallel_range(item, slab);

@@ -11,20 +11,12 @@ typedef struct RasterSlab {
 
 RasterSlab rasterslab_of(const RasterView *view, size_t row);
 
-/* Where the whole of an item is seen. */
-typedef struct RasterReach {
-    RasterSpan rows, columns;
-    uint32_t box; /* RasterBox, its y the least in the first row and the greatest in the last */
-    float near;
-} RasterReach;
-
-/* The rows alone. */
-RasterSpan rasterreach_rows(const RasterView *view, const RasterItem *item);
-/* Box and depth only if the view asks for boxes. */
-RasterReach rasterreach_of(const RasterView *view, const RasterItem *item);
-/* The columns of a row, one of reach->rows, and the box there. */
-RasterSpan rasterreach_in_row(const RasterReach *reach, const RasterView *view,
-                              const RasterItem *item, int row, const RasterSlab *slab,
-                              uint32_t *box);
+/* Sets tiles and box of an item. */
+void rasterreach_set(const RasterView *view, RasterItem *item);
+/* A depth before which nothing of it is, less z_middle. */
+float rasterreach_near(const RasterView *view, const RasterItem *item);
+/* The columns of one of its rows, and the box there. */
+RasterSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int row,
+                              const RasterSlab *slab, uint32_t *box);
 
 #endif

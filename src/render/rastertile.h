@@ -16,15 +16,17 @@ typedef enum RasterKind {
     RASTER_EXACT  /* too near, too large or too odd for single precision */
 } RasterKind;
 
-/* A primitive, or a capsule about it. Its axis is (sine ex, sine ey, cosine). */
+/* A primitive, numbered as in the scene, or a capsule about it. Its axis is (sine ex, sine ey, cosine). */
 typedef struct RasterItem {
     double x, y, z; /* its middle */
     float ex, ey;   /* unit */
     float sine, cosine;
-    float radius, half; /* mm; half its length, 0 of a sphere */
-    uint32_t primitive; /* index in the scene */
-    uint32_t joint;     /* index of its RasterJoint */
-    uint32_t kind;      /* RasterKind */
+    float radius, half;  /* mm; half its length, 0 of a sphere */
+    uint32_t kind : 2;   /* RasterKind */
+    uint32_t joint : 30; /* index of its RasterJoint */
+    uint16_t rows[2],
+        columns[2]; /* first and last of the tiles that it may touch; none if first > last */
+    uint32_t box;   /* where in them: RasterBox.box, its y too from the first to the last */
 } RasterItem;
 
 /* Whether an item is about the eye's plane, or so close that its outline tells nothing. */

@@ -100,11 +100,11 @@ static void make_chunk(size_t chunk, int worker, void *context)
     size_t *counts = build->counts + chunk * (size_t)bins->tile_rows;
     uint32_t joint = build->joints[chunk];
     for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++) {
-        bins->items[i] =
-            rasteritem_make(bins->scene, &bins->view, (uint32_t)i, joint, bins->joints);
+        RasterItem *item = &bins->items[i];
+        rasteritem_make(bins->scene, &bins->view, (uint32_t)i, joint, bins->joints, item);
+        rasterreach_set(&bins->view, item);
         joint += is_joint(bins, i);
-        const RasterSpan rows = rasterreach_rows(&bins->view, &bins->items[i]);
-        for (int row = rows.first; row <= rows.last; row++)
+        for (int row = item->rows[0]; row <= item->rows[1]; row++)
             counts[row]++;
     }
 }
@@ -122,15 +122,14 @@ static void fill_item(const Build *build, size_t *places, size_t number)
 {
     RasterBins *bins = build->bins;
     const RasterItem *item = &bins->items[number];
-    const RasterReach reach = rasterreach_of(&bins->view, item);
-    for (int row = reach.rows.first; row <= reach.rows.last; row++) {
+    for (int row = item->rows[0]; row <= item->rows[1]; row++) {
         size_t place = places[row]++;
         uint32_t box;
         bins->row_items[place] = (uint32_t)number;
-        bins->row_columns[place] = pack_columns(
-            rasterreach_in_row(&reach, &bins->view, item, row, &build->slabs[row], &box));
+        bins->row_columns[place] =
+            pack_columns(rasterreach_in_row(&bins->view, item, row, &build->slabs[row], &box));
         if (bins->row_boxes)
-            bins->row_boxes[place] = (RasterBox){box, reach.near};
+            bins->row_boxes[place] = (RasterBox){box, rasterreach_near(&bins->view, item)};
     }
 }
 
@@ -175,6 +174,11 @@ static Status make_bins(RasterBins *bins, int threads, Err *err)
     const Scene *scene = bins->scene;
     if (scene->n_primitives >= RASTER_NUMBER)
         return err_set(err, STATUS_MEMORY, "too many primitives for --method raster");
+    if (bins->tile_columns > UINT16_MAX || bins->tile_rows > UINT16_MAX)
+        return err_set(err, STATUS_USAGE,
+                       "--method raster draws pictures of up to %d pixels a side, --method trace "
+                       "larger ones",
+                       UINT16_MAX * TILE_SIDE);
     TRY(mem_calloc(&bins->item_memory, scene->n_primitives + 1, sizeof *bins->items, "items", err));
     bins->items =
         (RasterItem *)(((uintptr_t)bins->item_memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);

@@ -155,16 +155,17 @@ static void draw_joint(const Brush *brush, const JointFrame *joint)
     }
 }
 
-static void draw_primitive(const Buffers *buffers, const RasterItem *item, Brush *brush)
+static void draw_primitive(const Buffers *buffers, const RasterItem *item, uint32_t number,
+                           Brush *brush)
 {
     const RasterView *view = brush->view;
-    const Primitive *primitive = &buffers->scene->primitives[item->primitive];
+    const Primitive *primitive = &buffers->scene->primitives[number];
     double nearest = item->z - (double)item->cosine * (double)item->half - (double)item->radius;
     double pixel = fmin(view->step_x, -view->step_y);
     if (view->perspective) /* a step across a slanting line of sight is foreshortened */
         pixel *= nearest / (1 + view->left * view->left + view->top * view->top);
     brush->apart = pixel * pixels_apart;
-    brush->primitive = item->primitive;
+    brush->primitive = number;
     Vec3 a = rasterview_to_frame(view, vec3_sub(primitive->a, view->location));
     Vec3 b = rasterview_to_frame(view, vec3_sub(primitive->b, view->location));
     if (primitive->kind == PRIMITIVE_CYLINDER) {
@@ -228,7 +229,7 @@ static void draw_row(size_t row, int worker, void *context)
         points[i].z = HUGE_VAL;
     Brush brush = {.view = view, .points = points, .row = view->first + (int)row * TILE_SIDE};
     for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++)
-        draw_primitive(buffers, &bins->items[bins->row_items[i]], &brush);
+        draw_primitive(buffers, &bins->items[bins->row_items[i]], bins->row_items[i], &brush);
     for (int j = 0; j < TILE_SIDE && (int)row * TILE_SIDE + j < view->rows; j++)
         for (int i = 0; i < view->columns; i++)
             finish_pixel(buffers, &points[j * view->columns + i], i, (int)row * TILE_SIDE + j);
