@@ -1,18 +1,26 @@
+/* A new thread begins on a processor of its own: some kernels leave it to that of the thread that
+ * started it, where it waits, for milliseconds, until that thread has had its turn. */
 #include "base/threads.h"
 
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 
 enum { MAX_THREADS = 256 };
+
+static bool allowed_processors(cpu_set_t *allowed)
+{
+    return sched_getaffinity(0, sizeof *allowed, allowed) == 0 && CPU_COUNT(allowed) > 0;
+}
 
 int threads_available(void)
 {
     cpu_set_t allowed;
-    if (sched_getaffinity(0, sizeof allowed, &allowed) != 0)
+    if (!allowed_processors(&allowed))
         return 1;
     int count = CPU_COUNT(&allowed);
-    return count < 1 ? 1 : count > MAX_THREADS ? MAX_THREADS : count;
+    return count > MAX_THREADS ? MAX_THREADS : count;
 }
 
 typedef struct Loop {
@@ -20,6 +28,8 @@ typedef struct Loop {
     size_t count;
     void (*body)(size_t index, int worker, void *context);
     void *context;
+    bool spread; /* whether threads begin where they are told to, and may run on all of `allowed` */
+    cpu_set_t allowed;
 } Loop;
 
 typedef struct Worker {
@@ -27,14 +37,48 @@ typedef struct Worker {
     int number;
 } Worker;
 
-static void *run(void *argument)
+static void run(const Worker *worker)
 {
-    Worker *worker = argument;
     Loop *loop = worker->loop;
     size_t index;
     while ((index = atomic_fetch_add(&loop->next, 1)) < loop->count)
         loop->body(index, worker->number, loop->context);
+}
+
+static void *run_thread(void *argument)
+{
+    const Worker *worker = argument;
+    if (worker->loop->spread)
+        (void)sched_setaffinity(0, sizeof worker->loop->allowed, &worker->loop->allowed);
+    run(worker);
     return NULL;
+}
+
+/* The allowed processor that comes `number` after this one. */
+static int another_processor(const cpu_set_t *allowed, int number)
+{
+    int processor = sched_getcpu();
+    for (int left = number % CPU_COUNT(allowed); left > 0; left--)
+        do
+            processor = (processor + 1) % CPU_SETSIZE;
+        while (!CPU_ISSET(processor, allowed));
+    return processor;
+}
+
+static bool start(pthread_t *thread, Worker *worker)
+{
+    pthread_attr_t attributes;
+    cpu_set_t one;
+    if (worker->loop->spread && pthread_attr_init(&attributes) == 0) {
+        CPU_ZERO(&one);
+        CPU_SET(another_processor(&worker->loop->allowed, worker->number), &one);
+        bool started = pthread_attr_setaffinity_np(&attributes, sizeof one, &one) == 0 &&
+                       pthread_create(thread, &attributes, run_thread, worker) == 0;
+        pthread_attr_destroy(&attributes);
+        if (started)
+            return true;
+    }
+    return pthread_create(thread, NULL, run_thread, worker) == 0;
 }
 
 void threads_for(size_t count, int threads, void (*body)(size_t index, int worker, void *context),
@@ -47,12 +91,13 @@ void threads_for(size_t count, int threads, void (*body)(size_t index, int worke
     if ((size_t)threads > count)
         threads = count ? (int)count : 1;
     Loop loop = {.count = count, .body = body, .context = context};
+    loop.spread = threads > 1 && allowed_processors(&loop.allowed) && sched_getcpu() >= 0;
     Worker workers[MAX_THREADS];
     pthread_t handles[MAX_THREADS];
     int started = 1;
     for (; started < threads; started++) {
         workers[started] = (Worker){&loop, started};
-        if (pthread_create(&handles[started], NULL, run, &workers[started]) != 0)
+        if (!start(&handles[started], &workers[started]))
             break;
     }
     workers[0] = (Worker){&loop, 0};

@@ -8,7 +8,9 @@
 #include "render/rasterreach.h"
 #include <stdlib.h>
 
-enum { LEAST_CHUNK = 4096, MOST_CHUNKS = 64 };
+/* Fewer primitives than LEAST_CHUNK are in the cache of one processor, from where others would fetch
+ * them more slowly than it takes to work on them. */
+enum { LEAST_CHUNK = 1 << 16, MOST_CHUNKS = 64 };
 enum { CACHE_LINE = sizeof(RasterItem) };
 _Static_assert(CACHE_LINE == 64, "an item fills a line");
 
