@@ -204,7 +204,7 @@ static void color_all(const FieldPicture *picture, const SeenTile *seen, int wor
         color_tile(picture, seen, worker, color);
 }
 
-/* Writes the codes of a pixel's tile to the picture. */
+/* Writes the codes of a tile to the picture, where those of the background are. */
 static void write_codes(const FieldPicture *picture, const SeenTile *seen, int worker)
 {
     const Canvas *canvas = &picture->canvases[worker];
@@ -213,11 +213,6 @@ static void write_codes(const FieldPicture *picture, const SeenTile *seen, int w
         picture->frame->codes.codes8 + 3 * ((size_t)seen->row * width + (size_t)seen->column);
     int columns, rows;
     tile_extent(picture, seen, &columns, &rows);
-    if (!seen->hits && !picture->by_sample) {
-        for (int j = 0; j < rows; j++)
-            memcpy(to + 3 * width * (size_t)j, canvas->background_codes, 3 * (size_t)columns);
-        return;
-    }
     float color[3][TILE_SAMPLES];
     const uint8_t *state = picture->by_sample ? NULL : seen->hits->state;
     color_all(picture, seen, worker, color);

@@ -3,20 +3,7 @@
 #define CORCAST_RENDER_FIELDTERMS_H
 
 #include "render/fieldtile.h"
-
-typedef struct Range {
-    double low, high;
-} Range;
-
-static inline double min_of(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static inline double max_of(double a, double b)
-{
-    return a > b ? a : b;
-}
+#include "render/range.h"
 
 typedef struct FrameSegment {
     Vec3 a, b, axis;

@@ -13,12 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct Span {
-    int first, last;
-} Span;
-
 typedef struct Workspace {
-    Span *columns;     /* of the row's segments; as long as the longest row */
+    TileSpan *columns; /* of the row's segments; as long as the longest row */
     uint32_t *offsets; /* of the row's tiles into `lists`; one more than there are tiles */
     uint32_t *lists;
     size_t lists_capacity;
@@ -57,20 +53,15 @@ struct FieldTiles {
     int workers;
 };
 
-static Range range_union(Range a, Range b)
-{
-    return (Range){min_of(a.low, b.low), max_of(a.high, b.high)};
-}
-
-/* The shadow on the camera's plane, in one of its two directions, of a ball at coordinate c in that
- * direction and depth z. In perspective it must be in front of the camera: z > radius. */
-static Range ball_shadow(const FieldTiles *tiles, double c, double z, double radius)
+/* What a segment's ends, where they are at these coordinates in one direction of the camera's plane
+ * and at these depths, and all between them cover there. In perspective it must be in front of the
+ * camera. */
+static Range capsule_shadow(const FieldTiles *tiles, double a, double a_z, double b, double b_z,
+                            double reach)
 {
     if (!tiles->perspective)
-        return (Range){c - radius, c + radius};
-    double half = radius * sqrt(max_of(c * c + z * z - radius * radius, 0));
-    double per = 1 / ((z - radius) * (z + radius));
-    return (Range){(c * z - half) * per, (c * z + half) * per};
+        return range_union((Range){a - reach, a + reach}, (Range){b - reach, b + reach});
+    return range_union(ball_shadow(a, a_z, reach), ball_shadow(b, b_z, reach));
 }
 
 /* 1: all in front of the camera, or orthographic; -1: all behind; 0: beside it. */
@@ -85,18 +76,18 @@ static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
 /* The samples, and then the tiles, within a range of the camera's plane, one of whose directions has
  * samples from `first` on in steps of `step`: `skipped` of them first, which do not count, and then
  * `count`. A thousandth of a step covers rounding. */
-static Span tiles_within(Range range, double first, double step, int skipped, int count)
+static TileSpan tiles_within(Range range, double first, double step, int skipped, int count)
 {
     double from = (range.low - first) / step, to = (range.high - first) / step;
     double low = max_of(min_of(from, to) - 1e-3 - skipped, 0);
     double high = max_of(from, to) + 1e-3 - skipped;
     if (!(low <= count - 1) || !(high >= low))
-        return (Span){1, 0};
+        return (TileSpan){1, 0};
     int begin = (int)low, end = (int)min_of(high, count - 1);
     begin += begin < low; /* rounds up */
     if (begin > end)
-        return (Span){1, 0};
-    return (Span){begin / TILE_SIDE, end / TILE_SIDE};
+        return (TileSpan){1, 0};
+    return (TileSpan){begin / TILE_SIDE, end / TILE_SIDE};
 }
 
 Vec3 fieldtiles_to_frame(const FieldTiles *tiles, Vec3 v)
@@ -105,15 +96,15 @@ Vec3 fieldtiles_to_frame(const FieldTiles *tiles, Vec3 v)
                 vec3_dot(v, tiles->axes[2]));
 }
 
-static Span rows_of(const FieldTiles *tiles, const FrameSegment *segment)
+static TileSpan rows_of(const FieldTiles *tiles, const FrameSegment *segment)
 {
     int side = side_of_camera(tiles, segment);
     if (side < 0)
-        return (Span){1, 0};
+        return (TileSpan){1, 0};
     Range range = {-HUGE_VAL, HUGE_VAL};
     if (side > 0)
-        range = range_union(ball_shadow(tiles, segment->a.y, segment->a.z, segment->reach),
-                            ball_shadow(tiles, segment->b.y, segment->b.z, segment->reach));
+        range = capsule_shadow(tiles, segment->a.y, segment->a.z, segment->b.y, segment->b.z,
+                               segment->reach);
     return tiles_within(range, tiles->y_top, tiles->step_y, tiles->grid.above, tiles->grid.n_rows);
 }
 
@@ -137,7 +128,7 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
         out->sine = sqrt(out->axis.x * out->axis.x + out->axis.y * out->axis.y);
         out->per_sine = out->sine > 0 ? 1 / out->sine : 0;
         double reach2 = log(potential_term_peak(segment) / FIELD_CUTOFF);
-        Span rows = {1, 0};
+        TileSpan rows = {1, 0};
         if (reach2 > 0) {
             out->reach = sqrt(reach2) / out->k;
             rows = rows_of(tiles, out);
@@ -323,31 +314,24 @@ static double above(const FieldTiles *tiles, Vec3 p, double y)
 
 /* The tiles of a row, whose rays are between y_low and y_high, that the support of the segment may
  * touch: those of the part of the segment that is within reach of the slab. */
-static Span columns_of(const FieldTiles *tiles, const FrameSegment *segment, double y_low,
-                       double y_high)
+static TileSpan columns_of(const FieldTiles *tiles, const FrameSegment *segment, double y_low,
+                           double y_high)
 {
     if (side_of_camera(tiles, segment) == 0)
-        return (Span){0, tiles->tile_columns - 1};
+        return (TileSpan){0, tiles->tile_columns - 1};
     double from = 0, to = 1;
     const double heights[2][2] = {
         {above(tiles, segment->a, y_low), above(tiles, segment->b, y_low)},
         {-above(tiles, segment->a, y_high), -above(tiles, segment->b, y_high)}};
-    for (int plane = 0; plane < 2; plane++) {
-        double at_a = heights[plane][0] + segment->reach, at_b = heights[plane][1] + segment->reach;
-        if (at_a < 0 && at_b < 0)
-            return (Span){1, 0};
-        if (at_a < 0)
-            from = max_of(from, at_a / (at_a - at_b));
-        if (at_b < 0)
-            to = min_of(to, at_a / (at_a - at_b));
-    }
+    for (int plane = 0; plane < 2; plane++)
+        clip_part(heights[plane][0] + segment->reach, heights[plane][1] + segment->reach, &from,
+                  &to);
     if (from > to)
-        return (Span){1, 0};
+        return (TileSpan){1, 0};
     Vec3 span = vec3_sub(segment->b, segment->a);
     Vec3 first = vec3_add_scaled(segment->a, span, from);
     Vec3 last = vec3_add_scaled(segment->a, span, to);
-    Range range = range_union(ball_shadow(tiles, first.x, first.z, segment->reach),
-                              ball_shadow(tiles, last.x, last.z, segment->reach));
+    Range range = capsule_shadow(tiles, first.x, first.z, last.x, last.z, segment->reach);
     return tiles_within(range, tiles->x[0], tiles->step_x, 0, tiles->grid.n_columns);
 }
 
@@ -362,7 +346,7 @@ static Status list_row(const FieldTiles *tiles, size_t row, Workspace *space, Er
     for (int i = 0; i <= tiles->tile_columns; i++)
         offsets[i] = 0;
     for (size_t i = 0; i < n; i++) {
-        Span span =
+        TileSpan span =
             columns_of(tiles, &tiles->segments[segments[i]], tiles->y[last], tiles->y[first]);
         space->columns[i] = span;
         for (int column = span.first; column <= span.last; column++)

@@ -7,14 +7,10 @@
 #include "render/rasteritem.h"
 
 #include "render/caster.h"
+
 static const double most_pixels = 16384; /* 2^-24 of it are a thousandth of a pixel */
 static const double least_sine =
     0.02; /* of the angle at which a wall is looked at along its axis */
-
-static double min_of(double a, double b)
-{
-    return a < b ? a : b;
-}
 
 static void store_vec3(float to[3], Vec3 v)
 {
@@ -103,7 +99,7 @@ void rasteritem_make(const Scene *scene, const RasterView *view, uint32_t number
         kind = !view->perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
     if (primitive->kind == PRIMITIVE_JOINT) {
         kind = scene->open_joints || !joint_is_solid(primitive) ? RASTER_EXACT : RASTER_JOINT;
-        radius = -min_of(-radius, -primitive->radius_b_mm);
+        radius = max_of(radius, primitive->radius_b_mm);
         if (kind == RASTER_JOINT)
             joints[joint] = make_joint(view, primitive, middle);
     }

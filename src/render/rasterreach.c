@@ -4,22 +4,8 @@
 
 static const double slack_pixels = 1e-3; /* covers rounding where tiles are told apart */
 
-typedef struct Range {
-    double low, high;
-} Range;
-
-static const RasterSpan nowhere = {1, 0};
+static const TileSpan nowhere = {1, 0};
 static const Range everywhere = {-HUGE_VAL, HUGE_VAL}, nothing = {HUGE_VAL, -HUGE_VAL};
-
-static double min_of(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static double max_of(double a, double b)
-{
-    return a > b ? a : b;
-}
 
 /* A range as pixels, whose middles are whole numbers; pixel 0 is at `first`, and `per` pixels follow
  * in a unit. */
@@ -30,7 +16,7 @@ static Range pixels_within(Range range, double first, double per)
 }
 
 /* The tiles of `count` pixels from pixel `least` on that samples in a range of pixels lie in. */
-static RasterSpan tiles_within(Range pixels, double stray, int least, int count)
+static TileSpan tiles_within(Range pixels, double stray, int least, int count)
 {
     double low = max_of(pixels.low - stray, least);
     double high = min_of(pixels.high + stray, least + count - 1);
@@ -38,17 +24,8 @@ static RasterSpan tiles_within(Range pixels, double stray, int least, int count)
         return nowhere;
     int first_pixel = (int)low - least, last_pixel = (int)high - least;
     first_pixel += first_pixel + least < low;
-    return first_pixel <= last_pixel ? (RasterSpan){first_pixel / TILE_SIDE, last_pixel / TILE_SIDE}
+    return first_pixel <= last_pixel ? (TileSpan){first_pixel / TILE_SIDE, last_pixel / TILE_SIDE}
                                      : nowhere;
-}
-
-/* What a ball at coordinate c in one direction of a perspective view's plane, and at depth z >
- * radius, covers there. */
-static Range ball_shadow(double c, double z, double radius)
-{
-    double half = radius * sqrt(max_of(c * c + z * z - radius * radius, 0));
-    double per = 1 / ((z - radius) * (z + radius));
-    return (Range){(c * z - half) * per, (c * z + half) * per};
 }
 
 static Vec3 item_axis(const RasterItem *item)
@@ -64,8 +41,7 @@ static Vec3 item_point(const RasterItem *item, double along)
 
 static Range capsule_shadow(double c0, double z0, double c1, double z1, double radius)
 {
-    Range one = ball_shadow(c0, z0, radius), other = ball_shadow(c1, z1, radius);
-    return (Range){min_of(one.low, other.low), max_of(one.high, other.high)};
+    return range_union(ball_shadow(c0, z0, radius), ball_shadow(c1, z1, radius));
 }
 
 RasterSlab rasterslab_of(const RasterView *view, size_t row)
@@ -77,16 +53,6 @@ RasterSlab rasterslab_of(const RasterView *view, size_t row)
     for (int i = 0; i < 2; i++)
         slab.per_length[i] = 1 / sqrt(1 + slab.y[i] * slab.y[i]);
     return slab;
-}
-
-/* The part [*from, *to] of the way where something that is at_a at its beginning and at_b at its
- * end is not below 0. */
-static void clip_part(double at_a, double at_b, double *from, double *to)
-{
-    if (at_a < 0)
-        *from = at_b < 0 ? HUGE_VAL : max_of(*from, at_a / (at_a - at_b));
-    else if (at_b < 0)
-        *to = min_of(*to, at_a / (at_a - at_b));
 }
 
 /* What the part of the capsule within reach of the slab covers of a row. */
@@ -123,7 +89,7 @@ static Range perspective_range(const RasterItem *item, const RasterSlab *slab)
     return capsule_shadow(first.x, first.z, last.x, last.z, radius);
 }
 
-static RasterSpan columns_of(const RasterView *view, Range across)
+static TileSpan columns_of(const RasterView *view, Range across)
 {
     return tiles_within(across, view->stray, 0, view->columns);
 }
@@ -138,7 +104,7 @@ static uint32_t part_of(double pixel, int tile)
 }
 
 /* From where in the first tile to where in the last. */
-static uint32_t parts_of(Range pixels, RasterSpan tiles)
+static uint32_t parts_of(Range pixels, TileSpan tiles)
 {
     return part_of(pixels.high, tiles.last) |
            (RASTERBOX_PARTS - 1 - part_of(pixels.low, tiles.first)) << 8;
@@ -173,15 +139,9 @@ static bool is_behind(const RasterItem *item)
     return item->z + item_depth(item) < 0;
 }
 
-static void store_tiles(uint16_t tiles[2], RasterSpan span)
-{
-    tiles[0] = (uint16_t)span.first;
-    tiles[1] = (uint16_t)span.last;
-}
-
 void rasterreach_set(const RasterView *view, RasterItem *item)
 {
-    RasterSpan rows = nowhere, columns = nowhere;
+    TileSpan rows = nowhere, columns = nowhere;
     if (!is_behind(item)) {
         Range across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
         rows = tiles_within(down, view->stray, view->first, view->rows);
@@ -191,8 +151,8 @@ void rasterreach_set(const RasterView *view, RasterItem *item)
             item->box =
                 RASTERBOX_GUARDS | parts_of(across, columns) | parts_of(from_first, rows) << 16;
     }
-    store_tiles(item->rows, rows);
-    store_tiles(item->columns, columns);
+    item->rows = rastertiles_of(rows);
+    item->columns = rastertiles_of(columns);
 }
 
 float rasterreach_near(const RasterView *view, const RasterItem *item)
@@ -201,14 +161,14 @@ float rasterreach_near(const RasterView *view, const RasterItem *item)
     return (float)(near - 1e-6 * fabs(near));
 }
 
-RasterSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int row,
-                              const RasterSlab *slab, uint32_t *box)
+TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int row,
+                            const RasterSlab *slab, uint32_t *box)
 {
-    RasterSpan columns = {item->columns[0], item->columns[1]};
-    *box = item->box | (row < item->rows[1] ? RASTERBOX_HIGH_X << 16 : 0) |
-           (row > item->rows[0] ? RASTERBOX_LOW_X << 16 : 0);
+    TileSpan columns = {item->columns.first, item->columns.last};
+    *box = item->box | (row < item->rows.last ? RASTERBOX_HIGH_X << 16 : 0) |
+           (row > item->rows.first ? RASTERBOX_LOW_X << 16 : 0);
     int few = view->boxes ? 1 : 0;
-    if (item->rows[1] - item->rows[0] <= few || columns.last - columns.first <= few ||
+    if (item->rows.last - item->rows.first <= few || columns.last - columns.first <= few ||
         (view->perspective && item_is_close(item)))
         return columns;
     Range range = view->perspective ? perspective_range(item, slab) : parallel_range(item, slab);

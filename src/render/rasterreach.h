@@ -16,7 +16,7 @@ void rasterreach_set(const RasterView *view, RasterItem *item);
 /* A depth before which nothing of it is, less z_middle. */
 float rasterreach_near(const RasterView *view, const RasterItem *item);
 /* The columns of one of its rows, and the box there. */
-RasterSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int row,
-                              const RasterSlab *slab, uint32_t *box);
+TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int row,
+                            const RasterSlab *slab, uint32_t *box);
 
 #endif

@@ -133,7 +133,7 @@ static Status store_row(RasterShadow *shadow, Store *store, size_t row)
     TRY(take_words(store, 3 * (size_t)offsets[columns], &words));
     memset(store->taken, 0, columns * sizeof *store->taken);
     for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++) {
-        const RasterSpan span = rasterbins_columns(bins, i);
+        const RasterTiles span = bins->row_columns[i];
         const RasterBox *box = &bins->row_boxes[i];
         for (int column = span.first; column <= span.last; column++) {
             size_t n = offsets[column + 1] - offsets[column];

@@ -8,6 +8,7 @@
 #define CORCAST_RENDER_RASTERTILE_H
 
 #include "render/fieldtile.h"
+#include "render/range.h"
 
 typedef enum RasterKind {
     RASTER_CYLINDER, /* closed */
@@ -16,17 +17,26 @@ typedef enum RasterKind {
     RASTER_EXACT  /* too near, too large or too odd for single precision */
 } RasterKind;
 
+/* Rows or columns of tiles, as in TileSpan. */
+typedef struct RasterTiles {
+    uint16_t first, last;
+} RasterTiles;
+
+static inline RasterTiles rastertiles_of(TileSpan span)
+{
+    return (RasterTiles){(uint16_t)span.first, (uint16_t)span.last};
+}
+
 /* A primitive, numbered as in the scene, or a capsule about it. Its axis is (sine ex, sine ey, cosine). */
 typedef struct RasterItem {
     double x, y, z; /* its middle */
     float ex, ey;   /* unit */
     float sine, cosine;
-    float radius, half;  /* mm; half its length, 0 of a sphere */
-    uint32_t kind : 2;   /* RasterKind */
-    uint32_t joint : 30; /* index of its RasterJoint */
-    uint16_t rows[2],
-        columns[2]; /* first and last of the tiles that it may touch; none if first > last */
-    uint32_t box;   /* where in them: RasterBox.box, its y too from the first to the last */
+    float radius, half;        /* mm; half its length, 0 of a sphere */
+    uint32_t kind : 2;         /* RasterKind */
+    uint32_t joint : 30;       /* index of its RasterJoint */
+    RasterTiles rows, columns; /* that it may touch */
+    uint32_t box; /* where in them: RasterBox.box, its y too from the first to the last */
 } RasterItem;
 
 /* Whether an item is about the eye's plane, or so close that its outline tells nothing. */

@@ -106,17 +106,9 @@ static void make_chunk(size_t chunk, int worker, void *context)
         rasteritem_make(bins->scene, &bins->view, (uint32_t)i, joint, bins->joints, item);
         rasterreach_set(&bins->view, item);
         joint += is_joint(bins, i);
-        for (int row = item->rows[0]; row <= item->rows[1]; row++)
+        for (int row = item->rows.first; row <= item->rows.last; row++)
             counts[row]++;
     }
-}
-
-static RasterColumns pack_columns(RasterSpan span)
-{
-    int count = span.last - span.first + 1;
-    return (RasterColumns){(uint32_t)span.first & ((1u << 17) - 1),
-                           (uint32_t)(count < RASTERCOLUMNS_MANY ? count : RASTERCOLUMNS_MANY) &
-                               RASTERCOLUMNS_MANY};
 }
 
 /* Puts an item into its rows, at the next of their places. */
@@ -124,12 +116,12 @@ static void fill_item(const Build *build, size_t *places, size_t number)
 {
     RasterBins *bins = build->bins;
     const RasterItem *item = &bins->items[number];
-    for (int row = item->rows[0]; row <= item->rows[1]; row++) {
+    for (int row = item->rows.first; row <= item->rows.last; row++) {
         size_t place = places[row]++;
         uint32_t box;
         bins->row_items[place] = (uint32_t)number;
         bins->row_columns[place] =
-            pack_columns(rasterreach_in_row(&bins->view, item, row, &build->slabs[row], &box));
+            rastertiles_of(rasterreach_in_row(&bins->view, item, row, &build->slabs[row], &box));
         if (bins->row_boxes)
             bins->row_boxes[place] = (RasterBox){box, rasterreach_near(&bins->view, item)};
     }
@@ -247,8 +239,8 @@ Status rasterbins_count(const RasterBins *bins, size_t number, uint32_t *offsets
     for (size_t i = 0; i <= columns; i++)
         offsets[i] = 0;
     for (size_t i = bins->row_offsets[number]; i < bins->row_offsets[number + 1]; i++)
-        for (RasterSpan span = rasterbins_columns(bins, i); span.first <= span.last; span.first++)
-            offsets[span.first]++;
+        for (int column = bins->row_columns[i].first; column <= bins->row_columns[i].last; column++)
+            offsets[column]++;
     for (size_t i = 0; i <= columns; i++) {
         size_t count = offsets[i];
         offsets[i] = (uint32_t)total;
@@ -269,8 +261,8 @@ Status rasterbins_list(const RasterBins *bins, size_t number, RasterRow *row, Er
     TRY(mem_reserve(&row->lists, &row->lists_capacity, offsets[columns], sizeof *row->lists,
                     "tiles", err));
     for (size_t i = bins->row_offsets[number]; i < bins->row_offsets[number + 1]; i++)
-        for (RasterSpan span = rasterbins_columns(bins, i); span.first <= span.last; span.first++)
-            row->lists[offsets[span.first]++] = bins->row_items[i];
+        for (int column = bins->row_columns[i].first; column <= bins->row_columns[i].last; column++)
+            row->lists[offsets[column]++] = bins->row_items[i];
     /* Each has become that of the next column. */
     for (size_t i = columns; i > 0; i--)
         offsets[i] = offsets[i - 1];

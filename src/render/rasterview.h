@@ -34,18 +34,6 @@ static inline Vec3 rasterview_to_frame(const RasterView *view, Vec3 v)
 
 Vec3 rasterview_to_world(const RasterView *view, Vec3 v);
 
-/* The tiles that an item may touch of a row, or the rows; none if first > last. */
-typedef struct RasterSpan {
-    int first, last;
-} RasterSpan;
-
-/* A span of columns in half the memory. */
-typedef struct RasterColumns {
-    uint32_t first : 17;
-    uint32_t count : 15; /* RASTERCOLUMNS_MANY: to the end of the row */
-} RasterColumns;
-enum { RASTERCOLUMNS_MANY = (1 << 15) - 1 };
-
 /* A box within a tile in 128ths of its sides, from the left and the top, for one subtraction to
  * compare with another: 7 bits each of the greatest x, 127 less the least x, the greatest y and
  * 127 less the least y, below guards that are set in boxes of items. */
@@ -70,7 +58,7 @@ typedef struct RasterBins {
     int tile_columns, tile_rows;
     size_t *row_offsets; /* into row_items; one more than there are rows */
     uint32_t *row_items; /* ascending within a row */
-    RasterColumns *row_columns;
+    RasterTiles *row_columns;
     RasterBox *row_boxes; /* NULL unless the view asks for boxes */
 } RasterBins;
 
@@ -80,15 +68,6 @@ MUST_CHECK Status rasterbins_new(const Scene *scene, const RasterView *view, int
 void rasterbins_free(RasterBins *bins);
 /* Frees row_items, row_columns and row_boxes, of which nothing may be asked any more. */
 void rasterbins_forget_rows(RasterBins *bins);
-
-/* That of row_items[i]. */
-static inline RasterSpan rasterbins_columns(const RasterBins *bins, size_t i)
-{
-    const RasterColumns columns = bins->row_columns[i];
-    int first = columns.first, count = columns.count;
-    return (RasterSpan){first,
-                        count < RASTERCOLUMNS_MANY ? first + count - 1 : bins->tile_columns - 1};
-}
 
 /* Counts the items of each tile of one row: those of column i are to be
  * [offsets[i], offsets[i + 1]) of as many as the last offset says. */

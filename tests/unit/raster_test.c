@@ -500,7 +500,7 @@ static bool entry_holds(const RasterBins *bins, int row, uint32_t item, int colu
                         const double part[2], double z)
 {
     for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++) {
-        const RasterSpan span = rasterbins_columns(bins, i);
+        const RasterTiles span = bins->row_columns[i];
         const RasterBox *box = &bins->row_boxes[i];
         if (bins->row_items[i] != item)
             continue;
