@@ -21,15 +21,8 @@
 
 enum { BLOCK_SIZES = 56, SLAB_TAGS = 1 << 14, SMALL_BOX = 4 };
 
-/* Memory for blocks that never moves. */
-typedef struct GridSlab {
-    struct GridSlab *next;
-    int32_t tags[];
-} GridSlab;
-
 struct GridArena {
-    GridSlab *slab;        /* the one in use, and those before it */
-    size_t used, capacity; /* tags of that one */
+    Slabs slabs; /* of blocks */
     int32_t
         *free[BLOCK_SIZES]; /* a free block of each size; it begins with the next one's address */
 };
@@ -72,12 +65,8 @@ done:
 
 void grid_release(Grid *grid)
 {
-    for (int i = 0; grid->arena && i < grid->workers; i++) {
-        for (GridSlab *slab = grid->arena[i].slab, *next; slab; slab = next) {
-            next = slab->next;
-            free(slab);
-        }
-    }
+    for (int i = 0; grid->arena && i < grid->workers; i++)
+        slabs_release(&grid->arena[i].slabs);
     free(grid->cell);
     free(grid->item);
     free(grid->arena);
@@ -227,19 +216,9 @@ static Status take_block(GridArena *arena, uint32_t size, int32_t **out, Err *er
         *out = block;
         return STATUS_OK;
     }
-    size_t tags = block_tags(size);
-    if (!arena->slab || arena->used + tags > arena->capacity) {
-        size_t capacity = tags > SLAB_TAGS ? tags : SLAB_TAGS;
-        GridSlab *slab = malloc(sizeof *slab + capacity * sizeof *slab->tags);
-        if (!slab)
-            return err_set(err, STATUS_MEMORY, "no memory for the entries of the grid");
-        slab->next = arena->slab;
-        arena->slab = slab;
-        arena->used = 0;
-        arena->capacity = capacity;
-    }
-    *out = arena->slab->tags + arena->used;
-    arena->used += tags;
+    *out = slabs_take(&arena->slabs, block_tags(size) * sizeof **out, SLAB_TAGS * sizeof **out);
+    if (!*out)
+        return err_set(err, STATUS_MEMORY, "no memory for the entries of the grid");
     return STATUS_OK;
 }
 

@@ -18,7 +18,7 @@ static const double least_radii = 1.16;
 enum { MOST_LANES = 16 };
 /* What is asked of memory ahead of its use: the beginning of the next list. */
 enum { LINE_WORDS = 16, MOST_FETCHED = 8 * LINE_WORDS };
-enum { LEAST_SIDE = 16, MOST_SIDE = 512, BLOCK_WORDS = 1 << 18 };
+enum { LEAST_SIDE = 16, MOST_SIDE = 512, SLAB_WORDS = 1 << 18 };
 
 /* The lists of a row of tiles. That of column i, of n = offsets[i + 1] - offsets[i] items, begins at
  * words[3 offsets[i]]: n items, their boxes, as RasterBox but in this tile, and the floats of their
@@ -27,16 +27,10 @@ typedef struct ShadowRow {
     const uint32_t *offsets, *words;
 } ShadowRow;
 
-typedef struct Block {
-    struct Block *next;
-    uint32_t words[];
-} Block;
-
 /* Where a worker puts rows: in few large pieces, for each of which threads wait for one another. */
 typedef struct Store {
-    Block *blocks;
-    size_t used, size; /* words of the first block */
-    uint32_t *taken;   /* items that each column of the row being made has */
+    Slabs slabs;
+    uint32_t *taken; /* items that each column of the row being made has */
     Status status;
 } Store;
 
@@ -108,19 +102,8 @@ static RasterView light_view(const Scene *scene, const Light *light)
 
 static Status take_words(Store *store, size_t n, uint32_t **out)
 {
-    if (n > store->size - store->used) {
-        size_t size = n > BLOCK_WORDS ? n : BLOCK_WORDS;
-        Block *block;
-        TRY(mem_calloc(&block, 1, sizeof *block + (size + MOST_LANES) * sizeof *block->words,
-                       "shadows", NULL));
-        block->next = store->blocks;
-        store->blocks = block;
-        store->used = 0;
-        store->size = size;
-    }
-    *out = store->blocks->words + store->used;
-    store->used += n;
-    return STATUS_OK;
+    *out = slabs_take(&store->slabs, n * sizeof **out, SLAB_WORDS * sizeof **out);
+    return *out ? STATUS_OK : STATUS_MEMORY;
 }
 
 static Status store_row(RasterShadow *shadow, Store *store, size_t row)
@@ -130,7 +113,7 @@ static Status store_row(RasterShadow *shadow, Store *store, size_t row)
     uint32_t *offsets, *words;
     TRY(take_words(store, columns + 1, &offsets));
     TRY(rasterbins_count(bins, row, offsets, NULL));
-    TRY(take_words(store, 3 * (size_t)offsets[columns], &words));
+    TRY(take_words(store, 3 * (size_t)offsets[columns] + MOST_LANES, &words));
     memset(store->taken, 0, columns * sizeof *store->taken);
     for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++) {
         const RasterTiles span = bins->row_columns[i];
@@ -218,10 +201,7 @@ void rastershadow_free(RasterShadow *shadow)
         return;
     for (int i = 0; shadow->stores && i < shadow->workers; i++) {
         free(shadow->stores[i].taken);
-        for (Block *block = shadow->stores[i].blocks, *next; block; block = next) {
-            next = block->next;
-            free(block);
-        }
+        slabs_release(&shadow->stores[i].slabs);
     }
     free(shadow->stores);
     free(shadow->rows);

@@ -1,0 +1,32 @@
+#include "base/slab.h"
+
+#include <stdlib.h>
+
+typedef struct Slab {
+    struct Slab *next;
+    char bytes[];
+} Slab;
+
+void *slabs_take(Slabs *slabs, size_t size, size_t slab)
+{
+    if (!slabs->last || size > slabs->size - slabs->used) {
+        size_t wanted = size > slab ? size : slab;
+        Slab *made = malloc(sizeof *made + wanted);
+        if (!made)
+            return NULL;
+        made->next = slabs->last;
+        *slabs = (Slabs){made, 0, wanted};
+    }
+    void *taken = slabs->last->bytes + slabs->used;
+    slabs->used += size;
+    return taken;
+}
+
+void slabs_release(Slabs *slabs)
+{
+    for (Slab *slab = slabs->last, *next; slab; slab = next) {
+        next = slab->next;
+        free(slab);
+    }
+    *slabs = (Slabs){0};
+}
