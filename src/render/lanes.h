@@ -1,6 +1,6 @@
 /* Several floats at once. A source that defines LANES_AVX512 gets 16 lanes, one that defines
- * LANES_AVX2 gets 8, both with fused multiply-adds; they must run only where tilekernels_usable()
- * names them. Any other gets 4 lanes of plain IEEE arithmetic, which every processor has. Only
+ * LANES_AVX2 gets 8, both with fused multiply-adds; they must run only where kernels_usable()
+ * counts them. Any other gets 4 lanes of plain IEEE arithmetic, which every processor has. Only
  * correctly rounded operations are used, no approximate reciprocals, so that within one of the
  * three the results are the same everywhere.
  *
@@ -11,12 +11,6 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
-
-/* Whether this processor has what the lanes take. */
-#define LANES_AVX512_RUN                                                                           \
-    (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&                   \
-     __builtin_cpu_supports("avx512vl"))
-#define LANES_AVX2_RUN (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
 
 #if defined LANES_AVX512
 #include <immintrin.h>

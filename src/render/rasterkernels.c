@@ -4,26 +4,19 @@
 
 #include "render/rastercover.h"
 
-const RasterKernels rasterkernels_portable = {trace_portable, resolve_portable, clear_portable,
-                                              paint_portable, locate_portable,  face_portable,
-                                              aim_portable,   within_portable,  cover_portable};
+static const RasterKernels portable = {trace_portable, resolve_portable, clear_portable,
+                                       paint_portable, locate_portable,  face_portable,
+                                       aim_portable,   within_portable,  cover_portable};
 
-int rasterkernels_usable(const RasterKernels *kernels[KINDS_OF_KERNELS])
-{
-    int n = 0;
+const RasterKernels *const rasterkernels[] = {
+    &portable,
 #ifdef __x86_64__
-    if (LANES_AVX512_RUN)
-        kernels[n++] = &rasterkernels_avx512;
-    if (LANES_AVX2_RUN)
-        kernels[n++] = &rasterkernels_avx2;
+    &rasterkernels_avx2,
+    &rasterkernels_avx512,
 #endif
-    kernels[n++] = &rasterkernels_portable;
-    return n;
-}
+};
 
 const RasterKernels *rasterkernels_best(void)
 {
-    const RasterKernels *kernels[KINDS_OF_KERNELS];
-    rasterkernels_usable(kernels);
-    return kernels[0];
+    return rasterkernels[kernels_usable() - 1];
 }

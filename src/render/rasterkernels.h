@@ -65,12 +65,11 @@ typedef struct RasterKernels {
     void (*cover)(const RasterTile *tile, RasterProbes *probes);
 } RasterKernels;
 
-extern const RasterKernels rasterkernels_portable;
 #ifdef __x86_64__
 extern const RasterKernels rasterkernels_avx2, rasterkernels_avx512;
 #endif
-/* As tilekernels_usable(). */
-int rasterkernels_usable(const RasterKernels *kernels[KINDS_OF_KERNELS]);
+/* As tilekernels. */
+extern const RasterKernels *const rasterkernels[KINDS_OF_KERNELS];
 const RasterKernels *rasterkernels_best(void);
 
 #endif

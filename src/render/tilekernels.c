@@ -6,24 +6,29 @@
 #include "render/fieldkernel.h"
 #include "render/shadekernel.h"
 
-const TileKernels tilekernels_portable = {trace_portable, shade_portable, encode_portable};
+static const TileKernels portable = {trace_portable, shade_portable, encode_portable};
 
-int tilekernels_usable(const TileKernels *kernels[KINDS_OF_KERNELS])
-{
-    int n = 0;
+const TileKernels *const tilekernels[] = {
+    &portable,
 #ifdef __x86_64__
-    if (LANES_AVX512_RUN)
-        kernels[n++] = &tilekernels_avx512;
-    if (LANES_AVX2_RUN)
-        kernels[n++] = &tilekernels_avx2;
+    &tilekernels_avx2,
+    &tilekernels_avx512,
 #endif
-    kernels[n++] = &tilekernels_portable;
-    return n;
+};
+
+int kernels_usable(void)
+{
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        return __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+                       __builtin_cpu_supports("avx512vl")
+                   ? 3
+                   : 2;
+#endif
+    return 1;
 }
 
 const TileKernels *tilekernels_best(void)
 {
-    const TileKernels *kernels[KINDS_OF_KERNELS];
-    tilekernels_usable(kernels);
-    return kernels[0];
+    return tilekernels[kernels_usable() - 1];
 }

@@ -40,14 +40,17 @@ typedef struct TileKernels {
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
 } TileKernels;
 
-extern const TileKernels tilekernels_portable;
+/* Kernels come in kinds: the portable ones first, then those for ever more able processors. */
 #ifdef __x86_64__
-extern const TileKernels tilekernels_avx2, tilekernels_avx512;
-#endif
 enum { KINDS_OF_KERNELS = 3 };
-/* Those that this processor can run, the fastest first and the portable ones last; returns how
- * many. */
-int tilekernels_usable(const TileKernels *kernels[KINDS_OF_KERNELS]);
+extern const TileKernels tilekernels_avx2, tilekernels_avx512;
+#else
+enum { KINDS_OF_KERNELS = 1 };
+#endif
+/* How many of the kinds, from the first on, this processor can run; the last is the fastest. */
+int kernels_usable(void);
+
+extern const TileKernels *const tilekernels[KINDS_OF_KERNELS];
 const TileKernels *tilekernels_best(void);
 
 #endif

@@ -315,12 +315,11 @@ static void try_cameras(Scene *scene, int cameras, bool facing, Random *random, 
     Near *near = calloc(scene->n_segments, sizeof *near);
     assert_non_null(near);
     Answer answer;
-    const TileKernels *kernels[KINDS_OF_KERNELS];
-    int n_kernels = tilekernels_usable(kernels);
+    int n_kernels = kernels_usable();
     for (int i = 0; i < cameras; i++) {
         scene->camera = aim(facing ? AIM_FACING : (Aim)(i % N_AIMS), scene, extent, random);
-        for (int k = 0; k < (i % 8 ? 1 : n_kernels); k++) {
-            ask(scene, kernels[k], &answer);
+        for (int k = i % 8 ? n_kernels - 1 : 0; k < n_kernels; k++) {
+            ask(scene, tilekernels[k], &answer);
             for (int sample = 0; sample < TILE_SAMPLES; sample++)
                 judge(scene, &answer, sample, near, tally);
         }

@@ -279,14 +279,13 @@ static void all_kernels_agree(void **state)
     for (int i = 0; i < 64; i++)
         places[i] = i;
     const SampleGrid grid = {places, places, 64, 64, 1, 0, 0};
-    const TileKernels *kernels[KINDS_OF_KERNELS];
-    int n_kernels = tilekernels_usable(kernels);
+    int n_kernels = kernels_usable();
     static Tile tiles[KINDS_OF_KERNELS][64];
     for (int k = 0; k < n_kernels; k++) {
         FieldTiles *field;
-        KernelVisit visit = {kernels[k], &look, tiles[k], 0};
+        KernelVisit visit = {tilekernels[k], &look, tiles[k], 0};
         assert_int_equal(fieldtiles_new(staged.scene, &grid, 0, 1, &field, NULL), STATUS_OK);
-        fieldtiles_use_kernels(field, kernels[k]);
+        fieldtiles_use_kernels(field, tilekernels[k]);
         for (size_t row = 0; row < fieldtiles_rows(field); row++)
             assert_int_equal(fieldtiles_trace(field, row, 0, NULL, keep_tile, &visit, NULL),
                              STATUS_OK);
@@ -328,13 +327,12 @@ static void all_kernels_give_the_codes_of_colors(void **state)
     color[0][5] = NAN;
     color[1][6] = INFINITY;
     color[2][7] = -INFINITY;
-    const TileKernels *kernels[KINDS_OF_KERNELS];
-    int n_kernels = tilekernels_usable(kernels);
+    int n_kernels = kernels_usable();
     for (int n = 0; n < 2 * n_kernels; n++) {
         uint8_t pixels[TILE_SIDE * STRIDE];
         memset(pixels, 99, sizeof pixels);
         const uint8_t *states = n % 2 ? seen : NULL;
-        kernels[n / 2]->encode(&codes, color, states, background, pixels, STRIDE);
+        tilekernels[n / 2]->encode(&codes, color, states, background, pixels, STRIDE);
         for (int y = 0; y < TILE_SIDE; y++) {
             for (int i = 0; i < 3 * TILE_SIDE; i++) {
                 int sample = tile_sample_at(i / 3, y);
