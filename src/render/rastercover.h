@@ -140,8 +140,9 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const R
          * twice that at most, in radii. */
         Lanes ruling, margin = lanes_set(0.015f * near->item->radius * near->per_sine);
         Passage passage = pass_cylinder(near, &sight);
-        among &=
-            within_outline(near, &sight) & ~(passage.middle - passage.half + near->z >= z + margin);
+        Lanes from = passage.middle - passage.half - margin, to = z - near->z;
+        to = lanes_min(to, passage.middle + passage.half);
+        among &= within_outline(near, &sight) & (from < to) & ~beyond_ends(near, &sight, from, to);
         if (!lanes_any(among))
             return among;
         met =

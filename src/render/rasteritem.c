@@ -40,6 +40,13 @@ static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
     out[5] = vec3_add_scaled(vec3_scale(db, cosine), da, -sine);
 }
 
+/* The side of a plane that the solid lies on, widened by what crossings may lie off it. */
+static void store_end(float to[4], Vec3 inward, Vec3 center, double radius)
+{
+    store_vec3(to, inward);
+    to[3] = (float)(1e-3 * radius - vec3_dot(inward, center));
+}
+
 static RasterJoint make_joint(const RasterView *view, const Primitive *primitive, Vec3 middle)
 {
     RasterJoint made;
@@ -64,6 +71,10 @@ static RasterJoint make_joint(const RasterView *view, const Primitive *primitive
     store_vec3(made.by[2], vec3_add(vec3_cross(base, db), vec3_cross(b, span)));
     store_vec3(made.by[3], vec3_sub(vec3_cross(a, da), vec3_cross(b, db)));
     store_vec3(made.by[4], vec3_add(vec3_cross(a, db), vec3_cross(b, da)));
+    store_end(made.ends[0], rasterview_to_frame(view, primitive->axis_a), base,
+              primitive->radius_mm);
+    store_end(made.ends[1], vec3_scale(rasterview_to_frame(view, primitive->axis_b), -1),
+              vec3_add(base, span), primitive->radius_b_mm);
     return made;
 }
 

@@ -154,6 +154,14 @@ LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, 
     }
 }
 
+/* Lines whose g falls once at most: where R cos(q + .) + S cos(2 q + .) has R^2 > 20 S^2, its
+ * derivative is 0 twice only. */
+RASTER_FN LaneMask falls_once(const Ruling *g)
+{
+    const Lanes *k = g->k;
+    return lanes_fma(k[1], k[1], k[2] * k[2]) > 6.0f * lanes_fma(k[3], k[3], k[4] * k[4]);
+}
+
 /* Finds the falls of the lines `among`. */
 RASTER_FN void find_falls(const Ruling *g, LaneMask among, Falls *falls)
 {
@@ -254,6 +262,23 @@ RASTER_FN Lanes ruling_place(const Near *near, const SightLines *sight, const Li
     return -along / lanes_fma(run[0], run[0], run[1] * run[1]);
 }
 
+/* Lines that between two depths, from the middle's, are all beyond one end of the joint. */
+RASTER_FN LaneMask beyond_ends(const Near *near, const SightLines *sight, Lanes from, Lanes to)
+{
+    LaneMask beyond = {0};
+    for (int i = 0; i < 2; i++) {
+        const float *end = near->joint->ends[i];
+        Lanes at = lanes_fma(sight->x, lanes_set(end[0]),
+                             lanes_fma(sight->y, lanes_set(end[1]), lanes_set(end[3])));
+        Lanes rate = lanes_set(end[2]);
+        if (near->perspective)
+            rate = lanes_fma(sight->dx, lanes_set(end[0]),
+                             lanes_fma(sight->dy, lanes_set(end[1]), rate));
+        beyond |= (lanes_fma(from, rate, at) < 0.0f) & (lanes_fma(to, rate, at) < 0.0f);
+    }
+    return beyond;
+}
+
 /* Where the lines `among` enter the joint; *unsure is set where that takes double precision. Of the
  * lines `known` one entry is known, and only others count. */
 RASTER_FN LaneMask joint_entry(const Near *near, const SightLines *sight, LaneMask among,
@@ -261,6 +286,7 @@ RASTER_FN LaneMask joint_entry(const Near *near, const SightLines *sight, LaneMa
 {
     Ruling g = ruling_of(near, sight);
     Falls falls;
+    among &= ~(known & falls_once(&g));
     find_falls(&g, among, &falls);
     falls.there[0] &= ~known | falls.there[1] | falls.unsure;
     LaneMask met = (LaneMask){0};

@@ -44,7 +44,8 @@ typedef struct Near {
     float z_near; /* nothing of it is nearer */
     float along_x, along_y, reach_along,
         reach_across; /* its capsule's outline at the middle's depth */
-    float axis[3], per_sine;
+    float axis[3];
+    float per_sine; /* depth on the tile's middle line per distance from the axis */
 } Near;
 
 /* The outline of the capsule in the plane of its middle's depth, looked at along the tile's
@@ -96,6 +97,7 @@ RASTER_FN Near approach(const RasterTile *tile, uint32_t number, bool perspectiv
               ny = near.axis[0] - near.dx * near.axis[2];
         float nz = near.dx * near.axis[1] - near.dy * near.axis[0];
         float sine2 = nx * nx + ny * ny + nz * nz;
+        near.per_sine = 1 / sqrtf(sine2);
         if (near.kind == RASTER_CYLINDER &&
             sine2 < steep_sine2 * (1 + near.dx * near.dx + near.dy * near.dy))
             near.kind = RASTER_EXACT;

@@ -55,6 +55,7 @@ static inline bool item_is_close(const RasterItem *item)
 typedef struct RasterJoint {
     float base[3], span[3], a[3], b[3], da[3], db[3];
     float by[5][3];
+    float ends[2][4]; /* (n, d), n unit: where n . x + d < 0 there is nothing of it */
 } RasterJoint;
 
 /* Where samples lie, from the middle of their tile, in the plane of the view. */
