@@ -129,9 +129,8 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const R
     Lanes entry = lanes_set(0);
     LaneMask met, unsure = (LaneMask){0};
     if (near->kind == RASTER_CYLINDER) {
-        LaneMask on_disc;
-        Passage passage;
-        met = cylinder_entry(near, &sight, &entry, &on_disc, &passage);
+        CylinderEntry how;
+        met = cylinder_entry(near, &sight, &entry, &how);
     } else if (near->kind == RASTER_SPHERE) {
         met = sphere_entry(near, &sight, &entry);
     } else if (near->kind == RASTER_JOINT) {

@@ -97,9 +97,9 @@ void rasteritem_make(const Scene *scene, const RasterView *view, uint32_t number
     middle = rasterview_to_frame(view, vec3_sub(middle, view->location));
     Vec3 span = rasterview_to_frame(view, vec3_sub(primitive->b, primitive->a));
     double length = vec3_length(span), radius = primitive->radius_mm, cosine = 0, sine = 1;
-    double ex = 1, ey = 0;
+    double ex = 1, ey = 0, turn = span.z < 0 ? -1 : 1;
     if (length > 0) {
-        double turn = span.z < 0 ? -1 : 1, across = sqrt(span.x * span.x + span.y * span.y);
+        double across = sqrt(span.x * span.x + span.y * span.y);
         cosine = turn * span.z / length;
         sine = across / length;
         ex = across > 0 ? turn * span.x / across : 1;
@@ -123,7 +123,9 @@ void rasteritem_make(const Scene *scene, const RasterView *view, uint32_t number
     item->cosine = (float)cosine;
     item->radius = (float)radius;
     item->half = (float)(length / 2);
-    item->joint = joint & RASTER_NUMBER;
+    item->round_low = turn > 0 ? primitive->round_a : primitive->round_b;
+    item->round_high = turn > 0 ? primitive->round_b : primitive->round_a;
+    item->joint = joint & (MOST_ITEMS - 1);
     double near = middle.z - cosine * length / 2 - radius;
     double pixel = min_of(view->step_x, -view->step_y) * (view->perspective ? near : 1);
     bool odd = item_is_close(item) || length / 2 + radius > most_pixels * pixel;
@@ -134,7 +136,7 @@ double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, 
 {
     const Primitive *primitive = &bins->scene->primitives[item];
     Ray ray = rasterview_ray(&bins->view, x, y);
-    Hit hits[4];
+    Hit hits[6];
     int n = 0;
     double nearest = HUGE_VAL;
     if (primitive->kind == PRIMITIVE_SPHERE) {
@@ -142,6 +144,10 @@ double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, 
     } else if (primitive->kind == PRIMITIVE_CYLINDER) {
         CylinderFrame cylinder = cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
         n = hit_cylinder(ray, &cylinder, hits);
+        if (primitive->round_a)
+            n += hit_sphere(ray, primitive->a, primitive->radius_mm, &hits[n]);
+        if (primitive->round_b)
+            n += hit_sphere(ray, primitive->b, primitive->radius_mm, &hits[n]);
     } else {
         JointFrame joint = primitive_joint(primitive);
         n = hit_joint(ray, &joint, hits);

@@ -93,12 +93,11 @@ RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
         sight_of(near, lanes_load(&grid->x[block * LANES]), lanes_load(&grid->y[block * LANES]));
     Lanes z, normal[3];
     if (near->kind == RASTER_CYLINDER) {
-        LaneMask on_disc;
-        Passage passage;
-        LaneMask met = cylinder_entry(near, &sight, &z, &on_disc, &passage);
+        CylinderEntry entry;
+        LaneMask met = cylinder_entry(near, &sight, &z, &entry);
         met = keep_nearer(state, near, near->number, block, met, z);
         if (lanes_any(met)) {
-            cylinder_normal(near, &sight, z, on_disc, &passage, normal);
+            cylinder_normal(near, &sight, z, &entry, normal);
             keep_normal(state->surface, block, met, normal);
         }
     } else if (near->kind == RASTER_SPHERE) {

@@ -65,7 +65,7 @@ static Vec3 corner(const Box *box, int number)
 /* Tiles on a side: about sixteen primitives a tile. */
 static int tiles_for(const Scene *scene)
 {
-    double side = sqrt((double)scene->n_primitives) / 3;
+    double side = sqrt((double)rasterbins_items(scene)) / 3;
     return side < LEAST_SIDE ? LEAST_SIDE : side > MOST_SIDE ? MOST_SIDE : (int)side;
 }
 

@@ -197,25 +197,73 @@ RASTER_FN Passage pass_cylinder(const Near *near, const SightLines *sight)
     return passage;
 }
 
-/* Where the lines enter the cylinder; *on_disc is set where that is its end. */
-RASTER_FN LaneMask cylinder_entry(const Near *near, const SightLines *sight, Lanes *z,
-                                  LaneMask *on_disc, Passage *passage)
+/* How lines of sight enter a cylinder. */
+typedef struct CylinderEntry {
+    LaneMask on_disc;
+    Lanes rate;  /* as in Passage */
+    Lanes along; /* of the point of the axis that the surface is about, but that of a disc */
+} CylinderEntry;
+
+/* Of lines that come to the endless cylinder off its ends, `along` its axis, those that may enter a
+ * round end. */
+RASTER_FN LaneMask before_ball(const Near *near, Lanes along, LaneMask outside)
 {
-    float half = near->item->half;
-    *passage = pass_cylinder(near, sight);
-    /* Counted from the end that a line comes to first, lengths grow with depth. */
-    Lanes along = passage->along, rate = passage->rate;
+    LaneMask low = along < 0.0f;
+    LaneMask flat_low = low & -(int32_t)!near->item->round_low;
+    LaneMask flat_high = ~low & -(int32_t)!near->item->round_high;
+    return outside & ~(flat_low | flat_high);
+}
+
+/* Where the lines enter the ball of the cylinder's radius that is so far along its axis. */
+RASTER_FN LaneMask ball_entry(const Near *near, const SightLines *sight, Lanes along, Lanes *z)
+{
+    Lanes depth = along * near->axis[2];
+    SightLines ball = *sight;
+    ball.x = lanes_fma(-along, lanes_set(near->axis[0]), sight->x);
+    ball.y = lanes_fma(-along, lanes_set(near->axis[1]), sight->y);
     if (near->perspective) {
-        Lanes grows = lanes_select(rate < 0.0f, lanes_set(-1), lanes_set(1));
+        ball.x = lanes_fma(depth, sight->dx, ball.x);
+        ball.y = lanes_fma(depth, sight->dy, ball.y);
+    }
+    LaneMask met = sphere_entry(near, &ball, z);
+    *z += depth;
+    return met;
+}
+
+/* Where the lines enter the cylinder. */
+RASTER_FN LaneMask cylinder_entry(const Near *near, const SightLines *sight, Lanes *z,
+                                  CylinderEntry *entry)
+{
+    const RasterItem *item = near->item;
+    float half = item->half;
+    Passage passage = pass_cylinder(near, sight);
+    /* Counted from the end that a line comes to first, lengths grow with depth. */
+    Lanes along = passage.along, rate = passage.rate, grows = lanes_set(1);
+    if (near->perspective) {
+        grows = lanes_select(rate < 0.0f, -grows, grows);
         along *= grows;
         rate *= grows;
     }
-    Lanes first = along + half, rise = rate * passage->half, enters = first - rise;
-    *on_disc = passage->met & (enters < 0.0f) & (first + rise >= 0.0f);
-    *z = passage->middle - passage->half;
-    if (lanes_any(*on_disc))
-        *z = lanes_select(*on_disc, passage->middle - first / rate, *z);
-    return *on_disc | (passage->met & (enters >= 0.0f) & (enters <= 2 * half));
+    Lanes first = along + half, rise = rate * passage.half, enters = first - rise;
+    LaneMask before = passage.met & (enters < 0.0f);
+    LaneMask met = passage.met & ~before & (enters <= 2 * half);
+    *entry =
+        (CylinderEntry){before & (first + rise >= 0.0f), passage.rate, (enters - half) * grows};
+    *z = passage.middle - passage.half;
+    if (item->round_low | item->round_high) {
+        LaneMask round = before_ball(near, entry->along, passage.met & ~met);
+        if (lanes_any(round)) {
+            Lanes end = lanes_select(entry->along < 0.0f, lanes_set(-half), lanes_set(half)),
+                  ball_z;
+            met |= round & ball_entry(near, sight, end, &ball_z);
+            *z = lanes_select(round, ball_z, *z);
+            entry->along = lanes_select(round, end, entry->along);
+            entry->on_disc &= ~round;
+        }
+    }
+    if (lanes_any(entry->on_disc))
+        *z = lanes_select(entry->on_disc, passage.middle - first / rate, *z);
+    return entry->on_disc | met;
 }
 
 /* The normals where the lines enter the sphere at depths z. */
@@ -228,19 +276,18 @@ RASTER_FN void sphere_normal(const Near *near, const SightLines *sight, Lanes z,
 }
 
 /* The normals where the lines enter the cylinder at depths z. */
-RASTER_FN void cylinder_normal(const Near *near, const SightLines *sight, Lanes z, LaneMask on_disc,
-                               const Passage *passage, Lanes normal[3])
+RASTER_FN void cylinder_normal(const Near *near, const SightLines *sight, Lanes z,
+                               const CylinderEntry *entry, Lanes normal[3])
 {
-    Lanes along = lanes_fma(-passage->half, passage->rate, passage->along);
     float per = 1 / near->item->radius;
     Lanes at[3] = {lanes_fma(z, sight->dx, sight->x), lanes_fma(z, sight->dy, sight->y), z};
     for (int c = 0; c < 3; c++)
-        normal[c] = lanes_fma(-along, lanes_set(near->axis[c]), at[c]) * per;
-    if (!lanes_any(on_disc))
+        normal[c] = lanes_fma(-entry->along, lanes_set(near->axis[c]), at[c]) * per;
+    if (!lanes_any(entry->on_disc))
         return;
-    Lanes facing = lanes_select(passage->rate > 0.0f, lanes_set(-1), lanes_set(1));
+    Lanes facing = lanes_select(entry->rate > 0.0f, lanes_set(-1), lanes_set(1));
     for (int c = 0; c < 3; c++)
-        normal[c] = lanes_select(on_disc, facing * near->axis[c], normal[c]);
+        normal[c] = lanes_select(entry->on_disc, facing * near->axis[c], normal[c]);
 }
 
 #endif

@@ -11,7 +11,7 @@
 #include "render/range.h"
 
 typedef enum RasterKind {
-    RASTER_CYLINDER, /* closed */
+    RASTER_CYLINDER, /* closed, or with round ends */
     RASTER_SPHERE,
     RASTER_JOINT, /* of a solid: no line of sight sees it from inside */
     RASTER_EXACT  /* too near, too large or too odd for single precision */
@@ -27,17 +27,22 @@ static inline RasterTiles rastertiles_of(TileSpan span)
     return (RasterTiles){(uint16_t)span.first, (uint16_t)span.last};
 }
 
-/* A primitive, numbered as in the scene, or a capsule about it. Its axis is (sine ex, sine ey, cosine). */
+/* A primitive, numbered as in the scene, or a capsule about it; a cylinder with its round ends. Its axis is (sine ex, sine ey, cosine). */
 typedef struct RasterItem {
     double x, y, z; /* its middle */
     float ex, ey;   /* unit */
     float sine, cosine;
     float radius, half;        /* mm; half its length, 0 of a sphere */
     uint32_t kind : 2;         /* RasterKind */
-    uint32_t joint : 30;       /* index of its RasterJoint */
+    uint32_t round_low : 1;    /* of a cylinder: whether the end against its axis is a ball, */
+    uint32_t round_high : 1;   /* and that along it */
+    uint32_t joint : 28;       /* index of its RasterJoint */
     RasterTiles rows, columns; /* that it may touch */
     uint32_t box; /* where in them: RasterBox.box, its y too from the first to the last */
 } RasterItem;
+
+/* A scene may have no more primitives. */
+enum { MOST_ITEMS = 1 << 28 };
 
 /* Whether an item is about the eye's plane, or so close that its outline tells nothing. */
 static inline bool item_is_close(const RasterItem *item)

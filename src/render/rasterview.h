@@ -52,8 +52,9 @@ typedef struct RasterBox {
 typedef struct RasterBins {
     const Scene *scene; /* borrowed */
     RasterView view;
-    void *item_memory;   /* holds the items */
-    RasterItem *items;   /* one a primitive, in a line of the cache */
+    void *item_memory; /* holds the items */
+    RasterItem *items; /* in a line of the cache each */
+    size_t n_items;
     RasterJoint *joints; /* of items that are joints */
     int tile_columns, tile_rows;
     size_t *row_offsets; /* into row_items; one more than there are rows */
@@ -61,6 +62,12 @@ typedef struct RasterBins {
     RasterTiles *row_columns;
     RasterBox *row_boxes; /* NULL unless the view asks for boxes */
 } RasterBins;
+
+/* How many primitives become items: cylinders have their round ends. */
+static inline size_t rasterbins_items(const Scene *scene)
+{
+    return scene->n_primitives - scene->n_ends;
+}
 
 /* Borrows the scene. STATUS_MEMORY when there is no room. */
 MUST_CHECK Status rasterbins_new(const Scene *scene, const RasterView *view, int threads,

@@ -170,6 +170,10 @@ static void draw_primitive(const Buffers *buffers, const RasterItem *item, uint3
     Vec3 b = rasterview_to_frame(view, vec3_sub(primitive->b, view->location));
     if (primitive->kind == PRIMITIVE_CYLINDER) {
         draw_cylinder(brush, a, b, primitive->radius_mm);
+        if (primitive->round_a)
+            draw_sphere(brush, a, primitive->radius_mm);
+        if (primitive->round_b)
+            draw_sphere(brush, b, primitive->radius_mm);
     } else if (primitive->kind == PRIMITIVE_SPHERE) {
         draw_sphere(brush, a, primitive->radius_mm);
     } else {
@@ -237,7 +241,7 @@ static void draw_row(size_t row, int worker, void *context)
 
 static Status check_outside(const RasterBins *bins, Err *err)
 {
-    for (size_t i = 0; i < bins->scene->n_primitives; i++) {
+    for (size_t i = 0; i < bins->n_items; i++) {
         const RasterItem *item = &bins->items[i];
         double deep = (double)item->cosine * (double)item->half + (double)item->radius;
         if (item->z + deep > 0 && item->z - deep < (bins->view.perspective ? deep * 0.01 : 0))

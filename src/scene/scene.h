@@ -73,6 +73,7 @@ typedef enum PrimitiveKind { PRIMITIVE_CYLINDER, PRIMITIVE_SPHERE, PRIMITIVE_JOI
  * and b [geom/joint.h]. */
 typedef struct Primitive {
     PrimitiveKind kind;
+    bool round_a, round_b; /* of a cylinder: whether one of the scene's ends is about a, about b */
     Vec3 a, b;
     double radius_mm; /* > 0; of a joint, at a */
     uint32_t id;      /* SWC id of the segment it stands for */
@@ -126,6 +127,9 @@ typedef struct Scene {
     Ground ground;
     Primitive *primitives; /* owned; empty for an implicit model */
     size_t n_primitives;
+    size_t
+        n_ends; /* the last so many are spheres about an end of a cylinder, with its radius, id and
+                    * color */
     FieldSegment *segments; /* owned; empty for a primitive model */
     size_t n_segments;
     Blend blend;

@@ -23,29 +23,30 @@ StageParams stage_defaults(void)
                          .margin = 0.05};
 }
 
-static void add_cylinders(const Tree *tree, const Paint *paint, const Places *places, Scene *scene)
+/* number[i] becomes that of the cylinder of the segment that ends at node i, or -1. */
+static void add_cylinders(const Tree *tree, const Paint *paint, const Places *places, Scene *scene,
+                          int32_t *number)
 {
     for (size_t i = 0; i < tree->n; i++) {
-        if (places_draw(places, tree, i))
-            scene->primitives[scene->n_primitives++] =
-                (Primitive){.kind = PRIMITIVE_CYLINDER,
-                            .a = tree->position[tree->parent[i]],
-                            .b = tree->position[i],
-                            .radius_mm = tree->radius_mm[i],
-                            .id = (uint32_t)tree->id[i],
-                            .color = paint_of(paint, i)};
+        number[i] = -1;
+        if (!places_draw(places, tree, i))
+            continue;
+        number[i] = (int32_t)scene->n_primitives;
+        scene->primitives[scene->n_primitives++] = (Primitive){.kind = PRIMITIVE_CYLINDER,
+                                                               .a = tree->position[tree->parent[i]],
+                                                               .b = tree->position[i],
+                                                               .radius_mm = tree->radius_mm[i],
+                                                               .id = (uint32_t)tree->id[i],
+                                                               .color = paint_of(paint, i)};
     }
 }
 
-/* The sphere of a place stands for the thickest segment that meets there; of equals, the one that
- * ends there. */
-static Status add_spheres(const Tree *tree, const Paint *paint, const Places *places, Scene *scene,
-                          Err *err)
+/* thickest[i] becomes the thickest segment that meets at node i, if that stands for its place, or -1;
+ * of equals, the one that ends there. */
+static void find_thickest(const Tree *tree, const Places *places, int32_t *thickest)
 {
-    int32_t *thickest = NULL;
-    TRY(mem_calloc(&thickest, tree->n, sizeof *thickest, "nodes", err));
     for (size_t i = 0; i < tree->n; i++)
-        thickest[i] = segment_can_be_drawn(tree, i) ? (int32_t)i : TREE_NO_PARENT;
+        thickest[i] = segment_can_be_drawn(tree, i) ? (int32_t)i : -1;
     for (size_t i = 0; i < tree->n; i++) {
         if (!segment_can_be_drawn(tree, i))
             continue;
@@ -53,20 +54,61 @@ static Status add_spheres(const Tree *tree, const Paint *paint, const Places *pl
         if (*best < 0 || tree->radius_mm[i] > tree->radius_mm[*best])
             *best = (int32_t)i;
     }
-    for (size_t i = 0; i < tree->n; i++) {
-        if (places->place[i] != (int32_t)i || thickest[i] < 0)
-            continue;
-        size_t segment = (size_t)thickest[i];
-        scene->primitives[scene->n_primitives++] =
-            (Primitive){.kind = PRIMITIVE_SPHERE,
-                        .a = tree->position[i],
-                        .b = tree->position[i],
-                        .radius_mm = tree->radius_mm[segment],
-                        .id = (uint32_t)tree->id[segment],
-                        .color = paint_of(paint, segment)};
+    for (size_t i = 0; i < tree->n; i++)
+        if (places->place[i] != (int32_t)i)
+            thickest[i] = -1;
+}
+
+/* Whether the point is an end of the cylinder, which becomes round. */
+static bool round_end(Primitive *cylinder, Vec3 at)
+{
+    bool is_a = vec3_distance(cylinder->a, at) == 0, is_b = vec3_distance(cylinder->b, at) == 0;
+    cylinder->round_a |= is_a;
+    cylinder->round_b |= is_b;
+    return is_a || is_b;
+}
+
+/* The sphere of a place stands for the thickest segment there. Those that are ends of the segment's
+ * cylinder come last. */
+static void add_spheres(const Tree *tree, const Paint *paint, const int32_t *thickest,
+                        const int32_t *cylinder, Scene *scene)
+{
+    for (int ends = 0; ends < 2; ends++)
+        for (size_t i = 0; i < tree->n; i++) {
+            if (thickest[i] < 0)
+                continue;
+            size_t segment = (size_t)thickest[i];
+            bool is_end = cylinder[segment] >= 0 &&
+                          round_end(&scene->primitives[cylinder[segment]], tree->position[i]);
+            if (is_end != ends)
+                continue;
+            scene->n_ends += is_end;
+            scene->primitives[scene->n_primitives++] =
+                (Primitive){.kind = PRIMITIVE_SPHERE,
+                            .a = tree->position[i],
+                            .b = tree->position[i],
+                            .radius_mm = tree->radius_mm[segment],
+                            .id = (uint32_t)tree->id[segment],
+                            .color = paint_of(paint, segment)};
+        }
+}
+
+static Status add_solids(const Tree *tree, const Paint *paint, const Places *places, Scene *scene,
+                         Err *err)
+{
+    int32_t *cylinder = NULL, *thickest = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&cylinder, tree->n, sizeof *cylinder, "nodes", err));
+    TRY_GOTO(mem_calloc(&thickest, tree->n, sizeof *thickest, "nodes", err));
+    add_cylinders(tree, paint, places, scene, cylinder);
+    if (scene->model == SCENE_ROUNDED) {
+        find_thickest(tree, places, thickest);
+        add_spheres(tree, paint, thickest, cylinder, scene);
     }
+done:
+    free(cylinder);
     free(thickest);
-    return STATUS_OK;
+    return status;
 }
 
 /* number[i] becomes the index of the segment that ends at node i, or -1. */
@@ -109,9 +151,7 @@ static Status add_geometry(const Tree *tree, const Paint *paint, const StagePara
     if (scene->model == SCENE_JOINED)
         status = joints_add(tree, paint, &places, params->joints, scene, report, err);
     else
-        add_cylinders(tree, paint, &places, scene);
-    if (scene->model == SCENE_ROUNDED)
-        status = add_spheres(tree, paint, &places, scene, err);
+        status = add_solids(tree, paint, &places, scene, err);
     places_release(&places);
     return status;
 }

@@ -30,7 +30,7 @@ static Vec3 point(Random *random, double size)
 }
 
 typedef struct Staged {
-    Primitive primitives[3 * N_TUBES + 8];
+    Primitive primitives[6 * N_TUBES + 8];
     Light lights[2];
     Scene scene;
 } Staged;
@@ -99,6 +99,29 @@ static void bound(Scene *scene)
     }
 }
 
+/* Rounds one end, the other, both or none of the cylinders, in turn. */
+static void round_ends(Staged *staged)
+{
+    Scene *scene = &staged->scene;
+    size_t n = scene->n_primitives;
+    for (size_t i = 0; i < n; i++) {
+        Primitive *cylinder = &staged->primitives[i];
+        if (cylinder->kind != PRIMITIVE_CYLINDER)
+            continue;
+        cylinder->round_a = i % 2;
+        cylinder->round_b = i / 2 % 2;
+        for (int end = 0; end < 2; end++) {
+            if (!(end ? cylinder->round_b : cylinder->round_a))
+                continue;
+            Vec3 at = end ? cylinder->b : cylinder->a;
+            Primitive *ball = add(staged, PRIMITIVE_SPHERE, at, at, cylinder->radius_mm);
+            ball->id = cylinder->id;
+            ball->color = cylinder->color;
+            scene->n_ends++;
+        }
+    }
+}
+
 /* Elbows, spheres and cylinders thrown into a cube, of a fixed seed, under two lights. */
 static void stage(Staged *staged, Projection projection)
 {
@@ -115,6 +138,7 @@ static void stage(Staged *staged, Projection projection)
         add(staged, PRIMITIVE_SPHERE, a, a, number(&random, 0.05, 0.8));
         add(staged, PRIMITIVE_CYLINDER, a, b, number(&random, 0.02, 0.5));
     }
+    round_ends(staged);
     light_test_scene(scene, staged->lights);
     set_camera(scene, projection, vec3_normalized(vec3(-0.3, -0.4, -1)));
     bound(scene);
@@ -225,6 +249,7 @@ static void joints_that_bound_no_solid_are_seen_from_both_sides(void **state)
         if (staged.primitives[i].kind == PRIMITIVE_JOINT)
             staged.primitives[n++] = staged.primitives[i];
     staged.scene.n_primitives = n;
+    staged.scene.n_ends = 0;
     Gap gap = gap_to_trace(&staged.scene);
     assert_true(gap.seen > 300);
     assert_int_equal(gap.ids, 0);
@@ -238,13 +263,14 @@ static void vessels_along_the_view_are_seen_end_on(void **state)
         Staged staged;
         stage(&staged, (Projection)projection);
         Scene *scene = &staged.scene;
-        scene->n_primitives = 0;
+        scene->n_primitives = scene->n_ends = 0;
         for (int i = 0; i < 20; i++) {
             Vec3 a = vec3_add_scaled(vec3(i - 10, 0.3 * i - 3, 0), scene->camera.direction, -3);
             Vec3 lean = vec3(i % 4 ? pow(10, -i / 3.0) : 0, 0, 0);
             Vec3 along = vec3_normalized(vec3_add(scene->camera.direction, lean));
             add(&staged, PRIMITIVE_CYLINDER, a, vec3_add_scaled(a, along, 9), 0.43);
         }
+        round_ends(&staged);
         bound(scene);
         Gap gap = gap_to_trace(scene);
         assert_true(gap.seen > 200);
@@ -524,7 +550,7 @@ static void boxes_hold_the_axes_of_vessels(void **state)
         RasterBins *bins;
         assert_int_equal(rasterbins_new(&staged.scene, &view, 2, &bins, NULL), STATUS_OK);
         int held = 0;
-        for (uint32_t i = 0; i < staged.scene.n_primitives; i++)
+        for (uint32_t i = 0; i < bins->n_items; i++)
             for (int step = 0; step <= 8; step++) {
                 const Primitive *primitive = &staged.scene.primitives[i];
                 Vec3 span = vec3_sub(primitive->b, primitive->a);

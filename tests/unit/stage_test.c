@@ -95,6 +95,12 @@ static void a_sphere_has_the_largest_radius_that_meets(void **state)
         assert_true(sphere->radius_mm == expected[i].radius);
         assert_int_equal(sphere->id, expected[i].id);
     }
+    /* All of them end a cylinder of their own: the parent's both ends, and one of each daughter. */
+    assert_int_equal(scene.n_ends, 4);
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(scene.primitives[i].round_a, i == 0);
+        assert_true(scene.primitives[i].round_b);
+    }
     scene_release(&scene);
 }
 
