@@ -120,6 +120,24 @@ LANE_TARGET static bool decide_probe(const Near *near, const RasterTile *tile,
     return z - tile->z_middle < (double)probes->z[probe];
 }
 
+/* Lines that may enter the item before depths z from its middle: in parallel views, by its capsule's
+ * outline and without a root. Joints may be hit 1e-4 of their radius beside the line. */
+RASTER_FN LaneMask may_enter(const Near *near, const SightLines *sight, Lanes z)
+{
+    const RasterItem *item = near->item;
+    if (near->kind == RASTER_EXACT)
+        return ~(LaneMask){0};
+    if (near->perspective)
+        return near->kind == RASTER_JOINT ? within_outline(near, sight) : ~(LaneMask){0};
+    float radius = item->radius * 1.0002f;
+    Lanes off = lanes_fma(sight->y, lanes_set(item->ex), -(sight->x * item->ey));
+    Lanes on = lanes_fma(sight->x, lanes_set(item->ex), sight->y * item->ey);
+    Lanes left = lanes_fma(-off, off, lanes_set(radius * radius));
+    Lanes beyond = lanes_max(lanes_abs(on) - item->sine * item->half, lanes_set(0));
+    Lanes behind = lanes_fma(-on, lanes_set(item->cosine * near->per_sine), z) * item->sine;
+    return (beyond * beyond < left) & ((behind > 0.0f) | (behind * behind < left));
+}
+
 /* Whether the item is seen before the probes' depths. */
 RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const RasterProbes *probes,
                                int first, const ProbeBlock *block, LaneMask among)
@@ -128,6 +146,9 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const R
     SightLines sight = sight_of(near, block->x, block->y);
     Lanes entry = lanes_set(0);
     LaneMask met, unsure = (LaneMask){0};
+    among &= may_enter(near, &sight, z - near->z);
+    if (!lanes_any(among))
+        return among;
     if (near->kind == RASTER_CYLINDER) {
         CylinderEntry how;
         met = cylinder_entry(near, &sight, &entry, &how);
@@ -141,7 +162,7 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const R
         Passage passage = pass_cylinder(near, &sight);
         Lanes from = passage.middle - passage.half - margin, to = z - near->z;
         to = lanes_min(to, passage.middle + passage.half);
-        among &= within_outline(near, &sight) & (from < to) & ~beyond_ends(near, &sight, from, to);
+        among &= (from < to) & ~beyond_ends(near, &sight, from, to);
         if (!lanes_any(among))
             return among;
         met =
@@ -204,7 +225,7 @@ RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int fir
             __builtin_prefetch(&tile->items[tile->list[i + (size_t)__builtin_ctz(left)]]);
         for (; bits; bits &= bits - 1) {
             Near near = approach(tile, tile->list[i + (size_t)__builtin_ctz(bits)], perspective);
-            if (near.kind == RASTER_JOINT)
+            if (perspective && near.kind == RASTER_JOINT)
                 outline(tile, &near);
             LaneMask among = open & (block.z > near.z_near) & (block.item != (int32_t)near.number);
             if (lanes_any(among))
