@@ -162,12 +162,15 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const R
         Passage passage = pass_cylinder(near, &sight);
         Lanes from = passage.middle - passage.half - margin, to = z - near->z;
         to = lanes_min(to, passage.middle + passage.half);
-        among &= (from < to) & ~beyond_ends(near, &sight, from, to);
+        among &= (from < to) &
+                 ~beyond_ends(&tile->bins->ends[near->item->joint], near, &sight, from, to);
         if (!lanes_any(among))
             return among;
-        met =
-            joint_entry(near, &sight, among, block->item == (int32_t)(near->number | RASTER_RULED),
-                        &entry, &ruling, &unsure);
+        RasterJoint joint;
+        raster_joint(tile->bins, near->number, &joint);
+        met = joint_entry(near, &joint, &sight, among,
+                          block->item == (int32_t)(near->number | RASTER_RULED), &entry, &ruling,
+                          &unsure);
     } else {
         unsure = among;
         met = (LaneMask){0};

@@ -40,13 +40,6 @@ static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
     out[5] = vec3_add_scaled(vec3_scale(db, cosine), da, -sine);
 }
 
-/* The side of a plane that the solid lies on, widened by what crossings may lie off it. */
-static void store_end(float to[4], Vec3 inward, Vec3 center, double radius)
-{
-    store_vec3(to, inward);
-    to[3] = (float)(1e-3 * radius - vec3_dot(inward, center));
-}
-
 static RasterJoint make_joint(const RasterView *view, const Primitive *primitive, Vec3 middle)
 {
     RasterJoint made;
@@ -71,11 +64,25 @@ static RasterJoint make_joint(const RasterView *view, const Primitive *primitive
     store_vec3(made.by[2], vec3_add(vec3_cross(base, db), vec3_cross(b, span)));
     store_vec3(made.by[3], vec3_sub(vec3_cross(a, da), vec3_cross(b, db)));
     store_vec3(made.by[4], vec3_add(vec3_cross(a, db), vec3_cross(b, da)));
-    store_end(made.ends[0], rasterview_to_frame(view, primitive->axis_a), base,
-              primitive->radius_mm);
-    store_end(made.ends[1], vec3_scale(rasterview_to_frame(view, primitive->axis_b), -1),
-              vec3_add(base, span), primitive->radius_b_mm);
     return made;
+}
+
+static void store_plane(float to[4], Vec3 inward, Vec3 center, double radius)
+{
+    store_vec3(to, inward);
+    to[3] = (float)(1e-3 * radius - vec3_dot(inward, center));
+}
+
+static RasterEnds make_ends(const RasterView *view, const Primitive *primitive)
+{
+    RasterEnds ends;
+    Vec3 half = rasterview_to_frame(view, vec3_sub(primitive->b, primitive->a));
+    half = vec3_scale(half, 0.5);
+    store_plane(ends.plane[0], rasterview_to_frame(view, primitive->axis_a), vec3_scale(half, -1),
+                primitive->radius_mm);
+    store_plane(ends.plane[1], vec3_scale(rasterview_to_frame(view, primitive->axis_b), -1), half,
+                primitive->radius_b_mm);
+    return ends;
 }
 
 /* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its
@@ -89,10 +96,10 @@ static bool joint_is_solid(const Primitive *primitive)
            vec3_dot(span, primitive->axis_b) >= primitive->radius_mm * sine - slack;
 }
 
-void rasteritem_make(const Scene *scene, const RasterView *view, uint32_t number, uint32_t joint,
-                     RasterJoint *joints, RasterItem *item)
+void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, RasterItem *item)
 {
-    const Primitive *primitive = &scene->primitives[number];
+    const RasterView *view = &bins->view;
+    const Primitive *primitive = &bins->scene->primitives[number];
     Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
     middle = rasterview_to_frame(view, vec3_sub(middle, view->location));
     Vec3 span = rasterview_to_frame(view, vec3_sub(primitive->b, primitive->a));
@@ -109,10 +116,12 @@ void rasteritem_make(const Scene *scene, const RasterView *view, uint32_t number
     if (primitive->kind == PRIMITIVE_CYLINDER)
         kind = !view->perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
     if (primitive->kind == PRIMITIVE_JOINT) {
-        kind = scene->open_joints || !joint_is_solid(primitive) ? RASTER_EXACT : RASTER_JOINT;
+        kind = bins->scene->open_joints || !joint_is_solid(primitive) ? RASTER_EXACT : RASTER_JOINT;
         radius = max_of(radius, primitive->radius_b_mm);
-        if (kind == RASTER_JOINT)
-            joints[joint] = make_joint(view, primitive, middle);
+        if (kind == RASTER_JOINT && bins->ends)
+            bins->ends[joint] = make_ends(view, primitive);
+        else if (kind == RASTER_JOINT)
+            bins->joints[joint] = make_joint(view, primitive, middle);
     }
     item->x = middle.x;
     item->y = middle.y;
@@ -130,6 +139,13 @@ void rasteritem_make(const Scene *scene, const RasterView *view, uint32_t number
     double pixel = min_of(view->step_x, -view->step_y) * (view->perspective ? near : 1);
     bool odd = item_is_close(item) || length / 2 + radius > most_pixels * pixel;
     item->kind = (unsigned)(odd ? RASTER_EXACT : kind) & 3;
+}
+
+void raster_joint(const RasterBins *bins, uint32_t item, RasterJoint *joint)
+{
+    const RasterItem *about = &bins->items[item];
+    *joint =
+        make_joint(&bins->view, &bins->scene->primitives[item], vec3(about->x, about->y, about->z));
 }
 
 double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal)

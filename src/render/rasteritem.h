@@ -4,9 +4,8 @@
 
 #include "render/rasterview.h"
 
-/* Makes the item of a scene's primitive, but for its tiles and box. joints[joint] is set if it is a
- * RASTER_JOINT. */
-void rasteritem_make(const Scene *scene, const RasterView *view, uint32_t number, uint32_t joint,
-                     RasterJoint *joints, RasterItem *item);
+/* Makes the item of a primitive of the scene, but for its tiles and box. Number `joint` of the bins'
+ * joints or ends is set if it is a RASTER_JOINT. */
+void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, RasterItem *item);
 
 #endif

@@ -112,7 +112,9 @@ RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
     } else {
         Lanes ruling;
         LaneMask unsure, within = within_outline(near, &sight);
-        LaneMask met = joint_entry(near, &sight, within, (LaneMask){0}, &z, &ruling, &unsure);
+        const RasterJoint *joint = &state->tile->joints[near->item->joint];
+        LaneMask met =
+            joint_entry(near, joint, &sight, within, (LaneMask){0}, &z, &ruling, &unsure);
         met = keep_nearer(state, near, near->number | RASTER_RULED, block, met, z);
         keep_lanes(&state->hits->ruling[block * LANES], met, ruling);
         if (lanes_any(unsure))
@@ -208,7 +210,8 @@ RASTER_FN void resolve_joint(const RasterTile *tile, const RasterHits *hits, uin
     SightLines sight =
         sight_of(&near, lanes_load(&tile->grid->x[first]), lanes_load(&tile->grid->y[first]));
     Lanes normal[3];
-    joint_normal(&near, &sight, lanes_load(&hits->ruling[first]), normal);
+    joint_normal(&near, &tile->joints[near.item->joint], &sight, lanes_load(&hits->ruling[first]),
+                 normal);
     keep_normal(surface, block, of, normal);
 }
 

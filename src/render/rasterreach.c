@@ -147,7 +147,7 @@ void rasterreach_set(const RasterView *view, RasterItem *item)
         rows = tiles_within(down, view->stray, view->first, view->rows);
         columns = columns_of(view, across);
         Range from_first = {down.low - view->first, down.high - view->first};
-        if (view->boxes)
+        if (view->light)
             item->box =
                 RASTERBOX_GUARDS | parts_of(across, columns) | parts_of(from_first, rows) << 16;
     }
@@ -167,7 +167,7 @@ TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int 
     TileSpan columns = {item->columns.first, item->columns.last};
     *box = item->box | (row < item->rows.last ? RASTERBOX_HIGH_X << 16 : 0) |
            (row > item->rows.first ? RASTERBOX_LOW_X << 16 : 0);
-    int few = view->boxes ? 1 : 0;
+    int few = view->light ? 1 : 0;
     if (item->rows.last - item->rows.first <= few || columns.last - columns.first <= few ||
         (view->perspective && item_is_close(item)))
         return columns;
@@ -176,7 +176,7 @@ TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int 
         return nowhere;
     range = pixels_within(range, view->left, view->per_x);
     columns = columns_of(view, range);
-    if (view->boxes)
+    if (view->light)
         *box = (*box & ~(RASTERBOX_HIGH_X | RASTERBOX_LOW_X)) | parts_of(range, columns);
     return columns;
 }

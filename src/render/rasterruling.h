@@ -42,9 +42,8 @@ RASTER_FN Lanes ruling_part(const Near *near, const SightLines *sight, const flo
     return lanes_fma(sight->y, lanes_fma(-sight->dx, rz, lanes_set(run[0])), part);
 }
 
-RASTER_FN Ruling ruling_of(const Near *near, const SightLines *sight)
+RASTER_FN Ruling ruling_of(const Near *near, const RasterJoint *joint, const SightLines *sight)
 {
-    const RasterJoint *joint = near->joint;
     return (Ruling){{ruling_part(near, sight, joint->by[0], joint->span),
                      ruling_part(near, sight, joint->by[1], joint->da),
                      ruling_part(near, sight, joint->by[2], joint->db),
@@ -263,11 +262,12 @@ RASTER_FN Lanes ruling_place(const Near *near, const SightLines *sight, const Li
 }
 
 /* Lines that between two depths, from the middle's, are all beyond one end of the joint. */
-RASTER_FN LaneMask beyond_ends(const Near *near, const SightLines *sight, Lanes from, Lanes to)
+RASTER_FN LaneMask beyond_ends(const RasterEnds *ends, const Near *near, const SightLines *sight,
+                               Lanes from, Lanes to)
 {
     LaneMask beyond = {0};
     for (int i = 0; i < 2; i++) {
-        const float *end = near->joint->ends[i];
+        const float *end = ends->plane[i];
         Lanes at = lanes_fma(sight->x, lanes_set(end[0]),
                              lanes_fma(sight->y, lanes_set(end[1]), lanes_set(end[3])));
         Lanes rate = lanes_set(end[2]);
@@ -281,10 +281,11 @@ RASTER_FN LaneMask beyond_ends(const Near *near, const SightLines *sight, Lanes 
 
 /* Where the lines `among` enter the joint; *unsure is set where that takes double precision. Of the
  * lines `known` one entry is known, and only others count. */
-RASTER_FN LaneMask joint_entry(const Near *near, const SightLines *sight, LaneMask among,
-                               LaneMask known, Lanes *z, Lanes *ruling, LaneMask *unsure)
+RASTER_FN LaneMask joint_entry(const Near *near, const RasterJoint *joint, const SightLines *sight,
+                               LaneMask among, LaneMask known, Lanes *z, Lanes *ruling,
+                               LaneMask *unsure)
 {
-    Ruling g = ruling_of(near, sight);
+    Ruling g = ruling_of(near, joint, sight);
     Falls falls;
     among &= ~(known & falls_once(&g));
     find_falls(&g, among, &falls);
@@ -295,7 +296,7 @@ RASTER_FN LaneMask joint_entry(const Near *near, const SightLines *sight, LaneMa
     *ruling = lanes_set(0);
     for (int i = 0; i < 2 && lanes_any(falls.there[i]); i++) {
         Lanes u = fall_at(&g, &falls, i), u2 = u * u, per = 1.0f / (1.0f + u2), off[2], run[2];
-        Line3 line = ruling_line(near->joint, (1.0f - u2) * per, 2.0f * u * per);
+        Line3 line = ruling_line(joint, (1.0f - u2) * per, 2.0f * u * per);
         Lanes place = ruling_place(near, sight, &line, off, run);
         Lanes x = lanes_fma(place, run[0], off[0]), y = lanes_fma(place, run[1], off[1]);
         Lanes depth = lanes_fma(place, line.run[2], line.start[2]);
@@ -317,9 +318,9 @@ RASTER_FN LaneMask joint_entry(const Near *near, const SightLines *sight, LaneMa
     return met & ~*unsure;
 }
 
-RASTER_FN void joint_normal(const Near *near, const SightLines *sight, Lanes u, Lanes normal[3])
+RASTER_FN void joint_normal(const Near *near, const RasterJoint *joint, const SightLines *sight,
+                            Lanes u, Lanes normal[3])
 {
-    const RasterJoint *joint = near->joint;
     Lanes u2 = u * u, per = 1.0f / (1.0f + u2), off[2], run[2];
     Lanes cosine = (1.0f - u2) * per, sine = 2.0f * u * per;
     Line3 line = ruling_line(joint, cosine, sine);

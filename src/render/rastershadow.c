@@ -72,7 +72,7 @@ static int tiles_for(const Scene *scene)
 /* The view of a light, just wide enough for the scene. */
 static RasterView light_view(const Scene *scene, const Light *light)
 {
-    RasterView view = {.location = light->location, .perspective = !light->parallel, .boxes = true};
+    RasterView view = {.location = light->location, .perspective = !light->parallel, .light = true};
     Vec3 center, towards = vec3_sub(light->target, light->location);
     scene_radius(scene, &center);
     if (!light->parallel)

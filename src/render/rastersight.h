@@ -33,7 +33,6 @@ typedef struct SightLines {
 /* An item as one tile sees it. */
 typedef struct Near {
     const RasterItem *item;
-    const RasterJoint *joint;
     bool perspective;
     uint32_t kind;
     uint32_t number;
@@ -75,7 +74,6 @@ RASTER_FN Near approach(const RasterTile *tile, uint32_t number, bool perspectiv
     const RasterItem *item = &tile->items[number];
     Near near;
     near.item = item;
-    near.joint = &tile->joints[item->joint];
     near.perspective = perspective;
     near.kind = item->kind;
     near.number = number;

@@ -60,8 +60,13 @@ static inline bool item_is_close(const RasterItem *item)
 typedef struct RasterJoint {
     float base[3], span[3], a[3], b[3], da[3], db[3];
     float by[5][3];
-    float ends[2][4]; /* (n, d), n unit: where n . x + d < 0 there is nothing of it */
 } RasterJoint;
+
+/* The planes of its circles about the same point, a little farther out: where n . x + d < 0 of one
+ * of them, (n, d) with n unit, there is nothing of the joint. */
+typedef struct RasterEnds {
+    float plane[2][4];
+} RasterEnds;
 
 /* Where samples lie, from the middle of their tile, in the plane of the view. */
 typedef struct RasterGrid {
@@ -77,8 +82,8 @@ struct RasterBins;
 typedef struct RasterTile {
     const struct RasterBins *bins;
     const RasterItem *items;
-    const RasterJoint *joints;
-    const uint32_t *list; /* items, ascending */
+    const RasterJoint *joints; /* NULL in a light's view */
+    const uint32_t *list;      /* items, ascending */
     size_t n;
     const float
         *nears; /* of each of the list, a depth before which nothing of it is, less z_middle;
@@ -102,6 +107,9 @@ typedef struct RasterHits {
     uint32_t item[TILE_SAMPLES]; /* index, perhaps with flags; or RASTER_NOTHING */
     float ruling[TILE_SAMPLES];  /* of a joint: tan(q / 2) */
 } RasterHits;
+
+/* Makes the joint that item number `item` is. */
+void raster_joint(const struct RasterBins *bins, uint32_t item, RasterJoint *joint);
 
 /* Meets an item in double precision with the line of sight at (x, y) of the view's plane: its
  * depth z along the view, INFINITY when it is not met, and if `normal` is not NULL the surface's

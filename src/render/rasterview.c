@@ -91,6 +91,8 @@ static Status make_room_for_joints(Build *build, int threads, Err *err)
         build->joints[chunk] = n;
         n += count;
     }
+    if (bins->view.light)
+        return mem_calloc(&bins->ends, (size_t)n + 1, sizeof *bins->ends, "joints", err);
     return mem_calloc(&bins->joints, (size_t)n + 1, sizeof *bins->joints, "joints", err);
 }
 
@@ -103,7 +105,7 @@ static void make_chunk(size_t chunk, int worker, void *context)
     uint32_t joint = build->joints[chunk];
     for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++) {
         RasterItem *item = &bins->items[i];
-        rasteritem_make(bins->scene, &bins->view, (uint32_t)i, joint, bins->joints, item);
+        rasteritem_make(bins, (uint32_t)i, joint, item);
         rasterreach_set(&bins->view, item);
         joint += is_joint(bins, i);
         for (int row = item->rows.first; row <= item->rows.last; row++)
@@ -154,7 +156,7 @@ static Status sort_into_rows(Build *build, int threads, Err *err)
     bins->row_offsets[rows] = total;
     TRY(mem_calloc(&bins->row_items, total, sizeof *bins->row_items, "rows of tiles", err));
     TRY(mem_calloc(&bins->row_columns, total, sizeof *bins->row_columns, "rows of tiles", err));
-    if (bins->view.boxes)
+    if (bins->view.light)
         TRY(mem_calloc(&bins->row_boxes, total, sizeof *bins->row_boxes, "rows of tiles", err));
     TRY(mem_calloc(&build->slabs, rows, sizeof *build->slabs, "rows of tiles", err));
     for (size_t row = 0; row < rows; row++)
@@ -216,6 +218,7 @@ void rasterbins_free(RasterBins *bins)
         return;
     free(bins->item_memory);
     free(bins->joints);
+    free(bins->ends);
     free(bins->row_offsets);
     rasterbins_forget_rows(bins);
     free(bins);

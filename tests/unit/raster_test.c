@@ -546,7 +546,7 @@ static void boxes_hold_the_axes_of_vessels(void **state)
         Staged staged;
         stage(&staged, (Projection)projection);
         RasterView view = rasterview_of_camera(&staged.scene, 0, HEIGHT, 2);
-        view.boxes = true;
+        view.light = true;
         RasterBins *bins;
         assert_int_equal(rasterbins_new(&staged.scene, &view, 2, &bins, NULL), STATUS_OK);
         int held = 0;
