@@ -138,6 +138,60 @@ RASTER_FN LaneMask may_enter(const Near *near, const SightLines *sight, Lanes z)
     return (beyond * beyond < left) & ((behind > 0.0f) | (behind * behind < left));
 }
 
+/* Narrows the depths between which lines may be in a joint to those between its ends. */
+RASTER_FN void clip_to_ends(const RasterHull *hull, const Near *near, const SightLines *sight,
+                            Lanes *from, Lanes *to)
+{
+    for (int i = 0; i < 2; i++) {
+        const float *plane = hull->plane[i], least = 1e-6f;
+        Lanes at = lanes_fma(sight->x, lanes_set(plane[0]),
+                             lanes_fma(sight->y, lanes_set(plane[1]), lanes_set(plane[3])));
+        Lanes rate = lanes_set(plane[2]);
+        if (near->perspective)
+            rate = lanes_fma(sight->dx, lanes_set(plane[0]),
+                             lanes_fma(sight->dy, lanes_set(plane[1]), rate));
+        LaneMask comes = rate >= 0.0f;
+        rate = lanes_select(comes, lanes_max(rate, lanes_set(least)),
+                            lanes_min(rate, lanes_set(-least)));
+        Lanes crossing = -at / rate;
+        *from = lanes_select(comes, lanes_max(*from, crossing), *from);
+        *to = lanes_select(comes, *to, lanes_min(*to, crossing));
+    }
+}
+
+/* Lines that between two depths may be in the cone about a joint. At t before or behind where a line is
+ * nearest to the axis, it is, if (1 - taper^2) distance^2 - (middle - s taper)^2 = a t^2 + 2 b t + c
+ * <= 0. */
+RASTER_FN LaneMask in_cone(const RasterHull *hull, const Near *near, const SightLines *sight,
+                           const Passage *passage, Lanes from, Lanes to)
+{
+    const RasterItem *item = near->item;
+    float per = 1 - hull->taper * hull->taper, slant = hull->taper * item->cosine;
+    float a = per * item->sine * item->sine - slant * slant;
+    if (near->perspective || a < 1e-3f)
+        return from < to;
+    Lanes off = lanes_fma(sight->y, lanes_set(item->ex), -(sight->x * item->ey));
+    Lanes radius = lanes_fma(-passage->along, lanes_set(hull->taper), lanes_set(hull->middle));
+    Lanes b = radius * slant, t = b * (-1 / a);
+    t = lanes_max(lanes_min(t, to - passage->middle), from - passage->middle);
+    Lanes c = lanes_fma(per * off, off, -(radius * radius));
+    return (from < to) & (lanes_fma(t, lanes_fma(t, lanes_set(a), b + b), c) <= 0.0f);
+}
+
+/* Lines that may enter a joint before depths z from its middle. Its hits may lie off_joint_line beside
+ * a line, and so before the wall of the capsule by the root of twice that at most, in radii. */
+RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const Near *near,
+                                   const SightLines *sight, Lanes z)
+{
+    const RasterHull *hull = &tile->bins->hulls[near->item->joint];
+    Passage passage = pass_cylinder(near, sight);
+    float margin = 0.015f * near->item->radius * near->per_sine;
+    Lanes from = passage.middle - passage.half - margin;
+    Lanes to = lanes_min(z, passage.middle + passage.half);
+    clip_to_ends(hull, near, sight, &from, &to);
+    return in_cone(hull, near, sight, &passage, from, to);
+}
+
 /* Whether the item is seen before the probes' depths. */
 RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const RasterProbes *probes,
                                int first, const ProbeBlock *block, LaneMask among)
@@ -155,15 +209,8 @@ RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const R
     } else if (near->kind == RASTER_SPHERE) {
         met = sphere_entry(near, &sight, &entry);
     } else if (near->kind == RASTER_JOINT) {
-        /* Joints take longest: out with lines that enter the wall of the capsule behind the probe.
-         * A hit may lie off its line by off_joint_line, and so before that wall by the root of
-         * twice that at most, in radii. */
-        Lanes ruling, margin = lanes_set(0.015f * near->item->radius * near->per_sine);
-        Passage passage = pass_cylinder(near, &sight);
-        Lanes from = passage.middle - passage.half - margin, to = z - near->z;
-        to = lanes_min(to, passage.middle + passage.half);
-        among &= (from < to) &
-                 ~beyond_ends(&tile->bins->ends[near->item->joint], near, &sight, from, to);
+        Lanes ruling;
+        among &= may_enter_joint(tile, near, &sight, z - near->z);
         if (!lanes_any(among))
             return among;
         RasterJoint joint;

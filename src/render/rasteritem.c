@@ -73,16 +73,20 @@ static void store_plane(float to[4], Vec3 inward, Vec3 center, double radius)
     to[3] = (float)(1e-3 * radius - vec3_dot(inward, center));
 }
 
-static RasterEnds make_ends(const RasterView *view, const Primitive *primitive)
+/* `turn`: 1 if the item's axis leads from a to b, or -1. */
+static RasterHull make_hull(const RasterView *view, const Primitive *primitive, Vec3 span,
+                            double turn)
 {
-    RasterEnds ends;
-    Vec3 half = rasterview_to_frame(view, vec3_sub(primitive->b, primitive->a));
-    half = vec3_scale(half, 0.5);
-    store_plane(ends.plane[0], rasterview_to_frame(view, primitive->axis_a), vec3_scale(half, -1),
-                primitive->radius_mm);
-    store_plane(ends.plane[1], vec3_scale(rasterview_to_frame(view, primitive->axis_b), -1), half,
-                primitive->radius_b_mm);
-    return ends;
+    RasterHull hull;
+    double a = primitive->radius_mm, b = primitive->radius_b_mm, length = vec3_length(span);
+    bool tapers = fabs(a - b) < length;
+    store_plane(hull.plane[0], rasterview_to_frame(view, primitive->axis_a), vec3_scale(span, -0.5),
+                a);
+    store_plane(hull.plane[1], vec3_scale(rasterview_to_frame(view, primitive->axis_b), -1),
+                vec3_scale(span, 0.5), b);
+    hull.middle = (float)((tapers ? (a + b) / 2 : max_of(a, b)) * 1.0005);
+    hull.taper = (float)(tapers ? turn * (a - b) / length : 0);
+    return hull;
 }
 
 /* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its
@@ -118,8 +122,8 @@ void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, Ra
     if (primitive->kind == PRIMITIVE_JOINT) {
         kind = bins->scene->open_joints || !joint_is_solid(primitive) ? RASTER_EXACT : RASTER_JOINT;
         radius = max_of(radius, primitive->radius_b_mm);
-        if (kind == RASTER_JOINT && bins->ends)
-            bins->ends[joint] = make_ends(view, primitive);
+        if (kind == RASTER_JOINT && bins->hulls)
+            bins->hulls[joint] = make_hull(view, primitive, span, turn);
         else if (kind == RASTER_JOINT)
             bins->joints[joint] = make_joint(view, primitive, middle);
     }

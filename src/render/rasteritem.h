@@ -5,7 +5,7 @@
 #include "render/rasterview.h"
 
 /* Makes the item of a primitive of the scene, but for its tiles and box. Number `joint` of the bins'
- * joints or ends is set if it is a RASTER_JOINT. */
+ * joints or hulls is set if it is a RASTER_JOINT. */
 void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, RasterItem *item);
 
 #endif

@@ -261,24 +261,6 @@ RASTER_FN Lanes ruling_place(const Near *near, const SightLines *sight, const Li
     return -along / lanes_fma(run[0], run[0], run[1] * run[1]);
 }
 
-/* Lines that between two depths, from the middle's, are all beyond one end of the joint. */
-RASTER_FN LaneMask beyond_ends(const RasterEnds *ends, const Near *near, const SightLines *sight,
-                               Lanes from, Lanes to)
-{
-    LaneMask beyond = {0};
-    for (int i = 0; i < 2; i++) {
-        const float *end = ends->plane[i];
-        Lanes at = lanes_fma(sight->x, lanes_set(end[0]),
-                             lanes_fma(sight->y, lanes_set(end[1]), lanes_set(end[3])));
-        Lanes rate = lanes_set(end[2]);
-        if (near->perspective)
-            rate = lanes_fma(sight->dx, lanes_set(end[0]),
-                             lanes_fma(sight->dy, lanes_set(end[1]), rate));
-        beyond |= (lanes_fma(from, rate, at) < 0.0f) & (lanes_fma(to, rate, at) < 0.0f);
-    }
-    return beyond;
-}
-
 /* Where the lines `among` enter the joint; *unsure is set where that takes double precision. Of the
  * lines `known` one entry is known, and only others count. */
 RASTER_FN LaneMask joint_entry(const Near *near, const RasterJoint *joint, const SightLines *sight,

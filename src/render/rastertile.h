@@ -62,11 +62,14 @@ typedef struct RasterJoint {
     float by[5][3];
 } RasterJoint;
 
-/* The planes of its circles about the same point, a little farther out: where n . x + d < 0 of one
- * of them, (n, d) with n unit, there is nothing of the joint. */
-typedef struct RasterEnds {
+/* What holds a ruled joint, about the same point: the planes of its circles, a little farther out, so
+ * that where n . x + d < 0 of one of them, (n, d) with n unit, there is nothing of it; and the cone
+ * about balls in its circles' places, whose balls, s along the item's axis, have the radius
+ * middle - s taper. */
+typedef struct RasterHull {
     float plane[2][4];
-} RasterEnds;
+    float middle, taper; /* |taper| < 1 */
+} RasterHull;
 
 /* Where samples lie, from the middle of their tile, in the plane of the view. */
 typedef struct RasterGrid {

@@ -92,7 +92,7 @@ static Status make_room_for_joints(Build *build, int threads, Err *err)
         n += count;
     }
     if (bins->view.light)
-        return mem_calloc(&bins->ends, (size_t)n + 1, sizeof *bins->ends, "joints", err);
+        return mem_calloc(&bins->hulls, (size_t)n + 1, sizeof *bins->hulls, "joints", err);
     return mem_calloc(&bins->joints, (size_t)n + 1, sizeof *bins->joints, "joints", err);
 }
 
@@ -218,7 +218,7 @@ void rasterbins_free(RasterBins *bins)
         return;
     free(bins->item_memory);
     free(bins->joints);
-    free(bins->ends);
+    free(bins->hulls);
     free(bins->row_offsets);
     rasterbins_forget_rows(bins);
     free(bins);

@@ -18,7 +18,7 @@ typedef struct RasterView {
     int first;             /* pixels above the first row, a multiple of TILE_SIDE */
     double stray;          /* how far samples lie off the middles of their pixels, in pixels */
     double z_middle;       /* depths in single precision are relative to it, mm */
-    bool light; /* bins shall have boxes and, of joints, the ends alone: few joints are looked at */
+    bool light; /* bins shall have boxes and, of joints, hulls alone: few are looked at */
 } RasterView;
 
 /* That of a camera, rows from `first` on; `antialias` as in RenderParams. */
@@ -56,7 +56,7 @@ typedef struct RasterBins {
     RasterItem *items; /* in a line of the cache each */
     size_t n_items;
     RasterJoint *joints; /* of items that are joints, but in a light's view: */
-    RasterEnds *ends;
+    RasterHull *hulls;
     int tile_columns, tile_rows;
     size_t *row_offsets; /* into row_items; one more than there are rows */
     uint32_t *row_items; /* ascending within a row */
