@@ -165,6 +165,17 @@ static Status sort_into_rows(Build *build, int threads, Err *err)
     return STATUS_OK;
 }
 
+/* As many for each thread as for the others. */
+static size_t chunks_for(size_t n, size_t threads)
+{
+    size_t chunks = n / LEAST_CHUNK;
+    if (chunks < 2)
+        return 1;
+    chunks = chunks < MOST_CHUNKS ? chunks : MOST_CHUNKS;
+    threads = threads < chunks ? threads : chunks;
+    return (chunks + threads - 1) / threads * threads;
+}
+
 static Status make_bins(RasterBins *bins, int threads, Err *err)
 {
     if (bins->n_items > MOST_ITEMS)
@@ -179,8 +190,7 @@ static Status make_bins(RasterBins *bins, int threads, Err *err)
         (RasterItem *)(((uintptr_t)bins->item_memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
     TRY(mem_calloc(&bins->row_offsets, (size_t)bins->tile_rows + 1, sizeof *bins->row_offsets,
                    "rows of tiles", err));
-    size_t n = bins->n_items, chunk = n / MOST_CHUNKS + 1;
-    chunk = chunk > LEAST_CHUNK ? chunk : LEAST_CHUNK;
+    size_t n = bins->n_items, chunks = chunks_for(n, (size_t)threads), chunk = n / chunks + 1;
     Build build = {.bins = bins, .chunk = chunk, .n_chunks = (n + chunk - 1) / chunk};
     Status status = make_room_for_joints(&build, threads, err);
     if (status == STATUS_OK)

@@ -87,7 +87,7 @@ static Status make_arguments(const OracleParams *params, const char *scene, cons
     TRY(add_argument(arguments, err, "-TH"));
     TRY(add_argument(arguments, err, "-C"));
     TRY(add_argument(arguments, err, "-D"));
-    TRY(add_argument(arguments, err, "-GW"));
+    TRY(add_argument(arguments, err, "+GW"));
     TRY(add_argument(arguments, err, "+V"));
     return STATUS_OK;
 }
@@ -164,12 +164,15 @@ static Status read_log(const OracleParams *params, int handle, Text *log, Err *e
     return text_check(log, err);
 }
 
-/* What POV-Ray said of a failure: from its first line with "Error" or "rror:" on, as one sentence. */
+/* What POV-Ray said of a failure: from its first line with "Error", "rror:" or "Fatal" on, as one
+ * sentence. */
 static void reason_of_failure(const Text *log, char *reason, size_t size)
 {
     const char *start = strstr(log->chars, "Error");
     if (!start)
         start = strstr(log->chars, "rror:");
+    if (!start)
+        start = strstr(log->chars, "Fatal error");
     if (!start)
         start = strstr(log->chars, "cannot");
     while (start && start > log->chars && start[-1] != '\n')
