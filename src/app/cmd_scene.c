@@ -1,6 +1,7 @@
 #include "app/commands.h"
 #include "app/picture.h"
 #include "app/povfiles.h"
+#include <stdio.h>
 #include <string.h>
 
 static const Command command = {
@@ -32,6 +33,7 @@ Status run_scene(int argc, char **argv, Err *err)
     TRY(options_parse(&command, tables, argc, argv, &parsed, err));
     Status status = STATUS_OK;
     Scene scene = {0};
+    PovrayReport report = {0};
     if (parsed.common.help)
         goto done;
     TRY_GOTO(picture_check_povray(&picture, err));
@@ -42,7 +44,12 @@ Status run_scene(int argc, char **argv, Err *err)
     TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, NULL, err));
     const CellParams cells = picture_cells(&picture);
     TRY_GOTO(povfiles_write(&scene, parsed.operands[0], output, picture.stage.shadows, ids, &cells,
-                            err));
+                            &report, err));
+    if (report.joint_sides > 0 && !parsed.common.quiet)
+        fprintf(stderr,
+                "corcast: more joints than POV-Ray holds exactly; they are meshes of %d sides, of "
+                "more with Declare=Joint_Sides=N\n",
+                report.joint_sides);
 done:
     scene_release(&scene);
     parsed_release(&parsed);

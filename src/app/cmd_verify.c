@@ -198,7 +198,7 @@ static Status write_scene(Verification *v, bool ids, char **scene, Err *err)
 {
     TRY(file_join(v->folder, ids ? "ids.pov" : "scene.pov", scene, err));
     return povfiles_write(&v->scene, v->tree, *scene, v->picture->stage.shadows, ids, &v->cells,
-                          err);
+                          NULL, err);
 }
 
 static Status run_oracle(Verification *v, Err *err)

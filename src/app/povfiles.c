@@ -7,7 +7,7 @@
 #include <string.h>
 
 Status povfiles_write(const Scene *scene, const char *tree_path, const char *path, bool shadows,
-                      bool ids, const CellParams *cells, Err *err)
+                      bool ids, const CellParams *cells, PovrayReport *report, Err *err)
 {
     if (scene->blend.first)
         return err_set(
@@ -31,7 +31,7 @@ Status povfiles_write(const Scene *scene, const char *tree_path, const char *pat
                            .shadows = shadows,
                            .ids = ids,
                            .cells = *cells};
-    TRY_GOTO(emit_povray(scene, &params, &pov, &inc, NULL, err));
+    TRY_GOTO(emit_povray(scene, &params, &pov, &inc, report, err));
     if (!to_stdout)
         TRY_GOTO(file_write(geometry_path, inc.chars, inc.length, err));
     TRY_GOTO(file_write(path, pov.chars, pov.length, err));

@@ -7,8 +7,9 @@
 #include "scene/scene.h"
 
 /* Writes `path` and, beside it, its geometry with the extension .inc; "-" is one file on standard
- * output. The rest as in PovrayParams. */
+ * output. The rest as in PovrayParams; `report` may be NULL. */
 MUST_CHECK Status povfiles_write(const Scene *scene, const char *tree_path, const char *path,
-                                 bool shadows, bool ids, const CellParams *cells, Err *err);
+                                 bool shadows, bool ids, const CellParams *cells,
+                                 PovrayReport *report, Err *err);
 
 #endif

@@ -19,7 +19,8 @@ typedef struct PovrayParams {
 } PovrayParams;
 
 typedef struct PovrayReport {
-    size_t cells; /* of an isosurface; of a blob that is cut into cells, else 0 */
+    size_t cells;    /* of an isosurface; of a blob that is cut into cells, else 0 */
+    int joint_sides; /* of a joint's mesh; 0: joints are exact, which POV-Ray can hold 174,000 of */
 } PovrayReport;
 
 /* Writes a scene for POV-Ray 3.7 and its geometry include (appended to *scene and *geometry; the

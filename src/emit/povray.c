@@ -194,12 +194,16 @@ static Status put_blob_macros(const Scene *scene, const PovrayParams *params, Te
 }
 
 static Status put_primitive_macros(const Scene *scene, const PovrayParams *params, Text *out,
-                                   Err *err)
+                                   PovrayReport *report, Err *err)
 {
     Values values = {0};
     TRY(expand(&values, params, "primitives.inc", out, err));
-    return scene->model == SCENE_JOINED ? expand(&values, params, "joints.inc", out, err)
-                                        : STATUS_OK;
+    if (scene->model != SCENE_JOINED)
+        return STATUS_OK;
+    report->joint_sides = joint_sides(scene);
+    values = (Values){0};
+    text_printf(add_value(&values, "sides"), "%d", report->joint_sides);
+    return expand(&values, params, "joints.inc", out, err);
 }
 
 static Status put_cell_members(const Scene *scene, const PovrayParams *params, Text *macros,
@@ -227,7 +231,7 @@ static Status put_members(const Scene *scene, const PovrayParams *params, Text *
         return put_blob_macros(scene, params, macros, err);
     }
     put_primitives(body, scene);
-    return put_primitive_macros(scene, params, macros, err);
+    return put_primitive_macros(scene, params, macros, report, err);
 }
 
 static Status put_geometry(const Scene *scene, const PovrayParams *params, const char *file,

@@ -16,6 +16,9 @@
  * the half to find the first root, and with it to be right when it skips rays near one that missed. */
 #include "emit/povray_text.h"
 
+/* POV-Ray holds 1,048,575 different constants in functions; a joint has 6. */
+enum { MOST_EXACT = 174000, SIDES_OF_MANY = 16 };
+
 /* The frame that POV-Ray's function is in: the plane of the axes, unit r_1. */
 typedef struct JointPlane {
     double ax, az, bx, bz; /* the second circle's ends across */
@@ -76,6 +79,14 @@ static bool is_wall_of_solid(const Primitive *joint)
     Vec3 span = vec3_sub(joint->b, joint->a);
     return vec3_dot(span, joint->axis_a) >= joint->radius_b_mm * sine - slack &&
            vec3_dot(span, joint->axis_b) >= joint->radius_mm * sine - slack;
+}
+
+int joint_sides(const Scene *scene)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < scene->n_primitives; i++)
+        n += scene->primitives[i].kind == PRIMITIVE_JOINT;
+    return n > MOST_EXACT ? SIDES_OF_MANY : 0;
 }
 
 void put_joint(Text *text, const Scene *scene, const Primitive *joint)

@@ -35,6 +35,8 @@ MUST_CHECK Status put_blob(Text *text, const Scene *scene, size_t *n_cells, Err 
  * the one for all, and the segments' paints in groups, and how many groups. */
 MUST_CHECK Status put_blob_paint(const Scene *scene, Text *functions, Text *top, Text *groups,
                                  Text *n_groups, Err *err);
+/* The sides of joints' meshes, 0 where POV-Ray holds all of the scene's exactly. */
+int joint_sides(const Scene *scene);
 /* Appends the call that draws a joint. */
 void put_joint(Text *text, const Scene *scene, const Primitive *joint);
 

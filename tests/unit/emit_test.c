@@ -127,6 +127,35 @@ static void the_numbers_of_a_cylinder_read_back_exactly(void **state)
     release(&out);
 }
 
+static void more_joints_than_povray_holds_are_meshes(void **state)
+{
+    (void)state;
+    enum { N = 174001 };
+    const Primitive one = {.kind = PRIMITIVE_JOINT,
+                           .b = {0, 0, 1},
+                           .radius_mm = 1,
+                           .radius_b_mm = 0.9,
+                           .axis_a = {0, 0, 1},
+                           .axis_b = {0, 0, 1}};
+    Primitive *joints = malloc(N * sizeof *joints);
+    assert_non_null(joints);
+    for (size_t i = 0; i < N; i++)
+        joints[i] = one;
+    Scene scene = make_scene(SCENE_JOINED);
+    scene.primitives = joints;
+    for (int many = 0; many < 2; many++) {
+        scene.n_primitives = many ? N : N - 1;
+        Emitted out = emit(&scene, &two_files);
+        assert_int_equal(out.report.joint_sides, many ? 16 : 0);
+        const char *sides = strstr(out.geometry.chars, "#declare Joint_Sides = ");
+        assert_non_null(sides);
+        assert_int_equal(strtol(sides + strlen("#declare Joint_Sides = "), NULL, 10),
+                         many ? 16 : 0);
+        release(&out);
+    }
+    free(joints);
+}
+
 static void a_joint_is_given_in_the_frame_of_its_first_circle(void **state)
 {
     (void)state;
@@ -365,6 +394,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_numbers_of_a_cylinder_read_back_exactly),
         cmocka_unit_test(a_joint_is_given_in_the_frame_of_its_first_circle),
+        cmocka_unit_test(more_joints_than_povray_holds_are_meshes),
         cmocka_unit_test(segments_of_different_colours_carry_their_own),
         cmocka_unit_test(the_scene_says_what_it_is_and_how_to_render_it),
         cmocka_unit_test(without_a_geometry_file_all_stands_in_the_scene),
