@@ -55,6 +55,7 @@ static Status make_display(Viewer *viewer, Err *err)
                                  .antialias = viewer->options->antialias,
                                  .shadows = viewer->options->stage.shadows,
                                  .occlusion = viewer->options->occlusion,
+                                 .codes_suffice = true,
                                  .want_color = true};
     display_free(viewer->display);
     viewer->display = NULL;

@@ -1,10 +1,8 @@
 /* While the camera moves, a pixel stands for k x k of the window, k steered by the clock: what takes
- * longer than the time of a frame makes k larger, what takes much less makes it smaller. When it rests,
+ * longer than the time of a frame makes k larger, what takes less makes it smaller by 1, unless that
+ * took too long a short while ago. When it rests,
  * the coarse picture is replaced from the top down by the whole one and that by the antialiased one, some
- * rows at a time, so that a hand on the mouse never waits for more than a few rows.
- *
- * The bytes shown are those of a file to one level: encoding through a table is a twentieth of the
- * time of the exact one. */
+ * rows at a time, so that a hand on the mouse never waits for more than a few rows. */
 #include "app/display.h"
 
 #include "image/image.h"
@@ -13,16 +11,17 @@
 #include <string.h>
 
 /* For drawing; the rest of a thirtieth of a second goes into the window. */
-static const double frame_s = 1.0 / 45, refine_s = 1.0 / 40;
-enum { LEVELS = 1 << 14, MAX_COARSENESS = 16 };
+static const double frame_s = 1.0 / 40, refine_s = 1.0 / 40;
+enum { MAX_COARSENESS = 16, WHILE = 60 /* pictures */ };
 
 struct Display {
     Scene *scene;
     Renderer *renderer;
     int antialias, threads;
     int coarseness;
-    uint8_t codes[LEVELS + 1]; /* of linear colours, as parts of LEVELS */
-    uint8_t *rgb;              /* owned */
+    int too_slow, since; /* a coarseness that took too long, or 0, and how many pictures ago */
+    SrgbCodes codes;
+    uint8_t *rgb; /* owned */
     size_t capacity;
     int width, height; /* of rgb */
     int pass;          /* 0: coarse; 1: every pixel; 2: antialiased */
@@ -39,8 +38,7 @@ Status display_new(Scene *scene, const RenderParams *params, Display **out, Err 
                          .threads = params->threads,
                          .coarseness = 2,
                          .rows = RENDER_BAND_STEP};
-    for (int i = 0; i <= LEVELS; i++)
-        display->codes[i] = (uint8_t)image_code((float)i / LEVELS, ENCODING_SRGB, 8);
+    srgb_codes_init(&display->codes);
     Status status = renderer_new(scene, params, &display->renderer, err);
     if (status != STATUS_OK) {
         display_free(display);
@@ -91,10 +89,8 @@ static void encode_row(size_t row, int worker, void *context)
     size_t n = (size_t)job->color->width * 3;
     const float *from = job->color->values + row * n;
     uint8_t *to = job->display->rgb + ((size_t)job->first + row) * n;
-    for (size_t i = 0; i < n; i++) {
-        float part = from[i] * LEVELS + 0.5f;
-        to[i] = job->display->codes[part > 0 ? part < LEVELS ? (int)part : LEVELS : 0];
-    }
+    for (size_t i = 0; i < n; i++)
+        to[i] = srgb_code(&job->display->codes, from[i]);
 }
 
 /* Rows first .. first + rows of the scene's picture go to the display's. */
@@ -104,7 +100,11 @@ static Status draw_rows(Display *display, int first, int rows, int antialias, Er
     renderer_antialias(display->renderer, antialias);
     TRY(renderer_rows(display->renderer, first, rows, &band, err));
     EncodeJob job = {display, &band.color, first};
-    threads_for((size_t)rows, display->threads, encode_row, &job);
+    size_t row = 3 * (size_t)display->width;
+    if (band.codes.codes8)
+        memcpy(display->rgb + (size_t)first * row, band.codes.codes8, (size_t)rows * row);
+    else
+        threads_for((size_t)rows, display->threads, encode_row, &job);
     frame_release(&band);
     return STATUS_OK;
 }
@@ -114,13 +114,21 @@ static DisplayPicture picture_of(const Display *display)
     return (DisplayPicture){display->rgb, display->width, display->height};
 }
 
-/* Pixels take time in proportion to their number, more or less. */
-static int next_coarseness(int coarseness, double seconds)
+/* A coarser picture takes time in proportion to its pixels, more or less; of a finer one nothing is
+ * known but what was tried. */
+static void steer(Display *display, double seconds)
 {
-    int wanted = (int)ceil(coarseness * sqrt(seconds / frame_s) - 0.05);
-    if (wanted > MAX_COARSENESS)
-        return MAX_COARSENESS;
-    return wanted < 1 ? 1 : wanted;
+    int k = display->coarseness;
+    if (++display->since > WHILE)
+        display->too_slow = 0;
+    if (seconds > frame_s) {
+        display->too_slow = k;
+        display->since = 0;
+        k = (int)ceil(k * sqrt(seconds / frame_s));
+    } else if (k - 1 > display->too_slow) {
+        k--;
+    }
+    display->coarseness = k < MAX_COARSENESS ? k : MAX_COARSENESS;
 }
 
 Status display_quick(Display *display, DisplayPicture *picture, Err *err)
@@ -137,7 +145,7 @@ Status display_quick(Display *display, DisplayPicture *picture, Err *err)
     camera->height = height;
     display->pass = k > 1 ? 0 : 1;
     display->next = k > 1 ? 0 : height;
-    display->coarseness = next_coarseness(k, clock_seconds() - start_s);
+    steer(display, clock_seconds() - start_s);
     *picture = picture_of(display);
     return status;
 }
