@@ -102,6 +102,9 @@ LANE_TARGET static uint64_t RASTER_KERNEL(within)(const RasterSpots *spots, int3
 
 /* ---- what is in the way ---------------------------------------------------------------------- */
 
+/* See may_enter_joint. */
+static const float most_per_sine = 50;
+
 /* LANES probes as floats about the tile's middle. */
 typedef struct ProbeBlock {
     Lanes x, y, z;
@@ -134,7 +137,7 @@ RASTER_FN LaneMask may_enter(const Near *near, const SightLines *sight, Lanes z)
     Lanes on = lanes_fma(sight->x, lanes_set(item->ex), sight->y * item->ey);
     Lanes left = lanes_fma(-off, off, lanes_set(radius * radius));
     Lanes beyond = lanes_max(lanes_abs(on) - item->sine * item->half, lanes_set(0));
-    Lanes behind = lanes_fma(-on, lanes_set(item->cosine * near->per_sine), z) * item->sine;
+    Lanes behind = lanes_fma(-on, lanes_set(item->cosine), z * item->sine);
     return (beyond * beyond < left) & ((behind > 0.0f) | (behind * behind < left));
 }
 
@@ -178,12 +181,15 @@ RASTER_FN LaneMask in_cone(const RasterHull *hull, const Near *near, const Sight
     return (from < to) & (lanes_fma(t, lanes_fma(t, lanes_set(a), b + b), c) <= 0.0f);
 }
 
-/* Lines that may enter a joint before depths z from its middle. Its hits may lie off_joint_line beside
+/* Lines that may enter a joint before depths z from its middle. Where it is looked at along its axis, the
+ * capsule has no walls to tell that by. Its hits may lie off_joint_line beside
  * a line, and so before the wall of the capsule by the root of twice that at most, in radii. */
 RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const Near *near,
                                    const SightLines *sight, Lanes z)
 {
     const RasterHull *hull = &tile->bins->hulls[near->item->joint];
+    if (!(near->per_sine < most_per_sine))
+        return ~(LaneMask){0};
     Passage passage = pass_cylinder(near, sight);
     float margin = 0.015f * near->item->radius * near->per_sine;
     Lanes from = passage.middle - passage.half - margin;
