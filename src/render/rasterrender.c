@@ -473,15 +473,9 @@ static Status prepare_shadows(RasterPicture *picture, const RasterView *view, Er
     if (!picture->params->shadows || !wants_color(picture->frame))
         return STATUS_OK;
     TRY(mem_calloc(&picture->shadows, scene->n_lights, sizeof *picture->shadows, "lights", err));
-    for (size_t i = 0; i < scene->n_lights; i++) {
-        const Light *light = &scene->lights[i];
-        if (!light->casts_shadows)
-            continue;
-        if (rastershadow_can(scene, light))
-            TRY(rastershadow_new(scene, light, view, picture->workers, &picture->shadows[i], err));
-        else
-            rays = true;
-    }
+    TRY(rastershadows_new(scene, view, picture->workers, picture->shadows, err));
+    for (size_t i = 0; i < scene->n_lights; i++)
+        rays |= scene->lights[i].casts_shadows && !picture->shadows[i];
     return rays ? caster_new(scene, NULL, picture->workers, &picture->caster, err) : STATUS_OK;
 }
 

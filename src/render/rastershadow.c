@@ -49,7 +49,7 @@ static double scene_radius(const Scene *scene, Vec3 *center)
     return vec3_distance(*center, scene->bounds.high);
 }
 
-bool rastershadow_can(const Scene *scene, const Light *light)
+static bool sees_all(const Scene *scene, const Light *light)
 {
     Vec3 center;
     double radius = scene_radius(scene, &center);
@@ -175,8 +175,8 @@ static RasterAim aim_of(const Scene *scene, const RasterView *view, const Raster
     return aim;
 }
 
-Status rastershadow_new(const Scene *scene, const Light *light, const RasterView *camera,
-                        int threads, RasterShadow **out, Err *err)
+static Status make_shadow(const Scene *scene, const Light *light, const RasterView *camera,
+                          int threads, RasterShadow **out, Err *err)
 {
     RasterShadow *shadow = NULL;
     TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
@@ -193,6 +193,60 @@ Status rastershadow_new(const Scene *scene, const Light *light, const RasterView
     }
     *out = shadow;
     return STATUS_OK;
+}
+
+typedef struct Making {
+    const Scene *scene;
+    const RasterView *camera;
+    const Light *light;
+    RasterShadow **out;
+    Status status;
+    Err err;
+} Making;
+
+static void make_alone(size_t index, int worker, void *context)
+{
+    (void)worker;
+    Making *making = (Making *)context + index;
+    making->status =
+        make_shadow(making->scene, making->light, making->camera, 1, making->out, &making->err);
+}
+
+static Status make_shadows(Making *making, size_t n, int threads, Err *err)
+{
+    /* A thread for each light, but for those lights that would keep some threads waiting. */
+    size_t alone = n;
+    if (!rasterbins_are_small(making->scene))
+        alone -= n % (size_t)threads;
+    threads_for(alone, threads, make_alone, making);
+    for (size_t i = 0; i < alone; i++)
+        if (making[i].status != STATUS_OK) {
+            if (err)
+                *err = making[i].err;
+            return making[i].status;
+        }
+    for (size_t i = alone; i < n; i++)
+        TRY(make_shadow(making[i].scene, making[i].light, making[i].camera, threads, making[i].out,
+                        err));
+    return STATUS_OK;
+}
+
+Status rastershadows_new(const Scene *scene, const RasterView *camera, int threads,
+                         RasterShadow **shadows, Err *err)
+{
+    Making *making = NULL;
+    size_t n = 0;
+    TRY(mem_calloc(&making, scene->n_lights, sizeof *making, "lights", err));
+    for (size_t i = 0; i < scene->n_lights; i++) {
+        const Light *light = &scene->lights[i];
+        shadows[i] = NULL;
+        if (light->casts_shadows && sees_all(scene, light))
+            making[n++] =
+                (Making){.scene = scene, .camera = camera, .light = light, .out = &shadows[i]};
+    }
+    Status status = n > 0 ? make_shadows(making, n, threads, err) : STATUS_OK;
+    free(making);
+    return status;
 }
 
 void rastershadow_free(RasterShadow *shadow)

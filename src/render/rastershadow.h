@@ -8,13 +8,11 @@
 /* The scene as one light sees it; constant once built. */
 typedef struct RasterShadow RasterShadow;
 
-/* Whether the light sees all of the scene in one view: it is parallel, or well outside. */
-bool rastershadow_can(const Scene *scene, const Light *light);
-
-/* For places in the frame of `camera`. Borrows the scene, which must not change;
- * rastershadow_can(). */
-MUST_CHECK Status rastershadow_new(const Scene *scene, const Light *light, const RasterView *camera,
-                                   int threads, RasterShadow **out, Err *err);
+/* That of light i in shadows[i], NULL where the light casts none or is too near to see all of the
+ * scene in one view, for places in the frame of `camera`. Borrows the scene, which must not change.
+ * The shadows are the caller's even when this fails. */
+MUST_CHECK Status rastershadows_new(const Scene *scene, const RasterView *camera, int threads,
+                                    RasterShadow **shadows, Err *err);
 void rastershadow_free(RasterShadow *shadow);
 
 /* Places that a light is asked about, of up to RASTER_BATCH tiles of the picture; a worker needs

@@ -165,11 +165,16 @@ static Status sort_into_rows(Build *build, int threads, Err *err)
     return STATUS_OK;
 }
 
-/* As many for each thread as for the others. */
-static size_t chunks_for(size_t n, size_t threads)
+bool rasterbins_are_small(const Scene *scene)
 {
-    size_t chunks = n / LEAST_CHUNK;
-    if (chunks < 2)
+    return rasterbins_items(scene) / LEAST_CHUNK < 2;
+}
+
+/* As many for each thread as for the others. */
+static size_t chunks_for(const Scene *scene, size_t threads)
+{
+    size_t chunks = rasterbins_items(scene) / LEAST_CHUNK;
+    if (rasterbins_are_small(scene))
         return 1;
     chunks = chunks < MOST_CHUNKS ? chunks : MOST_CHUNKS;
     threads = threads < chunks ? threads : chunks;
@@ -190,7 +195,8 @@ static Status make_bins(RasterBins *bins, int threads, Err *err)
         (RasterItem *)(((uintptr_t)bins->item_memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
     TRY(mem_calloc(&bins->row_offsets, (size_t)bins->tile_rows + 1, sizeof *bins->row_offsets,
                    "rows of tiles", err));
-    size_t n = bins->n_items, chunks = chunks_for(n, (size_t)threads), chunk = n / chunks + 1;
+    size_t n = bins->n_items, chunks = chunks_for(bins->scene, (size_t)threads);
+    size_t chunk = n / chunks + 1;
     Build build = {.bins = bins, .chunk = chunk, .n_chunks = (n + chunk - 1) / chunk};
     Status status = make_room_for_joints(&build, threads, err);
     if (status == STATUS_OK)

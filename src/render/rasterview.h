@@ -70,6 +70,9 @@ static inline size_t rasterbins_items(const Scene *scene)
     return scene->n_primitives - scene->n_ends;
 }
 
+/* Whether one thread makes the bins of the scene, however many there are. */
+bool rasterbins_are_small(const Scene *scene);
+
 /* Borrows the scene. STATUS_MEMORY when there is no room. */
 MUST_CHECK Status rasterbins_new(const Scene *scene, const RasterView *view, int threads,
                                  RasterBins **out, Err *err);
