@@ -164,21 +164,17 @@ RASTER_FN void clip_to_ends(const RasterHull *hull, const Near *near, const Sigh
 
 /* Lines that between two depths may be in the cone about a joint. At t before or behind where a line is
  * nearest to the axis, it is, if (1 - taper^2) distance^2 - (middle - s taper)^2 = a t^2 + 2 b t + c
- * <= 0. */
-RASTER_FN LaneMask in_cone(const RasterHull *hull, const Near *near, const SightLines *sight,
-                           const Passage *passage, Lanes from, Lanes to)
+ * <= 0; a line that runs more steeply than the cone, a <= 0, may be. */
+RASTER_FN LaneMask in_cone(const RasterHull *hull, const Passage *passage, Lanes from, Lanes to)
 {
-    const RasterItem *item = near->item;
-    float per = 1 - hull->taper * hull->taper, slant = hull->taper * item->cosine;
-    float a = per * item->sine * item->sine - slant * slant;
-    if (near->perspective || a < 1e-3f)
-        return from < to;
-    Lanes off = lanes_fma(sight->y, lanes_set(item->ex), -(sight->x * item->ey));
-    Lanes radius = lanes_fma(-passage->along, lanes_set(hull->taper), lanes_set(hull->middle));
-    Lanes b = radius * slant, t = b * (-1 / a);
+    const float least = 1e-3f;
+    Lanes taper = lanes_set(hull->taper), per = 1.0f - taper * taper;
+    Lanes slant = taper * passage->rate, a = per * passage->sine2 - slant * slant;
+    Lanes radius = lanes_fma(-passage->along, taper, lanes_set(hull->middle)), b = radius * slant;
+    Lanes t = -b / lanes_max(a, lanes_set(least));
     t = lanes_max(lanes_min(t, to - passage->middle), from - passage->middle);
-    Lanes c = lanes_fma(per * off, off, -(radius * radius));
-    return (from < to) & (lanes_fma(t, lanes_fma(t, lanes_set(a), b + b), c) <= 0.0f);
+    Lanes c = lanes_fma(per, passage->off2, -(radius * radius));
+    return (from < to) & ((a < least) | (lanes_fma(t, lanes_fma(t, a, b + b), c) <= 0.0f));
 }
 
 /* Lines that may enter a joint before depths z from its middle. Where it is looked at along its axis, the
@@ -195,7 +191,7 @@ RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const Near *near,
     Lanes from = passage.middle - passage.half - margin;
     Lanes to = lanes_min(z, passage.middle + passage.half);
     clip_to_ends(hull, near, sight, &from, &to);
-    return in_cone(hull, near, sight, &passage, from, to);
+    return in_cone(hull, &passage, from, to);
 }
 
 /* Whether the item is seen before the probes' depths. */

@@ -159,6 +159,8 @@ typedef struct Passage {
     Lanes half;   /* of what is inside, in depth */
     Lanes along;  /* at that place, along the axis from its middle */
     Lanes rate;   /* of that with depth */
+    Lanes off2;   /* their distance there, squared; t of depth farther it has grown by sine2 t^2 */
+    Lanes sine2;
 } Passage;
 
 RASTER_FN Passage pass_cylinder(const Near *near, const SightLines *sight)
@@ -176,6 +178,8 @@ RASTER_FN Passage pass_cylinder(const Near *near, const SightLines *sight)
             lanes_fma(sight->x, lanes_set(item->ex), sight->y * item->ey) * near->per_sine;
         passage.middle = passage.along * item->cosine;
         passage.rate = lanes_set(item->cosine);
+        passage.off2 = off * off;
+        passage.sine2 = lanes_set(item->sine * item->sine);
         return passage;
     }
     Lanes ux = lanes_set(near->axis[0]), uy = lanes_set(near->axis[1]);
@@ -191,6 +195,8 @@ RASTER_FN Passage pass_cylinder(const Near *near, const SightLines *sight)
     passage.half = lanes_sqrt(lanes_max(left, zero)) * per;
     passage.middle = -turn * per;
     passage.rate = lanes_fma(sight->dx, ux, lanes_fma(sight->dy, uy, uz));
+    passage.off2 = off * off * per;
+    passage.sine2 = n2;
     passage.along = lanes_fma(sight->x, ux, lanes_fma(sight->y, uy, passage.middle * passage.rate));
     return passage;
 }
