@@ -123,21 +123,30 @@ LANE_TARGET static bool decide_probe(const Near *near, const RasterTile *tile,
     return z - tile->z_middle < (double)probes->z[probe];
 }
 
-/* Lines that may enter the item before depths z from its middle: in parallel views, by its capsule's
- * outline and without a root. Joints may be hit 1e-4 of their radius beside the line. */
+/* Lines that may enter the item before depths z from its middle, by its capsule and without a root.
+ * Joints may be hit 1e-4 of their radius beside the line. */
 RASTER_FN LaneMask may_enter(const Near *near, const SightLines *sight, Lanes z)
 {
     const RasterItem *item = near->item;
+    const float radius = item->radius * 1.0002f;
+    Lanes left, beyond, behind;
     if (near->kind == RASTER_EXACT)
         return ~(LaneMask){0};
-    if (near->perspective)
-        return near->kind == RASTER_JOINT ? within_outline(near, sight) : ~(LaneMask){0};
-    float radius = item->radius * 1.0002f;
+    if (near->perspective) {
+        Crossing crossing = cross_axis(near, sight);
+        Lanes size2 = lanes_fma(sight->dx, sight->dx, sight->dy * sight->dy) + 1.0f;
+        Lanes on = lanes_fma(sight->x, lanes_set(near->axis[0]), sight->y * near->axis[1]);
+        on = lanes_fma(on, crossing.sine2, -(crossing.turn * crossing.rate));
+        left = crossing.sine2 * (radius * radius) - crossing.off * crossing.off;
+        behind = lanes_fma(z, crossing.sine2, crossing.turn);
+        beyond = lanes_max(lanes_abs(on) - crossing.sine2 * item->half, lanes_set(0));
+        return (beyond * beyond < left * size2) & ((behind > 0.0f) | (behind * behind < left));
+    }
     Lanes off = lanes_fma(sight->y, lanes_set(item->ex), -(sight->x * item->ey));
     Lanes on = lanes_fma(sight->x, lanes_set(item->ex), sight->y * item->ey);
-    Lanes left = lanes_fma(-off, off, lanes_set(radius * radius));
-    Lanes beyond = lanes_max(lanes_abs(on) - item->sine * item->half, lanes_set(0));
-    Lanes behind = lanes_fma(-on, lanes_set(item->cosine), z * item->sine);
+    left = lanes_fma(-off, off, lanes_set(radius * radius));
+    behind = lanes_fma(-on, lanes_set(item->cosine), z * item->sine);
+    beyond = lanes_max(lanes_abs(on) - item->sine * item->half, lanes_set(0));
     return (beyond * beyond < left) & ((behind > 0.0f) | (behind * behind < left));
 }
 
@@ -277,8 +286,6 @@ RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int fir
             __builtin_prefetch(&tile->items[tile->list[i + (size_t)__builtin_ctz(left)]]);
         for (; bits; bits &= bits - 1) {
             Near near = approach(tile, tile->list[i + (size_t)__builtin_ctz(bits)], perspective);
-            if (perspective && near.kind == RASTER_JOINT)
-                outline(tile, &near);
             LaneMask among = open & (block.z > near.z_near) & (block.item != (int32_t)near.number);
             if (lanes_any(among))
                 open &= ~item_covers(&near, tile, probes, first, &block, among);

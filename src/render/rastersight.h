@@ -163,6 +163,29 @@ typedef struct Passage {
     Lanes sine2;
 } Passage;
 
+/* How lines that are not parallel pass an axis u: n = D x u, P the place where they pass its middle's depth. */
+typedef struct Crossing {
+    Lanes sine2; /* |n|^2 */
+    Lanes off;   /* n . P: the distance of the two, times |n| */
+    Lanes turn;  /* the depth of their nearest points, times -|n|^2 */
+    Lanes rate;  /* D . u */
+} Crossing;
+
+RASTER_FN Crossing cross_axis(const Near *near, const SightLines *sight)
+{
+    Lanes ux = lanes_set(near->axis[0]), uy = lanes_set(near->axis[1]);
+    Lanes uz = lanes_set(near->axis[2]);
+    Lanes nx = lanes_fma(sight->dy, uz, -uy), ny = lanes_fma(-sight->dx, uz, ux);
+    Lanes nz = lanes_fma(sight->dx, uy, -(sight->dy * ux));
+    Lanes cross = lanes_fma(nx, sight->y, -(ny * sight->x));
+    Crossing crossing;
+    crossing.sine2 = lanes_fma(nx, nx, lanes_fma(ny, ny, nz * nz));
+    crossing.off = lanes_fma(nx, sight->x, ny * sight->y);
+    crossing.turn = lanes_fma(nz, lanes_fma(sight->x, uy, -(sight->y * ux)), uz * cross);
+    crossing.rate = lanes_fma(sight->dx, ux, lanes_fma(sight->dy, uy, uz));
+    return crossing;
+}
+
 RASTER_FN Passage pass_cylinder(const Near *near, const SightLines *sight)
 {
     Passage passage;
@@ -182,22 +205,17 @@ RASTER_FN Passage pass_cylinder(const Near *near, const SightLines *sight)
         passage.sine2 = lanes_set(item->sine * item->sine);
         return passage;
     }
+    Crossing crossing = cross_axis(near, sight);
+    Lanes off = crossing.off, per = 1.0f / crossing.sine2;
+    Lanes left = lanes_fma(lanes_set(radius2), crossing.sine2, -(off * off));
     Lanes ux = lanes_set(near->axis[0]), uy = lanes_set(near->axis[1]);
-    Lanes uz = lanes_set(near->axis[2]);
-    Lanes nx = lanes_fma(sight->dy, uz, -uy), ny = lanes_fma(-sight->dx, uz, ux);
-    Lanes nz = lanes_fma(sight->dx, uy, -(sight->dy * ux));
-    Lanes n2 = lanes_fma(nx, nx, lanes_fma(ny, ny, nz * nz)), per = 1.0f / n2;
-    Lanes off = lanes_fma(nx, sight->x, ny * sight->y);
-    Lanes left = lanes_fma(lanes_set(radius2), n2, -(off * off));
-    Lanes cross = lanes_fma(nx, sight->y, -(ny * sight->x));
-    Lanes turn = lanes_fma(nz, lanes_fma(sight->x, uy, -(sight->y * ux)), uz * cross);
     passage.met = left > 0.0f;
     passage.half = lanes_sqrt(lanes_max(left, zero)) * per;
-    passage.middle = -turn * per;
-    passage.rate = lanes_fma(sight->dx, ux, lanes_fma(sight->dy, uy, uz));
-    passage.off2 = off * off * per;
-    passage.sine2 = n2;
+    passage.middle = -crossing.turn * per;
+    passage.rate = crossing.rate;
     passage.along = lanes_fma(sight->x, ux, lanes_fma(sight->y, uy, passage.middle * passage.rate));
+    passage.off2 = off * off * per;
+    passage.sine2 = crossing.sine2;
     return passage;
 }
 
