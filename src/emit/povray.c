@@ -201,7 +201,6 @@ static Status put_primitive_macros(const Scene *scene, const PovrayParams *param
     if (scene->model != SCENE_JOINED)
         return STATUS_OK;
     report->joint_sides = joint_sides(scene);
-    values = (Values){0};
     text_printf(add_value(&values, "sides"), "%d", report->joint_sides);
     return expand(&values, params, "joints.inc", out, err);
 }

@@ -70,17 +70,6 @@ static double largest_gradient(const JointPlane *plane)
     return gradient_margin * largest;
 }
 
-/* Whether each disc lies on one side of the other's plane. Without that, rulings cross, and the surface
- * is not that of the function. */
-static bool is_wall_of_solid(const Primitive *joint)
-{
-    double sine = vec3_length(vec3_cross(joint->axis_a, joint->axis_b));
-    double slack = 1e-9 * (joint->radius_mm + joint->radius_b_mm);
-    Vec3 span = vec3_sub(joint->b, joint->a);
-    return vec3_dot(span, joint->axis_a) >= joint->radius_b_mm * sine - slack &&
-           vec3_dot(span, joint->axis_b) >= joint->radius_mm * sine - slack;
-}
-
 int joint_sides(const Scene *scene)
 {
     size_t n = 0;
@@ -96,7 +85,8 @@ void put_joint(Text *text, const Scene *scene, const Primitive *joint)
     JointPlane plane = joint_plane(&frame, across, joint->axis_a);
     /* The distances to the planes are not divided by the lengths of their normals, either. */
     double sides = fmax(hypot(plane.ax + 1, plane.az), hypot(plane.bx - 1, plane.bz));
-    bool folded = !is_wall_of_solid(joint);
+    /* The function is that of the surface only where rulings do not cross. */
+    bool folded = !primitive_joint_is_solid(joint);
     double steepest = fmax(fmax(1, 2 * plane.ratio), sides);
     double scale = folded ? 0 : steepest / largest_gradient(&plane);
     const double numbers[] = {frame.radius, plane.ax,    plane.az, plane.bx,

@@ -75,10 +75,10 @@ static void store_plane(float to[4], Vec3 inward, Vec3 center, double radius)
 
 /* `turn`: 1 if the item's axis leads from a to b, or -1. */
 static RasterHull make_hull(const RasterView *view, const Primitive *primitive, Vec3 span,
-                            double turn)
+                            double length, double turn)
 {
     RasterHull hull;
-    double a = primitive->radius_mm, b = primitive->radius_b_mm, length = vec3_length(span);
+    double a = primitive->radius_mm, b = primitive->radius_b_mm;
     bool tapers = fabs(a - b) < length;
     store_plane(hull.plane[0], rasterview_to_frame(view, primitive->axis_a), vec3_scale(span, -0.5),
                 a);
@@ -87,17 +87,6 @@ static RasterHull make_hull(const RasterView *view, const Primitive *primitive, 
     hull.middle = (float)((tapers ? (a + b) / 2 : max_of(a, b)) * 1.0005);
     hull.taper = (float)(tapers ? turn * (a - b) / length : 0);
     return hull;
-}
-
-/* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its
- * two discs bound a solid. */
-static bool joint_is_solid(const Primitive *primitive)
-{
-    Vec3 span = vec3_sub(primitive->b, primitive->a);
-    double sine = vec3_length(vec3_cross(primitive->axis_a, primitive->axis_b));
-    double slack = 1e-9 * (primitive->radius_mm + primitive->radius_b_mm);
-    return vec3_dot(span, primitive->axis_a) >= primitive->radius_b_mm * sine - slack &&
-           vec3_dot(span, primitive->axis_b) >= primitive->radius_mm * sine - slack;
 }
 
 void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, RasterItem *item)
@@ -120,10 +109,11 @@ void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, Ra
     if (primitive->kind == PRIMITIVE_CYLINDER)
         kind = !view->perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
     if (primitive->kind == PRIMITIVE_JOINT) {
-        kind = bins->scene->open_joints || !joint_is_solid(primitive) ? RASTER_EXACT : RASTER_JOINT;
+        kind = bins->scene->open_joints || !primitive_joint_is_solid(primitive) ? RASTER_EXACT
+                                                                                : RASTER_JOINT;
         radius = max_of(radius, primitive->radius_b_mm);
         if (kind == RASTER_JOINT && bins->hulls)
-            bins->hulls[joint] = make_hull(view, primitive, span, turn);
+            bins->hulls[joint] = make_hull(view, primitive, span, length, turn);
         else if (kind == RASTER_JOINT)
             bins->joints[joint] = make_joint(view, primitive, middle);
     }

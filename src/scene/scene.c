@@ -98,6 +98,15 @@ JointFrame primitive_joint(const Primitive *primitive)
                        (const double[2]){primitive->radius_mm, primitive->radius_b_mm});
 }
 
+bool primitive_joint_is_solid(const Primitive *joint)
+{
+    Vec3 span = vec3_sub(joint->b, joint->a);
+    double sine = vec3_length(vec3_cross(joint->axis_a, joint->axis_b));
+    double slack = 1e-9 * (joint->radius_mm + joint->radius_b_mm);
+    return vec3_dot(span, joint->axis_a) >= joint->radius_b_mm * sine - slack &&
+           vec3_dot(span, joint->axis_b) >= joint->radius_mm * sine - slack;
+}
+
 void scene_release(Scene *scene)
 {
     free(scene->lights);

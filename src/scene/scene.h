@@ -87,6 +87,10 @@ typedef struct Primitive {
 /* A primitive that is a joint, prepared for many rays. */
 JointFrame primitive_joint(const Primitive *primitive);
 
+/* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its two discs
+ * bound a solid. Else rulings cross. */
+bool primitive_joint_is_solid(const Primitive *joint);
+
 /* One Gaussian line potential, or what stands in for it in a blob; METHODS section 2. */
 typedef struct FieldSegment {
     Vec3 a, b;        /* different */
@@ -127,9 +131,8 @@ typedef struct Scene {
     Ground ground;
     Primitive *primitives; /* owned; empty for an implicit model */
     size_t n_primitives;
-    size_t
-        n_ends; /* the last so many are spheres about an end of a cylinder, with its radius, id and
-                    * color */
+    /* The last so many are spheres about an end of a cylinder, with its radius, id and color. */
+    size_t n_ends;
     FieldSegment *segments; /* owned; empty for a primitive model */
     size_t n_segments;
     Blend blend;
