@@ -1,8 +1,8 @@
 /* While the camera moves, a pixel stands for k x k of the window, k steered by the clock: what takes
  * longer than the time of a frame makes k larger, what takes less makes it smaller by 1, unless that
- * took too long a short while ago. When it rests,
- * the coarse picture is replaced from the top down by the whole one and that by the antialiased one, some
- * rows at a time, so that a hand on the mouse never waits for more than a few rows. */
+ * took too long a short while ago. When it rests, the coarse picture is replaced from the top down by
+ * the whole one and that by the antialiased one, some rows at a time, so that a hand on the mouse never
+ * waits for more than a few rows. */
 #include "app/display.h"
 
 #include "image/image.h"
@@ -17,11 +17,10 @@ enum { MAX_COARSENESS = 16, WHILE = 60 /* pictures */ };
 struct Display {
     Scene *scene;
     Renderer *renderer;
-    int antialias, threads;
+    int antialias;
     int coarseness;
     int too_slow, since; /* a coarseness that took too long, or 0, and how many pictures ago */
-    SrgbCodes codes;
-    uint8_t *rgb; /* owned */
+    uint8_t *rgb;        /* owned */
     size_t capacity;
     int width, height; /* of rgb */
     int pass;          /* 0: coarse; 1: every pixel; 2: antialiased */
@@ -33,12 +32,8 @@ Status display_new(Scene *scene, const RenderParams *params, Display **out, Err 
 {
     Display *display;
     TRY(mem_calloc(&display, 1, sizeof *display, "displays", err));
-    *display = (Display){.scene = scene,
-                         .antialias = params->antialias,
-                         .threads = params->threads,
-                         .coarseness = 2,
-                         .rows = RENDER_BAND_STEP};
-    srgb_codes_init(&display->codes);
+    *display = (Display){
+        .scene = scene, .antialias = params->antialias, .coarseness = 2, .rows = RENDER_BAND_STEP};
     Status status = renderer_new(scene, params, &display->renderer, err);
     if (status != STATUS_OK) {
         display_free(display);
@@ -76,37 +71,20 @@ static Status set_size(Display *display, int width, int height, Err *err)
     return STATUS_OK;
 }
 
-typedef struct EncodeJob {
-    const Display *display;
-    const Plane *color;
-    int first;
-} EncodeJob;
-
-static void encode_row(size_t row, int worker, void *context)
-{
-    (void)worker;
-    const EncodeJob *job = context;
-    size_t n = (size_t)job->color->width * 3;
-    const float *from = job->color->values + row * n;
-    uint8_t *to = job->display->rgb + ((size_t)job->first + row) * n;
-    for (size_t i = 0; i < n; i++)
-        to[i] = srgb_code(&job->display->codes, from[i]);
-}
-
 /* Rows first .. first + rows of the scene's picture go to the display's. */
 static Status draw_rows(Display *display, int first, int rows, int antialias, Err *err)
 {
     Frame band;
+    size_t row = 3 * (size_t)display->width;
     renderer_antialias(display->renderer, antialias);
     TRY(renderer_rows(display->renderer, first, rows, &band, err));
-    EncodeJob job = {display, &band.color, first};
-    size_t row = 3 * (size_t)display->width;
-    if (band.codes.codes8)
+    Status status = STATUS_OK;
+    if (!band.codes.codes8)
+        status = picture_from_plane(&band.codes, &band.color, ENCODING_SRGB, 8, err);
+    if (status == STATUS_OK)
         memcpy(display->rgb + (size_t)first * row, band.codes.codes8, (size_t)rows * row);
-    else
-        threads_for((size_t)rows, display->threads, encode_row, &job);
     frame_release(&band);
-    return STATUS_OK;
+    return status;
 }
 
 static DisplayPicture picture_of(const Display *display)
