@@ -129,25 +129,26 @@ RASTER_FN LaneMask may_enter(const Near *near, const SightLines *sight, Lanes z)
 {
     const RasterItem *item = near->item;
     const float radius = item->radius * 1.0002f;
-    Lanes left, beyond, behind;
+    Lanes left, beyond, behind, size2 = lanes_set(1);
     if (near->kind == RASTER_EXACT)
         return ~(LaneMask){0};
     if (near->perspective) {
         Crossing crossing = cross_axis(near, sight);
-        Lanes size2 = lanes_fma(sight->dx, sight->dx, sight->dy * sight->dy) + 1.0f;
         Lanes on = lanes_fma(sight->x, lanes_set(near->axis[0]), sight->y * near->axis[1]);
         on = lanes_fma(on, crossing.sine2, -(crossing.turn * crossing.rate));
+        size2 += lanes_fma(sight->dx, sight->dx, sight->dy * sight->dy);
         left = crossing.sine2 * (radius * radius) - crossing.off * crossing.off;
         behind = lanes_fma(z, crossing.sine2, crossing.turn);
-        beyond = lanes_max(lanes_abs(on) - crossing.sine2 * item->half, lanes_set(0));
-        return (beyond * beyond < left * size2) & ((behind > 0.0f) | (behind * behind < left));
+        beyond = lanes_abs(on) - crossing.sine2 * item->half;
+    } else {
+        Lanes off = lanes_fma(sight->y, lanes_set(item->ex), -(sight->x * item->ey));
+        Lanes on = lanes_fma(sight->x, lanes_set(item->ex), sight->y * item->ey);
+        left = lanes_fma(-off, off, lanes_set(radius * radius));
+        behind = lanes_fma(-on, lanes_set(item->cosine), z * item->sine);
+        beyond = lanes_abs(on) - item->sine * item->half;
     }
-    Lanes off = lanes_fma(sight->y, lanes_set(item->ex), -(sight->x * item->ey));
-    Lanes on = lanes_fma(sight->x, lanes_set(item->ex), sight->y * item->ey);
-    left = lanes_fma(-off, off, lanes_set(radius * radius));
-    behind = lanes_fma(-on, lanes_set(item->cosine), z * item->sine);
-    beyond = lanes_max(lanes_abs(on) - item->sine * item->half, lanes_set(0));
-    return (beyond * beyond < left) & ((behind > 0.0f) | (behind * behind < left));
+    beyond = lanes_max(beyond, lanes_set(0));
+    return (beyond * beyond < left * size2) & ((behind > 0.0f) | (behind * behind < left));
 }
 
 /* Narrows the depths between which lines may be in a joint to those between its ends. */
@@ -186,9 +187,9 @@ RASTER_FN LaneMask in_cone(const RasterHull *hull, const Passage *passage, Lanes
     return (from < to) & ((a < least) | (lanes_fma(t, lanes_fma(t, a, b + b), c) <= 0.0f));
 }
 
-/* Lines that may enter a joint before depths z from its middle. Where it is looked at along its axis, the
- * capsule has no walls to tell that by. Its hits may lie off_joint_line beside
- * a line, and so before the wall of the capsule by the root of twice that at most, in radii. */
+/* Lines that may enter a joint before depths z from its middle. Where it is looked at along its axis,
+ * the capsule has no walls to tell that by. Its hits may lie off_joint_line beside a line, and so
+ * before the wall of the capsule by the root of twice that at most, in radii. */
 RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const Near *near,
                                    const SightLines *sight, Lanes z)
 {

@@ -112,11 +112,6 @@ static uint32_t parts_of(Range pixels, TileSpan tiles)
 
 /* ---- items ----------------------------------------------------------------------------------- */
 
-static double item_depth(const RasterItem *item)
-{
-    return (double)item->cosine * (double)item->half + (double)item->radius;
-}
-
 /* The pixels that the whole of it covers, across the picture or down it. */
 static inline Range whole_pixels(const RasterView *view, const RasterItem *item, bool across)
 {

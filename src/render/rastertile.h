@@ -44,11 +44,21 @@ typedef struct RasterItem {
 /* A scene may have no more primitives. */
 enum { MOST_ITEMS = 1 << 28 };
 
+/* How far it reaches before and behind its middle, and the depth before which nothing of it is. */
+static inline double item_depth(const RasterItem *item)
+{
+    return (double)item->cosine * (double)item->half + (double)item->radius;
+}
+
+static inline double item_nearest(const RasterItem *item)
+{
+    return item->z - (double)item->cosine * (double)item->half - (double)item->radius;
+}
+
 /* Whether an item is about the eye's plane, or so close that its outline tells nothing. */
 static inline bool item_is_close(const RasterItem *item)
 {
-    double near = item->z - (double)item->cosine * (double)item->half - (double)item->radius;
-    return near < 1e-3 * (1 + (double)item->radius);
+    return item_nearest(item) < 1e-3 * (1 + (double)item->radius);
 }
 
 /* A ruled joint about the middle of its item:

@@ -61,7 +61,7 @@ typedef struct Build {
 
 static size_t chunk_end(const Build *build, size_t chunk)
 {
-    size_t end = (chunk + 1) * build->chunk, n = build->bins->n_items;
+    size_t end = (chunk + 1) * build->chunk, n = rasterbins_items(build->bins->scene);
     return end < n ? end : n;
 }
 
@@ -183,19 +183,19 @@ static size_t chunks_for(const Scene *scene, size_t threads)
 
 static Status make_bins(RasterBins *bins, int threads, Err *err)
 {
-    if (bins->n_items > MOST_ITEMS)
+    size_t n = rasterbins_items(bins->scene), chunks = chunks_for(bins->scene, (size_t)threads);
+    if (n > MOST_ITEMS)
         return err_set(err, STATUS_MEMORY, "too many primitives for --method raster");
     if (bins->tile_columns > UINT16_MAX || bins->tile_rows > UINT16_MAX)
         return err_set(err, STATUS_USAGE,
                        "--method raster draws pictures of up to %d pixels a side, --method trace "
                        "larger ones",
                        UINT16_MAX * TILE_SIDE);
-    TRY(mem_calloc(&bins->item_memory, bins->n_items + 1, sizeof *bins->items, "items", err));
+    TRY(mem_calloc(&bins->item_memory, n + 1, sizeof *bins->items, "items", err));
     bins->items =
         (RasterItem *)(((uintptr_t)bins->item_memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
     TRY(mem_calloc(&bins->row_offsets, (size_t)bins->tile_rows + 1, sizeof *bins->row_offsets,
                    "rows of tiles", err));
-    size_t n = bins->n_items, chunks = chunks_for(bins->scene, (size_t)threads);
     size_t chunk = n / chunks + 1;
     Build build = {.bins = bins, .chunk = chunk, .n_chunks = (n + chunk - 1) / chunk};
     Status status = make_room_for_joints(&build, threads, err);
@@ -213,7 +213,6 @@ Status rasterbins_new(const Scene *scene, const RasterView *view, int threads, R
     RasterBins *bins = NULL;
     TRY(mem_calloc(&bins, 1, sizeof *bins, "tiles", err));
     bins->scene = scene;
-    bins->n_items = rasterbins_items(scene);
     bins->view = *view;
     bins->view.per_x = 1 / view->step_x;
     bins->view.per_y = 1 / view->step_y;

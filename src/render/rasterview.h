@@ -52,9 +52,8 @@ typedef struct RasterBox {
 typedef struct RasterBins {
     const Scene *scene; /* borrowed */
     RasterView view;
-    void *item_memory; /* holds the items */
-    RasterItem *items; /* in a line of the cache each */
-    size_t n_items;
+    void *item_memory;   /* holds the items */
+    RasterItem *items;   /* in a line of the cache each */
     RasterJoint *joints; /* of items that are joints, but in a light's view: */
     RasterHull *hulls;
     int tile_columns, tile_rows;

@@ -160,10 +160,9 @@ static void draw_primitive(const Buffers *buffers, const RasterItem *item, uint3
 {
     const RasterView *view = brush->view;
     const Primitive *primitive = &buffers->scene->primitives[number];
-    double nearest = item->z - (double)item->cosine * (double)item->half - (double)item->radius;
     double pixel = fmin(view->step_x, -view->step_y);
     if (view->perspective) /* a step across a slanting line of sight is foreshortened */
-        pixel *= nearest / (1 + view->left * view->left + view->top * view->top);
+        pixel *= item_nearest(item) / (1 + view->left * view->left + view->top * view->top);
     brush->apart = pixel * pixels_apart;
     brush->primitive = number;
     Vec3 a = rasterview_to_frame(view, vec3_sub(primitive->a, view->location));
@@ -241,9 +240,9 @@ static void draw_row(size_t row, int worker, void *context)
 
 static Status check_outside(const RasterBins *bins, Err *err)
 {
-    for (size_t i = 0; i < bins->n_items; i++) {
+    for (size_t i = 0; i < rasterbins_items(bins->scene); i++) {
         const RasterItem *item = &bins->items[i];
-        double deep = (double)item->cosine * (double)item->half + (double)item->radius;
+        double deep = item_depth(item);
         if (item->z + deep > 0 && item->z - deep < (bins->view.perspective ? deep * 0.01 : 0))
             return err_set(err, STATUS_USAGE,
                            "--method zbuffer needs a camera that is not among the vessels");

@@ -550,7 +550,7 @@ static void boxes_hold_the_axes_of_vessels(void **state)
         RasterBins *bins;
         assert_int_equal(rasterbins_new(&staged.scene, &view, 2, &bins, NULL), STATUS_OK);
         int held = 0;
-        for (uint32_t i = 0; i < bins->n_items; i++)
+        for (uint32_t i = 0; i < rasterbins_items(bins->scene); i++)
             for (int step = 0; step <= 8; step++) {
                 const Primitive *primitive = &staged.scene.primitives[i];
                 Vec3 span = vec3_sub(primitive->b, primitive->a);
