@@ -1,0 +1,135 @@
+#!/usr/bin/env bash
+# Which colour a value gets, in the native picture and in the scene for POV-Ray: entries of matplotlib's
+# published tables, as 8-bit codes and as linear numbers worked out by hand.
+. "$(dirname "$0")/../lib.sh"
+
+MODELS="cylinders joined rounded isosurface blob"
+
+# Vessels 2, 4, 6, 8 and 10, each alone, of radii 1.37 mm times 1, 2, 4, 8 and 16, and a look that shows
+# nothing but their colours. From the least to the greatest, the radii are at the entries 0, 17, 51, 119 and 255
+# of 256, and by logarithm at 0, 1/4, 1/2, 3/4 and 1.
+make_vessels() {
+    cat >tree.swc <<'SWC'
+1 1 -50 90 0.5 1.37 -1
+2 3 50 90 0.5 1.37 1
+3 1 -50 80 0.5 2.74 -1
+4 3 50 80 0.5 2.74 3
+5 1 -50 60 0.5 5.48 -1
+6 3 50 60 0.5 5.48 5
+7 1 -50 20 0.5 10.96 -1
+8 3 50 20 0.5 10.96 7
+9 1 -50 -50 0.5 21.92 -1
+10 3 50 -50 0.5 21.92 9
+SWC
+    cat >flat.ini <<'INI'
+[vessel]
+color = 0.3 0.4 0.5
+[background]
+color = 1 1 1
+[finish]
+ambient = 1
+diffuse = 0
+[light key]
+direction = 0 0 1
+color = 1 1 1
+INI
+}
+
+VIEW="--size 60x80 --look-at 0,10,0 --height 170"
+
+# numbers FILE: the three bytes of each of the last 60 x 80 pixels.
+numbers() {
+    tail -c 14400 "$1" | od -An -v -tu1 -w3
+}
+
+# expect_codes OPTION... -- "ID R G B" ...: in every pixel of a vessel, with no other colour in the picture.
+expect_codes() {
+    local options=() expected
+    while [ "$1" != -- ]; do
+        options+=("$1")
+        shift
+    done
+    shift
+    # shellcheck disable=SC2086
+    run_ok corcast render --quiet tree.swc --look ./flat.ini $VIEW --planes color,id "${options[@]}" -o p.ppm
+    expected=$(printf '%s\n' "0 255 255 255" "$@")
+    paste -d ' ' <(numbers p.id.ppm | awk '{ print $1 * 65536 + $2 * 256 + $3 }') <(numbers p.ppm) |
+        tr -s ' ' | sort -n | uniq >seen
+    [ "$(cat seen)" = "$expected" ] ||
+        fail "expected the colours '$(echo $expected)', got '$(echo $(cat seen))', from: $command_line"
+}
+
+# expect_scene OPTION... -- "ID R G B" ...: linear numbers, wherever the scene paints a vessel.
+expect_scene() {
+    local options=()
+    while [ "$1" != -- ]; do
+        options+=("$1")
+        shift
+    done
+    shift
+    run_ok corcast scene --quiet tree.swc --look ./flat.ini --size 60x80 "${options[@]}" -o s.pov
+    grep -oE '[(,][0-9]+,<[^<>]*>\)' s.inc | tr -d '()>' | sed 's/^,//; s/,<\|,/ /g' | sort -n | uniq >seen
+    printf '%s\n' "$@" | paste -d ' ' seen - | awk '
+        NF != 8 || $1 != $5 { bad = 1 }
+        { for (i = 2; i <= 4; i++) if (($i - $(i + 4)) ^ 2 > 1e-13) bad = 1 }
+        END { exit bad }' || fail "expected the colours '$*', got '$(echo $(cat seen))', from: $command_line"
+}
+
+test_every_model_shows_the_published_entry_of_each_value_and_writes_it_for_povray() {
+    local model
+    make_vessels
+    for model in $MODELS; do
+        expect_codes --model $model --color-by radius -- \
+            "2 68 1 84" "4 72 26 108" "6 65 68 135" "8 35 136 142" "10 253 231 37"
+        expect_scene --model $model --color-by radius -- \
+            "2 0.05795103 0.0003772446 0.08865738" "4 0.06494307 0.01005327 0.1489319" \
+            "6 0.05246566 0.05719803 0.2428499" "8 0.0172071 0.2466823 0.2688405" \
+            "10 0.9847088 0.799651 0.01824342"
+    done
+}
+
+test_the_fast_methods_show_the_same_colours() {
+    local method
+    make_vessels
+    for method in raster zbuffer; do
+        expect_codes --method $method --color-by radius -- \
+            "2 68 1 84" "4 72 26 108" "6 65 68 135" "8 35 136 142" "10 253 231 37"
+    done
+}
+
+test_log_takes_equal_factors_to_equal_steps_of_every_map() {
+    make_vessels
+    expect_codes --color-by radius --log -- \
+        "2 68 1 84" "4 59 82 139" "6 33 144 140" "8 93 201 99" "10 253 231 37"
+    expect_codes --color-by radius --log --colormap magma -- \
+        "2 0 0 4" "4 80 18 124" "6 182 55 121" "8 251 135 97" "10 252 253 191"
+    expect_codes --color-by radius --log --colormap inferno -- \
+        "2 0 0 4" "4 87 16 109" "6 187 55 85" "8 249 141 10" "10 252 255 164"
+    expect_codes --color-by radius --log --colormap plasma -- \
+        "2 13 8 135" "4 126 3 168" "6 203 71 120" "8 248 148 65" "10 240 249 33"
+}
+
+# 5.48 of 2.74 to 10.96 is at 1/3, entry 85, and by logarithm at 1/2; what lies outside has the colour of the end.
+test_range_sets_the_ends_of_the_map() {
+    make_vessels
+    expect_codes --color-by radius --range 2.74,10.96 -- \
+        "2 68 1 84" "4 68 1 84" "6 49 104 142" "8 253 231 37" "10 253 231 37"
+    expect_codes --color-by radius --range 2.74,10.96 --log -- \
+        "2 68 1 84" "4 68 1 84" "6 33 144 140" "8 253 231 37" "10 253 231 37"
+}
+
+test_a_field_of_one_value_has_the_middle_of_the_map() {
+    make_vessels
+    expect_codes --color-by length -- \
+        "2 33 144 140" "4 33 144 140" "6 33 144 140" "8 33 144 140" "10 33 144 140"
+}
+
+test_a_picture_of_16_bits_has_the_same_colours_more_finely() {
+    make_vessels
+    run_ok corcast render --quiet tree.swc --look ./flat.ini --size 60x80 --bits 16 --color-by radius -o p.ppm
+    # The entry 17, 0.282656 0.100196 0.422160, times 65535.
+    tail -c 28800 p.ppm | od -An -v -tu2 --endian=big -w6 | tr -s ' ' | grep -qx ' 18524 6566 27666' ||
+        fail "expected a pixel of the codes 18524 6566 27666"
+}
+
+run_tests "$@"

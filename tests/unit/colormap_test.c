@@ -1,0 +1,143 @@
+/* The colours of a value, against matplotlib's published tables and the sRGB standard (IEC
+ * 61966-2-1), worked out by hand. */
+#include "image/image.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static Err err;
+
+static void read_map(Colormap *map, const char *path)
+{
+    assert_int_equal(colormap_read(map, path, &err), STATUS_OK);
+}
+
+static void read_text(Colormap *map, const char *text)
+{
+    assert_int_equal(file_write("build/colormap_test.in", text, strlen(text), &err), STATUS_OK);
+    read_map(map, "build/colormap_test.in");
+    unlink("build/colormap_test.in");
+}
+
+static void assert_rgb(const float rgb[3], double r, double g, double b)
+{
+    assert_float_equal(rgb[0], r, 1e-6);
+    assert_float_equal(rgb[1], g, 1e-6);
+    assert_float_equal(rgb[2], b, 1e-6);
+}
+
+static void decodes_srgb_as_the_standard_says(void **state)
+{
+    (void)state;
+    assert_float_equal(srgb_decode(0), 0, 0);
+    assert_float_equal(srgb_decode(0.04f), 0.0030959752, 1e-9);
+    assert_float_equal(srgb_decode(0.041f), 0.0031742787, 1e-9);
+    assert_float_equal(srgb_decode(0.25f), 0.050876088, 1e-8);
+    assert_float_equal(srgb_decode(0.5f), 0.21404114, 1e-7);
+    assert_float_equal(srgb_decode(0.75f), 0.52252155, 1e-7);
+    assert_float_equal(srgb_decode(1), 1, 0);
+}
+
+static void ships_the_published_tables(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path;
+        double low[3], quarter[3], middle[3], high[3]; /* entries 0, 64, 128 and 255 */
+    } maps[] = {
+        {"templates/colormaps/viridis.txt",
+         {0.267004, 0.004874, 0.329415},
+         {0.229739, 0.322361, 0.545706},
+         {0.127568, 0.566949, 0.550556},
+         {0.993248, 0.906157, 0.143936}},
+        {"templates/colormaps/magma.txt",
+         {0.001462, 0.000466, 0.013866},
+         {0.316654, 0.071690, 0.485380},
+         {0.716387, 0.214982, 0.475290},
+         {0.987053, 0.991438, 0.749504}},
+        {"templates/colormaps/inferno.txt",
+         {0.001462, 0.000466, 0.013866},
+         {0.341500, 0.062325, 0.429425},
+         {0.735683, 0.215906, 0.330245},
+         {0.988362, 0.998364, 0.644924}},
+        {"templates/colormaps/plasma.txt",
+         {0.050383, 0.029803, 0.527975},
+         {0.494877, 0.011990, 0.657865},
+         {0.798216, 0.280197, 0.469538},
+         {0.940015, 0.975158, 0.131326}},
+    };
+    for (size_t m = 0; m < sizeof maps / sizeof *maps; m++) {
+        Colormap map;
+        read_map(&map, maps[m].path);
+        assert_int_equal(map.n, 256);
+        assert_rgb(map.srgb[0], maps[m].low[0], maps[m].low[1], maps[m].low[2]);
+        assert_rgb(map.srgb[64], maps[m].quarter[0], maps[m].quarter[1], maps[m].quarter[2]);
+        assert_rgb(map.srgb[128], maps[m].middle[0], maps[m].middle[1], maps[m].middle[2]);
+        assert_rgb(map.srgb[255], maps[m].high[0], maps[m].high[1], maps[m].high[2]);
+        colormap_release(&map);
+    }
+}
+
+/* A quarter of the way lies at 63.75 of the entries 63 (0.231674 0.318106 0.544834) and 64, the middle at
+ * 127.5 of 127 (0.128729 0.563265 0.551229) and 128. */
+static void takes_a_fraction_to_its_place_in_the_table(void **state)
+{
+    (void)state;
+    Colormap map;
+    read_map(&map, "templates/colormaps/viridis.txt");
+    float rgb[3];
+    colormap_linear(&map, 0, rgb);
+    assert_rgb(rgb, 0.05795103, 0.0003772446, 0.08865738);
+    colormap_linear(&map, 0.25, rgb);
+    assert_rgb(rgb, 0.043314777, 0.08423035, 0.2585857);
+    colormap_linear(&map, 0.5, rgb);
+    assert_rgb(rgb, 0.014959676, 0.27932771, 0.26420649);
+    colormap_linear(&map, 1, rgb);
+    assert_rgb(rgb, 0.9847088, 0.799651, 0.01824342);
+    colormap_release(&map);
+}
+
+static void mixes_neighbours_as_they_are_encoded(void **state)
+{
+    (void)state;
+    Colormap map;
+    read_text(&map, "# three\n0.1 0.2 0\n0.4 1 0\n0.9 0 1\n");
+    float rgb[3];
+    colormap_linear(&map, 0.75, rgb); /* 0.65 0.5 0.5 */
+    assert_rgb(rgb, 0.38005634, 0.21404114, 0.21404114);
+    colormap_linear(&map, 0.125, rgb); /* 0.175 0.4 0 */
+    assert_rgb(rgb, 0.02584288, 0.13286832, 0);
+    colormap_release(&map);
+}
+
+static void stays_at_the_ends_and_takes_what_is_no_number_for_middle_grey(void **state)
+{
+    (void)state;
+    Colormap map;
+    read_text(&map, "0.25 0.5 0.75\n0.75 0.25 0.5\n");
+    float rgb[3];
+    colormap_linear(&map, -2.385, rgb);
+    assert_rgb(rgb, 0.050876088, 0.21404114, 0.52252155);
+    colormap_linear(&map, INFINITY, rgb);
+    assert_rgb(rgb, 0.52252155, 0.050876088, 0.21404114);
+    colormap_linear(&map, NAN, rgb);
+    assert_rgb(rgb, 0.21404114, 0.21404114, 0.21404114);
+    colormap_release(&map);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(decodes_srgb_as_the_standard_says),
+        cmocka_unit_test(ships_the_published_tables),
+        cmocka_unit_test(takes_a_fraction_to_its_place_in_the_table),
+        cmocka_unit_test(mixes_neighbours_as_they_are_encoded),
+        cmocka_unit_test(stays_at_the_ends_and_takes_what_is_no_number_for_middle_grey),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
