@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The house itself: compilers, the Makefile's promises, the dependency script, the documents.
+# The house itself: compilers, the Makefile's promises, the dependency script.
 . "$(dirname "$0")/lib.sh"
 
 CLANG_CORCAST=$REPO/build/clang/corcast
@@ -87,15 +87,6 @@ test_deps_touches_nothing_when_everything_is_installed() {
     chmod +x apt-get
     run_ok env PATH="$PWD:$PATH" "$REPO/tools/deps"
     [ ! -e called ] || fail "expected apt-get not to be called"
-}
-
-test_documents_link_only_to_what_exists() {
-    local document link
-    for document in README.md CHANGELOG.md $(cd "$REPO" && echo docs/*.md); do
-        for link in $(grep -oE '\]\([^)#:]+[)#]' "$REPO/$document" | sed 's/^](//; s/[)#]$//'); do
-            [ -e "$REPO/$(dirname "$document")/$link" ] || fail "$document links to $link, which does not exist"
-        done
-    done
 }
 
 run_tests "$@"

@@ -21,11 +21,12 @@ static Fork forks[FORKS];
 static Spot spots[FORKS][MAX_SPOTS];
 static int n_spots[FORKS];
 
-static void make_forks(double step)
+/* Segments are `length` of their radii long. */
+static void make_forks(double length, double step)
 {
     for (int i = 0; i < N_RATIOS; i++)
         for (int j = 0; j < N_ANGLES; j++)
-            forks[i * N_ANGLES + j] = fork_of(deviation_ratios[i], deviation_angles[j], 8);
+            forks[i * N_ANGLES + j] = fork_of(deviation_ratios[i], deviation_angles[j], length);
     forks[FORKS - 1] = free_end(8);
     for (int i = 0; i < FORKS; i++)
         n_spots[i] = find_spots(&forks[i], step, spots[i]);
@@ -170,14 +171,26 @@ static void print_table(const BlobShape *shape)
         radii = fmax(radii, fabs(worst.radii));
         degrees = fmax(degrees, worst.degrees);
         if (i == FORKS - 1)
-            printf("\nfree end: %+.2f %% of r, %.1f°; ", 100 * worst.radii, worst.degrees);
+            printf("\nfree end: %+.2f %% of r, %.0f°; ", 100 * worst.radii, worst.degrees);
         else if (i % N_ANGLES == 0)
             printf("\n| %g |", deviation_ratios[i / N_ANGLES]);
         if (i < FORKS - 1)
             printf(" %+.2f, %.0f° |", 100 * worst.radii, worst.degrees);
     }
-    printf("overshoot %.4f r\nlargest: %.2f %% of r, %.1f°\n", overshoot_of(shape), 100 * radii,
+    printf("overshoot %.3f r\nlargest: %.2f %% of r, %.1f°\n", overshoot_of(shape), 100 * radii,
            degrees);
+}
+
+static void print_largest(const char *what, const BlobShape *shape)
+{
+    Deviation most = {0, 0};
+    for (int i = 0; i < FORKS; i++) {
+        Deviation worst = worst_deviation(shape, &forks[i], spots[i], n_spots[i]);
+        most.radii = fmax(most.radii, fabs(worst.radii));
+        most.degrees = fmax(most.degrees, worst.degrees);
+    }
+    printf("%s: %.2f %% of r, %.0f°; overshoot %.3f r\n", what, 100 * most.radii, most.degrees,
+           overshoot_of(shape));
 }
 
 int main(int argc, char **argv)
@@ -186,7 +199,7 @@ int main(int argc, char **argv)
         BlobShape shape = {.tube = {{1.2, 0}, {1.6, 2}}, .bead = {{0.05, 1, 2}, {0.2, 1.4, 1}}};
         double x[NUMBERS];
         int rounds = argc > 2 ? atoi(argv[2]) : 1;
-        make_forks(0.09);
+        make_forks(8, 0.09);
         numbers_of(&shape, x);
         for (double power = 24; power <= 96; power *= 2)
             for (int round = 0; round < rounds; round++) {
@@ -199,8 +212,15 @@ int main(int argc, char **argv)
         print_table(&shape);
         return 0;
     }
-    make_forks(0.1);
+    const BlobShape plain = {.tube = {{sqrt(2), 4}, {1.5, 0}}, .bead = {{0, 1, 0}, {0, 1, 0}}};
+    make_forks(8, 0.1);
     print_shape(&blob_shape);
     print_table(&blob_shape);
+    print_largest("one tube of strength 4 and half balls", &plain);
+    for (int length = 2; length >= 1; length--) {
+        make_forks(length, 0.1);
+        printf("segments %d r long, ", length);
+        print_largest("the largest", &blob_shape);
+    }
     return 0;
 }

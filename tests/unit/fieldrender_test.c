@@ -6,6 +6,7 @@
 #include "render/fieldtiles.h"
 #include "render/resample.h"
 #include "render/shade.h"
+#include "render/tilelook.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -308,6 +309,75 @@ static void all_kernels_agree(void **state)
     assert_true(hits > 200);
 }
 
+/* What shade() says of a sample of the surface, under the same lights in the same frame. */
+static Rgb shaded(const Scene *scene, const TileSurface *surface, int sample)
+{
+    Vec3 at[3];
+    const float(*from[3])[TILE_SAMPLES] = {surface->point, surface->hits->normal,
+                                           surface->direction};
+    for (int i = 0; i < 3; i++)
+        at[i] = vec3((double)from[i][0][sample], (double)from[i][1][sample],
+                     (double)from[i][2][sample]);
+    Rgb pigment = {surface->pigment[0][sample], surface->pigment[1][sample],
+                   surface->pigment[2][sample]};
+    if (vec3_dot(at[1], at[2]) > 0)
+        at[1] = vec3_scale(at[1], -1);
+    return shade(scene, pigment, at[0], at[1], at[2], NULL, NULL);
+}
+
+/* Fills all samples with normals, directions and places at random. */
+static void make_surface(Random *random, TileHits *hits, TileSurface *surface)
+{
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        Vec3 normal = random_direction(random), d = random_direction(random);
+        const double rows[3][3] = {{normal.x, d.x, 0}, {normal.y, d.y, 0}, {normal.z, d.z, -100}};
+        hits->state[sample] = TILE_HIT;
+        for (int c = 0; c < 3; c++) {
+            hits->normal[c][sample] = (float)rows[c][0];
+            surface->direction[c][sample] = (float)rows[c][1];
+            surface->point[c][sample] = (float)(rows[c][2] + uniform(random, -20, 20));
+            surface->pigment[c][sample] = (float)random_uniform(random);
+        }
+    }
+    surface->hits = hits;
+}
+
+/* docs/METHODS.md, section 3: to 2e-5 of the light's colour. */
+static void kernels_shade_as_single_rays_are_shaded(void **state)
+{
+    (void)state;
+    Light lights[2];
+    Scene scene = {.n_lights = 0};
+    light_test_scene(&scene, lights);
+    const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    TileLight *tile_lights;
+    TileLook look;
+    Random random;
+    random_seed(&random, 77);
+    double worst = 0;
+    const float sizes[] = {35, 200, 41.5f};
+    for (int n = 0; n < 30; n++) {
+        scene.finish.phong_size = sizes[n % 3];
+        scene.finish.brilliance = n % 2 ? 1 : 1.3f;
+        assert_int_equal(tilelook_make(&scene, vec3(0, 0, 0), axes, &tile_lights, &look, NULL),
+                         STATUS_OK);
+        TileHits hits;
+        TileSurface surface = {0};
+        make_surface(&random, &hits, &surface);
+        for (int k = 0; k < kernels_usable(); k++) {
+            float color[3][TILE_SAMPLES];
+            tilekernels[k]->shade(&look, &surface, color);
+            for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+                const float got[3] = {color[0][sample], color[1][sample], color[2][sample]};
+                worst = fmax(worst, color_distance(shaded(&scene, &surface, sample), got));
+            }
+        }
+        free(tile_lights);
+    }
+    print_message("off by %g\n", worst);
+    assert_true(worst > 0 && worst <= 2e-5);
+}
+
 static void all_kernels_give_the_codes_of_colors(void **state)
 {
     (void)state;
@@ -487,6 +557,7 @@ int main(void)
         cmocka_unit_test(antialiasing_weighs_the_centre_and_the_grid_alike),
         cmocka_unit_test(adaptive_antialiasing_changes_edges_alone),
         cmocka_unit_test(all_kernels_agree),
+        cmocka_unit_test(kernels_shade_as_single_rays_are_shaded),
         cmocka_unit_test(all_kernels_give_the_codes_of_colors),
         cmocka_unit_test(a_distant_scene_is_the_same_scene),
         cmocka_unit_test(a_camera_inside_a_vessel_sees_its_wall),

@@ -134,7 +134,6 @@ static void vessels_are_longer_than_wide_and_clear_of_each_other(void **state)
     const char *specs[] = {"disc:50", "ball:50"};
     for (size_t k = 0; k < 2; k++) {
         GrowParams params = grow_defaults();
-        params.terminals = 200;
         params.seed = 17;
         GrowReport report;
         Tree tree = grown(&params, specs[k], &report);

@@ -64,6 +64,70 @@ static void few_rays_are_right_on_average(void **state)
     assert_true(fabs(sum / 1024 - many) < 4e-3);
 }
 
+/* A ball overhead hides the points of the disc within its sine: of N points k + u of N, by area. */
+static void points_lie_outwards_by_area(void **state)
+{
+    (void)state;
+    enum { RAYS = 7 };
+    const double turn = 0.2385, shift = 12 * turn - floor(12 * turn);
+    Primitive ball = {.kind = PRIMITIVE_SPHERE, .a = {0, 0, 10}, .b = {0, 0, 10}, .id = 2};
+    const Scene scene = {.model = SCENE_ROUNDED, .primitives = &ball, .n_primitives = 1};
+    for (int k = 0; k < RAYS; k++)
+        for (int side = 0; side < 2; side++) {
+            ball.radius_mm = 10 * sqrt((k + shift) / RAYS + (side ? 1e-6 : -1e-6));
+            double open = open_part(&scene, vec3(0, 0, 0), vec3(0, 0, 1), RAYS, turn);
+            assert_true(fabs(open - (RAYS - k - side) / (double)RAYS) < 1e-12);
+        }
+}
+
+/* The direction round the normal, in degrees, of point k of three: that of a small ball that hides it. */
+static double direction_of(int k, double turn)
+{
+    const double shift = 12 * turn - floor(12 * turn), out = sqrt((k + shift) / 3);
+    double first = -1, last = -1;
+    for (int step = 0; step < 3600; step++) {
+        double angle = step * 6.283185307179586 / 3600;
+        Vec3 center = vec3(out * cos(angle), out * sin(angle), sqrt(1 - out * out));
+        Primitive ball = {.kind = PRIMITIVE_SPHERE, .a = center, .b = center, .radius_mm = 0.01};
+        const Scene scene = {.model = SCENE_ROUNDED, .primitives = &ball, .n_primitives = 1};
+        if (open_part(&scene, vec3(0, 0, 0), vec3(0, 0, 1), 3, turn) == 1)
+            continue;
+        first = first < 0 || step / 10.0 - last > 90 ? step / 10.0 : first;
+        last = step / 10.0;
+    }
+    assert_true(last - first < 5);
+    return (first + last) / 2;
+}
+
+static double degrees_between(double a, double b)
+{
+    double degrees = fabs(a - b);
+    return degrees > 180 ? 360 - degrees : degrees;
+}
+
+static void points_are_golden_angles_apart(void **state)
+{
+    (void)state;
+    const double turn = 0.2385;
+    double first = direction_of(0, turn), second = direction_of(1, turn);
+    assert_true(fabs(degrees_between(first, second) - 137.508) < 0.2);
+    assert_true(fabs(degrees_between(second, direction_of(2, turn)) - 137.508) < 0.2);
+    /* A turn later by a twelfth leaves u alone. */
+    double turned = direction_of(0, turn + 1.0 / 12);
+    assert_true(fabs(degrees_between(first, turned) - 30) < 0.2);
+}
+
+/* J. Jimenez: Next generation post processing in Call of Duty: Advanced Warfare. SIGGRAPH 2014; worked out in
+ * decimals. */
+static void turns_are_interleaved_gradient_noise(void **state)
+{
+    (void)state;
+    assert_true(fabs(occlusion_turn(1, 0) - 0.555713357813584) < 1e-9);
+    assert_true(fabs(occlusion_turn(0, 1) - 0.309269245057135) < 1e-9);
+    assert_true(fabs(occlusion_turn(37.25, 101.75) - 0.969711563119490) < 1e-9);
+    assert_true(fabs(occlusion_turn(640, 479) - 0.565166883061425) < 1e-9);
+}
+
 static void turns_are_spread_over_the_circle(void **state)
 {
     (void)state;
@@ -115,6 +179,9 @@ int main(void)
         cmocka_unit_test(a_ball_overhead_hides_the_square_of_its_sine),
         cmocka_unit_test(a_plane_hides_what_its_angle_says),
         cmocka_unit_test(few_rays_are_right_on_average),
+        cmocka_unit_test(points_lie_outwards_by_area),
+        cmocka_unit_test(points_are_golden_angles_apart),
+        cmocka_unit_test(turns_are_interleaved_gradient_noise),
         cmocka_unit_test(turns_are_spread_over_the_circle),
         cmocka_unit_test(only_ambient_light_is_held_back),
     };

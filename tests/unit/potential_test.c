@@ -67,7 +67,8 @@ static void short_segments_shrink_and_vanish(void **state)
     (void)state;
     const struct {
         double length, radius;
-    } cases[] = {{0.16, -1}, {0.1703, -1}, {0.5, 0.722}, {1, 0.900}, {2, 0.988}, {4, 1.000}};
+    } cases[] = {{0.16, -1}, {0.1703, -1}, {0.1706, 0.0216}, {0.5, 0.722},
+                 {1, 0.900}, {2, 0.988},   {4, 1.000}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         TestScene test = empty_scene();
         test.scene.segments = test.segments;

@@ -131,13 +131,14 @@ static void trees_of_little_length_come_near_the_spanning_tree(void **state)
     const struct {
         const char *domain;
         uint64_t seed;
-    } cases[] = {{"disc:50", 1}, {"disc:50", 4}, {"ball:50", 1}};
+        double limit;
+    } cases[] = {{"disc:50", 1, 1.1}, {"disc:50", 4, 1.1}, {"ball:50", 1, 1.005}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         Domain domain;
         Tree tree = grown(1000, 0, cases[k].seed, cases[k].domain, &domain);
         RefineReport report = refine(&tree, &domain, GROW_REFINE_TOPOLOGY, 0);
         double ratio = report.target_after / spanning_length(&tree);
-        if (!(ratio <= 1.12))
+        if (!(ratio <= cases[k].limit))
             fail_msg("%s, seed %d: %.4f times the spanning tree", cases[k].domain,
                      (int)cases[k].seed, ratio);
         assert_true(report.thickness == 1);

@@ -1,6 +1,7 @@
 #include "render/render.h"
 
 #include "render/bvh.h"
+#include "render/resample.h"
 #include "render/shade.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -112,6 +113,35 @@ static void shading_is_the_formula(void **state)
     seen = shade(&scene, pigment, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), NULL, NULL);
     double cosine = 0.9 / sqrt(0.09 + 0.81);
     assert_true(fabs((double)seen.r - (0.0625 + 0.2 + 0.5 * pow(cosine, 4))) < 1e-6);
+}
+
+/* Brilliance is an exponent of the diffuse cosine alone. */
+static void brilliance_is_the_exponent_of_the_cosine(void **state)
+{
+    (void)state;
+    Light light = {.location = {0, 30, 40}, .color = {1, 1, 1}, .parallel = true};
+    Scene scene = {.finish = {.diffuse = 0.5f, .brilliance = 2.5f, .phong = 0.25f, .phong_size = 3},
+                   .lights = &light,
+                   .n_lights = 1};
+    const Rgb pigment = {0.8f, 0.4f, 0.2f};
+    Rgb seen = shade(&scene, pigment, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), NULL, NULL);
+    assert_true(fabs((double)seen.r - (0.5 * 0.8 * pow(0.8, 2.5) + 0.25 * 0.512)) < 1e-6);
+}
+
+/* A light along the surface adds its highlight from a cosine of 1e-10 on. */
+static void a_light_counts_from_a_least_cosine_on(void **state)
+{
+    (void)state;
+    for (int lit = 0; lit < 2; lit++) {
+        Light light = {
+            .location = {1, 0, lit ? 1.01e-10 : 0.99e-10}, .color = {1, 1, 1}, .parallel = true};
+        Scene scene = {.finish = {.ambient = 0.25f, .phong = 0.5f, .phong_size = 1},
+                       .lights = &light,
+                       .n_lights = 1};
+        Rgb seen = shade(&scene, (Rgb){1, 1, 1}, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0.6, 0, -0.8),
+                         NULL, NULL);
+        assert_true(fabs((double)seen.r - (lit ? 0.25 + 0.5 * 0.6 : 0.25)) < 1e-6);
+    }
 }
 
 static bool always(void *context, Vec3 at, Vec3 towards, double distance)
@@ -270,17 +300,42 @@ static void antialiasing_weighs_the_centre_and_the_grid_alike(void **state)
     frame_release(&frame);
 }
 
+/* By the threshold or more, in the square root of a channel clipped to [0, 1]; corners do not count. */
+static void pixels_that_differ_from_a_neighbour_are_sampled_again(void **state)
+{
+    (void)state;
+    enum { SIDE = 5 };
+    Plane color;
+    uint8_t mask[SIDE * SIDE];
+    assert_int_equal(plane_init(&color, SIDE, SIDE, 3, NULL), STATUS_OK);
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        color.values[i] = i % 3 == 2 ? 1.7f : 0.25f;
+    color.values[3 * (2 * SIDE + 2) + 1] = 0.390625f; /* 0.5 and 0.625, exact */
+    color.values[3 * (2 * SIDE + 2) + 2] = 1.2f;      /* as white as the others */
+    for (int above = 0; above < 2; above++) {
+        resample_mask(&color, 0, 0, above ? nextafterf(0.125f, 1) : 0.125f, 1, mask);
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            int steps = abs(i % SIDE - 2) + abs(i / SIDE - 2);
+            assert_int_equal(mask[i], !above && steps <= 1);
+        }
+    }
+    plane_release(&color);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_hierarchy_finds_what_trying_all_finds),
         cmocka_unit_test(shading_is_the_formula),
+        cmocka_unit_test(brilliance_is_the_exponent_of_the_cosine),
+        cmocka_unit_test(a_light_counts_from_a_least_cosine_on),
         cmocka_unit_test(a_shadow_leaves_the_ambient_light),
         cmocka_unit_test(a_soft_shadow_weighs_the_points_of_the_light_alike),
         cmocka_unit_test(the_back_of_a_surface_gets_no_light),
         cmocka_unit_test(the_planes_of_a_sphere_are_the_sphere),
         cmocka_unit_test(the_picture_does_not_depend_on_the_number_of_threads),
         cmocka_unit_test(antialiasing_weighs_the_centre_and_the_grid_alike),
+        cmocka_unit_test(pixels_that_differ_from_a_neighbour_are_sampled_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

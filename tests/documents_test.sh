@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# The documents: what they link to is there, and their numbers are those of the program.
+. "$(dirname "$0")/lib.sh"
+
+test_documents_link_only_to_what_exists() {
+    local document link
+    for document in README.md CHANGELOG.md $(cd "$REPO" && echo docs/*.md); do
+        for link in $(grep -oE '\]\([^)#:]+[)#]' "$REPO/$document" | sed 's/^](//; s/[)#]$//'); do
+            [ -e "$REPO/$(dirname "$document")/$link" ] || fail "$document links to $link, which does not exist"
+        done
+    done
+}
+
+# says DOCUMENT WORDS: the document of docs has these words, wherever its lines end.
+says() {
+    tr -s '\n ' '  ' <"$REPO/docs/$1" | grep -qF -- "$2" || fail "expected docs/$1 to say '$2'"
+}
+
+# agree DOCUMENT: lines "WORDS | FILE | CODE" on standard input: the document has the words, and the file of
+# the repository the code. Numbers that no result shows are held so: change both.
+agree() {
+    local words file code
+    while IFS='|' read -r words file code; do
+        words=$(echo "$words" | sed 's/^ *//; s/ *$//') file=${file// /}
+        says "$1" "$words"
+        grep -qF -- "${code# }" "$REPO/$file" || fail "docs/$1 says '$words', but $file does not have '${code# }'"
+    done
+}
+
+test_the_numbers_of_growth_are_those_of_the_source() {
+    run_ok corcast grow --help
+    expect_stdout 'nearest segments tried for each terminal \(8\)'
+    says METHODS.md 'The nearest segments (8; `--candidates`)'
+    agree METHODS.md <<'END'
+one point in three is far enough | src/grow/grow.c | TOSSES_PER_ADDED = 3 }
+1.15 times what the rule asks for, and distances 1.1 times | src/grow/place.c | length_reserve = 1.15, clearance_reserve = 1.1;
+known at once to the eight vessels above | src/grow/network.c | LEVELS = 8 }
+with every fifth of growth | src/grow/grow.c | refresh_growth = 1.2;
+ahead of its share by more than a sixteenth | src/grow/forest.c | lead = 1.0 / 16;
+all rise by 1.1, and those of segments that break a rule by 2.2 | src/grow/refine_toll.c | rise = 1.1, steep_rise = 2.2;
+up to two more follow | src/grow/refine.c | DETOURS = 3,
+each at four times the price | src/grow/refine.c | price_rise = 4;
+over nine tenths of the budget | src/grow/refine.c | last_part = 0.1;
+until they agree to 10⁻¹³ | src/grow/finish.c | agreement = 1e-13;
+256 points a terminal, up to 4,096 where that makes less than two million in all | src/grow/weigh.c | least_points = 256, most_points = 4096, all_points = 2e6;
+END
+}
+
+test_the_numbers_of_the_potential_are_those_of_the_source() {
+    agree METHODS.md <<'END'
+With eps = 10⁻⁶ (`TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r | src/surface/surface.h | #define TERM_CUTOFF 1e-6
+with Phi clamped to [10⁻⁵, 0.2] | src/surface/surface.h | #define LOG_FORM_FLOOR 1e-5
+with Phi clamped to [10⁻⁵, 0.2] | src/surface/surface.h | #define LOG_FORM_CEILING 0.2
+`Phi'^2 >= 4.6 M lack` | src/render/fieldkernel.h | lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46))
+Within 2 % of C and with ten times that certainty | src/render/fieldkernel.h | #define NEAR_ENOUGH (2e-2f * LEVEL)
+or within 0.1 %, Newton's method closes it | src/render/fieldlanes.h | #define CLOSE_ENOUGH (1e-3f * LEVEL)
+groups whose margin exceeds 10⁻³ C | src/render/fieldkernel.h | group.margin > CLOSE_ENOUGH
+does not count where Phi is within 1 % of C and falls | src/render/field.c | sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0
+lie in one plane (to 10⁻⁷ / k) | src/render/fieldterms.c | <= 1e-7;
+to within 4 · 10⁻⁶ of ln C | src/render/fieldplane.h | #define PLANE_CLOSE 3e-6f
+10⁻⁶ each: `exp(-d^2)` times the term's peak is below it | src/render/fieldtile.h | #define FIELD_CUTOFF 1e-6
+20 terms being allowed to be left out | src/render/fieldlanes.h | #define MARGIN_DROPPED 2e-5f
+6 · 10⁻⁷ for each term | src/render/fieldlanes.h | #define MARGIN_TERM 6e-7f
+1.2 · 10⁻⁷ e k B for each term | src/render/fieldlanes.h | #define MARGIN_PLACE 1.2e-7f
+have a node within 3 of its radii of one of its ends | src/stage/blend.h | #define BLEND_RADII 3
+END
+}
+
+# And its deviations are what they are measured to be.
+test_the_numbers_of_the_blob_are_those_that_fit_blob_prints() {
+    local line
+    run_ok make -C "$REPO" --no-print-directory fit-blob
+    grep '^| [0-9]' stdout >rows
+    [ "$(wc -l <rows)" -eq 5 ] || fail "expected 5 rows of deviations"
+    while read -r line; do
+        grep -qxF -- "$line" "$REPO/docs/METHODS.md" || fail "expected METHODS.md to have the row '$line'"
+    done <rows
+    sed -n 's/^tube: radius \(.*\), strength \([0-9.]*[1-9]\)0*$/| tube | | \1 r | \2 |/p
+        s/^bead: offset \(.*\), radius \(.*\), strength \(.*\)$/| bead | \1 r | \2 r | \3 |/p' stdout >rows
+    [ "$(wc -l <rows)" -eq 4 ] || fail "expected 4 components"
+    while read -r line; do
+        grep -qxF -- "$line" "$REPO/docs/METHODS.md" || fail "expected METHODS.md to have the row '$line'"
+    done <rows
+    expect_stdout '^free end: -2\.56 % of r, 8°; overshoot 0\.525 r$'
+    says METHODS.md 'At a free end they are 2.56 % and 8°; it overshoots by 0.525 r'
+    expect_stdout '^one tube of strength 4 and half balls: 21\.45 % of r, 33°; overshoot 0\.765 r$'
+    says METHODS.md 'free ends overshoot by 0.765 r instead of 0.551 r'
+    says METHODS.md 'half balls alone, the same measure is 21.45 % and 33°'
+    expect_stdout '^segments 2 r long, the largest: 3\.50 % of r'
+    expect_stdout '^segments 1 r long, the largest: 5\.14 % of r'
+    says METHODS.md 'Where segments are only 2 r long, the largest distance is 3.50 %, where they are 1 r long 5.14 %'
+}
+
+run_tests "$@"
