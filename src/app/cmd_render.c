@@ -109,7 +109,7 @@ Status run_render(int argc, char **argv, Err *err)
     PictureOptions picture;
     picture_options_init(&picture);
     const char *output = NULL, *planes = NULL, *json = NULL;
-    int bits = 8, hits = HITS_EXACT, method = RENDER_TRACE;
+    int bits = 8, hits = HITS_EXACT, method = RENDER_TRACE, kernels = KERNELS_FASTEST;
     double threshold = 0, memory_mb = 128;
     const Option own[] = {
         {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P",
@@ -123,6 +123,8 @@ Status run_render(int argc, char **argv, Err *err)
          "isosurface: where it is, or where POV-Ray's root finder sees it (exact)"},
         {"antialias-threshold", OPTION_NUMBER, &threshold, NULL, 0, 1, NULL, "T",
          "antialias only pixels that differ by T from a neighbour (0: all, as POV-Ray)"},
+        {"kernels", OPTION_CHOICE, &kernels, NULL, 0, 0, render_kernel_names, NULL,
+         "instructions that tiles are drawn with, for tests (fastest)"},
         {"memory", OPTION_NUMBER, &memory_mb, NULL, 1e-3, 1e9, NULL, "MB",
          "of a band; larger pictures are drawn and written band by band (128)"},
         {"json", OPTION_TEXT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
@@ -163,6 +165,7 @@ Status run_render(int argc, char **argv, Err *err)
         goto done;
     }
     params.method = (RenderMethod)method;
+    params.kernels = (RenderKernels)kernels;
     params.antialias_threshold = threshold;
     params.occlusion = picture.occlusion;
     TRY_GOTO(read_planes(planes, &params, err));

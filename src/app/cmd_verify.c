@@ -34,6 +34,7 @@ typedef struct Verification {
     Frame native, povray,
         exact; /* `exact` of an isosurface, whose `native` is POV-Ray's view of it */
     int bits;  /* of the colours that are compared */
+    RenderKernels kernels;
     Picture native_picture, povray_picture; /* sRGB of 8 bits, or linear of 16 */
     Picture native_shown, povray_shown;     /* of 16 bits, in sRGB of 8 bits */
     RenderStats stats;                      /* of the exact frame, where there is one */
@@ -74,7 +75,8 @@ static bool has_id_scene(const Verification *v)
 static Status render_frame(Verification *v, const CellParams *povray_cells, Frame *frame, Err *err)
 {
     Progress progress;
-    const RenderParams params = {.threads = v->common->threads,
+    const RenderParams params = {.kernels = v->kernels,
+                                 .threads = v->common->threads,
                                  .antialias = v->picture->antialias,
                                  .shadows = v->picture->stage.shadows,
                                  .povray_cells = povray_cells,
@@ -327,12 +329,14 @@ Status run_verify(int argc, char **argv, Err *err)
     picture_options_init(&picture);
     const char *folder = NULL;
     bool as_json = false;
-    int bits = 8;
+    int bits = 8, kernels = KERNELS_FASTEST;
     const Option own[] = {
         {"output", OPTION_TEXT, &folder, NULL, 0, 0, NULL, "DIR",
          "folder for the report, the scene and all planes"},
         {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16",
          "of the colours compared: 8, sRGB, or 16, linear (8)"},
+        {"kernels", OPTION_CHOICE, &kernels, NULL, 0, 0, render_kernel_names, NULL,
+         "instructions that the exact isosurface is drawn with, for tests (fastest)"},
         {"json", OPTION_FLAG, &as_json, NULL, 0, 0, NULL, NULL, "the report on standard output"},
         {0},
     };
@@ -354,6 +358,7 @@ Status run_verify(int argc, char **argv, Err *err)
     }
     TRY_GOTO(bits_check(bits, err));
     v.bits = bits;
+    v.kernels = (RenderKernels)kernels;
     TRY_GOTO(picture_check_povray(&picture, err));
     TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 120, err));
     TRY_GOTO(picture_scene(&picture, v.tree, parsed.common.quiet, &v.scene, NULL, err));

@@ -405,6 +405,7 @@ static Status run_pass(FieldPicture *picture, int n, const double *offsets,
     double start_s = clock_seconds();
     TRY_GOTO(fieldtiles_new(picture->scene, &picture->grid, NEAREST_SEEN_MM, picture->workers,
                             &picture->tiles, err));
+    fieldtiles_use_kernels(picture->tiles, tilekernels[kernels_kind(picture->params->kernels)]);
     for (int i = 0; n > 1 && i < picture->workers; i++) {
         Canvas *canvas = &picture->canvases[i];
         TRY_GOTO(mem_calloc(&canvas->band, (size_t)width * TILE_SIDE * (size_t)n,

@@ -222,7 +222,7 @@ Status fieldtiles_new(const Scene *scene, const SampleGrid *grid, double z_min, 
     tiles->grid = *grid;
     tiles->z_min = z_min;
     tiles->workers = workers;
-    tiles->kernels = tilekernels_best();
+    tiles->kernels = tilekernels[kernels_kind(KERNELS_FASTEST)];
     tiles->perspective = camera->projection == PROJECTION_PERSPECTIVE;
     tiles->axes[0] = vec3_normalized(camera->right);
     tiles->axes[1] = vec3_normalized(camera->up);

@@ -15,8 +15,3 @@ const RasterKernels *const rasterkernels[] = {
     &rasterkernels_avx512,
 #endif
 };
-
-const RasterKernels *rasterkernels_best(void)
-{
-    return rasterkernels[kernels_usable() - 1];
-}

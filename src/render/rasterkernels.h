@@ -70,6 +70,5 @@ extern const RasterKernels rasterkernels_avx2, rasterkernels_avx512;
 #endif
 /* As tilekernels. */
 extern const RasterKernels *const rasterkernels[KINDS_OF_KERNELS];
-const RasterKernels *rasterkernels_best(void);
 
 #endif

@@ -605,8 +605,8 @@ Status rasterrender(const Scene *scene, const RenderParams *params, const Band *
     RasterView view = rasterview_of_camera(scene, band->first, band->rows, params->antialias);
     double start_s = clock_seconds();
     picture.workers = params->threads > 0 ? params->threads : threads_available();
-    picture.kernels = rasterkernels_best();
-    picture.shading = tilekernels_best();
+    picture.kernels = rasterkernels[kernels_kind(params->kernels)];
+    picture.shading = tilekernels[kernels_kind(params->kernels)];
     picture.needs_places = tilelook_needs_places(scene);
     TRY_GOTO(tilelook_make(scene, view.location, view.axes, &picture.lights, &picture.look, err));
     TRY_GOTO(prepare_samples(&picture, &view, err));

@@ -9,6 +9,7 @@
 #include "render/rasterrender.h"
 #include "render/resample.h"
 #include "render/sight.h"
+#include "render/tilekernels.h"
 #include "render/zbuffer.h"
 #include <assert.h>
 #include <math.h>
@@ -180,10 +181,26 @@ static bool is_traced(const Renderer *renderer)
            sight_is_needed(renderer->scene, &renderer->params);
 }
 
+const char *const render_kernel_names[] = {[KERNELS_FASTEST] = "fastest",
+                                           [KERNELS_PORTABLE] = "portable",
+                                           [KERNELS_AVX2] = "avx2",
+                                           [KERNELS_AVX512] = "avx512",
+                                           NULL};
+
+static Status check_kernels(RenderKernels kernels, Err *err)
+{
+    int usable = kernels_usable();
+    if ((int)kernels <= usable)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "--kernels: this processor cannot run %s, at most %s",
+                   render_kernel_names[kernels], render_kernel_names[usable]);
+}
+
 Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **out, Err *err)
 {
     Renderer *renderer;
     double start_s = clock_seconds(), start_cpu_s = clock_cpu_seconds();
+    TRY(check_kernels(params->kernels, err));
     TRY(mem_calloc(&renderer, 1, sizeof *renderer, "renderers", err));
     *renderer = (Renderer){.scene = scene, .params = *params};
     renderer->threads = params->threads > 0 ? params->threads : threads_available();

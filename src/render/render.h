@@ -15,10 +15,24 @@ typedef enum RenderMethod {
     RENDER_ZBUFFER /* by points of the surfaces and a depth buffer, as the paper does */
 } RenderMethod;
 
+/* The instructions that a tile's samples are drawn with, several at once: those of any processor, AVX2
+ * with FMA, AVX-512. Other pictures than RENDER_TRACE's of primitives and blobs may differ in the last
+ * digits of single precision from one to the next. */
+typedef enum RenderKernels {
+    KERNELS_FASTEST, /* of those that this processor has */
+    KERNELS_PORTABLE,
+    KERNELS_AVX2,
+    KERNELS_AVX512
+} RenderKernels;
+
+/* Their names, in order; NULL ends them. */
+extern const char *const render_kernel_names[];
+
 typedef struct RenderParams {
     /* An implicit model has tiles of its own and takes none of these. What needs rays, soft shadows,
      * occlusion and ground, is traced whatever the method. */
     RenderMethod method;
+    RenderKernels kernels;
     int threads;   /* 0: all processors */
     int antialias; /* 1: one ray through each pixel's centre; N > 1: that ray and N x N more, the
                     * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
@@ -53,7 +67,7 @@ typedef struct Renderer Renderer;
 
 /* Builds what the geometry needs; the scene is borrowed, and `params` as long as this call. Until
  * renderer_free, camera, lights and colours of the scene may change between calls, geometry may
- * not. */
+ * not. STATUS_USAGE when this processor cannot run the kernels; STATUS_MEMORY. */
 MUST_CHECK Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **out,
                                Err *err);
 void renderer_free(Renderer *renderer);

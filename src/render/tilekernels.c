@@ -28,7 +28,7 @@ int kernels_usable(void)
     return 1;
 }
 
-const TileKernels *tilekernels_best(void)
+int kernels_kind(RenderKernels kernels)
 {
-    return tilekernels[kernels_usable() - 1];
+    return kernels == KERNELS_FASTEST ? kernels_usable() - 1 : (int)kernels - KERNELS_PORTABLE;
 }

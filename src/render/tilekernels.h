@@ -4,6 +4,7 @@
 
 #include "image/image.h"
 #include "render/fieldtile.h"
+#include "render/render.h"
 #include "scene/scene.h"
 
 /* A light in the camera's frame. */
@@ -49,8 +50,10 @@ enum { KINDS_OF_KERNELS = 1 };
 #endif
 /* How many of the kinds, from the first on, this processor can run; the last is the fastest. */
 int kernels_usable(void);
+/* The kind that is asked for, which this processor can run: an index into tilekernels and
+ * rasterkernels. */
+int kernels_kind(RenderKernels kernels);
 
 extern const TileKernels *const tilekernels[KINDS_OF_KERNELS];
-const TileKernels *tilekernels_best(void);
 
 #endif

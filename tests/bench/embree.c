@@ -157,7 +157,7 @@ static void set_lights(Drawing *picture)
                                          .parallel = true};
     }
     picture->look = (TileLook){scene->finish, picture->lights, scene->n_lights};
-    picture->kernels = tilekernels_best();
+    picture->kernels = tilekernels[kernels_kind(KERNELS_FASTEST)];
 }
 
 static int by_value(const void *a, const void *b)
