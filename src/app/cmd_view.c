@@ -28,10 +28,6 @@ static const Command command = {
     .max_operands = 1,
 };
 
-static const char *const fields[] = {NULL,  "radius",   "flow",  "velocity", "pressure",
-                                     "wss", "reynolds", "level", "strahler", "branch"};
-enum { N_FIELDS = sizeof fields / sizeof *fields };
-
 typedef struct Viewer {
     PictureOptions *options; /* camera included, once there is a scene */
     const Common *common;
@@ -102,109 +98,139 @@ static Status use_model(Viewer *viewer, SceneModel model, Err *err)
     return STATUS_OK;
 }
 
+/* The number of a field, that after the last being none. */
+static size_t field_number(const char *field)
+{
+    size_t number = 0;
+    while (derive_field_name(number) && (!field || strcmp(derive_field_name(number), field) != 0))
+        number++;
+    return number;
+}
+
 /* Fields that the tree has not got are passed over. */
 static Status use_next_field(Viewer *viewer, Err *err)
 {
     const char **field = &viewer->options->coloring.field;
-    int number = 0;
-    while (number < N_FIELDS && *field && (!fields[number] || strcmp(fields[number], *field) != 0))
-        number++;
-    for (int i = 1; i <= N_FIELDS; i++) {
-        *field = fields[(number + i) % N_FIELDS];
+    size_t none = field_number(NULL);
+    for (size_t number = field_number(*field);;) {
+        number = number == none ? 0 : number + 1;
+        *field = derive_field_name(number);
         Status status = make_scene(viewer, err);
-        if (status != STATUS_INPUT && status != STATUS_USAGE) {
+        if (number == none || (status != STATUS_INPUT && status != STATUS_USAGE)) {
             set_title(viewer);
             return status;
         }
     }
-    return make_scene(viewer, err);
 }
 
 /* ---- what is shown, as options ------------------------------------------------------------------ */
 
-typedef struct Settings {
-    Text *text;
-    const char *before, *between, *after; /* a name and a value */
-} Settings;
+/* Appends what stands for one option. */
+typedef Status PutSetting(Text *text, const char *name, const char *value, Err *err);
 
-static void put_word(const Settings *settings, const char *name, const char *value)
+/* As an argument: in quotes where the shell would take it apart. */
+static void put_word(Text *text, const char *word)
 {
-    text_printf(settings->text, "%s%s%s%s%s", settings->before, name, settings->between, value,
-                settings->after);
-}
-
-static void put_numbers(const Settings *settings, const char *name, const double *values, int n)
-{
-    Text list = TEXT_INIT;
-    for (int i = 0; i < n; i++) {
-        text_puts(&list, i ? "," : "");
-        text_number(&list, values[i] + 0);
-    }
-    put_word(settings, name, list.chars ? list.chars : "");
-    text_release(&list);
-}
-
-static void put_vector(const Settings *settings, const char *name, Vec3 v)
-{
-    const double values[] = {v.x, v.y, v.z};
-    put_numbers(settings, name, values, 3);
-}
-
-static void put_whole(const Settings *settings, const char *name, int value, int unless)
-{
-    char number[16];
-    snprintf(number, sizeof number, "%d", value);
-    if (value != unless)
-        put_word(settings, name, number);
-}
-
-static void put_settings(const Settings *settings, const PictureOptions *options)
-{
-    const StageParams *stage = &options->stage;
-    const Coloring *coloring = &options->coloring;
-    char size[32];
-    snprintf(size, sizeof size, "%dx%d", options->size[0], options->size[1]);
-    put_word(settings, "model", model_name((SceneModel)options->model));
-    put_word(settings, "size", size);
-    bool perspective = options->projection == PROJECTION_PERSPECTIVE;
-    put_word(settings, "projection", perspective ? "perspective" : "orthographic");
-    put_vector(settings, "location", stage->location);
-    put_vector(settings, "look-at", stage->look_at);
-    put_vector(settings, "up", stage->up);
-    put_numbers(settings, perspective ? "angle" : "height",
-                perspective ? &stage->angle_deg : &stage->height_mm, 1);
-    if (options->prune_radius_mm > 0)
-        put_numbers(settings, "prune-radius", &options->prune_radius_mm, 1);
-    if (options->potential && options->model == SCENE_ISOSURFACE)
-        put_word(settings, "potential", "graph");
-    if (options->joints && options->model == SCENE_JOINED)
-        put_word(settings, "joints", "paper");
-    if (strcmp(options->look, "cast") != 0)
-        put_word(settings, "look", options->look);
-    if (options->has_background)
-        put_vector(settings, "background", options->background);
-    if (stage->shadows)
-        put_word(settings, "shadows", "on");
-    put_whole(settings, "antialias", options->antialias, 1);
-    put_whole(settings, "ao", options->occlusion, 0);
-    if (!coloring->field)
+    const char *plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789@%+=:,./_-";
+    if (*word && word[strspn(word, plain)] == '\0') {
+        text_puts(text, word);
         return;
-    put_word(settings, "color-by", coloring->field);
-    put_word(settings, "colormap", coloring->colormap);
-    if (coloring->has_range)
-        put_numbers(settings, "range", coloring->range, 2);
+    }
+    text_puts(text, "'");
+    for (; *word; word++)
+        text_printf(text, *word == '\'' ? "'\\%c'" : "%c", *word);
+    text_puts(text, "'");
+}
+
+static Status put_argument(Text *text, const char *name, const char *value, Err *err)
+{
+    (void)err;
+    text_printf(text, " --%s", name);
+    if (strcmp(name, "log") == 0) /* a flag */
+        return STATUS_OK;
+    text_puts(text, " ");
+    put_word(text, value);
+    return STATUS_OK;
+}
+
+/* An INI file takes blanks at the ends of a value away, and what follows a semicolon after a blank. */
+static Status put_pair(Text *text, const char *name, const char *value, Err *err)
+{
+    size_t length = strlen(value);
+    bool bare = *value == ';' || strstr(value, " ;") || strpbrk(value, "\t\r\n") ||
+                (length && (value[0] == ' ' || value[length - 1] == ' '));
+    if (bare)
+        return err_set(err, STATUS_USAGE, "--%s: a recipe cannot hold '%s'", name, value);
+    text_printf(text, "%s = %s\n", name, value);
+    return STATUS_OK;
+}
+
+/* A name in one line. */
+static void put_comment(Text *text, const char *name)
+{
+    for (; *name; name++)
+        text_printf(text, "%c", (unsigned char)*name < ' ' ? ' ' : *name);
+}
+
+static bool is_one_of(const char *name, const char *const *names)
+{
+    while (*names && strcmp(*names, name) != 0)
+        names++;
+    return *names;
+}
+
+/* Whether an option of a picture has a part in the one that is shown. The camera is put otherwise. */
+static bool takes_part(const PictureOptions *options, const char *name)
+{
+    static const char *const camera[] = {"view", "margin", "angle", "height", NULL};
+    static const char *const of_isosurfaces[] = {"potential", "erf", "cell-beta", NULL};
+    if (is_one_of(name, of_isosurfaces))
+        return options->model == SCENE_ISOSURFACE;
+    if (strcmp(name, "joints") == 0)
+        return options->model == SCENE_JOINED;
+    return !is_one_of(name, camera);
+}
+
+static Status put_option(const Option *option, PutSetting *put, Text *text, Err *err)
+{
+    Text value = TEXT_INIT;
+    option_put(option, &value);
+    Status status = text_check(&value, err);
+    if (status == STATUS_OK)
+        status = put(text, option->name, value.chars ? value.chars : "", err);
+    text_release(&value);
+    return status;
+}
+
+/* Model, size, projection, where the camera is, and all that is not by default. */
+static Status put_settings(const Viewer *viewer, PutSetting *put, Text *text, Err *err)
+{
+    static const char *const always[] = {"model", "size", "projection", NULL};
+    const PictureOptions *options = viewer->options;
+    bool perspective = options->projection == PROJECTION_PERSPECTIVE;
+    PictureOptions plain;
+    picture_options_init(&plain);
+    for (int i = 0; options->table[i].name; i++) {
+        const Option *option = &options->table[i];
+        bool extent = strcmp(option->name, perspective ? "angle" : "height") == 0;
+        if (extent || is_one_of(option->name, always) ||
+            (takes_part(options, option->name) && option_differs(option, &plain.table[i])))
+            TRY(put_option(option, put, text, err));
+    }
+    for (int i = 0; options->coloring.field && options->coloring.table[i].name; i++)
+        if (option_differs(&options->coloring.table[i], &plain.coloring.table[i]))
+            TRY(put_option(&options->coloring.table[i], put, text, err));
+    return text_check(text, err);
 }
 
 static Status print_options(const Viewer *viewer, Err *err)
 {
     Text text = TEXT_INIT;
-    const Settings settings = {&text, " --", " ", ""};
-    put_settings(&settings, viewer->options);
-    if (viewer->options->coloring.log && viewer->options->coloring.field)
-        text_puts(&text, " --log");
-    Status status = text_check(&text, err);
+    text_puts(&text, "corcast render ");
+    put_word(&text, viewer->tree);
+    Status status = put_settings(viewer, put_argument, &text, err);
     if (status == STATUS_OK) {
-        printf("corcast render %s%s -o P.png\n", viewer->tree, text.chars);
+        printf("%s -o P.png\n", text.chars);
         fflush(stdout);
     }
     text_release(&text);
@@ -214,13 +240,10 @@ static Status print_options(const Viewer *viewer, Err *err)
 static Status write_recipe(const Viewer *viewer, Err *err)
 {
     Text text = TEXT_INIT;
-    const Settings settings = {&text, "", " = ", "\n"};
-    text_printf(&text, "; a view of %s; use: corcast render %s --recipe %s -o P.png\n",
-                file_name(viewer->tree), file_name(viewer->tree), file_name(viewer->recipe));
-    put_settings(&settings, viewer->options);
-    if (viewer->options->coloring.log && viewer->options->coloring.field)
-        put_word(&settings, "log", "on");
-    Status status = text_check(&text, err);
+    text_puts(&text, "; a view of ");
+    put_comment(&text, file_name(viewer->tree));
+    text_puts(&text, ", for render --recipe\n");
+    Status status = put_settings(viewer, put_pair, &text, err);
     if (status == STATUS_OK)
         status = file_write(viewer->recipe, text.chars, text.length, err);
     if (status == STATUS_OK && !viewer->common->quiet)
@@ -255,6 +278,8 @@ static Status go_home(Viewer *viewer, Err *err)
 static Status on_key(Viewer *viewer, int key, Err *err)
 {
     PictureOptions *options = viewer->options;
+    Status status;
+    Err sentence = {{0}};
     switch (key) {
     case 'q':
     case WINDOW_KEY_ESCAPE:
@@ -282,7 +307,10 @@ static Status on_key(Viewer *viewer, int key, Err *err)
     case 'o':
         return print_options(viewer, err);
     case 'w':
-        return write_recipe(viewer, err);
+        status = write_recipe(viewer, &sentence);
+        if (status != STATUS_OK) /* the window stays */
+            fprintf(stderr, "corcast view: %s\n", sentence.text);
+        return STATUS_OK;
     default:
         return STATUS_OK;
     }

@@ -283,6 +283,111 @@ static Status read_recipe(const Reader *reader, const char *path, Parsed *parsed
     return STATUS_OK;
 }
 
+/* ---- options as text ------------------------------------------------------------------------ */
+
+static size_t size_of_value(OptionKind kind)
+{
+    switch (kind) {
+    case OPTION_FLAG:
+    case OPTION_SWITCH:
+        return sizeof(bool);
+    case OPTION_TEXT:
+    case OPTION_VECTORS:
+    case OPTION_NUMBERS:
+        break;
+    case OPTION_WHOLE:
+    case OPTION_CHOICE:
+        return sizeof(int);
+    case OPTION_SIZE:
+        return 2 * sizeof(int);
+    case OPTION_SEED:
+        return sizeof(uint64_t);
+    case OPTION_COUNT:
+        return sizeof(size_t);
+    case OPTION_NUMBER:
+        return sizeof(double);
+    case OPTION_RANGE:
+        return 2 * sizeof(double);
+    case OPTION_VECTOR:
+    case OPTION_COLOR:
+        return sizeof(Vec3);
+    }
+    return 0;
+}
+
+bool option_differs(const Option *option, const Option *plain)
+{
+    if (option->given)
+        return *option->given;
+    if (option->kind == OPTION_TEXT) {
+        const char *text = *(const char **)option->where, *other = *(const char **)plain->where;
+        return text && (!other || strcmp(text, other) != 0);
+    }
+    size_t size = size_of_value(option->kind);
+    return size == 0 || memcmp(option->where, plain->where, size) != 0;
+}
+
+static void put_numbers(Text *text, const double *numbers, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        text_puts(text, i ? "," : "");
+        text_number(text, numbers[i] + 0); /* never -0 */
+    }
+}
+
+static void put_vector(Text *text, Vec3 v)
+{
+    const double numbers[] = {v.x, v.y, v.z};
+    put_numbers(text, numbers, 3);
+}
+
+void option_put(const Option *option, Text *text)
+{
+    const void *where = option->where;
+    const int *wholes = where;
+    const char *words;
+    switch (option->kind) {
+    case OPTION_FLAG:
+    case OPTION_SWITCH:
+        text_puts(text, *(const bool *)where ? "on" : "off");
+        return;
+    case OPTION_TEXT:
+        words = *(char *const *)where;
+        text_puts(text, words ? words : "");
+        return;
+    case OPTION_WHOLE:
+        text_printf(text, "%d", *wholes);
+        return;
+    case OPTION_CHOICE:
+        text_puts(text, option->choices[*wholes]);
+        return;
+    case OPTION_SIZE:
+        text_printf(text, "%dx%d", wholes[0], wholes[1]);
+        return;
+    case OPTION_SEED:
+        text_printf(text, "%llu", (unsigned long long)*(const uint64_t *)where);
+        return;
+    case OPTION_COUNT:
+        text_printf(text, "%zu", *(const size_t *)where);
+        return;
+    case OPTION_NUMBER:
+        put_numbers(text, where, 1);
+        return;
+    case OPTION_RANGE:
+        put_numbers(text, where, 2);
+        return;
+    case OPTION_VECTOR:
+    case OPTION_COLOR:
+        put_vector(text, *(const Vec3 *)where);
+        return;
+    case OPTION_NUMBERS:
+        put_numbers(text, ((const NumberList *)where)->at, ((const NumberList *)where)->n);
+        return;
+    case OPTION_VECTORS: /* several options: one text does not hold them */
+        return;
+    }
+}
+
 /* ---- the command line ----------------------------------------------------------------------- */
 
 static Status read_option(const Reader *reader, int argc, char **argv, int *at, bool apply)

@@ -79,4 +79,10 @@ MUST_CHECK Status options_parse(const Command *command, const Option *const tabl
                                 char **argv, Parsed *parsed, Err *err);
 void parsed_release(Parsed *parsed);
 
+/* Whether the option says something else than `plain`, the same option bound to other variables. One
+ * that has a `given` does where it was given. Lists are not compared: they differ. */
+bool option_differs(const Option *option, const Option *plain);
+/* Appends the option's value as options_parse reads it; a flag's is that of recipes. */
+void option_put(const Option *option, Text *text);
+
 #endif

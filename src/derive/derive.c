@@ -46,6 +46,11 @@ static const FieldRule *find_rule(const char *name)
     return NULL;
 }
 
+const char *derive_field_name(size_t i)
+{
+    return i < N_RULES ? rules[i].name : NULL;
+}
+
 static Status unknown_field(const char *name, Err *err)
 {
     Text known = TEXT_INIT;

@@ -64,6 +64,9 @@ MUST_CHECK Status derive_field(const Tree *tree, const FlowParams *params, const
                                Field *field, Err *err);
 void field_release(Field *field);
 
+/* Name of field `i`, from 0 on; NULL after the last. */
+const char *derive_field_name(size_t i);
+
 typedef struct TreeSummary {
     struct {
         bool target, gamma, lambda;

@@ -176,6 +176,56 @@ test_a_view_is_written_as_a_recipe() {
     run_ok corcast scene tree.swc --recipe mine.ini -o scene.pov
 }
 
+# As the printed command stands: in a shell, options, blanks and quotes of the tree's path included.
+test_the_printed_command_draws_what_is_shown_whatever_the_options() {
+    mkdir "a b's"
+    grep -v '^#' "$DATA/bifurcation.swc" >"a b's/tree.swc"
+    open_display
+    "$CORCAST" view "a b's/tree.swc" --size 200x160 --color-by wss --q-perf 312 --p-perf 91 --viscosity 4.25 \
+        --colormap magma --range 0.5,40 --log --background 0.9,0.95,1 --prune-radius 0.25 --shadows on \
+        --margin 0.125 --save mine.ini >view.out 2>view.err &
+    view_pid=$!
+    wait_for 30 find_window || fail "expected a window: $(cat view.err)"
+    press o 1
+    press w
+    wait_for 20 test -s mine.ini || fail "expected a recipe: $(cat view.err)"
+    close_view
+    run eval "$(sed 's/P\.png$/printed.ppm/; s/^corcast/corcast --quiet/; s/--quiet render/render --quiet/' view.out)"
+    expect_status 0
+    run_ok corcast render "a b's/tree.swc" --recipe mine.ini -o recipe.ppm
+    run_ok corcast render "a b's/tree.swc" --size 200x160 --color-by wss --q-perf 312 --p-perf 91 --viscosity 4.25 \
+        --colormap magma --range 0.5,40 --log --background 0.9,0.95,1 --prune-radius 0.25 --shadows on \
+        --margin 0.125 -o asked.ppm
+    expect_same printed.ppm asked.ppm
+    expect_same recipe.ppm asked.ppm
+}
+
+test_key_c_goes_through_all_fields() {
+    local field fields="radius length flow velocity pressure wss reynolds level strahler diameter-strahler branch"
+    local n=0
+    cp "$DATA/bifurcation.swc" tree.swc
+    open_view --size 120x90
+    for field in $fields; do
+        press c
+        press o $((n += 1))
+        last_options | grep -q -e "--color-by $field\$" || fail "expected the field $field: $(last_options)"
+    done
+    press c
+    press o $((n + 1))
+    ! last_options | grep -q -e --color-by || fail "expected no field: $(last_options)"
+    close_view
+}
+
+test_a_recipe_that_cannot_hold_a_value_is_not_written() {
+    grow_tree 5
+    cp "$REPO/templates/looks/print.ini" "./my ;look.ini"
+    open_view --size 120x90 --look "./my ;look.ini" --save mine.ini
+    press w
+    wait_for 20 grep -q "a recipe cannot hold ../my ;look.ini." view.err || fail "expected a sentence: $(cat view.err)"
+    close_view
+    [ ! -e mine.ini ] || fail "expected no recipe"
+}
+
 test_a_turn_says_how_many_pictures_a_second() {
     grow_tree 20
     open_display
