@@ -35,7 +35,7 @@ color = 1 1 1
 INI
 }
 
-VIEW="--size 60x80 --look-at 0,10,0 --height 170"
+VIEW="--size 60x80 --location 0,10,100 --look-at 0,10,0 --height 170"
 
 # numbers FILE: the three bytes of each of the last 60 x 80 pixels.
 numbers() {
