@@ -200,7 +200,7 @@ asan: ## build and run the unit tests with the address and undefined-behaviour s
 tsan: ## build and run the unit tests with the thread sanitizer
 	$(Q)$(AGAIN) MODE=tsan program unit
 
-golden-update: build/corcast ## rewrite a golden: CASE=name REASON="why"
+golden-update: build/corcast ## rewrite a golden: CASE=name REASON="why"; without, record today's scenes of all
 	$(Q)tests/golden-update "$(CASE)" "$(REASON)"
 
 SHARE = $(DESTDIR)$(PREFIX)/share

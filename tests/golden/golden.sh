@@ -1,37 +1,50 @@
 # What golden_test.sh and golden-update share: how a case is drawn and hashed. Source tests/lib.sh
 # first.
 GOLDEN=${GOLDEN:-$REPO/golden}
+CASES=${CASES:-$REPO/tests/golden/cases}
 
 golden_cases() {
-    sed 's/#.*//' "$REPO/tests/golden/cases" | awk 'NF { print $1 }'
+    sed 's/#.*//' "$CASES" | awk 'NF { print $1 }'
+}
+
+# case_kinds NAME: the pictures that the case has.
+case_kinds() {
+    awk -v name="$1" '$1 == name { print $2 == "both" ? "oracle snapshot" : "snapshot" }' "$CASES"
+}
+
+has_oracle() {
+    [ "$(case_kinds "$1")" = "oracle snapshot" ]
 }
 
 case_tree() {
-    awk -v name="$1" '$1 == name { print $2 }' "$REPO/tests/golden/cases"
+    awk -v name="$1" '$1 == name { print $3 }' "$CASES"
 }
 
 case_options() {
-    awk -v name="$1" '$1 == name { $1 = $2 = ""; sub(/^ */, ""); print }' "$REPO/tests/golden/cases"
+    awk -v name="$1" '$1 == name { $1 = $2 = $3 = ""; sub(/^ */, ""); print }' "$CASES"
 }
 
-# The options are words: no quotes around them.
+# How corcast draws is nothing to the scene.
+scene_options() {
+    case_options "$1" | sed -E 's/ *--method [a-z]+//'
+}
+
+# The files of a case are named from the repository's folder. The options are words: no quotes around them.
 # shellcheck disable=SC2046
 draw_native() {
-    corcast render --quiet "$REPO/$(case_tree "$1")" $(case_options "$1") -o "$2"
+    (cd "$REPO" && corcast render --quiet "$(case_tree "$1")" $(case_options "$1") ${3-} -o "$OLDPWD/$2")
 }
 
 # Of an implicit surface what POV-Ray's root finder sees of it, which is not quite where it is.
-# shellcheck disable=SC2046
 draw_like_povray() {
     local hits=
-    case_options "$1" | grep -q 'isosurface' && hits="--hits povray"
-    # shellcheck disable=SC2086
-    corcast render --quiet "$REPO/$(case_tree "$1")" $(case_options "$1") $hits -o "$2"
+    case_options "$1" | grep -q 'isosurface' && hits="--hits=povray"
+    draw_native "$1" "$2" $hits
 }
 
 # shellcheck disable=SC2046
 write_scene() {
-    corcast scene --quiet "$REPO/$(case_tree "$1")" $(case_options "$1") -o scene.pov
+    (cd "$REPO" && corcast scene --quiet "$(case_tree "$1")" $(scene_options "$1") -o "$OLDPWD/scene.pov")
 }
 
 draw_povray() {
@@ -39,8 +52,9 @@ draw_povray() {
     corcast povray --quiet scene.pov $(case_options "$1" | grep -oE -- '--(size|antialias) [^ ]+') -o "$2"
 }
 
+# Of what POV-Ray reads: comments are nothing to the picture.
 scene_hash() {
-    cat scene.pov scene.inc | sha256sum | cut -d ' ' -f 1
+    sed 's|//.*||' scene.pov scene.inc | sha256sum | cut -d ' ' -f 1
 }
 
 # Of the decoded pixels, whatever the file looks like.

@@ -32,6 +32,36 @@ test_a_case_is_written_with_its_reason_and_shows_old_and_new() {
     expect_stdout 'old picture against new'
     expect_file shown/bifurcation-rounded/oracle-difference.png
     expect_json golden/oracle/bifurcation-rounded/case.json '.reason == "the second"'
+    expect_json golden/snapshot/bifurcation-rounded/case.json \
+        '.reason == "the second" and (has("tolerance") or has("scene_sha256") | not)'
+}
+
+test_a_case_that_corcast_draws_alone_has_a_snapshot_only() {
+    export CORCAST_POVRAY=$PWD/none
+    update bifurcation-16-bits "sixteen bits"
+    expect_status 0
+    [ "$(ls golden)" = snapshot ] || fail "expected a snapshot only, got $(ls golden)"
+    update
+    expect_status 0
+}
+
+test_without_a_case_todays_scenes_are_recorded_where_the_pixels_stay() {
+    local record=golden/oracle/bifurcation-rounded/case.json
+    update bifurcation-rounded "the first"
+    cp $record first.json
+    jq '.scene_sha256 = "of another day"' first.json >$record
+    update
+    expect_status 0
+    expect_stdout 'bifurcation-rounded: the same pixels'
+    expect_same $record first.json
+    other_povray
+    update
+    expect_status 0
+    jq '.scene_sha256 = "of another day"' first.json >$record
+    update
+    expect_status 1
+    expect_sentence 'another picture of bifurcation-rounded.*make golden-update CASE=bifurcation-rounded'
+    expect_json $record '.scene_sha256 == "of another day"'
 }
 
 test_a_tolerance_widens_only_with_a_written_reason_and_shrinks_by_itself() {
