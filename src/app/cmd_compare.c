@@ -107,6 +107,24 @@ static Status read_files(Sides *sides, int threads, Err *err)
     return STATUS_OK;
 }
 
+/* Pictures of unlike gamma become planes of linear colours, those of unlike depth 16 bits deep. */
+static Status match_pictures(Image images[2], Err *err)
+{
+    if (images[0].plane.values)
+        return STATUS_OK;
+    if (images[0].picture.gamma == images[1].picture.gamma) {
+        if (images[0].picture.bits == images[1].picture.bits)
+            return STATUS_OK;
+        TRY(picture_widen(&images[0].picture, err));
+        return picture_widen(&images[1].picture, err);
+    }
+    for (int side = 0; side < 2; side++) {
+        TRY(plane_from_picture(&images[side].plane, &images[side].picture, err));
+        picture_release(&images[side].picture);
+    }
+    return STATUS_OK;
+}
+
 /* ---- tolerance ------------------------------------------------------------------------------- */
 
 /* *name owns the tier's name when that comes from a file. */
@@ -191,13 +209,23 @@ static Status compare_codes(const CompareOptions *options, const Sides *sides,
     const Rendering a = {.picture = &sides->images[0].picture, .ids = ids ? &sides->ids[0] : NULL};
     const Rendering b = {.picture = &sides->images[1].picture, .ids = ids ? &sides->ids[1] : NULL};
     Ledger ledger = {0};
+    Picture shown[2] = {{0}, {0}};
     Status status = STATUS_OK;
     TRY_GOTO(compare_pictures(&a, &b, tolerance, result, &ledger, err));
-    if (options->metrics)
-        TRY_GOTO(compare_perception(a.picture, b.picture, result, err));
     TRY_GOTO(write_ledger(options->ledger, &ledger, err));
-    status = write_pictures(options, a.picture, b.picture, err);
+    bool coded = a.picture->gamma == 0; /* as a screen shows it */
+    if (!coded)
+        TRY_GOTO(picture_to_srgb(&shown[0], a.picture, 16, err));
+    if (!coded)
+        TRY_GOTO(picture_to_srgb(&shown[1], b.picture, 16, err));
+    const Picture *shown_a = coded ? a.picture : &shown[0];
+    const Picture *shown_b = coded ? b.picture : &shown[1];
+    if (options->metrics)
+        TRY_GOTO(compare_perception(shown_a, shown_b, result, err));
+    status = write_pictures(options, shown_a, shown_b, err);
 done:
+    picture_release(&shown[0]);
+    picture_release(&shown[1]);
     ledger_release(&ledger);
     return status;
 }
@@ -206,6 +234,9 @@ static Status compare_linear(const CompareOptions *options, const Sides *sides,
                              const Tolerance *tolerance, CompareResult *result, Err *err)
 {
     const Plane *a = &sides->images[0].plane, *b = &sides->images[1].plane;
+    if (options->ledger)
+        return err_set(err, STATUS_USAGE,
+                       "--ledger is of two pictures of 8 or 16 bits and one gamma");
     bool ids = options->ids_a != NULL;
     TRY(compare_colors(a, b, ids ? &sides->ids[0] : NULL, ids ? &sides->ids[1] : NULL, tolerance,
                        options->metrics, result, err));
@@ -254,6 +285,7 @@ static Status compare_files(const CompareOptions *options, PlaneKind kind, Sides
         return compare_ids(&sides->ids[0], &sides->ids[1], tolerance, result, err);
     if (kind != PLANE_COLOR)
         return compare_geometry(kind, options, sides, tolerance, result, err);
+    TRY(match_pictures(sides->images, err));
     if (sides->images[0].plane.values)
         return compare_linear(options, sides, tolerance, result, err);
     return compare_codes(options, sides, tolerance, result, err);

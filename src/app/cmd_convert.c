@@ -10,6 +10,7 @@ static const Command command = {
     .operands = "IN OUT",
     .examples = "  corcast convert measured.swc tidy.swc\n"
                 "  corcast convert picture.ppm picture.png\n"
+                "  corcast convert render.exr render.pfm\n"
                 "  corcast convert - - < measured.swc > tidy.swc\n",
     .min_operands = 2,
     .max_operands = 2,
@@ -26,10 +27,24 @@ static Status convert_tree(const char *from, const char *to, Err *err)
     return status;
 }
 
+/* Codes of another gamma become sRGB's, which all formats hold. */
+static Status read_srgb(const char *path, Picture *srgb, Err *err)
+{
+    Picture picture;
+    TRY(picture_read(&picture, path, err));
+    if (picture.gamma == 0) {
+        *srgb = picture;
+        return STATUS_OK;
+    }
+    Status status = picture_to_srgb(srgb, &picture, picture.bits, err);
+    picture_release(&picture);
+    return status;
+}
+
 static Status convert_picture(const char *from, const char *to, Err *err)
 {
     Picture picture;
-    TRY(picture_read(&picture, from, err));
+    TRY(read_srgb(from, &picture, err));
     const ImageNote note = {"Software", GENERATOR};
     const ImageNotes notes = {.notes = &note, .count = 1};
     Status status = picture_write(&picture, to, ENCODING_SRGB, &notes, err);
@@ -46,7 +61,8 @@ static Status convert_plane(const char *from, const char *to, Err *err)
     return status;
 }
 
-typedef enum FileKind { FILE_TREE, FILE_PICTURE, FILE_PLANE, FILE_UNKNOWN } FileKind;
+/* What an output is to hold; an input that is no tree is told by its first bytes. */
+typedef enum FileKind { FILE_TREE, FILE_PICTURE, FILE_PLANE, FILE_INPUT, FILE_UNKNOWN } FileKind;
 
 static FileKind kind_of(const char *path)
 {
@@ -54,7 +70,8 @@ static FileKind kind_of(const char *path)
         const char *extension;
         FileKind kind;
     } known[] = {{"png", FILE_PICTURE}, {"ppm", FILE_PICTURE},  {"pgm", FILE_PICTURE},
-                 {"tif", FILE_PICTURE}, {"tiff", FILE_PICTURE}, {"pfm", FILE_PLANE}};
+                 {"tif", FILE_PICTURE}, {"tiff", FILE_PICTURE}, {"pfm", FILE_PLANE},
+                 {"exr", FILE_INPUT}};
     if (strcmp(path, "-") == 0 || tree_format_known(path))
         return FILE_TREE;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
@@ -76,13 +93,15 @@ Status run_convert(int argc, char **argv, Err *err)
     if (kind_of(from) == FILE_UNKNOWN || kind == FILE_UNKNOWN)
         status = err_set(err, STATUS_USAGE,
                          "'%s' has an unknown extension; known are .swc for trees, and .png, .ppm, "
-                         ".pgm, .tif and .pfm for images",
+                         ".pgm, .tif and .pfm for images, and .exr for one that is read",
                          kind == FILE_UNKNOWN ? to : from);
-    else if (kind_of(from) != kind)
+    else if (kind == FILE_INPUT)
         status = err_set(err, STATUS_USAGE,
-                         "'%s' cannot become '%s': a tree, a picture and a float "
-                         "plane are different things",
-                         from, to);
+                         "'%s' cannot be written: OpenEXR is only read; floats become .pfm", to);
+    else if ((kind_of(from) == FILE_TREE) != (kind == FILE_TREE))
+        status =
+            err_set(err, STATUS_USAGE,
+                    "'%s' cannot become '%s': a tree and an image are different things", from, to);
     else if (kind == FILE_TREE)
         status = convert_tree(from, to, err);
     else if (kind == FILE_PICTURE)

@@ -119,21 +119,12 @@ static Status render_native(Verification *v, const char *provenance, Err *err)
 }
 
 /* What a screen shows of linear codes. */
-static Status show(const Picture *linear, Picture *shown, Err *err)
-{
-    Plane plane;
-    TRY(plane_from_picture(&plane, linear, ENCODING_LINEAR, err));
-    Status status = picture_from_plane(shown, &plane, ENCODING_SRGB, 8, err);
-    plane_release(&plane);
-    return status;
-}
-
 static Status show_both(Verification *v, Err *err)
 {
     if (v->bits == 8)
         return STATUS_OK;
-    TRY(show(&v->povray_picture, &v->povray_shown, err));
-    return show(&v->native_picture, &v->native_shown, err);
+    TRY(picture_to_srgb(&v->povray_shown, &v->povray_picture, 8, err));
+    return picture_to_srgb(&v->native_shown, &v->native_picture, 8, err);
 }
 
 static Status read_plane(Verification *v, OraclePlane plane, const char *path, Err *err)

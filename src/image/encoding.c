@@ -75,6 +75,7 @@ Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encodin
 {
     Picture made;
     TRY(picture_init(&made, plane->width, plane->height, plane->channels, bits, err));
+    made.gamma = encoding == ENCODING_LINEAR ? 1 : 0;
     size_t channels = (size_t)plane->channels;
     size_t n = (size_t)plane->width * (size_t)plane->height * channels;
     SrgbCodes table;
@@ -96,15 +97,20 @@ Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encodin
     return STATUS_OK;
 }
 
-Status plane_from_picture(Plane *plane, const Picture *picture, Encoding encoding, Err *err)
+static float decode(float encoded, double gamma)
+{
+    return gamma == 0   ? srgb_decode(encoded)
+           : gamma == 1 ? encoded
+                        : (float)pow((double)encoded, 1 / gamma);
+}
+
+Status plane_from_picture(Plane *plane, const Picture *picture, Err *err)
 {
     size_t levels = (size_t)1 << picture->bits;
     float *decoded;
     TRY(mem_calloc(&decoded, levels, sizeof *decoded, "decoded levels", err));
-    for (size_t i = 0; i < levels; i++) {
-        float encoded = (float)i / (float)(levels - 1);
-        decoded[i] = encoding == ENCODING_SRGB ? srgb_decode(encoded) : encoded;
-    }
+    for (size_t i = 0; i < levels; i++)
+        decoded[i] = decode((float)i / (float)(levels - 1), picture->gamma);
     Status status = plane_init(plane, picture->width, picture->height, picture->channels, err);
     if (status == STATUS_OK) {
         size_t n = (size_t)picture->width * (size_t)picture->height * (size_t)picture->channels;
@@ -113,6 +119,30 @@ Status plane_from_picture(Plane *plane, const Picture *picture, Encoding encodin
     }
     free(decoded);
     return status;
+}
+
+Status picture_to_srgb(Picture *srgb, const Picture *picture, int bits, Err *err)
+{
+    Plane plane;
+    TRY(plane_from_picture(&plane, picture, err));
+    Status status = picture_from_plane(srgb, &plane, ENCODING_SRGB, bits, err);
+    plane_release(&plane);
+    return status;
+}
+
+Status picture_widen(Picture *picture, Err *err)
+{
+    if (picture->bits == 16)
+        return STATUS_OK;
+    Picture wide;
+    TRY(picture_init(&wide, picture->width, picture->height, picture->channels, 16, err));
+    wide.gamma = picture->gamma;
+    size_t n = picture_stride(picture) * (size_t)picture->height;
+    for (size_t i = 0; i < n; i++)
+        wide.codes16[i] = (uint16_t)(picture->codes8[i] * 257);
+    picture_release(picture);
+    *picture = wide;
+    return STATUS_OK;
 }
 
 Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err)

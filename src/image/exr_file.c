@@ -1,8 +1,10 @@
-/* OpenEXR through the C library OpenEXRCore: one flat image in scan lines, its channels R G B, X Y Z
- * or a single one, as 32-bit floats whatever they are in the file. Chunks are decoded one after the
- * other straight into the plane, from the file in memory. */
+/* OpenEXR through the C library OpenEXRCore: one flat image in scan lines or tiles, its channels R G B,
+ * X Y Z or a single one, as 32-bit floats whatever they are in the file. Chunks are decoded one after the
+ * other straight into a plane of the data window, from the file in memory; what the display window shows
+ * of it is the image. */
 #include "image/formats.h"
 
+#include <math.h>
 #include <openexr.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,11 +14,12 @@ enum { MAX_CHANNELS = 4 };
 typedef struct Exr {
     ImageBytes file;
     exr_context_t context;
-    exr_attr_box2i_t window;
-    const char *names[MAX_CHANNELS]; /* of the channels of the plane, the last one perhaps "A" */
-    int channels;                    /* alpha not counted */
+    bool is_tiled;
+    exr_attr_box2i_t window, display; /* of the data; what is shown */
+    const char *names[MAX_CHANNELS];  /* of the channels of the plane, the last one perhaps "A" */
+    int channels;                     /* alpha not counted */
     bool has_alpha;
-    Plane plane;         /* owned; alpha included until it has been checked */
+    Plane plane; /* owned; of the data window, then of the display; alpha until it is checked */
     char complaint[200]; /* the library's, "" when there is none */
 } Exr;
 
@@ -111,6 +114,28 @@ static Status choose_channels(Exr *self, Err *err)
     return STATUS_OK;
 }
 
+/* Colours have the primaries of Rec. 709, which are sRGB's, where no chromaticities are given. */
+static Status check_colors(Exr *self, Err *err)
+{
+    static const float rec709[8] = {0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
+    exr_attr_chromaticities_t given;
+    float xy[8];
+    if (strcmp(self->names[0], "R") != 0)
+        return STATUS_OK;
+    exr_result_t found = exr_attr_get_chromaticities(self->context, 0, "chromaticities", &given);
+    *self->complaint = '\0'; /* that there are none */
+    if (found != EXR_ERR_SUCCESS)
+        return STATUS_OK;
+    memcpy(xy, &given, sizeof xy);
+    for (size_t i = 0; i < 8; i++)
+        if (!(fabsf(xy[i] - rec709[i]) <= 0.002F))
+            return err_set(err, STATUS_INPUT,
+                           "%s: has the colours of another space (chromaticities); only those of "
+                           "sRGB's primaries can be read",
+                           self->file.name);
+    return STATUS_OK;
+}
+
 static Status open_file(Exr *self, Err *err)
 {
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -119,22 +144,30 @@ static Status open_file(Exr *self, Err *err)
     setup.read_fn = on_read;
     setup.size_fn = on_size;
     exr_storage_t storage;
+    exr_compression_t compression;
     int parts;
     if (exr_start_read(&self->context, self->file.name, &setup) != EXR_ERR_SUCCESS ||
         exr_get_count(self->context, &parts) != EXR_ERR_SUCCESS ||
         exr_get_storage(self->context, 0, &storage) != EXR_ERR_SUCCESS ||
-        exr_get_data_window(self->context, 0, &self->window) != EXR_ERR_SUCCESS)
+        exr_get_compression(self->context, 0, &compression) != EXR_ERR_SUCCESS ||
+        exr_get_data_window(self->context, 0, &self->window) != EXR_ERR_SUCCESS ||
+        exr_get_display_window(self->context, 0, &self->display) != EXR_ERR_SUCCESS)
         return unsound(self, err);
-    if (parts != 1 || storage != EXR_STORAGE_SCANLINE)
+    self->is_tiled = storage == EXR_STORAGE_TILED;
+    if (parts != 1 || (storage != EXR_STORAGE_SCANLINE && !self->is_tiled))
         return err_set(err, STATUS_INPUT,
-                       "%s: has tiles, several parts or deep pixels; only one flat image in scan "
-                       "lines can be read",
+                       "%s: has several parts or deep pixels; only one flat image can be read",
+                       self->file.name);
+    if (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB)
+        return err_set(err, STATUS_INPUT,
+                       "%s: is compressed by DWAA or DWAB, which the library OpenEXRCore cannot "
+                       "read; any other compression can be read",
                        self->file.name);
     return STATUS_OK;
 }
 
-/* Points the decoder's channels at row `y` of the plane, counted from 0. */
-static void aim(Exr *self, exr_decode_pipeline_t *decoder, int y)
+/* Points the decoder's channels at column `x`, row `y` of the plane. */
+static void aim(Exr *self, exr_decode_pipeline_t *decoder, int x, int y)
 {
     size_t samples = (size_t)self->plane.channels;
     size_t row = (size_t)self->plane.width * samples;
@@ -144,7 +177,8 @@ static void aim(Exr *self, exr_decode_pipeline_t *decoder, int y)
         for (size_t i = 0; i < samples; i++) {
             if (strcmp(channel->channel_name, self->names[i]) != 0)
                 continue;
-            channel->decode_to_ptr = (uint8_t *)(self->plane.values + (size_t)y * row + i);
+            float *first = self->plane.values + (size_t)y * row + (size_t)x * samples + i;
+            channel->decode_to_ptr = (uint8_t *)first;
             channel->user_pixel_stride = (int32_t)(samples * sizeof(float));
             channel->user_line_stride = (int32_t)(row * sizeof(float));
             channel->user_bytes_per_element = sizeof(float);
@@ -153,40 +187,109 @@ static void aim(Exr *self, exr_decode_pipeline_t *decoder, int y)
     }
 }
 
+/* How wide and high the chunks are, but for the last ones: tiles, or rows side by side. */
+static bool measure_chunks(Exr *self, uint32_t *width, uint32_t *height)
+{
+    exr_tile_level_mode_t levels;
+    exr_tile_round_mode_t rounding;
+    int32_t lines;
+    if (self->is_tiled)
+        return exr_get_tile_descriptor(self->context, 0, width, height, &levels, &rounding) ==
+                   EXR_ERR_SUCCESS &&
+               *width > 0 && *height > 0;
+    if (exr_get_scanlines_per_chunk(self->context, 0, &lines) != EXR_ERR_SUCCESS || lines < 1)
+        return false;
+    *width = (uint32_t)self->plane.width;
+    *height = (uint32_t)lines;
+    return true;
+}
+
+static bool find_chunk(Exr *self, int column, int row, int y, exr_chunk_info_t *chunk)
+{
+    return (self->is_tiled ? exr_read_tile_chunk_info(self->context, 0, column, row, 0, 0, chunk)
+                           : exr_read_scanline_chunk_info(self->context, 0, self->window.min.y + y,
+                                                          chunk)) == EXR_ERR_SUCCESS;
+}
+
+static bool decode_chunk(Exr *self, exr_decode_pipeline_t *decoder, const exr_chunk_info_t *chunk,
+                         int x, int y)
+{
+    bool first = x == 0 && y == 0;
+    exr_result_t result = first ? exr_decoding_initialize(self->context, 0, chunk, decoder)
+                                : exr_decoding_update(self->context, 0, chunk, decoder);
+    if (result != EXR_ERR_SUCCESS)
+        return false;
+    aim(self, decoder, x, y);
+    if (first)
+        result = exr_decoding_choose_default_routines(self->context, 0, decoder);
+    return result == EXR_ERR_SUCCESS &&
+           exr_decoding_run(self->context, 0, decoder) == EXR_ERR_SUCCESS;
+}
+
 static bool decode_chunks(Exr *self)
 {
     exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
-    int32_t lines;
-    bool sound = exr_get_scanlines_per_chunk(self->context, 0, &lines) == EXR_ERR_SUCCESS;
-    for (int y = 0; y < self->plane.height && sound; y += lines) {
-        exr_chunk_info_t chunk;
-        sound = exr_read_scanline_chunk_info(self->context, 0, self->window.min.y + y, &chunk) ==
-                EXR_ERR_SUCCESS;
-        if (sound)
-            sound = (y == 0 ? exr_decoding_initialize(self->context, 0, &chunk, &decoder)
-                            : exr_decoding_update(self->context, 0, &chunk, &decoder)) ==
-                    EXR_ERR_SUCCESS;
-        if (!sound)
-            break;
-        aim(self, &decoder, y);
-        sound = (y > 0 || exr_decoding_choose_default_routines(self->context, 0, &decoder) ==
-                              EXR_ERR_SUCCESS) &&
-                exr_decoding_run(self->context, 0, &decoder) == EXR_ERR_SUCCESS;
+    uint32_t width = 0, height = 0;
+    bool sound = measure_chunks(self, &width, &height);
+    int row = 0;
+    for (int64_t y = 0; sound && y < self->plane.height; y += height, row++) {
+        int column = 0;
+        for (int64_t x = 0; sound && x < self->plane.width; x += width, column++) {
+            exr_chunk_info_t chunk;
+            sound = find_chunk(self, column, row, (int)y, &chunk) &&
+                    decode_chunk(self, &decoder, &chunk, (int)x, (int)y);
+        }
     }
     exr_decoding_destroy(self->context, &decoder);
     return sound;
+}
+
+static long long width_of(const exr_attr_box2i_t *window)
+{
+    return (long long)window->max.x - window->min.x + 1;
+}
+
+static long long height_of(const exr_attr_box2i_t *window)
+{
+    return (long long)window->max.y - window->min.y + 1;
+}
+
+/* Makes the plane that of the display window. */
+static Status show_window(Exr *self, Err *err)
+{
+    const exr_attr_box2i_t *data = &self->window, *display = &self->display;
+    if (memcmp(data, display, sizeof *data) == 0)
+        return STATUS_OK;
+    TRY(image_check_sides(self->file.name, width_of(display), height_of(display), err));
+    Plane shown;
+    int channels = self->plane.channels;
+    TRY(plane_init(&shown, (int)width_of(display), (int)height_of(display), channels, err));
+    long long left = data->min.x > display->min.x ? data->min.x : display->min.x;
+    long long right = data->max.x < display->max.x ? data->max.x : display->max.x;
+    for (long long y = display->min.y; y <= display->max.y && left <= right; y++) {
+        if (y < data->min.y || y > data->max.y)
+            continue;
+        size_t from = (size_t)((y - data->min.y) * self->plane.width + left - data->min.x);
+        size_t to = (size_t)((y - display->min.y) * shown.width + left - display->min.x);
+        memcpy(shown.values + to * (size_t)channels, self->plane.values + from * (size_t)channels,
+               (size_t)(right - left + 1) * (size_t)channels * sizeof *shown.values);
+    }
+    plane_release(&self->plane);
+    self->plane = shown;
+    return STATUS_OK;
 }
 
 static Status decode(Exr *self, Err *err)
 {
     TRY(open_file(self, err));
     TRY(choose_channels(self, err));
-    long long width = (long long)self->window.max.x - self->window.min.x + 1;
-    long long height = (long long)self->window.max.y - self->window.min.y + 1;
+    TRY(check_colors(self, err));
+    long long width = width_of(&self->window), height = height_of(&self->window);
     TRY(image_check_sides(self->file.name, width, height, err));
     TRY(plane_init(&self->plane, (int)width, (int)height, self->channels + self->has_alpha, err));
     if (!decode_chunks(self))
         return unsound(self, err);
+    TRY(show_window(self, err));
     return self->has_alpha ? plane_drop_alpha(&self->plane, self->file.name, err) : STATUS_OK;
 }
 

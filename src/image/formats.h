@@ -17,6 +17,10 @@ MUST_CHECK Status image_check_sides(const char *name, long long width, long long
 /* STATUS_MEMORY when the machine has fewer than `bytes` for an image of these sides. */
 MUST_CHECK Status image_check_memory(int width, int height, size_t bytes, Err *err);
 
+/* STATUS_INPUT, naming file and profile, unless an ICC profile is of sRGB. */
+MUST_CHECK Status image_check_profile(const char *name, const uint8_t *profile, size_t size,
+                                      Err *err);
+
 /* A library's words as part of a sentence: what is no printable ASCII becomes a blank. */
 void image_plain_text(char *text);
 

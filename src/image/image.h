@@ -25,6 +25,7 @@ typedef struct Plane {
 typedef struct Picture {
     int width, height, channels; /* channels 1 (grey) or 3 (red green blue) */
     int bits;                    /* 8 or 16 */
+    double gamma;                /* 0: sRGB's codes; else code / largest code = linear^gamma */
     uint8_t *codes8;             /* owned; width * height * channels of 8 bits, else NULL */
     uint16_t *codes16;           /* owned; width * height * channels of 16 bits, else NULL */
 } Picture;
@@ -110,11 +111,15 @@ static inline uint8_t srgb_code(const SrgbCodes *codes, float linear)
     return (uint8_t)((codes->cells[bits / SRGB_CELL] + bits % SRGB_CELL) / SRGB_CELL);
 }
 
-/* New picture of a colour plane (1 or 3 channels). */
+/* New picture of a colour plane (1 or 3 channels), its gamma 0 or 1. */
 MUST_CHECK Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encoding,
                                      int bits, Err *err);
-MUST_CHECK Status plane_from_picture(Plane *plane, const Picture *picture, Encoding encoding,
-                                     Err *err);
+/* The linear colours of a picture, as its gamma says. */
+MUST_CHECK Status plane_from_picture(Plane *plane, const Picture *picture, Err *err);
+/* The same colours in sRGB's codes. */
+MUST_CHECK Status picture_to_srgb(Picture *srgb, const Picture *picture, int bits, Err *err);
+/* Makes codes of 8 bits codes of 16, of the same brightness. */
+MUST_CHECK Status picture_widen(Picture *picture, Err *err);
 /* Id planes as 8-bit pictures: red * 65536 + green * 256 + blue. */
 MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err);
 /* Leaves the picture empty: its memory becomes the ids'. STATUS_INPUT unless it has 3 channels of 8
@@ -179,12 +184,14 @@ void image_release(Image *image);
 
 /* Reads a file, its format told by its first bytes; "-" is standard input.
  * Codes: PPM/PGM (P2, P3, P5, P6, maxval up to 65535, '#' comments; a maxval other than 255 and
- * 65535 is rescaled to 8 bits below 255 and to 16 above), PNG (8 and 16 bit, grey, RGB, palette),
- * TIFF (8 and 16 bit, grey and RGB, in strips).
- * Floats: PFM (both byte orders, the scale's magnitude ignored), OpenEXR (half and float; channels
- * R G B, X Y Z or a single one; scan lines), TIFF (32 bit). Infinities and NaN are kept.
- * An alpha channel is refused unless opaque throughout. STATUS_INPUT with a sentence naming the file
- * on truncated, corrupt and other files. */
+ * 65535 is rescaled to 8 bits below 255 and to 16 above), PNG (8 and 16 bit, grey, RGB, palette; gamma
+ * by gAMA, unless sRGB says otherwise; 0.4550 to 0.4560 is sRGB's), TIFF (8 and 16 bit, grey and RGB,
+ * interleaved; turned as Orientation says).
+ * Floats: PFM (both byte orders, scale 1), OpenEXR (half and float; channels R G B, X Y Z or a single
+ * one; the display window, 0 outside the data window), TIFF (32 bit). Infinities and NaN are kept.
+ * An alpha channel is refused unless opaque throughout, and so are colours of another space than sRGB
+ * (profiles, primaries), animations and TIFF files of several pages. STATUS_INPUT with a sentence naming
+ * the file on truncated, corrupt and other files. */
 MUST_CHECK Status image_read(Image *image, const char *path, Err *err);
 /* Likewise, and STATUS_INPUT when the file does not hold codes, or floats. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, Err *err);

@@ -40,10 +40,12 @@ Status pfm_decode(const ImageBytes *file, Plane *plane, Err *err)
     TRY(header_integer(&cursor, "width", 1, IMAGE_MAX_SIDE, &width, err));
     TRY(header_integer(&cursor, "height", 1, IMAGE_MAX_SIDE, &height, err));
     header_word(&cursor, word, sizeof word);
-    if (!number_parse(word, &scale) || !isfinite(scale) || scale == 0)
-        return err_set(err, STATUS_INPUT,
-                       "%s: the scale is \"%s\"; it must be a number other than 0", file->name,
-                       word);
+    if (!number_parse(word, &scale) || fabs(scale) != 1)
+        return err_set(
+            err, STATUS_INPUT,
+            "%s: the scale is \"%s\", by which some programs multiply and others divide; "
+            "only 1 and -1 can be read",
+            file->name, word);
     int channels = file->bytes[1] == 'F' ? 3 : 1;
     size_t row_values = (size_t)width * (size_t)channels;
     TRY(header_end(&cursor, row_values * (size_t)height * 4, err));

@@ -44,6 +44,7 @@ typedef struct Reader {
     uint8_t *bytes;  /* owned; all rows */
     png_bytep *rows; /* owned; into bytes */
     Picture picture; /* owned */
+    double gamma;    /* of the picture */
     Complaint complaint;
     Err *err;
 } Reader;
@@ -91,14 +92,89 @@ static Status take_rows(Reader *self, int samples)
     return STATUS_OK;
 }
 
+/* -- what the codes mean */
+
+static const uint8_t *find_unknown(Reader *self, const char *type, size_t size)
+{
+    png_unknown_chunkp chunks;
+    int n = png_get_unknown_chunks(self->png, self->info, &chunks);
+    for (int i = 0; i < n; i++)
+        if (memcmp(chunks[i].name, type, 4) == 0 && chunks[i].size == size)
+            return chunks[i].data;
+    return NULL;
+}
+
+static Status check_single(Reader *self)
+{
+    const uint8_t *animation = find_unknown(self, "acTL", 8);
+    png_uint_32 frames = animation ? png_get_uint_32(animation) : 1;
+    if (frames > 1)
+        return err_set(self->err, STATUS_INPUT,
+                       "%s: is an animation of %u pictures; only a single one can be read",
+                       self->file.name, (unsigned)frames);
+    return STATUS_OK;
+}
+
+static Status other_colors(Reader *self, const char *chunk)
+{
+    return err_set(self->err, STATUS_INPUT,
+                   "%s: has the colours of another space (%s chunk); only those of sRGB can be "
+                   "read",
+                   self->file.name, chunk);
+}
+
+/* Whether a cHRM chunk says what sRGB says, to 0.002. */
+static bool has_srgb_primaries(Reader *self)
+{
+    static const png_fixed_point srgb[8] = {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
+    png_fixed_point xy[8];
+    png_get_cHRM_fixed(self->png, self->info, &xy[0], &xy[1], &xy[2], &xy[3], &xy[4], &xy[5],
+                       &xy[6], &xy[7]);
+    for (int i = 0; i < 8; i++)
+        if (abs(xy[i] - srgb[i]) > 200)
+            return false;
+    return true;
+}
+
+/* The chunks in the order in which one outdoes the other [PNG 3, section 13.13]. libpng takes a
+ * profile that it knows for an sRGB chunk. */
+static Status read_meaning(Reader *self)
+{
+    static const uint8_t srgb[4] = {1, 13, 0, 1};
+    static const png_fixed_point srgb_gamma = 45455;
+    png_structp png = self->png;
+    png_infop info = self->info;
+    const uint8_t *code_points = find_unknown(self, "cICP", 4);
+    if (code_points)
+        return memcmp(code_points, srgb, 4) == 0 ? STATUS_OK : other_colors(self, "cICP");
+    if (png_get_valid(png, info, PNG_INFO_sRGB))
+        return STATUS_OK;
+    png_charp name;
+    png_bytep profile;
+    png_uint_32 size;
+    int method;
+    if (png_get_iCCP(png, info, &name, &method, &profile, &size))
+        return image_check_profile(self->file.name, profile, size, self->err);
+    if (png_get_valid(png, info, PNG_INFO_cHRM) && !has_srgb_primaries(self))
+        return other_colors(self, "cHRM");
+    png_fixed_point gamma;
+    if (png_get_gAMA_fixed(png, info, &gamma) && abs(gamma - srgb_gamma) > 50)
+        self->gamma = gamma / 1e5;
+    return STATUS_OK;
+}
+
 /* The work between setjmp and the end: may not return when libpng finds an error. */
 static Status read_picture(Reader *self)
 {
+    static const png_byte kept[] = "acTL\0cICP";
     png_structp png = self->png;
     png_infop info = self->info;
     png_set_read_fn(png, self, read_bytes);
     png_set_user_limits(png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_ALWAYS, kept, 2);
     png_read_info(png, info);
+    TRY(check_single(self));
+    TRY(read_meaning(self));
     int width = (int)png_get_image_width(png, info);
     int height = (int)png_get_image_height(png, info);
     if (png_get_rowbytes(png, info) > self->file.size * DEFLATE_MAX_RATIO / (size_t)height)
@@ -111,6 +187,7 @@ static Status read_picture(Reader *self)
     int samples = png_get_channels(png, info);
     TRY(picture_init(&self->picture, width, height, samples < 3 ? 1 : 3,
                      png_get_bit_depth(png, info), self->err));
+    self->picture.gamma = self->gamma;
     TRY(allocate_rows(self, height, png_get_rowbytes(png, info)));
     png_read_image(png, self->rows);
     png_read_end(png, NULL);

@@ -47,10 +47,19 @@ static bool read_header(Plain *plain, const uint8_t *data, size_t file_size)
     return plain->row <= file_size * DEFLATE_MAX_RATIO / plain->height;
 }
 
+static bool is_one_of(const uint8_t *type, const char *types)
+{
+    for (; strlen(types) >= 4; types += types[4] ? 5 : 4)
+        if (memcmp(type, types, 4) == 0)
+            return true;
+    return false;
+}
+
 /* Walks the chunks; `compressed` has room for the whole file. False on what is not plain. */
 static bool read_chunks(Plain *plain, const ImageBytes *file)
 {
     size_t at = SIGNATURE_SIZE;
+    bool is_srgb = false, may_differ = false; /* the colours */
     for (bool first = true;; first = false) {
         if (file->size - at < CHUNK_FRAME)
             return false;
@@ -67,11 +76,13 @@ static bool read_chunks(Plain *plain, const ImageBytes *file)
             memcpy(plain->compressed + plain->size, data, length);
             plain->size += length;
         } else if (memcmp(type, "IEND", 4) == 0) {
-            return true;
+            return is_srgb || !may_differ;
         } else if (!header && memcmp(type, "PLTE", 4) != 0 &&
-                   (!(type[0] & 32) || memcmp(type, "tRNS", 4) == 0)) {
-            return false; /* transparent, or a critical chunk of some other kind */
+                   (!(type[0] & 32) || is_one_of(type, "tRNS acTL cICP iCCP"))) {
+            return false; /* transparent, animated, or a critical chunk of some other kind */
         }
+        is_srgb |= is_one_of(type, "sRGB");
+        may_differ |= is_one_of(type, "gAMA cHRM");
         at += length + CHUNK_FRAME;
     }
 }

@@ -1,5 +1,6 @@
-/* TIFF through libtiff, from the file in memory: the first image, in strips, grey or RGB, 8 or 16
- * bits or 32-bit floats, however it is compressed. */
+/* TIFF through libtiff, from the file in memory: a single page in strips or tiles, grey or RGB, 8 or 16
+ * bits or 32-bit floats, however it is compressed. Its Orientation is undone on the way: the place of
+ * a pixel is a linear function of its column and row in the file. */
 #include "image/formats.h"
 
 #include <stdlib.h>
@@ -10,10 +11,14 @@ typedef struct Tiff {
     ImageBytes file;
     size_t at;
     TIFF *handle;
-    uint32_t width, height;
+    uint32_t width, height; /* in the file */
     int samples, bits;
     bool floats;
-    void *row; /* owned */
+    bool swapped;                     /* its rows are columns */
+    int64_t origin, across, down;     /* the pixel of column 0, row 0; how far the next ones are */
+    uint32_t part_width, part_height; /* of a tile, or of a row */
+    size_t part_bytes;
+    void *part; /* owned */
     char complaint[200];
 } Tiff;
 
@@ -113,11 +118,30 @@ static Status unsound(Tiff *self, Err *err)
                    *self->complaint ? self->complaint : "its directory does not fit its data");
 }
 
-static Status read_header(Tiff *self, Err *err)
+/* Where pixels go. The orientations are counted as TIFF does: from 5 on rows are columns. */
+static void set_places(Tiff *self, int orientation)
+{
+    bool mirrored = orientation == ORIENTATION_TOPRIGHT || orientation == ORIENTATION_BOTRIGHT ||
+                    orientation == ORIENTATION_RIGHTBOT || orientation == ORIENTATION_LEFTBOT;
+    bool upended = orientation == ORIENTATION_BOTRIGHT || orientation == ORIENTATION_BOTLEFT ||
+                   orientation == ORIENTATION_RIGHTTOP || orientation == ORIENTATION_RIGHTBOT;
+    self->swapped = orientation >= ORIENTATION_LEFTTOP;
+    self->across = self->swapped ? self->height : 1;
+    self->down = self->swapped ? 1 : self->width;
+    self->origin = 0;
+    if (mirrored) {
+        self->origin += self->across * (self->width - 1);
+        self->across = -self->across;
+    }
+    if (upended) {
+        self->origin += self->down * (self->height - 1);
+        self->down = -self->down;
+    }
+}
+
+static Status check_form(Tiff *self, Err *err)
 {
     uint16_t samples, bits, format, planar, photometric = PHOTOMETRIC_MINISBLACK;
-    TIFFGetField(self->handle, TIFFTAG_IMAGEWIDTH, &self->width);
-    TIFFGetField(self->handle, TIFFTAG_IMAGELENGTH, &self->height);
     TIFFGetField(self->handle, TIFFTAG_PHOTOMETRIC, &photometric);
     TIFFGetFieldDefaulted(self->handle, TIFFTAG_SAMPLESPERPIXEL, &samples);
     TIFFGetFieldDefaulted(self->handle, TIFFTAG_BITSPERSAMPLE, &bits);
@@ -131,54 +155,125 @@ static Status read_header(Tiff *self, Err *err)
     bool color = photometric == PHOTOMETRIC_RGB
                      ? samples == 3 || samples == 4
                      : photometric == PHOTOMETRIC_MINISBLACK && (samples == 1 || samples == 2);
-    if (!depth || !color || (planar != PLANARCONFIG_CONTIG && samples > 1) ||
-        TIFFIsTiled(self->handle))
-        return err_set(err, STATUS_INPUT,
-                       "%s: has %d samples a pixel of %d bits in a form that cannot be read; grey "
-                       "or RGB of 8 or 16 bits or 32-bit floats, in interleaved strips, can",
-                       self->file.name, samples, bits);
-    TRY(image_check_sides(self->file.name, self->width, self->height, err));
-    if ((size_t)TIFFScanlineSize(self->handle) !=
-        self->width * (size_t)samples * (size_t)(bits / 8))
-        return unsound(self, err);
-    return mem_calloc(&self->row, self->width * (size_t)samples, (size_t)bits / 8,
-                      "values of a row", err);
+    if (depth && color && (planar == PLANARCONFIG_CONTIG || samples == 1))
+        return STATUS_OK;
+    return err_set(
+        err, STATUS_INPUT,
+        "%s: has %d samples a pixel of %d bits in a form that cannot be read; grey or RGB "
+        "of 8 or 16 bits or 32-bit floats, interleaved, can",
+        self->file.name, samples, bits);
 }
 
-/* One row of the file as codes; alpha must be opaque. */
-static Status take_codes(const Tiff *self, int y, Picture *picture, Err *err)
+/* Strips are read row by row, tiles whole. */
+static Status set_parts(Tiff *self, Err *err)
 {
-    size_t next = (size_t)y * picture_stride(picture);
-    const uint8_t *row8 = self->row;
-    const uint16_t *row16 = self->row;
-    for (size_t x = 0; x < self->width; x++)
-        for (int c = 0; c < self->samples; c++) {
-            size_t i = x * (size_t)self->samples + (size_t)c;
-            uint16_t code = self->bits == 8 ? row8[i] : row16[i];
+    self->part_width = self->width;
+    self->part_height = 1;
+    bool tiled = TIFFIsTiled(self->handle);
+    if (tiled) {
+        TIFFGetField(self->handle, TIFFTAG_TILEWIDTH, &self->part_width);
+        TIFFGetField(self->handle, TIFFTAG_TILELENGTH, &self->part_height);
+        TRY(image_check_sides(self->file.name, self->part_width, self->part_height, err));
+    }
+    self->part_bytes = (size_t)self->part_width * self->part_height * (size_t)self->samples *
+                       (size_t)(self->bits / 8);
+    TRY(image_check_memory((int)self->part_width, (int)self->part_height, self->part_bytes, err));
+    if ((size_t)(tiled ? TIFFTileSize(self->handle) : TIFFScanlineSize(self->handle)) !=
+        self->part_bytes)
+        return unsound(self, err);
+    return mem_calloc(&self->part, self->part_bytes, 1, "bytes of a part of a TIFF", err);
+}
+
+static Status read_header(Tiff *self, Err *err)
+{
+    uint16_t orientation;
+    uint32_t size;
+    const void *profile;
+    TRY(check_form(self, err));
+    TIFFGetField(self->handle, TIFFTAG_IMAGEWIDTH, &self->width);
+    TIFFGetField(self->handle, TIFFTAG_IMAGELENGTH, &self->height);
+    TRY(image_check_sides(self->file.name, self->width, self->height, err));
+    TIFFGetFieldDefaulted(self->handle, TIFFTAG_ORIENTATION, &orientation);
+    set_places(self, orientation);
+    if (!self->floats && TIFFGetField(self->handle, TIFFTAG_ICCPROFILE, &size, &profile))
+        TRY(image_check_profile(self->file.name, profile, size, err));
+    return set_parts(self, err);
+}
+
+/* `n` pixels of row `y` of the file, from column `x` on, at `values`; alpha must be opaque. */
+static Status take_codes(const Tiff *self, const uint8_t *values, uint32_t x, uint32_t y,
+                         uint32_t n, Picture *picture, Err *err)
+{
+    const uint16_t *deep = (const void *)values;
+    size_t at = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        int64_t place = self->origin + (x + i) * self->across + y * self->down;
+        for (int c = 0; c < self->samples; c++, at++) {
+            uint16_t code = self->bits == 8 ? values[at] : deep[at];
             if (c < picture->channels)
-                picture_set(picture, next++, code);
+                picture_set(picture, (size_t)(place * picture->channels + c), code);
             else if (code != (self->bits == 8 ? 255 : 65535))
                 return err_set(err, STATUS_INPUT,
-                               "%s: is transparent at column %zu, row %d; only opaque pictures can "
+                               "%s: is transparent at column %u, row %u; only opaque pictures can "
                                "be read",
-                               self->file.name, x, y);
+                               self->file.name, x + i, y);
         }
+    }
     return STATUS_OK;
 }
 
-static Status read_rows(Tiff *self, Picture *picture, Plane *plane, Err *err)
+static void take_floats(const Tiff *self, const uint8_t *values, uint32_t x, uint32_t y, uint32_t n,
+                        Plane *plane)
 {
-    for (uint32_t y = 0; y < self->height; y++) {
-        if (TIFFReadScanline(self->handle, self->row, y, 0) != 1)
-            return unsound(self, err);
-        size_t values = self->width * (size_t)self->samples;
-        if (self->floats)
-            memcpy(plane->values + y * values, self->row, values * sizeof *plane->values);
-        else
-            TRY(take_codes(self, (int)y, picture, err));
+    size_t size = (size_t)self->samples * sizeof *plane->values;
+    for (uint32_t i = 0; i < n; i++) {
+        int64_t place = self->origin + (x + i) * self->across + y * self->down;
+        memcpy(plane->values + place * self->samples, values + i * size, size);
     }
+}
+
+/* The part of the file that begins at column `x`, row `y`. */
+static Status read_part(Tiff *self, uint32_t x, uint32_t y, Image *image, Err *err)
+{
+    bool read = TIFFIsTiled(self->handle) ? TIFFReadTile(self->handle, self->part, x, y, 0, 0) >= 0
+                                          : TIFFReadScanline(self->handle, self->part, y, 0) == 1;
+    if (!read)
+        return unsound(self, err);
+    uint32_t n = self->part_width < self->width - x ? self->part_width : self->width - x;
+    size_t row_bytes = self->part_bytes / self->part_height;
+    for (uint32_t row = 0; row < self->part_height && y + row < self->height; row++) {
+        const uint8_t *values = (const uint8_t *)self->part + row * row_bytes;
+        if (self->floats)
+            take_floats(self, values, x, y + row, n, &image->plane);
+        else
+            TRY(take_codes(self, values, x, y + row, n, &image->picture, err));
+    }
+    return STATUS_OK;
+}
+
+static Status read_parts(Tiff *self, Image *image, Err *err)
+{
+    for (uint32_t y = 0; y < self->height; y += self->part_height)
+        for (uint32_t x = 0; x < self->width; x += self->part_width)
+            TRY(read_part(self, x, y, image, err));
     bool alpha = self->floats && (self->samples == 2 || self->samples == 4);
-    return alpha ? plane_drop_alpha(plane, self->file.name, err) : STATUS_OK;
+    return alpha ? plane_drop_alpha(&image->plane, self->file.name, err) : STATUS_OK;
+}
+
+/* Smaller versions of the page and masks are no pages. */
+static Status check_single(Tiff *self, Err *err)
+{
+    while (!TIFFLastDirectory(self->handle)) {
+        uint32_t kind = 0;
+        if (!TIFFReadDirectory(self->handle))
+            return unsound(self, err);
+        TIFFGetField(self->handle, TIFFTAG_SUBFILETYPE, &kind);
+        if (!(kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)))
+            return err_set(err, STATUS_INPUT,
+                           "%s: has several pages; only a single picture can be read",
+                           self->file.name);
+    }
+    return STATUS_OK;
 }
 
 static Status decode(Tiff *self, Image *image, Err *err)
@@ -187,13 +282,15 @@ static Status decode(Tiff *self, Image *image, Err *err)
     if (!self->handle)
         return unsound(self, err);
     TRY(read_header(self, err));
-    int width = (int)self->width, height = (int)self->height;
+    int width = (int)(self->swapped ? self->height : self->width);
+    int height = (int)(self->swapped ? self->width : self->height);
     if (self->floats)
         TRY(plane_init(&image->plane, width, height, self->samples, err));
     else
         TRY(picture_init(&image->picture, width, height, self->samples < 3 ? 1 : 3, self->bits,
                          err));
-    return read_rows(self, &image->picture, &image->plane, err);
+    TRY(read_parts(self, image, err));
+    return check_single(self, err);
 }
 
 Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
@@ -203,7 +300,7 @@ Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
     Status status = decode(&self, &made, err);
     if (self.handle)
         TIFFClose(self.handle);
-    free(self.row);
+    free(self.part);
     if (status == STATUS_OK)
         *image = made;
     else

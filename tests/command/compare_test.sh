@@ -184,15 +184,39 @@ test_formats_of_every_kind_are_compared() {
     expect_status 1
     run_ok corcast compare "$f/float-piz.exr" "$f/half-zip.exr"
     run_ok corcast compare "$f/float.tif" "$f/half-zip.exr"
-    run corcast compare "$f/rgb8-lzw.tif" "$f/rgb16-zip.tif"
-    expect_status 2
-    expect_sentence '3 x 8 and 3 x 16 bits'
+    run_ok corcast compare "$f/rgb8-lzw.tif" "$f/rgb16-zip.tif"
     run corcast compare "$f/rgb8-lzw.tif" "$f/float.tif"
     expect_status 2
     expect_sentence 'rgb8-lzw\.tif holds whole numbers and .*float\.tif floats'
     run corcast compare "$f/depth.exr" "$f/depth.exr"
     expect_status 1
     expect_stdout 'depth: values that are not a number: 2 pixels'
+}
+
+test_the_same_codes_under_another_gamma_are_another_picture() {
+    local f=$DATA/images
+    run_ok corcast compare "$f/gamma-0.45455.png" "$f/rgb8-lzw.tif"
+    run_ok corcast compare "$f/gamma-1.png" "$f/gamma-1.png" -o heat.png
+    run corcast compare "$f/gamma-1.png" "$f/rgb8-lzw.tif"
+    expect_status 1
+    run corcast compare "$f/gamma-1.png" "$f/gamma-0.5.png"
+    expect_status 1
+    run_ok corcast convert "$f/gamma-0.5.png" srgb.png
+    run_ok corcast compare "$f/gamma-0.5.png" srgb.png --levels 0.51
+}
+
+test_convert_reads_the_floats_that_compare_reads() {
+    local f=$DATA/images
+    run_ok corcast convert "$f/half-zip.exr" half.pfm
+    run_ok corcast compare "$f/half-zip.exr" half.pfm
+    run_ok corcast convert "$f/float.tif" float.pfm
+    expect_same half.pfm float.pfm
+    run corcast convert half.pfm half.exr
+    expect_status 2
+    expect_sentence "'half\.exr' cannot be written: OpenEXR is only read"
+    run corcast convert "$f/half-zip.exr" half.png
+    expect_status 2
+    expect_sentence 'half-zip\.exr: holds floats; a picture of 8 or 16 bits is wanted'
 }
 
 test_sides_beyond_all_bounds_are_refused() {
