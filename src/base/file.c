@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
 #include <stdatomic.h>
@@ -44,6 +45,11 @@ static void remove_temporaries(int signal_number)
         if (name)
             unlink(name);
     }
+    for (int i = 0; i < MAX_TEMPORARIES; i++) {
+        char *name = atomic_load(&temporaries[i]);
+        if (name)
+            rmdir(name); /* empty by now */
+    }
     raise(signal_number); /* SA_RESETHAND: the default action ends the program */
 }
 
@@ -51,9 +57,21 @@ void file_clean_up_on_signals(void)
 {
     struct sigaction action = {.sa_handler = remove_temporaries, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
-    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
-    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++)
-        sigaction(signals[i], &action, NULL);
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU, SIGXFSZ};
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+        struct sigaction before;
+        if (sigaction(signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(signals[i], &action, NULL);
+    }
+}
+
+/* open() takes the lowest free number, and a stream open the wrong way round fails when it is used. */
+void file_hold_standard_streams(void)
+{
+    for (int handle = STDIN_FILENO; handle <= STDERR_FILENO; handle++)
+        if (fcntl(handle, F_GETFD) < 0 &&
+            open("/dev/null", handle == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0)
+            return;
 }
 
 static Status read_stream(FILE *stream, const char *name, char **bytes, size_t *size, Err *err)
@@ -93,6 +111,17 @@ Status file_read(const char *path, char **bytes, size_t *size, Err *err)
         status = read_stream(stream, path, bytes, size, err);
     fclose(stream);
     return status;
+}
+
+Status file_check_regular(const char *path, Err *err)
+{
+    struct stat about;
+    if (stat(path, &about) != 0)
+        return err_set(err, STATUS_INPUT, "%s: cannot be read: %s", path, strerror(errno));
+    if (S_ISREG(about.st_mode))
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT, "%s: is a %s, not a file", path,
+                   S_ISDIR(about.st_mode) ? "folder" : "pipe or a device");
 }
 
 const char *file_name(const char *path)
@@ -140,36 +169,68 @@ Status file_join(const char *folder, const char *name, char **out, Err *err)
     return format_owned(out, err, "%s%s%s", folder, slash, name);
 }
 
-Status file_temporary(const char *path, char **temporary, Err *err)
+/* folder/.corcast.XXXXXX of the folder that `path` is in: no longer than any name may be. */
+static Status temporary_name(const char *path, char **name, Err *err)
 {
-    const char *extension = file_extension(path);
-    const char *dot = *extension ? extension - 1 : "";
-    char *name = NULL;
-    TRY(format_owned(&name, err, "%.*s.%s.XXXXXX%s", (int)(file_name(path) - path), path,
-                     file_name(path), dot));
-    int handle = mkstemps(name, (int)strlen(dot));
-    if (handle < 0) {
-        Status status = err_set(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
-        free(name);
-        return status;
-    }
-    mode_t mask = umask(0);
-    umask(mask);
-    fchmod(handle, 0666 & ~mask);
-    close(handle);
-    Status status = file_remove_on_signal(name, err);
+    return format_owned(name, err, "%.*s.corcast.XXXXXX", (int)(file_name(path) - path), path);
+}
+
+/* Frees `name` on failure. */
+static Status keep_temporary(char *name, bool made, const char *path, Err *err)
+{
+    Status status =
+        made ? file_remove_on_signal(name, err)
+             : err_set(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
     if (status != STATUS_OK) {
-        unlink(name);
+        if (made)
+            remove(name);
         free(name);
-        return status;
     }
+    return status;
+}
+
+static Status temporary_file(const char *path, char **temporary, Err *err)
+{
+    char *name = NULL;
+    TRY(temporary_name(path, &name, err));
+    int handle = mkstemp(name);
+    if (handle >= 0)
+        close(handle);
+    TRY(keep_temporary(name, handle >= 0, path, err));
     *temporary = name;
     return STATUS_OK;
+}
+
+Status file_temporary_folder(const char *path, char **folder, Err *err)
+{
+    char *name = NULL;
+    TRY(temporary_name(path, &name, err));
+    TRY(keep_temporary(name, mkdtemp(name) != NULL, path, err));
+    *folder = name;
+    return STATUS_OK;
+}
+
+/* The owner and the permissions of the file at `path`, or those of a new file where there is none. The
+ * owner comes first, as changing it may take permissions away; where not even the group can be kept,
+ * it has no say. */
+static void take_after(const char *temporary, const char *path)
+{
+    struct stat old;
+    if (stat(path, &old) == 0) {
+        bool kept = chown(temporary, old.st_uid, old.st_gid) == 0 ||
+                    chown(temporary, (uid_t)-1, old.st_gid) == 0;
+        chmod(temporary, old.st_mode & (kept ? 0777 : 0707));
+    } else {
+        mode_t mask = umask(0);
+        umask(mask);
+        chmod(temporary, 0666 & ~mask);
+    }
 }
 
 Status file_rename(char *temporary, const char *path, Err *err)
 {
     Status status = STATUS_OK;
+    take_after(temporary, path);
     if (rename(temporary, path) != 0) {
         status = err_set(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
         unlink(temporary);
@@ -183,44 +244,101 @@ void file_forget(char *temporary)
 {
     if (!temporary)
         return;
-    unlink(temporary);
+    remove(temporary);
     give_up(temporary);
     free(temporary);
 }
 
-/* A symbolic link keeps pointing where it did: its target is what gets written. */
-static Status final_path(const char *path, char **out, Err *err)
+static bool is_direct(const char *path)
 {
-    char *resolved = realpath(path, NULL);
-    if (resolved) {
-        *out = resolved;
-        return STATUS_OK;
+    struct stat about;
+    return stat(path, &about) == 0 && !S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode);
+}
+
+/* Devices and pipes stay as they are: links such as /dev/stdout lead to no path. */
+Status file_resolve(const char *path, char **out, Err *err)
+{
+    enum { MAX_LINKS = 40 };
+    char *at = NULL, target[PATH_MAX];
+    TRY(mem_strdup(&at, path, err));
+    for (int links = 0; links < MAX_LINKS; links++) {
+        ssize_t length = is_direct(at) ? -1 : readlink(at, target, sizeof target - 1);
+        if (length < 0) {
+            *out = at;
+            return STATUS_OK;
+        }
+        target[length] = '\0';
+        char *next = NULL;
+        int folder = target[0] == '/' ? 0 : (int)(file_name(at) - at);
+        Status status = format_owned(&next, err, "%.*s%s", folder, at, target);
+        free(at);
+        TRY(status);
+        at = next;
     }
-    return mem_strdup(out, path, err);
+    free(at);
+    return err_set(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(ELOOP));
+}
+
+/* Whether the folder that `path` is in takes new files; if not, errno says why. */
+static bool takes_files(const char *path)
+{
+    char folder[PATH_MAX];
+    size_t length = (size_t)(file_name(path) - path);
+    errno = ENAMETOOLONG;
+    if (length >= sizeof folder)
+        return false;
+    memcpy(folder, path, length);
+    folder[length] = '\0';
+    return access(length ? folder : ".", W_OK | X_OK) == 0;
+}
+
+/* Why `path`, no link, cannot be written, as errno says it; 0 when it can. */
+static int reason_against(const char *path)
+{
+    struct stat about;
+    if (stat(path, &about) == 0) {
+        if (S_ISDIR(about.st_mode))
+            return EISDIR;
+        if (access(path, W_OK) != 0)
+            return errno;
+        if (!S_ISREG(about.st_mode))
+            return 0;
+    } else if (errno != ENOENT) {
+        return errno;
+    }
+    return takes_files(path) ? 0 : errno;
+}
+
+Status outfile_check(const char *path, Err *err)
+{
+    if (strcmp(path, "-") == 0)
+        return STATUS_OK;
+    char *final = NULL;
+    TRY(file_resolve(path, &final, err));
+    int reason = reason_against(final);
+    free(final);
+    if (reason == 0)
+        return STATUS_OK;
+    return err_set(err, STATUS_IO, "%s: cannot be written: %s", path,
+                   reason == EISDIR ? "it is a folder" : strerror(reason));
 }
 
 Status outfile_open(OutFile *file, const char *path, Err *err)
 {
     OutFile opened = {0};
-    Status status = STATUS_OK;
     if (strcmp(path, "-") == 0) {
         TRY(mem_strdup(&opened.path, path, err));
         opened.stream = stdout;
         *file = opened;
         return STATUS_OK;
     }
-    TRY(final_path(path, &opened.path, err));
-    struct stat about;
-    bool exists = stat(opened.path, &about) == 0;
-    if (exists && S_ISDIR(about.st_mode)) {
-        status = err_set(err, STATUS_IO, "%s: cannot be written: it is a folder", path);
-    } else if (exists && !S_ISREG(about.st_mode)) {
-        opened.stream = fopen(opened.path, "wb");
-    } else {
-        status = file_temporary(opened.path, &opened.temporary, err);
-        if (status == STATUS_OK)
-            opened.stream = fopen(opened.temporary, "wb");
-    }
+    TRY(outfile_check(path, err));
+    TRY(file_resolve(path, &opened.path, err));
+    Status status = STATUS_OK;
+    if (!is_direct(opened.path))
+        status = temporary_file(opened.path, &opened.temporary, err);
+    if (status == STATUS_OK)
+        opened.stream = fopen(opened.temporary ? opened.temporary : opened.path, "wb");
     if (status == STATUS_OK && !opened.stream)
         status = err_set(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
     if (status != STATUS_OK) {

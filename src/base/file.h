@@ -12,16 +12,25 @@
  * read. */
 MUST_CHECK Status file_read(const char *path, char **bytes, size_t *size, Err *err);
 
+/* STATUS_INPUT unless `path` is a regular file: opening a pipe or a device can wait for ever. */
+MUST_CHECK Status file_check_regular(const char *path, Err *err);
+
 /* A file being written. What is written to `stream` goes to a temporary neighbour and takes the
  * final name only in outfile_commit; a signal that ends the program removes the neighbour. "-" is
- * standard output; a device or pipe is written directly. */
+ * standard output; a device or pipe is written directly. What is written over a file takes its
+ * permissions and, where the system lets it, its owner; a symbolic link stays and its target is
+ * written, also where that is not there yet. Other hard links of the file keep what they hold. */
 typedef struct OutFile {
     FILE *stream;
     char *path;      /* final name */
     char *temporary; /* NULL when written directly */
 } OutFile;
 
-/* STATUS_IO when the folder is missing or not writable. Follow with exactly one of outfile_commit
+/* STATUS_IO when outfile_open would refuse `path`: no folder, no permission, a folder itself, a link
+ * that leads to itself. Writes nothing. */
+MUST_CHECK Status outfile_check(const char *path, Err *err);
+
+/* STATUS_IO where outfile_check says so. Follow with exactly one of outfile_commit
  * and outfile_discard, each of which releases `file`, also on failure. */
 MUST_CHECK Status outfile_open(OutFile *file, const char *path, Err *err);
 MUST_CHECK Status outfile_commit(OutFile *file, Err *err);
@@ -34,12 +43,17 @@ MUST_CHECK Status outfile_check_room(const OutFile *file, double bytes, Err *err
 /* Writes all of `bytes` to `path` through an OutFile. */
 MUST_CHECK Status file_write(const char *path, const void *bytes, size_t size, Err *err);
 
-/* A temporary name beside `path` that keeps its extension, for another program to write to, in
- * *temporary (owned). The file exists, empty, and is removed by file_forget or by a signal. */
-MUST_CHECK Status file_temporary(const char *path, char **temporary, Err *err);
+/* The file that writing to `path` writes, in *out (owned): the path with symbolic links of its last
+ * component followed. STATUS_IO when they lead in a circle. */
+MUST_CHECK Status file_resolve(const char *path, char **out, Err *err);
+
+/* A new empty folder beside `path`, for another program to write to, in *folder (owned). It is removed,
+ * when it is empty, by file_forget or by a signal. */
+MUST_CHECK Status file_temporary_folder(const char *path, char **folder, Err *err);
 /* Has `name` (allocated) removed by file_forget or by a signal, too, if it exists by then. */
 MUST_CHECK Status file_remove_on_signal(char *name, Err *err);
-/* Gives the temporary file its final name and frees `temporary`, also on failure. */
+/* Gives the temporary file its final name, as an OutFile does, and frees `temporary`, also on
+ * failure. */
 MUST_CHECK Status file_rename(char *temporary, const char *path, Err *err);
 /* Removes and frees a temporary name. NULL is allowed. */
 void file_forget(char *temporary);
@@ -47,9 +61,13 @@ void file_forget(char *temporary);
 /* Makes a folder and its missing parents. */
 MUST_CHECK Status file_make_folder(const char *path, Err *err);
 
-/* Removes temporary files when SIGINT, SIGTERM, SIGHUP or SIGPIPE ends the program. main calls it
- * once; the table of temporary names is a global, because a handler reaches nothing else. */
+/* Removes temporary files when SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU or SIGXFSZ ends the
+ * program; signals that the caller ignores stay ignored. main calls it once; the table of temporary
+ * names is a global, because a handler reaches nothing else. */
 void file_clean_up_on_signals(void);
+/* Occupies standard streams that the caller has closed, so that no file opened later takes their
+ * place; using them fails. main calls it once, before any file is opened. */
+void file_hold_standard_streams(void);
 
 /* The text after the last '.' of the last component of `path`, "" when there is none. */
 const char *file_extension(const char *path);

@@ -19,6 +19,8 @@ void interrupt_catch(void)
     sigemptyset(&action.sa_mask);
     asked = 0;
     sigaction(SIGINT, &action, &before);
+    if (before.sa_handler == SIG_IGN)
+        sigaction(SIGINT, &before, NULL);
 }
 
 void interrupt_release(void)

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 /* From here on the first SIGINT only makes interrupt_asked() true; a second one ends the program as
- * usual. */
+ * usual. A SIGINT that the caller ignores stays ignored. */
 void interrupt_catch(void);
 /* SIGINT ends the program as it did before. */
 void interrupt_release(void);

@@ -1,6 +1,7 @@
 #include "base/text.h"
 
 #include "base/memory.h"
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,6 +52,47 @@ void text_printf(Text *text, const char *format, ...)
         }
     }
     va_end(again);
+}
+
+/* The length of the UTF-8 character at `chars`, 0 when there is none. XML takes neither surrogates nor
+ * U+FFFE and U+FFFF. */
+static size_t utf8_length(const unsigned char *chars)
+{
+    static const struct {
+        unsigned char mask, lead;
+        uint32_t least;
+    } forms[] = {{0x80, 0, 0}, {0xe0, 0xc0, 0x80}, {0xf0, 0xe0, 0x800}, {0xf8, 0xf0, 0x10000}};
+    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+        if ((chars[0] & forms[i].mask) != forms[i].lead)
+            continue;
+        uint32_t code = chars[0] & (unsigned char)~forms[i].mask;
+        for (size_t k = 1; k <= i; k++) {
+            if ((chars[k] & 0xc0) != 0x80) /* also at the final zero */
+                return 0;
+            code = code << 6 | (chars[k] & 0x3f);
+        }
+        bool character = code >= forms[i].least && code <= 0x10ffff && code >> 11 != 0x1b &&
+                         code != 0xfffe && code != 0xffff;
+        return character ? i + 1 : 0;
+    }
+    return 0;
+}
+
+void text_put_line(Text *text, const char *chars)
+{
+    while (*chars) {
+        size_t length = utf8_length((const unsigned char *)chars);
+        bool control = (unsigned char)*chars < ' ' || *chars == '\x7f' ||
+                       (length == 2 && (unsigned char)chars[0] == 0xc2 &&
+                        (unsigned char)chars[1] < 0xa0); /* U+0080 to U+009F */
+        if (control)
+            text_puts(text, " ");
+        else if (length == 0)
+            text_puts(text, "\xef\xbf\xbd");
+        else
+            text_append(text, chars, length);
+        chars += length ? length : 1;
+    }
 }
 
 Status text_check(const Text *text, Err *err)

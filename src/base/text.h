@@ -22,6 +22,9 @@ void text_release(Text *text);
 void text_append(Text *text, const char *chars, size_t length);
 void text_puts(Text *text, const char *chars);
 void text_printf(Text *text, const char *format, ...) PRINTF_LIKE(2, 3);
+/* Appends text from outside, say a file's name, as part of one line of UTF-8: a control character becomes
+ * a blank, and a byte that is no UTF-8 becomes U+FFFD. */
+void text_put_line(Text *text, const char *chars);
 /* STATUS_MEMORY when an append has failed, else STATUS_OK. */
 MUST_CHECK Status text_check(const Text *text, Err *err);
 
