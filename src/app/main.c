@@ -35,9 +35,25 @@ static void print_usage(FILE *stream)
           stream);
 }
 
+/* What ends well but cannot be told on standard output has failed. */
+static int finish(const char *command, Status status, Err *err)
+{
+    if (status_exit(status) < 2 && (fflush(stdout) != 0 || ferror(stdout)))
+        status = err_set(err, STATUS_IO, "standard output: writing failed");
+    if (err->text[0] && status != STATUS_OK) {
+        Text line = TEXT_INIT; /* names in it may hold anything */
+        text_put_line(&line, err->text);
+        fprintf(stderr, "corcast%s%s: %s\n", *command ? " " : "", command,
+                line.chars && !line.failed ? line.chars : err->text);
+        text_release(&line);
+    }
+    return status_exit(status);
+}
+
 int main(int argc, char **argv)
 {
     Err err = {{0}};
+    file_hold_standard_streams();
     file_clean_up_on_signals();
     if (argc < 2) {
         print_usage(stderr);
@@ -45,23 +61,17 @@ int main(int argc, char **argv)
     }
     if (strcmp(argv[1], "--version") == 0) {
         puts("corcast " CORCAST_VERSION);
-        return 0;
+        return finish("", STATUS_OK, &err);
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "help") == 0) {
         print_usage(stdout);
-        return 0;
+        return finish("", STATUS_OK, &err);
     }
-    for (int i = 0; i < N_COMMANDS; i++) {
-        if (strcmp(argv[1], commands[i].name) != 0)
-            continue;
-        Status status = commands[i].run(argc - 2, argv + 2, &err);
-        if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout)))
-            status = err_set(&err, STATUS_IO, "standard output: writing failed");
-        if (err.text[0] && status != STATUS_OK)
-            fprintf(stderr, "corcast %s: %s\n", argv[1], err.text);
-        return status_exit(status);
-    }
-    fprintf(stderr, "corcast: unknown command '%s'; corcast --help lists those there are\n",
-            argv[1]);
-    return status_exit(STATUS_USAGE);
+    for (int i = 0; i < N_COMMANDS; i++)
+        if (strcmp(argv[1], commands[i].name) == 0)
+            return finish(argv[1], commands[i].run(argc - 2, argv + 2, &err), &err);
+    return finish("",
+                  err_set(&err, STATUS_USAGE,
+                          "unknown command '%s'; corcast --help lists those there are", argv[1]),
+                  &err);
 }
