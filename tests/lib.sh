@@ -107,6 +107,11 @@ grow_tree() {
     run_ok corcast grow --terminals "$1" --seed "${2:-7}" -o tree.swc
 }
 
+# hearing COMMAND ...: for a background job; a shell starts those with SIGINT ignored, which corcast obeys.
+hearing() {
+    exec env --default-signal=INT "$@"
+}
+
 # wait_for SECONDS COMMAND ...: polls until the command succeeds.
 wait_for() {
     local tries=$(($1 * 20))

@@ -1,7 +1,7 @@
 #include "app/commands.h"
 #include "app/frames.h"
 #include "app/options.h"
-#include "verify/verify.h"
+#include "app/povfiles.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,10 +63,10 @@ Status run_povray(int argc, char **argv, Err *err)
         goto done;
     }
     TRY_GOTO(bits_check(bits, err));
+    TRY_GOTO(file_check_regular(parsed.operands[0], err));
     if (!has_size)
         TRY_GOTO(size_of_scene(parsed.operands[0], size, err));
-    OracleParams params = {.program = getenv("CORCAST_POVRAY"),
-                           .scene = parsed.operands[0],
+    OracleParams params = {.scene = parsed.operands[0],
                            .output = output,
                            .width = size[0],
                            .height = size[1],
@@ -76,6 +76,7 @@ Status run_povray(int argc, char **argv, Err *err)
                            .bits = bits,
                            .progress = progress_report,
                            .progress_context = &progress};
+    TRY_GOTO(povray_from_environment(&params, err));
     progress_start(&progress, "POV-Ray", parsed.common.quiet);
     status = oracle_run(&params, &run, err);
     progress_end(&progress);

@@ -162,18 +162,19 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
     TRY(file_join(v->folder, names[plane], &path, err));
     Progress progress;
     progress_start(&progress, labels[plane], v->common->quiet);
-    const OracleParams params = {.program = getenv("CORCAST_POVRAY"),
-                                 .scene = scene,
-                                 .output = path,
-                                 .width = v->picture->size[0],
-                                 .height = v->picture->size[1],
-                                 .antialias = v->picture->antialias,
-                                 .threads = v->common->threads,
-                                 .plane = plane,
-                                 .bits = v->bits,
-                                 .progress = progress_report,
-                                 .progress_context = &progress};
-    Status status = oracle_command(&params, &v->commands[v->n_commands], err);
+    OracleParams params = {.scene = scene,
+                           .output = path,
+                           .width = v->picture->size[0],
+                           .height = v->picture->size[1],
+                           .antialias = v->picture->antialias,
+                           .threads = v->common->threads,
+                           .plane = plane,
+                           .bits = v->bits,
+                           .progress = progress_report,
+                           .progress_context = &progress};
+    Status status = povray_from_environment(&params, err);
+    if (status == STATUS_OK)
+        status = oracle_command(&params, &v->commands[v->n_commands], err);
     if (status == STATUS_OK) {
         v->n_commands++;
         status = oracle_run(&params, plane == ORACLE_COLOR ? &v->run : NULL, err);
@@ -181,6 +182,8 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
     progress_end(&progress);
     if (status == STATUS_OK)
         status = read_plane(v, plane, path, err);
+    if (status == STATUS_INPUT) /* of POV-Ray's making */
+        status = STATUS_TOOL;
     free(path);
     return status;
 }

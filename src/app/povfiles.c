@@ -3,6 +3,7 @@
 #include "app/commands.h"
 #include "app/picture.h"
 #include "app/templates.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,4 +43,17 @@ done:
     free(templates);
     free(geometry_path);
     return status;
+}
+
+Status povray_from_environment(OracleParams *params, Err *err)
+{
+    const char *patience = getenv("CORCAST_POVRAY_PATIENCE");
+    params->program = getenv("CORCAST_POVRAY");
+    params->patience_s = 600;
+    if (!patience || (number_parse(patience, &params->patience_s) && isfinite(params->patience_s) &&
+                      params->patience_s >= 0))
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "CORCAST_POVRAY_PATIENCE: '%s' is not a number of seconds of at least 0",
+                   patience);
 }

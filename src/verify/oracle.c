@@ -1,13 +1,20 @@
 /* POV-Ray writes all it has to say to standard error: progress as "Rendered 120 of 400 pixels (30%)"
  * ended by carriage returns, a banner with its version, and the reason of a failure somewhere between
- * statistics. All of it is read through a pipe; the picture and POV-Ray's restart file go to temporary
- * names. The child dies with this process, so that an interrupted verification leaves no renderer
- * behind. */
+ * statistics. All of it is read through a pipe, of which the beginning and the end are kept.
+ *
+ * POV-Ray takes only some paths on its command line: no letter beyond ASCII, no line end. So it is given
+ * fixed names in a private folder beside the picture, which it reaches through an open handle: a link to
+ * the scene, the picture, and its restart file. It runs in the scene's folder, where it finds what the
+ * scene includes. The picture takes its final name when it is whole.
+ *
+ * The child dies with this process, so that an interrupted verification leaves no renderer behind; one
+ * that falls silent is ended. */
 #include "verify/oracle.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +24,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MAX_ARGUMENTS = 24, ARGUMENT_SIZE = 64, STATUS_NOT_STARTED = 127 };
+enum { MAX_ARGUMENTS = 24, STATUS_NOT_STARTED = 127, PRIVATE_HANDLE = 3 };
+#define PRIVATE_FOLDER "/proc/self/fd/3/" /* PRIVATE_HANDLE */
+#define PRIVATE_SCENE "scene.pov"
+#define PRIVATE_PICTURE "picture.png"
+#define PRIVATE_STATE "picture.pov-state"
 
 typedef struct Arguments {
     char *list[MAX_ARGUMENTS + 1];
@@ -45,28 +56,21 @@ static Status add_argument(Arguments *arguments, Err *err, const char *format, .
     return STATUS_OK;
 }
 
-/* A switch with a path; POV-Ray wants quotes around one with blanks, of the kind it does not hold. */
-static Status add_path(Arguments *arguments, const char *name, const char *path, Err *err)
+static int bits_of(const OracleParams *params)
 {
-    if (!strpbrk(path, " \t\"'"))
-        return add_argument(arguments, err, "%s%s", name, path);
-    char quote = strchr(path, '"') ? '\'' : '"';
-    if (strchr(path, quote))
-        return err_set(err, STATUS_INPUT,
-                       "%s: POV-Ray cannot be given a path with both kinds of quotes", path);
-    return add_argument(arguments, err, "%s%c%s%c", name, quote, path, quote);
+    if (params->plane == ORACLE_COLOR)
+        return params->bits;
+    return params->plane == ORACLE_ID ? 8 : 16;
 }
 
 /* Every switch that a user's povray.ini could have set otherwise is given. */
 static Status make_arguments(const OracleParams *params, const char *scene, const char *output,
                              Arguments *arguments, Err *err)
 {
-    bool color = params->plane == ORACLE_COLOR,
-         deep = color ? params->bits == 16
-                      : params->plane == ORACLE_DEPTH || params->plane == ORACLE_NORMAL;
+    bool color = params->plane == ORACLE_COLOR, deep = bits_of(params) == 16;
     TRY(add_argument(arguments, err, "%s", params->program ? params->program : "povray"));
-    TRY(add_path(arguments, "+I", scene, err));
-    TRY(add_path(arguments, "+O", output, err));
+    TRY(add_argument(arguments, err, "+I%s", scene));
+    TRY(add_argument(arguments, err, "+O%s", output));
     TRY(add_argument(arguments, err, "+W%d", params->width));
     TRY(add_argument(arguments, err, "+H%d", params->height));
     TRY(add_argument(arguments, err, "+FN%d", deep ? 16 : 8));
@@ -122,24 +126,97 @@ static Status folder_of(const char *path, char **out, Err *err)
     return STATUS_OK;
 }
 
-static void become_povray(char *const *arguments, const char *folder, int log)
+/* ---- the private folder ------------------------------------------------------------------------ */
+
+/* All names are owned and removed by file_forget or by a signal. */
+typedef struct Workplace {
+    char *folder, *scene, *picture, *state;
+    int handle; /* of the folder, or -1 */
+} Workplace;
+
+static Status add_name(Workplace *place, const char *name, char **out, Err *err)
 {
+    char *path = NULL;
+    TRY(file_join(place->folder, name, &path, err));
+    Status status = file_remove_on_signal(path, err);
+    if (status == STATUS_OK)
+        *out = path;
+    else
+        free(path);
+    return status;
+}
+
+/* `scene` is absolute, `picture` the final name. */
+static Status open_workplace(Workplace *place, const char *scene, const char *picture, Err *err)
+{
+    TRY(file_temporary_folder(picture, &place->folder, err));
+    TRY(add_name(place, PRIVATE_SCENE, &place->scene, err));
+    TRY(add_name(place, PRIVATE_PICTURE, &place->picture, err));
+    TRY(add_name(place, PRIVATE_STATE, &place->state, err));
+    place->handle = open(place->folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
+    if (place->handle < 0 || symlink(scene, place->scene) != 0)
+        return err_set(err, STATUS_IO, "%s: cannot be written: %s", picture, strerror(errno));
+    return STATUS_OK;
+}
+
+static void close_workplace(Workplace *place)
+{
+    if (place->handle >= 0)
+        close(place->handle);
+    file_forget(place->scene);
+    file_forget(place->picture);
+    file_forget(place->state);
+    file_forget(place->folder);
+}
+
+/* ---- the process -------------------------------------------------------------------------------- */
+
+static void become_povray(char *const *arguments, const char *folder, int private_folder, int log)
+{
+    int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     signal(SIGPIPE, SIG_DFL);
     dup2(log, STDERR_FILENO);
     dup2(log, STDOUT_FILENO);
+    dup2(nothing, STDIN_FILENO);
+    dup2(private_folder, PRIVATE_HANDLE);
+    fcntl(PRIVATE_HANDLE, F_SETFD, 0); /* also where the numbers are the same */
     if (chdir(folder) == 0)
         execvp(arguments[0], arguments);
-    dprintf(log, "cannot be started: %s\n", strerror(errno));
     _exit(STATUS_NOT_STARTED);
 }
 
-static void report_progress(const OracleParams *params, const Text *log)
+/* The beginning of what POV-Ray says and the end, so that no flood of warnings fills the memory. */
+enum { LOG_BEGIN = 1 << 16, LOG_END = 1 << 20 };
+static const double log_most = 1e9; /* bytes, after which POV-Ray is ended */
+
+typedef struct Log {
+    Text text;    /* lines end in line feeds */
+    double bytes; /* heard in all */
+} Log;
+
+static void add_to_log(Log *log, char *block, size_t size)
 {
-    if (!params->progress)
+    Text *text = &log->text;
+    for (size_t i = 0; i < size; i++)
+        if (block[i] == '\r' || block[i] == '\0')
+            block[i] = '\n';
+    text_append(text, block, size);
+    log->bytes += (double)size;
+    if (text->failed || text->length < LOG_BEGIN + 2 * LOG_END)
         return;
-    /* The last "(30%)". */
-    for (size_t i = log->length; i > 0; i--)
+    memmove(text->chars + LOG_BEGIN, text->chars + text->length - LOG_END, LOG_END + 1);
+    text->length = LOG_BEGIN + LOG_END;
+}
+
+/* The last "(30%)" among the `size` bytes that came last, or a little before them. */
+static void report_progress(const OracleParams *params, const Text *log, size_t size)
+{
+    enum { LONGEST = 8 };
+    if (!params->progress || log->failed)
+        return;
+    size_t first = log->length > size + LONGEST ? log->length - size - LONGEST : 0;
+    for (size_t i = log->length; i > first; i--)
         if (log->chars[i - 1] == '(') {
             int percent;
             if (sscanf(log->chars + i, "%d%%)", &percent) == 1)
@@ -148,26 +225,66 @@ static void report_progress(const OracleParams *params, const Text *log)
         }
 }
 
-static Status read_log(const OracleParams *params, int handle, Text *log, Err *err)
+/* Reads once if there is something within `wait_ms`; false at the end of all. */
+static bool hear(const OracleParams *params, int handle, int wait_ms, Log *log, double *heard_s)
 {
-    char block[4096];
-    ssize_t count;
-    while ((count = read(handle, block, sizeof block)) > 0 || (count < 0 && errno == EINTR))
-        if (count > 0) {
-            text_append(log, block, (size_t)count);
-            report_progress(params, log);
-        }
-    for (size_t i = 0; i < log->length; i++)
-        if (log->chars[i] == '\r' || log->chars[i] == '\0')
-            log->chars[i] = '\n';
-    text_puts(log, "");
-    return text_check(log, err);
+    char block[1 << 14];
+    struct pollfd event = {.fd = handle, .events = POLLIN};
+    if (poll(&event, 1, wait_ms) <= 0)
+        return true;
+    ssize_t count = read(handle, block, sizeof block);
+    if (count < 0)
+        return errno == EINTR;
+    add_to_log(log, block, (size_t)count);
+    report_progress(params, &log->text, (size_t)count);
+    *heard_s = clock_seconds();
+    return count > 0;
+}
+
+static Status end_povray(pid_t child, Status status)
+{
+    kill(child, SIGKILL);
+    while (waitpid(child, NULL, 0) < 0 && errno == EINTR)
+        ;
+    return status;
+}
+
+/* Waits for POV-Ray itself: what it has started may live on and keep the pipe open, and it may close the
+ * pipe and live on. What is in the pipe when it ends is still read. */
+static Status attend(const OracleParams *params, pid_t child, int handle, Log *log, int *ended,
+                     Err *err)
+{
+    enum { WAIT_MS = 100, SHORT_WAIT_MS = 2, LAST_READS = 8 };
+    double heard_s = clock_seconds();
+    bool open = true;
+    while (waitpid(child, ended, WNOHANG) == 0) {
+        if (open)
+            open = hear(params, handle, WAIT_MS, log, &heard_s);
+        else
+            poll(NULL, 0, SHORT_WAIT_MS);
+        if (log->bytes > log_most)
+            return end_povray(child, err_set(err, STATUS_TOOL,
+                                             "POV-Ray was ended: it has said more than %.0f MB "
+                                             "about %s",
+                                             log_most * 1e-6, params->scene));
+        if (params->patience_s > 0 && clock_seconds() - heard_s > params->patience_s)
+            return end_povray(child,
+                              err_set(err, STATUS_TOOL,
+                                      "POV-Ray was ended: it has said nothing for %g s about %s; "
+                                      "CORCAST_POVRAY_PATIENCE=SECONDS gives it longer, 0 for ever",
+                                      params->patience_s, params->scene));
+    }
+    for (int i = 0; open && i < LAST_READS; i++)
+        open = hear(params, handle, 0, log, &heard_s);
+    text_puts(&log->text, "");
+    return text_check(&log->text, err);
 }
 
 /* What POV-Ray said of a failure: from its first line with "Error", "rror:" or "Fatal" on, as one
- * sentence. */
-static void reason_of_failure(const Text *log, char *reason, size_t size)
+ * sentence, with `scene` in the place of the name that POV-Ray was given for it. */
+static void reason_of_failure(const Text *log, const char *scene, char *reason, size_t size)
 {
+    static const char given[] = PRIVATE_FOLDER PRIVATE_SCENE;
     const char *start = strstr(log->chars, "Error");
     if (!start)
         start = strstr(log->chars, "rror:");
@@ -185,6 +302,10 @@ static void reason_of_failure(const Text *log, char *reason, size_t size)
                 break;
             if (length > 0 && reason[length - 1] != ' ')
                 reason[length++] = ' ';
+        } else if (strncmp(start, given, sizeof given - 1) == 0) {
+            length += (size_t)snprintf(reason + length, size - length, "%s", scene);
+            length = length < size ? length : size - 1;
+            start += sizeof given - 2;
         } else {
             reason[length++] = *start;
         }
@@ -205,30 +326,46 @@ static void read_version(const Text *log, char *version, size_t size)
 
 /* Starts POV-Ray and waits for it; *log holds what it said. */
 static Status run_program(const OracleParams *params, char *const *arguments, const char *folder,
-                          Text *log, int *exit_status, Err *err)
+                          int private_folder, Log *log, int *exit_status, Err *err)
 {
-    int pipe_ends[2];
+    int pipe_ends[2], ended = 0;
     if (pipe2(pipe_ends, O_CLOEXEC) != 0)
         return err_set(err, STATUS_TOOL, "POV-Ray cannot be started: %s", strerror(errno));
     pid_t child = fork();
     if (child == 0)
-        become_povray(arguments, folder, pipe_ends[1]);
+        become_povray(arguments, folder, private_folder, pipe_ends[1]);
     close(pipe_ends[1]);
-    Status status = STATUS_OK;
-    if (child < 0)
-        status = err_set(err, STATUS_TOOL, "POV-Ray cannot be started: %s", strerror(errno));
-    else
-        status = read_log(params, pipe_ends[0], log, err);
+    Status status =
+        child < 0 ? err_set(err, STATUS_TOOL, "POV-Ray cannot be started: %s", strerror(errno))
+                  : attend(params, child, pipe_ends[0], log, &ended, err);
     close(pipe_ends[0]);
-    int ended = 0;
-    while (child > 0 && waitpid(child, &ended, 0) < 0 && errno == EINTR)
-        ;
     *exit_status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
     return status;
 }
 
+/* Whether a file is a PNG from signature to end mark, with colours of so many bits. */
+static bool is_whole_picture(const char *path, const OracleParams *params)
+{
+    static const unsigned char begin[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
+    static const unsigned char end[] = "\0\0\0\0IEND\xae\x42\x60\x82";
+    enum { BEGIN = sizeof begin - 1, HEADER = BEGIN + 10, END = sizeof end - 1, RGB = 2 };
+    unsigned char header[HEADER] = {0}, tail[END] = {0};
+    struct stat about;
+    FILE *file = lstat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
+    if (!file)
+        return false;
+    bool read = fread(header, HEADER, 1, file) == 1 && fseeko(file, -END, SEEK_END) == 0 &&
+                fread(tail, END, 1, file) == 1;
+    fclose(file);
+    const uint32_t sides[] = {(uint32_t)params->width, (uint32_t)params->height};
+    for (int i = 0; i < 8; i++)
+        read = read && header[BEGIN + i] == (sides[i / 4] >> (24 - 8 * (i % 4)) & 255);
+    return read && memcmp(header, begin, BEGIN) == 0 && header[BEGIN + 8] == bits_of(params) &&
+           header[BEGIN + 9] == RGB && memcmp(tail, end, END) == 0;
+}
+
 static Status judge(const OracleParams *params, const Text *log, int exit_status,
-                    const char *output, Err *err)
+                    const char *picture, Err *err)
 {
     const char *program = params->program ? params->program : "povray";
     char reason[700];
@@ -236,52 +373,59 @@ static Status judge(const OracleParams *params, const Text *log, int exit_status
         return err_set(
             err, STATUS_TOOL,
             "POV-Ray is needed and '%s' cannot be started; on Debian: apt install povray", program);
-    struct stat about;
-    if (exit_status == 0 && stat(output, &about) == 0 && about.st_size > 0)
+    if (exit_status == 0 && is_whole_picture(picture, params))
         return STATUS_OK;
     if (exit_status == 0)
-        return err_set(err, STATUS_TOOL, "POV-Ray ended without a picture of %s", params->scene);
-    reason_of_failure(log, reason, sizeof reason);
+        return err_set(err, STATUS_TOOL,
+                       "POV-Ray ended without a picture of %s: no whole PNG of %d x %d pixels of "
+                       "3 x %d bits",
+                       params->scene, params->width, params->height, bits_of(params));
+    reason_of_failure(log, file_name(params->scene), reason, sizeof reason);
     return err_set(err, STATUS_TOOL, "POV-Ray failed on %s (exit status %d): %s", params->scene,
                    exit_status, reason[0] ? reason : "it gave no reason");
+}
+
+/* The final name of the picture, links followed; a device or pipe cannot take its place. */
+static Status find_output(const OracleParams *params, char **output, Err *err)
+{
+    struct stat about;
+    TRY(outfile_check(params->output, err));
+    if (stat(params->output, &about) == 0 && !S_ISREG(about.st_mode))
+        return err_set(err, STATUS_IO, "%s: cannot be written: it is no file", params->output);
+    return file_resolve(params->output, output, err);
 }
 
 Status oracle_run(const OracleParams *params, OracleRun *run, Err *err)
 {
     Arguments arguments = {0};
-    Text log = TEXT_INIT;
-    char *scene = NULL, *folder = NULL, *temporary = NULL, *absolute = NULL, *state = NULL;
+    Log log = {.text = TEXT_INIT};
+    Workplace place = {.handle = -1};
+    char *scene = NULL, *folder = NULL, *output = NULL;
     double start_s = clock_seconds();
     int exit_status = 0;
-    Status status = STATUS_OK;
+    TRY(file_check_regular(params->scene, err));
     scene = realpath(params->scene, NULL);
     if (!scene)
         return err_set(err, STATUS_INPUT, "%s: cannot be read: %s", params->scene, strerror(errno));
-    TRY_GOTO(file_temporary(params->output, &temporary, err));
-    absolute = realpath(temporary, NULL);
-    if (!absolute) {
-        status =
-            err_set(err, STATUS_IO, "%s: cannot be written: %s", params->output, strerror(errno));
-        goto done;
-    }
+    Status status = STATUS_OK;
     TRY_GOTO(folder_of(scene, &folder, err));
-    TRY_GOTO(file_with_suffix(absolute, ".pov-state", &state, err));
-    TRY_GOTO(file_remove_on_signal(state, err));
-    TRY_GOTO(make_arguments(params, scene, absolute, &arguments, err));
-    TRY_GOTO(run_program(params, arguments.list, folder, &log, &exit_status, err));
-    TRY_GOTO(judge(params, &log, exit_status, absolute, err));
-    status = file_rename(temporary, params->output, err);
-    temporary = NULL;
+    TRY_GOTO(find_output(params, &output, err));
+    TRY_GOTO(open_workplace(&place, scene, output, err));
+    TRY_GOTO(make_arguments(params, PRIVATE_FOLDER PRIVATE_SCENE, PRIVATE_FOLDER PRIVATE_PICTURE,
+                            &arguments, err));
+    TRY_GOTO(run_program(params, arguments.list, folder, place.handle, &log, &exit_status, err));
+    TRY_GOTO(judge(params, &log.text, exit_status, place.picture, err));
+    status = file_rename(place.picture, output, err);
+    place.picture = NULL;
     if (status == STATUS_OK && run) {
         run->seconds = clock_seconds() - start_s;
-        read_version(&log, run->version, sizeof run->version);
+        read_version(&log.text, run->version, sizeof run->version);
     }
 done:
-    file_forget(temporary);
-    file_forget(state);
+    close_workplace(&place);
     release_arguments(&arguments);
-    text_release(&log);
-    free(absolute);
+    text_release(&log.text);
+    free(output);
     free(folder);
     free(scene);
     return status;

@@ -10,13 +10,14 @@ typedef enum OraclePlane { ORACLE_COLOR, ORACLE_DEPTH, ORACLE_NORMAL, ORACLE_ID 
 
 typedef struct OracleParams {
     const char *program; /* NULL: povray */
-    const char *scene;   /* .pov file */
-    const char *output;  /* .png file */
+    const char *scene;   /* .pov file, under any name */
+    const char *output;  /* .png file, likewise */
     int width, height;   /* pixels */
     int antialias;       /* of the colour plane: 1, or N for +A0.0 +AM1 +RN -J */
     int threads;         /* 0: POV-Ray's own choice */
     OraclePlane plane;   /* depth and normal are 16-bit linear, id 8-bit linear */
     int bits;            /* of the colour plane: 8, sRGB, or 16, linear */
+    double patience_s;   /* POV-Ray is ended after so many seconds without a word; 0: never */
     void (*progress)(double fraction, void *context); /* may be NULL */
     void *progress_context;
 } OracleParams;
@@ -26,8 +27,10 @@ typedef struct OracleRun {
     double seconds;   /* wall clock, parsing included */
 } OracleRun;
 
-/* Runs POV-Ray without a window. The picture appears under its name only when it is whole.
- * STATUS_TOOL with POV-Ray's own words when it is missing or fails. `run` may be NULL. */
+/* Runs POV-Ray without a window, in the scene's folder. The picture appears under its name only when it
+ * is a whole PNG of the size and depth asked for. STATUS_TOOL with POV-Ray's own words when it is missing
+ * or fails, or when it falls silent or never stops talking; STATUS_INPUT when the scene is no regular
+ * file. `run` may be NULL. */
 MUST_CHECK Status oracle_run(const OracleParams *params, OracleRun *run, Err *err);
 
 /* The switches of such a run as one line, for the report and for scripts; in *out (owned). */

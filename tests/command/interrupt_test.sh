@@ -2,14 +2,13 @@
 # A run that is stopped leaves no file under the final name, no temporary, and the old file as it was.
 . "$(dirname "$0")/../lib.sh"
 TEST_JOBS=1
-set -m # background jobs get their own process group, so that they hear SIGINT
 
 # stop_after SECONDS SIGNAL COMMAND ...: starts the command, signals it, leaves its status in $status.
 stop_after() {
     local seconds=$1 signal=$2
     shift 2
     command_line="$* (stopped by $signal)"
-    "$@" >stdout 2>stderr &
+    hearing "$@" >stdout 2>stderr &
     sleep "$seconds"
     kill -"$signal" $! 2>/dev/null || fail "expected it still to run after $seconds s: $command_line$(said)"
     wait $! 2>/dev/null
@@ -47,7 +46,7 @@ slow_povray() {
     cat >povray.sh <<'END'
 #!/bin/sh
 for argument; do
-    case $argument in +O*) echo half >"$(echo "${argument#+O}" | tr -d '"')" ;; esac
+    case $argument in +O*) echo half >"${argument#+O}" ;; esac
 done
 echo $$ >running
 exec sleep 60
@@ -62,7 +61,7 @@ test_a_stopped_povray_leaves_nothing_and_does_not_run_on() {
     run_ok corcast scene tree.swc -o scene.pov
     slow_povray
     for signal in TERM INT; do
-        "$CORCAST" povray scene.pov -o picture.png >stdout 2>stderr &
+        hearing "$CORCAST" povray scene.pov -o picture.png >stdout 2>stderr &
         wait_for 5 test -s running || fail "expected the stand-in to start$(said)"
         pid=$(cat running)
         kill -$signal $!

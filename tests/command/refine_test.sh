@@ -56,7 +56,7 @@ test_the_json_of_grow_tells_the_refined_target() {
 
 test_an_interrupted_refinement_writes_the_best_tree_so_far() {
     run_ok corcast grow --terminals 400 -o plain.swc
-    corcast refine plain.swc --refine anneal --refine-seconds 60 -o best.swc 2>stderr &
+    hearing "$CORCAST" refine plain.swc --refine anneal --refine-seconds 60 -o best.swc 2>stderr &
     local process=$!
     sleep 1
     kill -INT $process

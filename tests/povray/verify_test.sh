@@ -464,7 +464,7 @@ test_a_missing_segment_is_found_out() {
 #!/bin/sh
 # Leaves out the thirtieth thing of the geometry, then runs POV-Ray.
 for argument; do
-    case $argument in +I*) scene=$(echo "${argument#+I}" | tr -d '"') ;; esac
+    case $argument in +I*) scene=$(readlink -f "${argument#+I}") ;; esac
 done
 geometry=${scene%.pov}.inc
 [ -f "$geometry.whole" ] || {
