@@ -62,7 +62,9 @@ static void add_coverage_rules(CompareResult *result)
     if (result->has_ids)
         add_count_rule(result, missing, tolerance->segments_missing,
                        "segments seen in only one image");
-    add_rule(result, silhouette, tolerance->silhouette_px, "outline of what is seen is off");
+    add_rule(result, silhouette, tolerance->silhouette_px,
+             result->has_ids ? "outline of what is seen is off"
+                             : "outline of what is not background is off");
 }
 
 /* What only the account of every segment and the straight line through all colours tell. */
@@ -175,18 +177,16 @@ static void describe_place(const CompareResult *result, const PixelPlace *place,
                  place->id_a ? a : "the background");
 }
 
-static void explain(CompareResult *result, const Rule *rule)
+void rule_sentence(const CompareResult *result, const Rule *rule, char *out, size_t size)
 {
     char place[120];
     int length =
-        snprintf(result->reason, sizeof result->reason, "%s: %s: %.6g%s%s, at most %.6g allowed",
-                 plane_kind_name(result->kind), rule->name, rule->measured, *rule->unit ? " " : "",
-                 rule->unit, rule->allowed);
+        snprintf(out, size, "%s: %s: %.6g%s%s, at most %.6g allowed", plane_kind_name(result->kind),
+                 rule->name, rule->measured, *rule->unit ? " " : "", rule->unit, rule->allowed);
     if (rule->at.x < 0)
         return;
     describe_place(result, &rule->at, place, sizeof place);
-    snprintf(result->reason + length, sizeof result->reason - (size_t)length, "; %s %s",
-             rule->at_what, place);
+    snprintf(out + length, size - (size_t)length, "; %s %s", rule->at_what, place);
 }
 
 void compare_judge(CompareResult *result)
@@ -209,6 +209,6 @@ void compare_judge(CompareResult *result)
         if (result->rules[i].met)
             continue;
         result->agrees = false;
-        explain(result, &result->rules[i]);
+        rule_sentence(result, &result->rules[i], result->reason, sizeof result->reason);
     }
 }

@@ -17,6 +17,9 @@ MUST_CHECK Status check_sizes(int width_a, int height_a, int width_b, int height
 
 PixelPlace place_of(size_t pixel, int width);
 
+/* A sentence about a rule that is broken, or would be. */
+void rule_sentence(const CompareResult *result, const Rule *rule, char *out, size_t size);
+
 /* The angle between two vectors in degrees, exact also where it is small. */
 double angle_deg(const float *a, const float *b);
 

@@ -133,6 +133,7 @@ json_t *compare_json(const CompareResult *result)
     } members[] = {
         {"verdict", json_string(result->agrees ? "agree" : "differ")},
         {"reason", *result->reason ? json_string(result->reason) : json_null()},
+        {"cause", *result->cause ? json_string(result->cause) : json_null()},
         {"tier", json_string(result->tolerance.tier)},
         {"pixels", number((double)result->pixels)},
         {"width", number(result->width)},

@@ -1,5 +1,6 @@
 /* A comparison in words: for people at a terminal, and as JUnit XML for build servers. */
 #include "verify/report.h"
+#include "verify/result.h"
 
 #include <math.h>
 
@@ -46,7 +47,10 @@ static void put_color(const CompareResult *result, Text *out)
     put_measure(out, "signed mean difference, worst channel", result->bias_levels, "levels");
     put_measure(out, "brighter pixels over darker ones", result->sign_sigma, "sigma");
     put_measure(out, "root mean square", result->rmse, "levels");
-    put_measure(out, "outline of what is seen, outwards", result->silhouette_px, "px");
+    put_measure(out,
+                result->has_ids ? "outline of what is seen, outwards"
+                                : "outline of what is not background",
+                result->silhouette_px, "px");
     put_measure(out, "gain", result->gain, "");
     put_measure(out, "offset", result->offset_levels, "levels");
     put_measure(out, "mean of the segment that is off most", result->segment_levels, "levels");
@@ -69,7 +73,8 @@ void compare_text(const CompareResult *result, Text *out)
         text_printf(out, "agree (tier %s): %zu of %zu pixels differ\n", result->tolerance.tier,
                     result->differing_pixels, result->pixels);
     else
-        text_printf(out, "differ (tier %s): %s\n", result->tolerance.tier, result->reason);
+        text_printf(out, "differ (tier %s): %s%s%s\n", result->tolerance.tier, result->reason,
+                    *result->cause ? "; " : "", result->cause);
     put_rules(result, out);
     switch (result->kind) {
     case PLANE_COLOR:
@@ -91,29 +96,32 @@ void compare_text(const CompareResult *result, Text *out)
     }
 }
 
-static void put_case(const CompareResult *result, const Rule *rule, const char *name, Text *out)
+static void put_case(const CompareResult *result, const Rule *rule, const char *name,
+                     double seconds, Text *out)
 {
+    char sentence[sizeof result->reason];
     text_puts(out, "    <testcase classname=\"");
     text_escaped(out, name);
     text_printf(out, ".%s\" name=\"", plane_kind_name(result->kind));
     text_escaped(out, rule->name);
     text_printf(out,
-                "\">\n      <properties>\n"
+                "\" time=\"%.6f\">\n      <properties>\n"
                 "        <property name=\"tier\" value=\"%s\"/>\n"
                 "        <property name=\"measured\" value=\"%.9g\"/>\n"
                 "        <property name=\"allowed\" value=\"%.9g\"/>\n"
                 "        <property name=\"unit\" value=\"%s\"/>\n"
                 "      </properties>\n",
-                result->tolerance.tier, rule->measured, rule->allowed, rule->unit);
+                seconds, result->tolerance.tier, rule->measured, rule->allowed, rule->unit);
     if (!rule->met) {
+        rule_sentence(result, rule, sentence, sizeof sentence);
         text_puts(out, "      <failure message=\"");
-        text_escaped(out, result->reason);
+        text_escaped(out, sentence);
         text_puts(out, "\"/>\n");
     }
     text_puts(out, "    </testcase>\n");
 }
 
-void compare_junit(const CompareResult *result, const char *name, Text *out)
+void compare_junit(const CompareResult *result, const char *name, double seconds, Text *out)
 {
     int failures = 0;
     for (int i = 0; i < result->n_rules; i++)
@@ -121,9 +129,9 @@ void compare_junit(const CompareResult *result, const char *name, Text *out)
     text_puts(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
                    "  <testsuite name=\"");
     text_escaped(out, name);
-    text_printf(out, "\" tests=\"%d\" failures=\"%d\" errors=\"0\" skipped=\"0\">\n",
-                result->n_rules, failures);
+    text_printf(out, "\" tests=\"%d\" failures=\"%d\" errors=\"0\" skipped=\"0\" time=\"%.6f\">\n",
+                result->n_rules, failures, seconds);
     for (int i = 0; i < result->n_rules; i++)
-        put_case(result, &result->rules[i], name, out);
+        put_case(result, &result->rules[i], name, seconds / result->n_rules, out);
     text_puts(out, "  </testsuite>\n</testsuites>\n");
 }

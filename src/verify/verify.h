@@ -142,6 +142,7 @@ typedef struct CompareResult {
     Tolerance tolerance; /* its tier is borrowed from the caller */
     bool agrees;
     char reason[400]; /* a sentence about the first rule broken; "" when the planes agree */
+    char cause[200];  /* what made B of A, where compare_cause found it; else "" */
     Rule rules[RULES_MAX];
     int n_rules;
 
@@ -212,6 +213,11 @@ MUST_CHECK Status compare_pictures(const Rendering *a, const Rendering *b,
 /* Adds FLIP, SSIM and CIEDE2000 of the two pictures compared. */
 MUST_CHECK Status compare_perception(const Picture *a, const Picture *b, CompareResult *result,
                                      Err *err);
+/* Says in result->cause what made B of A, of the same gamma, where that is certain: turned, mirrored,
+ * moved by whole pixels (up to 48), rounded, brighter or darker throughout, or other shades within equal
+ * outlines. */
+MUST_CHECK Status compare_cause(const Picture *a, const Picture *b, CompareResult *result,
+                                Err *err);
 /* Compares two planes of linear colours, which may exceed 1, in levels of their sRGB encoding,
  * continued beyond white and mirrored below black. Pixels with a value that is not finite are
  * counted and enter nothing else. The id planes, both or neither NULL, only name segments. Adds
@@ -278,8 +284,9 @@ MUST_CHECK Status flicker_png(const Picture *a, const Picture *b, Text *out, Err
 /* A comparison as JSON, with the keys of `compare --json`; what is NAN or infinite is null. New
  * reference, NULL when memory runs out. */
 json_t *compare_json(const CompareResult *result);
-/* Appends the JUnit XML of a comparison: a test case for each rule. `name` is of the suite. */
-void compare_junit(const CompareResult *result, const char *name, Text *out);
+/* Appends the JUnit XML of a comparison that took `seconds`: a test case for each rule, the time shared
+ * among them. `name` is of the suite. */
+void compare_junit(const CompareResult *result, const char *name, double seconds, Text *out);
 /* Appends what was measured, for people: the verdict, the rules, the measures, one a line. */
 void compare_text(const CompareResult *result, Text *out);
 

@@ -160,7 +160,71 @@ test_junit_has_a_case_for_each_rule() {
     run corcast compare a.ppm b.ppm --tier B --junit out.xml
     expect_status 1
     [ "$(grep -c '<testcase ' out.xml)" -ge 4 ] || fail "expected a case for each rule"
-    grep -q '<failure message="color: ' out.xml || fail "expected a failure with its reason"
+    [ "$(grep -c '<failure ' out.xml)" -ge 2 ] || fail "expected several rules to be broken"
+    awk -F '"' '/<testcase / { name = $4 } /<failure / && index($2, "color: " name ": ") != 1 { print name }' \
+        out.xml >strange
+    [ ! -s strange ] || fail "expected each failure to say its own rule, not so: $(cat strange)"
+    [ "$(grep -cE '<test(suite|case) .* time="[0-9.]*">' out.xml)" -ge 5 ] || fail "expected the time it took"
+}
+
+test_quiet_leaves_it_to_the_exit_status() {
+    picture 100 >a.ppm
+    picture 155 >b.ppm
+    run corcast compare a.ppm b.ppm --quiet --metrics on
+    expect_status 1
+    [ ! -s stdout ] && [ ! -s stderr ] || fail "expected silence, got $(cat stdout stderr)"
+    run corcast compare a.ppm b.ppm --quiet --json
+    expect_json stdout '.verdict == "differ"'
+}
+
+test_help_says_what_the_tiers_are() {
+    local tier
+    run_ok corcast compare --help
+    for tier in A B surface none; do
+        expect_stdout "^  $tier +[a-z]+"
+    done
+    expect_stdout '--ppm .*\(2 in tier A\)'
+}
+
+# expect_cause SENTENCE: of a.png and b.png, where b.png was made by another program.
+expect_cause() {
+    run corcast compare a.png b.png
+    expect_status 1
+    expect_stdout "allowed; .*; $1\$"
+}
+
+test_the_cause_is_said_where_it_is_certain() {
+    run_ok corcast grow --terminals 30 --seed 3 -o tree.swc
+    run_ok corcast render tree.swc --size 121x93 -o a.png
+    pngtopnm a.png >a.ppm
+    pnmflip -lr a.ppm | pnmtopng >b.png
+    expect_cause 'B is A mirrored, left for right'
+    pnmflip -tb a.ppm | pnmtopng >b.png
+    expect_cause 'B is A upside down, top for bottom'
+    pnmflip -r180 a.ppm | pnmtopng >b.png
+    expect_cause 'B is A turned by 180 degrees'
+    pamchannel -infile a.ppm -tupletype RGB 2 1 0 | pamtopnm | pnmtopng >b.png
+    expect_cause 'B is A with red and blue exchanged'
+    pnmcut -left 0 -top 2 -width 118 a.ppm | pnmpad -white -left 3 -bottom 2 | pnmtopng >b.png
+    expect_cause 'B is A moved by \(3, -2\) pixels, right and down being positive'
+    oiiotool a.png --iscolorspace sRGB --tocolorspace linear --mulc 0.731 --tocolorspace sRGB -d uint8 -o b.png
+    expect_cause 'B is A made darker: its linear colours are 0\.73[01][0-9]* times those of A'
+}
+
+test_other_shades_within_the_same_outlines_are_told_from_other_shapes() {
+    run_ok corcast grow --terminals 30 --seed 3 -o tree.swc
+    sed 's/^phong = 0.32/phong = 0.39/' "$REPO/templates/looks/cast.ini" >shiny.ini
+    run_ok corcast render tree.swc --size 121x93 --planes id -o a.png
+    run_ok corcast render tree.swc --size 121x93 --planes id --look ./shiny.ini -o b.png
+    expect_cause 'only shading differs, by up to [0-9.]+ levels on [0-9.]+ % of the pixels, B being brighter; the outlines against the background are equal'
+    run corcast compare a.png b.png --ids-a a.id.ppm --ids-b b.id.ppm
+    expect_stdout 'the outlines of all segments are equal$'
+    run corcast compare b.png a.png --json
+    expect_json stdout '.cause | test("B being darker")'
+    awk '/^#/ { print; next } $1 == 5 { $6 *= 1.3 } { print }' tree.swc >thick.swc
+    run_ok corcast render thick.swc --size 121x93 -o b.png
+    run corcast compare a.png b.png --json
+    expect_json stdout '.verdict == "differ" and .cause == null'
 }
 
 test_every_segment_has_its_line_in_the_ledger() {

@@ -428,7 +428,7 @@ static void writes_a_junit_case_for_each_rule(void **state)
     side_init(&a, 0);
     side_init(&b, 1);
     CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
-    compare_junit(&r, "a<b>.png", &xml);
+    compare_junit(&r, "a<b>.png", 0.25, &xml);
     int cases = 0, failures = 0;
     for (const char *at = xml.chars; (at = strstr(at, "<testcase ")); at++)
         cases++;
