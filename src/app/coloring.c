@@ -2,6 +2,7 @@
 
 #include "app/templates.h"
 #include "image/image.h"
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,6 +29,7 @@ void coloring_init(Coloring *coloring)
          "CP", "of the blood (the tree's)"},
         {0},
     };
+    static_assert(sizeof table <= sizeof coloring->table, "COLORING_OPTIONS is too small");
     memcpy(coloring->table, table, sizeof table);
 }
 

@@ -48,7 +48,7 @@ void growing_init(Growing *growing)
         {"viscosity-law", OPTION_CHOICE, &growing->viscosity_law, &growing->given.viscosity_law, 0,
          0, laws, NULL, "the same in all vessels, or by their diameter, Pries 1994 (constant)"},
         {"hematocrit", OPTION_NUMBER, &params->hematocrit, &growing->given.hematocrit, 0,
-         GROW_MAX_HEMATOCRIT, NULL, "H", "for pries (0.45)"},
+         MAX_HEMATOCRIT, NULL, "H", "for pries (0.45)"},
         {"plasma-viscosity", OPTION_NUMBER, &params->plasma_viscosity_cp,
          &growing->given.plasma_viscosity, -huge, huge, NULL, "CP", "for pries (1.2)"},
         {"terminal-flow", OPTION_CHOICE, &growing->terminal_flow, &growing->given.terminal_flow, 0,

@@ -4,6 +4,7 @@
 #include "image/image.h"
 #include "render/render.h"
 #include "treeio/treeio.h"
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -77,6 +78,7 @@ void picture_options_init(PictureOptions *options)
          NULL, "sRGB, each from 0 to 1"},
         {0},
     };
+    static_assert(sizeof table <= sizeof options->table, "PICTURE_OPTIONS is too small");
     memcpy(options->table, table, sizeof table);
 }
 
@@ -157,6 +159,14 @@ static Status read_look(const PictureOptions *options, Look *look, Err *err)
     return status;
 }
 
+static bool has_segments(const Tree *tree)
+{
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i))
+            return true;
+    return false;
+}
+
 Status picture_read_source(const PictureOptions *options, const char *tree_path,
                            PictureSource *source, Err *err)
 {
@@ -174,6 +184,12 @@ Status picture_read_source(const PictureOptions *options, const char *tree_path,
         made.pruned = made.tree.n - pruned.n;
         tree_release(&made.tree);
         made.tree = pruned;
+        if (made.pruned > 0 && !has_segments(&made.tree)) {
+            tree_release(&made.tree);
+            return err_set(err, STATUS_INPUT,
+                           "%s: all %zu segments are thinner than --prune-radius %g", tree_path,
+                           made.pruned, options->prune_radius_mm);
+        }
     }
     *source = made;
     return STATUS_OK;

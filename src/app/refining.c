@@ -1,5 +1,6 @@
 #include "app/refining.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -20,6 +21,7 @@ void refining_init(Refining *refining)
          "moves tried at most (0: enough for the tree)"},
         {0},
     };
+    static_assert(sizeof table <= sizeof refining->table, "REFINING_OPTIONS is too small");
     memcpy(refining->table, table, sizeof table);
 }
 

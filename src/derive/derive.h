@@ -21,7 +21,7 @@ typedef struct FlowParams {
     double viscosity_cp;  /* > 0, of the blood; without viscosity_law it means the constant law */
     double lambda;        /* >= 0, exponent of the target; only derive_summary uses it */
     ViscosityLaw viscosity_law; /* constant, when the tree does not say either */
-    double hematocrit;          /* in [0, 1), by Pries's law */
+    double hematocrit;          /* in [0, MAX_HEMATOCRIT], by Pries's law */
     double plasma_viscosity_cp; /* > 0, by Pries's law */
 } FlowParams;
 

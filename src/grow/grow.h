@@ -20,7 +20,6 @@ typedef enum GrowToss {
 } GrowToss;
 
 enum { GROW_MAX_TERMINALS = 8000000, GROW_MAX_CANDIDATES = 1000, GROW_MAX_INLETS = 64 };
-#define GROW_MAX_HEMATOCRIT 0.95
 
 /* The SWC type code of all nodes of a grown tree: SWC has none for arteries, and 3 is what files of
  * arterial trees use. */
@@ -46,7 +45,7 @@ typedef struct GrowParams {
     TerminalFlow terminal_flow; /* how the terminals share it */
     ViscosityLaw viscosity_law;
     double viscosity_cp;        /* of the blood, by the constant law; > 0 */
-    double hematocrit;          /* by Pries's law; in [0, GROW_MAX_HEMATOCRIT] */
+    double hematocrit;          /* by Pries's law; in [0, MAX_HEMATOCRIT] */
     double plasma_viscosity_cp; /* by Pries's law; > 0 */
     int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
     GrowToss toss;

@@ -28,7 +28,7 @@ static Status check_blood(const GrowParams *params, Err *err)
 {
     if (!(params->viscosity_cp > 0) || !isfinite(params->viscosity_cp))
         return refuse("--viscosity", params->viscosity_cp, "a finite number of cP above 0", err);
-    if (!(params->hematocrit >= 0) || !(params->hematocrit <= GROW_MAX_HEMATOCRIT))
+    if (!(params->hematocrit >= 0) || !(params->hematocrit <= MAX_HEMATOCRIT))
         return refuse("--hematocrit", params->hematocrit, "from 0 to 0.95", err);
     if (!(params->plasma_viscosity_cp > 0) || !isfinite(params->plasma_viscosity_cp))
         return refuse("--plasma-viscosity", params->plasma_viscosity_cp,

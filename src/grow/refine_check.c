@@ -42,8 +42,8 @@ static Status check_header(const TreeHeader *header, Err *err)
         return check_range("viscosity_cP", header->viscosity_cp, header->viscosity_cp > 0,
                            "a finite number above 0", err);
     TRY(check_range("hematocrit", header->hematocrit,
-                    header->hematocrit >= 0 && header->hematocrit < 1, "a number from 0, below 1",
-                    err));
+                    header->hematocrit >= 0 && header->hematocrit <= MAX_HEMATOCRIT,
+                    "from 0 to 0.95", err));
     return check_range("plasma_viscosity_cP", header->plasma_viscosity_cp,
                        header->plasma_viscosity_cp > 0, "a finite number above 0", err);
 }

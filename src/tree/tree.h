@@ -36,7 +36,7 @@ typedef struct TreeHeader {
     double q_perf_ml_min; /* through the inlet */
     double viscosity_cp;  /* of the blood, by the constant law */
     ViscosityLaw viscosity_law;
-    double hematocrit;          /* in [0, 1), by Pries's law */
+    double hematocrit;          /* in [0, MAX_HEMATOCRIT], by Pries's law */
     double plasma_viscosity_cp; /* by Pries's law */
     TerminalFlow terminal_flow;
     /* Every header comment in file order, known keys included: "key: value" lines are rewritten

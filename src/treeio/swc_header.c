@@ -34,9 +34,9 @@ static bool is_positive(double value)
     return isfinite(value) && value > 0;
 }
 
-static bool is_fraction(double value)
+static bool is_hematocrit(double value)
 {
-    return value >= 0 && value < 1;
+    return value >= 0 && value <= MAX_HEMATOCRIT;
 }
 
 /* The words that stand for the values 0, 1, ... of an enum. */
@@ -75,7 +75,7 @@ static const Key keys[SWC_N_KEYS] = {
     KEY("q_perf_ml_min", KEY_NUMBER, is_positive, "a number above 0", q_perf, q_perf_ml_min),
     KEY("viscosity_cP", KEY_NUMBER, is_positive, "a number above 0", viscosity, viscosity_cp),
     WORD_KEY("viscosity_law", viscosity_laws, "constant or pries", viscosity_law),
-    KEY("hematocrit", KEY_NUMBER, is_fraction, "at least 0 and below 1", hematocrit, hematocrit),
+    KEY("hematocrit", KEY_NUMBER, is_hematocrit, "from 0 to 0.95", hematocrit, hematocrit),
     KEY("plasma_viscosity_cP", KEY_NUMBER, is_positive, "a number above 0", plasma_viscosity,
         plasma_viscosity_cp),
     WORD_KEY("terminal_flow", terminal_flows, "equal or territory", terminal_flow),

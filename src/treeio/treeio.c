@@ -41,11 +41,21 @@ bool tree_format_known(const char *path)
 Status tree_read(Tree *tree, const char *path, Err *err)
 {
     const Format *format = find_format(path);
-    return format ? format->read(tree, path, err) : unknown_format(path, err);
+    Tree read;
+    TRY(format ? format->read(&read, path, err) : unknown_format(path, err));
+    Status status = tree_check(&read, err);
+    if (status != STATUS_OK) {
+        err_prefix(err, "%s: ", path);
+        tree_release(&read);
+        return status;
+    }
+    *tree = read;
+    return STATUS_OK;
 }
 
 Status tree_write(const Tree *tree, const char *path, Err *err)
 {
     const Format *format = find_format(path);
+    TRY(tree_check(tree, err));
     return format ? format->write(tree, path, err) : unknown_format(path, err);
 }

@@ -36,7 +36,7 @@ MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
 /* Writes the header, then the rows in array order; every number reads back to the same double. A
  * known "key: value" line is rewritten from its field, and left out when the field is not known;
  * known fields without a line follow the lines, then the flow shares above 0. STATUS_USAGE for an
- * unknown extension. */
+ * unknown extension, STATUS_INPUT for a tree that tree_check refuses. */
 MUST_CHECK Status tree_write(const Tree *tree, const char *path, Err *err);
 
 #endif

@@ -102,7 +102,7 @@ test_options_out_of_range_are_refused() {
         expect_sentence "${options%% *}"
         expect_only
     done <<'END'
---hematocrit 1
+--hematocrit 0.951
 --hematocrit -0.1
 --plasma-viscosity 0 --viscosity-law pries
 --viscosity-law newton

@@ -410,6 +410,9 @@ test_segments_that_vanish_are_counted() {
     grep -q '1 of 2 segments are too short for their radius' stderr || fail "expected the number that vanish$(said)"
     run_ok corcast render tree.swc --model isosurface --size 20x20 --quiet -o picture.ppm
     [ ! -s stderr ] || fail "expected silence$(said)"
+    run corcast render tree.swc --prune-radius 1.25 -o none.ppm
+    expect_status 2
+    expect_sentence 'tree\.swc: all 3 segments are thinner than --prune-radius 1\.25'
 }
 
 # A picture without NaN in its planes, or one sentence and status 2; never a crash or a hang.

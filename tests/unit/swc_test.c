@@ -232,7 +232,7 @@ static void rejects_a_known_key_of_bad_value(void **state)
     assert_refused("# viscosity_cP: -3", ":1: viscosity_cP is '-3'; it must be a number above 0");
     assert_refused("# viscosity_law: casson",
                    ":1: viscosity_law is 'casson'; it must be constant or pries");
-    assert_refused("# hematocrit: 1", ":1: hematocrit is '1'; it must be at least 0 and below 1");
+    assert_refused("# hematocrit: 0.951", ":1: hematocrit is '0.951'; it must be from 0 to 0.95");
     assert_refused("# terminal_flow:", ":1: terminal_flow is ''; it must be equal or territory");
     assert_refused("# terminal_flow: equal\n#terminal_flow: territory",
                    ":2: terminal_flow is 'territory', but an earlier line says otherwise");
@@ -579,9 +579,28 @@ static void a_chain_of_a_million_rows_in_reverse_is_read(void **state)
     tree_release(&tree);
 }
 
+static void a_tree_that_breaks_a_promise_is_not_written(void **state)
+{
+    (void)state;
+    Tree tree = read_text("1 3 0 0 0 1.5 -1\n2 3 0 7 0 1.25 1\n");
+    Err err;
+    remove(output);
+    tree.radius_mm[1] = NAN;
+    assert_int_equal(tree_write(&tree, output, &err), STATUS_INPUT);
+    assert_string_equal(err.text, "node 2: radius nan; it must be finite and not negative");
+    tree.radius_mm[1] = 1.25;
+    tree.parent[1] = 1;
+    assert_int_equal(tree_write(&tree, output, &err), STATUS_INPUT);
+    assert_string_equal(err.text, "node 2: its parent does not come before it");
+    assert_int_not_equal(access(output, F_OK), 0);
+    tree.parent[1] = 0;
+    tree_release(&tree);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_tree_that_breaks_a_promise_is_not_written),
         cmocka_unit_test(reads_a_messy_file),
         cmocka_unit_test(line_ends_may_be_cr_lf_or_both),
         cmocka_unit_test(every_known_key_fills_its_field_and_unknown_lines_stay),
