@@ -243,7 +243,9 @@ static Status put_geometry(const Scene *scene, const PovrayParams *params, const
     text_puts(add_value(&values, "generator"), params->generator);
     put_extent(add_value(&values, "extent"), scene->bounds, scene->origin);
     put_guard(add_value(&values, "guard"), file);
-    put_color(add_value(&values, "color"), scene->color);
+    put_float(add_value(&values, "red"), scene->color.r);
+    put_float(add_value(&values, "green"), scene->color.g);
+    put_float(add_value(&values, "blue"), scene->color.b);
     put_float(add_value(&values, "ambient"), finish->ambient);
     put_float(add_value(&values, "diffuse"), finish->diffuse);
     put_float(add_value(&values, "brilliance"), finish->brilliance);
@@ -321,7 +323,9 @@ static Status put_scene(const Scene *scene, const PovrayParams *params, const Te
     put_vector(add_value(&values, "up"), camera->up);
     put_vector(add_value(&values, "direction"), camera->direction);
     text_puts(add_value(&values, "shadows"), params->shadows ? "1" : "0");
-    put_color(add_value(&values, "background"), scene->background);
+    put_float(add_value(&values, "background_red"), scene->background.r);
+    put_float(add_value(&values, "background_green"), scene->background.g);
+    put_float(add_value(&values, "background_blue"), scene->background.b);
     Text *lights = add_value(&values, "lights");
     put_lights(lights, scene);
     Status status = put_ground(lights, scene, params, err);

@@ -56,6 +56,8 @@ Status tree_read(Tree *tree, const char *path, Err *err)
 Status tree_write(const Tree *tree, const char *path, Err *err)
 {
     const Format *format = find_format(path);
+    if (!format)
+        return unknown_format(path, err);
     TRY(tree_check(tree, err));
-    return format ? format->write(tree, path, err) : unknown_format(path, err);
+    return format->write(tree, path, err);
 }

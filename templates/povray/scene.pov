@@ -12,8 +12,9 @@
 // Render: povray +I${file} +O${stem}.png +W${width} +H${height} -D
 // Size: ${width}x${height}
 //
-// Whatever stands in #ifndef can be set from outside: Declare=Vessel_Phong=0.6 on the command line,
-// or #declare before an #include of this file.
+// Whatever stands in #ifndef can be set from outside: numbers on the command line, as
+// Declare=Light_Intensity=1.2 or Declare=Vessel_Red=0.2, vectors and colours too by #declare before an
+// #include of this file. For a transparent background: +UA Declare=Background_Transmit=1.
 #version 3.7;
 
 // 0 the picture; 1 depth, 2 normals, 3 segment ids, for checking other renderers against.
@@ -42,7 +43,13 @@ camera {
 // ---- light ----------------------------------------------------------------------------------
 #ifndef (Light_Intensity)  #declare Light_Intensity  = 1; #end
 #ifndef (Light_Shadows)    #declare Light_Shadows    = ${shadows}; #end
-#ifndef (Background_Color) #declare Background_Color = ${background}; #end // linear RGB
+#ifndef (Background_Red)      #declare Background_Red      = ${background_red}; #end // linear
+#ifndef (Background_Green)    #declare Background_Green    = ${background_green}; #end
+#ifndef (Background_Blue)     #declare Background_Blue     = ${background_blue}; #end
+#ifndef (Background_Transmit) #declare Background_Transmit = 0; #end
+#ifndef (Background_Color)
+  #declare Background_Color = rgbt <Background_Red, Background_Green, Background_Blue, Background_Transmit>;
+#end
 
 #macro Light_Parallel(Location, Target, Color)
   light_source { Location, rgb Color * Light_Intensity parallel point_at Target }
@@ -55,7 +62,7 @@ camera {
 #end
 
 #if (Corcast_Plane = 0)
-  background { rgb Background_Color }
+  background { color Background_Color }
 ${lights}
 #else
   background { rgb 0 }
@@ -95,7 +102,7 @@ ${lights}
 #end
 
 // ---- vessels --------------------------------------------------------------------------------
-// The look of the vessels has its defaults with the geometry: Vessel_Color (linear RGB) and
+// The look of the vessels has its defaults with the geometry: Vessel_Red, _Green, _Blue (linear) and
 // Vessel_Ambient, _Diffuse, _Brilliance, _Phong, _Phong_Size, _Specular, _Roughness.
 ${geometry}
 object { Tree }
