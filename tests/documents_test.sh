@@ -66,6 +66,25 @@ have a node within 3 of its radii of one of its ends | src/stage/blend.h | #defi
 END
 }
 
+test_the_numbers_of_pictures_are_those_of_the_source() {
+    agree METHODS.md <<'END'
+`Phi_i <= B = exp(-d^2) min(1, h / s)` | src/render/fieldkernel.h | term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
+4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) | src/render/fieldkernel.h | term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
+packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays | src/render/lanes.h | #define LANES 16
+A band begins at a multiple of eight rows | src/render/render.h | RENDER_BAND_STEP = 8 }
+in which tiles of 8 x 8 pixels | src/render/fieldtile.h | TILE_SIDE = 8,
+longer than 2 x 16384 pixels | src/render/rasteritem.c | most_pixels = 16384;
+4 eps H, 0.004 pixels for the longest | src/render/rasteritem.c | length / 2 + radius > most_pixels * pixel
+cylinders seen within 0.02 rad of their axis | src/render/rasteritem.c | 0.02; /* of the angle
+cylinders seen within 0.02 rad of their axis | src/render/rastersight.h | steep_sine2 = 4e-4f;
+within 10⁻⁴ r of the ray | src/render/rasterruling.h | off_joint_line = 1e-4f;
+0.001 mm and 3 · 2^-23 of the scene's radius | src/render/rastershadow.c | aim.slack = slack_mm + 0x3p-23 * scene_radius
+0.001 mm and 3 · 2^-23 of the scene's radius | src/render/rastershadow.c | slack_mm = 1e-3;
+within 1.16 radii of the scene's middle cast rays | src/render/rastershadow.c | least_radii = 1.16;
+at most a quarter of a pixel apart | src/render/zbuffer.c | pixels_apart = 0.25;
+END
+}
+
 # And its deviations are what they are measured to be.
 test_the_numbers_of_the_blob_are_those_that_fit_blob_prints() {
     local line

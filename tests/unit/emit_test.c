@@ -1,5 +1,6 @@
 #include "emit/emit.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -357,6 +358,41 @@ static void a_large_blob_is_cut_into_cells_that_miss_nothing(void **state)
     free(many);
 }
 
+/* In a row along x, 3 mm apart. */
+static void a_blob_is_halved_from_129_segments_on(void **state)
+{
+    (void)state;
+    FieldSegment row[129];
+    for (int i = 0; i < 129; i++)
+        row[i] = (FieldSegment){.a = {3 * i, 0, 0}, .b = {3 * i, 1, 0}, .radius_mm = 0.23};
+    Scene scene = make_scene(SCENE_BLOB);
+    scene.segments = row;
+    for (int many = 0; many < 2; many++) {
+        scene.n_segments = many ? 129 : 128;
+        Emitted out = emit(&scene, &two_files);
+        assert_int_equal(out.report.cells, many ? 2 : 0);
+        const char *clip = out.geometry.chars;
+        Box box[2];
+        for (int i = 0; many && i < 2; i++) {
+            clip = strstr(clip, "\nBlob_Cell_End(");
+            assert_non_null(clip);
+            clip++;
+            assert_int_equal(sscanf(clip, "Blob_Cell_End(<%lf,%lf,%lf>,<%lf,%lf,%lf>)",
+                                    &box[i].low.x, &box[i].low.y, &box[i].low.z, &box[i].high.x,
+                                    &box[i].high.y, &box[i].high.z),
+                             6);
+        }
+        if (many) { /* each a thousandth of a millimetre larger than its half */
+            double reach = blob_reach(&blob_shape) * 0.23;
+            assert_true(fabs(box[0].low.x - (-reach - 1e-3)) < 1e-9);
+            assert_true(fabs(box[0].high.x - (192 + 1e-3)) < 1e-9);
+            assert_true(fabs(box[1].low.x - (192 - 1e-3)) < 1e-9);
+            assert_true(fabs(box[1].high.y - (1 + reach + 1e-3)) < 1e-9);
+        }
+        release(&out);
+    }
+}
+
 static void the_segments_of_a_blob_are_painted_only_when_asked_for(void **state)
 {
     (void)state;
@@ -402,6 +438,7 @@ int main(void)
         cmocka_unit_test(ids_are_painted_only_when_asked_for),
         cmocka_unit_test(a_blob_is_given_by_the_ends_and_radii_of_its_segments),
         cmocka_unit_test(a_large_blob_is_cut_into_cells_that_miss_nothing),
+        cmocka_unit_test(a_blob_is_halved_from_129_segments_on),
         cmocka_unit_test(the_segments_of_a_blob_are_painted_only_when_asked_for),
         cmocka_unit_test(a_missing_template_is_named),
     };

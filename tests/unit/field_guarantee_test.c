@@ -422,6 +422,45 @@ static void holds_for_adversarial_scenes(void **state)
     }
 }
 
+/* Square to a vessel just past its end a term all but attains the bounds of its peak and of its window, half
+ * of what they are beside it. */
+static void holds_for_rays_just_past_an_end(void **state)
+{
+    (void)state;
+    TestScene test;
+    Random random;
+    random_seed(&random, 65);
+    Tally tally = {.name = "past an end"};
+    for (int run = 0; run < 6; run++) {
+        memset(&test, 0, sizeof test);
+        test.scene.model = SCENE_ISOSURFACE;
+        test.scene.segments = test.segments;
+        double radius = uniform(&random, 0.4, 1.7), per_k = radius / sqrt(2);
+        Vec3 axis = random_direction(&random), side = random_normal_to(&random, axis);
+        Vec3 end = random_point(&random, 3), d = vec3_cross(side, axis);
+        put_segment(&test, end, vec3_add_scaled(end, axis, 30 * radius), radius);
+        /* From the ridge of the bounds, E^2 = 2 - ln 2, inwards. */
+        Vec3 target = vec3_add_scaled(end, axis, -0.012 * per_k);
+        target = vec3_add_scaled(target, side, (sqrt(2 - log(2)) - 0.012) * per_k);
+        const double distance = 40, width = 0.024 * per_k / distance;
+        test.scene.camera = (Camera){.projection = PROJECTION_PERSPECTIVE,
+                                     .location = vec3_add_scaled(target, d, -distance),
+                                     .direction = d,
+                                     .right = vec3_scale(axis, width),
+                                     .up = vec3_scale(side, width),
+                                     .width = 8,
+                                     .height = 8};
+        Answer answer;
+        Near near[1];
+        for (int k = 0; k < kernels_usable(); k++) {
+            ask(&test.scene, tilekernels[k], &answer);
+            for (int sample = 0; sample < TILE_SAMPLES; sample++)
+                judge(&test.scene, &answer, sample, near, &tally);
+        }
+    }
+    finish(&tally);
+}
+
 static void holds_for_trees_in_a_disc_seen_face_on(void **state)
 {
     (void)state;
@@ -457,6 +496,7 @@ int main(void)
         cmocka_unit_test(holds_for_a_tree_in_space),
         cmocka_unit_test(holds_for_a_measured_tree),
         cmocka_unit_test(holds_for_adversarial_scenes),
+        cmocka_unit_test(holds_for_rays_just_past_an_end),
         cmocka_unit_test(holds_for_trees_in_a_disc_seen_face_on),
         cmocka_unit_test(holds_for_adversarial_scenes_in_a_plane),
     };

@@ -376,6 +376,10 @@ static void a_wall_is_lit_from_its_own_side_alone(void **state)
         if (off < 0)
             assert_false(is_shadowed(&setup, bottom, up, 1.9 * r));
     }
+    /* Phi is e^(2 - 2 d^2 / r^2) of the level; where it is 1.01 of it at 1e-3 mm along the ray, or more, the
+     * place is inside and in the dark. */
+    assert_false(is_shadowed(&setup, vec3(0.7, 0, r * (1 - 2.45e-3) - 1e-3), up, HUGE_VAL));
+    assert_true(is_shadowed(&setup, vec3(0.7, 0, r * (1 - 2.53e-3) - 1e-3), up, HUGE_VAL));
     finish(&setup);
 }
 

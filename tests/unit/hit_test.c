@@ -135,6 +135,16 @@ static void boxes_are_met_even_along_their_faces(void **state)
     }
 }
 
+/* As in POV-Ray: a line whose half chord squared is at most 1e-10 misses. */
+static void a_sphere_that_is_grazed_is_missed(void **state)
+{
+    (void)state;
+    Hit hits[2];
+    const Ray ray = {{0, 0, -3}, {0, 0, 1}};
+    assert_int_equal(hit_sphere(ray, vec3(sqrt(1 - 0.99e-10), 0, 0), 1, hits), 0);
+    assert_int_equal(hit_sphere(ray, vec3(sqrt(1 - 1.01e-10), 0, 0), 1, hits), 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -142,6 +152,7 @@ int main(void)
         cmocka_unit_test(rays_that_miss_the_cylinder_stay_outside),
         cmocka_unit_test(a_ray_along_the_axis_meets_both_discs),
         cmocka_unit_test(hits_lie_on_the_sphere),
+        cmocka_unit_test(a_sphere_that_is_grazed_is_missed),
         cmocka_unit_test(boxes_are_met_even_along_their_faces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

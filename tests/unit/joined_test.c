@@ -156,6 +156,43 @@ static void where_a_vessel_turns_back_the_place_is_round(void **state)
     tree_release(&tree);
 }
 
+static void a_place_is_round_from_60_degrees_to_the_trunk_on(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 2; round++) {
+        double angle = (round ? 59.9 : 60.1) * 3.14159265358979323846 / 180;
+        Tree tree = tree_of(
+            4, (const int32_t[]){-1, 0, 1, 1},
+            (const Vec3[]){
+                {0, 30, 0}, {0, 0, 0}, {40 * sin(angle), 40 * cos(angle), 0}, {-30, -30, 1}},
+            (const double[]){1.5, 1.5, 1.2, 0.8});
+        StageReport report;
+        Scene scene = stage(&tree, JOINTS_ROBUST, &report);
+        assert_int_equal(report.places_sharp, round);
+        assert_int_equal(report.joints, round ? 0 : 2);
+        scene_release(&scene);
+        tree_release(&tree);
+    }
+}
+
+/* Two bends of 90 degrees, each of which cuts the vessel between them by its radius: 2.6 mm in all. */
+static void two_places_share_a_vessel_down_to_a_thousandth_of_it(void **state)
+{
+    (void)state;
+    for (int fits = 0; fits < 2; fits++) {
+        double length = 2.6 / (fits ? 0.9989 : 0.9991);
+        Tree tree = tree_of(4, (const int32_t[]){-1, 0, 1, 2},
+                            (const Vec3[]){{0, 20, 0}, {0, 0, 0}, {length, 0, 0}, {length, 0, 20}},
+                            (const double[]){1.3, 1.3, 1.3, 1.3});
+        StageReport report;
+        Scene scene = stage(&tree, JOINTS_ROBUST, &report);
+        assert_int_equal(report.places_short, !fits);
+        assert_int_equal(report.joints, 1 + fits);
+        scene_release(&scene);
+        tree_release(&tree);
+    }
+}
+
 static void to_the_letter_a_vessel_that_is_too_short_vanishes_into_its_joints(void **state)
 {
     (void)state;
@@ -274,6 +311,8 @@ int main(void)
         cmocka_unit_test(a_straight_place_needs_no_joint),
         cmocka_unit_test(where_a_vessel_is_too_short_the_place_is_round),
         cmocka_unit_test(where_a_vessel_turns_back_the_place_is_round),
+        cmocka_unit_test(a_place_is_round_from_60_degrees_to_the_trunk_on),
+        cmocka_unit_test(two_places_share_a_vessel_down_to_a_thousandth_of_it),
         cmocka_unit_test(to_the_letter_a_vessel_that_is_too_short_vanishes_into_its_joints),
         cmocka_unit_test(a_vessel_between_two_places_keeps_the_joint_that_needs_less),
         cmocka_unit_test(where_trees_begin_the_thickest_vessel_is_the_trunk),

@@ -93,6 +93,19 @@ static void short_segments_of_a_chain_do_not_vanish(void **state)
     assert_int_equal(vanished, 0);
 }
 
+/* Together 0.172 r long, they reach the level half way along the first, but not along the second. */
+static void what_vanishes_is_counted_half_way_along(void **state)
+{
+    (void)state;
+    TestScene test = empty_scene();
+    test.scene.segments = test.segments;
+    put_segment(&test, vec3(0, 0, 0), vec3(0.16, 0, 0), 1);
+    put_segment(&test, vec3(0.16, 0, 0), vec3(0.172, 0, 0), 1);
+    size_t vanished;
+    assert_int_equal(render_count_vanished(&test.scene, &vanished, NULL), STATUS_OK);
+    assert_int_equal(vanished, 1);
+}
+
 static void joints_bulge_and_neck(void **state)
 {
     (void)state;
@@ -180,6 +193,34 @@ static void the_graph_joins_what_is_near_along_the_tree(void **state)
     scene_release(&scene);
 }
 
+/* By the radius of the one that blends: a vessel of 1.3 mm with what begins 3.9 mm on, not the other way. */
+static void the_graph_joins_up_to_three_radii_away(void **state)
+{
+    (void)state;
+    for (int within = 0; within < 2; within++) {
+        Tree tree;
+        const double x[] = {-5, 0, within ? 3.89 : 3.91, 9};
+        const double radii[] = {1.3, 1.3, 0.7, 0.2};
+        assert_int_equal(tree_init(&tree, 4, NULL), STATUS_OK);
+        for (int i = 0; i < 4; i++) {
+            tree.id[i] = i + 1;
+            tree.parent[i] = i - 1;
+            tree.position[i] = vec3(x[i], 0, 0);
+            tree.radius_mm[i] = radii[i];
+        }
+        Look look = {0};
+        StageParams params = stage_defaults();
+        params.model = SCENE_ISOSURFACE;
+        params.graph = true;
+        Scene scene;
+        assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
+        assert_int_equal(blend_joins(&scene.blend, 0, 2), within);
+        assert_false(blend_joins(&scene.blend, 2, 0));
+        scene_release(&scene);
+        tree_release(&tree);
+    }
+}
+
 static void the_picture_of_the_graph_is_that_of_single_rays(void **state)
 {
     (void)state;
@@ -256,10 +297,12 @@ int main(void)
         cmocka_unit_test(free_ends_overshoot_by_half_a_radius),
         cmocka_unit_test(short_segments_shrink_and_vanish),
         cmocka_unit_test(short_segments_of_a_chain_do_not_vanish),
+        cmocka_unit_test(what_vanishes_is_counted_half_way_along),
         cmocka_unit_test(joints_bulge_and_neck),
         cmocka_unit_test(parallel_vessels_merge_below_a_third_of_a_radius),
         cmocka_unit_test(the_graph_keeps_strangers_apart),
         cmocka_unit_test(the_graph_joins_what_is_near_along_the_tree),
+        cmocka_unit_test(the_graph_joins_up_to_three_radii_away),
         cmocka_unit_test(the_picture_of_the_graph_is_that_of_single_rays),
         cmocka_unit_test(the_graph_is_left_where_all_its_bodies_are_left),
     };

@@ -238,6 +238,37 @@ static void a_camera_among_the_vessels_sees_what_rays_see(void **state)
     }
 }
 
+/* An empty scene of the usual look. */
+static Scene *empty(Staged *staged, Projection projection)
+{
+    stage(staged, projection);
+    staged->scene.n_primitives = staged->scene.n_ends = 0;
+    return &staged->scene;
+}
+
+static void of_primitives_in_one_place_the_first_is_seen(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++)
+        for (RenderMethod method = RENDER_TRACE; method <= RENDER_ZBUFFER; method++) {
+            Staged staged;
+            Scene *scene = empty(&staged, (Projection)projection);
+            for (int i = 0; i < 3; i++) {
+                add(&staged, PRIMITIVE_SPHERE, vec3(-4, 1, 2), vec3(-4, 1, 2), 2.385);
+                add(&staged, PRIMITIVE_CYLINDER, vec3(2, -5, 1), vec3(5, 6, -3), 1.37);
+            }
+            bound(scene);
+            Frame frame = drawn(scene, (Settings){method, 2, 1, 0, false});
+            int seen = 0;
+            for (int i = 0; i < PIXELS; i++) {
+                seen += frame.id.ids[i] != 0;
+                assert_true(frame.id.ids[i] <= 2);
+            }
+            assert_true(seen > 1000);
+            frame_release(&frame);
+        }
+}
+
 static void joints_that_bound_no_solid_are_seen_from_both_sides(void **state)
 {
     (void)state;
@@ -452,6 +483,35 @@ static void a_depth_buffer_of_points_has_no_holes(void **state)
     }
 }
 
+/* What a hair along a row shows of the pixel in whose middle's column it begins, from `off` pixels beside
+ * that middle. */
+static bool is_caught(double off)
+{
+    Staged staged;
+    Scene *scene = empty(&staged, PROJECTION_ORTHOGRAPHIC);
+    set_camera(scene, PROJECTION_ORTHOGRAPHIC, vec3(0, 0, -1));
+    const Camera *camera = &scene->camera;
+    double pixel = vec3_length(camera->up) / HEIGHT;
+    Ray ray = camera_ray(camera, 100, 70);
+    Vec3 along = vec3_normalized(camera->right), down = vec3_scale(camera->up, -off / HEIGHT);
+    Vec3 a = vec3_add(vec3_add_scaled(ray.origin, ray.direction, 20), down);
+    add(&staged, PRIMITIVE_CYLINDER, a, vec3_add_scaled(a, along, 30.2 * pixel), 1e-7);
+    bound(scene);
+    Frame frame = drawn(scene, (Settings){RENDER_ZBUFFER, 2, 1, 0, false});
+    bool caught = frame.id.ids[70 * WIDTH + 100] != 0;
+    frame_release(&frame);
+    return caught;
+}
+
+static void a_point_counts_within_0177_pixels_of_the_middle(void **state)
+{
+    (void)state;
+    for (int side = -1; side <= 1; side += 2) {
+        assert_true(is_caught(side * 0.1765));
+        assert_false(is_caught(side * 0.1775));
+    }
+}
+
 static void a_depth_buffer_does_not_depend_on_the_number_of_threads(void **state)
 {
     (void)state;
@@ -576,6 +636,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tiles_show_what_rays_show),
         cmocka_unit_test(a_camera_among_the_vessels_sees_what_rays_see),
+        cmocka_unit_test(of_primitives_in_one_place_the_first_is_seen),
         cmocka_unit_test(joints_that_bound_no_solid_are_seen_from_both_sides),
         cmocka_unit_test(vessels_along_the_view_are_seen_end_on),
         cmocka_unit_test(tiles_do_not_depend_on_the_number_of_threads),
@@ -584,6 +645,7 @@ int main(void)
         cmocka_unit_test(codes_of_tiles_are_those_of_their_colors),
         cmocka_unit_test(shadows_of_tiles_are_shadows_of_rays),
         cmocka_unit_test(a_depth_buffer_of_points_has_no_holes),
+        cmocka_unit_test(a_point_counts_within_0177_pixels_of_the_middle),
         cmocka_unit_test(a_depth_buffer_does_not_depend_on_the_number_of_threads),
         cmocka_unit_test(all_kernels_see_the_same),
         cmocka_unit_test(boxes_hold_the_axes_of_vessels),

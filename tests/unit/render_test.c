@@ -194,6 +194,31 @@ static void a_soft_shadow_weighs_the_points_of_the_light_alike(void **state)
     assert_true(seen.r == 0.5f);
 }
 
+/* Hides what lies far to the right. */
+static bool far_right(void *context, Vec3 at, Vec3 towards, double distance)
+{
+    (void)context;
+    return at.x + towards.x * distance > 1.49;
+}
+
+/* From edge to edge: the last column of four stands on the edge, 1.5 mm from the middle. */
+static void the_points_of_a_soft_light_reach_its_edges(void **state)
+{
+    (void)state;
+    Light light = {.location = {0, 0, 5},
+                   .color = {1, 1, 1},
+                   .casts_shadows = true,
+                   .samples = 4,
+                   .sides = {{3, 0, 0}, {0, 3, 0}}};
+    Scene scene = {.finish = {.diffuse = 0.5f, .brilliance = 1}, .lights = &light, .n_lights = 1};
+    Rgb white = {1, 1, 1};
+    Rgb seen = shade(&scene, white, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), far_right, NULL);
+    assert_true(seen.r == 0.375f);
+    light.sides[0].x = 2.9;
+    seen = shade(&scene, white, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), far_right, NULL);
+    assert_true(seen.r == 0.5f);
+}
+
 static void the_back_of_a_surface_gets_no_light(void **state)
 {
     (void)state;
@@ -331,6 +356,7 @@ int main(void)
         cmocka_unit_test(a_light_counts_from_a_least_cosine_on),
         cmocka_unit_test(a_shadow_leaves_the_ambient_light),
         cmocka_unit_test(a_soft_shadow_weighs_the_points_of_the_light_alike),
+        cmocka_unit_test(the_points_of_a_soft_light_reach_its_edges),
         cmocka_unit_test(the_back_of_a_surface_gets_no_light),
         cmocka_unit_test(the_planes_of_a_sphere_are_the_sphere),
         cmocka_unit_test(the_picture_does_not_depend_on_the_number_of_threads),

@@ -79,11 +79,26 @@ static void a_scene_far_from_the_origin_moves_as_a_whole(void **state)
     assert_true(near_after == near_before && far_after == far_before);
 }
 
+/* POV-Ray's limits [docs/POVRAY.md, section 4]. */
+static void a_ground_is_not_seen_along_itself_nor_beyond_all_bounds(void **state)
+{
+    (void)state;
+    const Ground ground = {.present = true, .normal = {0, 1, 0}, .offset_mm = -1e-4};
+    double t;
+    assert_false(ground_hit(&ground, (Ray){{0, 0, 0}, {1, -0.99e-10, 0}}, 0, HUGE_VAL, &t));
+    assert_true(ground_hit(&ground, (Ray){{0, 0, 0}, {1, -1.01e-10, 0}}, 0, HUGE_VAL, &t));
+    assert_true(fabs(t - 1e-4 / 1.01e-10) < 1);
+    const Vec3 down = {0, -1, 0};
+    assert_true(ground_hit(&ground, (Ray){{0, 0.999e7, 0}, down}, 0, HUGE_VAL, &t));
+    assert_false(ground_hit(&ground, (Ray){{0, 1.001e7, 0}, down}, 0, HUGE_VAL, &t));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_scene_near_the_origin_stays),
         cmocka_unit_test(a_scene_far_from_the_origin_moves_as_a_whole),
+        cmocka_unit_test(a_ground_is_not_seen_along_itself_nor_beyond_all_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -99,6 +99,56 @@ static void orders_by_diameter_converge_to_the_three_thicknesses(void **state)
     tree_release(&tree);
 }
 
+/* A forest of COPIES trees: a trunk, two branches of order 2 and the diameters 1.6 mm and `thin` mm, in the
+ * first `changed` trees, and four twigs. */
+static Tree forest_of(size_t copies, size_t changed, double thin)
+{
+    static const int32_t parent[8] = {-1, 0, 1, 1, 2, 2, 3, 3};
+    enum { MOST = 32 };
+    int32_t parents[8 * MOST];
+    double radii[8 * MOST], lengths[8 * MOST];
+    assert_true(copies <= MOST);
+    for (size_t i = 0; i < 8 * copies; i++) {
+        const double diameter[8] = {4, 4, 1.6, i / 8 < changed ? thin : 1.6, 1, 1.4, 1, 1.4};
+        parents[i] = i % 8 ? (int32_t)(i - i % 8) + parent[i % 8] : -1;
+        radii[i] = diameter[i % 8] / 2;
+        lengths[i] = i % 8 ? 3 : 0;
+    }
+    return make_tree(8 * copies, parents, radii, lengths);
+}
+
+/* Twigs have the mean 1.2 mm and the standard deviation 0.231; with branches of 1.6 and x mm the bound is
+ * x where x = (1.2 + 0.231 + (1.6 + x) / 2 - (1.6 - x) / sqrt2) / 2: at 1.3868 mm. */
+static void the_bound_between_orders_lies_between_their_deviations(void **state)
+{
+    (void)state;
+    for (int below = 0; below < 2; below++) {
+        Tree tree = forest_of(1, 1, below ? 1.386 : 1.388);
+        Field order = field_of(&tree, "diameter-strahler");
+        assert_true(order.value[2] == 2);
+        assert_true(order.value[3] == (below ? 1 : 2));
+        field_release(&order);
+        tree_release(&tree);
+    }
+}
+
+static void orders_have_converged_when_one_vessel_in_a_hundred_changes(void **state)
+{
+    (void)state;
+    const struct {
+        size_t copies, changed;
+        int rounds;
+    } cases[] = {{28, 1, 1}, {28, 2, 2}, {29, 2, 1}}; /* 1 and 2 of 196, 2 of 203 vessels */
+    for (int i = 0; i < 3; i++) {
+        Tree tree = forest_of(cases[i].copies, cases[i].changed, 1.2);
+        TreeStatistics statistics = statistics_of(&tree);
+        assert_int_equal(statistics.diameter_rounds, cases[i].rounds);
+        assert_true(statistics.diameter_orders_converged);
+        statistics_release(&statistics);
+        tree_release(&tree);
+    }
+}
+
 static void tables_of_a_tree_by_hand(void **state)
 {
     (void)state;
@@ -369,6 +419,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(orders_by_diameter_converge_to_the_three_thicknesses),
+        cmocka_unit_test(the_bound_between_orders_lies_between_their_deviations),
+        cmocka_unit_test(orders_have_converged_when_one_vessel_in_a_hundred_changes),
         cmocka_unit_test(tables_of_a_tree_by_hand),
         cmocka_unit_test(a_perfect_tree_has_the_ratios_it_was_made_with),
         cmocka_unit_test(a_tree_in_many_small_steps_has_the_same_statistics),

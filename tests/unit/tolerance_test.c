@@ -224,6 +224,73 @@ static void tells_geometry_from_shading_and_shadow(void **state)
     side_release(&b);
 }
 
+/* One side over one and a half times as bright. */
+static void a_shadow_is_more_than_half_as_dark_again(void **state)
+{
+    (void)state;
+    for (int dark = 0; dark < 2; dark++) {
+        Side a, b;
+        side_init(&a, 0);
+        side_init(&b, 0);
+        int pixel = 3 * (22 * W + 30); /* of codes 120, 121 and 122 */
+        memcpy(&a.picture.codes8[pixel], (const uint8_t[]){90, 90, 90}, 3);
+        memcpy(&b.picture.codes8[pixel], (const uint8_t[]){60, 60, dark ? 59 : 60}, 3);
+        CompareResult r = compare(&a, &b, tolerance_identity(0.01), NULL);
+        assert_int_equal(r.classes[dark ? PIXEL_SHADOW : PIXEL_SHADING], 1);
+        side_release(&a);
+        side_release(&b);
+    }
+}
+
+/* Makes the pixels of a segment's first `n` in reading order one of another id. */
+static void put_small(Side *side, int n, uint32_t id)
+{
+    for (int i = 0; i < n; i++)
+        side->ids.ids[(TOP + 4 + i / 8) * W + LEFT + 4 + i % 8] = id;
+}
+
+/* What few pixels say is noise: a mean needs 64 pixels, an outline 8 of length, an absence 3 pixels. */
+static void segments_too_small_to_judge_are_not_judged(void **state)
+{
+    (void)state;
+    for (int n = 63; n <= 64; n++) {
+        Side a, b;
+        side_init(&a, 0);
+        side_init(&b, 0);
+        put_small(&a, n, 7);
+        put_small(&b, n, 7);
+        for (int i = 0; i < W * H; i++)
+            if (b.ids.ids[i] == 7)
+                b.picture.codes8[3 * i] += 5;
+        CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
+        assert_near(r.segment_levels, n < 64 ? 0 : 5, 1e-12);
+        side_release(&a);
+        side_release(&b);
+    }
+    for (int n = 2; n <= 3; n++) {
+        Side a, b;
+        side_init(&a, 0);
+        side_init(&b, 0);
+        put_small(&a, n, 7);
+        CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
+        assert_int_equal(r.segments_missing, n == 3);
+        side_release(&a);
+        side_release(&b);
+    }
+    /* Of 1 x 4 pixels the outline is 10 pi / 4 = 7.85 long, of 1 x 5 it is 9.42; another pixel moves it. */
+    for (int n = 4; n <= 5; n++) {
+        Side a, b;
+        side_init(&a, 0);
+        side_init(&b, 0);
+        put_small(&a, n, 7);
+        put_small(&b, n + 1, 7);
+        CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
+        assert_int_equal(r.segment_px > 0.1, n == 5);
+        side_release(&a);
+        side_release(&b);
+    }
+}
+
 static void sums_do_not_depend_on_where_the_bands_lie(void **state)
 {
     (void)state;
@@ -453,6 +520,8 @@ int main(void)
         cmocka_unit_test(names_a_segment_that_is_gone),
         cmocka_unit_test(fits_gain_and_offset),
         cmocka_unit_test(tells_geometry_from_shading_and_shadow),
+        cmocka_unit_test(a_shadow_is_more_than_half_as_dark_again),
+        cmocka_unit_test(segments_too_small_to_judge_are_not_judged),
         cmocka_unit_test(sums_do_not_depend_on_where_the_bands_lie),
         cmocka_unit_test(never_averages_in_what_is_not_finite),
         cmocka_unit_test(sees_differences_beyond_white_and_below_a_code),

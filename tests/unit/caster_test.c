@@ -1,0 +1,103 @@
+/* How near and how far rays see, in every kind of geometry: POV-Ray's limits [docs/POVRAY.md, sections 3, 4
+ * and 9]. */
+#include "render/caster.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+/* Something so thin, square to the ray (0, 0, 1) from the origin, that it is met at about `at` mm only. */
+typedef struct Wire {
+    Primitive primitive;
+    FieldSegment segment;
+    Scene scene;
+} Wire;
+
+static const double thickness = 2e-6;
+
+static void make_wire(Wire *wire, SceneModel model, double at)
+{
+    Vec3 a = vec3(-0.01, 0, at), b = vec3(0.01, 0, at);
+    wire->primitive = (Primitive){
+        .kind = PRIMITIVE_CYLINDER, .a = a, .b = b, .radius_mm = thickness / 2, .id = 23};
+    wire->segment = (FieldSegment){.a = a, .b = b, .radius_mm = thickness / 2, .id = 23};
+    wire->scene = (Scene){.model = model};
+    if (model == SCENE_ISOSURFACE || model == SCENE_BLOB) {
+        wire->scene.segments = &wire->segment;
+        wire->scene.n_segments = 1;
+    } else {
+        wire->scene.primitives = &wire->primitive;
+        wire->scene.n_primitives = 1;
+    }
+}
+
+static bool is_seen(SceneModel model, double at)
+{
+    Wire wire;
+    Caster *caster;
+    Surfel surfel;
+    make_wire(&wire, model, at);
+    assert_int_equal(caster_new(&wire.scene, NULL, 1, &caster, NULL), STATUS_OK);
+    bool seen = caster_first(caster, 0, (Ray){{0, 0, 0}, {0, 0, 1}}, &surfel);
+    assert_true(!seen || (surfel.id == 23 && fabs(surfel.t - at) <= thickness));
+    caster_free(caster);
+    return seen;
+}
+
+static bool casts_shadow(SceneModel model, double at, double light)
+{
+    Wire wire;
+    Caster *caster;
+    make_wire(&wire, model, at);
+    assert_int_equal(caster_new(&wire.scene, NULL, 1, &caster, NULL), STATUS_OK);
+    bool dark = caster_shadow(caster, 0, vec3(0, 0, 0), vec3(0, 0, 1), light);
+    caster_free(caster);
+    return dark;
+}
+
+static void nothing_nearer_than_a_ten_thousandth_is_seen(void **state)
+{
+    (void)state;
+    const SceneModel models[] = {SCENE_CYLINDERS, SCENE_ISOSURFACE};
+    for (int i = 0; i < 2; i++) {
+        assert_false(is_seen(models[i], 1e-4 - 1.01 * thickness));
+        assert_true(is_seen(models[i], 1e-4 + 1.01 * thickness));
+    }
+}
+
+static void nothing_within_a_thousandth_of_point_or_light_casts_a_shadow(void **state)
+{
+    (void)state;
+    const SceneModel models[] = {SCENE_CYLINDERS, SCENE_ISOSURFACE};
+    for (int i = 0; i < 2; i++) {
+        assert_false(casts_shadow(models[i], 1e-3 - 1.01 * thickness, 3));
+        assert_true(casts_shadow(models[i], 1e-3 + 1.01 * thickness, 3));
+        assert_true(casts_shadow(models[i], 3 - 1e-3 - 1.01 * thickness, 3));
+        assert_false(casts_shadow(models[i], 3 - 1e-3 + 1.01 * thickness, 3));
+    }
+}
+
+static void nothing_of_a_blob_nearer_than_a_hundredth_is_seen_or_casts_a_shadow(void **state)
+{
+    (void)state;
+    assert_false(is_seen(SCENE_BLOB, 1e-2 - 1.01 * thickness));
+    assert_true(is_seen(SCENE_BLOB, 1e-2 + 1.01 * thickness));
+    assert_false(casts_shadow(SCENE_BLOB, 1e-2 - 1.01 * thickness, 3));
+    assert_true(casts_shadow(SCENE_BLOB, 1e-2 + 1.01 * thickness, 3));
+    assert_true(casts_shadow(SCENE_BLOB, 3 - 1e-3 - 1.01 * thickness, 3));
+    assert_false(casts_shadow(SCENE_BLOB, 3 - 1e-3 + 1.01 * thickness, 3));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_nearer_than_a_ten_thousandth_is_seen),
+        cmocka_unit_test(nothing_within_a_thousandth_of_point_or_light_casts_a_shadow),
+        cmocka_unit_test(nothing_of_a_blob_nearer_than_a_hundredth_is_seen_or_casts_a_shadow),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
