@@ -476,12 +476,11 @@ static void animates_two_pictures_in_one_png(void **state)
     assert_int_equal(count_chunks(&png, "fcTL"), 2);
     assert_true(count_chunks(&png, "fdAT") >= 1);
     assert_int_equal(count_chunks(&png, "IEND"), 1);
-    /* Readers that know no animations see A; libpng holds the checksums against the chunks. */
+    /* What readers that know no animations see is a test of compare's. */
     assert_int_equal(file_write("build/flicker.png", png.chars, png.length, &err), STATUS_OK);
-    assert_int_equal(picture_read(&first, "build/flicker.png", &err), STATUS_OK);
-    assert_memory_equal(first.codes8, a.picture.codes8, W * H * 3);
+    assert_int_equal(picture_read(&first, "build/flicker.png", &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "is an animation of 2 pictures"));
     unlink("build/flicker.png");
-    picture_release(&first);
     text_release(&png);
     side_release(&a);
     side_release(&b);
