@@ -21,9 +21,10 @@ static const Command command = {
 /* The size that the scene's "// Size: WxH" comment asks for. */
 static Status size_of_scene(const char *path, int size[2], Err *err)
 {
+    static const FileForm form = {.name = "a scene", .most_bytes = 4e9, .is_text = true};
     char *text = NULL;
     size_t length;
-    TRY(file_read(path, &text, &length, err));
+    TRY(file_read(path, &form, &text, &length, err));
     const char *line = strstr(text, "// Size: ");
     bool found = line && sscanf(line, "// Size: %dx%d", &size[0], &size[1]) == 2 && size[0] > 0 &&
                  size[1] > 0 && size[0] <= IMAGE_MAX_SIDE && size[1] <= IMAGE_MAX_SIDE;

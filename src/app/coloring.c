@@ -62,34 +62,38 @@ static Status find_range(const Coloring *coloring, const Field *field, double ra
     return STATUS_OK;
 }
 
-Status coloring_apply(const Coloring *coloring, const Tree *tree, Rgb **colors, Err *err)
+Status coloring_read_map(const Coloring *coloring, Colormap *map, Err *err)
+{
+    char *path = NULL;
+    TRY(template_file("colormap", "colormaps", coloring->colormap, ".txt", &path, err));
+    Status status = colormap_read(map, path, err);
+    free(path);
+    return status;
+}
+
+Status coloring_apply(const Coloring *coloring, const Colormap *map, const Tree *tree, Rgb **colors,
+                      Err *err)
 {
     *colors = NULL;
     if (!coloring->field)
         return STATUS_OK;
     Field field = {0};
-    Colormap map = {0};
     Rgb *made = NULL;
-    char *path = NULL;
     double range[2] = {0, 0};
     Status status = derive_field(tree, &coloring->flow, coloring->field, &field, err);
     if (status != STATUS_OK)
         return status;
-    TRY_GOTO(template_file("colormap", "colormaps", coloring->colormap, ".txt", &path, err));
-    TRY_GOTO(colormap_read(&map, path, err));
     TRY_GOTO(find_range(coloring, &field, range, err));
     TRY_GOTO(mem_calloc(&made, tree->n, sizeof *made, "colours", err));
     for (size_t i = 0; i < tree->n; i++) {
         double width = range[1] - range[0];
         double value = scaled(coloring, field.value[i]);
         float rgb[3];
-        colormap_linear(&map, width > 0 ? (value - range[0]) / width : value - range[0] + 0.5, rgb);
+        colormap_linear(map, width > 0 ? (value - range[0]) / width : value - range[0] + 0.5, rgb);
         made[i] = (Rgb){rgb[0], rgb[1], rgb[2]};
     }
     *colors = made;
 done:
-    free(path);
-    colormap_release(&map);
     field_release(&field);
     return status;
 }

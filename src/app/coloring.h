@@ -4,6 +4,7 @@
 
 #include "app/options.h"
 #include "derive/derive.h"
+#include "image/image.h"
 #include "scene/scene.h"
 #include "tree/tree.h"
 
@@ -21,9 +22,12 @@ typedef struct Coloring {
 /* Defaults, and the table that sets them; `coloring` must not move afterwards. */
 void coloring_init(Coloring *coloring);
 
-/* One linear colour a node in *colors (owned), NULL when no field is asked for. Without --range, the
+/* The colour map of --colormap in *map (owned). STATUS_USAGE when templates/ lacks the name. */
+MUST_CHECK Status coloring_read_map(const Coloring *coloring, Colormap *map, Err *err);
+
+/* One linear colour of the map a node in *colors (owned), NULL when no field is asked for. Without --range, the
  * colours run from the least to the greatest finite value of the field. */
-MUST_CHECK Status coloring_apply(const Coloring *coloring, const Tree *tree, Rgb **colors,
-                                 Err *err);
+MUST_CHECK Status coloring_apply(const Coloring *coloring, const Colormap *map, const Tree *tree,
+                                 Rgb **colors, Err *err);
 
 #endif

@@ -10,6 +10,17 @@ typedef Status CommandRun(int argc, char **argv, Err *err);
 CommandRun run_grow, run_refine, run_info, run_convert, run_scene, run_povray, run_render,
     run_compare, run_verify, run_report, run_view;
 
+typedef struct CommandEntry {
+    const char *name; /* NULL ends the table */
+    CommandRun *run;
+    const char *summary; /* one line */
+} CommandEntry;
+
+/* In the order of the help. */
+extern const CommandEntry command_entries[];
+/* NULL when no command has this name. */
+const CommandEntry *command_find(const char *name);
+
 #define GENERATOR "corcast " CORCAST_VERSION
 
 /* The command line as text for provenance, in *out (owned): every argument that is a path cut to its

@@ -3,32 +3,13 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct {
-    const char *name;
-    CommandRun *run;
-    const char *summary;
-} commands[] = {
-    {"grow", run_grow, "grow an arterial tree by constrained constructive optimization"},
-    {"refine", run_refine, "lower the target of a tree by whole-tree optimisation"},
-    {"info", run_info, "count, measure and check a tree"},
-    {"convert", run_convert, "convert trees and images"},
-    {"scene", run_scene, "write a tree as a POV-Ray scene"},
-    {"povray", run_povray, "run POV-Ray on a scene"},
-    {"render", run_render, "render a tree with the native renderer"},
-    {"view", run_view, "look at a tree in a window"},
-    {"verify", run_verify, "prove that POV-Ray and the native renderer agree"},
-    {"compare", run_compare, "compare two images or planes"},
-    {"report", run_report, "one page about several verifications"},
-};
-enum { N_COMMANDS = sizeof commands / sizeof *commands };
-
 static void print_usage(FILE *stream)
 {
     fputs("corcast " CORCAST_VERSION ": grow, draw and verify arterial trees\n\n"
           "usage: corcast COMMAND [options] [files]\n\n",
           stream);
-    for (int i = 0; i < N_COMMANDS; i++)
-        fprintf(stream, "  %-9s %s\n", commands[i].name, commands[i].summary);
+    for (const CommandEntry *entry = command_entries; entry->name; entry++)
+        fprintf(stream, "  %-9s %s\n", entry->name, entry->summary);
     fputs("\ncorcast COMMAND --help tells the options of a command; '-' stands for standard input\n"
           "or output wherever a file may stand. Exit status: 0 done, 1 a comparison found a\n"
           "difference, 2 wrong usage or input, 3 a file, program or the memory failed.\n",
@@ -67,9 +48,9 @@ int main(int argc, char **argv)
         print_usage(stdout);
         return finish("", STATUS_OK, &err);
     }
-    for (int i = 0; i < N_COMMANDS; i++)
-        if (strcmp(argv[1], commands[i].name) == 0)
-            return finish(argv[1], commands[i].run(argc - 2, argv + 2, &err), &err);
+    const CommandEntry *command = command_find(argv[1]);
+    if (command)
+        return finish(argv[1], command->run(argc - 2, argv + 2, &err), &err);
     return finish("",
                   err_set(&err, STATUS_USAGE,
                           "unknown command '%s'; corcast --help lists those there are", argv[1]),

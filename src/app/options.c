@@ -1,6 +1,6 @@
 #include "app/options.h"
 
-#include <ini.h>
+#include "app/commands.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -223,63 +223,34 @@ static Status set_option(const Option *option, const char *value, Err *err)
 
 /* ---- recipes ------------------------------------------------------------------------------- */
 
-typedef struct RecipeReader {
-    const Reader *reader;
-    Text *values; /* keeps the values alive */
-    Status status;
-} RecipeReader;
-
-static int read_recipe_pair(void *user, const char *section, const char *name, const char *value)
+/* A section of another command is passed over; one of no command is an error. */
+static Status take_recipe_line(void *user, const char *section, const char *name, const char *value,
+                               Err *err)
 {
-    RecipeReader *recipe = user;
-    const Reader *reader = recipe->reader;
+    const Reader *reader = user;
     if (*section && strcmp(section, reader->command->name) != 0)
-        return 1; /* meant for another command */
+        return name || command_find(section)
+                   ? STATUS_OK
+                   : err_set(err, STATUS_USAGE, "[%s] is not the name of a command", section);
+    if (!name)
+        return STATUS_OK;
     const Option *option = find_option(reader, name, strlen(name));
-    if (!option || strcmp(name, "recipe") == 0) {
-        recipe->status = err_set(reader->err, STATUS_USAGE, "'%s' is not an option of %s", name,
-                                 reader->command->name);
-        return 0;
-    }
-    if (option->kind == OPTION_FLAG && strcmp(value, "on") != 0) {
-        recipe->status = wrong(option, value, "on; leave the line out to turn it off", reader->err);
-        return 0;
-    }
-    /* The values live as long as the parsed options: one block, reserved whole beforehand. */
-    char *kept = recipe->values->chars + recipe->values->length;
-    text_append(recipe->values, value, strlen(value) + 1);
-    recipe->status = set_option(option, kept, reader->err);
-    return recipe->status == STATUS_OK;
+    if (!option || strcmp(name, "recipe") == 0)
+        return err_set(err, STATUS_USAGE, "'%s' is not an option of %s", name,
+                       reader->command->name);
+    if (option->kind == OPTION_FLAG && strcmp(value, "on") != 0)
+        return wrong(option, value, "on; leave the line out to turn it off", err);
+    return set_option(option, value, err);
 }
 
-static Status read_recipe(const Reader *reader, const char *path, Parsed *parsed)
+static Status read_recipe(Reader *reader, const char *path, Parsed *parsed)
 {
-    char *text = NULL;
-    size_t size;
-    TRY(file_read(path, &text, &size, reader->err));
-    Text values = TEXT_INIT;
-    /* No value is longer than its line, so nothing moves once this is reserved. */
-    Status status =
-        mem_reserve(&values.chars, &values.capacity, size + 2, 1, "bytes of text", reader->err);
-    RecipeReader recipe = {reader, &values, STATUS_OK};
-    if (status == STATUS_OK) {
-        int line = ini_parse_string(text, read_recipe_pair, &recipe);
-        status = recipe.status;
-        if (status != STATUS_OK)
-            err_prefix(reader->err, "%s:%d: ", path, line);
-        else if (line != 0)
-            status = err_set(reader->err, STATUS_USAGE, "%s:%d: expected name = value", path, line);
-    }
-    free(text);
-    if (status != STATUS_OK) {
-        text_release(&values);
-        return status;
-    }
+    TRY(ini_read(path, "a recipe", take_recipe_line, reader, &parsed->common.recipe_text,
+                 reader->err));
     for (int t = 0; t < reader->n_tables; t++)
         for (const Option *option = reader->tables[t]; option->name; option++)
             if (option->kind == OPTION_VECTORS)
                 ((VectorList *)option->where)->from_recipe = true;
-    parsed->common.recipe_text = values.chars;
     return STATUS_OK;
 }
 

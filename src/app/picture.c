@@ -171,16 +171,14 @@ Status picture_read_source(const PictureOptions *options, const char *tree_path,
                            PictureSource *source, Err *err)
 {
     PictureSource made = {0};
+    Status status = STATUS_OK;
     TRY(check_camera(options, err));
     TRY(read_look(options, &made.look, err));
-    TRY(tree_read(&made.tree, tree_path, err));
+    TRY_GOTO(coloring_read_map(&options->coloring, &made.map, err));
+    TRY_GOTO(tree_read(&made.tree, tree_path, err));
     if (options->prune_radius_mm > 0) {
         Tree pruned;
-        Status status = tree_pruned(&made.tree, options->prune_radius_mm, &pruned, err);
-        if (status != STATUS_OK) {
-            tree_release(&made.tree);
-            return status;
-        }
+        TRY_GOTO(tree_pruned(&made.tree, options->prune_radius_mm, &pruned, err));
         made.pruned = made.tree.n - pruned.n;
         tree_release(&made.tree);
         made.tree = pruned;
@@ -191,12 +189,17 @@ Status picture_read_source(const PictureOptions *options, const char *tree_path,
                            made.pruned, options->prune_radius_mm);
         }
     }
-    *source = made;
-    return STATUS_OK;
+done:
+    if (status == STATUS_OK)
+        *source = made;
+    else
+        picture_source_release(&made);
+    return status;
 }
 
 void picture_source_release(PictureSource *source)
 {
+    colormap_release(&source->map);
     tree_release(&source->tree);
 }
 
@@ -218,7 +221,7 @@ Status picture_build(const PictureOptions *options, const PictureSource *source,
 {
     Rgb *colors = NULL;
     const StageParams stage = picture_stage(options);
-    TRY(coloring_apply(&options->coloring, &source->tree, &colors, err));
+    TRY(coloring_apply(&options->coloring, &source->map, &source->tree, &colors, err));
     Status status = stage_scene(&source->tree, &source->look, colors, &stage, scene, report, err);
     free(colors);
     if (status == STATUS_OK)

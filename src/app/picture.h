@@ -40,11 +40,12 @@ MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 /* What a picture is made from. */
 typedef struct PictureSource {
     Look look;
+    Colormap map;
     Tree tree;
     size_t pruned; /* segments that were cut off */
 } PictureSource;
 
-/* Reads look and tree. STATUS_USAGE when options fight each other. */
+/* Reads look, colour map and tree. STATUS_USAGE when options fight each other. */
 MUST_CHECK Status picture_read_source(const PictureOptions *options, const char *tree_path,
                                       PictureSource *source, Err *err);
 void picture_source_release(PictureSource *source);

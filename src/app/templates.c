@@ -1,5 +1,6 @@
 #include "app/templates.h"
 
+#include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -36,29 +37,66 @@ Status templates_folder(char **folder, Err *err)
                    "installed; name it in CORCAST_TEMPLATES");
 }
 
+/* The names, without their extension, of the files in the folder that have it: "a, b or c". */
+static void list_names(const char *folder, const char *extension, Text *out)
+{
+    struct dirent **entries = NULL;
+    int n = scandir(folder, &entries, NULL, alphasort);
+    const char *last = NULL;
+    for (int i = 0; i < n; i++) {
+        char *name = entries[i]->d_name;
+        size_t length = strlen(name), ending = strlen(extension);
+        if (length <= ending || strcmp(name + length - ending, extension) != 0)
+            continue;
+        name[length - ending] = '\0';
+        if (last)
+            text_printf(out, "%s%s", out->length ? ", " : "", last);
+        last = name;
+    }
+    text_printf(out, "%s%s", out->length ? " or " : "", last ? last : "none");
+    for (int i = 0; i < n; i++)
+        free(entries[i]);
+    free(entries);
+}
+
+/* What there is in place of a file that is not there. */
+static Status refuse_name(const char *option, const char *value, const char *folder,
+                          const char *extension, Err *err)
+{
+    Text names = TEXT_INIT;
+    list_names(folder, extension, &names);
+    Status status = text_check(&names, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE,
+                         "--%s: '%s' is not %s, nor has it the '/' of a path to a file of your own",
+                         option, value, names.chars);
+    text_release(&names);
+    return status;
+}
+
 Status template_file(const char *option, const char *folder, const char *value,
                      const char *extension, char **path, Err *err)
 {
     if (strchr(value, '/'))
         return mem_strdup(path, value, err);
-    char *templates = NULL, *found = NULL;
+    char *templates = NULL, *place = NULL, *found = NULL;
     Text name = TEXT_INIT;
-    text_printf(&name, "%s/%s%s", folder, value, extension);
-    Status status = text_check(&name, err);
-    if (status == STATUS_OK)
-        status = templates_folder(&templates, err);
-    if (status == STATUS_OK)
-        status = file_join(templates, name.chars, &found, err);
-    if (status == STATUS_OK && access(found, R_OK) != 0)
-        status = err_set(err, STATUS_USAGE,
-                         "--%s: '%s' is not a file of %s/%s; write a path with a '/' for one of "
-                         "your own",
-                         option, value, templates, folder);
+    Status status = STATUS_OK;
+    text_printf(&name, "%s%s", value, extension);
+    TRY_GOTO(text_check(&name, err));
+    TRY_GOTO(templates_folder(&templates, err));
+    TRY_GOTO(file_join(templates, folder, &place, err));
+    TRY_GOTO(file_join(place, name.chars, &found, err));
+    if (access(found, R_OK) != 0) {
+        status = refuse_name(option, value, place, extension, err);
+        goto done;
+    }
+    *path = found;
+    found = NULL;
+done:
     text_release(&name);
     free(templates);
-    if (status == STATUS_OK)
-        *path = found;
-    else
-        free(found);
+    free(place);
+    free(found);
     return status;
 }

@@ -3,6 +3,7 @@
 #define CORCAST_BASE_BASE_H
 
 #include "base/file.h"      // IWYU pragma: export
+#include "base/ini.h"       // IWYU pragma: export
 #include "base/interrupt.h" // IWYU pragma: export
 #include "base/memory.h"    // IWYU pragma: export
 #include "base/progress.h"  // IWYU pragma: export

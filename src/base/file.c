@@ -74,18 +74,83 @@ void file_hold_standard_streams(void)
             return;
 }
 
-static Status read_stream(FILE *stream, const char *name, char **bytes, size_t *size, Err *err)
+/* Every line end becomes LF; the byte order mark goes. */
+static void tidy_lines(char *bytes, size_t *size)
 {
-    Text all = TEXT_INIT;
+    static const char byte_order_mark[] = "\xef\xbb\xbf";
+    char *from = bytes, *to = bytes, *end = bytes + *size;
+    if (strncmp(bytes, byte_order_mark, 3) == 0)
+        from += 3;
+    for (;;) {
+        char *cr = memchr(from, '\r', (size_t)(end - from));
+        size_t run = (size_t)((cr ? cr : end) - from);
+        if (to != from)
+            memmove(to, from, run);
+        to += run;
+        if (!cr)
+            break;
+        *to++ = '\n';
+        from = cr + 1;
+        from += *from == '\n';
+    }
+    *to = '\0';
+    *size = (size_t)(to - bytes);
+}
+
+Status file_to_text(const char *path, const FileForm *form, char *bytes, size_t *size, Err *err)
+{
+    const char *zero = memchr(bytes, '\0', *size);
+    if (zero)
+        *size = (size_t)(zero - bytes);
+    tidy_lines(bytes, size);
+    if (!zero)
+        return STATUS_OK;
+    size_t line = 1;
+    for (const char *at = bytes; (at = strchr(at, '\n')); at++)
+        line++;
+    return err_set(err, STATUS_INPUT, "%s:%zu: a zero byte; %s is plain text", path, line,
+                   form->name);
+}
+
+static Status check_size(const char *name, const FileForm *form, double bytes, Err *err)
+{
+    char most[BYTES_TEXT_SIZE];
+    if (bytes <= form->most_bytes)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT, "%s: is larger than %s, the most that %s may have", name,
+                   bytes_text(form->most_bytes, most), form->name);
+}
+
+/* What is no file of its kind is refused with the block that tells so. */
+static Status read_blocks(FILE *stream, const char *name, const FileForm *form, Text *all, Err *err)
+{
     char block[1 << 16];
     size_t count;
-    while ((count = fread(block, 1, sizeof block, stream)) > 0)
-        text_append(&all, block, count);
-    Status status = text_check(&all, err);
-    if (status == STATUS_OK && ferror(stream))
-        status = err_set(err, STATUS_IO, "%s: reading failed: %s", name, strerror(errno));
-    if (status == STATUS_OK && !all.chars)
-        status = mem_calloc(&all.chars, 1, 1, "bytes of text", err);
+    struct stat about;
+    if (fstat(fileno(stream), &about) == 0 && S_ISREG(about.st_mode))
+        TRY(check_size(name, form, (double)about.st_size, err));
+    do {
+        count = fread(block, 1, sizeof block, stream);
+        if (all->length == 0 && form->begins && !form->begins(block, count))
+            return err_set(err, STATUS_INPUT, "%s: is not %s", name, form->name);
+        TRY(check_size(name, form, (double)(all->length + count), err));
+        text_append(all, block, count);
+    } while (count > 0 && !all->failed && !(form->is_text && memchr(block, '\0', count)));
+    if (ferror(stream))
+        return err_set(err, STATUS_IO, "%s: reading failed: %s", name, strerror(errno));
+    Status status = text_check(all, err);
+    if (status != STATUS_OK)
+        err_prefix(err, "%s: ", name);
+    else if (form->is_text)
+        status = file_to_text(name, form, all->chars, &all->length, err);
+    return status;
+}
+
+static Status read_stream(FILE *stream, const char *name, const FileForm *form, char **bytes,
+                          size_t *size, Err *err)
+{
+    Text all = TEXT_INIT;
+    Status status = read_blocks(stream, name, form, &all, err);
     if (status != STATUS_OK) {
         text_release(&all);
         return status;
@@ -95,10 +160,10 @@ static Status read_stream(FILE *stream, const char *name, char **bytes, size_t *
     return STATUS_OK;
 }
 
-Status file_read(const char *path, char **bytes, size_t *size, Err *err)
+Status file_read(const char *path, const FileForm *form, char **bytes, size_t *size, Err *err)
 {
     if (strcmp(path, "-") == 0)
-        return read_stream(stdin, "standard input", bytes, size, err);
+        return read_stream(stdin, "standard input", form, bytes, size, err);
     FILE *stream = fopen(path, "rb");
     if (!stream)
         return err_set(err, errno == ENOENT || errno == ENOTDIR ? STATUS_INPUT : STATUS_IO,
@@ -108,7 +173,7 @@ Status file_read(const char *path, char **bytes, size_t *size, Err *err)
     if (fstat(fileno(stream), &about) == 0 && S_ISDIR(about.st_mode))
         status = err_set(err, STATUS_INPUT, "%s: is a folder, not a file", path);
     else
-        status = read_stream(stream, path, bytes, size, err);
+        status = read_stream(stream, path, form, bytes, size, err);
     fclose(stream);
     return status;
 }
@@ -387,8 +452,9 @@ Status outfile_check_room(const OutFile *file, double bytes, Err *err)
     double left = (double)disk.f_bavail * (double)disk.f_frsize;
     if (bytes <= left)
         return STATUS_OK;
-    return err_set(err, STATUS_IO, "%s: needs %.1f GB, and its disk has %.1f GB left", file->path,
-                   bytes * 1e-9, left * 1e-9);
+    char needs[BYTES_TEXT_SIZE], has[BYTES_TEXT_SIZE];
+    return err_set(err, STATUS_IO, "%s: needs %s, and its disk has %s left", file->path,
+                   bytes_text(bytes, needs), bytes_text(left, has));
 }
 
 Status file_write(const char *path, const void *bytes, size_t size, Err *err)

@@ -7,10 +7,24 @@
 #include <stddef.h>
 #include <stdio.h>
 
+/* What a file that is read whole may be. */
+typedef struct FileForm {
+    const char *name;                                /* "an SWC file" */
+    double most_bytes;                               /* a larger one is refused */
+    bool is_text;                                    /* it holds no zero byte */
+    bool (*begins)(const char *start, size_t count); /* whether one may begin so; NULL: anyhow */
+} FileForm;
+
 /* Reads all of `path` ("-": standard input) into *bytes (owned), zero-terminated; *size does not
- * count that zero. STATUS_INPUT when the file is missing or a folder, STATUS_IO when it cannot be
- * read. */
-MUST_CHECK Status file_read(const char *path, char **bytes, size_t *size, Err *err);
+ * count that zero. Of a text the byte order mark is left out, and every line end (LF, CR or CRLF) is
+ * LF. STATUS_INPUT when the file is missing, a folder or not of its form, told by its size, its first
+ * bytes or the first zero byte of a text before what follows is read; STATUS_IO when it cannot be
+ * read; STATUS_MEMORY naming the file. */
+MUST_CHECK Status file_read(const char *path, const FileForm *form, char **bytes, size_t *size,
+                            Err *err);
+/* Makes a text of what was read as bytes, as file_read does; `path` and `form` are for the sentence. */
+MUST_CHECK Status file_to_text(const char *path, const FileForm *form, char *bytes, size_t *size,
+                               Err *err);
 
 /* STATUS_INPUT unless `path` is a regular file: opening a pipe or a device can wait for ever. */
 MUST_CHECK Status file_check_regular(const char *path, Err *err);

@@ -144,6 +144,20 @@ const char *number_text_float(float value, char out[NUMBER_TEXT_SIZE])
     return out;
 }
 
+const char *bytes_text(double bytes, char out[BYTES_TEXT_SIZE])
+{
+    static const char *const units[] = {"kB", "MB", "GB", "TB"};
+    if (bytes < 1000) {
+        snprintf(out, BYTES_TEXT_SIZE, "%.0f byte%s", bytes, bytes == 1 ? "" : "s");
+        return out;
+    }
+    size_t unit = 0;
+    for (bytes /= 1000; bytes >= 999.95 && unit < 3; unit++)
+        bytes /= 1000;
+    snprintf(out, BYTES_TEXT_SIZE, "%.1f %s", bytes, units[unit]);
+    return out;
+}
+
 bool number_parse(const char *chars, double *out)
 {
     if (!*chars || isspace((unsigned char)*chars))
@@ -157,6 +171,24 @@ bool number_parse(const char *chars, double *out)
         return false;
     *out = value;
     return true;
+}
+
+bool numbers_parse(const char *chars, size_t count, double *out)
+{
+    static const char blanks[] = " \t\v\f";
+    for (size_t i = 0; i < count; i++) {
+        char number[400];
+        chars += strspn(chars, blanks);
+        size_t length = strcspn(chars, blanks);
+        if (length >= sizeof number)
+            return false;
+        memcpy(number, chars, length);
+        number[length] = '\0';
+        if (!number_parse(number, &out[i]))
+            return false;
+        chars += length;
+    }
+    return chars[strspn(chars, blanks)] == '\0';
 }
 
 bool integer_parse(const char *chars, long long minimum, long long maximum, long long *out)

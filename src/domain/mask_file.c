@@ -146,9 +146,10 @@ static bool has_good_header(const char *path)
 Status mask_read_nifti(Mask *mask, const char *path, Err *err)
 {
     if (access(path, R_OK) != 0) { /* the library would try other endings of the name */
+        static const FileForm form = {.name = "a NIfTI file", .most_bytes = 1e9};
         char *bytes = NULL;
         size_t size = 0;
-        TRY(file_read(path, &bytes, &size, err));
+        TRY(file_read(path, &form, &bytes, &size, err));
         free(bytes);
     }
     nifti_set_debug_level(0);

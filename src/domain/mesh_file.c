@@ -11,7 +11,10 @@
 enum { STL_TITLE = 80, STL_HEADER = 84, STL_FACET = 50, STL_CORNERS = 12, SHOWN = 40 };
 enum { MAX_TRIANGLES = INT32_MAX };
 
-static const char blanks[] = " \t\v\f\r";
+static const char blanks[] = " \t\v\f";
+
+static const FileForm obj_file = {.name = "an OBJ file", .most_bytes = 8e9, .is_text = true};
+static const FileForm stl_file = {.name = "an STL file", .most_bytes = 8e9};
 
 typedef struct Reader {
     Soup *soup;
@@ -54,6 +57,23 @@ static bool is_binary_stl(const char *bytes, size_t size)
 {
     return size >= STL_HEADER &&
            size == STL_HEADER + (size_t)STL_FACET * little_endian(bytes + STL_TITLE);
+}
+
+/* What has zero bytes can only have been meant for a binary file. */
+static Status check_ascii_stl(const char *path, char *bytes, size_t *size, Err *err)
+{
+    if (!memchr(bytes, '\0', *size))
+        return file_to_text(path, &stl_file, bytes, size, err);
+    if (*size < STL_HEADER)
+        return err_set(err, STATUS_INPUT,
+                       "%s: has %zu bytes, fewer than the %d before the triangles of a binary STL "
+                       "file",
+                       path, *size, STL_HEADER);
+    uint32_t stated = little_endian(bytes + STL_TITLE);
+    return err_set(err, STATUS_INPUT,
+                   "%s: is no text, and a binary STL file of the %u triangles that it states has "
+                   "%zu bytes, this one %zu",
+                   path, stated, STL_HEADER + (size_t)STL_FACET * stated, *size);
 }
 
 static Status read_binary_stl(Reader *reader, const char *bytes, size_t size, Err *err)
@@ -175,13 +195,17 @@ Status soup_read(Soup *soup, const char *path, double mm, Err *err)
     char *bytes = NULL;
     size_t size = 0;
     bool is_obj = strcasecmp(file_extension(path), "obj") == 0;
-    TRY(file_read(path, &bytes, &size, err));
+    const FileForm *form = is_obj ? &obj_file : &stl_file;
+    TRY(file_read(path, form, &bytes, &size, err));
     Reader reader = {.soup = soup, .path = path, .mm = mm};
     Status status;
-    if (!is_obj && is_binary_stl(bytes, size))
+    if (!is_obj && is_binary_stl(bytes, size)) {
         status = read_binary_stl(&reader, bytes, size, err);
-    else
-        status = read_lines(&reader, bytes, is_obj ? read_obj_line : read_stl_line, err);
+    } else {
+        status = is_obj ? STATUS_OK : check_ascii_stl(path, bytes, &size, err);
+        if (status == STATUS_OK)
+            status = read_lines(&reader, bytes, is_obj ? read_obj_line : read_stl_line, err);
+    }
     if (status == STATUS_OK && soup->n == 0)
         status = err_set(err, STATUS_INPUT, "%s: has no triangles", path);
     free(reader.vertices);

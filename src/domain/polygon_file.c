@@ -9,7 +9,7 @@
 
 enum { SHOWN = 40 /* characters of a bad line */ };
 
-static const char blanks[] = " \t\v\f\r";
+static const char blanks[] = " \t\v\f";
 
 typedef struct Reader {
     Polygon *polygon;
@@ -72,29 +72,19 @@ static Status read_line(Reader *reader, char *line, Err *err)
     line[strcspn(line, "#")] = '\0';
     if (*line == '\0')
         return STATUS_OK;
-    char text[2 * SHOWN];
-    snprintf(text, sizeof text, "%s", line);
-    double value[2] = {0, 0};
-    int count = 0;
-    bool good = true;
-    for (char *rest = NULL, *word = strtok_r(line, blanks, &rest); word;
-         word = strtok_r(NULL, blanks, &rest), count++)
-        good = good && count < 2 && number_parse(word, &value[count]);
-    if (!good || count != 2)
+    double value[2];
+    if (!numbers_parse(line, 2, value))
         return err_set(err, STATUS_INPUT,
                        "%s:%zu: '%.*s' is not a point; a line holds two numbers, x y, or nothing, "
                        "which ends a ring",
-                       reader->path, reader->line, SHOWN, text);
+                       reader->path, reader->line, SHOWN, line);
     Vec3 point = vec3(value[0] * reader->mm, value[1] * reader->mm, 0);
     TRY(domain_check_point(reader->path, reader->line, point, err));
     return add_point(reader, point, err);
 }
 
-static Status read_lines(Reader *reader, char *bytes, size_t size, Err *err)
+static Status read_lines(Reader *reader, char *bytes, Err *err)
 {
-    if (memchr(bytes, '\0', size))
-        return err_set(err, STATUS_INPUT, "%s: holds zero bytes; a polygon is plain text",
-                       reader->path);
     for (char *at = bytes, *next = NULL; at; at = next) {
         reader->line++;
         next = strchr(at, '\n');
@@ -111,11 +101,12 @@ static Status read_lines(Reader *reader, char *bytes, size_t size, Err *err)
 
 Status polygon_read(Polygon *polygon, const char *path, double mm, Err *err)
 {
+    static const FileForm form = {.name = "a polygon", .most_bytes = 1e9, .is_text = true};
     char *bytes = NULL;
     size_t size = 0;
-    TRY(file_read(path, &bytes, &size, err));
+    TRY(file_read(path, &form, &bytes, &size, err));
     Reader reader = {.polygon = polygon, .path = path, .mm = mm};
-    Status status = read_lines(&reader, bytes, size, err);
+    Status status = read_lines(&reader, bytes, err);
     free(bytes);
     return status;
 }

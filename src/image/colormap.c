@@ -7,9 +7,10 @@
 
 Status colormap_read(Colormap *map, const char *path, Err *err)
 {
+    static const FileForm form = {.name = "a colour map", .most_bytes = 1e7, .is_text = true};
     char *text = NULL;
     size_t size, capacity = 0;
-    TRY(file_read(path, &text, &size, err));
+    TRY(file_read(path, &form, &text, &size, err));
     Colormap read = {0};
     Status status = STATUS_OK;
     int line = 1;
@@ -17,10 +18,10 @@ Status colormap_read(Colormap *map, const char *path, Err *err)
         char *end = at + strcspn(at, "\n");
         char *next = *end ? end + 1 : end;
         *end = '\0';
-        float c[3];
-        char rest;
+        double c[3];
+        at += strspn(at, " \t");
         if (*at != '#' && *at != '\0') {
-            bool fits = sscanf(at, "%f %f %f %c", &c[0], &c[1], &c[2], &rest) == 3;
+            bool fits = numbers_parse(at, 3, c);
             for (int i = 0; i < 3; i++)
                 fits = fits && c[i] >= 0 && c[i] <= 1;
             if (!fits)
@@ -30,8 +31,9 @@ Status colormap_read(Colormap *map, const char *path, Err *err)
             if (status == STATUS_OK)
                 status = mem_reserve(&read.srgb, &capacity, read.n + 1, sizeof *read.srgb,
                                      "colours", err);
-            if (status == STATUS_OK)
-                memcpy(read.srgb[read.n++], c, sizeof c);
+            for (int i = 0; status == STATUS_OK && i < 3; i++)
+                read.srgb[read.n][i] = (float)c[i];
+            read.n += status == STATUS_OK;
         }
         at = next;
     }

@@ -4,6 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+static bool is_known(const char *start, size_t count)
+{
+    const ImageBytes file = {.bytes = (const uint8_t *)start, .size = count};
+    return png_is(&file) || pnm_is(&file) || pfm_is(&file) || exr_is(&file) || tiff_is(&file);
+}
+
 static Status decode(const ImageBytes *file, Image *image, Err *err)
 {
     if (png_is(file))
@@ -14,10 +20,7 @@ static Status decode(const ImageBytes *file, Image *image, Err *err)
         return pfm_decode(file, &image->plane, err);
     if (exr_is(file))
         return exr_decode(file, &image->plane, err);
-    if (tiff_is(file))
-        return tiff_decode(file, image, err);
-    return err_set(err, STATUS_INPUT, "%s: is not a PPM, PGM, PFM, PNG, TIFF or OpenEXR file",
-                   file->name);
+    return tiff_decode(file, image, err);
 }
 
 void image_plain_text(char *text)
@@ -34,9 +37,12 @@ static const char *name_of(const char *path)
 
 Status image_read(Image *image, const char *path, Err *err)
 {
+    static const FileForm form = {.name = "a PPM, PGM, PFM, PNG, TIFF or OpenEXR file",
+                                  .most_bytes = 16e9,
+                                  .begins = is_known};
     char *bytes;
     size_t size;
-    TRY(file_read(path, &bytes, &size, err));
+    TRY(file_read(path, &form, &bytes, &size, err));
     ImageBytes file = {name_of(path), (const uint8_t *)bytes, size};
     Image made = {0};
     Status status = decode(&file, &made, err);

@@ -1,28 +1,20 @@
-/* Looks are INI files, read by inih, because POV-Ray's users know the form and artists edit it. */
+/* Looks are INI files because POV-Ray's users know the form and artists edit it. */
 #include "stage/stage.h"
 
-#include <ini.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct Reading {
     Look look;
-    char light_section[64]; /* of the last light */
-    const char *problem;    /* what the value should have been */
+    const char *problem; /* what the line should have been */
 } Reading;
 
-/* `count` numbers, separated by blanks, each in [low, high]. */
-static bool read_numbers(const char *text, int count, double low, double high, double *out)
+/* `count` numbers, each in [low, high]. */
+static bool read_numbers(const char *text, size_t count, double low, double high, double *out)
 {
-    const char *at = text;
-    for (int i = 0; i < count; i++) {
-        char *end;
-        out[i] = strtod(at, &end);
-        if (end == at || !(out[i] >= low && out[i] <= high))
-            return false;
-        at = end;
-    }
-    return at[strspn(at, " \t")] == '\0';
+    bool fits = numbers_parse(text, count, out);
+    for (size_t i = 0; fits && i < count; i++)
+        fits = out[i] >= low && out[i] <= high;
+    return fits;
 }
 
 static bool read_color(Reading *reading, const char *value, Rgb *out)
@@ -77,18 +69,20 @@ static bool read_vector(Reading *reading, const char *value, Vec3 *out)
     return true;
 }
 
-static bool read_light(Reading *reading, const char *section, const char *name, const char *value)
+static bool add_light(Reading *reading)
 {
     Look *look = &reading->look;
-    if (strcmp(section, reading->light_section) != 0) {
-        reading->problem = "one of at most 64 lights with names of at most 63 letters";
-        if (look->n_lights == LOOK_MAX_LIGHTS || strlen(section) >= sizeof reading->light_section)
-            return false;
-        strcpy(reading->light_section, section);
-        look->lights[look->n_lights++] =
-            (LookLight){.direction = {0, 0, 1}, .samples = 4, .color = {1, 1, 1}};
-    }
-    LookLight *light = &look->lights[look->n_lights - 1];
+    reading->problem = "at most 64 lights";
+    if (look->n_lights == LOOK_MAX_LIGHTS)
+        return false;
+    look->lights[look->n_lights++] =
+        (LookLight){.direction = {0, 0, 1}, .samples = 4, .color = {1, 1, 1}};
+    return true;
+}
+
+static bool read_light(Reading *reading, const char *name, const char *value)
+{
+    LookLight *light = &reading->look.lights[reading->look.n_lights - 1];
     if (strcmp(name, "color") == 0)
         return read_color(reading, value, &light->color);
     if (strcmp(name, "size") == 0) {
@@ -134,9 +128,24 @@ static bool read_ground(Reading *reading, const char *name, const char *value)
     return false;
 }
 
-static int read_pair(void *user, const char *section, const char *name, const char *value)
+static bool is_light(const char *section)
 {
-    Reading *reading = user;
+    return strncmp(section, "light ", 6) == 0;
+}
+
+/* Each head of a section `light NAME` is a light more. */
+static bool read_head(Reading *reading, const char *section)
+{
+    static const char *const sections[] = {"vessel", "background", "finish", "ground"};
+    for (size_t i = 0; i < sizeof sections / sizeof *sections; i++)
+        if (strcmp(section, sections[i]) == 0)
+            return true;
+    reading->problem = "one of the sections vessel, background, finish, light NAME, ground";
+    return is_light(section) && add_light(reading);
+}
+
+static bool read_pair(Reading *reading, const char *section, const char *name, const char *value)
+{
     bool is_color = strcmp(name, "color") == 0;
     reading->problem = "color";
     if (strcmp(section, "vessel") == 0)
@@ -145,19 +154,25 @@ static int read_pair(void *user, const char *section, const char *name, const ch
         return is_color && read_color(reading, value, &reading->look.background);
     if (strcmp(section, "finish") == 0)
         return read_finish(reading, name, value);
-    if (strncmp(section, "light ", 6) == 0)
-        return read_light(reading, section, name, value);
     if (strcmp(section, "ground") == 0)
         return read_ground(reading, name, value);
-    reading->problem = "in one of the sections vessel, background, finish, light NAME, ground";
-    return 0;
+    if (is_light(section))
+        return read_light(reading, name, value);
+    reading->problem = "a section [vessel], [background], [finish], [light NAME] or [ground] first";
+    return false;
+}
+
+static Status take_line(void *user, const char *section, const char *name, const char *value,
+                        Err *err)
+{
+    Reading *reading = user;
+    bool good = name ? read_pair(reading, section, name, value) : read_head(reading, section);
+    return good ? STATUS_OK
+                : err_set(err, STATUS_INPUT, "not a look: expected %s", reading->problem);
 }
 
 Status look_read(Look *look, const char *path, Err *err)
 {
-    char *text = NULL;
-    size_t size;
-    TRY(file_read(path, &text, &size, err));
     Reading reading = {
         .look =
             {.finish = {.ambient = 0.1f,
@@ -167,13 +182,8 @@ Status look_read(Look *look, const char *path, Err *err)
                         .roughness = 0.05f},
              .color = {1, 1, 1},
              .ground = {.normal = {0, 0, 1}, .color = {1, 1, 1}, .ambient = 0.1, .diffuse = 0.6}},
-        .problem = "name = value",
     };
-    int line = ini_parse_string(text, read_pair, &reading);
-    free(text);
-    if (line != 0)
-        return err_set(err, STATUS_INPUT, "%s:%d: not a look: expected %s", path, line,
-                       reading.problem);
+    TRY(ini_read(path, "a look", take_line, &reading, NULL, err));
     *look = reading.look;
     return STATUS_OK;
 }

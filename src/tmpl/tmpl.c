@@ -77,11 +77,10 @@ static Status expand_all(Expansion *self, const char *source, Err *err)
 
 Status tmpl_load(Tmpl *tmpl, const char *path, Err *err)
 {
+    static const FileForm form = {.name = "a template", .most_bytes = 1e7, .is_text = true};
     Tmpl loaded = {0};
     size_t size = 0;
-    Status status = file_read(path, &loaded.source, &size, err);
-    if (status == STATUS_OK && memchr(loaded.source, '\0', size))
-        status = err_set(err, STATUS_INPUT, "%s: is not a text file: it holds a zero byte", path);
+    Status status = file_read(path, &form, &loaded.source, &size, err);
     if (status == STATUS_OK)
         status = mem_strdup(&loaded.path, path, err);
     if (status == STATUS_OK)

@@ -12,6 +12,9 @@ enum { N_FIELDS = 7, ROOT_PARENT_ID = -1, SHOWN = 40 /* characters of a bad valu
 
 static const char blanks[] = " \t\v\f";
 
+/* As many rows as there are ids, of the longest numbers, have 3 GB. */
+static const FileForm swc_file = {.name = "an SWC file", .most_bytes = 4e9, .is_text = true};
+
 typedef struct Row {
     int32_t id, type, parent_id;
     int32_t parent; /* row index, or TREE_NO_PARENT; found when all rows are read */
@@ -113,25 +116,17 @@ static Status read_line(Reader *reader, char *line, Err *err)
     return read_row(reader, field, err);
 }
 
-static Status read_lines(Reader *reader, char *bytes, size_t size, Err *err)
+static Status read_lines(Reader *reader, char *bytes, Err *err)
 {
-    static const char byte_order_mark[] = "\xef\xbb\xbf";
-    char *at = bytes, *end = bytes + size;
-    if (strncmp(at, byte_order_mark, 3) == 0)
-        at += 3;
-    if (at == end)
+    if (*bytes == '\0')
         return err_set(err, STATUS_INPUT, "%s: the file is empty; an SWC file has at least one row",
                        reader->name);
-    while (at < end) {
+    for (char *at = bytes, *next; at; at = next) {
         reader->line++;
-        char *line_end = at + strcspn(at, "\r\n");
-        if (line_end < end && *line_end == '\0')
-            return err_set(err, STATUS_INPUT, "%s:%zu: a zero byte; an SWC file is plain text",
-                           reader->name, reader->line);
-        char *next = line_end + (*line_end == '\r' && line_end[1] == '\n' ? 2 : 1);
-        *line_end = '\0';
+        next = strchr(at, '\n');
+        if (next)
+            *next++ = '\0';
         TRY(read_line(reader, at, err));
-        at = next;
     }
     if (reader->n == 0)
         return err_set(err, STATUS_INPUT,
@@ -251,11 +246,11 @@ Status swc_read(Tree *tree, const char *path, Err *err)
 {
     char *bytes = NULL;
     size_t size = 0;
-    TRY(file_read(path, &bytes, &size, err));
+    TRY(file_read(path, &swc_file, &bytes, &size, err));
     const char *name = strcmp(path, "-") == 0 ? "standard input" : path;
     Reader reader = {.name = name, .flow_shares.name = name};
     Status status = STATUS_OK;
-    TRY_GOTO(read_lines(&reader, bytes, size, err));
+    TRY_GOTO(read_lines(&reader, bytes, err));
     TRY_GOTO(build_tree(&reader, tree, err));
 done:
     tree_release(&reader.header_holder);

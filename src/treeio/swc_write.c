@@ -21,8 +21,8 @@ static void write_header(const TreeHeader *header, FILE *stream)
             swc_key_write(header, key, stream);
 }
 
-/* Appends the decimal digits of a number above -2, and then a blank. */
-static char *put_whole(char *to, int32_t value)
+/* Appends the decimal digits of the number, and then a blank. */
+static char *put_whole(char *to, int64_t value)
 {
     char digits[16];
     int count = 0;

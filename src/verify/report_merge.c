@@ -13,12 +13,16 @@ typedef struct MergedCase {
     size_t number;   /* in the order given, from 1 */
 } MergedCase;
 
+/* A page holds its pictures. */
+static const FileForm page_file = {.name = "a report", .most_bytes = 4e9, .is_text = true};
+static const FileForm json_file = {.name = "JSON", .most_bytes = 1e9, .is_text = true};
+
 static Status read_json(json_t **out, const char *path, Err *err)
 {
     char *text;
     size_t size;
     json_error_t error;
-    TRY(file_read(path, &text, &size, err));
+    TRY(file_read(path, &json_file, &text, &size, err));
     json_t *json = json_loadb(text, size, 0, &error);
     free(text);
     if (!json)
@@ -48,7 +52,7 @@ static Status read_case(MergedCase *merged, const char *folder, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(file_join(folder, "report.html", &page, err));
     TRY_GOTO(file_join(folder, "report.json", &numbers, err));
-    TRY_GOTO(file_read(page, &merged->page, &size, err));
+    TRY_GOTO(file_read(page, &page_file, &merged->page, &size, err));
     TRY_GOTO(find_part(merged, page, REPORT_ROW_BEGIN, REPORT_ROW_END, &merged->row,
                        &merged->row_size, err));
     TRY_GOTO(find_part(merged, page, REPORT_CASE_BEGIN, REPORT_CASE_END, &merged->section,

@@ -2,13 +2,12 @@
 #include "verify/verify.h"
 
 #include <ctype.h>
-#include <ini.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef enum FieldKind { FIELD_NUMBER, FIELD_COUNT, FIELD_SWITCH } FieldKind;
+typedef enum FieldKind { FIELD_NUMBER, FIELD_COUNT, FIELD_SWITCH, FIELD_THRESHOLD } FieldKind;
 
 typedef struct Field {
     const char *key;
@@ -50,7 +49,7 @@ static const Field fields[] = {
     NUMBER(normal_median_deg),
     NUMBER(coverage_ppm),
     COUNT(region_pixels),
-    NUMBER(pixelmatch),
+    {"pixelmatch", FIELD_THRESHOLD, offsetof(Tolerance, pixelmatch)},
     NUMBER(pixelmatch_ppm),
 };
 enum { FIELDS = sizeof fields / sizeof *fields };
@@ -131,8 +130,6 @@ Tolerance tolerance_surface(void)
 typedef struct ToleranceReader {
     Tolerance tolerance;
     char *name; /* owned */
-    Status status;
-    Err *err;
 } ToleranceReader;
 
 static Status set_field(Tolerance *tolerance, const Field *field, const char *value, Err *err)
@@ -152,6 +149,11 @@ static Status set_field(Tolerance *tolerance, const Field *field, const char *va
                            "%s is '%s'; it must be a whole number of at least 0, or inf",
                            field->key, value);
         *(size_t *)field_of(tolerance, field) = unjudged ? SIZE_MAX : (size_t)count;
+    } else if (field->kind == FIELD_THRESHOLD) {
+        if (!number_parse(value, &number) || !(number >= 0 && number <= 1))
+            return err_set(err, STATUS_INPUT, "%s is '%s'; it must be a number from 0 to 1",
+                           field->key, value);
+        *(double *)field_of(tolerance, field) = number;
     } else {
         if (!number_parse(value, &number) || !(number >= 0))
             return err_set(err, STATUS_INPUT,
@@ -162,44 +164,28 @@ static Status set_field(Tolerance *tolerance, const Field *field, const char *va
     return STATUS_OK;
 }
 
-static Status take_pair(ToleranceReader *reader, const char *section, const char *key,
-                        const char *value)
+static Status take_line(void *user, const char *section, const char *key, const char *value,
+                        Err *err)
 {
-    if (*section)
-        return err_set(reader->err, STATUS_INPUT, "a tolerance has no sections, and here is [%s]",
-                       section);
+    ToleranceReader *reader = user;
+    if (*section || !key)
+        return err_set(err, STATUS_INPUT, "a tolerance has no sections, and here is [%s]", section);
     if (strcmp(key, "tier") == 0) {
         free(reader->name);
         reader->name = NULL;
-        return mem_strdup(&reader->name, value, reader->err);
+        return mem_strdup(&reader->name, value, err);
     }
     for (int i = 0; i < FIELDS; i++)
         if (strcmp(key, fields[i].key) == 0)
-            return set_field(&reader->tolerance, &fields[i], value, reader->err);
-    return err_set(reader->err, STATUS_INPUT, "'%s' is not a limit of a tolerance", key);
-}
-
-static int on_pair(void *user, const char *section, const char *key, const char *value)
-{
-    ToleranceReader *reader = user;
-    reader->status = take_pair(reader, section, key, value);
-    return reader->status == STATUS_OK;
+            return set_field(&reader->tolerance, &fields[i], value, err);
+    return err_set(err, STATUS_INPUT, "'%s' is not a limit of a tolerance", key);
 }
 
 Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *err)
 {
-    char *text = NULL;
-    size_t size;
-    ToleranceReader reader = {.tolerance = *tolerance, .err = err};
-    TRY(file_read(path, &text, &size, err));
-    int line = ini_parse_string(text, on_pair, &reader);
-    free(text);
-    Status status = reader.status;
-    if (status == STATUS_OK && line != 0)
-        status = err_set(err, STATUS_INPUT, "expected key = value");
-    if (status != STATUS_OK)
-        err_prefix(err, "%s:%d: ", path, line);
-    else if (!reader.name)
+    ToleranceReader reader = {.tolerance = *tolerance};
+    Status status = ini_read(path, "a tolerance", take_line, &reader, NULL, err);
+    if (status == STATUS_OK && !reader.name)
         status = mem_strdup(&reader.name, "given", err);
     if (status != STATUS_OK) {
         free(reader.name);
@@ -221,6 +207,7 @@ void tolerance_text(const Tolerance *tolerance, Text *out)
         bool on;
         switch (fields[i].kind) {
         case FIELD_NUMBER:
+        case FIELD_THRESHOLD:
             memcpy(&number, at, sizeof number);
             if (isnan(number))
                 break;

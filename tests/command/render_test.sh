@@ -247,7 +247,7 @@ test_a_picture_beyond_the_disk_is_refused_and_the_old_one_stays() {
     cp picture.ppm before
     run corcast render tree.swc --size 1000000x1000000 -o picture.ppm
     expect_status 3
-    expect_sentence 'picture\.ppm: needs 3000\.0 GB, and its disk has [0-9.]+ GB left'
+    expect_sentence 'picture\.ppm: needs 3\.0 TB, and its disk has [0-9.]+ .?B left'
     expect_same picture.ppm before
     expect_only before picture.ppm tree.swc
 }

@@ -1,3 +1,4 @@
+#include "any_file.h"
 #include "base/base.h"
 
 #include <math.h>
@@ -122,7 +123,7 @@ static void a_discarded_file_leaves_the_old_one_alone(void **state)
     assert_int_equal(outfile_open(&file, path, &err), STATUS_OK);
     fputs("half", file.stream);
     outfile_discard(&file);
-    assert_int_equal(file_read(path, &bytes, &size, &err), STATUS_OK);
+    assert_int_equal(file_read(path, &any_file, &bytes, &size, &err), STATUS_OK);
     assert_int_equal(size, 3);
     assert_string_equal(bytes, "old");
     unlink(path); /* remove_folder fails when a temporary file is left */
@@ -155,8 +156,98 @@ static void a_file_in_a_missing_folder_cannot_be_opened(void **state)
     assert_non_null(strstr(err.text, "/nowhere/at/all.swc"));
     char *bytes;
     size_t size;
-    assert_int_equal(file_read("/nowhere/at/all.swc", &bytes, &size, &err), STATUS_INPUT);
-    assert_int_equal(file_read(folder, &bytes, &size, &err), STATUS_INPUT);
+    assert_int_equal(file_read("/nowhere/at/all.swc", &any_file, &bytes, &size, &err),
+                     STATUS_INPUT);
+    assert_int_equal(file_read(folder, &any_file, &bytes, &size, &err), STATUS_INPUT);
+}
+
+/* Writes the bytes to a file and reads it as `form` says; returns the status. */
+static Status read_as(const FileForm *form, const char *content, size_t length, char **bytes,
+                      size_t *size, Err *err)
+{
+    char *path = NULL;
+    assert_int_equal(file_join(folder, "read", &path, err), STATUS_OK);
+    assert_int_equal(file_write(path, content, length, err), STATUS_OK);
+    Status status = file_read(path, form, bytes, size, err);
+    unlink(path);
+    free(path);
+    return status;
+}
+
+static bool begins_with_b(const char *start, size_t count)
+{
+    return count > 0 && *start == 'b';
+}
+
+static void a_file_that_is_not_of_its_form_is_refused(void **state)
+{
+    (void)state;
+    const FileForm form = {"a bill", 5, false, begins_with_b};
+    char *bytes = NULL;
+    size_t size = 7;
+    Err err;
+    assert_int_equal(read_as(&form, "bills!", 6, &bytes, &size, &err), STATUS_INPUT);
+    assert_non_null(
+        strstr(err.text, "read: is larger than 5 bytes, the most that a bill may have"));
+    assert_int_equal(read_as(&form, "will", 4, &bytes, &size, &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "read: is not a bill"));
+    assert_int_equal(read_as(&form, "", 0, &bytes, &size, &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "read: is not a bill"));
+    assert_null(bytes);
+    assert_int_equal(size, 7);
+    assert_int_equal(read_as(&form, "b\0\r\nl", 5, &bytes, &size, &err), STATUS_OK);
+    assert_int_equal(size, 5);
+    assert_memory_equal(bytes, "b\0\r\nl", 6);
+    free(bytes);
+}
+
+static void a_text_has_one_kind_of_line_ends(void **state)
+{
+    (void)state;
+    const FileForm form = {.name = "a bill", .most_bytes = 99, .is_text = true};
+    static const char *const cases[][2] = {{"a\r\nb\rc\nd\r\r\n\n", "a\nb\nc\nd\n\n\n"},
+                                           {"\xef\xbb\xbf\ra", "\na"},
+                                           {"\xef\xbb\xbf", ""},
+                                           {"\xef\xbb", "\xef\xbb"},
+                                           {"", ""}};
+    char *bytes;
+    size_t size;
+    Err err;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_int_equal(read_as(&form, cases[i][0], strlen(cases[i][0]), &bytes, &size, &err),
+                         STATUS_OK);
+        assert_string_equal(bytes, cases[i][1]);
+        assert_int_equal(size, strlen(bytes));
+        free(bytes);
+    }
+    assert_int_equal(read_as(&form, "a\rb\r\nc\0d\n", 9, &bytes, &size, &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "read:3: a zero byte; a bill is plain text"));
+}
+
+static void sizes_are_said_in_units_that_suit_them(void **state)
+{
+    (void)state;
+    static const struct {
+        double bytes;
+        const char *text;
+    } cases[] = {{0, "0 bytes"},   {1, "1 byte"},        {999, "999 bytes"},
+                 {1000, "1.0 kB"}, {2.385e6, "2.4 MB"},  {999960, "1.0 MB"},
+                 {4e9, "4.0 GB"},  {7.1e15, "7100.0 TB"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[BYTES_TEXT_SIZE];
+        assert_string_equal(bytes_text(cases[i].bytes, text), cases[i].text);
+    }
+}
+
+static void numbers_stand_between_blanks(void **state)
+{
+    (void)state;
+    double value[3];
+    assert_true(numbers_parse(" 2.385\t-1e3  7 ", 3, value));
+    assert_true(value[0] == 2.385 && value[1] == -1000 && value[2] == 7);
+    static const char *const wrong[] = {"1 2", "1 2 3 4", "1 2 0x3", "1,2,3", "1 2 3;", ""};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        assert_false(numbers_parse(wrong[i], 3, value));
 }
 
 static void suffixes_replace_extensions_only(void **state)
@@ -217,6 +308,10 @@ int main(void)
         cmocka_unit_test(a_discarded_file_leaves_the_old_one_alone),
         cmocka_unit_test(a_committed_file_has_the_usual_permissions),
         cmocka_unit_test(a_file_in_a_missing_folder_cannot_be_opened),
+        cmocka_unit_test(a_file_that_is_not_of_its_form_is_refused),
+        cmocka_unit_test(a_text_has_one_kind_of_line_ends),
+        cmocka_unit_test(sizes_are_said_in_units_that_suit_them),
+        cmocka_unit_test(numbers_stand_between_blanks),
         cmocka_unit_test(suffixes_replace_extensions_only),
         cmocka_unit_test(a_parallel_loop_visits_every_index_once),
         cmocka_unit_test(the_random_stream_is_the_published_one),

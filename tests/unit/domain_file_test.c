@@ -177,7 +177,7 @@ static void polygons_that_bound_nothing_are_refused(void **state)
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         expect_text_refused("polygon:a.txt", cases[i][0], cases[i][1]);
-    expect_bytes_refused("polygon:a.txt", "0 0\n1 0\0\n1 1\n", 13, "holds zero bytes");
+    expect_bytes_refused("polygon:a.txt", "0 0\n1 0\0\n1 1\n", 13, ":2: a zero byte");
 }
 
 static void rings_may_run_either_way_and_nest(void **state)
@@ -449,7 +449,9 @@ static void files_that_are_no_stl_are_refused(void **state)
         expect_text_refused("mesh:a.stl", cases[i][0], cases[i][1]);
     char binary[84 + 50 - 1] = "Binary";
     binary[80] = 1;
-    expect_bytes_refused("mesh:a.stl", binary, sizeof binary, "nor is the file a binary one");
+    expect_bytes_refused("mesh:a.stl", binary, sizeof binary,
+                         "of the 1 triangles that it states has 134 bytes, this one 133");
+    expect_bytes_refused("mesh:a.stl", binary, 70, "fewer than the 84");
 }
 
 /* The tetrahedron at the origin, two units wide. */

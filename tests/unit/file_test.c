@@ -1,3 +1,4 @@
+#include "any_file.h"
 #include "base/base.h"
 
 #include <setjmp.h>
@@ -43,7 +44,7 @@ static void expect_text(const char *path, const char *text)
 {
     char *bytes = NULL;
     size_t size;
-    assert_int_equal(file_read(path, &bytes, &size, NULL), STATUS_OK);
+    assert_int_equal(file_read(path, &any_file, &bytes, &size, NULL), STATUS_OK);
     assert_string_equal(bytes, text);
     free(bytes);
 }

@@ -1,3 +1,4 @@
+#include "any_file.h"
 #include "image/image.h"
 #include <math.h>
 #include <setjmp.h>
@@ -207,7 +208,7 @@ static void survives_damage(const char *path, bool is_plane)
 {
     char *bytes;
     size_t size;
-    assert_int_equal(file_read(path, &bytes, &size, &err), STATUS_OK);
+    assert_int_equal(file_read(path, &any_file, &bytes, &size, &err), STATUS_OK);
     for (size_t cut = 0; cut < 2 * size; cut++) {
         bool truncating = cut < size;
         size_t at = truncating ? cut : cut - size;

@@ -1,3 +1,4 @@
+#include "any_file.h"
 #include "image/image.h"
 #include <math.h>
 #include <setjmp.h>
@@ -61,8 +62,8 @@ static void assert_same_files(const char *a, const char *b)
 {
     char *bytes_a, *bytes_b;
     size_t size_a, size_b;
-    assert_int_equal(file_read(a, &bytes_a, &size_a, &err), STATUS_OK);
-    assert_int_equal(file_read(b, &bytes_b, &size_b, &err), STATUS_OK);
+    assert_int_equal(file_read(a, &any_file, &bytes_a, &size_a, &err), STATUS_OK);
+    assert_int_equal(file_read(b, &any_file, &bytes_b, &size_b, &err), STATUS_OK);
     assert_int_equal(size_a, size_b);
     assert_memory_equal(bytes_a, bytes_b, size_a);
     free(bytes_a);

@@ -538,8 +538,9 @@ static void trace_all(const RasterBins *bins, const RasterKernels *kernels, Rast
         assert_int_equal(rasterbins_list(bins, (size_t)j, &row, NULL), STATUS_OK);
         for (int i = 0; i < bins->tile_columns; i++) {
             const uint32_t *offsets = row.offsets + i;
+            uint32_t count = offsets[1] - offsets[0]; /* without items there is no list */
             RasterTile tile =
-                rasterbins_tile(bins, i, j, row.lists + offsets[0], offsets[1] - offsets[0], &grid);
+                rasterbins_tile(bins, i, j, count ? row.lists + offsets[0] : NULL, count, &grid);
             kernels->trace(&tile, &all[j * bins->tile_columns + i], &surface);
         }
     }

@@ -1,3 +1,4 @@
+#include "any_file.h"
 #include "verify/verify.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -58,7 +59,7 @@ static char *read_output(const char *name)
     char *path, *bytes;
     size_t size;
     assert_int_equal(file_join(folder, name, &path, &err), STATUS_OK);
-    assert_int_equal(file_read(path, &bytes, &size, &err), STATUS_OK);
+    assert_int_equal(file_read(path, &any_file, &bytes, &size, &err), STATUS_OK);
     free(path);
     return bytes;
 }

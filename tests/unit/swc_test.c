@@ -1,3 +1,4 @@
+#include "any_file.h"
 #include "treeio/treeio.h"
 
 #include <setjmp.h>
@@ -66,7 +67,7 @@ static char *written(const Tree *tree)
     size_t size = 0;
     Err err;
     must(tree_write(tree, output, &err), &err);
-    must(file_read(output, &bytes, &size, &err), &err);
+    must(file_read(output, &any_file, &bytes, &size, &err), &err);
     return bytes;
 }
 
@@ -515,7 +516,7 @@ static void damaged_files_are_read_or_refused(void **state)
     Err err;
     Random random;
     random_seed(&random, 77003);
-    must(file_read("tests/data/messy.swc", &original, &size, &err), &err);
+    must(file_read("tests/data/messy.swc", &any_file, &original, &size, &err), &err);
     for (int round = 0; round < 2000; round++) {
         char damaged[1024];
         assert_true(size < sizeof damaged);

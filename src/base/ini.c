@@ -1,0 +1,72 @@
+#include "base/ini.h"
+
+#include "base/file.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const char blanks[] = " \t\v\f";
+
+/* Cuts the blanks at both ends off, in place. */
+static char *trim(char *text)
+{
+    text += strspn(text, blanks);
+    size_t length = strlen(text);
+    while (length && strchr(blanks, text[length - 1]))
+        length--;
+    text[length] = '\0';
+    return text;
+}
+
+static void cut_comment(char *line)
+{
+    for (char *at = line; (at = strchr(at, ';')); at++)
+        if (at == line || strchr(blanks, at[-1])) {
+            *at = '\0';
+            return;
+        }
+}
+
+static Status read_line(char *line, const char **section, IniTake *take, void *user, Err *err)
+{
+    line = trim(line);
+    cut_comment(line);
+    line = trim(line);
+    if (*line == '\0' || *line == '#')
+        return STATUS_OK;
+    size_t length = strlen(line);
+    if (*line == '[' && line[length - 1] == ']') {
+        line[length - 1] = '\0';
+        *section = trim(line + 1);
+        return take(user, *section, NULL, NULL, err);
+    }
+    char *equals = strchr(line, '=');
+    if (!equals || equals == line)
+        return err_set(err, STATUS_INPUT, "'%.40s' is not a line name = value or [section]", line);
+    *equals = '\0';
+    return take(user, *section, trim(line), trim(equals + 1), err);
+}
+
+Status ini_read(const char *path, const char *what, IniTake *take, void *user, char **text,
+                Err *err)
+{
+    const FileForm form = {.name = what, .most_bytes = 1e6, .is_text = true};
+    char *bytes = NULL;
+    const char *section = "";
+    size_t size, number = 0;
+    TRY(file_read(path, &form, &bytes, &size, err));
+    Status status = STATUS_OK;
+    for (char *at = bytes, *next; at && status == STATUS_OK; at = next) {
+        number++;
+        next = strchr(at, '\n');
+        if (next)
+            *next++ = '\0';
+        status = read_line(at, &section, take, user, err);
+    }
+    if (status != STATUS_OK)
+        err_prefix(err, "%s:%zu: ", strcmp(path, "-") ? path : "standard input", number);
+    if (status == STATUS_OK && text)
+        *text = bytes;
+    else
+        free(bytes);
+    return status;
+}

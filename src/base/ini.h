@@ -1,0 +1,20 @@
+/* INI files: lines `name = value` and, before those of a section, `[section]`. */
+#ifndef CORCAST_BASE_INI_H
+#define CORCAST_BASE_INI_H
+
+#include "base/status.h"
+
+/* What is done with a line: a pair, or, when `name` and `value` are NULL, the head of a section.
+ * `section` is "" above the first one. The sentence of a failure lacks file and line. */
+typedef Status IniTake(void *user, const char *section, const char *name, const char *value,
+                       Err *err);
+
+/* Reads the file, `what` ("a look") naming its kind in sentences, and calls `take` line by line. A line
+ * whose first character is ';' or '#' is a comment, and so is the rest of a line from a ';' that
+ * follows a blank. Blanks around names, values and sections, and in front of lines, do not count.
+ * What names and values point into is handed over in *text (owned), or freed when `text` is NULL.
+ * STATUS_INPUT, naming file and line, on any other line, and what `take` returns. */
+MUST_CHECK Status ini_read(const char *path, const char *what, IniTake *take, void *user,
+                           char **text, Err *err);
+
+#endif

@@ -1,0 +1,180 @@
+#!/usr/bin/env bash
+# What files that are read may hold: line ends, marks, zero bytes, sizes, and what is said of the rest.
+. "$(dirname "$0")/../lib.sh"
+
+# as_crlf|as_cr|with_mark FILE OUT: the same text, written as others write it.
+as_crlf() { sed 's/$/\r/' "$1" >"$2"; }
+as_cr() { tr '\n' '\r' <"$1" >"$2"; }
+with_mark() { { printf '\xef\xbb\xbf'; cat "$1"; } >"$2"; }
+
+# expect_same_however_written NAME.EXT OUTPUT COMMAND ...: the command, which reads NAME.EXT, writes the
+# same OUTPUT whatever line ends the file has, and with a byte order mark.
+expect_same_however_written() {
+    local file=$1 output=$2 way
+    shift 2
+    run_ok "$@"
+    mv "$output" expected
+    cp "$file" original
+    for way in as_crlf as_cr with_mark; do
+        $way original "$file"
+        run_ok "$@"
+        expect_same expected "$output"
+    done
+}
+
+# expect_zero_byte_refused NAME:LINE COMMAND ...
+expect_zero_byte_refused() {
+    local where=$1
+    shift
+    run "$@"
+    expect_status 2
+    expect_sentence "$where: a zero byte"
+}
+
+test_line_ends_and_byte_order_marks_change_nothing() {
+    printf '; figure 3\n[grow]\nterminals = 9\n\nseed = 4\n' >r.ini
+    expect_same_however_written r.ini t.swc corcast grow --recipe r.ini -o t.swc
+    expect_same_however_written t.swc u.swc corcast convert t.swc u.swc
+    printf '[vessel]\ncolor = 0.2 0.31 0.4\n\n[light key]\ndirection = 1 2 3\n' >look.ini
+    expect_same_however_written look.ini p.ppm corcast render t.swc --look ./look.ini --size 31x17 -o p.ppm
+    printf '# two ends\n0.1 0.2 0.3\n\n0.9 0.81 0.7\n' >map.txt
+    expect_same_however_written map.txt p.ppm corcast render t.swc --color-by radius --colormap ./map.txt \
+        --size 31x17 -o p.ppm
+    printf '0 0\n60 0\n60 60\n0 60\n\n20 20\n40 20\n40 40\n20 40\n' >ring.txt
+    expect_same_however_written ring.txt t.swc corcast grow --terminals 5 --domain polygon:ring.txt -o t.swc
+    printf 'v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >body.obj
+    expect_same_however_written body.obj t.swc corcast grow --terminals 5 --domain mesh:body.obj -o t.swc
+}
+
+test_a_tolerance_may_have_any_line_ends() {
+    printf 'tier = ours\ncolor_ppm = 20\n' >t.ini
+    run_ok corcast render "$DATA/bifurcation.swc" --size 31x17 -o p.ppm
+    expect_same_however_written t.ini d.png corcast compare p.ppm p.ppm --tolerance t.ini -o d.png
+}
+
+test_zero_bytes_are_refused_with_file_and_line() {
+    local tree=$DATA/bifurcation.swc
+    printf '[vessel]\ncolor = 1 0.5 0.25\n\0[light key]\n' >look.ini
+    expect_zero_byte_refused look.ini:3 corcast render "$tree" --look ./look.ini -o p.png
+    printf 'seed = 4\rterm\0inals = 9\r' >r.ini
+    expect_zero_byte_refused r.ini:2 corcast grow --recipe r.ini -o t.swc
+    printf 'color_ppm = 20\0\n' >t.ini
+    expect_zero_byte_refused t.ini:1 corcast compare a.png b.png --tolerance t.ini
+    printf '0 0 0\r\n1 1 1\r\n\0' >map.txt
+    expect_zero_byte_refused map.txt:3 corcast render "$tree" --color-by radius --colormap ./map.txt -o p.png
+    expect_only look.ini r.ini t.ini map.txt
+}
+
+test_blanks_in_front_of_lines_do_not_count() {
+    printf '[grow]\n  terminals = 9\n\t seed = 4 ; of the figure\n' >r.ini
+    run_ok corcast grow --recipe r.ini -o indented.swc
+    run_ok corcast grow --terminals 9 --seed 4 -o flags.swc
+    expect_same flags.swc indented.swc
+    printf '[grow]\nterminals = 9\n  12\n' >r.ini
+    run corcast grow --recipe r.ini -o t.swc
+    expect_status 2
+    expect_sentence "r.ini:3: '12' is not a line name = value"
+}
+
+test_a_section_of_no_command_is_refused() {
+    printf 'seed = 4\n[rneder]\nsize = 31x17\n' >r.ini
+    run corcast grow --recipe r.ini -o t.swc
+    expect_status 2
+    expect_sentence 'r\.ini:2: \[rneder\] is not the name of a command'
+}
+
+test_lines_may_be_long() {
+    { printf '; %0500d\nterminals = 9\n' 0; printf 'inlet = 0%0300d,50\n' 0; } >r.ini
+    run corcast grow --recipe r.ini -o t.swc
+    expect_status 2
+    expect_sentence 'r\.ini:3: --inlet'
+    sed -i 3d r.ini
+    run_ok corcast grow --recipe r.ini -o t.swc
+}
+
+test_lights_are_told_apart_whatever_their_names() {
+    local name=a_lamp_on_the_left_of_the_table_where_the_tree_lies_at_noon
+    printf "[light ${name}_1]\ndirection = 1 2 3\n[light ${name}_2]\ndirection = -1 0 2\n" >look.ini
+    run_ok corcast scene "$DATA/bifurcation.swc" --look ./look.ini -o s.pov
+    [ "$(grep -c '^  Light_Parallel(' s.pov)" -eq 2 ] || fail "expected two lights in s.pov"
+}
+
+test_numbers_of_looks_and_maps_are_decimal() {
+    printf '[vessel]\ncolor = 0x1p-1 0.5 0.25\n' >look.ini
+    run corcast render "$DATA/bifurcation.swc" --look ./look.ini -o p.png
+    expect_status 2
+    expect_sentence 'look\.ini:2: not a look: expected three numbers from 0 to 1'
+    printf '0 0 0\n0x1 1 1\n' >map.txt
+    run corcast render "$DATA/bifurcation.swc" --color-by radius --colormap ./map.txt -o p.png
+    expect_status 2
+    expect_sentence "^corcast render: \./map\.txt:2: '0x1 1 1' is not three numbers"
+}
+
+test_pixelmatch_in_a_tolerance_is_from_0_to_1() {
+    local value
+    run_ok corcast render "$DATA/bifurcation.swc" --size 31x17 -o p.ppm
+    for value in 9 inf -0.1 1.5; do
+        echo "pixelmatch = $value" >t.ini
+        run corcast compare p.ppm p.ppm --tolerance t.ini
+        expect_status 2
+        expect_sentence "t\.ini:1: pixelmatch is '$value'; it must be a number from 0 to 1"
+    done
+    echo 'pixelmatch = 0.25' >t.ini
+    run_ok corcast compare p.ppm p.ppm --tolerance t.ini
+}
+
+# 10 GB that no disk holds.
+test_files_that_cannot_be_of_their_kind_are_refused_before_they_are_read() {
+    local name
+    for name in t.swc p.png m.stl m.obj r.ini ring.txt m.nii s.pov; do
+        truncate -s 10G $name
+    done
+    (
+        ulimit -v 1000000
+        run timeout 5 "$CORCAST" info t.swc
+        expect_status 2
+        expect_sentence 't\.swc: is larger than 4\.0 GB, the most that an SWC file may have'
+        run timeout 5 "$CORCAST" compare p.png p.png
+        expect_status 2
+        expect_sentence 'p\.png: is not a PPM'
+        run timeout 5 "$CORCAST" grow --recipe r.ini -o o.swc
+        expect_sentence 'r\.ini: is larger than 1\.0 MB'
+        for name in mesh:m.stl mesh:m.obj polygon:ring.txt mask:m.nii; do
+            run timeout 5 "$CORCAST" grow --domain $name -o o.swc
+            expect_status 2
+            expect_sentence "${name#*:}"
+        done
+        run timeout 5 "$CORCAST" povray s.pov -o o.png
+        expect_status 2
+        expect_sentence 's\.pov: is larger than 4\.0 GB'
+    )
+}
+
+test_input_without_end_is_refused() {
+    run timeout 5 "$CORCAST" info - </dev/zero
+    expect_status 2
+    expect_sentence 'standard input:1: a zero byte'
+    run timeout 5 "$CORCAST" compare - - </dev/zero
+    expect_status 2
+    expect_sentence 'standard input: is not a PPM'
+    run timeout 5 "$CORCAST" grow --recipe - -o t.swc < <(yes "seed = 4")
+    expect_status 2
+    expect_sentence 'standard input: is larger than 1\.0 MB, the most that a recipe may have'
+}
+
+test_a_type_may_be_any_whole_number() {
+    printf '1 -2147483648 0 0 0 1 -1\n2 2147483647 0 2 0 1 1\n' >t.swc
+    run_ok corcast convert t.swc -
+    grep -qx '1 -2147483648 0 0 0 1 -1' stdout || fail "expected the type to stay, got $(head -1 stdout)"
+}
+
+test_a_name_that_templates_lack_is_answered_with_those_there_are() {
+    run corcast render "$DATA/bifurcation.swc" --color-by radius --colormap jet -o p.png
+    expect_status 2
+    expect_sentence "^corcast render: --colormap: 'jet' is not inferno, magma, plasma or viridis"
+    run corcast render "$DATA/bifurcation.swc" --look nosuch -o p.png
+    expect_status 2
+    expect_sentence "--look: 'nosuch' is not cast or print"
+}
+
+run_tests "$@"
