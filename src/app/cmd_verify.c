@@ -6,6 +6,7 @@
 #include "app/frames.h"
 #include "app/picture.h"
 #include "app/povfiles.h"
+#include "app/settle.h"
 #include "app/surface_step.h"
 #include "app/templates.h"
 #include "render/render.h"
@@ -40,6 +41,8 @@ typedef struct Verification {
     RenderStats stats;                      /* of the exact frame, where there is one */
     OracleRun run;                          /* of the colour plane */
     CompareResult results[PLANE_KINDS];
+    Settled settled;
+    bool asked; /* whether anything was settled, or nothing had to be */
     SurfaceCheck surface;
     char *commands[8]; /* owned */
     size_t n_commands;
@@ -54,6 +57,7 @@ static void verification_release(Verification *v)
     picture_release(&v->native_picture);
     picture_release(&v->povray_picture);
     picture_release(&v->native_shown);
+    settled_release(&v->settled);
     picture_release(&v->povray_shown);
     for (size_t i = 0; i < v->n_commands; i++)
         free(v->commands[i]);
@@ -72,20 +76,25 @@ static bool has_id_scene(const Verification *v)
     return is_isosurface(v) || v->scene.model == SCENE_BLOB;
 }
 
+static RenderParams render_params(const Verification *v, const CellParams *povray_cells)
+{
+    return (RenderParams){.kernels = v->kernels,
+                          .threads = v->common->threads,
+                          .antialias = v->picture->antialias,
+                          .shadows = v->picture->stage.shadows,
+                          .povray_cells = povray_cells,
+                          .want_color = true,
+                          .want_depth = true,
+                          .want_normal = true,
+                          .want_id = true};
+}
+
 static Status render_frame(Verification *v, const CellParams *povray_cells, Frame *frame, Err *err)
 {
     Progress progress;
-    const RenderParams params = {.kernels = v->kernels,
-                                 .threads = v->common->threads,
-                                 .antialias = v->picture->antialias,
-                                 .shadows = v->picture->stage.shadows,
-                                 .povray_cells = povray_cells,
-                                 .want_color = true,
-                                 .want_depth = true,
-                                 .want_normal = true,
-                                 .want_id = true,
-                                 .progress = progress_report,
-                                 .progress_context = &progress};
+    RenderParams params = render_params(v, povray_cells);
+    params.progress = progress_report;
+    params.progress_context = &progress;
     progress_start(&progress, povray_cells ? "corcast, as POV-Ray" : "corcast", v->common->quiet);
     Status status = render(&v->scene, &params, frame, &v->stats, err);
     progress_end(&progress);
@@ -107,9 +116,15 @@ static Status write_frame(const Verification *v, const Frame *frame, const char 
     return status;
 }
 
+/* Of an isosurface, where POV-Ray's root finder sees it. */
+static const CellParams *cells_of(const Verification *v)
+{
+    return is_isosurface(v) ? &v->cells : NULL;
+}
+
 static Status render_native(Verification *v, const char *provenance, Err *err)
 {
-    TRY(render_frame(v, is_isosurface(v) ? &v->cells : NULL, &v->native, err));
+    TRY(render_frame(v, cells_of(v), &v->native, err));
     TRY(picture_from_plane(&v->native_picture, &v->native.color, encoding_of(v), v->bits, err));
     TRY(write_frame(v, &v->native, "native.png", encoding_of(v), provenance, err));
     if (!is_isosurface(v))
@@ -229,6 +244,20 @@ static const Picture *shown_natively(const Verification *v)
     return v->bits == 8 ? &v->native_picture : &v->native_shown;
 }
 
+/* Asks who is right where the sides differ; the tolerance then knows. */
+static Status settle_sides(Verification *v, const Rendering *a, const Rendering *b,
+                           Tolerance *tolerance, Err *err)
+{
+    const RenderParams params = render_params(v, cells_of(v));
+    const SettleCase asked = {&v->scene, &params, a, b, encoding_of(v), tolerance};
+    v->asked = settle_applies(&asked);
+    if (!v->asked)
+        return STATUS_OK;
+    TRY(settle_pixels(&asked, &v->settled, err));
+    tolerance->settled = v->settled.marks;
+    return STATUS_OK;
+}
+
 static Status compare_sides(Verification *v, Err *err)
 {
     double near_mm, far_mm;
@@ -237,6 +266,7 @@ static Status compare_sides(Verification *v, Err *err)
     const IdPlane *a = &v->povray.id, *b = &v->native.id;
     const Rendering view_a = {&v->povray_picture, a, &v->povray.depth, &v->povray.normal};
     const Rendering view_b = {&v->native_picture, b, &v->native.depth, &v->native.normal};
+    TRY(settle_sides(v, &view_a, &view_b, &tolerance, err));
     TRY(compare_pictures(&view_a, &view_b, &tolerance, &v->results[PLANE_COLOR], NULL, err));
     TRY(compare_perception(shown_by_povray(v), shown_natively(v), &v->results[PLANE_COLOR], err));
     TRY(compare_planes(PLANE_DEPTH, &v->povray.depth, &v->native.depth, a, b, &tolerance,
@@ -270,6 +300,7 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
     for (int kind = 0; kind < PLANE_KINDS; kind++)
         report.planes[kind] = &v->results[kind];
     report.surface = is_isosurface(v) ? &v->surface : NULL;
+    report.settled = v->asked ? &v->settled : NULL;
     *agrees = report_agrees(&report);
     char *templates = NULL, *page = NULL;
     TRY(templates_folder(&templates, err));
@@ -293,6 +324,24 @@ static void print_surface(const SurfaceCheck *surface)
         printf("%s\n", surface->reason);
 }
 
+/* A line for each cause that was met, and for the first pixels where. */
+static void print_settled(const Settled *settled)
+{
+    for (SettledCause cause = settled->from; cause <= settled->to; cause++)
+        if (settled->count[cause])
+            printf("  %-7s %-7s%s: %zu, at most %zu allowed; corcast is right there\n", "settled",
+                   settled->count[cause] <= settled_allowed(settled, cause) ? "agree" : "differ",
+                   settled_cause_sentence(cause), settled->count[cause],
+                   settled_allowed(settled, cause));
+    for (int i = 0; i < settled->n_first && settled->from == SETTLED_ROOT; i++) {
+        Text where = TEXT_INIT;
+        settled_describe(&settled->first[i], "POV-Ray", "corcast", &where);
+        printf("                 %s %s\n", settled_cause_name(settled->first[i].cause),
+               where.chars ? where.chars : "");
+        text_release(&where);
+    }
+}
+
 static void print_verdict(const Verification *v, bool agrees)
 {
     for (int kind = 0; kind < PLANE_KINDS; kind++) {
@@ -310,6 +359,8 @@ static void print_verdict(const Verification *v, bool agrees)
         else
             printf("%zu of %zu pixels differ\n", result->differing_pixels, result->pixels);
     }
+    if (v->asked)
+        print_settled(&v->settled);
     if (is_isosurface(v))
         print_surface(&v->surface);
     printf("%s: POV-Ray %s in %.2f s, corcast in %.2f s; %s/report.html\n",

@@ -21,6 +21,7 @@ struct Caster {
     BlobCast *blob;         /* or NULL */
     BlobScratch **blob_scratch;
     int workers;
+    double shadow_from_mm;
 };
 
 Status caster_new(const Scene *scene, const CellParams *cells, int workers, Caster **out, Err *err)
@@ -29,6 +30,7 @@ Status caster_new(const Scene *scene, const CellParams *cells, int workers, Cast
     TRY(mem_calloc(&caster, 1, sizeof *caster, "casters", err));
     caster->scene = scene;
     caster->workers = workers;
+    caster->shadow_from_mm = shadow_slack_mm;
     Status status = STATUS_OK;
     if (scene->model == SCENE_BLOB) {
         TRY_GOTO(blobcast_new(scene, &caster->blob, err));
@@ -52,6 +54,11 @@ Status caster_new(const Scene *scene, const CellParams *cells, int workers, Cast
 done:
     caster_free(caster);
     return status;
+}
+
+void caster_shadow_from(Caster *caster, double nearest_mm)
+{
+    caster->shadow_from_mm = nearest_mm;
 }
 
 void caster_free(Caster *caster)
@@ -109,15 +116,15 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
 bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double distance)
 {
     Ray ray = {point, towards};
-    double far = distance - shadow_slack_mm, t;
-    if (ground_hit(&caster->scene->ground, ray, shadow_slack_mm, far, &t))
+    double near = caster->shadow_from_mm, far = distance - shadow_slack_mm, t;
+    if (ground_hit(&caster->scene->ground, ray, near, far, &t))
         return true;
     if (caster->bvh)
-        return bvh_any_hit(caster->bvh, ray, shadow_slack_mm, far);
+        return bvh_any_hit(caster->bvh, ray, near, far);
     if (caster->halving)
-        return halving_any_hit(caster->halving, ray, shadow_slack_mm, far);
+        return halving_any_hit(caster->halving, ray, near, far);
     if (caster->blob)
         return blobcast_any_hit(caster->blob, caster->blob_scratch[worker], ray, blob_nearest_mm,
                                 far);
-    return field_is_shadowed(caster->field, caster->scratch[worker], ray, shadow_slack_mm, far);
+    return field_is_shadowed(caster->field, caster->scratch[worker], ray, near, far);
 }

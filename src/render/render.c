@@ -207,6 +207,8 @@ Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **o
     Status status = STATUS_OK;
     if (is_traced(renderer) && (!is_field(renderer) || params->shadows || params->occlusion > 0))
         status = caster_new(scene, params->povray_cells, renderer->threads, &renderer->caster, err);
+    if (renderer->caster && params->shadow_from_mm > 0)
+        caster_shadow_from(renderer->caster, params->shadow_from_mm);
     if (status != STATUS_OK) {
         renderer_free(renderer);
         return status;

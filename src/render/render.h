@@ -5,6 +5,7 @@
 
 #include "base/base.h"
 #include "image/image.h"
+#include "render/shade.h" // IWYU pragma: export
 #include "scene/scene.h"
 #include "surface/surface.h"
 
@@ -40,6 +41,8 @@ typedef struct RenderParams {
                                  * (0, 1], those only that differ from a neighbour by so much in
                                  * the square root of a channel, which no POV-Ray picture repeats */
     bool shadows;
+    double
+        shadow_from_mm; /* what is nearer to a lit place is not in its light; 0: POV-Ray's 0.001 mm */
     int occlusion; /* 0: ambient light is the same everywhere; N: the part of it that reaches a point is
                     * found by N rays, which no POV-Ray picture repeats */
     const CellParams *povray_cells; /* of an implicit model: where POV-Ray's root finder sees it in

@@ -9,8 +9,9 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "scene/scene.h"
-#include "surface/blob.h"  // IWYU pragma: export
-#include "surface/cells.h" // IWYU pragma: export
+#include "surface/blob.h"      // IWYU pragma: export
+#include "surface/blobroots.h" // IWYU pragma: export
+#include "surface/cells.h"     // IWYU pragma: export
 
 /* One term of the potential at x, in [0, 1], to a few units of the last place of its largest
  * factor, tails included. */

@@ -17,6 +17,7 @@ static void take_color(const Sums *sums, double code_levels, int channels, Compa
     result->psnr_db = result->rmse > 0 ? 20 * log10(255 / result->rmse) : (double)INFINITY;
     result->differing_pixels = sums->differing;
     result->beyond_pixels = sums->beyond;
+    result->settled_pixels = sums->settled;
     if (sums->max > 0)
         result->worst = sums->worst;
     result->bias_levels = 0;
@@ -112,6 +113,7 @@ Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance 
                  .beyond =
                      (int)floor(tolerance->color_levels * (picture->bits == 8 ? 1 : 257) + 1e-9),
                  .common_only = tolerance->color_common_only && labels.source != LABELS_UNKNOWN,
+                 .settled = tolerance->settled,
                  .geometry_mm = fmin(tolerance->depth_max_mm, tolerance->depth_p99_mm),
                  .geometry_deg = fmin(tolerance->normal_max_deg, 1)};
     Status status = STATUS_OK;

@@ -39,6 +39,11 @@ static double percentile(double *values, size_t n, double fraction)
     return select_rank(values, n, rank ? rank - 1 : 0);
 }
 
+static bool is_settled(const Tolerance *tolerance, size_t pixel)
+{
+    return tolerance->settled && tolerance->settled[pixel];
+}
+
 typedef enum Seen { SEEN_NOTHING, SEEN_SURFACE, SEEN_NAN } Seen;
 
 static Seen seen_at(PlaneKind kind, const float *value)
@@ -88,8 +93,10 @@ static void measure_errors(PlaneKind kind, const Plane *a, const Plane *b, const
         if (!labels->seen[0][i] || !labels->seen[1][i])
             continue;
         double error = plane_error(kind, a->values + i * channels, b->values + i * channels);
-        errors[found++] = error;
         result->differing_pixels += error > 0;
+        if (is_settled(tolerance, i))
+            continue;
+        errors[found++] = error;
         result->beyond_pixels += error > limit;
         if (error > worst) {
             worst = error;
@@ -109,7 +116,7 @@ static void measure_errors(PlaneKind kind, const Plane *a, const Plane *b, const
 static Status measure_labels(const Labels *labels, CompareResult *result, Err *err)
 {
     uint8_t *scratch = NULL, *coverage = NULL;
-    size_t band_differs = 0;
+    size_t band_differs = 0, band_settled = 0;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&scratch, label_window_size(labels->width), 1, "rows of labels", err));
     TRY_GOTO(mem_calloc(&coverage, result->pixels, 1, "pixel marks", err));
@@ -119,17 +126,22 @@ static Status measure_labels(const Labels *labels, CompareResult *result, Err *e
     for (int y = 0; y < labels->height; y++) {
         const uint32_t *a = window.rows[0][1], *b = window.rows[1][1];
         for (int x = 0; x < labels->width; x++) {
+            size_t pixel = (size_t)y * (size_t)labels->width + (size_t)x;
             bool band = window.band[x], differs = a[x] != b[x];
-            if (!a[x] != !b[x]) {
-                coverage[(size_t)y * (size_t)labels->width + (size_t)x] =
-                    a[x] ? COVERED_MISSING : COVERED_EXTRA;
+            bool settled = differs && is_settled(&result->tolerance, pixel);
+            result->settled_pixels += settled;
+            if (!a[x] != !b[x] && !settled) {
+                coverage[pixel] = a[x] ? COVERED_MISSING : COVERED_EXTRA;
                 result->missing_pixels += a[x] != 0;
                 result->extra_pixels += b[x] != 0;
             }
             result->common_pixels += a[x] && b[x];
             result->band_pixels += band;
             band_differs += band && differs;
-            result->classes[differs ? labels_class(a[x], b[x], band) : PIXEL_IDENTICAL]++;
+            band_settled += band && settled;
+            result->classes[settled   ? PIXEL_SETTLED
+                            : differs ? labels_class(a[x], b[x], band)
+                                      : PIXEL_IDENTICAL]++;
             if (differs && result->kind == PLANE_ID && result->differing_pixels++ == 0)
                 result->worst = (PixelPlace){.x = x, .y = y};
         }
@@ -139,8 +151,9 @@ static Status measure_labels(const Labels *labels, CompareResult *result, Err *e
     result->edge_mismatch_fraction =
         result->band_pixels ? (double)band_differs / (double)result->band_pixels : 0;
     if (result->kind == PLANE_ID) {
-        result->band_beyond = band_differs;
-        result->interior_beyond = result->differing_pixels - band_differs;
+        result->beyond_pixels = result->differing_pixels - result->settled_pixels;
+        result->band_beyond = band_differs - band_settled;
+        result->interior_beyond = result->beyond_pixels - result->band_beyond;
     }
     if (result->missing_pixels + result->extra_pixels > 0)
         status = largest_region(coverage, labels->width, labels->height, &result->largest_region,
@@ -188,7 +201,6 @@ Status compare_ids(const IdPlane *a, const IdPlane *b, const Tolerance *toleranc
     made.bits = 24;
     Labels labels = labels_from_ids(a, b);
     TRY(measure_labels(&labels, &made, err));
-    made.beyond_pixels = made.differing_pixels;
     result_finish(&made, a, b);
     *result = made;
     return STATUS_OK;

@@ -18,6 +18,8 @@ const char *report_reason(const ReportCase *report)
     const CompareResult *worst = report_worst(report);
     if (worst)
         return worst->reason;
+    if (report->settled && !report->settled->agrees)
+        return report->settled->reason;
     return report->surface && !report->surface->agrees ? report->surface->reason : NULL;
 }
 
@@ -55,13 +57,13 @@ json_t *report_json(const ReportCase *report)
             json_object_set_new(planes, plane_kind_name(kind), compare_json(report->planes[kind]));
     for (size_t i = 0; i < report->n_commands; i++)
         json_array_append_new(commands, json_string(report->commands[i]));
-    return json_pack("{s:s, s:f, s:s?, s:s, s:s, s:s, s:o, s:o*, s:o, s:o, s:o}", "verdict",
-                     reason ? "differ" : "agree", "severity", report_severity(report), "reason",
-                     reason, "name", report->name, "model", report->model, "tier",
-                     report->planes[PLANE_COLOR]->tolerance.tier, "planes", planes, "surface",
-                     report->surface ? surface_check_json(report->surface) : NULL, report->a.key,
-                     side_json(&report->a), report->b.key, side_json(&report->b), "commands",
-                     commands);
+    return json_pack(
+        "{s:s, s:f, s:s?, s:s, s:s, s:s, s:o, s:o*, s:o*, s:o, s:o, s:o}", "verdict",
+        reason ? "differ" : "agree", "severity", report_severity(report), "reason", reason, "name",
+        report->name, "model", report->model, "tier", report->planes[PLANE_COLOR]->tolerance.tier,
+        "planes", planes, "surface", report->surface ? surface_check_json(report->surface) : NULL,
+        "settled", report->settled ? settled_json(report->settled) : NULL, report->a.key,
+        side_json(&report->a), report->b.key, side_json(&report->b), "commands", commands);
 }
 
 void text_escaped(Text *out, const char *text)
@@ -124,10 +126,41 @@ static void junit_surface(const ReportCase *report, Text *out)
     text_puts(out, "    </testcase>\n");
 }
 
+static void junit_settled(const ReportCase *report, Text *out)
+{
+    const Settled *settled = report->settled;
+    text_puts(out, "    <testcase classname=\"");
+    text_escaped(out, report->model);
+    text_puts(out, "\" name=\"settled\">\n      <properties>\n");
+    for (SettledCause cause = settled->from; cause <= settled->to; cause++) {
+        text_puts(out, "        <property name=\"");
+        text_escaped(out, settled_cause_sentence(cause));
+        text_printf(out, "\" value=\"%zu pixels (at most %zu)\"/>\n", settled->count[cause],
+                    settled_allowed(settled, cause));
+    }
+    for (int i = 0; i < settled->n_first; i++) {
+        Text where = TEXT_INIT;
+        settled_describe(&settled->first[i], report->a.name, report->b.name, &where);
+        text_printf(out, "        <property name=\"%s\" value=\"",
+                    settled_cause_name(settled->first[i].cause));
+        text_escaped(out, where.chars ? where.chars : "");
+        text_puts(out, "\"/>\n");
+        text_release(&where);
+    }
+    text_puts(out, "      </properties>\n");
+    if (!settled->agrees) {
+        text_puts(out, "      <failure message=\"");
+        text_escaped(out, settled->reason);
+        text_puts(out, "\"/>\n");
+    }
+    text_puts(out, "    </testcase>\n");
+}
+
 void report_junit(const ReportCase *report, Text *out)
 {
-    int tests = report->surface != NULL;
-    int failures = report->surface && !report->surface->agrees;
+    int tests = (report->surface != NULL) + (report->settled != NULL);
+    int failures = (report->surface && !report->surface->agrees) +
+                   (report->settled && !report->settled->agrees);
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++) {
         tests += report->planes[kind] != NULL;
         failures += report->planes[kind] && !report->planes[kind]->agrees;
@@ -140,6 +173,8 @@ void report_junit(const ReportCase *report, Text *out)
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
         if (report->planes[kind])
             junit_case(report, report->planes[kind], out);
+    if (report->settled)
+        junit_settled(report, out);
     if (report->surface)
         junit_surface(report, out);
     text_puts(out, "  </testsuite>\n</testsuites>\n");

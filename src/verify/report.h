@@ -27,6 +27,7 @@ json_t *worst_segments_json(const CompareResult *result);
 void report_rule_rows(const CompareResult *plane, Text *out);
 void report_metric_rows(const CompareResult *plane, Text *out);
 void report_surface_rows(const SurfaceCheck *surface, Text *rules, Text *metrics);
+void report_settled_rows(const ReportCase *report, Text *rules, Text *metrics);
 
 /* Appends a picture as a data: URI. */
 MUST_CHECK Status report_picture(Text *out, const Picture *picture, Err *err);

@@ -43,6 +43,19 @@ static const char *const part_names[PARTS] = {
 
 /* ------------------------------------------------------------------------------------- verdict */
 
+/* Who is right where the sides differ, cause by cause. */
+static void settled_sentence(const ReportCase *report, Text *sentence)
+{
+    const Settled *settled = report->settled;
+    for (SettledCause cause = settled->from; cause <= settled->to; cause++)
+        if (settled->count[cause]) {
+            text_printf(sentence, " %s: %zu; ", settled_cause_sentence(cause),
+                        settled->count[cause]);
+            text_escaped(sentence, report->b.name);
+            text_puts(sentence, " is right there.");
+        }
+}
+
 static void verdict_parts(const ReportCase *report, Text parts[PARTS])
 {
     const char *reason = report_reason(report);
@@ -78,6 +91,8 @@ static void verdict_parts(const ReportCase *report, Text parts[PARTS])
                     compared == 1 ? "The %d plane compared is" : "The %d planes compared are",
                     compared);
         text_puts(sentence, " within tolerance.");
+        if (report->settled)
+            settled_sentence(report, sentence);
         if (report->surface)
             text_puts(sentence, " What POV-Ray's root finder sees is the surface to its accuracy.");
     }
@@ -95,6 +110,8 @@ static void table_parts(const ReportCase *report, Text parts[PARTS])
             report_rule_rows(report->planes[kind], &parts[PART_RULES]);
             report_metric_rows(report->planes[kind], &parts[PART_METRICS]);
         }
+    if (report->settled)
+        report_settled_rows(report, &parts[PART_RULES], &parts[PART_METRICS]);
     if (report->surface)
         report_surface_rows(report->surface, &parts[PART_RULES], &parts[PART_METRICS]);
     for (int i = 0; i < HEAT_STEPS; i++) {

@@ -119,3 +119,26 @@ void report_surface_rows(const SurfaceCheck *surface, Text *rules, Text *metrics
     metric_row(metrics, "", "largest distance", surface->max_mm, "mm");
     metric_row(metrics, "", "largest over what is allowed", surface->max_ratio, "");
 }
+
+void report_settled_rows(const ReportCase *report, Text *rules, Text *metrics)
+{
+    const Settled *settled = report->settled;
+    for (SettledCause cause = settled->from; cause <= settled->to; cause++) {
+        size_t allowed = settled_allowed(settled, cause);
+        bool met = settled->count[cause] <= allowed;
+        text_printf(
+            rules,
+            "<tr><th>%s</th><td class=\"verdict %s\">%s</td><td>%s; %s is right there</td>"
+            "<td class=\"number\">%zu pixels</td><td class=\"number\">%zu pixels</td></tr>\n",
+            cause == settled->from ? "settled" : "", met ? "good" : "bad",
+            met ? "✓ agree" : "✗ differ", settled_cause_sentence(cause), report->b.name,
+            settled->count[cause], allowed);
+    }
+    for (int i = 0; i < settled->n_first; i++) {
+        Text where = TEXT_INIT;
+        settled_describe(&settled->first[i], report->a.name, report->b.name, &where);
+        text_printf(metrics, "<tr><th>%s</th><td>%s</td><td>%s</td></tr>\n", i ? "" : "settled",
+                    where.chars ? where.chars : "", settled_cause_name(settled->first[i].cause));
+        text_release(&where);
+    }
+}

@@ -10,12 +10,16 @@ const char *plane_kind_name(PlaneKind kind)
 
 const char *pixel_class_name(PixelClass pixel_class)
 {
-    static const char *const names[PIXEL_CLASSES] = {
-        [PIXEL_MISSING] = "missing",    [PIXEL_EXTRA] = "extra",
-        [PIXEL_EDGE] = "edge",          [PIXEL_WRONG_SEGMENT] = "wrong_segment",
-        [PIXEL_SHADOW] = "shadow",      [PIXEL_GEOMETRY] = "geometry",
-        [PIXEL_SHADING] = "shading",    [PIXEL_ROUNDING] = "rounding",
-        [PIXEL_IDENTICAL] = "identical"};
+    static const char *const names[PIXEL_CLASSES] = {[PIXEL_SETTLED] = "settled",
+                                                     [PIXEL_MISSING] = "missing",
+                                                     [PIXEL_EXTRA] = "extra",
+                                                     [PIXEL_EDGE] = "edge",
+                                                     [PIXEL_WRONG_SEGMENT] = "wrong_segment",
+                                                     [PIXEL_SHADOW] = "shadow",
+                                                     [PIXEL_GEOMETRY] = "geometry",
+                                                     [PIXEL_SHADING] = "shading",
+                                                     [PIXEL_ROUNDING] = "rounding",
+                                                     [PIXEL_IDENTICAL] = "identical"};
     return names[pixel_class];
 }
 

@@ -6,6 +6,7 @@
 #include "base/base.h"
 #include "image/image.h"
 #include "verify/oracle.h"        // IWYU pragma: export
+#include "verify/settled.h"       // IWYU pragma: export
 #include "verify/surface_check.h" // IWYU pragma: export
 #include <jansson.h>
 
@@ -52,6 +53,9 @@ typedef struct Tolerance {
     size_t region_pixels;  /* largest 8-connected region of missing, or of extra, pixels */
     double pixelmatch;     /* threshold of pixelmatch, in [0, 1]; NAN: not counted */
     double pixelmatch_ppm; /* pixels that it finds different */
+    const uint8_t
+        *settled; /* SettledCause of each pixel; no limit counts those that are settled. NULL:
+                             * none is; borrowed, and in no file */
 } Tolerance;
 
 /* Nothing is judged but NaN; `tier` is "none". */
@@ -92,6 +96,7 @@ enum { RULES_MAX = 16 };
 
 /* Every pixel of a picture is in exactly one class, the first that fits. */
 typedef enum PixelClass {
+    PIXEL_SETTLED,       /* differs, and is known to be A's fault */
     PIXEL_MISSING,       /* seen in A only, off the band */
     PIXEL_EXTRA,         /* seen in B only, off the band */
     PIXEL_WRONG_SEGMENT, /* seen in both with different ids, off the band */
@@ -158,6 +163,7 @@ typedef struct CompareResult {
     PixelPlace nan_at;                 /* the first */
     size_t differing_pixels;           /* not equal in some channel */
     size_t beyond_pixels;              /* off by more than the tolerance lets one pixel be */
+    size_t settled_pixels;             /* likewise, but settled, and so in no rule */
     size_t judged_pixels;              /* what ppm refers to */
     PixelPlace worst;                  /* the first pixel with the largest difference */
 
@@ -204,6 +210,13 @@ typedef struct Rendering {
                                   * the background, where three corners of each picture share one */
     const Plane *depth, *normal; /* NULL, then in both views: geometry is not told from shading */
 } Rendering;
+
+/* What a limit of one pixel finds at a pixel: in its colour, in what is seen and where. */
+enum { BEYOND_COLOR = 1, BEYOND_SIGHT = 2 };
+/* Which of these differ at a pixel by more than the tolerance lets one pixel be off: ids at all, colour,
+ * depth, normals. Both have all planes, of one shape. */
+unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
+                      const Tolerance *tolerance);
 
 /* Compares two pictures, perception left out. `ledger` takes the account of all segments (owned), is
  * empty without ids, and may be NULL. STATUS_INPUT when sizes, channels or bits differ. */
@@ -309,9 +322,10 @@ typedef struct ReportCase {
     size_t n_commands;
     const CompareResult *planes[PLANE_KINDS]; /* NULL where not compared; colour is required */
     const SurfaceCheck *surface;              /* of an implicit model; NULL: of no such model */
+    const Settled *settled;                   /* NULL: nobody was asked */
 } ReportCase;
 
-/* Whether every plane agrees, and the surface. */
+/* Whether every plane agrees, and the surface, and not too much is settled. */
 bool report_agrees(const ReportCase *report);
 /* The report as JSON, with the keys of `verify --json`. New reference, NULL when memory runs out.
  */

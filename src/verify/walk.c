@@ -75,12 +75,14 @@ static void count_pixel(const Walk *walk, const Row *row, int x, Sums *sums)
     bool band = window->band[x];
     int difference = pixel_difference(row->a + x * channels, row->b + x * channels, channels, sums);
     bool common = in_a && in_b, beyond = difference > walk->beyond;
-    PixelClass pixel_class = in_a != in_b ? labels_class(in_a, in_b, band)
-                                          : class_of_shading(walk, row, x, common, difference);
+    size_t pixel = (size_t)row->y * (size_t)walk->labels->width + (size_t)x;
+    bool settled = walk->settled && walk->settled[pixel];
+    PixelClass pixel_class = settled        ? PIXEL_SETTLED
+                             : in_a != in_b ? labels_class(in_a, in_b, band)
+                                            : class_of_shading(walk, row, x, common, difference);
     sums->classes[pixel_class]++;
     sums->common += common;
-    if (!in_a != !in_b) {
-        size_t pixel = (size_t)row->y * (size_t)walk->labels->width + (size_t)x;
+    if (!in_a != !in_b && !settled) {
         walk->coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;
         sums->missing += in_a != 0;
         sums->extra += in_b != 0;
@@ -88,10 +90,12 @@ static void count_pixel(const Walk *walk, const Row *row, int x, Sums *sums)
     sums->band += band;
     sums->band_differs += band && in_a != in_b;
     sums->differing += difference > 0;
+    sums->settled += settled;
+    beyond = beyond && !settled;
     sums->beyond += beyond && (common || !walk->common_only);
     sums->band_beyond += beyond && band;
     sums->interior_beyond += beyond && !band;
-    if (!band && difference > sums->interior_max)
+    if (!band && !settled && difference > sums->interior_max)
         sums->interior_max = difference;
     if (difference > sums->max) {
         sums->max = difference;
@@ -216,6 +220,7 @@ static void add_sums(Sums *to, const Sums *from)
         to->classes[i] += from->classes[i];
     to->differing += from->differing;
     to->beyond += from->beyond;
+    to->settled += from->settled;
     to->brighter += from->brighter;
     to->darker += from->darker;
     to->common += from->common;

@@ -8,7 +8,7 @@
 typedef struct Sums {
     uint64_t abs, squares; /* codes, codes^2 */
     int64_t signed_codes[3];
-    size_t differing, beyond;
+    size_t differing, beyond, settled;
     size_t brighter, darker; /* pixels, by the sum of their channels */
     size_t classes[PIXEL_CLASSES];
     int max, interior_max; /* codes */
@@ -25,6 +25,7 @@ typedef struct Walk {
     const SegmentIndex *index; /* NULL without ids */
     int beyond;                /* codes a pixel may be off */
     bool common_only;
+    const uint8_t *settled;           /* as in Tolerance */
     double geometry_mm, geometry_deg; /* beyond which geometry differs */
     uint8_t *coverage;                /* owned; a Coverage for each pixel */
     Sums *sums;                       /* owned; one for each band */

@@ -2,6 +2,7 @@
  * over a field written down once more, from POV-Ray's definition. */
 #include "render/blobcast.h"
 #include "stage/stage.h"
+#include "surface/surface.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -336,6 +337,93 @@ static void many_segments_in_one_place_are_no_trouble(void **state)
     release(&cast);
 }
 
+/* ---- the witness --------------------------------------------------------------------------------- */
+
+static BlobRoots roots_of(const Scene *scene, Ray ray, double t_min, double t_max)
+{
+    BlobRoots roots;
+    assert_int_equal(
+        blob_roots(scene->segments, scene->n_segments, ray, t_min, t_max, &roots, NULL), STATUS_OK);
+    return roots;
+}
+
+static void roots_of_two_vessels_are_where_their_walls_are(void **state)
+{
+    (void)state;
+    TestScene test = empty_scene();
+    test.scene.segments = test.segments;
+    put_segment(&test, vec3(-20, 0, 0), vec3(20, 0, 0), 1.7);
+    put_segment(&test, vec3(-20, 9, 0), vec3(20, 9, 0), 0.6);
+    const Ray ray = {{0.3, -50, 0}, {0, 1, 0}};
+    const double walls[] = {48.3, 51.7, 58.4, 59.6};
+    BlobRoots roots = roots_of(&test.scene, ray, 0, INFINITY);
+    assert_true(roots.sure);
+    assert_int_equal(roots.n, 4);
+    for (int i = 0; i < 4; i++)
+        assert_true(fabs(roots.t[i] - walls[i]) < 1e-12);
+    roots = roots_of(&test.scene, ray, 48.4, 51.6);
+    assert_true(roots.sure && roots.n == 0);
+    roots = roots_of(&test.scene, ray, 50, 58.5);
+    assert_int_equal(roots.n, 2);
+}
+
+/* A ray beside a wall by a part in 10^9 of the radius, inside and outside of it. */
+static void a_wall_is_grazed_or_missed_by_a_hair(void **state)
+{
+    (void)state;
+    TestScene test = empty_scene();
+    test.scene.segments = test.segments;
+    put_segment(&test, vec3(-20, 0, 0), vec3(20, 0, 0), 1.7);
+    const Ray inside = {{0.3, -50, 1.7 * (1 - 1e-9)}, {0, 1, 0}};
+    const Ray outside = {{0.3, -50, 1.7 * (1 + 1e-9)}, {0, 1, 0}};
+    BlobRoots roots = roots_of(&test.scene, inside, 0, INFINITY);
+    double half = 1.7 * sqrt(2e-9);
+    assert_true(roots.sure);
+    assert_int_equal(roots.n, 2);
+    assert_true(fabs(roots.t[0] - (50 - half)) < 1e-6 && fabs(roots.t[1] - (50 + half)) < 1e-6);
+    roots = roots_of(&test.scene, outside, 0, INFINITY);
+    assert_true(roots.sure && roots.n == 0);
+}
+
+static void the_witness_agrees_with_the_renderer(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 85);
+    int hits = 0, roots_found = 0;
+    for (int kind = 0; kind < N_TAME_KINDS; kind++) {
+        TestScene test;
+        make_test_scene((SceneKind)kind, &random, &test);
+        Cast cast = cast_of(&test.scene);
+        for (int i = 0; i < 100; i++) {
+            Ray ray = random_ray(&random, &test, i);
+            double t;
+            Vec3 normal;
+            uint32_t segment;
+            bool hit =
+                blobcast_first_hit(cast.cast, cast.scratch, ray, 0, 120, &t, &normal, &segment);
+            BlobRoots roots = roots_of(&test.scene, ray, 0, 120);
+            assert_true(roots.sure);
+            assert_true(hit == (roots.n > 0));
+            if (!hit)
+                continue;
+            hits++;
+            roots_found += roots.n;
+            if (!(fabs(t - roots.t[0]) < 1e-7))
+                fail_msg("%s: the first root is at %.12g, the hit at %.12g", kind_names[kind],
+                         roots.t[0], t);
+            for (int k = 0; k < roots.n; k++) {
+                LongVec3 x = long_at(ray, (long double)roots.t[k]);
+                assert_true(fabsl(field_at(&test.scene, x) - 1) < 1e-10L);
+                assert_true(k == 0 || roots.t[k] > roots.t[k - 1]);
+            }
+        }
+        release(&cast);
+    }
+    print_message("%d hits, %d roots\n", hits, roots_found);
+    assert_true(hits > 200);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -347,6 +435,9 @@ int main(void)
         cmocka_unit_test(first_hits_are_those_of_a_walk_in_small_steps),
         cmocka_unit_test(a_ray_from_within_finds_its_way_out),
         cmocka_unit_test(many_segments_in_one_place_are_no_trouble),
+        cmocka_unit_test(roots_of_two_vessels_are_where_their_walls_are),
+        cmocka_unit_test(a_wall_is_grazed_or_missed_by_a_hair),
+        cmocka_unit_test(the_witness_agrees_with_the_renderer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -508,6 +508,117 @@ static void writes_a_junit_case_for_each_rule(void **state)
     side_release(&b);
 }
 
+/* Pixel (30, 20) of B is of another segment, nearer, turned and darker. */
+static void spoil_pixel(Side *side)
+{
+    int i = 20 * W + 30;
+    side->ids.ids[i] = 85;
+    side->depth.values[i] = 29;
+    side->normal.values[3 * i] = 1;
+    memset(&side->picture.codes8[3 * i], 3, 3);
+}
+
+static void no_limit_counts_a_settled_pixel(void **state)
+{
+    (void)state;
+    for (int settled = 0; settled < 2; settled++) {
+        Side a, b;
+        CompareResult depth, normal, ids;
+        uint8_t *marks = calloc(W * H, 1);
+        assert_non_null(marks);
+        side_init(&a, 0);
+        side_init(&b, 0);
+        spoil_pixel(&b);
+        marks[20 * W + 30] = settled ? SETTLED_ROOT : SETTLED_NOT;
+        Tolerance identity = tolerance_identity(1e-3);
+        identity.settled = marks;
+        CompareResult color = compare(&a, &b, identity, NULL);
+        assert_int_equal(compare_planes(PLANE_DEPTH, &a.depth, &b.depth, &a.ids, &b.ids, &identity,
+                                        &depth, &err),
+                         STATUS_OK);
+        assert_int_equal(compare_planes(PLANE_NORMAL, &a.normal, &b.normal, &a.ids, &b.ids,
+                                        &identity, &normal, &err),
+                         STATUS_OK);
+        assert_int_equal(compare_ids(&a.ids, &b.ids, &identity, &ids, &err), STATUS_OK);
+        assert_true(color.agrees == settled && depth.agrees == settled &&
+                    normal.agrees == settled && ids.agrees == settled);
+        assert_int_equal(color.differing_pixels, 1);
+        assert_int_equal(ids.differing_pixels, 1);
+        assert_int_equal(color.classes[PIXEL_SETTLED], settled);
+        assert_int_equal(color.settled_pixels, settled);
+        free(marks);
+        side_release(&a);
+        side_release(&b);
+    }
+}
+
+/* Marks tell one pixel from the next. */
+static void a_settled_pixel_hides_no_other(void **state)
+{
+    (void)state;
+    Side a, b;
+    uint8_t *marks = calloc(W * H, 1);
+    assert_non_null(marks);
+    side_init(&a, 0);
+    side_init(&b, 0);
+    spoil_pixel(&b);
+    marks[20 * W + 31] = SETTLED_ROOT;
+    Tolerance identity = tolerance_identity(1e-3);
+    identity.settled = marks;
+    assert_false(compare(&a, &b, identity, NULL).agrees);
+    free(marks);
+    side_release(&a);
+    side_release(&b);
+}
+
+static void tells_what_is_beyond_at_a_pixel(void **state)
+{
+    (void)state;
+    Side a, b;
+    side_init(&a, 0);
+    side_init(&b, 0);
+    size_t colored = 18 * W + 33, deeper = 19 * W + 33, turned = 21 * W + 33, gone = 22 * W + 33;
+    b.picture.codes8[3 * colored + 1]++;
+    b.depth.values[deeper] += 0.0013f;
+    b.normal.values[3 * turned] = 0.0007f;
+    b.ids.ids[gone] = 0;
+    Tolerance identity = tolerance_identity(1e-3);
+    Rendering of_a = rendering(&a), of_b = rendering(&b);
+    assert_int_equal(pixel_beyond(&of_a, &of_b, colored, &identity), BEYOND_COLOR);
+    assert_int_equal(pixel_beyond(&of_a, &of_b, deeper, &identity), BEYOND_SIGHT);
+    assert_int_equal(pixel_beyond(&of_a, &of_b, turned, &identity), BEYOND_SIGHT);
+    assert_int_equal(pixel_beyond(&of_a, &of_b, gone, &identity), BEYOND_SIGHT);
+    assert_int_equal(pixel_beyond(&of_a, &of_b, 0, &identity), 0);
+    side_release(&a);
+    side_release(&b);
+}
+
+static void a_flood_of_settled_pixels_is_a_difference(void **state)
+{
+    (void)state;
+    Settled settled;
+    size_t pixels = 1000 * 1000;
+    assert_int_equal(settled_init(&settled, pixels, SETTLED_ROOT, SETTLED_SHADOW_ROOT, &err),
+                     STATUS_OK);
+    size_t allowed = settled_allowed(&settled, SETTLED_ROOT);
+    assert_int_equal(allowed, 40);
+    for (size_t i = 0; i < allowed; i++) {
+        const SettledPixel pixel = {.x = (int)i, .cause = SETTLED_ROOT};
+        settled_note(&settled, i, &pixel);
+    }
+    settled_judge(&settled);
+    assert_true(settled.agrees);
+    const SettledPixel last = {.x = (int)allowed, .cause = SETTLED_ROOT};
+    settled_note(&settled, allowed, &last);
+    settled_judge(&settled);
+    assert_false(settled.agrees);
+    assert_string_equal(settled.reason, "settled: pixels at which POV-Ray missed a root: 41, at "
+                                        "most 40 allowed");
+    assert_int_equal(settled.n_first, SETTLED_LISTED);
+    assert_int_equal(settled.marks[allowed], SETTLED_ROOT);
+    settled_release(&settled);
+}
+
 int main(void)
 {
     if (file_make_folder("build", &err) != STATUS_OK)
@@ -529,6 +640,10 @@ int main(void)
         cmocka_unit_test(shows_signed_differences_about_grey),
         cmocka_unit_test(animates_two_pictures_in_one_png),
         cmocka_unit_test(writes_a_junit_case_for_each_rule),
+        cmocka_unit_test(no_limit_counts_a_settled_pixel),
+        cmocka_unit_test(a_settled_pixel_hides_no_other),
+        cmocka_unit_test(tells_what_is_beyond_at_a_pixel),
+        cmocka_unit_test(a_flood_of_settled_pixels_is_a_difference),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
