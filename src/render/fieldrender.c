@@ -4,7 +4,6 @@
  * memory in proportion to its width only. */
 #include "render/fieldrender.h"
 
-#include "render/fieldtiles.h"
 #include "render/resample.h"
 #include "render/sight.h"
 #include "render/tilelook.h"
@@ -28,8 +27,9 @@ typedef struct FieldPicture {
     const RenderParams *params;
     const Band *rows; /* of the picture that the frame has */
     Frame *frame;
-    FieldTiles *tiles; /* of this pass */
-    SampleGrid grid;   /* of this pass */
+    FieldTiles *tiles; /* of this pass over the whole picture, borrowed */
+    SampleGrid grid;   /* likewise */
+    int top;           /* the grid's row that is the frame's first */
     TileLook look;
     TileLight *lights;
     bool needs_places; /* rays or lights differ from sample to sample */
@@ -209,8 +209,8 @@ static void write_codes(const FieldPicture *picture, const SeenTile *seen, int w
 {
     const Canvas *canvas = &picture->canvases[worker];
     size_t width = (size_t)picture->grid.n_columns;
-    uint8_t *to =
-        picture->frame->codes.codes8 + 3 * ((size_t)seen->row * width + (size_t)seen->column);
+    uint8_t *to = picture->frame->codes.codes8 +
+                  3 * ((size_t)(seen->row - picture->top) * width + (size_t)seen->column);
     int columns, rows;
     tile_extent(picture, seen, &columns, &rows);
     float color[3][TILE_SAMPLES];
@@ -247,7 +247,8 @@ static void write_geometry(const FieldPicture *picture, const SeenTile *seen)
     const Scene *scene = picture->scene;
     const Camera *camera = &scene->camera;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        int i = seen->column + tile_sample_x(sample), j = seen->row + tile_sample_y(sample);
+        int i = seen->column + tile_sample_x(sample);
+        int j = seen->row + tile_sample_y(sample) - picture->top;
         if (i >= camera->width || j >= picture->rows->rows)
             continue;
         bool hit = seen->hits && seen->hits->state[sample] == TILE_HIT;
@@ -274,7 +275,7 @@ static void visit_center(const SeenTile *seen, int worker, void *context)
     if (frame->depth.values || frame->normal.values || frame->id.ids)
         write_geometry(picture, seen);
     if (frame->color.values)
-        write_colors(picture, seen, worker, 0, frame->color.values);
+        write_colors(picture, seen, worker, picture->top, frame->color.values);
     if (frame->codes.codes8 && (seen->hits || picture->by_sample))
         write_codes(picture, seen, worker);
 }
@@ -283,7 +284,7 @@ static void visit_center(const SeenTile *seen, int worker, void *context)
 static void clear_codes(const FieldPicture *picture, size_t band, int worker)
 {
     size_t row = 3 * (size_t)picture->grid.n_columns, first = band * TILE_SIDE;
-    size_t rows = (size_t)picture->grid.n_rows - first;
+    size_t rows = (size_t)picture->rows->rows - first;
     size_t size = row * (rows < TILE_SIDE ? rows : TILE_SIDE);
     size_t done = size < 3 * TILE_SIDE ? size : 3 * TILE_SIDE;
     uint8_t *to = picture->frame->codes.codes8 + row * first;
@@ -303,12 +304,13 @@ static void trace_centers(size_t band, int worker, void *context)
 {
     FieldPicture *picture = context;
     Canvas *canvas = &picture->canvases[worker];
+    size_t tile_row = (size_t)picture->top / TILE_SIDE + band;
     report_progress(picture, band, worker);
     if (picture->frame->codes.codes8)
         clear_codes(picture, band, worker);
     if (canvas->status == STATUS_OK)
-        canvas->status = fieldtiles_trace(picture->tiles, band, worker, NULL, visit_center, picture,
-                                          &canvas->err);
+        canvas->status = fieldtiles_trace(picture->tiles, tile_row, worker, NULL, visit_center,
+                                          picture, &canvas->err);
 }
 
 /* Which band a tile's samples are stored for. */
@@ -334,8 +336,8 @@ static bool wants_more(const FieldPicture *picture, int i, int j)
 static bool mark_wanted(const FieldPicture *picture, size_t tile_row, uint8_t *wanted)
 {
     const Camera *camera = &picture->scene->camera;
-    int n = picture->params->antialias, first = (int)tile_row * TILE_SIDE / n;
-    int last = ((int)tile_row * TILE_SIDE + TILE_SIDE - 1) / n;
+    int n = picture->params->antialias, row = (int)tile_row * TILE_SIDE - picture->top;
+    int first = row / n, last = (row + TILE_SIDE - 1) / n;
     bool any = false;
     memset(wanted, 0, fieldtiles_columns(picture->tiles));
     for (int j = first; j <= last && j < picture->rows->rows; j++)
@@ -372,8 +374,9 @@ static void trace_further(size_t band, int worker, void *context)
     const Camera *camera = &picture->scene->camera;
     size_t n = (size_t)picture->params->antialias, rows = fieldtiles_rows(picture->tiles);
     report_progress(picture, band, worker);
-    BandVisit visit = {picture, (int)(band * n) * TILE_SIDE};
-    for (size_t row = band * n; row < (band + 1) * n && row < rows; row++)
+    size_t tile_row = (size_t)picture->top / TILE_SIDE + band * n;
+    BandVisit visit = {picture, (int)tile_row * TILE_SIDE};
+    for (size_t row = tile_row; row < tile_row + n && row < rows; row++)
         if (canvas->status == STATUS_OK && mark_wanted(picture, row, canvas->wanted))
             canvas->status = fieldtiles_trace(picture->tiles, row, worker, canvas->wanted,
                                               visit_further, &visit, &canvas->err);
@@ -386,46 +389,69 @@ static void trace_further(size_t band, int worker, void *context)
                 add_up(picture, canvas->band, j - first, i, j);
 }
 
-/* One pass: `n` x `n` samples a pixel at the offsets given. */
-static Status run_pass(FieldPicture *picture, int n, const double *offsets,
+/* Makes a pass of `n` x `n` samples a pixel at the offsets given. */
+static Status prepare_pass(const FieldPicture *picture, int n, const double *offsets,
+                           FieldPass *pass, Err *err)
+{
+    const Camera *camera = &picture->scene->camera;
+    int width = camera->width * n, height = camera->height * n;
+    TRY(mem_calloc(&pass->columns, (size_t)width, sizeof *pass->columns, "columns", err));
+    TRY(mem_calloc(&pass->rows, (size_t)height, sizeof *pass->rows, "rows", err));
+    for (int i = 0; i < width; i++)
+        pass->columns[i] = i / n + offsets[i % n];
+    for (int j = 0; j < height; j++)
+        pass->rows[j] = j / n + offsets[j % n];
+    pass->grid = (SampleGrid){pass->columns, pass->rows, width, height, 1.0 / n};
+    TRY(fieldtiles_new(picture->scene, &pass->grid, NEAREST_SEEN_MM, picture->workers, &pass->tiles,
+                       err));
+    fieldtiles_use_kernels(pass->tiles, tilekernels[kernels_kind(picture->params->kernels)]);
+    return STATUS_OK;
+}
+
+static void release_pass(FieldPass *pass)
+{
+    fieldtiles_free(pass->tiles);
+    free(pass->columns);
+    free(pass->rows);
+    *pass = (FieldPass){0};
+}
+
+void fieldprepared_release(FieldPrepared *prepared)
+{
+    release_pass(&prepared->center);
+    release_pass(&prepared->further);
+}
+
+/* One pass over the frame's rows. */
+static Status run_pass(FieldPicture *picture, int n, const double *offsets, FieldPass *pass,
                        void (*body)(size_t band, int worker, void *context), double *prepared_s,
                        Err *err)
 {
-    Status status;
-    const Camera *camera = &picture->scene->camera;
-    int first = picture->rows->first, width = camera->width * n, height = picture->rows->rows * n;
-    double *columns = NULL, *rows = NULL;
-    TRY_GOTO(mem_calloc(&columns, (size_t)width, sizeof *columns, "columns", err));
-    TRY_GOTO(mem_calloc(&rows, (size_t)height, sizeof *rows, "rows", err));
-    for (int i = 0; i < width; i++)
-        columns[i] = i / n + offsets[i % n];
-    for (int j = 0; j < height; j++)
-        rows[j] = first + j / n + offsets[j % n];
-    picture->grid = (SampleGrid){columns, rows, width, height, 1.0 / n, first * n, offsets[0]};
     double start_s = clock_seconds();
-    TRY_GOTO(fieldtiles_new(picture->scene, &picture->grid, NEAREST_SEEN_MM, picture->workers,
-                            &picture->tiles, err));
-    fieldtiles_use_kernels(picture->tiles, tilekernels[kernels_kind(picture->params->kernels)]);
+    Status status = pass->tiles ? STATUS_OK : prepare_pass(picture, n, offsets, pass, err);
+    if (status != STATUS_OK) {
+        release_pass(pass);
+        return status;
+    }
+    picture->tiles = pass->tiles;
+    picture->grid = pass->grid;
+    picture->top = picture->rows->first * n;
     for (int i = 0; n > 1 && i < picture->workers; i++) {
         Canvas *canvas = &picture->canvases[i];
-        TRY_GOTO(mem_calloc(&canvas->band, (size_t)width * TILE_SIDE * (size_t)n,
-                            3 * sizeof *canvas->band, "bands", err));
-        TRY_GOTO(mem_calloc(&canvas->wanted, fieldtiles_columns(picture->tiles), 1, "bands", err));
+        TRY(mem_calloc(&canvas->band, (size_t)pass->grid.n_columns * TILE_SIDE * (size_t)n,
+                       3 * sizeof *canvas->band, "bands", err));
+        TRY(mem_calloc(&canvas->wanted, fieldtiles_columns(picture->tiles), 1, "bands", err));
     }
     *prepared_s += clock_seconds() - start_s;
     threads_for(((size_t)picture->rows->rows + TILE_SIDE - 1) / TILE_SIDE, picture->workers, body,
                 picture);
-    for (int i = 0; i < picture->workers && status == STATUS_OK; i++) {
-        status = picture->canvases[i].status;
-        if (status != STATUS_OK && err)
-            *err = picture->canvases[i].err;
-    }
-done:
-    fieldtiles_free(picture->tiles);
-    picture->tiles = NULL;
-    free(columns);
-    free(rows);
-    return status;
+    for (int i = 0; i < picture->workers; i++)
+        if (picture->canvases[i].status != STATUS_OK) {
+            if (err)
+                *err = picture->canvases[i].err;
+            return picture->canvases[i].status;
+        }
+    return STATUS_OK;
 }
 
 static Status prepare_canvases(FieldPicture *picture, Err *err)
@@ -450,7 +476,7 @@ static Status prepare_canvases(FieldPicture *picture, Err *err)
 }
 
 /* The second pass, over all pixels or those that differ from their neighbours. */
-static Status antialias(FieldPicture *picture, double *prepared_s, Err *err)
+static Status antialias(FieldPicture *picture, FieldPass *pass, double *prepared_s, Err *err)
 {
     Status status;
     const RenderParams *params = picture->params;
@@ -464,7 +490,7 @@ static Status antialias(FieldPicture *picture, double *prepared_s, Err *err)
         resample_mask(color, picture->rows->above, picture->rows->below,
                       (float)params->antialias_threshold, picture->workers, picture->mask);
     }
-    TRY_GOTO(run_pass(picture, params->antialias, offsets, trace_further, prepared_s, err));
+    TRY_GOTO(run_pass(picture, params->antialias, offsets, pass, trace_further, prepared_s, err));
 done:
     free(offsets);
     return status;
@@ -483,7 +509,7 @@ static void release(FieldPicture *picture)
 }
 
 Status fieldrender(const Scene *scene, const RenderParams *params, Caster *caster, const Band *rows,
-                   Frame *frame, RenderStats *stats, Err *err)
+                   FieldPrepared *prepared, Frame *frame, RenderStats *stats, Err *err)
 {
     Status status;
     FieldPicture picture = {
@@ -501,9 +527,9 @@ Status fieldrender(const Scene *scene, const RenderParams *params, Caster *caste
     TRY_GOTO(tilelook_make(scene, camera->location, axes, &picture.lights, &picture.look, err));
     TRY_GOTO(prepare_canvases(&picture, err));
     double prepared_s = clock_seconds() - start_s;
-    TRY_GOTO(run_pass(&picture, 1, &center, trace_centers, &prepared_s, err));
+    TRY_GOTO(run_pass(&picture, 1, &center, &prepared->center, trace_centers, &prepared_s, err));
     if (params->antialias > 1 && frame->color.values)
-        TRY_GOTO(antialias(&picture, &prepared_s, err));
+        TRY_GOTO(antialias(&picture, &prepared->further, &prepared_s, err));
     stats->prepare_s += prepared_s;
     stats->trace_s += clock_seconds() - start_s - prepared_s;
 done:

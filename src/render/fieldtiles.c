@@ -41,7 +41,6 @@ struct FieldTiles {
     bool perspective;
     double z_min;
     double *x, *y; /* of the grid's columns and rows, in the camera's plane */
-    double y_top;  /* of the picture's first row of samples */
     double step_x, step_y;
     TilePlaces *tile_x, *tile_y;
     int tile_columns, tile_rows;
@@ -74,13 +73,12 @@ static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
 }
 
 /* The samples, and then the tiles, within a range of the camera's plane, one of whose directions has
- * samples from `first` on in steps of `step`: `skipped` of them first, which do not count, and then
- * `count`. A thousandth of a step covers rounding. */
-static TileSpan tiles_within(Range range, double first, double step, int skipped, int count)
+ * `count` samples from `first` on in steps of `step`. A thousandth of a step covers rounding. */
+static TileSpan tiles_within(Range range, double first, double step, int count)
 {
     double from = (range.low - first) / step, to = (range.high - first) / step;
-    double low = max_of(min_of(from, to) - 1e-3 - skipped, 0);
-    double high = max_of(from, to) + 1e-3 - skipped;
+    double low = max_of(min_of(from, to) - 1e-3, 0);
+    double high = max_of(from, to) + 1e-3;
     if (!(low <= count - 1) || !(high >= low))
         return (TileSpan){1, 0};
     int begin = (int)low, end = (int)min_of(high, count - 1);
@@ -105,7 +103,7 @@ static TileSpan rows_of(const FieldTiles *tiles, const FrameSegment *segment)
     if (side > 0)
         range = capsule_shadow(tiles, segment->a.y, segment->a.z, segment->b.y, segment->b.z,
                                segment->reach);
-    return tiles_within(range, tiles->y_top, tiles->step_y, tiles->grid.above, tiles->grid.n_rows);
+    return tiles_within(range, tiles->y[0], tiles->step_y, tiles->grid.n_rows);
 }
 
 enum { CHUNK = 2048 };
@@ -173,7 +171,6 @@ static void place_grid(FieldTiles *tiles)
         tiles->x[i] = ((grid->columns[i] + 0.5) / camera->width - 0.5) * tiles->width;
     for (int j = 0; j < grid->n_rows; j++)
         tiles->y[j] = row_height(tiles, grid->rows[j]);
-    tiles->y_top = row_height(tiles, grid->above ? grid->top : grid->rows[0]);
     tiles->step_x = grid->spacing / camera->width * tiles->width;
     tiles->step_y = -grid->spacing / camera->height * tiles->height;
 }
@@ -332,7 +329,7 @@ static TileSpan columns_of(const FieldTiles *tiles, const FrameSegment *segment,
     Vec3 first = vec3_add_scaled(segment->a, span, from);
     Vec3 last = vec3_add_scaled(segment->a, span, to);
     Range range = capsule_shadow(tiles, first.x, first.z, last.x, last.z, segment->reach);
-    return tiles_within(range, tiles->x[0], tiles->step_x, 0, tiles->grid.n_columns);
+    return tiles_within(range, tiles->x[0], tiles->step_x, tiles->grid.n_columns);
 }
 
 /* Fills offsets and lists of the row, and makes room for the terms of its longest. */

@@ -12,8 +12,6 @@ typedef struct SampleGrid {
     const double *columns, *rows; /* borrowed */
     int n_columns, n_rows;
     double spacing;
-    int above; /* rows of the picture above these, a multiple of TILE_SIDE; 0 when these begin it */
-    double top; /* where the first of those is */
 } SampleGrid;
 
 /* Constant once built but for the workspaces, one a worker. */

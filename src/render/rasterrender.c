@@ -6,10 +6,7 @@
  * colours of neighbours, and so a second round. */
 #include "render/rasterrender.h"
 
-#include "render/caster.h"
 #include "render/rasterkernels.h"
-#include "render/rastershadow.h"
-#include "render/rasterview.h"
 #include "render/resample.h"
 #include "render/tilelook.h"
 #include <stdlib.h>
@@ -50,7 +47,7 @@ typedef struct RasterPicture {
     const RenderParams *params;
     const Band *band; /* that the frame holds */
     Frame *frame;
-    RasterBins *bins;
+    const RasterBins *bins; /* of the whole picture */
     const RasterKernels *kernels;
     const TileKernels *shading;
     RasterGrid center;
@@ -58,8 +55,8 @@ typedef struct RasterPicture {
     int n_further;
     TileLook look;
     TileLight *lights;
-    RasterShadow **shadows;      /* one a light; NULL where it casts none, or rays do */
-    Caster *caster;              /* for lights too near for a view of their own; NULL without */
+    RasterShadow **shadows;      /* one a light, of RasterPrepared; NULL without shadows */
+    Caster *caster;              /* likewise */
     bool needs_places;           /* rays or lights differ from sample to sample */
     SrgbCodes codes;             /* set if the frame is to have codes */
     float *background;           /* a row of the picture */
@@ -434,10 +431,11 @@ static void draw_row(size_t row, int worker, void *context)
                    (picture->second_round || picture->params->antialias_threshold == 0);
     if (worker == 0)
         band_progress(picture->band, picture->params, camera->height, picture->second_round,
-                      (double)row / bins->tile_rows);
+                      (double)row * TILE_SIDE / picture->band->rows);
     if (canvas->status != STATUS_OK)
         return;
-    canvas->status = rasterbins_list(bins, row, &canvas->row, &canvas->err);
+    int tile_row = picture->band->first / TILE_SIDE + (int)row;
+    canvas->status = rasterbins_list(bins, (size_t)tile_row, &canvas->row, &canvas->err);
     if (canvas->status != STATUS_OK)
         return;
     const uint32_t *offsets = canvas->row.offsets;
@@ -452,7 +450,7 @@ static void draw_row(size_t row, int worker, void *context)
         empty = column + 1;
         Sheet *sheet = &canvas->sheets[canvas->n_sheets];
         sheet->place = place_of(picture, column, (int)row);
-        sheet->tile = rasterbins_tile(bins, column, (int)row, canvas->row.lists + offsets[column],
+        sheet->tile = rasterbins_tile(bins, column, tile_row, canvas->row.lists + offsets[column],
                                       n, &picture->center);
         if (picture->second_round && !any_wants_more(picture, &sheet->place))
             continue;
@@ -466,17 +464,34 @@ static void draw_row(size_t row, int worker, void *context)
 
 /* ---- the picture ----------------------------------------------------------------------------- */
 
-static Status prepare_shadows(RasterPicture *picture, const RasterView *view, Err *err)
+static Status prepare_shadows(const Scene *scene, const RasterView *view, int workers,
+                              RasterPrepared *prepared, Err *err)
 {
-    const Scene *scene = picture->scene;
     bool rays = false;
-    if (!picture->params->shadows || !wants_color(picture->frame))
-        return STATUS_OK;
-    TRY(mem_calloc(&picture->shadows, scene->n_lights, sizeof *picture->shadows, "lights", err));
-    TRY(rastershadows_new(scene, view, picture->workers, picture->shadows, err));
+    TRY(mem_calloc(&prepared->shadows, scene->n_lights, sizeof *prepared->shadows, "lights", err));
+    prepared->n_lights = scene->n_lights;
+    TRY(rastershadows_new(scene, view, workers, prepared->shadows, err));
     for (size_t i = 0; i < scene->n_lights; i++)
-        rays |= scene->lights[i].casts_shadows && !picture->shadows[i];
-    return rays ? caster_new(scene, NULL, picture->workers, &picture->caster, err) : STATUS_OK;
+        rays |= scene->lights[i].casts_shadows && !prepared->shadows[i];
+    return rays ? caster_new(scene, NULL, workers, &prepared->caster, err) : STATUS_OK;
+}
+
+static Status prepare(const Scene *scene, const RasterView *view, bool shadows, int workers,
+                      RasterPrepared *prepared, Err *err)
+{
+    if (shadows)
+        TRY(prepare_shadows(scene, view, workers, prepared, err));
+    return rasterbins_new(scene, view, workers, &prepared->bins, err);
+}
+
+void rasterprepared_release(RasterPrepared *prepared)
+{
+    for (size_t i = 0; i < prepared->n_lights; i++)
+        rastershadow_free(prepared->shadows[i]);
+    free(prepared->shadows);
+    caster_free(prepared->caster);
+    rasterbins_free(prepared->bins);
+    *prepared = (RasterPrepared){0};
 }
 
 static Status make_background(const RasterPicture *picture, int samples, float **row, Err *err)
@@ -552,7 +567,8 @@ static Status prepare_canvases(RasterPicture *picture, Err *err)
 
 static Status draw_rows(RasterPicture *picture, Err *err)
 {
-    threads_for((size_t)picture->bins->tile_rows, picture->workers, draw_row, picture);
+    threads_for(((size_t)picture->band->rows + TILE_SIDE - 1) / TILE_SIDE, picture->workers,
+                draw_row, picture);
     for (int i = 0; i < picture->workers; i++)
         if (picture->canvases[i].status != STATUS_OK) {
             if (err)
@@ -583,10 +599,6 @@ static void release(RasterPicture *picture)
             rasterqueue_free(canvas->queues[light]);
         free(canvas->queues);
     }
-    for (size_t i = 0; picture->shadows && i < picture->scene->n_lights; i++)
-        rastershadow_free(picture->shadows[i]);
-    free(picture->shadows);
-    caster_free(picture->caster);
     free(picture->canvases);
     free(picture->further);
     free(picture->lights);
@@ -594,15 +606,14 @@ static void release(RasterPicture *picture)
     free(picture->background_codes);
     free(picture->resampled_background);
     free(picture->mask);
-    rasterbins_free(picture->bins);
 }
 
-Status rasterrender(const Scene *scene, const RenderParams *params, const Band *band, Frame *frame,
-                    RenderStats *stats, Err *err)
+Status rasterrender(const Scene *scene, const RenderParams *params, const Band *band,
+                    RasterPrepared *prepared, Frame *frame, RenderStats *stats, Err *err)
 {
     Status status;
     RasterPicture picture = {.scene = scene, .params = params, .band = band, .frame = frame};
-    RasterView view = rasterview_of_camera(scene, band->first, band->rows, params->antialias);
+    RasterView view = rasterview_of_camera(scene, 0, scene->camera.height, params->antialias);
     double start_s = clock_seconds();
     picture.workers = params->threads > 0 ? params->threads : threads_available();
     picture.kernels = rasterkernels[kernels_kind(params->kernels)];
@@ -613,9 +624,13 @@ Status rasterrender(const Scene *scene, const RenderParams *params, const Band *
     TRY_GOTO(make_background(&picture, 1, &picture.background, err));
     TRY_GOTO(make_codes(&picture, err));
     TRY_GOTO(make_background(&picture, picture.n_further + 1, &picture.resampled_background, err));
-    TRY_GOTO(prepare_shadows(&picture, &view, err));
+    if (!prepared->bins)
+        TRY_GOTO(prepare(scene, &view, params->shadows && wants_color(frame), picture.workers,
+                         prepared, err));
+    picture.bins = prepared->bins;
+    picture.shadows = prepared->shadows;
+    picture.caster = prepared->caster;
     TRY_GOTO(prepare_canvases(&picture, err));
-    TRY_GOTO(rasterbins_new(scene, &view, picture.workers, &picture.bins, err));
     double prepared_s = clock_seconds() - start_s;
     TRY_GOTO(draw_rows(&picture, err));
     if (picture.n_further > 0 && params->antialias_threshold > 0 && frame->color.values)
@@ -624,5 +639,7 @@ Status rasterrender(const Scene *scene, const RenderParams *params, const Band *
     stats->trace_s += clock_seconds() - start_s - prepared_s;
 done:
     release(&picture);
+    if (status != STATUS_OK)
+        rasterprepared_release(prepared);
     return status;
 }

@@ -23,6 +23,13 @@ struct Renderer {
     Caster
         *caster; /* NULL when the potential is drawn and nothing asks what is in the way of light */
     RenderStats stats;
+    /* What bands have in common, of this camera, these lights and this antialiasing. */
+    RasterPrepared raster;
+    FieldPrepared field;
+    Camera camera;
+    Light *lights; /* owned */
+    size_t n_lights;
+    int antialias;
 };
 
 typedef struct Job {
@@ -219,11 +226,46 @@ Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **o
     return STATUS_OK;
 }
 
+static void forget(Renderer *renderer)
+{
+    rasterprepared_release(&renderer->raster);
+    fieldprepared_release(&renderer->field);
+}
+
 void renderer_free(Renderer *renderer)
 {
-    if (renderer)
-        caster_free(renderer->caster);
+    if (!renderer)
+        return;
+    forget(renderer);
+    free(renderer->lights);
+    caster_free(renderer->caster);
     free(renderer);
+}
+
+/* What earlier bands had in common is forgotten if it is not of today's camera, lights and antialiasing. */
+static Status look_again(Renderer *renderer, Err *err)
+{
+    const Scene *scene = renderer->scene;
+    size_t size = scene->n_lights * sizeof *scene->lights;
+    bool same = renderer->n_lights == scene->n_lights &&
+                renderer->antialias == renderer->params.antialias &&
+                memcmp(&renderer->camera, &scene->camera, sizeof scene->camera) == 0 &&
+                (size == 0 || memcmp(renderer->lights, scene->lights, size) == 0);
+    if (same)
+        return STATUS_OK;
+    forget(renderer);
+    free(renderer->lights);
+    renderer->lights = NULL;
+    renderer->n_lights = 0;
+    renderer->antialias = 0; /* of no picture */
+    TRY(mem_calloc(&renderer->lights, scene->n_lights, sizeof *scene->lights, "lights", err));
+    if (size > 0)
+        memcpy(renderer->lights, scene->lights, size);
+    renderer->n_lights = scene->n_lights;
+    renderer->antialias = renderer->params.antialias;
+    memcpy(&renderer->camera, &scene->camera, sizeof scene->camera);
+    renderer->stats.preparations++;
+    return STATUS_OK;
 }
 
 void renderer_antialias(Renderer *renderer, int antialias)
@@ -259,11 +301,14 @@ static Status draw(Renderer *renderer, const Band *band, Frame *frame, Err *err)
     bool tiles = is_traced(renderer) ? is_field(renderer) : params->method == RENDER_RASTER;
     bool codes = params->codes_suffice && params->antialias == 1 && tiles;
     TRY(make_planes(renderer->scene->camera.width, band->rows, params, codes, frame, err));
+    TRY(look_again(renderer, err));
+    if (!is_traced(renderer) && params->method == RENDER_RASTER)
+        return rasterrender(renderer->scene, params, band, &renderer->raster, frame,
+                            &renderer->stats, err);
     if (!is_traced(renderer))
-        return (params->method == RENDER_RASTER ? rasterrender : zbuffer_render)(
-            renderer->scene, params, band, frame, &renderer->stats, err);
+        return zbuffer_render(renderer->scene, params, band, frame, &renderer->stats, err);
     if (is_field(renderer))
-        return fieldrender(renderer->scene, &renderer->params, renderer->caster, band, frame,
+        return fieldrender(renderer->scene, params, renderer->caster, band, &renderer->field, frame,
                            &renderer->stats, err);
     TRY(rayrender(renderer, band, frame, err));
     renderer->stats.trace_s += clock_seconds() - start_s;

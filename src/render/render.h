@@ -60,6 +60,8 @@ typedef struct RenderStats {
     double
         cpu_s; /* of all threads, for both: trace_s when nothing else runs is about cpu_s / threads */
     size_t rays; /* primary */
+    size_t
+        preparations; /* how often camera, lights or antialiasing were not those of the band before */
 } RenderStats;
 
 /* Bands begin at multiples of so many rows. */
@@ -68,9 +70,10 @@ enum { RENDER_BAND_STEP = 8 };
 /* A scene made ready to be drawn, whole or band by band. */
 typedef struct Renderer Renderer;
 
-/* Builds what the geometry needs; the scene is borrowed, and `params` as long as this call. Until
+/* Builds what rays need of the geometry; the scene is borrowed, and `params` as long as this call. Until
  * renderer_free, camera, lights and colours of the scene may change between calls, geometry may
- * not. STATUS_USAGE when this processor cannot run the kernels; STATUS_MEMORY. */
+ * not. What tiles need is built with the first rows, and anew only where camera, lights or antialiasing
+ * have changed. STATUS_USAGE when this processor cannot run the kernels; STATUS_MEMORY. */
 MUST_CHECK Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **out,
                                Err *err);
 void renderer_free(Renderer *renderer);

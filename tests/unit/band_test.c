@@ -136,6 +136,54 @@ static void bands_of_tiles_have_the_bytes_of_the_whole(void **state)
         }
 }
 
+/* Draws the first rows twice and tells how often they were prepared in all. */
+static size_t prepared(Renderer *renderer, Frame *rows)
+{
+    assert_int_equal(renderer_rows(renderer, 0, 8, rows, &err), STATUS_OK);
+    frame_release(rows);
+    assert_int_equal(renderer_rows(renderer, 0, 8, rows, &err), STATUS_OK);
+    return renderer_stats(renderer).preparations;
+}
+
+static void assert_rows_of_today(const Scene *scene, const RenderParams *params, Frame *rows)
+{
+    Frame whole;
+    assert_int_equal(render(scene, params, &whole, NULL, &err), STATUS_OK);
+    assert_same_rows(&whole, rows, 0);
+    frame_release(&whole);
+    frame_release(rows);
+}
+
+static void what_bands_have_in_common_is_made_anew_for_another_view_alone(void **state)
+{
+    (void)state;
+    static const SceneModel models[] = {SCENE_JOINED, SCENE_ISOSURFACE};
+    look.ground.present = false;
+    for (size_t i = 0; i < 2; i++) {
+        Scene scene = staged(models[i], PROJECTION_ORTHOGRAPHIC);
+        RenderParams params = all_planes(1, 0);
+        Renderer *renderer;
+        Frame rows;
+        params.method = RENDER_RASTER;
+        params.shadows = true;
+        assert_int_equal(renderer_new(&scene, &params, &renderer, &err), STATUS_OK);
+        assert_int_equal(prepared(renderer, &rows), 1);
+        assert_rows_of_today(&scene, &params, &rows);
+        scene.camera.location = vec3_add_scaled(scene.camera.location, scene.camera.right, 0.125);
+        assert_int_equal(prepared(renderer, &rows), 2);
+        assert_rows_of_today(&scene, &params, &rows);
+        scene.lights[0].location = vec3_add_scaled(scene.lights[0].location, scene.camera.up, 3);
+        assert_int_equal(prepared(renderer, &rows), 3);
+        assert_rows_of_today(&scene, &params, &rows);
+        params.antialias = 2;
+        renderer_antialias(renderer, 2);
+        assert_int_equal(prepared(renderer, &rows), 4);
+        assert_rows_of_today(&scene, &params, &rows);
+        renderer_free(renderer);
+        scene_release(&scene);
+    }
+}
+
 /* As POV-Ray sees it. */
 static void bands_of_povrays_view_have_the_bytes_of_the_whole(void **state)
 {
@@ -191,6 +239,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bands_have_the_bytes_of_the_whole),
         cmocka_unit_test(bands_of_tiles_have_the_bytes_of_the_whole),
+        cmocka_unit_test(what_bands_have_in_common_is_made_anew_for_another_view_alone),
         cmocka_unit_test(bands_of_povrays_view_have_the_bytes_of_the_whole),
         cmocka_unit_test(progress_rises_from_band_to_band),
     };

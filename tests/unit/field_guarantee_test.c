@@ -196,7 +196,7 @@ static void keep_answer(const SeenTile *seen, int worker, void *context)
 static void ask(const Scene *scene, const TileKernels *kernels, Answer *answer)
 {
     const double places[] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const SampleGrid grid = {places, places, 8, 8, 1, 0, 0};
+    const SampleGrid grid = {places, places, 8, 8, 1};
     FieldTiles *tiles;
     assert_int_equal(fieldtiles_new(scene, &grid, 1e-4, 1, &tiles, NULL), STATUS_OK);
     fieldtiles_use_kernels(tiles, kernels);
