@@ -7,7 +7,6 @@
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const char *const models[] = {
     [SCENE_CYLINDERS] = "cylinders",   [SCENE_JOINED] = "joined", [SCENE_ROUNDED] = "rounded",
@@ -104,8 +103,9 @@ static Status check_camera(const PictureOptions *options, Err *err)
         return err_set(err, STATUS_USAGE, "--look-at needs --location");
     if (options->potential && options->model != SCENE_ISOSURFACE)
         return err_set(err, STATUS_USAGE, "--potential is for --model isosurface");
-    if (stage->has_up && !(vec3_length(stage->up) > 0))
-        return err_set(err, STATUS_USAGE, "--up: the vector must not be zero");
+    if (stage->has_up && !(vec3_length(stage->up) > 0 && isfinite(vec3_length(stage->up))))
+        return err_set(err, STATUS_USAGE,
+                       "--up: the vector must have a length from 1e-150 to 1e150");
     if (options->has_joints && options->model != SCENE_JOINED)
         return err_set(err, STATUS_USAGE, "--joints is for --model joined");
     return STATUS_OK;
@@ -252,7 +252,7 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
 Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
 {
     double needed = (double)width * height * bytes_a_pixel;
-    double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGE_SIZE);
+    double memory = mem_of_machine();
     if (needed < 0.9 * memory)
         return STATUS_OK;
     return err_set(err, STATUS_MEMORY,

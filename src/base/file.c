@@ -127,8 +127,10 @@ static Status read_blocks(FILE *stream, const char *name, const FileForm *form, 
     char block[1 << 16];
     size_t count;
     struct stat about;
-    if (fstat(fileno(stream), &about) == 0 && S_ISREG(about.st_mode))
+    if (fstat(fileno(stream), &about) == 0 && S_ISREG(about.st_mode)) {
         TRY(check_size(name, form, (double)about.st_size, err));
+        TRY(mem_check((double)about.st_size, name, err));
+    }
     do {
         count = fread(block, 1, sizeof block, stream);
         if (all->length == 0 && form->begins && !form->begins(block, count))

@@ -1,5 +1,7 @@
 #include "base/memory.h"
 
+#include "base/text.h"
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,6 +21,22 @@ static void prefer_huge_pages(void *memory, size_t size)
     uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), skip = (uintptr_t)memory % page;
     if (size >= huge)
         (void)madvise((char *)memory - skip, size + skip, MADV_HUGEPAGE);
+}
+
+double mem_of_machine(void)
+{
+    double bytes = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    return bytes > 0 ? bytes : (double)INFINITY;
+}
+
+Status mem_check(double bytes, const char *name, Err *err)
+{
+    char needs[BYTES_TEXT_SIZE], has[BYTES_TEXT_SIZE];
+    double machine = mem_of_machine();
+    if (bytes <= machine)
+        return STATUS_OK;
+    return err_set(err, STATUS_MEMORY, "%s: out of memory: needs %s, and this machine has %s", name,
+                   bytes_text(bytes, needs), bytes_text(machine, has));
 }
 
 Status mem_calloc(void *out, size_t count, size_t size, const char *what, Err *err)

@@ -8,6 +8,7 @@
 #include <nifti2_io.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 Status mask_init(Mask *mask, const char *path, const int64_t n[3], Err *err)
@@ -28,7 +29,7 @@ Status mask_init(Mask *mask, const char *path, const int64_t n[3], Err *err)
 Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err)
 {
     Picture picture = {0};
-    TRY(picture_read(&picture, path, err));
+    TRY(picture_read_mask(&picture, path, err));
     const int64_t n[3] = {picture.width, picture.height, 1};
     Status status = mask_init(mask, path, n, err);
     if (status == STATUS_OK) {
@@ -87,6 +88,24 @@ static void place(Mask *mask, const nifti_image *image)
     }
 }
 
+static Status ends_early(const char *path, const nifti_image *image, Err *err)
+{
+    return err_set(err, STATUS_INPUT, "%s: ends before all of its %lld x %lld x %lld voxels", path,
+                   (long long)image->nx, (long long)image->ny, (long long)image->nz);
+}
+
+/* No size that the header claims is believed before it is held against that of the file. */
+static Status check_size(const char *path, const nifti_image *image, Err *err)
+{
+    enum { DEFLATE_MAX_RATIO = 1032 };
+    double needed = (double)image->nvox * image->nbyper;
+    struct stat about;
+    double found = stat(path, &about) == 0 ? (double)about.st_size : 0;
+    if (needed > found * (nifti_is_gzfile(path) ? DEFLATE_MAX_RATIO : 1))
+        return ends_early(path, image, err);
+    return mem_check(needed, path, err);
+}
+
 static Status load_voxels(const char *path, nifti_image *image, Err *err)
 {
     int64_t size = image->nvox * image->nbyper;
@@ -96,15 +115,13 @@ static Status load_voxels(const char *path, nifti_image *image, Err *err)
                  znzseek(file, (znz_off_t)image->iname_offset, SEEK_SET) >= 0 &&
                  nifti_read_buffer(file, image->data, size, image) == size;
     znzclose(file);
-    if (!whole)
-        return err_set(err, STATUS_INPUT, "%s: ends before all of its %lld x %lld x %lld voxels",
-                       path, (long long)image->nx, (long long)image->ny, (long long)image->nz);
-    return STATUS_OK;
+    return whole ? STATUS_OK : ends_early(path, image, err);
 }
 
 static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err *err)
 {
     const int64_t n[3] = {image->nx, image->ny, image->nz};
+    TRY(check_size(path, image, err));
     TRY(mask_init(mask, path, n, err));
     size_t count = (size_t)image->nvox;
     if (count != (size_t)n[0] * (size_t)n[1] * (size_t)n[2])

@@ -9,6 +9,7 @@ typedef struct ImageBytes {
     const char *name;
     const uint8_t *bytes;
     size_t size;
+    bool for_mask; /* as picture_read_mask reads it */
 } ImageBytes;
 
 /* STATUS_INPUT unless both sides, as a header states them, are in [1, IMAGE_MAX_SIDE]. */

@@ -6,7 +6,6 @@
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 Status image_check_sides(const char *name, long long width, long long height, Err *err)
 {
@@ -18,8 +17,8 @@ Status image_check_sides(const char *name, long long width, long long height, Er
 
 Status image_check_memory(int width, int height, size_t bytes, Err *err)
 {
-    double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-    if (machine > 0 && (double)bytes > machine)
+    double machine = mem_of_machine();
+    if ((double)bytes > machine)
         return err_set(err, STATUS_MEMORY,
                        "out of memory: an image of %d x %d pixels needs %.1f GB, and this machine "
                        "has %.1f GB",

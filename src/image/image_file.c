@@ -35,7 +35,7 @@ static const char *name_of(const char *path)
     return strcmp(path, "-") ? path : "standard input";
 }
 
-Status image_read(Image *image, const char *path, Err *err)
+static Status read_image(Image *image, const char *path, bool for_mask, Err *err)
 {
     static const FileForm form = {.name = "a PPM, PGM, PFM, PNG, TIFF or OpenEXR file",
                                   .most_bytes = 16e9,
@@ -43,7 +43,7 @@ Status image_read(Image *image, const char *path, Err *err)
     char *bytes;
     size_t size;
     TRY(file_read(path, &form, &bytes, &size, err));
-    ImageBytes file = {name_of(path), (const uint8_t *)bytes, size};
+    ImageBytes file = {name_of(path), (const uint8_t *)bytes, size, for_mask};
     Image made = {0};
     Status status = decode(&file, &made, err);
     free(bytes);
@@ -52,10 +52,15 @@ Status image_read(Image *image, const char *path, Err *err)
     return status;
 }
 
-Status picture_read(Picture *picture, const char *path, Err *err)
+Status image_read(Image *image, const char *path, Err *err)
+{
+    return read_image(image, path, false, err);
+}
+
+static Status read_picture(Picture *picture, const char *path, bool for_mask, Err *err)
 {
     Image image;
-    TRY(image_read(&image, path, err));
+    TRY(read_image(&image, path, for_mask, err));
     if (image.plane.values) {
         image_release(&image);
         return err_set(err, STATUS_INPUT,
@@ -63,6 +68,16 @@ Status picture_read(Picture *picture, const char *path, Err *err)
     }
     *picture = image.picture;
     return STATUS_OK;
+}
+
+Status picture_read(Picture *picture, const char *path, Err *err)
+{
+    return read_picture(picture, path, false, err);
+}
+
+Status picture_read_mask(Picture *picture, const char *path, Err *err)
+{
+    return read_picture(picture, path, true, err);
 }
 
 Status plane_read(Plane *plane, const char *path, Err *err)

@@ -5,6 +5,7 @@
  * What a header claims is bounded before allocation. */
 #include "image/formats.h"
 
+#include <errno.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
@@ -67,6 +68,19 @@ static Status allocate_rows(Reader *self, int height, size_t row_size)
     return STATUS_OK;
 }
 
+/* Alpha is the last of a pixel's samples, its high byte first. */
+static void take_opacity(Reader *self, int samples)
+{
+    Picture *picture = &self->picture;
+    size_t sample = picture->bits == 16 ? 2 : 1, next = 0;
+    for (int y = 0; y < picture->height; y++)
+        for (int x = 0; x < picture->width; x++) {
+            const uint8_t *alpha = self->rows[y] + (size_t)((x + 1) * samples - 1) * sample;
+            for (int c = 0; c < picture->channels; c++)
+                picture_set(picture, next++, *alpha < 128 ? 0 : 255);
+        }
+}
+
 /* Takes the rows, of `samples` samples a pixel, into the picture, which has no alpha. */
 static Status take_rows(Reader *self, int samples)
 {
@@ -82,6 +96,8 @@ static Status take_rows(Reader *self, int samples)
                 at += deep ? 2 : 1;
                 if (c < picture->channels)
                     picture_set(picture, next++, value);
+                else if (value != opaque && self->file.for_mask)
+                    return take_opacity(self, samples), STATUS_OK;
                 else if (value != opaque)
                     return err_set(self->err, STATUS_INPUT,
                                    "%s: is transparent at column %d, row %d; only opaque pictures "
@@ -293,9 +309,11 @@ static void put_rows(Writer *self, const void *values, int n)
     }
 }
 
+/* Of what the stream refuses, libpng says nothing more. */
 static Status failed(const Writer *self, Err *err)
 {
-    return err_set(err, STATUS_IO, "writing the PNG failed: %s", self->complaint.text);
+    return err_set(err, STATUS_IO, "writing the PNG failed: %s",
+                   ferror(self->stream) ? strerror(errno) : self->complaint.text);
 }
 
 static Status begin_guarded(Writer *self, Err *err)

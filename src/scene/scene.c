@@ -133,12 +133,6 @@ static Status check_tube(Vec3 a, Vec3 b, double radius, uint32_t id, Err *err)
 Status scene_check(const Scene *scene, Err *err)
 {
     const Camera *camera = &scene->camera;
-    if (!vec3_finite(camera->location) || !vec3_finite(camera->right) || !vec3_finite(camera->up) ||
-        !(vec3_length(camera->direction) > 0) || !(vec3_length(camera->right) > 0) ||
-        !(vec3_length(camera->up) > 0))
-        return err_set(err, STATUS_INPUT, "the camera has no direction or no extent");
-    if (scene->ground.present && !isfinite(scene->ground.offset_mm))
-        return err_set(err, STATUS_INPUT, "the ground has no place");
     for (size_t i = 0; i < scene->n_primitives; i++) {
         const Primitive *primitive = &scene->primitives[i];
         TRY(check_tube(primitive->a, primitive->b, primitive->radius_mm, primitive->id, err));
@@ -152,5 +146,11 @@ Status scene_check(const Scene *scene, Err *err)
     if (vec3_length(camera->location) > farthest_mm)
         return err_set(err, STATUS_INPUT, "the camera is farther than %g mm from the origin",
                        farthest_mm);
+    if (!vec3_finite(camera->location) || !vec3_finite(camera->right) || !vec3_finite(camera->up) ||
+        !(vec3_length(camera->direction) > 0) || !(vec3_length(camera->right) > 0) ||
+        !(vec3_length(camera->up) > 0))
+        return err_set(err, STATUS_INPUT, "the camera has no direction or no extent");
+    if (scene->ground.present && !isfinite(scene->ground.offset_mm))
+        return err_set(err, STATUS_INPUT, "the ground has no place");
     return STATUS_OK;
 }

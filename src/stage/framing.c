@@ -28,6 +28,10 @@ static Status camera_axes(const StageParams *params, Vec3 center, Vec3 *directio
     if (params->has_location) {
         Vec3 target = params->has_look_at ? params->look_at : center;
         Vec3 span = vec3_sub(target, params->location);
+        if (!isfinite(vec3_length(span)))
+            return err_set(err, STATUS_USAGE,
+                           "--location and --look-at (%s) are farther apart than 1e150 mm",
+                           params->has_look_at ? "given" : "the middle of the tree");
         if (!(vec3_length(span) > 0))
             return err_set(err, STATUS_USAGE,
                            "--location and --look-at are the same point, so the camera has no "

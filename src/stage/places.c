@@ -5,12 +5,9 @@
 
 #include <stdlib.h>
 
-/* POV-Ray refuses cylinders shorter than this [docs/POVRAY.md]. */
-static const double shortest_mm = 1e-9;
-
 static bool has_length(const Tree *tree, size_t i)
 {
-    return tree_segment_length(tree, i) > shortest_mm;
+    return tree_segment_length(tree, i) > SHORTEST_MM;
 }
 
 bool segment_can_be_drawn(const Tree *tree, size_t i)
@@ -28,7 +25,7 @@ static void find_covers(const Tree *tree, int32_t *last, int32_t *previous, int3
         int32_t self = (int32_t)i, *youngest = &last[tree->parent[i]];
         for (int32_t sister = *youngest; sister >= 0; sister = previous[sister]) {
             if (cover[sister] >= 0 ||
-                vec3_distance(tree->position[i], tree->position[sister]) > shortest_mm)
+                vec3_distance(tree->position[i], tree->position[sister]) > SHORTEST_MM)
                 continue;
             bool thicker = tree->radius_mm[i] > tree->radius_mm[sister];
             cover[thicker ? sister : self] = thicker ? self : sister;

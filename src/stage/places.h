@@ -5,6 +5,9 @@
 #include "base/base.h"
 #include "tree/tree.h"
 
+/* POV-Ray refuses cylinders shorter than this [docs/POVRAY.md]. */
+#define SHORTEST_MM 1e-9
+
 typedef struct Places {
     int32_t
         *cover; /* one a node: the sister within whose segment its own lies, or TREE_NO_PARENT */

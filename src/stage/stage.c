@@ -291,7 +291,9 @@ Status stage_scene(const Tree *tree, const Look *look, const Rgb *colors, const 
     }
     if (counted.drawn == 0)
         return err_set(err, STATUS_INPUT,
-                       "the tree has nothing to draw: no segment has both a length and a radius");
+                       "the tree has nothing to draw: no segment is longer than %g mm and has a "
+                       "radius above 0",
+                       SHORTEST_MM);
     built.drawn = counted.drawn;
     const Paint paint = {colors, look->color};
     Status status = add_geometry(tree, &paint, params, &built, &counted, err);

@@ -177,4 +177,65 @@ test_a_name_that_templates_lack_is_answered_with_those_there_are() {
     expect_sentence "--look: 'nosuch' is not cast or print"
 }
 
+# A letter, black on nothing, and the same in white on black.
+test_the_mask_of_a_transparent_png_is_what_is_opaque() {
+    printf 'P1\n9 9\n1 1 1 1 1 1 1 1 1\n1 1 1 1 1 1 1 1 1\n0 0 0 1 1 1 0 0 0\n0 0 0 1 1 1 0 0 0\n' >letter.pbm
+    printf '0 0 0 1 1 1 0 0 0\n0 0 0 1 1 1 0 0 0\n0 0 0 1 1 1 0 0 0\n1 1 1 1 1 1 1 1 1\n1 1 1 1 1 1 1 1 1\n' >>letter.pbm
+    pnminvert letter.pbm | pnmtopng -force >opaque.png 2>/dev/null
+    pnmdepth 255 letter.pbm 2>/dev/null | pnminvert >white.pgm
+    pgmmake 0 9 9 >black.pgm
+    pnmtopng -force -alpha=white.pgm black.pgm >clear.png 2>/dev/null
+    cp opaque.png letter.png
+    run_ok corcast grow --terminals 9 --domain mask:letter.png,2.5 -o opaque.swc
+    cp clear.png letter.png
+    run_ok corcast grow --terminals 9 --domain mask:letter.png,2.5 -o clear.swc
+    expect_same opaque.swc clear.swc
+    run corcast compare clear.png clear.png
+    expect_status 2
+    expect_sentence 'is transparent at column'
+}
+
+test_a_truncated_stl_is_told_its_size() {
+    { printf '%-80s' title; printf '\004\0\0\0'; head -c 150 /dev/zero; } >body.stl
+    run corcast grow --domain mesh:body.stl -o t.swc
+    expect_status 2
+    expect_sentence 'body\.stl: is no text, and a binary STL file of the 4 triangles that it states has 284 bytes, this one 234'
+}
+
+test_what_is_too_far_or_too_short_to_draw_is_named() {
+    printf '1 1 0 0 0 1 -1\n7 1 0 1e155 0 1 1\n' >far.swc
+    run corcast render far.swc -o p.png
+    expect_status 2
+    expect_sentence 'far\.swc: the segment of node 7 lies farther than 1e\+07 mm from the origin'
+    printf '1 1 0 0 0 1 -1\n2 1 0 1e-30 0 1 1\n' >short.swc
+    run corcast render short.swc -o p.png
+    expect_status 2
+    expect_sentence 'short\.swc: .* no segment is longer than 1e-09 mm and has a radius above 0'
+    run corcast render "$DATA/bifurcation.swc" --location 1e300,0,0 -o p.png
+    expect_status 2
+    expect_sentence '--location and --look-at .* are farther apart than 1e150 mm'
+    run corcast render "$DATA/bifurcation.swc" --up 1e300,0,0 -o p.png
+    expect_status 2
+    expect_sentence '--up: the vector must have a length from 1e-150 to 1e150'
+}
+
+test_a_picture_that_cannot_be_written_says_why() {
+    ln -s /dev/full full.png
+    run corcast render "$DATA/bifurcation.swc" --size 300x300 -o full.png
+    expect_status 3
+    expect_sentence 'No space left on device'
+}
+
+test_a_mask_that_claims_more_voxels_than_its_file_has_is_refused_at_once() {
+    gunzip -c "$DATA/oblique.nii.gz" >mask.nii
+    # dim[1..3], 16-bit numbers at 42: 1600 each; its voxels would have 4 GB
+    printf '\100\006\100\006\100\006' | dd of=mask.nii bs=1 seek=42 conv=notrunc status=none
+    (
+        ulimit -v 1000000
+        run timeout 5 "$CORCAST" grow --domain mask:mask.nii -o t.swc
+        expect_status 2
+        expect_sentence 'mask\.nii: ends before all of its 1600 x 1600 x 1600 voxels'
+    )
+}
+
 run_tests "$@"
