@@ -143,6 +143,11 @@ static Status warn_of_losses(const Scene *scene, const StageReport *report, Join
                 "sharply; these are %s\n",
                 report->places_short, report->places_sharp,
                 joints == JOINTS_PAPER ? "joined all the same" : "drawn round");
+    if (report->places_crowded)
+        fprintf(
+            stderr,
+            "corcast: at %zu places too many vessels meet to be joined; these are drawn round\n",
+            report->places_crowded);
     return STATUS_OK;
 }
 

@@ -3,7 +3,11 @@
  * there, but slowly when vessels leave at a small angle. So each round asks which other end pushes each
  * end furthest, solves the linear system in which only that one does, and starts again from there
  * [policy iteration, Howard 1960]; a few rounds do where thousands of plain ones would not. Where rounds
- * do not settle, plain ones finish. */
+ * do not settle, plain ones finish.
+ *
+ * Where many vessels meet, their ends stand in a binary tree of cones about their axes. A cone from which
+ * no end can push as far as one that is known already is left out; the first to be known is the one
+ * that pushed furthest in the round before. */
 #include "stage/cuts.h"
 
 #include <stdlib.h>
@@ -19,44 +23,178 @@ static const double tolerance =
 typedef struct Push {
     ptrdiff_t mover; /* -1: none */
     double slope, offset;
+    double pushed; /* the t that it asks for */
 } Push;
 
+enum { LEAF_SIZE = 8 };
+
+/* Some ends near to each other. The first child of an inner node is the next one. */
+typedef struct Node {
+    size_t first, n;     /* of the places in `order` */
+    size_t second;       /* child; 0 for a leaf */
+    Vec3 axis;           /* of one of them */
+    double cosine, sine; /* the least and the greatest of the angles that the others make with it */
+    double least_cut, largest_cut, radius; /* the largest */
+} Node;
+
+typedef struct Item {
+    double key; /* to sort by */
+    size_t end;
+} Item;
+
 typedef struct Work {
+    const VesselEnd *ends;
+    double *cut;
     Push *pushes;
     double *next;  /* the right-hand side */
     size_t *path;  /* ends on the way to one that is solved */
     bool *visited; /* they, and those solved */
+    Item *order;
+    Node *nodes;
+    size_t n_nodes;
+    uint64_t steps; /* that are left */
 } Work;
 
-static Push strongest_push(const VesselEnd *ends, size_t n, size_t i, const double *cut,
-                           double *furthest)
+static double sine_of(Vec3 a, Vec3 b)
 {
-    Push best = {-1, 0, 0};
-    *furthest = 0;
-    for (size_t j = 0; j < n; j++) {
-        double sine = vec3_length(vec3_cross(ends[i].axis, ends[j].axis));
-        if (j == i || sine < parallel)
+    return vec3_length(vec3_cross(a, b));
+}
+
+static int by_key(const void *a, const void *b)
+{
+    double one = ((const Item *)a)->key, other = ((const Item *)b)->key;
+    return (one > other) - (one < other);
+}
+
+/* Makes the node of the ends `first` to first + n - 1 in `order`, and those below it. */
+static size_t build_node(Work *work, size_t first, size_t n)
+{
+    size_t index = work->n_nodes++;
+    Node *node = &work->nodes[index];
+    *node = (Node){.first = first,
+                   .n = n,
+                   .axis = work->ends[work->order[first + n / 2].end].axis,
+                   .cosine = 1};
+    Box axes = box_empty();
+    for (size_t k = first; k < first + n; k++) {
+        Vec3 axis = work->ends[work->order[k].end].axis;
+        axes = box_with_ball(axes, axis, 0);
+        node->sine = fmax(node->sine, sine_of(node->axis, axis));
+        node->cosine = fmin(node->cosine, vec3_dot(node->axis, axis));
+    }
+    if (n <= LEAF_SIZE)
+        return index;
+    int longest = box_longest_axis(axes);
+    for (size_t k = first; k < first + n; k++)
+        work->order[k].key = vec3_component(work->ends[work->order[k].end].axis, longest);
+    qsort(work->order + first, n, sizeof *work->order, by_key);
+    build_node(work, first, n / 2);
+    size_t second = build_node(work, first + n / 2, n - n / 2);
+    node->second = second;
+    return index;
+}
+
+/* Brings the nodes up to date with the cuts; a lone one needs it not. */
+static void fit_nodes(Work *work)
+{
+    for (size_t index = work->n_nodes; index-- > 1;) {
+        Node *node = &work->nodes[index];
+        if (node->second) {
+            const Node *a = node + 1, *b = &work->nodes[node->second];
+            node->least_cut = fmin(a->least_cut, b->least_cut);
+            node->largest_cut = fmax(a->largest_cut, b->largest_cut);
+            node->radius = fmax(a->radius, b->radius);
             continue;
-        Push push = {(ptrdiff_t)j, vec3_dot(ends[i].axis, ends[j].axis), ends[j].radius * sine};
-        double pushed = push.slope * cut[j] + push.offset;
-        if (pushed > *furthest) {
-            *furthest = pushed;
-            best = push;
+        }
+        node->least_cut = HUGE_VAL;
+        node->largest_cut = node->radius = 0;
+        for (size_t k = node->first; k < node->first + node->n; k++) {
+            size_t end = work->order[k].end;
+            node->least_cut = fmin(node->least_cut, work->cut[end]);
+            node->largest_cut = fmax(node->largest_cut, work->cut[end]);
+            node->radius = fmax(node->radius, work->ends[end].radius);
         }
     }
+}
+
+/* No end of a node pushes one along an axis further than this; below 0 when all are parallel to it. */
+static double furthest_push(const Node *node, Vec3 axis)
+{
+    double cosine = vec3_dot(axis, node->axis), sine = sine_of(axis, node->axis);
+    double c = node->cosine, s = node->sine;
+    double rounding = 1e-12 * (node->largest_cut + node->radius);
+    if (sine + s < 0.9 * parallel)
+        return -1;
+    if (c <= 0)
+        return node->largest_cut + node->radius + rounding;
+    /* The ends' angles with the axis are between these. */
+    bool from_0 = cosine >= c, to_180 = cosine <= -c;
+    double cosine_from = from_0 ? 1 : cosine * c + sine * s;
+    double sine_from = from_0 ? 0 : sine * c - cosine * s;
+    double cosine_to = to_180 ? -1 : cosine * c - sine * s;
+    double sine_to = to_180 ? 0 : sine * c + cosine * s;
+    bool has_90 = cosine_from >= 0 && cosine_to <= 0;
+    return cosine_from * (cosine_from > 0 ? node->largest_cut : node->least_cut) +
+           node->radius * (has_90 ? 1 : fmax(sine_from, sine_to)) + rounding;
+}
+
+/* Makes *best the push of end j on end i if it is stronger, or as strong and j comes first. */
+static void try_push(Work *work, size_t i, size_t j, Push *best)
+{
+    const VesselEnd *ends = work->ends;
+    work->steps -= work->steps > 0;
+    double sine = sine_of(ends[i].axis, ends[j].axis);
+    if (j == i || sine < parallel)
+        return;
+    Push push = {(ptrdiff_t)j, vec3_dot(ends[i].axis, ends[j].axis), ends[j].radius * sine, 0};
+    push.pushed = push.slope * work->cut[j] + push.offset;
+    if (push.pushed > best->pushed || (push.pushed == best->pushed && push.mover < best->mover))
+        *best = push;
+}
+
+/* Tries those ends of a node that may push end i further than *best. */
+static void try_node(Work *work, size_t index, size_t i, Push *best)
+{
+    const Node *node = &work->nodes[index];
+    if (!node->second) {
+        for (size_t k = node->first; k < node->first + node->n; k++)
+            try_push(work, i, work->order[k].end, best);
+        return;
+    }
+    size_t child[2] = {index + 1, node->second};
+    double furthest[2];
+    work->steps -= work->steps > 0;
+    for (int k = 0; k < 2; k++)
+        furthest[k] = furthest_push(&work->nodes[child[k]], work->ends[i].axis);
+    bool second_first = furthest[1] > furthest[0];
+    for (int turn = 0; turn < 2; turn++) {
+        int k = turn ^ second_first;
+        if (furthest[k] >= best->pushed)
+            try_node(work, child[k], i, best);
+    }
+}
+
+static Push strongest_push(Work *work, size_t i)
+{
+    Push best = {.mover = -1};
+    if (work->pushes[i].mover >= 0)
+        try_push(work, i, (size_t)work->pushes[i].mover, &best);
+    try_node(work, 0, i, &best);
     return best;
 }
 
 /* Finds all pushes and right-hand sides; whether the cuts are the fixed point. */
-static bool find_pushes(const VesselEnd *ends, size_t n, const double *cut, Work *work)
+static bool find_pushes(size_t n, Work *work)
 {
     double largest = 0;
     bool settled = true;
     for (size_t i = 0; i < n; i++)
-        largest = fmax(largest, ends[i].radius);
-    for (size_t i = 0; i < n; i++) {
-        work->pushes[i] = strongest_push(ends, n, i, cut, &work->next[i]);
-        double change = fabs(work->next[i] - cut[i]);
+        largest = fmax(largest, work->ends[i].radius);
+    fit_nodes(work);
+    for (size_t i = 0; i < n && work->steps > 0; i++) {
+        work->pushes[i] = strongest_push(work, i);
+        work->next[i] = work->pushes[i].pushed;
+        double change = fabs(work->next[i] - work->cut[i]);
         settled = settled && change <= tolerance * fmax(largest, work->next[i]);
     }
     return settled;
@@ -77,8 +215,9 @@ static double solve_circle(const Push *pushes, size_t first)
 
 /* Solves t_i = slope_i t[mover_i] + offset_i for all ends. Movers lead to an end that nothing pushes, to
  * one solved before, or around a circle. */
-static void solve_pushes(size_t n, double *cut, Work *work)
+static void solve_pushes(size_t n, Work *work)
 {
+    double *cut = work->cut;
     const Push *pushes = work->pushes;
     memset(work->visited, 0, n * sizeof *work->visited);
     for (size_t start = 0; start < n; start++) {
@@ -103,28 +242,40 @@ static void solve_pushes(size_t n, double *cut, Work *work)
     }
 }
 
-Status cuts_compute(const VesselEnd *ends, size_t n, double *cut, Err *err)
+Status cuts_compute(const VesselEnd *ends, size_t n, double *cut, uint64_t *steps, Err *err)
 {
-    Work work = {0};
+    Work work = {.ends = ends, .cut = cut, .steps = *steps};
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&work.pushes, n, sizeof *work.pushes, "vessel ends", err));
     TRY_GOTO(mem_calloc(&work.next, n, sizeof *work.next, "vessel ends", err));
     TRY_GOTO(mem_calloc(&work.path, n, sizeof *work.path, "vessel ends", err));
     TRY_GOTO(mem_calloc(&work.visited, n, sizeof *work.visited, "vessel ends", err));
+    TRY_GOTO(mem_calloc(&work.order, n, sizeof *work.order, "vessel ends", err));
+    TRY_GOTO(mem_calloc(&work.nodes, n / 2 + 1, sizeof *work.nodes, "vessel ends", err));
     memset(cut, 0, n * sizeof *cut);
+    for (size_t i = 0; i < n; i++) {
+        work.order[i].end = i;
+        work.pushes[i].mover = -1;
+    }
+    build_node(&work, 0, n);
     for (int round = 0; round < SOLVED_ROUNDS + PLAIN_ROUNDS; round++) {
-        bool settled = find_pushes(ends, n, cut, &work);
+        bool settled = find_pushes(n, &work);
+        if (work.steps == 0)
+            break;
         if (settled || round >= SOLVED_ROUNDS)
             memcpy(cut, work.next, n * sizeof *cut);
         else
-            solve_pushes(n, cut, &work);
+            solve_pushes(n, &work);
         if (settled)
             break;
     }
+    *steps = work.steps;
 done:
     free(work.pushes);
     free(work.next);
     free(work.path);
     free(work.visited);
+    free(work.order);
+    free(work.nodes);
     return status;
 }

@@ -18,7 +18,16 @@ static const double sharp_cosine = 0.5;   /* of the angle between trunk and daug
 static const double usable_part = 0.999;  /* of a vessel, for the cuts at its ends */
 static const double straight_part = 1e-6; /* cuts below this part of the radius are none */
 
-typedef enum PlaceKind { PLACE_OPEN, PLACE_JOINED, PLACE_SHORT, PLACE_SHARP } PlaceKind;
+/* Comparisons of vessel ends for the cuts of all places: some seconds. */
+static const uint64_t most_steps = 100000000;
+
+typedef enum PlaceKind {
+    PLACE_OPEN,
+    PLACE_JOINED,
+    PLACE_SHORT,
+    PLACE_SHARP,
+    PLACE_CROWDED
+} PlaceKind;
 
 /* End 2 i is where segment i begins, 2 i + 1 where it ends. */
 typedef struct Builder {
@@ -28,6 +37,7 @@ typedef struct Builder {
     size_t *ends;     /* by place, ascending */
     double *cut;      /* one an end, mm */
     PlaceKind *kinds; /* one a node; of those that stand for a place */
+    uint64_t steps;   /* left of most_steps */
 } Builder;
 
 typedef struct Demand {
@@ -108,8 +118,13 @@ static Status cut_place(Builder *builder, size_t place, VesselEnd *ends, double 
         if (end != trunk && vec3_dot(ends[k].axis, trunk_axis) > sharp_cosine)
             kind = PLACE_SHARP;
     }
-    TRY(cuts_compute(ends, n, cut, err));
     *demand = 0;
+    if (builder->steps > 0)
+        TRY(cuts_compute(ends, n, cut, &builder->steps, err));
+    if (builder->steps == 0) {
+        builder->kinds[place] = PLACE_CROWDED;
+        return STATUS_OK;
+    }
     for (size_t k = 0; k < n; k++) {
         size_t end = builder->ends[first + k];
         builder->cut[end] = cut[k];
@@ -150,7 +165,7 @@ static Status settle_places(Builder *builder, Demand *demands, size_t n, Err *er
     for (size_t d = 0; d < n; d++) {
         size_t place = demands[d].place;
         PlaceKind *kind = &builder->kinds[place];
-        if (*kind != PLACE_OPEN && !cuts_fit(builder, place, made))
+        if (*kind != PLACE_OPEN && *kind != PLACE_CROWDED && !cuts_fit(builder, place, made))
             *kind = PLACE_SHORT;
         for (size_t k = builder->first[place];
              *kind == PLACE_JOINED && k < builder->first[place + 1]; k++)
@@ -189,12 +204,18 @@ done:
     return status;
 }
 
+static bool is_joined(PlaceKind kind, JointForm form)
+{
+    return kind == PLACE_JOINED ||
+           (form == JOINTS_PAPER && (kind == PLACE_SHORT || kind == PLACE_SHARP));
+}
+
 /* Makes the cuts final: none where there is no joint, and never more than the vessel. */
 static void trim_cuts(Builder *builder, JointForm form)
 {
     for (size_t place = 0; place < builder->tree->n; place++) {
         PlaceKind kind = builder->kinds[place];
-        bool joined = kind == PLACE_JOINED || (form == JOINTS_PAPER && kind != PLACE_OPEN);
+        bool joined = is_joined(kind, form);
         for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
             size_t end = builder->ends[k];
             double length = tree_segment_length(builder->tree, end / 2);
@@ -258,9 +279,10 @@ static void add_place(const Builder *builder, const Paint *paint, size_t place, 
     PlaceKind kind = builder->kinds[place];
     report->places_short += kind == PLACE_SHORT;
     report->places_sharp += kind == PLACE_SHARP;
+    report->places_crowded += kind == PLACE_CROWDED;
     if (kind == PLACE_OPEN)
         return;
-    if (kind != PLACE_JOINED && form == JOINTS_ROBUST) {
+    if (!is_joined(kind, form)) {
         add_sphere(builder, paint, place, scene);
         return;
     }
@@ -276,7 +298,7 @@ static void add_place(const Builder *builder, const Paint *paint, size_t place, 
 Status joints_add(const Tree *tree, const Paint *paint, const Places *places, JointForm form,
                   Scene *scene, StageReport *report, Err *err)
 {
-    Builder builder = {.tree = tree, .places = places};
+    Builder builder = {.tree = tree, .places = places, .steps = most_steps};
     Status status = collect_ends(&builder, err);
     if (status == STATUS_OK)
         status = cut_places(&builder, err);

@@ -4,6 +4,7 @@
 #include "stage/places.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static bool has_length(const Tree *tree, size_t i)
 {
@@ -15,47 +16,121 @@ bool segment_can_be_drawn(const Tree *tree, size_t i)
     return tree_is_segment(tree, i) && tree->radius_mm[i] > 0 && has_length(tree, i);
 }
 
-/* Compares each segment with its elder sisters, which are kept in lists, latest first. */
-static void find_covers(const Tree *tree, int32_t *last, int32_t *previous, int32_t *cover)
+/* Uncovered segments in lists, by the node they begin at and the cell of space they end in, so that a node
+ * may have any number of daughters. */
+typedef struct Bins {
+    int32_t *first; /* one a bin; below 0: none */
+    int32_t *next;  /* one a node */
+    size_t mask;    /* their number, a power of 2, less 1 */
+} Bins;
+
+/* Of a cell: so long that most places are clear of its faces, and so short that few fit into one. */
+static const double cell_mm = 16e-9;
+
+static size_t bin_of(const Bins *bins, int32_t parent, const double cell[3])
+{
+    uint64_t hash = (uint64_t)parent;
+    for (int axis = 0; axis < 3; axis++) {
+        uint64_t bits;
+        memcpy(&bits, &cell[axis], sizeof bits);
+        hash = (hash ^ bits) * 0x9e3779b97f4a7c15;
+        hash ^= hash >> 32;
+    }
+    return (size_t)hash & bins->mask;
+}
+
+/* The cell of the point moved by `by` along all axes; zeros have one sign. */
+static void find_cell(Vec3 point, double by, double cell[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        cell[axis] = floor((vec3_component(point, axis) + by) / cell_mm) + 0.0;
+}
+
+/* What leads to the latest of the sisters in the lists that end where segment i does; NULL: none. */
+static int32_t *find_sister(const Tree *tree, const Bins *bins, size_t i)
+{
+    double ends[2][3], cell[3];
+    int32_t *found = NULL;
+    for (int end = 0; end < 2; end++)
+        find_cell(tree->position[i], end ? 2 * SHORTEST_MM : -2 * SHORTEST_MM, ends[end]);
+    for (int corner = 0; corner < 8; corner++) {
+        bool again = false;
+        for (int axis = 0; axis < 3; axis++) {
+            int end = corner >> axis & 1;
+            cell[axis] = ends[end][axis];
+            again = again || (end && ends[0][axis] == ends[1][axis]);
+        }
+        if (again)
+            continue;
+        for (int32_t *link = &bins->first[bin_of(bins, tree->parent[i], cell)]; *link >= 0;
+             link = &bins->next[*link])
+            if (tree->parent[*link] == tree->parent[i] && (!found || *link > *found) &&
+                vec3_distance(tree->position[i], tree->position[*link]) <= SHORTEST_MM)
+                found = link;
+    }
+    return found;
+}
+
+/* Compares each segment with its elder sisters. */
+static void find_covers(const Tree *tree, Bins *bins, int32_t *cover)
 {
     for (size_t i = 0; i < tree->n; i++) {
-        last[i] = cover[i] = TREE_NO_PARENT;
+        cover[i] = TREE_NO_PARENT;
         if (!segment_can_be_drawn(tree, i))
             continue;
-        int32_t self = (int32_t)i, *youngest = &last[tree->parent[i]];
-        for (int32_t sister = *youngest; sister >= 0; sister = previous[sister]) {
-            if (cover[sister] >= 0 ||
-                vec3_distance(tree->position[i], tree->position[sister]) > SHORTEST_MM)
-                continue;
-            bool thicker = tree->radius_mm[i] > tree->radius_mm[sister];
-            cover[thicker ? sister : self] = thicker ? self : sister;
-            break;
+        int32_t self = (int32_t)i, *sister = find_sister(tree, bins, i);
+        if (sister && !(tree->radius_mm[i] > tree->radius_mm[*sister])) {
+            cover[self] = *sister;
+            continue;
         }
-        previous[i] = *youngest;
-        *youngest = self;
+        if (sister) {
+            cover[*sister] = self;
+            *sister = bins->next[*sister];
+        }
+        double cell[3];
+        find_cell(tree->position[i], 0, cell);
+        int32_t *first = &bins->first[bin_of(bins, tree->parent[i], cell)];
+        bins->next[i] = *first;
+        *first = self;
     }
+}
+
+/* The last of the sisters that cover each other from `self` on; shortens the way there. */
+static int32_t outermost(int32_t *cover, int32_t self)
+{
+    for (; cover[self] >= 0; self = cover[self])
+        if (cover[cover[self]] >= 0)
+            cover[self] = cover[cover[self]];
+    return self;
+}
+
+static Status init_bins(Bins *bins, size_t n, Err *err)
+{
+    size_t count = 1;
+    while (count < n)
+        count *= 2;
+    bins->mask = count - 1;
+    TRY(mem_calloc(&bins->first, count, sizeof *bins->first, "nodes", err));
+    memset(bins->first, 0xff, count * sizeof *bins->first);
+    return mem_calloc(&bins->next, n, sizeof *bins->next, "nodes", err);
 }
 
 Status places_find(const Tree *tree, Places *places, Err *err)
 {
-    int32_t *last = NULL, *previous = NULL;
+    Bins bins = {0};
     Places found = {0};
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&last, tree->n, sizeof *last, "nodes", err));
-    TRY_GOTO(mem_calloc(&previous, tree->n, sizeof *previous, "nodes", err));
+    TRY_GOTO(init_bins(&bins, tree->n, err));
     TRY_GOTO(mem_calloc(&found.cover, tree->n, sizeof *found.cover, "nodes", err));
     TRY_GOTO(mem_calloc(&found.place, tree->n, sizeof *found.place, "nodes", err));
-    find_covers(tree, last, previous, found.cover);
+    find_covers(tree, &bins, found.cover);
     for (size_t i = 0; i < tree->n; i++) {
-        int32_t self = (int32_t)i;
-        while (found.cover[self] >= 0)
-            self = found.cover[self];
         bool joined = tree_is_segment(tree, i) && !has_length(tree, i);
-        found.place[i] = joined ? found.place[tree->parent[i]] : self;
+        found.place[i] = joined ? found.place[tree->parent[i]] : outermost(found.cover, (int32_t)i);
     }
 done:
-    free(last);
-    free(previous);
+    free(bins.first);
+    free(bins.next);
     if (status == STATUS_OK)
         *places = found;
     else

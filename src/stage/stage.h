@@ -77,8 +77,9 @@ typedef struct StageReport {
     size_t drawn;   /* segments in the scene */
     size_t dropped; /* segments without length or radius, which cannot be drawn */
     /* Of a joined model: joints drawn; places where the construction breaks down because a vessel is
-     * too short, and, of the others, because it turns back too sharply. */
-    size_t joints, places_short, places_sharp;
+     * too short, of the others, because it turns back too sharply, and those where so many vessels meet
+     * that how they run into each other is not worked out. */
+    size_t joints, places_short, places_sharp, places_crowded;
 } StageReport;
 
 /* Builds the scene of a tree. `colors` has one linear colour a node, for the segment that ends

@@ -87,7 +87,7 @@ double cell_displacement(double radius_mm, ErfForm form);
 
 /* The cells in which the surface can lie, from an octree with root cubes of 4 r_max on the lattice of
  * their multiples, in Morton order; what matters in a cell is a term that exceeds 1e-2 in it. Owned by
- * the caller. STATUS_INFEASIBLE beyond a million cells. */
+ * the caller. STATUS_INFEASIBLE beyond a million cells, and where it takes too long to find them. */
 MUST_CHECK Status celltree_build(const Scene *scene, const CellParams *params, CellTree *cells,
                                  Err *err);
 void celltree_release(CellTree *cells);

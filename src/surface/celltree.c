@@ -42,6 +42,8 @@ static const double overlap_accuracies = 5, overlap_rounding = 4 * FLT_EPSILON;
 static const double tail_steepness[] = {[ERF_FAST] = 1.14, [ERF_EXACT] = 1.21};
 
 static const size_t max_cells = 1000000;
+/* Terms looked at in all cubes together, those without surface included: seconds; of most trees, 40 a cell. */
+static const uint64_t max_looks = 30000000, max_looks_per_cell = 100;
 
 /* A term's bound is peak exp(-decay dist^2), above the cut-off up to dist^2 = reach2. */
 typedef struct Support {
@@ -56,6 +58,7 @@ typedef struct Builder {
     double rounding; /* mm: what single precision may take from a box */
     uint32_t *stack; /* the lists of the cubes from the first down to the current one */
     size_t depth, stack_capacity;
+    uint64_t looks; /* at terms, in all cubes so far */
     CellTree tree;
     size_t cell_capacity, term_capacity;
 } Builder;
@@ -106,6 +109,12 @@ static Status filter_terms(Builder *builder, const TermList *from, Box box, Term
     TRY(mem_reserve(&builder->stack, &builder->stack_capacity, builder->depth + from->count,
                     sizeof *builder->stack, "terms", err));
     TermList list = {builder->depth, 0, 0, HUGE_VAL, 0, HUGE_VAL, 0};
+    builder->looks += from->count;
+    if (builder->looks > max_looks + max_looks_per_cell * builder->tree.n_cells)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "the isosurface has too many vessels that overlap, or radii that are too "
+                       "different, to be cut into cells in a reasonable time; leave out vessels or "
+                       "choose another model");
     for (size_t i = from->first; i < from->first + from->count; i++) {
         uint32_t number = builder->stack[i];
         const FieldSegment *segment = &builder->segments[number];

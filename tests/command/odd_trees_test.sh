@@ -49,6 +49,44 @@ refuses() {
     [ ! -e picture.ppm ] || fail "expected no picture"
 }
 
+# star N: a root vessel and N daughters that leave its end, as crowded as seeds of a dandelion.
+star() {
+    awk -v n="$1" 'BEGIN {
+        print "1 3 0 9.3 0 1.2 -1\n2 3 0 0 0 1.2 1"
+        for (i = 0; i < n; i++) {
+            y = 1 - 2 * (i + 0.5) / n; q = sqrt(1 - y * y); a = 2.39996323 * i; l = 20 + i % 7
+            printf "%d 3 %.9g %.9g %.9g 0.0%d 2\n", i + 3, l * q * cos(a), l * y, l * q * sin(a), 2 + i % 5
+        }
+    }' >tree.swc
+}
+
+# within SECONDS COMMAND ...: runs it with so much processor time.
+within() {
+    run bash -c 'ulimit -t "$0"; exec "$@"' "$@"
+}
+
+test_a_node_of_a_hundred_thousand_daughters_is_drawn_in_seconds() {
+    local model
+    star 100000
+    for model in cylinders rounded; do
+        within 8 "$CORCAST" render tree.swc --model $model --method raster --size 40x30 -o $model.png
+        expect_status 0
+    done
+}
+
+test_a_node_of_thousands_of_daughters_is_joined_in_seconds() {
+    star 12000
+    within 10 "$CORCAST" render tree.swc --model joined --method raster --size 40x30 -o joined.png
+    expect_status 0
+}
+
+test_a_scene_of_cells_that_would_take_minutes_to_find_is_refused_with_a_sentence() {
+    rows '1 3 0 0 0 1 -1' '2 3 4.1 0 0 0.7 1' '3 3 7.3 2.2 0 0.5 2' '4 3 7.1 -2.9 1 70194 2' '5 3 11 3.4 2 0.4 3'
+    within 30 "$CORCAST" scene tree.swc --model isosurface -o tree.pov
+    expect_status 2
+    expect_sentence 'radii that are too different'
+}
+
 test_twelve_hundred_daughters_at_one_node() {
     cp "$DATA/star.swc" tree.swc
     [ "$(grep -c ' 2$' tree.swc)" -ge 1200 ] || fail "expected 1200 daughters"

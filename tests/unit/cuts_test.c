@@ -17,7 +17,9 @@ static VesselEnd end_at(double degrees, double radius)
 
 static void cut(const VesselEnd *ends, size_t n, double *cuts)
 {
-    assert_int_equal(cuts_compute(ends, n, cuts, NULL), STATUS_OK);
+    uint64_t steps = 1000000000;
+    assert_int_equal(cuts_compute(ends, n, cuts, &steps, NULL), STATUS_OK);
+    assert_true(steps > 0);
 }
 
 /* How far the cuts are from the fixed point. */
@@ -123,6 +125,36 @@ static void two_thousand_vessels_at_one_place_get_it_too(void **state)
     assert_true(defect(ends, N, cuts) < 1e-9);
 }
 
+static void cuts_that_take_more_comparisons_than_allowed_are_given_up(void **state)
+{
+    (void)state;
+    enum { N = 700 };
+    VesselEnd ends[N];
+    double cuts[N];
+    uint64_t steps = 2385;
+    Random random;
+    random_seed(&random, 11);
+    for (size_t i = 0; i < N; i++)
+        ends[i] = throw_end(&random, false);
+    assert_int_equal(cuts_compute(ends, N, cuts, &steps, NULL), STATUS_OK);
+    assert_int_equal(steps, 0);
+}
+
+static void cuts_of_very_many_vessels_take_few_comparisons_of_all_pairs(void **state)
+{
+    (void)state;
+    enum { N = 2000 };
+    static VesselEnd ends[N];
+    static double cuts[N];
+    uint64_t steps = (uint64_t)3 * N * N;
+    Random random;
+    random_seed(&random, 17);
+    for (size_t i = 0; i < N; i++)
+        ends[i] = throw_end(&random, false);
+    assert_int_equal(cuts_compute(ends, N, cuts, &steps, NULL), STATUS_OK);
+    assert_true(steps > 0 && defect(ends, N, cuts) < 1e-9);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -132,6 +164,8 @@ int main(void)
         cmocka_unit_test(the_longest_of_the_cuts_that_others_ask_for_is_made),
         cmocka_unit_test(any_star_gets_the_fixed_point),
         cmocka_unit_test(two_thousand_vessels_at_one_place_get_it_too),
+        cmocka_unit_test(cuts_that_take_more_comparisons_than_allowed_are_given_up),
+        cmocka_unit_test(cuts_of_very_many_vessels_take_few_comparisons_of_all_pairs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

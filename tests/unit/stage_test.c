@@ -1,5 +1,7 @@
 #include "stage/stage.h"
 
+#include "stage/places.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -548,10 +550,61 @@ static void a_bad_look_names_its_line(void **state)
     }
 }
 
+/* The latest uncovered elder sister that ends where segment i does, or -1, by looking at all. */
+static int32_t sister_of(const Tree *tree, const int32_t *cover, int32_t i)
+{
+    for (int32_t other = i - 1; other >= 0; other--)
+        if (cover[other] < 0 && tree->parent[other] == tree->parent[i] &&
+            segment_can_be_drawn(tree, (size_t)other) &&
+            vec3_distance(tree->position[other], tree->position[i]) <= 1e-9)
+            return other;
+    return -1;
+}
+
+static void the_thickest_of_the_sisters_that_end_together_is_drawn(void **state)
+{
+    (void)state;
+    enum { N = 900, CLUSTERS = 70 };
+    Tree tree;
+    Places places;
+    Random random;
+    random_seed(&random, 2385);
+    assert_int_equal(tree_init(&tree, N, NULL), STATUS_OK);
+    int32_t cover[N];
+    for (int32_t i = 0; i < N; i++) {
+        double cluster = floor(CLUSTERS * random_uniform(&random));
+        tree.parent[i] = i - 1 < 3 ? i - 1 : i % 3;
+        tree.radius_mm[i] = 0.1 + random_uniform(&random);
+        tree.position[i] = vec3(cluster * 7.3 - 200, cluster * 1.1, i < 4 ? i : 8);
+        tree.position[i].x += 3e-9 * random_uniform(&random);
+        tree.position[i].z -= 2e-9 * random_uniform(&random);
+        cover[i] = -1;
+        int32_t sister = i > 3 ? sister_of(&tree, cover, i) : -1;
+        if (sister >= 0 && tree.radius_mm[i] > tree.radius_mm[sister])
+            cover[sister] = i;
+        else
+            cover[i] = sister;
+    }
+    assert_int_equal(places_find(&tree, &places, NULL), STATUS_OK);
+    int covered = 0;
+    for (int32_t i = 0; i < N; i++) {
+        int32_t place = i;
+        while (cover[place] >= 0)
+            place = cover[place];
+        covered += cover[i] >= 0;
+        assert_int_equal(places.place[i], place);
+        assert_int_equal(places.cover[i] >= 0, cover[i] >= 0);
+    }
+    assert_true(covered > 100 && covered < N - 2 * CLUSTERS);
+    places_release(&places);
+    tree_release(&tree);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(segments_without_length_or_radius_are_counted_not_drawn),
+        cmocka_unit_test(the_thickest_of_the_sisters_that_end_together_is_drawn),
         cmocka_unit_test(a_segment_inside_its_sister_is_left_out),
         cmocka_unit_test(a_sphere_has_the_largest_radius_that_meets),
         cmocka_unit_test(every_view_frames_the_whole_tree),
