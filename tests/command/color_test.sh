@@ -42,7 +42,9 @@ numbers() {
     tail -c 14400 "$1" | od -An -v -tu1 -w3
 }
 
-# expect_codes OPTION... -- "ID R G B" ...: in every pixel of a vessel, with no other colour in the picture.
+# expect_codes OPTION... -- "ID R G B" ...: in every pixel of a vessel, with no other colour in the picture but
+# $background.
+background="255 255 255"
 expect_codes() {
     local options=() expected
     while [ "$1" != -- ]; do
@@ -52,7 +54,7 @@ expect_codes() {
     shift
     # shellcheck disable=SC2086
     run_ok corcast render --quiet tree.swc --look ./flat.ini $VIEW --planes color,id "${options[@]}" -o p.ppm
-    expected=$(printf '%s\n' "0 255 255 255" "$@")
+    expected=$(printf '%s\n' "0 $background" "$@")
     paste -d ' ' <(numbers p.id.ppm | awk '{ print $1 * 65536 + $2 * 256 + $3 }') <(numbers p.ppm) |
         tr -s ' ' | sort -n | uniq >seen
     [ "$(cat seen)" = "$expected" ] ||
@@ -122,6 +124,20 @@ test_a_field_of_one_value_has_the_middle_of_the_map() {
     make_vessels
     expect_codes --color-by length -- \
         "2 33 144 140" "4 33 144 140" "6 33 144 140" "8 33 144 140" "10 33 144 140"
+}
+
+# The codes are 255 times the numbers; decoded by hand they are linear.
+test_a_background_is_given_as_it_is_encoded() {
+    local background="64 128 191"
+    make_vessels
+    expect_codes --background 0.25,0.5,0.75 --color-by length --model cylinders -- \
+        "2 33 144 140" "4 33 144 140" "6 33 144 140" "8 33 144 140" "10 33 144 140"
+    expect_scene --background 0.25,0.5,0.75 --color-by length --model cylinders -- \
+        "2 0.01495968 0.2793277 0.2642065" "4 0.01495968 0.2793277 0.2642065" "6 0.01495968 0.2793277 0.2642065" \
+        "8 0.01495968 0.2793277 0.2642065" "10 0.01495968 0.2793277 0.2642065"
+    sed -nE 's/.*#declare Background_(Red|Green|Blue) *= *([0-9.e-]+);.*/\2/p' s.pov | paste -s -d ' ' >seen
+    awk '($1 - 0.05087609) ^ 2 + ($2 - 0.2140411) ^ 2 + ($3 - 0.5225216) ^ 2 < 1e-12 { found = 1 } END { exit !found }' seen ||
+        fail "expected the linear background 0.05087609 0.2140411 0.5225216, got '$(cat seen)'"
 }
 
 test_a_picture_of_16_bits_has_the_same_colours_more_finely() {

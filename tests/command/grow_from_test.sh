@@ -182,4 +182,17 @@ test_what_cannot_grow_on_is_refused() {
 END
 }
 
+terminals() {
+    awk '/^#/ { next } { place[$1] = $3 " " $4 " " $5; inner[$7] = 1 } END { for (i in place) if (!(i in inner)) print place[i] }' "$1" | sort
+}
+
+# A terminal lies where its point was tossed, so the same points again would be the same terminals.
+test_the_points_are_not_those_that_the_same_seed_tosses_for_a_new_tree() {
+    run_ok corcast grow --terminals 2 --seed 23 -o small.swc
+    run_ok corcast grow --terminals 25 --seed 4 -o new.swc
+    run_ok corcast grow --from small.swc --terminals 25 --seed 4 -o grown.swc
+    [ "$(terminals new.swc | wc -l) $(terminals grown.swc | wc -l)" = "25 25" ] || fail "expected 25 terminals each"
+    [ "$(comm -12 <(terminals new.swc) <(terminals grown.swc) | wc -l)" -eq 0 ] || fail "expected no terminal in both"
+}
+
 run_tests "$@"

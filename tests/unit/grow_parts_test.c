@@ -43,6 +43,54 @@ static void no_point_between_two_corners_is_better_than_the_one_that_is_found(vo
     }
 }
 
+/* Between the ends of two legs of 1 and their right angle, (3 - sqrt 3) / 6 from both legs. And above an edge
+ * at whose ends, 1 from its middle, two weights of 5 pull against one of 6: at the angle to the upright whose
+ * cosine is 6 / 10. */
+static void fermats_point_is_where_geometry_puts_it(void **state)
+{
+    (void)state;
+    const Vec3 right_angle[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    const double equal[3] = {1, 1, 1};
+    Fermat found = fermat_point(right_angle, equal);
+    assert_int_equal(found.corner, -1);
+    assert_true(vec3_distance(found.place, vec3(0.21132486540518713, 0.21132486540518713, 0)) <
+                1e-15);
+    const Vec3 isosceles[3] = {{-1, 0, 0.5}, {1, 0, 0.5}, {0, 2, 0.5}};
+    const double weight[3] = {5, 5, 6};
+    found = fermat_point(isosceles, weight);
+    assert_int_equal(found.corner, -1);
+    assert_true(vec3_distance(found.place, vec3(0, 0.75, 0.5)) < 1e-15);
+}
+
+/* At the point found the weighted unit vectors to the corners cancel; at a corner they do not outweigh it. */
+static void weighted_pulls_cancel_at_fermats_point(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 2385);
+    int inside = 0;
+    for (int run = 0; run < 300; run++) {
+        Vec3 corner[3], pull = {0, 0, 0};
+        double weight[3];
+        for (int i = 0; i < 3; i++) {
+            corner[i] = vec3(random_uniform(&random), random_uniform(&random),
+                             run % 2 ? random_uniform(&random) : 0);
+            weight[i] = 0.1 + random_uniform(&random);
+        }
+        Fermat found = fermat_point(corner, weight);
+        for (int i = 0; i < 3; i++)
+            if (i != found.corner)
+                pull = vec3_add_scaled(pull, vec3_normalized(vec3_sub(corner[i], found.place)),
+                                       weight[i]);
+        if (found.corner < 0)
+            assert_true(vec3_length(pull) < 1e-9);
+        else
+            assert_true(vec3_length(pull) <= weight[found.corner] * (1 + 1e-12));
+        inside += found.corner < 0;
+    }
+    assert_true(inside > 60 && inside < 240);
+}
+
 static void margins_wider_than_the_segment_leave_the_middle_between_them(void **state)
 {
     (void)state;
@@ -153,6 +201,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_point_between_two_corners_is_better_than_the_one_that_is_found),
+        cmocka_unit_test(fermats_point_is_where_geometry_puts_it),
+        cmocka_unit_test(weighted_pulls_cancel_at_fermats_point),
         cmocka_unit_test(margins_wider_than_the_segment_leave_the_middle_between_them),
         cmocka_unit_test(quotas_go_by_largest_remainders_and_leave_no_tree_without_a_terminal),
         cmocka_unit_test(the_quick_search_finds_what_the_other_finds),

@@ -193,6 +193,23 @@ static void two_places_share_a_vessel_down_to_a_thousandth_of_it(void **state)
     }
 }
 
+/* A daughter at 58.5 and at 61.5 degrees from the trunk, seen from the place where they meet. */
+static void a_vessel_turns_back_below_60_degrees_from_its_trunk(void **state)
+{
+    (void)state;
+    const double degree = 3.14159265358979323846 / 180;
+    for (int sharp = 0; sharp < 2; sharp++) {
+        double angle = (sharp ? 58.5 : 61.5) * degree;
+        Tree tree = bifurcation(vec3(-16 * sin(angle), 5 + 16 * cos(angle), 0));
+        StageReport report;
+        Scene scene = stage(&tree, JOINTS_ROBUST, &report);
+        assert_int_equal(report.places_sharp, sharp);
+        assert_int_equal(report.joints, sharp ? 0 : 2);
+        scene_release(&scene);
+        tree_release(&tree);
+    }
+}
+
 static void to_the_letter_a_vessel_that_is_too_short_vanishes_into_its_joints(void **state)
 {
     (void)state;
@@ -240,6 +257,21 @@ static void where_trees_begin_the_thickest_vessel_is_the_trunk(void **state)
         assert_true(scene.primitives[i].radius_mm == 1.4);
         assert_int_equal(scene.primitives[i].id, i == 3 ? 2 : 4);
     }
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
+static void of_equally_thick_vessels_the_first_is_the_trunk(void **state)
+{
+    (void)state;
+    Tree tree = tree_of(4, (const int32_t[]){-1, 0, 0, 0},
+                        (const Vec3[]){{0, 0, 0}, {9, 0, 0}, {-9, 1, 0}, {0, 2, 12}},
+                        (const double[]){1, 0.9, 1.4, 1.4});
+    StageReport report;
+    Scene scene = stage(&tree, JOINTS_ROBUST, &report);
+    assert_int_equal(report.joints, 2);
+    assert_int_equal(scene.primitives[3].id, 2);
+    assert_int_equal(scene.primitives[4].id, 4);
     scene_release(&scene);
     tree_release(&tree);
 }
@@ -313,9 +345,11 @@ int main(void)
         cmocka_unit_test(where_a_vessel_turns_back_the_place_is_round),
         cmocka_unit_test(a_place_is_round_from_60_degrees_to_the_trunk_on),
         cmocka_unit_test(two_places_share_a_vessel_down_to_a_thousandth_of_it),
+        cmocka_unit_test(a_vessel_turns_back_below_60_degrees_from_its_trunk),
         cmocka_unit_test(to_the_letter_a_vessel_that_is_too_short_vanishes_into_its_joints),
         cmocka_unit_test(a_vessel_between_two_places_keeps_the_joint_that_needs_less),
         cmocka_unit_test(where_trees_begin_the_thickest_vessel_is_the_trunk),
+        cmocka_unit_test(of_equally_thick_vessels_the_first_is_the_trunk),
         cmocka_unit_test(no_ray_sees_the_inside_of_a_robust_tree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -106,6 +106,22 @@ static void a_sphere_has_the_largest_radius_that_meets(void **state)
     scene_release(&scene);
 }
 
+/* Two vessels of one radius in a row: the sphere between them is that of the one that ends there. */
+static void of_equals_the_segment_that_ends_at_a_place_gives_its_sphere(void **state)
+{
+    (void)state;
+    Tree tree = make_tree();
+    tree.radius_mm[2] = tree.radius_mm[3] = 2.385;
+    StageParams params = stage_defaults();
+    Scene scene;
+    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
+    assert_int_equal(scene.primitives[4].kind, PRIMITIVE_SPHERE);
+    assert_true(scene.primitives[4].a.y == 10);
+    assert_int_equal(scene.primitives[4].id, 12);
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
 /* Where a point of the world stands in the picture, in pixels from its middle. */
 static void project(const Camera *camera, Vec3 x, double *i, double *j)
 {
@@ -154,6 +170,31 @@ static void the_front_view_has_x_to_the_right_and_y_up(void **state)
     assert_true(scene.camera.up.y > 0 && scene.camera.up.x == 0 && scene.camera.up.z == 0);
     assert_true(scene.camera.direction.z == -1);
     scene_release(&scene);
+}
+
+/* The balls at the nodes reach from 1.8 to 22.385 in y and from -6.9 to 7.2 in x. */
+static void a_framed_picture_has_its_margin_on_each_side(void **state)
+{
+    (void)state;
+    StageParams params = stage_defaults();
+    params.margin = 0.12;
+    Scene scene = stage(&params, NULL);
+    assert_true(fabs(scene.camera.up.y - 20.585 / 0.76) < 1e-12);
+    assert_true(fabs(scene.camera.location.x - 0.15) < 1e-12);
+    assert_true(fabs(scene.camera.location.y - 12.0925) < 1e-12);
+    scene_release(&scene);
+}
+
+static void views_look_where_their_names_say(void **state)
+{
+    (void)state;
+    Vec3 direction, up;
+    view_axes(VIEW_TOP, &direction, &up);
+    assert_true(direction.y == -1 && up.z == -1);
+    view_axes(VIEW_LEFT, &direction, &up);
+    assert_true(direction.x == 1 && up.y == 1);
+    view_axes(VIEW_ISO, &direction, &up);
+    assert_true(direction.x < -0.577 && direction.y == direction.x && direction.z == direction.x);
 }
 
 static void a_given_camera_is_taken_as_it_is(void **state)
@@ -607,8 +648,11 @@ int main(void)
         cmocka_unit_test(the_thickest_of_the_sisters_that_end_together_is_drawn),
         cmocka_unit_test(a_segment_inside_its_sister_is_left_out),
         cmocka_unit_test(a_sphere_has_the_largest_radius_that_meets),
+        cmocka_unit_test(of_equals_the_segment_that_ends_at_a_place_gives_its_sphere),
         cmocka_unit_test(every_view_frames_the_whole_tree),
         cmocka_unit_test(the_front_view_has_x_to_the_right_and_y_up),
+        cmocka_unit_test(a_framed_picture_has_its_margin_on_each_side),
+        cmocka_unit_test(views_look_where_their_names_say),
         cmocka_unit_test(a_given_camera_is_taken_as_it_is),
         cmocka_unit_test(cameras_that_cannot_be_are_refused),
         cmocka_unit_test(a_tree_with_nothing_to_draw_is_refused),
