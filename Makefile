@@ -106,10 +106,11 @@ verify-all: ## verify models x trees x projections x shadows x antialiasing; rep
 	$(Q)$(AGAIN) all
 	$(Q)JOBS=$(JOBS) tools/verify-all
 
-power: ## plant faults and see what the judge finds; writes its part of docs/VALIDATION.md
+power: ## plant faults and see what the judge finds, and the tests; writes its parts of docs/VALIDATION.md
 	$(Q)tools/deps build run check
-	$(Q)$(AGAIN) all power-program
+	$(Q)$(AGAIN) all power-program unit-programs
 	$(Q)tools/power
+	$(Q)JOBS=$(JOBS) tools/power-shared
 
 power-program: $(POWER)
 

@@ -143,7 +143,7 @@ run_test() {
     rm -rf "$folder"
 }
 
-# Runs the tests named, all of the file by default, TEST_JOBS (1) at a time.
+# Runs the tests named, all of the file by default, TEST_JOBS (1) at a time; with TEST_STOP up to the first that fails.
 run_tests() {
     local number=0 name
     tests_folder=$(mktemp -d)
@@ -153,6 +153,7 @@ run_tests() {
         if [ "${TEST_JOBS:-1}" -eq 1 ]; then
             run_test $number "$name"
             cat "$tests_folder/$number.tap"
+            [ -z "${TEST_STOP-}" ] || ! grep -q '^not ok' "$tests_folder/$number.tap" || break
         else
             [ "$(jobs -rp | wc -l)" -lt "$TEST_JOBS" ] || wait -n
             run_test $number "$name" &
