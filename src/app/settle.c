@@ -17,17 +17,18 @@ static const double blob_nearest_mm = 1e-2;
 /* A place so far from a root, in radii of the vessel, is still meant to be that root: where POV-Ray misses one,
  * its precision is gone. */
 static const double same_root_radii = 0.02;
-/* The cosine of ray and normal below which a ray grazes: POV-Ray misses no root at which the field rises steeply. */
+/* The cosine of ray and normal below which a ray grazes. POV-Ray misses roots mostly there, of neighbouring rays
+ * too; where the field rises steeply, of one ray alone. */
 static const double grazing_cosine = 0.1;
 /* A's normals are told by 16-bit codes. */
 static const double normal_slack = 2e-4;
 
 /* What is between a place and a light. */
 typedef struct LightWay {
-    double part; /* of the light, that arrives */
-    double
-        blocked_mm; /* from the place to the wall that the ray of a sample grazes most; NAN: none is there */
-    double cosine; /* of that ray and the wall's normal */
+    double part;       /* of the light, that arrives */
+    double blocked_mm; /* from the place to the wall that a ray grazes most; NAN: none is there */
+    double cosine;     /* of that ray and the wall's normal */
+    int grazed;        /* samples whose rays graze the first wall in their way */
 } LightWay;
 
 typedef struct Asker {
@@ -182,6 +183,7 @@ static Status ask_way(const Asker *asker, Vec3 place, Vec3 towards, double dista
         return STATUS_OK;
     find_wall(asker, ray, ray_at(ray, roots.t[0]), &normal);
     double cosine = fabs(vec3_dot(normal, towards));
+    way->grazed += cosine <= grazing_cosine;
     if (!(cosine >= way->cosine)) {
         way->cosine = cosine;
         way->blocked_mm = roots.t[0];
@@ -198,7 +200,7 @@ static int samples_across(const Light *light)
 static Status ask_light(const Asker *asker, const Light *light, Vec3 place, LightWay *way, Err *err)
 {
     int n = samples_across(light), reach = 0;
-    *way = (LightWay){1, (double)NAN, (double)NAN};
+    *way = (LightWay){1, (double)NAN, (double)NAN, 0};
     if (!asker->asked->params->shadows || !light->casts_shadows)
         return STATUS_OK;
     for (int s = 0; s < n * n; s++) {
@@ -230,14 +232,14 @@ static Status ask_lights(Asker *asker, Vec3 place, Err *err)
     return STATUS_OK;
 }
 
-/* Lights as bright as they arrive; one of them by one sample more, if there is one of that number. */
-static void set_lights(Asker *asker, size_t brighter)
+/* Lights as bright as they arrive; that of number `brighter`, if there is one, by some samples more. */
+static void set_lights(Asker *asker, size_t brighter, int more)
 {
     const Scene *scene = asker->asked->scene;
     for (size_t i = 0; i < scene->n_lights; i++) {
         const Light *light = &scene->lights[i];
         int n = samples_across(light);
-        double part = asker->ways[i].part + (i == brighter ? 1.0 / (n * n) : 0);
+        double part = asker->ways[i].part + (i == brighter ? (double)more / (n * n) : 0);
         asker->one.lights[i].color =
             (Rgb){(float)((double)light->color.r * part), (float)((double)light->color.g * part),
                   (float)((double)light->color.b * part)};
@@ -252,12 +254,12 @@ typedef struct Look {
     Rgb color;
 } Look;
 
-/* The colour of what is seen, in the lights as they arrive and one sample more of `brighter`. */
-static Rgb lit(Asker *asker, const Look *seen, size_t brighter)
+/* The colour of what is seen, in the lights as they arrive and `more` samples of that of number `brighter`. */
+static Rgb lit(Asker *asker, const Look *seen, size_t brighter, int more)
 {
     if (seen->t == HUGE_VAL)
         return asker->asked->scene->background;
-    set_lights(asker, brighter);
+    set_lights(asker, brighter, more);
     return shade_point(&asker->one, &seen->at, NULL, NULL);
 }
 
@@ -292,7 +294,7 @@ static Status look_to(Asker *asker, Ray ray, double t, Look *seen, Err *err)
     }
     if (t < HUGE_VAL)
         TRY(ask_lights(asker, seen->at.point, err));
-    seen->color = lit(asker, seen, SIZE_MAX);
+    seen->color = lit(asker, seen, SIZE_MAX, 0);
     return STATUS_OK;
 }
 
@@ -397,23 +399,44 @@ static bool sees_root(const Asker *asker, const Sample *sample, int number, size
                normal_slack + rounding;
 }
 
-/* How much the ray of a sample grazes at its first root: the cosine to the normal. */
+/* How much the ray of a sample grazes at its first root: the cosine to the normal; NAN without a root. */
 static double grazing_of(const Asker *asker, const Sample *sample)
 {
     if (sample->roots.n == 0)
-        return 1;
+        return (double)NAN;
     Look wall = wall_at(asker, sample->ray, sample->roots.t[0]);
     return fabs(vec3_dot(wall.at.normal, sample->ray.direction));
 }
 
-/* Whether A sees a later root or nothing, and grazes the first. */
+/* Whether no neighbour of the pixel differs. */
+static bool is_alone(const Asker *asker, const SettledPixel *found)
+{
+    const Camera *camera = &asker->asked->scene->camera;
+    for (int y = found->y - 1; y <= found->y + 1; y++)
+        for (int x = found->x - 1; x <= found->x + 1; x++) {
+            bool inside = x >= 0 && x < camera->width && y >= 0 && y < camera->height;
+            if (!inside || (x == found->x && y == found->y))
+                continue;
+            size_t pixel = (size_t)y * (size_t)camera->width + (size_t)x;
+            if (pixel_beyond(asker->asked->a, asker->asked->b, pixel, asker->asked->tolerance))
+                return false;
+        }
+    return true;
+}
+
+static bool may_miss(const Asker *asker, const SettledPixel *found, double cosine)
+{
+    return cosine <= grazing_cosine || (isfinite(cosine) && is_alone(asker, found));
+}
+
+/* Whether A sees a later root or nothing, where it may have missed the first. */
 static void find_missed(const Asker *asker, const Sample *sample, size_t pixel, SettledPixel *found)
 {
     double cosine = grazing_of(asker, sample);
     bool later = !isfinite(asker->asked->a->depth->values[pixel]);
     for (int k = 1; k < sample->roots.n && !later; k++)
         later = sees_root(asker, sample, k, pixel);
-    if (!later || !(cosine <= grazing_cosine))
+    if (!later || !may_miss(asker, found, cosine))
         return;
     found->cause = SETTLED_ROOT;
     found->cosine = cosine;
@@ -432,7 +455,7 @@ static Status ask_inexact(Asker *asker, const Sample *sample, size_t pixel, Sett
     TRY(ask_lights(asker, ray_at(sample->ray, root), err));
     for (int k = -1; k <= 1; k++) {
         Look wall = wall_at(asker, sample->ray, root + k * by);
-        Rgb color = lit(asker, &wall, SIZE_MAX);
+        Rgb color = lit(asker, &wall, SIZE_MAX, 0);
         low = (Rgb){fminf(low.r, color.r), fminf(low.g, color.g), fminf(low.b, color.b)};
         high = (Rgb){fmaxf(high.r, color.r), fmaxf(high.g, color.g), fmaxf(high.b, color.b)};
     }
@@ -441,7 +464,18 @@ static Status ask_inexact(Asker *asker, const Sample *sample, size_t pixel, Sett
     return STATUS_OK;
 }
 
-/* Whether A is as if one ray of a sample to a light had missed what it grazes. */
+/* Whether A is as if a light that rays graze had some more samples in sight, or any other one. */
+static bool misses_of_light(Asker *asker, const Sample *samples, int s, size_t pixel,
+                            const Look *seen, size_t light)
+{
+    int most = asker->ways[light].grazed > 1 ? asker->ways[light].grazed : 1;
+    for (int more = 1; more <= most; more++)
+        if (explains(asker, samples, s, lit(asker, seen, light, more), pixel))
+            return true;
+    return false;
+}
+
+/* Whether A is as if rays of a sample to one light had missed what is in their way. */
 static Status ask_shadows(Asker *asker, const Sample *samples, int s, size_t pixel,
                           SettledPixel *found, Err *err)
 {
@@ -450,8 +484,8 @@ static Status ask_shadows(Asker *asker, const Sample *samples, int s, size_t pix
     TRY(look_to(asker, sample->ray, root_of(&sample->roots, 0), &seen, err));
     for (size_t i = 0; i < asker->asked->scene->n_lights && seen.t < HUGE_VAL; i++) {
         const LightWay *way = &asker->ways[i];
-        if (!(way->cosine <= grazing_cosine) ||
-            !explains(asker, samples, s, lit(asker, &seen, i), pixel))
+        if (!may_miss(asker, found, way->cosine) ||
+            !misses_of_light(asker, samples, s, pixel, &seen, i))
             continue;
         found->cause = SETTLED_SHADOW_ROOT;
         found->distance_mm = way->blocked_mm;
@@ -467,7 +501,7 @@ static Status ask_later_roots(Asker *asker, const Sample *samples, int s, size_t
 {
     const Sample *sample = &samples[s];
     double cosine = grazing_of(asker, sample);
-    for (int k = 1; k <= sample->roots.n && cosine <= grazing_cosine; k++) {
+    for (int k = 1; k <= sample->roots.n && may_miss(asker, found, cosine); k++) {
         Look seen;
         TRY(look_to(asker, sample->ray, root_of(&sample->roots, k), &seen, err));
         if (!explains(asker, samples, s, seen.color, pixel))

@@ -206,6 +206,17 @@ test_isosurface_agrees_at_any_magnification() {
     done
 }
 
+test_a_tree_agrees_at_every_scale() {
+    local scale
+    tree_3d
+    grep -v '^#' tree.swc >unscaled.swc
+    for scale in 0.01 1000; do
+        awk -v by=$scale '{ for (i = 3; i <= 6; i++) $i *= by; print }' CONVFMT=%.15g OFMT=%.15g unscaled.swc >tree.swc
+        run_ok corcast verify tree.swc --model isosurface --shadows on --size 160x120 -o report
+        expect_json report/report.json ".surface.verdict == \"agree\" and (.surface.p99_abs_mm / $scale | . > 0.0005 and . < 0.02)"
+    done
+}
+
 test_a_tree_far_from_the_origin_agrees() {
     local model
     tree_3d 40
