@@ -269,6 +269,8 @@ static Status compare_sides(Verification *v, Err *err)
     TRY(settle_sides(v, &view_a, &view_b, &tolerance, err));
     TRY(compare_pictures(&view_a, &view_b, &tolerance, &v->results[PLANE_COLOR], NULL, err));
     TRY(compare_perception(shown_by_povray(v), shown_natively(v), &v->results[PLANE_COLOR], err));
+    if (!v->results[PLANE_COLOR].agrees)
+        TRY(compare_cause(&v->povray_picture, &v->native_picture, &v->results[PLANE_COLOR], err));
     TRY(compare_planes(PLANE_DEPTH, &v->povray.depth, &v->native.depth, a, b, &tolerance,
                        &v->results[PLANE_DEPTH], err));
     TRY(compare_planes(PLANE_NORMAL, &v->povray.normal, &v->native.normal, a, b, &tolerance,
@@ -288,13 +290,17 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
                                .version = v->run.version,
                                .seconds = v->run.seconds,
                                .picture = shown_by_povray(v),
-                               .ids = &v->povray.id},
+                               .ids = &v->povray.id,
+                               .depth = &v->povray.depth,
+                               .normal = &v->povray.normal},
                          .b = {.name = "corcast",
                                .key = "native",
                                .version = CORCAST_VERSION,
                                .seconds = v->stats.prepare_s + v->stats.trace_s,
                                .picture = shown_natively(v),
-                               .ids = &v->native.id},
+                               .ids = &v->native.id,
+                               .depth = &v->native.depth,
+                               .normal = &v->native.normal},
                          .commands = (const char *const *)v->commands,
                          .n_commands = v->n_commands};
     for (int kind = 0; kind < PLANE_KINDS; kind++)

@@ -94,6 +94,45 @@ static Status take_walk(const Walk *walk, CompareResult *result, Ledger *ledger,
     return STATUS_OK;
 }
 
+static Walk start_walk(const Rendering *a, const Rendering *b, const Labels *labels,
+                       const Tolerance *tolerance)
+{
+    double code_levels = a->picture->bits == 8 ? 1 : 257;
+    return (Walk){.a = a,
+                  .b = b,
+                  .labels = labels,
+                  .beyond = (int)floor(tolerance->color_levels * code_levels + 1e-9),
+                  .common_only = tolerance->color_common_only && labels->source != LABELS_UNKNOWN,
+                  .settled = tolerance->settled,
+                  .geometry_mm = fmin(tolerance->depth_max_mm, tolerance->depth_p99_mm),
+                  .geometry_deg = fmin(tolerance->normal_max_deg, 1)};
+}
+
+static Labels labels_of(const Rendering *a, const Rendering *b)
+{
+    return a->ids ? labels_from_ids(a->ids, b->ids)
+                  : labels_from_background(a->picture, b->picture);
+}
+
+Status class_picture(Picture *out, const Rendering *a, const Rendering *b,
+                     const Tolerance *tolerance, Err *err)
+{
+    Picture made;
+    TRY(check_views(a, b, err));
+    Labels labels = labels_of(a, b);
+    Walk walk = start_walk(a, b, &labels, tolerance);
+    TRY(picture_init(&made, labels.width, labels.height, 1, 8, err));
+    memset(made.codes8, PIXEL_IDENTICAL, (size_t)labels.width * (size_t)labels.height);
+    walk.classes = made.codes8;
+    Status status = walk_all(&walk, err);
+    walk_release(&walk);
+    if (status == STATUS_OK)
+        *out = made;
+    else
+        picture_release(&made);
+    return status;
+}
+
 Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance *tolerance,
                         CompareResult *result, Ledger *ledger, Err *err)
 {
@@ -102,20 +141,11 @@ Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance 
     CompareResult made =
         result_start(PLANE_COLOR, picture->width, picture->height, a->ids, tolerance);
     made.bits = picture->bits;
-    Labels labels =
-        a->ids ? labels_from_ids(a->ids, b->ids) : labels_from_background(picture, b->picture);
+    Labels labels = labels_of(a, b);
     SegmentIndex index = {0};
     Ledger of_segments = {0};
-    Walk walk = {.a = a,
-                 .b = b,
-                 .labels = &labels,
-                 .index = a->ids ? &index : NULL,
-                 .beyond =
-                     (int)floor(tolerance->color_levels * (picture->bits == 8 ? 1 : 257) + 1e-9),
-                 .common_only = tolerance->color_common_only && labels.source != LABELS_UNKNOWN,
-                 .settled = tolerance->settled,
-                 .geometry_mm = fmin(tolerance->depth_max_mm, tolerance->depth_p99_mm),
-                 .geometry_deg = fmin(tolerance->normal_max_deg, 1)};
+    Walk walk = start_walk(a, b, &labels, tolerance);
+    walk.index = a->ids ? &index : NULL;
     Status status = STATUS_OK;
     if (walk.index)
         TRY_GOTO(segment_index_init(&index, a->ids, b->ids, err));

@@ -23,14 +23,30 @@ double report_severity(const ReportCase *report);
 /* The worst segments of a comparison as compare_json has them. New reference. */
 json_t *worst_segments_json(const CompareResult *result);
 
-/* Rows of HTML tables about one plane: its rules, and its measures. */
+/* Appends a number for people, to three digits but for counts, and its unit, "level" of 1. */
+void report_number(Text *out, double value, const char *unit);
+/* HTML about one plane: the rows of its rules, and tables of its measures. */
 void report_rule_rows(const CompareResult *plane, Text *out);
-void report_metric_rows(const CompareResult *plane, Text *out);
+void report_metric_tables(const CompareResult *plane, Text *out);
 void report_surface_rows(const SurfaceCheck *surface, Text *rules, Text *metrics);
 void report_settled_rows(const ReportCase *report, Text *rules, Text *metrics);
 
 /* Appends a picture as a data: URI. */
 MUST_CHECK Status report_picture(Text *out, const Picture *picture, Err *err);
+/* Appends the depths and normals of both sides as data: URIs for the page's script, "data:," for what is
+ * not known or larger than 4 million pixels. Depth: 0 for nothing, else 1 to 65534 over range_mm, in red and
+ * green; normals: 128 + 127 n; the angle between them in 0.001 degrees, in red and green. B is less A, modulo
+ * the range of the codes. */
+typedef enum ReportPlane {
+    REPORT_DEPTH_A,
+    REPORT_DEPTH_B,
+    REPORT_NORMAL_A,
+    REPORT_NORMAL_B,
+    REPORT_ANGLES,
+    REPORT_PLANES
+} ReportPlane;
+MUST_CHECK Status report_planes(const ReportSide *a, const ReportSide *b,
+                                Text *parts[REPORT_PLANES], double range_mm[2], Err *err);
 /* A small copy of a picture, at most 96 pixels across, each the mean of a box. */
 MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *err);
 

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/utsname.h>
+#include <time.h>
 
 typedef enum Fragment {
     PART_ID,
@@ -31,6 +33,13 @@ typedef enum Fragment {
     PART_HEAT,
     PART_IDS_A,
     PART_IDS_B,
+    PART_RANGE,
+    PART_CLASSES,
+    PART_DEPTH_A, /* the planes in the order of ReportPlane */
+    PART_DEPTH_B,
+    PART_NORMAL_A,
+    PART_NORMAL_B,
+    PART_ANGLES,
     PARTS
 } Fragment;
 
@@ -39,7 +48,8 @@ static const char *const part_names[PARTS] = {
     "subject", "rule_rows", "metric_rows",  "segment_lines", "legend",
     "sides",   "tolerance", "commands",     "name_a",        "name_b",
     "alt_a",   "alt_b",     "image_a",      "image_b",       "image_heat",
-    "ids_a",   "ids_b"};
+    "ids_a",   "ids_b",     "depth_range",  "classes",       "depth_a",
+    "depth_b", "normal_a",  "normal_b",     "angles"};
 
 /* ------------------------------------------------------------------------------------- verdict */
 
@@ -54,6 +64,20 @@ static void settled_sentence(const ReportCase *report, Text *sentence)
             text_escaped(sentence, report->b.name);
             text_puts(sentence, " is right there.");
         }
+}
+
+/* What tells the case from others of the same tree and model: the options of its command. */
+static void put_options(const ReportCase *report, Text *out)
+{
+    static const char start[] = "corcast verify ";
+    if (report->n_commands == 0)
+        return;
+    const char *command = report->commands[0];
+    if (strncmp(command, start, strlen(start)) == 0)
+        command += strlen(start);
+    text_puts(out, "<code>");
+    text_escaped(out, command);
+    text_puts(out, "</code> ");
 }
 
 static void verdict_parts(const ReportCase *report, Text parts[PARTS])
@@ -73,12 +97,16 @@ static void verdict_parts(const ReportCase *report, Text parts[PARTS])
     text_puts(&parts[PART_VERDICT_TITLE], reason ? ": <span class=\"bad\">differ</span>"
                                                  : ": <span class=\"good\">agree</span>");
     Text *sentence = &parts[PART_VERDICT_SENTENCE];
+    const char *cause = color->agrees ? "" : color->cause;
     if (reason) {
         if (differing)
             text_printf(sentence, "%d of %d planes differ%s. First, ", differing, compared,
                         differing == 1 ? "s" : "");
         text_escaped(sentence, reason);
         text_puts(sentence, ".");
+        text_puts(sentence, *cause ? " The pictures: " : "");
+        text_escaped(sentence, cause);
+        text_puts(sentence, *cause ? "." : "");
     } else {
         if (color->differing_pixels == 0)
             text_printf(sentence, "All %zu pixels have the same colour in both pictures. ",
@@ -97,6 +125,7 @@ static void verdict_parts(const ReportCase *report, Text parts[PARTS])
             text_puts(sentence, " What POV-Ray's root finder sees is the surface to its accuracy.");
     }
     Text *subject = &parts[PART_SUBJECT];
+    put_options(report, subject);
     text_printf(subject, "%d × %d pixels, tolerance tier ", color->width, color->height);
     text_escaped(subject, color->tolerance.tier);
 }
@@ -108,7 +137,7 @@ static void table_parts(const ReportCase *report, Text parts[PARTS])
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
         if (report->planes[kind]) {
             report_rule_rows(report->planes[kind], &parts[PART_RULES]);
-            report_metric_rows(report->planes[kind], &parts[PART_METRICS]);
+            report_metric_tables(report->planes[kind], &parts[PART_METRICS]);
         }
     if (report->settled)
         report_settled_rows(report, &parts[PART_RULES], &parts[PART_METRICS]);
@@ -123,6 +152,32 @@ static void table_parts(const ReportCase *report, Text parts[PARTS])
             text_printf(&parts[PART_LEGEND], "–%d", to);
         text_puts(&parts[PART_LEGEND], "</span>");
     }
+}
+
+static Status class_part(const ReportCase *report, Text *part, Err *err)
+{
+    const ReportSide *a = &report->a, *b = &report->b;
+    bool geometry = a->depth && a->normal && b->depth && b->normal;
+    const Rendering in_a = {a->picture, a->ids, geometry ? a->depth : NULL,
+                            geometry ? a->normal : NULL};
+    const Rendering in_b = {b->picture, b->ids, geometry ? b->depth : NULL,
+                            geometry ? b->normal : NULL};
+    Picture classes;
+    TRY(class_picture(&classes, &in_a, &in_b, &report->planes[PLANE_COLOR]->tolerance, err));
+    Status status = report_picture(part, &classes, err);
+    picture_release(&classes);
+    return status;
+}
+
+static Status plane_parts(const ReportCase *report, Text parts[PARTS], Err *err)
+{
+    Text *planes[REPORT_PLANES];
+    double range_mm[2];
+    for (int i = 0; i < REPORT_PLANES; i++)
+        planes[i] = &parts[PART_DEPTH_A + i];
+    TRY(report_planes(&report->a, &report->b, planes, range_mm, err));
+    text_printf(&parts[PART_RANGE], "%.9g %.9g", range_mm[0], range_mm[1]);
+    return class_part(report, &parts[PART_CLASSES], err);
 }
 
 /* "data:," is an empty document: the viewer then knows no ids. */
@@ -150,6 +205,29 @@ static void side_parts(const ReportSide *side, Fragment name, Fragment alt, Text
     text_puts(&parts[PART_SIDES], " ");
     text_escaped(&parts[PART_SIDES], side->version);
     text_printf(&parts[PART_SIDES], " took %.2f s for the picture. ", side->seconds);
+}
+
+/* When, by what and where the case was made. */
+static void origin_part(Text *part)
+{
+    char day[40] = "";
+    struct utsname machine = {0};
+    struct tm utc;
+    time_t now = time(NULL);
+    if (gmtime_r(&now, &utc))
+        strftime(day, sizeof day, "%Y-%m-%d %H:%M UTC", &utc);
+    uname(&machine);
+    text_printf(part, "Compared on %s by corcast %s, compiled by %s, on ", day, CORCAST_VERSION,
+#ifdef __clang__
+                __VERSION__
+#else
+                "gcc " __VERSION__
+#endif
+    );
+    text_escaped(part, machine.sysname);
+    text_puts(part, " ");
+    text_escaped(part, machine.machine);
+    text_puts(part, ".");
 }
 
 static void tolerance_part(const Tolerance *tolerance, Text *part)
@@ -183,6 +261,7 @@ static Status fill_parts(const ReportCase *report, const Picture *heat, Text par
     table_parts(report, parts);
     side_parts(&report->a, PART_NAME_A, PART_ALT_A, parts);
     side_parts(&report->b, PART_NAME_B, PART_ALT_B, parts);
+    origin_part(&parts[PART_SIDES]);
     tolerance_part(&report->planes[PLANE_COLOR]->tolerance, &parts[PART_TOLERANCE]);
     for (size_t i = 0; i < report->n_commands; i++) {
         text_escaped(&parts[PART_COMMANDS], report->commands[i]);
@@ -193,7 +272,8 @@ static Status fill_parts(const ReportCase *report, const Picture *heat, Text par
     TRY(report_picture(&parts[PART_IMAGE_B], report->b.picture, err));
     TRY(report_picture(&parts[PART_HEAT], heat, err));
     TRY(ids_part(&parts[PART_IDS_A], report->a.ids, err));
-    return ids_part(&parts[PART_IDS_B], report->b.ids, err);
+    TRY(ids_part(&parts[PART_IDS_B], report->b.ids, err));
+    return plane_parts(report, parts, err);
 }
 
 static Status expand_case(const ReportCase *report, const Picture *heat, const char *templates,
@@ -223,7 +303,7 @@ static void number_cell(Text *row, double value)
 {
     text_printf(row, "<td class=\"number\" data-value=\"%.9g\">", isnan(value) ? -1 : value);
     if (!isnan(value))
-        text_printf(row, "%.6g", value);
+        report_number(row, value, "");
     text_puts(row, "</td>");
 }
 
@@ -240,7 +320,9 @@ static Status case_row(const ReportCase *report, Text *row, Err *err)
     TRY(status);
     text_puts(row, "\"></td><th><a href=\"#" REPORT_FIRST_CASE "\">");
     text_escaped(row, report->name);
-    text_puts(row, "</a></th><td>");
+    text_puts(row, "</a><small>");
+    put_options(report, row);
+    text_puts(row, "</small></th><td>");
     text_escaped(row, report->model);
     text_printf(row, "</td><td class=\"verdict %s\" data-value=\"%.9g\">%s</td>",
                 agrees ? "good" : "bad", report_severity(report), agrees ? "✓ agree" : "✗ differ");

@@ -2,7 +2,25 @@
 #include "verify/report.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <string.h>
+
+void report_number(Text *out, double value, const char *unit)
+{
+    bool whole = (value == floor(value) && fabs(value) < 1e15) || fabs(value) >= 1000;
+    size_t length = strlen(unit);
+    if (isinf(value))
+        text_puts(out, "∞");
+    else if (whole)
+        text_printf(out, "%.0f", value);
+    else
+        text_printf(out, "%.*g", fabs(value - 1) < 0.0005 ? 6 : 3, value); /* nearly 1 is not 1 */
+    if (length == 0)
+        return;
+    if (value == 1 && unit[length - 1] == 's')
+        length--;
+    text_puts(out, " ");
+    text_append(out, unit, length);
+}
 
 void report_rule_rows(const CompareResult *plane, Text *out)
 {
@@ -12,9 +30,11 @@ void report_rule_rows(const CompareResult *plane, Text *out)
         text_printf(out, "<td class=\"verdict %s\">%s</td><td>", rule->met ? "good" : "bad",
                     rule->met ? "✓ agree" : "✗ differ");
         text_escaped(out, rule->name);
-        text_printf(
-            out, "</td><td class=\"number\">%.6g %s</td><td class=\"number\">%.6g %s</td></tr>\n",
-            rule->measured, rule->unit, rule->allowed, rule->unit);
+        text_puts(out, "</td><td class=\"number\">");
+        report_number(out, rule->measured, rule->unit);
+        text_puts(out, "</td><td class=\"number\">");
+        report_number(out, rule->allowed, rule->unit);
+        text_puts(out, "</td></tr>\n");
     }
     if (plane->n_rules == 0)
         text_printf(out,
@@ -23,80 +43,108 @@ void report_rule_rows(const CompareResult *plane, Text *out)
                     plane_kind_name(plane->kind));
 }
 
-/* A row of the table of measurements; rows of what could not be measured are left out. */
-static void metric_row(Text *out, const char *plane, const char *name, double value,
-                       const char *unit)
+/* A row of a table of measurements; rows of what could not be measured are left out. */
+static void metric_row(Text *out, const char *name, double value, const char *unit)
 {
     if (isnan(value))
         return;
-    text_printf(out, "<tr><th>%s</th><td>%s</td><td class=\"number\">", plane, name);
-    if (isinf(value))
-        text_puts(out, "∞");
-    else
-        text_printf(out, value == floor(value) && fabs(value) < 1e15 ? "%.0f" : "%.6g", value);
-    text_printf(out, "%s%s</td></tr>\n", *unit ? " " : "", unit);
+    text_printf(out, "<tr><td>%s</td><td class=\"number\">", name);
+    report_number(out, value, unit);
+    text_puts(out, "</td></tr>\n");
 }
 
-static void color_metrics(const CompareResult *plane, Text *out)
+static void begin_table(Text *out, const char *caption)
 {
-    metric_row(out, "color", "differing pixels", (double)plane->differing_pixels, "");
-    metric_row(out, "", "largest difference", plane->max_abs, "levels");
-    metric_row(out, "", "largest difference off the edges", plane->interior_max_abs, "levels");
-    metric_row(out, "", "mean difference", plane->mean_abs, "levels");
-    metric_row(out, "", "signed mean difference, worst channel", plane->bias_levels, "levels");
-    metric_row(out, "", "brighter pixels over darker ones", plane->sign_sigma, "σ");
-    metric_row(out, "", "root mean square", plane->rmse, "levels");
-    metric_row(out, "", "outline of what is seen, outwards", plane->silhouette_px, "px");
-    metric_row(out, "", "gain", plane->gain, "");
-    metric_row(out, "", "offset", plane->offset_levels, "levels");
-    metric_row(out, "", "mean of the segment that is off most", plane->segment_levels, "levels");
-    metric_row(out, "", "outline of the segment that is off most", plane->segment_px, "px");
-    metric_row(out, "", "PSNR", plane->psnr_db, "dB");
-    metric_row(out, "", "SSIM of luma", plane->ssim, "");
-    metric_row(out, "", "FLIP, mean", plane->flip_mean, "");
-    metric_row(out, "", "FLIP, largest", plane->flip_max, "");
-    metric_row(out, "", "CIEDE2000, mean", plane->de2000_mean, "");
-    for (PixelClass i = 0; i < PIXEL_IDENTICAL; i++)
-        if (plane->classes[i]) {
-            char name[48];
-            snprintf(name, sizeof name, "pixels: %s", pixel_class_name(i));
-            metric_row(out, "", name, (double)plane->classes[i], "");
-        }
+    text_printf(out, "<table><caption>%s</caption><tbody>\n", caption);
+}
+
+static void end_table(Text *out)
+{
+    text_puts(out, "</tbody></table>\n");
 }
 
 static void coverage_metrics(const CompareResult *plane, Text *out)
 {
     if (!plane->has_mask)
         return;
-    metric_row(out, "", "missing pixels (seen in A only)", (double)plane->missing_pixels, "");
-    metric_row(out, "", "extra pixels (seen in B only)", (double)plane->extra_pixels, "");
-    metric_row(out, "", "pixels seen in both", (double)plane->common_pixels, "");
+    metric_row(out, "pixels seen in both", (double)plane->common_pixels, "");
+    metric_row(out, "missing pixels (seen in A only)", (double)plane->missing_pixels, "");
+    metric_row(out, "extra pixels (seen in B only)", (double)plane->extra_pixels, "");
 }
 
-void report_metric_rows(const CompareResult *plane, Text *out)
+static void color_metrics(const CompareResult *plane, Text *out)
+{
+    begin_table(out, "Colour: sizes of differences");
+    metric_row(out, "differing pixels", (double)plane->differing_pixels, "");
+    metric_row(out, "largest", plane->max_abs, "levels");
+    metric_row(out, "largest off the edges", plane->interior_max_abs, "levels");
+    metric_row(out, "mean", plane->mean_abs, "levels");
+    metric_row(out, "root mean square", plane->rmse, "levels");
+    metric_row(out, "PSNR", plane->psnr_db, "dB");
+    end_table(out);
+    begin_table(out, "Colour: which way B is off");
+    metric_row(out, "signed mean, worst channel", plane->bias_levels, "levels");
+    metric_row(out, "brighter pixels over darker ones", plane->sign_sigma, "σ");
+    metric_row(out, "gain", plane->gain, "");
+    metric_row(out, "offset", plane->offset_levels, "levels");
+    metric_row(out, "mean of the segment that is off most", plane->segment_levels, "levels");
+    end_table(out);
+    begin_table(out, "Colour: outlines and coverage");
+    metric_row(out,
+               plane->has_ids ? "outline of what is seen, outwards"
+                              : "outline of what is not background, outwards",
+               plane->silhouette_px, "px");
+    metric_row(out, "outline of the segment that is off most", plane->segment_px, "px");
+    coverage_metrics(plane, out);
+    end_table(out);
+    begin_table(out, "Colour: pixels by the cause of their difference");
+    for (PixelClass i = 0; i < PIXEL_CLASSES; i++)
+        if (plane->classes[i])
+            metric_row(out, i == PIXEL_WRONG_SEGMENT ? "wrong segment" : pixel_class_name(i),
+                       (double)plane->classes[i], "");
+    end_table(out);
+    begin_table(out, "Colour: as people see it (reported, never judged)");
+    metric_row(out, "SSIM of luma", plane->ssim, "");
+    metric_row(out, "FLIP, mean", plane->flip_mean, "");
+    metric_row(out, "FLIP, largest", plane->flip_max, "");
+    metric_row(out, "CIEDE2000, mean", plane->de2000_mean, "");
+    metric_row(out, "CIEDE2000, largest", plane->de2000_max, "");
+    end_table(out);
+}
+
+static void geometry_metrics(const CompareResult *plane, Text *out)
 {
     const char *unit = plane->kind == PLANE_DEPTH ? "mm" : "deg";
-    const char *name = plane_kind_name(plane->kind);
+    begin_table(out, plane->kind == PLANE_DEPTH ? "Depth" : "Normals");
+    metric_row(out, "median difference", plane->median, unit);
+    metric_row(out, "99th percentile", plane->p99, unit);
+    metric_row(out, "largest difference", plane->max, unit);
+    metric_row(out, "values that are not a number",
+               (double)(plane->nan_pixels_a + plane->nan_pixels_b), "");
+    coverage_metrics(plane, out);
+    end_table(out);
+}
+
+void report_metric_tables(const CompareResult *plane, Text *out)
+{
     switch (plane->kind) {
     case PLANE_COLOR:
         color_metrics(plane, out);
         break;
     case PLANE_DEPTH:
     case PLANE_NORMAL:
-        metric_row(out, name, "values that are not a number",
-                   (double)(plane->nan_pixels_a + plane->nan_pixels_b), "");
-        metric_row(out, "", "median difference", plane->median, unit);
-        metric_row(out, "", "99th percentile", plane->p99, unit);
-        metric_row(out, "", "largest difference", plane->max, unit);
+        geometry_metrics(plane, out);
         break;
     case PLANE_ID:
-        metric_row(out, name, "pixels with different ids", (double)plane->differing_pixels, "");
-        metric_row(out, "", "of the pixels at edges", 100 * plane->edge_mismatch_fraction, "%");
+        begin_table(out, "Segments");
+        metric_row(out, "pixels with different ids", (double)plane->differing_pixels, "");
+        metric_row(out, "of the pixels at edges", 100 * plane->edge_mismatch_fraction, "%");
+        coverage_metrics(plane, out);
+        end_table(out);
         break;
     case PLANE_KINDS:
         break;
     }
-    coverage_metrics(plane, out);
 }
 
 void report_surface_rows(const SurfaceCheck *surface, Text *rules, Text *metrics)
@@ -112,12 +160,14 @@ void report_surface_rows(const SurfaceCheck *surface, Text *rules, Text *metrics
                     "<td class=\"number\">%zu pixels</td><td class=\"number\">0 pixels</td></tr>\n",
                     i ? "" : "surface", rows[i].pixels ? "bad" : "good",
                     rows[i].pixels ? "✗ differ" : "✓ agree", rows[i].name, rows[i].pixels);
-    metric_row(metrics, "surface", "grazing pixels", (double)surface->grazing, "");
-    metric_row(metrics, "", "pixels judged", (double)surface->common, "");
-    metric_row(metrics, "", "median distance from the surface", surface->median_mm, "mm");
-    metric_row(metrics, "", "99th percentile", surface->p99_mm, "mm");
-    metric_row(metrics, "", "largest distance", surface->max_mm, "mm");
-    metric_row(metrics, "", "largest over what is allowed", surface->max_ratio, "");
+    begin_table(metrics, "Surface, as POV-Ray's root finder sees it");
+    metric_row(metrics, "pixels judged", (double)surface->common, "");
+    metric_row(metrics, "grazing pixels", (double)surface->grazing, "");
+    metric_row(metrics, "median distance from the surface", surface->median_mm, "mm");
+    metric_row(metrics, "99th percentile", surface->p99_mm, "mm");
+    metric_row(metrics, "largest distance", surface->max_mm, "mm");
+    metric_row(metrics, "largest over what is allowed", surface->max_ratio, "");
+    end_table(metrics);
 }
 
 void report_settled_rows(const ReportCase *report, Text *rules, Text *metrics)
@@ -134,11 +184,15 @@ void report_settled_rows(const ReportCase *report, Text *rules, Text *metrics)
             met ? "✓ agree" : "✗ differ", settled_cause_sentence(cause), report->b.name,
             settled->count[cause], allowed);
     }
+    if (settled->n_first > 0)
+        begin_table(metrics, "Settled pixels, the first of them");
     for (int i = 0; i < settled->n_first; i++) {
         Text where = TEXT_INIT;
         settled_describe(&settled->first[i], report->a.name, report->b.name, &where);
-        text_printf(metrics, "<tr><th>%s</th><td>%s</td><td>%s</td></tr>\n", i ? "" : "settled",
-                    where.chars ? where.chars : "", settled_cause_name(settled->first[i].cause));
+        text_printf(metrics, "<tr><td>%s</td><td>%s</td></tr>\n", where.chars ? where.chars : "",
+                    settled_cause_name(settled->first[i].cause));
         text_release(&where);
     }
+    if (settled->n_first > 0)
+        end_table(metrics);
 }

@@ -226,6 +226,9 @@ MUST_CHECK Status compare_pictures(const Rendering *a, const Rendering *b,
 /* Adds FLIP, SSIM and CIEDE2000 of the two pictures compared. */
 MUST_CHECK Status compare_perception(const Picture *a, const Picture *b, CompareResult *result,
                                      Err *err);
+/* The class of every pixel, a PixelClass, as a grey picture of 8 bits. */
+MUST_CHECK Status class_picture(Picture *out, const Rendering *a, const Rendering *b,
+                                const Tolerance *tolerance, Err *err);
 /* Says in result->cause what made B of A, of the same gamma, where that is certain: turned, mirrored,
  * moved by whole pixels (up to 48), rounded, brighter or darker throughout, or other shades within equal
  * outlines. */
@@ -310,7 +313,8 @@ typedef struct ReportSide {
     const char *version; /* "3.7.0.10" */
     double seconds;      /* wall-clock time of the colour picture */
     const Picture *picture;
-    const IdPlane *ids; /* or NULL, then in both */
+    const IdPlane *ids;          /* or NULL, then in both */
+    const Plane *depth, *normal; /* likewise */
 } ReportSide;
 
 /* One scene rendered by both. All is borrowed. */

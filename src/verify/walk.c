@@ -81,6 +81,8 @@ static void count_pixel(const Walk *walk, const Row *row, int x, Sums *sums)
                              : in_a != in_b ? labels_class(in_a, in_b, band)
                                             : class_of_shading(walk, row, x, common, difference);
     sums->classes[pixel_class]++;
+    if (walk->classes)
+        walk->classes[pixel] = (uint8_t)pixel_class;
     sums->common += common;
     if (!in_a != !in_b && !settled) {
         walk->coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;

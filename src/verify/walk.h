@@ -27,6 +27,7 @@ typedef struct Walk {
     bool common_only;
     const uint8_t *settled;           /* as in Tolerance */
     double geometry_mm, geometry_deg; /* beyond which geometry differs */
+    uint8_t *classes;                 /* borrowed; takes the PixelClass of each pixel; or NULL */
     uint8_t *coverage;                /* owned; a Coverage for each pixel */
     Sums *sums;                       /* owned; one for each band */
     Account *accounts;                /* owned; index->n for each worker */

@@ -2,7 +2,7 @@
 //
 //   node page.js CHROMIUM PAGE.html EXPECTED.json
 //
-// EXPECTED: {cases, worst: {id, differing, x, y, a: [r, g, b], b: [r, g, b], segment}}. Prints one line
+// EXPECTED: {cases, worst: {id, differing, x, y, a: [r, g, b], b: [r, g, b], segment, depth, classes}}. Prints one line
 // for each expectation that fails; exit status 1 if any does.
 "use strict";
 const { spawn } = require("child_process");
@@ -114,15 +114,87 @@ async function checkZoomAndValues() {
   const box = await evaluate("(function () { var b = document.getElementById('stage').getBoundingClientRect();" +
     " return [b.left, b.top, b.width, b.height]; })()");
   // The pixel is in the middle of each pane; the panes of A and B read the same.
-  for (const third of [1 / 6, 1 / 2]) {
-    await mouse("mouseMoved", box[0] + box[2] * third, box[1] + box[3] / 2);
+  for (const middle of [1 / 4, 3 / 4]) {
+    await mouse("mouseMoved", box[0] + box[2] * middle, box[1] + box[3] / 2);
     const cells = await evaluate(readout);
-    check(cells[0].endsWith(w.x + ", " + w.y), "expected pixel " + w.x + ", " + w.y + ", got " + cells[0]);
+    check(cells[0].includes(")" + w.x + ", " + w.y), "expected pixel " + w.x + ", " + w.y + ", got " + cells[0]);
     check(cells[1].includes(w.a.join(" ") + ", segment " + w.segment), "expected A to be " + w.a + ", got " + cells[1]);
     check(cells[2].includes(w.b.join(" ")), "expected B to be " + w.b + ", got " + cells[2]);
     const d = w.b.map(function (v, i) { return v - w.a[i]; }).join(" ");
-    check(cells[3].endsWith(d), "expected the difference " + d + ", got " + cells[3]);
+    check(cells[3].includes("B less A" + d), "expected the difference " + d + ", got " + cells[3]);
+    const depths = [1, 2].map(function (i) { return Number(/depth ([-0-9.]+) mm/.exec(cells[i])[1]); });
+    depths.forEach(function (depth, i) {
+      check(Math.abs(depth - w.depth) < 0.004, "expected a depth of " + w.depth + " mm, got " + depth + " of side " + i);
+    });
+    check(/normals 0\.0\d\d°/.test(cells[3]), "expected the angle between the normals, got " + cells[3]);
+    const linear = /linear ([0-9.]+)/.exec(cells[1])[1];
+    const v = w.a[0] / 255, expectedLinear = v < 0.04045 ? v / 12.92 : Math.pow((v + 0.055) / 1.055, 2.4);
+    check(Math.abs(linear - expectedLinear) < 1e-4, "expected linear " + expectedLinear + ", got " + linear);
+    check(/^Pixel[^a-z]*\(column, row\)[0-9, ]+(shading|edge|shadow)$/.test(cells[0]), "expected the pixel's class, got " + cells[0]);
   }
+}
+
+const settled = "new Promise(function (r) { setTimeout(r, 400); })";
+
+// What is shown can be read off the address, and is shown again by it.
+async function checkAddress() {
+  await mouse("mouseMoved", 1, 1);
+  await evaluate("location.hash = '#case=" + expected.worst.id + "'");
+  await evaluate(settled);
+  await key("2");
+  await key("+");
+  await key("+");
+  await key("ArrowRight");
+  await key("p");
+  await evaluate(settled);
+  const address = await evaluate("location.hash");
+  for (const part of ["case=" + expected.worst.id, "mode=swipe", "plane=depth", "zoom=", "x=", "y="])
+    check(address.includes(part), "expected " + part + " in the address, got " + address);
+  const shown = await evaluate(hash);
+  await key("1");
+  await key("0");
+  await evaluate(settled);
+  check(await evaluate("location.hash") !== address, "expected the address to follow the keys");
+  await evaluate("window.scrollTo(0, 0)");
+  await evaluate("location.hash = '" + address + "'");
+  await evaluate(settled);
+  check(await evaluate(hash) === shown, "expected the address to show the same again");
+  check(await evaluate("location.hash") === address, "expected the address to stay, got " + await evaluate("location.hash"));
+  check(await evaluate("(function () { var b = document.getElementById('stage').getBoundingClientRect();" +
+    " return b.top >= 0 && b.bottom <= window.innerHeight; })()"), "expected a link to lead to the pictures");
+  await key("1");
+}
+
+// Every plane and map has a picture of its own; the classes are counted as the comparison counts them.
+async function checkPlanes() {
+  await evaluate("location.hash = '#case=" + expected.worst.id + "&mode=beside'");
+  await evaluate(settled);
+  const seen = [];
+  for (const plane of ["color", "depth", "normal", "id"]) {
+    await evaluate("location.hash = '#case=" + expected.worst.id + "&mode=beside&plane=" + plane + "'");
+    await evaluate(settled);
+    seen.push(await evaluate(hash));
+  }
+  for (const map of ["steps", "x8", "x64", "classes"]) {
+    await evaluate("location.hash = '#case=" + expected.worst.id + "&mode=difference&map=" + map + "'");
+    await evaluate(settled);
+    seen.push(await evaluate(hash));
+  }
+  check(new Set(seen).size === seen.length, "expected every plane and map to look different");
+  const legend = await evaluate("document.getElementById('legend').textContent");
+  for (const [name, count] of Object.entries(expected.worst.classes))
+    if (count) check(legend.includes(name.replace("_", " ") + " " + count), "expected " + name + " " + count + ", got " + legend);
+  await key("1");
+}
+
+async function checkPhone() {
+  await send("Emulation.setDeviceMetricsOverride", { width: 390, height: 844, deviceScaleFactor: 2, mobile: true });
+  await evaluate(settled);
+  check(await evaluate("document.documentElement.scrollWidth <= 390"), "expected the page to fit a phone");
+  check(await evaluate("Array.from(document.querySelectorAll('.case:not([hidden]) .rules td:last-child')).every(function (d) {" +
+    " var b = d.getBoundingClientRect(); return b.width === 0 || b.right <= 390; })"), "expected the limits to be seen on a phone");
+  await send("Emulation.clearDeviceMetricsOverride");
+  await evaluate(settled);
 }
 
 async function checkSwipeAndBlink() {
@@ -143,7 +215,7 @@ async function checkSwipeAndBlink() {
     "expected key 4 to show the difference");
   await key("n");
   const cells = await evaluate(readout);
-  check(/[1-9]/.test(cells[3].replace("Difference", "")), "expected n to go to a pixel that differs, got " + cells);
+  check(/A-?\d+ -?\d+ -?\d+/.test(cells[3]) && !cells[3].includes("A0 0 0"), "expected n to go to a pixel that differs, got " + cells);
 }
 
 async function checkKeysAndCrops() {
@@ -153,6 +225,8 @@ async function checkKeysAndCrops() {
   await key("k");
   check(await evaluate("document.querySelector('tr[aria-current]').dataset.case") === before, "expected k to go back");
   check(await evaluate("document.querySelectorAll('.case:not([hidden]) .crops figure').length") > 0, "expected crops");
+  check(await evaluate("document.querySelector('.case:not([hidden]) .crops button').textContent") === "AB",
+    "expected crops to say which is A and which is B");
   const shown = await evaluate(hash);
   await evaluate("document.querySelector('.case:not([hidden]) .crops button').click()");
   check(await evaluate(hash) !== shown, "expected a crop to show its place");
@@ -180,6 +254,9 @@ async function run() {
   await checkZoomAndValues();
   await checkSwipeAndBlink();
   await checkKeysAndCrops();
+  await checkAddress();
+  await checkPlanes();
+  await checkPhone();
   await checkColors();
   check(complaints.length === 0, "expected no console error, got " + complaints.join("; "));
   check(requests.length === 0, "expected no network access, got " + requests.join(", "));

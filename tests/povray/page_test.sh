@@ -12,6 +12,7 @@ two_cases() {
     expect_status 1
     run corcast report good bad -o page.html
     expect_status 1
+    grep -q '<small><code>tree.swc --size 120x90 -o good</code>' page.html || fail "expected cases to be told apart"
     expect_stdout '^differ: 2 cases; page.html'
 }
 
@@ -23,13 +24,16 @@ pixel() {
 test_the_page_opens_sorts_swipes_zooms_and_shows_the_right_values() {
     command -v node >node.path || skip "nodejs is not installed"
     command -v chromium >chromium.path || skip "chromium is not installed"
-    local x y
+    local x y depth
     two_cases
     x=$(jq .planes.color.worst.x bad/report.json)
     y=$(jq .planes.color.worst.y bad/report.json)
-    jq --argjson a "$(pixel bad/povray.png "$x" "$y")" --argjson b "$(pixel bad/native.png "$x" "$y")" \
+    depth=$(tail -c +$((1 + $(head -3 bad/native.depth.pfm | wc -c) + 4 * ((89 - y) * 120 + x))) bad/native.depth.pfm |
+        head -c 4 | od -An -tf4)
+    jq --argjson depth "$depth" --argjson a "$(pixel bad/povray.png "$x" "$y")" --argjson b "$(pixel bad/native.png "$x" "$y")" \
         '{cases: 2, worst: {id: "case-2", differing: .planes.color.differing_pixels, x: .planes.color.worst.x,
-          y: .planes.color.worst.y, segment: .planes.color.worst.id_a, a: $a, b: $b}}' bad/report.json >expected.json
+          y: .planes.color.worst.y, segment: .planes.color.worst.id_a, classes: .planes.color.classes,
+          depth: $depth, a: $a, b: $b}}' bad/report.json >expected.json
     run node "$REPO/tests/page/page.js" chromium page.html expected.json
     [ "$status" -eq 0 ] || fail "$(head -5 stdout | tr '\n' ';')$(said)"
 }

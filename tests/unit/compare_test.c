@@ -225,6 +225,31 @@ static void finds_missing_interior_off_the_band(void **state)
     pair_release(&pair);
 }
 
+static void paints_every_pixel_in_the_class_it_is_counted_in(void **state)
+{
+    (void)state;
+    for (int with_ids = 0; with_ids < 2; with_ids++) {
+        Pair pair = make_pair_of_radii(8, 8, 5);
+        change(&pair.b, 20, 11, 1, 7);
+        change(&pair.b, 17, 10, 2, -1);
+        const Tolerance tolerance = tolerance_identity(0);
+        const Rendering a = {.picture = &pair.a, .ids = with_ids ? &pair.id_a : NULL};
+        const Rendering b = {.picture = &pair.b, .ids = with_ids ? &pair.id_b : NULL};
+        CompareResult r = compare(&pair, with_ids, tolerance);
+        Picture classes;
+        size_t counts[PIXEL_CLASSES] = {0};
+        assert_int_equal(class_picture(&classes, &a, &b, &tolerance, &err), STATUS_OK);
+        for (size_t i = 0; i < W * H; i++)
+            counts[picture_code(&classes, i)]++;
+        for (int i = 0; i < PIXEL_CLASSES; i++)
+            assert_int_equal(counts[i], r.classes[i]);
+        assert_int_equal(picture_code(&classes, 11 * W + 20), PIXEL_SHADING);
+        assert_true(r.classes[PIXEL_MISSING] > 0 && r.classes[PIXEL_EDGE] > 0);
+        picture_release(&classes);
+        pair_release(&pair);
+    }
+}
+
 static void knows_no_mask_without_a_background(void **state)
 {
     (void)state;
@@ -571,6 +596,7 @@ int main(void)
         cmocka_unit_test(is_symmetric_but_for_missing_and_extra),
         cmocka_unit_test(tells_surface_from_edge_from_missing),
         cmocka_unit_test(finds_missing_interior_off_the_band),
+        cmocka_unit_test(paints_every_pixel_in_the_class_it_is_counted_in),
         cmocka_unit_test(knows_no_mask_without_a_background),
         cmocka_unit_test(says_what_is_wrong_and_where),
         cmocka_unit_test(allows_two_pixels_in_a_million),
