@@ -393,7 +393,7 @@ Status run_compare(int argc, char **argv, Err *err)
     Status status = STATUS_OK;
     CompareResult result;
     Tolerance tolerance;
-    char *tier_name = NULL;
+    char *tier_name = NULL, *name = NULL;
     Sides sides = {0};
     if (parsed.common.help)
         goto done;
@@ -408,13 +408,14 @@ Status run_compare(int argc, char **argv, Err *err)
     double start_s = clock_seconds();
     TRY_GOTO(
         compare_files(&options, kind, &sides, &tolerance, parsed.common.threads, &result, err));
-    TRY_GOTO(write_junit(&result, options.junit, file_name(parsed.operands[0]),
-                         clock_seconds() - start_s, err));
+    TRY_GOTO(shown_name(parsed.operands[0], &name, err));
+    TRY_GOTO(write_junit(&result, options.junit, name, clock_seconds() - start_s, err));
     TRY_GOTO(print_result(&options, &result, parsed.common.quiet, err));
     status = result.agrees ? STATUS_OK : STATUS_DIFFERS;
 done:
     sides_release(&sides);
     free(tier_name);
+    free(name);
     parsed_release(&parsed);
     return status;
 }

@@ -41,6 +41,11 @@ Status run_scene(int argc, char **argv, Err *err)
         status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pov", output);
         goto done;
     }
+    if (povray_check_name(file_name(output), err) != STATUS_OK) {
+        status = STATUS_USAGE;
+        err_prefix(err, "-o: ");
+        goto done;
+    }
     TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, NULL, err));
     const CellParams cells = picture_cells(&picture);
     TRY_GOTO(povfiles_write(&scene, parsed.operands[0], output, picture.stage.shadows, ids, &cells,

@@ -30,6 +30,7 @@ typedef struct Verification {
     const PictureOptions *picture;
     const Common *common;
     const char *tree, *folder;
+    char *name; /* of the tree, for the report; owned */
     Scene scene;
     CellParams cells;
     Frame native, povray,
@@ -61,6 +62,7 @@ static void verification_release(Verification *v)
     picture_release(&v->povray_shown);
     for (size_t i = 0; i < v->n_commands; i++)
         free(v->commands[i]);
+    free(v->name);
 }
 
 /* ---- the two sides ------------------------------------------------------------------------------ */
@@ -283,7 +285,7 @@ static Status compare_sides(Verification *v, Err *err)
 
 static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err)
 {
-    ReportCase report = {.name = file_name(v->tree),
+    ReportCase report = {.name = v->name,
                          .model = model_name(v->scene.model),
                          .a = {.name = "POV-Ray",
                                .key = "povray",
@@ -415,6 +417,7 @@ Status run_verify(int argc, char **argv, Err *err)
     TRY_GOTO(picture_scene(&picture, v.tree, parsed.common.quiet, &v.scene, NULL, err));
     v.cells = picture_cells(&picture);
     TRY_GOTO(file_make_folder(folder, err));
+    TRY_GOTO(shown_name(v.tree, &v.name, err));
     TRY_GOTO(command_line_text("verify", argc, argv, &line, err));
     TRY_GOTO(mem_strdup(&v.commands[0], line, err));
     v.n_commands = 1;

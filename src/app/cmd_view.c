@@ -128,20 +128,6 @@ static Status use_next_field(Viewer *viewer, Err *err)
 /* Appends what stands for one option. */
 typedef Status PutSetting(Text *text, const char *name, const char *value, Err *err);
 
-/* As an argument: in quotes where the shell would take it apart. */
-static void put_word(Text *text, const char *word)
-{
-    const char *plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789@%+=:,./_-";
-    if (*word && word[strspn(word, plain)] == '\0') {
-        text_puts(text, word);
-        return;
-    }
-    text_puts(text, "'");
-    for (; *word; word++)
-        text_printf(text, *word == '\'' ? "'\\%c'" : "%c", *word);
-    text_puts(text, "'");
-}
-
 static Status put_argument(Text *text, const char *name, const char *value, Err *err)
 {
     (void)err;
@@ -149,7 +135,7 @@ static Status put_argument(Text *text, const char *name, const char *value, Err 
     if (strcmp(name, "log") == 0) /* a flag */
         return STATUS_OK;
     text_puts(text, " ");
-    put_word(text, value);
+    put_shell_word(text, value);
     return STATUS_OK;
 }
 
@@ -163,13 +149,6 @@ static Status put_pair(Text *text, const char *name, const char *value, Err *err
         return err_set(err, STATUS_USAGE, "--%s: a recipe cannot hold '%s'", name, value);
     text_printf(text, "%s = %s\n", name, value);
     return STATUS_OK;
-}
-
-/* A name in one line. */
-static void put_comment(Text *text, const char *name)
-{
-    for (; *name; name++)
-        text_printf(text, "%c", (unsigned char)*name < ' ' ? ' ' : *name);
 }
 
 static bool is_one_of(const char *name, const char *const *names)
@@ -227,7 +206,7 @@ static Status print_options(const Viewer *viewer, Err *err)
 {
     Text text = TEXT_INIT;
     text_puts(&text, "corcast render ");
-    put_word(&text, viewer->tree);
+    put_shell_word(&text, viewer->tree);
     Status status = put_settings(viewer, put_argument, &text, err);
     if (status == STATUS_OK) {
         printf("%s -o P.png\n", text.chars);
@@ -241,7 +220,7 @@ static Status write_recipe(const Viewer *viewer, Err *err)
 {
     Text text = TEXT_INIT;
     text_puts(&text, "; a view of ");
-    put_comment(&text, file_name(viewer->tree));
+    text_put_line(&text, file_name(viewer->tree));
     text_puts(&text, ", for render --recipe\n");
     Status status = put_settings(viewer, put_pair, &text, err);
     if (status == STATUS_OK)

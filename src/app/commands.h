@@ -23,8 +23,14 @@ const CommandEntry *command_find(const char *name);
 
 #define GENERATOR "corcast " CORCAST_VERSION
 
-/* The command line as text for provenance, in *out (owned): every argument that is a path cut to its
- * last component, so that no folder of the user's is told. */
+/* Appends a word as a shell reads it: in quotes where the shell would take it apart. */
+void put_shell_word(Text *text, const char *word);
+
+/* The last component of a path as one line of UTF-8 for people and reports, in *out (owned). */
+MUST_CHECK Status shown_name(const char *path, char **out, Err *err);
+
+/* The command line as text for provenance, in *out (owned), one line of UTF-8: every argument that is a
+ * path cut to its last component, so that no folder of the user's is told, and quoted as for a shell. */
 MUST_CHECK Status command_line_text(const char *command, int argc, char **argv, char **out,
                                     Err *err);
 

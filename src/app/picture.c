@@ -267,6 +267,7 @@ Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
 
 void picture_description(const Scene *scene, const char *tree_path, Text *out)
 {
-    text_printf(out, "arterial tree %s, %zu segments as %s", file_name(tree_path), scene->drawn,
-                models[scene->model]);
+    text_puts(out, "arterial tree ");
+    text_put_line(out, file_name(tree_path));
+    text_printf(out, ", %zu segments as %s", scene->drawn, models[scene->model]);
 }

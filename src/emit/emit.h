@@ -11,7 +11,7 @@ typedef struct PovrayParams {
     const char *templates;     /* folder that holds povray/ */
     const char *scene_file;    /* names as they stand in the header comments and the #include, */
     const char *geometry_file; /* without folders; NULL: the geometry stands in the scene itself */
-    const char *description;   /* one line: what the scene shows */
+    const char *description;   /* what the scene shows; what would break its line becomes a blank */
     const char *generator;     /* program and version */
     bool shadows;
     bool ids;         /* isosurface, blob: with the paint that the id plane needs */
@@ -23,9 +23,12 @@ typedef struct PovrayReport {
     int joint_sides; /* of a joint's mesh; 0: joints are exact, which POV-Ray can hold 174,000 of */
 } PovrayReport;
 
+/* STATUS_USAGE when POV-Ray cannot #include a file of this name: it takes printable ASCII but for '"'. */
+MUST_CHECK Status povray_check_name(const char *geometry_file, Err *err);
+
 /* Writes a scene for POV-Ray 3.7 and its geometry include (appended to *scene and *geometry; the
  * latter stays empty without geometry_file). STATUS_INPUT when a template is missing or does not
- * fit.
+ * fit, STATUS_USAGE as povray_check_name.
  */
 MUST_CHECK Status emit_povray(const Scene *scene, const PovrayParams *params, Text *scene_text,
                               Text *geometry_text, PovrayReport *report, Err *err);

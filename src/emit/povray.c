@@ -97,12 +97,33 @@ Status load_template(Tmpl *template, const PovrayParams *params, const char *nam
     return status;
 }
 
-/* An identifier made from a file name: capital first, as POV-Ray's own are lower case. */
+Status povray_check_name(const char *geometry_file, Err *err)
+{
+    const char *at = geometry_file;
+    while (*at >= ' ' && *at <= '~' && *at != '"')
+        at++;
+    if (*at == '\0')
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "POV-Ray cannot include a file named '%s': it takes only printable ASCII, "
+                   "without '\"'",
+                   geometry_file);
+}
+
+/* An identifier made from a file name: capital first, as POV-Ray's own are lower case, which take at most 255
+ * characters. The end of a long name is a hash of the whole (FNV-1a). */
 static void put_guard(Text *text, const char *name)
 {
+    enum { LONGEST = 200 };
+    uint32_t hash = 2166136261u;
     text_puts(text, "Inc_");
-    for (; *name; name++)
-        text_printf(text, "%c", isalnum((unsigned char)*name) ? *name : '_');
+    for (size_t i = 0; name[i]; i++) {
+        hash = (hash ^ (unsigned char)name[i]) * 16777619u;
+        if (i < LONGEST)
+            text_printf(text, "%c", isalnum((unsigned char)name[i]) ? name[i] : '_');
+    }
+    if (strlen(name) > LONGEST)
+        text_printf(text, "_%08x", hash);
 }
 
 /* The box, and where its origin lies in the tree when that was moved. */
@@ -238,8 +259,8 @@ static Status put_geometry(const Scene *scene, const PovrayParams *params, const
 {
     Values values = {0};
     const Finish *finish = &scene->finish;
-    text_puts(add_value(&values, "file"), file);
-    text_puts(add_value(&values, "description"), params->description);
+    text_put_line(add_value(&values, "file"), file);
+    text_put_line(add_value(&values, "description"), params->description);
     text_puts(add_value(&values, "generator"), params->generator);
     put_extent(add_value(&values, "extent"), scene->bounds, scene->origin);
     put_guard(add_value(&values, "guard"), file);
@@ -298,6 +319,17 @@ static Status put_ground(Text *text, const Scene *scene, const PovrayParams *par
     return expand(&values, params, "ground.inc", text, err);
 }
 
+static void put_stem(Text *text, const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    Text stem = TEXT_INIT;
+    text_append(&stem, name, dot ? (size_t)(dot - name) : strlen(name));
+    if (stem.chars)
+        text_put_line(text, stem.chars);
+    text->failed = text->failed || stem.failed;
+    text_release(&stem);
+}
+
 static Status put_scene(const Scene *scene, const PovrayParams *params, const Text *geometry,
                         Text *out, Err *err)
 {
@@ -305,13 +337,11 @@ static Status put_scene(const Scene *scene, const PovrayParams *params, const Te
     const Camera *camera = &scene->camera;
     double near_mm, far_mm;
     scene_depth_range(scene, &near_mm, &far_mm);
-    const char *dot = strrchr(params->scene_file, '.');
-    int stem = dot ? (int)(dot - params->scene_file) : (int)strlen(params->scene_file);
-    text_puts(add_value(&values, "file"), params->scene_file);
-    text_printf(add_value(&values, "stem"), "%.*s", stem, params->scene_file);
-    text_puts(add_value(&values, "geometry_file"),
-              params->geometry_file ? params->geometry_file : "the last part of this file");
-    text_puts(add_value(&values, "description"), params->description);
+    text_put_line(add_value(&values, "file"), params->scene_file);
+    put_stem(add_value(&values, "stem"), params->scene_file);
+    text_put_line(add_value(&values, "geometry_file"),
+                  params->geometry_file ? params->geometry_file : "the last part of this file");
+    text_put_line(add_value(&values, "description"), params->description);
     text_puts(add_value(&values, "generator"), params->generator);
     put_extent(add_value(&values, "extent"), scene->bounds, scene->origin);
     text_printf(add_value(&values, "width"), "%d", camera->width);
@@ -346,6 +376,8 @@ Status emit_povray(const Scene *scene, const PovrayParams *params, Text *scene_t
     Text geometry = TEXT_INIT;
     PovrayReport counted = {0};
     const char *file = params->geometry_file ? params->geometry_file : params->scene_file;
+    if (params->geometry_file)
+        TRY(povray_check_name(params->geometry_file, err));
     Status status = put_geometry(scene, params, file, &geometry, &counted, err);
     if (status == STATUS_OK)
         status = put_scene(scene, params, &geometry, scene_text, err);

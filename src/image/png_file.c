@@ -257,6 +257,11 @@ static void set_provenance(Writer *self, const ImageNotes *notes)
         png_text *chunk = &self->chunks[i];
         memcpy(&chunk->key, &note->key, sizeof chunk->key);
         memcpy(&chunk->text, &note->text, sizeof chunk->text);
+        bool ascii = true; /* a tEXt chunk is Latin-1 */
+        for (const char *at = note->text; *at; at++)
+            ascii = ascii && (unsigned char)*at < 0x80;
+        if (!ascii)
+            chunk->compression = PNG_ITXT_COMPRESSION_NONE;
         chunk->compression = PNG_TEXT_COMPRESSION_NONE;
     }
     png_set_text(self->png, self->info, self->chunks, notes->count);

@@ -320,7 +320,9 @@ static void read_version(const Text *log, char *version, size_t size)
     snprintf(version, size, "unknown");
     if (start) {
         start += sizeof mark - 1;
-        snprintf(version, size, "%.*s", (int)strcspn(start, " \n"), start);
+        size_t length =
+            strspn(start, "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-_+");
+        snprintf(version, size, "%.*s", (int)length, start);
     }
 }
 
