@@ -356,13 +356,13 @@ Status run_compare(int argc, char **argv, Err *err)
     CompareOptions options = {.kind = PLANE_KINDS};
     const Option own[] = {
         {"json", OPTION_FLAG, &options.json, NULL, 0, 0, NULL, NULL, "as JSON"},
-        {"junit", OPTION_TEXT, &options.junit, NULL, 0, 0, NULL, "FILE.xml",
+        {"junit", OPTION_OUTPUT, &options.junit, NULL, 0, 0, NULL, "FILE.xml",
          "JUnit XML, a test case for each rule"},
         {"kind", OPTION_CHOICE, &options.kind, NULL, 0, 0, kinds, NULL,
          "what the files hold (auto: by their names)"},
         {"tier", OPTION_CHOICE, &options.tier, &options.has_tier, 0, 0, tiers, NULL,
          "what is still agreement (A)"},
-        {"tolerance", OPTION_TEXT, &options.tolerance, NULL, 0, 0, NULL, "FILE.ini",
+        {"tolerance", OPTION_INPUT, &options.tolerance, NULL, 0, 0, NULL, "FILE.ini",
          "limits of one's own, the others unjudged unless --tier is given"},
         {"levels", OPTION_NUMBER, &options.levels, &options.has_levels, 0, 255, NULL, NULL,
          "8-bit levels a pixel may be off (0)"},
@@ -374,16 +374,16 @@ Status run_compare(int argc, char **argv, Err *err)
          "count pixels as pixelmatch 7.2.0 does at this threshold (0.1 is its own)"},
         {"metrics", OPTION_SWITCH, &options.metrics, &options.has_metrics, 0, 0, NULL, NULL,
          "FLIP, SSIM, CIEDE2000 and all that was measured (on with --json)"},
-        {"ids-a", OPTION_TEXT, &options.ids_a, NULL, 0, 0, NULL, "FILE",
+        {"ids-a", OPTION_INPUT, &options.ids_a, NULL, 0, 0, NULL, "FILE",
          "id plane of A; tells silhouettes from surfaces"},
-        {"ids-b", OPTION_TEXT, &options.ids_b, NULL, 0, 0, NULL, "FILE", "id plane of B"},
-        {"output", OPTION_TEXT, &options.heat, NULL, 0, 0, NULL, "H.png",
+        {"ids-b", OPTION_INPUT, &options.ids_b, NULL, 0, 0, NULL, "FILE", "id plane of B"},
+        {"output", OPTION_OUTPUT, &options.heat, NULL, 0, 0, NULL, "H.png",
          "heat map of the difference of two pictures"},
-        {"difference", OPTION_TEXT, &options.difference, NULL, 0, 0, NULL, "D.png",
+        {"difference", OPTION_OUTPUT, &options.difference, NULL, 0, 0, NULL, "D.png",
          "signed difference, 128 + 8 (B - A)"},
-        {"flicker", OPTION_TEXT, &options.flicker, NULL, 0, 0, NULL, "F.png",
+        {"flicker", OPTION_OUTPUT, &options.flicker, NULL, 0, 0, NULL, "F.png",
          "animated PNG that shows A and B in turn"},
-        {"ledger", OPTION_TEXT, &options.ledger, NULL, 0, 0, NULL, "L.csv",
+        {"ledger", OPTION_OUTPUT, &options.ledger, NULL, 0, 0, NULL, "L.csv",
          "the account of every segment"},
         {0},
     };
@@ -403,6 +403,14 @@ Status run_compare(int argc, char **argv, Err *err)
         options.metrics = options.json;
     PlaneKind kind =
         options.kind == PLANE_KINDS ? kind_of(parsed.operands[0]) : (PlaneKind)options.kind;
+    bool color = kind == PLANE_COLOR;
+    const OptionNeed needs[] = {{"depth-mm", kind == PLANE_DEPTH, "is for two depth planes"},
+                                {"levels", color, "is for two pictures"},
+                                {"pixelmatch", color, "is for two pictures"},
+                                {"ids-a", kind != PLANE_ID, "is for other planes than ids"},
+                                {"ids-b", kind != PLANE_ID, "is for other planes than ids"},
+                                {0}};
+    TRY_GOTO(options_check_needs(&parsed, needs, err));
     TRY_GOTO(check_options(&options, kind, err));
     TRY_GOTO(make_tolerance(&options, &tolerance, &tier_name, err));
     double start_s = clock_seconds();

@@ -14,6 +14,7 @@ static const Command command = {
                 "  corcast convert - - < measured.swc > tidy.swc\n",
     .min_operands = 2,
     .max_operands = 2,
+    .writes_last = true,
 };
 
 /* A tree in its normal form: parents before children, ids 1, 2, ... in that order. */

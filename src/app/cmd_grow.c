@@ -79,8 +79,8 @@ Status run_grow(int argc, char **argv, Err *err)
     refining_init(&refining);
     const char *output = NULL, *json = NULL;
     const Option own[] = {
-        {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "T.swc", "the tree"},
-        {"json", OPTION_TEXT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
+        {"output", OPTION_OUTPUT, &output, NULL, 0, 0, NULL, "T.swc", "the tree"},
+        {"json", OPTION_OUTPUT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
         {0},
     };
     const Option *const tables[] = {own, growing.table, refining.table, NULL};
@@ -98,7 +98,8 @@ Status run_grow(int argc, char **argv, Err *err)
         goto done;
     }
     TRY_GOTO(check_refining(&growing, &refining, err));
-    TRY_GOTO(growing_prepare(&growing, &parsed.common, err));
+    TRY_GOTO(refining_check(&refining, &parsed, err));
+    TRY_GOTO(growing_prepare(&growing, &parsed, err));
     TRY_GOTO(grow(&growing, parsed.common.quiet, &tree, &report, &why, err));
     TRY_GOTO(refining_apply(&refining, &parsed.common, &growing.domain, &tree, &refined, err));
     if (refined.target_before > 0)

@@ -111,6 +111,12 @@ Status run_info(int argc, char **argv, Err *err)
     if (parsed.common.help)
         goto done;
     TRY_GOTO(tree_read(&tree, parsed.operands[0], err));
+    bool pries = derive_viscosity_law(&tree, &flow) == VISCOSITY_PRIES;
+    const OptionNeed needs[] = {{"viscosity", !pries, "is for --viscosity-law constant"},
+                                {"hematocrit", pries, "is for --viscosity-law pries"},
+                                {"plasma-viscosity", pries, "is for --viscosity-law pries"},
+                                {0}};
+    TRY_GOTO(options_check_needs(&parsed, needs, err));
     TRY_GOTO(derive_summary(&tree, &flow, &summary, err));
     if (with_statistics)
         TRY_GOTO(derive_statistics(&tree, &statistics, err));

@@ -41,7 +41,7 @@ Status run_povray(int argc, char **argv, Err *err)
     int size[2] = {0, 0}, antialias = 1, plane = ORACLE_COLOR, bits = 8;
     bool has_size = false;
     const Option own[] = {
-        {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P.png", "the picture"},
+        {"output", OPTION_OUTPUT, &output, NULL, 0, 0, NULL, "P.png", "the picture"},
         {"size", OPTION_SIZE, size, &has_size, 1, IMAGE_MAX_SIDE, NULL, NULL,
          "pixels (what the scene says)"},
         {"antialias", OPTION_WHOLE, &antialias, NULL, 1, 9, NULL, "N", "N x N samples a pixel (1)"},
@@ -64,6 +64,10 @@ Status run_povray(int argc, char **argv, Err *err)
         goto done;
     }
     TRY_GOTO(bits_check(bits, err));
+    const OptionNeed needs[] = {{"antialias", plane == ORACLE_COLOR, "is for --plane color"},
+                                {"bits", plane == ORACLE_COLOR, "is for --plane color"},
+                                {0}};
+    TRY_GOTO(options_check_needs(&parsed, needs, err));
     TRY_GOTO(file_check_regular(parsed.operands[0], err));
     if (!has_size)
         TRY_GOTO(size_of_scene(parsed.operands[0], size, err));

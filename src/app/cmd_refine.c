@@ -22,7 +22,7 @@ Status run_refine(int argc, char **argv, Err *err)
     refining.level = GROW_REFINE_TOPOLOGY;
     const char *output = NULL, *spec = NULL;
     const Option own[] = {
-        {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "R.swc", "the refined tree"},
+        {"output", OPTION_OUTPUT, &output, NULL, 0, 0, NULL, "R.swc", "the refined tree"},
         {"domain", OPTION_TEXT, &spec, NULL, 0, 0, NULL, "SHAPE",
          "tissue to stay in (the tree's; a tree without one may go anywhere)"},
         {0},
@@ -41,11 +41,14 @@ Status run_refine(int argc, char **argv, Err *err)
         status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .swc", output);
         goto done;
     }
+    TRY_GOTO(refining_check(&refining, &parsed, err));
     TRY_GOTO(tree_read(&tree, parsed.operands[0], err));
     if (spec)
         TRY_GOTO(domain_parse(&domain, spec, err));
     else
         TRY_GOTO(tree_domain(&tree, &domain, &has_domain, err));
+    if (domain.file)
+        TRY_GOTO(files_read(&parsed.files, "--domain", domain.file, err));
     TRY_GOTO(refining_apply(&refining, &parsed.common, has_domain ? &domain : NULL, &tree, &report,
                             err));
     TRY_GOTO(tree_write(&tree, output, err));

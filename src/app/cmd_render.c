@@ -113,7 +113,7 @@ Status run_render(int argc, char **argv, Err *err)
     int bits = 8, hits = HITS_EXACT, method = RENDER_TRACE, kernels = KERNELS_FASTEST;
     double threshold = 0, memory_mb = 128;
     const Option own[] = {
-        {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "P",
+        {"output", OPTION_OUTPUT, &output, NULL, 0, 0, NULL, "P",
          "the picture: .png, .ppm, .tif or .pfm"},
         {"planes", OPTION_TEXT, &planes, NULL, 0, 0, NULL, "LIST",
          "planes beside it: color,depth,normal,id"},
@@ -128,7 +128,7 @@ Status run_render(int argc, char **argv, Err *err)
          "instructions that tiles are drawn with, for tests (fastest)"},
         {"memory", OPTION_NUMBER, &memory_mb, NULL, 1e-3, 1e9, NULL, "MB",
          "of a band; larger pictures are drawn and written band by band (128)"},
-        {"json", OPTION_TEXT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
+        {"json", OPTION_OUTPUT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
         {0},
     };
     const Option *const tables[] = {own, picture.table, picture.coloring.table, NULL};
@@ -148,6 +148,11 @@ Status run_render(int argc, char **argv, Err *err)
     if (parsed.common.help)
         goto done;
     TRY_GOTO(bits_check(bits, err));
+    const OptionNeed needs[] = {{"bits", strcmp(file_extension(output), "pfm") != 0,
+                                 "is for whole numbers; a .pfm holds floats"},
+                                {0}};
+    TRY_GOTO(options_check_needs(&parsed, needs, err));
+    TRY_GOTO(picture_check_needs(&picture, &parsed, err));
     if (threshold > 0 && picture.antialias == 1) {
         status = err_set(err, STATUS_USAGE,
                          "--antialias-threshold needs --antialias N, with N from 2 to 9");
@@ -183,6 +188,7 @@ Status run_render(int argc, char **argv, Err *err)
     params.codes_suffice = bits == 8 && !form.color && strcmp(file_extension(output), "pfm") != 0;
     params.want_color = true;
     TRY_GOTO(frames_check_output(output, planes != NULL, err));
+    TRY_GOTO(frames_note_planes(&form, &parsed.files, err));
     TRY_GOTO(
         picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, &staged, err));
     const CellParams cells = picture_cells(&picture);

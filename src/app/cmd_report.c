@@ -16,12 +16,26 @@ static const Command command = {
     .needs_output = true,
 };
 
+/* What report_merge reads of a folder. */
+static Status note_case(const char *folder, Files *files, Err *err)
+{
+    static const char *const names[] = {"report.html", "report.json"};
+    for (int i = 0; i < 2; i++) {
+        char *path = NULL;
+        TRY(file_join(folder, names[i], &path, err));
+        Status status = files_read(files, "the case's", path, err);
+        free(path);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
 Status run_report(int argc, char **argv, Err *err)
 {
     const char *page = NULL, *power = NULL;
     const Option own[] = {
-        {"output", OPTION_TEXT, &page, NULL, 0, 0, NULL, "PAGE.html", "the page"},
-        {"power", OPTION_TEXT, &power, NULL, 0, 0, NULL, "FILE.json",
+        {"output", OPTION_OUTPUT, &page, NULL, 0, 0, NULL, "PAGE.html", "the page"},
+        {"power", OPTION_INPUT, &power, NULL, 0, 0, NULL, "FILE.json",
          "what `make power` measured, to be shown below the cases"},
         {0},
     };
@@ -33,6 +47,8 @@ Status run_report(int argc, char **argv, Err *err)
     Status status = STATUS_OK;
     if (parsed.common.help)
         goto done;
+    for (int i = 0; i < parsed.n_operands; i++)
+        TRY_GOTO(note_case(parsed.operands[i], &parsed.files, err));
     TRY_GOTO(templates_folder(&templates, err));
     TRY_GOTO(file_join(templates, "report", &folder, err));
     TRY_GOTO(

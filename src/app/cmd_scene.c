@@ -22,7 +22,7 @@ Status run_scene(int argc, char **argv, Err *err)
     const char *output = NULL;
     bool ids = false;
     const Option own[] = {
-        {"output", OPTION_TEXT, &output, NULL, 0, 0, NULL, "S.pov",
+        {"output", OPTION_OUTPUT, &output, NULL, 0, 0, NULL, "S.pov",
          "the scene; its geometry goes to S.inc beside it"},
         {"ids", OPTION_SWITCH, &ids, NULL, 0, 0, NULL, NULL,
          "isosurface, blob: with what POV-Ray needs for the id plane (off)"},
@@ -36,16 +36,18 @@ Status run_scene(int argc, char **argv, Err *err)
     PovrayReport report = {0};
     if (parsed.common.help)
         goto done;
+    const OptionNeed needs[] = {
+        {"ids", picture.model == SCENE_ISOSURFACE || picture.model == SCENE_BLOB,
+         "is for --model isosurface and blob; other scenes have ids anyway"},
+        {0}};
+    TRY_GOTO(options_check_needs(&parsed, needs, err));
+    TRY_GOTO(picture_check_needs(&picture, &parsed, err));
     TRY_GOTO(picture_check_povray(&picture, err));
     if (strcmp(output, "-") != 0 && strcmp(file_extension(output), "pov") != 0) {
         status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pov", output);
         goto done;
     }
-    if (povray_check_name(file_name(output), err) != STATUS_OK) {
-        status = STATUS_USAGE;
-        err_prefix(err, "-o: ");
-        goto done;
-    }
+    TRY_GOTO(povfiles_note(output, &parsed.files, err));
     TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, NULL, err));
     const CellParams cells = picture_cells(&picture);
     TRY_GOTO(povfiles_write(&scene, parsed.operands[0], output, picture.stage.shadows, ids, &cells,

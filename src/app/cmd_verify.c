@@ -11,9 +11,13 @@
 #include "app/templates.h"
 #include "render/render.h"
 #include "verify/verify.h"
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 static const Command command = {
     .name = "verify",
@@ -30,6 +34,7 @@ typedef struct Verification {
     const PictureOptions *picture;
     const Common *common;
     const char *tree, *folder;
+    int lock;   /* the folder, locked, or -1 */
     char *name; /* of the tree, for the report; owned */
     Scene scene;
     CellParams cells;
@@ -63,6 +68,65 @@ static void verification_release(Verification *v)
     for (size_t i = 0; i < v->n_commands; i++)
         free(v->commands[i]);
     free(v->name);
+    if (v->lock >= 0)
+        close(v->lock);
+}
+
+/* ---- the folder --------------------------------------------------------------------------------- */
+
+/* All that a verification leaves. The verdict comes first: what is interrupted leaves none. */
+static const char *const left[] = {
+    "report.html",      "report.json",       "junit.xml",         "diff.png",
+    "scene.pov",        "scene.inc",         "ids.pov",           "ids.inc",
+    "povray.png",       "povray.depth.png",  "povray.normal.png", "povray.id.png",
+    "povray.depth.pfm", "povray.normal.pfm", "povray.id.ppm",     "native.png",
+    "native.depth.pfm", "native.normal.pfm", "native.id.ppm",     "exact.png",
+    "exact.depth.pfm",  "exact.normal.pfm",  "exact.id.ppm"};
+
+/* Does `what` with the path of each file of the folder. */
+static Status for_all_files(const Verification *v, Files *files,
+                            Status (*what)(Files *files, const char *path, Err *err), Err *err)
+{
+    for (size_t i = 0; i < sizeof left / sizeof *left; i++) {
+        char *path = NULL;
+        TRY(file_join(v->folder, left[i], &path, err));
+        Status status = what(files, path, err);
+        free(path);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+static Status note_file(Files *files, const char *path, Err *err)
+{
+    return files_write(files, "-o", path, err);
+}
+
+static Status remove_file(Files *files, const char *path, Err *err)
+{
+    (void)files;
+    if (unlink(path) == 0 || errno == ENOENT)
+        return STATUS_OK;
+    return err_set(err, STATUS_IO, "%s: cannot be removed: %s", path, strerror(errno));
+}
+
+/* Where the folder is there, keeps other verifications out of it until the end of the process, and removes
+ * what an earlier one has left: an old verdict is none about this tree. A file system without locks has
+ * none. */
+static Status claim_folder(Verification *v, Files *files, Err *err)
+{
+    if (v->lock >= 0)
+        return STATUS_OK;
+    v->lock = open(v->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (v->lock < 0)
+        return errno == ENOENT ? STATUS_OK
+                               : err_set(err, STATUS_IO, "%s: cannot be written to: %s", v->folder,
+                                         strerror(errno));
+    if (flock(v->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        return err_set(err, STATUS_IO, "%s: another verification is writing to this folder",
+                       v->folder);
+    TRY(for_all_files(v, files, note_file, err));
+    return for_all_files(v, files, remove_file, err);
 }
 
 /* ---- the two sides ------------------------------------------------------------------------------ */
@@ -384,7 +448,7 @@ Status run_verify(int argc, char **argv, Err *err)
     bool as_json = false;
     int bits = 8, kernels = KERNELS_FASTEST;
     const Option own[] = {
-        {"output", OPTION_TEXT, &folder, NULL, 0, 0, NULL, "DIR",
+        {"output", OPTION_FOLDER, &folder, NULL, 0, 0, NULL, "DIR",
          "folder for the report, the scene and all planes"},
         {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16",
          "of the colours compared: 8, sRGB, or 16, linear (8)"},
@@ -402,7 +466,8 @@ Status run_verify(int argc, char **argv, Err *err)
     Verification v = {.picture = &picture,
                       .common = &parsed.common,
                       .tree = parsed.operands[0],
-                      .folder = folder};
+                      .folder = folder,
+                      .lock = -1};
     if (parsed.common.help)
         goto done;
     if (strcmp(folder, "-") == 0) {
@@ -412,11 +477,14 @@ Status run_verify(int argc, char **argv, Err *err)
     TRY_GOTO(bits_check(bits, err));
     v.bits = bits;
     v.kernels = (RenderKernels)kernels;
+    TRY_GOTO(picture_check_needs(&picture, &parsed, err));
     TRY_GOTO(picture_check_povray(&picture, err));
     TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 120, err));
+    TRY_GOTO(claim_folder(&v, &parsed.files, err));
     TRY_GOTO(picture_scene(&picture, v.tree, parsed.common.quiet, &v.scene, NULL, err));
     v.cells = picture_cells(&picture);
     TRY_GOTO(file_make_folder(folder, err));
+    TRY_GOTO(claim_folder(&v, &parsed.files, err));
     TRY_GOTO(shown_name(v.tree, &v.name, err));
     TRY_GOTO(command_line_text("verify", argc, argv, &line, err));
     TRY_GOTO(mem_strdup(&v.commands[0], line, err));

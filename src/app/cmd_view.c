@@ -415,10 +415,10 @@ Status run_view(int argc, char **argv, Err *err)
 {
     PictureOptions picture;
     picture_options_init(&picture);
-    const char *recipe = "view.ini";
+    const char *recipe = NULL;
     int turn = 0;
     const Option own[] = {
-        {"save", OPTION_TEXT, &recipe, NULL, 0, 0, NULL, "FILE",
+        {"save", OPTION_OUTPUT, &recipe, NULL, 0, 0, NULL, "FILE",
          "the recipe that key w writes (view.ini)"},
         {"turn", OPTION_WHOLE, &turn, NULL, 1, 100000, NULL, "N",
          "turn once around in N pictures, say how many a second, and quit"},
@@ -431,7 +431,7 @@ Status run_view(int argc, char **argv, Err *err)
     Viewer viewer = {.options = &picture,
                      .common = &parsed.common,
                      .tree = parsed.operands[0],
-                     .recipe = recipe};
+                     .recipe = recipe ? recipe : "view.ini"};
     if (parsed.common.help)
         goto done;
     TRY_GOTO(open_viewer(&viewer, err));

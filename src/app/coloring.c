@@ -16,7 +16,7 @@ void coloring_init(Coloring *coloring)
         {"color-by", OPTION_TEXT, &coloring->field, NULL, 0, 0, NULL, "FIELD",
          "radius, length, flow, velocity, pressure, wss, reynolds, level, strahler, "
          "diameter-strahler or branch"},
-        {"colormap", OPTION_TEXT, &coloring->colormap, NULL, 0, 0, NULL, "NAME",
+        {"colormap", OPTION_LOOKUP, &coloring->colormap, NULL, 0, 0, NULL, "NAME",
          "a file of templates/colormaps, or a path (viridis)"},
         {"range", OPTION_RANGE, coloring->range, &coloring->has_range, 0, 0, NULL, NULL,
          "values at the ends of the colour map (the field's)"},

@@ -61,15 +61,30 @@ static Status open_picture(FramesWriter *writer, Err *err)
     return imagewriter_open(&writer->files[FILE_PICTURE], form->path, &image, err);
 }
 
+static const struct {
+    const char *suffix;
+    int channels, bits;
+} planes[] = {[FILE_COLOR] = {".color.pfm", 3, 32},
+              [FILE_DEPTH] = {".depth.pfm", 1, 32},
+              [FILE_NORMAL] = {".normal.pfm", 3, 32},
+              [FILE_ID] = {".id.ppm", 3, 8}};
+
+Status frames_note_planes(const FramesForm *form, Files *files, Err *err)
+{
+    for (int file = 0; file < FILE_PICTURE; file++) {
+        char *name = NULL;
+        if (!is_wanted(form, file))
+            continue;
+        TRY(file_with_suffix(form->path, planes[file].suffix, &name, err));
+        Status status = files_write(files, "--planes", name, err);
+        free(name);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
 static Status open_plane(FramesWriter *writer, int file, Err *err)
 {
-    static const struct {
-        const char *suffix;
-        int channels, bits;
-    } planes[] = {[FILE_COLOR] = {".color.pfm", 3, 32},
-                  [FILE_DEPTH] = {".depth.pfm", 1, 32},
-                  [FILE_NORMAL] = {".normal.pfm", 3, 32},
-                  [FILE_ID] = {".id.ppm", 3, 8}};
     const ImageForm image = {.width = writer->form->width,
                              .height = writer->form->height,
                              .channels = planes[file].channels,
@@ -121,11 +136,11 @@ static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
 
 Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err)
 {
-    const Plane *const planes[] = {
+    const Plane *const values[] = {
         [FILE_COLOR] = &rows->color, [FILE_DEPTH] = &rows->depth, [FILE_NORMAL] = &rows->normal};
     for (int file = FILE_COLOR; file <= FILE_NORMAL; file++)
         if (writer->files[file])
-            TRY(imagewriter_floats(writer->files[file], planes[file], err));
+            TRY(imagewriter_floats(writer->files[file], values[file], err));
     if (writer->files[FILE_ID]) {
         Picture codes;
         TRY(picture_from_ids(&codes, &rows->id, err));

@@ -2,6 +2,7 @@
 #ifndef CORCAST_APP_FRAMES_H
 #define CORCAST_APP_FRAMES_H
 
+#include "app/files.h"
 #include "base/base.h"
 #include "image/image.h"
 
@@ -21,6 +22,9 @@ typedef struct FramesForm {
     bool picture, color, depth, normal, id;
     const char *provenance; /* the command line; of the picture */
 } FramesForm;
+
+/* Takes note of the planes that are to be written, of the picture's name or not. */
+MUST_CHECK Status frames_note_planes(const FramesForm *form, Files *files, Err *err);
 
 /* Files being written band by band; none has its final name before frames_commit. */
 typedef struct FramesWriter FramesWriter;

@@ -28,7 +28,7 @@ void growing_init(Growing *growing)
          "where the tree starts, mm (top of the rim); given several times: one tree from each"},
         {"inlet-shares", OPTION_NUMBERS, &growing->shares, NULL, 0, 0, NULL, NULL,
          "of the terminals for the trees, in the order of the inlets, any sum (equal)"},
-        {"from", OPTION_TEXT, &growing->from_path, NULL, 0, 0, NULL, "T.swc",
+        {"from", OPTION_INPUT, &growing->from_path, NULL, 0, 0, NULL, "T.swc",
          "grow on from this tree: its nodes keep places, ids and types, its segments stay\n"
          "                                 straight; all radii follow anew. What its header says "
          "holds unless options\n"
@@ -116,11 +116,25 @@ static Status read_from(Growing *growing, bool *has_domain, Err *err)
                    "--from: the header of the tree names no domain; give --domain");
 }
 
-Status growing_prepare(Growing *growing, const Common *common, Err *err)
+/* Takes note of the domain's file, and refuses what the law of viscosity, settled by now, does not take. */
+static Status check(const Growing *growing, Parsed *parsed, Err *err)
+{
+    bool pries = growing->params.viscosity_law == VISCOSITY_PRIES;
+    const OptionNeed needs[] = {{"viscosity", !pries, "is for --viscosity-law constant"},
+                                {"hematocrit", pries, "is for --viscosity-law pries"},
+                                {"plasma-viscosity", pries, "is for --viscosity-law pries"},
+                                {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    if (!growing->domain.file)
+        return STATUS_OK;
+    return files_read(&parsed->files, "--domain", growing->domain.file, err);
+}
+
+Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
 {
     GrowParams *params = &growing->params;
-    params->seed = common->seed;
-    params->threads = common->threads;
+    params->seed = parsed->common.seed;
+    params->threads = parsed->common.threads;
     params->inlets = growing->inlets.n;
     params->inlet = growing->inlets.at;
     params->inlet_shares = growing->shares.n;
@@ -131,10 +145,10 @@ Status growing_prepare(Growing *growing, const Common *common, Err *err)
     bool has_domain = false;
     if (growing->from_path)
         TRY(read_from(growing, &has_domain, err));
-    if (has_domain)
-        return STATUS_OK;
-    return domain_parse(&growing->domain, growing->domain_spec ? growing->domain_spec : "disc:50",
-                        err);
+    if (!has_domain)
+        TRY(domain_parse(&growing->domain, growing->domain_spec ? growing->domain_spec : "disc:50",
+                         err));
+    return check(growing, parsed, err);
 }
 
 void growing_release(Growing *growing)

@@ -194,6 +194,10 @@ static Status set_option(const Option *option, const char *value, Err *err)
         *(bool *)option->where = strcmp(value, "on") == 0;
         return STATUS_OK;
     case OPTION_TEXT:
+    case OPTION_INPUT:
+    case OPTION_OUTPUT:
+    case OPTION_FOLDER:
+    case OPTION_LOOKUP:
         *(const char **)option->where = value;
         return STATUS_OK;
     case OPTION_WHOLE:
@@ -219,6 +223,18 @@ static Status set_option(const Option *option, const char *value, Err *err)
         return set_choice(option, value, err);
     }
     return STATUS_OK;
+}
+
+/* A file or folder by name. */
+static bool is_path(OptionKind kind)
+{
+    return kind == OPTION_INPUT || kind == OPTION_OUTPUT || kind == OPTION_FOLDER ||
+           kind == OPTION_LOOKUP;
+}
+
+static bool is_text(OptionKind kind)
+{
+    return kind == OPTION_TEXT || is_path(kind);
 }
 
 /* ---- recipes ------------------------------------------------------------------------------- */
@@ -263,6 +279,10 @@ static size_t size_of_value(OptionKind kind)
     case OPTION_SWITCH:
         return sizeof(bool);
     case OPTION_TEXT:
+    case OPTION_INPUT:
+    case OPTION_OUTPUT:
+    case OPTION_FOLDER:
+    case OPTION_LOOKUP:
     case OPTION_VECTORS:
     case OPTION_NUMBERS:
         break;
@@ -290,7 +310,7 @@ bool option_differs(const Option *option, const Option *plain)
 {
     if (option->given)
         return *option->given;
-    if (option->kind == OPTION_TEXT) {
+    if (is_text(option->kind)) {
         const char *text = *(const char **)option->where, *other = *(const char **)plain->where;
         return text && (!other || strcmp(text, other) != 0);
     }
@@ -323,6 +343,10 @@ void option_put(const Option *option, Text *text)
         text_puts(text, *(const bool *)where ? "on" : "off");
         return;
     case OPTION_TEXT:
+    case OPTION_INPUT:
+    case OPTION_OUTPUT:
+    case OPTION_FOLDER:
+    case OPTION_LOOKUP:
         words = *(char *const *)where;
         text_puts(text, words ? words : "");
         return;
@@ -361,7 +385,41 @@ void option_put(const Option *option, Text *text)
 
 /* ---- the command line ----------------------------------------------------------------------- */
 
-static Status read_option(const Reader *reader, int argc, char **argv, int *at, bool apply)
+typedef struct Role {
+    char text[40]; /* "--json" */
+} Role;
+
+static Role role_of(const Option *option)
+{
+    Role role;
+    bool output = strcmp(option->name, "output") == 0;
+    snprintf(role.text, sizeof role.text, "%s%s", output ? "" : "--", output ? "-o" : option->name);
+    return role;
+}
+
+static bool is_typed(const Parsed *parsed, const char *name)
+{
+    for (int i = 0; i < parsed->n_typed; i++)
+        if (strcmp(parsed->typed[i], name) == 0)
+            return true;
+    return false;
+}
+
+/* Takes note of an option of the command line. Of two files only one would be read or written. */
+static Status note_typed(const Option *option, Parsed *parsed, Err *err)
+{
+    if (!is_typed(parsed, option->name)) {
+        if (parsed->n_typed < MAX_TYPED)
+            parsed->typed[parsed->n_typed++] = option->name;
+        return STATUS_OK;
+    }
+    if (!is_path(option->kind))
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "%s is given twice; give it once", role_of(option).text);
+}
+
+static Status read_option(const Reader *reader, int argc, char **argv, int *at, bool apply,
+                          Parsed *parsed)
 {
     const char *name = argv[*at] + 2;
     if (argv[*at][1] != '-') /* the one short option */
@@ -385,6 +443,7 @@ static Status read_option(const Reader *reader, int argc, char **argv, int *at, 
             return err_set(reader->err, STATUS_USAGE, "--%s needs a value", option->name);
     }
     bool is_recipe = strcmp(option->name, "recipe") == 0;
+    TRY(note_typed(option, parsed, reader->err));
     return apply || is_recipe ? set_option(option, value, reader->err) : STATUS_OK;
 }
 
@@ -393,12 +452,12 @@ static Status read_arguments(const Reader *reader, int argc, char **argv, bool a
                              Parsed *parsed)
 {
     bool only_operands = false;
-    parsed->n_operands = 0;
+    parsed->n_operands = parsed->n_typed = 0;
     for (int i = 0; i < argc; i++) {
         if (!only_operands && strcmp(argv[i], "--") == 0) {
             only_operands = true;
         } else if (!only_operands && argv[i][0] == '-' && argv[i][1] != '\0') {
-            TRY(read_option(reader, argc, argv, &i, apply));
+            TRY(read_option(reader, argc, argv, &i, apply, parsed));
         } else if (parsed->n_operands == reader->command->max_operands) {
             return err_set(reader->err, STATUS_USAGE,
                            "'%s' is one operand too many; usage: corcast %s %s", argv[i],
@@ -413,11 +472,12 @@ static Status read_arguments(const Reader *reader, int argc, char **argv, bool a
 static const char *argument_name(const Option *option)
 {
     static const char *const names[] = {
-        [OPTION_FLAG] = "",         [OPTION_SWITCH] = "on|off",   [OPTION_TEXT] = "TEXT",
-        [OPTION_WHOLE] = "N",       [OPTION_SEED] = "N",          [OPTION_COUNT] = "N",
-        [OPTION_NUMBER] = "NUMBER", [OPTION_VECTOR] = "X,Y,Z",    [OPTION_COLOR] = "R,G,B",
-        [OPTION_VECTORS] = "X,Y,Z", [OPTION_NUMBERS] = "A,B,...", [OPTION_SIZE] = "WxH",
-        [OPTION_RANGE] = "A,B",     [OPTION_CHOICE] = "NAME",
+        [OPTION_FLAG] = "",       [OPTION_SWITCH] = "on|off", [OPTION_TEXT] = "TEXT",
+        [OPTION_INPUT] = "FILE",  [OPTION_OUTPUT] = "FILE",   [OPTION_FOLDER] = "DIR",
+        [OPTION_LOOKUP] = "NAME", [OPTION_WHOLE] = "N",       [OPTION_SEED] = "N",
+        [OPTION_COUNT] = "N",     [OPTION_NUMBER] = "NUMBER", [OPTION_VECTOR] = "X,Y,Z",
+        [OPTION_COLOR] = "R,G,B", [OPTION_VECTORS] = "X,Y,Z", [OPTION_NUMBERS] = "A,B,...",
+        [OPTION_SIZE] = "WxH",    [OPTION_RANGE] = "A,B",     [OPTION_CHOICE] = "NAME",
     };
     return option->argument ? option->argument : names[option->kind];
 }
@@ -440,13 +500,45 @@ static void print_help(const Reader *reader)
         }
 }
 
+/* Takes note of all files that are named: what is read first, as errors then name what is written. */
+static Status note_files(const Reader *reader, Parsed *parsed)
+{
+    Files *files = &parsed->files;
+    int written = reader->command->writes_last ? parsed->n_operands - 1 : parsed->n_operands;
+    for (int i = 0; i < written; i++)
+        TRY(files_read(files, "the input", parsed->operands[i], reader->err));
+    for (int outputs = 0; outputs < 2; outputs++)
+        for (int t = 0; t < reader->n_tables; t++)
+            for (const Option *option = reader->tables[t]; option->name; option++) {
+                const char *path = is_path(option->kind) ? *(const char **)option->where : NULL;
+                if (!path || option->kind == OPTION_FOLDER ||
+                    (option->kind == OPTION_LOOKUP && !strchr(path, '/')))
+                    continue;
+                if (outputs && option->kind == OPTION_OUTPUT)
+                    TRY(files_write(files, role_of(option).text, path, reader->err));
+                else if (!outputs && option->kind != OPTION_OUTPUT)
+                    TRY(files_read(files, role_of(option).text, path, reader->err));
+            }
+    for (int i = written; i < parsed->n_operands; i++)
+        TRY(files_write(files, "the output", parsed->operands[i], reader->err));
+    return STATUS_OK;
+}
+
+Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *err)
+{
+    for (const OptionNeed *need = needs; need->name; need++)
+        if (!need->met && is_typed(parsed, need->name))
+            return err_set(err, STATUS_USAGE, "--%s %s", need->name, need->sentence);
+    return STATUS_OK;
+}
+
 Status options_parse(const Command *command, const Option *const tables[], int argc, char **argv,
                      Parsed *parsed, Err *err)
 {
     *parsed = (Parsed){.common = {.seed = 1}};
     Common *common = &parsed->common;
     const Option common_options[] = {
-        {"recipe", OPTION_TEXT, &common->recipe, NULL, 0, 0, NULL, "FILE",
+        {"recipe", OPTION_INPUT, &common->recipe, NULL, 0, 0, NULL, "FILE",
          "read options from an INI file, one name = value a line"},
         {"seed", OPTION_SEED, &common->seed, NULL, 0, 0, NULL, NULL, "of what is random (1)"},
         {"threads", OPTION_WHOLE, &common->threads, NULL, 0, 256, NULL, NULL,
@@ -474,6 +566,8 @@ Status options_parse(const Command *command, const Option *const tables[], int a
     if (status == STATUS_OK && parsed->n_operands < command->min_operands)
         status = err_set(err, STATUS_USAGE, "a file is missing; usage: corcast %s %s",
                          command->name, command->operands);
+    if (status == STATUS_OK)
+        status = note_files(&reader, parsed);
     if (status != STATUS_OK)
         parsed_release(parsed);
     return status;
@@ -483,4 +577,5 @@ void parsed_release(Parsed *parsed)
 {
     free(parsed->common.recipe_text);
     parsed->common.recipe_text = NULL;
+    files_release(&parsed->files);
 }

@@ -2,6 +2,7 @@
 #ifndef CORCAST_APP_OPTIONS_H
 #define CORCAST_APP_OPTIONS_H
 
+#include "app/files.h"
 #include "base/base.h"
 #include "geom/geom.h"
 
@@ -9,6 +10,10 @@ typedef enum OptionKind {
     OPTION_FLAG,    /* bool: no value */
     OPTION_SWITCH,  /* bool: on or off */
     OPTION_TEXT,    /* const char *: borrowed */
+    OPTION_INPUT,   /* const char *: a file that is read; given at most once */
+    OPTION_OUTPUT,  /* const char *: a file that is written; likewise */
+    OPTION_FOLDER,  /* const char *: a folder that is written to; likewise */
+    OPTION_LOOKUP,  /* const char *: a name, or with a '/' a file that is read; likewise */
     OPTION_WHOLE,   /* int, in [low, high] */
     OPTION_SEED,    /* uint64_t */
     OPTION_COUNT,   /* size_t, in [low, high] */
@@ -55,6 +60,7 @@ typedef struct Command {
     const char *examples; /* lines */
     int min_operands, max_operands;
     bool needs_output; /* the option output must be given */
+    bool writes_last;  /* the last operand is written; the others are read */
 } Command;
 
 typedef struct Common {
@@ -65,19 +71,36 @@ typedef struct Common {
     char *recipe_text; /* what the values of a recipe point into; owned */
 } Common;
 
+enum { MAX_TYPED = 64 };
+
 typedef struct Parsed {
     Common common;
+    Files files;                  /* that operands and options name */
+    const char *typed[MAX_TYPED]; /* names of the options on the command line, each once */
+    int n_typed;
     const char *operands[MAX_OPERANDS];
     int n_operands;
 } Parsed;
 
+/* What an option of the command line takes to have an effect. */
+typedef struct OptionNeed {
+    const char *name; /* NULL ends a list */
+    bool met;
+    const char *sentence; /* "needs --color-by" */
+} OptionNeed;
+
 /* Reads the arguments after the command's name through up to MAX_TABLES tables (a NULL ends them) and
  * the common options, the recipe first so that the command line wins. On --help prints the command's
  * help and sets parsed->common.help. STATUS_USAGE with a sentence that names the option, its value
- * and what is allowed. Release with parsed_release. */
+ * and what is allowed; errors as files_read and files_write have them for the files that operands and
+ * options name. Of a value given twice the last holds. Release with parsed_release. */
 MUST_CHECK Status options_parse(const Command *command, const Option *const tables[], int argc,
                                 char **argv, Parsed *parsed, Err *err);
 void parsed_release(Parsed *parsed);
+
+/* STATUS_USAGE for the first option of the command line whose need is not met: it would have no effect. A
+ * recipe's options are defaults for many runs, and may be without effect in this one. */
+MUST_CHECK Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *err);
 
 /* Whether the option says something else than `plain`, the same option bound to other variables. One
  * that has a `given` does where it was given. Lists are not compared: they differ. */

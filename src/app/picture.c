@@ -66,7 +66,7 @@ void picture_options_init(PictureOptions *options)
          "N x N samples a pixel (1)"},
         {"ao", OPTION_WHOLE, &options->occlusion, NULL, 0, 4096, NULL, "N",
          "ambient occlusion by N rays a sample, best with --look print (0: none)"},
-        {"look", OPTION_TEXT, &options->look, NULL, 0, huge, NULL, "NAME",
+        {"look", OPTION_LOOKUP, &options->look, NULL, 0, huge, NULL, "NAME",
          "a file of templates/looks, or a path (cast)"},
         {"erf", OPTION_CHOICE, &options->erf, NULL, 0, 0, erf_names, NULL,
          "POV-Ray's isosurface: how exact erf is (fast)"},
@@ -101,14 +101,33 @@ static Status check_camera(const PictureOptions *options, Err *err)
         return err_set(err, STATUS_USAGE, "--view and --location exclude each other; give one");
     if (stage->has_look_at && !stage->has_location)
         return err_set(err, STATUS_USAGE, "--look-at needs --location");
-    if (options->potential && options->model != SCENE_ISOSURFACE)
-        return err_set(err, STATUS_USAGE, "--potential is for --model isosurface");
     if (stage->has_up && !(vec3_length(stage->up) > 0 && isfinite(vec3_length(stage->up))))
         return err_set(err, STATUS_USAGE,
                        "--up: the vector must have a length from 1e-150 to 1e150");
-    if (options->has_joints && options->model != SCENE_JOINED)
-        return err_set(err, STATUS_USAGE, "--joints is for --model joined");
     return STATUS_OK;
+}
+
+Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, Err *err)
+{
+    static const char of_isosurfaces[] = "is for --model isosurface";
+    static const char of_colors[] = "needs --color-by";
+    bool isosurface = options->model == SCENE_ISOSURFACE;
+    bool colored = options->coloring.field != NULL;
+    const OptionNeed needs[] = {
+        {"potential", isosurface, of_isosurfaces},
+        {"erf", isosurface, of_isosurfaces},
+        {"cell-beta", isosurface, of_isosurfaces},
+        {"hits", isosurface, of_isosurfaces},
+        {"joints", options->model == SCENE_JOINED, "is for --model joined"},
+        {"colormap", colored, of_colors},
+        {"range", colored, of_colors},
+        {"log", colored, of_colors},
+        {"q-perf", colored, of_colors},
+        {"p-perf", colored, of_colors},
+        {"viscosity", colored, of_colors},
+        {0},
+    };
+    return options_check_needs(parsed, needs, err);
 }
 
 Status picture_check_povray(const PictureOptions *options, Err *err)

@@ -34,6 +34,11 @@ void picture_options_init(PictureOptions *options);
 /* How POV-Ray's isosurface is cut into cells. */
 CellParams picture_cells(const PictureOptions *options);
 
+/* STATUS_USAGE when an option of the command line has no effect on this picture. Not for `view`, whose keys
+ * change models and fields. */
+MUST_CHECK Status picture_check_needs(const PictureOptions *options, const Parsed *parsed,
+                                      Err *err);
+
 /* STATUS_USAGE when an option is given that only the native renderer knows. */
 MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 

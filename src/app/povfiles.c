@@ -7,6 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+Status povfiles_note(const char *path, Files *files, Err *err)
+{
+    char *geometry_path = NULL;
+    if (strcmp(path, "-") == 0)
+        return STATUS_OK;
+    TRY(file_with_suffix(path, ".inc", &geometry_path, err));
+    Status status = povray_check_name(file_name(geometry_path), err);
+    if (status == STATUS_OK)
+        status = files_write(files, "the geometry", geometry_path, err);
+    free(geometry_path);
+    return status;
+}
+
 Status povfiles_write(const Scene *scene, const char *tree_path, const char *path, bool shadows,
                       bool ids, const CellParams *cells, PovrayReport *report, Err *err)
 {

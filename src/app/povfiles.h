@@ -2,10 +2,15 @@
 #ifndef CORCAST_APP_POVFILES_H
 #define CORCAST_APP_POVFILES_H
 
+#include "app/files.h"
 #include "base/base.h"
 #include "emit/emit.h"
 #include "scene/scene.h"
 #include "verify/verify.h"
+
+/* Takes note of the geometry that povfiles_write writes beside the scene `path`. STATUS_USAGE when POV-Ray
+ * could not include it. */
+MUST_CHECK Status povfiles_note(const char *path, Files *files, Err *err);
 
 /* Writes `path` and, beside it, its geometry with the extension .inc; "-" is one file on standard
  * output. The rest as in PovrayParams; `report` may be NULL. */

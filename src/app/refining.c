@@ -25,6 +25,15 @@ void refining_init(Refining *refining)
     memcpy(refining->table, table, sizeof table);
 }
 
+Status refining_check(const Refining *refining, const Parsed *parsed, Err *err)
+{
+    bool refines = refining->level != GROW_REFINE_NONE;
+    const OptionNeed needs[] = {{"refine-seconds", refines, "needs --refine"},
+                                {"refine-moves", refines, "needs --refine"},
+                                {0}};
+    return options_check_needs(parsed, needs, err);
+}
+
 Status refining_apply(const Refining *refining, const Common *common, const Domain *domain,
                       Tree *tree, RefineReport *report, Err *err)
 {

@@ -85,6 +85,10 @@ typedef struct TreeSummary {
     double terminal_pressure_min_mmhg, terminal_pressure_mean_mmhg, terminal_pressure_max_mmhg;
 } TreeSummary;
 
+/* The law that a tree's viscosity follows: the params', else constant where they give a viscosity, else the
+ * tree's. */
+ViscosityLaw derive_viscosity_law(const Tree *tree, const FlowParams *params);
+
 MUST_CHECK Status derive_summary(const Tree *tree, const FlowParams *params, TreeSummary *summary,
                                  Err *err);
 

@@ -73,7 +73,7 @@ typedef struct Blood {
     double hematocrit;     /* by Pries's law */
 } Blood;
 
-static ViscosityLaw law_of(const Tree *tree, const FlowParams *params)
+ViscosityLaw derive_viscosity_law(const Tree *tree, const FlowParams *params)
 {
     if (params->has.viscosity_law)
         return params->viscosity_law;
@@ -84,7 +84,7 @@ static ViscosityLaw law_of(const Tree *tree, const FlowParams *params)
 
 static Status blood_of(const Tree *tree, const FlowParams *params, Blood *blood, Err *err)
 {
-    ViscosityLaw law = law_of(tree, params);
+    ViscosityLaw law = derive_viscosity_law(tree, params);
     Given viscosity = law == VISCOSITY_CONSTANT ? given_viscosity(tree, params)
                                                 : given_plasma_viscosity(tree, params);
     Given hematocrit = given_hematocrit(tree, params);

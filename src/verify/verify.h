@@ -319,7 +319,7 @@ typedef struct ReportSide {
 
 /* One scene rendered by both. All is borrowed. */
 typedef struct ReportCase {
-    const char *name;            /* of the scene: "demo" */
+    const char *name;            /* of the scene: "demo"; one line of UTF-8 */
     const char *model;           /* "rounded" */
     ReportSide a, b;             /* reference and candidate */
     const char *const *commands; /* how to repeat it, one a line */

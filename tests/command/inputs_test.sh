@@ -154,7 +154,7 @@ test_input_without_end_is_refused() {
     run timeout 5 "$CORCAST" info - </dev/zero
     expect_status 2
     expect_sentence 'standard input:1: a zero byte'
-    run timeout 5 "$CORCAST" compare - - </dev/zero
+    run timeout 5 "$CORCAST" compare - "$DATA/bifurcation.swc" </dev/zero
     expect_status 2
     expect_sentence 'standard input: is not a PPM'
     run timeout 5 "$CORCAST" grow --recipe - -o t.swc < <(yes "seed = 4")

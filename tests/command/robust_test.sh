@@ -6,14 +6,13 @@
 
 test_a_signal_that_the_caller_ignores_stays_ignored() {
     local signal
+    (trap '' HUP INT TERM && exec "$CORCAST" grow --terminals 20000 -o tree.swc) >stdout 2>stderr &
+    sleep 0.1
     for signal in HUP INT TERM; do
-        (trap '' $signal && exec "$CORCAST" grow --terminals 30000 -o tree.swc) >stdout 2>stderr &
-        sleep 0.1
         kill -$signal $! || fail "expected it still to run"
-        wait $! || fail "expected exit status 0 with $signal ignored, got $?$(said)"
-        expect_only tree.swc
-        rm tree.swc
     done
+    wait $! || fail "expected exit status 0 with signals ignored, got $?$(said)"
+    expect_only tree.swc
 }
 
 test_a_closed_pipe_is_told_where_sigpipe_is_ignored() {
@@ -152,6 +151,262 @@ test_a_picture_cannot_be_put_in_the_place_of_a_pipe() {
     expect_status 3
     expect_sentence 'pipe.png: cannot be written: it is no file'
     [ -p pipe.png ] || fail "expected the pipe to stay"
+}
+
+# ---- verify's folder ----------------------------------------------------------------------------
+
+test_a_second_verification_into_a_folder_is_refused() {
+    local first
+    stand_in 'echo $$ >running; exec sleep 60'
+    "$CORCAST" verify "$DATA/bifurcation.swc" --size 20x10 -o report 2>first.stderr &
+    first=$!
+    wait_for 5 test -s report/running || fail "expected the stand-in to start"
+    run corcast verify "$DATA/bifurcation.swc" --size 20x10 -o ./report/
+    expect_status 3
+    expect_sentence '^corcast verify: ./report/: another verification is writing to this folder$'
+    expect_file report/scene.pov
+    kill -KILL $first
+    wait $first 2>/dev/null
+    rm report/running
+    run env CORCAST_POVRAY_PATIENCE=0.2 "$CORCAST" verify "$DATA/bifurcation.swc" --size 20x10 -o report
+    expect_sentence 'POV-Ray was ended'
+}
+
+test_a_failed_verification_leaves_no_verdict_of_an_earlier_one() {
+    local tree
+    stand_in 'exit 1'
+    echo 'no tree' >broken.swc
+    for tree in "$DATA/bifurcation.swc" broken.swc missing.swc; do
+        mkdir -p report
+        touch report/report.html report/report.json report/junit.xml report/povray.png report/exact.png report/mine.txt
+        run corcast verify "$tree" --size 20x10 -o report
+        [ "$status" -ge 2 ] || fail "expected a failure, got exit status $status"
+        ls report | grep -vE '^(mine.txt|scene.pov|scene.inc)$' >found
+        [ ! -s found ] || fail "expected no verdict and no picture of another run, found $(tr '\n' ' ' <found)"
+        expect_same report/mine.txt /dev/null
+    done
+    mkdir report/report.json
+    run corcast verify "$DATA/bifurcation.swc" --size 20x10 -o report
+    expect_status 3
+    expect_sentence 'report/report.json: cannot be written: it is a folder'
+}
+
+# ---- files over each other ----------------------------------------------------------------------
+
+# refuses PATTERN ARGUMENTS ...: bad usage, said in one line, and every file as it was.
+refuses() {
+    local pattern=$1
+    shift
+    md5sum -- *.* >before
+    run corcast "$@"
+    expect_status 2
+    expect_sentence "$pattern"
+    md5sum -- *.* >after
+    expect_same before after
+}
+
+test_no_file_is_written_over_one_that_is_read() {
+    local name
+    cp "$DATA/bifurcation.swc" tree.swc
+    run_ok corcast render tree.swc --size 20x10 --planes id -o a.png
+    ln -s a.png link.png
+    ln a.png hard.png
+    for name in a.png ./a.png "$PWD/a.png" link.png hard.png; do
+        refuses "-o '$name' would be written over the input 'a.png'; choose another name" compare a.png a.png -o "$name"
+    done
+    refuses "--difference 'a.id.ppm' would be written over --ids-a" \
+        compare a.png a.png --ids-a a.id.ppm --ids-b a.id.ppm --difference a.id.ppm
+    refuses "the output 'tree.swc' would be written over the input" convert tree.swc tree.swc
+    refuses "the output 'tree.swc' would be written over the input" convert - tree.swc <tree.swc
+    refuses "-o 'tree.swc' would be written over the input" refine tree.swc -o tree.swc
+    refuses "-o 'tree.swc' would be written over --from" grow --from tree.swc -o tree.swc
+    refuses "--save 'tree.swc' would be written over the input" view tree.swc --save tree.swc
+    printf '0 0\n9 0\n0 9\n' >outline.txt
+    refuses "--domain 'outline.txt'" grow --domain polygon:outline.txt --json outline.txt -o new.swc
+    cp "$REPO/templates/looks/cast.ini" mine.ini
+    refuses "--json 'mine.ini' would be written over --look './mine.ini'" \
+        render tree.swc --look ./mine.ini --json mine.ini -o b.png
+    echo 'seed = 3' >recipe.ini
+    refuses "--json 'recipe.ini' would be written over --recipe" \
+        grow --terminals 3 --recipe recipe.ini --json recipe.ini -o new.swc
+    mkdir report
+    touch report/report.html report/report.json
+    refuses "case's 'report/report.html'" report report -o report/report.html
+    refuses "case's 'report/report.json'" report report -o "$PWD/report/report.json"
+    cp tree.swc report/native.png
+    refuses "-o 'report/native.png' would be written over the input" verify report/native.png -o report
+    expect_same tree.swc report/native.png
+}
+
+test_no_file_is_written_twice() {
+    cp "$DATA/bifurcation.swc" tree.swc
+    run_ok corcast render tree.swc --size 20x10 -o a.png
+    refuses "-o 'j.swc' and --json 'j.swc' are one file; write to two" grow --terminals 3 -o j.swc --json j.swc
+    refuses "-o 's.png' and --json './s.png' are one file" render tree.swc -o s.png --json ./s.png
+    refuses "--json 's.depth.pfm' and --planes 's.depth.pfm'" \
+        render tree.swc -o s.png --json s.depth.pfm --planes depth
+    refuses "-o 'x.png' and --difference 'x.png'" compare a.png a.png -o x.png --difference x.png
+    refuses "--difference 'x.png' and --flicker 'x.png'" compare a.png a.png --difference x.png --flicker x.png
+    refuses "-o and --json cannot both be standard output" grow --terminals 3 -o - --json -
+    refuses "the input and the input cannot both be standard input" compare - -
+    refuses "-o is given twice" render tree.swc -o x.png -o y.png
+    refuses "--look is given twice" render tree.swc -o x.png --look cast --look=print
+    refuses "--recipe is given twice" grow --recipe tree.ini --recipe tree.ini -o x.swc
+    ln -s there.swc link.swc
+    refuses "-o 'link.swc' and --json 'there.swc' are one file" grow --terminals 3 -o link.swc --json there.swc
+    [ ! -e there.swc ] || fail "expected nothing to be written"
+}
+
+test_devices_and_ones_own_old_files_may_be_written() {
+    local i
+    cp "$DATA/bifurcation.swc" tree.swc
+    for i in 1 2; do
+        run_ok corcast render tree.swc --size 20x10 --planes depth,id -o a.png --json a.json
+        run_ok corcast compare a.png a.png -o heat.png --difference difference.png
+    done
+    run_ok corcast grow --terminals 3 -o new.swc --json /dev/null
+    "$CORCAST" grow --terminals 3 -o new.swc --json /dev/stdout 2>/dev/null | cat >new.json
+    expect_json new.json '.terminals == 3'
+    echo 'size = 20x10' >recipe.ini
+    echo 'output = old.png' >>recipe.ini
+    run_ok corcast render tree.swc --recipe recipe.ini -o new.png
+    [ ! -e old.png ] || fail "expected the command line to win"
+}
+
+test_outputs_are_checked_before_work_begins() {
+    local seconds=$SECONDS
+    run corcast grow --terminals 8000000 -o tree.swc --json /nowhere/x.json
+    expect_status 3
+    expect_sentence '/nowhere/x.json: cannot be written: No such file'
+    cp "$DATA/bifurcation.swc" tree.swc
+    mkdir a.depth.pfm
+    run corcast render tree.swc --model isosurface --antialias 9 --size 9999x9999 --planes depth -o a.png
+    expect_status 3
+    expect_sentence 'a.depth.pfm: cannot be written: it is a folder'
+    run corcast compare tree.swc tree.swc --junit /nowhere/x.xml
+    expect_sentence '/nowhere/x.xml: cannot be written'
+    [ $((SECONDS - seconds)) -lt 5 ] || fail "expected these to be refused at once"
+    expect_only tree.swc a.depth.pfm
+}
+
+# ---- options without effect ---------------------------------------------------------------------
+
+test_options_without_effect_are_refused() {
+    local sentence arguments
+    cp "$DATA/bifurcation.swc" tree.swc
+    cp "$DATA/bifurcation.swc" tree.pov
+    while IFS='|' read -r sentence arguments; do
+        # shellcheck disable=SC2086
+        run corcast $arguments
+        expect_status 2
+        expect_sentence "^corcast [a-z]*: $sentence$"
+    done <<'END'
+--range needs --color-by|render tree.swc -o x.png --range 1,2
+--log needs --color-by|scene tree.swc -o x.pov --log
+--colormap needs --color-by|verify tree.swc -o x --colormap magma
+--hits is for --model isosurface|render tree.swc -o x.png --hits povray
+--erf is for --model isosurface|scene tree.swc -o x.pov --model blob --erf exact
+--cell-beta is for --model isosurface|verify tree.swc -o x --cell-beta 4
+--ids is for --model isosurface and blob; other scenes have ids anyway|scene tree.swc -o x.pov --ids on
+--bits is for whole numbers; a .pfm holds floats|render tree.swc -o x.pfm --bits 16
+--antialias is for --plane color|povray tree.pov --size 9x9 -o x.png --plane id --antialias 3
+--hematocrit is for --viscosity-law pries|grow --terminals 3 -o x.swc --hematocrit 0.3
+--viscosity is for --viscosity-law constant|grow --terminals 3 -o x.swc --viscosity-law pries --viscosity 3
+--plasma-viscosity is for --viscosity-law pries|info tree.swc --plasma-viscosity 1.3
+--refine-moves needs --refine|grow --terminals 3 -o x.swc --refine-moves 100
+--refine-seconds needs --refine|refine tree.swc -o x.swc --refine none --refine-seconds 3
+--depth-mm is for two depth planes|compare a.png b.png --depth-mm 0.1
+--levels is for two pictures|compare a.depth.pfm b.depth.pfm --levels 3
+END
+    expect_only tree.swc tree.pov
+}
+
+# What a recipe says are defaults for many runs.
+test_a_recipe_may_say_what_has_no_effect_in_this_run() {
+    cp "$DATA/bifurcation.swc" tree.swc
+    printf '[grow]\nhematocrit = 0.3\nrefine-moves = 9\n[render]\nrange = 1,2\ncolormap = magma\nhits = povray\nsize = 20x10\n' >all.ini
+    run_ok corcast grow --terminals 3 --recipe all.ini -o x.swc
+    run_ok corcast render tree.swc --recipe all.ini -o x.png
+    run_ok corcast render tree.swc --recipe all.ini --color-by radius -o y.png
+    expect_different x.png y.png
+}
+
+# ---- names ----------------------------------------------------------------------------------------
+
+NAMES=('José 日本.swc' $'a\n#error "x"\n.swc' $'\xff\xfe.swc' "o'neil & \"sons\"; \$(x) \`y\`.swc" '-o.swc' '<b>&amp;.swc' '%s%n.swc')
+
+test_no_name_of_a_tree_becomes_code_of_a_scene() {
+    local name plain
+    cp "$DATA/bifurcation.swc" tree.swc
+    run_ok corcast scene tree.swc -o plain.pov
+    plain=$(wc -l <plain.pov)
+    for name in "${NAMES[@]}"; do
+        cp tree.swc "./$name"
+        run_ok corcast scene "./$name" -o plain.pov
+        [ "$(wc -l <plain.pov)" -eq "$plain" ] || fail "expected as many lines as of another name, with $name"
+        ! grep -aE '^#error' plain.pov plain.inc || fail "expected no code from $name"
+        run_ok corcast scene "./$name" -o - >/dev/null
+    done
+}
+
+test_a_geometry_that_povray_cannot_include_is_refused() {
+    local name
+    cp "$DATA/bifurcation.swc" tree.swc
+    for name in 'é.pov' 'a"b.pov' $'a\nb.pov' $'\xff.pov'; do
+        run corcast scene tree.swc -o "$name"
+        expect_status 2
+        expect_sentence "POV-Ray cannot include a file named '.*\.inc': it takes only printable ASCII"
+    done
+    expect_only tree.swc
+    mkdir 'é"'
+    run_ok corcast scene tree.swc -o 'é"/-a;b & c%.pov'
+    expect_file 'é"/-a;b & c%.inc'
+}
+
+test_a_name_in_a_sentence_stays_in_its_line() {
+    run corcast info $'a\nb\e[31m.swc'
+    expect_status 2
+    expect_sentence '^corcast info: a b \[31m.swc: cannot be read'
+}
+
+test_provenance_and_junit_are_text_whatever_the_name() {
+    local name
+    cp "$DATA/bifurcation.swc" tree.swc
+    for name in "${NAMES[@]}"; do
+        cp tree.swc "./$name"
+        run_ok corcast render --size 20x10 -o a.png -- "./$name"
+        LC_ALL=C.UTF-8 grep -qaE 'corcast render --size 20x10 -o a.png -- ' a.png || fail "expected the command in the PNG of $name"
+        cp a.png "./$name.png"
+        run_ok corcast compare --junit a.xml -- "./$name.png" a.png
+        python3 -c 'import xml.dom.minidom; xml.dom.minidom.parse("a.xml")' 2>lint || fail "expected XML from $name: $(tail -1 lint)"
+    done
+    run_ok corcast render "./${NAMES[3]}" --size 20x10 -o a.png
+    grep -qaF "'o'\\''neil & \"sons\"; \$(x) \`y\`.swc'" a.png || fail "expected the name in quotes"
+}
+
+test_names_may_be_as_long_as_the_system_allows() {
+    local stem
+    stem=$(printf 'n%.0s' $(seq 251))
+    run_ok corcast grow --terminals 3 -o "$stem.swc"
+    run_ok corcast scene "$stem.swc" -o "$stem.pov"
+    run_ok corcast render "$stem.swc" --size 20x10 -o "$stem.png"
+    run corcast render "$stem.swc" --size 20x10 --planes depth -o "$stem.png"
+    expect_status 3
+    expect_sentence 'File name too long'
+}
+
+test_writing_over_keeps_permissions_and_links() {
+    mkdir elsewhere
+    ln -s elsewhere/tree.swc tree.swc
+    run_ok corcast grow --terminals 3 -o tree.swc
+    [ -L tree.swc ] && [ -f elsewhere/tree.swc ] || fail "expected the link to lead to the tree"
+    chmod 600 elsewhere/tree.swc
+    run_ok corcast grow --terminals 4 -o tree.swc
+    [ "$(stat -c %a elsewhere/tree.swc)" = 600 ] || fail "expected the permissions to stay"
+    ln -sf loop.swc loop.swc
+    run corcast grow --terminals 3 -o loop.swc
+    expect_status 3
+    expect_sentence 'loop.swc: cannot be written: Too many levels of symbolic links'
 }
 
 run_tests "$@"
