@@ -193,23 +193,6 @@ static void two_places_share_a_vessel_down_to_a_thousandth_of_it(void **state)
     }
 }
 
-/* A daughter at 58.5 and at 61.5 degrees from the trunk, seen from the place where they meet. */
-static void a_vessel_turns_back_below_60_degrees_from_its_trunk(void **state)
-{
-    (void)state;
-    const double degree = 3.14159265358979323846 / 180;
-    for (int sharp = 0; sharp < 2; sharp++) {
-        double angle = (sharp ? 58.5 : 61.5) * degree;
-        Tree tree = bifurcation(vec3(-16 * sin(angle), 5 + 16 * cos(angle), 0));
-        StageReport report;
-        Scene scene = stage(&tree, JOINTS_ROBUST, &report);
-        assert_int_equal(report.places_sharp, sharp);
-        assert_int_equal(report.joints, sharp ? 0 : 2);
-        scene_release(&scene);
-        tree_release(&tree);
-    }
-}
-
 static void to_the_letter_a_vessel_that_is_too_short_vanishes_into_its_joints(void **state)
 {
     (void)state;
@@ -345,7 +328,6 @@ int main(void)
         cmocka_unit_test(where_a_vessel_turns_back_the_place_is_round),
         cmocka_unit_test(a_place_is_round_from_60_degrees_to_the_trunk_on),
         cmocka_unit_test(two_places_share_a_vessel_down_to_a_thousandth_of_it),
-        cmocka_unit_test(a_vessel_turns_back_below_60_degrees_from_its_trunk),
         cmocka_unit_test(to_the_letter_a_vessel_that_is_too_short_vanishes_into_its_joints),
         cmocka_unit_test(a_vessel_between_two_places_keeps_the_joint_that_needs_less),
         cmocka_unit_test(where_trees_begin_the_thickest_vessel_is_the_trunk),

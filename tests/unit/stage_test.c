@@ -185,6 +185,28 @@ static void a_framed_picture_has_its_margin_on_each_side(void **state)
     scene_release(&scene);
 }
 
+/* A vessel along the view, 11 mm long: its nearer ball, of radius 2.385, touches the sides of a cone of half the
+ * angle whose tangent is 0.9 tan 15 degrees. */
+static void a_perspective_camera_stands_where_the_nearest_ball_just_fits(void **state)
+{
+    (void)state;
+    Tree tree;
+    assert_int_equal(tree_init(&tree, 2, NULL), STATUS_OK);
+    for (int i = 0; i < 2; i++) {
+        tree.id[i] = i + 1;
+        tree.parent[i] = i - 1;
+        tree.radius_mm[i] = 2.385;
+        tree.position[i] = vec3(3.5, -2, i ? 5.5 : -5.5);
+    }
+    StageParams params = stage_defaults();
+    params.projection = PROJECTION_PERSPECTIVE;
+    Scene scene;
+    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
+    assert_true(vec3_distance(scene.camera.location, vec3(3.5, -2, 15.67344740904526)) < 1e-12);
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
 static void views_look_where_their_names_say(void **state)
 {
     (void)state;
@@ -652,6 +674,7 @@ int main(void)
         cmocka_unit_test(every_view_frames_the_whole_tree),
         cmocka_unit_test(the_front_view_has_x_to_the_right_and_y_up),
         cmocka_unit_test(a_framed_picture_has_its_margin_on_each_side),
+        cmocka_unit_test(a_perspective_camera_stands_where_the_nearest_ball_just_fits),
         cmocka_unit_test(views_look_where_their_names_say),
         cmocka_unit_test(a_given_camera_is_taken_as_it_is),
         cmocka_unit_test(cameras_that_cannot_be_are_refused),

@@ -27,6 +27,20 @@ static Vec3 random_place_near(const FieldSegment *segment, Random *random, doubl
                            reach * segment->radius_mm * random_uniform(random));
 }
 
+/* e^-2, at any radius. */
+static void the_level_is_the_potential_at_the_radius_of_a_long_vessel(void **state)
+{
+    (void)state;
+    const double radii[] = {0.0385, 2.385, 61.25};
+    for (int i = 0; i < 3; i++) {
+        double r = radii[i];
+        const FieldSegment segment = {.a = {-50 * r, 0, 0}, .b = {50 * r, 0, 0}, .radius_mm = r};
+        double term = potential_term(&segment, vec3(3 * r, 0.6 * r, 0.8 * r));
+        assert_true(fabs(term - 0.1353352832366127) < 1e-15);
+        assert_true(fabs(term - FIELD_LEVEL) < 1e-15);
+    }
+}
+
 static void term_and_gradient_follow_the_definition(void **state)
 {
     (void)state;
@@ -131,6 +145,7 @@ static void log_form_is_the_distance_from_a_lone_vessel(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_level_is_the_potential_at_the_radius_of_a_long_vessel),
         cmocka_unit_test(term_and_gradient_follow_the_definition),
         cmocka_unit_test(gradient_is_the_slope_of_the_term),
         cmocka_unit_test(term_keeps_its_digits_far_beyond_an_end),
