@@ -70,4 +70,42 @@ test_file_names_with_blanks_are_fine() {
     expect_file 'a folder/my picture.png'
 }
 
+# codes FILE.png: of the middle pixel of 3 x 3.
+codes() {
+    pngtopnm "$1" | tail -c 15 | od -An -tu1 -N3 | tr -s ' '
+}
+
+# Seen and lit head on, ambient light 1/4, diffuse 1/2, phong 1/4 of exponent 3, and a second light at 60 degrees:
+# red is 0.3 (1/4 + 0.8 / 2 + 0.4 / 4) + (0.8 + 0.4 / 8) / 4 = 0.4375, or 177 of 255 in sRGB.
+test_a_vessel_lit_head_on_has_the_colour_that_a_calculator_says() {
+    local model view="--size 3x3 --location 1.5,0,40 --look-at 1.5,0,0 --height 0.1"
+    printf '1 3 -30 0 0 2.385 -1\n2 3 30 0 0 2.385 1\n' >tree.swc
+    cat >look.ini <<'INI'
+[vessel]
+color = 0.3 0.4 0.5
+[background]
+color = 1 1 1
+[finish]
+ambient = 0.25
+diffuse = 0.5
+phong = 0.25
+phong_size = 3
+[light head]
+direction = 0 0 2.5
+color = 0.8 0.6 0.4
+[light side]
+direction = 0 1.7320508075688772 1
+color = 0.4 0.2 0.6
+INI
+    for model in cylinders joined rounded isosurface blob; do
+        # shellcheck disable=SC2086
+        run_ok corcast render --quiet tree.swc --look ./look.ini --model $model $view -o native.png
+        [ "$(codes native.png)" = " 177 169 173" ] || fail "expected 177 169 173, got $(codes native.png), from: $command_line"
+        # shellcheck disable=SC2086
+        run_ok corcast scene --quiet tree.swc --look ./look.ini --model $model $view -o scene.pov
+        run_ok corcast povray --quiet scene.pov -o povray.png
+        [ "$(codes povray.png)" = " 177 169 173" ] || fail "expected 177 169 173 of POV-Ray, got $(codes povray.png): $model"
+    done
+}
+
 run_tests "$@"
