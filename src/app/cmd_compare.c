@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/options.h"
+#include "app/templates.h"
 #include "verify/verify.h"
 #include <math.h>
 #include <stdio.h>
@@ -15,6 +16,7 @@ static const Command command = {
         "  corcast compare a.ppm b.ppm --ids-a a.id.ppm --ids-b b.id.ppm --tier B --json\n"
         "  corcast compare a.exr b.exr --metrics on --tolerance mine.ini\n"
         "  corcast compare a.depth.pfm b.depth.pfm --depth-mm 0.01\n"
+        "  corcast compare reference.png mine.png --html page.html\n"
         "\ntiers of agreement:\n"
         "  A        identity: on all but 2 pixels in a million the same colours, ids and depths\n"
         "  B        what a renderer in single precision keeps: a few pixels at edges, no bias,\n"
@@ -33,7 +35,8 @@ typedef struct CompareOptions {
     int tier;
     const char *ids_a, *ids_b;
     const char *tolerance, *junit;
-    const char *heat, *difference, *flicker, *ledger;
+    const char *heat, *difference, *flicker, *ledger, *page;
+    char *line; /* owned; the command */
     bool json, metrics, has_metrics, has_tier, has_levels, has_ppm, has_pixelmatch;
     double levels, ppm, depth_mm, pixelmatch;
 } CompareOptions;
@@ -184,9 +187,48 @@ static Status write_picture(Status (*make)(Picture *, const Picture *, const Pic
     return status;
 }
 
-static Status write_pictures(const CompareOptions *options, const Picture *a, const Picture *b,
+static ReportSide side_of(const Sides *sides, int side, const Picture *picture)
+{
+    return (ReportSide){.name = sides->paths[side],
+                        .key = side ? "b" : "a",
+                        .version = "",
+                        .seconds = (double)NAN,
+                        .picture = picture,
+                        .ids = sides->ids[side].ids ? &sides->ids[side] : NULL};
+}
+
+static Status write_page(const CompareOptions *options, const Sides *sides,
+                         const CompareResult *result, const Picture *a, const Picture *b, Err *err)
+{
+    char *templates = NULL, *folder = NULL;
+    Text title = TEXT_INIT;
+    const char *const commands[] = {options->line};
+    Status status = STATUS_OK;
+    text_printf(&title, "%s and %s", file_name(sides->paths[0]), file_name(sides->paths[1]));
+    TRY_GOTO(text_check(&title, err));
+    TRY_GOTO(templates_folder(&templates, err));
+    TRY_GOTO(file_join(templates, "report", &folder, err));
+    const ReportCase report = {.name = title.chars,
+                               .model = "",
+                               .a = side_of(sides, 0, a),
+                               .b = side_of(sides, 1, b),
+                               .commands = commands,
+                               .n_commands = 1,
+                               .planes = {[PLANE_COLOR] = result}};
+    status = report_write_page(&report, folder, options->page, err);
+done:
+    text_release(&title);
+    free(templates);
+    free(folder);
+    return status;
+}
+
+static Status write_pictures(const CompareOptions *options, const Sides *sides,
+                             const CompareResult *result, const Picture *a, const Picture *b,
                              Err *err)
 {
+    if (options->page)
+        TRY(write_page(options, sides, result, a, b, err));
     TRY(write_picture(heat_picture, options->heat, a, b, err));
     TRY(write_picture(difference_picture, options->difference, a, b, err));
     if (!options->flicker)
@@ -230,9 +272,9 @@ static Status compare_codes(const CompareOptions *options, const Sides *sides,
         TRY_GOTO(picture_to_srgb(&shown[1], b.picture, 16, err));
     const Picture *shown_a = coded ? a.picture : &shown[0];
     const Picture *shown_b = coded ? b.picture : &shown[1];
-    if (options->metrics)
+    if (options->metrics || options->page)
         TRY_GOTO(compare_perception(shown_a, shown_b, result, err));
-    status = write_pictures(options, shown_a, shown_b, err);
+    status = write_pictures(options, sides, result, shown_a, shown_b, err);
 done:
     picture_release(&shown[0]);
     picture_release(&shown[1]);
@@ -249,13 +291,13 @@ static Status compare_linear(const CompareOptions *options, const Sides *sides,
                        "--ledger is of two pictures of 8 or 16 bits and one gamma");
     bool ids = options->ids_a != NULL;
     TRY(compare_colors(a, b, ids ? &sides->ids[0] : NULL, ids ? &sides->ids[1] : NULL, tolerance,
-                       options->metrics, result, err));
+                       options->metrics || options->page, result, err));
     Picture clipped[2] = {{0}, {0}};
     Status status = STATUS_OK;
-    if (options->heat || options->difference || options->flicker) {
+    if (options->heat || options->difference || options->flicker || options->page) {
         TRY_GOTO(picture_from_plane(&clipped[0], a, ENCODING_SRGB, 16, err));
         TRY_GOTO(picture_from_plane(&clipped[1], b, ENCODING_SRGB, 16, err));
-        status = write_pictures(options, &clipped[0], &clipped[1], err);
+        status = write_pictures(options, sides, result, &clipped[0], &clipped[1], err);
     }
 done:
     picture_release(&clipped[0]);
@@ -340,11 +382,11 @@ static Status check_options(const CompareOptions *options, PlaneKind kind, Err *
         return err_set(err, STATUS_USAGE, "--ids-a and --ids-b go together; one is missing");
     if (options->ledger && !options->ids_a)
         return err_set(err, STATUS_USAGE, "--ledger needs --ids-a and --ids-b, to tell segments");
-    if (kind != PLANE_COLOR &&
-        (options->heat || options->difference || options->flicker || options->ledger))
+    if (kind != PLANE_COLOR && (options->heat || options->difference || options->flicker ||
+                                options->ledger || options->page))
         return err_set(err, STATUS_USAGE,
-                       "-o, --difference, --flicker and --ledger are of two pictures, not of two "
-                       "%s planes",
+                       "-o, --difference, --flicker, --ledger and --html are of two pictures, not "
+                       "of two %s planes",
                        plane_kind_name(kind));
     return STATUS_OK;
 }
@@ -385,6 +427,8 @@ Status run_compare(int argc, char **argv, Err *err)
          "animated PNG that shows A and B in turn"},
         {"ledger", OPTION_OUTPUT, &options.ledger, NULL, 0, 0, NULL, "L.csv",
          "the account of every segment"},
+        {"html", OPTION_OUTPUT, &options.page, NULL, 0, 0, NULL, "PAGE.html",
+         "one page about two pictures: swipe, blink, zoom, differences, numbers"},
         {0},
     };
     const Option *const tables[] = {own, NULL};
@@ -412,6 +456,7 @@ Status run_compare(int argc, char **argv, Err *err)
                                 {0}};
     TRY_GOTO(options_check_needs(&parsed, needs, err));
     TRY_GOTO(check_options(&options, kind, err));
+    TRY_GOTO(command_line_text("compare", argc, argv, &options.line, err));
     TRY_GOTO(make_tolerance(&options, &tolerance, &tier_name, err));
     double start_s = clock_seconds();
     TRY_GOTO(
@@ -422,6 +467,7 @@ Status run_compare(int argc, char **argv, Err *err)
     status = result.agrees ? STATUS_OK : STATUS_DIFFERS;
 done:
     sides_release(&sides);
+    free(options.line);
     free(tier_name);
     free(name);
     parsed_release(&parsed);

@@ -226,16 +226,29 @@ static Status write_heat(const Picture *heat, const char *folder, Err *err)
     return status;
 }
 
+Status report_write_page(const ReportCase *report, const char *templates, const char *path,
+                         Err *err)
+{
+    Picture heat;
+    TRY(heat_picture(&heat, report->a.picture, report->b.picture, err));
+    Status status = report_page(report, &heat, templates, path, err);
+    picture_release(&heat);
+    return status;
+}
+
 Status report_write(const ReportCase *report, const char *templates, const char *folder, Err *err)
 {
     Picture heat = {0};
+    char *path = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(heat_picture(&heat, report->a.picture, report->b.picture, err));
     TRY_GOTO(write_heat(&heat, folder, err));
     TRY_GOTO(write_json(report, folder, err));
     TRY_GOTO(write_junit(report, folder, err));
-    TRY_GOTO(report_page(report, &heat, templates, folder, err));
+    TRY_GOTO(file_join(folder, "report.html", &path, err));
+    TRY_GOTO(report_page(report, &heat, templates, path, err));
 done:
+    free(path);
     picture_release(&heat);
     return status;
 }

@@ -68,8 +68,8 @@ typedef struct ReportFrame {
 /* Appends the page; `templates` is the folder with report.html and case.html. */
 MUST_CHECK Status report_frame(const ReportFrame *frame, const char *templates, Text *out,
                                Err *err);
-/* Writes report.html into `folder`; `heat` is the difference picture. */
+/* Writes the page to `path`; `heat` is the difference picture. */
 MUST_CHECK Status report_page(const ReportCase *report, const Picture *heat, const char *templates,
-                              const char *folder, Err *err);
+                              const char *path, Err *err);
 
 #endif

@@ -69,12 +69,11 @@ static void settled_sentence(const ReportCase *report, Text *sentence)
 /* What tells the case from others of the same tree and model: the options of its command. */
 static void put_options(const ReportCase *report, Text *out)
 {
-    static const char start[] = "corcast verify ";
     if (report->n_commands == 0)
         return;
     const char *command = report->commands[0];
-    if (strncmp(command, start, strlen(start)) == 0)
-        command += strlen(start);
+    for (int words = 0; words < 2 && strchr(command, ' '); words++) /* corcast verify */
+        command = strchr(command, ' ') + 1;
     text_puts(out, "<code>");
     text_escaped(out, command);
     text_puts(out, "</code> ");
@@ -92,7 +91,7 @@ static void verdict_parts(const ReportCase *report, Text parts[PARTS])
     text_puts(&parts[PART_ID], REPORT_FIRST_CASE);
     text_puts(&parts[PART_EDGE], reason ? "bad-edge" : "good-edge");
     text_escaped(&parts[PART_VERDICT_TITLE], report->name);
-    text_puts(&parts[PART_VERDICT_TITLE], ", ");
+    text_puts(&parts[PART_VERDICT_TITLE], *report->model ? ", " : "");
     text_escaped(&parts[PART_VERDICT_TITLE], report->model);
     text_puts(&parts[PART_VERDICT_TITLE], reason ? ": <span class=\"bad\">differ</span>"
                                                  : ": <span class=\"good\">agree</span>");
@@ -199,8 +198,10 @@ static Status ids_part(Text *part, const IdPlane *ids, Err *err)
 static void side_parts(const ReportSide *side, Fragment name, Fragment alt, Text parts[PARTS])
 {
     text_escaped(&parts[name], side->name);
-    text_puts(&parts[alt], "The scene as rendered by ");
+    text_puts(&parts[alt], isnan(side->seconds) ? "The picture " : "The scene as rendered by ");
     text_escaped(&parts[alt], side->name);
+    if (isnan(side->seconds))
+        return;
     text_escaped(&parts[PART_SIDES], side->name);
     text_puts(&parts[PART_SIDES], " ");
     text_escaped(&parts[PART_SIDES], side->version);
@@ -244,7 +245,9 @@ static Status segment_parts(const CompareResult *color, Text parts[PARTS], Err *
     for (int i = 0; i < color->n_worst_segments; i++)
         text_printf(lines, "%ssegment %u with %zu", i ? ", " : "", color->worst_segments[i].id,
                     color->worst_segments[i].differing);
-    text_puts(lines, color->n_worst_segments ? " pixels." : "No segment differs.");
+    text_puts(lines, color->n_worst_segments ? " pixels."
+                     : color->has_ids        ? "No segment differs."
+                                             : "Not told apart: no id planes were given.");
     json_t *json = worst_segments_json(color);
     char *text = json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(9));
     json_decref(json);
@@ -354,20 +357,19 @@ Status report_frame(const ReportFrame *frame, const char *templates, Text *out, 
 }
 
 Status report_page(const ReportCase *report, const Picture *heat, const char *templates,
-                   const char *folder, Err *err)
+                   const char *path, Err *err)
 {
     Text row = TEXT_INIT, section = TEXT_INIT, title = TEXT_INIT, heading = TEXT_INIT,
          page = TEXT_INIT;
-    char *path = NULL;
     bool agrees = report_agrees(report);
     Status status = STATUS_OK;
     TRY_GOTO(case_row(report, &row, err));
     TRY_GOTO(expand_case(report, heat, templates, &section, err));
     text_escaped(&title, report->name);
     text_puts(&title, agrees ? ": the pictures agree" : ": the pictures differ");
-    text_escaped(&heading, report->b.name);
-    text_puts(&heading, " and ");
-    text_escaped(&heading, report->a.name);
+    text_escaped(&heading, *report->model ? report->b.name : report->name);
+    text_puts(&heading, *report->model ? " and " : "");
+    text_escaped(&heading, *report->model ? report->a.name : "");
     text_puts(&heading,
               agrees ? " <span class=\"good\">agree</span>" : " <span class=\"bad\">differ</span>");
     TRY_GOTO(text_check(&title, err));
@@ -381,7 +383,6 @@ Status report_page(const ReportCase *report, const Picture *heat, const char *te
                                .n_cases = 1,
                                .agrees = agrees};
     TRY_GOTO(report_frame(&frame, templates, &page, err));
-    TRY_GOTO(file_join(folder, "report.html", &path, err));
     status = file_write(path, page.chars, page.length, err);
 done:
     text_release(&row);
@@ -389,6 +390,5 @@ done:
     text_release(&title);
     text_release(&heading);
     text_release(&page);
-    free(path);
     return status;
 }

@@ -339,6 +339,10 @@ json_t *report_json(const ReportCase *report);
  * network. */
 MUST_CHECK Status report_write(const ReportCase *report, const char *templates, const char *folder,
                                Err *err);
+/* Writes the page alone, to `path`; the colours of the case were compared, its model may be "", and a side
+ * may have no version (""), and no seconds (NAN). */
+MUST_CHECK Status report_write_page(const ReportCase *report, const char *templates,
+                                    const char *path, Err *err);
 /* Writes one page about all cases that report_write wrote about, worst first, to `path`. `power` is the
  * file that `make power` leaves, or NULL; `all_agree` tells whether all of them do. STATUS_INPUT when a
  * folder has no report of this version. */

@@ -283,6 +283,23 @@ test_convert_reads_the_floats_that_compare_reads() {
     expect_sentence 'half-zip\.exr: holds floats; a picture of 8 or 16 bits is wanted'
 }
 
+test_two_pictures_have_a_page() {
+    picture 100 >'a"<b>.ppm'
+    picture 155 >b.ppm
+    run corcast compare 'a"<b>.ppm' b.ppm --html page.html
+    expect_status 1
+    grep -q '<h1>a&quot;&lt;b&gt;.ppm and b.ppm <span class="bad">differ</span></h1>' page.html ||
+        fail "expected the names in the heading, got $(grep '<h1>' page.html)"
+    [ "$(grep -o 'data:image/png;base64,' page.html | wc -l)" -ge 5 ] || fail "expected the pictures in the page"
+    grep -q 'FLIP, mean</td><td class="number">0\.' page.html || fail "expected what was measured"
+    ! grep -oE '(src|href)="?(https?:|//)' page.html || fail "expected no network"
+    run_ok corcast compare "$DATA/images/half-zip.exr" "$DATA/images/float.tif" --html floats.html
+    expect_file floats.html
+    run corcast compare "$DATA/images/depth.exr" "$DATA/images/depth.exr" --kind depth --html depth.html
+    expect_status 2
+    expect_sentence '--html are of two pictures, not of two depth planes'
+}
+
 test_sides_beyond_all_bounds_are_refused() {
     printf 'P6\n99999999 3\n255\nabc' >a.ppm
     run corcast compare a.ppm a.ppm
