@@ -169,12 +169,6 @@ static Status make_tolerance(const CompareOptions *options, Tolerance *tolerance
 
 /* ---- comparison ------------------------------------------------------------------------------- */
 
-static Status write_text(const char *path, const Text *text, Err *err)
-{
-    TRY(text_check(text, err));
-    return file_write(path, text->chars, text->length, err);
-}
-
 static Status write_picture(Status (*make)(Picture *, const Picture *, const Picture *, Err *),
                             const char *path, const Picture *a, const Picture *b, Err *err)
 {
@@ -208,7 +202,7 @@ static Status write_page(const CompareOptions *options, const Sides *sides,
     TRY_GOTO(text_check(&title, err));
     TRY_GOTO(templates_folder(&templates, err));
     TRY_GOTO(file_join(templates, "report", &folder, err));
-    const ReportCase report = {.name = title.chars,
+    const ReportCase report = {.name = text_chars(&title),
                                .model = "",
                                .a = side_of(sides, 0, a),
                                .b = side_of(sides, 1, b),
@@ -236,7 +230,7 @@ static Status write_pictures(const CompareOptions *options, const Sides *sides,
     Text png = TEXT_INIT;
     Status status = flicker_png(a, b, &png, err);
     if (status == STATUS_OK)
-        status = write_text(options->flicker, &png, err);
+        status = file_write_text(options->flicker, &png, err);
     text_release(&png);
     return status;
 }
@@ -247,7 +241,7 @@ static Status write_ledger(const char *path, const Ledger *ledger, Err *err)
     if (!path)
         return STATUS_OK;
     ledger_csv(ledger, &csv);
-    Status status = write_text(path, &csv, err);
+    Status status = file_write_text(path, &csv, err);
     text_release(&csv);
     return status;
 }
@@ -352,7 +346,7 @@ static Status write_junit(const CompareResult *result, const char *path, const c
     if (!path)
         return STATUS_OK;
     compare_junit(result, name, seconds, &xml);
-    Status status = write_text(path, &xml, err);
+    Status status = file_write_text(path, &xml, err);
     text_release(&xml);
     return status;
 }
@@ -369,9 +363,9 @@ static Status print_result(const CompareOptions *options, const CompareResult *r
     Status status = text_check(&text, err);
     size_t length = text.length;
     if (status == STATUS_OK && !options->metrics)
-        length = strcspn(text.chars, "\n") + 1;
+        length = strcspn(text_chars(&text), "\n") + 1;
     if (status == STATUS_OK)
-        fwrite(text.chars, 1, length, stdout);
+        fwrite(text_chars(&text), 1, length, stdout);
     text_release(&text);
     return status;
 }

@@ -19,31 +19,29 @@ static const Command command = {
 static json_t *summary_json(const TreeSummary *summary)
 {
     const Box *box = &summary->bounds;
-    json_t *json = json_object();
-    json_object_set_new(json, "segments", json_integer((json_int_t)summary->segments));
-    json_object_set_new(json, "terminals", json_integer((json_int_t)summary->terminals));
-    json_object_set_new(json, "bifurcations", json_integer((json_int_t)summary->bifurcations));
-    json_object_set_new(json, "roots", json_integer((json_int_t)summary->roots));
-    json_object_set_new(json, "total_length_mm", json_number(summary->total_length_mm));
-    json_object_set_new(json, "volume_mm3", json_number(summary->volume_mm3));
-    json_object_set_new(json, "target",
-                        summary->has.target ? json_number(summary->target) : json_null());
-    json_object_set_new(json, "gamma",
-                        summary->has.gamma ? json_number(summary->gamma) : json_null());
-    json_object_set_new(json, "lambda",
-                        summary->has.lambda ? json_number(summary->lambda) : json_null());
-    json_object_set_new(json, "root_radius_mm", json_number(summary->root_radius_mm));
-    json_object_set_new(json, "min_radius_mm", json_number(summary->min_radius_mm));
-    json_object_set_new(json, "max_level", json_integer(summary->max_level));
-    json_object_set_new(json, "max_strahler", json_integer(summary->max_strahler));
-    json_object_set_new(json, "bbox_mm",
-                        json_pack("[[f,f,f],[f,f,f]]", box->low.x, box->low.y, box->low.z,
-                                  box->high.x, box->high.y, box->high.z));
+    const JsonMember members[] = {
+        {"segments", json_integer((json_int_t)summary->segments)},
+        {"terminals", json_integer((json_int_t)summary->terminals)},
+        {"bifurcations", json_integer((json_int_t)summary->bifurcations)},
+        {"roots", json_integer((json_int_t)summary->roots)},
+        {"total_length_mm", json_number(summary->total_length_mm)},
+        {"volume_mm3", json_number(summary->volume_mm3)},
+        {"target", summary->has.target ? json_number(summary->target) : json_null()},
+        {"gamma", summary->has.gamma ? json_number(summary->gamma) : json_null()},
+        {"lambda", summary->has.lambda ? json_number(summary->lambda) : json_null()},
+        {"root_radius_mm", json_number(summary->root_radius_mm)},
+        {"min_radius_mm", json_number(summary->min_radius_mm)},
+        {"max_level", json_integer(summary->max_level)},
+        {"max_strahler", json_integer(summary->max_strahler)},
+        {"bbox_mm", json_pack("[[f,f,f],[f,f,f]]", box->low.x, box->low.y, box->low.z, box->high.x,
+                              box->high.y, box->high.z)},
+    };
+    json_t *json = json_with_members(json_object(), members, sizeof members / sizeof *members);
     if (summary->has.terminal_pressure)
-        json_object_set_new(json, "terminal_pressure_mmHg",
-                            json_pack("{s:f, s:f, s:f}", "min", summary->terminal_pressure_min_mmhg,
-                                      "mean", summary->terminal_pressure_mean_mmhg, "max",
-                                      summary->terminal_pressure_max_mmhg));
+        json = json_with(json, "terminal_pressure_mmHg",
+                         json_pack("{s:f, s:f, s:f}", "min", summary->terminal_pressure_min_mmhg,
+                                   "mean", summary->terminal_pressure_mean_mmhg, "max",
+                                   summary->terminal_pressure_max_mmhg));
     return json;
 }
 
@@ -123,7 +121,7 @@ Status run_info(int argc, char **argv, Err *err)
     if (as_json) {
         json_t *json = summary_json(&summary);
         if (with_statistics)
-            json_object_set_new(json, "stats", statistics_json(&statistics));
+            json = json_with(json, "stats", statistics_json(&statistics));
         status = json_write(json, "-", err);
     } else {
         print_summary(parsed.operands[0], &summary);

@@ -52,12 +52,15 @@ static Status write_report(const char *path, const Scene *scene, const RenderSta
                   scene->camera.height, "prepare_seconds", stats->prepare_s, "trace_seconds",
                   stats->trace_s, "cpu_seconds", stats->cpu_s, "rays", (json_int_t)stats->rays,
                   "threads", threads ? threads : threads_available());
-    if (scene->model == SCENE_JOINED && report)
-        json_object_update_new(report, json_pack("{s:I, s:I, s:I, s:I}", "joints",
-                                                 (json_int_t)staged->joints, "places_short",
-                                                 (json_int_t)staged->places_short, "places_sharp",
-                                                 (json_int_t)staged->places_sharp, "places_crowded",
-                                                 (json_int_t)staged->places_crowded));
+    if (scene->model == SCENE_JOINED) {
+        const JsonMember of_joints[] = {
+            {"joints", json_integer((json_int_t)staged->joints)},
+            {"places_short", json_integer((json_int_t)staged->places_short)},
+            {"places_sharp", json_integer((json_int_t)staged->places_sharp)},
+            {"places_crowded", json_integer((json_int_t)staged->places_crowded)},
+        };
+        report = json_with_members(report, of_joints, sizeof of_joints / sizeof *of_joints);
+    }
     return json_write(report, path, err);
 }
 

@@ -397,24 +397,30 @@ static void print_surface(const SurfaceCheck *surface)
 }
 
 /* A line for each cause that was met, and for the first pixels where. */
-static void print_settled(const Settled *settled)
+static Status print_settled(const Settled *settled, Err *err)
 {
+    Text text = TEXT_INIT;
     for (SettledCause cause = settled->from; cause <= settled->to; cause++)
         if (settled->count[cause])
-            printf("  %-7s %-7s%s: %zu, at most %zu allowed; corcast is right there\n", "settled",
-                   settled->count[cause] <= settled_allowed(settled, cause) ? "agree" : "differ",
-                   settled_cause_sentence(cause), settled->count[cause],
-                   settled_allowed(settled, cause));
+            text_printf(&text, "  %-7s %-7s%s: %zu, at most %zu allowed; corcast is right there\n",
+                        "settled",
+                        settled->count[cause] <= settled_allowed(settled, cause) ? "agree"
+                                                                                 : "differ",
+                        settled_cause_sentence(cause), settled->count[cause],
+                        settled_allowed(settled, cause));
     for (int i = 0; i < settled->n_first && settled->from == SETTLED_ROOT; i++) {
-        Text where = TEXT_INIT;
-        settled_describe(&settled->first[i], "POV-Ray", "corcast", &where);
-        printf("                 %s %s\n", settled_cause_name(settled->first[i].cause),
-               where.chars ? where.chars : "");
-        text_release(&where);
+        text_printf(&text, "                 %s ", settled_cause_name(settled->first[i].cause));
+        settled_describe(&settled->first[i], "POV-Ray", "corcast", &text);
+        text_puts(&text, "\n");
     }
+    Status status = text_check(&text, err);
+    if (status == STATUS_OK)
+        fputs(text_chars(&text), stdout);
+    text_release(&text);
+    return status;
 }
 
-static void print_verdict(const Verification *v, bool agrees)
+static Status print_verdict(const Verification *v, bool agrees, Err *err)
 {
     for (int kind = 0; kind < PLANE_KINDS; kind++) {
         const CompareResult *result = &v->results[kind];
@@ -432,12 +438,13 @@ static void print_verdict(const Verification *v, bool agrees)
             printf("%zu of %zu pixels differ\n", result->differing_pixels, result->pixels);
     }
     if (v->asked)
-        print_settled(&v->settled);
+        TRY(print_settled(&v->settled, err));
     if (is_isosurface(v))
         print_surface(&v->surface);
     printf("%s: POV-Ray %s in %.2f s, corcast in %.2f s; %s/report.html\n",
            agrees ? "agree" : "differ", v->run.version, v->run.seconds,
            v->stats.prepare_s + v->stats.trace_s, v->folder);
+    return STATUS_OK;
 }
 
 Status run_verify(int argc, char **argv, Err *err)
@@ -495,7 +502,7 @@ Status run_verify(int argc, char **argv, Err *err)
     TRY_GOTO(compare_sides(&v, err));
     TRY_GOTO(write_report(&v, as_json, &agrees, err));
     if (!as_json && !parsed.common.quiet)
-        print_verdict(&v, agrees);
+        TRY_GOTO(print_verdict(&v, agrees, err));
     status = agrees ? STATUS_OK : STATUS_DIFFERS;
 done:
     free(line);

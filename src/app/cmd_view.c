@@ -85,8 +85,8 @@ static void set_title(const Viewer *viewer)
     const char *field = viewer->options->coloring.field;
     text_printf(&title, "%s: %zu segments, %s%s%s", file_name(viewer->tree), viewer->scene.drawn,
                 model_name(viewer->scene.model), field ? ", " : "", field ? field : "");
-    if (title.chars)
-        window_title(viewer->window, title.chars);
+    if (text_chars(&title))
+        window_title(viewer->window, text_chars(&title));
     text_release(&title);
 }
 
@@ -176,7 +176,7 @@ static Status put_option(const Option *option, PutSetting *put, Text *text, Err 
     option_put(option, &value);
     Status status = text_check(&value, err);
     if (status == STATUS_OK)
-        status = put(text, option->name, value.chars ? value.chars : "", err);
+        status = put(text, option->name, text_chars(&value), err);
     text_release(&value);
     return status;
 }
@@ -209,7 +209,7 @@ static Status print_options(const Viewer *viewer, Err *err)
     put_shell_word(&text, viewer->tree);
     Status status = put_settings(viewer, put_argument, &text, err);
     if (status == STATUS_OK) {
-        printf("%s -o P.png\n", text.chars);
+        printf("%s -o P.png\n", text_chars(&text));
         fflush(stdout);
     }
     text_release(&text);
@@ -224,7 +224,7 @@ static Status write_recipe(const Viewer *viewer, Err *err)
     text_puts(&text, ", for render --recipe\n");
     Status status = put_settings(viewer, put_pair, &text, err);
     if (status == STATUS_OK)
-        status = file_write(viewer->recipe, text.chars, text.length, err);
+        status = file_write_text(viewer->recipe, &text, err);
     if (status == STATUS_OK && !viewer->common->quiet)
         fprintf(stderr, "corcast: the view is written to %s\n", viewer->recipe);
     text_release(&text);

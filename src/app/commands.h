@@ -3,7 +3,6 @@
 #define CORCAST_APP_COMMANDS_H
 
 #include "base/base.h"
-#include <jansson.h>
 
 typedef Status CommandRun(int argc, char **argv, Err *err);
 
@@ -37,8 +36,5 @@ MUST_CHECK Status command_line_text(const char *command, int argc, char **argv, 
 /* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets go
  * of it. Numbers that are not finite must have been left out or set to null. */
 MUST_CHECK Status json_write(json_t *object, const char *path, Err *err);
-
-/* A JSON real, or null where the value is not finite. */
-json_t *json_number(double value);
 
 #endif

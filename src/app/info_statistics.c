@@ -57,7 +57,7 @@ static json_t *table_json(const char *number, const StatisticsTable *table)
     json_t *rows = json_array();
     for (size_t i = 0; i < table->n; i++) {
         const StatisticsRow *row = &table->row[i];
-        json_array_append_new(rows, json_pack("{s:i, s:I, s:I, s:o, s:o}", number, row->number,
+        rows = json_with_item(rows, json_pack("{s:i, s:I, s:I, s:o, s:o}", number, row->number,
                                               "vessels", (json_int_t)row->vessels, "elements",
                                               (json_int_t)row->elements, "radius_mm",
                                               spread_json(&row->radius_mm), "length_mm",
@@ -81,20 +81,18 @@ static json_t *bifurcations_json(const BifurcationSpread *spread)
 
 json_t *statistics_json(const TreeStatistics *statistics)
 {
-    json_t *json = json_object();
-    json_object_set_new(json, "vessels", json_integer((json_int_t)statistics->vessels));
-    json_object_set_new(json, "volume_mm3", json_number(statistics->volume_mm3));
-    json_object_set_new(json, "by_level", table_json("level", &statistics->by_level));
-    json_object_set_new(json, "by_strahler", table_json("order", &statistics->by_strahler));
-    json_object_set_new(json, "strahler_ratios", ratios_json(&statistics->strahler_ratios));
-    json_object_set_new(json, "by_diameter_strahler",
-                        table_json("order", &statistics->by_diameter_strahler));
-    json_object_set_new(json, "diameter_strahler_ratios",
-                        ratios_json(&statistics->diameter_strahler_ratios));
-    json_object_set_new(json, "diameter_rounds", json_integer(statistics->diameter_rounds));
-    json_object_set_new(json, "diameter_orders_converged",
-                        json_boolean(statistics->diameter_orders_converged));
-    json_object_set_new(json, "symmetry", bifurcations_json(&statistics->symmetry));
-    json_object_set_new(json, "area_ratio", bifurcations_json(&statistics->area_ratio));
-    return json;
+    const JsonMember members[] = {
+        {"vessels", json_integer((json_int_t)statistics->vessels)},
+        {"volume_mm3", json_number(statistics->volume_mm3)},
+        {"by_level", table_json("level", &statistics->by_level)},
+        {"by_strahler", table_json("order", &statistics->by_strahler)},
+        {"strahler_ratios", ratios_json(&statistics->strahler_ratios)},
+        {"by_diameter_strahler", table_json("order", &statistics->by_diameter_strahler)},
+        {"diameter_strahler_ratios", ratios_json(&statistics->diameter_strahler_ratios)},
+        {"diameter_rounds", json_integer(statistics->diameter_rounds)},
+        {"diameter_orders_converged", json_boolean(statistics->diameter_orders_converged)},
+        {"symmetry", bifurcations_json(&statistics->symmetry)},
+        {"area_ratio", bifurcations_json(&statistics->area_ratio)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }

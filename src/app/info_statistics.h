@@ -3,7 +3,6 @@
 #define CORCAST_APP_INFO_STATISTICS_H
 
 #include "derive/derive.h"
-#include <jansson.h>
 
 void statistics_print(const TreeStatistics *statistics);
 

@@ -25,7 +25,7 @@ static int finish(const char *command, Status status, Err *err)
         Text line = TEXT_INIT; /* names in it may hold anything */
         text_put_line(&line, err->text);
         fprintf(stderr, "corcast%s%s: %s\n", *command ? " " : "", command,
-                line.chars && !line.failed ? line.chars : err->text);
+                text_chars(&line) ? text_chars(&line) : err->text);
         text_release(&line);
     }
     return status_exit(status);

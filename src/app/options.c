@@ -57,7 +57,9 @@ static Status set_choice(const Option *option, const char *value, Err *err)
         }
         text_printf(&list, "%s%s", i ? ", " : "one of ", option->choices[i]);
     }
-    Status status = wrong(option, value, list.chars ? list.chars : "a choice", err);
+    Status status = text_check(&list, err);
+    if (status == STATUS_OK)
+        status = wrong(option, value, text_chars(&list), err);
     text_release(&list);
     return status;
 }

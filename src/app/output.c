@@ -1,13 +1,11 @@
 #include "app/commands.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 void put_shell_word(Text *text, const char *word)
 {
     const char *plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789@%+=:,./_-";
-    if (*word && word[strspn(word, plain)] == '\0') {
+    if (!word || (*word && word[strspn(word, plain)] == '\0')) {
         text_puts(text, word);
         return;
     }
@@ -21,16 +19,10 @@ void put_shell_word(Text *text, const char *word)
 static Status take_line(Text *line, char **out, Err *err)
 {
     Text clean = TEXT_INIT;
-    text_puts(&clean, "");
-    if (line->chars)
-        text_put_line(&clean, line->chars);
-    clean.failed = clean.failed || line->failed;
-    Status status = text_check(&clean, err);
+    text_put_line(&clean, text_chars(line));
     text_release(line);
-    if (status == STATUS_OK)
-        *out = clean.chars;
-    else
-        text_release(&clean);
+    Status status = text_take(&clean, out, err);
+    text_release(&clean);
     return status;
 }
 
@@ -52,32 +44,18 @@ Status command_line_text(const char *command, int argc, char **argv, char **out,
         text_append(&word, argv[i], kept);
         text_puts(&word, file_name(argv[i] + kept));
         text_puts(&text, " ");
-        if (word.chars)
-            put_shell_word(&text, word.chars);
-        text.failed = text.failed || word.failed;
+        put_shell_word(&text, text_chars(&word));
         text_release(&word);
     }
     return take_line(&text, out, err);
 }
 
-json_t *json_number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 Status json_write(json_t *object, const char *path, Err *err)
 {
-    char *chars = object ? json_dumps(object, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
-    json_decref(object);
-    if (!chars)
-        return err_set(err, STATUS_MEMORY, "out of memory: no room for the JSON text");
     Text text = TEXT_INIT;
-    text_puts(&text, chars);
+    text_json(&text, object, 2);
     text_puts(&text, "\n");
-    free(chars);
-    Status status = text_check(&text, err);
-    if (status == STATUS_OK)
-        status = file_write(path, text.chars, text.length, err);
+    Status status = file_write_text(path, &text, err);
     text_release(&text);
     return status;
 }

@@ -35,20 +35,19 @@ Status povfiles_write(const Scene *scene, const char *tree_path, const char *pat
     if (status != STATUS_OK)
         return status;
     picture_description(scene, tree_path, &description);
-    TRY_GOTO(text_check(&description, err));
     TRY_GOTO(file_with_suffix(path, ".inc", &geometry_path, err));
     PovrayParams params = {.templates = templates,
                            .scene_file = to_stdout ? "scene.pov" : file_name(path),
                            .geometry_file = to_stdout ? NULL : file_name(geometry_path),
-                           .description = description.chars,
+                           .description = text_chars(&description),
                            .generator = GENERATOR,
                            .shadows = shadows,
                            .ids = ids,
                            .cells = *cells};
     TRY_GOTO(emit_povray(scene, &params, &pov, &inc, report, err));
     if (!to_stdout)
-        TRY_GOTO(file_write(geometry_path, inc.chars, inc.length, err));
-    TRY_GOTO(file_write(path, pov.chars, pov.length, err));
+        TRY_GOTO(file_write_text(geometry_path, &inc, err));
+    TRY_GOTO(file_write_text(path, &pov, err));
 done:
     text_release(&description);
     text_release(&pov);

@@ -69,7 +69,7 @@ static Status refuse_name(const char *option, const char *value, const char *fol
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE,
                          "--%s: '%s' is not %s, nor has it the '/' of a path to a file of your own",
-                         option, value, names.chars);
+                         option, value, text_chars(&names));
     text_release(&names);
     return status;
 }
@@ -86,7 +86,7 @@ Status template_file(const char *option, const char *folder, const char *value,
     TRY_GOTO(text_check(&name, err));
     TRY_GOTO(templates_folder(&templates, err));
     TRY_GOTO(file_join(templates, folder, &place, err));
-    TRY_GOTO(file_join(place, name.chars, &found, err));
+    TRY_GOTO(file_join(place, text_chars(&name), &found, err));
     if (access(found, R_OK) != 0) {
         status = refuse_name(option, value, place, extension, err);
         goto done;

@@ -5,6 +5,7 @@
 #include "base/file.h"      // IWYU pragma: export
 #include "base/ini.h"       // IWYU pragma: export
 #include "base/interrupt.h" // IWYU pragma: export
+#include "base/json.h"      // IWYU pragma: export
 #include "base/memory.h"    // IWYU pragma: export
 #include "base/progress.h"  // IWYU pragma: export
 #include "base/random.h"    // IWYU pragma: export

@@ -4,7 +4,6 @@
 #include "base/file.h"
 
 #include "base/memory.h"
-#include "base/text.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -465,6 +464,12 @@ Status file_write(const char *path, const void *bytes, size_t size, Err *err)
     TRY(outfile_open(&file, path, err));
     fwrite(bytes, 1, size, file.stream);
     return outfile_commit(&file, err);
+}
+
+Status file_write_text(const char *path, const Text *text, Err *err)
+{
+    TRY(text_check(text, err));
+    return file_write(path, text_chars(text), text->length, err);
 }
 
 Status file_make_folder(const char *path, Err *err)

@@ -2,7 +2,7 @@
 #ifndef CORCAST_BASE_FILE_H
 #define CORCAST_BASE_FILE_H
 
-#include "base/status.h"
+#include "base/text.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -56,6 +56,8 @@ MUST_CHECK Status outfile_check_room(const OutFile *file, double bytes, Err *err
 
 /* Writes all of `bytes` to `path` through an OutFile. */
 MUST_CHECK Status file_write(const char *path, const void *bytes, size_t size, Err *err);
+/* Likewise the characters of `text`, or STATUS_MEMORY when it failed. */
+MUST_CHECK Status file_write_text(const char *path, const Text *text, Err *err);
 
 /* The file that writing to `path` writes, in *out (owned): the path with symbolic links of its last
  * component followed. STATUS_IO when they lead in a circle. */

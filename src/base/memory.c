@@ -69,6 +69,11 @@ Status mem_reserve(void *items, size_t *capacity, size_t needed, size_t size, co
     return STATUS_OK;
 }
 
+Status mem_out_of(const char *purpose, const char *subject, Err *err)
+{
+    return err_set(err, STATUS_MEMORY, "out of memory: no room %s %s", purpose, subject);
+}
+
 Status mem_strdup(char **out, const char *text, Err *err)
 {
     size_t size = strlen(text) + 1;

@@ -28,7 +28,16 @@ void text_append(Text *text, const char *chars, size_t length)
 
 void text_puts(Text *text, const char *chars)
 {
-    text_append(text, chars, strlen(chars));
+    if (chars)
+        text_append(text, chars, strlen(chars));
+    else
+        text->failed = true;
+}
+
+void text_add(Text *text, const Text *part)
+{
+    text_append(text, part->length ? part->chars : "", part->length);
+    text->failed = text->failed || part->failed;
 }
 
 void text_printf(Text *text, const char *format, ...)
@@ -41,8 +50,8 @@ void text_printf(Text *text, const char *format, ...)
     va_end(arguments);
     if (length >= 0 && (size_t)length < sizeof local) {
         text_append(text, local, (size_t)length);
-    } else if (length >= 0) {
-        char *longer = malloc((size_t)length + 1);
+    } else {
+        char *longer = length >= 0 ? malloc((size_t)length + 1) : NULL;
         if (longer) {
             vsnprintf(longer, (size_t)length + 1, format, again);
             text_append(text, longer, (size_t)length);
@@ -54,10 +63,9 @@ void text_printf(Text *text, const char *format, ...)
     va_end(again);
 }
 
-/* The length of the UTF-8 character at `chars`, 0 when there is none. XML takes neither surrogates nor
- * U+FFFE and U+FFFF. */
-static size_t utf8_length(const unsigned char *chars)
+size_t utf8_length(const char *bytes)
 {
+    const unsigned char *chars = (const unsigned char *)bytes;
     static const struct {
         unsigned char mask, lead;
         uint32_t least;
@@ -80,15 +88,17 @@ static size_t utf8_length(const unsigned char *chars)
 
 void text_put_line(Text *text, const char *chars)
 {
-    while (*chars) {
-        size_t length = utf8_length((const unsigned char *)chars);
+    if (!chars)
+        text->failed = true;
+    while (chars && *chars) {
+        size_t length = utf8_length(chars);
         bool control = (unsigned char)*chars < ' ' || *chars == '\x7f' ||
                        (length == 2 && (unsigned char)chars[0] == 0xc2 &&
                         (unsigned char)chars[1] < 0xa0); /* U+0080 to U+009F */
         if (control)
             text_puts(text, " ");
         else if (length == 0)
-            text_puts(text, "\xef\xbf\xbd");
+            text_puts(text, UTF8_REPLACEMENT);
         else
             text_append(text, chars, length);
         chars += length ? length : 1;
@@ -102,6 +112,50 @@ Status text_check(const Text *text, Err *err)
                        text->length);
     return STATUS_OK;
 }
+
+const char *text_chars(const Text *text)
+{
+    return text->failed ? NULL : text->chars ? text->chars : "";
+}
+
+Status text_take(Text *text, char **out, Err *err)
+{
+    text_append(text, "", 0);
+    TRY(text_check(text, err));
+    *out = text->chars;
+    *text = TEXT_INIT;
+    return STATUS_OK;
+}
+
+void text_cut(Text *text, size_t at, size_t count)
+{
+    if (text->failed || count == 0)
+        return;
+    memmove(text->chars + at, text->chars + at + count, text->length - at - count + 1);
+    text->length -= count;
+}
+
+void text_clear(Text *text)
+{
+    text->length = 0;
+    if (text->chars)
+        text->chars[0] = '\0';
+}
+
+void text_utf8(Text *text, const char *chars)
+{
+    if (!chars)
+        text->failed = true;
+    while (chars && *chars) {
+        size_t length = utf8_length(chars);
+        if (length)
+            text_append(text, chars, length);
+        else
+            text_puts(text, UTF8_REPLACEMENT);
+        chars += length ? length : 1;
+    }
+}
+
 void text_number(Text *text, double value)
 {
     char number[NUMBER_TEXT_SIZE];

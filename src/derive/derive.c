@@ -59,7 +59,7 @@ static Status unknown_field(const char *name, Err *err)
     Status status = text_check(&known, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE, "there is no field '%.40s'; known are %s", name,
-                         known.chars);
+                         text_chars(&known));
     text_release(&known);
     return status;
 }

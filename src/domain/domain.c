@@ -37,7 +37,7 @@ static Status refuse_shape(const char *spec, Err *err)
     Status status = text_check(&shapes, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE, "--domain %s: unknown shape; use %s, lengths in mm",
-                         spec, shapes.chars);
+                         spec, text_chars(&shapes));
     text_release(&shapes);
     return status;
 }

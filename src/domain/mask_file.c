@@ -5,6 +5,7 @@
 #include "domain/mask.h"
 
 #include "image/image.h"
+#include <errno.h>
 #include <nifti2_io.h>
 #include <stdlib.h>
 #include <string.h>
@@ -110,11 +111,14 @@ static Status load_voxels(const char *path, nifti_image *image, Err *err)
 {
     int64_t size = image->nvox * image->nbyper;
     TRY(mem_calloc(&image->data, (size_t)size, 1, "bytes of voxels", err));
+    errno = 0;
     znzFile file = znzopen(path, "rb", nifti_is_gzfile(path));
     bool whole = !znz_isnull(file) &&
                  znzseek(file, (znz_off_t)image->iname_offset, SEEK_SET) >= 0 &&
                  nifti_read_buffer(file, image->data, size, image) == size;
     znzclose(file);
+    if (!whole && errno == ENOMEM)
+        return mem_out_of("to read", path, err);
     return whole ? STATUS_OK : ends_early(path, image, err);
 }
 
@@ -170,7 +174,10 @@ Status mask_read_nifti(Mask *mask, const char *path, Err *err)
         free(bytes);
     }
     nifti_set_debug_level(0);
+    errno = 0;
     nifti_image *image = has_good_header(path) ? nifti_image_read(path, 0) : NULL;
+    if (!image && errno == ENOMEM)
+        return mem_out_of("to read", path, err);
     if (!image)
         return err_set(err, STATUS_INPUT, "%s: is not a NIfTI-1 or NIfTI-2 file", path);
     Status status = read_voxels(mask, path, image, err);

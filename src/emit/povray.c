@@ -148,7 +148,6 @@ static Text *add_value(Values *values, const char *name)
 {
     Text *text = &values->text[values->n];
     values->value[values->n++].name = name;
-    text_puts(text, "");
     return text;
 }
 
@@ -157,10 +156,8 @@ static Status expand(Values *values, const PovrayParams *params, const char *nam
 {
     Tmpl template = {0};
     Status status = load_template(&template, params, name, err);
-    for (size_t i = 0; i < values->n && status == STATUS_OK; i++) {
-        values->value[i].text = values->text[i].chars;
-        status = text_check(&values->text[i], err);
-    }
+    for (size_t i = 0; i < values->n; i++)
+        values->value[i].text = text_chars(&values->text[i]);
     if (status == STATUS_OK)
         status = tmpl_apply(&template, values->value, values->n, out, err);
     tmpl_release(&template);
@@ -324,9 +321,7 @@ static void put_stem(Text *text, const char *name)
     const char *dot = strrchr(name, '.');
     Text stem = TEXT_INIT;
     text_append(&stem, name, dot ? (size_t)(dot - name) : strlen(name));
-    if (stem.chars)
-        text_put_line(text, stem.chars);
-    text->failed = text->failed || stem.failed;
+    text_put_line(text, text_chars(&stem));
     text_release(&stem);
 }
 
@@ -365,7 +360,7 @@ static Status put_scene(const Scene *scene, const PovrayParams *params, const Te
     if (params->geometry_file)
         text_printf(where, "#include \"%s\"", params->geometry_file);
     else
-        text_append(where, geometry->chars, geometry->length);
+        text_add(where, geometry);
     Status expanded = expand(&values, params, "scene.pov", out, status == STATUS_OK ? err : NULL);
     return status == STATUS_OK ? expanded : status;
 }
@@ -382,7 +377,7 @@ Status emit_povray(const Scene *scene, const PovrayParams *params, Text *scene_t
     if (status == STATUS_OK)
         status = put_scene(scene, params, &geometry, scene_text, err);
     if (status == STATUS_OK && params->geometry_file)
-        text_append(geometry_text, geometry.chars, geometry.length);
+        text_add(geometry_text, &geometry);
     text_release(&geometry);
     if (status == STATUS_OK && report)
         *report = counted;

@@ -34,12 +34,13 @@ static Status put_function(Text *text, const Tmpl *template, uint32_t segment, c
     text_printf(&name, "%s%u", function_names[function], segment);
     put_linear(&v, &form->v);
     put_linear(&w, &form->w);
-    text_puts(&ends, "");
     bool tube = function == TUBE;
     if (!tube)
         put_ends(&ends, form, (TermPart)function);
-    const TmplValue values[] = {
-        {"name", name.chars}, {"v", v.chars}, {"w", w.chars}, {"ends", ends.chars}};
+    const TmplValue values[] = {{"name", text_chars(&name)},
+                                {"v", text_chars(&v)},
+                                {"w", text_chars(&w)},
+                                {"ends", text_chars(&ends)}};
     Status status = tmpl_apply(template, values, tube ? 3 : 4, text, err);
     text_release(&name);
     text_release(&v);
@@ -125,8 +126,7 @@ static void release_cell_text(CellText *part)
 
 static Text *cleared(Text *text)
 {
-    text->length = 0;
-    text_puts(text, "");
+    text_clear(text);
     return text;
 }
 
@@ -203,9 +203,9 @@ static Status put_cell_paint(Text *text, const Tmpl *many_paints, const Scene *s
         put_segment_paint(&part->paints, scene, terms[k].segment);
         text_puts(&part->paints, ")");
     }
-    const TmplValue values[] = {{"largest", part->largest.chars},
-                                {"pick", part->pick.chars},
-                                {"paints", part->paints.chars},
+    const TmplValue values[] = {{"largest", text_chars(&part->largest)},
+                                {"pick", text_chars(&part->pick)},
+                                {"paints", text_chars(&part->paints)},
                                 {"count", part->count}};
     return tmpl_apply(many_paints, values, sizeof values / sizeof *values, text, err);
 }
@@ -217,10 +217,10 @@ static Status put_cell(Text *text, const Tmpl *template, const CellTree *cells, 
     put_vector(cleared(&part->high), cell->high);
     put_cell_function(cleared(&part->function), cells, cell);
     const TmplValue values[] = {
-        {"function", part->function.chars},
-        {"low", part->low.chars},
-        {"high", part->high.chars},
-        {"paint", part->paint.chars},
+        {"function", text_chars(&part->function)},
+        {"low", text_chars(&part->low)},
+        {"high", text_chars(&part->high)},
+        {"paint", text_chars(&part->paint)},
         {"max_gradient", number_text(cell->max_gradient, part->max_gradient)},
         {"accuracy", number_text(cell->accuracy, part->accuracy)},
     };

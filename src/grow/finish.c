@@ -110,12 +110,13 @@ static Status add_domain(Tree *tree, const Domain *domain, Err *err)
     domain_text(domain, &spec);
     Status status = text_check(&spec, err);
     if (status == STATUS_OK) {
-        size_t kind = strcspn(spec.chars, ":") + 1;
-        text_printf(&line, "domain: %.*s%s", (int)kind, spec.chars, file_name(spec.chars + kind));
+        const char *chars = text_chars(&spec);
+        size_t kind = strcspn(chars, ":") + 1;
+        text_printf(&line, "domain: %.*s%s", (int)kind, chars, file_name(chars + kind));
         status = text_check(&line, err);
     }
     if (status == STATUS_OK)
-        status = tree_add_line(tree, line.chars, err);
+        status = tree_add_line(tree, text_chars(&line), err);
     text_release(&spec);
     text_release(&line);
     return status;

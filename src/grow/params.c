@@ -45,7 +45,7 @@ static Status check_inlet(Vec3 inlet, const Domain *domain, Err *err)
     Status status = text_check(&text, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE, "--inlet %.9g,%.9g,%.9g: must lie in the domain %s",
-                         inlet.x, inlet.y, inlet.z, text.chars);
+                         inlet.x, inlet.y, inlet.z, text_chars(&text));
     text_release(&text);
     return status;
 }

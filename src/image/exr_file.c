@@ -4,6 +4,7 @@
  * of it is the image. */
 #include "image/formats.h"
 
+#include <errno.h>
 #include <math.h>
 #include <openexr.h>
 #include <stdlib.h>
@@ -67,6 +68,8 @@ static int64_t on_read(exr_const_context_t context, void *user, void *out, uint6
 
 static Status unsound(Exr *self, Err *err)
 {
+    if (errno == ENOMEM)
+        return mem_out_of("to read", self->file.name, err);
     image_plain_text(self->complaint);
     return err_set(err, STATUS_INPUT, "%s: is not a sound OpenEXR file: %s", self->file.name,
                    *self->complaint ? self->complaint : "its header and its data do not agree");
@@ -296,6 +299,7 @@ static Status decode(Exr *self, Err *err)
 Status exr_decode(const ImageBytes *file, Plane *plane, Err *err)
 {
     Exr self = {.file = *file};
+    errno = 0;
     Status status = decode(&self, err);
     exr_finish(&self.context);
     if (status == STATUS_OK)

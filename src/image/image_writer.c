@@ -189,7 +189,8 @@ Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNote
     if (status == STATUS_OK)
         status = png_encoder.end(state, err);
     png_encoder.release(state);
-    if (fclose(stream) != 0 && status == STATUS_OK)
+    /* Closing gives the bytes a block of their own, and tells only by NULL that there was no room. */
+    if ((fclose(stream) != 0 || !bytes) && status == STATUS_OK)
         status = err_set(err, STATUS_MEMORY, "out of memory: no room for a PNG of %zu bytes", size);
     if (status == STATUS_OK) {
         text_append(out, bytes, size);

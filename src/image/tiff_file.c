@@ -3,6 +3,7 @@
  * a pixel is a linear function of its column and row in the file. */
 #include "image/formats.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tiffio.h>
@@ -113,6 +114,8 @@ static TIFF *open_handle(Tiff *self)
 
 static Status unsound(Tiff *self, Err *err)
 {
+    if (errno == ENOMEM)
+        return mem_out_of("to read", self->file.name, err);
     image_plain_text(self->complaint);
     return err_set(err, STATUS_INPUT, "%s: is not a sound TIFF file: %s", self->file.name,
                    *self->complaint ? self->complaint : "its directory does not fit its data");
@@ -296,6 +299,7 @@ static Status decode(Tiff *self, Image *image, Err *err)
 Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
 {
     Tiff self = {.file = *file};
+    errno = 0;
     Image made = {0};
     Status status = decode(&self, &made, err);
     if (self.handle)

@@ -104,7 +104,7 @@ Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out
     if (status == STATUS_OK)
         status = expand_all(&self, tmpl->source, err);
     if (status == STATUS_OK) {
-        text_append(out, self.text.chars ? self.text.chars : "", self.text.length);
+        text_add(out, &self.text);
         status = text_check(out, err);
     }
     text_release(&self.text);

@@ -54,9 +54,9 @@ static void put_frame_control(Text *out, uint32_t sequence, const Picture *pictu
 static void put_first(Text *out, const Text *png, const Picture *picture)
 {
     bool announced = false;
-    text_append(out, png->chars, SIGNATURE_SIZE);
+    text_append(out, text_chars(png), SIGNATURE_SIZE);
     for (size_t at = SIGNATURE_SIZE; at + CHUNK_FRAME <= png->length;) {
-        const char *chunk = png->chars + at, *type = chunk + 4;
+        const char *chunk = text_chars(png) + at, *type = chunk + 4;
         size_t size = CHUNK_FRAME + get_u32(chunk);
         if (memcmp(type, "IEND", 4) == 0)
             return;
@@ -78,7 +78,7 @@ static void put_second(Text *out, const Text *png, const Picture *picture)
     uint32_t sequence = 1;
     put_frame_control(out, sequence++, picture);
     for (size_t at = SIGNATURE_SIZE; at + CHUNK_FRAME <= png->length;) {
-        const char *chunk = png->chars + at;
+        const char *chunk = text_chars(png) + at;
         size_t size = get_u32(chunk);
         if (memcmp(chunk + 4, "IDAT", 4) == 0) {
             char number[4];

@@ -106,11 +106,8 @@ Status oracle_command(const OracleParams *params, char **out, Err *err)
         text_printf(&line, "%s%s", i ? " " : "", arguments.list[i]);
     release_arguments(&arguments);
     if (status == STATUS_OK)
-        status = text_check(&line, err);
-    if (status == STATUS_OK)
-        *out = line.chars;
-    else
-        text_release(&line);
+        status = text_take(&line, out, err);
+    text_release(&line);
     return status;
 }
 
@@ -203,23 +200,22 @@ static void add_to_log(Log *log, char *block, size_t size)
             block[i] = '\n';
     text_append(text, block, size);
     log->bytes += (double)size;
-    if (text->failed || text->length < LOG_BEGIN + 2 * LOG_END)
-        return;
-    memmove(text->chars + LOG_BEGIN, text->chars + text->length - LOG_END, LOG_END + 1);
-    text->length = LOG_BEGIN + LOG_END;
+    if (text->length >= LOG_BEGIN + 2 * LOG_END)
+        text_cut(text, LOG_BEGIN, text->length - LOG_BEGIN - LOG_END);
 }
 
 /* The last "(30%)" among the `size` bytes that came last, or a little before them. */
 static void report_progress(const OracleParams *params, const Text *log, size_t size)
 {
     enum { LONGEST = 8 };
-    if (!params->progress || log->failed)
+    const char *chars = text_chars(log);
+    if (!params->progress || !chars)
         return;
     size_t first = log->length > size + LONGEST ? log->length - size - LONGEST : 0;
     for (size_t i = log->length; i > first; i--)
-        if (log->chars[i - 1] == '(') {
+        if (chars[i - 1] == '(') {
             int percent;
-            if (sscanf(log->chars + i, "%d%%)", &percent) == 1)
+            if (sscanf(chars + i, "%d%%)", &percent) == 1)
                 params->progress(percent / 100.0, params->progress_context);
             return;
         }
@@ -276,7 +272,6 @@ static Status attend(const OracleParams *params, pid_t child, int handle, Log *l
     }
     for (int i = 0; open && i < LAST_READS; i++)
         open = hear(params, handle, 0, log, &heard_s);
-    text_puts(&log->text, "");
     return text_check(&log->text, err);
 }
 
@@ -285,14 +280,14 @@ static Status attend(const OracleParams *params, pid_t child, int handle, Log *l
 static void reason_of_failure(const Text *log, const char *scene, char *reason, size_t size)
 {
     static const char given[] = PRIVATE_FOLDER PRIVATE_SCENE;
-    const char *start = strstr(log->chars, "Error");
+    const char *said = text_chars(log), *start = strstr(said, "Error");
     if (!start)
-        start = strstr(log->chars, "rror:");
+        start = strstr(said, "rror:");
     if (!start)
-        start = strstr(log->chars, "Fatal error");
+        start = strstr(said, "Fatal error");
     if (!start)
-        start = strstr(log->chars, "cannot");
-    while (start && start > log->chars && start[-1] != '\n')
+        start = strstr(said, "cannot");
+    while (start && start > said && start[-1] != '\n')
         start--;
     size_t length = 0;
     for (; start && *start && length + 1 < size; start++) {
@@ -316,7 +311,7 @@ static void reason_of_failure(const Text *log, const char *scene, char *reason, 
 static void read_version(const Text *log, char *version, size_t size)
 {
     static const char mark[] = "Ray Tracer Version ";
-    const char *start = strstr(log->chars, mark);
+    const char *start = strstr(text_chars(log), mark);
     snprintf(version, size, "unknown");
     if (start) {
         start += sizeof mark - 1;
@@ -408,7 +403,8 @@ Status oracle_run(const OracleParams *params, OracleRun *run, Err *err)
     TRY(file_check_regular(params->scene, err));
     scene = realpath(params->scene, NULL);
     if (!scene)
-        return err_set(err, STATUS_INPUT, "%s: cannot be read: %s", params->scene, strerror(errno));
+        return err_set(err, errno == ENOMEM ? STATUS_MEMORY : STATUS_INPUT,
+                       "%s: cannot be read: %s", params->scene, strerror(errno));
     Status status = STATUS_OK;
     TRY_GOTO(folder_of(scene, &folder, err));
     TRY_GOTO(find_output(params, &output, err));

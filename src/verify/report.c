@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 const CompareResult *report_worst(const ReportCase *report)
 {
@@ -44,8 +43,8 @@ double report_severity(const ReportCase *report)
 
 static json_t *side_json(const ReportSide *side)
 {
-    return json_pack("{s:s, s:s, s:f}", "name", side->name, "version", side->version, "seconds",
-                     side->seconds);
+    return json_pack("{s:s, s:o, s:f}", "name", side->name, "version", json_text(side->version),
+                     "seconds", side->seconds);
 }
 
 json_t *report_json(const ReportCase *report)
@@ -54,34 +53,60 @@ json_t *report_json(const ReportCase *report)
     json_t *planes = json_object(), *commands = json_array();
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
         if (report->planes[kind])
-            json_object_set_new(planes, plane_kind_name(kind), compare_json(report->planes[kind]));
+            planes = json_with(planes, plane_kind_name(kind), compare_json(report->planes[kind]));
     for (size_t i = 0; i < report->n_commands; i++)
-        json_array_append_new(commands, json_string(report->commands[i]));
-    return json_pack(
-        "{s:s, s:f, s:s?, s:s, s:s, s:s, s:o, s:o*, s:o*, s:o, s:o, s:o}", "verdict",
-        reason ? "differ" : "agree", "severity", report_severity(report), "reason", reason, "name",
-        report->name, "model", report->model, "tier", report->planes[PLANE_COLOR]->tolerance.tier,
-        "planes", planes, "surface", report->surface ? surface_check_json(report->surface) : NULL,
-        "settled", report->settled ? settled_json(report->settled) : NULL, report->a.key,
-        side_json(&report->a), report->b.key, side_json(&report->b), "commands", commands);
+        commands = json_with_item(commands, json_text(report->commands[i]));
+    const JsonMember members[] = {
+        {"verdict", json_text(reason ? "differ" : "agree")},
+        {"severity", json_number(report_severity(report))},
+        {"reason", json_text(reason)},
+        {"name", json_text(report->name)},
+        {"model", json_text(report->model)},
+        {"tier", json_text(report->planes[PLANE_COLOR]->tolerance.tier)},
+        {"planes", planes},
+        {report->a.key, side_json(&report->a)},
+        {report->b.key, side_json(&report->b)},
+        {"commands", commands},
+    };
+    json_t *json = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    if (report->surface)
+        json = json_with(json, "surface", surface_check_json(report->surface));
+    return report->settled ? json_with(json, "settled", settled_json(report->settled)) : json;
+}
+
+/* NULL for a character that stands for itself. */
+static const char *entity_of(char plain)
+{
+    switch (plain) {
+    case '&':
+        return "&amp;";
+    case '<':
+        return "&lt;";
+    case '>':
+        return "&gt;";
+    case '"':
+        return "&quot;";
+    case '\'':
+        return "&#39;";
+    default:
+        return NULL;
+    }
 }
 
 void text_escaped(Text *out, const char *text)
 {
-    for (; *text; text++) {
-        static const struct {
-            char plain;
-            const char *entity;
-        } entities[] = {
-            {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
-        const char *entity = NULL;
-        for (size_t i = 0; i < sizeof entities / sizeof *entities; i++)
-            if (*text == entities[i].plain)
-                entity = entities[i].entity;
+    if (!text)
+        text_puts(out, NULL);
+    while (text && *text) {
+        size_t length = utf8_length(text);
+        const char *entity = entity_of(*text);
         if (entity)
             text_puts(out, entity);
+        else if (length == 0)
+            text_puts(out, UTF8_REPLACEMENT);
         else if ((unsigned char)*text >= ' ' || *text == '\n' || *text == '\t')
-            text_append(out, text, 1);
+            text_append(out, text, length);
+        text += length ? length : 1;
     }
 }
 
@@ -143,7 +168,7 @@ static void junit_settled(const ReportCase *report, Text *out)
         settled_describe(&settled->first[i], report->a.name, report->b.name, &where);
         text_printf(out, "        <property name=\"%s\" value=\"",
                     settled_cause_name(settled->first[i].cause));
-        text_escaped(out, where.chars ? where.chars : "");
+        text_escaped(out, text_chars(&where));
         text_puts(out, "\"/>\n");
         text_release(&where);
     }
@@ -180,41 +205,31 @@ void report_junit(const ReportCase *report, Text *out)
     text_puts(out, "  </testsuite>\n</testsuites>\n");
 }
 
-/* Writes `size` bytes to folder/name. */
-static Status write_named(const char *folder, const char *name, const char *bytes, size_t size,
-                          Err *err)
+/* Writes `text` to folder/name and releases it. */
+static Status write_named(const char *folder, const char *name, Text *text, Err *err)
 {
-    char *path;
-    TRY(file_join(folder, name, &path, err));
-    Status status = file_write(path, bytes, size, err);
+    char *path = NULL;
+    Status status = file_join(folder, name, &path, err);
+    if (status == STATUS_OK)
+        status = file_write_text(path, text, err);
     free(path);
+    text_release(text);
     return status;
 }
 
 static Status write_json(const ReportCase *report, const char *folder, Err *err)
 {
-    json_t *json = report_json(report);
-    char *text = json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
-    json_decref(json);
-    if (!text)
-        return err_set(err, STATUS_MEMORY,
-                       "report.json cannot be made: memory ran out, or a name in it is not UTF-8");
-    size_t length = strlen(text);
-    text[length] = '\n'; /* in the place of the final zero */
-    Status status = write_named(folder, "report.json", text, length + 1, err);
-    free(text);
-    return status;
+    Text text = TEXT_INIT;
+    text_json(&text, report_json(report), 2);
+    text_puts(&text, "\n");
+    return write_named(folder, "report.json", &text, err);
 }
 
 static Status write_junit(const ReportCase *report, const char *folder, Err *err)
 {
     Text xml = TEXT_INIT;
     report_junit(report, &xml);
-    Status status = text_check(&xml, err);
-    if (status == STATUS_OK)
-        status = write_named(folder, "junit.xml", xml.chars, xml.length, err);
-    text_release(&xml);
-    return status;
+    return write_named(folder, "junit.xml", &xml, err);
 }
 
 static Status write_heat(const Picture *heat, const char *folder, Err *err)

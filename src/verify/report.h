@@ -10,7 +10,8 @@ const CompareResult *report_worst(const ReportCase *report);
 /* Why the report does not agree, a sentence, or NULL. Borrowed. */
 const char *report_reason(const ReportCase *report);
 
-/* Appends `text` with & < > " and ' as entities: for HTML and XML, in elements and attributes. */
+/* Appends `text` with & < > " and ' as entities, without control characters, and with U+FFFD for what is not
+ * UTF-8: for HTML and XML, in elements and attributes. */
 void text_escaped(Text *out, const char *text);
 
 /* Appends the JUnit XML: a test case for each plane. */

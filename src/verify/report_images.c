@@ -23,7 +23,7 @@ Status report_picture(Text *part, const Picture *picture, Err *err)
     Status status = picture_to_png(picture, ENCODING_SRGB, NULL, &png, err);
     if (status == STATUS_OK) {
         text_puts(part, "data:image/png;base64,");
-        base64(part, png.chars, png.length);
+        base64(part, text_chars(&png), png.length);
     }
     text_release(&png);
     return status;

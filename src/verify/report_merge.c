@@ -2,6 +2,7 @@
  * marks, and report.json its verdict, so that nothing is drawn or measured again. */
 #include "verify/report.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,8 +24,12 @@ static Status read_json(json_t **out, const char *path, Err *err)
     size_t size;
     json_error_t error;
     TRY(file_read(path, &json_file, &text, &size, err));
+    errno = 0;
     json_t *json = json_loadb(text, size, 0, &error);
+    bool no_memory = !json && errno == ENOMEM;
     free(text);
+    if (no_memory)
+        return mem_out_of("to read", path, err);
     if (!json)
         return err_set(err, STATUS_INPUT, "%s:%d: is no JSON: %s", path, error.line, error.text);
     *out = json;
@@ -204,20 +209,17 @@ static Status write_page(const MergedCase *cases, size_t n, const Text *power,
         text_printf(&heading, "%zu of %zu cases <span class=\"bad\">differ</span>", differing, n);
     else
         text_printf(&heading, "All %zu cases <span class=\"good\">agree</span>", n);
-    TRY_GOTO(text_check(&rows, err));
-    TRY_GOTO(text_check(&sections, err));
-    TRY_GOTO(text_check(&heading, err));
     const ReportFrame frame = {
         .title = differing ? "corcast: cases differ" : "corcast: all cases agree",
-        .heading = heading.chars,
+        .heading = text_chars(&heading),
         .sentence = "Each case is one scene, drawn by POV-Ray (A) and by corcast (B).",
-        .rows = rows.chars,
-        .cases = sections.chars,
-        .power = power->chars ? power->chars : "",
+        .rows = text_chars(&rows),
+        .cases = text_chars(&sections),
+        .power = text_chars(power),
         .n_cases = n,
         .agrees = differing == 0};
     TRY_GOTO(report_frame(&frame, templates, &page, err));
-    status = file_write(path, page.chars, page.length, err);
+    status = file_write_text(path, &page, err);
 done:
     text_release(&rows);
     text_release(&sections);

@@ -239,7 +239,7 @@ static void tolerance_part(const Tolerance *tolerance, Text *part)
 }
 
 /* The segments in words, and for the viewer's crops as JSON in an attribute. */
-static Status segment_parts(const CompareResult *color, Text parts[PARTS], Err *err)
+static void segment_parts(const CompareResult *color, Text parts[PARTS])
 {
     Text *lines = &parts[PART_SEGMENT_LINES];
     for (int i = 0; i < color->n_worst_segments; i++)
@@ -248,14 +248,10 @@ static Status segment_parts(const CompareResult *color, Text parts[PARTS], Err *
     text_puts(lines, color->n_worst_segments ? " pixels."
                      : color->has_ids        ? "No segment differs."
                                              : "Not told apart: no id planes were given.");
-    json_t *json = worst_segments_json(color);
-    char *text = json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(9));
-    json_decref(json);
-    if (!text)
-        return err_set(err, STATUS_MEMORY, "out of memory: no room for a report");
-    text_escaped(&parts[PART_SEGMENTS], text);
-    free(text);
-    return STATUS_OK;
+    Text json = TEXT_INIT;
+    text_json(&json, worst_segments_json(color), 0);
+    text_escaped(&parts[PART_SEGMENTS], text_chars(&json));
+    text_release(&json);
 }
 
 static Status fill_parts(const ReportCase *report, const Picture *heat, Text parts[PARTS], Err *err)
@@ -270,7 +266,7 @@ static Status fill_parts(const ReportCase *report, const Picture *heat, Text par
         text_escaped(&parts[PART_COMMANDS], report->commands[i]);
         text_puts(&parts[PART_COMMANDS], "\n");
     }
-    TRY(segment_parts(report->planes[PLANE_COLOR], parts, err));
+    segment_parts(report->planes[PLANE_COLOR], parts);
     TRY(report_picture(&parts[PART_IMAGE_A], report->a.picture, err));
     TRY(report_picture(&parts[PART_IMAGE_B], report->b.picture, err));
     TRY(report_picture(&parts[PART_HEAT], heat, err));
@@ -287,10 +283,8 @@ static Status expand_case(const ReportCase *report, const Picture *heat, const c
     char *path = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(fill_parts(report, heat, parts, err));
-    for (int i = 0; i < PARTS; i++) {
-        TRY_GOTO(text_check(&parts[i], err));
-        values[i] = (TmplValue){part_names[i], parts[i].chars ? parts[i].chars : ""};
-    }
+    for (int i = 0; i < PARTS; i++)
+        values[i] = (TmplValue){part_names[i], text_chars(&parts[i])};
     TRY_GOTO(file_join(templates, "case.html", &path, err));
     status = tmpl_expand(path, values, PARTS, out, err);
 done:
@@ -372,18 +366,16 @@ Status report_page(const ReportCase *report, const Picture *heat, const char *te
     text_escaped(&heading, *report->model ? report->a.name : "");
     text_puts(&heading,
               agrees ? " <span class=\"good\">agree</span>" : " <span class=\"bad\">differ</span>");
-    TRY_GOTO(text_check(&title, err));
-    TRY_GOTO(text_check(&heading, err));
-    const ReportFrame frame = {.title = title.chars,
-                               .heading = heading.chars,
+    const ReportFrame frame = {.title = text_chars(&title),
+                               .heading = text_chars(&heading),
                                .sentence = "",
-                               .rows = row.chars,
-                               .cases = section.chars,
+                               .rows = text_chars(&row),
+                               .cases = text_chars(&section),
                                .power = "",
                                .n_cases = 1,
                                .agrees = agrees};
     TRY_GOTO(report_frame(&frame, templates, &page, err));
-    status = file_write(path, page.chars, page.length, err);
+    status = file_write_text(path, &page, err);
 done:
     text_release(&row);
     text_release(&section);

@@ -187,11 +187,10 @@ void report_settled_rows(const ReportCase *report, Text *rules, Text *metrics)
     if (settled->n_first > 0)
         begin_table(metrics, "Settled pixels, the first of them");
     for (int i = 0; i < settled->n_first; i++) {
-        Text where = TEXT_INIT;
-        settled_describe(&settled->first[i], report->a.name, report->b.name, &where);
-        text_printf(metrics, "<tr><td>%s</td><td>%s</td></tr>\n", where.chars ? where.chars : "",
+        text_puts(metrics, "<tr><td>");
+        settled_describe(&settled->first[i], report->a.name, report->b.name, metrics);
+        text_printf(metrics, "</td><td>%s</td></tr>\n",
                     settled_cause_name(settled->first[i].cause));
-        text_release(&where);
     }
     if (settled->n_first > 0)
         end_table(metrics);

@@ -34,10 +34,10 @@ static json_t *rules_json(const CompareResult *result)
     json_t *rules = json_array();
     for (int i = 0; i < result->n_rules; i++) {
         const Rule *rule = &result->rules[i];
-        json_array_append_new(rules,
-                              json_pack("{s:s, s:s, s:o, s:o, s:b}", "name", rule->name, "unit",
-                                        rule->unit, "measured", number(rule->measured), "allowed",
-                                        number(rule->allowed), "met", (int)rule->met));
+        rules = json_with_item(rules,
+                               json_pack("{s:s, s:s, s:o, s:o, s:b}", "name", rule->name, "unit",
+                                         rule->unit, "measured", number(rule->measured), "allowed",
+                                         number(rule->allowed), "met", (int)rule->met));
     }
     return rules;
 }
@@ -46,7 +46,7 @@ static json_t *classes_json(const CompareResult *result)
 {
     json_t *classes = json_object();
     for (PixelClass i = 0; i < PIXEL_CLASSES; i++)
-        json_object_set_new(classes, pixel_class_name(i),
+        classes = json_with(classes, pixel_class_name(i),
                             i <= PIXEL_EDGE ? count(result, result->classes[i])
                                             : json_integer((json_int_t)result->classes[i]));
     return classes;
@@ -66,16 +66,13 @@ json_t *worst_segments_json(const CompareResult *result)
 {
     json_t *segments = json_array();
     for (int i = 0; i < result->n_worst_segments; i++)
-        json_array_append_new(segments, segment_json(&result->worst_segments[i]));
+        segments = json_with_item(segments, segment_json(&result->worst_segments[i]));
     return segments;
 }
 
-static void set_color_keys(json_t *json, const CompareResult *result)
+static json_t *with_color_keys(json_t *json, const CompareResult *result)
 {
-    const struct {
-        const char *key;
-        json_t *value;
-    } members[] = {
+    const JsonMember members[] = {
         {"classes", classes_json(result)},
         {"bias_levels", number(result->bias_levels)},
         {"sign_sigma", number(result->sign_sigma)},
@@ -94,47 +91,52 @@ static void set_color_keys(json_t *json, const CompareResult *result)
         {"de2000_max", number(result->de2000_max)},
         {"pixelmatch_pixels", number(result->pixelmatch_pixels)},
     };
-    for (size_t i = 0; i < sizeof members / sizeof *members; i++)
-        json_object_set_new(json, members[i].key, members[i].value);
+    return json_with_members(json, members, sizeof members / sizeof *members);
 }
 
-static void set_kind_keys(json_t *json, const CompareResult *result)
+static json_t *with_distances(json_t *json, const CompareResult *result, const char *median,
+                              const char *p99, const char *max)
+{
+    const JsonMember members[] = {
+        {median, number(result->median)}, {p99, number(result->p99)}, {max, number(result->max)}};
+    return json_with_members(json, members, sizeof members / sizeof *members);
+}
+
+static json_t *with_id_keys(json_t *json, const CompareResult *result)
+{
+    double mismatches = (double)result->differing_pixels;
+    const JsonMember members[] = {
+        {"mismatches", number(mismatches)},
+        {"mismatch_fraction", number(mismatches / (double)result->pixels)},
+        {"classes", classes_json(result)}};
+    return json_with_members(json, members, sizeof members / sizeof *members);
+}
+
+/* The keys that only this kind of plane has. */
+static json_t *with_kind_keys(json_t *json, const CompareResult *result)
 {
     switch (result->kind) {
     case PLANE_COLOR:
-        set_color_keys(json, result);
-        break;
+        return with_color_keys(json, result);
     case PLANE_DEPTH:
-        json_object_set_new(json, "median_abs_mm", number(result->median));
-        json_object_set_new(json, "p99_abs_mm", number(result->p99));
-        json_object_set_new(json, "max_abs_mm", number(result->max));
-        break;
+        return with_distances(json, result, "median_abs_mm", "p99_abs_mm", "max_abs_mm");
     case PLANE_NORMAL:
-        json_object_set_new(json, "median_deg", number(result->median));
-        json_object_set_new(json, "p99_deg", number(result->p99));
-        json_object_set_new(json, "max_deg", number(result->max));
-        break;
+        return with_distances(json, result, "median_deg", "p99_deg", "max_deg");
     case PLANE_ID:
-        json_object_set_new(json, "mismatches", number((double)result->differing_pixels));
-        json_object_set_new(json, "mismatch_fraction",
-                            number((double)result->differing_pixels / (double)result->pixels));
-        json_object_set_new(json, "classes", classes_json(result));
-        break;
+        return with_id_keys(json, result);
     case PLANE_KINDS:
         break;
     }
+    return json;
 }
 
 json_t *compare_json(const CompareResult *result)
 {
-    const struct {
-        const char *key;
-        json_t *value;
-    } members[] = {
-        {"verdict", json_string(result->agrees ? "agree" : "differ")},
-        {"reason", *result->reason ? json_string(result->reason) : json_null()},
-        {"cause", *result->cause ? json_string(result->cause) : json_null()},
-        {"tier", json_string(result->tolerance.tier)},
+    const JsonMember members[] = {
+        {"verdict", json_text(result->agrees ? "agree" : "differ")},
+        {"reason", json_text(*result->reason ? result->reason : NULL)},
+        {"cause", json_text(*result->cause ? result->cause : NULL)},
+        {"tier", json_text(result->tolerance.tier)},
         {"pixels", number((double)result->pixels)},
         {"width", number(result->width)},
         {"height", number(result->height)},
@@ -157,9 +159,6 @@ json_t *compare_json(const CompareResult *result)
         {"worst", place_json(result, &result->worst)},
         {"rules", rules_json(result)},
     };
-    json_t *json = json_object();
-    for (size_t i = 0; i < sizeof members / sizeof *members; i++)
-        json_object_set_new(json, members[i].key, members[i].value);
-    set_kind_keys(json, result);
-    return json;
+    json_t *json = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return with_kind_keys(json, result);
 }

@@ -132,23 +132,19 @@ unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
 
 /* ---- JSON ---------------------------------------------------------------------------------------- */
 
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *pixels_json(const Settled *settled)
 {
     json_t *pixels = json_array();
     for (int i = 0; i < settled->n_first; i++) {
         const SettledPixel *pixel = &settled->first[i];
-        json_array_append_new(
+        pixels = json_with_item(
             pixels,
             json_pack("{s:i, s:i, s:s, s:I, s:o, s:o, s:o, s:o, s:o}", "x", pixel->x, "y", pixel->y,
                       "cause", causes[pixel->cause].name, "segment", (json_int_t)pixel->id,
-                      "depth_a_mm", number(pixel->a_mm), "depth_b_mm", number(pixel->b_mm),
-                      "root_mm", number(pixel->root_mm), "blocked_mm", number(pixel->distance_mm),
-                      "cosine", number(pixel->cosine)));
+                      "depth_a_mm", json_number(pixel->a_mm), "depth_b_mm",
+                      json_number(pixel->b_mm), "root_mm", json_number(pixel->root_mm),
+                      "blocked_mm", json_number(pixel->distance_mm), "cosine",
+                      json_number(pixel->cosine)));
     }
     return pixels;
 }
@@ -158,7 +154,7 @@ json_t *settled_json(const Settled *settled)
     json_t *rules = json_array();
     for (SettledCause cause = settled->from; cause <= settled->to; cause++) {
         size_t allowed = settled_allowed(settled, cause);
-        json_array_append_new(
+        rules = json_with_item(
             rules, json_pack("{s:s, s:s, s:I, s:I, s:b}", "name", causes[cause].sentence, "unit",
                              "pixels", "measured", (json_int_t)settled->count[cause], "allowed",
                              (json_int_t)allowed, "met", settled->count[cause] <= allowed));

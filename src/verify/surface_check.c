@@ -84,11 +84,6 @@ Status surface_check(const SurfacePlanes *planes, SurfaceCheck *out, Err *err)
     return STATUS_OK;
 }
 
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 json_t *surface_check_json(const SurfaceCheck *check)
 {
     return json_pack(
@@ -97,6 +92,6 @@ json_t *surface_check_json(const SurfaceCheck *check)
         "pixels", (json_int_t)check->pixels, "common_pixels", (json_int_t)check->common,
         "grazing_pixels", (json_int_t)check->grazing, "missing_pixels", (json_int_t)check->missing,
         "extra_pixels", (json_int_t)check->extra, "beyond_pixels", (json_int_t)check->beyond,
-        "median_abs_mm", number(check->median_mm), "p99_abs_mm", number(check->p99_mm),
-        "max_abs_mm", number(check->max_mm), "max_ratio", number(check->max_ratio));
+        "median_abs_mm", json_number(check->median_mm), "p99_abs_mm", json_number(check->p99_mm),
+        "max_abs_mm", json_number(check->max_mm), "max_ratio", json_number(check->max_ratio));
 }

@@ -6,7 +6,6 @@
 
 #include "base/base.h"
 #include "image/image.h"
-#include <jansson.h>
 
 /* One depth plane of either side, A the repetition and B the surface: 1 channel, mm along the ray, INFINITY
  * where nothing is seen. */

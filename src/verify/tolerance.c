@@ -172,12 +172,12 @@ static Status take_line(void *user, const char *section, const char *key, const 
         return err_set(err, STATUS_INPUT, "a tolerance has no sections, and here is [%s]", section);
     if (strcmp(key, "tier") == 0) {
         Text name = TEXT_INIT;
-        text_puts(&name, "");
-        text_put_line(&name, value);
-        TRY(text_check(&name, err));
         free(reader->name);
-        reader->name = name.chars;
-        return STATUS_OK;
+        reader->name = NULL;
+        text_put_line(&name, value);
+        Status status = text_take(&name, &reader->name, err);
+        text_release(&name);
+        return status;
     }
     for (int i = 0; i < FIELDS; i++)
         if (strcmp(key, fields[i].key) == 0)

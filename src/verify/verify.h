@@ -8,7 +8,6 @@
 #include "verify/oracle.h"        // IWYU pragma: export
 #include "verify/settled.h"       // IWYU pragma: export
 #include "verify/surface_check.h" // IWYU pragma: export
-#include <jansson.h>
 
 typedef enum PlaneKind { PLANE_COLOR, PLANE_DEPTH, PLANE_NORMAL, PLANE_ID, PLANE_KINDS } PlaneKind;
 

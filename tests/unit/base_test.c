@@ -82,6 +82,92 @@ static void text_grows_over_any_length(void **state)
     text_release(&text);
 }
 
+static void what_is_made_of_a_text_that_failed_fails_too(void **state)
+{
+    (void)state;
+    Text failed = TEXT_INIT, whole = TEXT_INIT, copy = TEXT_INIT;
+    Err err;
+    char *taken = NULL;
+    assert_string_equal(text_chars(&failed), "");
+    text_puts(&failed, "half a sen");
+    text_puts(&failed, NULL);
+    assert_null(text_chars(&failed));
+    text_clear(&failed);
+    assert_int_equal(text_check(&failed, &err), STATUS_MEMORY);
+    assert_int_equal(text_take(&failed, &taken, &err), STATUS_MEMORY);
+    assert_int_equal(file_write_text("build/failed.txt", &failed, &err), STATUS_MEMORY);
+    assert_int_equal(access("build/failed.txt", F_OK), -1);
+    text_puts(&whole, text_chars(&failed));
+    assert_int_equal(text_check(&whole, &err), STATUS_MEMORY);
+    text_add(&copy, &failed);
+    assert_int_equal(text_check(&copy, &err), STATUS_MEMORY);
+    assert_null(taken);
+    text_release(&failed);
+    text_release(&whole);
+    text_release(&copy);
+}
+
+static void bytes_that_are_not_utf8_become_replacement_characters(void **state)
+{
+    (void)state;
+#define U UTF8_REPLACEMENT
+    static const struct {
+        const char *bytes, *text;
+    } cases[] = {
+        {"plain \x01\x7F", "plain \x01\x7F"},
+        {"\xC3\xA9 \xE2\x82\xAC \xF0\x9F\xA9\xB8", "\xC3\xA9 \xE2\x82\xAC \xF0\x9F\xA9\xB8"},
+        {"\xE0\xA0\x80\xED\x9F\xBF\xF0\x90\x80\x80\xF4\x8F\xBF\xBF",
+         "\xE0\xA0\x80\xED\x9F\xBF\xF0\x90\x80\x80\xF4\x8F\xBF\xBF"},
+        {"Jos\xE9.swc", "Jos" U ".swc"},                    /* Latin-1 */
+        {"\xC3", U},                                        /* cut short */
+        {"\xE2\x82z", U U "z"},                             /* likewise */
+        {"\xC0\x80 \xE0\x9F\xBF", U U " " U U U},           /* longer than need be */
+        {"\xED\xA0\x80", U U U},                            /* a surrogate */
+        {"\xF4\x90\x80\x80 \xFF", U U U U " " U},           /* beyond Unicode */
+        {"\xEF\xBF\xBE\xEF\xBF\xBD", U U U "\xEF\xBF\xBD"}, /* no character of XML's */
+    };
+#undef U
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Text text = TEXT_INIT;
+        text_utf8(&text, cases[i].bytes);
+        assert_string_equal(text_chars(&text), cases[i].text);
+        text_release(&text);
+    }
+}
+
+static void json_made_of_nothing_is_nothing(void **state)
+{
+    (void)state;
+    const JsonMember members[] = {
+        {"a", json_integer(2385)}, {"b", NULL}, {"c", json_text("left over")}};
+    Text text = TEXT_INIT;
+    Err err;
+    assert_null(json_with(NULL, "key", json_true()));
+    assert_null(json_with(json_object(), "key", NULL));
+    assert_null(json_with_item(json_array(), NULL));
+    assert_null(json_with_item(NULL, json_true()));
+    assert_null(json_with_members(json_object(), members, 3));
+    text_json(&text, NULL, 2);
+    assert_int_equal(text_check(&text, &err), STATUS_MEMORY);
+    text_release(&text);
+}
+
+static void a_number_in_json_reads_back_to_the_same_double(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 2385);
+    for (int i = 0; i < 2000; i++) {
+        double value = (random_uniform(&random) - 0.5) * pow(10, random_uniform(&random) * 40 - 20);
+        Text text = TEXT_INIT;
+        text_json(&text, json_with_item(json_array(), json_number(value)), 0);
+        json_t *back = json_loads(text_chars(&text), 0, NULL);
+        assert_true(json_number_value(json_array_get(back, 0)) == value);
+        json_decref(back);
+        text_release(&text);
+    }
+}
+
 static void a_prefix_says_where_an_error_happened(void **state)
 {
     (void)state;
@@ -304,6 +390,10 @@ int main(void)
         cmocka_unit_test(a_number_is_as_short_as_it_can_be),
         cmocka_unit_test(text_that_is_no_number_is_refused),
         cmocka_unit_test(text_grows_over_any_length),
+        cmocka_unit_test(what_is_made_of_a_text_that_failed_fails_too),
+        cmocka_unit_test(bytes_that_are_not_utf8_become_replacement_characters),
+        cmocka_unit_test(json_made_of_nothing_is_nothing),
+        cmocka_unit_test(a_number_in_json_reads_back_to_the_same_double),
         cmocka_unit_test(a_prefix_says_where_an_error_happened),
         cmocka_unit_test(a_discarded_file_leaves_the_old_one_alone),
         cmocka_unit_test(a_committed_file_has_the_usual_permissions),

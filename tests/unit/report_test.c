@@ -162,6 +162,77 @@ static void writes_a_junit_case_for_each_plane(void **state)
     scene_release(&scene);
 }
 
+static void writes_numbers_that_read_back_to_the_same_double(void **state)
+{
+    (void)state;
+    Scene scene;
+    scene_init(&scene, 7);
+    scene.report.b.seconds = 2.0 / 7;
+    assert_int_equal(report_write(&scene.report, templates, folder, &err), STATUS_OK);
+    char *text = read_output("report.json");
+    json_t *json = json_loads(text, 0, NULL), *back;
+    back = json_object_get(json_object_get(json, "native"), "seconds");
+    assert_true(json_real_value(back) == 2.0 / 7);
+    back = json_object_get(json_object_get(json_object_get(json, "planes"), "color"), "psnr_db");
+    assert_true(json_real_value(back) == scene.color.psnr_db);
+    json_decref(json);
+    free(text);
+    scene_release(&scene);
+}
+
+static void shows_names_that_are_not_utf8_with_replacement_characters(void **state)
+{
+    (void)state;
+    static const char *const latin_1[] = {"corcast verify jos\xE9.swc"};
+    static const char shown[] = "jos" UTF8_REPLACEMENT ".swc";
+    Scene scene;
+    scene_init(&scene, 0);
+    scene.report.name = "jos\xE9.swc";
+    scene.report.commands = latin_1;
+    assert_int_equal(report_write(&scene.report, templates, folder, &err), STATUS_OK);
+    static const char *const names[] = {"report.html", "report.json", "junit.xml"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char *text = read_output(names[i]);
+        Text utf8 = TEXT_INIT;
+        assert_holds(text, shown);
+        text_utf8(&utf8, text);
+        assert_string_equal(text_chars(&utf8), text);
+        text_release(&utf8);
+        free(text);
+    }
+    char *text = read_output("report.json");
+    json_t *json = json_loads(text, 0, NULL);
+    assert_string_equal(json_string_value(json_object_get(json, "name")), shown);
+    json_decref(json);
+    free(text);
+    scene_release(&scene);
+}
+
+static void write_output(const char *name, const char *text)
+{
+    char *path;
+    assert_int_equal(file_join(folder, name, &path, &err), STATUS_OK);
+    assert_int_equal(file_write(path, text, strlen(text), &err), STATUS_OK);
+    free(path);
+}
+
+static void merges_a_page_with_an_empty_part(void **state)
+{
+    (void)state;
+    bool agree = true;
+    assert_int_equal(file_make_folder(folder, &err), STATUS_OK);
+    write_output("report.html", "<!-- row: begin -->\n<!-- row: end -->\n<!-- case: begin -->\n"
+                                "<!-- case: end -->\n");
+    write_output("report.json", "{\"severity\": 3}");
+    assert_int_equal(
+        report_merge(&folder, 1, NULL, templates, "build/report_test/all.html", &agree, &err),
+        STATUS_OK);
+    assert_false(agree);
+    char *page = read_output("all.html");
+    assert_holds(page, "1 of 1 cases <span class=\"bad\">differ</span>");
+    free(page);
+}
+
 static void writes_the_same_bytes_again(void **state)
 {
     (void)state;
@@ -203,6 +274,9 @@ int main(void)
         cmocka_unit_test(writes_a_page_that_needs_nothing_else),
         cmocka_unit_test(embeds_the_pictures_byte_for_byte),
         cmocka_unit_test(writes_a_junit_case_for_each_plane),
+        cmocka_unit_test(writes_numbers_that_read_back_to_the_same_double),
+        cmocka_unit_test(shows_names_that_are_not_utf8_with_replacement_characters),
+        cmocka_unit_test(merges_a_page_with_an_empty_part),
         cmocka_unit_test(writes_the_same_bytes_again),
         cmocka_unit_test(says_when_the_template_is_missing),
     };

@@ -1,0 +1,60 @@
+#include "base/json.h"
+
+#include <math.h>
+
+json_t *json_number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *json_text(const char *chars)
+{
+    if (!chars)
+        return json_null();
+    Text text = TEXT_INIT;
+    text_utf8(&text, chars);
+    json_t *made = json_string(text_chars(&text));
+    text_release(&text);
+    return made;
+}
+
+/* `whole` when a part was taken; jansson has then let go of the part if it was not. */
+static json_t *whole_or_nothing(json_t *whole, bool taken)
+{
+    if (taken)
+        return whole;
+    json_decref(whole);
+    return NULL;
+}
+
+json_t *json_with(json_t *object, const char *key, json_t *value)
+{
+    return whole_or_nothing(object, json_object_set_new(object, key, value) == 0);
+}
+
+json_t *json_with_members(json_t *object, const JsonMember *members, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        object = json_with(object, members[i].key, members[i].value);
+    return object;
+}
+
+json_t *json_with_item(json_t *array, json_t *value)
+{
+    return whole_or_nothing(array, json_array_append_new(array, value) == 0);
+}
+
+static int append_dump(const char *chars, size_t size, void *text)
+{
+    text_append(text, chars, size);
+    return 0;
+}
+
+void text_json(Text *text, json_t *json, int indent)
+{
+    /* A real is written with 17 digits, which is what reads back. */
+    size_t form = (indent ? JSON_INDENT((size_t)indent) : JSON_COMPACT) | JSON_REAL_PRECISION(17);
+    if (json_dump_callback(json, append_dump, text, form) != 0)
+        text_puts(text, NULL);
+    json_decref(json);
+}
