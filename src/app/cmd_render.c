@@ -168,9 +168,11 @@ Status run_render(int argc, char **argv, Err *err)
                          methods[method], model_name((SceneModel)picture.model));
         goto done;
     }
-    if (method == RENDER_ZBUFFER && (params.shadows || picture.antialias > 1)) {
+    if (method == RENDER_ZBUFFER &&
+        (params.shadows || picture.antialias > 1 || picture.occlusion > 0)) {
         status = err_set(err, STATUS_USAGE,
-                         "--method zbuffer draws neither shadows nor antialiased pictures");
+                         "--method zbuffer draws neither shadows nor antialiased pictures nor "
+                         "ambient occlusion");
         goto done;
     }
     params.method = (RenderMethod)method;

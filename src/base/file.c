@@ -13,10 +13,12 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 enum { MAX_TEMPORARIES = 64 };
 static _Atomic(char *) temporaries[MAX_TEMPORARIES];
+static _Atomic pid_t group_to_kill; /* 0: none */
 
 Status file_remove_on_signal(char *name, Err *err)
 {
@@ -39,6 +41,9 @@ static void give_up(char *name)
 
 static void remove_temporaries(int signal_number)
 {
+    pid_t group = atomic_load(&group_to_kill);
+    if (group > 0 && kill(-group, SIGKILL) == 0)
+        waitpid(group, NULL, 0);
     for (int i = 0; i < MAX_TEMPORARIES; i++) {
         char *name = atomic_load(&temporaries[i]);
         if (name)
@@ -50,6 +55,11 @@ static void remove_temporaries(int signal_number)
             rmdir(name); /* empty by now */
     }
     raise(signal_number); /* SA_RESETHAND: the default action ends the program */
+}
+
+void file_kill_on_signal(pid_t group)
+{
+    atomic_store(&group_to_kill, group);
 }
 
 void file_clean_up_on_signals(void)

@@ -7,8 +7,9 @@
  * the scene, the picture, and its restart file. It runs in the scene's folder, where it finds what the
  * scene includes. The picture takes its final name when it is whole.
  *
- * The child dies with this process, so that an interrupted verification leaves no renderer behind; one
- * that falls silent is ended. */
+ * POV-Ray is a process group of its own, a script that stands for it included. It is killed when a signal
+ * ends this process, before its files are removed, and when it falls silent; if this process is killed, POV-Ray
+ * itself dies with it. */
 #include "verify/oracle.h"
 
 #include <errno.h>
@@ -171,6 +172,7 @@ static void close_workplace(Workplace *place)
 static void become_povray(char *const *arguments, const char *folder, int private_folder, int log)
 {
     int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     signal(SIGPIPE, SIG_DFL);
     dup2(log, STDERR_FILENO);
@@ -239,7 +241,7 @@ static bool hear(const OracleParams *params, int handle, int wait_ms, Log *log, 
 
 static Status end_povray(pid_t child, Status status)
 {
-    kill(child, SIGKILL);
+    kill(-child, SIGKILL);
     while (waitpid(child, NULL, 0) < 0 && errno == EINTR)
         ;
     return status;
@@ -331,10 +333,15 @@ static Status run_program(const OracleParams *params, char *const *arguments, co
     pid_t child = fork();
     if (child == 0)
         become_povray(arguments, folder, private_folder, pipe_ends[1]);
+    if (child > 0) {
+        setpgid(child, child); /* here as in the child: whoever comes first */
+        file_kill_on_signal(child);
+    }
     close(pipe_ends[1]);
     Status status =
         child < 0 ? err_set(err, STATUS_TOOL, "POV-Ray cannot be started: %s", strerror(errno))
                   : attend(params, child, pipe_ends[0], log, &ended, err);
+    file_kill_on_signal(0);
     close(pipe_ends[0]);
     *exit_status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
     return status;

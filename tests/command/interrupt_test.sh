@@ -41,15 +41,16 @@ test_a_stopped_render_leaves_nothing() {
     done
 }
 
-# A stand-in for POV-Ray that writes half a picture, says where it runs, and takes its time.
+# A script that stands for POV-Ray: what it runs writes half a picture, says where it runs, and takes its time.
 slow_povray() {
     cat >povray.sh <<'END'
 #!/bin/sh
 for argument; do
     case $argument in +O*) echo half >"${argument#+O}" ;; esac
 done
-echo $$ >running
-exec sleep 60
+sleep 60 &
+echo $! >running
+wait
 END
     chmod +x povray.sh
     export CORCAST_POVRAY=$PWD/povray.sh

@@ -386,6 +386,8 @@ test_methods_say_what_they_do_not_draw() {
     expect_sentence 'zbuffer draws neither shadows nor antialiased pictures'
     run corcast render tree.swc --method zbuffer --antialias 2 -o picture.ppm
     expect_status 2
+    run corcast render tree.swc --method zbuffer --ao 8 -o picture.ppm
+    expect_status 2
     run_ok corcast render tree.swc --method zbuffer --size 90x60 -o picture.ppm
     [ "$(colours picture.ppm)" -gt 20 ] || fail "expected a shaded picture"
 }

@@ -75,12 +75,14 @@ good_picture() {
 
 test_a_povray_that_falls_silent_is_ended() {
     local seconds
-    stand_in 'echo Parsing; exec sleep 60'
+    stand_in 'echo Parsing; sleep 60 & echo $! >running; wait'
     seconds=$SECONDS
     run env CORCAST_POVRAY_PATIENCE=0.3 "$CORCAST" povray scene.pov -o picture.png
     expect_status 3
     expect_sentence 'POV-Ray was ended: it has said nothing for 0.3 s about scene.pov; CORCAST_POVRAY_PATIENCE'
     [ $((SECONDS - seconds)) -lt 5 ] || fail "expected it to be ended at once"
+    ! kill -0 "$(cat running)" 2>/dev/null || fail "expected what the script runs to be ended, too"
+    rm running
     stand_in 'exec >&- 2>&-; exec sleep 60'
     run env CORCAST_POVRAY_PATIENCE=0.3 "$CORCAST" povray scene.pov -o picture.png
     expect_status 3
