@@ -1,6 +1,6 @@
 # corcast: one Makefile for everything. `make help` lists the targets.
 #
-# MODE     release (default), debug, asan, tsan; objects live in build/$(MODE)/
+# MODE     release (default), debug, asan, tsan, fuzz (clang only); objects live in build/$(MODE)/
 # CC       gcc or clang
 # V=1      show the commands
 # JOBS     how many to run at once where the Makefile calls itself (all processors)
@@ -21,7 +21,7 @@ ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c))
 APP_SOURCES := $(wildcard src/app/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
 FORMATTED := $(sort $(wildcard src/*/*.c src/*/*.h tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
-	tests/bench/*.c tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h))
+	tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h))
 
 ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o)
 APP_OBJECTS := $(APP_SOURCES:%.c=$(BUILD)/%.o)
@@ -32,6 +32,9 @@ POWER_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/power/*.c))
 POWER := $(BUILD)/tests/power/power
 EMBREE := $(BUILD)/tests/bench/embree
 FIT := $(BUILD)/tests/fit/fit_blob
+FUZZ_SOURCES := $(wildcard tests/fuzz/*.c)
+HARNESSES := $(filter-out fuzz replay,$(FUZZ_SOURCES:tests/fuzz/%.c=%))
+FUZZ_PROGRAMS := $(HARNESSES:%=$(BUILD)/tests/fuzz/%)
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion \
 	-Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wvla -Wformat=2 -Wcast-qual \
@@ -41,6 +44,7 @@ WARNINGS += $(if $(findstring clang,$(CC)),-Wno-double-promotion)
 OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+OPTIMISE_fuzz := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPTIMISE_tsan := -O1 -g -fsanitize=thread
 VECTORS_release := -O3 -fno-math-errno -fno-trapping-math
 PACKAGES := libpng libdeflate libtiff-4 jansson
@@ -59,7 +63,7 @@ LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
 .PHONY: all deps demo validate bench bench-grow bench-render bench-compare verify-all power power-program fit-blob check program unit \
 	unit-programs layers format format-check asan tsan \
-	golden-update install uninstall clean help packages
+	fuzz fuzz-programs golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -155,6 +159,12 @@ $(FIT): $(BUILD)/tests/fit/fit_blob.o $(BUILD)/rooms.a
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
+# Replayed from files, or driven by libFuzzer.
+$(FUZZ_PROGRAMS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/fuzz/fuzz.o \
+	$(if $(filter fuzz,$(MODE)),,$(BUILD)/tests/fuzz/replay.o) $(filter-out %/main.o,$(APP_OBJECTS)) $(BUILD)/rooms.a
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(subst fuzzer-no-link,fuzzer,$(LDFLAGS)) -o $@ $^ $(LDLIBS)
+
 # A peer to measure against; libembree-dev is a package of `make deps FOR=bench`.
 $(EMBREE): $(BUILD)/tests/bench/embree.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
@@ -171,10 +181,15 @@ $(BUILD)/tests/%: tests/oracle/%.c Makefile
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) -D_GNU_SOURCE $(CFLAGS) $(LDFLAGS) -o $@ $< -lm
 
+# It reads nothing, and takes minutes to build with sanitizers.
+ifeq ($(MODE),fuzz)
+$(filter $(BUILD)/src/render/%,$(ROOM_OBJECTS)): CFLAGS := $(filter-out -fsanitize%,$(CFLAGS))
+endif
+
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
 $(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
 
--include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FIT).d
+-include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 
 packages:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
@@ -182,6 +197,13 @@ ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
 endif
 
 unit-programs: $(TEST_PROGRAMS) $(ORACLE)
+
+fuzz-programs: $(FUZZ_PROGRAMS)
+
+fuzz: ## have libFuzzer think out input for every reader, FUZZ=60 seconds each; TARGET=NAME for one
+	$(Q)tools/deps build fuzz
+	$(Q)$(AGAIN) MODE=fuzz CC=clang fuzz-programs
+	$(Q)tests/fuzz/run "$(or $(FUZZ),60)" $(or $(TARGET),$(HARNESSES))
 
 unit: unit-programs ## the unit tests, in this MODE
 	$(Q)for program in $(TEST_PROGRAMS); do $$program || exit 1; done

@@ -35,7 +35,7 @@ test_continuous_integration_runs_the_test_command_of_the_readme() {
 test_make_help_names_every_public_target() {
     local target
     run_ok make -C "$REPO" --no-print-directory help
-    for target in all deps demo bench-compare verify-all power check unit layers format format-check asan tsan golden-update \
+    for target in all deps demo bench-compare verify-all power check unit layers format format-check asan tsan fuzz golden-update \
         install uninstall clean help; do
         expect_stdout "^  $target "
     done

@@ -20,7 +20,7 @@ static char *trim(char *text)
 static void cut_comment(char *line)
 {
     for (char *at = line; (at = strchr(at, ';')); at++)
-        if (at == line || strchr(blanks, at[-1])) {
+        if (at == line || at[-1] == '=' || strchr(blanks, at[-1])) {
             *at = '\0';
             return;
         }

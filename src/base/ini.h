@@ -11,7 +11,7 @@ typedef Status IniTake(void *user, const char *section, const char *name, const 
 
 /* Reads the file, `what` ("a look") naming its kind in sentences, and calls `take` line by line. A line
  * whose first character is ';' or '#' is a comment, and so is the rest of a line from a ';' that
- * follows a blank. Blanks around names, values and sections, and in front of lines, do not count.
+ * follows a blank or a '='. Blanks around names, values and sections, and in front of lines, do not count.
  * What names and values point into is handed over in *text (owned), or freed when `text` is NULL.
  * STATUS_INPUT, naming file and line, on any other line, and what `take` returns. */
 MUST_CHECK Status ini_read(const char *path, const char *what, IniTake *take, void *user,

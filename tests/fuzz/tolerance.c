@@ -1,0 +1,31 @@
+/* A tolerance that is read is written so that it reads back to the same text. */
+#include "fuzz.h"
+
+#include "verify/verify.h"
+
+static Status read_text(const void *bytes, size_t size, Text *out, Err *err)
+{
+    const char *path = fuzz_file("tolerance.ini", bytes, size);
+    Tolerance tolerance = tolerance_none();
+    char *name = NULL;
+    Status status = tolerance_read(&tolerance, &name, path, err);
+    fuzz_check_refusal(status, err, path);
+    if (status == STATUS_OK)
+        tolerance_text(&tolerance, out);
+    free(name);
+    return status;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+{
+    Text first = TEXT_INIT, second = TEXT_INIT;
+    Err err = {{0}};
+    if (read_text(bytes, size, &first, &err) == STATUS_OK) {
+        Status status = read_text(first.chars, first.length, &second, &err);
+        assert(status == STATUS_OK && strcmp(first.chars, second.chars) == 0);
+        (void)status;
+    }
+    text_release(&first);
+    text_release(&second);
+    return 0;
+}
