@@ -106,6 +106,24 @@ static void a_sphere_has_the_largest_radius_that_meets(void **state)
     scene_release(&scene);
 }
 
+static void every_model_has_the_segments_at_their_radii(void **state)
+{
+    (void)state;
+    static const double radii[] = {2.385, 1.9, 1.2};
+    StageParams params = stage_defaults();
+    for (int model = SCENE_CYLINDERS; model <= SCENE_BLOB; model++) {
+        params.model = (SceneModel)model;
+        Scene scene = stage(&params, NULL);
+        for (size_t i = 0; i < 3; i++) {
+            bool field = scene.n_segments > 0;
+            assert_true((field ? scene.segments[i].radius_mm : scene.primitives[i].radius_mm) ==
+                        radii[i]);
+            assert_int_equal(field ? scene.segments[i].id : scene.primitives[i].id, 12 + i);
+        }
+        scene_release(&scene);
+    }
+}
+
 /* Two vessels of one radius in a row: the sphere between them is that of the one that ends there. */
 static void of_equals_the_segment_that_ends_at_a_place_gives_its_sphere(void **state)
 {
@@ -559,16 +577,22 @@ static void a_look_is_read(void **state)
     (void)state;
     Look read;
     Err err = {{0}};
-    Status status =
-        read_look_text("; a comment\n[vessel]\ncolor = 0.25 0.5 0.125\n[finish]\nphong = 0.375\n"
-                       "[light a]\ndirection = 0 1 2\n[light b]\ncolor = 0 0 1\n"
-                       "[light c]\nposition = 1 2 -3\nsize = 0.75\nsamples = 8\n"
-                       "[ground]\naxis = 0 2 0\ngap = 0.5\ncolor = 1 0.5 0\ndiffuse = 0.25\n",
-                       &read, &err);
+    Status status = read_look_text(
+        "; a comment\n[vessel]\ncolor = 0.25 0.5 0.125\n[background]\ncolor = 0.75 1 "
+        "0.25\n[finish]\nphong = 0.375\nambient = 0.125\ndiffuse = 0.6875\n"
+        "brilliance = 1.5\nphong_size = 25\nspecular = 0.625\nroughness = 0.03125\n"
+        "[light a]\ndirection = 0 1 2\n[light b]\ncolor = 0 0 1\n"
+        "[light c]\nposition = 1 2 -3\nsize = 0.75\nsamples = 8\n"
+        "[ground]\naxis = 0 2 0\ngap = 0.5\ncolor = 1 0.5 0\ndiffuse = 0.25\n",
+        &read, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(status, STATUS_OK);
     assert_true(read.color.r == 0.25f && read.color.g == 0.5f && read.color.b == 0.125f);
-    assert_true(read.finish.phong == 0.375f);
+    assert_true(read.background.r == 0.75f && read.background.b == 0.25f);
+    assert_true(read.finish.ambient == 0.125f && read.finish.diffuse == 0.6875f);
+    assert_true(read.finish.phong == 0.375f && read.finish.phong_size == 25);
+    assert_true(read.finish.brilliance == 1.5f);
+    assert_true(read.finish.specular == 0.625f && read.finish.roughness == 0.03125f);
     assert_int_equal(read.n_lights, 3);
     assert_true(read.lights[0].direction.z == 2 && read.lights[1].color.b == 1);
     assert_true(!read.lights[1].is_point && read.lights[2].is_point);
@@ -670,6 +694,7 @@ int main(void)
         cmocka_unit_test(the_thickest_of_the_sisters_that_end_together_is_drawn),
         cmocka_unit_test(a_segment_inside_its_sister_is_left_out),
         cmocka_unit_test(a_sphere_has_the_largest_radius_that_meets),
+        cmocka_unit_test(every_model_has_the_segments_at_their_radii),
         cmocka_unit_test(of_equals_the_segment_that_ends_at_a_place_gives_its_sphere),
         cmocka_unit_test(every_view_frames_the_whole_tree),
         cmocka_unit_test(the_front_view_has_x_to_the_right_and_y_up),
