@@ -203,8 +203,8 @@ static void a_framed_picture_has_its_margin_on_each_side(void **state)
     scene_release(&scene);
 }
 
-/* A vessel along the view, 11 mm long: its nearer ball, of radius 2.385, touches the sides of a cone of half the
- * angle whose tangent is 0.9 tan 15 degrees. */
+/* A vessel along the view, 11 mm long: its nearer ball, of radius 2.385, touches the sides of the picture, upright
+ * or lying, that are nearer. Their half angle has the tangent 0.9 tan 15 degrees, less by the aspect. */
 static void a_perspective_camera_stands_where_the_nearest_ball_just_fits(void **state)
 {
     (void)state;
@@ -218,10 +218,15 @@ static void a_perspective_camera_stands_where_the_nearest_ball_just_fits(void **
     }
     StageParams params = stage_defaults();
     params.projection = PROJECTION_PERSPECTIVE;
-    Scene scene;
-    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
-    assert_true(vec3_distance(scene.camera.location, vec3(3.5, -2, 15.67344740904526)) < 1e-12);
-    scene_release(&scene);
+    for (int lying = 0; lying < 2; lying++) {
+        params.width = lying ? 1000 : 400;
+        params.height = lying ? 400 : 1000;
+        Scene scene;
+        assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
+        Vec3 expected = vec3(3.5, -2, lying ? 30.33960084026736 : 15.67344740904526);
+        assert_true(vec3_distance(scene.camera.location, expected) < 1e-12);
+        scene_release(&scene);
+    }
     tree_release(&tree);
 }
 
