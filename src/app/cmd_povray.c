@@ -12,7 +12,11 @@ static const Command command = {
     .operands = "S.pov -o P.png",
     .examples = "  corcast povray tree.pov -o tree.png\n"
                 "  corcast povray tree.pov --size 4000x4000 --antialias 3 -o large.png\n"
-                "  corcast povray tree.pov --plane depth -o depth.png\n",
+                "  corcast povray tree.pov --plane depth -o depth.png\n"
+                "environment, here and for verify:\n"
+                "  CORCAST_POVRAY           the program, or a script that stands for it (povray)\n"
+                "  CORCAST_POVRAY_PATIENCE  seconds without a word after which it is ended (600; "
+                "0: never)\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,

@@ -425,6 +425,63 @@ static void a_missing_template_is_named(void **state)
     assert_int_equal(a.length + b.length, 0);
 }
 
+static void names_stay_in_their_comments(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_ROUNDED);
+    PovrayParams params = two_files;
+    params.geometry_file = NULL;
+    params.scene_file = "a\n#error \"b\"\r#error.pov";
+    params.description = "tree\v\xff\n#error \"c\"";
+    Emitted out = emit(&scene, &params);
+    const char *file = "// File: a #error \"b\" #error.pov\n";
+    assert_non_null(strstr(out.scene.chars, file));
+    assert_non_null(strstr(out.scene.chars, "// Desc: tree \xef\xbf\xbd #error \"c\"\n"));
+    assert_non_null(strstr(out.scene.chars, "+Oa #error \"b\" #error.png"));
+    assert_int_equal(count(out.scene.chars, "\n#error"), 0);
+    assert_null(strchr(out.scene.chars, '\r'));
+    release(&out);
+}
+
+static void a_geometry_that_cannot_be_included_is_refused(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a\"b.inc", "a\nb.inc", "\xc3\xa9.inc", "\xff.inc",
+                                        "a\x7f.inc"};
+    Scene scene = make_scene(SCENE_ROUNDED);
+    PovrayParams params = two_files;
+    Err err;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        Text text = TEXT_INIT, geometry = TEXT_INIT;
+        params.geometry_file = names[i];
+        assert_int_equal(emit_povray(&scene, &params, &text, &geometry, NULL, &err), STATUS_USAGE);
+        assert_non_null(strstr(err.text, "printable ASCII"));
+        assert_null(text.chars);
+    }
+    assert_int_equal(povray_check_name("-a b;c&d'e%f\\g.inc", &err), STATUS_OK);
+}
+
+/* What guards a geometry against being included twice. */
+static void long_names_have_guards_of_their_own_that_fit_an_identifier(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_ROUNDED);
+    PovrayParams params = two_files;
+    char name[256] = {0}, guards[2][300];
+    for (int i = 0; i < 2; i++) {
+        memset(name, 'n', 250);
+        name[249] = (char)('a' + i);
+        params.geometry_file = name;
+        Emitted out = emit(&scene, &params);
+        const char *guard = strstr(out.geometry.chars, "#ifndef (Inc_");
+        assert_non_null(guard);
+        assert_int_equal(sscanf(guard, "#ifndef (%299[A-Za-z0-9_])", guards[i]), 1);
+        assert_true(strlen(guards[i]) <= 255);
+        release(&out);
+    }
+    assert_string_not_equal(guards[0], guards[1]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -441,6 +498,9 @@ int main(void)
         cmocka_unit_test(a_blob_is_halved_from_129_segments_on),
         cmocka_unit_test(the_segments_of_a_blob_are_painted_only_when_asked_for),
         cmocka_unit_test(a_missing_template_is_named),
+        cmocka_unit_test(names_stay_in_their_comments),
+        cmocka_unit_test(a_geometry_that_cannot_be_included_is_refused),
+        cmocka_unit_test(long_names_have_guards_of_their_own_that_fit_an_identifier),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
