@@ -85,6 +85,24 @@ at most a quarter of a pixel apart | src/render/zbuffer.c | pixels_apart = 0.25;
 END
 }
 
+test_the_numbers_for_povray_are_those_of_the_source() {
+    agree POVRAY.md <<'END'
+for each light with n . L >= 1e-10 | src/render/shade.c | if (cosine < 1e-10)
+is within 2.85 · 10⁻⁴ of it | src/surface/cellfunction.c | return form == ERF_FAST ? 2.85e-4
+no wall by more than three times that | src/surface/cellfunction.c | return (3 * erf_form_error(form) + 2e-5) * radius_mm;
+POV-Ray holds at most 1,048,575 different constants | src/emit/povray_joint.c | holds 1,048,575 different constants in functions; a joint has 6.
+more than 174,000 joints | src/emit/povray_joint.c | MOST_EXACT = 174000,
+- `f(x) <= M d(x) / 2`, because a ray that missed | src/emit/povray_joint.c | 2 * steepest};
+Its hits are within 10⁻⁷ radii | templates/povray/joints.inc | accuracy 1e-7 open
+for at most 65,536 segments | src/emit/povray_blob.c | GROUP = 256, MAX_PAINTED = GROUP * GROUP,
+END
+    # The polynomial in tanh is half of what stands in the source.
+    local linear cubic
+    read -r linear cubic < <(sed -n 's/.*\[ERF_FAST\] = {-\([0-9.]*\), -\([0-9.]*\),.*/\1 \2/p' \
+        "$REPO/src/surface/cellfunction.c" | awk '{ printf "%.14g %.14g\n", $1 / 2, $2 / 2 }')
+    says POVRAY.md "\`tanh($linear u + $cubic u^3)\`"
+}
+
 # And its deviations are what they are measured to be.
 test_the_numbers_of_the_blob_are_those_that_fit_blob_prints() {
     local line

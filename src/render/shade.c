@@ -20,16 +20,14 @@ static Rgb rgb_add(Rgb a, Rgb b)
     return (Rgb){a.r + b.r, a.g + b.g, a.b + b.b};
 }
 
-/* The Phong highlight: the mirrored view ray against the light. Sizes of 60 and more are cut where
- * the cosine is below 0.0008, as POV-Ray does. */
+/* The Phong highlight: the mirrored view ray against the light. POV-Ray leaves out sizes of 60 and more where
+ * the cosine is below 0.0008, whose power is 0 in any colour. */
 static double phong_intensity(const Finish *finish, Vec3 direction, Vec3 normal, Vec3 towards)
 {
     double along = vec3_dot(direction, normal);
     Vec3 mirrored = vec3_add_scaled(direction, normal, -2 * along);
     double cosine = vec3_dot(mirrored, towards);
-    if (cosine <= 0 || (finish->phong_size >= 60 && cosine <= 0.0008))
-        return 0;
-    return (double)finish->phong * pow(cosine, (double)finish->phong_size);
+    return cosine > 0 ? (double)finish->phong * pow(cosine, (double)finish->phong_size) : 0;
 }
 
 static double specular_intensity(const Finish *finish, Vec3 direction, Vec3 normal, Vec3 towards)

@@ -47,7 +47,7 @@ LANE_FN Lanes phong(const Shading *shading, const Lanes towards[3])
     for (int c = 0; c < 3; c++)
         mirrored[c] = lanes_fma(shading->normal[c], twice, shading->direction[c]);
     Lanes cosine = inner(mirrored, towards);
-    LaneMask seen = cosine > (finish->phong_size >= 60 ? 0.0008f : 0.0f);
+    LaneMask seen = cosine > 0.0f;
     Lanes power = lanes_power(cosine, finish->phong_size) * finish->phong;
     return lanes_select(seen, power, lanes_set(0));
 }

@@ -16,9 +16,9 @@ typedef enum ErfForm { ERF_FAST, ERF_EXACT } ErfForm;
 enum { ERF_TERMS = 5 };
 extern const double erf_forms[][ERF_TERMS];
 
-/* The largest error of erf in that form. An error eps moves the wall of a lone vessel of radius r by at
- * most eps r / (8 FIELD_LEVEL): it changes the axial factor by at most eps / 2 of a term that is at most
- * FIELD_LEVEL on the wall, where |grad Phi| = 4 FIELD_LEVEL / r. */
+/* The largest error of erf in that form. An error eps moves the wall of a long vessel of radius r by at
+ * most eps r / 8: it changes the axial factor by at most eps / 2 of a term that is FIELD_LEVEL on the
+ * wall, where |grad Phi| = 4 FIELD_LEVEL / r. */
 double erf_form_error(ErfForm form);
 
 /* k[0] x + k[1] y + k[2] z + k[3]. */

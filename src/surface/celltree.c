@@ -38,7 +38,7 @@ static const double overlap_accuracies = 5, overlap_rounding = 4 * FLT_EPSILON;
 
 /* With erf as a polynomial's tanh, s |A'| is at most this times A sqrt(-2 ln A) down to A =
  * LOG_FORM_FLOOR / 10, and within the bound of the exact form from A = 1e-3 up (tabulated in
- * tests/unit/surface_test.c). */
+ * tests/unit/cells_test.c). */
 static const double tail_steepness[] = {[ERF_FAST] = 1.14, [ERF_EXACT] = 1.21};
 
 static const size_t max_cells = 1000000;
@@ -370,7 +370,7 @@ static Status build(Builder *builder, size_t n_segments, Err *err)
     return descend_from_top(builder, &all, box, err);
 }
 
-/* Finer cells are traced faster but take longer to read; docs/POVRAY.md has the measurements. */
+/* Finer cells are traced faster but take longer to read. */
 static double chosen_beta(size_t n_segments)
 {
     return n_segments <= 3000 ? 3 : 6;

@@ -320,6 +320,57 @@ static void accuracy_follows_the_radius_but_for_shadows(void **state)
         assert_true(cell_accuracy(radius * 1.013) >= cell_accuracy(radius));
 }
 
+/* How far a cell reaches below its cube, whose corners are at multiples of `side`, over its accuracy. */
+static double reach_of(const Cell *cell, double side)
+{
+    double reach = ceil(cell->low.x / side) * side - cell->low.x;
+    return reach / cell->accuracy;
+}
+
+static void cells_reach_five_accuracies_and_a_part_beyond_their_cubes(void **state)
+{
+    (void)state;
+    TestScene test = {.scene = {.segments = test.segments}};
+    put_segment(&test, vec3(-7.5, 0.11, 0.23), vec3(9, 2.42, -1.71), 0.73);
+    CellTree cells = cells_of(&test, 3, ERF_FAST);
+    double least = HUGE_VAL, most = 0;
+    for (size_t i = 0; i < cells.n_cells; i++) {
+        double reach = reach_of(&cells.cells[i], 2 * 0.73);
+        least = fmin(least, reach);
+        most = fmax(most, reach);
+    }
+    assert_true(fabs(least - 5) < 0.02 && fabs(most - 5.875) < 0.02);
+    celltree_release(&cells);
+}
+
+/* The cells of one vessel among others that are too short to be seen, without a given beta. */
+static double side_among(size_t n)
+{
+    Scene scene = {.model = SCENE_ISOSURFACE, .n_segments = n};
+    scene.segments = calloc(n, sizeof *scene.segments);
+    assert_non_null(scene.segments);
+    for (size_t i = 0; i < n; i++) {
+        double z = 9 * (double)i;
+        scene.segments[i] =
+            (FieldSegment){.a = {i ? 0 : -7, 0, z}, .b = {i ? 0.01 : 7, 0, z}, .radius_mm = 0.73};
+    }
+    CellTree cells;
+    const CellParams params = {.beta = 0, .erf = ERF_FAST};
+    assert_int_equal(celltree_build(&scene, &params, &cells, NULL), STATUS_OK);
+    assert_true(cells.n_cells > 0);
+    double side = cells.cells[0].high.x - cells.cells[0].low.x;
+    celltree_release(&cells);
+    free(scene.segments);
+    return side / 0.73;
+}
+
+static void cells_of_many_segments_are_larger(void **state)
+{
+    (void)state;
+    assert_true(fabs(side_among(3000) - 2) < 0.1);
+    assert_true(fabs(side_among(3001) - 4) < 0.1);
+}
+
 static void nothing_has_no_cells(void **state)
 {
     (void)state;
@@ -354,6 +405,8 @@ int main(void)
         cmocka_unit_test(a_long_vessel_is_made_of_tubes),
         cmocka_unit_test(cells_come_in_order_with_what_they_promise),
         cmocka_unit_test(accuracy_follows_the_radius_but_for_shadows),
+        cmocka_unit_test(cells_reach_five_accuracies_and_a_part_beyond_their_cubes),
+        cmocka_unit_test(cells_of_many_segments_are_larger),
         cmocka_unit_test(nothing_has_no_cells),
         cmocka_unit_test(refuses_a_scene_of_countless_cells),
     };
