@@ -16,11 +16,11 @@ says() {
     tr -s '\n ' '  ' <"$REPO/docs/$1" | grep -qF -- "$2" || fail "expected docs/$1 to say '$2'"
 }
 
-# agree DOCUMENT: lines "WORDS | FILE | CODE" on standard input: the document has the words, and the file of
+# agree DOCUMENT: lines "WORDS @ FILE @ CODE" on standard input: the document has the words, and the file of
 # the repository the code. Numbers that no result shows are held so: change both.
 agree() {
     local words file code
-    while IFS='|' read -r words file code; do
+    while IFS=@ read -r words file code; do
         words=$(echo "$words" | sed 's/^ *//; s/ *$//') file=${file// /}
         says "$1" "$words"
         grep -qF -- "${code# }" "$REPO/$file" || fail "docs/$1 says '$words', but $file does not have '${code# }'"
@@ -32,69 +32,98 @@ test_the_numbers_of_growth_are_those_of_the_source() {
     expect_stdout 'nearest segments tried for each terminal \(8\)'
     says METHODS.md 'The nearest segments (8; `--candidates`)'
     agree METHODS.md <<'END'
-one point in three is far enough | src/grow/grow.c | TOSSES_PER_ADDED = 3 }
-1.15 times what the rule asks for, and distances 1.1 times | src/grow/place.c | length_reserve = 1.15, clearance_reserve = 1.1;
-known at once to the eight vessels above | src/grow/network.c | LEVELS = 8 }
-with every fifth of growth | src/grow/grow.c | refresh_growth = 1.2;
-ahead of its share by more than a sixteenth | src/grow/forest.c | lead = 1.0 / 16;
-all rise by 1.1, and those of segments that break a rule by 2.2 | src/grow/refine_toll.c | rise = 1.1, steep_rise = 2.2;
-up to two more follow | src/grow/refine.c | DETOURS = 3,
-each at four times the price | src/grow/refine.c | price_rise = 4;
-over nine tenths of the budget | src/grow/refine.c | last_part = 0.1;
-until they agree to 10⁻¹³ | src/grow/finish.c | agreement = 1e-13;
-256 points a terminal, up to 4,096 where that makes less than two million in all | src/grow/weigh.c | least_points = 256, most_points = 4096, all_points = 2e6;
+one point in three is far enough @ src/grow/grow.c @ TOSSES_PER_ADDED = 3 }
+1.15 times what the rule asks for, and distances 1.1 times @ src/grow/place.c @ length_reserve = 1.15, clearance_reserve = 1.1;
+known at once to the eight vessels above @ src/grow/network.c @ LEVELS = 8 }
+with every fifth of growth @ src/grow/grow.c @ refresh_growth = 1.2;
+ahead of its share by more than a sixteenth @ src/grow/forest.c @ lead = 1.0 / 16;
+all rise by 1.1, and those of segments that break a rule by 2.2 @ src/grow/refine_toll.c @ rise = 1.1, steep_rise = 2.2;
+up to two more follow @ src/grow/refine.c @ DETOURS = 3,
+each at four times the price @ src/grow/refine.c @ price_rise = 4;
+over nine tenths of the budget @ src/grow/refine.c @ last_part = 0.1;
+until they agree to 10⁻¹³ @ src/grow/finish.c @ agreement = 1e-13;
+256 points a terminal, up to 4,096 where that makes less than two million in all @ src/grow/weigh.c @ least_points = 256, most_points = 4096, all_points = 2e6;
 END
 }
 
 test_the_numbers_of_the_potential_are_those_of_the_source() {
     agree METHODS.md <<'END'
-With eps = 10⁻⁶ (`TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r | src/surface/surface.h | #define TERM_CUTOFF 1e-6
-with Phi clamped to [10⁻⁵, 0.2] | src/surface/surface.h | #define LOG_FORM_FLOOR 1e-5
-with Phi clamped to [10⁻⁵, 0.2] | src/surface/surface.h | #define LOG_FORM_CEILING 0.2
-`Phi'^2 >= 4.6 M lack` | src/render/fieldkernel.h | lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46))
-Within 2 % of C and with ten times that certainty | src/render/fieldkernel.h | #define NEAR_ENOUGH (2e-2f * LEVEL)
-or within 0.1 %, Newton's method closes it | src/render/fieldlanes.h | #define CLOSE_ENOUGH (1e-3f * LEVEL)
-groups whose margin exceeds 10⁻³ C | src/render/fieldkernel.h | group.margin > CLOSE_ENOUGH
-does not count where Phi is within 1 % of C and falls | src/render/field.c | sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0
-lie in one plane (to 10⁻⁷ / k) | src/render/fieldterms.c | <= 1e-7;
-to within 4 · 10⁻⁶ of ln C | src/render/fieldplane.h | #define PLANE_CLOSE 3e-6f
-10⁻⁶ each: `exp(-d^2)` times the term's peak is below it | src/render/fieldtile.h | #define FIELD_CUTOFF 1e-6
-20 terms being allowed to be left out | src/render/fieldlanes.h | #define MARGIN_DROPPED 2e-5f
-6 · 10⁻⁷ for each term | src/render/fieldlanes.h | #define MARGIN_TERM 6e-7f
-1.2 · 10⁻⁷ e k B for each term | src/render/fieldlanes.h | #define MARGIN_PLACE 1.2e-7f
-have a node within 3 of its radii of one of its ends | src/stage/blend.h | #define BLEND_RADII 3
+With eps = 10⁻⁶ (`TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r @ src/surface/surface.h @ #define TERM_CUTOFF 1e-6
+with Phi clamped to [10⁻⁵, 0.2] @ src/surface/surface.h @ #define LOG_FORM_FLOOR 1e-5
+with Phi clamped to [10⁻⁵, 0.2] @ src/surface/surface.h @ #define LOG_FORM_CEILING 0.2
+`Phi'^2 >= 4.6 M lack` @ src/render/fieldkernel.h @ lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46))
+Within 2 % of C and with ten times that certainty @ src/render/fieldkernel.h @ #define NEAR_ENOUGH (2e-2f * LEVEL)
+or within 0.1 %, Newton's method closes it @ src/render/fieldlanes.h @ #define CLOSE_ENOUGH (1e-3f * LEVEL)
+groups whose margin exceeds 10⁻³ C @ src/render/fieldkernel.h @ group.margin > CLOSE_ENOUGH
+does not count where Phi is within 1 % of C and falls @ src/render/field.c @ sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0
+lie in one plane (to 10⁻⁷ / k) @ src/render/fieldterms.c @ <= 1e-7;
+to within 4 · 10⁻⁶ of ln C @ src/render/fieldplane.h @ #define PLANE_CLOSE 3e-6f
+10⁻⁶ each: `exp(-d^2)` times the term's peak is below it @ src/render/fieldtile.h @ #define FIELD_CUTOFF 1e-6
+20 terms being allowed to be left out @ src/render/fieldlanes.h @ #define MARGIN_DROPPED 2e-5f
+6 · 10⁻⁷ for each term @ src/render/fieldlanes.h @ #define MARGIN_TERM 6e-7f
+1.2 · 10⁻⁷ e k B for each term @ src/render/fieldlanes.h @ #define MARGIN_PLACE 1.2e-7f
+have a node within 3 of its radii of one of its ends @ src/stage/blend.h @ #define BLEND_RADII 3
+1 % of the one weighing as much as 4.3° of the other @ tests/fit/fit_blob.c @ #define DISTANCE 0.03
+1 % of the one weighing as much as 4.3° of the other @ tests/fit/fit_blob.c @ #define ANGLE 13.0
+p from 24 to 96 @ tests/fit/fit_blob.c @ for (double power = 24; power <= 96; power *= 2)
 END
 }
 
 test_the_numbers_of_pictures_are_those_of_the_source() {
     agree METHODS.md <<'END'
-`Phi_i <= B = exp(-d^2) min(1, h / s)` | src/render/fieldkernel.h | term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
-4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) | src/render/fieldkernel.h | term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
-packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays | src/render/lanes.h | #define LANES 16
-A band begins at a multiple of eight rows | src/render/render.h | RENDER_BAND_STEP = 8 }
-in which tiles of 8 x 8 pixels | src/render/fieldtile.h | TILE_SIDE = 8,
-longer than 2 x 16384 pixels | src/render/rasteritem.c | most_pixels = 16384;
-4 eps H, 0.004 pixels for the longest | src/render/rasteritem.c | length / 2 + radius > most_pixels * pixel
-cylinders seen within 0.02 rad of their axis | src/render/rasteritem.c | 0.02; /* of the angle
-cylinders seen within 0.02 rad of their axis | src/render/rastersight.h | steep_sine2 = 4e-4f;
-within 10⁻⁴ r of the ray | src/render/rasterruling.h | off_joint_line = 1e-4f;
-0.001 mm and 3 · 2^-23 of the scene's radius | src/render/rastershadow.c | aim.slack = slack_mm + 0x3p-23 * scene_radius
-0.001 mm and 3 · 2^-23 of the scene's radius | src/render/rastershadow.c | slack_mm = 1e-3;
-within 1.16 radii of the scene's middle cast rays | src/render/rastershadow.c | least_radii = 1.16;
-at most a quarter of a pixel apart | src/render/zbuffer.c | pixels_apart = 0.25;
+`Phi_i <= B = exp(-d^2) min(1, h / s)` @ src/render/fieldkernel.h @ term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
+4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ src/render/fieldkernel.h @ term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
+packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays @ src/render/lanes.h @ #define LANES 16
+A band begins at a multiple of eight rows @ src/render/render.h @ RENDER_BAND_STEP = 8 }
+in which tiles of 8 x 8 pixels @ src/render/fieldtile.h @ TILE_SIDE = 8,
+longer than 2 x 16384 pixels @ src/render/rasteritem.c @ most_pixels = 16384;
+4 eps H, 0.004 pixels for the longest @ src/render/rasteritem.c @ length / 2 + radius > most_pixels * pixel
+cylinders seen within 0.02 rad of their axis @ src/render/rasteritem.c @ 0.02; /* of the angle
+cylinders seen within 0.02 rad of their axis @ src/render/rastersight.h @ steep_sine2 = 4e-4f;
+within 10⁻⁴ r of the ray @ src/render/rasterruling.h @ off_joint_line = 1e-4f;
+0.001 mm and 3 · 2^-23 of the scene's radius @ src/render/rastershadow.c @ aim.slack = slack_mm + 0x3p-23 * scene_radius
+0.001 mm and 3 · 2^-23 of the scene's radius @ src/render/rastershadow.c @ slack_mm = 1e-3;
+within 1.16 radii of the scene's middle cast rays @ src/render/rastershadow.c @ least_radii = 1.16;
+at most a quarter of a pixel apart @ src/render/zbuffer.c @ pixels_apart = 0.25;
+END
+}
+
+test_the_limits_of_the_tiers_are_those_of_the_source() {
+    agree METHODS.md <<'END'
+| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ src/verify/tolerance.c @ tolerance.color_ppm = 2;
+| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ src/verify/tolerance.c @ tolerance.color_levels = 1 / 257.0;
+| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ src/verify/tolerance.c @ tolerance.interior_ppm = 2000;
+| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ src/verify/tolerance.c @ tolerance.band_ppm = 10000;
+| largest difference off the band | 1 level | @ src/verify/tolerance.c @ tolerance.interior_levels = 1;
+| mean difference | | 0.01 levels | @ src/verify/tolerance.c @ tolerance.bias_levels = 0.01;
+| pixels brighter less pixels darker, over the root of their sum | | 6 | @ src/verify/tolerance.c @ tolerance.sign_sigma = 6;
+| gain, offset | | 0.0005, 0.0255 levels | @ src/verify/tolerance.c @ tolerance.gain = 0.0005;
+| gain, offset | | 0.0005, 0.0255 levels | @ src/verify/tolerance.c @ tolerance.offset_levels = 0.0255;
+| outline of what is seen | | 0.002 px | @ src/verify/tolerance.c @ tolerance.silhouette_px = 0.002;
+outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ src/verify/tolerance.c @ tolerance.segment_levels = 0.12;
+outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ src/verify/tolerance.c @ tolerance.segment_px = 0.15;
+| segments of more than 2 pixels seen in one picture only | | 0 | @ src/verify/tolerance.c @ tolerance.segments_missing = 0;
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ src/verify/tolerance.c @ tolerance.id_ppm = 2;
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ src/verify/tolerance.c @ tolerance.id_interior_ppm = 0;
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ src/verify/tolerance.c @ tolerance.id_band_ppm = 2000;
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ src/verify/tolerance.c @ tolerance.normal_max_deg = 0.03;
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ src/verify/tolerance.c @ tolerance.normal_max_deg = 0.1;
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ src/verify/tolerance.c @ tolerance.normal_ppm = 10000;
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ src/verify/tolerance.c @ tolerance.normal_median_deg = 0.02;
+| seen in one plane only (depth, normal) | 2 ppm | @ src/verify/tolerance.c @ tolerance.coverage_ppm = 2;
 END
 }
 
 test_the_numbers_for_povray_are_those_of_the_source() {
     agree POVRAY.md <<'END'
-for each light with n . L >= 1e-10 | src/render/shade.c | if (cosine < 1e-10)
-is within 2.85 · 10⁻⁴ of it | src/surface/cellfunction.c | return form == ERF_FAST ? 2.85e-4
-no wall by more than three times that | src/surface/cellfunction.c | return (3 * erf_form_error(form) + 2e-5) * radius_mm;
-POV-Ray holds at most 1,048,575 different constants | src/emit/povray_joint.c | holds 1,048,575 different constants in functions; a joint has 6.
-more than 174,000 joints | src/emit/povray_joint.c | MOST_EXACT = 174000,
-- `f(x) <= M d(x) / 2`, because a ray that missed | src/emit/povray_joint.c | 2 * steepest};
-Its hits are within 10⁻⁷ radii | templates/povray/joints.inc | accuracy 1e-7 open
-for at most 65,536 segments | src/emit/povray_blob.c | GROUP = 256, MAX_PAINTED = GROUP * GROUP,
+for each light with n . L >= 1e-10 @ src/render/shade.c @ if (cosine < 1e-10)
+is within 2.85 · 10⁻⁴ of it @ src/surface/cellfunction.c @ return form == ERF_FAST ? 2.85e-4
+no wall by more than three times that @ src/surface/cellfunction.c @ return (3 * erf_form_error(form) + 2e-5) * radius_mm;
+POV-Ray holds at most 1,048,575 different constants @ src/emit/povray_joint.c @ holds 1,048,575 different constants in functions; a joint has 6.
+more than 174,000 joints @ src/emit/povray_joint.c @ MOST_EXACT = 174000,
+- `f(x) <= M d(x) / 2`, because a ray that missed @ src/emit/povray_joint.c @ 2 * steepest};
+Its hits are within 10⁻⁷ radii @ templates/povray/joints.inc @ accuracy 1e-7 open
+for at most 65,536 segments @ src/emit/povray_blob.c @ GROUP = 256, MAX_PAINTED = GROUP * GROUP,
 END
     # The polynomial in tanh is half of what stands in the source.
     local linear cubic

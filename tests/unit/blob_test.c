@@ -117,6 +117,8 @@ static LongVec3 long_at(Ray ray, long double t)
 static void a_long_vessel_has_its_own_radius(void **state)
 {
     (void)state;
+    assert_int_equal(BLOB_COMPONENTS, 14);
+    assert_int_equal(BLOB_POVRAY_COMPONENTS, 18);
     TestScene test = empty_scene();
     test.scene.segments = test.segments;
     put_segment(&test, vec3(-20, 3, 1), vec3(20, -3, 2), 1.7);

@@ -144,6 +144,27 @@ static void vessels_are_longer_than_wide_and_clear_of_each_other(void **state)
     }
 }
 
+/* Too much flow for the disc: vessels at their real thickness have no room. */
+static void vessels_without_room_count_as_thinner_by_halves_down_to_lines(void **state)
+{
+    (void)state;
+    const struct {
+        double flow, gamma, thickness;
+    } cases[] = {{5e5, 3, 0.5}, {5e6, 3, 0.25}, {500, 0.5, 0}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        GrowParams params = grow_defaults();
+        params.terminals = 200;
+        params.seed = 3;
+        params.q_perf_ml_min = cases[k].flow;
+        params.gamma = cases[k].gamma;
+        GrowReport report;
+        Tree tree = grown(&params, "disc:50", &report);
+        if (report.thickness != cases[k].thickness)
+            fail_msg("case %zu: thickness %g", k, report.thickness);
+        tree_release(&tree);
+    }
+}
+
 static double mean_target(GrowToss toss)
 {
     GrowParams params = grow_defaults();
@@ -370,6 +391,7 @@ int main(void)
         cmocka_unit_test(laws_hold_for_any_flow_pressure_and_size),
         cmocka_unit_test(segments_in_the_plane_never_cross),
         cmocka_unit_test(vessels_are_longer_than_wide_and_clear_of_each_other),
+        cmocka_unit_test(vessels_without_room_count_as_thinner_by_halves_down_to_lines),
         cmocka_unit_test(targets_are_lower_than_published_peers_reach),
         cmocka_unit_test(one_seed_gives_one_tree),
         cmocka_unit_test(the_number_of_threads_does_not_change_the_tree),

@@ -129,6 +129,16 @@ static void bound_holds_all_over_the_box_and_uses_the_true_distance(void **state
     }
 }
 
+static void the_wall_of_a_long_vessel_is_as_steep_as_four_levels_a_radius(void **state)
+{
+    (void)state;
+    FieldSegment segment = {.a = {-20, 0, 0}, .b = {20, 0, 0}, .radius_mm = 0.685};
+    Vec3 gradient;
+    double term = potential_term_gradient(&segment, vec3(0.5, 0, 0.685), &gradient);
+    assert_true(fabs(term - FIELD_LEVEL) < 1e-15);
+    assert_true(fabs(vec3_length(gradient) - 4 * FIELD_LEVEL / 0.685) < 1e-14);
+}
+
 static void log_form_is_the_distance_from_a_lone_vessel(void **state)
 {
     (void)state;
@@ -150,6 +160,7 @@ int main(void)
         cmocka_unit_test(gradient_is_the_slope_of_the_term),
         cmocka_unit_test(term_keeps_its_digits_far_beyond_an_end),
         cmocka_unit_test(bound_holds_all_over_the_box_and_uses_the_true_distance),
+        cmocka_unit_test(the_wall_of_a_long_vessel_is_as_steep_as_four_levels_a_radius),
         cmocka_unit_test(log_form_is_the_distance_from_a_lone_vessel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
