@@ -21,13 +21,14 @@ ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c))
 APP_SOURCES := $(wildcard src/app/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
 FORMATTED := $(sort $(wildcard src/*/*.c src/*/*.h tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
-	tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h))
+	tests/alloc/*.c tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h))
 
 ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o)
 APP_OBJECTS := $(APP_SOURCES:%.c=$(BUILD)/%.o)
 TEST_OBJECTS := $(TEST_SOURCES:%.c=$(BUILD)/%.o)
 TEST_PROGRAMS := $(TEST_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
 ORACLE := $(BUILD)/tests/check_tree
+FAILING := $(BUILD)/tests/failing.so
 POWER_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/power/*.c))
 POWER := $(BUILD)/tests/power/power
 EMBREE := $(BUILD)/tests/bench/embree
@@ -186,6 +187,12 @@ ifeq ($(MODE),fuzz)
 $(filter $(BUILD)/src/render/%,$(ROOM_OBJECTS)): CFLAGS := $(filter-out -fsanitize%,$(CFLAGS))
 endif
 
+# What fails allocations is loaded before the program's own libraries, and is sanitized in no mode.
+$(FAILING): tests/alloc/failing.c Makefile
+	$(call say,CC,$<)
+	$(Q)mkdir -p $(@D)
+	$(Q)$(CC) -D_GNU_SOURCE -std=c11 -O1 -g $(WARNINGS) -fPIC -shared -o $@ $<
+
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
 $(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
 
@@ -196,7 +203,7 @@ ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
 	@echo 'corcast needs $(PACKAGES) $(HEADERS), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
 endif
 
-unit-programs: $(TEST_PROGRAMS) $(ORACLE)
+unit-programs: $(TEST_PROGRAMS) $(ORACLE) $(FAILING)
 
 fuzz-programs: $(FUZZ_PROGRAMS)
 

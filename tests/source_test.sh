@@ -32,6 +32,15 @@ test_continuous_integration_runs_the_test_command_of_the_readme() {
     grep -q 'make demo' "$REPO/README.md" || fail "expected README.md to name make demo"
 }
 
+# So that no failed allocation is forgotten: whoever takes the characters of a text that failed gets NULL, and
+# JSON made of NULL is NULL.
+test_texts_and_json_are_made_by_the_functions_that_carry_a_failure_on() {
+    local found
+    found=$(cd "$REPO" && grep -nE '(\.|->)chars\b|json_(object_(set|update)|array_(append|set|insert)|string\(|dump)' \
+        src/*/*.[ch] | grep -v '^src/base/')
+    [ -z "$found" ] || fail "expected text_chars, json_with, json_text and text_json in place of: $found"
+}
+
 test_make_help_names_every_public_target() {
     local target
     run_ok make -C "$REPO" --no-print-directory help

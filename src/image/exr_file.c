@@ -154,7 +154,8 @@ static Status open_file(Exr *self, Err *err)
         exr_get_storage(self->context, 0, &storage) != EXR_ERR_SUCCESS ||
         exr_get_compression(self->context, 0, &compression) != EXR_ERR_SUCCESS ||
         exr_get_data_window(self->context, 0, &self->window) != EXR_ERR_SUCCESS ||
-        exr_get_display_window(self->context, 0, &self->display) != EXR_ERR_SUCCESS)
+        exr_get_display_window(self->context, 0, &self->display) != EXR_ERR_SUCCESS ||
+        errno == ENOMEM) /* it goes on without an attribute that it had no room for */
         return unsound(self, err);
     self->is_tiled = storage == EXR_STORAGE_TILED;
     if (parts != 1 || (storage != EXR_STORAGE_SCANLINE && !self->is_tiled))
@@ -290,7 +291,8 @@ static Status decode(Exr *self, Err *err)
     long long width = width_of(&self->window), height = height_of(&self->window);
     TRY(image_check_sides(self->file.name, width, height, err));
     TRY(plane_init(&self->plane, (int)width, (int)height, self->channels + self->has_alpha, err));
-    if (!decode_chunks(self))
+    errno = 0;
+    if (!decode_chunks(self) || errno == ENOMEM)
         return unsound(self, err);
     TRY(show_window(self, err));
     return self->has_alpha ? plane_drop_alpha(&self->plane, self->file.name, err) : STATUS_OK;

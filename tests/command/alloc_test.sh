@@ -1,0 +1,142 @@
+#!/usr/bin/env bash
+# A failed allocation, wherever it is, ends in one sentence and exit status 3, or in the right result: each
+# command is run again and again on small inputs, each time with another allocation that fails
+# (tests/alloc/failing.c says what is expected). Where there are many allocations, `make check` fails every
+# so-many-th; ALLOC=all fails each.
+. "$(dirname "$0")/../lib.sh"
+
+FAILING=${FAILING:-$REPO/build/release/tests/failing.so}
+
+# fail_each STEP one|many COMMAND ...: fails every STEP-th allocation of a command that leaves one file or many.
+fail_each() {
+    local step=$1 outputs=$2
+    shift 2
+    [ "${ALLOC:-}" != all ] || step=1
+    run env FAILING_STEP="$step" FAILING_OUTPUTS="$outputs" LD_PRELOAD="$FAILING" "$CORCAST" "$@" \
+        --threads "${THREADS:-1}"
+    [ "$status" -eq 0 ] || fail "$(head -3 stdout | tr '\n' ';') from: corcast $*"
+    grep -q ' [1-9][0-9]* allocations' stdout || fail "expected allocations to be counted: $(cat stdout)"
+}
+
+# A grown tree of five terminals, and pictures of it that differ, with all planes.
+inputs() {
+    run_ok corcast grow --terminals 5 --seed 3 -o tree.swc
+    run_ok corcast render tree.swc --size 21x15 --planes depth,normal,id -o a.png
+    run_ok corcast render tree.swc --size 21x15 --planes depth,normal,id --model cylinders --height 70 -o b.png
+}
+
+test_failed_allocations_in_grow() {
+    inputs
+    fail_each 1 many grow --terminals 9 -o o.swc --json o.json
+    fail_each 3 one grow --terminals 9 --domain ball:20 --viscosity-law pries --terminal-flow territory -o o.swc
+    fail_each 3 one grow --terminals 9 --inlet 0,50 --inlet 30,-40 --refine anneal --refine-moves 40 -o o.swc
+    fail_each 3 one grow --from ../tree.swc --terminals 9 --refine topology -o o.swc
+    fail_each 3 one grow --terminals 4 --domain mask:"$DATA/oblique.nii.gz" -o o.swc
+    THREADS=2 fail_each 5 one grow --terminals 40 -o o.swc
+}
+
+test_failed_allocations_in_refine() {
+    inputs
+    fail_each 1 one refine ../tree.swc --refine topology -o o.swc
+}
+
+test_failed_allocations_in_info() {
+    inputs
+    fail_each 1 one info ../tree.swc
+    fail_each 5 one info ../tree.swc --stats --json
+}
+
+test_failed_allocations_in_convert() {
+    inputs
+    fail_each 1 one convert ../tree.swc o.swc
+    fail_each 1 one convert ../a.png o.ppm
+    fail_each 1 one convert "$DATA/images/depth.exr" o.pfm
+}
+
+test_failed_allocations_in_scene() {
+    inputs
+    fail_each 3 many scene ../tree.swc --size 21x15 --model cylinders -o o.pov
+    fail_each 3 many scene ../tree.swc --size 21x15 --model joined -o o.pov
+    fail_each 3 many scene ../tree.swc --size 21x15 --model rounded --look print --shadows on -o o.pov
+    fail_each 3 many scene ../tree.swc --size 21x15 --model blob --ids on --color-by radius -o o.pov
+    fail_each 3 many scene "$DATA/bifurcation.swc" --size 21x15 --model isosurface --ids on -o o.pov
+}
+
+test_failed_allocations_in_render() {
+    local model
+    inputs
+    for model in cylinders joined rounded isosurface blob; do
+        fail_each 3 many render ../tree.swc --size 21x15 --model $model --planes color,depth,normal,id \
+            --shadows on --json o.json -o o.png
+    done
+    fail_each 5 many render ../tree.swc --size 21x15 --model isosurface --hits povray --planes id -o o.ppm
+    fail_each 3 one render ../tree.swc --size 21x15 --method raster --ao 2 --antialias 2 -o o.pfm
+    fail_each 3 one render ../tree.swc --size 21x15 --method zbuffer --color-by wss --log --bits 16 -o o.png
+    THREADS=2 fail_each 3 one render ../tree.swc --size 64x64 --method raster --shadows on -o o.png
+}
+
+test_failed_allocations_in_compare() {
+    inputs
+    fail_each 1 one compare ../a.png ../b.png
+    fail_each 7 many compare ../a.png ../b.png --ids-a ../a.id.ppm --ids-b ../b.id.ppm --json --pixelmatch 0.1 \
+        --junit o.xml -o o.png --difference d.png --flicker f.png --ledger l.csv
+    fail_each 3 one compare ../a.depth.pfm ../b.depth.pfm --json
+    fail_each 3 one compare ../a.normal.pfm ../b.normal.pfm
+    fail_each 3 one compare ../a.id.ppm ../b.id.ppm --metrics on
+    fail_each 3 one compare "$DATA/images/half-zip.exr" "$DATA/images/half-zip.exr"
+}
+
+# A report of one verification without POV-Ray; `report` asks for no more.
+stored_report() {
+    mkdir stored
+    printf '<!-- row: begin -->\n<tr id="case-1">\n<!-- row: end -->\n<!-- case: begin -->\n<!-- case: end -->\n' \
+        >stored/report.html
+    corcast compare a.png b.png --json >stored/numbers.json
+    jq '{severity: 3} + .' stored/numbers.json >stored/report.json
+}
+
+test_failed_allocations_in_report() {
+    inputs
+    stored_report
+    fail_each 3 one report ../stored ../stored -o o.html
+}
+
+# A stand-in for POV-Ray that gives what POV-Ray has drawn before.
+stored_povray() {
+    cat >povray.sh <<'STAND_IN'
+#!/bin/sh
+plane=0
+for argument; do
+    case $argument in
+    +O*) output=${argument#+O} ;;
+    Declare=Corcast_Plane=*) plane=${argument##*=} ;;
+    esac
+done
+echo 'Persistence of Vision(tm) Ray Tracer Version 3.7.0.10' >&2
+exec cp "$STORED/$plane.png" "$output"
+STAND_IN
+    chmod +x povray.sh
+    export CORCAST_POVRAY=$PWD/povray.sh STORED=$PWD/stored
+}
+
+test_failed_allocations_in_verify_and_povray() {
+    local number=0 plane
+    command -v povray >/dev/null || skip "POV-Ray is not installed"
+    inputs
+    run_ok corcast verify tree.swc --size 20x20 -o stored
+    for plane in color depth normal id; do
+        run_ok corcast povray stored/scene.pov --plane $plane -o stored/$number.png
+        number=$((number + 1))
+    done
+    stored_povray
+    fail_each 13 many verify ../tree.swc --size 20x20 -o v
+    fail_each 1 one povray ../stored/scene.pov -o o.png
+}
+
+test_failed_allocations_in_wrong_use() {
+    fail_each 1 one render tree.swc --model nosuch -o o.png
+    fail_each 1 one grow --domain nosuch:3 -o o.swc
+    fail_each 1 one render "$DATA/bifurcation.swc" --color-by nosuch -o o.png
+}
+
+run_tests "$@"
