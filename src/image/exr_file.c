@@ -5,7 +5,6 @@
 #include "image/formats.h"
 
 #include <errno.h>
-#include <math.h>
 #include <openexr.h>
 #include <stdlib.h>
 #include <string.h>
@@ -120,23 +119,20 @@ static Status choose_channels(Exr *self, Err *err)
 /* Colours have the primaries of Rec. 709, which are sRGB's, where no chromaticities are given. */
 static Status check_colors(Exr *self, Err *err)
 {
-    static const float rec709[8] = {0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
     exr_attr_chromaticities_t given;
-    float xy[8];
+    float values[8];
+    double xy[8];
     if (strcmp(self->names[0], "R") != 0)
         return STATUS_OK;
     exr_result_t found = exr_attr_get_chromaticities(self->context, 0, "chromaticities", &given);
     *self->complaint = '\0'; /* that there are none */
     if (found != EXR_ERR_SUCCESS)
         return STATUS_OK;
-    memcpy(xy, &given, sizeof xy);
-    for (size_t i = 0; i < 8; i++)
-        if (!(fabsf(xy[i] - rec709[i]) <= 0.002F))
-            return err_set(err, STATUS_INPUT,
-                           "%s: has the colours of another space (chromaticities); only those of "
-                           "sRGB's primaries can be read",
-                           self->file.name);
-    return STATUS_OK;
+    memcpy(values, &given, sizeof values);
+    for (int i = 0; i < 8; i++)
+        xy[i] = (double)values[i];
+    return image_is_srgb(xy) ? STATUS_OK
+                             : image_other_colors(self->file.name, "chromaticities", err);
 }
 
 static Status open_file(Exr *self, Err *err)

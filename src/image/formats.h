@@ -18,6 +18,10 @@ MUST_CHECK Status image_check_sides(const char *name, long long width, long long
 /* STATUS_MEMORY when the machine has fewer than `bytes` for an image of these sides. */
 MUST_CHECK Status image_check_memory(int width, int height, size_t bytes, Err *err);
 
+/* Whether chromaticities, x and y of red, green, blue and white, are sRGB's to 0.002. */
+bool image_is_srgb(const double xy[8]);
+/* STATUS_INPUT naming the file: its colours are of another space, as `where` in it says. */
+Status image_other_colors(const char *name, const char *where, Err *err);
 /* STATUS_INPUT, naming file and profile, unless an ICC profile is of sRGB. */
 MUST_CHECK Status image_check_profile(const char *name, const uint8_t *profile, size_t size,
                                       Err *err);

@@ -131,25 +131,13 @@ static Status check_single(Reader *self)
     return STATUS_OK;
 }
 
-static Status other_colors(Reader *self, const char *chunk)
-{
-    return err_set(self->err, STATUS_INPUT,
-                   "%s: has the colours of another space (%s chunk); only those of sRGB can be "
-                   "read",
-                   self->file.name, chunk);
-}
-
-/* Whether a cHRM chunk says what sRGB says, to 0.002. */
 static bool has_srgb_primaries(Reader *self)
 {
-    static const png_fixed_point srgb[8] = {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
-    png_fixed_point xy[8];
-    png_get_cHRM_fixed(self->png, self->info, &xy[0], &xy[1], &xy[2], &xy[3], &xy[4], &xy[5],
-                       &xy[6], &xy[7]);
-    for (int i = 0; i < 8; i++)
-        if (abs(xy[i] - srgb[i]) > 200)
-            return false;
-    return true;
+    double white[2], xy[8];
+    png_get_cHRM(self->png, self->info, &white[0], &white[1], &xy[0], &xy[1], &xy[2], &xy[3],
+                 &xy[4], &xy[5]);
+    memcpy(xy + 6, white, sizeof white);
+    return image_is_srgb(xy);
 }
 
 /* The chunks in the order in which one outdoes the other [PNG 3, section 13.13]. libpng takes a
@@ -162,7 +150,9 @@ static Status read_meaning(Reader *self)
     png_infop info = self->info;
     const uint8_t *code_points = find_unknown(self, "cICP", 4);
     if (code_points)
-        return memcmp(code_points, srgb, 4) == 0 ? STATUS_OK : other_colors(self, "cICP");
+        return memcmp(code_points, srgb, 4) == 0
+                   ? STATUS_OK
+                   : image_other_colors(self->file.name, "cICP chunk", self->err);
     if (png_get_valid(png, info, PNG_INFO_sRGB))
         return STATUS_OK;
     png_charp name;
@@ -172,7 +162,7 @@ static Status read_meaning(Reader *self)
     if (png_get_iCCP(png, info, &name, &method, &profile, &size))
         return image_check_profile(self->file.name, profile, size, self->err);
     if (png_get_valid(png, info, PNG_INFO_cHRM) && !has_srgb_primaries(self))
-        return other_colors(self, "cHRM");
+        return image_other_colors(self->file.name, "cHRM chunk", self->err);
     png_fixed_point gamma;
     if (png_get_gAMA_fixed(png, info, &gamma) && abs(gamma - srgb_gamma) > 50)
         self->gamma = gamma / 1e5;

@@ -1,8 +1,25 @@
-/* An ICC profile is not applied, only recognised: by its description, in which every profile of sRGB
+/* Which colours are sRGB's. An ICC profile is not applied, only recognised: by its description, in which every profile of sRGB
  * that is around says "sRGB", but for those of its primaries with linear codes, which say so. */
 #include "image/formats.h"
 
+#include <math.h>
 #include <string.h>
+
+bool image_is_srgb(const double xy[8])
+{
+    static const double srgb[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
+    for (int i = 0; i < 8; i++)
+        if (!(fabs(xy[i] - srgb[i]) <= 0.002))
+            return false;
+    return true;
+}
+
+Status image_other_colors(const char *name, const char *where, Err *err)
+{
+    return err_set(err, STATUS_INPUT,
+                   "%s: has the colours of another space (%s); only those of sRGB can be read",
+                   name, where);
+}
 
 enum { TAGS = 128, TAG = 12, DESCRIPTION = 80 };
 

@@ -187,19 +187,36 @@ static Status set_parts(Tiff *self, Err *err)
     return mem_calloc(&self->part, self->part_bytes, 1, "bytes of a part of a TIFF", err);
 }
 
+/* What is not said is sRGB's. */
+static Status check_colors(Tiff *self, Err *err)
+{
+    double xy[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
+    const float *primaries, *white;
+    uint32_t size;
+    const void *profile;
+    if (TIFFGetField(self->handle, TIFFTAG_PRIMARYCHROMATICITIES, &primaries))
+        for (int i = 0; i < 6; i++)
+            xy[i] = (double)primaries[i];
+    if (TIFFGetField(self->handle, TIFFTAG_WHITEPOINT, &white))
+        for (int i = 0; i < 2; i++)
+            xy[6 + i] = (double)white[i];
+    if (self->samples >= 3 && !image_is_srgb(xy))
+        return image_other_colors(self->file.name, "PrimaryChromaticities or WhitePoint", err);
+    if (!self->floats && TIFFGetField(self->handle, TIFFTAG_ICCPROFILE, &size, &profile))
+        return image_check_profile(self->file.name, profile, size, err);
+    return STATUS_OK;
+}
+
 static Status read_header(Tiff *self, Err *err)
 {
     uint16_t orientation;
-    uint32_t size;
-    const void *profile;
     TRY(check_form(self, err));
     TIFFGetField(self->handle, TIFFTAG_IMAGEWIDTH, &self->width);
     TIFFGetField(self->handle, TIFFTAG_IMAGELENGTH, &self->height);
     TRY(image_check_sides(self->file.name, self->width, self->height, err));
     TIFFGetFieldDefaulted(self->handle, TIFFTAG_ORIENTATION, &orientation);
     set_places(self, orientation);
-    if (!self->floats && TIFFGetField(self->handle, TIFFTAG_ICCPROFILE, &size, &profile))
-        TRY(image_check_profile(self->file.name, profile, size, err));
+    TRY(check_colors(self, err));
     return set_parts(self, err);
 }
 

@@ -1,14 +1,40 @@
 /* What made B of A, where that can be said for certain: each guess is a map of one picture onto the other,
  * and it is named when it explains the pictures, not when it merely resembles them. Guesses about places
- * come before those about colours; of the shifts the best one for a few hundred of the pixels that differ
- * is tried on all. */
+ * come before those about colours. Shifts and gains are tried on a few hundred of the pixels that differ,
+ * and only the one that fits them on all. */
 #include "verify/result.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { SAMPLES = 256, REACH = 48 };
+enum { SAMPLES = 256, REACH = 48, BLOCK = 64 };
+
+/* Pixels that differ, evenly spread over all that do. */
+typedef struct Samples {
+    PixelPlace at[SAMPLES];
+    int n;
+} Samples;
+
+static void take_block(const Picture *a, const Picture *b, int x, int y, size_t step, size_t *seen,
+                       Samples *samples)
+{
+    int end = x + BLOCK < a->width ? x + BLOCK : a->width;
+    if (picture_rows_equal(a, b, y, x, end - x))
+        return;
+    for (; x < end && samples->n < SAMPLES; x++)
+        if (!picture_rows_equal(a, b, y, x, 1) && (*seen)++ % step == 0)
+            samples->at[samples->n++] = (PixelPlace){.x = x, .y = y};
+}
+
+static void choose_samples(const Picture *a, const Picture *b, size_t differing, Samples *samples)
+{
+    size_t step = (differing + SAMPLES - 1) / SAMPLES, seen = 0;
+    samples->n = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width && !picture_rows_equal(a, b, y, 0, a->width); x += BLOCK)
+            take_block(a, b, x, y, step, &seen, samples);
+}
 
 static int code_at(const Picture *picture, int x, int y, int c)
 {
@@ -69,23 +95,11 @@ static bool differs_by(const Picture *a, const Picture *b, int x, int y, const S
     return true;
 }
 
-/* Up to SAMPLES of the pixels that differ, evenly spread over them. */
-static int choose_samples(const Picture *a, const Picture *b, size_t differing,
-                          PixelPlace samples[SAMPLES])
-{
-    size_t step = (differing + SAMPLES - 1) / SAMPLES, seen = 0;
-    int n = 0;
-    for (int y = 0; y < a->height && step; y++)
-        for (int x = 0; x < a->width && n < SAMPLES; x++)
-            if (!picture_rows_equal(a, b, y, x, 1) && seen++ % step == 0)
-                samples[n++] = (PixelPlace){.x = x, .y = y};
-    return n;
-}
-
 /* The shift with the smallest mean difference of the samples that stay within the picture, three in
  * four of which have to. */
-static Shift best_shift(const Picture *a, const Picture *b, const PixelPlace *samples, int n)
+static Shift best_shift(const Picture *a, const Picture *b, const Samples *samples)
 {
+    int n = samples->n;
     Shift best = {.off = (double)INFINITY};
     for (int dy = -REACH; dy <= REACH; dy++)
         for (int dx = -REACH; dx <= REACH; dx++) {
@@ -93,7 +107,7 @@ static Shift best_shift(const Picture *a, const Picture *b, const PixelPlace *sa
             double sum = 0;
             int inside = 0;
             for (int i = 0; i < n && sum < best.off * n; i++)
-                inside += differs_by(a, b, samples[i].x, samples[i].y, &shift, &sum);
+                inside += differs_by(a, b, samples->at[i].x, samples->at[i].y, &shift, &sum);
             shift.off = sum / (inside ? inside : 1);
             bool nearer = dx * dx + dy * dy < best.dx * best.dx + best.dy * best.dy;
             if (4 * inside >= 3 * n && (shift.off < best.off || (shift.off == best.off && nearer)))
@@ -115,16 +129,15 @@ static double off_by(const Picture *a, const Picture *b, const Shift *shift, con
 }
 
 /* A shift that leaves less than a fiftieth of the differences where both pictures have pixels. */
-static bool find_shift(const Picture *a, const Picture *b, size_t differing, char *out, size_t size)
+static bool find_shift(const Picture *a, const Picture *b, const Samples *samples, char *out,
+                       size_t size)
 {
     static const Shift none = {0};
-    PixelPlace samples[SAMPLES];
-    int n = choose_samples(a, b, differing, samples);
-    Shift shift = best_shift(a, b, samples, n);
+    Shift shift = best_shift(a, b, samples);
     double before = 0;
-    for (int i = 0; i < n; i++)
-        differs_by(a, b, samples[i].x, samples[i].y, &none, &before);
-    if (shift.off * n > before / 20)
+    for (int i = 0; i < samples->n; i++)
+        differs_by(a, b, samples->at[i].x, samples->at[i].y, &none, &before);
+    if (shift.off * samples->n > before / 20)
         return false;
     before = off_by(a, b, &none, &shift);
     double after = off_by(a, b, &shift, &shift);
@@ -165,56 +178,82 @@ static Status meaning_init(Meaning *meaning, const Picture *picture, Err *err)
         status = plane_init(&meaning->levels, n, 1, 1, err);
     if (status == STATUS_OK)
         status = plane_init(&meaning->predicted, n, 1, 1, err);
+    for (int i = 0; status == STATUS_OK && i < n; i++)
+        meaning->levels.values[i] = 255 * srgb_encode(meaning->linear.values[i]);
     return status;
 }
 
-/* The ratio of all linear light, where no code is clipped. */
-static double measure_gain(const Picture *a, const Picture *b, const Meaning *meaning)
+/* Linear light, and codes that are off by more than a level, before and after the gain. */
+typedef struct Light {
+    double a, b;
+    size_t beyond, misfits;
+} Light;
+
+/* Adds a sample, unless it is white in either picture, where it may be clipped. */
+static void add_sample(const Meaning *meaning, const Picture *a, const Picture *b, size_t i,
+                       Light *light)
 {
-    size_t n = picture_stride(a) * (size_t)a->height;
-    int white = (1 << a->bits) - 1;
-    double sum_a = 0, sum_b = 0;
-    for (size_t i = 0; i < n; i++) {
-        int in_a = picture_code(a, i), in_b = picture_code(b, i);
-        if (in_a == 0 || in_b == 0 || in_a == white || in_b == white)
-            continue;
-        sum_a += (double)meaning->linear.values[in_a];
-        sum_b += (double)meaning->linear.values[in_b];
-    }
-    return sum_a > 0 ? sum_b / sum_a : 1;
+    int in_a = picture_code(a, i), in_b = picture_code(b, i), white = meaning->linear.width - 1;
+    if (in_a == white || in_b == white)
+        return;
+    float level = meaning->levels.values[in_b];
+    light->a += (double)meaning->linear.values[in_a];
+    light->b += (double)meaning->linear.values[in_b];
+    light->beyond += fabsf(meaning->levels.values[in_a] - level) > 1.01F;
+    light->misfits += fabsf(meaning->predicted.values[in_a] - level) > 1.01F;
 }
 
-/* Whether a gain brings 49 of 50 of the codes that are off by more than a level, and that neither
- * picture clips, to within one. */
-static bool explains(const Meaning *meaning, const Picture *a, const Picture *b)
+static Light light_of_samples(const Meaning *meaning, const Picture *a, const Picture *b,
+                              const Samples *samples)
 {
-    size_t n = picture_stride(a) * (size_t)a->height, beyond = 0, misfits = 0;
-    int white = (1 << a->bits) - 1;
-    for (size_t i = 0; i < n; i++) {
-        int in_a = picture_code(a, i), in_b = picture_code(b, i);
-        if (in_a == white || in_b == white)
-            continue;
-        float level = meaning->levels.values[in_b];
-        beyond += fabsf(meaning->levels.values[in_a] - level) > 1.01F;
-        misfits += fabsf(meaning->predicted.values[in_a] - level) > 1.01F;
-    }
-    return beyond > 0 && 50 * misfits <= beyond;
+    Light light = {0};
+    size_t channels = (size_t)a->channels;
+    for (int i = 0; i < samples->n; i++)
+        for (size_t c = 0; c < channels; c++) {
+            size_t pixel = (size_t)samples->at[i].y * (size_t)a->width + (size_t)samples->at[i].x;
+            add_sample(meaning, a, b, pixel * channels + c, &light);
+        }
+    return light;
 }
 
-static Status find_gain(const Picture *a, const Picture *b, char *out, size_t size, Err *err)
+static Light light_of_all(const Meaning *meaning, const Picture *a, const Picture *b)
+{
+    Light light = {0};
+    for (size_t i = 0; i < picture_stride(a) * (size_t)a->height; i++)
+        add_sample(meaning, a, b, i, &light);
+    return light;
+}
+
+static void predict(Meaning *meaning, double gain)
+{
+    for (int i = 0; i < meaning->linear.width; i++)
+        meaning->predicted.values[i] = 255 * srgb_encode((float)gain * meaning->linear.values[i]);
+}
+
+/* Whether the gain brings 49 of 50 of the codes that are off by more than a level to within one. */
+static bool fits(const Light *light)
+{
+    return light->beyond > 0 && 50 * light->misfits <= light->beyond;
+}
+
+static Status find_gain(const Picture *a, const Picture *b, const Samples *samples, char *out,
+                        size_t size, Err *err)
 {
     Meaning meaning = {0};
     Status status = meaning_init(&meaning, a, err);
     if (status == STATUS_OK) {
-        double gain = measure_gain(a, b, &meaning);
-        for (int i = 0; i < meaning.linear.width; i++) {
-            float linear = meaning.linear.values[i];
-            meaning.levels.values[i] = 255 * srgb_encode(linear);
-            meaning.predicted.values[i] = 255 * srgb_encode((float)gain * linear);
+        Light light = light_of_samples(&meaning, a, b, samples);
+        predict(&meaning, light.a > 0 ? light.b / light.a : 1);
+        light = light_of_samples(&meaning, a, b, samples);
+        if (fits(&light)) {
+            light = light_of_all(&meaning, a, b);
+            double gain = light.b / light.a;
+            predict(&meaning, gain);
+            light = light_of_all(&meaning, a, b);
+            if (fits(&light))
+                snprintf(out, size, "B is A made %s: its linear colours are %.4g times those of A",
+                         gain > 1 ? "brighter" : "darker", gain);
         }
-        if (explains(&meaning, a, b))
-            snprintf(out, size, "B is A made %s: its linear colours are %.4g times those of A",
-                     gain > 1 ? "brighter" : "darker", gain);
     }
     meaning_release(&meaning);
     return status;
@@ -246,15 +285,17 @@ Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, 
     size_t size = sizeof result->cause;
     if (result->differing_pixels == 0)
         return STATUS_OK;
+    Samples samples;
+    choose_samples(a, b, result->differing_pixels, &samples);
     const char *turn = find_turn(a, b);
     if (turn)
         snprintf(result->cause, size, "%s", turn);
-    else if (find_shift(a, b, result->differing_pixels, result->cause, size))
+    else if (find_shift(a, b, &samples, result->cause, size))
         return STATUS_OK;
     else if (result->max_code <= 1)
         snprintf(result->cause, size, "only rounding differs: no code is off by more than 1");
     else
-        TRY(find_gain(a, b, result->cause, size, err));
+        TRY(find_gain(a, b, &samples, result->cause, size, err));
     if (!*result->cause && has_equal_outlines(result))
         explain_shading(result);
     return STATUS_OK;

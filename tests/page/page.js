@@ -134,7 +134,7 @@ async function checkZoomAndValues() {
   }
 }
 
-const settled = "new Promise(function (r) { setTimeout(r, 400); })";
+const settled = "new Promise(function (r) { setTimeout(r, 250); })"; // the address is written after 150 ms
 
 // What is shown can be read off the address, and is shown again by it.
 async function checkAddress() {

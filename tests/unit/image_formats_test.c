@@ -217,7 +217,8 @@ static void says_what_it_does_not_read(void **state)
         {"animated.png", "is an animation of 2 pictures"},
         {"wide-profile.png", "has the colour profile \"Wide built-in\""},
         {"wide-profile.tif", "has the colour profile \"Wide built-in\""},
-        {"p3.png", "has the colours of another space (cHRM chunk)"}};
+        {"p3.png", "has the colours of another space (cHRM chunk)"},
+        {"p3.tif", "has the colours of another space (PrimaryChromaticities or WhitePoint)"}};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         char path[128];
         Image image = {.picture = {.width = -7}};
