@@ -145,7 +145,7 @@ static Status make_tolerance(const CompareOptions *options, Tolerance *tolerance
     Tier tier = options->tolerance && !options->has_tier ? TIER_NONE : (Tier)options->tier;
     *tolerance = tier == TIER_A         ? tolerance_identity(options->depth_mm)
                  : tier == TIER_B       ? tolerance_tolerant(options->depth_mm)
-                 : tier == TIER_SURFACE ? tolerance_surface()
+                 : tier == TIER_SURFACE ? tolerance_surface(options->depth_mm)
                                         : tolerance_none();
     if (options->tolerance)
         TRY(tolerance_read(tolerance, name, options->tolerance, err));

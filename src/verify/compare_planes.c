@@ -3,6 +3,7 @@
 #include "verify/labels.h"
 #include "verify/result.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -110,6 +111,14 @@ static void measure_errors(PlaneKind kind, const Plane *a, const Plane *b, const
     result->median = percentile(errors, found, 0.5);
     result->p99 = percentile(errors, found, 0.99);
     result->max = worst;
+    if (kind != PLANE_DEPTH)
+        return;
+    found = 0;
+    for (size_t i = 0; i < result->pixels; i++)
+        if (labels->seen[0][i] && labels->seen[1][i] && !is_settled(tolerance, i))
+            errors[found++] = plane_error(kind, a->values + i, b->values + i) /
+                              fmax(fabs((double)a->values[i]), DBL_MIN);
+    result->p99_part = percentile(errors, found, 0.99);
 }
 
 /* Coverage, regions and the band of any labels; the class of pixels whose labels differ. */

@@ -126,15 +126,18 @@ static void add_geometry_rules(CompareResult *result)
     Finding beyond = {"ppm", ppm(result->beyond_pixels, result->judged_pixels), result->worst,
                       worst};
     Finding p99 = {unit, result->p99, result->worst, worst};
+    Finding part = {"of the depth", result->p99_part, result->worst, worst};
     Finding median = {unit, result->median, result->worst, worst};
     snprintf(worst, sizeof worst, "the worst, %.4g %s, is", result->max, unit);
     snprintf(name, sizeof name, "pixels off by more than %.4g %s",
              depth ? tolerance->depth_max_mm : tolerance->normal_max_deg, unit);
     add_rule(result, beyond, depth ? tolerance->depth_ppm : tolerance->normal_ppm, name);
-    if (depth)
+    if (depth) {
         add_rule(result, p99, tolerance->depth_p99_mm, "99th percentile of differences");
-    else
+        add_rule(result, part, tolerance->depth_p99_part, "99th percentile of differences");
+    } else {
         add_rule(result, median, tolerance->normal_median_deg, "median of differences");
+    }
 }
 
 static void add_id_rules(CompareResult *result)
@@ -181,7 +184,7 @@ void rule_sentence(const CompareResult *result, const Rule *rule, char *out, siz
 {
     char place[120];
     int length =
-        snprintf(out, size, "%s: %s: %.6g%s%s, at most %.6g allowed", plane_kind_name(result->kind),
+        snprintf(out, size, "%s: %s: %.6g%s%s, at most %.6g allowed", result_title(result),
                  rule->name, rule->measured, *rule->unit ? " " : "", rule->unit, rule->allowed);
     if (rule->at.x < 0)
         return;

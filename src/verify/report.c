@@ -1,5 +1,6 @@
 /* The report for programs: JSON and JUnit XML. The page for people is in report_page.c. */
 #include "verify/report.h"
+#include "verify/result.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,6 +20,8 @@ const char *report_reason(const ReportCase *report)
         return worst->reason;
     if (report->settled && !report->settled->agrees)
         return report->settled->reason;
+    if (report->exact && !report->exact->agrees)
+        return report->exact->reason;
     return report->surface && !report->surface->agrees ? report->surface->reason : NULL;
 }
 
@@ -71,6 +74,8 @@ json_t *report_json(const ReportCase *report)
     json_t *json = json_with_members(json_object(), members, sizeof members / sizeof *members);
     if (report->surface)
         json = json_with(json, "surface", surface_check_json(report->surface));
+    if (report->exact)
+        json = json_with(json, "exact", compare_json(report->exact));
     return report->settled ? json_with(json, "settled", settled_json(report->settled)) : json;
 }
 
@@ -114,7 +119,7 @@ static void junit_case(const ReportCase *report, const CompareResult *plane, Tex
 {
     text_puts(out, "    <testcase classname=\"");
     text_escaped(out, report->model);
-    text_printf(out, "\" name=\"%s\">\n      <properties>\n", plane_kind_name(plane->kind));
+    text_printf(out, "\" name=\"%s\">\n      <properties>\n", result_title(plane));
     for (int i = 0; i < plane->n_rules; i++) {
         const Rule *rule = &plane->rules[i];
         text_puts(out, "        <property name=\"");
@@ -183,9 +188,10 @@ static void junit_settled(const ReportCase *report, Text *out)
 
 void report_junit(const ReportCase *report, Text *out)
 {
-    int tests = (report->surface != NULL) + (report->settled != NULL);
+    int tests = (report->surface != NULL) + (report->settled != NULL) + (report->exact != NULL);
     int failures = (report->surface && !report->surface->agrees) +
-                   (report->settled && !report->settled->agrees);
+                   (report->settled && !report->settled->agrees) +
+                   (report->exact && !report->exact->agrees);
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++) {
         tests += report->planes[kind] != NULL;
         failures += report->planes[kind] && !report->planes[kind]->agrees;
@@ -200,6 +206,8 @@ void report_junit(const ReportCase *report, Text *out)
             junit_case(report, report->planes[kind], out);
     if (report->settled)
         junit_settled(report, out);
+    if (report->exact)
+        junit_case(report, report->exact, out);
     if (report->surface)
         junit_surface(report, out);
     text_puts(out, "  </testsuite>\n</testsuites>\n");

@@ -30,6 +30,7 @@ void report_number(Text *out, double value, const char *unit);
 void report_rule_rows(const CompareResult *plane, Text *out);
 void report_metric_tables(const CompareResult *plane, Text *out);
 void report_surface_rows(const SurfaceCheck *surface, Text *rules, Text *metrics);
+void report_exact_rows(const CompareResult *exact, Text *rules, Text *metrics);
 void report_settled_rows(const ReportCase *report, Text *rules, Text *metrics);
 
 /* Appends a picture as a data: URI. */

@@ -140,6 +140,8 @@ static void table_parts(const ReportCase *report, Text parts[PARTS])
         }
     if (report->settled)
         report_settled_rows(report, &parts[PART_RULES], &parts[PART_METRICS]);
+    if (report->exact)
+        report_exact_rows(report->exact, &parts[PART_RULES], &parts[PART_METRICS]);
     if (report->surface)
         report_surface_rows(report->surface, &parts[PART_RULES], &parts[PART_METRICS]);
     for (int i = 0; i < HEAT_STEPS; i++) {

@@ -1,5 +1,6 @@
 /* The rows of a case's two tables. */
 #include "verify/report.h"
+#include "verify/result.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,7 +27,7 @@ void report_rule_rows(const CompareResult *plane, Text *out)
 {
     for (int i = 0; i < plane->n_rules; i++) {
         const Rule *rule = &plane->rules[i];
-        text_printf(out, "<tr><th>%s</th>", i == 0 ? plane_kind_name(plane->kind) : "");
+        text_printf(out, "<tr><th>%s</th>", i == 0 ? result_title(plane) : "");
         text_printf(out, "<td class=\"verdict %s\">%s</td><td>", rule->met ? "good" : "bad",
                     rule->met ? "✓ agree" : "✗ differ");
         text_escaped(out, rule->name);
@@ -40,7 +41,7 @@ void report_rule_rows(const CompareResult *plane, Text *out)
         text_printf(out,
                     "<tr><th>%s</th><td class=\"verdict quiet\">not judged</td><td>the tolerance "
                     "sets no limit</td><td></td><td></td></tr>\n",
-                    plane_kind_name(plane->kind));
+                    result_title(plane));
 }
 
 /* A row of a table of measurements; rows of what could not be measured are left out. */
@@ -167,6 +168,20 @@ void report_surface_rows(const SurfaceCheck *surface, Text *rules, Text *metrics
     metric_row(metrics, "99th percentile", surface->p99_mm, "mm");
     metric_row(metrics, "largest distance", surface->max_mm, "mm");
     metric_row(metrics, "largest over what is allowed", surface->max_ratio, "");
+    end_table(metrics);
+}
+
+void report_exact_rows(const CompareResult *exact, Text *rules, Text *metrics)
+{
+    report_rule_rows(exact, rules);
+    begin_table(metrics, "Colours of the surface where it is");
+    metric_row(metrics, "differing pixels", (double)exact->differing_pixels, "");
+    metric_row(metrics, "largest difference", exact->max_abs, "levels");
+    metric_row(metrics, "largest off the edges", exact->interior_max_abs, "levels");
+    metric_row(metrics, "signed mean, worst channel", exact->bias_levels, "levels");
+    metric_row(metrics, "gain", exact->gain, "");
+    metric_row(metrics, "offset", exact->offset_levels, "levels");
+    metric_row(metrics, "mean of the segment that is off most", exact->segment_levels, "levels");
     end_table(metrics);
 }
 

@@ -23,6 +23,11 @@ const char *pixel_class_name(PixelClass pixel_class)
     return names[pixel_class];
 }
 
+const char *result_title(const CompareResult *result)
+{
+    return result->tolerance.title ? result->tolerance.title : plane_kind_name(result->kind);
+}
+
 CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane *ids,
                            const Tolerance *tolerance)
 {
@@ -64,6 +69,7 @@ CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane 
                            .pixelmatch_pixels = unknown,
                            .median = unknown,
                            .p99 = unknown,
+                           .p99_part = unknown,
                            .max = unknown};
 }
 

@@ -15,6 +15,9 @@ void compare_judge(CompareResult *result);
 /* STATUS_INPUT unless both sides are equal. */
 MUST_CHECK Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *err);
 
+/* What is compared, in words. */
+const char *result_title(const CompareResult *result);
+
 PixelPlace place_of(size_t pixel, int width);
 
 /* A sentence about a rule that is broken, or would be. */

@@ -119,7 +119,8 @@ static json_t *with_kind_keys(json_t *json, const CompareResult *result)
     case PLANE_COLOR:
         return with_color_keys(json, result);
     case PLANE_DEPTH:
-        return with_distances(json, result, "median_abs_mm", "p99_abs_mm", "max_abs_mm");
+        json = with_distances(json, result, "median_abs_mm", "p99_abs_mm", "max_abs_mm");
+        return json_with(json, "p99_part", number(result->p99_part));
     case PLANE_NORMAL:
         return with_distances(json, result, "median_deg", "p99_deg", "max_deg");
     case PLANE_ID:

@@ -44,6 +44,7 @@ static const Field fields[] = {
     NUMBER(depth_max_mm),
     NUMBER(depth_ppm),
     NUMBER(depth_p99_mm),
+    NUMBER(depth_p99_part),
     NUMBER(normal_max_deg),
     NUMBER(normal_ppm),
     NUMBER(normal_median_deg),
@@ -113,15 +114,23 @@ Tolerance tolerance_tolerant(double depth_step_mm)
     return tolerance;
 }
 
-Tolerance tolerance_surface(void)
+Tolerance tolerance_surface(double depth_mm)
 {
     Tolerance tolerance = tolerance_none();
     tolerance.tier = "surface";
     tolerance.color_levels = 2;
-    tolerance.color_ppm = 5000;
-    tolerance.color_common_only = true;
-    tolerance.depth_p99_mm = 0.01;
+    tolerance.interior_ppm = 2000;
+    tolerance.band_ppm = 15000;
+    tolerance.gain = 0.0005;
+    tolerance.offset_levels = 0.15;
+    tolerance.segment_levels = 1;
+    tolerance.segment_px = 0.15;
+    tolerance.segments_missing = 0;
     tolerance.region_pixels = 2;
+    if (depth_mm > 0)
+        tolerance.depth_p99_mm = depth_mm;
+    else
+        tolerance.depth_p99_part = 1e-4;
     return tolerance;
 }
 

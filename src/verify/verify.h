@@ -45,6 +45,7 @@ typedef struct Tolerance {
     double depth_max_mm;     /* for one pixel ... */
     double depth_ppm;        /* ... and how many may exceed it */
     double depth_p99_mm;     /* 99th percentile */
+    double depth_p99_part;   /* likewise, of differences over the depth in A */
     double normal_max_deg;   /* for one pixel ... */
     double normal_ppm;       /* ... and how many may exceed it */
     double normal_median_deg;
@@ -52,9 +53,10 @@ typedef struct Tolerance {
     size_t region_pixels;  /* largest 8-connected region of missing, or of extra, pixels */
     double pixelmatch;     /* threshold of pixelmatch, in [0, 1]; NAN: not counted */
     double pixelmatch_ppm; /* pixels that it finds different */
-    const uint8_t
-        *settled; /* SettledCause of each pixel; no limit counts those that are settled. NULL:
-                             * none is; borrowed, and in no file */
+    const char *title; /* of what is compared, in verdicts; NULL: the plane's name. Borrowed ... */
+    /* SettledCause of each pixel; no limit counts those that are settled. NULL: none is. Borrowed, and
+     * both in no file. */
+    const uint8_t *settled;
 } Tolerance;
 
 /* Nothing is judged but NaN; `tier` is "none". */
@@ -65,10 +67,11 @@ Tolerance tolerance_none(void);
 Tolerance tolerance_identity(double depth_step_mm);
 /* Tier B: what a renderer in single precision keeps, whatever the scene. */
 Tolerance tolerance_tolerant(double depth_step_mm);
-/* Implicit surfaces, whose points both sides find by iteration: depth within 0.01 mm at the 99th
- * percentile, colour within 2 levels on 99.5 % of the pixels seen in both, no region of more than 2
- * pixels missing or extra. */
-Tolerance tolerance_surface(void);
+/* Implicit surfaces, whose points both sides find by iteration: colours within 2 levels but for 2000 ppm
+ * of the pixels off the edges and 15,000 ppm of those at them, of one gain to 0.0005 and one offset to 0.15
+ * levels, no segment brighter or darker by more than a level on average, no outline of one off by 0.15 px, no region of more than 2 pixels missing or extra; depth at the 99th percentile within
+ * `depth_mm`, or, where that is 0, 10^-4 of the depth. */
+Tolerance tolerance_surface(double depth_mm);
 /* Changes what an INI file names: "color_ppm = 20", the keys being the fields of Tolerance, "inf"
  * leaving a rule unjudged; `tier = NAME` is optional, "given" otherwise, and kept in *name (owned).
  * STATUS_INPUT naming file and line on an unknown key and on a value below 0. */
@@ -200,6 +203,7 @@ typedef struct CompareResult {
 
     /* Depth (mm) and normal (degrees), over common pixels; percentiles by nearest rank. */
     double median, p99, max;
+    double p99_part; /* of depths: the 99th percentile of differences over the depth in A */
 } CompareResult;
 
 /* One rendering of a scene, as far as it is known. All is borrowed. */
@@ -325,7 +329,8 @@ typedef struct ReportCase {
     size_t n_commands;
     const CompareResult *planes[PLANE_KINDS]; /* NULL where not compared; colour is required */
     const SurfaceCheck *surface;              /* of an implicit model; NULL: of no such model */
-    const Settled *settled;                   /* NULL: nobody was asked */
+    const CompareResult *exact; /* likewise, the colours of the surface where it is against A's */
+    const Settled *settled;     /* NULL: nobody was asked */
 } ReportCase;
 
 /* Whether every plane agrees, and the surface, and not too much is settled. */

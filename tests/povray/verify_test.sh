@@ -549,6 +549,21 @@ test_another_finish_is_found_out() {
     done
 }
 
+# Where the surface is proven to be, its colours are POV-Ray's but for the accuracy of its steps.
+test_a_hundredth_more_diffuse_light_is_found_in_the_exact_isosurface() {
+    local change
+    tree_3d 30
+    run_ok corcast verify tree.swc --model isosurface --size 160x120 --view iso --shadows on -o report
+    expect_json report/report.json '.exact.verdict == "agree" and .exact.tier == "surface" and .exact.gain - 1 < 0.0005'
+    grep -q '<testcase classname="isosurface" name="exact color">' report/junit.xml || fail "expected a test case"
+    for change in Vessel_Diffuse=0.7272 Vessel_Diffuse=0.7128 Vessel_Ambient=0.125 Vessel_Brilliance=1.02; do
+        povray_with "Declare=$change"
+        run corcast verify tree.swc --model isosurface --size 160x120 --view iso --shadows on -o report
+        expect_status 1
+        expect_json report/report.json '.exact.verdict == "differ" and any(.exact.rules[]; .name == "gain is off 1" and (.met | not))'
+    done
+}
+
 test_joints_as_meshes_look_like_the_exact_ones() {
     cp "$DATA/bifurcation.swc" tree.swc
     povray_with Declare=Joint_Sides=64

@@ -320,20 +320,39 @@ static void allows_no_pixel_off_the_edges_more_than_a_level(void **state)
     }
 }
 
-static void judges_surfaces_by_levels_and_regions(void **state)
+static void judges_surfaces_by_levels_off_the_edges(void **state)
+{
+    (void)state;
+    for (int levels = 2; levels <= 3; levels++) {
+        Pair pair = make_pair(8);
+        change(&pair.b, 22, 11, 0, levels);
+        change(&pair.b, 21, 12, 1, -levels);
+        Tolerance surface = tolerance_surface(0);
+        surface.gain = surface.offset_levels = (double)INFINITY; /* much depends on 197 pixels */
+        CompareResult r = compare(&pair, true, surface);
+        assert_int_equal(r.interior_beyond, levels == 2 ? 0 : 2);
+        assert_int_equal(r.agrees, levels == 2);
+        pair_release(&pair);
+    }
+}
+
+/* A part in a hundred of all that is seen: few pixels are off by more than a level. */
+static void judges_surfaces_by_their_gain(void **state)
 {
     (void)state;
     Pair pair = make_pair(8);
-    for (int y = 5; y < 17; y++)
-        for (int x = 14; x < 22; x++)
-            change(&pair.b, x, y, 0, 2);
-    assert_true(compare(&pair, true, tolerance_surface()).agrees);
-    change(&pair.b, 18, 11, 0, 1);
-    CompareResult r = compare(&pair, true, tolerance_surface());
-    assert_int_equal(r.beyond_pixels, 1);
-    assert_int_equal(r.judged_pixels, r.common_pixels);
-    assert_int_equal(r.judged_pixels, 197);
-    assert_false(r.agrees); /* 1 pixel of 197 is 5076 ppm, and 5000 are allowed */
+    for (int y = 0; y < pair.a.height; y++)
+        for (int x = 0; x < pair.a.width; x++)
+            for (int c = 0; c < 3 && pair.id_a.ids[y * pair.a.width + x]; c++) {
+                int code = picture_code(&pair.a, (size_t)((y * pair.a.width + x) * 3 + c));
+                change(&pair.b, x, y, c, (int)(code * 0.01 + 0.5));
+            }
+    CompareResult r = compare(&pair, true, tolerance_surface(0));
+    assert_false(r.agrees);
+    int broken = 0;
+    for (int i = 0; i < r.n_rules; i++)
+        broken += !r.rules[i].met && strcmp(r.rules[i].name, "gain is off 1") == 0;
+    assert_int_equal(broken, 1);
     pair_release(&pair);
 }
 
@@ -344,7 +363,7 @@ static void refuses_a_surface_with_a_hole_of_three_pixels(void **state)
         Pair pair = make_pair(8);
         for (int x = 20; x < 20 + size; x++)
             pair.id_b.ids[11 * W + x] = 0;
-        CompareResult r = compare(&pair, true, tolerance_surface());
+        CompareResult r = compare(&pair, true, tolerance_surface(0));
         assert_int_equal(r.largest_region, size);
         assert_int_equal(r.agrees, size == 2);
         pair_release(&pair);
@@ -363,7 +382,7 @@ static void reports_sixteen_bit_pictures_in_eight_bit_levels(void **state)
     assert_int_equal(r.differing_pixels, 2);
     assert_int_equal(r.beyond_pixels, 1); /* one code is identity */
     assert_int_equal(r.classes[PIXEL_ROUNDING], 1);
-    r = compare(&pair, true, tolerance_surface());
+    r = compare(&pair, true, tolerance_surface(0));
     assert_int_equal(r.beyond_pixels, 0);
     pair_release(&pair);
 }
@@ -468,14 +487,21 @@ static void takes_percentiles_by_nearest_rank(void **state)
     Plane a, b;
     assert_int_equal(plane_init(&a, 20, 10, 1, &err), STATUS_OK);
     assert_int_equal(plane_init(&b, 20, 10, 1, &err), STATUS_OK);
-    for (int i = 0; i < 200; i++)
-        b.values[i] = (float)(i * 77 % 200 + 1); /* 1 to 200 in another order */
-    CompareResult r = compare_depth(&a, &b, tolerance_surface());
+    for (int i = 0; i < 200; i++) {
+        a.values[i] = 1000;
+        b.values[i] = (float)(i * 77 % 200 + 1001); /* farther by 1 to 200 in another order */
+    }
+    CompareResult r = compare_depth(&a, &b, tolerance_surface(0.01));
     assert_float_equal(r.median, 100, 0);
     assert_float_equal(r.p99, 198, 0);
     assert_float_equal(r.max, 200, 0);
     assert_string_equal(r.reason, "depth: 99th percentile of differences: 198 mm, at most 0.01 "
                                   "allowed; the worst, 200 mm, is at (7, 9)");
+    assert_float_equal(r.p99_part, 0.198, 0);
+    r = compare_depth(&a, &b, tolerance_surface(0));
+    assert_string_equal(r.reason,
+                        "depth: 99th percentile of differences: 0.198 of the depth, at most 0.0001 "
+                        "allowed; the worst, 200 mm, is at (7, 9)");
     plane_release(&a);
     plane_release(&b);
 }
@@ -498,7 +524,7 @@ static void counts_nan_and_never_averages_it_in(void **state)
     assert_false(r.agrees);
     assert_string_equal(r.reason, "depth: values that are not a number: 4 pixels, at most 0 "
                                   "allowed; the first is at (0, 0)");
-    assert_false(compare_depth(&a, &b, tolerance_surface()).agrees);
+    assert_false(compare_depth(&a, &b, tolerance_surface(0)).agrees);
     plane_release(&a);
     plane_release(&b);
 }
@@ -540,7 +566,7 @@ static void finds_nothing_in_common_with_an_empty_plane(void **state)
     fill_depth(&b, -1, 0);
     for (int i = 0; i < W * H; i++)
         b.values[i] = INFINITY;
-    CompareResult r = compare_depth(&a, &b, tolerance_surface());
+    CompareResult r = compare_depth(&a, &b, tolerance_surface(0));
     assert_int_equal(r.common_pixels, 0);
     assert_true(isnan(r.median));
     assert_false(r.agrees);
@@ -601,7 +627,8 @@ int main(void)
         cmocka_unit_test(says_what_is_wrong_and_where),
         cmocka_unit_test(allows_two_pixels_in_a_million),
         cmocka_unit_test(allows_no_pixel_off_the_edges_more_than_a_level),
-        cmocka_unit_test(judges_surfaces_by_levels_and_regions),
+        cmocka_unit_test(judges_surfaces_by_levels_off_the_edges),
+        cmocka_unit_test(judges_surfaces_by_their_gain),
         cmocka_unit_test(refuses_a_surface_with_a_hole_of_three_pixels),
         cmocka_unit_test(reports_sixteen_bit_pictures_in_eight_bit_levels),
         cmocka_unit_test(compares_single_pixels),
