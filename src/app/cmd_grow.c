@@ -28,6 +28,14 @@ static Status write_report(const char *path, const GrowReport *report, const Ref
                   report->root_radius_mm, "tosses", (json_int_t)report->tosses, "rejected",
                   (json_int_t)report->rejected, "thickness", report->thickness, "broken",
                   (json_int_t)report->broken, "complete", report->complete, "threads", threads);
+    json_t *change = json_null();
+    if (report->median_change > 0)
+        change = json_pack("{s:f, s:f, s:f}", "median", report->median_change, "min",
+                           report->least_change, "max", report->greatest_change);
+    if (json_object_set_new(json, "radius_change", change) != 0) {
+        json_decref(json);
+        json = NULL;
+    }
     return json_write(json, path, err);
 }
 
@@ -35,12 +43,51 @@ static void print_report(const GrowReport *report)
 {
     fprintf(stderr, "grew %zu terminals in %.3g s: target %.6g, root radius %.4g mm\n",
             report->terminals, report->seconds, report->target, report->root_radius_mm);
-    if (report->thickness < 1)
+    if (report->median_change > 0)
         fprintf(stderr,
-                "corcast: the domain was too full for vessels of their real thickness: they keep "
-                "clear of each other at %g of it only; ask for fewer terminals, a larger domain or "
-                "a smaller --q-perf\n",
+                "the radii of the tree of --from changed by a median factor of %.2g (%.2g to "
+                "%.2g)\n",
+                report->median_change, report->least_change, report->greatest_change);
+}
+
+/* The domain's size, and what may be wrong with it. */
+static void print_size(const Domain *domain)
+{
+    Box box = domain_bounds(domain);
+    Vec3 size = vec3_sub(box.high, box.low);
+    fprintf(stderr, "the domain, %.4g x %.4g", size.x, size.y);
+    if (domain_dimension(domain) == 3)
+        fprintf(stderr, " x %.4g", size.z);
+    fprintf(stderr, " mm%s, ",
+            (domain->kind == DOMAIN_MESH || domain->kind == DOMAIN_POLYGON) && domain->n_sizes == 0
+                ? " if the file's unit is that (FILE,10 is a file in cm)"
+                : "");
+}
+
+/* What a user has to know of a tree that is not as it should be. */
+static void print_warnings(const GrowReport *report, const Domain *domain, bool refined)
+{
+    Box box = domain_bounds(domain);
+    if (report->root_radius_mm > vec3_distance(box.low, box.high)) {
+        fprintf(stderr, "corcast: ");
+        print_size(domain);
+        fprintf(stderr,
+                "is smaller than the radius of the root, %.4g mm: such a tree is of numbers only; "
+                "move --gamma towards 3 or lower --q-perf\n",
+                report->root_radius_mm);
+    } else if (report->thickness < 1) {
+        fprintf(stderr, "corcast: ");
+        print_size(domain);
+        fprintf(stderr,
+                "was too full for vessels of their real thickness: they keep clear of each other "
+                "at %g of it only; ask for fewer terminals, a larger domain or a smaller "
+                "--q-perf\n",
                 report->thickness);
+    }
+    if (report->broken > 0 && !refined)
+        fprintf(stderr,
+                "corcast: %zu segment%s shorter than wide or too near to others all the same\n",
+                report->broken, report->broken == 1 ? " is" : "s are");
 }
 
 /* Refinement moves all nodes of one tree. */
@@ -111,10 +158,11 @@ Status run_grow(int argc, char **argv, Err *err)
                               err));
     if (!report.complete)
         fprintf(stderr, "corcast grow: %s\n", why.text);
-    if (!parsed.common.quiet) {
+    if (!parsed.common.quiet)
         print_report(&report);
+    print_warnings(&report, &growing.domain, refined.target_before > 0);
+    if (!parsed.common.quiet)
         refining_print(&refined);
-    }
 done:
     growing_release(&growing);
     tree_release(&tree);

@@ -77,7 +77,7 @@ typedef struct TreeSummary {
     double volume_mm3;     /* sum of pi r^2 l */
     double target;         /* sum of l r^lambda [Neumann et al. 1996, eq. 2] */
     double gamma, lambda;  /* lambda: from the params, else from the header */
-    double root_radius_mm; /* the largest of the roots */
+    double root_radius_mm; /* the largest of the roots and of the segments that leave them */
     double min_radius_mm;  /* of all segments; NAN when there is none */
     int max_level;         /* 0 when there is no segment */
     int max_strahler;      /* 0 when there is no segment */

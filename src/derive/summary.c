@@ -17,6 +17,8 @@ static void sum_segments(const Tree *tree, TreeSummary *summary)
             continue;
         }
         double length = tree_segment_length(tree, i);
+        if (!tree_is_segment(tree, (size_t)tree->parent[i]))
+            summary->root_radius_mm = fmax(summary->root_radius_mm, radius);
         summary->segments++;
         summary->total_length_mm += length;
         summary->volume_mm3 += pi * radius * radius * length;

@@ -19,6 +19,8 @@ static const DomainOps *const kinds[] = {
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static const double slack = 1e-6; /* of the diagonal of the bounds */
+/* Of the bounds; points of a domain that fills less of them are not found in a reasonable time. */
+static const double least_filled = 1e-3;
 
 static const DomainOps *ops_of(const Domain *domain)
 {
@@ -42,6 +44,20 @@ static Status refuse_shape(const char *spec, Err *err)
     return status;
 }
 
+/* Whether points can be sampled. */
+static Status check_filling(const Domain *domain, Err *err)
+{
+    Vec3 size = vec3_sub(domain->bounds.high, domain->bounds.low);
+    double box = size.x * size.y * (domain->dimension == 3 ? size.z : 1);
+    if (ops_of(domain)->sample || domain->volume >= least_filled * box)
+        return STATUS_OK;
+    return err_set(err, domain->file ? STATUS_INPUT : STATUS_USAGE,
+                   "%s%sthe domain is too thin to find points in: it fills %.2g of the box around "
+                   "it, and must fill %g",
+                   domain->file ? domain->file : "", domain->file ? ": " : "", domain->volume / box,
+                   least_filled);
+}
+
 Status domain_parse(Domain *domain, const char *spec, Err *err)
 {
     size_t length = strcspn(spec, ":");
@@ -52,6 +68,8 @@ Status domain_parse(Domain *domain, const char *spec, Err *err)
             continue;
         Domain loaded = {.kind = (DomainKind)kind};
         Status status = ops->load(&loaded, values, err);
+        if (status == STATUS_OK)
+            status = check_filling(&loaded, err);
         if (status != STATUS_OK) {
             if (status == STATUS_USAGE)
                 err_prefix(err, "--domain %s: ", spec);

@@ -155,18 +155,33 @@ static Vec3 mask_sample(const Domain *domain, Random *random)
     return point_at(mask, index);
 }
 
-/* Rows of the inverse of the matrix with the columns `step`; false when it has none. */
-static bool invert(const Vec3 step[3], Vec3 inverse[3], double *determinant)
+/* The volume of a voxel is at least this share of that of a brick with the same edges. */
+static const double least_upright = 1e-6;
+
+/* The inverse of the voxels' axes, which are to be of a sensible length and to span space. */
+static Status invert_axes(Mask *mask, const char *file, double *volume, Err *err)
 {
+    const Vec3 *step = mask->step;
+    double brick = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        double length = vec3_length(step[axis]);
+        if (!(length >= DOMAIN_MIN_MM && length <= DOMAIN_MAX_MM))
+            return err_set(err, STATUS_INPUT,
+                           "%s: the sform or qform is wrong: a voxel is %.4g mm long along axis "
+                           "%d; it must be from %g to %g mm",
+                           file, length, axis + 1, DOMAIN_MIN_MM, DOMAIN_MAX_MM);
+        brick *= length;
+    }
     Vec3 across[3] = {vec3_cross(step[1], step[2]), vec3_cross(step[2], step[0]),
                       vec3_cross(step[0], step[1])};
-    *determinant = vec3_dot(step[0], across[0]);
-    for (int axis = 0; axis < 3; axis++) {
-        inverse[axis] = vec3_scale(across[axis], 1 / *determinant);
-        if (!vec3_finite(inverse[axis]))
-            return false;
-    }
-    return isfinite(*determinant);
+    double determinant = vec3_dot(step[0], across[0]);
+    *volume = fabs(determinant);
+    if (!(*volume >= least_upright * brick))
+        return err_set(err, STATUS_INPUT,
+                       "%s: the voxels' axes do not span space; the sform or qform is wrong", file);
+    for (int axis = 0; axis < 3; axis++)
+        mask->inverse[axis] = vec3_scale(across[axis], 1 / determinant);
+    return STATUS_OK;
 }
 
 static Status list_tissue(Domain *domain, Err *err)
@@ -239,17 +254,13 @@ static Status mask_load(Domain *domain, const char *values, Err *err)
     TRY(domain_load_file_name(domain, values, err));
     TRY(mem_calloc(&domain->mask, 1, sizeof *domain->mask, "masks", err));
     TRY(read_file(domain, err));
-    Mask *mask = domain->mask;
-    double determinant;
-    if (!invert(mask->step, mask->inverse, &determinant))
-        return err_set(err, STATUS_INPUT,
-                       "%s: the voxels' axes do not span space; the sform or qform is wrong",
-                       domain->file);
+    double volume = 0;
+    TRY(invert_axes(domain->mask, domain->file, &volume, err));
     TRY(list_tissue(domain, err));
     find_extent(domain);
     TRY(domain_check_point(domain->file, 0, domain->bounds.low, err));
     TRY(domain_check_point(domain->file, 0, domain->bounds.high, err));
-    domain->volume = fabs(determinant) * (double)mask->n_tissue;
+    domain->volume = volume * (double)domain->mask->n_tissue;
     return STATUS_OK;
 }
 

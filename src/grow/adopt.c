@@ -40,6 +40,28 @@ static Status check_node(const Tree *from, size_t i, int32_t children, const Dom
     return STATUS_OK;
 }
 
+size_t adopt_outside(const Tree *from, const Domain *domain)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < from->n; i++)
+        count += !domain_inside(domain, from->position[i], domain->slack_mm);
+    return count;
+}
+
+/* Whether a part of the tree at least is in the domain. */
+static Status check_place(const Tree *from, const Domain *domain, Err *err)
+{
+    if (adopt_outside(from, domain) < from->n)
+        return STATUS_OK;
+    Box tree = tree_bounds(from), box = domain_bounds(domain);
+    return err_set(err, STATUS_INPUT,
+                   "--from: the domain does not hold the tree: it is at x %.4g to %.4g, y %.4g to "
+                   "%.4g, z %.4g to %.4g mm, and the domain at x %.4g to %.4g, y %.4g to %.4g, "
+                   "z %.4g to %.4g mm",
+                   tree.low.x, tree.high.x, tree.low.y, tree.high.y, tree.low.z, tree.high.z,
+                   box.low.x, box.high.x, box.low.y, box.high.y, box.low.z, box.high.z);
+}
+
 Status adopt_check(const GrowParams *params, const Domain *domain, Err *err)
 {
     const Tree *from = params->from;
@@ -58,6 +80,8 @@ Status adopt_check(const GrowParams *params, const Domain *domain, Err *err)
         terminals += children[i] == 0;
     }
     free(children);
+    if (status == STATUS_OK)
+        status = check_place(from, domain, err);
     if (status == STATUS_OK && params->terminals <= terminals)
         status = err_set(err, STATUS_USAGE,
                          "--terminals %zu: must be above the %zu that the tree of --from has",
@@ -131,4 +155,36 @@ Status adopt_restore(const Tree *from, const Network *net, Tree *out, Err *err)
         if (!has_key_of(out, from->header.lines[i]))
             TRY(tree_add_line(out, from->header.lines[i], err));
     return STATUS_OK;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+Status adopt_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err)
+{
+    int32_t *node = NULL; /* of `from`, by id, plus 1 */
+    double *change = NULL;
+    size_t n = 0;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&node, TREE_MAX_ID + 1, sizeof *node, "ids", err));
+    TRY_GOTO(mem_calloc(&change, from->n, sizeof *change, "radii", err));
+    for (size_t i = 0; i < from->n; i++)
+        if (tree_is_segment(from, i) && from->radius_mm[i] > 0)
+            node[from->id[i]] = (int32_t)i + 1;
+    for (size_t i = 0; i < out->n; i++)
+        if (node[out->id[i]] > 0)
+            change[n++] = out->radius_mm[i] / from->radius_mm[node[out->id[i]] - 1];
+    qsort(change, n, sizeof *change, ascending);
+    if (n > 0) {
+        report->median_change = (change[(n - 1) / 2] + change[n / 2]) / 2;
+        report->least_change = change[0];
+        report->greatest_change = change[n - 1];
+    }
+done:
+    free(node);
+    free(change);
+    return status;
 }

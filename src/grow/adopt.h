@@ -20,4 +20,11 @@ void adopt_tree(const Tree *from, Network *net);
  * has no line of. */
 MUST_CHECK Status adopt_restore(const Tree *from, const Network *net, Tree *out, Err *err);
 
+/* What the radii of the segments of `from` were multiplied by in `out`, whose ids are restored: median, least
+ * and greatest in *report, 0 when none had a radius. */
+MUST_CHECK Status adopt_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err);
+
+/* How many nodes of the tree are outside the domain. */
+size_t adopt_outside(const Tree *from, const Domain *domain);
+
 #endif

@@ -46,7 +46,12 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
                              net->law.gamma);
     }
     for (size_t k = 0; k < net->inlets; k++)
-        tree->radius_mm[net->inlet[k]] = tree->radius_mm[net->inlet[k] + 1];
+        tree->radius_mm[net->inlet[k]] = 0;
+    for (size_t i = 0; i < net->n; i++) {
+        int32_t parent = net->segment[i].parent;
+        if (parent >= 0 && net->segment[parent].parent < 0)
+            tree->radius_mm[parent] = fmax(tree->radius_mm[parent], tree->radius_mm[i]);
+    }
     free(gauge);
     return status;
 }

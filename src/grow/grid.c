@@ -42,12 +42,26 @@ static double clamp01(double t)
     return t < 0 ? 0 : t > 1 ? 1 : t;
 }
 
+/* A grid has at most this many cells more than LEAST_CELLS for each that is asked for. */
+enum { CELLS_PER_ASKED = 8, LEAST_CELLS = 4096 };
+
+/* The edge of the cells: cubes, unless the box is so thin for its length that these would be far too many. */
+static double edge_for(Vec3 size, double cells)
+{
+    double edge =
+        size.z > 0 ? cbrt(size.x * size.y * size.z / cells) : sqrt(size.x * size.y / cells);
+    while ((size.x / edge + 1) * (size.y / edge + 1) * (size.z / edge + 1) >
+           LEAST_CELLS + CELLS_PER_ASKED * cells)
+        edge *= 1.25;
+    return edge;
+}
+
 Status grid_reset(Grid *grid, Box box, double cells, size_t segments, int workers, Err *err)
 {
     grid_release(grid);
     Vec3 size = vec3_sub(box.high, box.low);
     Grid made = {.low = box.low, .workers = workers};
-    made.edge = size.z > 0 ? cbrt(size.x * size.y * size.z / cells) : sqrt(size.x * size.y / cells);
+    made.edge = edge_for(size, cells);
     made.inverse = 1 / made.edge;
     for (int axis = 0; axis < 3; axis++)
         made.count[axis] = (int)(vec3_component(size, axis) / made.edge) + 1;

@@ -256,24 +256,27 @@ static void gather_row(Search *search, int first, int last, int step, int y, int
 {
     const Grid *grid = search->grid;
     double across2 = excess2(search, y, 1) + excess2(search, z, 2);
-    for (int x = first; x <= last; x += step) {
-        if (x < 0 || x >= grid->count[0])
-            continue;
+    if (first < 0)
+        first += (step - 1 - first) / step * step;
+    for (int x = first; x <= last && x < grid->count[0]; x += step)
         if (search->count < search->limit ||
             across2 + excess2(search, x, 0) <= (double)search->list[search->count - 1].distance2)
             gather_cell(search, grid_index(grid, x, y, z));
-    }
 }
 
 /* Gathers the cells at `ring` steps from the point's own: whole rows at the faces of the cube, the
  * two ends of rows between them. */
 static void gather_ring(Search *search, int ring)
 {
-    const int *home = search->home, *count = search->grid->count;
-    for (int z = home[2] - ring; z <= home[2] + ring; z++)
-        for (int y = home[1] - ring; y <= home[1] + ring; y++) {
-            if (z < 0 || z >= count[2] || y < 0 || y >= count[1])
-                continue;
+    const int *home = search->home;
+    int low[3], high[3]; /* of the cube, within the grid */
+    for (int axis = 1; axis < 3; axis++) {
+        int last = search->grid->count[axis] - 1;
+        low[axis] = home[axis] > ring ? home[axis] - ring : 0;
+        high[axis] = last - home[axis] > ring ? home[axis] + ring : last;
+    }
+    for (int z = low[2]; z <= high[2]; z++)
+        for (int y = low[1]; y <= high[1]; y++) {
             bool face = abs(z - home[2]) == ring || abs(y - home[1]) == ring;
             gather_row(search, home[0] - ring, home[0] + ring, face ? 1 : 2 * ring, y, z);
         }

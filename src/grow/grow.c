@@ -176,6 +176,13 @@ static Status be_patient(Growth *growth, size_t made, Err *err)
     }
     if (troubled == 0 || growth->crowded + growth->outside < LAST_PATIENCE)
         return STATUS_OK;
+    size_t outside = growth->params->from ? adopt_outside(growth->params->from, growth->domain) : 0;
+    if (outside > 0)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "no room for terminal %zu of --terminals %zu in %zu tries: the domain does "
+                       "not hold the tree of --from, of which %zu of %zu nodes are outside",
+                       growth->net.terminals + 1, growth->params->terminals,
+                       growth->crowded + growth->outside, outside, growth->params->from->n);
     return err_set(err, STATUS_INFEASIBLE,
                    "no room for terminal %zu of --terminals %zu in %zu tries: lower --terminals, "
                    "choose a larger --domain, or move --gamma and --lambda towards 3 and 2",
@@ -328,16 +335,21 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
                               &broken, err));
     grid_release(&growth.grid);
     TRY_GOTO(finish_tree(&growth.net, params, domain, out, err));
-    if (report)
-        *report = (GrowReport){.seconds = clock_seconds() - begun,
-                               .terminals = growth.net.terminals,
-                               .target = target_of(out),
-                               .root_radius_mm = root_radius_of(out),
-                               .tosses = growth.tosses,
-                               .rejected = growth.rejected,
-                               .thickness = growth.rules.thickness,
-                               .broken = broken,
-                               .complete = complete};
+    if (!report)
+        goto done;
+    *report = (GrowReport){.seconds = clock_seconds() - begun,
+                           .terminals = growth.net.terminals,
+                           .target = target_of(out),
+                           .root_radius_mm = root_radius_of(out),
+                           .tosses = growth.tosses,
+                           .rejected = growth.rejected,
+                           .thickness = growth.rules.thickness,
+                           .broken = broken,
+                           .complete = complete};
+    if (params->from)
+        status = adopt_changes(params->from, out, report, err);
+    if (status != STATUS_OK)
+        tree_release(out);
 done:
     pass_release(&growth.pass);
     grid_release(&growth.grid);

@@ -71,6 +71,8 @@ typedef struct GrowReport {
      * thick, down to 0 for centrelines that do not cross. */
     double thickness;
     size_t broken; /* segments that widened so much that this does not hold for them */
+    /* What the radii of the segments grown on from were multiplied by; 0 where there are none. */
+    double median_change, least_change, greatest_change;
     bool complete; /* false: a partial tree; err holds the sentence that says why */
 } GrowReport;
 

@@ -8,6 +8,9 @@
 #include "grow/grid.h"
 #include <stdlib.h>
 
+/* A lattice over a box that is very thin for its length has at most POINTS_PER_ASKED as many points as a
+ * box of that volume asks for, and LEAST_POINTS. */
+enum { POINTS_PER_ASKED = 8, LEAST_POINTS = 16384 };
 /* Cells of the grid a terminal. */
 static const double cells_per_terminal = 1;
 
@@ -31,7 +34,11 @@ static void lay_lattice(Survey *survey, double points)
     Box box = domain_bounds(survey->domain);
     Vec3 size = vec3_sub(box.high, box.low);
     double share = domain_volume(survey->domain) / points; /* of a point */
-    double spacing = domain_dimension(survey->domain) == 2 ? sqrt(share) : cbrt(share);
+    bool flat = domain_dimension(survey->domain) == 2;
+    double spacing = flat ? sqrt(share) : cbrt(share);
+    double most = LEAST_POINTS + POINTS_PER_ASKED * size.x * size.y * (flat ? 1 : size.z) / share;
+    while ((size.x / spacing + 1) * (size.y / spacing + 1) * (size.z / spacing + 1) > most)
+        spacing *= 1.25;
     survey->count[0] = lattice_count(size.x, spacing);
     survey->count[1] = lattice_count(size.y, spacing);
     survey->count[2] = lattice_count(size.z, spacing);

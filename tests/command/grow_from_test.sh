@@ -68,6 +68,52 @@ test_a_grown_tree_grows_on_and_stays_as_it_is() {
         fail "expected the ids 1 to 1800"
 }
 
+test_a_tree_far_from_the_domain_is_refused_with_both_places() {
+    write_measured
+    awk '/^[0-9]/ { $3 += 83.5 } { print }' measured.swc >away.swc
+    run corcast grow --from away.swc --terminals 50 -o grown.swc
+    expect_status 2
+    expect_sentence 'the domain does not hold the tree: it is at x 7[0-9.]+ to .* and the domain at x -20 to 20'
+    expect_only measured.swc away.swc
+}
+
+# One tip of the tree is in a small part of the domain, from which no vessel leads into the large one.
+test_a_domain_that_holds_a_part_of_the_tree_is_said_to_when_there_is_no_room() {
+    write_measured
+    printf '50 0\n95 0\n95 45\n50 45\n\n5.99 1.99\n6.01 1.99\n6.01 2.01\n5.99 2.01\n' >apart.txt
+    run corcast grow --from measured.swc --domain polygon:apart.txt --terminals 20 -o grown.swc
+    expect_status 2
+    expect_sentence 'the domain does not hold the tree of --from, of which [0-9]+ of 10 nodes are outside'
+}
+
+test_it_is_said_how_the_radii_of_the_tree_changed() {
+    write_measured
+    run_ok corcast grow --from measured.swc --terminals 150 --q-perf 30 -o grown.swc --json grown.json
+    grep -q 'the radii of the tree of --from changed by a median factor of [0-9.]* ([0-9.]* to [0-9.]*)' stderr ||
+        fail "expected the change of the radii$(said)"
+    grep -v '^#' measured.swc | awk '{ print $1, $6 }' | sort >before
+    grep -v '^#' grown.swc | awk '{ print $1, $6 }' | sort >after
+    join before after | awk '$1 != 100 { print $3 / $2 }' | sort -g >changes
+    expect_json grown.json "(.radius_change.min - $(head -1 changes) | fabs) < 1e-4 and
+        (.radius_change.max - $(tail -1 changes) | fabs) < 1e-4 and
+        (.radius_change.median - $(sed -n 5p changes) | fabs) < 1e-4"
+}
+
+# An inlet from which a thin vessel leaves first, then a thick one.
+test_the_root_has_the_radius_of_the_thickest_vessel_that_leaves_it() {
+    printf '%s\n' '# domain: rect:40,40' '1 3 0 15 0 0.2 -1' '2 3 -3 10 0 0.2 1' '3 3 2 8 0 1.9 1' '4 3 -4 -6 0 0.7 3' \
+        '5 3 6 -7 0 0.9 3' '6 3 9 -12 0 0.6 5' '7 3 3 -15 0 0.6 5' >forked.swc
+    run_ok corcast info forked.swc --json
+    expect_json stdout '.root_radius_mm == 1.9'
+    run_ok corcast grow --from forked.swc --terminals 60 -o grown.swc --json grown.json
+    local thickest
+    thickest=$(grep -v '^#' grown.swc | awk '$7 == 1 && $6 > r { r = $6 } END { print r }')
+    [ "$(grep '^1 ' grown.swc | cut -d ' ' -f 6)" = "$thickest" ] || fail "expected a root of radius $thickest"
+    expect_json grown.json ".root_radius_mm == $thickest"
+    run_ok corcast info grown.swc --json
+    expect_json stdout ".root_radius_mm == $thickest"
+}
+
 test_the_checker_of_what_stays_finds_what_does_not() {
     run_ok corcast grow --terminals 20 -o first.swc
     run_ok corcast grow --from first.swc --terminals 60 -o second.swc

@@ -185,6 +185,56 @@ test_quiet_says_nothing_and_otherwise_one_line_is_said() {
     [ ! -s stderr ] || fail "expected silence$(said)"
 }
 
+test_a_tree_that_is_not_as_it_should_be_is_said_even_when_quiet() {
+    run_ok corcast grow --terminals 50 --gamma 1.568 --lambda 0 --domain ball:11.51 -o tree.swc --quiet --json t.json
+    if [ "$(jq .broken t.json)" -gt 0 ]; then
+        expect_sentence "$(jq .broken t.json) segments? (is|are) shorter than wide or too near"
+    fi
+    run_ok corcast grow --terminals 500 --gamma 0.5 --domain shell:30,50,30,10,20 -o tree.swc --quiet
+    grep -q 'smaller than the radius of the root, [0-9.e+]* mm: such a tree is of numbers only' stderr ||
+        fail "expected a warning of a root larger than the domain$(said)"
+    run_ok corcast grow --terminals 400 --domain rect:40,30 --q-perf 90000 -o tree.swc --quiet
+    grep -q '^corcast: the domain, 40 x 30 mm, was too full' stderr || fail "expected a warning with a size$(said)"
+}
+
+test_a_mesh_that_is_too_small_is_asked_about_its_unit() {
+    printf 'v 0 0 0\nv 9.1 0 0\nv 0 8.3 0\nv 0 0 7.2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >cm.obj
+    run_ok corcast grow --domain mesh:cm.obj --terminals 200 -o tree.swc
+    grep -q 'the domain, 9.1 x 8.3 x 7.2 mm if the file.s unit is that' stderr || fail "expected the size$(said)"
+    run_ok corcast grow --domain mesh:cm.obj,10 --terminals 200 -o tree.swc
+    ! grep -q 'unit' stderr || fail "expected no word of the unit where it is given$(said)"
+}
+
+test_a_domain_too_thin_to_find_points_in_is_refused() {
+    printf '0 0\n1000 1000\n1000 1000.000001\n' >thin.txt
+    run timeout 20 "$CORCAST" grow --domain polygon:thin.txt -o tree.swc
+    expect_status 2
+    expect_sentence 'thin.txt: the domain is too thin to find points in: it fills [0-9.e-]+ of the box'
+    run timeout 20 "$CORCAST" grow --domain shell:10,10,10,1e-6 -o tree.swc
+    expect_status 2
+    expect_sentence '^corcast grow: --domain shell:10,10,10,1e-6: the domain is too thin'
+}
+
+test_a_domain_much_longer_than_wide_is_grown_in_seconds() {
+    local domain
+    for domain in rect:1e6,1e-6 ellipsoid:1,1e6,1 box:1e-6,1e6,1e6; do
+        run bash -c 'ulimit -t 10; exec "$@"' sh "$CORCAST" grow --domain $domain --terminals 20 -o tree.swc
+        expect_status 0
+    done
+}
+
+test_a_tree_in_any_shape_that_the_checker_knows_stays_inside() {
+    printf '0 0\n60 0\n60 60\n0 60\n\n20 20\n40 20\n40 40\n20 40\n' >hole.txt
+    local domain
+    for domain in shell:30,50,30,10 shell:20.5,41.3,18.7,6.1,-3.2 polygon:hole.txt polygon:hole.txt,0.83; do
+        run_ok corcast grow --terminals 300 --domain $domain -o tree.swc
+        check_tree tree.swc
+    done
+    sed 's/^\(150 3\) [^ ]* [^ ]*/\1 24.9 24.9/' tree.swc >hole.swc
+    run "$CHECK_TREE" hole.swc
+    expect_status 1
+}
+
 test_an_output_in_a_missing_folder_is_refused() {
     run corcast grow --terminals 3 -o missing/tree.swc
     expect_status 3

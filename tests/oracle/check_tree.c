@@ -12,7 +12,8 @@
  * - every terminal is at p_term, to 1e-9 of p_perf - p_term, when all inlets are at p_perf and the
  *   terminals share q_perf evenly, or as the flow_share lines say (Poiseuille, with the viscosity
  *   constant or by Pries 1994);
- * - every point lies in the domain (disc, ball, rect, box, ellipsoid), to 1e-9 mm;
+ * - every point lies in the domain (disc, ball, rect, box, ellipsoid), to 1e-9 mm; of a shell and of a
+ *   polygon, whose file is looked for here, every segment, at 1 + 64 places and to 1e-6 of its size;
  * - in two dimensions, no two segments share a point other than a common node.
  * Prints what `corcast info --json` should say, the largest deviations, how many segments are shorter
  * than wide, and how many pairs without a common node overlap at their real thickness, as "key
@@ -281,8 +282,103 @@ static bool inside(const char *kind, long double x, long double y, long double z
     return hypotl(hypotl(x, y), z) <= 1;
 }
 
+/* Corners of rings, one after the other; `next` is the number of the next corner of the ring. */
+typedef struct Corner {
+    long double x, y;
+    int next;
+} Corner;
+
+/* Rings in the text file of a polygon, its unit `mm`. */
+static int read_polygon(const char *path, long double mm, Corner **out)
+{
+    FILE *file = fopen(path, "r");
+    if (!file)
+        fail("%s: %s", path, strerror(errno));
+    char line[1000];
+    int n = 0, first = 0;
+    Corner *corners = NULL;
+    for (bool more = true; more;) {
+        long double x, y;
+        more = fgets(line, sizeof line, file) != NULL;
+        if (more && sscanf(line, "%Lf %Lf", &x, &y) == 2) {
+            corners = grown(corners, n, sizeof *corners);
+            corners[n] = (Corner){x * mm, y * mm, n + 1};
+            n++;
+        } else if (n > first) {
+            corners[n - 1].next = first;
+            first = n;
+        }
+    }
+    fclose(file);
+    *out = corners;
+    return n;
+}
+
+/* Whether the rings wind around (x, y) an odd number of times, or it is within `slack` of one. */
+static bool in_polygon(const Corner *corners, int n, long double x, long double y,
+                       long double slack)
+{
+    bool odd = false;
+    for (int i = 0; i < n; i++) {
+        Corner a = corners[i], b = corners[a.next];
+        long double ux = b.x - a.x, uy = b.y - a.y, wx = x - a.x, wy = y - a.y;
+        long double t = fminl(1, fmaxl(0, (ux * wx + uy * wy) / (ux * ux + uy * uy)));
+        if (hypotl(wx - t * ux, wy - t * uy) <= slack)
+            return true;
+        odd ^= (a.y <= y) != (b.y <= y) && x < a.x + (y - a.y) / uy * ux;
+    }
+    return odd;
+}
+
+/* Whether a point is in the wall of the ventricle: semi-axes, thickness and base, to a slack. */
+static bool in_shell(const long double size[5], long double x, long double y, long double z,
+                     long double slack)
+{
+    long double outer = 0, cavity = 0, at[3] = {x, y, z};
+    for (int axis = 0; axis < 3; axis++) {
+        outer += powl(at[axis] / (size[axis] + slack), 2);
+        cavity += powl(at[axis] / (size[axis] - size[3] - slack), 2);
+    }
+    return outer <= 1 && cavity >= 1 && y <= size[4] + slack;
+}
+
+/* The domains that segments may leave between their ends. True for one of them. */
+static bool check_hollow_domain(const Node *nodes, int n, const Header *header)
+{
+    long double size[5], mm = 1;
+    char file[200] = "";
+    int sizes = sscanf(header->domain, "shell:%Lf,%Lf,%Lf,%Lf,%Lf", &size[0], &size[1], &size[2],
+                       &size[3], &size[4]);
+    bool polygon = sscanf(header->domain, "polygon:%199[^,],%Lf", file, &mm) >= 1;
+    if (!polygon && sizes < 4)
+        return false;
+    if (sizes == 4)
+        size[4] = (size[1] - size[3]) / 2;
+    Corner *corners = NULL;
+    int count = polygon ? read_polygon(file, mm, &corners) : 0;
+    long double slack = polygon ? 0 : 2e-6L * size[1];
+    for (int i = 0; i < count; i++)
+        slack = fmaxl(slack, 3e-6L * fmaxl(fabsl(corners[i].x), fabsl(corners[i].y)));
+    enum { PLACES = 64 };
+    for (int i = 0; i < n; i++) {
+        const Node *b = &nodes[i], *a = b->parent < 0 ? b : &nodes[b->parent];
+        for (int k = 0; k <= PLACES; k++) {
+            long double t = (long double)k / PLACES;
+            long double x = a->x + t * (b->x - a->x), y = a->y + t * (b->y - a->y);
+            long double z = a->z + t * (b->z - a->z);
+            if (polygon ? z != 0 || !in_polygon(corners, count, x, y, slack)
+                        : !in_shell(size, x, y, z, slack))
+                fail("segment %ld leaves the domain", b->id);
+        }
+    }
+    free(corners);
+    return true;
+}
+
 static void check_domain(const Node *nodes, int n, const Header *header)
 {
+    if (check_hollow_domain(nodes, n, header))
+        return;
     char kind[16];
     long double size[3] = {0, 0, 0};
     int sizes =

@@ -388,6 +388,16 @@ static void nifti_files_that_are_no_mask_are_refused(void **state)
     flat[10] = 0;
     bad = nifti;
     put_sform(&bad, flat);
+    expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE, "a voxel is 0 mm long along axis 3");
+    flat[10] = 2.385e-9F;
+    put_sform(&bad, flat);
+    expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE,
+                         "a voxel is 2.385e-09 mm long along axis 3; it must be from 1e-06");
+    flat[10] = 1e30F;
+    put_sform(&bad, flat);
+    expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE, "a voxel is 1e+30 mm long");
+    const float aslant[12] = {2, 2, 0, 5, 3, 3.000001F, 0, 7, 0, 0, 2.5, -1};
+    put_sform(&bad, aslant);
     expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE, "do not span space");
     bad = nifti;
     memset(bad.bytes + NIFTI_HEADER, 0, 2 * NIFTI_VOXELS);
