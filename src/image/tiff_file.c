@@ -3,6 +3,7 @@
  * a pixel is a linear function of its column and row in the file. */
 #include "image/formats.h"
 
+#include "image/tiff_memory.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +12,7 @@
 typedef struct Tiff {
     ImageBytes file;
     size_t at;
-    TIFF *handle;
+    void *handle;           /* a TIFF */
     uint32_t width, height; /* in the file */
     int samples, bits;
     bool floats;
@@ -19,7 +20,8 @@ typedef struct Tiff {
     int64_t origin, across, down;     /* the pixel of column 0, row 0; how far the next ones are */
     uint32_t part_width, part_height; /* of a tile, or of a row */
     size_t part_bytes;
-    void *part; /* owned */
+    void *part;  /* owned */
+    Image image; /* made; owned */
     char complaint[200];
 } Tiff;
 
@@ -296,8 +298,10 @@ static Status check_single(Tiff *self, Err *err)
     return STATUS_OK;
 }
 
-static Status decode(Tiff *self, Image *image, Err *err)
+static Status decode(void *work, Err *err)
 {
+    Tiff *self = work;
+    Image *image = &self->image;
     self->handle = open_handle(self);
     if (!self->handle)
         return unsound(self, err);
@@ -317,14 +321,13 @@ Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
 {
     Tiff self = {.file = *file};
     errno = 0;
-    Image made = {0};
-    Status status = decode(&self, &made, err);
+    Status status = tiff_guard(decode, &self, &self.handle, file->name, err);
     if (self.handle)
         TIFFClose(self.handle);
     free(self.part);
     if (status == STATUS_OK)
-        *image = made;
+        *image = self.image;
     else
-        image_release(&made);
+        image_release(&self.image);
     return status;
 }

@@ -3,6 +3,7 @@
  * need more than 32 bits. libtiff goes back to the header at the end, so it needs a file with places. */
 #include "image/formats.h"
 
+#include "image/tiff_memory.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +15,8 @@ static const double classic_bytes = 4.0e9; /* deflate may add a little to 4 GB l
 
 typedef struct Writer {
     FILE *stream;
-    TIFF *handle;
+    void *handle;          /* a TIFF */
+    const ImageForm *form; /* while it is begun */
     size_t row_bytes;
     int rows_per_strip, height;
     uint8_t *strip; /* owned */
@@ -94,8 +96,15 @@ static TIFF *open_handle(Writer *self, bool big)
 static Status failed(Writer *self, Err *err)
 {
     image_plain_text(self->complaint);
+    if (errno == ENOMEM)
+        return mem_out_of("for the TIFF", "that is written", err);
     return err_set(err, STATUS_IO, "writing the TIFF failed: %s",
                    *self->complaint ? self->complaint : strerror(errno));
+}
+
+static Status guarded(TiffWork *work, Writer *self, Err *err)
+{
+    return tiff_guard(work, self, &self->handle, "that is written", err);
 }
 
 static bool set_fields(TIFF *handle, const ImageForm *form, int rows_per_strip)
@@ -121,6 +130,16 @@ static bool set_fields(TIFF *handle, const ImageForm *form, int rows_per_strip)
     return set;
 }
 
+static Status begin_handle(void *self, Err *err)
+{
+    Writer *writer = self;
+    const ImageForm *form = writer->form;
+    writer->handle = open_handle(writer, (double)writer->row_bytes * form->height > classic_bytes);
+    if (!writer->handle || !set_fields(writer->handle, form, writer->rows_per_strip))
+        return failed(writer, err);
+    return STATUS_OK;
+}
+
 static Status begin(FILE *stream, const ImageForm *form, void **self, Err *err)
 {
     Writer *writer;
@@ -138,19 +157,20 @@ static Status begin(FILE *stream, const ImageForm *form, void **self, Err *err)
         return err_set(err, STATUS_IO, "a TIFF needs a file, not a pipe");
     TRY(mem_calloc(&writer->strip, (size_t)writer->rows_per_strip, writer->row_bytes, "strips",
                    err));
-    writer->handle = open_handle(writer, (double)writer->row_bytes * form->height > classic_bytes);
-    if (!writer->handle || !set_fields(writer->handle, form, writer->rows_per_strip))
-        return failed(writer, err);
-    return STATUS_OK;
+    writer->form = form;
+    return guarded(begin_handle, writer, err);
 }
 
 /* libtiff may change the strip that it is given. */
-static Status write_strip(Writer *self, Err *err)
+static Status write_strip(void *self, Err *err)
 {
-    tmsize_t size = (tmsize_t)((size_t)self->filled * self->row_bytes);
-    self->filled = 0;
-    if (TIFFWriteEncodedStrip(self->handle, self->next++, self->strip, size) != size)
-        return failed(self, err);
+    Writer *writer = self;
+    tmsize_t size = (tmsize_t)((size_t)writer->filled * writer->row_bytes);
+    writer->filled = 0;
+    errno = 0; /* without room for libdeflate, libtiff takes zlib, which makes other bytes */
+    if (TIFFWriteEncodedStrip(writer->handle, writer->next++, writer->strip, size) != size ||
+        errno == ENOMEM)
+        return failed(writer, err);
     return STATUS_OK;
 }
 
@@ -162,15 +182,29 @@ static Status write_rows(void *self, const void *values, int first, int n, Err *
         memcpy(writer->strip + (size_t)writer->filled++ * writer->row_bytes,
                bytes + (size_t)y * writer->row_bytes, writer->row_bytes);
         if (writer->filled == writer->rows_per_strip || first + y + 1 == writer->height)
-            TRY(write_strip(writer, err));
+            TRY(guarded(write_strip, writer, err));
     }
     return STATUS_OK;
 }
 
-static Status end(void *self, Err *err)
+static Status write_directory(void *self, Err *err)
 {
     Writer *writer = self;
     return TIFFWriteDirectory(writer->handle) == 1 ? STATUS_OK : failed(writer, err);
+}
+
+static Status end(void *self, Err *err)
+{
+    return guarded(write_directory, self, err);
+}
+
+/* Also writes what libtiff still holds. */
+static Status clean_up(void *self, Err *err)
+{
+    (void)err;
+    Writer *writer = self;
+    TIFFCleanup(writer->handle);
+    return STATUS_OK;
 }
 
 static void release_writer(void *self)
@@ -179,7 +213,7 @@ static void release_writer(void *self)
     if (!writer)
         return;
     if (writer->handle)
-        TIFFCleanup(writer->handle);
+        (void)!guarded(clean_up, writer, NULL);
     free(writer->strip);
     free(writer);
 }

@@ -51,6 +51,8 @@ test_failed_allocations_in_convert() {
     fail_each 1 one convert ../tree.swc o.swc
     fail_each 1 one convert ../a.png o.ppm
     fail_each 1 one convert "$DATA/images/depth.exr" o.pfm
+    fail_each 1 one convert ../a.png o.tif
+    fail_each 1 one convert "$DATA/images/rgb8-lzw.tif" o.ppm
 }
 
 test_failed_allocations_in_scene() {
