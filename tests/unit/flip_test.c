@@ -150,6 +150,35 @@ static void reproduces_the_table_of_ciede2000(void **state)
     assert_int_equal(rows, 34);
 }
 
+/* A square of 5 x 5 pixels that differ by so much from a grey ground counts up to the threshold at which
+ * 0.5053 y^2 + 0.299 i^2 + 0.1957 q^2 of the difference is 35215 times its square, worked out in decimals. */
+static void counts_what_pixelmatch_counts_up_to_the_threshold(void **state)
+{
+    (void)state;
+    const struct {
+        int difference[3];
+        double threshold;
+    } cases[] = {{{60, 0, 0}, 0.127931572},
+                 {{0, 60, 0}, 0.159807218},
+                 {{0, 0, 60}, 0.076021259},
+                 {{40, -25, 10}, 0.099083890}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        Picture a, b;
+        assert_int_equal(picture_init(&a, 12, 9, 3, 8, &err), STATUS_OK);
+        assert_int_equal(picture_init(&b, 12, 9, 3, 8, &err), STATUS_OK);
+        for (int i = 0; i < 12 * 9 * 3; i++) {
+            int x = i / 3 % 12, y = i / 3 / 12;
+            bool inside = x >= 4 && x < 9 && y >= 2 && y < 7;
+            a.codes8[i] = 100;
+            b.codes8[i] = (uint8_t)(100 + (inside ? cases[k].difference[i % 3] : 0));
+        }
+        assert_int_equal(pixelmatch_count(&a, &b, cases[k].threshold * 0.9999), 25);
+        assert_int_equal(pixelmatch_count(&a, &b, cases[k].threshold * 1.0001), 0);
+        picture_release(&a);
+        picture_release(&b);
+    }
+}
+
 static void finds_nothing_between_a_picture_and_itself(void **state)
 {
     (void)state;
@@ -229,6 +258,7 @@ int main(void)
         cmocka_unit_test(reproduces_the_values_of_reference_tools),
         cmocka_unit_test(reproduces_hdr_flip),
         cmocka_unit_test(reproduces_the_table_of_ciede2000),
+        cmocka_unit_test(counts_what_pixelmatch_counts_up_to_the_threshold),
         cmocka_unit_test(finds_nothing_between_a_picture_and_itself),
         cmocka_unit_test(is_symmetric_and_zero_beyond_the_reach_of_a_difference),
         cmocka_unit_test(sees_the_same_in_eight_and_sixteen_bits),
