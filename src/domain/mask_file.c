@@ -12,19 +12,27 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-Status mask_init(Mask *mask, const char *path, const int64_t n[3], Err *err)
+static Status check_count(const char *path, const int64_t n[3], Err *err)
 {
-    size_t count = 1;
+    int64_t most = UINT32_MAX;
     for (int axis = 0; axis < 3; axis++) {
-        if (n[axis] < 1 || n[axis] > (int64_t)(UINT32_MAX / count))
+        if (n[axis] < 1 || n[axis] > most)
             return err_set(err, STATUS_INPUT,
                            "%s: has %lld x %lld x %lld voxels; it must have at least one and fewer "
                            "than 2^32",
                            path, (long long)n[0], (long long)n[1], (long long)n[2]);
-        count *= (size_t)n[axis];
-        mask->n[axis] = n[axis];
+        most /= n[axis];
     }
-    return mem_calloc(&mask->is_tissue, count, 1, "voxels", err);
+    return STATUS_OK;
+}
+
+Status mask_init(Mask *mask, const char *path, const int64_t n[3], Err *err)
+{
+    TRY(check_count(path, n, err));
+    for (int axis = 0; axis < 3; axis++)
+        mask->n[axis] = n[axis];
+    return mem_calloc(&mask->is_tissue, (size_t)n[0] * (size_t)n[1] * (size_t)n[2], 1, "voxels",
+                      err);
 }
 
 Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err)
@@ -125,6 +133,7 @@ static Status load_voxels(const char *path, nifti_image *image, Err *err)
 static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err *err)
 {
     const int64_t n[3] = {image->nx, image->ny, image->nz};
+    TRY(check_count(path, n, err));
     TRY(check_size(path, image, err));
     TRY(mask_init(mask, path, n, err));
     size_t count = (size_t)image->nvox;

@@ -49,6 +49,8 @@ static Status read_image(Image *image, const char *path, bool for_mask, Err *err
     free(bytes);
     if (status == STATUS_OK)
         *image = made;
+    else if (status == STATUS_MEMORY)
+        err_prefix(err, "%s: ", file.name);
     return status;
 }
 

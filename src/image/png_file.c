@@ -216,7 +216,7 @@ Status png_decode(const ImageBytes *file, Picture *picture, Err *err)
     self.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &self.complaint, on_error, on_warning);
     self.info = self.png ? png_create_info_struct(self.png) : NULL;
     Status status = self.info ? read_guarded(&self)
-                              : err_set(err, STATUS_MEMORY, "%s: out of memory", file->name);
+                              : err_set(err, STATUS_MEMORY, "out of memory: no room to read a PNG");
     png_destroy_read_struct(&self.png, &self.info, NULL);
     free(self.rows);
     free(self.bytes);
