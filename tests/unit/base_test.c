@@ -310,6 +310,17 @@ static void a_text_has_one_kind_of_line_ends(void **state)
     assert_non_null(strstr(err.text, "read:3: a zero byte; a bill is plain text"));
 }
 
+/* A conventional millimetre of mercury is 13.5951 g/cm^3 times 9.80665 m/s^2. */
+static void units_of_users_and_of_calculation_are_related_as_defined(void **state)
+{
+    (void)state;
+    assert_true(fabs(pa_from_mmhg(2.385) - 2.385 * 13.5951 * 9.80665) < 1e-9);
+    assert_true(fabs(mmhg_from_pa(2.385) - 2.385 / (13.5951 * 9.80665)) < 1e-14);
+    assert_true(fabs(mm3_s_from_ml_min(500.1) - 8335) < 1e-11);
+    assert_true(fabs(ml_min_from_mm3_s(8335) - 500.1) < 1e-12);
+    assert_true(fabs(pa_s_from_cp(3.6) - 0.0036) < 1e-18);
+}
+
 static void sizes_are_said_in_units_that_suit_them(void **state)
 {
     (void)state;
@@ -400,6 +411,7 @@ int main(void)
         cmocka_unit_test(a_file_in_a_missing_folder_cannot_be_opened),
         cmocka_unit_test(a_file_that_is_not_of_its_form_is_refused),
         cmocka_unit_test(a_text_has_one_kind_of_line_ends),
+        cmocka_unit_test(units_of_users_and_of_calculation_are_related_as_defined),
         cmocka_unit_test(sizes_are_said_in_units_that_suit_them),
         cmocka_unit_test(numbers_stand_between_blanks),
         cmocka_unit_test(suffixes_replace_extensions_only),
