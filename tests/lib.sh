@@ -107,9 +107,10 @@ grow_tree() {
     run_ok corcast grow --terminals "$1" --seed "${2:-7}" -o tree.swc
 }
 
-# hearing COMMAND ...: for a background job; a shell starts those with SIGINT ignored, which corcast obeys.
+# hearing COMMAND ...: for a background job; a shell starts those with SIGINT ignored, and nohup with SIGHUP,
+# which corcast obeys.
 hearing() {
-    exec env --default-signal=INT "$@"
+    exec env --default-signal=INT,HUP,TERM "$@"
 }
 
 # wait_for SECONDS COMMAND ...: polls until the command succeeds.
