@@ -59,8 +59,9 @@ static void settled_sentence(const ReportCase *report, Text *sentence)
     const Settled *settled = report->settled;
     for (SettledCause cause = settled->from; cause <= settled->to; cause++)
         if (settled->count[cause]) {
-            text_printf(sentence, " %s: %zu; ", settled_cause_sentence(cause),
-                        settled->count[cause]);
+            text_printf(sentence, " Settled: %s, ", settled_cause_sentence(cause));
+            report_number(sentence, (double)settled->count[cause], "");
+            text_puts(sentence, "; ");
             text_escaped(sentence, report->b.name);
             text_puts(sentence, " is right there.");
         }
@@ -121,7 +122,9 @@ static void verdict_parts(const ReportCase *report, Text parts[PARTS])
         if (report->settled)
             settled_sentence(report, sentence);
         if (report->surface)
-            text_puts(sentence, " What POV-Ray's root finder sees is the surface to its accuracy.");
+            text_puts(sentence,
+                      " What POV-Ray's root finder sees is the surface to its accuracy, and "
+                      "the surface has POV-Ray's colours.");
     }
     Text *subject = &parts[PART_SUBJECT];
     put_options(report, subject);

@@ -191,13 +191,15 @@ void report_settled_rows(const ReportCase *report, Text *rules, Text *metrics)
     for (SettledCause cause = settled->from; cause <= settled->to; cause++) {
         size_t allowed = settled_allowed(settled, cause);
         bool met = settled->count[cause] <= allowed;
-        text_printf(
-            rules,
-            "<tr><th>%s</th><td class=\"verdict %s\">%s</td><td>%s; %s is right there</td>"
-            "<td class=\"number\">%zu pixels</td><td class=\"number\">%zu pixels</td></tr>\n",
-            cause == settled->from ? "settled" : "", met ? "good" : "bad",
-            met ? "✓ agree" : "✗ differ", settled_cause_sentence(cause), report->b.name,
-            settled->count[cause], allowed);
+        text_printf(rules,
+                    "<tr><th>%s</th><td class=\"verdict %s\">%s</td><td>%s; %s is right there</td>"
+                    "<td class=\"number\">",
+                    cause == settled->from ? "settled" : "", met ? "good" : "bad",
+                    met ? "✓ agree" : "✗ differ", settled_cause_sentence(cause), report->b.name);
+        report_number(rules, (double)settled->count[cause], "pixels");
+        text_puts(rules, "</td><td class=\"number\">");
+        report_number(rules, (double)allowed, "pixels");
+        text_puts(rules, "</td></tr>\n");
     }
     if (settled->n_first > 0)
         begin_table(metrics, "Settled pixels, the first of them");
