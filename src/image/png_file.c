@@ -200,12 +200,19 @@ static Status read_picture(Reader *self)
     return take_rows(self, samples);
 }
 
+static Status unsound(Reader *self)
+{
+    return err_set(self->err, STATUS_INPUT, "%s: is not a sound PNG file: %s", self->file.name,
+                   self->complaint.text);
+}
+
 static Status read_guarded(Reader *self)
 {
     if (setjmp(png_jmpbuf(self->png)))
-        return err_set(self->err, STATUS_INPUT, "%s: is not a sound PNG file: %s", self->file.name,
-                       self->complaint.text);
-    return read_picture(self);
+        return errno == ENOMEM ? mem_out_of("to read", self->file.name, self->err) : unsound(self);
+    TRY(read_picture(self));
+    /* libpng goes on without a chunk that it had no room for. */
+    return errno == ENOMEM ? mem_out_of("to read", self->file.name, self->err) : STATUS_OK;
 }
 
 Status png_decode(const ImageBytes *file, Picture *picture, Err *err)
@@ -213,6 +220,7 @@ Status png_decode(const ImageBytes *file, Picture *picture, Err *err)
     if (png_decode_plain(file, picture))
         return STATUS_OK;
     Reader self = {.file = *file, .err = err};
+    errno = 0;
     self.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &self.complaint, on_error, on_warning);
     self.info = self.png ? png_create_info_struct(self.png) : NULL;
     Status status = self.info ? read_guarded(&self)

@@ -86,6 +86,9 @@ test_failed_allocations_in_compare() {
     fail_each 3 one compare ../a.normal.pfm ../b.normal.pfm
     fail_each 3 one compare ../a.id.ppm ../b.id.ppm --metrics on
     fail_each 3 one compare "$DATA/images/half-zip.exr" "$DATA/images/half-zip.exr"
+    fail_each 3 one compare "$DATA/images/window-4-3.exr" "$DATA/images/tiles.exr"
+    fail_each 3 one compare "$DATA/images/gamma-1.png" "$DATA/images/tiles-8.tif"
+    fail_each 19 many compare ../a.png ../b.png --html o.html
 }
 
 # A report of one verification without POV-Ray; `report` asks for no more.
