@@ -32,11 +32,7 @@ static Status write_report(const char *path, const GrowReport *report, const Ref
     if (report->median_change > 0)
         change = json_pack("{s:f, s:f, s:f}", "median", report->median_change, "min",
                            report->least_change, "max", report->greatest_change);
-    if (json_object_set_new(json, "radius_change", change) != 0) {
-        json_decref(json);
-        json = NULL;
-    }
-    return json_write(json, path, err);
+    return json_write(json_with(json, "radius_change", change), path, err);
 }
 
 static void print_report(const GrowReport *report)

@@ -46,8 +46,8 @@ double report_severity(const ReportCase *report)
 
 static json_t *side_json(const ReportSide *side)
 {
-    return json_pack("{s:s, s:o, s:f}", "name", side->name, "version", json_text(side->version),
-                     "seconds", side->seconds);
+    return json_pack("{s:o, s:o, s:o}", "name", json_text(side->name), "version",
+                     json_text(side->version), "seconds", json_number(side->seconds));
 }
 
 json_t *report_json(const ReportCase *report)

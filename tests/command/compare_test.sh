@@ -359,4 +359,17 @@ test_idiff_measures_the_same() {
     expect_json both.json '(.psnr_db / .other.psnr - 1 | fabs) < 1e-5'
 }
 
+test_names_that_are_not_utf8_are_shown_with_replacement_characters() {
+    local name file
+    name=$(printf 'jos\351.ppm')
+    printf 'P6 2 1 255 abcdef' >"$name"
+    printf 'P6 2 1 255 abcdeg' >b.ppm
+    run corcast compare "$name" b.ppm --junit o.xml --html o.html --json
+    expect_status 1
+    for file in o.xml o.html stdout; do
+        iconv -f UTF-8 -t UTF-8 $file >copy || fail "expected $file to be UTF-8"
+    done
+    grep -q "$(printf 'jos\357\277\275.ppm')" o.xml || fail "expected a replacement character: $(cat o.xml)"
+}
+
 run_tests "$@"
