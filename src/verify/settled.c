@@ -16,7 +16,7 @@ static const struct {
     [SETTLED_INEXACT_ROOT] = {"inexact root", "pixels at which POV-Ray's root is a little off", 40,
                               6},
     [SETTLED_SHADOW_ROOT] = {"missed root of a shadow",
-                             "pixels at which POV-Ray missed a root on the way to a light", 100,
+                             "pixels at which POV-Ray missed a root on the way to a light", 200,
                              12},
     [SETTLED_SHADOW_CACHE] = {"shadow cache",
                               "pixels on their own horizon, left to POV-Ray's shadow cache", 1000,
