@@ -158,17 +158,26 @@ static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err 
     return STATUS_OK;
 }
 
+/* What the library would say in its own words, told to be quiet or not. */
+static bool is_named(int datatype, int64_t width)
+{
+    return datatype != DT_UNKNOWN && datatype != DT_BINARY && width > 0;
+}
+
 /* With the voxels in the same file. */
 static bool has_good_header(const char *path)
 {
     int version = 0;
     void *header = nifti_read_header(path, &version, 0);
+    const nifti_1_header *first = header;
+    const nifti_2_header *second = header;
     bool good = false;
     if (header && version == 1)
-        good = nifti_hdr1_looks_good(header) && NIFTI_ONEFILE(*(nifti_1_header *)header);
+        good = nifti_hdr1_looks_good(first) && NIFTI_ONEFILE(*first) &&
+               is_named(first->datatype, first->dim[1]);
     else if (header && version == 2)
-        good = nifti_hdr2_looks_good(header) &&
-               memcmp(((nifti_2_header *)header)->magic, "n+2", 4) == 0;
+        good = nifti_hdr2_looks_good(second) && memcmp(second->magic, "n+2", 4) == 0 &&
+               is_named(second->datatype, second->dim[1]);
     free(header);
     return good;
 }

@@ -238,4 +238,12 @@ test_a_mask_that_claims_more_voxels_than_its_file_has_is_refused_at_once() {
     )
 }
 
+test_a_mask_without_a_type_of_voxels_is_refused_in_one_sentence() {
+    gunzip -c "$DATA/oblique.nii.gz" >mask.nii
+    printf '\0\0\0\0' | dd of=mask.nii bs=1 seek=70 conv=notrunc status=none
+    run corcast grow --domain mask:mask.nii -o t.swc
+    expect_status 2
+    expect_sentence 'mask\.nii: is not a NIfTI-1 or NIfTI-2 file'
+}
+
 run_tests "$@"

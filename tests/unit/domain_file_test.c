@@ -376,8 +376,11 @@ static void nifti_files_that_are_no_mask_are_refused(void **state)
     const int16_t huge[8] = {3, 32767, 32767, 32767, 1, 1, 1, 1};
     bad = nifti;
     put(&bad, 40, huge, sizeof huge);
+    expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE, "fewer than 2^32");
+    const int16_t large[8] = {3, 1600, 1600, 1600, 1, 1, 1, 1};
+    put(&bad, 40, large, sizeof large);
     expect_bytes_refused("mask:a.nii", bad.bytes, NIFTI_SIZE,
-                         "ends before all of its 32767 x 32767 x 32767 voxels");
+                         "ends before all of its 1600 x 1600 x 1600 voxels");
     const int16_t rgba[2] = {2304, 32}, halved[8] = {3, 2, 3, 2, 1, 1, 1, 1};
     bad = nifti;
     put(&bad, 70, rgba, sizeof rgba);
