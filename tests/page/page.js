@@ -274,7 +274,8 @@ run().catch(function (error) {
 }).finally(function () {
   clearTimeout(patience);
   browser.on("exit", function () {
-    fs.rmSync(profile, { recursive: true, force: true });
+    // Its children may write for a moment longer.
+    fs.rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 });
     process.exit(failures ? 1 : 0);
   });
   browser.kill("SIGKILL");
