@@ -93,6 +93,8 @@ void settled_describe(const SettledPixel *pixel, const char *name_a, const char 
     put_depth(out, name_a, pixel->a_mm);
     text_puts(out, ", ");
     put_depth(out, name_b, pixel->b_mm);
+    if (pixel->cause == SETTLED_ROOT && pixel->a_mm == pixel->b_mm)
+        text_puts(out, " in its middle, one of its samples shows it");
     if (isfinite(pixel->root_mm))
         text_printf(out, ", the first root is at %.9g mm", pixel->root_mm);
     if (isfinite(pixel->distance_mm))
