@@ -1,5 +1,7 @@
-/* The file formats behind image_read and ImageWriter; private to the room image. Readers take a whole file and its name for the error sentence; no size a header
- * claims is believed before it has been held against the size of the file. */
+/* The file formats behind image_read and ImageWriter; private to the room image. Readers take a whole file
+ * and its name for the error sentence. No reader asks for memory for the pixels that a header announces before
+ * it has held them against the size of the file: PNM and PFM exactly, PNG, TIFF and OpenEXR by
+ * image_check_claim. */
 #ifndef CORCAST_IMAGE_FORMATS_H
 #define CORCAST_IMAGE_FORMATS_H
 
@@ -14,6 +16,11 @@ typedef struct ImageBytes {
 
 /* STATUS_INPUT unless both sides, as a header states them, are in [1, IMAGE_MAX_SIDE]. */
 MUST_CHECK Status image_check_sides(const char *name, long long width, long long height, Err *err);
+
+/* STATUS_INPUT, naming the file, its size and the sides, when `bytes` of pixels are more than `most`, the
+ * bytes that a file of this size can hold however well it is compressed. */
+MUST_CHECK Status image_check_claim(const ImageBytes *file, long long width, long long height,
+                                    size_t bytes, size_t most, Err *err);
 
 /* STATUS_MEMORY when the machine has fewer than `bytes` for an image of these sides. */
 MUST_CHECK Status image_check_memory(int width, int height, size_t bytes, Err *err);

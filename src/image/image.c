@@ -15,6 +15,16 @@ Status image_check_sides(const char *name, long long width, long long height, Er
                    width, height, IMAGE_MAX_SIDE);
 }
 
+Status image_check_claim(const ImageBytes *file, long long width, long long height, size_t bytes,
+                         size_t most, Err *err)
+{
+    if (bytes <= most)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "%s: its header announces %lld x %lld pixels, more than its %zu bytes can hold",
+                   file->name, width, height, file->size);
+}
+
 Status image_check_memory(int width, int height, size_t bytes, Err *err)
 {
     double machine = mem_of_machine();

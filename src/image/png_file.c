@@ -183,10 +183,8 @@ static Status read_picture(Reader *self)
     TRY(read_meaning(self));
     int width = (int)png_get_image_width(png, info);
     int height = (int)png_get_image_height(png, info);
-    if (png_get_rowbytes(png, info) > self->file.size * DEFLATE_MAX_RATIO / (size_t)height)
-        return err_set(self->err, STATUS_INPUT,
-                       "%s: its header announces %d x %d pixels, more than its %zu bytes can hold",
-                       self->file.name, width, height, self->file.size);
+    TRY(image_check_claim(&self->file, width, height, png_get_rowbytes(png, info) * (size_t)height,
+                          self->file.size * DEFLATE_MAX_RATIO, self->err));
     png_set_expand(png);
     png_set_interlace_handling(png);
     png_read_update_info(png, info);

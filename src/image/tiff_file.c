@@ -169,6 +169,29 @@ static Status check_form(Tiff *self, Err *err)
         self->file.name, samples, bits);
 }
 
+/* The bytes that a file of this size can hold, with much to spare. Blank pictures shrink 1400-fold by LZW,
+ * 1032-fold by deflate and 64-fold by PackBits; of the others ZSTD reaches 32768-fold, and WebP and LERC take
+ * a few bytes for a blank strip of any size. */
+static size_t most_bytes(const Tiff *self)
+{
+    enum { COMMON_RATIO = 10000, RATIO = 100000, BLANK_STRIP = 64 << 20 };
+    uint16_t compression;
+    TIFFGetFieldDefaulted(self->handle, TIFFTAG_COMPRESSION, &compression);
+    bool common = compression == COMPRESSION_NONE || compression == COMPRESSION_LZW ||
+                  compression == COMPRESSION_PACKBITS || compression == COMPRESSION_DEFLATE ||
+                  compression == COMPRESSION_ADOBE_DEFLATE;
+    return common ? self->file.size * COMMON_RATIO : self->file.size * RATIO + BLANK_STRIP;
+}
+
+/* `width` x `height` pixels, of the whole or of a tile. */
+static Status check_claim(const Tiff *self, uint32_t width, uint32_t height, Err *err)
+{
+    TRY(image_check_sides(self->file.name, width, height, err));
+    size_t pixel = (size_t)self->samples * (size_t)(self->bits / 8);
+    return image_check_claim(&self->file, width, height, pixel * width * height, most_bytes(self),
+                             err);
+}
+
 /* Strips are read row by row, tiles whole. */
 static Status set_parts(Tiff *self, Err *err)
 {
@@ -178,7 +201,7 @@ static Status set_parts(Tiff *self, Err *err)
     if (tiled) {
         TIFFGetField(self->handle, TIFFTAG_TILEWIDTH, &self->part_width);
         TIFFGetField(self->handle, TIFFTAG_TILELENGTH, &self->part_height);
-        TRY(image_check_sides(self->file.name, self->part_width, self->part_height, err));
+        TRY(check_claim(self, self->part_width, self->part_height, err));
     }
     self->part_bytes = (size_t)self->part_width * self->part_height * (size_t)self->samples *
                        (size_t)(self->bits / 8);
@@ -215,7 +238,7 @@ static Status read_header(Tiff *self, Err *err)
     TRY(check_form(self, err));
     TIFFGetField(self->handle, TIFFTAG_IMAGEWIDTH, &self->width);
     TIFFGetField(self->handle, TIFFTAG_IMAGELENGTH, &self->height);
-    TRY(image_check_sides(self->file.name, self->width, self->height, err));
+    TRY(check_claim(self, self->width, self->height, err));
     TIFFGetFieldDefaulted(self->handle, TIFFTAG_ORIENTATION, &orientation);
     set_places(self, orientation);
     TRY(check_colors(self, err));

@@ -237,6 +237,27 @@ static void says_what_it_does_not_read(void **state)
     assert_non_null(strstr(err.text, "holds whole numbers"));
 }
 
+/* A header of some hundred bytes that asks for gigabytes. */
+static void refuses_pixels_that_no_file_of_that_size_holds(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *sides, *size;
+    } files[] = {{"tests/fuzz/corpus/exr/announces-gigabytes.exr", "1048327 x 347", "388"},
+                 {"tests/fuzz/corpus/exr/display-of-terabytes.exr", "1000000 x 1000000", "731"},
+                 {"tests/fuzz/corpus/tiff/announces-gigabytes.tif", "16135 x 65285", "401"},
+                 {"tests/fuzz/corpus/tiff/announces-a-large-tile.tif", "65520 x 21840", "405"}};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        char sentence[256];
+        Image image;
+        snprintf(sentence, sizeof sentence,
+                 "%s: its header announces %s pixels, more than its %s bytes can hold",
+                 files[i].path, files[i].sides, files[i].size);
+        assert_int_equal(image_read(&image, files[i].path, &err), STATUS_INPUT);
+        assert_string_equal(err.text, sentence);
+    }
+}
+
 /* ------------------------------------------------------------------------------------- damage */
 
 /* Reads bytes as an image, from memory, since they are many files: it is read, or refused with a
@@ -340,6 +361,7 @@ int main(void)
         cmocka_unit_test(knows_the_gamma_of_a_png),
         cmocka_unit_test(decodes_codes_by_their_gamma),
         cmocka_unit_test(says_what_it_does_not_read),
+        cmocka_unit_test(refuses_pixels_that_no_file_of_that_size_holds),
         cmocka_unit_test(survives_files_cut_anywhere),
         cmocka_unit_test(survives_files_with_damaged_bytes),
     };
