@@ -43,7 +43,7 @@ static double clamp01(double t)
 }
 
 /* A grid has at most this many cells more than LEAST_CELLS for each that is asked for. */
-enum { CELLS_PER_ASKED = 8, LEAST_CELLS = 4096 };
+enum { CELLS_PER_ASKED = 8, LEAST_CELLS = 512 };
 
 /* The edge of the cells: cubes, unless the box is so thin for its length that these would be far too many. */
 static double edge_for(Vec3 size, double cells)

@@ -251,35 +251,49 @@ static double excess2(const Search *search, int cell, int axis)
     return excess * excess;
 }
 
+/* The first of `low`, `low` + `step`, ... that is in the grid. */
+static int first_from(int low, int step)
+{
+    return low >= 0 ? low : low + (step - 1 - low) / step * step;
+}
+
 /* Gathers every `step`-th cell of a row, except what is further than all that is wanted. */
-static void gather_row(Search *search, int first, int last, int step, int y, int z)
+static void gather_row(Search *search, int ring, int step, int y, int z)
 {
     const Grid *grid = search->grid;
     double across2 = excess2(search, y, 1) + excess2(search, z, 2);
-    if (first < 0)
-        first += (step - 1 - first) / step * step;
-    for (int x = first; x <= last && x < grid->count[0]; x += step)
+    int last = search->home[0] + ring;
+    for (int x = first_from(search->home[0] - ring, step); x <= last && x < grid->count[0];
+         x += step)
         if (search->count < search->limit ||
             across2 + excess2(search, x, 0) <= (double)search->list[search->count - 1].distance2)
             gather_cell(search, grid_index(grid, x, y, z));
 }
 
-/* Gathers the cells at `ring` steps from the point's own: whole rows at the faces of the cube, the
- * two ends of rows between them. */
+/* Whether one of the ring's two faces across `axis` is in the grid. */
+static bool has_face(const Search *search, int ring, int axis)
+{
+    int home = search->home[axis];
+    return home >= ring || search->grid->count[axis] - home > ring;
+}
+
+/* Gathers the cells at `ring` steps from the point's own, which are the faces of a cube: those across z
+ * as layers, those across y as rows, those across x as the two ends of rows. Layers and rows without any
+ * are stepped over, or a ring in a long and thin grid would take as many steps as its number. */
 static void gather_ring(Search *search, int ring)
 {
-    const int *home = search->home;
-    int low[3], high[3]; /* of the cube, within the grid */
-    for (int axis = 1; axis < 3; axis++) {
-        int last = search->grid->count[axis] - 1;
-        low[axis] = home[axis] > ring ? home[axis] - ring : 0;
-        high[axis] = last - home[axis] > ring ? home[axis] + ring : last;
+    const int *home = search->home, *count = search->grid->count;
+    int apart = ring > 0 ? 2 * ring : 1; /* of two faces */
+    bool face_x = has_face(search, ring, 0), face_y = has_face(search, ring, 1);
+    int step_z = face_x || face_y ? 1 : apart;
+    for (int z = first_from(home[2] - ring, step_z); z <= home[2] + ring && z < count[2];
+         z += step_z) {
+        bool layer = abs(z - home[2]) == ring;
+        int step_y = layer || face_x ? 1 : apart;
+        for (int y = first_from(home[1] - ring, step_y); y <= home[1] + ring && y < count[1];
+             y += step_y)
+            gather_row(search, ring, layer || abs(y - home[1]) == ring ? 1 : apart, y, z);
     }
-    for (int z = low[2]; z <= high[2]; z++)
-        for (int y = low[1]; y <= high[1]; y++) {
-            bool face = abs(z - home[2]) == ring || abs(y - home[1]) == ring;
-            gather_row(search, home[0] - ring, home[0] + ring, face ? 1 : 2 * ring, y, z);
-        }
 }
 
 int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *out)

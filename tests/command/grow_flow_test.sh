@@ -87,6 +87,15 @@ test_threads_change_nothing() {
     expect_same one.swc many.swc
 }
 
+test_territories_in_a_domain_much_longer_than_wide_are_counted_in_seconds() {
+    local domain
+    for domain in ellipsoid:1,1e6,1 box:1,1e6,1e-6 box:1e-6,1e6,1e6 rect:1e6,1; do
+        run bash -c 'ulimit -t 2; exec "$@"' sh "$CORCAST" grow --terminals 20 --domain $domain \
+            --terminal-flow territory --viscosity-law pries -o tree.swc
+        expect_status 0
+    done
+}
+
 test_info_and_scene_take_such_trees() {
     run_ok corcast grow --terminals 30 --terminal-flow territory --viscosity-law pries -o tree.swc
     run_ok corcast info tree.swc

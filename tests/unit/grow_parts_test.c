@@ -195,6 +195,11 @@ static void the_quick_search_finds_what_the_other_finds(void **state)
     expect_nearest("disc:50", 300, 0.4);
     expect_nearest("ball:50", 3000, 0.05);
     expect_nearest("rect:30,10", 1000, 0.02);
+    expect_nearest("rect:1,2000", 40, 0.02);
+    expect_nearest("rect:20,1000", 300, 0.001);
+    expect_nearest("box:1,1,2000", 40, 0.02);
+    expect_nearest("box:20,30,1000", 300, 0.001);
+    expect_nearest("box:1,400,900", 1000, 0.02);
 }
 
 int main(void)
