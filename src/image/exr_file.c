@@ -255,8 +255,8 @@ static long long height_of(const exr_attr_box2i_t *window)
 }
 
 /* The bytes of floats that a file of this size can hold, with much to spare. Blank pictures shrink 1032-fold
- * by ZIP and ZIPS, 1376-fold by PXR24, 410-fold by PIZ, 64-fold by RLE and 11-fold by B44A, and half of the
- * floats may be those of halves. */
+ * by ZIP and ZIPS, 1376-fold by PXR24, 410-fold by PIZ, 64-fold by RLE and 11-fold by B44A; halves become floats
+ * of twice their size. */
 static size_t most_bytes(const Exr *self)
 {
     enum { RATIO = 10000 };
