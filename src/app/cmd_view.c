@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static const Command command = {
     .name = "view",
@@ -102,7 +103,8 @@ static Status use_model(Viewer *viewer, SceneModel model, Err *err)
 static size_t field_number(const char *field)
 {
     size_t number = 0;
-    while (derive_field_name(number) && (!field || strcmp(derive_field_name(number), field) != 0))
+    while (derive_field_name(number) &&
+           (!field || strcasecmp(derive_field_name(number), field) != 0))
         number++;
     return number;
 }

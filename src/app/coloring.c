@@ -14,8 +14,8 @@ void coloring_init(Coloring *coloring)
     const double huge = 1e300;
     const Option table[] = {
         {"color-by", OPTION_TEXT, &coloring->field, NULL, 0, 0, NULL, "FIELD",
-         "radius, length, flow, velocity, pressure, wss, reynolds, level, strahler, "
-         "diameter-strahler or branch"},
+         "radius or length (mm), flow (ml/min), velocity (mm/s), pressure (mmHg), wss (wall shear "
+         "stress, Pa), reynolds, level, strahler, diameter-strahler or branch"},
         {"colormap", OPTION_LOOKUP, &coloring->colormap, NULL, 0, 0, NULL, "NAME",
          "a file of templates/colormaps, or a path (viridis)"},
         {"range", OPTION_RANGE, coloring->range, &coloring->has_range, 0, 0, NULL, NULL,

@@ -5,6 +5,7 @@
 #include "derive/fields.h"
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static Status field_radius(const Tree *tree, const FlowParams *params, double *value, Err *err)
 {
@@ -41,7 +42,7 @@ enum { N_RULES = sizeof rules / sizeof *rules };
 static const FieldRule *find_rule(const char *name)
 {
     for (size_t i = 0; i < N_RULES; i++)
-        if (strcmp(name, rules[i].name) == 0)
+        if (strcasecmp(name, rules[i].name) == 0)
             return &rules[i];
     return NULL;
 }

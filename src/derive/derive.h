@@ -58,8 +58,9 @@ typedef struct Field {
  *
  * mu is the constant viscosity of the blood, or viscosity_pries_pa_s of each segment's radius.
  * Velocity, wall shear stress and Reynolds number of a segment of radius 0 are not defined: NAN;
- * so are the pressures at and below one. STATUS_USAGE for an unknown name; STATUS_INPUT, naming the
- * option and the header key, when neither `params` nor the header says what the field needs. */
+ * so are the pressures at and below one. Capitals in a name are as small letters. STATUS_USAGE for
+ * an unknown name; STATUS_INPUT, naming the option and the header key, when neither `params` nor the
+ * header says what the field needs. */
 MUST_CHECK Status derive_field(const Tree *tree, const FlowParams *params, const char *name,
                                Field *field, Err *err);
 void field_release(Field *field);

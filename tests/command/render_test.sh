@@ -182,6 +182,13 @@ test_fields_colour_the_segments() {
     expect_sentence 'loudness'
 }
 
+test_a_field_is_named_in_capitals_too() {
+    grow_tree 5
+    run_ok corcast render tree.swc --size 40x40 --color-by wss -o small.ppm
+    run_ok corcast render tree.swc --size 40x40 --color-by WSS -o capital.ppm
+    expect_same small.ppm capital.ppm
+}
+
 test_a_field_that_needs_flow_is_refused_where_nothing_is_known_of_it() {
     printf '1 1 0 0 0 1 -1\n2 3 3 0 0 1 1\n' >tree.swc
     run corcast render tree.swc --size 20x20 --color-by flow -o picture.ppm
