@@ -73,6 +73,11 @@ good_picture() {
     printf 'P6 20 10 255\n%600s' '' | pnmtopng -force >good.png 2>/dev/null
 }
 
+# is_gone PROCESS: ended, and seen to the end by whoever inherited it.
+is_gone() {
+    ! kill -0 "$1" 2>/dev/null
+}
+
 test_a_povray_that_falls_silent_is_ended() {
     local seconds
     stand_in 'echo Parsing; sleep 60 & echo $! >running; wait'
@@ -81,7 +86,7 @@ test_a_povray_that_falls_silent_is_ended() {
     expect_status 3
     expect_sentence 'POV-Ray was ended: it has said nothing for 0.3 s about scene.pov; CORCAST_POVRAY_PATIENCE'
     [ $((SECONDS - seconds)) -lt 5 ] || fail "expected it to be ended at once"
-    ! kill -0 "$(cat running)" 2>/dev/null || fail "expected what the script runs to be ended, too"
+    wait_for 5 is_gone "$(cat running)" || fail "expected what the script runs to be ended, too"
     rm running
     stand_in 'exec >&- 2>&-; exec sleep 60'
     run env CORCAST_POVRAY_PATIENCE=0.3 "$CORCAST" povray scene.pov -o picture.png
