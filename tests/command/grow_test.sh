@@ -235,6 +235,21 @@ test_a_tree_in_any_shape_that_the_checker_knows_stays_inside() {
     expect_status 1
 }
 
+test_a_tree_in_a_mask_keeps_out_of_its_holes() {
+    awk 'BEGIN {
+        printf "P5\n23 17\n255\n"
+        for (row = 0; row < 17; row++)
+            for (column = 0; column < 23; column++)
+                printf "%s", (row > 2 && row < 9 && column > 8 && column < 19 || column > 21 - row) ? "." : "~"
+    }' | tr . '\0' >hole.pgm
+    run_ok corcast grow --terminals 300 --domain mask:hole.pgm,2.385 -o tree.swc
+    check_tree tree.swc
+    sed 's/^\(150 3\) [^ ]* [^ ]*/\1 4.1 6.3/' tree.swc >hole.swc
+    run "$CHECK_TREE" hole.swc
+    expect_status 1
+    expect_sentence 'leaves the domain'
+}
+
 test_an_output_in_a_missing_folder_is_refused() {
     run corcast grow --terminals 3 -o missing/tree.swc
     expect_status 3

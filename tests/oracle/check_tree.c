@@ -12,8 +12,9 @@
  * - every terminal is at p_term, to 1e-9 of p_perf - p_term, when all inlets are at p_perf and the
  *   terminals share q_perf evenly, or as the flow_share lines say (Poiseuille, with the viscosity
  *   constant or by Pries 1994);
- * - every point lies in the domain (disc, ball, rect, box, ellipsoid), to 1e-9 mm; of a shell and of a
- *   polygon, whose file is looked for here, every segment, at 1 + 64 places and to 1e-6 of its size;
+ * - every point lies in the domain (disc, ball, rect, box, ellipsoid), to 1e-9 mm; of a shell, and of a
+ *   polygon or a mask (PGM of 8 bits), whose file is looked for here, every segment, at 1 + 64 places and
+ *   to 1e-6 of its size;
  * - in two dimensions, no two segments share a point other than a common node.
  * Prints what `corcast info --json` should say, the largest deviations, how many segments are shorter
  * than wide, and how many pairs without a common node overlap at their real thickness, as "key
@@ -330,6 +331,44 @@ static bool in_polygon(const Corner *corners, int n, long double x, long double 
     return odd;
 }
 
+/* A picture of the tissue, which is where it is not black. */
+typedef struct Bitmap {
+    int width, height;
+    long double mm; /* of a pixel */
+    unsigned char *gray;
+} Bitmap;
+
+static Bitmap read_bitmap(const char *path, long double mm)
+{
+    Bitmap map = {.mm = mm};
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        fail("%s: %s", path, strerror(errno));
+    if (fscanf(file, "P5 %5d %5d 255", &map.width, &map.height) != 2 || fgetc(file) != '\n')
+        fail("%s: not a PGM file of 8 bits", path);
+    size_t size = (size_t)map.width * (size_t)map.height;
+    map.gray = malloc(size);
+    if (!map.gray || fread(map.gray, 1, size, file) != size)
+        fail("%s: ends before its last pixel", path);
+    fclose(file);
+    return map;
+}
+
+/* Whether a pixel of tissue holds one of the four points at `slack` from (x, y) along both axes. */
+static bool in_bitmap(const Bitmap *map, long double x, long double y, long double slack)
+{
+    for (int corner = 0; corner < 4; corner++) {
+        long double across = (corner & 1 ? x + slack : x - slack) / map->mm;
+        long double down = (corner & 2 ? -y + slack : -y - slack) / map->mm;
+        long double column = floorl(across + map->width / 2.0L);
+        long double row = floorl(down + map->height / 2.0L);
+        if (column >= 0 && column < map->width && row >= 0 && row < map->height &&
+            map->gray[(int)row * map->width + (int)column])
+            return true;
+    }
+    return false;
+}
+
 /* Whether a point is in the wall of the ventricle: semi-axes, thickness and base, to a slack. */
 static bool in_shell(const long double size[5], long double x, long double y, long double z,
                      long double slack)
@@ -350,13 +389,17 @@ static bool check_hollow_domain(const Node *nodes, int n, const Header *header)
     int sizes = sscanf(header->domain, "shell:%Lf,%Lf,%Lf,%Lf,%Lf", &size[0], &size[1], &size[2],
                        &size[3], &size[4]);
     bool polygon = sscanf(header->domain, "polygon:%199[^,],%Lf", file, &mm) >= 1;
-    if (!polygon && sizes < 4)
+    bool mask = sscanf(header->domain, "mask:%199[^,],%Lf", file, &mm) >= 1;
+    if (!polygon && !mask && sizes < 4)
         return false;
     if (sizes == 4)
         size[4] = (size[1] - size[3]) / 2;
     Corner *corners = NULL;
     int count = polygon ? read_polygon(file, mm, &corners) : 0;
-    long double slack = polygon ? 0 : 2e-6L * size[1];
+    Bitmap map = mask ? read_bitmap(file, mm) : (Bitmap){0};
+    long double slack = mask      ? 1e-6L * mm * (map.width + map.height)
+                        : polygon ? 0
+                                  : 2e-6L * size[1];
     for (int i = 0; i < count; i++)
         slack = fmaxl(slack, 3e-6L * fmaxl(fabsl(corners[i].x), fabsl(corners[i].y)));
     enum { PLACES = 64 };
@@ -366,12 +409,15 @@ static bool check_hollow_domain(const Node *nodes, int n, const Header *header)
             long double t = (long double)k / PLACES;
             long double x = a->x + t * (b->x - a->x), y = a->y + t * (b->y - a->y);
             long double z = a->z + t * (b->z - a->z);
-            if (polygon ? z != 0 || !in_polygon(corners, count, x, y, slack)
-                        : !in_shell(size, x, y, z, slack))
+            bool in = polygon ? z == 0 && in_polygon(corners, count, x, y, slack)
+                      : mask  ? z == 0 && in_bitmap(&map, x, y, slack)
+                              : in_shell(size, x, y, z, slack);
+            if (!in)
                 fail("segment %ld leaves the domain", b->id);
         }
     }
     free(corners);
+    free(map.gray);
     return true;
 }
 
