@@ -173,21 +173,38 @@ static Status set_field(Tolerance *tolerance, const Field *field, const char *va
     return STATUS_OK;
 }
 
+/* The name is one that reads back to itself: control characters become blanks, and blanks neither begin nor
+ * end it, nor begin a comment in it. */
+static Status take_name(char **name, const char *value, Err *err)
+{
+    Text text = TEXT_INIT;
+    free(*name);
+    *name = NULL;
+    text_put_line(&text, value);
+    Status status = text_take(&text, name, err);
+    text_release(&text);
+    if (status != STATUS_OK)
+        return status;
+    char *comment = strstr(*name, " ;");
+    if (comment)
+        *comment = '\0';
+    const char *start = *name + strspn(*name, " ");
+    size_t length = strlen(start);
+    while (length && start[length - 1] == ' ')
+        length--;
+    memmove(*name, start, length);
+    (*name)[length] = '\0';
+    return STATUS_OK;
+}
+
 static Status take_line(void *user, const char *section, const char *key, const char *value,
                         Err *err)
 {
     ToleranceReader *reader = user;
     if (*section || !key)
         return err_set(err, STATUS_INPUT, "a tolerance has no sections, and here is [%s]", section);
-    if (strcmp(key, "tier") == 0) {
-        Text name = TEXT_INIT;
-        free(reader->name);
-        reader->name = NULL;
-        text_put_line(&name, value);
-        Status status = text_take(&name, &reader->name, err);
-        text_release(&name);
-        return status;
-    }
+    if (strcmp(key, "tier") == 0)
+        return take_name(&reader->name, value, err);
     for (int i = 0; i < FIELDS; i++)
         if (strcmp(key, fields[i].key) == 0)
             return set_field(&reader->tolerance, &fields[i], value, err);

@@ -73,8 +73,9 @@ Tolerance tolerance_tolerant(double depth_step_mm);
  * `depth_mm`, or, where that is 0, 10^-4 of the depth. */
 Tolerance tolerance_surface(double depth_mm);
 /* Changes what an INI file names: "color_ppm = 20", the keys being the fields of Tolerance, "inf"
- * leaving a rule unjudged; `tier = NAME` is optional, "given" otherwise, and kept in *name (owned).
- * STATUS_INPUT naming file and line on an unknown key and on a value below 0. */
+ * leaving a rule unjudged; `tier = NAME` is optional, "given" otherwise, and kept in *name (owned),
+ * its control characters as blanks. STATUS_INPUT naming file and line on an unknown key and on a value below
+ * 0. */
 MUST_CHECK Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *err);
 /* Appends such a file, which reads back to the same tolerance. */
 void tolerance_text(const Tolerance *tolerance, Text *out);

@@ -408,6 +408,30 @@ static void reads_back_what_it_writes(void **state)
     text_release(&again);
 }
 
+static void names_of_tolerances_read_back_whatever_controls_they_hold(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {{"\x7f ours\x01", "ours"},
+                                           {"our\ts of 7", "our s of 7"},
+                                           {"ours\x1b;not", "ours"},
+                                           {"\x02;not", ""},
+                                           {"\xc2\x85our;s", "our;s"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Tolerance read = tolerance_none();
+        Text text = TEXT_INIT;
+        char *name;
+        text_printf(&text, "tier = %s\n", cases[i][0]);
+        for (int time = 0; time < 2; time++) {
+            assert_int_equal(read_text(&read, &name, text.chars), STATUS_OK);
+            assert_string_equal(name, cases[i][1]);
+            text_release(&text);
+            tolerance_text(&read, &text);
+            free(name);
+        }
+        text_release(&text);
+    }
+}
+
 static void says_which_line_of_a_tolerance_is_wrong(void **state)
 {
     (void)state;
@@ -636,6 +660,7 @@ int main(void)
         cmocka_unit_test(never_averages_in_what_is_not_finite),
         cmocka_unit_test(sees_differences_beyond_white_and_below_a_code),
         cmocka_unit_test(reads_back_what_it_writes),
+        cmocka_unit_test(names_of_tolerances_read_back_whatever_controls_they_hold),
         cmocka_unit_test(says_which_line_of_a_tolerance_is_wrong),
         cmocka_unit_test(shows_signed_differences_about_grey),
         cmocka_unit_test(animates_two_pictures_in_one_png),
