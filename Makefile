@@ -17,10 +17,10 @@ say = $(if $(V),,@printf '  %-6s %s\n' $(1) $(2))
 AGAIN = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(JOBS))
 
 ROOMS := $(filter-out app,$(notdir $(patsubst %/,%,$(wildcard src/*/))))
-ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c))
+ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c) $(ROOMS:%=src/%/*/*.c))
 APP_SOURCES := $(wildcard src/app/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
-FORMATTED := $(sort $(wildcard src/*/*.c src/*/*.h tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
+FORMATTED := $(sort $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
 	tests/alloc/*.c tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h))
 
 ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o)
@@ -194,7 +194,7 @@ $(FAILING): tests/alloc/failing.c Makefile
 	$(Q)$(CC) -D_GNU_SOURCE -std=c11 -O1 -g $(WARNINGS) -fPIC -shared -o $@ $<
 
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
-$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
+$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
 
 -include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 

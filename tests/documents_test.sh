@@ -37,7 +37,7 @@ one point in three is far enough @ src/grow/grow.c @ TOSSES_PER_ADDED = 3 }
 known at once to the eight vessels above @ src/grow/network.c @ LEVELS = 8 }
 with every fifth of growth @ src/grow/grow.c @ refresh_growth = 1.2;
 ahead of its share by more than a sixteenth @ src/grow/forest.c @ lead = 1.0 / 16;
-all rise by 1.1, and those of segments that break a rule by 2.2 @ src/grow/refine_toll.c @ rise = 1.1, steep_rise = 2.2;
+all rise by 1.1, and those of segments that break a rule by 2.2 @ src/grow/refine/refine_toll.c @ rise = 1.1, steep_rise = 2.2;
 up to two more follow @ src/grow/refine.c @ DETOURS = 3,
 each at four times the price @ src/grow/refine.c @ price_rise = 4;
 over nine tenths of the budget @ src/grow/refine.c @ last_part = 0.1;
@@ -51,17 +51,17 @@ test_the_numbers_of_the_potential_are_those_of_the_source() {
 With eps = 10⁻⁶ (`TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r @ src/surface/surface.h @ #define TERM_CUTOFF 1e-6
 with Phi clamped to [10⁻⁵, 0.2] @ src/surface/surface.h @ #define LOG_FORM_FLOOR 1e-5
 with Phi clamped to [10⁻⁵, 0.2] @ src/surface/surface.h @ #define LOG_FORM_CEILING 0.2
-`Phi'^2 >= 4.6 M lack` @ src/render/fieldkernel.h @ lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46))
-Within 2 % of C and with ten times that certainty @ src/render/fieldkernel.h @ #define NEAR_ENOUGH (2e-2f * LEVEL)
-or within 0.1 %, Newton's method closes it @ src/render/fieldlanes.h @ #define CLOSE_ENOUGH (1e-3f * LEVEL)
-groups whose margin exceeds 10⁻³ C @ src/render/fieldkernel.h @ group.margin > CLOSE_ENOUGH
-does not count where Phi is within 1 % of C and falls @ src/render/field.c @ sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0
-lie in one plane (to 10⁻⁷ / k) @ src/render/fieldterms.c @ <= 1e-7;
-to within 4 · 10⁻⁶ of ln C @ src/render/fieldplane.h @ #define PLANE_CLOSE 3e-6f
-10⁻⁶ each: `exp(-d^2)` times the term's peak is below it @ src/render/fieldtile.h @ #define FIELD_CUTOFF 1e-6
-20 terms being allowed to be left out @ src/render/fieldlanes.h @ #define MARGIN_DROPPED 2e-5f
-6 · 10⁻⁷ for each term @ src/render/fieldlanes.h @ #define MARGIN_TERM 6e-7f
-1.2 · 10⁻⁷ e k B for each term @ src/render/fieldlanes.h @ #define MARGIN_PLACE 1.2e-7f
+`Phi'^2 >= 4.6 M lack` @ src/render/field/kernel_trace.h @ lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46))
+Within 2 % of C and with ten times that certainty @ src/render/field/kernel_trace.h @ #define NEAR_ENOUGH (2e-2f * LEVEL)
+or within 0.1 %, Newton's method closes it @ src/render/field/kernel_trace_common.h @ #define CLOSE_ENOUGH (1e-3f * LEVEL)
+groups whose margin exceeds 10⁻³ C @ src/render/field/kernel_trace.h @ group.margin > CLOSE_ENOUGH
+does not count where Phi is within 1 % of C and falls @ src/render/cast/field.c @ sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0
+lie in one plane (to 10⁻⁷ / k) @ src/render/field/fieldterms.c @ <= 1e-7;
+to within 4 · 10⁻⁶ of ln C @ src/render/field/kernel_trace_flat.h @ #define PLANE_CLOSE 3e-6f
+10⁻⁶ each: `exp(-d^2)` times the term's peak is below it @ src/render/tile/tile.h @ #define FIELD_CUTOFF 1e-6
+20 terms being allowed to be left out @ src/render/field/kernel_trace_common.h @ #define MARGIN_DROPPED 2e-5f
+6 · 10⁻⁷ for each term @ src/render/field/kernel_trace_common.h @ #define MARGIN_TERM 6e-7f
+1.2 · 10⁻⁷ e k B for each term @ src/render/field/kernel_trace_common.h @ #define MARGIN_PLACE 1.2e-7f
 have a node within 3 of its radii of one of its ends @ src/stage/blend.h @ #define BLEND_RADII 3
 1 % of the one weighing as much as 4.3° of the other @ tests/fit/fit_blob.c @ #define DISTANCE 0.03
 1 % of the one weighing as much as 4.3° of the other @ tests/fit/fit_blob.c @ #define ANGLE 13.0
@@ -71,20 +71,20 @@ END
 
 test_the_numbers_of_pictures_are_those_of_the_source() {
     agree METHODS.md <<'END'
-`Phi_i <= B = exp(-d^2) min(1, h / s)` @ src/render/fieldkernel.h @ term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
-4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ src/render/fieldkernel.h @ term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
-packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays @ src/render/lanes.h @ #define LANES 16
+`Phi_i <= B = exp(-d^2) min(1, h / s)` @ src/render/field/kernel_trace.h @ term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
+4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ src/render/field/kernel_trace.h @ term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
+packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays @ src/render/tile/lanes.h @ #define LANES 16
 A band begins at a multiple of eight rows @ src/render/render.h @ RENDER_BAND_STEP = 8 }
-in which tiles of 8 x 8 pixels @ src/render/fieldtile.h @ TILE_SIDE = 8,
-longer than 2 x 16384 pixels @ src/render/rasteritem.c @ most_pixels = 16384;
-4 eps H, 0.004 pixels for the longest @ src/render/rasteritem.c @ length / 2 + radius > most_pixels * pixel
-cylinders seen within 0.02 rad of their axis @ src/render/rasteritem.c @ 0.02; /* of the angle
-cylinders seen within 0.02 rad of their axis @ src/render/rastersight.h @ steep_sine2 = 4e-4f;
-within 10⁻⁴ r of the ray @ src/render/rasterruling.h @ off_joint_line = 1e-4f;
-0.001 mm and 3 · 2^-23 of the scene's radius @ src/render/rastershadow.c @ aim.slack = slack_mm + 0x3p-23 * scene_radius
-0.001 mm and 3 · 2^-23 of the scene's radius @ src/render/rastershadow.c @ slack_mm = 1e-3;
-within 1.16 radii of the scene's middle cast rays @ src/render/rastershadow.c @ least_radii = 1.16;
-at most a quarter of a pixel apart @ src/render/zbuffer.c @ pixels_apart = 0.25;
+in which tiles of 8 x 8 pixels @ src/render/tile/tile.h @ TILE_SIDE = 8,
+longer than 2 x 16384 pixels @ src/render/raster/rasteritem.c @ most_pixels = 16384;
+4 eps H, 0.004 pixels for the longest @ src/render/raster/rasteritem.c @ length / 2 + radius > most_pixels * pixel
+cylinders seen within 0.02 rad of their axis @ src/render/raster/rasteritem.c @ 0.02; /* of the angle
+cylinders seen within 0.02 rad of their axis @ src/render/raster/kernel_round.h @ steep_sine2 = 4e-4f;
+within 10⁻⁴ r of the ray @ src/render/raster/kernel_joint.h @ off_joint_line = 1e-4f;
+0.001 mm and 3 · 2^-23 of the scene's radius @ src/render/raster/rastershadow.c @ aim.slack = slack_mm + 0x3p-23 * scene_radius
+0.001 mm and 3 · 2^-23 of the scene's radius @ src/render/raster/rastershadow.c @ slack_mm = 1e-3;
+within 1.16 radii of the scene's middle cast rays @ src/render/raster/rastershadow.c @ least_radii = 1.16;
+at most a quarter of a pixel apart @ src/render/raster/zbuffer.c @ pixels_apart = 0.25;
 END
 }
 
@@ -116,7 +116,7 @@ END
 
 test_the_numbers_for_povray_are_those_of_the_source() {
     agree POVRAY.md <<'END'
-for each light with n . L >= 1e-10 @ src/render/shade.c @ if (cosine < 1e-10)
+for each light with n . L >= 1e-10 @ src/render/light/shade.c @ if (cosine < 1e-10)
 is within 2.85 · 10⁻⁴ of it @ src/surface/cellfunction.c @ return form == ERF_FAST ? 2.85e-4
 no wall by more than three times that @ src/surface/cellfunction.c @ return (3 * erf_form_error(form) + 2e-5) * radius_mm;
 POV-Ray holds at most 1,048,575 different constants @ src/emit/povray_joint.c @ holds 1,048,575 different constants in functions; a joint has 6.

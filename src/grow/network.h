@@ -9,8 +9,8 @@
 
 #include "base/base.h"
 #include "geom/geom.h"
-#include "grow/grid.h"
-#include "grow/law.h"
+#include "grow/cco/grid.h"
+#include "grow/cco/law.h"
 
 /* What the walk towards the root needs of one segment, in one cache line. */
 typedef struct Segment {

@@ -8,7 +8,7 @@
  * lost. A segment that must stay straight is split at the best place along it. */
 #include "grow/place.h"
 
-#include "grow/fermat.h"
+#include "grow/cco/fermat.h"
 #include <stdlib.h>
 #include <string.h>
 

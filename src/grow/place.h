@@ -3,7 +3,7 @@
 #define CORCAST_GROW_PLACE_H
 
 #include "domain/domain.h"
-#include "grow/grid.h"
+#include "grow/cco/grid.h"
 #include "grow/network.h"
 
 /* What a new connection must keep to. */

@@ -3,7 +3,7 @@
 #define CORCAST_GROW_PLAN_H
 
 #include "domain/domain.h"
-#include "grow/grid.h"
+#include "grow/cco/grid.h"
 #include "grow/network.h"
 #include "grow/place.h"
 

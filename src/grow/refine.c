@@ -16,12 +16,12 @@
  * are computed anew after it; should vessels then have come into each other, the tree stays as it was. */
 #include "grow/grow.h"
 
-#include "grow/refine_arbor.h"
-#include "grow/refine_check.h"
-#include "grow/refine_move.h"
-#include "grow/refine_result.h"
-#include "grow/refine_room.h"
-#include "grow/refine_toll.h"
+#include "grow/refine/refine_arbor.h"
+#include "grow/refine/refine_check.h"
+#include "grow/refine/refine_move.h"
+#include "grow/refine/refine_result.h"
+#include "grow/refine/refine_room.h"
+#include "grow/refine/refine_toll.h"
 #include <stdlib.h>
 
 /* Temperatures of annealing over S_root a segment, at first and at last, and the share of the budget

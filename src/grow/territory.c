@@ -5,7 +5,7 @@
  * themselves; whole numbers add up to the same sums in any order. */
 #include "grow/territory.h"
 
-#include "grow/grid.h"
+#include "grow/cco/grid.h"
 #include <stdlib.h>
 
 /* A lattice over a box that is very thin for its length has at most POINTS_PER_ASKED as many points as a

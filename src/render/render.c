@@ -5,12 +5,12 @@
 #include "render/render.h"
 
 #include "render/band.h"
-#include "render/fieldrender.h"
-#include "render/rasterrender.h"
-#include "render/resample.h"
-#include "render/sight.h"
-#include "render/tilekernels.h"
-#include "render/zbuffer.h"
+#include "render/field/fieldrender.h"
+#include "render/light/resample.h"
+#include "render/light/sight.h"
+#include "render/raster/rasterrender.h"
+#include "render/raster/zbuffer.h"
+#include "render/tile/tilekernels.h"
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>

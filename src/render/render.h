@@ -5,7 +5,7 @@
 
 #include "base/base.h"
 #include "image/image.h"
-#include "render/shade.h" // IWYU pragma: export
+#include "render/light/shade.h" // IWYU pragma: export
 #include "scene/scene.h"
 #include "surface/surface.h"
 

@@ -2,7 +2,7 @@
  * the level, those shorter than 0.17 of their radius, can vanish, and do unless their neighbours
  * make up for it; a hierarchy finds those neighbours, and is built only when there is such a
  * segment. */
-#include "render/fieldindex.h"
+#include "render/cast/fieldindex.h"
 #include "render/render.h"
 #include "surface/surface.h"
 

@@ -7,7 +7,7 @@
  * curves, hierarchy, rays and colours, up to the frame in memory. */
 #include "base/base.h"
 #include "image/image.h"
-#include "render/tilekernels.h"
+#include "render/tile/tilekernels.h"
 #include "scene/scene.h"
 #include "stage/stage.h"
 #include "treeio/treeio.h"

@@ -1,6 +1,6 @@
 /* The blob: its numbers (docs/METHODS.md section 2.5), and its first hits against a walk in small steps
  * over a field written down once more, from POV-Ray's definition. */
-#include "render/blobcast.h"
+#include "render/cast/blobcast.h"
 #include "stage/stage.h"
 #include "surface/surface.h"
 

@@ -1,6 +1,6 @@
 /* How near and how far rays see, in every kind of geometry: POV-Ray's limits [docs/POVRAY.md, sections 3, 4
  * and 9]. */
-#include "render/caster.h"
+#include "render/cast/caster.h"
 
 #include <math.h>
 #include <setjmp.h>

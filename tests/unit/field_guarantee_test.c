@@ -5,7 +5,7 @@
  * EPSILON and then level + EPSILON. Without a hit at the lower one there must be none; the hit must
  * lie between the two, widened by the tolerance. Rays for which the two are farther apart than the
  * tolerance graze, and are counted. */
-#include "render/fieldtiles.h"
+#include "render/field/fieldtiles.h"
 
 #include "grow/grow.h"
 #include "treeio/treeio.h"

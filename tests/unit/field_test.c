@@ -1,4 +1,4 @@
-#include "render/field.h"
+#include "render/cast/field.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

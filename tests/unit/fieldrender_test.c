@@ -2,11 +2,11 @@
  * precision whatever the kernel, and right for scenes that are wrong. */
 #include "render/render.h"
 
-#include "render/caster.h"
-#include "render/fieldtiles.h"
-#include "render/resample.h"
-#include "render/shade.h"
-#include "render/tilelook.h"
+#include "render/cast/caster.h"
+#include "render/field/fieldtiles.h"
+#include "render/light/resample.h"
+#include "render/light/shade.h"
+#include "render/tile/tilelook.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* Parts of growth that whole trees show only dimly: the best place on a straight segment, quotas of
  * trees, sizes of territories. */
-#include "grow/fermat.h"
+#include "grow/cco/fermat.h"
 #include "grow/forest.h"
 #include "grow/territory.h"
 

@@ -1,7 +1,7 @@
 #include "render/render.h"
 
-#include "render/field.h"
-#include "render/halving.h"
+#include "render/cast/field.h"
+#include "render/cast/povray_isosurface.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 #include "stage/stage.h"
 
-#include "render/bvh.h"
+#include "render/cast/bvh.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

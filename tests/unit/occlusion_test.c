@@ -1,5 +1,5 @@
 /* How much of the sky is seen, against what geometry says. */
-#include "render/occlusion.h"
+#include "render/light/occlusion.h"
 
 #include "render/render.h"
 #include <math.h>

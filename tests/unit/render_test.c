@@ -1,8 +1,8 @@
 #include "render/render.h"
 
-#include "render/bvh.h"
-#include "render/resample.h"
-#include "render/shade.h"
+#include "render/cast/bvh.h"
+#include "render/light/resample.h"
+#include "render/light/shade.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,0 +1,395 @@
+/* What is near. The cells about a place list more segments than are near it, so most of the work is to
+ * tell that one is not: that is done for four at a time, and without branches, which would go either way
+ * as often as not.
+ *
+ * The nearest are looked for within a guessed distance first. A segment counts in the one cell that
+ * holds its point next to the place, so each is found once, and ranks come from counting. Where the guess
+ * was short, rings of cells are searched one after the other. */
+#include "grow/cco/grid.h"
+
+#include <assert.h>
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Segments that the quick search holds. */
+enum { CATCH = 64 };
+
+static double greatest(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static inline float point_distance2(const GridItem *item, const float point[3])
+{
+    const float *a = item->proximal, *b = item->distal;
+    float ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
+    float wx = point[0] - a[0], wy = point[1] - a[1], wz = point[2] - a[2];
+    float dot = ux * wx + uy * wy + uz * wz;
+    float length2 = ux * ux + uy * uy + uz * uz;
+    float along = dot > 0 ? dot : 0;
+    along = along < length2 ? along : length2;
+    float t = along / (length2 > FLT_MIN ? length2 : FLT_MIN);
+    float dx = wx - t * ux, dy = wy - t * uy, dz = wz - t * uz;
+    return dx * dx + dy * dy + dz * dz;
+}
+
+static inline float end_distance2(const GridItem *item, const float point[3])
+{
+    const float *end = item->distal;
+    float dx = point[0] - end[0], dy = point[1] - end[1], dz = point[2] - end[2];
+    return dx * dx + dy * dy + dz * dz;
+}
+
+/* A few numbers at a time; every compiler knows how, on any machine. */
+enum { LANES = GRID_LANES };
+typedef float Floats __attribute__((vector_size(16)));
+typedef int32_t Ints __attribute__((vector_size(16)));
+
+/* The points of segments next to a point. */
+typedef struct Foot {
+    Ints segment;
+    Floats at[3], distance2, radius;
+} Foot;
+
+static inline void transpose(Floats row[LANES])
+{
+    Floats a = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5);
+    Floats b = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5);
+    Floats c = __builtin_shufflevector(row[0], row[1], 2, 6, 3, 7);
+    Floats d = __builtin_shufflevector(row[2], row[3], 2, 6, 3, 7);
+    row[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
+    row[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
+    row[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
+    row[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
+}
+
+static inline Floats pick(Ints mask, Floats yes, Floats no)
+{
+    return (Floats)((mask & (Ints)yes) | (~mask & (Ints)no));
+}
+
+/* The items of the k-th and the next segments of a cell, number by number; the last one's again where
+ * there are no more. */
+static inline void load_items(const Grid *grid, const GridCell *cell, uint32_t k,
+                              Floats out[2 * LANES], Ints *segments)
+{
+    static_assert(sizeof(GridItem) == 2 * sizeof(Floats), "two rows of a matrix");
+    for (uint32_t lane = 0; lane < LANES; lane++) {
+        int32_t segment = cell->tag[k + lane < cell->count ? k + lane : cell->count - 1] >> 1;
+        const char *item = (const char *)&grid->item[segment];
+        (*segments)[lane] = segment;
+        memcpy(&out[lane], item, sizeof *out);
+        memcpy(&out[LANES + lane], item + sizeof *out, sizeof *out);
+    }
+    transpose(out);
+    transpose(out + LANES);
+}
+
+/* As point_distance2, of such segments. */
+static inline Foot foot_of(const Grid *grid, const GridCell *cell, uint32_t k, const float point[3])
+{
+    Foot out;
+    Floats item[2 * LANES];
+    load_items(grid, cell, k, item, &out.segment);
+    Floats ux = item[3] - item[0], uy = item[4] - item[1], uz = item[5] - item[2];
+    Floats wx = point[0] - item[0], wy = point[1] - item[1], wz = point[2] - item[2];
+    Floats dot = ux * wx + uy * wy + uz * wz, length2 = ux * ux + uy * uy + uz * uz;
+    Floats zero = {0}, least = zero + FLT_MIN;
+    Floats along = pick(dot > 0, dot, zero);
+    along = pick(along < length2, along, length2);
+    Floats t = along / pick(length2 > least, length2, least);
+    Floats dx = wx - t * ux, dy = wy - t * uy, dz = wz - t * uz;
+    out.at[0] = item[0] + t * ux;
+    out.at[1] = item[1] + t * uy;
+    out.at[2] = item[2] + t * uz;
+    out.distance2 = dx * dx + dy * dy + dz * dz;
+    out.radius = item[6];
+    return out;
+}
+
+static inline bool any(Ints mask)
+{
+    uint64_t half[2];
+    memcpy(half, &mask, sizeof half);
+    return (half[0] | half[1]) != 0;
+}
+
+GridProbe grid_probe(const GridItem *item, double apart, double per_radius)
+{
+    const double more = 1 + 1e-5;
+    GridProbe out = {.apart = (float)(apart * more), .per_radius = (float)(per_radius * more)};
+    for (int axis = 0; axis < 3; axis++) {
+        float a = item->proximal[axis], b = item->distal[axis];
+        out.low[axis] = a < b ? a : b;
+        out.high[axis] = a < b ? b : a;
+    }
+    return out;
+}
+
+unsigned grid_meet(const Grid *grid, const GridCell *cell, uint32_t k, const GridProbe *probe)
+{
+    Ints segments;
+    Floats item[2 * LANES];
+    load_items(grid, cell, k, item, &segments);
+    Floats need = probe->apart + probe->per_radius * item[6];
+    Ints off = {0};
+    for (int axis = 0; axis < 3; axis++) {
+        Floats a = item[axis], b = item[3 + axis];
+        Floats low = pick(a < b, a, b), high = pick(a < b, b, a);
+        off |= (probe->low[axis] - high > need) | (low - probe->high[axis] > need);
+    }
+    unsigned bits = 0;
+    for (uint32_t lane = 0; lane < LANES && k + lane < cell->count; lane++)
+        bits |= (unsigned)(1 + off[lane]) << lane;
+    return bits;
+}
+
+/* What grid_room looks for. */
+typedef struct Query {
+    float at[3]; /* the point */
+    float distance2, thickness;
+    bool terminals_only;
+} Query;
+
+/* As cell_room, with distances from segments. */
+static GridRoom cell_room_along(const Grid *grid, const GridCell *cell, const Query *query)
+{
+    Ints in = {0};
+    for (uint32_t k = 0; k < cell->count; k += LANES) {
+        Foot foot = foot_of(grid, cell, k, query->at);
+        if (any(foot.distance2 < query->distance2))
+            return GRID_TOO_NEAR;
+        Floats radius = query->thickness * foot.radius;
+        in |= foot.distance2 < radius * radius;
+    }
+    return any(in) ? GRID_IN_VESSEL : GRID_FREE;
+}
+
+static GridRoom cell_room(const Grid *grid, size_t index, const Query *query)
+{
+    const GridCell *cell = &grid->cell[index];
+    if (!query->terminals_only)
+        return cell_room_along(grid, cell, query);
+    GridRoom room = GRID_FREE;
+    for (uint32_t i = 0; i < cell->count; i++) {
+        const GridItem *item = &grid->item[cell->tag[i] >> 1];
+        float distance2 = point_distance2(item, query->at);
+        if ((cell->tag[i] & 1) && end_distance2(item, query->at) < query->distance2)
+            return GRID_TOO_NEAR;
+        float radius = query->thickness * item->radius;
+        if (distance2 < radius * radius)
+            room = GRID_IN_VESSEL;
+    }
+    return room;
+}
+
+GridRoom grid_room(const Grid *grid, Vec3 point, double distance, bool terminals_only,
+                   double thickness)
+{
+    Query query = {.distance2 = (float)(distance * distance),
+                   .thickness = (float)thickness,
+                   .terminals_only = terminals_only};
+    grid_store(grid, point, query.at);
+    /* Its own cell has every vessel that may hold the point, and most that are too near. */
+    size_t home = grid_cell_at(grid, point);
+    GridRoom room = cell_room(grid, home, &query);
+    if (room == GRID_TOO_NEAR)
+        return room;
+    GridBox box = grid_box(grid, point, distance);
+    for (int z = box.low[2]; z <= box.high[2]; z++)
+        for (int y = box.low[1]; y <= box.high[1]; y++)
+            for (int x = box.low[0]; x <= box.high[0]; x++) {
+                size_t index = grid_index(grid, x, y, z);
+                if (index != home && cell_room(grid, index, &query) == GRID_TOO_NEAR)
+                    return GRID_TOO_NEAR;
+            }
+    return room;
+}
+
+static bool nearer(Near a, Near b)
+{
+    return a.distance2 < b.distance2 || (a.distance2 == b.distance2 && a.segment < b.segment);
+}
+
+/* A search for the nearest segments, those found so far sorted in `list`. */
+typedef struct Search {
+    const Grid *grid;
+    float at[3]; /* the point */
+    int home[3]; /* its cell */
+    int limit, count;
+    Near *list;
+} Search;
+
+static void gather_cell(Search *search, size_t index)
+{
+    Near *list = search->list;
+    const GridCell *cell = &search->grid->cell[index];
+    for (uint32_t k = 0; k < cell->count; k++) {
+        int32_t segment = cell->tag[k] >> 1;
+        Near found = {point_distance2(&search->grid->item[segment], search->at), segment};
+        if (search->count == search->limit && !nearer(found, list[search->count - 1]))
+            continue;
+        bool known = false;
+        for (int i = 0; i < search->count && !known; i++)
+            known = list[i].segment == segment;
+        if (known)
+            continue;
+        int place = search->count < search->limit ? search->count++ : search->count - 1;
+        for (; place > 0 && nearer(found, list[place - 1]); place--)
+            list[place] = list[place - 1];
+        list[place] = found;
+    }
+}
+
+/* Squared distance of the point from a row of cells, or with all cells of that column, along one
+ * axis. */
+static double excess2(const Search *search, int cell, int axis)
+{
+    double low = cell * search->grid->edge, at = (double)search->at[axis];
+    double excess = greatest(0, greatest(low - at, at - low - search->grid->edge));
+    return excess * excess;
+}
+
+/* The first of `low`, `low` + `step`, ... that is in the grid. */
+static int first_from(int low, int step)
+{
+    return low >= 0 ? low : low + (step - 1 - low) / step * step;
+}
+
+/* Gathers every `step`-th cell of a row, except what is further than all that is wanted. */
+static void gather_row(Search *search, int ring, int step, int y, int z)
+{
+    const Grid *grid = search->grid;
+    double across2 = excess2(search, y, 1) + excess2(search, z, 2);
+    int last = search->home[0] + ring;
+    for (int x = first_from(search->home[0] - ring, step); x <= last && x < grid->count[0];
+         x += step)
+        if (search->count < search->limit ||
+            across2 + excess2(search, x, 0) <= (double)search->list[search->count - 1].distance2)
+            gather_cell(search, grid_index(grid, x, y, z));
+}
+
+/* Whether one of the ring's two faces across `axis` is in the grid. */
+static bool has_face(const Search *search, int ring, int axis)
+{
+    int home = search->home[axis];
+    return home >= ring || search->grid->count[axis] - home > ring;
+}
+
+/* Gathers the cells at `ring` steps from the point's own, which are the faces of a cube: those across z
+ * as layers, those across y as rows, those across x as the two ends of rows. Layers and rows without any
+ * are stepped over, or a ring in a long and thin grid would take as many steps as its number. */
+static void gather_ring(Search *search, int ring)
+{
+    const int *home = search->home, *count = search->grid->count;
+    int apart = ring > 0 ? 2 * ring : 1; /* of two faces */
+    bool face_x = has_face(search, ring, 0), face_y = has_face(search, ring, 1);
+    int step_z = face_x || face_y ? 1 : apart;
+    for (int z = first_from(home[2] - ring, step_z); z <= home[2] + ring && z < count[2];
+         z += step_z) {
+        bool layer = abs(z - home[2]) == ring;
+        int step_y = layer || face_x ? 1 : apart;
+        for (int y = first_from(home[1] - ring, step_y); y <= home[1] + ring && y < count[1];
+             y += step_y)
+            gather_row(search, ring, layer || abs(y - home[1]) == ring ? 1 : apart, y, z);
+    }
+}
+
+int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *out)
+{
+    Search search = {.grid = grid, .limit = limit, .list = out};
+    grid_store(grid, point, search.at);
+    GridBox own = grid_box(grid, point, 0);
+    int farthest = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        search.home[axis] = own.low[axis];
+        int other_side = grid->count[axis] - 1 - search.home[axis];
+        farthest = search.home[axis] > farthest ? search.home[axis] : farthest;
+        farthest = other_side > farthest ? other_side : farthest;
+    }
+    for (int ring = 0; ring <= farthest; ring++) {
+        double clear = (ring - 1) * grid->edge; /* a ring's cells are further than this */
+        if (search.count == limit && clear > 0 &&
+            clear * clear > (double)out[search.count - 1].distance2)
+            break;
+        if ((ring + 1) * grid->edge > within)
+            return -1;
+        gather_ring(&search, ring);
+    }
+    return search.count;
+}
+
+/* Segments found, as numbers that order like nearer(): the bits of a distance that is not negative,
+ * then the segment. */
+typedef struct Catch {
+    uint64_t key[CATCH + LANES];
+    size_t n;
+} Catch;
+
+/* The bounds of a cell along an axis; the outermost ones have none. */
+static void bounds_of(const Grid *grid, int cell, int axis, float out[2])
+{
+    out[0] = cell > 0 ? (float)(cell * grid->edge) : -FLT_MAX;
+    out[1] = cell < grid->count[axis] - 1 ? (float)((cell + 1) * grid->edge) : FLT_MAX;
+}
+
+/* Catches those segments of a cell whose point next to `point` is in this very cell, so each once. */
+static void catch_cell(const Grid *grid, const GridCell *cell, float bounds[3][2],
+                       const float point[3], float reach2, Catch *out)
+{
+    size_t n = out->n;
+    for (uint32_t k = 0; k < cell->count; k += LANES) {
+        Foot foot = foot_of(grid, cell, k, point);
+        Ints in = foot.distance2 <= reach2;
+        for (int axis = 0; axis < 3; axis++)
+            in &= (foot.at[axis] >= bounds[axis][0]) & (foot.at[axis] < bounds[axis][1]);
+        Ints bits = (Ints)foot.distance2;
+        for (int lane = 0; lane < LANES; lane++) {
+            out->key[n] = (uint64_t)(uint32_t)bits[lane] << 32 | (uint32_t)foot.segment[lane];
+            n += (k + lane < cell->count) & in[lane];
+        }
+    }
+    out->n = n;
+}
+
+/* Sorts by counting how many are less, which needs no branches. */
+static void sort_catch(const Catch *found, int limit, Near *out)
+{
+    for (size_t i = 0; i < found->n; i++) {
+        int less = 0;
+        for (size_t j = 0; j < found->n; j++)
+            less += found->key[j] < found->key[i];
+        if (less < limit) {
+            uint32_t bits = (uint32_t)(found->key[i] >> 32);
+            out[less].segment = (int32_t)(uint32_t)found->key[i];
+            memcpy(&out[less].distance2, &bits, sizeof bits);
+        }
+    }
+}
+
+bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, Near *out)
+{
+    Catch found;
+    float at[3], reach2 = (float)(reach * reach), bounds[3][2];
+    found.n = 0;
+    grid_store(grid, point, at);
+    GridBox box = grid_box(grid, point, reach * (1 + 1e-6) + grid->rounding);
+    for (int z = box.low[2]; z <= box.high[2]; z++) {
+        bounds_of(grid, z, 2, bounds[2]);
+        for (int y = box.low[1]; y <= box.high[1]; y++) {
+            bounds_of(grid, y, 1, bounds[1]);
+            for (int x = box.low[0]; x <= box.high[0]; x++) {
+                const GridCell *cell = &grid->cell[grid_index(grid, x, y, z)];
+                bounds_of(grid, x, 0, bounds[0]);
+                if (found.n + cell->count > CATCH)
+                    return false;
+                catch_cell(grid, cell, bounds, at, reach2, &found);
+            }
+        }
+    }
+    if (found.n < (size_t)limit)
+        return false;
+    sort_catch(&found, limit, out);
+    return true;
+}

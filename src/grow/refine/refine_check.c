@@ -1,0 +1,114 @@
+#include "grow/refine/refine_check.h"
+
+#include <stdlib.h>
+
+static Status check_range(const char *key, double value, bool fits, const char *allowed, Err *err)
+{
+    char number[NUMBER_TEXT_SIZE];
+    if (fits && isfinite(value))
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT, "header key %s: %s; refinement needs %s", key,
+                   number_text(value, number), allowed);
+}
+
+static Status check_header(const TreeHeader *header, Err *err)
+{
+    bool pries = header->has.viscosity_law && header->viscosity_law == VISCOSITY_PRIES;
+    const struct {
+        const char *key;
+        bool has;
+    } needed[] = {{"gamma", header->has.gamma},
+                  {"lambda", header->has.lambda},
+                  {"p_perf_mmHg", header->has.p_perf},
+                  {"p_term_mmHg", header->has.p_term},
+                  {"q_perf_ml_min", header->has.q_perf},
+                  {"viscosity_cP", header->has.viscosity || pries},
+                  {"hematocrit", header->has.hematocrit || !pries},
+                  {"plasma_viscosity_cP", header->has.plasma_viscosity || !pries}};
+    for (size_t k = 0; k < sizeof needed / sizeof *needed; k++)
+        if (!needed[k].has)
+            return err_set(err, STATUS_INPUT,
+                           "the tree has no header line \"%s: ...\", which refinement needs",
+                           needed[k].key);
+    double gamma = header->gamma, lambda = header->lambda;
+    TRY(check_range("gamma", gamma, gamma > 0 && gamma <= 10, "above 0 and at most 10", err));
+    TRY(check_range("lambda", lambda, lambda >= 0, "a finite number not below 0", err));
+    TRY(check_range("p_perf_mmHg", header->p_perf_mmhg, true, "a finite number", err));
+    TRY(check_range("p_term_mmHg", header->p_term_mmhg, header->p_term_mmhg < header->p_perf_mmhg,
+                    "a finite number below p_perf_mmHg", err));
+    TRY(check_range("q_perf_ml_min", header->q_perf_ml_min, header->q_perf_ml_min > 0,
+                    "a finite number above 0", err));
+    if (!pries)
+        return check_range("viscosity_cP", header->viscosity_cp, header->viscosity_cp > 0,
+                           "a finite number above 0", err);
+    TRY(check_range("hematocrit", header->hematocrit,
+                    header->hematocrit >= 0 && header->hematocrit <= MAX_HEMATOCRIT,
+                    "from 0 to 0.95", err));
+    return check_range("plasma_viscosity_cP", header->plasma_viscosity_cp,
+                       header->plasma_viscosity_cp > 0, "a finite number above 0", err);
+}
+
+/* Node i, which has so many children. */
+static Status check_node(const Tree *tree, size_t i, int32_t children, Err *err)
+{
+    int32_t id = tree->id[i];
+    if (i > 0 && !tree_is_segment(tree, i))
+        return err_set(err, STATUS_INPUT,
+                       "node %d is a second root; refinement needs a tree with one", id);
+    if (i == 0 && children != 1)
+        return err_set(err, STATUS_INPUT,
+                       "node %d, the root, has %d children; refinement needs a root with 1", id,
+                       children);
+    if (i > 0 && children != 0 && children != 2)
+        return err_set(err, STATUS_INPUT,
+                       "node %d has %d children; refinement needs a binary tree, where every node "
+                       "but the root has 0 or 2",
+                       id, children);
+    if (i > 0 && !(tree_segment_length(tree, i) > 0))
+        return err_set(err, STATUS_INPUT,
+                       "node %d is where its parent is; refinement needs segments with a length",
+                       id);
+    if (tree->flow_share && (children == 0 ? !(tree->flow_share[i] > 0) : tree->flow_share[i] != 0))
+        return err_set(err, STATUS_INPUT,
+                       "node %d: flow share %g; refinement needs flow out of all terminals and "
+                       "nowhere else",
+                       id, tree->flow_share[i]);
+    return STATUS_OK;
+}
+
+static Status check_inside(const Tree *tree, size_t i, const Domain *domain, Err *err)
+{
+    Vec3 at = tree->position[i];
+    if (!domain_inside(domain, at, domain->slack_mm))
+        return err_set(err, STATUS_INPUT,
+                       "node %d at (%.9g, %.9g, %.9g) is outside the domain; refinement needs the "
+                       "whole tree inside",
+                       tree->id[i], at.x, at.y, at.z);
+    if (i > 0 && !domain_is_convex(domain) &&
+        !domain_holds_segment(domain, tree->position[tree->parent[i]], at))
+        return err_set(err, STATUS_INPUT,
+                       "the segment that ends in node %d leaves the domain; refinement needs the "
+                       "whole tree inside",
+                       tree->id[i]);
+    return STATUS_OK;
+}
+
+Status refine_check(const RefineParams *params, const Domain *domain, const Tree *tree, Err *err)
+{
+    char number[NUMBER_TEXT_SIZE];
+    if (!(params->seconds >= 0) || !isfinite(params->seconds))
+        return err_set(err, STATUS_USAGE,
+                       "--refine-seconds %s: must be a finite number of seconds not below 0",
+                       number_text(params->seconds, number));
+    TRY(check_header(&tree->header, err));
+    int32_t *children = NULL;
+    TRY(tree_child_counts(tree, &children, err));
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < tree->n && status == STATUS_OK; i++) {
+        status = check_node(tree, i, children[i], err);
+        if (status == STATUS_OK && domain)
+            status = check_inside(tree, i, domain, err);
+    }
+    free(children);
+    return status;
+}

@@ -1,0 +1,441 @@
+/* Along a ray a component's 1 - d^2 / R^2 is top - curve (t - nearest)^2: for a ball throughout, for a tube
+ * with other numbers before, beside and beyond its axis. So each is a few *pieces*, and between any two
+ * neighbours among the ends of all pieces the field is one quartic.
+ *
+ * A hierarchy of boxes gives the segments whose field the ray may feel; each is felt in one interval of t.
+ * Intervals that overlap make a group, and groups are taken in their order along the ray until one holds a
+ * hit. Within a group the ends of pieces are passed in order. Where a piece is felt from l to h, its
+ * 1 - d^2 / R^2 has the Bernstein coefficients w0, w1, w2 there, and its square, the field, has
+ *   w0^2, w0 w1, (2 w1^2 + w0 w2) / 3, w1 w2, w2^2.
+ * Nothing large is subtracted from anything large in these, however far the ray has come. Their sum less 1
+ * is a quartic whose roots geom/quartic.h isolates by the signs of its coefficients, so none is missed but
+ * two that lie within 2^-32 of the interval of each other. Where neighbouring quartics disagree about the
+ * sign at their common end, by rounding, that end is the root. */
+#include "render/cast/blobcast.h"
+
+#include "render/cast/bvh.h"
+#include "surface/surface.h"
+#include <stdlib.h>
+
+enum { MAX_PIECES = 5 * BLOB_TUBES + 8 * BLOB_BEADS };
+
+/* Along a line 1 - d^2 / R^2 = top - curve (t - nearest)^2, felt from t0 to t1. */
+typedef struct Piece {
+    double t0, t1;
+    double nearest, top, curve;
+    double strength;
+} Piece;
+
+/* Part of a line, of the segment or piece of that number. */
+typedef struct Span {
+    double t0, t1;
+    uint32_t number;
+} Span;
+
+/* How a ray runs by a segment. */
+typedef struct Course {
+    double along;        /* cosine of the angle between ray and axis */
+    double across2;      /* squared sine of it */
+    double t[2];         /* nearest to either end */
+    double distance2[2]; /* from it, there */
+    double slope[2];     /* half the change of distance2 as the end moves along the axis, 1/mm */
+    double gate[2];      /* where the ray passes the planes across the axis at the ends */
+    double t_axis, axis_distance2; /* nearest to the axis line */
+} Course;
+
+struct BlobCast {
+    const Scene *scene;
+    Primitive *hulls; /* a cylinder for each segment: its balls hold all of its field */
+    Bvh *bvh;
+};
+
+struct BlobScratch {
+    uint32_t *candidates;
+    Span *spans;   /* of segments */
+    Piece *pieces; /* of a group */
+    Span *order;   /* of pieces */
+    uint32_t *active;
+};
+
+/* ---- building ------------------------------------------------------------------------------------ */
+
+Status blobcast_new(const Scene *scene, BlobCast **out, Err *err)
+{
+    size_t n = scene->n_segments;
+    BlobCast *cast = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&cast, 1, sizeof *cast, "blobs", err));
+    cast->scene = scene;
+    TRY_GOTO(mem_calloc(&cast->hulls, n, sizeof *cast->hulls, "segments", err));
+    double reach = blob_reach(&blob_shape);
+    for (size_t i = 0; i < n; i++) {
+        const FieldSegment *segment = &scene->segments[i];
+        cast->hulls[i] = (Primitive){.kind = PRIMITIVE_CYLINDER,
+                                     .a = segment->a,
+                                     .b = segment->b,
+                                     .radius_mm = segment->radius_mm * reach};
+    }
+    TRY_GOTO(bvh_build(cast->hulls, n, &cast->bvh, err));
+    *out = cast;
+    return STATUS_OK;
+done:
+    blobcast_free(cast);
+    return status;
+}
+
+void blobcast_free(BlobCast *cast)
+{
+    if (!cast)
+        return;
+    bvh_free(cast->bvh);
+    free(cast->hulls);
+    free(cast);
+}
+
+Status blobscratch_new(const BlobCast *cast, BlobScratch **out, Err *err)
+{
+    BlobScratch *scratch = NULL;
+    size_t n = cast->scene->n_segments;
+    Status status;
+    TRY_GOTO(mem_calloc(&scratch, 1, sizeof *scratch, "workspaces", err));
+    TRY_GOTO(mem_calloc(&scratch->candidates, n, sizeof *scratch->candidates, "segments", err));
+    TRY_GOTO(mem_calloc(&scratch->spans, n, sizeof *scratch->spans, "segments", err));
+    /* Touched only as far as a ray ever needs. */
+    TRY_GOTO(mem_calloc(&scratch->pieces, n, MAX_PIECES * sizeof *scratch->pieces, "pieces", err));
+    TRY_GOTO(mem_calloc(&scratch->order, n, MAX_PIECES * sizeof *scratch->order, "pieces", err));
+    TRY_GOTO(mem_calloc(&scratch->active, n, MAX_PIECES * sizeof *scratch->active, "pieces", err));
+    *out = scratch;
+    return STATUS_OK;
+done:
+    blobscratch_free(scratch);
+    return status;
+}
+
+void blobscratch_free(BlobScratch *scratch)
+{
+    if (!scratch)
+        return;
+    free(scratch->candidates);
+    free(scratch->spans);
+    free(scratch->pieces);
+    free(scratch->order);
+    free(scratch->active);
+    free(scratch);
+}
+
+/* ---- pieces -------------------------------------------------------------------------------------- */
+
+static Course course_of(const FieldSegment *segment, Ray ray)
+{
+    Course course;
+    const Vec3 end[2] = {segment->a, segment->b};
+    Vec3 axis = vec3_normalized(vec3_sub(end[1], end[0])), d = ray.direction;
+    course.along = vec3_dot(d, axis);
+    Vec3 across = vec3_add_scaled(axis, d, -course.along);
+    Vec3 aside = vec3_add_scaled(d, axis, -course.along); /* as long, and square to the axis */
+    course.across2 = vec3_dot(aside, aside);
+    for (int e = 0; e < 2; e++) {
+        course.t[e] = vec3_dot(vec3_sub(end[e], ray.origin), d);
+        Vec3 off = vec3_sub(end[e], ray_at(ray, course.t[e]));
+        course.distance2[e] = vec3_dot(off, off);
+        course.slope[e] = vec3_dot(off, across);
+        /* At t[e] the ray is off . axis short of the end, along the axis. */
+        double short_of = vec3_dot(off, axis);
+        course.gate[e] = course.t[e] + short_of / course.along;
+        if (e == 0) {
+            Vec3 from_axis = vec3_add_scaled(off, axis, -short_of);
+            double t = course.across2 > 0 ? vec3_dot(from_axis, aside) / course.across2 : 0;
+            Vec3 least = vec3_add_scaled(from_axis, aside, -t);
+            course.t_axis = course.t[0] + t;
+            course.axis_distance2 = vec3_dot(least, least);
+        }
+    }
+    return course;
+}
+
+/* Appends the part from `low` to `high` of where the field of a piece is not 0. */
+static Piece *put_piece(Piece *end, double nearest, double distance2, double curve, double radius2,
+                        double strength, double low, double high)
+{
+    if (!(distance2 < radius2))
+        return end;
+    double half = sqrt((radius2 - distance2) / curve);
+    *end = (Piece){fmax(nearest - half, low),
+                   fmin(nearest + half, high),
+                   nearest,
+                   1 - distance2 / radius2,
+                   curve / radius2,
+                   strength};
+    return end + (end->t0 < end->t1);
+}
+
+/* Where the ray is before the plane across the axis at the segment's first end, between the planes of
+ * both, and beyond that of the second; empty where `low` is above `high`. */
+typedef struct Parts {
+    double low[3], high[3];
+} Parts;
+
+static Parts parts_of(const Course *course, double distance_along)
+{
+    Parts parts = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    if (course->along > 0)
+        return (Parts){{-INFINITY, course->gate[0], course->gate[1]},
+                       {course->gate[0], course->gate[1], INFINITY}};
+    if (course->along < 0)
+        return (Parts){{course->gate[0], course->gate[1], -INFINITY},
+                       {INFINITY, course->gate[0], course->gate[1]}};
+    int part = distance_along < 0 ? 0 : distance_along > 1 ? 2 : 1;
+    parts.low[part] = -INFINITY;
+    parts.high[part] = INFINITY;
+    return parts;
+}
+
+/* How far along its axis the segment is passed, from 0 to 1, by a ray square to it. */
+static double place_along(const FieldSegment *segment, Ray ray)
+{
+    Vec3 span = vec3_sub(segment->b, segment->a);
+    return vec3_dot(vec3_sub(ray.origin, segment->a), span) / vec3_dot(span, span);
+}
+
+/* A tube and the two balls of minus half its strength at its ends: where the tube is a half ball itself,
+ * half of it is left. */
+static Piece *put_tube(Piece *end, const Course *course, const Parts *parts, const BlobTube *tube,
+                       double radius_mm)
+{
+    double radius2 = tube->radius * radius_mm * (tube->radius * radius_mm);
+    double half = 0.5 * tube->strength;
+    end = put_piece(end, course->t_axis, course->axis_distance2, course->across2, radius2,
+                    tube->strength, parts->low[1], parts->high[1]);
+    for (int e = 0; e < 2; e++) {
+        int outside = 2 * e;
+        double t = course->t[e], distance2 = course->distance2[e];
+        end = put_piece(end, t, distance2, 1, radius2, half, parts->low[outside],
+                        parts->high[outside]);
+        /* What is not outside of this end: between the ends or beyond the other. */
+        double low = fmin(parts->low[1], parts->low[2 - outside]);
+        double high = fmax(parts->high[1], parts->high[2 - outside]);
+        end = put_piece(end, t, distance2, 1, radius2, -half, low, high);
+    }
+    return end;
+}
+
+static Piece *put_beads(Piece *end, const Course *course, const BlobBead *bead, double radius_mm)
+{
+    double radius2 = bead->radius * radius_mm * (bead->radius * radius_mm);
+    for (int e = 0; e < 2; e++)
+        for (int side = 1; side >= -1; side -= 2) {
+            double shift = (e ? -side : side) * bead->offset * radius_mm;
+            double distance2 =
+                course->distance2[e] + shift * (2 * course->slope[e] + shift * course->across2);
+            end = put_piece(end, course->t[e] + shift * course->along, distance2, 1, radius2,
+                            side * bead->strength, -INFINITY, INFINITY);
+        }
+    return end;
+}
+
+static Piece *put_segment(Piece *end, const FieldSegment *segment, Ray ray)
+{
+    Course course = course_of(segment, ray);
+    Parts parts = parts_of(&course, place_along(segment, ray));
+    for (int i = 0; i < BLOB_TUBES; i++)
+        end = put_tube(end, &course, &parts, &blob_shape.tube[i], segment->radius_mm);
+    for (int i = 0; i < BLOB_BEADS; i++)
+        end = put_beads(end, &course, &blob_shape.bead[i], segment->radius_mm);
+    return end;
+}
+
+/* Where the ray may feel the segment: while it is within its reach. */
+static bool find_span(const FieldSegment *segment, Ray ray, double reach, double t_max, Span *span)
+{
+    Course course = course_of(segment, ray);
+    Parts parts = parts_of(&course, place_along(segment, ray));
+    double radius2 = reach * segment->radius_mm * (reach * segment->radius_mm);
+    Piece piece[3], *end = piece;
+    end = put_piece(end, course.t_axis, course.axis_distance2, course.across2, radius2, 1,
+                    parts.low[1], parts.high[1]);
+    for (int e = 0; e < 2; e++)
+        end = put_piece(end, course.t[e], course.distance2[e], 1, radius2, 1, parts.low[2 * e],
+                        parts.high[2 * e]);
+    span->t0 = INFINITY;
+    span->t1 = -INFINITY;
+    for (const Piece *p = piece; p < end; p++) {
+        span->t0 = fmin(span->t0, p->t0);
+        span->t1 = fmax(span->t1, p->t1);
+    }
+    span->t0 = fmax(span->t0, 0);
+    return span->t0 < span->t1 && span->t0 < t_max;
+}
+
+/* By rising t0, and number where those are equal [Shell; gaps of Ciura 2001]. */
+static void sort_spans(Span *spans, size_t n)
+{
+    static const size_t gaps[] = {701, 301, 132, 57, 23, 10, 4, 1};
+    for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++)
+        for (size_t i = gaps[g]; i < n; i++) {
+            Span span = spans[i];
+            size_t j = i;
+            for (; j >= gaps[g]; j -= gaps[g]) {
+                const Span *before = &spans[j - gaps[g]];
+                if (before->t0 < span.t0 || (before->t0 == span.t0 && before->number < span.number))
+                    break;
+                spans[j] = *before;
+            }
+            spans[j] = span;
+        }
+}
+
+/* ---- roots --------------------------------------------------------------------------------------- */
+
+/* Adds the Bernstein coefficients on [low, high] of a piece's field. */
+static void add_piece(const Piece *piece, double low, double high, double b[5])
+{
+    double l = low - piece->nearest, h = high - piece->nearest;
+    double w0 = piece->top - piece->curve * l * l;
+    double w1 = piece->top - piece->curve * l * h;
+    double w2 = piece->top - piece->curve * h * h;
+    double s = piece->strength;
+    b[0] += s * w0 * w0;
+    b[1] += s * w0 * w1;
+    b[2] += s * (2 * w1 * w1 + w0 * w2) * (1.0 / 3);
+    b[3] += s * w1 * w2;
+    b[4] += s * w2 * w2;
+}
+
+/* A walk over the pieces of a group. */
+typedef struct Walk {
+    const Piece *pieces;
+    const Span *order;
+    size_t n, next;
+    uint32_t *active;
+    size_t n_active;
+} Walk;
+
+/* Takes up the pieces that begin at `t` or before, drops those that end there: where the next one begins or
+ * ends, infinity after the last. */
+static double walk_to(Walk *walk, double t)
+{
+    double until = INFINITY;
+    for (; walk->next < walk->n && walk->order[walk->next].t0 <= t; walk->next++)
+        walk->active[walk->n_active++] = walk->order[walk->next].number;
+    size_t kept = 0;
+    for (size_t i = 0; i < walk->n_active; i++) {
+        double end = walk->pieces[walk->active[i]].t1;
+        if (end <= t)
+            continue;
+        walk->active[kept++] = walk->active[i];
+        until = fmin(until, end);
+    }
+    walk->n_active = kept;
+    return walk->next < walk->n ? fmin(until, walk->order[walk->next].t0) : until;
+}
+
+/* The first root in (t_min, t_max) of the pieces, sorted by `order`. */
+static bool first_root(BlobScratch *scratch, size_t n, double t_min, double t_max, double *t)
+{
+    Walk walk = {scratch->pieces, scratch->order, n, 0, scratch->active, 0};
+    double low = fmax(scratch->order[0].t0, 0);
+    bool inside = false, known = low > 0;
+    while (low < t_max) {
+        double high = walk_to(&walk, low);
+        if (high == (double)INFINITY)
+            return false;
+        double b[5] = {-1, -1, -1, -1, -1}, roots[4];
+        for (size_t i = 0; i < walk.n_active; i++)
+            add_piece(&walk.pieces[walk.active[i]], low, high, b);
+        if (known && inside != (b[0] >= 0) && low > t_min) {
+            *t = low;
+            return true;
+        }
+        int count = quartic_roots(b, low, high, roots);
+        for (int i = 0; i < count; i++)
+            if (roots[i] > t_min) {
+                *t = roots[i];
+                return *t < t_max;
+            }
+        inside = b[4] >= 0;
+        known = true;
+        low = high;
+    }
+    return false;
+}
+
+/* ---- casting ------------------------------------------------------------------------------------- */
+
+static size_t find_spans(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_max)
+{
+    size_t count = bvh_candidates(cast->bvh, ray, 0, t_max, scratch->candidates), n = 0;
+    double reach = blob_reach(&blob_shape);
+    for (size_t i = 0; i < count; i++) {
+        Span *span = &scratch->spans[n];
+        span->number = scratch->candidates[i];
+        n += find_span(&cast->scene->segments[span->number], ray, reach, t_max, span);
+    }
+    sort_spans(scratch->spans, n);
+    return n;
+}
+
+/* The first hit among the segments of spans[first .. end). */
+static bool group_root(const BlobCast *cast, BlobScratch *scratch, Ray ray, size_t first,
+                       size_t end, double t_min, double t_max, double *t)
+{
+    Piece *last = scratch->pieces;
+    for (size_t i = first; i < end; i++)
+        last = put_segment(last, &cast->scene->segments[scratch->spans[i].number], ray);
+    size_t n = (size_t)(last - scratch->pieces);
+    for (size_t i = 0; i < n; i++)
+        scratch->order[i] = (Span){scratch->pieces[i].t0, scratch->pieces[i].t1, (uint32_t)i};
+    sort_spans(scratch->order, n);
+    return n > 0 && first_root(scratch, n, t_min, t_max, t);
+}
+
+/* The first hit, and the group of segments in which it is: spans[*first .. *end). */
+static bool find_hit(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_min,
+                     double t_max, double *t, size_t *first, size_t *end)
+{
+    size_t n = find_spans(cast, scratch, ray, t_max);
+    const Span *spans = scratch->spans;
+    for (*first = 0; *first < n; *first = *end) {
+        double until = spans[*first].t1;
+        for (*end = *first + 1; *end < n && spans[*end].t0 <= until; ++*end)
+            until = fmax(until, spans[*end].t1);
+        if (until > t_min && group_root(cast, scratch, ray, *first, *end, t_min, t_max, t))
+            return true;
+    }
+    return false;
+}
+
+bool blobcast_first_hit(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_min,
+                        double t_max, double *t, Vec3 *normal, uint32_t *segment)
+{
+    size_t first, end;
+    if (!find_hit(cast, scratch, ray, t_min, t_max, t, &first, &end))
+        return false;
+    Vec3 x = ray_at(ray, *t), sum = vec3(0, 0, 0);
+    double largest = -INFINITY;
+    for (size_t i = first; i < end; i++) {
+        const Span *span = &scratch->spans[i];
+        if (!(span->t0 <= *t && *t <= span->t1))
+            continue;
+        BlobComponent components[BLOB_COMPONENTS];
+        Vec3 gradient;
+        blob_components(&blob_shape, &cast->scene->segments[span->number], components);
+        double term = blob_components_at(components, x, &gradient);
+        sum = vec3_add(sum, gradient);
+        if (term > largest || (term == largest && span->number < *segment)) {
+            largest = term;
+            *segment = span->number;
+        }
+    }
+    /* POV-Ray's normal where the gradient is 0. */
+    bool flat = sum.x == 0 && sum.y == 0 && sum.z == 0;
+    *normal = flat ? vec3(1, 0, 0) : vec3_scale(vec3_normalized(sum), -1);
+    return true;
+}
+
+bool blobcast_any_hit(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_min,
+                      double t_max)
+{
+    double t;
+    size_t first, end;
+    return find_hit(cast, scratch, ray, t_min, t_max, &t, &first, &end);
+}

@@ -1,0 +1,130 @@
+#include "render/cast/caster.h"
+
+#include "render/cast/blobcast.h"
+#include "render/cast/bvh.h"
+#include "render/cast/field.h"
+#include "render/cast/povray_isosurface.h"
+#include <stdlib.h>
+
+/* POV-Ray's limit [docs/POVRAY.md section 3]: blockers within it of the lit point or of the light cast no
+ * shadow. */
+static const double shadow_slack_mm = 1e-3;
+/* Of a blob neither sees anything nearer than this. */
+static const double blob_nearest_mm = 1e-2;
+
+struct Caster {
+    const Scene *scene;
+    Bvh *bvh;               /* NULL for an implicit model */
+    Halving *halving;       /* an implicit model as POV-Ray finds it, or NULL */
+    FieldIndex *field;      /* an implicit model by proof, or NULL */
+    FieldScratch **scratch; /* one a worker */
+    BlobCast *blob;         /* or NULL */
+    BlobScratch **blob_scratch;
+    int workers;
+    double shadow_from_mm;
+};
+
+Status caster_new(const Scene *scene, const CellParams *cells, int workers, Caster **out, Err *err)
+{
+    Caster *caster = NULL;
+    TRY(mem_calloc(&caster, 1, sizeof *caster, "casters", err));
+    caster->scene = scene;
+    caster->workers = workers;
+    caster->shadow_from_mm = shadow_slack_mm;
+    Status status = STATUS_OK;
+    if (scene->model == SCENE_BLOB) {
+        TRY_GOTO(blobcast_new(scene, &caster->blob, err));
+        TRY_GOTO(mem_calloc(&caster->blob_scratch, (size_t)workers, sizeof *caster->blob_scratch,
+                            "workspaces", err));
+        for (int i = 0; i < workers; i++)
+            TRY_GOTO(blobscratch_new(caster->blob, &caster->blob_scratch[i], err));
+    } else if (scene->model != SCENE_ISOSURFACE) {
+        TRY_GOTO(bvh_build(scene->primitives, scene->n_primitives, &caster->bvh, err));
+    } else if (cells) {
+        TRY_GOTO(halving_new(scene, cells, &caster->halving, err));
+    } else {
+        TRY_GOTO(fieldindex_build(scene, &caster->field, err));
+        TRY_GOTO(mem_calloc(&caster->scratch, (size_t)workers, sizeof *caster->scratch,
+                            "workspaces", err));
+        for (int i = 0; i < workers; i++)
+            TRY_GOTO(fieldscratch_new(fieldindex_size(caster->field), &caster->scratch[i], err));
+    }
+    *out = caster;
+    return STATUS_OK;
+done:
+    caster_free(caster);
+    return status;
+}
+
+void caster_shadow_from(Caster *caster, double nearest_mm)
+{
+    caster->shadow_from_mm = nearest_mm;
+}
+
+void caster_free(Caster *caster)
+{
+    if (!caster)
+        return;
+    for (int i = 0; caster->scratch && i < caster->workers; i++)
+        fieldscratch_free(caster->scratch[i]);
+    free(caster->scratch);
+    for (int i = 0; caster->blob_scratch && i < caster->workers; i++)
+        blobscratch_free(caster->blob_scratch[i]);
+    free(caster->blob_scratch);
+    blobcast_free(caster->blob);
+    fieldindex_free(caster->field);
+    halving_free(caster->halving);
+    bvh_free(caster->bvh);
+    free(caster);
+}
+
+bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
+{
+    if (caster->bvh) {
+        Hit hit;
+        size_t index;
+        if (!bvh_first_hit(caster->bvh, ray, NEAREST_SEEN_MM, &hit, &index))
+            return false;
+        const Primitive *primitive = &caster->scene->primitives[index];
+        *surfel = (Surfel){hit.t, hit.normal, primitive->color, primitive->id};
+    } else if (caster->halving) {
+        Hit hit;
+        uint32_t index;
+        if (!halving_first_hit(caster->halving, ray, NEAREST_SEEN_MM, &hit, &index))
+            return false;
+        const FieldSegment *segment = &caster->scene->segments[index];
+        *surfel = (Surfel){hit.t, hit.normal, segment->color, segment->id};
+    } else {
+        double t;
+        Vec3 normal;
+        uint32_t index;
+        bool found = caster->blob
+                         ? blobcast_first_hit(caster->blob, caster->blob_scratch[worker], ray,
+                                              blob_nearest_mm, INFINITY, &t, &normal, &index)
+                         : field_first_hit(caster->field, caster->scratch[worker], ray,
+                                           NEAREST_SEEN_MM, INFINITY, &t, &normal, &index);
+        if (!found)
+            return false;
+        const FieldSegment *segment = &caster->scene->segments[index];
+        *surfel = (Surfel){t, normal, segment->color, segment->id};
+    }
+    if (vec3_dot(surfel->normal, ray.direction) > 0)
+        surfel->normal = vec3_scale(surfel->normal, -1);
+    return true;
+}
+
+bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double distance)
+{
+    Ray ray = {point, towards};
+    double near = caster->shadow_from_mm, far = distance - shadow_slack_mm, t;
+    if (ground_hit(&caster->scene->ground, ray, near, far, &t))
+        return true;
+    if (caster->bvh)
+        return bvh_any_hit(caster->bvh, ray, near, far);
+    if (caster->halving)
+        return halving_any_hit(caster->halving, ray, near, far);
+    if (caster->blob)
+        return blobcast_any_hit(caster->blob, caster->blob_scratch[worker], ray, blob_nearest_mm,
+                                far);
+    return field_is_shadowed(caster->field, caster->scratch[worker], ray, near, far);
+}

@@ -1,0 +1,352 @@
+/* The proof of a first hit.
+ *
+ * Along a ray every term is exp(-e^2 - w^2) (erf(u) + erf(h - u)) / 2 with a constant e, the
+ * distance of the ray from the axis line, and w and u affine in t. Only passages, the stretches
+ * where a term may exceed the cut-off, are looked at, and the ray is done group by group, a group
+ * being a maximal run of passages that overlap. T is the level.
+ *
+ * - Windows. Phi >= T among n terms needs one of them to be T / n at least. With the peak p of the
+ *   term that is w^2 <= ln(n p / T) - e^2, and beyond an end by x, where the term is at most
+ *   exp(-e^2 - x^2) / 2, x^2 <= ln(n / 2T) - e^2. Outside these windows there is no hit.
+ * - Safe steps. On [t, next), until another passage begins, Phi'' is at most M, the sum over terms
+ *   of exp(-e^2) (0.8926 p w'^2 + 0.9682 |w' u'| + 0.4840 u'^2): with G = exp(-w^2) and A the axial
+ *   factor, the suprema of G'', 2 |G'| |A'| and A'' are 4 exp(-3/2), 2 sqrt(2/e) / sqrt(pi) and
+ *   sqrt(2/e) / sqrt(pi). With lack = T - Phi(t) and the slope of Phi at t, Phi stays below T up to
+ *   the positive root of lack = slope x + M x^2 / 2. Such steps converge quadratically from before
+ *   the surface.
+ * - Existence. Phi'' is at least -N, made likewise of G'' >= -2 and A'' >= -2 sqrt(2/e) / sqrt(pi).
+ *   If slope^2 >= 2 N lack, Phi reaches T, and rises all the way, before the smaller root of lack =
+ *   slope x - N x^2 / 2: a bracket with one crossing, which Newton's method closes.
+ *
+ * The way out of a vessel in which a ray starts is the same with the sign of Phi - T turned, and needs
+ * no windows. Of a union of bodies it is found by leaving one after the other until none is left. */
+#include "render/cast/field.h"
+
+#include "render/cast/passage.h"
+#include "surface/surface.h"
+#include <float.h>
+
+/* Phi within this part of the level has reached it. */
+static const double touch = 1e-12 * FIELD_LEVEL;
+
+/* From here on erf(x) = 1 and exp(-x^2) = 0 to the last bit of a sum near the level. */
+static const double saturated = 6;
+
+static const double inv_sqrt_pi = 0.56418958354775628695;
+
+/* The first place from t on within a window; infinite when there is none. */
+static double next_window(const FieldScratch *scratch, double t)
+{
+    double next = HUGE_VAL;
+    for (size_t i = 0; i < scratch->n_group; i++) {
+        const Passage *passage = scratch->group[i];
+        if (passage->window1 >= t)
+            next = fmin(next, fmax(passage->window0, t));
+    }
+    return next;
+}
+
+/* The potential of the group along the ray. */
+typedef struct Sample {
+    double phi, slope;
+    double convex, concave; /* bounds of phi'' and -phi'' until `next` */
+    double next;            /* where the next passage begins */
+} Sample;
+
+static void add_term(const Passage *passage, double t, Sample *sample)
+{
+    double x = t - passage->t_mid;
+    double w = passage->w0 + passage->w1 * x;
+    double u = passage->u0 + passage->u1 * x;
+    double v = passage->h - u;
+    double gauss = passage->radial * exp(-w * w);
+    double ends = (u < saturated ? erf(u) : 1) + (v < saturated ? erf(v) : 1);
+    double end_slope = (u < saturated ? exp(-u * u) : 0) - (v < saturated ? exp(-v * v) : 0);
+    sample->phi += 0.5 * gauss * ends;
+    sample->slope += gauss * (inv_sqrt_pi * passage->u1 * end_slope - w * passage->w1 * ends);
+    sample->convex += passage->convex;
+    sample->concave += passage->concave;
+}
+
+static Sample sample_at(const FieldScratch *scratch, double t)
+{
+    Sample sample = {.next = HUGE_VAL};
+    for (size_t i = 0; i < scratch->n_group; i++) {
+        const Passage *passage = scratch->group[i];
+        if (passage->t0 > t) {
+            sample.next = passage->t0;
+            break;
+        }
+        if (passage->t1 >= t)
+            add_term(passage, t, &sample);
+    }
+    return sample;
+}
+
+/* What separates a sample from the level, seen from outside (side 1) or from inside (side -1). */
+typedef struct Approach {
+    double lack, slope;     /* lack falls by slope a mm; both refer to side * Phi */
+    double convex, concave; /* of side * Phi */
+} Approach;
+
+static Approach approach_of(const Sample *sample, double side)
+{
+    return (Approach){side * (FIELD_LEVEL - sample->phi), side * sample->slope,
+                      side > 0 ? sample->convex : sample->concave,
+                      side > 0 ? sample->concave : sample->convex};
+}
+
+/* The one crossing in [low, high]; the lack is `at.lack` > 0 at `low`. */
+static double close_bracket(const FieldScratch *scratch, double low, double high, double side,
+                            Approach at)
+{
+    double t = low;
+    for (int i = 0; i < 40; i++) {
+        double newton = t + at.lack / at.slope;
+        double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+        double moved = fabs(next - t);
+        t = next;
+        if (moved <= 2 * DBL_EPSILON * fabs(t))
+            break;
+        Sample sample = sample_at(scratch, t);
+        at = approach_of(&sample, side);
+        if (fabs(at.lack) <= 1e-14 * FIELD_LEVEL)
+            break;
+        if (at.lack > 0)
+            low = t;
+        else
+            high = t;
+    }
+    return t;
+}
+
+/* The first crossing of the level from t on, from outside inwards (side 1) or out of the vessel
+ * (side -1). Infinite when there is none up to t_max. */
+static double march(const FieldScratch *scratch, double t, double t_max, double side)
+{
+    for (;;) {
+        if (side > 0)
+            t = next_window(scratch, t);
+        if (!(t <= t_max))
+            return HUGE_VAL;
+        Sample sample = sample_at(scratch, t);
+        Approach at = approach_of(&sample, side);
+        if (at.lack <= touch && at.slope >= 0)
+            return t;
+        at.lack = fmax(at.lack, 0);
+        double existence = at.slope * at.slope - 2 * at.concave * at.lack;
+        if (at.slope > 0 && existence >= 0) {
+            double high = t + 2 * at.lack / (at.slope + sqrt(existence));
+            if (high < sample.next)
+                return close_bracket(scratch, t, high, side, at);
+        }
+        double root = sqrt(at.slope * at.slope + 2 * at.convex * at.lack);
+        double step =
+            at.slope > 0 ? 2 * at.lack / (at.slope + root) : (root - at.slope) / at.convex;
+        t = fmin(fmax(t + step, nextafter(t, HUGE_VAL)), sample.next);
+    }
+}
+
+/* What is asked of a ray, and the answer. */
+typedef struct Search {
+    const Scene *scene;
+    FieldScratch *scratch;
+    Ray ray;
+    double t_min, t_max; /* t_max is finite, so that "none", infinite, is beyond it */
+    bool off_surface;    /* the ray starts on a surface: see is_skin */
+    double t;
+    Vec3 normal;
+    uint32_t segment;
+} Search;
+
+static bool is_inside(const Sample *sample)
+{
+    return sample->phi > FIELD_LEVEL + touch;
+}
+
+/* Whether a ray that starts on a surface is inside only because that place is not exact: hits are
+ * within 10^-3 r, so that Phi is within 0.4 % of the level, and the ray is on its way out. */
+static bool is_skin(const Search *search, const Sample *sample)
+{
+    return search->off_surface && sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0;
+}
+
+/* The first crossing of the group in the search's limits; infinite when there is none. */
+static double first_crossing(const Search *search)
+{
+    const FieldScratch *scratch = search->scratch;
+    double t = fmax(search->t_min, scratch->group[0]->t0);
+    if (t == search->t_min) {
+        Sample start = sample_at(scratch, t);
+        if (is_inside(&start)) {
+            t = march(scratch, t, search->t_max, -1);
+            if (!is_skin(search, &start))
+                return t;
+        }
+    }
+    return march(scratch, t, search->t_max, 1);
+}
+
+/* Sets the answer to the place t of the group. */
+static void describe_hit(Search *search, double t)
+{
+    const FieldScratch *scratch = search->scratch;
+    Vec3 x = ray_at(search->ray, t), sum = vec3(0, 0, 0);
+    double largest = -1;
+    search->t = t;
+    for (size_t i = 0; i < scratch->n_group; i++) {
+        const Passage *passage = scratch->group[i];
+        if (passage->t0 > t || passage->t1 < t)
+            continue;
+        Vec3 gradient;
+        uint32_t number = passage->segment;
+        double term = potential_term_gradient(&search->scene->segments[number], x, &gradient);
+        sum = vec3_add(sum, gradient);
+        if (term > largest || (term == largest && number < search->segment)) {
+            largest = term;
+            search->segment = number;
+        }
+    }
+    double steepness = vec3_length(sum);
+    search->normal = vec3_scale(steepness > 0 ? sum : search->ray.direction,
+                                steepness > 0 ? -1 / steepness : -1);
+}
+
+/* The first hit of the sum of the passages that the scratch holds. */
+static bool hit_of_sum(Search *search)
+{
+    while (passages_next_group(search->scratch)) {
+        if (!passages_find_windows(search->scratch))
+            continue;
+        double t = first_crossing(search);
+        if (t <= search->t_max) {
+            describe_hit(search, t);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Makes the terms listed the scratch's passages. */
+static void pass_all(const Search *search, const uint32_t *list, size_t n)
+{
+    passages_clear(search->scratch);
+    for (size_t i = 0; i < n; i++) {
+        FieldTube tube = fieldtube_of(&search->scene->segments[list[i]], list[i]);
+        if (tube.reach2 > 0)
+            passages_add(search->scratch, &tube, search->ray, search->t_min, search->t_max);
+    }
+    passages_order(search->scratch);
+}
+
+/* The same for those of the terms that blend with the one numbered i. */
+static void pass_joined(const Search *search, const uint32_t *list, size_t n, size_t i)
+{
+    size_t joined = 0;
+    for (size_t j = 0; j < n; j++)
+        if (blend_joins(&search->scene->blend, list[i], list[j]))
+            search->scratch->joined[joined++] = list[j];
+    pass_all(search, search->scratch->joined, joined);
+}
+
+/* If the ray is at t_min inside the body that the scratch's passages make, moves t_min to where it
+ * leaves, infinite if that is beyond t_max, describes that place and returns true. *deep tells whether
+ * it was more than skin there, and is left alone if not. */
+static bool leave_body(Search *search, bool *deep)
+{
+    const FieldScratch *scratch = search->scratch;
+    while (passages_next_group(search->scratch) && scratch->group[0]->t0 <= search->t_min) {
+        if (!passages_find_windows(search->scratch))
+            continue;
+        Sample start = sample_at(scratch, search->t_min);
+        if (!is_inside(&start))
+            continue;
+        double t = march(scratch, search->t_min, search->t_max, -1);
+        if (t <= search->t_min)
+            return false;
+        search->t_min = t;
+        if (t <= search->t_max)
+            describe_hit(search, t);
+        *deep |= !is_skin(search, &start);
+        return true;
+    }
+    return false;
+}
+
+/* Moves t_min out of the union of the bodies about each term listed. True if it was inside, and not
+ * just for being on the surface. */
+static bool leave_union(Search *search, const uint32_t *list, size_t n)
+{
+    bool deep = false, moved = true;
+    while (moved && search->t_min <= search->t_max) {
+        moved = false;
+        for (size_t i = 0; i < n && search->t_min <= search->t_max; i++) {
+            pass_joined(search, list, n, i);
+            moved |= leave_body(search, &deep);
+        }
+    }
+    return deep;
+}
+
+/* The first hit of the union of the bodies about each term listed. */
+static bool hit_of_union(Search *search, const uint32_t *list, size_t n)
+{
+    if (leave_union(search, list, n))
+        return search->t_min <= search->t_max;
+    bool hit = false;
+    for (size_t i = 0; i < n; i++) {
+        pass_joined(search, list, n, i);
+        if (hit_of_sum(search)) {
+            hit = true;
+            search->t_max = search->t;
+        }
+    }
+    return hit;
+}
+
+static bool answer(const Search *search, bool hit, double *t, Vec3 *normal, uint32_t *segment)
+{
+    if (hit) {
+        *t = search->t;
+        *normal = search->normal;
+        *segment = search->segment;
+    }
+    return hit;
+}
+
+bool field_first_hit_among(const Scene *scene, const uint32_t *list, size_t n,
+                           FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
+                           Vec3 *normal, uint32_t *segment)
+{
+    Search search = {scene, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
+    if (scene->blend.first)
+        return answer(&search, hit_of_union(&search, list, n), t, normal, segment);
+    pass_all(&search, list, n);
+    return answer(&search, hit_of_sum(&search), t, normal, segment);
+}
+
+static bool search_index(const FieldIndex *index, Search *search)
+{
+    FieldScratch *scratch = search->scratch;
+    passages_find(index, scratch, search->ray, search->t_min, search->t_max);
+    if (!index->scene->blend.first)
+        return hit_of_sum(search);
+    size_t n = scratch->n_passages;
+    for (size_t i = 0; i < n; i++)
+        scratch->near[i] = scratch->passages[i].segment;
+    return hit_of_union(search, scratch->near, n);
+}
+
+bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
+                     double t_max, double *t, Vec3 *normal, uint32_t *segment)
+{
+    Search search = {index->scene, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
+    return answer(&search, search_index(index, &search), t, normal, segment);
+}
+
+bool field_is_shadowed(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
+                       double t_max)
+{
+    Search search = {index->scene, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = true};
+    return search_index(index, &search);
+}

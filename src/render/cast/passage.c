@@ -1,0 +1,222 @@
+/* A passage is kept relative to t_mid, where the ray is nearest to the segment, so that nothing is
+ * lost to a distant camera or a long segment. The support of a term is taken to be a cylinder about
+ * its capsule; both are convex, so a passage is one interval. Passages are ordered by a heap: a ray
+ * that hits its first group never orders the rest. */
+#include "render/cast/passage.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+static const double ln2 = 0.69314718055994530942;
+
+Status fieldscratch_new(size_t n, FieldScratch **out, Err *err)
+{
+    Status status;
+    FieldScratch *scratch = NULL;
+    TRY_GOTO(mem_calloc(&scratch, 1, sizeof *scratch, "field workspaces", err));
+    TRY_GOTO(mem_calloc(&scratch->passages, n, sizeof *scratch->passages, "passages", err));
+    TRY_GOTO(mem_calloc(&scratch->heap, n, sizeof *scratch->heap, "passages", err));
+    TRY_GOTO(mem_calloc(&scratch->group, n, sizeof *scratch->group, "passages", err));
+    TRY_GOTO(mem_calloc(&scratch->near, n, sizeof *scratch->near, "passages", err));
+    TRY_GOTO(mem_calloc(&scratch->joined, n, sizeof *scratch->joined, "passages", err));
+    *out = scratch;
+    return STATUS_OK;
+done:
+    fieldscratch_free(scratch);
+    return status;
+}
+
+void fieldscratch_free(FieldScratch *scratch)
+{
+    if (!scratch)
+        return;
+    free(scratch->passages);
+    free(scratch->heap);
+    free(scratch->group);
+    free(scratch->near);
+    free(scratch->joined);
+    free(scratch);
+}
+
+/* Where w^2 <= w2_max and u is at most `beyond` outside [0, h]. */
+static bool stretch(const Passage *passage, double w2_max, double beyond, double *t0, double *t1)
+{
+    if (w2_max < 0)
+        return false;
+    double low = -HUGE_VAL, high = HUGE_VAL;
+    if (passage->w1 > 0) {
+        double w_max = sqrt(w2_max);
+        low = (-w_max - passage->w0) / passage->w1;
+        high = (w_max - passage->w0) / passage->w1;
+    }
+    double u_low = -beyond - passage->u0, u_high = passage->h + beyond - passage->u0;
+    if (passage->u1 != 0) {
+        double first = u_low / passage->u1, last = u_high / passage->u1;
+        low = fmax(low, fmin(first, last));
+        high = fmin(high, fmax(first, last));
+    } else if (u_low > 0 || u_high < 0) {
+        return false;
+    }
+    *t0 = passage->t_mid + low;
+    *t1 = passage->t_mid + high;
+    return low <= high;
+}
+
+/* The parameter at which the ray is nearest to the segment, as far as that is well defined: it only
+ * serves to keep numbers small. */
+static double nearest_parameter(const FieldTube *tube, Ray ray, double cosine)
+{
+    Vec3 to_a = vec3_sub(tube->a, ray.origin);
+    double sine2 = fmax(1 - cosine * cosine, DBL_EPSILON);
+    double along = (cosine * vec3_dot(to_a, ray.direction) - vec3_dot(to_a, tube->axis)) / sine2;
+    along = fmin(fmax(along, 0), tube->length);
+    return vec3_dot(vec3_add_scaled(to_a, tube->axis, along), ray.direction);
+}
+
+static bool pass_tube(const FieldTube *tube, Ray ray, Passage *passage)
+{
+    double k = tube->k, cosine = vec3_dot(tube->axis, ray.direction);
+    double t_mid = nearest_parameter(tube, ray, cosine);
+    Vec3 from_a = vec3_sub(ray_at(ray, t_mid), tube->a);
+    double along = vec3_dot(from_a, tube->axis);
+    Vec3 across = vec3_scale(vec3_add_scaled(from_a, tube->axis, -along), k);
+    Vec3 across1 = vec3_scale(vec3_add_scaled(ray.direction, tube->axis, -cosine), k);
+    double w1 = vec3_length(across1);
+    double w0 = w1 > 0 ? vec3_dot(across, across1) / w1 : 0;
+    double e2 = fmax(vec3_dot(across, across) - w0 * w0, 0);
+    *passage = (Passage){.t_mid = t_mid,
+                         .w0 = w0,
+                         .w1 = w1,
+                         .u0 = k * along,
+                         .u1 = k * cosine,
+                         .h = tube->length_k,
+                         .e2 = e2,
+                         .peak = tube->peak,
+                         .log_peak = tube->log_peak,
+                         .segment = tube->segment};
+    return stretch(passage, tube->reach2 - e2, sqrt(tube->reach2), &passage->t0, &passage->t1);
+}
+
+static void bound_curvature(Passage *passage)
+{
+    double w1 = passage->w1, u1 = fabs(passage->u1);
+    passage->radial = exp(-passage->e2);
+    double both = 0.9682 * w1 * u1;
+    passage->convex =
+        passage->radial * (0.8926 * passage->peak * w1 * w1 + both + 0.4840 * u1 * u1);
+    passage->concave = passage->radial * (2 * passage->peak * w1 * w1 + both + 0.9680 * u1 * u1);
+}
+
+/* Whether the ray meets the box in [t0, t1]. Where the ray runs within the plane of a face the
+ * product is NaN, every comparison with it is false, and the box counts as met. */
+static bool meets_node(const FieldNode *node, const double origin[3], const double inverse[3],
+                       double t0, double t1)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        int backward = inverse[axis] < 0;
+        double near = (node->bounds[backward][axis] - origin[axis]) * inverse[axis];
+        double far = (node->bounds[!backward][axis] - origin[axis]) * inverse[axis];
+        t0 = near > t0 ? near : t0;
+        t1 = far < t1 ? far : t1;
+    }
+    return t0 <= t1;
+}
+
+static bool is_before(const Passage *a, const Passage *b)
+{
+    return a->t0 != b->t0 ? a->t0 < b->t0 : a->segment < b->segment;
+}
+
+static void sift_down(Passage **heap, size_t n, size_t hole)
+{
+    Passage *item = heap[hole];
+    for (size_t child; (child = 2 * hole + 1) < n; hole = child) {
+        if (child + 1 < n && is_before(heap[child + 1], heap[child]))
+            child++;
+        if (!is_before(heap[child], item))
+            break;
+        heap[hole] = heap[child];
+    }
+    heap[hole] = item;
+}
+
+void passages_clear(FieldScratch *scratch)
+{
+    scratch->n_passages = 0;
+}
+
+void passages_add(FieldScratch *scratch, const FieldTube *tube, Ray ray, double t_min, double t_max)
+{
+    Passage *passage = &scratch->passages[scratch->n_passages];
+    if (pass_tube(tube, ray, passage) && passage->t1 >= t_min && passage->t0 <= t_max)
+        scratch->n_passages++;
+}
+
+void passages_order(FieldScratch *scratch)
+{
+    scratch->n_heap = scratch->n_passages;
+    for (size_t i = 0; i < scratch->n_heap; i++)
+        scratch->heap[i] = &scratch->passages[i];
+    for (size_t i = scratch->n_heap / 2; i-- > 0;)
+        sift_down(scratch->heap, scratch->n_heap, i);
+}
+
+void passages_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
+                   double t_max)
+{
+    const double origin[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
+    const double inverse[3] = {1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
+    uint32_t stack[FIELD_STACK_SIZE];
+    int top = 0;
+    passages_clear(scratch);
+    if (index->n_nodes)
+        stack[top++] = 0;
+    while (top > 0) {
+        uint32_t number = stack[--top];
+        const FieldNode *node = &index->nodes[number];
+        if (!meets_node(node, origin, inverse, t_min, t_max))
+            continue;
+        if (node->n_tubes == 0) {
+            stack[top++] = node->first;
+            stack[top++] = number + 1;
+        }
+        for (uint32_t i = node->first; i < node->first + node->n_tubes; i++)
+            passages_add(scratch, &index->tubes[i], ray, t_min, t_max);
+    }
+    passages_order(scratch);
+}
+
+bool passages_next_group(FieldScratch *scratch)
+{
+    double end = HUGE_VAL;
+    scratch->n_group = 0;
+    while (scratch->n_heap && scratch->heap[0]->t0 <= end) {
+        Passage *passage = scratch->heap[0];
+        end = scratch->n_group ? fmax(end, passage->t1) : passage->t1;
+        scratch->group[scratch->n_group++] = passage;
+        scratch->heap[0] = scratch->heap[--scratch->n_heap];
+        if (scratch->n_heap)
+            sift_down(scratch->heap, scratch->n_heap, 0);
+    }
+    return scratch->n_group > 0;
+}
+
+bool passages_find_windows(FieldScratch *scratch)
+{
+    bool any = false;
+    double log_share = log((double)scratch->n_group / FIELD_LEVEL);
+    for (size_t i = 0; i < scratch->n_group; i++) {
+        Passage *passage = scratch->group[i];
+        double w2_max = log_share + passage->log_peak - passage->e2;
+        double beyond = sqrt(fmax(log_share - ln2 - passage->e2, 0));
+        if (stretch(passage, w2_max, beyond, &passage->window0, &passage->window1)) {
+            any = true;
+        } else {
+            passage->window0 = HUGE_VAL;
+            passage->window1 = -HUGE_VAL;
+        }
+    }
+    for (size_t i = 0; any && i < scratch->n_group; i++)
+        bound_curvature(scratch->group[i]);
+    return any;
+}

@@ -1,0 +1,231 @@
+/* POV-Ray's IsoSurface object (shape/isosurf.cpp of 3.7.0.10), open and with max_trace 1, in its own
+ * order of operations. On the part [t0, t1] of the ray in the box:
+ *
+ *   R(a, b):  if b - a < accuracy:                           a hit at b if f(b) < 0
+ *             else if f(a) + f(b) < max_gradient (b - a):     R(a, m), then R(m, b), m the middle
+ *
+ * with f's sign turned when it is negative at t0, so that a ray from within finds its way out. A ray that
+ * starts within an accuracy of the box and has |f| < 4 max_gradient accuracy there starts on the surface:
+ * it is moved on by five accuracies, and f's sign is turned if it is negative there. So a shadow ray,
+ * which starts up to an accuracy inside, sees its own surface again where it runs nearly along it.
+ *
+ * POV-Ray also remembers the last cell that a ray missed, and takes a near ray for a miss of the same cell
+ * if the least f it saw exceeds max_gradient times the distance of the two. Scenes of ours do not let it:
+ * the last cell missed is always Cell_Guard of templates/povray/isosurface.inc.
+ *
+ * The cells come in Morton order, so halving their array again and again makes a hierarchy of boxes. */
+#include "render/cast/povray_isosurface.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+/* What POV-Ray calls EPSILON, CLOSE_TOLERANCE, DEPTH_TOLERANCE and BOUND_HUGE (shape/boxes.cpp). */
+static const double flat = 1e-10, close_by = 1e-6, behind = 1e-6, endless = 2e10;
+
+typedef struct Node {
+    Box box;
+    uint32_t first, count; /* of cells; the halves are nodes[left] and nodes[left + 1] */
+    uint32_t left;         /* 0 in a leaf */
+} Node;
+
+enum { LEAF_CELLS = 2, STACK_SIZE = 64 };
+
+struct Halving {
+    CellTree tree;
+    Node *nodes;
+    uint32_t n_nodes;
+};
+
+/* ---- one cell ------------------------------------------------------------------------------------ */
+
+/* One axis of POV-Ray's box test. Beyond the first axis, `slack` keeps an end of the interval where it is
+ * unless the new one is nearer by more. */
+static bool cut_axis(double from, double along, double low, double high, double slack, double *t0,
+                     double *t1)
+{
+    if (fabs(along) <= flat)
+        return from >= low && from <= high;
+    double far = ((along < 0 ? low : high) - from) / along;
+    if (far < *t0)
+        return false;
+    if (far <= *t1 - slack)
+        *t1 = far;
+    double near = ((along < 0 ? high : low) - from) / along;
+    if (near >= *t0 + slack) {
+        if (near > *t1)
+            return false;
+        *t0 = near;
+    }
+    return true;
+}
+
+static bool cut_box(Ray ray, const Cell *cell, double *t0, double *t1)
+{
+    Vec3 o = ray.origin, d = ray.direction;
+    *t0 = 0;
+    *t1 = endless;
+    return cut_axis(o.x, d.x, cell->low.x, cell->high.x, 0, t0, t1) &&
+           cut_axis(o.y, d.y, cell->low.y, cell->high.y, close_by, t0, t1) &&
+           cut_axis(o.z, d.z, cell->low.z, cell->high.z, close_by, t0, t1) && *t1 >= behind;
+}
+
+/* A search along a ray in a cell. */
+typedef struct Search {
+    const CellTree *tree;
+    const Cell *cell;
+    Ray ray;
+    double sign;
+} Search;
+
+static double value_at(const Search *search, double t)
+{
+    return search->sign * cell_function(search->tree, search->cell, ray_at(search->ray, t));
+}
+
+typedef struct Place {
+    double t, f;
+} Place;
+
+/* R of above; `rise` is max_gradient times the width. */
+static bool find_root(const Search *search, Place a, Place b, double rise, double width, double *t)
+{
+    if (width < search->cell->accuracy) {
+        *t = b.t;
+        return b.f < 0;
+    }
+    if (!(a.f + b.f - rise < 0))
+        return false;
+    width *= 0.5;
+    rise *= 0.5;
+    Place middle = {a.t + width, 0};
+    middle.f = value_at(search, middle.t);
+    return find_root(search, a, middle, rise, width, t) ||
+           find_root(search, middle, b, rise, width, t);
+}
+
+static bool hit_cell(const CellTree *tree, const Cell *cell, Ray ray, double *t)
+{
+    Search search = {tree, cell, ray, 1};
+    double t0, t1, accuracy = cell->accuracy;
+    if (!cut_box(ray, cell, &t0, &t1) || t1 - t0 < accuracy)
+        return false;
+    if (t0 < accuracy && fabs(value_at(&search, t0)) < cell->max_gradient * accuracy * 4) {
+        t0 = accuracy * 5;
+        if (value_at(&search, t0) < 0)
+            search.sign = -1;
+    }
+    Place a = {t0, value_at(&search, t0)};
+    if (a.f < 0) {
+        search.sign *= -1;
+        a.f *= -1;
+    }
+    Place b = {t1, value_at(&search, t1)};
+    double rise = cell->max_gradient * vec3_length(ray.direction) * (t1 - t0);
+    return find_root(&search, a, b, rise, t1 - t0, t);
+}
+
+static Vec3 cell_normal(const CellTree *tree, const Cell *cell, Vec3 x)
+{
+    double f = cell_function(tree, cell, x), step = cell->accuracy;
+    Vec3 n = {cell_function(tree, cell, vec3(x.x + step, x.y, x.z)) - f,
+              cell_function(tree, cell, vec3(x.x, x.y + step, x.z)) - f,
+              cell_function(tree, cell, vec3(x.x, x.y, x.z + step)) - f};
+    return n.x == 0 && n.y == 0 && n.z == 0 ? vec3(1, 0, 0) : vec3_normalized(n);
+}
+
+/* ---- all cells ----------------------------------------------------------------------------------- */
+
+static void build_node(Halving *halving, uint32_t number, uint32_t first, uint32_t count)
+{
+    Node *node = &halving->nodes[number];
+    *node = (Node){box_empty(), first, count, 0};
+    if (count > LEAF_CELLS) {
+        node->left = halving->n_nodes;
+        halving->n_nodes += 2;
+        build_node(halving, node->left, first, count / 2);
+        build_node(halving, node->left + 1, first + count / 2, count - count / 2);
+        node->box = box_union(halving->nodes[node->left].box, halving->nodes[node->left + 1].box);
+        return;
+    }
+    for (uint32_t i = first; i < first + count; i++)
+        node->box =
+            box_union(node->box, (Box){halving->tree.cells[i].low, halving->tree.cells[i].high});
+}
+
+Status halving_new(const Scene *scene, const CellParams *params, Halving **out, Err *err)
+{
+    Halving *halving = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&halving, 1, sizeof *halving, "cells", err));
+    TRY_GOTO(celltree_build(scene, params, &halving->tree, err));
+    TRY_GOTO(mem_calloc(&halving->nodes, 2 * halving->tree.n_cells + 1, sizeof *halving->nodes,
+                        "boxes of cells", err));
+    halving->n_nodes = 1;
+    build_node(halving, 0, 0, (uint32_t)halving->tree.n_cells);
+    *out = halving;
+    return STATUS_OK;
+done:
+    halving_free(halving);
+    return status;
+}
+
+void halving_free(Halving *halving)
+{
+    if (!halving)
+        return;
+    celltree_release(&halving->tree);
+    free(halving->nodes);
+    free(halving);
+}
+
+/* The nearest hit in [t_min, t_max], or any with `any`, as *cell and *t. */
+static bool find_hit(const Halving *halving, Ray ray, double t_min, double t_max, bool any,
+                     uint32_t *cell, double *t)
+{
+    Vec3 inverse = vec3_inverse(ray.direction);
+    uint32_t stack[STACK_SIZE];
+    int top = 0;
+    bool found = false;
+    stack[top++] = 0;
+    while (top > 0 && !(any && found)) {
+        const Node *node = &halving->nodes[stack[--top]];
+        double low = 0, high = t_max;
+        if (!hit_box(ray.origin, inverse, &node->box, &low, &high))
+            continue;
+        if (node->left) {
+            stack[top++] = node->left + 1;
+            stack[top++] = node->left;
+            continue;
+        }
+        for (uint32_t i = node->first; i < node->first + node->count; i++) {
+            double at;
+            if (hit_cell(&halving->tree, &halving->tree.cells[i], ray, &at) && at >= t_min &&
+                at < t_max) {
+                found = true;
+                t_max = at;
+                *cell = i;
+            }
+        }
+    }
+    *t = t_max;
+    return found;
+}
+
+bool halving_first_hit(const Halving *halving, Ray ray, double t_min, Hit *hit, uint32_t *segment)
+{
+    uint32_t number;
+    if (!find_hit(halving, ray, t_min, HUGE_VAL, false, &number, &hit->t))
+        return false;
+    const Cell *cell = &halving->tree.cells[number];
+    Vec3 x = ray_at(ray, hit->t);
+    hit->normal = cell_normal(&halving->tree, cell, x);
+    *segment = cell_largest_term(&halving->tree, cell, x);
+    return true;
+}
+
+bool halving_any_hit(const Halving *halving, Ray ray, double t_min, double t_max)
+{
+    uint32_t cell;
+    double t;
+    return find_hit(halving, ray, nextafter(t_min, HUGE_VAL), t_max, true, &cell, &t);
+}

@@ -1,0 +1,154 @@
+/* A term is set out about the tile's middle ray, so that single precision is left with small numbers
+ * however large the scene is. */
+#include "render/field/fieldterms.h"
+
+#include <stdlib.h>
+
+/* The depths at which a ray of the tile may be within reach of the segment: those of the part of the
+ * axis, from along - half to along + half, that is near enough to the middle ray, widened by the
+ * reach. */
+static Range depths_of(const FrameSegment *segment, double along, double half)
+{
+    double first = max_of(along - half, 0), last = min_of(along + half, segment->length);
+    double z_first = segment->a.z + first * segment->axis.z;
+    double z_last = segment->a.z + last * segment->axis.z;
+    return (Range){min_of(z_first, z_last) - segment->reach,
+                   max_of(z_first, z_last) + segment->reach};
+}
+
+/* How a segment lies to the middle ray of a tile. */
+typedef struct Encounter {
+    double line;           /* mm from a to where the lines are nearest; the middle when parallel */
+    double along;          /* likewise on the segment */
+    double sine, per_sine; /* of their angle; 0 when parallel */
+    double z;              /* of the ray, nearest to there */
+    Vec3 o, cross;         /* of the term */
+} Encounter;
+
+static double clamp_to(const FrameSegment *segment, double along)
+{
+    return min_of(max_of(along, 0), segment->length);
+}
+
+static Encounter meet_parallel(const FrameSegment *segment, double x, double y)
+{
+    Vec3 a = segment->a, axis = segment->axis;
+    double dx = x - a.x, dy = y - a.y, per = segment->per_sine;
+    Encounter met = {.line = segment->length / 2,
+                     .sine = segment->sine,
+                     .per_sine = per,
+                     .cross = vec3(0, segment->k, 0)};
+    if (per > 0) {
+        met.line = (dx * axis.x + dy * axis.y) * per * per;
+        met.cross = vec3_scale(vec3(-axis.y, axis.x, 0), per * segment->k);
+    }
+    met.along = clamp_to(segment, met.line);
+    met.z = a.z + met.along * axis.z;
+    met.o = vec3(dx - met.along * axis.x, dy - met.along * axis.y, 0);
+    return met;
+}
+
+static Encounter meet_in_perspective(const FrameSegment *segment, double x, double y)
+{
+    Vec3 direction = vec3(x, y, 1), axis = segment->axis;
+    double per_length2 = 1 / vec3_dot(direction, direction);
+    Encounter met = {.line = segment->length / 2, .cross = vec3_cross(direction, axis)};
+    double cross2 = vec3_dot(met.cross, met.cross);
+    if (cross2 > 0) {
+        double cosine = vec3_dot(direction, axis) * per_length2;
+        double line = cosine * vec3_dot(segment->a, direction) - vec3_dot(segment->a, axis);
+        met.per_sine = 1 / sqrt(cross2 * per_length2);
+        met.sine = 1 / met.per_sine;
+        met.line = line * met.per_sine * met.per_sine;
+    }
+    met.along = clamp_to(segment, met.line);
+    Vec3 point = vec3_add_scaled(segment->a, axis, met.along);
+    met.z = vec3_dot(point, direction) * per_length2;
+    met.o = vec3_sub(vec3_scale(direction, met.z), point);
+    return met;
+}
+
+/* False when the segment is out of reach. */
+static bool make_term(const FieldTile *tile, const FrameSegment *segment, uint32_t number,
+                      TileTerm *term)
+{
+    double x = tile->middle_x, y = tile->middle_y, far = (double)tile->half_size;
+    if (tile->perspective)
+        far *= max_of(max_of(segment->a.z, segment->b.z) + segment->reach, 0);
+    far += segment->reach;
+    Encounter met =
+        tile->perspective ? meet_in_perspective(segment, x, y) : meet_parallel(segment, x, y);
+    if (vec3_dot(met.o, met.o) > far * far)
+        return false;
+    bool crossing = met.per_sine > 0;
+    Range depths = depths_of(segment, met.line, crossing ? far * met.per_sine : HUGE_VAL);
+    double k = segment->k;
+    Vec3 axis = segment->axis;
+    *term = (TileTerm){.z_near = met.z,
+                       .on = depths.low,
+                       .off = depths.high,
+                       .k = (float)k,
+                       .per_k2 = 1 / (float)(k * k),
+                       .reach2 = (float)(k * k * segment->reach * segment->reach),
+                       .u = (float)(k * met.along),
+                       .v = (float)(k * (segment->length - met.along)),
+                       .o = {(float)met.o.x, (float)met.o.y, (float)met.o.z},
+                       .axis = {(float)axis.x, (float)axis.y, (float)axis.z},
+                       .cross = {(float)met.cross.x, (float)met.cross.y, (float)met.cross.z},
+                       .sine = (float)met.sine,
+                       .per_sine = (float)min_of(crossing ? met.per_sine : 1e20, 1e20),
+                       .cosine = (float)axis.z,
+                       .segment = number};
+    return true;
+}
+
+static int compare_terms(const void *a, const void *b)
+{
+    const TileTerm *one = a, *other = b;
+    if (one->on != other->on)
+        return one->on < other->on ? -1 : 1;
+    return one->segment < other->segment ? -1 : 1;
+}
+
+/* By rising `on`. Most lists are short. */
+static void sort_terms(TileTerm *terms, size_t n)
+{
+    if (n > 64) {
+        qsort(terms, n, sizeof *terms, compare_terms);
+        return;
+    }
+    for (size_t i = 1; i < n; i++) {
+        if (terms[i - 1].on <= terms[i].on)
+            continue;
+        TileTerm term = terms[i];
+        size_t hole = i;
+        for (; hole > 0 && terms[hole - 1].on > term.on; hole--)
+            terms[hole] = terms[hole - 1];
+        terms[hole] = term;
+    }
+}
+
+/* Whether the term lies square to an orthographic view in the same plane as the first, to 1e-7 of
+ * its own unit of length. */
+static bool is_in_plane(const TileTerm *first, const TileTerm *term)
+{
+    return fabsf(term->cosine) < 1e-8f &&
+           fabs(term->z_near - first->z_near) * (double)term->k <= 1e-7;
+}
+
+void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t n, FieldTile *tile,
+                     TileTerm *terms, uint32_t *kept)
+{
+    tile->terms = terms;
+    tile->n_terms = 0;
+    tile->plane = !tile->perspective && !tile->blend->first;
+    for (size_t i = 0; i < n; i++) {
+        TileTerm *term = &terms[tile->n_terms];
+        if (!make_term(tile, &segments[list[i]], list[i], term))
+            continue;
+        tile->plane = tile->plane && is_in_plane(&terms[0], term);
+        kept[tile->n_terms++] = list[i];
+    }
+    if (!tile->plane)
+        sort_terms(terms, tile->n_terms);
+}

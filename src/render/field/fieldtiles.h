@@ -1,0 +1,57 @@
+/* The potential as a camera sees it: which vessels matter in which tile of the picture, and the
+ * first hit of every sample of a tile. */
+#ifndef CORCAST_RENDER_FIELDTILES_H
+#define CORCAST_RENDER_FIELDTILES_H
+
+#include "render/tile/tilekernels.h"
+#include "scene/scene.h"
+
+/* Where rays go through the picture: every pair of a column and a row, in pixels as camera_ray
+ * takes them. Both ascend in steps of `spacing`. */
+typedef struct SampleGrid {
+    const double *columns, *rows; /* borrowed */
+    int n_columns, n_rows;
+    double spacing;
+} SampleGrid;
+
+/* Constant once built but for the workspaces, one a worker. */
+typedef struct FieldTiles FieldTiles;
+
+/* Prepares the segments of an implicit scene for its camera; scene and grid are borrowed. Nothing
+ * is seen nearer than z_min mm along a ray. */
+MUST_CHECK Status fieldtiles_new(const Scene *scene, const SampleGrid *grid, double z_min,
+                                 int workers, FieldTiles **out, Err *err);
+void fieldtiles_free(FieldTiles *tiles);
+
+/* Rows of tiles. */
+size_t fieldtiles_rows(const FieldTiles *tiles);
+/* Tiles in a row. */
+size_t fieldtiles_columns(const FieldTiles *tiles);
+
+/* A tile whose samples are known, none of them TILE_UNSURE. Its sample n is that of the grid at
+ * (column + tile_sample_x(n), row + tile_sample_y(n)) if that is inside the grid. */
+typedef struct SeenTile {
+    int column, row;
+    const FieldTile *tile;
+    const TileHits *hits; /* NULL: nothing is seen in the whole tile */
+} SeenTile;
+
+typedef void TileVisitor(const SeenTile *seen, int worker, void *context);
+
+/* Finds the hits of one row of tiles and shows each tile to `visit`, from left to right: those only
+ * whose byte in `wanted`, one a column of tiles, is not 0, or all when that is NULL. STATUS_MEMORY
+ * when a workspace cannot grow. */
+MUST_CHECK Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t *wanted,
+                                   TileVisitor *visit, void *context, Err *err);
+
+/* A direction from the camera's frame to the world, and back. */
+Vec3 fieldtiles_to_world(const FieldTiles *tiles, Vec3 direction);
+Vec3 fieldtiles_to_frame(const FieldTiles *tiles, Vec3 direction);
+const TileKernels *fieldtiles_kernels(const FieldTiles *tiles);
+/* The depth, in mm along the unit ray, of a hit of the tile. */
+double tile_depth(const FieldTile *tile, const TileHits *hits, int sample);
+
+/* Traces with these kernels from now on, not with the fastest. */
+void fieldtiles_use_kernels(FieldTiles *tiles, const TileKernels *kernels);
+
+#endif

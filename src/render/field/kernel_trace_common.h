@@ -1,0 +1,138 @@
+/* What the kernels of fieldkernel.h and fieldplane.h share: constants of the proof, the factor of a
+ * segment's ends, and how hits are stored. */
+#ifndef CORCAST_RENDER_FIELDLANES_H
+#define CORCAST_RENDER_FIELDLANES_H
+
+#include "render/tile/lanes.h"
+#include "render/tile/tile.h"
+#include "scene/scene.h"
+
+#define LEVEL ((float)FIELD_LEVEL)
+/* No more than this may the margin be, and the lack of potential at which a hit that is just certain
+ * is closed by Newton's method. */
+#define CLOSE_ENOUGH (1e-3f * LEVEL)
+/* The margin: a part for terms left out, one for each term's arithmetic, and one for the rounding
+ * of places, in units of the last place of the packet's extent. */
+#define MARGIN_DROPPED 2e-5f
+#define MARGIN_TERM 6e-7f
+#define MARGIN_PLACE 1.2e-7f
+/* From here on erf is 1 and its derivative 0, to 2e-8. */
+#define SATURATED 4.0f
+
+LANE_FN Lanes square(Lanes a)
+{
+    return a * a;
+}
+
+/* The axial factor of a term, twice, and exp(-u^2) - exp(-v^2). */
+LANE_FN void axial_factors(Lanes u, Lanes v, Lanes *ends, Lanes *ends_slope)
+{
+    *ends = lanes_set(2);
+    *ends_slope = lanes_set(0);
+    if (lanes_any(u < SATURATED)) {
+        Lanes gauss = lanes_exp_minus(square(u));
+        *ends = lanes_erf(u, gauss) + 1.0f;
+        *ends_slope = gauss;
+    }
+    if (lanes_any(v < SATURATED)) {
+        Lanes gauss = lanes_exp_minus(square(v));
+        *ends += lanes_erf(v, gauss) - 1.0f;
+        *ends_slope -= gauss;
+    }
+}
+
+/* What the picture needs of a hit. */
+typedef struct Gradient {
+    Lanes x, y, z;
+    Lanes largest; /* term */
+    LaneMask segment;
+} Gradient;
+
+LANE_FN void name_largest(const TileTerm *term, Lanes value, Gradient *sum)
+{
+    int32_t segment = (int32_t)term->segment;
+    LaneMask larger = (value > sum->largest) | ((value == sum->largest) & (segment < sum->segment));
+    sum->largest = lanes_select(larger, value, sum->largest);
+    sum->segment = (larger & segment) | (~larger & sum->segment);
+}
+
+/* The gradient's opposite, of length 1. */
+LANE_FN void outward_normal(const Gradient *at, Lanes normal[3])
+{
+    Lanes outward = -1.0f / lanes_sqrt(square(at->x) + square(at->y) + square(at->z));
+    normal[0] = at->x * outward;
+    normal[1] = at->y * outward;
+    normal[2] = at->z * outward;
+}
+
+/* Sets the depths of the hits to base + z, one half of the lanes at a time. */
+LANE_FN void store_depths(LaneMask hit, double base, Lanes z, double *depths)
+{
+    enum { HALF = LANES / 2 };
+    typedef float Floats __attribute__((vector_size(4 * HALF)));
+    typedef int32_t Masks __attribute__((vector_size(4 * HALF)));
+    typedef double Doubles __attribute__((vector_size(8 * HALF)));
+    typedef int64_t LongMasks __attribute__((vector_size(8 * HALF)));
+    Floats floats[2];
+    Masks masks[2];
+    __builtin_memcpy(floats, &z, sizeof z);
+    __builtin_memcpy(masks, &hit, sizeof hit);
+    for (int half = 0; half < 2; half++) {
+        Doubles here = __builtin_convertvector(floats[half], Doubles) + base, old;
+        LongMasks mine = __builtin_convertvector(masks[half], LongMasks);
+        __builtin_memcpy(&old, depths + half * HALF, sizeof old);
+        here = (Doubles)(((LongMasks)here & mine) | ((LongMasks)old & ~mine));
+        __builtin_memcpy(depths + half * HALF, &here, sizeof here);
+    }
+}
+
+/* Makes hits of those lanes that are no other state, four at a time. */
+LANE_FN void store_states(LaneMask hit, uint8_t *states)
+{
+    static const uint8_t sets[16][4] = {{0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0},
+                                        {0, 0, 1, 0}, {1, 0, 1, 0}, {0, 1, 1, 0}, {1, 1, 1, 0},
+                                        {0, 0, 0, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}, {1, 1, 0, 1},
+                                        {0, 0, 1, 1}, {1, 0, 1, 1}, {0, 1, 1, 1}, {1, 1, 1, 1}};
+    _Static_assert(TILE_HIT == 1, "the sets are of hits");
+    for (int i = 0; i < LANES; i += 4) {
+        uint32_t set, old;
+        __builtin_memcpy(&set, sets[lanes_bits(hit) >> i & 15], sizeof set);
+        __builtin_memcpy(&old, states + i, sizeof old);
+        old |= set;
+        __builtin_memcpy(states + i, &old, sizeof old);
+    }
+}
+
+/* Stores the hits at base + z of the packet that begins at sample `first`. */
+LANE_FN void store_hits(const FieldTile *tile, int first, LaneMask hit, double base, Lanes z,
+                        const Lanes normal[3], LaneMask segment, TileHits *hits)
+{
+    double *depth = &hits->z[first];
+    uint8_t *state = &hits->state[first];
+    for (int lane = 0; tile->blend->first && lane < LANES; lane++)
+        if (state[lane] == TILE_UNSURE ||
+            (state[lane] == TILE_HIT && depth[lane] <= base + (double)z[lane]))
+            hit[lane] = 0; /* another sum's hit is nearer */
+    store_depths(hit, base, z, depth);
+    store_states(hit, state);
+    hits->any_hit |= lanes_any(hit);
+    for (int c = 0; c < 3; c++) {
+        float *to = &hits->normal[c][first];
+        lanes_store(to, lanes_select(hit, normal[c], lanes_load(to)));
+    }
+    LaneMask old;
+    __builtin_memcpy(&old, &hits->segment[first], sizeof old);
+    segment = (hit & segment) | (~hit & old);
+    __builtin_memcpy(&hits->segment[first], &segment, sizeof segment);
+}
+
+/* Leaves rays of the packet that begins at sample `first` to double precision. */
+LANE_FN void give_up(int first, LaneMask unsure, TileHits *hits)
+{
+    for (int lane = 0; lane < LANES; lane++)
+        if (unsure[lane])
+            hits->state[first + lane] = TILE_UNSURE;
+    hits->any_unsure = true;
+}
+
+#endif

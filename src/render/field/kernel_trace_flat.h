@@ -1,0 +1,330 @@
+/* The first hits of a tile whose vessels all lie in one plane, square to the rays: trees in a disc,
+ * seen face-on.
+ *
+ * With q the square of the distance from the plane, a term is A exp(-k^2 q), A = exp(-E^2) (erf u +
+ * erf v) / 2. So the potential falls strictly with q: a ray hits if the sum of A exceeds the level,
+ * once on its way to the plane, and needs no search. About a lone vessel ln Phi = ln A - k^2 q gives
+ * q at once. Else Halley's method finds it, in units of 1 / K^2, K the largest k of the tile: ln Phi
+ * is convex in q, its first derivative is -m, m the mean, and its second v, the variance, of
+ * p = (k / K)^2 among the terms.
+ *
+ * A step d of Halley's method solves a parabola but for v^2 |d|^3 / (4 m (1 + v d / (2 m))), and the
+ * parabola leaves out |d|^3 / 6 of the third central moment somewhere on the way. With R the range
+ * of p, that is at most R v there, so v grows by exp(R |d|) at most; and v <= m R [Bhatia & Davis
+ * 2000]. Where R |d| <= 1 the step thus leaves ln Phi off by less than R v |d|^3. Rays that start
+ * between surface and plane, and those within the margin of the level, are handed back. */
+#include "render/field/kernel_trace_common.h"
+
+/* What the last step may leave ln Phi off by; 1e-6 more are for rounding. */
+#define PLANE_CLOSE 3e-6f
+#define PLANE_STEPS 32
+
+/* A tile in a plane. */
+typedef struct FlatTile {
+    const FieldTile *tile;
+    TileHits *hits;
+    double base;  /* z of the plane */
+    float extent; /* mm, of places */
+    float k;      /* K */
+} FlatTile;
+
+typedef struct PlaneTerm {
+    Lanes e;
+    Lanes amplitude; /* A */
+    Lanes slope;     /* A's derivative along the axis, 1 / (2 k) of it */
+    Lanes fall;      /* exp(-k^2 q) */
+    const TileTerm *term;
+    float p;
+} PlaneTerm;
+
+typedef struct PlanePacket {
+    const FlatTile *plane;
+    PlaneTerm *terms;
+    size_t n;
+    int first;                    /* sample */
+    LaneMask hit, unsure, solved; /* whether its potential exceeds the level, may, and q is found */
+    float low, range;             /* of p */
+    Lanes q;
+    Lanes step;               /* of q, the last, which the terms have not taken */
+    Lanes sum, sum_p, sum_p2; /* of A exp(-k^2 q) times powers of p */
+} PlanePacket;
+
+enum {
+    PLANE_PACKETS = TILE_SAMPLES / LANES,
+    PLANE_PARTS = (PLANE_PACKETS + LANES - 1) / LANES /* vectors with a lane for each packet */
+};
+
+_Static_assert(PLANE_PACKETS * sizeof(PlaneTerm) + sizeof(uint32_t) <= TILE_WORK_BYTES,
+               "TILE_WORK_BYTES");
+
+/* Where the rays of a packet pass a term: E, and the distances, times k, from the two ends. */
+typedef struct PlanePlace {
+    Lanes e, u, v;
+} PlanePlace;
+
+LANE_FN PlanePlace place_in_plane(const TileTerm *term, Lanes x, Lanes y)
+{
+    const float *cross = term->cross;
+    x += term->o[0];
+    y += term->o[1];
+    Lanes along = lanes_fma(x, lanes_set(cross[1]), -(y * cross[0]));
+    return (PlanePlace){.e = lanes_fma(y, lanes_set(cross[1]), x * cross[0]),
+                        .u = along + term->u,
+                        .v = term->v - along};
+}
+
+/* Sets of `touched`, one for each term, the bits of those packets on whose rays it may be above the
+ * cut-off, and returns the bits of those that may hit something: some term must be at least its
+ * part, 1 / n, of the level, so near enough; the 0.02 is for the margin. A packet's rays are all
+ * within `half` of its middle; those of the first, which is nowhere cut off before another, are the
+ * farthest apart. A lone term need not be looked at: trace_lone() finds out as fast. */
+LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
+{
+    if (tile->n_terms == 1)
+        return touched[0] = UINT32_MAX;
+    const float half_x = 0.5f * (tile->x[LANES - 1] - tile->x[0]);
+    const float half_y = 0.5f * (tile->y[LANES - 1] - tile->y[0]);
+    const float half = 1.001f * sqrtf(half_x * half_x + half_y * half_y);
+    uint32_t hopeful = 0;
+    for (int part = 0; part < PLANE_PARTS; part++) {
+        Lanes x = lanes_set(half_x), y = lanes_set(half_y);
+        for (int lane = 0; lane < LANES && lane < PLANE_PACKETS; lane++) {
+            x[lane] += tile->x[(part * LANES + lane) * LANES];
+            y[lane] += tile->y[(part * LANES + lane) * LANES];
+        }
+        Lanes nearest2 = lanes_set(1e30f), count = lanes_set(0);
+        for (size_t i = 0; i < tile->n_terms; i++) {
+            const TileTerm *term = &tile->terms[i];
+            PlanePlace at = place_in_plane(term, x, y);
+            Lanes past = lanes_min(lanes_min(at.u, at.v), lanes_set(0));
+            Lanes d = lanes_sqrt(lanes_fma(at.e, at.e, square(past))) - half * term->k;
+            Lanes d2 = square(lanes_max(d, lanes_set(0)));
+            LaneMask touches = d2 < term->reach2;
+            nearest2 = lanes_min(nearest2, d2);
+            count += lanes_select(touches, lanes_set(1), lanes_set(0));
+            touched[i] = (part ? touched[i] : 0) | lanes_bits(touches) << part * LANES;
+        }
+        Lanes most2 = lanes_log(lanes_max(count, lanes_set(1))) + 2.02f;
+        hopeful |= lanes_bits(nearest2 <= most2) << part * LANES;
+    }
+    return hopeful;
+}
+
+/* The part of the margin that `n` terms have without the rounding of places. */
+LANE_FN float fixed_margin(size_t n)
+{
+    return MARGIN_DROPPED + MARGIN_TERM * (float)n;
+}
+
+/* Leaves rays that start beyond their hits at -height to double precision, too, and returns the
+ * other hits. */
+LANE_FN LaneMask hits_in_front(const FlatTile *plane, int first, LaneMask hit, LaneMask unsure,
+                               Lanes height)
+{
+    LaneMask behind = hit & (-height <= (float)(plane->tile->z_min - plane->base));
+    unsure |= behind;
+    if (lanes_any(unsure))
+        give_up(first, unsure, plane->hits);
+    return hit & ~behind;
+}
+
+/* Traces a packet that only one term touches: with k^2 q = ln(A / C) the gradient is, but for a
+ * factor, that of A / A and sqrt q. False if it needs a wider margin than that allows. */
+LANE_FN bool trace_lone(const FlatTile *plane, int first, const TileTerm *term)
+{
+    const FieldTile *tile = plane->tile;
+    const float *axis = term->axis;
+    const float margin = (term->k * plane->extent * MARGIN_PLACE + fixed_margin(1)) * (1 / LEVEL);
+    if (margin > CLOSE_ENOUGH * (1 / LEVEL))
+        return false;
+    PlanePlace at = place_in_plane(term, lanes_load(&tile->x[first]), lanes_load(&tile->y[first]));
+    Lanes above = 2.0f - square(at.e), slope = lanes_set(0), outward = lanes_set(-0.70710678f);
+    if (lanes_any((above > 0.0f) & ((at.u < SATURATED) | (at.v < SATURATED)))) {
+        Lanes ends, ends_slope;
+        axial_factors(at.u, at.v, &ends, &ends_slope);
+        ends = lanes_max(ends * 0.5f, lanes_set(1e-30f));
+        above += lanes_log(ends);
+        slope = ends_slope * 0.28209479f / ends;
+        outward = -1.0f / lanes_sqrt(square(at.e) + square(slope) + lanes_max(above, lanes_set(0)));
+    }
+    /* ln(1 - margin) is above -1.002 margin. */
+    LaneMask hit = above >= margin, unsure = ~hit & (above >= -1.002f * margin);
+    if (!lanes_any(hit | unsure))
+        return true;
+    Lanes depth = lanes_sqrt(lanes_max(above, lanes_set(0)));
+    Lanes height = depth * (1 / term->k);
+    hit = hits_in_front(plane, first, hit, unsure, height);
+    const Lanes normal[3] = {outward * lanes_fma(at.e, lanes_set(axis[1]), slope * axis[0]),
+                             outward * lanes_fma(slope, lanes_set(axis[1]), -at.e * axis[0]),
+                             outward * depth};
+    store_hits(tile, first, hit, plane->base, -height, normal,
+               (LaneMask){0} + (int32_t)term->segment, plane->hits);
+    return true;
+}
+
+LANE_FN void clear_sums(PlanePacket *packet)
+{
+    packet->sum = packet->sum_p = packet->sum_p2 = lanes_set(0);
+}
+
+LANE_FN void add_value(PlanePacket *packet, Lanes value, float p)
+{
+    packet->sum += value;
+    packet->sum_p = lanes_fma(value, lanes_set(p), packet->sum_p);
+    packet->sum_p2 = lanes_fma(value * p, lanes_set(p), packet->sum_p2);
+}
+
+/* Sets the terms of the packet, their sums in the plane, and which rays hit. */
+LANE_FN void sum_up_plane(PlanePacket *packet)
+{
+    const FlatTile *plane = packet->plane;
+    Lanes x = lanes_load(&plane->tile->x[packet->first]);
+    Lanes y = lanes_load(&plane->tile->y[packet->first]), places = lanes_set(0);
+    const float per_k = 1 / plane->k;
+    float low = 1, high = 0;
+    packet->q = lanes_set(0);
+    clear_sums(packet);
+    for (size_t i = 0; i < packet->n; i++) {
+        PlaneTerm *term = &packet->terms[i];
+        const float k = term->term->k, part = k * per_k;
+        term->p = part * part;
+        low = term->p < low ? term->p : low;
+        high = term->p > high ? term->p : high;
+        PlanePlace at = place_in_plane(term->term, x, y);
+        Lanes gauss = lanes_exp_minus(square(at.e)), ends, ends_slope;
+        axial_factors(at.u, at.v, &ends, &ends_slope);
+        Lanes half = 0.5f * gauss;
+        term->e = at.e;
+        term->amplitude = half * ends;
+        term->slope = half * ends_slope * 0.56418958f;
+        term->fall = lanes_set(1);
+        places = lanes_fma(gauss, lanes_set(k), places);
+        add_value(packet, term->amplitude, term->p);
+    }
+    packet->low = low;
+    packet->range = high - low;
+    Lanes margin = places * (plane->extent * MARGIN_PLACE) + fixed_margin(packet->n);
+    packet->hit = (packet->sum >= LEVEL + margin) & (margin <= CLOSE_ENOUGH);
+    packet->unsure = ~packet->hit & (packet->sum >= LEVEL - margin);
+}
+
+LANE_FN void fall_to(PlanePacket *packet)
+{
+    clear_sums(packet);
+    for (size_t i = 0; i < packet->n; i++) {
+        PlaneTerm *term = &packet->terms[i];
+        term->fall = lanes_exp_minus(packet->q * term->p);
+        add_value(packet, term->amplitude * term->fall, term->p);
+    }
+}
+
+/* Takes Halley's step, of at most twice Newton's, and sets where it is the last: nowhere where it is
+ * cut short, as v d > 2 m there. */
+LANE_FN void plane_step(PlanePacket *packet)
+{
+    Lanes sum = packet->sum, above = lanes_log(lanes_max(sum * (1 / LEVEL), lanes_set(1e-30f)));
+    Lanes mean2 = square(packet->sum_p);
+    Lanes variance = lanes_fma(packet->sum_p2, sum, -mean2);
+    Lanes divisor = lanes_max(lanes_fma(above * -0.5f, variance, mean2), 0.5f * mean2);
+    Lanes step = lanes_select(packet->hit, above * sum * packet->sum_p / divisor, lanes_set(0));
+    Lanes change = lanes_abs(step) * packet->range;
+    packet->step = step;
+    packet->q = lanes_max(packet->q + step, lanes_set(0));
+    packet->solved =
+        (change <= 1.0f) & (change * square(step) * variance <= PLANE_CLOSE * square(sum));
+}
+
+/* Takes the steps that are left after the first. */
+LANE_FN void solve_plane(PlanePacket *packet)
+{
+    for (int steps = 0; lanes_any(~packet->solved) && steps < PLANE_STEPS; steps++) {
+        fall_to(packet);
+        plane_step(packet);
+    }
+    packet->unsure |= packet->hit & ~packet->solved;
+    packet->hit &= packet->solved;
+}
+
+/* The gradient, half of it, at a height. What the last step has changed in the terms' proportions,
+ * exp(y) with |y| <= R |d| / 2, is taken to second order. */
+LANE_FN Gradient plane_gradient(const PlanePacket *packet, Lanes height)
+{
+    Gradient sum = {.largest = lanes_set(-1)};
+    const float middle = packet->low + 0.5f * packet->range, k = packet->plane->k;
+    Lanes flat = lanes_set(0);
+    for (size_t i = 0; i < packet->n; i++) {
+        const PlaneTerm *term = &packet->terms[i];
+        const float *cross = term->term->cross;
+        Lanes y = packet->step * (middle - term->p), one = lanes_set(1);
+        Lanes fall = term->fall * lanes_fma(y, lanes_fma(y, lanes_set(0.5f), one), one);
+        Lanes value = term->amplitude * fall;
+        Lanes across = value * term->e, along = term->slope * fall;
+        sum.x += lanes_fma(along, lanes_set(cross[1]), -(across * cross[0]));
+        sum.y -= lanes_fma(along, lanes_set(cross[0]), across * cross[1]);
+        flat = lanes_fma(value, lanes_set(term->p), flat);
+        name_largest(term->term, value, &sum);
+    }
+    sum.z = height * flat * (k * k);
+    return sum;
+}
+
+LANE_FN void describe_plane_hits(const PlanePacket *packet)
+{
+    const FlatTile *plane = packet->plane;
+    Lanes height = lanes_sqrt(packet->q) * (1 / plane->k), normal[3];
+    LaneMask hit = hits_in_front(plane, packet->first, packet->hit, packet->unsure, height);
+    Gradient at = plane_gradient(packet, height);
+    outward_normal(&at, normal);
+    store_hits(plane->tile, packet->first, hit, plane->base, -height, normal, at.segment,
+               plane->hits);
+}
+
+/* Collects the terms of the packet of this number, and their sums; false if nothing is left to do,
+ * as when it is touched by one term. */
+LANE_FN bool begin_packet(const FlatTile *plane, int number, const uint32_t *touched,
+                          PlaneTerm *terms, PlanePacket *packet)
+{
+    const FieldTile *tile = plane->tile;
+    size_t n = 0;
+    for (size_t i = 0; i < tile->n_terms; i++) {
+        terms[n].term = &tile->terms[i];
+        n += touched[i] >> number & 1;
+    }
+    if (n == 0 || (n == 1 && trace_lone(plane, number * LANES, terms[0].term)))
+        return false;
+    packet->plane = plane;
+    packet->terms = terms;
+    packet->n = n;
+    packet->first = number * LANES;
+    sum_up_plane(packet);
+    return lanes_any(packet->hit | packet->unsure);
+}
+
+/* What a packet needs is a long chain of operations, each waiting for the one before: so every stage
+ * is done for all packets before the next begins. */
+LANE_TARGET static __attribute__((noinline)) void PLANE_KERNEL(const FieldTile *tile, void *memory,
+                                                               TileHits *hits)
+{
+    PlaneTerm *terms = memory;
+    uint32_t *touched = (uint32_t *)(terms + PLANE_PACKETS * tile->n_terms);
+    uint32_t hopeful = find_touched(tile, touched);
+    FlatTile plane = {.tile = tile, .hits = hits, .base = tile->terms[0].z_near};
+    for (size_t i = 0; i < tile->n_terms; i++) {
+        const TileTerm *term = &tile->terms[i];
+        float reach = (float)(term->off - term->z_near);
+        plane.extent = reach > plane.extent ? reach : plane.extent;
+        plane.k = term->k > plane.k ? term->k : plane.k;
+    }
+    plane.extent += tile->half_size;
+    PlanePacket packets[PLANE_PACKETS];
+    int n = 0;
+    for (int number = 0; number < PLANE_PACKETS; number++)
+        if (hopeful >> number & 1 && begin_packet(&plane, number, touched, terms, &packets[n]))
+            terms += packets[n++].n;
+    for (int i = 0; i < n; i++)
+        plane_step(&packets[i]);
+    for (int i = 0; i < n; i++)
+        solve_plane(&packets[i]);
+    for (int i = 0; i < n; i++)
+        describe_plane_hits(&packets[i]);
+}

@@ -1,0 +1,107 @@
+/* Geometry is double and colour is float, and every product is rounded where POV-Ray 3.7 rounds it
+ * (render/trace.cpp; docs/POVRAY.md section 3), so that 8-bit and 16-bit pictures come out the same
+ * to the last code. A colour times a number is computed in double and rounded; a colour times a
+ * colour, and a sum of colours, is computed in float. */
+#include "render/light/shade.h"
+
+static Rgb rgb_scale(Rgb color, double factor)
+{
+    return (Rgb){(float)((double)color.r * factor), (float)((double)color.g * factor),
+                 (float)((double)color.b * factor)};
+}
+
+static Rgb rgb_multiply(Rgb a, Rgb b)
+{
+    return (Rgb){a.r * b.r, a.g * b.g, a.b * b.b};
+}
+
+static Rgb rgb_add(Rgb a, Rgb b)
+{
+    return (Rgb){a.r + b.r, a.g + b.g, a.b + b.b};
+}
+
+/* The Phong highlight: the mirrored view ray against the light. POV-Ray leaves out sizes of 60 and more where
+ * the cosine is below 0.0008, whose power is 0 in any colour. */
+static double phong_intensity(const Finish *finish, Vec3 direction, Vec3 normal, Vec3 towards)
+{
+    double along = vec3_dot(direction, normal);
+    Vec3 mirrored = vec3_add_scaled(direction, normal, -2 * along);
+    double cosine = vec3_dot(mirrored, towards);
+    return cosine > 0 ? (double)finish->phong * pow(cosine, (double)finish->phong_size) : 0;
+}
+
+static double specular_intensity(const Finish *finish, Vec3 direction, Vec3 normal, Vec3 towards)
+{
+    Vec3 halfway = vec3_scale(vec3_sub(towards, direction), 0.5);
+    double length = vec3_length(halfway);
+    if (!(length > 0))
+        return 0;
+    double cosine = vec3_dot(halfway, normal) / length;
+    float exponent = 1 / finish->roughness;
+    return cosine > 0 ? (double)finish->specular * pow(cosine, (double)exponent) : 0;
+}
+
+static Rgb lit_by(Rgb light, const Finish *finish, Rgb pigment, Vec3 normal, Vec3 direction,
+                  Vec3 towards, double cosine)
+{
+    double diffuse = (double)finish->diffuse;
+    diffuse *= finish->brilliance == 1 ? cosine : pow(cosine, (double)finish->brilliance);
+    Rgb color = rgb_multiply(rgb_scale(pigment, diffuse), light);
+    if (finish->phong > 0)
+        color =
+            rgb_add(color, rgb_scale(light, phong_intensity(finish, direction, normal, towards)));
+    if (finish->specular > 0)
+        color = rgb_add(color,
+                        rgb_scale(light, specular_intensity(finish, direction, normal, towards)));
+    return color;
+}
+
+/* The part of a light's samples that reach the point, from 0 to 1. */
+static double visible_part(const Light *light, Vec3 point, Vec3 towards, double distance,
+                           ShadowTest *shadow, void *context)
+{
+    int n = light->samples, reach = 0;
+    if (!shadow || !light->casts_shadows)
+        return 1;
+    if (n < 2)
+        return shadow(context, point, towards, distance) ? 0 : 1;
+    for (int v = 0; v < n; v++)
+        for (int u = 0; u < n; u++) {
+            Vec3 sample = vec3_add_scaled(light->location, light->sides[0], u / (n - 1.0) - 0.5);
+            sample = vec3_add_scaled(sample, light->sides[1], v / (n - 1.0) - 0.5);
+            Vec3 to_sample = vec3_sub(sample, point);
+            double far = vec3_length(to_sample);
+            reach += !shadow(context, point, vec3_scale(to_sample, 1 / far), far);
+        }
+    return (double)reach / (n * n);
+}
+
+Rgb shade_point(const Scene *scene, const ShadePoint *at, ShadowTest *shadow, void *context)
+{
+    Rgb color = rgb_scale(at->pigment, (double)at->finish->ambient * at->open);
+    for (size_t i = 0; i < scene->n_lights; i++) {
+        const Light *light = &scene->lights[i];
+        Vec3 to_light = vec3_sub(light->location, at->point);
+        double distance = vec3_length(to_light);
+        Vec3 towards = vec3_scale(to_light, 1 / distance);
+        if (light->parallel) {
+            towards = vec3_normalized(vec3_sub(light->location, light->target));
+            distance = vec3_dot(to_light, towards);
+        }
+        double cosine = vec3_dot(at->normal, towards);
+        if (cosine < 1e-10)
+            continue;
+        double part = visible_part(light, at->point, towards, distance, shadow, context);
+        if (part > 0)
+            color = rgb_add(color, lit_by(rgb_scale(light->color, part), at->finish, at->pigment,
+                                          at->normal, at->direction, towards, cosine));
+    }
+    return color;
+}
+
+Rgb shade(const Scene *scene, Rgb pigment, Vec3 point, Vec3 normal, Vec3 direction,
+          ShadowTest *shadow, void *context)
+{
+    const ShadePoint at = {&scene->finish, pigment, point, normal, direction, 1};
+    return shade_point(scene, &at, shadow, context);
+}

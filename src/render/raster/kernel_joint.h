@@ -1,0 +1,326 @@
+/* Where lines of sight enter a ruled joint, several at once: a part of rasterkernel.h.
+ *
+ * Joints are walls of solids, so only a ruling that faces the view can be seen: one at which g
+ * [rastertile.h] falls as q grows. Multiplied by (1 + u^2)^2, u = tan(q / 2) in [-1, 1], g is a
+ * quartic on each half of the circle: the front, q in [-90, 90] degrees, and the back, q less
+ * half a turn in there. In Bernstein form a quartic has as many roots as its coefficients change
+ * sign, or fewer by an even number [geom/joint.c]. Most lines show one fall in front, counted
+ * quarter by quarter, and one rise at the back; or no change at all, and miss. For the others,
+ * next to the outline, pieces are halved until falls and rises part. Newton's method, kept
+ * inside its bracket, finds the ruling, and a hit counts if it lies on its line to 1e-4 of the
+ * joint's size. What is still open then is decided in double precision. */
+#ifndef CORCAST_RENDER_RASTERRULING_H
+#define CORCAST_RENDER_RASTERRULING_H
+
+#include "render/raster/kernel_round.h"
+
+/* How far a crossing may lie off a joint's ends, over its length, and off its line, over its
+ * size. */
+static const float off_joint_end = 1e-5f, off_joint_line = 1e-4f;
+enum { RULING_STEPS = 12, MOST_HALVINGS = 5, MOST_PIECES = MOST_HALVINGS + 2 };
+
+/* g of rastertile.h: k0 + k1 cos + k2 sin + k3 cos^2 + k4 cos sin. */
+typedef struct Ruling {
+    Lanes k[5];
+} Ruling;
+
+RASTER_FN Lanes ruling_part(const Near *near, const SightLines *sight, const float by[3],
+                            const float *run)
+{
+    if (!near->perspective) {
+        Lanes part = lanes_set(by[2]);
+        if (run)
+            part = lanes_fma(sight->y, lanes_set(run[0]), part - sight->x * run[1]);
+        return part;
+    }
+    Lanes part = lanes_fma(sight->dx, lanes_set(by[0]),
+                           lanes_fma(sight->dy, lanes_set(by[1]), lanes_set(by[2])));
+    if (!run)
+        return part;
+    Lanes rz = lanes_set(run[2]);
+    part = lanes_fma(sight->x, lanes_fma(sight->dy, rz, lanes_set(-run[1])), part);
+    return lanes_fma(sight->y, lanes_fma(-sight->dx, rz, lanes_set(run[0])), part);
+}
+
+RASTER_FN Ruling ruling_of(const Near *near, const RasterJoint *joint, const SightLines *sight)
+{
+    return (Ruling){{ruling_part(near, sight, joint->by[0], joint->span),
+                     ruling_part(near, sight, joint->by[1], joint->da),
+                     ruling_part(near, sight, joint->by[2], joint->db),
+                     ruling_part(near, sight, joint->by[3], NULL),
+                     ruling_part(near, sight, joint->by[4], NULL)}};
+}
+
+/* -1 where a and b differ in sign. */
+RASTER_FN LaneMask changes(Lanes a, Lanes b)
+{
+    return (a < 0.0f) ^ (b < 0.0f);
+}
+
+/* A quartic in Bernstein form. */
+typedef struct Bernstein {
+    Lanes b[5];
+} Bernstein;
+
+/* (1 + u^2)^2 g / 2 on a half of the circle: 1 the front, -1 the back, half a turn on. */
+RASTER_FN Bernstein half_circle(const Ruling *g, float half)
+{
+    const Lanes *k = g->k;
+    Lanes k1 = half * k[1], k2 = half * k[2], first = k[0] - k2, last = k[0] + k2;
+    return (Bernstein){
+        {first + first, k1 - k[4], (k[0] + k[3] + k[3]) * (2.0f / 3), k1 + k[4], last + last}};
+}
+
+/* How often the coefficients change sign, times -1. */
+RASTER_FN LaneMask changes_of(const Bernstein *piece)
+{
+    const Lanes *b = piece->b;
+    return changes(b[0], b[1]) + changes(b[1], b[2]) + changes(b[2], b[3]) + changes(b[3], b[4]);
+}
+
+/* Splits a quartic at the middle: it becomes its first half, *second the other. */
+RASTER_FN void halve(Bernstein *piece, Bernstein *second)
+{
+    Lanes *b = piece->b;
+    Lanes c[4] = {b[0] + b[1], b[1] + b[2], b[2] + b[3], b[3] + b[4]};
+    Lanes d[3] = {c[0] + c[1], c[1] + c[2], c[2] + c[3]};
+    Lanes e[2] = {d[0] + d[1], d[1] + d[2]}, middle = (e[0] + e[1]) * 0.0625f;
+    Lanes *s = second->b;
+    s[0] = middle;
+    s[1] = e[1] * 0.125f;
+    s[2] = d[2] * 0.25f;
+    s[3] = c[3] * 0.5f;
+    s[4] = b[4];
+    b[1] = c[0] * 0.5f;
+    b[2] = d[0] * 0.25f;
+    b[3] = e[0] * 0.125f;
+    b[4] = middle;
+}
+
+/* Where rulings that face the view are: u in [low, high] of a half. */
+typedef struct Falls {
+    LaneMask there[2]; /* the second only if the first */
+    Lanes low[2], high[2], half[2];
+    LaneMask unsure; /* may have others */
+} Falls;
+
+RASTER_FN void add_fall(Falls *falls, LaneMask there, float low, float high, float half)
+{
+    LaneMask second = there & falls->there[0];
+    LaneMask at[2] = {there & ~falls->there[0], second & ~falls->there[1]};
+    falls->unsure |= second & falls->there[1];
+    for (int i = 0; i < 2; i++) {
+        falls->low[i] = lanes_select(at[i], lanes_set(low), falls->low[i]);
+        falls->high[i] = lanes_select(at[i], lanes_set(high), falls->high[i]);
+        falls->half[i] = lanes_select(at[i], lanes_set(half), falls->half[i]);
+        falls->there[i] |= at[i];
+    }
+}
+
+typedef struct Piece {
+    Bernstein g;
+    LaneMask among;
+    float low, size;
+} Piece;
+
+/* Parts the falls in one half of the circle. */
+LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, Falls *falls)
+{
+    Piece pieces[MOST_PIECES];
+    int n = 0;
+    pieces[n++] = (Piece){half_circle(g, half), among, -1, 2};
+    while (n > 0) {
+        Piece *piece = &pieces[n - 1];
+        LaneMask count = changes_of(&piece->g);
+        LaneMask single = piece->among & (count == -1) & (piece->g.b[0] >= 0.0f);
+        if (lanes_any(single))
+            add_fall(falls, single, piece->low, piece->low + piece->size, half);
+        LaneMask several = piece->among & (count < -1);
+        if (!lanes_any(several)) {
+            n--;
+        } else if (n == MOST_PIECES) {
+            falls->unsure |= several;
+            n--;
+        } else {
+            /* The second half goes on top. */
+            piece->among = several;
+            piece->size /= 2;
+            pieces[n].among = several;
+            pieces[n].size = piece->size;
+            pieces[n].low = piece->low + piece->size;
+            halve(&piece->g, &pieces[n++].g);
+        }
+    }
+}
+
+/* Lines whose g falls once at most: where R cos(q + .) + S cos(2 q + .) has R^2 > 20 S^2, its
+ * derivative is 0 twice only. */
+RASTER_FN LaneMask falls_once(const Ruling *g)
+{
+    const Lanes *k = g->k;
+    return lanes_fma(k[1], k[1], k[2] * k[2]) > 6.0f * lanes_fma(k[3], k[3], k[4] * k[4]);
+}
+
+/* Finds the falls of the lines `among`. */
+RASTER_FN void find_falls(const Ruling *g, LaneMask among, Falls *falls)
+{
+    Lanes one = lanes_set(1);
+    Bernstein front = half_circle(g, 1), back = half_circle(g, -1), front2, back2;
+    LaneMask falls_over = front.b[0] >= 0.0f;
+    halve(&front, &front2);
+    halve(&back, &back2);
+    LaneMask in_front = changes_of(&front) + changes_of(&front2);
+    LaneMask behind = changes_of(&back) + changes_of(&back2);
+    LaneMask single = among & (in_front == -1) & (behind == -1) & falls_over;
+    LaneMask open = among & ~single & ~((in_front == 0) & (behind == 0));
+    for (int i = 0; i < 2; i++) {
+        falls->there[i] = i ? (LaneMask){0} : single;
+        falls->low[i] = -one;
+        falls->high[i] = falls->half[i] = one;
+    }
+    falls->unsure = (LaneMask){0};
+    if (lanes_any(open)) {
+        part_falls(g, open, 1, falls);
+        part_falls(g, open, -1, falls);
+    }
+}
+
+/* Fall number i as tan(q / 2), by Newton's method inside its bracket, from where it
+ * would be if k1 and k4 were 0, as they are where a plane of symmetry is looked at face-on. */
+RASTER_FN Lanes fall_at(const Ruling *g, const Falls *falls, int i)
+{
+    const Lanes *k = g->k, one = lanes_set(1);
+    Lanes half = falls->half[i], low = falls->low[i], high = falls->high[i];
+    Lanes k1 = k[1] * half, k2 = k[2] * half;
+    Lanes p0 = k[0] + k1 + k[3], p1 = 2.0f * (k2 + k[4]), p2 = 2.0f * (k[0] - k[3]);
+    Lanes p3 = 2.0f * (k2 - k[4]), p4 = k[0] - k1 + k[3];
+    /* k0 + k2 sin q + k3 cos^2 q falls where. */
+    Lanes one_part = k[0] + k[3];
+    Lanes root = lanes_sqrt(lanes_max(lanes_fma(k2, k2, 4.0f * k[3] * one_part), lanes_set(0)));
+    Lanes sine = lanes_max(lanes_min(2.0f * one_part / (root - k2), one), -one);
+    Lanes u = sine / (1.0f + lanes_sqrt(lanes_max(lanes_fma(-sine, sine, one), lanes_set(0))));
+    u = lanes_select((u >= low) & (u <= high), u, (low + high) * 0.5f);
+    for (int step = 0; step < RULING_STEPS; step++) {
+        Lanes value = lanes_fma(p4, u, p3), slope = p4;
+        slope = lanes_fma(slope, u, value);
+        value = lanes_fma(value, u, p2);
+        slope = lanes_fma(slope, u, value);
+        value = lanes_fma(value, u, p1);
+        slope = lanes_fma(slope, u, value);
+        value = lanes_fma(value, u, p0);
+        LaneMask before = value > 0.0f;
+        low = lanes_select(before, u, low);
+        high = lanes_select(before, high, u);
+        Lanes next = u - value / slope;
+        LaneMask inside = (next >= low) & (next <= high);
+        next = lanes_select(inside, next, (low + high) * 0.5f);
+        LaneMask moves = (lanes_abs(next - u) > 1e-6f) & falls->there[i];
+        u = next;
+        if (!lanes_any(moves))
+            break;
+    }
+    /* Half a turn on, tan(q / 2) is -1 / u. */
+    Lanes away = lanes_select(lanes_abs(u) < 1e-15f, lanes_set(1e-15f), u);
+    return lanes_select(half < 0.0f, -1.0f / away, u);
+}
+
+/* A joint's ruling beside lines of sight. */
+typedef struct Line3 {
+    Lanes start[3], run[3];
+} Line3;
+
+RASTER_FN Line3 ruling_line(const RasterJoint *joint, Lanes cosine, Lanes sine)
+{
+    Line3 line;
+    for (int c = 0; c < 3; c++) {
+        line.start[c] =
+            lanes_fma(sine, lanes_set(joint->b[c]),
+                      lanes_fma(cosine, lanes_set(joint->a[c]), lanes_set(joint->base[c])));
+        line.run[c] =
+            lanes_fma(sine, lanes_set(joint->db[c]),
+                      lanes_fma(cosine, lanes_set(joint->da[c]), lanes_set(joint->span[c])));
+    }
+    return line;
+}
+
+/* How far along the ruling, in its length, the lines pass it. */
+RASTER_FN Lanes ruling_place(const Near *near, const SightLines *sight, const Line3 *line,
+                             Lanes off[2], Lanes run[2])
+{
+    off[0] = line->start[0] - sight->x;
+    off[1] = line->start[1] - sight->y;
+    run[0] = line->run[0];
+    run[1] = line->run[1];
+    if (near->perspective) {
+        off[0] = lanes_fma(-sight->dx, line->start[2], off[0]);
+        off[1] = lanes_fma(-sight->dy, line->start[2], off[1]);
+        run[0] = lanes_fma(-sight->dx, line->run[2], run[0]);
+        run[1] = lanes_fma(-sight->dy, line->run[2], run[1]);
+    }
+    Lanes along = lanes_fma(off[0], run[0], off[1] * run[1]);
+    return -along / lanes_fma(run[0], run[0], run[1] * run[1]);
+}
+
+/* Where the lines `among` enter the joint; *unsure is set where that takes double precision. Of the
+ * lines `known` one entry is known, and only others count. */
+RASTER_FN LaneMask joint_entry(const Near *near, const RasterJoint *joint, const SightLines *sight,
+                               LaneMask among, LaneMask known, Lanes *z, Lanes *ruling,
+                               LaneMask *unsure)
+{
+    Ruling g = ruling_of(near, joint, sight);
+    Falls falls;
+    among &= ~(known & falls_once(&g));
+    find_falls(&g, among, &falls);
+    falls.there[0] &= ~known | falls.there[1] | falls.unsure;
+    LaneMask met = (LaneMask){0};
+    *unsure = falls.unsure;
+    *z = lanes_set(HUGE_VALF);
+    *ruling = lanes_set(0);
+    for (int i = 0; i < 2 && lanes_any(falls.there[i]); i++) {
+        Lanes u = fall_at(&g, &falls, i), u2 = u * u, per = 1.0f / (1.0f + u2), off[2], run[2];
+        Line3 line = ruling_line(joint, (1.0f - u2) * per, 2.0f * u * per);
+        Lanes place = ruling_place(near, sight, &line, off, run);
+        Lanes x = lanes_fma(place, run[0], off[0]), y = lanes_fma(place, run[1], off[1]);
+        Lanes depth = lanes_fma(place, line.run[2], line.start[2]);
+        float most = off_joint_line * near->item->radius;
+        LaneMask sound = lanes_fma(x, x, y * y) <= most * most;
+        /* A line that starts farther from the ruling than that is long misses it all the same:
+         * so do nearly all where the two rims touch, at a ruling of no length, which is a root
+         * for every line. */
+        Lanes off2 = lanes_fma(off[0], off[0], off[1] * off[1]);
+        Lanes run2 = lanes_fma(run[0], run[0], run[1] * run[1]);
+        *unsure |= falls.there[i] & ~sound &
+                   (off2 <= lanes_fma(run2, lanes_set(1.5f), lanes_set(most * most)));
+        LaneMask nearer = falls.there[i] & sound & (depth < *z) & (place >= -off_joint_end) &
+                          (place <= 1 + off_joint_end);
+        *z = lanes_select(nearer, depth, *z);
+        *ruling = lanes_select(nearer, u, *ruling);
+        met |= nearer;
+    }
+    return met & ~*unsure;
+}
+
+RASTER_FN void joint_normal(const Near *near, const RasterJoint *joint, const SightLines *sight,
+                            Lanes u, Lanes normal[3])
+{
+    Lanes u2 = u * u, per = 1.0f / (1.0f + u2), off[2], run[2];
+    Lanes cosine = (1.0f - u2) * per, sine = 2.0f * u * per;
+    Line3 line = ruling_line(joint, cosine, sine);
+    Lanes place = ruling_place(near, sight, &line, off, run), turn[3];
+    for (int c = 0; c < 3; c++) {
+        Lanes a = lanes_fma(place, lanes_set(joint->da[c]), lanes_set(joint->a[c]));
+        Lanes b = lanes_fma(place, lanes_set(joint->db[c]), lanes_set(joint->b[c]));
+        turn[c] = lanes_fma(cosine, b, -(sine * a));
+    }
+    for (int c = 0; c < 3; c++) {
+        int d = (c + 1) % 3, e = (c + 2) % 3;
+        normal[c] = lanes_fma(turn[d], line.run[e], -(turn[e] * line.run[d]));
+    }
+    Lanes size2 =
+        lanes_fma(normal[0], normal[0], lanes_fma(normal[1], normal[1], normal[2] * normal[2]));
+    Lanes scale = 1.0f / lanes_sqrt(lanes_max(size2, lanes_set(1e-35f)));
+    for (int c = 0; c < 3; c++)
+        normal[c] *= scale;
+}
+
+#endif

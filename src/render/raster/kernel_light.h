@@ -1,0 +1,315 @@
+/* What a light sees of the places that a tile of the picture sees, several at once: included by
+ * each source that compiles it for its lanes, after rasterkernel.h. Loops over samples have no
+ * branches, for compilers to make vectors of. */
+#ifndef RASTER_KERNEL
+#error "define RASTER_KERNEL(name), the name of a function"
+#endif
+
+#include "render/raster/kernel_round.h"
+#include "render/raster/rasterkernels.h"
+#include "render/raster/rasterview.h"
+
+/* ---- aiming ---------------------------------------------------------------------------------- */
+
+LANE_TARGET static void RASTER_KERNEL(locate)(const RasterTile *tile, const RasterHits *hits,
+                                              RasterPlaces *places)
+{
+    const RasterGrid *grid = tile->grid;
+    double middle_x = tile->x, middle_y = tile->y, z_middle = tile->z_middle;
+    bool perspective = tile->perspective;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        double z = z_middle + (double)hits->z[sample], scale = perspective ? z : 1;
+        places->x[sample] = (middle_x + (double)grid->x[sample]) * scale;
+        places->y[sample] = (middle_y + (double)grid->y[sample]) * scale;
+        places->z[sample] = z;
+    }
+}
+
+/* `near`: the light is not parallel; `slanted`: the camera's view is not. */
+RASTER_FN void face_samples(const RasterTile *tile, const RasterPlaces *places,
+                            const float normal[3][TILE_SAMPLES], const TileLight *light, bool near,
+                            bool slanted, uint8_t facing[TILE_SAMPLES])
+{
+    const RasterGrid *grid = tile->grid;
+    const float to_x = light->towards[0], to_y = light->towards[1], to_z = light->towards[2];
+    float middle_x = (float)tile->x, middle_y = (float)tile->y;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        float nx = normal[0][sample], ny = normal[1][sample], nz = normal[2][sample];
+        float x = to_x, y = to_y, z = to_z, away = nz;
+        if (near) {
+            x -= (float)places->x[sample];
+            y -= (float)places->y[sample];
+            z -= (float)places->z[sample];
+        }
+        if (slanted)
+            away += nx * (middle_x + grid->x[sample]) + ny * (middle_y + grid->y[sample]);
+        float along = nx * x + ny * y + nz * z;
+        facing[sample] = (uint8_t)((away > 0 ? -along : along) > 0);
+    }
+}
+
+LANE_TARGET static void RASTER_KERNEL(face)(const RasterTile *tile, const RasterPlaces *places,
+                                            const float normal[3][TILE_SAMPLES],
+                                            const TileLight *light, uint8_t facing[TILE_SAMPLES])
+{
+    if (light->parallel && !tile->perspective)
+        face_samples(tile, places, normal, light, false, false, facing);
+    else
+        face_samples(tile, places, normal, light, !light->parallel, tile->perspective, facing);
+}
+
+/* The tile, of `count`, that a place in tiles lies in. */
+RASTER_FN int32_t tile_at(double place, double count)
+{
+    place = place > 0 ? place : 0;
+    return (int32_t)(place < count ? place : count - 1);
+}
+
+LANE_TARGET static void RASTER_KERNEL(aim)(const RasterAim *aim, const RasterPlaces *places,
+                                           RasterSpots *restrict spots)
+{
+    const RasterAim a = *aim;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        double px = places->x[sample], py = places->y[sample], pz = places->z[sample];
+        double x = px * a.axes[0].x + py * a.axes[0].y + pz * a.axes[0].z + a.offset.x;
+        double y = px * a.axes[1].x + py * a.axes[1].y + pz * a.axes[1].z + a.offset.y;
+        double z = px * a.axes[2].x + py * a.axes[2].y + pz * a.axes[2].z + a.offset.z;
+        double depth = a.perspective ? z : 1;
+        x /= depth;
+        y /= depth;
+        double slope2 = a.perspective ? x * x + y * y : 0;
+        spots->x[sample] = x;
+        spots->y[sample] = y;
+        spots->z[sample] = (float)(z - a.slack / sqrt(1 + slope2) - a.z_middle);
+    }
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        int32_t row = tile_at((spots->y[sample] - a.top) * a.per_y, a.rows);
+        int32_t column = tile_at((spots->x[sample] - a.left) * a.per_x, a.columns);
+        spots->tile[sample] = row * (int32_t)a.columns + column;
+    }
+}
+
+LANE_TARGET static uint64_t RASTER_KERNEL(within)(const RasterSpots *spots, int32_t tile)
+{
+    uint64_t bits = 0;
+    for (int first = 0; first < TILE_SAMPLES; first += LANES) {
+        LaneMask tiles;
+        __builtin_memcpy(&tiles, &spots->tile[first], sizeof tiles);
+        bits |= (uint64_t)lanes_bits(tiles == tile) << first;
+    }
+    return bits;
+}
+
+/* ---- what is in the way ---------------------------------------------------------------------- */
+
+/* See may_enter_joint. */
+static const float most_per_sine = 50;
+
+/* LANES probes as floats about the tile's middle. */
+typedef struct ProbeBlock {
+    Lanes x, y, z;
+    LaneMask item;
+    float deepest;
+    uint32_t box; /* compared with those of items [RasterBox] */
+} ProbeBlock;
+
+/* As item_covers() of one probe, in double precision. */
+LANE_TARGET static bool decide_probe(const Near *near, const RasterTile *tile,
+                                     const RasterProbes *probes, int probe)
+{
+    uint32_t place = probes->place[probe], sample = place % TILE_SAMPLES;
+    const RasterSpots *spots = &probes->spots[place / TILE_SAMPLES];
+    double z = raster_decide(tile->bins, near->number, spots->x[sample], spots->y[sample], NULL);
+    return z - tile->z_middle < (double)probes->z[probe];
+}
+
+/* Lines that may enter the item before depths z from its middle, by its capsule and without a root.
+ * Joints may be hit 1e-4 of their radius beside the line. */
+RASTER_FN LaneMask may_enter(const Near *near, const SightLines *sight, Lanes z)
+{
+    const RasterItem *item = near->item;
+    const float radius = item->radius * 1.0002f;
+    Lanes left, beyond, behind, size2 = lanes_set(1);
+    if (near->kind == RASTER_EXACT)
+        return ~(LaneMask){0};
+    if (near->perspective) {
+        Crossing crossing = cross_axis(near, sight);
+        Lanes on = lanes_fma(sight->x, lanes_set(near->axis[0]), sight->y * near->axis[1]);
+        on = lanes_fma(on, crossing.sine2, -(crossing.turn * crossing.rate));
+        size2 += lanes_fma(sight->dx, sight->dx, sight->dy * sight->dy);
+        left = crossing.sine2 * (radius * radius) - crossing.off * crossing.off;
+        behind = lanes_fma(z, crossing.sine2, crossing.turn);
+        beyond = lanes_abs(on) - crossing.sine2 * item->half;
+    } else {
+        Lanes off = lanes_fma(sight->y, lanes_set(item->ex), -(sight->x * item->ey));
+        Lanes on = lanes_fma(sight->x, lanes_set(item->ex), sight->y * item->ey);
+        left = lanes_fma(-off, off, lanes_set(radius * radius));
+        behind = lanes_fma(-on, lanes_set(item->cosine), z * item->sine);
+        beyond = lanes_abs(on) - item->sine * item->half;
+    }
+    beyond = lanes_max(beyond, lanes_set(0));
+    return (beyond * beyond < left * size2) & ((behind > 0.0f) | (behind * behind < left));
+}
+
+/* Narrows the depths between which lines may be in a joint to those between its ends. */
+RASTER_FN void clip_to_ends(const RasterHull *hull, const Near *near, const SightLines *sight,
+                            Lanes *from, Lanes *to)
+{
+    for (int i = 0; i < 2; i++) {
+        const float *plane = hull->plane[i], least = 1e-6f;
+        Lanes at = lanes_fma(sight->x, lanes_set(plane[0]),
+                             lanes_fma(sight->y, lanes_set(plane[1]), lanes_set(plane[3])));
+        Lanes rate = lanes_set(plane[2]);
+        if (near->perspective)
+            rate = lanes_fma(sight->dx, lanes_set(plane[0]),
+                             lanes_fma(sight->dy, lanes_set(plane[1]), rate));
+        LaneMask comes = rate >= 0.0f;
+        rate = lanes_select(comes, lanes_max(rate, lanes_set(least)),
+                            lanes_min(rate, lanes_set(-least)));
+        Lanes crossing = -at / rate;
+        *from = lanes_select(comes, lanes_max(*from, crossing), *from);
+        *to = lanes_select(comes, *to, lanes_min(*to, crossing));
+    }
+}
+
+/* Lines that between two depths may be in the cone about a joint. At t before or behind where a line is
+ * nearest to the axis, it is, if (1 - taper^2) distance^2 - (middle - s taper)^2 = a t^2 + 2 b t + c
+ * <= 0; a line that runs more steeply than the cone, a <= 0, may be. */
+RASTER_FN LaneMask in_cone(const RasterHull *hull, const Passage *passage, Lanes from, Lanes to)
+{
+    const float least = 1e-3f;
+    Lanes taper = lanes_set(hull->taper), per = 1.0f - taper * taper;
+    Lanes slant = taper * passage->rate, a = per * passage->sine2 - slant * slant;
+    Lanes radius = lanes_fma(-passage->along, taper, lanes_set(hull->middle)), b = radius * slant;
+    Lanes t = -b / lanes_max(a, lanes_set(least));
+    t = lanes_max(lanes_min(t, to - passage->middle), from - passage->middle);
+    Lanes c = lanes_fma(per, passage->off2, -(radius * radius));
+    return (from < to) & ((a < least) | (lanes_fma(t, lanes_fma(t, a, b + b), c) <= 0.0f));
+}
+
+/* Lines that may enter a joint before depths z from its middle. Where it is looked at along its axis,
+ * the capsule has no walls to tell that by. Its hits may lie off_joint_line beside a line, and so
+ * before the wall of the capsule by the root of twice that at most, in radii. */
+RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const Near *near,
+                                   const SightLines *sight, Lanes z)
+{
+    const RasterHull *hull = &tile->bins->hulls[near->item->joint];
+    if (!(near->per_sine < most_per_sine))
+        return ~(LaneMask){0};
+    Passage passage = pass_cylinder(near, sight);
+    float margin = 0.015f * near->item->radius * near->per_sine;
+    Lanes from = passage.middle - passage.half - margin;
+    Lanes to = lanes_min(z, passage.middle + passage.half);
+    clip_to_ends(hull, near, sight, &from, &to);
+    return in_cone(hull, &passage, from, to);
+}
+
+/* Whether the item is seen before the probes' depths. */
+RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const RasterProbes *probes,
+                               int first, const ProbeBlock *block, LaneMask among)
+{
+    const Lanes z = block->z;
+    SightLines sight = sight_of(near, block->x, block->y);
+    Lanes entry = lanes_set(0);
+    LaneMask met, unsure = (LaneMask){0};
+    among &= may_enter(near, &sight, z - near->z);
+    if (!lanes_any(among))
+        return among;
+    if (near->kind == RASTER_CYLINDER) {
+        CylinderEntry how;
+        met = cylinder_entry(near, &sight, &entry, &how);
+    } else if (near->kind == RASTER_SPHERE) {
+        met = sphere_entry(near, &sight, &entry);
+    } else if (near->kind == RASTER_JOINT) {
+        Lanes ruling;
+        among &= may_enter_joint(tile, near, &sight, z - near->z);
+        if (!lanes_any(among))
+            return among;
+        RasterJoint joint;
+        raster_joint(tile->bins, near->number, &joint);
+        met = joint_entry(near, &joint, &sight, among,
+                          block->item == (int32_t)(near->number | RASTER_RULED), &entry, &ruling,
+                          &unsure);
+    } else {
+        unsure = among;
+        met = (LaneMask){0};
+    }
+    LaneMask covered = met & among & (entry + near->z < z);
+    unsure &= ~covered;
+    for (uint32_t left = lanes_bits(unsure); left; left &= left - 1) {
+        int lane = __builtin_ctz(left);
+        covered[lane] = -decide_probe(near, tile, probes, first + lane);
+    }
+    return covered;
+}
+
+RASTER_FN uint32_t parts_of(Lanes at, double per)
+{
+    const float middle = RASTERBOX_PARTS / 2, last = RASTERBOX_PARTS - 1;
+    Lanes scale = lanes_set((float)per * (RASTERBOX_PARTS / TILE_SIDE));
+    Lanes part = lanes_fma(at, scale, lanes_set(middle));
+    part = lanes_max(lanes_min(part, lanes_set(last)), lanes_set(0));
+    return (uint32_t)lanes_least(part) | (RASTERBOX_PARTS - 1 - (uint32_t)lanes_largest(part)) << 8;
+}
+
+RASTER_FN ProbeBlock load_probes(const RasterTile *tile, const RasterProbes *probes, int first)
+{
+    const RasterView *view = &tile->bins->view;
+    ProbeBlock block = {.x = lanes_load(&probes->x[first]),
+                        .y = lanes_load(&probes->y[first]),
+                        .z = lanes_load(&probes->z[first]),
+                        .item = load_items(&probes->item[first])};
+    block.deepest = lanes_largest(block.z);
+    block.box = parts_of(block.x, view->per_x) | parts_of(block.y, view->per_y) << 16;
+    return block;
+}
+
+/* Of LANES items from `first` of the list on, as bits, those that may be before a probe. */
+RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const ProbeBlock *block)
+{
+    typedef uint32_t LaneWords __attribute__((vector_size(4 * LANES)));
+    LaneWords boxes;
+    __builtin_memcpy(&boxes, tile->list + tile->n + first, sizeof boxes);
+    LaneMask touched = ((boxes - block->box) & RASTERBOX_GUARDS) == RASTERBOX_GUARDS;
+    uint32_t bits = lanes_bits(touched & (lanes_load(tile->nears + first) <= block->deepest));
+    size_t left = tile->n - first;
+    return left < LANES ? bits & ((1u << left) - 1) : bits;
+}
+
+RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int first,
+                           bool perspective)
+{
+    const ProbeBlock block = load_probes(tile, probes, first);
+    LaneMask open = lanes_of_bytes(&probes->covered[first]);
+    for (size_t i = 0; i < tile->n && lanes_any(open); i += LANES) {
+        uint32_t bits = items_before(tile, i, &block);
+        for (uint32_t left = bits; left; left &= left - 1)
+            __builtin_prefetch(&tile->items[tile->list[i + (size_t)__builtin_ctz(left)]]);
+        for (; bits; bits &= bits - 1) {
+            Near near = approach(tile, tile->list[i + (size_t)__builtin_ctz(bits)], perspective);
+            LaneMask among = open & (block.z > near.z_near) & (block.item != (int32_t)near.number);
+            if (lanes_any(among))
+                open &= ~item_covers(&near, tile, probes, first, &block, among);
+        }
+    }
+    for (int lane = 0; lane < LANES; lane++)
+        probes->covered[first + lane] = !open[lane];
+}
+
+LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, RasterProbes *probes)
+{
+    __builtin_memset(probes->covered, 1, (size_t)probes->n);
+    /* The last block is filled up with probes that are like the first and not asked for. */
+    for (int i = probes->n; i % LANES; i++) {
+        probes->x[i] = probes->x[0];
+        probes->y[i] = probes->y[0];
+        probes->z[i] = probes->z[0];
+        probes->item[i] = probes->item[0];
+        probes->covered[i] = 0;
+    }
+    for (int first = 0; first < probes->n; first += LANES)
+        if (tile->perspective)
+            cover_block(tile, probes, first, true);
+        else
+            cover_block(tile, probes, first, false);
+}

@@ -1,0 +1,297 @@
+/* The first primitive at each sample of a tile, several samples at once: included by each source
+ * that compiles it for its lanes, RASTER_KERNEL(name) making the names of its functions.
+ *
+ * For every item of the tile's list the blocks of LANES samples that its capsule may touch are
+ * found all at once, and the item is met with those. A sample keeps the nearest item and its
+ * normal or, of a joint, the ruling; normals of joints are left to the end. */
+#ifndef RASTER_KERNEL
+#error "define RASTER_KERNEL(name), the name of a function"
+#endif
+
+#include "render/raster/kernel_joint.h"
+#include "render/raster/rasterkernels.h"
+
+/* What an item may touch is told by parts of 8 samples or 4, as many as make the most of lanes. */
+enum {
+    BLOCKS = TILE_SAMPLES / LANES,
+    PART = LANES == 8 ? 8 : 4,
+    PARTS = TILE_SAMPLES / PART,
+    PARTS_OF_BLOCK = LANES / PART
+};
+
+/* ---- tiles ----------------------------------------------------------------------------------- */
+
+typedef struct RasterState {
+    const RasterTile *tile;
+    RasterHits *hits;
+    TileHits *surface;
+    float farthest[PARTS]; /* depth behind which a part needs nothing */
+} RasterState;
+
+RASTER_FN void set_farthest(RasterState *state, int block, float depth)
+{
+    for (int part = 0; part < PARTS_OF_BLOCK; part++)
+        state->farthest[block * PARTS_OF_BLOCK + part] = depth;
+}
+
+/* Keeps what is nearer, and returns where that is. */
+RASTER_FN LaneMask keep_nearer(RasterState *state, const Near *near, uint32_t number, int block,
+                               LaneMask met, Lanes z)
+{
+    RasterHits *hits = state->hits;
+    int first = block * LANES;
+    Lanes depth = z + near->z, before = lanes_load(&hits->z[first]);
+    LaneMask nearer = met & (depth < before);
+    if (!lanes_any(nearer))
+        return nearer;
+    Lanes kept = (Lanes)load_items(&hits->item[first]);
+    Lanes item = (Lanes)((LaneMask){0} + (int32_t)number);
+    depth = lanes_select(nearer, depth, before);
+    lanes_store(&hits->z[first], depth);
+    store_items(&hits->item[first], (LaneMask)lanes_select(nearer, item, kept));
+    if (state->tile->n > 4) /* else it saves nothing */
+        set_farthest(state, block, lanes_largest(depth));
+    return nearer;
+}
+
+RASTER_FN void keep_lanes(float *values, LaneMask of, Lanes lanes)
+{
+    lanes_store(values, lanes_select(of, lanes, lanes_load(values)));
+}
+
+RASTER_FN void keep_normal(TileHits *surface, int block, LaneMask of, const Lanes normal[3])
+{
+    for (int c = 0; c < 3; c++)
+        keep_lanes(&surface->normal[c][block * LANES], of, normal[c]);
+}
+
+/* Decides the samples `unsure` of a block in double precision. */
+LANE_TARGET static void decide_block(RasterState *state, const Near *near, int block,
+                                     LaneMask unsure)
+{
+    const RasterTile *tile = state->tile;
+    RasterHits *hits = state->hits;
+    for (int lane = 0; lane < LANES; lane++) {
+        int sample = block * LANES + lane;
+        if (!unsure[lane])
+            continue;
+        double z = raster_decide(tile->bins, near->number, tile->x + (double)tile->grid->x[sample],
+                                 tile->y + (double)tile->grid->y[sample], NULL);
+        float depth = (float)(z - tile->z_middle);
+        if (!(depth < hits->z[sample]))
+            continue;
+        hits->z[sample] = depth;
+        hits->item[sample] = near->number | RASTER_DECIDED;
+    }
+    set_farthest(state, block, lanes_largest(lanes_load(&hits->z[block * LANES])));
+}
+
+RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
+{
+    const RasterGrid *grid = state->tile->grid;
+    SightLines sight =
+        sight_of(near, lanes_load(&grid->x[block * LANES]), lanes_load(&grid->y[block * LANES]));
+    Lanes z, normal[3];
+    if (near->kind == RASTER_CYLINDER) {
+        CylinderEntry entry;
+        LaneMask met = cylinder_entry(near, &sight, &z, &entry);
+        met = keep_nearer(state, near, near->number, block, met, z);
+        if (lanes_any(met)) {
+            cylinder_normal(near, &sight, z, &entry, normal);
+            keep_normal(state->surface, block, met, normal);
+        }
+    } else if (near->kind == RASTER_SPHERE) {
+        LaneMask met = sphere_entry(near, &sight, &z);
+        met = keep_nearer(state, near, near->number, block, met, z);
+        if (lanes_any(met)) {
+            sphere_normal(near, &sight, z, normal);
+            keep_normal(state->surface, block, met, normal);
+        }
+    } else if (near->kind == RASTER_EXACT) {
+        decide_block(state, near, block, ~(LaneMask){0});
+    } else {
+        Lanes ruling;
+        LaneMask unsure, within = within_outline(near, &sight);
+        const RasterJoint *joint = &state->tile->joints[near->item->joint];
+        LaneMask met =
+            joint_entry(near, joint, &sight, within, (LaneMask){0}, &z, &ruling, &unsure);
+        met = keep_nearer(state, near, near->number | RASTER_RULED, block, met, z);
+        keep_lanes(&state->hits->ruling[block * LANES], met, ruling);
+        if (lanes_any(unsure))
+            decide_block(state, near, block, unsure);
+    }
+}
+
+/* The parts of the tile that the item's capsule may touch and that do not all see something
+ * nearer, as bits. */
+RASTER_FN unsigned touched_parts(const RasterState *state, const Near *near)
+{
+    const RasterGrid *grid = state->tile->grid;
+    const float *xs = PART == 8 ? grid->block8_x : grid->block4_x;
+    const float *ys = PART == 8 ? grid->block8_y : grid->block4_y;
+    const float *half = PART == 8 ? grid->block8_half : grid->block4_half;
+    float half_x = half[0] * near->depth, half_y = half[1] * near->depth;
+    float ax = near->along_x < 0 ? -near->along_x : near->along_x;
+    float ay = near->along_y < 0 ? -near->along_y : near->along_y;
+    float across = near->reach_across + half_x * ay + half_y * ax;
+    float along = near->reach_along + half_x * ax + half_y * ay;
+    float rounding = 1e-6f * (near->item->half + near->item->radius + near->reach_across);
+    across += rounding;
+    along += rounding;
+    unsigned bits = 0;
+    for (int first = 0; first < PARTS; first += LANES) {
+        Lanes x = lanes_fma(lanes_load(&xs[first]), lanes_set(near->depth), lanes_set(near->x));
+        Lanes y = lanes_fma(lanes_load(&ys[first]), lanes_set(near->depth), lanes_set(near->y));
+        Lanes off = lanes_abs(lanes_fma(y, lanes_set(near->along_x), -(x * near->along_y)));
+        Lanes on = lanes_abs(lanes_fma(x, lanes_set(near->along_x), y * near->along_y));
+        LaneMask touched =
+            (off <= across) & (on <= along) & (lanes_load(&state->farthest[first]) > near->z_near);
+        bits |= lanes_bits(touched) << first;
+    }
+    return bits;
+}
+
+RASTER_FN void trace_items(RasterState *state, bool perspective)
+{
+    const RasterTile *tile = state->tile;
+    for (size_t i = 0; i < tile->n; i++) {
+        Near near = approach(tile, tile->list[i], perspective);
+        outline(tile, &near);
+        unsigned parts = touched_parts(state, &near);
+        if (item_is_close(near.item))
+            parts = (1u << PARTS) - 1;
+        while (parts) {
+            int block = __builtin_ctz(parts) / PARTS_OF_BLOCK;
+            meet_block(state, &near, block);
+            parts &= ~(((1u << PARTS_OF_BLOCK) - 1) << block * PARTS_OF_BLOCK);
+        }
+    }
+}
+
+LANE_TARGET static uint64_t RASTER_KERNEL(trace)(const RasterTile *tile, RasterHits *hits,
+                                                 TileHits *surface)
+{
+    RasterState state = {.tile = tile, .hits = hits, .surface = surface};
+    for (int sample = 0; sample < TILE_SAMPLES; sample += LANES) {
+        lanes_store(&hits->z[sample], lanes_set(HUGE_VALF));
+        store_items(&hits->item[sample], (LaneMask){0} + (int32_t)RASTER_NOTHING);
+        set_farthest(&state, sample / LANES, HUGE_VALF);
+    }
+    if (tile->perspective)
+        trace_items(&state, true);
+    else
+        trace_items(&state, false);
+    uint64_t seen = 0;
+    for (int first = 0; first < TILE_SAMPLES; first += LANES)
+        seen |= (uint64_t)lanes_bits(load_items(&hits->item[first]) != (int32_t)RASTER_NOTHING)
+                << first;
+    return seen;
+}
+
+/* ---- normals --------------------------------------------------------------------------------- */
+
+LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number, int sample,
+                                        TileHits *surface)
+{
+    Vec3 normal = {0, 0, 0};
+    raster_decide(tile->bins, number, tile->x + (double)tile->grid->x[sample],
+                  tile->y + (double)tile->grid->y[sample], &normal);
+    surface->normal[0][sample] = (float)normal.x;
+    surface->normal[1][sample] = (float)normal.y;
+    surface->normal[2][sample] = (float)normal.z;
+}
+
+/* The normals of the samples `of` a block, which see the joint. */
+RASTER_FN void resolve_joint(const RasterTile *tile, const RasterHits *hits, uint32_t number,
+                             int block, LaneMask of, bool perspective, TileHits *surface)
+{
+    int first = block * LANES;
+    Near near = approach(tile, number, perspective);
+    SightLines sight =
+        sight_of(&near, lanes_load(&tile->grid->x[first]), lanes_load(&tile->grid->y[first]));
+    Lanes normal[3];
+    joint_normal(&near, &tile->joints[near.item->joint], &sight, lanes_load(&hits->ruling[first]),
+                 normal);
+    keep_normal(surface, block, of, normal);
+}
+
+RASTER_FN void resolve_block(const RasterTile *tile, const RasterHits *hits, int block,
+                             bool perspective, TileHits *surface)
+{
+    int first = block * LANES;
+    LaneMask items = load_items(&hits->item[first]), seen = items != (int32_t)RASTER_NOTHING;
+    lanes_to_bytes(&surface->state[first], seen); /* TILE_HIT or TILE_MISS */
+    store_items(&surface->segment[first], items & (int32_t)RASTER_NUMBER);
+    LaneMask open = seen & ((items & (int32_t)~RASTER_NUMBER) != 0);
+    for (uint32_t left = lanes_bits(open); left;) {
+        int sample = first + __builtin_ctz(left);
+        uint32_t item = hits->item[sample];
+        LaneMask of = items == (int32_t)item;
+        if (item & RASTER_DECIDED) {
+            resolve_decided(tile, item & RASTER_NUMBER, sample, surface);
+            left &= left - 1;
+        } else {
+            resolve_joint(tile, hits, item & RASTER_NUMBER, block, of, perspective, surface);
+            left &= ~lanes_bits(of);
+        }
+    }
+}
+
+LANE_TARGET static void RASTER_KERNEL(resolve)(const RasterTile *tile, const RasterHits *hits,
+                                               TileHits *surface)
+{
+    for (int block = 0; block < BLOCKS; block++)
+        if (tile->perspective)
+            resolve_block(tile, hits, block, true, surface);
+        else
+            resolve_block(tile, hits, block, false, surface);
+}
+
+/* ---- pixels ---------------------------------------------------------------------------------- */
+
+typedef float Quad __attribute__((vector_size(16)));
+
+/* Four pixels of three channels each. */
+LANE_FN void store_pixels(float *to, Quad r, Quad g, Quad b)
+{
+    Quad low = __builtin_shufflevector(r, g, 0, 4, 1, 5);
+    Quad high = __builtin_shufflevector(r, g, 2, 6, 3, 7);
+    Quad middle = __builtin_shufflevector(low, b, 3, 5, 3, 5);
+    Quad first = __builtin_shufflevector(low, b, 0, 1, 4, 2);
+    Quad second = __builtin_shufflevector(middle, high, 0, 1, 4, 5);
+    Quad third = __builtin_shufflevector(b, high, 2, 6, 7, 3);
+    __builtin_memcpy(to, &first, sizeof first);
+    __builtin_memcpy(to + 4, &second, sizeof second);
+    __builtin_memcpy(to + 8, &third, sizeof third);
+}
+
+LANE_TARGET static void RASTER_KERNEL(paint)(float color[3][TILE_SAMPLES], float *pixels,
+                                             size_t stride)
+{
+    for (int block = 0; block < TILE_SAMPLES / 8; block++) {
+        Quad upper[3], lower[3];
+        for (int c = 0; c < 3; c++) {
+            Quad left, right;
+            __builtin_memcpy(&left, &color[c][8 * block], sizeof left);
+            __builtin_memcpy(&right, &color[c][8 * block + 4], sizeof right);
+            upper[c] = __builtin_shufflevector(left, right, 0, 1, 4, 5);
+            lower[c] = __builtin_shufflevector(left, right, 2, 3, 6, 7);
+        }
+        float *to =
+            pixels + (size_t)tile_sample_y(8 * block) * stride + 3 * tile_sample_x(8 * block);
+        store_pixels(to, upper[0], upper[1], upper[2]);
+        store_pixels(to + stride, lower[0], lower[1], lower[2]);
+    }
+}
+
+/* Gives the samples that see nothing the background. */
+LANE_TARGET static void RASTER_KERNEL(clear)(const RasterHits *hits, const float background[3],
+                                             float color[3][TILE_SAMPLES])
+{
+    for (int first = 0; first < TILE_SAMPLES; first += LANES) {
+        LaneMask seen = load_items(&hits->item[first]) != (int32_t)RASTER_NOTHING;
+        for (int c = 0; c < 3; c++)
+            lanes_store(&color[c][first],
+                        lanes_select(seen, lanes_load(&color[c][first]), lanes_set(background[c])));
+    }
+}

@@ -1,0 +1,315 @@
+/* Where lines of sight enter spheres and cylinders, several at once: a part of rasterkernel.h. A
+ * line passes an item's middle, at the middle's depth, in (X, Y) = (x, y) depth - middle, which
+ * is taken in double precision for the tile and stays small. */
+#ifndef CORCAST_RENDER_RASTERSIGHT_H
+#define CORCAST_RENDER_RASTERSIGHT_H
+
+#include "render/raster/rastertile.h"
+#include "render/tile/lanes.h"
+
+#define RASTER_FN LANE_FN __attribute__((always_inline))
+
+/* Below this squared sine a wall is looked at along its axis. */
+static const float steep_sine2 = 4e-4f;
+
+RASTER_FN LaneMask load_items(const uint32_t *items)
+{
+    LaneMask lanes;
+    __builtin_memcpy(&lanes, items, sizeof lanes);
+    return lanes;
+}
+
+RASTER_FN void store_items(uint32_t *items, LaneMask lanes)
+{
+    __builtin_memcpy(items, &lanes, sizeof lanes);
+}
+
+/* Lines of sight beside an item. */
+typedef struct SightLines {
+    Lanes x, y;   /* where they pass its middle's depth, from the middle */
+    Lanes dx, dy; /* directions (dx, dy, 1); only in perspective */
+} SightLines;
+
+/* An item as one tile sees it. */
+typedef struct Near {
+    const RasterItem *item;
+    bool perspective;
+    uint32_t kind;
+    uint32_t number;
+    float x, y;   /* where the tile's middle passes it, from its middle */
+    float depth;  /* of its middle, along the view; 1 when parallel */
+    float dx, dy; /* direction of the tile's middle */
+    float z;      /* of its middle, less z_middle */
+    float z_near; /* nothing of it is nearer */
+    float along_x, along_y, reach_along,
+        reach_across; /* its capsule's outline at the middle's depth */
+    float axis[3];
+    float per_sine; /* depth on the tile's middle line per distance from the axis */
+} Near;
+
+/* The outline of the capsule in the plane of its middle's depth, looked at along the tile's
+ * middle; wider in perspective, where what is nearer or farther than the middle is seen at
+ * another scale. */
+RASTER_FN void outline(const RasterTile *tile, Near *near)
+{
+    const RasterItem *item = near->item;
+    near->along_x = item->ex;
+    near->along_y = item->ey;
+    near->reach_across = item->radius;
+    near->reach_along = item->sine * item->half + item->radius;
+    if (!near->perspective)
+        return;
+    float x = near->axis[0] - near->dx * near->axis[2];
+    float y = near->axis[1] - near->dy * near->axis[2], size = sqrtf(x * x + y * y);
+    float stretch = sqrtf(1 + near->dx * near->dx + near->dy * near->dy);
+    near->along_x = size > 0 ? x / size : 1;
+    near->along_y = size > 0 ? y / size : 0;
+    float deep = item->cosine * item->half + item->radius;
+    near->reach_across = item->radius * stretch + deep * tile->grid->reach;
+    near->reach_along = size * item->half + near->reach_across;
+}
+
+RASTER_FN Near approach(const RasterTile *tile, uint32_t number, bool perspective)
+{
+    const RasterItem *item = &tile->items[number];
+    Near near;
+    near.item = item;
+    near.perspective = perspective;
+    near.kind = item->kind;
+    near.number = number;
+    near.depth = 1;
+    near.dx = near.dy = 0;
+    near.axis[0] = item->sine * item->ex;
+    near.axis[1] = item->sine * item->ey;
+    near.axis[2] = item->cosine;
+    near.per_sine = 1 / item->sine;
+    near.z = (float)(item->z - tile->z_middle);
+    near.z_near = near.z - item->cosine * item->half - item->radius;
+    if (perspective) {
+        near.x = (float)(tile->x * item->z - item->x);
+        near.y = (float)(tile->y * item->z - item->y);
+        near.depth = (float)item->z;
+        near.dx = (float)tile->x;
+        near.dy = (float)tile->y;
+        float nx = near.dy * near.axis[2] - near.axis[1],
+              ny = near.axis[0] - near.dx * near.axis[2];
+        float nz = near.dx * near.axis[1] - near.dy * near.axis[0];
+        float sine2 = nx * nx + ny * ny + nz * nz;
+        near.per_sine = 1 / sqrtf(sine2);
+        if (near.kind == RASTER_CYLINDER &&
+            sine2 < steep_sine2 * (1 + near.dx * near.dx + near.dy * near.dy))
+            near.kind = RASTER_EXACT;
+    } else {
+        near.x = (float)(tile->x - item->x);
+        near.y = (float)(tile->y - item->y);
+    }
+    return near;
+}
+
+RASTER_FN SightLines sight_of(const Near *near, Lanes x, Lanes y)
+{
+    SightLines sight;
+    if (near->perspective) {
+        sight.x = lanes_fma(x, lanes_set(near->depth), lanes_set(near->x));
+        sight.y = lanes_fma(y, lanes_set(near->depth), lanes_set(near->y));
+        sight.dx = x + near->dx;
+        sight.dy = y + near->dy;
+    } else {
+        sight.x = x + near->x;
+        sight.y = y + near->y;
+        sight.dx = sight.dy = lanes_set(0);
+    }
+    return sight;
+}
+
+/* Whether lines of sight may touch the item's capsule. */
+RASTER_FN LaneMask within_outline(const Near *near, const SightLines *sight)
+{
+    Lanes x = lanes_set(near->along_x), y = lanes_set(near->along_y);
+    Lanes off = lanes_abs(lanes_fma(sight->y, x, -(sight->x * y)));
+    Lanes on = lanes_abs(lanes_fma(sight->x, x, sight->y * y));
+    return (off <= near->reach_across * 1.00001f) & (on <= near->reach_along * 1.00001f);
+}
+
+/* ---- spheres and cylinders ------------------------------------------------------------------- */
+
+/* Where the lines enter the sphere, as depth from its middle. */
+RASTER_FN LaneMask sphere_entry(const Near *near, const SightLines *sight, Lanes *z)
+{
+    float radius2 = near->item->radius * near->item->radius;
+    if (!near->perspective) {
+        Lanes left = lanes_set(radius2) - lanes_fma(sight->x, sight->x, sight->y * sight->y);
+        *z = -lanes_sqrt(lanes_max(left, lanes_set(0)));
+        return left > 0.0f;
+    }
+    /* About the line's nearest point: n = D x (X, Y, 0), |n|^2 / |D|^2 the squared distance. */
+    Lanes size2 = lanes_fma(sight->dx, sight->dx, lanes_fma(sight->dy, sight->dy, lanes_set(1)));
+    Lanes nz = lanes_fma(sight->dx, sight->y, -(sight->dy * sight->x));
+    Lanes n2 = lanes_fma(nz, nz, lanes_fma(sight->x, sight->x, sight->y * sight->y));
+    Lanes left = lanes_fma(lanes_set(radius2), size2, -n2), per = 1.0f / size2;
+    Lanes along = lanes_fma(sight->dx, sight->x, sight->dy * sight->y);
+    *z = -(along + lanes_sqrt(lanes_max(left, lanes_set(0)))) * per;
+    return left > 0.0f;
+}
+
+/* How lines of sight run through an endless cylinder. */
+typedef struct Passage {
+    LaneMask met;
+    Lanes middle; /* depth where they are nearest to the axis, from that of the cylinder's middle */
+    Lanes half;   /* of what is inside, in depth */
+    Lanes along;  /* at that place, along the axis from its middle */
+    Lanes rate;   /* of that with depth */
+    Lanes off2;   /* their distance there, squared; t of depth farther it has grown by sine2 t^2 */
+    Lanes sine2;
+} Passage;
+
+/* How lines that are not parallel pass an axis u: n = D x u, P the place where they pass its middle's depth. */
+typedef struct Crossing {
+    Lanes sine2; /* |n|^2 */
+    Lanes off;   /* n . P: the distance of the two, times |n| */
+    Lanes turn;  /* the depth of their nearest points, times -|n|^2 */
+    Lanes rate;  /* D . u */
+} Crossing;
+
+RASTER_FN Crossing cross_axis(const Near *near, const SightLines *sight)
+{
+    Lanes ux = lanes_set(near->axis[0]), uy = lanes_set(near->axis[1]);
+    Lanes uz = lanes_set(near->axis[2]);
+    Lanes nx = lanes_fma(sight->dy, uz, -uy), ny = lanes_fma(-sight->dx, uz, ux);
+    Lanes nz = lanes_fma(sight->dx, uy, -(sight->dy * ux));
+    Lanes cross = lanes_fma(nx, sight->y, -(ny * sight->x));
+    Crossing crossing;
+    crossing.sine2 = lanes_fma(nx, nx, lanes_fma(ny, ny, nz * nz));
+    crossing.off = lanes_fma(nx, sight->x, ny * sight->y);
+    crossing.turn = lanes_fma(nz, lanes_fma(sight->x, uy, -(sight->y * ux)), uz * cross);
+    crossing.rate = lanes_fma(sight->dx, ux, lanes_fma(sight->dy, uy, uz));
+    return crossing;
+}
+
+RASTER_FN Passage pass_cylinder(const Near *near, const SightLines *sight)
+{
+    Passage passage;
+    const RasterItem *item = near->item;
+    float radius2 = item->radius * item->radius;
+    Lanes zero = lanes_set(0);
+    if (!near->perspective) {
+        Lanes off = lanes_fma(sight->y, lanes_set(item->ex), -(sight->x * item->ey));
+        Lanes left = lanes_fma(-off, off, lanes_set(radius2));
+        passage.met = left > 0.0f;
+        passage.half = lanes_sqrt(lanes_max(left, zero)) * near->per_sine;
+        passage.along =
+            lanes_fma(sight->x, lanes_set(item->ex), sight->y * item->ey) * near->per_sine;
+        passage.middle = passage.along * item->cosine;
+        passage.rate = lanes_set(item->cosine);
+        passage.off2 = off * off;
+        passage.sine2 = lanes_set(item->sine * item->sine);
+        return passage;
+    }
+    Crossing crossing = cross_axis(near, sight);
+    Lanes off = crossing.off, per = 1.0f / crossing.sine2;
+    Lanes left = lanes_fma(lanes_set(radius2), crossing.sine2, -(off * off));
+    Lanes ux = lanes_set(near->axis[0]), uy = lanes_set(near->axis[1]);
+    passage.met = left > 0.0f;
+    passage.half = lanes_sqrt(lanes_max(left, zero)) * per;
+    passage.middle = -crossing.turn * per;
+    passage.rate = crossing.rate;
+    passage.along = lanes_fma(sight->x, ux, lanes_fma(sight->y, uy, passage.middle * passage.rate));
+    passage.off2 = off * off * per;
+    passage.sine2 = crossing.sine2;
+    return passage;
+}
+
+/* How lines of sight enter a cylinder. */
+typedef struct CylinderEntry {
+    LaneMask on_disc;
+    Lanes rate;  /* as in Passage */
+    Lanes along; /* of the point of the axis that the surface is about, but that of a disc */
+} CylinderEntry;
+
+/* Of lines that come to the endless cylinder off its ends, `along` its axis, those that may enter a
+ * round end. */
+RASTER_FN LaneMask before_ball(const Near *near, Lanes along, LaneMask outside)
+{
+    LaneMask low = along < 0.0f;
+    LaneMask flat_low = low & -(int32_t)!near->item->round_low;
+    LaneMask flat_high = ~low & -(int32_t)!near->item->round_high;
+    return outside & ~(flat_low | flat_high);
+}
+
+/* Where the lines enter the ball of the cylinder's radius that is so far along its axis. */
+RASTER_FN LaneMask ball_entry(const Near *near, const SightLines *sight, Lanes along, Lanes *z)
+{
+    Lanes depth = along * near->axis[2];
+    SightLines ball = *sight;
+    ball.x = lanes_fma(-along, lanes_set(near->axis[0]), sight->x);
+    ball.y = lanes_fma(-along, lanes_set(near->axis[1]), sight->y);
+    if (near->perspective) {
+        ball.x = lanes_fma(depth, sight->dx, ball.x);
+        ball.y = lanes_fma(depth, sight->dy, ball.y);
+    }
+    LaneMask met = sphere_entry(near, &ball, z);
+    *z += depth;
+    return met;
+}
+
+/* Where the lines enter the cylinder. */
+RASTER_FN LaneMask cylinder_entry(const Near *near, const SightLines *sight, Lanes *z,
+                                  CylinderEntry *entry)
+{
+    const RasterItem *item = near->item;
+    float half = item->half;
+    Passage passage = pass_cylinder(near, sight);
+    /* Counted from the end that a line comes to first, lengths grow with depth. */
+    Lanes along = passage.along, rate = passage.rate, grows = lanes_set(1);
+    if (near->perspective) {
+        grows = lanes_select(rate < 0.0f, -grows, grows);
+        along *= grows;
+        rate *= grows;
+    }
+    Lanes first = along + half, rise = rate * passage.half, enters = first - rise;
+    LaneMask before = passage.met & (enters < 0.0f);
+    LaneMask met = passage.met & ~before & (enters <= 2 * half);
+    *entry =
+        (CylinderEntry){before & (first + rise >= 0.0f), passage.rate, (enters - half) * grows};
+    *z = passage.middle - passage.half;
+    if (item->round_low | item->round_high) {
+        LaneMask round = before_ball(near, entry->along, passage.met & ~met);
+        if (lanes_any(round)) {
+            Lanes end = lanes_select(entry->along < 0.0f, lanes_set(-half), lanes_set(half)),
+                  ball_z;
+            met |= round & ball_entry(near, sight, end, &ball_z);
+            *z = lanes_select(round, ball_z, *z);
+            entry->along = lanes_select(round, end, entry->along);
+            entry->on_disc &= ~round;
+        }
+    }
+    if (lanes_any(entry->on_disc))
+        *z = lanes_select(entry->on_disc, passage.middle - first / rate, *z);
+    return entry->on_disc | met;
+}
+
+/* The normals where the lines enter the sphere at depths z. */
+RASTER_FN void sphere_normal(const Near *near, const SightLines *sight, Lanes z, Lanes normal[3])
+{
+    float per = 1 / near->item->radius;
+    normal[0] = lanes_fma(z, sight->dx, sight->x) * per;
+    normal[1] = lanes_fma(z, sight->dy, sight->y) * per;
+    normal[2] = z * per;
+}
+
+/* The normals where the lines enter the cylinder at depths z. */
+RASTER_FN void cylinder_normal(const Near *near, const SightLines *sight, Lanes z,
+                               const CylinderEntry *entry, Lanes normal[3])
+{
+    float per = 1 / near->item->radius;
+    Lanes at[3] = {lanes_fma(z, sight->dx, sight->x), lanes_fma(z, sight->dy, sight->y), z};
+    for (int c = 0; c < 3; c++)
+        normal[c] = lanes_fma(-entry->along, lanes_set(near->axis[c]), at[c]) * per;
+    if (!lanes_any(entry->on_disc))
+        return;
+    Lanes facing = lanes_select(entry->rate > 0.0f, lanes_set(-1), lanes_set(1));
+    for (int c = 0; c < 3; c++)
+        normal[c] = lanes_select(entry->on_disc, facing * near->axis[c], normal[c]);
+}
+
+#endif

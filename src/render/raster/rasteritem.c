@@ -1,0 +1,172 @@
+/* A primitive becomes an item: its middle in double precision, all else in single precision
+ * about that middle, so that single precision is left with numbers as small as the primitive.
+ *
+ * What single precision cannot hold to a thousandth of a pixel, or the kernels do not solve, is
+ * an item of the kind RASTER_EXACT: what is near the eye or about it, longer than 16384 pixels,
+ * or looked at along its axis, and joints that need not be the wall of a solid. */
+#include "render/raster/rasteritem.h"
+
+#include "render/cast/caster.h"
+
+static const double most_pixels = 16384; /* 2^-24 of it are a thousandth of a pixel */
+static const double least_sine =
+    0.02; /* of the angle at which a wall is looked at along its axis */
+
+static void store_vec3(float to[3], Vec3 v)
+{
+    to[0] = (float)v.x;
+    to[1] = (float)v.y;
+    to[2] = (float)v.z;
+}
+
+/* Turns the angle p of a joint by that of the ruling that faces `sight`, a direction in the
+ * frame, most: where the first harmonic of sight . (S_p x S_l) at l = 1/2 is least. */
+static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
+{
+    Vec3 a = joint->across, b = vec3_scale(joint->side, joint->radius);
+    Vec3 da = joint->across_change, db = vec3_scale(joint->side, joint->radius_change);
+    double along_a = vec3_dot(sight, vec3_cross(vec3_add_scaled(a, da, 0.5), joint->span));
+    double along_b = vec3_dot(sight, vec3_cross(vec3_add_scaled(b, db, 0.5), joint->span));
+    double size = sqrt(along_a * along_a + along_b * along_b), cosine = 1, sine = 0;
+    if (size > 0) {
+        cosine = -along_b / size;
+        sine = along_a / size;
+    }
+    out[0] = joint->base;
+    out[1] = joint->span;
+    out[2] = vec3_add_scaled(vec3_scale(a, cosine), b, sine);
+    out[3] = vec3_add_scaled(vec3_scale(b, cosine), a, -sine);
+    out[4] = vec3_add_scaled(vec3_scale(da, cosine), db, sine);
+    out[5] = vec3_add_scaled(vec3_scale(db, cosine), da, -sine);
+}
+
+static RasterJoint make_joint(const RasterView *view, const Primitive *primitive, Vec3 middle)
+{
+    RasterJoint made;
+    JointFrame joint = primitive_joint(primitive);
+    Vec3 from_eye = vec3_sub(joint.base, view->location), part[6];
+    joint.base = vec3_sub(rasterview_to_frame(view, from_eye), middle);
+    joint.span = rasterview_to_frame(view, joint.span);
+    /* The frame is left-handed; turning the other way round keeps S_p x S_l outward in it. */
+    joint.side = vec3_scale(rasterview_to_frame(view, joint.side), -1);
+    joint.across = rasterview_to_frame(view, joint.across);
+    joint.across_change = rasterview_to_frame(view, joint.across_change);
+    face_sight(&joint, view->perspective ? middle : vec3(0, 0, 1), part);
+    Vec3 base = part[0], span = part[1], a = part[2], b = part[3], da = part[4], db = part[5];
+    store_vec3(made.base, base);
+    store_vec3(made.span, span);
+    store_vec3(made.a, a);
+    store_vec3(made.b, b);
+    store_vec3(made.da, da);
+    store_vec3(made.db, db);
+    store_vec3(made.by[0], vec3_add(vec3_cross(base, span), vec3_cross(b, db)));
+    store_vec3(made.by[1], vec3_add(vec3_cross(base, da), vec3_cross(a, span)));
+    store_vec3(made.by[2], vec3_add(vec3_cross(base, db), vec3_cross(b, span)));
+    store_vec3(made.by[3], vec3_sub(vec3_cross(a, da), vec3_cross(b, db)));
+    store_vec3(made.by[4], vec3_add(vec3_cross(a, db), vec3_cross(b, da)));
+    return made;
+}
+
+static void store_plane(float to[4], Vec3 inward, Vec3 center, double radius)
+{
+    store_vec3(to, inward);
+    to[3] = (float)(1e-3 * radius - vec3_dot(inward, center));
+}
+
+/* `turn`: 1 if the item's axis leads from a to b, or -1. */
+static RasterHull make_hull(const RasterView *view, const Primitive *primitive, Vec3 span,
+                            double length, double turn)
+{
+    RasterHull hull;
+    double a = primitive->radius_mm, b = primitive->radius_b_mm;
+    bool tapers = fabs(a - b) < length;
+    store_plane(hull.plane[0], rasterview_to_frame(view, primitive->axis_a), vec3_scale(span, -0.5),
+                a);
+    store_plane(hull.plane[1], vec3_scale(rasterview_to_frame(view, primitive->axis_b), -1),
+                vec3_scale(span, 0.5), b);
+    hull.middle = (float)((tapers ? (a + b) / 2 : max_of(a, b)) * 1.0005);
+    hull.taper = (float)(tapers ? turn * (a - b) / length : 0);
+    return hull;
+}
+
+void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, RasterItem *item)
+{
+    const RasterView *view = &bins->view;
+    const Primitive *primitive = &bins->scene->primitives[number];
+    Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
+    middle = rasterview_to_frame(view, vec3_sub(middle, view->location));
+    Vec3 span = rasterview_to_frame(view, vec3_sub(primitive->b, primitive->a));
+    double length = vec3_length(span), radius = primitive->radius_mm, cosine = 0, sine = 1;
+    double ex = 1, ey = 0, turn = span.z < 0 ? -1 : 1;
+    if (length > 0) {
+        double across = sqrt(span.x * span.x + span.y * span.y);
+        cosine = turn * span.z / length;
+        sine = across / length;
+        ex = across > 0 ? turn * span.x / across : 1;
+        ey = across > 0 ? turn * span.y / across : 0;
+    }
+    RasterKind kind = RASTER_SPHERE;
+    if (primitive->kind == PRIMITIVE_CYLINDER)
+        kind = !view->perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
+    if (primitive->kind == PRIMITIVE_JOINT) {
+        kind = bins->scene->open_joints || !primitive_joint_is_solid(primitive) ? RASTER_EXACT
+                                                                                : RASTER_JOINT;
+        radius = max_of(radius, primitive->radius_b_mm);
+        if (kind == RASTER_JOINT && bins->hulls)
+            bins->hulls[joint] = make_hull(view, primitive, span, length, turn);
+        else if (kind == RASTER_JOINT)
+            bins->joints[joint] = make_joint(view, primitive, middle);
+    }
+    item->x = middle.x;
+    item->y = middle.y;
+    item->z = middle.z;
+    item->ex = (float)ex;
+    item->ey = (float)ey;
+    item->sine = (float)sine;
+    item->cosine = (float)cosine;
+    item->radius = (float)radius;
+    item->half = (float)(length / 2);
+    item->round_low = turn > 0 ? primitive->round_a : primitive->round_b;
+    item->round_high = turn > 0 ? primitive->round_b : primitive->round_a;
+    item->joint = joint & (MOST_ITEMS - 1);
+    double near = middle.z - cosine * length / 2 - radius;
+    double pixel = min_of(view->step_x, -view->step_y) * (view->perspective ? near : 1);
+    bool odd = item_is_close(item) || length / 2 + radius > most_pixels * pixel;
+    item->kind = (unsigned)(odd ? RASTER_EXACT : kind) & 3;
+}
+
+void raster_joint(const RasterBins *bins, uint32_t item, RasterJoint *joint)
+{
+    const RasterItem *about = &bins->items[item];
+    *joint =
+        make_joint(&bins->view, &bins->scene->primitives[item], vec3(about->x, about->y, about->z));
+}
+
+double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal)
+{
+    const Primitive *primitive = &bins->scene->primitives[item];
+    Ray ray = rasterview_ray(&bins->view, x, y);
+    Hit hits[6];
+    int n = 0;
+    double nearest = HUGE_VAL;
+    if (primitive->kind == PRIMITIVE_SPHERE) {
+        n = hit_sphere(ray, primitive->a, primitive->radius_mm, hits);
+    } else if (primitive->kind == PRIMITIVE_CYLINDER) {
+        CylinderFrame cylinder = cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
+        n = hit_cylinder(ray, &cylinder, hits);
+        if (primitive->round_a)
+            n += hit_sphere(ray, primitive->a, primitive->radius_mm, &hits[n]);
+        if (primitive->round_b)
+            n += hit_sphere(ray, primitive->b, primitive->radius_mm, &hits[n]);
+    } else {
+        JointFrame joint = primitive_joint(primitive);
+        n = hit_joint(ray, &joint, hits);
+    }
+    for (int i = 0; i < n; i++)
+        if (hits[i].t >= NEAREST_SEEN_MM && hits[i].t < nearest) {
+            nearest = hits[i].t;
+            if (normal)
+                *normal = rasterview_to_frame(&bins->view, hits[i].normal);
+        }
+    return nearest * vec3_dot(ray.direction, bins->view.axes[2]);
+}

@@ -1,0 +1,177 @@
+/* A capsule about an item is seen within a range of rows. Of each row, what is within reach of its
+ * slab is seen within a range of columns; in few tiles, the whole of it serves all rows. */
+#include "render/raster/rasterreach.h"
+
+static const double slack_pixels = 1e-3; /* covers rounding where tiles are told apart */
+
+static const TileSpan nowhere = {1, 0};
+static const Range everywhere = {-HUGE_VAL, HUGE_VAL}, nothing = {HUGE_VAL, -HUGE_VAL};
+
+/* A range as pixels, whose middles are whole numbers; pixel 0 is at `first`, and `per` pixels follow
+ * in a unit. */
+static Range pixels_within(Range range, double first, double per)
+{
+    double from = (range.low - first) * per, to = (range.high - first) * per;
+    return (Range){min_of(from, to) - slack_pixels, max_of(from, to) + slack_pixels};
+}
+
+/* The tiles of `count` pixels from pixel `least` on that samples in a range of pixels lie in. */
+static TileSpan tiles_within(Range pixels, double stray, int least, int count)
+{
+    double low = max_of(pixels.low - stray, least);
+    double high = min_of(pixels.high + stray, least + count - 1);
+    if (!(low <= high))
+        return nowhere;
+    int first_pixel = (int)low - least, last_pixel = (int)high - least;
+    first_pixel += first_pixel + least < low;
+    return first_pixel <= last_pixel ? (TileSpan){first_pixel / TILE_SIDE, last_pixel / TILE_SIDE}
+                                     : nowhere;
+}
+
+static Vec3 item_axis(const RasterItem *item)
+{
+    double sine = (double)item->sine;
+    return vec3(sine * (double)item->ex, sine * (double)item->ey, (double)item->cosine);
+}
+
+static Vec3 item_point(const RasterItem *item, double along)
+{
+    return vec3_add_scaled(vec3(item->x, item->y, item->z), item_axis(item), along);
+}
+
+static Range capsule_shadow(double c0, double z0, double c1, double z1, double radius)
+{
+    return range_union(ball_shadow(c0, z0, radius), ball_shadow(c1, z1, radius));
+}
+
+RasterSlab rasterslab_of(const RasterView *view, size_t row)
+{
+    int first = view->first + (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
+    RasterSlab slab;
+    slab.y[0] = view->top + (last + view->stray + slack_pixels) * view->step_y;
+    slab.y[1] = view->top + (first - view->stray - slack_pixels) * view->step_y;
+    for (int i = 0; i < 2; i++)
+        slab.per_length[i] = 1 / sqrt(1 + slab.y[i] * slab.y[i]);
+    return slab;
+}
+
+/* What the part of the capsule within reach of the slab covers of a row. */
+static Range parallel_range(const RasterItem *item, const RasterSlab *slab)
+{
+    double radius = (double)item->radius, ex = (double)item->ex, ey = (double)item->ey;
+    double half = (double)item->sine * (double)item->half, low = -half, high = half;
+    double below = slab->y[0] - radius - item->y, over = slab->y[1] + radius - item->y;
+    double rise = fabs(ey) * half;
+    if (-rise > over || rise < below)
+        return nothing;
+    if (-rise < below || rise > over) {
+        double per = 1 / ey, one = below * per, other = over * per;
+        low = max_of(low, min_of(one, other));
+        high = min_of(high, max_of(one, other));
+    }
+    double from = ex * low, to = ex * high;
+    return (Range){item->x + min_of(from, to) - radius, item->x + max_of(from, to) + radius};
+}
+
+static Range perspective_range(const RasterItem *item, const RasterSlab *slab)
+{
+    double half = (double)item->half, radius = (double)item->radius, from = 0, to = 1;
+    Vec3 a = item_point(item, -half), span = vec3_scale(item_axis(item), 2 * half);
+    Vec3 b = vec3_add(a, span);
+    for (int plane = 0; plane < 2; plane++) {
+        double sign = plane ? -slab->per_length[plane] : slab->per_length[plane];
+        double y = slab->y[plane];
+        clip_part(sign * (a.y - y * a.z) + radius, sign * (b.y - y * b.z) + radius, &from, &to);
+    }
+    if (from > to)
+        return nothing;
+    Vec3 first = vec3_add_scaled(a, span, from), last = vec3_add_scaled(a, span, to);
+    return capsule_shadow(first.x, first.z, last.x, last.z, radius);
+}
+
+static TileSpan columns_of(const RasterView *view, Range across)
+{
+    return tiles_within(across, view->stray, 0, view->columns);
+}
+
+/* ---- boxes ----------------------------------------------------------------------------------- */
+
+/* Where in a tile a pixel is, in parts of its side. */
+static uint32_t part_of(double pixel, int tile)
+{
+    double part = (pixel - tile * TILE_SIDE + 0.5) * (RASTERBOX_PARTS / TILE_SIDE);
+    return (uint32_t)(int)min_of(max_of(part, 0), RASTERBOX_PARTS - 1);
+}
+
+/* From where in the first tile to where in the last. */
+static uint32_t parts_of(Range pixels, TileSpan tiles)
+{
+    return part_of(pixels.high, tiles.last) |
+           (RASTERBOX_PARTS - 1 - part_of(pixels.low, tiles.first)) << 8;
+}
+
+/* ---- items ----------------------------------------------------------------------------------- */
+
+/* The pixels that the whole of it covers, across the picture or down it. */
+static inline Range whole_pixels(const RasterView *view, const RasterItem *item, bool across)
+{
+    double half = (double)item->half, radius = (double)item->radius;
+    double middle = across ? item->x : item->y, slope = (double)(across ? item->ex : item->ey);
+    double reach = fabs(slope) * (double)item->sine * half + radius;
+    Range range = {middle - reach, middle + reach};
+    if (view->perspective) {
+        if (item_is_close(item))
+            return everywhere;
+        Vec3 a = item_point(item, -half), b = item_point(item, half);
+        range = capsule_shadow(across ? a.x : a.y, a.z, across ? b.x : b.y, b.z, radius);
+    }
+    return across ? pixels_within(range, view->left, view->per_x)
+                  : pixels_within(range, view->top, view->per_y);
+}
+
+static bool is_behind(const RasterItem *item)
+{
+    return item->z + item_depth(item) < 0;
+}
+
+void rasterreach_set(const RasterView *view, RasterItem *item)
+{
+    TileSpan rows = nowhere, columns = nowhere;
+    if (!is_behind(item)) {
+        Range across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
+        rows = tiles_within(down, view->stray, view->first, view->rows);
+        columns = columns_of(view, across);
+        Range from_first = {down.low - view->first, down.high - view->first};
+        if (view->light)
+            item->box =
+                RASTERBOX_GUARDS | parts_of(across, columns) | parts_of(from_first, rows) << 16;
+    }
+    item->rows = rastertiles_of(rows);
+    item->columns = rastertiles_of(columns);
+}
+
+float rasterreach_near(const RasterView *view, const RasterItem *item)
+{
+    double near = item->z - item_depth(item) - view->z_middle;
+    return (float)(near - 1e-6 * fabs(near));
+}
+
+TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int row,
+                            const RasterSlab *slab, uint32_t *box)
+{
+    TileSpan columns = {item->columns.first, item->columns.last};
+    *box = item->box | (row < item->rows.last ? RASTERBOX_HIGH_X << 16 : 0) |
+           (row > item->rows.first ? RASTERBOX_LOW_X << 16 : 0);
+    int few = view->light ? 1 : 0;
+    if (item->rows.last - item->rows.first <= few || columns.last - columns.first <= few ||
+        (view->perspective && item_is_close(item)))
+        return columns;
+    Range range = view->perspective ? perspective_range(item, slab) : parallel_range(item, slab);
+    if (range.low > range.high)
+        return nowhere;
+    range = pixels_within(range, view->left, view->per_x);
+    columns = columns_of(view, range);
+    if (view->light)
+        *box = (*box & ~(RASTERBOX_HIGH_X | RASTERBOX_LOW_X)) | parts_of(range, columns);
+    return columns;
+}

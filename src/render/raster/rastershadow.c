@@ -1,0 +1,388 @@
+/* A light has a view of its own, a grid of tiles over the scene with lists as the camera's have.
+ * A place lies in shadow if the first thing that the light sees on the way to it is something
+ * else: so the same kernels find first hits, at places instead of on a grid. The places of many
+ * tiles of the picture are asked about together, and tested tile by tile of the light. Lists hold boxes
+ * and depths, several of which are compared with those of the places at once: few items are left
+ * to be looked at, and memory is asked for them and for the next list ahead. */
+#include "render/raster/rastershadow.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Blockers nearer than this to the lit place cast no shadow [docs/POVRAY.md section 3]. */
+static const double slack_mm = 1e-3;
+/* A point light must be as far from the middle of the scene, in radii of the scene: it sees less
+ * than 60 degrees to each side then. */
+static const double least_radii = 1.16;
+/* Kernels load as many words from a list's end on, whatever they are. */
+enum { MOST_LANES = 16 };
+/* What is asked of memory ahead of its use: the beginning of the next list. */
+enum { LINE_WORDS = 16, MOST_FETCHED = 8 * LINE_WORDS };
+enum { LEAST_SIDE = 16, MOST_SIDE = 512, SLAB_WORDS = 1 << 18 };
+
+/* The lists of a row of tiles. That of column i, of n = offsets[i + 1] - offsets[i] items, begins at
+ * words[3 offsets[i]]: n items, their boxes, as RasterBox but in this tile, and the floats of their
+ * RasterBox.near. */
+typedef struct ShadowRow {
+    const uint32_t *offsets, *words;
+} ShadowRow;
+
+/* Where a worker puts rows: in few large pieces, for each of which threads wait for one another. */
+typedef struct Store {
+    Slabs slabs;
+    uint32_t *taken; /* items that each column of the row being made has */
+    Status status;
+} Store;
+
+struct RasterShadow {
+    RasterBins *bins;
+    RasterGrid grid;
+    ShadowRow *rows;
+    Store *stores; /* one a worker */
+    int workers;
+    RasterAim aim;
+};
+
+static double scene_radius(const Scene *scene, Vec3 *center)
+{
+    *center = box_center(scene->bounds);
+    return vec3_distance(*center, scene->bounds.high);
+}
+
+static bool sees_all(const Scene *scene, const Light *light)
+{
+    Vec3 center;
+    double radius = scene_radius(scene, &center);
+    return light->parallel || vec3_distance(light->location, center) > least_radii * radius;
+}
+
+static Vec3 corner(const Box *box, int number)
+{
+    return vec3(number & 1 ? box->high.x : box->low.x, number & 2 ? box->high.y : box->low.y,
+                number & 4 ? box->high.z : box->low.z);
+}
+
+/* Tiles on a side: about sixteen primitives a tile. */
+static int tiles_for(const Scene *scene)
+{
+    double side = sqrt((double)rasterbins_items(scene)) / 3;
+    return side < LEAST_SIDE ? LEAST_SIDE : side > MOST_SIDE ? MOST_SIDE : (int)side;
+}
+
+/* The view of a light, just wide enough for the scene. */
+static RasterView light_view(const Scene *scene, const Light *light)
+{
+    RasterView view = {.location = light->location, .perspective = !light->parallel, .light = true};
+    Vec3 center, towards = vec3_sub(light->target, light->location);
+    scene_radius(scene, &center);
+    if (!light->parallel)
+        towards = vec3_sub(center, light->location);
+    view.axes[2] = vec3_normalized(towards);
+    Vec3 other = fabs(view.axes[2].x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    view.axes[0] = vec3_normalized(vec3_cross(view.axes[2], other));
+    view.axes[1] = vec3_cross(view.axes[0], view.axes[2]);
+    Box box = box_empty();
+    for (int i = 0; i < 8; i++) {
+        Vec3 at = vec3_sub(corner(&scene->bounds, i), light->location);
+        at = rasterview_to_frame(&view, at);
+        if (view.perspective)
+            at = vec3(at.x / at.z, at.y / at.z, at.z);
+        box = box_with_ball(box, at, 0);
+    }
+    int tiles = tiles_for(scene);
+    view.columns = view.rows = tiles * TILE_SIDE;
+    view.stray = 0.5;
+    view.step_x = (box.high.x - box.low.x) * 1.0001 / view.columns;
+    view.step_y = -(box.high.y - box.low.y) * 1.0001 / view.rows;
+    view.left = (box.low.x + box.high.x) / 2 - (view.columns - 1) / 2.0 * view.step_x;
+    view.top = (box.low.y + box.high.y) / 2 - (view.rows - 1) / 2.0 * view.step_y;
+    view.z_middle = (box.low.z + box.high.z) / 2;
+    return view;
+}
+
+static Status take_words(Store *store, size_t n, uint32_t **out)
+{
+    *out = slabs_take(&store->slabs, n * sizeof **out, SLAB_WORDS * sizeof **out);
+    return *out ? STATUS_OK : STATUS_MEMORY;
+}
+
+static Status store_row(RasterShadow *shadow, Store *store, size_t row)
+{
+    const RasterBins *bins = shadow->bins;
+    size_t columns = (size_t)bins->tile_columns;
+    uint32_t *offsets, *words;
+    TRY(take_words(store, columns + 1, &offsets));
+    TRY(rasterbins_count(bins, row, offsets, NULL));
+    TRY(take_words(store, 3 * (size_t)offsets[columns] + MOST_LANES, &words));
+    memset(store->taken, 0, columns * sizeof *store->taken);
+    for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++) {
+        const RasterTiles span = bins->row_columns[i];
+        const RasterBox *box = &bins->row_boxes[i];
+        for (int column = span.first; column <= span.last; column++) {
+            size_t n = offsets[column + 1] - offsets[column];
+            uint32_t *place = words + 3 * (size_t)offsets[column] + store->taken[column]++;
+            place[0] = bins->row_items[i];
+            place[n] = box->box | (column < span.last ? RASTERBOX_HIGH_X : 0) |
+                       (column > span.first ? RASTERBOX_LOW_X : 0);
+            memcpy(&place[2 * n], &box->near, sizeof box->near);
+        }
+    }
+    shadow->rows[row] = (ShadowRow){offsets, words};
+    return STATUS_OK;
+}
+
+static void list_row(size_t row, int worker, void *context)
+{
+    RasterShadow *shadow = context;
+    Store *store = &shadow->stores[worker];
+    if (store->status == STATUS_OK)
+        store->status = store_row(shadow, store, row);
+}
+
+static Status list_rows(RasterShadow *shadow, Err *err)
+{
+    size_t n = (size_t)shadow->bins->tile_rows;
+    TRY(mem_calloc(&shadow->rows, n, sizeof *shadow->rows, "rows of tiles", err));
+    TRY(mem_calloc(&shadow->stores, (size_t)shadow->workers, sizeof *shadow->stores, "shadows",
+                   err));
+    for (int i = 0; i < shadow->workers; i++)
+        TRY(mem_calloc(&shadow->stores[i].taken, (size_t)shadow->bins->tile_columns,
+                       sizeof *shadow->stores[i].taken, "shadows", err));
+    threads_for(n, shadow->workers, list_row, shadow);
+    rasterbins_forget_rows(shadow->bins);
+    for (int i = 0; i < shadow->workers; i++)
+        if (shadow->stores[i].status != STATUS_OK)
+            return err_set(err, shadow->stores[i].status, "out of memory: no room for shadows");
+    return STATUS_OK;
+}
+
+static RasterAim aim_of(const Scene *scene, const RasterView *view, const RasterView *camera)
+{
+    Vec3 center;
+    RasterAim aim = {.perspective = view->perspective,
+                     .left = view->left - view->step_x / 2,
+                     .top = view->top - view->step_y / 2,
+                     .per_x = 1 / (TILE_SIDE * view->step_x),
+                     .per_y = 1 / (TILE_SIDE * view->step_y),
+                     .columns = view->columns / TILE_SIDE,
+                     .rows = view->rows / TILE_SIDE,
+                     .z_middle = view->z_middle};
+    /* Places and depths are rounded to 2^-24 of the scene's size, thrice. */
+    aim.slack = slack_mm + 0x3p-23 * scene_radius(scene, &center);
+    for (int i = 0; i < 3; i++)
+        aim.axes[i] = rasterview_to_frame(camera, view->axes[i]);
+    aim.offset = rasterview_to_frame(view, vec3_sub(camera->location, view->location));
+    return aim;
+}
+
+static Status make_shadow(const Scene *scene, const Light *light, const RasterView *camera,
+                          int threads, RasterShadow **out, Err *err)
+{
+    RasterShadow *shadow = NULL;
+    TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
+    RasterView view = light_view(scene, light);
+    shadow->aim = aim_of(scene, &view, camera);
+    shadow->grid = rastergrid_make(&view, 0.5, 0.5);
+    shadow->workers = threads;
+    Status status = rasterbins_new(scene, &view, threads, &shadow->bins, err);
+    if (status == STATUS_OK)
+        status = list_rows(shadow, err);
+    if (status != STATUS_OK) {
+        rastershadow_free(shadow);
+        return status;
+    }
+    *out = shadow;
+    return STATUS_OK;
+}
+
+typedef struct Making {
+    const Scene *scene;
+    const RasterView *camera;
+    const Light *light;
+    RasterShadow **out;
+    Status status;
+    Err err;
+} Making;
+
+static void make_alone(size_t index, int worker, void *context)
+{
+    (void)worker;
+    Making *making = (Making *)context + index;
+    making->status =
+        make_shadow(making->scene, making->light, making->camera, 1, making->out, &making->err);
+}
+
+static Status make_shadows(Making *making, size_t n, int threads, Err *err)
+{
+    /* A thread for each light, but for those lights that would keep some threads waiting. */
+    size_t alone = n;
+    if (!rasterbins_are_small(making->scene))
+        alone -= n % (size_t)threads;
+    threads_for(alone, threads, make_alone, making);
+    for (size_t i = 0; i < alone; i++)
+        if (making[i].status != STATUS_OK) {
+            if (err)
+                *err = making[i].err;
+            return making[i].status;
+        }
+    for (size_t i = alone; i < n; i++)
+        TRY(make_shadow(making[i].scene, making[i].light, making[i].camera, threads, making[i].out,
+                        err));
+    return STATUS_OK;
+}
+
+Status rastershadows_new(const Scene *scene, const RasterView *camera, int threads,
+                         RasterShadow **shadows, Err *err)
+{
+    Making *making = NULL;
+    size_t n = 0;
+    TRY(mem_calloc(&making, scene->n_lights, sizeof *making, "lights", err));
+    for (size_t i = 0; i < scene->n_lights; i++) {
+        const Light *light = &scene->lights[i];
+        shadows[i] = NULL;
+        if (light->casts_shadows && sees_all(scene, light))
+            making[n++] =
+                (Making){.scene = scene, .camera = camera, .light = light, .out = &shadows[i]};
+    }
+    Status status = n > 0 ? make_shadows(making, n, threads, err) : STATUS_OK;
+    free(making);
+    return status;
+}
+
+void rastershadow_free(RasterShadow *shadow)
+{
+    if (!shadow)
+        return;
+    for (int i = 0; shadow->stores && i < shadow->workers; i++) {
+        free(shadow->stores[i].taken);
+        slabs_release(&shadow->stores[i].slabs);
+    }
+    free(shadow->stores);
+    free(shadow->rows);
+    rasterbins_free(shadow->bins);
+    free(shadow);
+}
+
+/* ---- asking ---------------------------------------------------------------------------------- */
+
+/* Places of one tile of the picture that lie in one tile of the light. */
+typedef struct Request {
+    uint64_t places; /* as bits */
+    int tile;        /* of the picture: its number in the queue */
+    int before;      /* the request before it in the tile of the light, or -1 */
+} Request;
+
+struct RasterQueue {
+    const RasterShadow *shadow;
+    int n; /* tiles of the picture */
+    RasterSpots spots[RASTER_BATCH];
+    const uint32_t *items[RASTER_BATCH];
+    uint32_t answer[RASTER_BATCH];
+    Request requests[MOST_PROBES];
+    int n_requests, n_tiles;
+    int tiles[MOST_PROBES]; /* of the light, that are asked, in the order of their first request */
+    int *last;              /* of each tile of the light, the last request there, or -1 */
+    RasterProbes probes;
+};
+
+Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out, Err *err)
+{
+    RasterQueue *queue;
+    size_t n = (size_t)shadow->bins->tile_columns * (size_t)shadow->bins->tile_rows;
+    TRY(mem_calloc(&queue, 1, sizeof *queue, "shadows", err));
+    *out = queue;
+    queue->shadow = shadow;
+    queue->probes.spots = queue->spots;
+    TRY(mem_calloc(&queue->last, n, sizeof *queue->last, "shadows", err));
+    memset(queue->last, -1, n * sizeof *queue->last);
+    return STATUS_OK;
+}
+
+void rasterqueue_free(RasterQueue *queue)
+{
+    if (!queue)
+        return;
+    free(queue->last);
+    free(queue);
+}
+
+void rasterqueue_ask(RasterQueue *queue, const RasterKernels *kernels, const RasterPlaces *places,
+                     const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer)
+{
+    if (!wanted)
+        return;
+    int number = queue->n++;
+    RasterSpots *spots = &queue->spots[number];
+    kernels->aim(&queue->shadow->aim, places, spots);
+    queue->items[number] = items;
+    queue->answer[number] = answer;
+    while (wanted) {
+        int tile = spots->tile[__builtin_ctzll(wanted)], n = queue->n_requests++;
+        uint64_t within = wanted & kernels->within(spots, tile);
+        if (queue->last[tile] < 0)
+            queue->tiles[queue->n_tiles++] = tile;
+        queue->requests[n] = (Request){within, number, queue->last[tile]};
+        queue->last[tile] = n;
+        wanted &= ~within;
+    }
+}
+
+/* A tile of the light with its list. */
+static RasterTile tile_of(const RasterShadow *shadow, int number)
+{
+    const RasterBins *bins = shadow->bins;
+    int row = number / bins->tile_columns, column = number % bins->tile_columns;
+    const uint32_t *offsets = shadow->rows[row].offsets + column;
+    const uint32_t *list = shadow->rows[row].words + 3 * (size_t)offsets[0];
+    size_t n = offsets[1] - offsets[0];
+    RasterTile tile = rasterbins_tile(bins, column, row, list, n, &shadow->grid);
+    tile.nears = (const float *)(const void *)(list + 2 * n);
+    for (size_t word = 0; word < 3 * n && word < MOST_FETCHED; word += LINE_WORDS)
+        __builtin_prefetch(list + word);
+    return tile;
+}
+
+static void add_probes(RasterQueue *queue, const RasterTile *tile, const Request *request)
+{
+    RasterProbes *probes = &queue->probes;
+    const RasterSpots *spots = &queue->spots[request->tile];
+    const uint32_t *items = queue->items[request->tile];
+    for (uint64_t places = request->places; places; places &= places - 1) {
+        int place = __builtin_ctzll(places), n = probes->n++;
+        probes->place[n] = (uint32_t)(request->tile * TILE_SAMPLES + place);
+        probes->x[n] = (float)(spots->x[place] - tile->x);
+        probes->y[n] = (float)(spots->y[place] - tile->y);
+        probes->z[n] = spots->z[place];
+        probes->item[n] = items[place];
+    }
+}
+
+static void test_tile(RasterQueue *queue, const RasterKernels *kernels, const RasterTile *tile,
+                      int last, uint8_t *shadowed)
+{
+    RasterProbes *probes = &queue->probes;
+    probes->n = 0;
+    for (int i = last; i >= 0; i = queue->requests[i].before)
+        add_probes(queue, tile, &queue->requests[i]);
+    kernels->cover(tile, probes);
+    for (int i = 0; i < probes->n; i++) {
+        uint32_t place = probes->place[i];
+        shadowed[queue->answer[place / TILE_SAMPLES] + place % TILE_SAMPLES] = probes->covered[i];
+    }
+}
+
+void rasterqueue_answer(RasterQueue *queue, const RasterKernels *kernels, uint8_t *shadowed)
+{
+    RasterTile next = {0};
+    if (queue->n_tiles > 0)
+        next = tile_of(queue->shadow, queue->tiles[0]);
+    for (int i = 0; i < queue->n_tiles; i++) {
+        RasterTile tile = next;
+        int *last = &queue->last[queue->tiles[i]];
+        if (i + 1 < queue->n_tiles)
+            next = tile_of(queue->shadow, queue->tiles[i + 1]);
+        test_tile(queue, kernels, &tile, *last, shadowed);
+        *last = -1;
+    }
+    queue->n = queue->n_requests = queue->n_tiles = 0;
+}

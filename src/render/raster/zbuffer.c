@@ -1,0 +1,278 @@
+/* Every surface is covered with points a quarter of a pixel apart in both of its directions, at
+ * the scale of the pixel where the primitive is nearest to the camera. Each point of the surface
+ * has one of them within half the diagonal of a cell, 0.177 pixels, and a projection brings them
+ * no farther apart. So a point that falls within that distance of a pixel's middle is kept if it
+ * is the nearest to the camera there, others are not looked at: where a surface covers the
+ * middle of a pixel the pixel has a point of it, and outlines are right to 0.177 pixels.
+ *
+ * A row of tiles is the unit of work, with a depth buffer of its own. */
+#include "render/raster/zbuffer.h"
+
+#include "render/light/shade.h"
+#include "render/raster/rasterview.h"
+#include <stdlib.h>
+
+static const double pixels_apart = 0.25;
+static const double caught = 0.177; /* pixels; just over 0.25 / sqrt 2 */
+
+typedef struct Point {
+    double z; /* depth along the view; infinite: nothing */
+    Vec3 normal;
+    size_t primitive;
+} Point;
+
+typedef struct Buffers {
+    const Scene *scene;
+    const RenderParams *params;
+    const Band *band;
+    Frame *frame;
+    RasterBins *bins;
+    Point **points; /* one buffer a worker */
+} Buffers;
+
+/* What is being drawn of one primitive in one row of tiles. */
+typedef struct Brush {
+    const RasterView *view;
+    Point *points;
+    int row; /* pixels above it in the whole picture */
+    size_t primitive;
+    double apart; /* mm between points */
+} Brush;
+
+static void put_point(const Brush *brush, Vec3 at, Vec3 normal)
+{
+    const RasterView *view = brush->view;
+    double scale = view->perspective ? 1 / at.z : 1;
+    double x = (at.x * scale - view->left) * view->per_x;
+    double y = (at.y * scale - view->top) * view->per_y;
+    double column = floor(x + 0.5), row = floor(y + 0.5);
+    double off_x = x - column, off_y = y - row;
+    if (off_x * off_x + off_y * off_y > caught * caught || column < 0 || column >= view->columns ||
+        row < brush->row || row >= brush->row + TILE_SIDE)
+        return;
+    Point *point =
+        &brush->points[(size_t)(row - brush->row) * (size_t)view->columns + (size_t)column];
+    if (at.z < point->z)
+        *point = (Point){at.z, normal, brush->primitive};
+}
+
+/* How many steps lead through a length. */
+static int steps_through(const Brush *brush, double length)
+{
+    return (int)ceil(length / brush->apart) + 1;
+}
+
+/* Whether a ball reaches into the row. */
+static bool touches_row(const Brush *brush, Vec3 center, double radius)
+{
+    const RasterView *view = brush->view;
+    double low = center.y - radius, high = center.y + radius;
+    if (view->perspective) {
+        low /= low < 0 ? center.z - radius : center.z + radius;
+        high /= high < 0 ? center.z + radius : center.z - radius;
+    }
+    double above = (high - view->top) * view->per_y, below = (low - view->top) * view->per_y;
+    return below >= brush->row - 1 && above <= brush->row + TILE_SIDE;
+}
+
+/* Two directions square to an axis and to each other. */
+static void square_to(Vec3 axis, Vec3 *e, Vec3 *f)
+{
+    Vec3 other = fabs(axis.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    *e = vec3_normalized(vec3_cross(axis, other));
+    *f = vec3_cross(axis, *e);
+}
+
+/* Directions around a circle. */
+static Vec3 around(Vec3 e, Vec3 f, int i, int n)
+{
+    double angle = 6.283185307179586 * i / n;
+    return vec3_add_scaled(vec3_scale(e, cos(angle)), f, sin(angle));
+}
+
+static void draw_cylinder(const Brush *brush, Vec3 a, Vec3 b, double radius)
+{
+    Vec3 e, f, span = vec3_sub(b, a), axis = vec3_normalized(span);
+    square_to(axis, &e, &f);
+    int along = steps_through(brush, vec3_length(span));
+    int turn = steps_through(brush, 6.283185307179586 * radius);
+    for (int j = 0; j <= along; j++) {
+        Vec3 center = vec3_add_scaled(a, span, (double)j / along);
+        for (int i = 0; i < turn && touches_row(brush, center, radius); i++) {
+            Vec3 out = around(e, f, i, turn);
+            put_point(brush, vec3_add_scaled(center, out, radius), out);
+        }
+    }
+    int rings = steps_through(brush, radius); /* the rim is the wall's */
+    for (int end = 0; end < 2; end++) {
+        Vec3 center = end ? b : a, normal = vec3_scale(axis, end ? 1 : -1);
+        for (int ring = 0; ring < rings && touches_row(brush, center, radius); ring++) {
+            double part = radius * ring / rings;
+            int points = steps_through(brush, 6.283185307179586 * part);
+            for (int i = 0; i < points; i++)
+                put_point(brush, vec3_add_scaled(center, around(e, f, i, points), part), normal);
+        }
+    }
+}
+
+static void draw_sphere(const Brush *brush, Vec3 center, double radius)
+{
+    int rings = steps_through(brush, 3.141592653589793 * radius);
+    for (int ring = 0; ring <= rings; ring++) {
+        double angle = 3.141592653589793 * ring / rings, part = sin(angle);
+        int points = steps_through(brush, 6.283185307179586 * radius * part);
+        for (int i = 0; i < points; i++) {
+            Vec3 out = vec3_scale(around(vec3(1, 0, 0), vec3(0, 1, 0), i, points), part);
+            out.z = cos(angle);
+            put_point(brush, vec3_add_scaled(center, out, radius), out);
+        }
+    }
+}
+
+/* The frame of the view is left-handed and so is the joint in it: its normal points inwards,
+ * which does not matter as it is turned to face the viewer. */
+static void draw_joint(const Brush *brush, const JointFrame *joint)
+{
+    double larger = fmax(joint->radius, joint->radius + joint->radius_change);
+    double length =
+        vec3_length(joint->span) + vec3_length(joint->across_change) + fabs(joint->radius_change);
+    int turn = steps_through(brush, 6.283185307179586 * larger);
+    int along = steps_through(brush, length);
+    for (int i = 0; i < turn; i++) {
+        double angle = 6.283185307179586 * i / turn, cosine = cos(angle), sine = sin(angle);
+        Vec3 run = vec3_add_scaled(joint->span, joint->across_change, cosine);
+        run = vec3_add_scaled(run, joint->side, sine * joint->radius_change);
+        for (int j = 0; j <= along; j++) {
+            double l = (double)j / along;
+            Vec3 way = vec3_scale(vec3_add_scaled(joint->across, joint->across_change, l), -sine);
+            way = vec3_add_scaled(way, joint->side,
+                                  cosine * (joint->radius + joint->radius_change * l));
+            Vec3 normal = vec3_cross(way, run);
+            double size = vec3_length(normal);
+            if (size > 0)
+                put_point(brush, joint_point(joint, cosine, sine, l), vec3_scale(normal, 1 / size));
+        }
+    }
+}
+
+static void draw_primitive(const Buffers *buffers, const RasterItem *item, uint32_t number,
+                           Brush *brush)
+{
+    const RasterView *view = brush->view;
+    const Primitive *primitive = &buffers->scene->primitives[number];
+    double pixel = fmin(view->step_x, -view->step_y);
+    if (view->perspective) /* a step across a slanting line of sight is foreshortened */
+        pixel *= item_nearest(item) / (1 + view->left * view->left + view->top * view->top);
+    brush->apart = pixel * pixels_apart;
+    brush->primitive = number;
+    Vec3 a = rasterview_to_frame(view, vec3_sub(primitive->a, view->location));
+    Vec3 b = rasterview_to_frame(view, vec3_sub(primitive->b, view->location));
+    if (primitive->kind == PRIMITIVE_CYLINDER) {
+        draw_cylinder(brush, a, b, primitive->radius_mm);
+        if (primitive->round_a)
+            draw_sphere(brush, a, primitive->radius_mm);
+        if (primitive->round_b)
+            draw_sphere(brush, b, primitive->radius_mm);
+    } else if (primitive->kind == PRIMITIVE_SPHERE) {
+        draw_sphere(brush, a, primitive->radius_mm);
+    } else {
+        JointFrame joint = primitive_joint(primitive);
+        joint.base = a;
+        joint.span = rasterview_to_frame(view, joint.span);
+        joint.side = rasterview_to_frame(view, joint.side);
+        joint.across = rasterview_to_frame(view, joint.across);
+        joint.across_change = rasterview_to_frame(view, joint.across_change);
+        draw_joint(brush, &joint);
+    }
+}
+
+/* Depth, normal, id and colour of a pixel. */
+static void finish_pixel(const Buffers *buffers, const Point *point, int i, int j)
+{
+    const Scene *scene = buffers->scene;
+    const RasterView *view = &buffers->bins->view;
+    Frame *frame = buffers->frame;
+    size_t pixel = (size_t)j * (size_t)scene->camera.width + (size_t)i;
+    bool seen = point->z < HUGE_VAL;
+    Ray ray = camera_ray(&scene->camera, i, buffers->band->first + j);
+    double t = seen ? point->z / vec3_dot(ray.direction, view->axes[2]) : HUGE_VAL;
+    Vec3 normal = seen ? rasterview_to_world(view, point->normal) : vec3(0, 0, 0);
+    if (vec3_dot(normal, ray.direction) > 0)
+        normal = vec3_scale(normal, -1);
+    const Primitive *primitive = seen ? &scene->primitives[point->primitive] : NULL;
+    if (frame->depth.values)
+        frame->depth.values[pixel] = (float)t;
+    if (frame->normal.values) {
+        frame->normal.values[3 * pixel] = (float)normal.x;
+        frame->normal.values[3 * pixel + 1] = (float)normal.y;
+        frame->normal.values[3 * pixel + 2] = (float)normal.z;
+    }
+    if (frame->id.ids)
+        frame->id.ids[pixel] = seen ? primitive->id : 0;
+    if (!frame->color.values)
+        return;
+    Rgb color = scene->background;
+    if (seen)
+        color = shade(scene, primitive->color, ray_at(ray, t), normal, ray.direction, NULL, NULL);
+    frame->color.values[3 * pixel] = color.r;
+    frame->color.values[3 * pixel + 1] = color.g;
+    frame->color.values[3 * pixel + 2] = color.b;
+}
+
+static void draw_row(size_t row, int worker, void *context)
+{
+    const Buffers *buffers = context;
+    const RasterBins *bins = buffers->bins;
+    const RasterView *view = &bins->view;
+    Point *points = buffers->points[worker];
+    if (worker == 0)
+        band_progress(buffers->band, buffers->params, buffers->scene->camera.height, false,
+                      (double)row / bins->tile_rows);
+    for (int i = 0; i < TILE_SIDE * view->columns; i++)
+        points[i].z = HUGE_VAL;
+    Brush brush = {.view = view, .points = points, .row = view->first + (int)row * TILE_SIDE};
+    for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++)
+        draw_primitive(buffers, &bins->items[bins->row_items[i]], bins->row_items[i], &brush);
+    for (int j = 0; j < TILE_SIDE && (int)row * TILE_SIDE + j < view->rows; j++)
+        for (int i = 0; i < view->columns; i++)
+            finish_pixel(buffers, &points[j * view->columns + i], i, (int)row * TILE_SIDE + j);
+}
+
+static Status check_outside(const RasterBins *bins, Err *err)
+{
+    for (size_t i = 0; i < rasterbins_items(bins->scene); i++) {
+        const RasterItem *item = &bins->items[i];
+        double deep = item_depth(item);
+        if (item->z + deep > 0 && item->z - deep < (bins->view.perspective ? deep * 0.01 : 0))
+            return err_set(err, STATUS_USAGE,
+                           "--method zbuffer needs a camera that is not among the vessels");
+    }
+    return STATUS_OK;
+}
+
+Status zbuffer_render(const Scene *scene, const RenderParams *params, const Band *band,
+                      Frame *frame, RenderStats *stats, Err *err)
+{
+    Status status;
+    Buffers buffers = {.scene = scene, .params = params, .band = band, .frame = frame};
+    /* Points up to half a pixel off are caught. */
+    RasterView view = rasterview_of_camera(scene, band->first, band->rows, 2);
+    int workers = params->threads > 0 ? params->threads : threads_available();
+    size_t n = (size_t)TILE_SIDE * (size_t)view.columns;
+    double start_s = clock_seconds(), prepared_s = start_s;
+    TRY_GOTO(rasterbins_new(scene, &view, workers, &buffers.bins, err));
+    TRY_GOTO(check_outside(buffers.bins, err));
+    TRY_GOTO(mem_calloc(&buffers.points, (size_t)workers, sizeof *buffers.points, "rows", err));
+    for (int i = 0; i < workers; i++)
+        TRY_GOTO(mem_calloc(&buffers.points[i], n, sizeof *buffers.points[i], "depths", err));
+    prepared_s = clock_seconds();
+    threads_for((size_t)buffers.bins->tile_rows, workers, draw_row, &buffers);
+    stats->prepare_s += prepared_s - start_s;
+    stats->trace_s += clock_seconds() - prepared_s;
+done:
+    for (int i = 0; buffers.points && i < workers; i++)
+        free(buffers.points[i]);
+    free(buffers.points);
+    rasterbins_free(buffers.bins);
+    return status;
+}

@@ -1,0 +1,177 @@
+/* shade.c's model for the samples of a tile, and the codes of the colours, several at once and in
+ * single precision: included by each source that compiles it for its lanes, SHADE_KERNEL and
+ * ENCODE_KERNEL being the names of the functions. */
+#ifndef SHADE_KERNEL
+#error "define SHADE_KERNEL and ENCODE_KERNEL, the names of the functions"
+#endif
+
+#include "render/tile/lanes.h"
+#include "render/tile/tilekernels.h"
+#include <endian.h>
+
+/* x^y of x in (0, 1], y >= 0: by squaring where y is a small whole number, as it mostly is. What is below
+ * 1e-15 need not be right, and so never comes near the slow arithmetic of tiny numbers. */
+LANE_FN Lanes lanes_power(Lanes x, float y)
+{
+    const Lanes least = lanes_set(1e-15f);
+    unsigned whole = y <= 256 ? (unsigned)y : 0;
+    if (whole > 0 && (float)whole == y) {
+        x = lanes_max(x, least);
+        Lanes power = whole & 1 ? x : lanes_set(1);
+        while (whole >>= 1) {
+            x = lanes_max(x * x, least);
+            if (whole & 1)
+                power = lanes_max(power * x, least);
+        }
+        return power;
+    }
+    return lanes_exp_minus(-y * lanes_log(lanes_max(x, lanes_set(1e-30f))));
+}
+
+typedef struct Shading {
+    const TileLook *look;
+    const TileSurface *surface;
+    int first;
+    Lanes normal[3], direction[3], color[3];
+} Shading;
+
+LANE_FN Lanes inner(const Lanes a[3], const Lanes b[3])
+{
+    return lanes_fma(a[0], b[0], lanes_fma(a[1], b[1], a[2] * b[2]));
+}
+
+LANE_FN Lanes phong(const Shading *shading, const Lanes towards[3])
+{
+    const Finish *finish = &shading->look->finish;
+    Lanes twice = -2.0f * inner(shading->direction, shading->normal), mirrored[3];
+    for (int c = 0; c < 3; c++)
+        mirrored[c] = lanes_fma(shading->normal[c], twice, shading->direction[c]);
+    Lanes cosine = inner(mirrored, towards);
+    LaneMask seen = cosine > 0.0f;
+    Lanes power = lanes_power(cosine, finish->phong_size) * finish->phong;
+    return lanes_select(seen, power, lanes_set(0));
+}
+
+LANE_FN Lanes specular(const Shading *shading, const Lanes towards[3])
+{
+    const Finish *finish = &shading->look->finish;
+    Lanes halfway[3];
+    for (int c = 0; c < 3; c++)
+        halfway[c] = towards[c] - shading->direction[c];
+    Lanes length = lanes_sqrt(inner(halfway, halfway));
+    Lanes cosine = inner(halfway, shading->normal) / lanes_max(length, lanes_set(1e-30f));
+    Lanes power = lanes_power(cosine, 1 / finish->roughness) * finish->specular;
+    return lanes_select(cosine > 0.0f, power, lanes_set(0));
+}
+
+LANE_FN void to_light(const Shading *shading, const TileLight *light, Lanes towards[3])
+{
+    for (int c = 0; c < 3; c++)
+        towards[c] = lanes_set(light->towards[c]);
+    if (light->parallel)
+        return;
+    for (int c = 0; c < 3; c++)
+        towards[c] -= lanes_load(&shading->surface->point[c][shading->first]);
+    Lanes per_length = 1.0f / lanes_sqrt(inner(towards, towards));
+    for (int c = 0; c < 3; c++)
+        towards[c] *= per_length;
+}
+
+LANE_FN void add_light(Shading *shading, size_t number)
+{
+    const Finish *finish = &shading->look->finish;
+    const TileLight *light = &shading->look->lights[number];
+    Lanes towards[3];
+    to_light(shading, light, towards);
+    Lanes cosine = inner(shading->normal, towards);
+    LaneMask lit = cosine >= 1e-10f;
+    if (shading->surface->shadowed)
+        lit &= ~lanes_of_bytes(&shading->surface->shadowed[number][shading->first]);
+    if (!lanes_any(lit))
+        return;
+    Lanes diffuse = finish->brilliance == 1 ? cosine : lanes_power(cosine, finish->brilliance);
+    diffuse *= finish->diffuse;
+    Lanes highlight = lanes_set(0);
+    if (finish->phong > 0)
+        highlight += phong(shading, towards);
+    if (finish->specular > 0)
+        highlight += specular(shading, towards);
+    for (int c = 0; c < 3; c++) {
+        Lanes pigment = lanes_load(&shading->surface->pigment[c][shading->first]);
+        Lanes sum = lanes_fma(pigment, diffuse, highlight) * light->color[c];
+        shading->color[c] += lanes_select(lit, sum, lanes_set(0));
+    }
+}
+
+LANE_TARGET static void SHADE_KERNEL(const TileLook *look, const TileSurface *surface,
+                                     float color[3][TILE_SAMPLES])
+{
+    for (int first = 0; first < TILE_SAMPLES; first += LANES) {
+        if (!lanes_any(lanes_of_bytes(&surface->hits->state[first])))
+            continue;
+        Shading shading;
+        shading.look = look;
+        shading.surface = surface;
+        shading.first = first;
+        for (int c = 0; c < 3; c++) {
+            shading.normal[c] = lanes_load(&surface->hits->normal[c][first]);
+            shading.direction[c] = lanes_load(&surface->direction[c][first]);
+            shading.color[c] = lanes_load(&surface->pigment[c][first]) * look->finish.ambient;
+        }
+        Lanes away = inner(shading.normal, shading.direction);
+        for (int c = 0; c < 3; c++)
+            shading.normal[c] = lanes_select(away > 0.0f, -shading.normal[c], shading.normal[c]);
+        for (size_t i = 0; i < look->n_lights; i++)
+            add_light(&shading, i);
+        for (int c = 0; c < 3; c++)
+            lanes_store(&color[c][first], shading.color[c]);
+    }
+}
+
+LANE_FN LaneMask srgb_lanes(const SrgbCodes *codes, const float *linear)
+{
+    Lanes value =
+        lanes_min(lanes_max(lanes_load(linear), lanes_set(SRGB_LEAST)), lanes_set(SRGB_MOST));
+    LaneMask bits = (LaneMask)value - SRGB_CELLS_BEGIN;
+    LaneMask cell = lanes_gather(codes->cells, bits >> SRGB_CELL_BITS);
+    return (cell + (bits & (SRGB_CELL - 1))) >> SRGB_CELL_BITS;
+}
+
+/* Two pixels of three bytes each. */
+LANE_FN uint64_t two_pixels(const uint32_t *pixels)
+{
+    return pixels[0] | (uint64_t)pixels[1] << 24;
+}
+
+LANE_FN void store_eight_bytes(uint8_t *to, uint64_t bytes)
+{
+    bytes = htole64(bytes);
+    __builtin_memcpy(to, &bytes, sizeof bytes);
+}
+
+LANE_TARGET static void ENCODE_KERNEL(const SrgbCodes *codes, float color[3][TILE_SAMPLES],
+                                      const uint8_t *state, const uint8_t background[3],
+                                      uint8_t *to, size_t stride)
+{
+    uint32_t pixels[TILE_SAMPLES];
+    int32_t other = background[0] | background[1] << 8 | background[2] << 16;
+    for (int first = 0; first < TILE_SAMPLES; first += LANES) {
+        LaneMask pixel = srgb_lanes(codes, &color[0][first]) |
+                         srgb_lanes(codes, &color[1][first]) << 8 |
+                         srgb_lanes(codes, &color[2][first]) << 16;
+        if (state) {
+            LaneMask seen = lanes_of_bytes(&state[first]);
+            pixel = (pixel & seen) | (other & ~seen);
+        }
+        __builtin_memcpy(&pixels[first], &pixel, sizeof pixel);
+    }
+    for (int row = 0; row < TILE_SIDE; row++, to += stride) {
+        uint64_t left = two_pixels(&pixels[tile_sample_at(0, row)]);
+        uint64_t middle = two_pixels(&pixels[tile_sample_at(2, row)]);
+        uint64_t right = two_pixels(&pixels[tile_sample_at(4, row)]);
+        uint64_t last = two_pixels(&pixels[tile_sample_at(6, row)]);
+        store_eight_bytes(to, left | middle << 48);
+        store_eight_bytes(to + 8, middle >> 16 | right << 32);
+        store_eight_bytes(to + 16, right >> 32 | last << 16);
+    }
+}

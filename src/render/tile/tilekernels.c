@@ -1,0 +1,34 @@
+/* The kernels for any processor, and the choice among all. */
+#define FIELD_KERNEL trace_portable
+#define PLANE_KERNEL trace_plane_portable
+#define SHADE_KERNEL shade_portable
+#define ENCODE_KERNEL encode_portable
+#include "render/field/kernel_trace.h"
+#include "render/tile/kernel_shade.h"
+
+static const TileKernels portable = {trace_portable, shade_portable, encode_portable};
+
+const TileKernels *const tilekernels[] = {
+    &portable,
+#ifdef __x86_64__
+    &tilekernels_avx2,
+    &tilekernels_avx512,
+#endif
+};
+
+int kernels_usable(void)
+{
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        return __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+                       __builtin_cpu_supports("avx512vl")
+                   ? 3
+                   : 2;
+#endif
+    return 1;
+}
+
+int kernels_kind(RenderKernels kernels)
+{
+    return kernels == KERNELS_FASTEST ? kernels_usable() - 1 : (int)kernels - KERNELS_PORTABLE;
+}

@@ -1,0 +1,59 @@
+/* What is done to a tile several samples at once, in one version for each kind of processor. */
+#ifndef CORCAST_RENDER_TILEKERNELS_H
+#define CORCAST_RENDER_TILEKERNELS_H
+
+#include "image/image.h"
+#include "render/render.h"
+#include "render/tile/tile.h"
+#include "scene/scene.h"
+
+/* A light in the camera's frame. */
+typedef struct TileLight {
+    float towards[3]; /* parallel: unit; else the light's place, mm from the camera's location */
+    float color[3];
+    bool parallel;
+} TileLight;
+
+typedef struct TileLook {
+    Finish finish;
+    const TileLight *lights;
+    size_t n_lights;
+} TileLook;
+
+/* The visible points of a tile, in the camera's frame. */
+typedef struct TileSurface {
+    const TileHits *hits;
+    float direction[3][TILE_SAMPLES]; /* unit, of the ray */
+    float point[3][TILE_SAMPLES];     /* mm from the camera's location; only for lights that are not
+                                       * parallel */
+    float pigment[3][TILE_SAMPLES];
+    const uint8_t (*shadowed)[TILE_SAMPLES]; /* whether from each light; NULL: none is */
+} TileSurface;
+
+typedef struct TileKernels {
+    /* Finds the first hits; `work` has room for the tile's terms. */
+    void (*trace)(const FieldTile *tile, TileWork *work, TileHits *hits);
+    /* Colours of the hits as shade() gives, to 2e-5 of the light's colour. */
+    void (*shade)(const TileLook *look, const TileSurface *surface, float color[3][TILE_SAMPLES]);
+    /* Stores the codes of a whole tile's colours as rows of pixels, `stride` bytes from row to row:
+     * the background's where a TileState is TILE_MISS. `state` NULL: none is. */
+    void (*encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES], const uint8_t *state,
+                   const uint8_t background[3], uint8_t *pixels, size_t stride);
+} TileKernels;
+
+/* Kernels come in kinds: the portable ones first, then those for ever more able processors. */
+#ifdef __x86_64__
+enum { KINDS_OF_KERNELS = 3 };
+extern const TileKernels tilekernels_avx2, tilekernels_avx512;
+#else
+enum { KINDS_OF_KERNELS = 1 };
+#endif
+/* How many of the kinds, from the first on, this processor can run; the last is the fastest. */
+int kernels_usable(void);
+/* The kind that is asked for, which this processor can run: an index into tilekernels and
+ * rasterkernels. */
+int kernels_kind(RenderKernels kernels);
+
+extern const TileKernels *const tilekernels[KINDS_OF_KERNELS];
+
+#endif
