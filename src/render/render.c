@@ -4,7 +4,6 @@
  * of 3.7.0.10: every pixel is supersampled when the threshold is 0). */
 #include "render/render.h"
 
-#include "render/band.h"
 #include "render/field/fieldrender.h"
 #include "render/light/resample.h"
 #include "render/light/sight.h"
@@ -162,18 +161,6 @@ static Status rayrender(const Renderer *renderer, const Band *band, Frame *frame
     return status;
 }
 
-void band_progress(const Band *band, const RenderParams *params, int height, bool further,
-                   double part)
-{
-    if (!params->progress)
-        return;
-    double more = params->want_color && params->antialias > 1
-                      ? (double)params->antialias * params->antialias
-                      : 0;
-    double done = (further ? 1 + more * part : part) / (1 + more);
-    params->progress((band->first + done * band->rows) / height, params->progress_context);
-}
-
 /* ---- bands -------------------------------------------------------------------------------------- */
 
 static bool is_field(const Renderer *renderer)
@@ -187,12 +174,6 @@ static bool is_traced(const Renderer *renderer)
     return renderer->scene->n_primitives == 0 || renderer->params.method == RENDER_TRACE ||
            sight_is_needed(renderer->scene, &renderer->params);
 }
-
-const char *const render_kernel_names[] = {[KERNELS_FASTEST] = "fastest",
-                                           [KERNELS_PORTABLE] = "portable",
-                                           [KERNELS_AVX2] = "avx2",
-                                           [KERNELS_AVX512] = "avx512",
-                                           NULL};
 
 static Status check_kernels(RenderKernels kernels, Err *err)
 {

@@ -194,13 +194,13 @@ static void keep_answer(const SeenTile *seen, int worker, void *context)
     }
 }
 
-static void ask(const Scene *scene, const TileKernels *kernels, Answer *answer)
+static void ask(const Scene *scene, FieldKernel *kernel, Answer *answer)
 {
     const double places[] = {0, 1, 2, 3, 4, 5, 6, 7};
     const SampleGrid grid = {places, places, 8, 8, 1};
     FieldTiles *tiles;
     assert_int_equal(fieldtiles_new(scene, &grid, 1e-4, 1, &tiles, NULL), STATUS_OK);
-    fieldtiles_use_kernels(tiles, kernels);
+    fieldtiles_use_kernel(tiles, kernel);
     *answer = (Answer){.tiles = tiles};
     assert_int_equal(fieldtiles_trace(tiles, 0, 0, NULL, keep_answer, answer, NULL), STATUS_OK);
     fieldtiles_free(tiles);
@@ -328,7 +328,7 @@ static void try_cameras(Scene *scene, int cameras, bool facing, Random *random, 
     for (int i = 0; i < cameras; i++) {
         scene->camera = aim(facing ? AIM_FACING : (Aim)(i % N_AIMS), scene, extent, random);
         for (int k = i % 8 ? n_kernels - 1 : 0; k < n_kernels; k++) {
-            ask(scene, tilekernels[k], &answer);
+            ask(scene, fieldkernels[k], &answer);
             for (int sample = 0; sample < TILE_SAMPLES; sample++)
                 judge(scene, &answer, sample, near, tally);
         }
@@ -462,7 +462,7 @@ static void holds_for_rays_just_past_an_end(void **state)
         Answer answer;
         Near near[1];
         for (int k = 0; k < kernels_usable(); k++) {
-            ask(&test.scene, tilekernels[k], &answer);
+            ask(&test.scene, fieldkernels[k], &answer);
             for (int sample = 0; sample < TILE_SAMPLES; sample++)
                 judge(&test.scene, &answer, sample, near, &tally);
         }

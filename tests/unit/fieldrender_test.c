@@ -286,7 +286,7 @@ static void all_kernels_agree(void **state)
         FieldTiles *field;
         KernelVisit visit = {tilekernels[k], &look, tiles[k], 0};
         assert_int_equal(fieldtiles_new(staged.scene, &grid, 0, 1, &field, NULL), STATUS_OK);
-        fieldtiles_use_kernels(field, tilekernels[k]);
+        fieldtiles_use_kernel(field, fieldkernels[k]);
         for (size_t row = 0; row < fieldtiles_rows(field); row++)
             assert_int_equal(fieldtiles_trace(field, row, 0, NULL, keep_tile, &visit, NULL),
                              STATUS_OK);

@@ -6,7 +6,6 @@
  * room, or is undone. */
 #include "grow/refine/refine_room.h"
 
-#include "grow/place.h"
 #include <stdlib.h>
 
 /* Cells of the grid a terminal. */

@@ -5,7 +5,6 @@
  * hold they stay low, and the tree can go on giving way to those places where they do not. */
 #include "grow/refine/refine_toll.h"
 
-#include "grow/place.h"
 #include <stdlib.h>
 
 /* How prices rise: all, and those of segments that break the rules. */

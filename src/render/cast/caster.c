@@ -14,11 +14,11 @@ static const double blob_nearest_mm = 1e-2;
 
 struct Caster {
     const Scene *scene;
-    Bvh *bvh;               /* NULL for an implicit model */
-    Halving *halving;       /* an implicit model as POV-Ray finds it, or NULL */
-    FieldIndex *field;      /* an implicit model by proof, or NULL */
-    FieldScratch **scratch; /* one a worker */
-    BlobCast *blob;         /* or NULL */
+    Bvh *bvh;                  /* NULL for an implicit model */
+    PovrayIsosurface *halving; /* an implicit model as POV-Ray finds it, or NULL */
+    FieldIndex *field;         /* an implicit model by proof, or NULL */
+    FieldScratch **scratch;    /* one a worker */
+    BlobCast *blob;            /* or NULL */
     BlobScratch **blob_scratch;
     int workers;
     double shadow_from_mm;
@@ -41,7 +41,7 @@ Status caster_new(const Scene *scene, const CellParams *cells, int workers, Cast
     } else if (scene->model != SCENE_ISOSURFACE) {
         TRY_GOTO(bvh_build(scene->primitives, scene->n_primitives, &caster->bvh, err));
     } else if (cells) {
-        TRY_GOTO(halving_new(scene, cells, &caster->halving, err));
+        TRY_GOTO(povray_isosurface_new(scene, cells, &caster->halving, err));
     } else {
         TRY_GOTO(fieldindex_build(scene, &caster->field, err));
         TRY_GOTO(mem_calloc(&caster->scratch, (size_t)workers, sizeof *caster->scratch,
@@ -73,7 +73,7 @@ void caster_free(Caster *caster)
     free(caster->blob_scratch);
     blobcast_free(caster->blob);
     fieldindex_free(caster->field);
-    halving_free(caster->halving);
+    povray_isosurface_free(caster->halving);
     bvh_free(caster->bvh);
     free(caster);
 }
@@ -90,7 +90,7 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
     } else if (caster->halving) {
         Hit hit;
         uint32_t index;
-        if (!halving_first_hit(caster->halving, ray, NEAREST_SEEN_MM, &hit, &index))
+        if (!povray_isosurface_first_hit(caster->halving, ray, NEAREST_SEEN_MM, &hit, &index))
             return false;
         const FieldSegment *segment = &caster->scene->segments[index];
         *surfel = (Surfel){hit.t, hit.normal, segment->color, segment->id};
@@ -122,7 +122,7 @@ bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double 
     if (caster->bvh)
         return bvh_any_hit(caster->bvh, ray, near, far);
     if (caster->halving)
-        return halving_any_hit(caster->halving, ray, near, far);
+        return povray_isosurface_any_hit(caster->halving, ray, near, far);
     if (caster->blob)
         return blobcast_any_hit(caster->blob, caster->blob_scratch[worker], ray, blob_nearest_mm,
                                 far);

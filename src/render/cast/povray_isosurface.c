@@ -30,7 +30,7 @@ typedef struct Node {
 
 enum { LEAF_CELLS = 2, STACK_SIZE = 64 };
 
-struct Halving {
+struct PovrayIsosurface {
     CellTree tree;
     Node *nodes;
     uint32_t n_nodes;
@@ -135,7 +135,7 @@ static Vec3 cell_normal(const CellTree *tree, const Cell *cell, Vec3 x)
 
 /* ---- all cells ----------------------------------------------------------------------------------- */
 
-static void build_node(Halving *halving, uint32_t number, uint32_t first, uint32_t count)
+static void build_node(PovrayIsosurface *halving, uint32_t number, uint32_t first, uint32_t count)
 {
     Node *node = &halving->nodes[number];
     *node = (Node){box_empty(), first, count, 0};
@@ -152,9 +152,10 @@ static void build_node(Halving *halving, uint32_t number, uint32_t first, uint32
             box_union(node->box, (Box){halving->tree.cells[i].low, halving->tree.cells[i].high});
 }
 
-Status halving_new(const Scene *scene, const CellParams *params, Halving **out, Err *err)
+Status povray_isosurface_new(const Scene *scene, const CellParams *params, PovrayIsosurface **out,
+                             Err *err)
 {
-    Halving *halving = NULL;
+    PovrayIsosurface *halving = NULL;
     Status status;
     TRY_GOTO(mem_calloc(&halving, 1, sizeof *halving, "cells", err));
     TRY_GOTO(celltree_build(scene, params, &halving->tree, err));
@@ -165,11 +166,11 @@ Status halving_new(const Scene *scene, const CellParams *params, Halving **out, 
     *out = halving;
     return STATUS_OK;
 done:
-    halving_free(halving);
+    povray_isosurface_free(halving);
     return status;
 }
 
-void halving_free(Halving *halving)
+void povray_isosurface_free(PovrayIsosurface *halving)
 {
     if (!halving)
         return;
@@ -179,7 +180,7 @@ void halving_free(Halving *halving)
 }
 
 /* The nearest hit in [t_min, t_max], or any with `any`, as *cell and *t. */
-static bool find_hit(const Halving *halving, Ray ray, double t_min, double t_max, bool any,
+static bool find_hit(const PovrayIsosurface *halving, Ray ray, double t_min, double t_max, bool any,
                      uint32_t *cell, double *t)
 {
     Vec3 inverse = vec3_inverse(ray.direction);
@@ -211,7 +212,8 @@ static bool find_hit(const Halving *halving, Ray ray, double t_min, double t_max
     return found;
 }
 
-bool halving_first_hit(const Halving *halving, Ray ray, double t_min, Hit *hit, uint32_t *segment)
+bool povray_isosurface_first_hit(const PovrayIsosurface *halving, Ray ray, double t_min, Hit *hit,
+                                 uint32_t *segment)
 {
     uint32_t number;
     if (!find_hit(halving, ray, t_min, HUGE_VAL, false, &number, &hit->t))
@@ -223,7 +225,7 @@ bool halving_first_hit(const Halving *halving, Ray ray, double t_min, Hit *hit, 
     return true;
 }
 
-bool halving_any_hit(const Halving *halving, Ray ray, double t_min, double t_max)
+bool povray_isosurface_any_hit(const PovrayIsosurface *halving, Ray ray, double t_min, double t_max)
 {
     uint32_t cell;
     double t;

@@ -1,7 +1,7 @@
 /* Where POV-Ray 3.7 finds the cells of an implicit surface [docs/POVRAY.md section 5]: its own interval
  * halving, repeated operation by operation, so that its pictures can be told from ours to the last code. */
-#ifndef CORCAST_RENDER_HALVING_H
-#define CORCAST_RENDER_HALVING_H
+#ifndef CORCAST_RENDER_POVRAY_ISOSURFACE_H
+#define CORCAST_RENDER_POVRAY_ISOSURFACE_H
 
 #include "base/base.h"
 #include "geom/geom.h"
@@ -9,18 +9,20 @@
 #include "surface/surface.h"
 
 /* The cells of a scene under a hierarchy of boxes; constant once built and shared by threads. */
-typedef struct Halving Halving;
+typedef struct PovrayIsosurface PovrayIsosurface;
 
-MUST_CHECK Status halving_new(const Scene *scene, const CellParams *params, Halving **out,
-                              Err *err);
-void halving_free(Halving *halving);
+MUST_CHECK Status povray_isosurface_new(const Scene *scene, const CellParams *params,
+                                        PovrayIsosurface **out, Err *err);
+void povray_isosurface_free(PovrayIsosurface *halving);
 
 /* The first hit with t >= t_min of all cells: true and *hit, with the forward-difference normal (unit, of
  * no particular side), and the segment whose term is largest there; or false. As in POV-Ray, a cell tells
  * of one hit alone. */
-bool halving_first_hit(const Halving *halving, Ray ray, double t_min, Hit *hit, uint32_t *segment);
+bool povray_isosurface_first_hit(const PovrayIsosurface *halving, Ray ray, double t_min, Hit *hit,
+                                 uint32_t *segment);
 
 /* Whether the hit of any cell has t in (t_min, t_max). */
-bool halving_any_hit(const Halving *halving, Ray ray, double t_min, double t_max);
+bool povray_isosurface_any_hit(const PovrayIsosurface *halving, Ray ray, double t_min,
+                               double t_max);
 
 #endif

@@ -27,6 +27,7 @@ typedef struct FieldPicture {
     const RenderParams *params;
     const Band *rows; /* of the picture that the frame has */
     Frame *frame;
+    const TileKernels *kernels;
     FieldTiles *tiles; /* of this pass over the whole picture, borrowed */
     SampleGrid grid;   /* likewise */
     int top;           /* the grid's row that is the frame's first */
@@ -167,7 +168,7 @@ static void color_tile(const FieldPicture *picture, const SeenTile *seen, int wo
     if (picture->caster)
         find_shadows(picture, seen, worker, canvas);
     memset(color, 0, 3 * sizeof *color);
-    fieldtiles_kernels(picture->tiles)->shade(&picture->look, surface, color);
+    picture->kernels->shade(&picture->look, surface, color);
 }
 
 /* Copies a tile's colours to rows of `width` pixels, as far as they reach: where `state` is TILE_MISS
@@ -216,8 +217,8 @@ static void write_codes(const FieldPicture *picture, const SeenTile *seen, int w
     float color[3][TILE_SAMPLES];
     const uint8_t *state = picture->by_sample ? NULL : seen->hits->state;
     color_all(picture, seen, worker, color);
-    tilelook_encode(fieldtiles_kernels(picture->tiles), &picture->codes, color, state,
-                    canvas->background_codes, columns, rows, to, 3 * width);
+    tilelook_encode(picture->kernels, &picture->codes, color, state, canvas->background_codes,
+                    columns, rows, to, 3 * width);
 }
 
 /* Writes the part of a tile that is inside the grid to rows of samples, the first of which is row
@@ -404,7 +405,7 @@ static Status prepare_pass(const FieldPicture *picture, int n, const double *off
     pass->grid = (SampleGrid){pass->columns, pass->rows, width, height, 1.0 / n};
     TRY(fieldtiles_new(picture->scene, &pass->grid, NEAREST_SEEN_MM, picture->workers, &pass->tiles,
                        err));
-    fieldtiles_use_kernels(pass->tiles, tilekernels[kernels_kind(picture->params->kernels)]);
+    fieldtiles_use_kernel(pass->tiles, fieldkernels[kernels_kind(picture->params->kernels)]);
     return STATUS_OK;
 }
 
@@ -523,6 +524,7 @@ Status fieldrender(const Scene *scene, const RenderParams *params, Caster *caste
     picture.workers = params->threads > 0 ? params->threads : threads_available();
     if (frame->codes.codes8)
         srgb_codes_init(&picture.codes);
+    picture.kernels = tilekernels[kernels_kind(params->kernels)];
     picture.needs_places = tilelook_needs_places(scene);
     TRY_GOTO(tilelook_make(scene, camera->location, axes, &picture.lights, &picture.look, err));
     TRY_GOTO(prepare_canvases(&picture, err));

@@ -2,9 +2,9 @@
 #ifndef CORCAST_RENDER_FIELDRENDER_H
 #define CORCAST_RENDER_FIELDRENDER_H
 
-#include "render/band.h"
 #include "render/cast/caster.h"
 #include "render/field/fieldtiles.h"
+#include "render/job.h"
 
 /* The samples of a pass over the whole picture, and the vessels that they see. */
 typedef struct FieldPass {

@@ -47,7 +47,7 @@ struct FieldTiles {
     FrameSegment *segments;
     size_t *row_offsets; /* into row_segments; one more than there are rows */
     uint32_t *row_segments;
-    const TileKernels *kernels;
+    FieldKernel *trace;
     Workspace *workspaces;
     int workers;
 };
@@ -219,7 +219,7 @@ Status fieldtiles_new(const Scene *scene, const SampleGrid *grid, double z_min, 
     tiles->grid = *grid;
     tiles->z_min = z_min;
     tiles->workers = workers;
-    tiles->kernels = tilekernels[kernels_kind(KERNELS_FASTEST)];
+    tiles->trace = fieldkernels[kernels_kind(KERNELS_FASTEST)];
     tiles->perspective = camera->projection == PROJECTION_PERSPECTIVE;
     tiles->axes[0] = vec3_normalized(camera->right);
     tiles->axes[1] = vec3_normalized(camera->up);
@@ -281,19 +281,14 @@ size_t fieldtiles_rows(const FieldTiles *tiles)
     return (size_t)tiles->tile_rows;
 }
 
-void fieldtiles_use_kernels(FieldTiles *tiles, const TileKernels *kernels)
+void fieldtiles_use_kernel(FieldTiles *tiles, FieldKernel *trace)
 {
-    tiles->kernels = kernels;
+    tiles->trace = trace;
 }
 
 size_t fieldtiles_columns(const FieldTiles *tiles)
 {
     return (size_t)tiles->tile_columns;
-}
-
-const TileKernels *fieldtiles_kernels(const FieldTiles *tiles)
-{
-    return tiles->kernels;
 }
 
 Vec3 fieldtiles_to_world(const FieldTiles *tiles, Vec3 direction)
@@ -462,7 +457,7 @@ Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t
             fieldterms_make(tiles->segments, space->lists + list, space->offsets[column + 1] - list,
                             &tile, space->terms, space->candidates);
             if (tile.n_terms) {
-                tiles->kernels->trace(&tile, &space->work, &hits);
+                tiles->trace(&tile, &space->work, &hits);
                 TRY(decide_all(tiles, space, &seen, &hits, err));
                 seen.hits = hits.any_hit ? &hits : NULL;
             }

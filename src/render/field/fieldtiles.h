@@ -3,7 +3,7 @@
 #ifndef CORCAST_RENDER_FIELDTILES_H
 #define CORCAST_RENDER_FIELDTILES_H
 
-#include "render/tile/tilekernels.h"
+#include "render/field/fieldkernels.h"
 #include "scene/scene.h"
 
 /* Where rays go through the picture: every pair of a column and a row, in pixels as camera_ray
@@ -47,11 +47,10 @@ MUST_CHECK Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, co
 /* A direction from the camera's frame to the world, and back. */
 Vec3 fieldtiles_to_world(const FieldTiles *tiles, Vec3 direction);
 Vec3 fieldtiles_to_frame(const FieldTiles *tiles, Vec3 direction);
-const TileKernels *fieldtiles_kernels(const FieldTiles *tiles);
 /* The depth, in mm along the unit ray, of a hit of the tile. */
 double tile_depth(const FieldTile *tile, const TileHits *hits, int sample);
 
-/* Traces with these kernels from now on, not with the fastest. */
-void fieldtiles_use_kernels(FieldTiles *tiles, const TileKernels *kernels);
+/* Traces with this kernel from now on, not with the fastest. */
+void fieldtiles_use_kernel(FieldTiles *tiles, FieldKernel *trace);
 
 #endif

@@ -492,7 +492,7 @@ LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
     trace_sum(packet, first, hits);
 }
 
-LANE_TARGET static void FIELD_KERNEL(const FieldTile *tile, TileWork *work, TileHits *hits)
+LANE_TARGET void FIELD_KERNEL(const FieldTile *tile, TileWork *work, TileHits *hits)
 {
     assert(tile->n_terms <= work->capacity);
     __builtin_memset(hits, 0, sizeof *hits);

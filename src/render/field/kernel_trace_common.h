@@ -1,7 +1,7 @@
-/* What the kernels of fieldkernel.h and fieldplane.h share: constants of the proof, the factor of a
+/* What the kernels of kernel_trace.h and kernel_trace_flat.h share: constants of the proof, the factor of a
  * segment's ends, and how hits are stored. */
-#ifndef CORCAST_RENDER_FIELDLANES_H
-#define CORCAST_RENDER_FIELDLANES_H
+#ifndef CORCAST_RENDER_KERNEL_TRACE_COMMON_H
+#define CORCAST_RENDER_KERNEL_TRACE_COMMON_H
 
 #include "render/tile/lanes.h"
 #include "render/tile/tile.h"

@@ -3,7 +3,7 @@
 #define CORCAST_RENDER_SIGHT_H
 
 #include "render/cast/caster.h"
-#include "render/render.h"
+#include "render/job.h"
 
 typedef struct Sight {
     const Scene *scene;

@@ -1,4 +1,4 @@
-/* Where lines of sight enter a ruled joint, several at once: a part of rasterkernel.h.
+/* Where lines of sight enter a ruled joint, several at once: a part of kernel_raster.h.
  *
  * Joints are walls of solids, so only a ruling that faces the view can be seen: one at which g
  * [rastertile.h] falls as q grows. Multiplied by (1 + u^2)^2, u = tan(q / 2) in [-1, 1], g is a
@@ -9,8 +9,8 @@
  * next to the outline, pieces are halved until falls and rises part. Newton's method, kept
  * inside its bracket, finds the ruling, and a hit counts if it lies on its line to 1e-4 of the
  * joint's size. What is still open then is decided in double precision. */
-#ifndef CORCAST_RENDER_RASTERRULING_H
-#define CORCAST_RENDER_RASTERRULING_H
+#ifndef CORCAST_RENDER_KERNEL_JOINT_H
+#define CORCAST_RENDER_KERNEL_JOINT_H
 
 #include "render/raster/kernel_round.h"
 

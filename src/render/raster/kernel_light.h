@@ -1,5 +1,5 @@
 /* What a light sees of the places that a tile of the picture sees, several at once: included by
- * each source that compiles it for its lanes, after rasterkernel.h. Loops over samples have no
+ * each source that compiles it for its lanes, after kernel_raster.h. Loops over samples have no
  * branches, for compilers to make vectors of. */
 #ifndef RASTER_KERNEL
 #error "define RASTER_KERNEL(name), the name of a function"

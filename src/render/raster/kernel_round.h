@@ -1,8 +1,8 @@
-/* Where lines of sight enter spheres and cylinders, several at once: a part of rasterkernel.h. A
+/* Where lines of sight enter spheres and cylinders, several at once: a part of kernel_raster.h. A
  * line passes an item's middle, at the middle's depth, in (X, Y) = (x, y) depth - middle, which
  * is taken in double precision for the tile and stays small. */
-#ifndef CORCAST_RENDER_RASTERSIGHT_H
-#define CORCAST_RENDER_RASTERSIGHT_H
+#ifndef CORCAST_RENDER_KERNEL_ROUND_H
+#define CORCAST_RENDER_KERNEL_ROUND_H
 
 #include "render/raster/rastertile.h"
 #include "render/tile/lanes.h"

@@ -2,8 +2,8 @@
 #ifndef CORCAST_RENDER_RASTERRENDER_H
 #define CORCAST_RENDER_RASTERRENDER_H
 
-#include "render/band.h"
 #include "render/cast/caster.h"
+#include "render/job.h"
 #include "render/raster/rastershadow.h"
 #include "render/raster/rasterview.h"
 

@@ -3,7 +3,7 @@
 #ifndef CORCAST_RENDER_ZBUFFER_H
 #define CORCAST_RENDER_ZBUFFER_H
 
-#include "render/band.h"
+#include "render/job.h"
 
 /* Draws the band of a scene of primitives into planes that are there, and adds the time it takes
  * to *stats: one sample a pixel, without shadows. STATUS_USAGE when the camera is among the

@@ -1,11 +1,11 @@
-/* What fieldtiles.c prepares and the kernels of fieldkernel.h trace: one tile of 8 x 8 samples, the
+/* What fieldtiles.c prepares and the kernels of kernel_trace.h trace: one tile of 8 x 8 samples, the
  * vessels near it, and what its rays meet. Lengths in mm, in the camera's frame: x right, y up, z
  * along the direction, its origin at the camera's location.
  *
  * The ray of the sample (x, y) of the camera's plane is (x, y, z) when orthographic and
  * (x z, y z, z) when perspective: z is the parameter of both. */
-#ifndef CORCAST_RENDER_FIELDTILE_H
-#define CORCAST_RENDER_FIELDTILE_H
+#ifndef CORCAST_RENDER_TILE_H
+#define CORCAST_RENDER_TILE_H
 
 #include "scene/scene.h"
 #include <stdint.h>

@@ -1,12 +1,9 @@
 /* The kernels for any processor, and the choice among all. */
-#define FIELD_KERNEL trace_portable
-#define PLANE_KERNEL trace_plane_portable
 #define SHADE_KERNEL shade_portable
 #define ENCODE_KERNEL encode_portable
-#include "render/field/kernel_trace.h"
 #include "render/tile/kernel_shade.h"
 
-static const TileKernels portable = {trace_portable, shade_portable, encode_portable};
+static const TileKernels portable = {shade_portable, encode_portable};
 
 const TileKernels *const tilekernels[] = {
     &portable,

@@ -3,7 +3,7 @@
 #define CORCAST_RENDER_TILEKERNELS_H
 
 #include "image/image.h"
-#include "render/render.h"
+#include "render/job.h"
 #include "render/tile/tile.h"
 #include "scene/scene.h"
 
@@ -31,8 +31,6 @@ typedef struct TileSurface {
 } TileSurface;
 
 typedef struct TileKernels {
-    /* Finds the first hits; `work` has room for the tile's terms. */
-    void (*trace)(const FieldTile *tile, TileWork *work, TileHits *hits);
     /* Colours of the hits as shade() gives, to 2e-5 of the light's colour. */
     void (*shade)(const TileLook *look, const TileSurface *surface, float color[3][TILE_SAMPLES]);
     /* Stores the codes of a whole tile's colours as rows of pixels, `stride` bytes from row to row:
@@ -50,8 +48,7 @@ enum { KINDS_OF_KERNELS = 1 };
 #endif
 /* How many of the kinds, from the first on, this processor can run; the last is the fastest. */
 int kernels_usable(void);
-/* The kind that is asked for, which this processor can run: an index into tilekernels and
- * rasterkernels. */
+/* The kind that is asked for, which this processor can run: an index into the tables of kernels. */
 int kernels_kind(RenderKernels kernels);
 
 extern const TileKernels *const tilekernels[KINDS_OF_KERNELS];

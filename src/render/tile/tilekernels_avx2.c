@@ -2,14 +2,11 @@
 #ifdef __x86_64__
 
 #define LANES_AVX2
-#define FIELD_KERNEL trace_avx2
-#define PLANE_KERNEL trace_plane_avx2
 #define SHADE_KERNEL shade_avx2
 #define ENCODE_KERNEL encode_avx2
-#include "render/field/kernel_trace.h"
 #include "render/tile/kernel_shade.h"
 
-const TileKernels tilekernels_avx2 = {trace_avx2, shade_avx2, encode_avx2};
+const TileKernels tilekernels_avx2 = {shade_avx2, encode_avx2};
 
 #else
 typedef int NotForThisProcessor;

@@ -14,10 +14,10 @@
 
 static const CellParams cells = {.beta = 3};
 
-static Halving *halving_of(const Scene *scene)
+static PovrayIsosurface *halving_of(const Scene *scene)
 {
-    Halving *halving = NULL;
-    assert_int_equal(halving_new(scene, &cells, &halving, NULL), STATUS_OK);
+    PovrayIsosurface *halving = NULL;
+    assert_int_equal(povray_isosurface_new(scene, &cells, &halving, NULL), STATUS_OK);
     return halving;
 }
 
@@ -34,7 +34,7 @@ static Ray random_ray(const TestScene *test, Random *random)
 /* The same scene, to be seen as POV-Ray sees it and by proof. */
 typedef struct Views {
     TestScene test;
-    Halving *halving;
+    PovrayIsosurface *halving;
     FieldIndex *index;
     FieldScratch *scratch;
     size_t seen, grazing;
@@ -53,7 +53,7 @@ static void views_release(Views *views)
 {
     fieldscratch_free(views->scratch);
     fieldindex_free(views->index);
-    halving_free(views->halving);
+    povray_isosurface_free(views->halving);
 }
 
 /* Both see the ray's first hit, and at the same place, unless it grazes. */
@@ -63,7 +63,7 @@ static void assert_seen_alike(Views *views, Ray ray)
     double t;
     Vec3 normal;
     uint32_t segment, exact_segment;
-    bool found = halving_first_hit(views->halving, ray, 1e-4, &hit, &segment);
+    bool found = povray_isosurface_first_hit(views->halving, ray, 1e-4, &hit, &segment);
     bool exact = field_first_hit(views->index, views->scratch, ray, 1e-4, INFINITY, &t, &normal,
                                  &exact_segment);
     double cosine = exact ? -vec3_dot(normal, ray.direction) : 0;
@@ -158,17 +158,17 @@ static void a_hit_is_behind_the_wall_by_less_than_the_accuracy(void **state)
     (void)state;
     TestScene test = {.scene = {.segments = test.segments}};
     put_segment(&test, vec3(-38.5, 0, 0), vec3(49, 0, 0), 0.73);
-    Halving *halving = halving_of(&test.scene);
+    PovrayIsosurface *halving = halving_of(&test.scene);
     for (double y = -0.7; y < 0.7; y += 0.0137) {
         Ray ray = {vec3(2.385, y, 30), vec3(0, 0, -1)};
         Hit hit;
         uint32_t segment;
-        assert_true(halving_first_hit(halving, ray, 1e-4, &hit, &segment));
+        assert_true(povray_isosurface_first_hit(halving, ray, 1e-4, &hit, &segment));
         double wall = 30 - sqrt(0.73 * 0.73 - y * y);
         assert_true(hit.t >= wall - 1e-9 && hit.t < wall + cell_accuracy(0.73) + 1e-9);
         assert_int_equal(segment, 0);
     }
-    halving_free(halving);
+    povray_isosurface_free(halving);
 }
 
 static void a_shadow_ray_leaves_its_own_wall_alone(void **state)
@@ -177,30 +177,31 @@ static void a_shadow_ray_leaves_its_own_wall_alone(void **state)
     TestScene test = {.scene = {.segments = test.segments}};
     put_segment(&test, vec3(-38.5, 0, 0), vec3(49, 0, 0), 0.73);
     put_segment(&test, vec3(-38.5, 0, 5), vec3(49, 0, 5), 0.41);
-    Halving *halving = halving_of(&test.scene);
+    PovrayIsosurface *halving = halving_of(&test.scene);
     double inside = 0.5 * cell_accuracy(0.73);
     Vec3 start = vec3(2.385, 0, 0.73 - inside);
-    assert_true(halving_any_hit(halving, (Ray){start, vec3(0, 0, 1)}, 1e-3, 60));
-    assert_false(halving_any_hit(halving, (Ray){start, vec3(0, 0, 1)}, 1e-3, 3.5));
-    assert_false(halving_any_hit(halving, (Ray){start, vec3_normalized(vec3(0, 1, 1))}, 1e-3, 60));
-    assert_true(halving_any_hit(halving, (Ray){start, vec3(0, 0, -1)}, 1e-3, 60));
+    assert_true(povray_isosurface_any_hit(halving, (Ray){start, vec3(0, 0, 1)}, 1e-3, 60));
+    assert_false(povray_isosurface_any_hit(halving, (Ray){start, vec3(0, 0, 1)}, 1e-3, 3.5));
+    assert_false(
+        povray_isosurface_any_hit(halving, (Ray){start, vec3_normalized(vec3(0, 1, 1))}, 1e-3, 60));
+    assert_true(povray_isosurface_any_hit(halving, (Ray){start, vec3(0, 0, -1)}, 1e-3, 60));
     /* Nearly along the wall it is met again, as POV-Ray has it. */
-    assert_true(
-        halving_any_hit(halving, (Ray){start, vec3_normalized(vec3(0, 1, 0.05))}, 1e-3, 60));
-    halving_free(halving);
+    assert_true(povray_isosurface_any_hit(halving, (Ray){start, vec3_normalized(vec3(0, 1, 0.05))},
+                                          1e-3, 60));
+    povray_isosurface_free(halving);
 }
 
 static void an_empty_scene_shows_nothing(void **state)
 {
     (void)state;
     Scene scene = {.model = SCENE_ISOSURFACE};
-    Halving *halving = halving_of(&scene);
+    PovrayIsosurface *halving = halving_of(&scene);
     Hit hit;
     uint32_t segment;
     Ray ray = {vec3(0, 0, 30), vec3(0, 0, -1)};
-    assert_false(halving_first_hit(halving, ray, 1e-4, &hit, &segment));
-    assert_false(halving_any_hit(halving, ray, 1e-3, 60));
-    halving_free(halving);
+    assert_false(povray_isosurface_first_hit(halving, ray, 1e-4, &hit, &segment));
+    assert_false(povray_isosurface_any_hit(halving, ray, 1e-3, 60));
+    povray_isosurface_free(halving);
 }
 
 int main(void)

@@ -1,0 +1,13 @@
+/* The kernel for any processor, and all that there are. */
+#define FIELD_KERNEL trace_portable
+#define PLANE_KERNEL trace_plane_portable
+#include "render/field/fieldkernels.h"
+#include "render/field/kernel_trace.h"
+
+FieldKernel *const fieldkernels[] = {
+    trace_portable,
+#ifdef __x86_64__
+    trace_avx2,
+    trace_avx512,
+#endif
+};

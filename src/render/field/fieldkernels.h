@@ -1,0 +1,17 @@
+/* The first hits of a tile of the potential, in one version for each kind of processor. */
+#ifndef CORCAST_RENDER_FIELDKERNELS_H
+#define CORCAST_RENDER_FIELDKERNELS_H
+
+#include "render/tile/tilekernels.h"
+
+/* Finds the first hits; `work` has room for the tile's terms. */
+typedef void FieldKernel(const FieldTile *tile, TileWork *work, TileHits *hits);
+
+FieldKernel trace_portable;
+#ifdef __x86_64__
+FieldKernel trace_avx2, trace_avx512;
+#endif
+/* As tilekernels. */
+extern FieldKernel *const fieldkernels[KINDS_OF_KERNELS];
+
+#endif

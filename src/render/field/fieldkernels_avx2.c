@@ -1,0 +1,12 @@
+/* The kernel for x86 processors with AVX2 and FMA. */
+#ifdef __x86_64__
+
+#define LANES_AVX2
+#define FIELD_KERNEL trace_avx2
+#define PLANE_KERNEL trace_plane_avx2
+#include "render/field/fieldkernels.h"
+#include "render/field/kernel_trace.h"
+
+#else
+typedef int NotForThisProcessor;
+#endif

@@ -1,0 +1,12 @@
+/* The kernel for x86 processors with AVX-512. */
+#ifdef __x86_64__
+
+#define LANES_AVX512
+#define FIELD_KERNEL trace_avx512
+#define PLANE_KERNEL trace_plane_avx512
+#include "render/field/fieldkernels.h"
+#include "render/field/kernel_trace.h"
+
+#else
+typedef int NotForThisProcessor;
+#endif

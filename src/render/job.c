@@ -1,0 +1,19 @@
+#include "render/job.h"
+
+const char *const render_kernel_names[] = {[KERNELS_FASTEST] = "fastest",
+                                           [KERNELS_PORTABLE] = "portable",
+                                           [KERNELS_AVX2] = "avx2",
+                                           [KERNELS_AVX512] = "avx512",
+                                           NULL};
+
+void band_progress(const Band *band, const RenderParams *params, int height, bool further,
+                   double part)
+{
+    if (!params->progress)
+        return;
+    double more = params->want_color && params->antialias > 1
+                      ? (double)params->antialias * params->antialias
+                      : 0;
+    double done = (further ? 1 + more * part : part) / (1 + more);
+    params->progress((band->first + done * band->rows) / height, params->progress_context);
+}

@@ -1,0 +1,78 @@
+/* What is asked of a renderer, and which rows of the picture it draws at a time. */
+#ifndef CORCAST_RENDER_JOB_H
+#define CORCAST_RENDER_JOB_H
+
+#include "base/base.h"
+#include "image/image.h"
+#include "scene/scene.h"
+#include "surface/surface.h"
+
+/* How primitives are drawn. */
+typedef enum RenderMethod {
+    RENDER_TRACE,  /* ray by ray in double precision, as POV-Ray does */
+    RENDER_RASTER, /* tile by tile in single precision: the same picture but for rounding */
+    RENDER_ZBUFFER /* by points of the surfaces and a depth buffer, as the paper does */
+} RenderMethod;
+
+/* The instructions that a tile's samples are drawn with, several at once: those of any processor, AVX2
+ * with FMA, AVX-512. Other pictures than RENDER_TRACE's of primitives and blobs may differ in the last
+ * digits of single precision from one to the next. */
+typedef enum RenderKernels {
+    KERNELS_FASTEST, /* of those that this processor has */
+    KERNELS_PORTABLE,
+    KERNELS_AVX2,
+    KERNELS_AVX512
+} RenderKernels;
+
+/* Their names, in order; NULL ends them. */
+extern const char *const render_kernel_names[];
+
+typedef struct RenderParams {
+    /* An implicit model has tiles of its own and takes none of these. What needs rays, soft shadows,
+     * occlusion and ground, is traced whatever the method. */
+    RenderMethod method;
+    RenderKernels kernels;
+    int threads;   /* 0: all processors */
+    int antialias; /* 1: one ray through each pixel's centre; N > 1: that ray and N x N more, the
+                    * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
+    double antialias_threshold; /* 0: every pixel gets the N x N more, as in POV-Ray; else, in
+                                 * (0, 1], those only that differ from a neighbour by so much in
+                                 * the square root of a channel, which no POV-Ray picture repeats */
+    bool shadows;
+    double
+        shadow_from_mm; /* what is nearer to a lit place is not in its light; 0: POV-Ray's 0.001 mm */
+    int occlusion; /* 0: ambient light is the same everywhere; N: the part of it that reaches a point is
+                    * found by N rays, which no POV-Ray picture repeats */
+    const CellParams *povray_cells; /* of an implicit model: where POV-Ray's root finder sees it in
+                                     * these cells; NULL: where it is, by proof */
+    bool
+        codes_suffice; /* the frame may have 8-bit codes instead of colours, where that is faster */
+    bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
+    void (*progress)(double fraction, void *context);  /* called by one thread; may be NULL */
+    void *progress_context;
+} RenderParams;
+
+typedef struct RenderStats {
+    double prepare_s; /* building the search structure */
+    double trace_s;
+    double
+        cpu_s; /* of all threads, for both: trace_s when nothing else runs is about cpu_s / threads */
+    size_t rays; /* primary */
+    size_t
+        preparations; /* how often camera, lights or antialiasing were not those of the band before */
+} RenderStats;
+
+/* Rows first .. first + rows of the picture. The outermost `above` and `below` of them are there only
+ * for their neighbours to be told apart from: they get no further samples and are cut off at the
+ * end. */
+typedef struct Band {
+    int first, rows;
+    int above, below;
+} Band;
+
+/* Says how far the whole picture is; `part` is of this pass over the band, whose further samples are a
+ * pass of their own. */
+void band_progress(const Band *band, const RenderParams *params, int height, bool further,
+                   double part);
+
+#endif
