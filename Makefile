@@ -76,46 +76,46 @@ help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' Makefile
 
 deps: ## install the Debian packages that are missing
-	$(Q)tools/deps $(or $(FOR),build run check)
+	$(Q).ci/deps $(or $(FOR),build run check)
 
 demo: ## grow a tree, have POV-Ray and corcast draw it, verify; results in out/demo/
-	$(Q)tools/deps build run
+	$(Q).ci/deps build run
 	$(Q)$(AGAIN) all
-	$(Q)tools/demo
+	$(Q)docs/demo
 
 validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
-	$(Q)tools/deps build check
+	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
-	$(Q)tools/validate
+	$(Q)tests/validate
 
 bench: ## the benchmarks, one after another
 	$(Q)for part in grow render compare; do $(MAKE) --no-print-directory bench-$$part || exit; done
 
 bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
-	$(Q)tools/deps build bench
+	$(Q).ci/deps build bench
 	$(Q)$(AGAIN) all
-	$(Q)tools/bench-grow
+	$(Q)tests/bench/grow
 
 bench-render: ## how fast pictures are drawn, beside POV-Ray and others; BENCH=full|quick
-	$(Q)tools/deps build run bench
+	$(Q).ci/deps build run bench
 	$(Q)$(AGAIN) all $(EMBREE)
-	$(Q)tools/bench-render
+	$(Q)tests/bench/render
 
 bench-compare: ## time `compare` on large pictures, beside idiff and odiff
-	$(Q)tools/deps build check
+	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
-	$(Q)tools/bench-compare
+	$(Q)tests/bench/compare
 
 verify-all: ## verify models x trees x projections x shadows x antialiasing; report in out/verify/
-	$(Q)tools/deps build run
+	$(Q).ci/deps build run
 	$(Q)$(AGAIN) all
-	$(Q)JOBS=$(JOBS) tools/verify-all
+	$(Q)JOBS=$(JOBS) tests/verify-all
 
 power: ## plant faults and see what the judge finds, and the tests; writes its parts of docs/VALIDATION.md
-	$(Q)tools/deps build run check
+	$(Q).ci/deps build run check
 	$(Q)$(AGAIN) all power-program unit-programs
-	$(Q)tools/power
-	$(Q)JOBS=$(JOBS) tools/power-shared
+	$(Q)tests/power/run
+	$(Q)JOBS=$(JOBS) tests/power/run-shared
 
 power-program: $(POWER)
 
@@ -123,7 +123,7 @@ fit-blob: $(FIT) ## how far the blob is from the potential; HOW=fit searches for
 	$(Q)$(FIT) $(HOW)
 
 check: ## every test; ends in "N passed, N failed"
-	$(Q)tools/deps build run check
+	$(Q).ci/deps build run check
 	$(Q)JOBS=$(JOBS) tests/check
 
 # The program users run is always the release build.
@@ -208,7 +208,7 @@ unit-programs: $(TEST_PROGRAMS) $(ORACLE) $(FAILING)
 fuzz-programs: $(FUZZ_PROGRAMS)
 
 fuzz: ## have libFuzzer think out input for every reader, FUZZ=60 seconds each; TARGET=NAME for one
-	$(Q)tools/deps build fuzz
+	$(Q).ci/deps build fuzz
 	$(Q)$(AGAIN) MODE=fuzz CC=clang fuzz-programs
 	$(Q)tests/fuzz/run "$(or $(FUZZ),60)" $(or $(TARGET),$(HARNESSES))
 

@@ -74,7 +74,7 @@ bare_path() {
 
 test_deps_says_what_is_needed_when_there_is_no_apt() {
     bare_path id
-    run env PATH="$PWD/bin" "$REPO/tools/deps" build run
+    run env PATH="$PWD/bin" "$REPO/.ci/deps" build run
     expect_status 3
     grep -q 'not a Debian system' stderr || fail "expected the reason on standard error$(said)"
     grep -q 'install them: .*libpng-dev.* povray' stderr || fail "expected the packages to be named$(said)"
@@ -85,7 +85,7 @@ test_deps_says_what_is_needed_when_it_is_neither_root_nor_has_sudo() {
     printf '#!/bin/sh\necho 1000\n' >bin/id
     printf '#!/bin/sh\nexit 0\n' >bin/apt-get
     chmod +x bin/id bin/apt-get
-    run env PATH="$PWD/bin" "$REPO/tools/deps" build
+    run env PATH="$PWD/bin" "$REPO/.ci/deps" build
     expect_status 3
     grep -q 'no sudo' stderr || fail "expected the reason on standard error$(said)"
     grep -q 'libjansson-dev' stderr || fail "expected the packages to be named$(said)"
@@ -94,7 +94,7 @@ test_deps_says_what_is_needed_when_it_is_neither_root_nor_has_sudo() {
 test_deps_touches_nothing_when_everything_is_installed() {
     printf '#!/bin/sh\ntouch %s/called\n' "$PWD" >apt-get
     chmod +x apt-get
-    run_ok env PATH="$PWD:$PATH" "$REPO/tools/deps"
+    run_ok env PATH="$PWD:$PATH" "$REPO/.ci/deps"
     [ ! -e called ] || fail "expected apt-get not to be called"
 }
 
