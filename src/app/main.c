@@ -1,5 +1,6 @@
 #include "app/commands.h"
 
+#include "app/suggest.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -31,6 +32,22 @@ static int finish(const char *command, Status status, Err *err)
     return status_exit(status);
 }
 
+static bool is_one_of(const char *word, const char *a, const char *b, const char *c)
+{
+    return strcmp(word, a) == 0 || strcmp(word, b) == 0 || strcmp(word, c) == 0;
+}
+
+static Status unknown_command(const char *name, Err *err)
+{
+    Suggestion suggestion = suggestion_for(name, strlen(name));
+    for (const CommandEntry *entry = command_entries; entry->name; entry++)
+        suggestion_offer(&suggestion, entry->name);
+    Status status = err_set(err, STATUS_USAGE,
+                            "unknown command '%s'; corcast --help lists those there are", name);
+    suggestion_add(&suggestion, "", err);
+    return status;
+}
+
 int main(int argc, char **argv)
 {
     Err err = {{0}};
@@ -40,19 +57,21 @@ int main(int argc, char **argv)
         print_usage(stderr);
         return status_exit(STATUS_USAGE);
     }
-    if (strcmp(argv[1], "--version") == 0) {
+    if (is_one_of(argv[1], "--version", "-V", "version")) {
         puts("corcast " CORCAST_VERSION);
         return finish("", STATUS_OK, &err);
     }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "help") == 0) {
+    bool asks_help = is_one_of(argv[1], "--help", "-h", "help");
+    if (asks_help && argc == 2) {
         print_usage(stdout);
         return finish("", STATUS_OK, &err);
     }
-    const CommandEntry *command = command_find(argv[1]);
-    if (command)
-        return finish(argv[1], command->run(argc - 2, argv + 2, &err), &err);
-    return finish("",
-                  err_set(&err, STATUS_USAGE,
-                          "unknown command '%s'; corcast --help lists those there are", argv[1]),
-                  &err);
+    const char *name = argv[asks_help ? 2 : 1];
+    const CommandEntry *command = command_find(name);
+    if (!command)
+        return finish("", unknown_command(name, &err), &err);
+    char help[] = "--help", *help_argv[] = {help};
+    return finish(
+        name, asks_help ? command->run(1, help_argv, &err) : command->run(argc - 2, argv + 2, &err),
+        &err);
 }

@@ -1,6 +1,7 @@
 #include "app/options.h"
 
 #include "app/commands.h"
+#include "app/suggest.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,6 +19,18 @@ static const Option *find_option(const Reader *reader, const char *name, size_t 
             if (strlen(option->name) == length && strncmp(option->name, name, length) == 0)
                 return option;
     return NULL;
+}
+
+/* STATUS_USAGE with the sentence that is there already and the option that may have been meant. */
+static Status suggest_option(const Reader *reader, const char *name, size_t length,
+                             const char *prefix, Err *err)
+{
+    Suggestion suggestion = suggestion_for(name, length);
+    for (int t = 0; t < reader->n_tables; t++)
+        for (const Option *option = reader->tables[t]; option->name; option++)
+            suggestion_offer(&suggestion, option->name);
+    suggestion_add(&suggestion, prefix, err);
+    return STATUS_USAGE;
 }
 
 /* Reads `count` numbers parted by `separator`; the last ones may be missing down to `least`. */
@@ -253,9 +266,11 @@ static Status take_recipe_line(void *user, const char *section, const char *name
     if (!name)
         return STATUS_OK;
     const Option *option = find_option(reader, name, strlen(name));
-    if (!option || strcmp(name, "recipe") == 0)
-        return err_set(err, STATUS_USAGE, "'%s' is not an option of %s", name,
-                       reader->command->name);
+    if (!option || strcmp(name, "recipe") == 0) {
+        (void)err_set(err, STATUS_USAGE, "'%s' is not an option of %s", name,
+                      reader->command->name);
+        return suggest_option(reader, name, strlen(name), "", err);
+    }
     if (option->kind == OPTION_FLAG && strcmp(value, "on") != 0)
         return wrong(option, value, "on; leave the line out to turn it off", err);
     return set_option(option, value, err);
@@ -420,25 +435,41 @@ static Status note_typed(const Option *option, Parsed *parsed, Err *err)
     return err_set(err, STATUS_USAGE, "%s is given twice; give it once", role_of(option).text);
 }
 
+/* Whether the word after a switch is its value: not if it is another option or a file. */
+static bool is_value_of_switch(const char *word)
+{
+    return *word && *word != '-' && !strpbrk(word, "./");
+}
+
 static Status read_option(const Reader *reader, int argc, char **argv, int *at, bool apply,
                           Parsed *parsed)
 {
     const char *name = argv[*at] + 2;
-    if (argv[*at][1] != '-') /* the one short option */
+    if (strcmp(argv[*at], "-o") == 0)
         name = "output";
-    const char *equals = argv[*at][1] == '-' ? strchr(name, '=') : NULL;
+    else if (strcmp(argv[*at], "-h") == 0)
+        name = "help";
+    else if (argv[*at][1] != '-')
+        name = argv[*at] + 1;
+    bool is_short = argv[*at][1] != '-';
+    const char *equals = is_short ? NULL : strchr(name, '=');
     size_t length = equals ? (size_t)(equals - name) : strlen(name);
     const Option *option = find_option(reader, name, length);
-    if (!option || (argv[*at][1] != '-' && strcmp(argv[*at], "-o") != 0))
-        return err_set(reader->err, STATUS_USAGE,
-                       "unknown option '%s'; see corcast %s --help for those there are", argv[*at],
-                       reader->command->name);
+    if (!option || (is_short && name == argv[*at] + 1)) {
+        (void)err_set(reader->err, STATUS_USAGE,
+                      "unknown option '%s'; see corcast %s --help for those there are", argv[*at],
+                      reader->command->name);
+        return suggest_option(reader, name, length, "--", reader->err);
+    }
     const char *value = "";
     if (option->kind == OPTION_FLAG && equals)
         return err_set(reader->err, STATUS_USAGE, "--%s takes no value", option->name);
     if (option->kind != OPTION_FLAG) {
         if (equals)
             value = equals + 1;
+        else if (option->kind == OPTION_SWITCH &&
+                 !is_value_of_switch(*at + 1 < argc ? argv[*at + 1] : ""))
+            value = "on";
         else if (*at + 1 < argc)
             value = argv[++*at];
         else
@@ -474,12 +505,12 @@ static Status read_arguments(const Reader *reader, int argc, char **argv, bool a
 static const char *argument_name(const Option *option)
 {
     static const char *const names[] = {
-        [OPTION_FLAG] = "",       [OPTION_SWITCH] = "on|off", [OPTION_TEXT] = "TEXT",
-        [OPTION_INPUT] = "FILE",  [OPTION_OUTPUT] = "FILE",   [OPTION_FOLDER] = "DIR",
-        [OPTION_LOOKUP] = "NAME", [OPTION_WHOLE] = "N",       [OPTION_SEED] = "N",
-        [OPTION_COUNT] = "N",     [OPTION_NUMBER] = "NUMBER", [OPTION_VECTOR] = "X,Y,Z",
-        [OPTION_COLOR] = "R,G,B", [OPTION_VECTORS] = "X,Y,Z", [OPTION_NUMBERS] = "A,B,...",
-        [OPTION_SIZE] = "WxH",    [OPTION_RANGE] = "A,B",     [OPTION_CHOICE] = "NAME",
+        [OPTION_FLAG] = "",       [OPTION_SWITCH] = "[on|off]", [OPTION_TEXT] = "TEXT",
+        [OPTION_INPUT] = "FILE",  [OPTION_OUTPUT] = "FILE",     [OPTION_FOLDER] = "DIR",
+        [OPTION_LOOKUP] = "NAME", [OPTION_WHOLE] = "N",         [OPTION_SEED] = "N",
+        [OPTION_COUNT] = "N",     [OPTION_NUMBER] = "NUMBER",   [OPTION_VECTOR] = "X,Y,Z",
+        [OPTION_COLOR] = "R,G,B", [OPTION_VECTORS] = "X,Y,Z",   [OPTION_NUMBERS] = "A,B,...",
+        [OPTION_SIZE] = "WxH",    [OPTION_RANGE] = "A,B",       [OPTION_CHOICE] = "NAME",
     };
     return option->argument ? option->argument : names[option->kind];
 }

@@ -151,4 +151,55 @@ END
     expect_only tree.swc
 }
 
+# means SENTENCE ARGUMENT...: the arguments are refused with a name that may have been meant, or none.
+means() {
+    local sentence=$1
+    shift
+    run corcast "$@"
+    expect_status 2
+    expect_sentence "$sentence\$"
+}
+
+test_a_slip_is_answered_with_what_may_have_been_meant() {
+    means "unknown command 'rendr'; .*; did you mean render\?" rendr tree.swc
+    means "unknown command 'help grwo'|unknown command 'grwo'; .*; did you mean grow\?" help grwo
+    means "unknown option '--modle'; .*; did you mean --model\?" render tree.swc --modle blob
+    means "unknown option '--lamda'; .*; did you mean --lambda\?" grow --lamda 2 -o tree.swc
+    means "unknown option '--color_by=flow'; .*; did you mean --color-by\?" render tree.swc --color_by=flow
+    means "unknown option '--Antialias'; .*; did you mean --antialias\?" render tree.swc --Antialias 3
+    means "unknown option '--zqwx'; see corcast render --help for those there are" render tree.swc --zqwx 3
+    means "unknown command 'bronchus'; corcast --help lists those there are" bronchus
+    printf 'progjection = perspective\n' >mine.ini
+    means "mine\.ini:1: 'progjection' is not an option of render; did you mean projection\?" \
+        render tree.swc --recipe mine.ini -o tree.png
+}
+
+test_help_and_version_go_by_their_usual_names() {
+    local word
+    for word in -h help --help; do
+        run_ok corcast $word
+        expect_stdout '^usage: corcast COMMAND'
+    done
+    for word in 'info --help' 'info -h' 'help info' '-h info'; do
+        # shellcheck disable=SC2086
+        run_ok corcast $word
+        expect_stdout '^usage: corcast info T\.swc'
+    done
+    for word in -V version --version; do
+        run_ok corcast $word
+        expect_stdout '^corcast [0-9.]+$'
+    done
+}
+
+test_a_switch_without_a_value_is_on() {
+    run_ok corcast grow --terminals 40 --domain ball:20 --seed 6 -o tree.swc
+    run_ok corcast render tree.swc --size 60x45 --shadows --quiet -o flag.ppm
+    run_ok corcast render tree.swc --size 60x45 --shadows on -o on.ppm
+    run_ok corcast render --size 60x45 -o last.ppm --shadows tree.swc
+    run_ok corcast render tree.swc --size 60x45 --shadows off -o off.ppm
+    expect_same flag.ppm on.ppm
+    expect_same last.ppm on.ppm
+    expect_different on.ppm off.ppm
+}
+
 run_tests "$@"

@@ -1,0 +1,68 @@
+/* Optimal string alignment: the edit distance in which two neighbours may change places, by three rows
+ * of its table. */
+#include "app/suggest.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { LONGEST = 32 };
+
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+static bool same(char a, char b)
+{
+    return tolower((unsigned char)a) == tolower((unsigned char)b) ||
+           (strchr("-_", a) && strchr("-_", b));
+}
+
+/* Between a word and a name, neither longer than LONGEST. */
+static size_t count_edits(const char *word, size_t n, const char *name, size_t m)
+{
+    size_t rows[3][LONGEST + 1] = {{0}};
+    size_t *before = rows[0], *above = rows[1], *row = rows[2];
+    for (size_t j = 0; j <= m; j++)
+        above[j] = j;
+    for (size_t i = 1; i <= n; i++) {
+        row[0] = i;
+        for (size_t j = 1; j <= m; j++) {
+            size_t changed = above[j - 1] + !same(word[i - 1], name[j - 1]);
+            row[j] = least(changed, least(above[j], row[j - 1]) + 1);
+            if (i > 1 && j > 1 && same(word[i - 1], name[j - 2]) && same(word[i - 2], name[j - 1]))
+                row[j] = least(row[j], before[j - 2] + 1);
+        }
+        size_t *free_row = before;
+        before = above;
+        above = row;
+        row = free_row;
+    }
+    return above[m];
+}
+
+Suggestion suggestion_for(const char *word, size_t length)
+{
+    return (Suggestion){.word = word, .length = length};
+}
+
+void suggestion_offer(Suggestion *suggestion, const char *name)
+{
+    size_t length = strlen(name);
+    if (suggestion->length > LONGEST || length > LONGEST)
+        return;
+    size_t edits = count_edits(suggestion->word, suggestion->length, name, length);
+    if (3 * edits > length || (suggestion->name && edits >= suggestion->edits))
+        return;
+    suggestion->name = name;
+    suggestion->edits = edits;
+}
+
+void suggestion_add(const Suggestion *suggestion, const char *prefix, Err *err)
+{
+    size_t length = err ? strlen(err->text) : 0;
+    if (err && suggestion->name)
+        snprintf(err->text + length, sizeof err->text - length, "; did you mean %s%s?", prefix,
+                 suggestion->name);
+}
