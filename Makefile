@@ -62,7 +62,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate bench bench-grow bench-render bench-compare verify-all power power-program fit-blob check program unit \
+.PHONY: all deps demo validate bench bench-grow bench-render bench-compare verify-all power power-program fit-blob check check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update install uninstall clean help packages
 .DELETE_ON_ERROR:
@@ -125,6 +125,9 @@ fit-blob: $(FIT) ## how far the blob is from the potential; HOW=fit searches for
 check: ## every test; ends in "N passed, N failed"
 	$(Q).ci/deps build run check
 	$(Q)JOBS=$(JOBS) tests/check
+
+check-quick: ## what half a minute can test, of what is installed
+	$(Q)JOBS=$(JOBS) tests/check quick
 
 # The program users run is always the release build.
 ifeq ($(MODE),release)
