@@ -59,7 +59,7 @@ static void sides_release(Sides *sides)
     }
 }
 
-/* ---- files -------------------------------------------------------------------------------------- */
+/* ---- files ----------------------------------------------------------------------------------- */
 
 /* What a file holds, by its name as `render --planes` gives it. */
 static PlaneKind kind_of(const char *path)
@@ -167,7 +167,7 @@ static Status make_tolerance(const CompareOptions *options, Tolerance *tolerance
     return STATUS_OK;
 }
 
-/* ---- comparison ------------------------------------------------------------------------------- */
+/* ---- comparison ------------------------------------------------------------------------------ */
 
 static Status write_picture(Status (*make)(Picture *, const Picture *, const Picture *, Err *),
                             const char *path, const Picture *a, const Picture *b, Err *err)
@@ -337,7 +337,7 @@ static Status compare_files(const CompareOptions *options, PlaneKind kind, Sides
     return compare_codes(options, sides, tolerance, result, err);
 }
 
-/* ---- output ------------------------------------------------------------------------------------ */
+/* ---- output ---------------------------------------------------------------------------------- */
 
 static Status write_junit(const CompareResult *result, const char *path, const char *name,
                           double seconds, Err *err)

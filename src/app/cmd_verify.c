@@ -1,7 +1,7 @@
-/* One scene, two renderers: the scene is written for POV-Ray and rendered natively from memory; then
- * all four planes of both are held against each other. An implicit surface takes two steps: corcast
- * repeats POV-Ray's root finder, whose picture must be POV-Ray's, and where that sees the surface is held
- * against where it is. */
+/* One scene, two renderers: the scene is written for POV-Ray and rendered natively from memory;
+ * then all four planes of both are held against each other. An implicit surface takes two steps:
+ * corcast repeats POV-Ray's root finder, whose picture must be POV-Ray's, and where that sees the
+ * surface is held against where it is. */
 #include "app/commands.h"
 #include "app/frames.h"
 #include "app/picture.h"
@@ -74,7 +74,7 @@ static void verification_release(Verification *v)
         close(v->lock);
 }
 
-/* ---- the folder --------------------------------------------------------------------------------- */
+/* ---- the folder ------------------------------------------------------------------------------ */
 
 /* All that a verification leaves. The verdict comes first: what is interrupted leaves none. */
 static const char *const left[] = {
@@ -112,9 +112,9 @@ static Status remove_file(Files *files, const char *path, Err *err)
     return err_set(err, STATUS_IO, "%s: cannot be removed: %s", path, strerror(errno));
 }
 
-/* Where the folder is there, keeps other verifications out of it until the end of the process, and removes
- * what an earlier one has left: an old verdict is none about this tree. A file system without locks has
- * none. */
+/* Where the folder is there, keeps other verifications out of it until the end of the process, and
+ * removes what an earlier one has left: an old verdict is none about this tree. A file system
+ * without locks has none. */
 static Status claim_folder(Verification *v, Files *files, Err *err)
 {
     if (v->lock >= 0)
@@ -131,7 +131,7 @@ static Status claim_folder(Verification *v, Files *files, Err *err)
     return for_all_files(v, files, remove_file, err);
 }
 
-/* ---- the two sides ------------------------------------------------------------------------------ */
+/* ---- the two sides --------------------------------------------------------------------------- */
 
 static bool is_isosurface(const Verification *v)
 {
@@ -271,8 +271,8 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
     return status;
 }
 
-/* Writes the scene; the ids of an implicit surface are painted in a scene of their own, as they take most of
- * it. */
+/* Writes the scene; the ids of an implicit surface are painted in a scene of their own, as they
+ * take most of it. */
 static Status write_scene(Verification *v, bool ids, char **scene, Err *err)
 {
     TRY(file_join(v->folder, ids ? "ids.pov" : "scene.pov", scene, err));
@@ -300,7 +300,7 @@ static Status run_oracle(Verification *v, Err *err)
     return status;
 }
 
-/* ---- the verdict -------------------------------------------------------------------------------- */
+/* ---- the verdict ----------------------------------------------------------------------------- */
 
 static const Picture *shown_by_povray(const Verification *v)
 {
@@ -326,8 +326,9 @@ static Status settle_sides(Verification *v, const Rendering *a, const Rendering 
     return STATUS_OK;
 }
 
-/* Whether vessels are seen whole: their mean breadth, twice the area over the outline, is at most a quarter of
- * the picture. Along an edge between pixels an outline is pi / 4 long [Cauchy-Crofton]. */
+/* Whether vessels are seen whole: their mean breadth, twice the area over the outline, is at most a
+ * quarter of the picture. Along an edge between pixels an outline is pi / 4 long
+ * [Cauchy-Crofton]. */
 static bool sees_whole_vessels(const IdPlane *ids)
 {
     size_t width = (size_t)ids->width, height = (size_t)ids->height, seen = 0, sides = 0;
@@ -342,8 +343,8 @@ static bool sees_whole_vessels(const IdPlane *ids)
     return 2 * (double)seen * 4 <= side * 0.785398163397448 * (double)sides;
 }
 
-/* Of a vessel from near by, POV-Ray's steps tilt all normals that are seen one way, by up to 0.1 degrees: what
- * that makes of the colours averages out over the breadth of a vessel alone. */
+/* Of a vessel from near by, POV-Ray's steps tilt all normals that are seen one way, by up to 0.1
+ * degrees: what that makes of the colours averages out over the breadth of a vessel alone. */
 static Tolerance exact_tolerance(const IdPlane *ids)
 {
     Tolerance tolerance = tolerance_surface(0);

@@ -42,7 +42,7 @@ typedef struct Viewer {
     bool quit;
 } Viewer;
 
-/* ---- scene and camera --------------------------------------------------------------------------- */
+/* ---- scene and camera ------------------------------------------------------------------------ */
 
 static Status make_display(Viewer *viewer, Err *err)
 {
@@ -125,7 +125,7 @@ static Status use_next_field(Viewer *viewer, Err *err)
     }
 }
 
-/* ---- what is shown, as options ------------------------------------------------------------------ */
+/* ---- what is shown, as options --------------------------------------------------------------- */
 
 /* Appends what stands for one option. */
 typedef Status PutSetting(Text *text, const char *name, const char *value, Err *err);
@@ -141,7 +141,8 @@ static Status put_argument(Text *text, const char *name, const char *value, Err 
     return STATUS_OK;
 }
 
-/* An INI file takes blanks at the ends of a value away, and what follows a semicolon after a blank. */
+/* An INI file takes blanks at the ends of a value away, and what follows a semicolon after a
+ * blank. */
 static Status put_pair(Text *text, const char *name, const char *value, Err *err)
 {
     size_t length = strlen(value);
@@ -160,7 +161,8 @@ static bool is_one_of(const char *name, const char *const *names)
     return *names;
 }
 
-/* Whether an option of a picture has a part in the one that is shown. The camera is put otherwise. */
+/* Whether an option of a picture has a part in the one that is shown. The camera is put
+ * otherwise. */
 static bool takes_part(const PictureOptions *options, const char *name)
 {
     static const char *const camera[] = {"view", "margin", "angle", "height", NULL};
@@ -233,7 +235,7 @@ static Status write_recipe(const Viewer *viewer, Err *err)
     return status;
 }
 
-/* ---- events ------------------------------------------------------------------------------------- */
+/* ---- events ---------------------------------------------------------------------------------- */
 
 static Status use_projection(Viewer *viewer, Err *err)
 {
@@ -343,7 +345,7 @@ static Status on_event(Viewer *viewer, const WindowEvent *event, Err *err)
     return STATUS_OK;
 }
 
-/* ---- the loop ----------------------------------------------------------------------------------- */
+/* ---- the loop -------------------------------------------------------------------------------- */
 
 static Status draw(Viewer *viewer, bool *done, Err *err)
 {

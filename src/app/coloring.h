@@ -25,8 +25,8 @@ void coloring_init(Coloring *coloring);
 /* The colour map of --colormap in *map (owned). STATUS_USAGE when templates/ lacks the name. */
 MUST_CHECK Status coloring_read_map(const Coloring *coloring, Colormap *map, Err *err);
 
-/* One linear colour of the map a node in *colors (owned), NULL when no field is asked for. Without --range, the
- * colours run from the least to the greatest finite value of the field. */
+/* One linear colour of the map a node in *colors (owned), NULL when no field is asked for. Without
+ * --range, the colours run from the least to the greatest finite value of the field. */
 MUST_CHECK Status coloring_apply(const Coloring *coloring, const Colormap *map, const Tree *tree,
                                  Rgb **colors, Err *err);
 

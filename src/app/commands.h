@@ -28,13 +28,14 @@ void put_shell_word(Text *text, const char *word);
 /* The last component of a path as one line of UTF-8 for people and reports, in *out (owned). */
 MUST_CHECK Status shown_name(const char *path, char **out, Err *err);
 
-/* The command line as text for provenance, in *out (owned), one line of UTF-8: every argument that is a
- * path cut to its last component, so that no folder of the user's is told, and quoted as for a shell. */
+/* The command line as text for provenance, in *out (owned), one line of UTF-8: every argument that
+ * is a path cut to its last component, so that no folder of the user's is told, and quoted as for a
+ * shell. */
 MUST_CHECK Status command_line_text(const char *command, int argc, char **argv, char **out,
                                     Err *err);
 
-/* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets go
- * of it. Numbers that are not finite must have been left out or set to null. */
+/* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets
+ * go of it. Numbers that are not finite must have been left out or set to null. */
 MUST_CHECK Status json_write(json_t *object, const char *path, Err *err);
 
 #endif

@@ -1,8 +1,8 @@
-/* While the camera moves, a pixel stands for k x k of the window, k steered by the clock: what takes
- * longer than the time of a frame makes k larger, what takes less makes it smaller by 1, unless that
- * took too long a short while ago. When it rests, the coarse picture is replaced from the top down by
- * the whole one and that by the antialiased one, some rows at a time, so that a hand on the mouse never
- * waits for more than a few rows. */
+/* While the camera moves, a pixel stands for k x k of the window, k steered by the clock: what
+ * takes longer than the time of a frame makes k larger, what takes less makes it smaller by 1,
+ * unless that took too long a short while ago. When it rests, the coarse picture is replaced from
+ * the top down by the whole one and that by the antialiased one, some rows at a time, so that a
+ * hand on the mouse never waits for more than a few rows. */
 #include "app/display.h"
 
 #include "image/image.h"

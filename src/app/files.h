@@ -13,11 +13,11 @@ typedef struct Files {
 } Files;
 
 /* Takes note that `path` ("-": standard input or output) is read or written, on behalf of `role`
- * ("--json", "-o", "the input"). Files are told apart as the system does, by what they are where they exist
- * and by folder and name where they do not, so that other spellings and links are seen through; devices and
- * pipes take any number of uses. STATUS_USAGE when a file is written twice, or read and written;
- * STATUS_IO when one to be written cannot be, as outfile_check finds. A file that is missing is not an error
- * here. */
+ * ("--json", "-o", "the input"). Files are told apart as the system does, by what they are where
+ * they exist and by folder and name where they do not, so that other spellings and links are seen
+ * through; devices and pipes take any number of uses. STATUS_USAGE when a file is written twice, or
+ * read and written; STATUS_IO when one to be written cannot be, as outfile_check finds. A file that
+ * is missing is not an error here. */
 MUST_CHECK Status files_read(Files *files, const char *role, const char *path, Err *err);
 MUST_CHECK Status files_write(Files *files, const char *role, const char *path, Err *err);
 void files_release(Files *files);

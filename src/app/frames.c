@@ -1,5 +1,5 @@
-/* One writer a file. The planes take their final names first and the picture last, so that a picture
- * never stands beside planes of another. */
+/* One writer a file. The planes take their final names first and the picture last, so that a
+ * picture never stands beside planes of another. */
 #include "app/frames.h"
 
 #include "app/commands.h"

@@ -29,15 +29,16 @@ MUST_CHECK Status frames_note_planes(const FramesForm *form, Files *files, Err *
 /* Files being written band by band; none has its final name before frames_commit. */
 typedef struct FramesWriter FramesWriter;
 
-/* `form` is borrowed until the end. Follow with exactly one of frames_commit and frames_discard, each
- * of which frees the writer, also on failure. */
+/* `form` is borrowed until the end. Follow with exactly one of frames_commit and frames_discard,
+ * each of which frees the writer, also on failure. */
 MUST_CHECK Status frames_open(FramesWriter **out, const FramesForm *form, Err *err);
 /* The next rows, with all the planes that are to be written. */
 MUST_CHECK Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err);
 MUST_CHECK Status frames_commit(FramesWriter *writer, Err *err);
 void frames_discard(FramesWriter *writer);
 
-/* Writes a whole frame: the planes that it has but for the colour, and the picture if `bits` is not 0.
+/* Writes a whole frame: the planes that it has but for the colour, and the picture if `bits` is not
+ * 0.
  */
 MUST_CHECK Status frames_write(const Frame *frame, const char *path, int bits, Encoding encoding,
                                const char *provenance, Err *err);

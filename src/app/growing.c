@@ -116,7 +116,8 @@ static Status read_from(Growing *growing, bool *has_domain, Err *err)
                    "--from: the header of the tree names no domain; give --domain");
 }
 
-/* Takes note of the domain's file, and refuses what the law of viscosity, settled by now, does not take. */
+/* Takes note of the domain's file, and refuses what the law of viscosity, settled by now, does not
+ * take. */
 static Status check(const Growing *growing, Parsed *parsed, Err *err)
 {
     bool pries = growing->params.viscosity_law == VISCOSITY_PRIES;

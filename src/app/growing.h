@@ -25,8 +25,9 @@ typedef struct Growing {
 /* grow_defaults, and the table that sets them; `growing` must not move afterwards. */
 void growing_init(Growing *growing);
 
-/* Reads what the options name, takes note of the domain's file, and completes the parameters; what they do not give is taken from the
- * header of the tree to grow on from, where it tells. STATUS_USAGE, too, for options without effect. */
+/* Reads what the options name, takes note of the domain's file, and completes the parameters; what
+ * they do not give is taken from the header of the tree to grow on from, where it tells.
+ * STATUS_USAGE, too, for options without effect. */
 MUST_CHECK Status growing_prepare(Growing *growing, Parsed *parsed, Err *err);
 
 void growing_release(Growing *growing);

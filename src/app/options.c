@@ -252,7 +252,7 @@ static bool is_text(OptionKind kind)
     return kind == OPTION_TEXT || is_path(kind);
 }
 
-/* ---- recipes ------------------------------------------------------------------------------- */
+/* ---- recipes --------------------------------------------------------------------------------- */
 
 /* A section of another command is passed over; one of no command is an error. */
 static Status take_recipe_line(void *user, const char *section, const char *name, const char *value,
@@ -287,7 +287,7 @@ static Status read_recipe(Reader *reader, const char *path, Parsed *parsed)
     return STATUS_OK;
 }
 
-/* ---- options as text ------------------------------------------------------------------------ */
+/* ---- options as text ------------------------------------------------------------------------- */
 
 static size_t size_of_value(OptionKind kind)
 {
@@ -400,7 +400,7 @@ void option_put(const Option *option, Text *text)
     }
 }
 
-/* ---- the command line ----------------------------------------------------------------------- */
+/* ---- the command line ------------------------------------------------------------------------ */
 
 typedef struct Role {
     char text[40]; /* "--json" */
@@ -533,7 +533,8 @@ static void print_help(const Reader *reader)
         }
 }
 
-/* Takes note of all files that are named: what is read first, as errors then name what is written. */
+/* Takes note of all files that are named: what is read first, as errors then name what is
+ * written. */
 static Status note_files(const Reader *reader, Parsed *parsed)
 {
     Files *files = &parsed->files;

@@ -89,21 +89,21 @@ typedef struct OptionNeed {
     const char *sentence; /* "needs --color-by" */
 } OptionNeed;
 
-/* Reads the arguments after the command's name through up to MAX_TABLES tables (a NULL ends them) and
- * the common options, the recipe first so that the command line wins. On --help prints the command's
- * help and sets parsed->common.help. STATUS_USAGE with a sentence that names the option, its value
- * and what is allowed; errors as files_read and files_write have them for the files that operands and
- * options name. Of a value given twice the last holds. Release with parsed_release. */
+/* Reads the arguments after the command's name through up to MAX_TABLES tables (a NULL ends them)
+ * and the common options, the recipe first so that the command line wins. On --help prints the
+ * command's help and sets parsed->common.help. STATUS_USAGE with a sentence that names the option,
+ * its value and what is allowed; errors as files_read and files_write have them for the files that
+ * operands and options name. Of a value given twice the last holds. Release with parsed_release. */
 MUST_CHECK Status options_parse(const Command *command, const Option *const tables[], int argc,
                                 char **argv, Parsed *parsed, Err *err);
 void parsed_release(Parsed *parsed);
 
-/* STATUS_USAGE for the first option of the command line whose need is not met: it would have no effect. A
- * recipe's options are defaults for many runs, and may be without effect in this one. */
+/* STATUS_USAGE for the first option of the command line whose need is not met: it would have no
+ * effect. A recipe's options are defaults for many runs, and may be without effect in this one. */
 MUST_CHECK Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *err);
 
-/* Whether the option says something else than `plain`, the same option bound to other variables. One
- * that has a `given` does where it was given. Lists are not compared: they differ. */
+/* Whether the option says something else than `plain`, the same option bound to other variables.
+ * One that has a `given` does where it was given. Lists are not compared: they differ. */
 bool option_differs(const Option *option, const Option *plain);
 /* Appends the option's value as options_parse reads it; a flag's is that of recipes. */
 void option_put(const Option *option, Text *text);

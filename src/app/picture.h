@@ -1,4 +1,5 @@
-/* What a picture shows: the options that scene, render and verify share, and the scene they make. */
+/* What a picture shows: the options that scene, render and verify share, and the scene they
+ * make. */
 #ifndef CORCAST_APP_PICTURE_H
 #define CORCAST_APP_PICTURE_H
 
@@ -34,8 +35,8 @@ void picture_options_init(PictureOptions *options);
 /* How POV-Ray's isosurface is cut into cells. */
 CellParams picture_cells(const PictureOptions *options);
 
-/* STATUS_USAGE when an option of the command line has no effect on this picture. Not for `view`, whose keys
- * change models and fields. */
+/* STATUS_USAGE when an option of the command line has no effect on this picture. Not for `view`,
+ * whose keys change models and fields. */
 MUST_CHECK Status picture_check_needs(const PictureOptions *options, const Parsed *parsed,
                                       Err *err);
 
@@ -66,7 +67,8 @@ MUST_CHECK Status picture_build(const PictureOptions *options, const PictureSour
 MUST_CHECK Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet,
                                 Scene *scene, StageReport *report, Err *err);
 
-/* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the machine. */
+/* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the
+ * machine. */
 MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);
 
 /* Name of a model as --model takes it. */

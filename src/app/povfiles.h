@@ -8,8 +8,8 @@
 #include "scene/scene.h"
 #include "verify/verify.h"
 
-/* Takes note of the geometry that povfiles_write writes beside the scene `path`. STATUS_USAGE when POV-Ray
- * could not include it. */
+/* Takes note of the geometry that povfiles_write writes beside the scene `path`. STATUS_USAGE when
+ * POV-Ray could not include it. */
 MUST_CHECK Status povfiles_note(const char *path, Files *files, Err *err);
 
 /* Writes `path` and, beside it, its geometry with the extension .inc; "-" is one file on standard
@@ -18,8 +18,8 @@ MUST_CHECK Status povfiles_write(const Scene *scene, const char *tree_path, cons
                                  bool shadows, bool ids, const CellParams *cells,
                                  PovrayReport *report, Err *err);
 
-/* Which POV-Ray to run and how long to bear its silence, as the environment says: CORCAST_POVRAY (povray)
- * and CORCAST_POVRAY_PATIENCE, in seconds (600). STATUS_USAGE when that is no number. */
+/* Which POV-Ray to run and how long to bear its silence, as the environment says: CORCAST_POVRAY
+ * (povray) and CORCAST_POVRAY_PATIENCE, in seconds (600). STATUS_USAGE when that is no number. */
 MUST_CHECK Status povray_from_environment(OracleParams *params, Err *err);
 
 #endif

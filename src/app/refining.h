@@ -20,8 +20,8 @@ void refining_init(Refining *refining);
 /* STATUS_USAGE for bounds of a refinement that nobody asks for. */
 MUST_CHECK Status refining_check(const Refining *refining, const Parsed *parsed, Err *err);
 
-/* Refines the tree, if at all, with progress; the first SIGINT keeps the best tree so far. *report is
- * zeroed when nothing was asked for. `domain` may be NULL. */
+/* Refines the tree, if at all, with progress; the first SIGINT keeps the best tree so far. *report
+ * is zeroed when nothing was asked for. `domain` may be NULL. */
 MUST_CHECK Status refining_apply(const Refining *refining, const Common *common,
                                  const Domain *domain, Tree *tree, RefineReport *report, Err *err);
 

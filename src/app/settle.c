@@ -1,6 +1,7 @@
-/* Of a blob the renderer is trusted in its shading alone, which POV-Ray agrees with at all other pixels: places,
- * normals, segments and what is in the way of light come from the field. Of other models the scene is drawn
- * again through a camera of one pixel, with either of POV-Ray's limits. */
+/* Of a blob the renderer is trusted in its shading alone, which POV-Ray agrees with at all other
+ * pixels: places, normals, segments and what is in the way of light come from the field. Of other
+ * models the scene is drawn again through a camera of one pixel, with either of POV-Ray's
+ * limits. */
 #include "app/settle.h"
 
 #include "surface/surface.h"
@@ -14,11 +15,11 @@ enum { MOST_ASKED = 500 };
 static const double first_slack_mm = 1e-3, cached_slack_mm = 1e-4;
 /* Of a blob nothing nearer is seen. */
 static const double blob_nearest_mm = 1e-2;
-/* A place so far from a root, in radii of the vessel, is still meant to be that root: where POV-Ray misses one,
- * its precision is gone. */
+/* A place so far from a root, in radii of the vessel, is still meant to be that root: where POV-Ray
+ * misses one, its precision is gone. */
 static const double same_root_radii = 0.02;
-/* The cosine of ray and normal below which a ray grazes. POV-Ray misses roots mostly there, of neighbouring rays
- * too; where the field rises steeply, of one ray alone. */
+/* The cosine of ray and normal below which a ray grazes. POV-Ray misses roots mostly there, of
+ * neighbouring rays too; where the field rises steeply, of one ray alone. */
 static const double grazing_cosine = 0.1;
 /* A's normals are told by 16-bit codes. */
 static const double normal_slack = 2e-4;
@@ -33,8 +34,8 @@ typedef struct LightWay {
 
 typedef struct Asker {
     const SettleCase *asked;
-    Scene
-        one; /* the scene through one pixel, or in dimmer lights, which are owned; the rest is borrowed */
+    Scene one; /* the scene through one pixel, or in dimmer lights, which are owned; the rest is
+                  borrowed */
     Renderer *first,
         *cached;    /* of other models: with POV-Ray's limit, and that of its shadow cache */
     LightWay *ways; /* owned; of each light, to the place last asked about */
@@ -71,7 +72,7 @@ static Status asker_init(Asker *asker, const SettleCase *asked, Err *err)
     return new_renderer(asker, cached_slack_mm, &asker->cached, err);
 }
 
-/* ---- the shadow cache ---------------------------------------------------------------------------- */
+/* ---- the shadow cache ------------------------------------------------------------------------ */
 
 /* The camera that sees one pixel as the picture does, its further samples included. */
 static void aim_at(Asker *asker, int i, int j)
@@ -133,7 +134,7 @@ static Status ask_cache(Asker *asker, size_t pixel, SettledPixel *found, Err *er
     return STATUS_OK;
 }
 
-/* ---- the field of a blob ------------------------------------------------------------------------- */
+/* ---- the field of a blob --------------------------------------------------------------------- */
 
 static Status ask_field(const Asker *asker, Ray ray, double t_min, double t_max, BlobRoots *roots,
                         Err *err)
@@ -232,7 +233,8 @@ static Status ask_lights(Asker *asker, Vec3 place, Err *err)
     return STATUS_OK;
 }
 
-/* Lights as bright as they arrive; that of number `brighter`, if there is one, by some samples more. */
+/* Lights as bright as they arrive; that of number `brighter`, if there is one, by some samples
+ * more. */
 static void set_lights(Asker *asker, size_t brighter, int more)
 {
     const Scene *scene = asker->asked->scene;
@@ -254,7 +256,8 @@ typedef struct Look {
     Rgb color;
 } Look;
 
-/* The colour of what is seen, in the lights as they arrive and `more` samples of that of number `brighter`. */
+/* The colour of what is seen, in the lights as they arrive and `more` samples of that of number
+ * `brighter`. */
 static Rgb lit(Asker *asker, const Look *seen, size_t brighter, int more)
 {
     if (seen->t == HUGE_VAL)
@@ -275,8 +278,8 @@ static Look wall_at(const Asker *asker, Ray ray, double t)
     return seen;
 }
 
-/* What a ray sees that meets a wall at `t` and none before. Leaves in asker->ways what arrives there of each
- * light. */
+/* What a ray sees that meets a wall at `t` and none before. Leaves in asker->ways what arrives
+ * there of each light. */
 static Status look_to(Asker *asker, Ray ray, double t, Look *seen, Err *err)
 {
     const Ground *ground = &asker->asked->scene->ground;
@@ -399,7 +402,8 @@ static bool sees_root(const Asker *asker, const Sample *sample, int number, size
                normal_slack + rounding;
 }
 
-/* How much the ray of a sample grazes at its first root: the cosine to the normal; NAN without a root. */
+/* How much the ray of a sample grazes at its first root: the cosine to the normal; NAN without a
+ * root. */
 static double grazing_of(const Asker *asker, const Sample *sample)
 {
     if (sample->roots.n == 0)
@@ -442,8 +446,8 @@ static void find_missed(const Asker *asker, const Sample *sample, size_t pixel, 
     found->cosine = cosine;
 }
 
-/* Whether A sees the first root but from a little before or behind it, and shows that place's normal and
- * colour. */
+/* Whether A sees the first root but from a little before or behind it, and shows that place's
+ * normal and colour. */
 static Status ask_inexact(Asker *asker, const Sample *sample, size_t pixel, SettledPixel *found,
                           Err *err)
 {
@@ -549,7 +553,7 @@ static Status ask_blob(Asker *asker, size_t pixel, unsigned beyond, SettledPixel
     return status;
 }
 
-/* ---- all pixels ---------------------------------------------------------------------------------- */
+/* ---- all pixels ------------------------------------------------------------------------------ */
 
 bool settle_applies(const SettleCase *asked)
 {

@@ -1,5 +1,5 @@
-/* Optimal string alignment: the edit distance in which two neighbours may change places, by three rows
- * of its table. */
+/* Optimal string alignment: the edit distance in which two neighbours may change places, by three
+ * rows of its table. */
 #include "app/suggest.h"
 
 #include <ctype.h>

@@ -22,7 +22,8 @@ static Status find_radii(Step *step, Err *err)
     return STATUS_OK;
 }
 
-/* How far what is seen at a pixel of the frame may be off along the ray; 0 where nothing is seen. */
+/* How far what is seen at a pixel of the frame may be off along the ray; 0 where nothing is
+ * seen. */
 static double allowed_at(const Step *step, const Frame *frame, size_t pixel, Vec3 direction)
 {
     double depth = (double)frame->depth.values[pixel];

@@ -4,12 +4,13 @@
 
 #include "base/base.h"
 
-/* The folder: CORCAST_TEMPLATES, or beside the build folder (../templates, ../../templates), or installed
+/* The folder: CORCAST_TEMPLATES, or beside the build folder (../templates, ../../templates), or
+ * installed
  * (../share/corcast/templates); in *folder (owned). STATUS_IO when there is none. */
 MUST_CHECK Status templates_folder(char **folder, Err *err);
 
-/* The file that an option's value names: the value itself when it has a '/', else value + extension in
- * a folder of templates/; in *path (owned). STATUS_USAGE when that does not exist. */
+/* The file that an option's value names: the value itself when it has a '/', else value + extension
+ * in a folder of templates/; in *path (owned). STATUS_USAGE when that does not exist. */
 MUST_CHECK Status template_file(const char *option, const char *folder, const char *value,
                                 const char *extension, char **path, Err *err);
 

@@ -5,8 +5,8 @@
 #include "domain/domain.h"
 #include "tree/tree.h"
 
-/* The domain that the tree's header names, in *domain (owned); *found is false, and *domain as it was,
- * when it names none. */
+/* The domain that the tree's header names, in *domain (owned); *found is false, and *domain as it
+ * was, when it names none. */
 MUST_CHECK Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err);
 
 #endif

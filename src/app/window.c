@@ -1,5 +1,6 @@
-/* SDL 2 is opened when a window is, so that all other commands run where it is not installed and start
- * without loading the fifty libraries that it needs. Its header says what its functions are. */
+/* SDL 2 is opened when a window is, so that all other commands run where it is not installed and
+ * start without loading the fifty libraries that it needs. Its header says what its functions
+ * are. */
 #include "app/window.h"
 
 #include <SDL.h>
@@ -163,9 +164,9 @@ static WindowEvent translate(const Window *window, const SDL_Event *from)
     return (WindowEvent){.kind = WINDOW_NOTHING};
 }
 
-/* Events that mean nothing here are passed over. Waiting is asking every few milliseconds: SDL 2.26's
- * WaitEvent sends messages to the window over a connection of its own, which X answers with an error that
- * ends the program when the window has been closed meanwhile. */
+/* Events that mean nothing here are passed over. Waiting is asking every few milliseconds:
+ * SDL 2.26's WaitEvent sends messages to the window over a connection of its own, which X answers
+ * with an error that ends the program when the window has been closed meanwhile. */
 WindowEvent window_event(Window *window, bool wait)
 {
     enum { PAUSE_MS = 5 };

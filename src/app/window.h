@@ -33,7 +33,8 @@ void window_close(Window *window);
 /* The next event, if there is one; waits for it when `wait`. */
 WindowEvent window_event(Window *window, bool wait);
 
-/* Shows a picture of 8-bit red, green and blue, rows from the top down, stretched over the window. */
+/* Shows a picture of 8-bit red, green and blue, rows from the top down, stretched over the
+ * window. */
 MUST_CHECK Status window_show(Window *window, const uint8_t *rgb, int width, int height, Err *err);
 void window_title(Window *window, const char *title);
 

@@ -74,7 +74,8 @@ void file_clean_up_on_signals(void)
     }
 }
 
-/* open() takes the lowest free number, and a stream open the wrong way round fails when it is used. */
+/* open() takes the lowest free number, and a stream open the wrong way round fails when it is
+ * used. */
 void file_hold_standard_streams(void)
 {
     for (int handle = STDIN_FILENO; handle <= STDERR_FILENO; handle++)
@@ -286,9 +287,9 @@ Status file_temporary_folder(const char *path, char **folder, Err *err)
     return STATUS_OK;
 }
 
-/* The owner and the permissions of the file at `path`, or those of a new file where there is none. The
- * owner comes first, as changing it may take permissions away; where not even the group can be kept,
- * it has no say. */
+/* The owner and the permissions of the file at `path`, or those of a new file where there is none.
+ * The owner comes first, as changing it may take permissions away; where not even the group can be
+ * kept, it has no say. */
 static void take_after(const char *temporary, const char *path)
 {
     struct stat old;

@@ -17,13 +17,14 @@ typedef struct FileForm {
 } FileForm;
 
 /* Reads all of `path` ("-": standard input) into *bytes (owned), zero-terminated; *size does not
- * count that zero. Of a text the byte order mark is left out, and every line end (LF, CR or CRLF) is
- * LF. STATUS_INPUT when the file is missing, a folder or not of its form, told by its size, its first
- * bytes or the first zero byte of a text before what follows is read; STATUS_IO when it cannot be
- * read; STATUS_MEMORY naming the file. */
+ * count that zero. Of a text the byte order mark is left out, and every line end (LF, CR or CRLF)
+ * is LF. STATUS_INPUT when the file is missing, a folder or not of its form, told by its size, its
+ * first bytes or the first zero byte of a text before what follows is read; STATUS_IO when it
+ * cannot be read; STATUS_MEMORY naming the file. */
 MUST_CHECK Status file_read(const char *path, const FileForm *form, char **bytes, size_t *size,
                             Err *err);
-/* Makes a text of what was read as bytes, as file_read does; `path` and `form` are for the sentence. */
+/* Makes a text of what was read as bytes, as file_read does; `path` and `form` are for the
+ * sentence. */
 MUST_CHECK Status file_to_text(const char *path, const FileForm *form, char *bytes, size_t *size,
                                Err *err);
 
@@ -41,8 +42,8 @@ typedef struct OutFile {
     char *temporary; /* NULL when written directly */
 } OutFile;
 
-/* STATUS_IO when outfile_open would refuse `path`: no folder, no permission, a folder itself, a link
- * that leads to itself. Writes nothing. */
+/* STATUS_IO when outfile_open would refuse `path`: no folder, no permission, a folder itself, a
+ * link that leads to itself. Writes nothing. */
 MUST_CHECK Status outfile_check(const char *path, Err *err);
 
 /* STATUS_IO where outfile_check says so. Follow with exactly one of outfile_commit
@@ -51,8 +52,8 @@ MUST_CHECK Status outfile_open(OutFile *file, const char *path, Err *err);
 MUST_CHECK Status outfile_commit(OutFile *file, Err *err);
 void outfile_discard(OutFile *file);
 
-/* STATUS_IO when the disk that `file` goes to has fewer than `bytes` left; always STATUS_OK for what is
- * no file. */
+/* STATUS_IO when the disk that `file` goes to has fewer than `bytes` left; always STATUS_OK for
+ * what is no file. */
 MUST_CHECK Status outfile_check_room(const OutFile *file, double bytes, Err *err);
 
 /* Writes all of `bytes` to `path` through an OutFile. */
@@ -64,8 +65,8 @@ MUST_CHECK Status file_write_text(const char *path, const Text *text, Err *err);
  * component followed. STATUS_IO when they lead in a circle. */
 MUST_CHECK Status file_resolve(const char *path, char **out, Err *err);
 
-/* A new empty folder beside `path`, for another program to write to, in *folder (owned). It is removed,
- * when it is empty, by file_forget or by a signal. */
+/* A new empty folder beside `path`, for another program to write to, in *folder (owned). It is
+ * removed, when it is empty, by file_forget or by a signal. */
 MUST_CHECK Status file_temporary_folder(const char *path, char **folder, Err *err);
 /* Has `name` (allocated) removed by file_forget or by a signal, too, if it exists by then. */
 MUST_CHECK Status file_remove_on_signal(char *name, Err *err);
@@ -78,12 +79,12 @@ void file_forget(char *temporary);
 /* Makes a folder and its missing parents. */
 MUST_CHECK Status file_make_folder(const char *path, Err *err);
 
-/* Removes temporary files when SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU or SIGXFSZ ends the
- * program; signals that the caller ignores stay ignored. main calls it once; the table of temporary
- * names is a global, because a handler reaches nothing else. */
+/* Removes temporary files when SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU or SIGXFSZ ends
+ * the program; signals that the caller ignores stay ignored. main calls it once; the table of
+ * temporary names is a global, because a handler reaches nothing else. */
 void file_clean_up_on_signals(void);
-/* Has a signal that ends the program kill this process group first, so that it makes no more files; 0: none
- * any more. One group at a time. */
+/* Has a signal that ends the program kill this process group first, so that it makes no more files;
+ * 0: none any more. One group at a time. */
 void file_kill_on_signal(pid_t group);
 /* Occupies standard streams that the caller has closed, so that no file opened later takes their
  * place; using them fails. main calls it once, before any file is opened. */

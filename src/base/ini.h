@@ -9,11 +9,12 @@
 typedef Status IniTake(void *user, const char *section, const char *name, const char *value,
                        Err *err);
 
-/* Reads the file, `what` ("a look") naming its kind in sentences, and calls `take` line by line. A line
- * whose first character is ';' or '#' is a comment, and so is the rest of a line from a ';' that
- * follows a blank or a '='. Blanks around names, values and sections, and in front of lines, do not count.
- * What names and values point into is handed over in *text (owned), or freed when `text` is NULL.
- * STATUS_INPUT, naming file and line, on any other line, and what `take` returns. */
+/* Reads the file, `what` ("a look") naming its kind in sentences, and calls `take` line by line. A
+ * line whose first character is ';' or '#' is a comment, and so is the rest of a line from a ';'
+ * that follows a blank or a '='. Blanks around names, values and sections, and in front of lines,
+ * do not count. What names and values point into is handed over in *text (owned), or freed when
+ * `text` is NULL. STATUS_INPUT, naming file and line, on any other line, and what `take`
+ * returns. */
 MUST_CHECK Status ini_read(const char *path, const char *what, IniTake *take, void *user,
                            char **text, Err *err);
 

@@ -1,6 +1,7 @@
-/* JSON, made with jansson so that no failed allocation is forgotten: whatever is made of NULL is NULL, and the
- * NULL that comes out at the end is a Status. Values are made by these functions, by json_pack and by
- * those of jansson that return a new value; what sets or appends without saying so is not used. */
+/* JSON, made with jansson so that no failed allocation is forgotten: whatever is made of NULL is
+ * NULL, and the NULL that comes out at the end is a Status. Values are made by these functions, by
+ * json_pack and by those of jansson that return a new value; what sets or appends without saying so
+ * is not used. */
 #ifndef CORCAST_BASE_JSON_H
 #define CORCAST_BASE_JSON_H
 
@@ -17,16 +18,17 @@ typedef struct JsonMember {
     json_t *value;
 } JsonMember;
 
-/* `object` with a member more, whose value it takes; NULL, and both are let go of, when either is NULL or
- * memory runs out. */
+/* `object` with a member more, whose value it takes; NULL, and both are let go of, when either is
+ * NULL or memory runs out. */
 MUST_CHECK json_t *json_with(json_t *object, const char *key, json_t *value);
 /* Likewise with `n` members more. */
 MUST_CHECK json_t *json_with_members(json_t *object, const JsonMember *members, size_t n);
 /* Likewise `array` with an item more. */
 MUST_CHECK json_t *json_with_item(json_t *array, json_t *value);
 
-/* Appends `json` as text, in lines with `indent` blanks a level or, with 0, in one, and lets go of it.
- * Numbers read back to the same double. The text fails when `json` is NULL or memory runs out. */
+/* Appends `json` as text, in lines with `indent` blanks a level or, with 0, in one, and lets go of
+ * it. Numbers read back to the same double. The text fails when `json` is NULL or memory runs
+ * out. */
 void text_json(Text *text, json_t *json, int indent);
 
 #endif

@@ -11,8 +11,8 @@ MUST_CHECK Status mem_calloc(void *out, size_t count, size_t size, const char *w
 
 /* How much the machine has, infinity when it does not say. */
 double mem_of_machine(void);
-/* STATUS_MEMORY, naming what needs them, when the machine has not so many bytes. What is granted page by
- * page would otherwise end the program in the middle of a run. */
+/* STATUS_MEMORY, naming what needs them, when the machine has not so many bytes. What is granted
+ * page by page would otherwise end the program in the middle of a run. */
 MUST_CHECK Status mem_check(double bytes, const char *name, Err *err);
 
 /* Makes room for at least `needed` items of `size` bytes in the array *items, whose capacity is
@@ -21,8 +21,9 @@ MUST_CHECK Status mem_check(double bytes, const char *name, Err *err);
 MUST_CHECK Status mem_reserve(void *items, size_t *capacity, size_t needed, size_t size,
                               const char *what, Err *err);
 
-/* STATUS_MEMORY with the sentence "out of memory: no room `purpose` `subject`", as in "to read", a file. For
- * what a library allocates: one that fails without telling why leaves ENOMEM in errno where that was it. */
+/* STATUS_MEMORY with the sentence "out of memory: no room `purpose` `subject`", as in "to read", a
+ * file. For what a library allocates: one that fails without telling why leaves ENOMEM in errno
+ * where that was it. */
 MUST_CHECK Status mem_out_of(const char *purpose, const char *subject, Err *err);
 
 /* A copy of `text` in *out (owned). */

@@ -1,5 +1,5 @@
-/* How far something is, on standard error: a line that changes on a terminal, a line every ten seconds
- * elsewhere, so that a log of a long run says that it goes on. */
+/* How far something is, on standard error: a line that changes on a terminal, a line every ten
+ * seconds elsewhere, so that a log of a long run says that it goes on. */
 #ifndef CORCAST_BASE_PROGRESS_H
 #define CORCAST_BASE_PROGRESS_H
 
@@ -14,8 +14,8 @@ typedef struct Progress {
 
 /* Shows nothing when `quiet`. `what` is borrowed. */
 void progress_start(Progress *progress, const char *what, bool quiet);
-/* Shows `fraction` in [0, 1] and, after a second, how long the rest takes if it goes on like this: at most ten times
- * a second on a terminal, once in ten seconds elsewhere. */
+/* Shows `fraction` in [0, 1] and, after a second, how long the rest takes if it goes on like this:
+ * at most ten times a second on a terminal, once in ten seconds elsewhere. */
 void progress_show(Progress *progress, double fraction);
 /* progress_show for a library's callback, whose context is the Progress. */
 void progress_report(double fraction, void *progress);

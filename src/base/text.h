@@ -7,9 +7,10 @@
 #include <stddef.h>
 
 /* Text that grows. A failed append is remembered in `failed` and reported once by text_check, so
- * that writers of long files need no check a line. What is made of a text that failed fails, too: its
- * characters are NULL, and what takes text to write takes NULL for a failure. Initialise with TEXT_INIT or
- * zeros, free with text_release. The members are for the room base alone; others ask text_chars. */
+ * that writers of long files need no check a line. What is made of a text that failed fails, too:
+ * its characters are NULL, and what takes text to write takes NULL for a failure. Initialise with
+ * TEXT_INIT or zeros, free with text_release. The members are for the room base alone; others ask
+ * text_chars. */
 typedef struct Text {
     char *chars;
     size_t length;
@@ -26,16 +27,16 @@ void text_puts(Text *text, const char *chars);
 /* Appends a whole text; one that failed makes `text` fail. */
 void text_add(Text *text, const Text *part);
 void text_printf(Text *text, const char *format, ...) PRINTF_LIKE(2, 3);
-/* Appends text from outside, say a file's name, as part of one line of UTF-8: a control character becomes
- * a blank, and a byte that is no UTF-8 becomes U+FFFD. */
+/* Appends text from outside, say a file's name, as part of one line of UTF-8: a control character
+ * becomes a blank, and a byte that is no UTF-8 becomes U+FFFD. */
 void text_put_line(Text *text, const char *chars);
 /* STATUS_MEMORY when an append has failed, else STATUS_OK. */
 MUST_CHECK Status text_check(const Text *text, Err *err);
-/* The characters, zero-terminated, "" when none were appended; NULL when an append has failed. Borrowed
- * until the text changes. */
+/* The characters, zero-terminated, "" when none were appended; NULL when an append has failed.
+ * Borrowed until the text changes. */
 const char *text_chars(const Text *text);
-/* Hands the characters over in *out (owned), zero-terminated, and leaves the text empty; or STATUS_MEMORY,
- * and the text is to be released as ever. */
+/* Hands the characters over in *out (owned), zero-terminated, and leaves the text empty; or
+ * STATUS_MEMORY, and the text is to be released as ever. */
 MUST_CHECK Status text_take(Text *text, char **out, Err *err);
 /* Takes `count` characters from the one numbered `at` on out of a text that has them. */
 void text_cut(Text *text, size_t at, size_t count);
@@ -44,11 +45,11 @@ void text_clear(Text *text);
 
 /* U+FFFD, which stands for what is not UTF-8. */
 #define UTF8_REPLACEMENT "\xEF\xBF\xBD"
-/* How many bytes the UTF-8 character at the start of `bytes` (zero-terminated) has, 1 to 4; 0 where there is
- * none, or one that XML does not take (U+FFFE, U+FFFF). */
+/* How many bytes the UTF-8 character at the start of `bytes` (zero-terminated) has, 1 to 4; 0 where
+ * there is none, or one that XML does not take (U+FFFE, U+FFFF). */
 size_t utf8_length(const char *bytes);
-/* Appends `chars` as UTF-8: each byte that is of no well-formed character becomes U+FFFD. For names of files,
- * which may be any bytes, where UTF-8 is promised. */
+/* Appends `chars` as UTF-8: each byte that is of no well-formed character becomes U+FFFD. For names
+ * of files, which may be any bytes, where UTF-8 is promised. */
 void text_utf8(Text *text, const char *chars);
 
 enum { NUMBER_TEXT_SIZE = 32 };

@@ -40,27 +40,24 @@ typedef struct Field {
  *     flow      ml/min  Q = S Q_perf / S_all, S the flow shares at and below the segment and S_all
  *                       those of the tree; in a tree without shares of its own, S counts terminals
  *     velocity  mm/s    the mean, v = Q / (pi r^2)
- *     pressure  mmHg    p_perf less the drops 8 mu l Q / (pi r^4) from the root to here (Poiseuille)
- *     wss       Pa      wall shear stress 4 mu Q / (pi r^3)
- *     reynolds          2 rho v r / mu, rho = 1.05e-3 g/mm^3
- *     level             bifurcations from the root to the segment's start
+ *     pressure  mmHg    p_perf less the drops 8 mu l Q / (pi r^4) from the root to here
+ * (Poiseuille) wss       Pa      wall shear stress 4 mu Q / (pi r^3) reynolds          2 rho v r /
+ * mu, rho = 1.05e-3 g/mm^3 level             bifurcations from the root to the segment's start
  *     strahler          1 at terminals; the largest order m of the daughters, m + 1 where at least
  *                       two have it [Strahler 1957]
- *     diameter-strahler Strahler orders that heed diameters [Jiang, Kassab & Fung, J. Appl. Physiol.
- *                       76 (1994) 882-892]: 1 at terminals; else m, the largest of the daughters, or
- *                       m + 1 if the diameter is above (D_m + S_m + D_m+1 - S_m+1) / 2, D and S mean
- *                       and standard deviation of the diameters of all vessels of that order, from
- *                       Strahler orders on until at most 1 % of the vessels change. A vessel is all
- *                       that lies between two branchings
- *     branch            main branch, numbered from 1 in array order: at each bifurcation the
- *                       thickest daughter (the first of several) continues its parent's, and the
- *                       others begin new ones, as do all segments that leave a root
+ *     diameter-strahler Strahler orders that heed diameters [Jiang, Kassab & Fung, J. Appl.
+ * Physiol. 76 (1994) 882-892]: 1 at terminals; else m, the largest of the daughters, or m + 1 if
+ * the diameter is above (D_m + S_m + D_m+1 - S_m+1) / 2, D and S mean and standard deviation of the
+ * diameters of all vessels of that order, from Strahler orders on until at most 1 % of the vessels
+ * change. A vessel is all that lies between two branchings branch            main branch, numbered
+ * from 1 in array order: at each bifurcation the thickest daughter (the first of several) continues
+ * its parent's, and the others begin new ones, as do all segments that leave a root
  *
  * mu is the constant viscosity of the blood, or viscosity_pries_pa_s of each segment's radius.
  * Velocity, wall shear stress and Reynolds number of a segment of radius 0 are not defined: NAN;
  * so are the pressures at and below one. Capitals in a name are as small letters. STATUS_USAGE for
- * an unknown name; STATUS_INPUT, naming the option and the header key, when neither `params` nor the
- * header says what the field needs. */
+ * an unknown name; STATUS_INPUT, naming the option and the header key, when neither `params` nor
+ * the header says what the field needs. */
 MUST_CHECK Status derive_field(const Tree *tree, const FlowParams *params, const char *name,
                                Field *field, Err *err);
 void field_release(Field *field);
@@ -86,8 +83,8 @@ typedef struct TreeSummary {
     double terminal_pressure_min_mmhg, terminal_pressure_mean_mmhg, terminal_pressure_max_mmhg;
 } TreeSummary;
 
-/* The law that a tree's viscosity follows: the params', else constant where they give a viscosity, else the
- * tree's. */
+/* The law that a tree's viscosity follows: the params', else constant where they give a viscosity,
+ * else the tree's. */
 ViscosityLaw derive_viscosity_law(const Tree *tree, const FlowParams *params);
 
 MUST_CHECK Status derive_summary(const Tree *tree, const FlowParams *params, TreeSummary *summary,
@@ -116,10 +113,10 @@ typedef struct StatisticsTable {
     size_t n;
 } StatisticsTable;
 
-/* How number, diameter and length of the elements go with their order n, from straight lines through
- * the logarithms of their numbers and means by least squares, all orders weighing alike [Horton,
- * Geol. Soc. Am. Bull. 56 (1945) 275-370]: numbers as ratio^-n, diameters and lengths as ratio^n.
- * NAN with fewer than two orders; a mean of 0 is left out. */
+/* How number, diameter and length of the elements go with their order n, from straight lines
+ * through the logarithms of their numbers and means by least squares, all orders weighing alike
+ * [Horton, Geol. Soc. Am. Bull. 56 (1945) 275-370]: numbers as ratio^-n, diameters and lengths as
+ * ratio^n. NAN with fewer than two orders; a mean of 0 is left out. */
 typedef struct OrderRatios {
     double number, diameter, length;
 } OrderRatios;

@@ -1,10 +1,11 @@
 /* Diameter-defined Strahler orders. A round takes mean and standard deviation of the diameters in
- * every order, which give the bounds between the orders, and then orders all vessels anew, terminals
- * first: from the largest order m among its daughters a vessel rises to m + 1 when it is thicker
- * than the bound between the two. Orders therefore never fall towards the root and leave no gaps.
+ * every order, which give the bounds between the orders, and then orders all vessels anew,
+ * terminals first: from the largest order m among its daughters a vessel rises to m + 1 when it is
+ * thicker than the bound between the two. Orders therefore never fall towards the root and leave no
+ * gaps.
  *
- * The rounds end when fewer than one vessel in a hundred changes, as their authors' do at changes of
- * 1 %: where diameters have no gaps the bounds go on creeping, ever more slowly, and in the end
+ * The rounds end when fewer than one vessel in a hundred changes, as their authors' do at changes
+ * of 1 %: where diameters have no gaps the bounds go on creeping, ever more slowly, and in the end
  * merge orders that belong apart. */
 #include "derive/fields.h"
 #include "derive/vessels.h"
@@ -40,8 +41,8 @@ static void measure_bins(const Vessels *vessels, const int32_t *order, Bin *bin,
         bin[b].bound = (bin[b].mean + bin[b].sd + bin[b + 1].mean - bin[b + 1].sd) / 2;
 }
 
-/* Orders every vessel anew; returns how many changed. `largest`, zeroed here, holds the largest order
- * among the daughters of each. */
+/* Orders every vessel anew; returns how many changed. `largest`, zeroed here, holds the largest
+ * order among the daughters of each. */
 static size_t assign(const Vessels *vessels, const Bin *bin, int32_t *largest, int32_t *order)
 {
     size_t changed = 0;

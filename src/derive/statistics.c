@@ -1,6 +1,6 @@
 /* Everything is counted over vessels, so that a measured tree, whose vessels are chains of short
- * segments, stands beside a grown one. Levels and both kinds of order go through the same two steps:
- * merge vessels into elements, then take the elements group by group. */
+ * segments, stands beside a grown one. Levels and both kinds of order go through the same two
+ * steps: merge vessels into elements, then take the elements group by group. */
 #include "derive/derive.h"
 #include "derive/vessels.h"
 

@@ -27,8 +27,8 @@ typedef struct Vessels {
 MUST_CHECK Status vessels_init(Vessels *vessels, const Tree *tree, Err *err);
 void vessels_release(Vessels *vessels);
 
-/* For each vessel, the thickest of those that come from it and have its order, the first of several,
- * in *heir (owned, n entries); NO_VESSEL where there is none. */
+/* For each vessel, the thickest of those that come from it and have its order, the first of
+ * several, in *heir (owned, n entries); NO_VESSEL where there is none. */
 MUST_CHECK Status vessels_heirs(const Vessels *vessels, const int32_t *order, int32_t **heir,
                                 Err *err);
 

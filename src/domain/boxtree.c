@@ -32,7 +32,8 @@ static Box widened(Box box)
     return (Box){vec3_sub(box.low, pad), vec3_add(box.high, pad)};
 }
 
-/* Reorders the items so that none before the one at `middle` is above it and none after it below. */
+/* Reorders the items so that none before the one at `middle` is above it and none after it
+ * below. */
 static void split_at(Item *items, int64_t n, int64_t middle, int axis)
 {
     int64_t low = 0, high = n - 1;

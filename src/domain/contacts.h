@@ -1,4 +1,5 @@
-/* Where a segment meets a boundary, to decide whether it stays inside; private to the room domain. */
+/* Where a segment meets a boundary, to decide whether it stays inside; private to the room
+ * domain. */
 #ifndef CORCAST_DOMAIN_CONTACTS_H
 #define CORCAST_DOMAIN_CONTACTS_H
 

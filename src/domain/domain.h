@@ -53,8 +53,8 @@ typedef struct Domain {
 /* Reads a text as listed at DomainKind, and the file it names. STATUS_USAGE, naming --domain, the
  * text and what is allowed, for a wrong text; STATUS_INPUT, naming the file, for a file that is
  * missing, malformed or no domain (an empty mask, a mesh that is open or inside out, a polygon that
- * crosses itself). Both also for a domain that fills less than 1e-3 of its bounds, masks excepted. Release
- * with domain_release. */
+ * crosses itself). Both also for a domain that fills less than 1e-3 of its bounds, masks excepted.
+ * Release with domain_release. */
 MUST_CHECK Status domain_parse(Domain *domain, const char *spec, Err *err);
 
 /* Frees what the domain owns. A zeroed or released domain is allowed. */

@@ -18,8 +18,8 @@ struct Mask {
 };
 
 /* Readers fill n, is_tissue, corner and step of a zeroed mask. STATUS_INPUT naming the file.
- * A picture: black is not tissue; a pixel is `mm` wide, the middle of the picture is the origin, the
- * first row is at the top. */
+ * A picture: black is not tissue; a pixel is `mm` wide, the middle of the picture is the origin,
+ * the first row is at the top. */
 MUST_CHECK Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err);
 /* NIfTI-1 or -2: what is above 0 is tissue; world coordinates are those of the sform or, without
  * one, of the qform. */

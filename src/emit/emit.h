@@ -23,7 +23,8 @@ typedef struct PovrayReport {
     int joint_sides; /* of a joint's mesh; 0: joints are exact, which POV-Ray can hold 174,000 of */
 } PovrayReport;
 
-/* STATUS_USAGE when POV-Ray cannot #include a file of this name: it takes printable ASCII but for '"'. */
+/* STATUS_USAGE when POV-Ray cannot #include a file of this name: it takes printable ASCII but for
+ * '"'. */
 MUST_CHECK Status povray_check_name(const char *geometry_file, Err *err);
 
 /* Writes a scene for POV-Ray 3.7 and its geometry include (appended to *scene and *geometry; the

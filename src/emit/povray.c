@@ -1,5 +1,5 @@
-/* Two files: the scene (camera, lights) and the geometry, a union of one macro call a primitive, of one
- * isosurface a cell, or of a blob [docs/POVRAY.md]. */
+/* Two files: the scene (camera, lights) and the geometry, a union of one macro call a primitive, of
+ * one isosurface a cell, or of a blob [docs/POVRAY.md]. */
 #include "emit/povray_text.h"
 
 #include "surface/surface.h"
@@ -110,8 +110,8 @@ Status povray_check_name(const char *geometry_file, Err *err)
                    geometry_file);
 }
 
-/* An identifier made from a file name: capital first, as POV-Ray's own are lower case, which take at most 255
- * characters. The end of a long name is a hash of the whole (FNV-1a). */
+/* An identifier made from a file name: capital first, as POV-Ray's own are lower case, which take
+ * at most 255 characters. The end of a long name is a hash of the whole (FNV-1a). */
 static void put_guard(Text *text, const char *name)
 {
     enum { LONGEST = 200 };

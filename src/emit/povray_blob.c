@@ -1,24 +1,27 @@
-/* One call of Vessel_Blob for each segment. Space is halved, along the longest side of a box each time, until
- * few segments reach into a box; each box is a blob of its own, clipped to the box, because POV-Ray loses
- * precision with the number of components along a ray and the way between them [docs/POVRAY.md section 9].
+/* One call of Vessel_Blob for each segment. Space is halved, along the longest side of a box each
+ * time, until few segments reach into a box; each box is a blob of its own, clipped to the box,
+ * because POV-Ray loses precision with the number of components along a ray and the way between
+ * them [docs/POVRAY.md section 9].
  *
- * Where segments differ in what they are painted with, a pigment finds out which term is largest at a
- * point: POV-Ray's own blending of a blob's textures is by strength and never lets one segment win. Its
- * function is a hierarchy of boxes, written as functions that call each other and look only into boxes
- * that hold the point. */
+ * Where segments differ in what they are painted with, a pigment finds out which term is largest at
+ * a point: POV-Ray's own blending of a blob's textures is by strength and never lets one segment
+ * win. Its function is a hierarchy of boxes, written as functions that call each other and look
+ * only into boxes that hold the point. */
 #include "emit/povray_text.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-/* A pigment map holds 256 entries, and so does a colour map: two of them in one another count on. */
+/* A pigment map holds 256 entries, and so does a colour map: two of them in one another count
+ * on. */
 enum { GROUP = 256, MAX_PAINTED = GROUP * GROUP, LEAF = 4 };
 
-/* How many segments a cell holds at most, unless halving it would leave most of them in both halves. */
+/* How many segments a cell holds at most, unless halving it would leave most of them in both
+ * halves. */
 enum { CELL = 128 };
 
-/* POV-Ray's time for a ray grows with the square of the segments that it passes; so many in one another,
- * looked for about so many of a cell, take minutes for a picture. */
+/* POV-Ray's time for a ray grows with the square of the segments that it passes; so many in one
+ * another, looked for about so many of a cell, take minutes for a picture. */
 enum { CROWD = 64, PROBES = 64 };
 
 /* Cells reach into their neighbours, so that no ray slips between them. */
@@ -30,7 +33,7 @@ static Box reach_of(const FieldSegment *segment)
     return box_with_ball(box_with_ball(box_empty(), segment->a, reach), segment->b, reach);
 }
 
-/* ---- cells --------------------------------------------------------------------------------------- */
+/* ---- cells ----------------------------------------------------------------------------------- */
 
 typedef struct Cells {
     const Scene *scene;
@@ -106,7 +109,8 @@ static Status put_cell(Cells *cells, size_t first, size_t n, const Box *clip, Er
     return STATUS_OK;
 }
 
-/* The segments of lists[first .. first + n) that reach into the box, appended after those: how many. */
+/* The segments of lists[first .. first + n) that reach into the box, appended after those: how
+ * many. */
 static size_t take_those_in(Cells *cells, size_t first, size_t n, Box box)
 {
     uint32_t *list = cells->lists + first;
@@ -163,7 +167,7 @@ Status put_blob(Text *text, const Scene *scene, size_t *n_cells, Err *err)
     return status;
 }
 
-/* ---- which term is largest ----------------------------------------------------------------------- */
+/* ---- which term is largest ------------------------------------------------------------------- */
 
 typedef struct Item {
     double key;

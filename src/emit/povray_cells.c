@@ -1,6 +1,7 @@
 /* Numbers are printed with the digits that read back exactly, and every expression in the order of
- * `surface`'s cellfunction.c, so that what POV-Ray evaluates is what cell_function returns. A segment has
- * one function for each part of it that a cell feels, so that cells are short to read. */
+ * `surface`'s cellfunction.c, so that what POV-Ray evaluates is what cell_function returns. A
+ * segment has one function for each part of it that a cell feels, so that cells are short to
+ * read. */
 #include "emit/povray_text.h"
 
 #include <stdio.h>
@@ -108,7 +109,7 @@ done:
     return status;
 }
 
-/* ---- cells --------------------------------------------------------------------------------------- */
+/* ---- cells ----------------------------------------------------------------------------------- */
 
 /* A cell's values, with room that every cell uses again. */
 typedef struct CellText {

@@ -1,19 +1,20 @@
-/* POV-Ray has no ruled surface between two circles. It is of degree 4, so a `poly` holds it, but POV-Ray
- * expands a poly about the start of the ray: from a distance of D radii its coefficients lose D^4 of
- * their precision, and small vessels dissolve. An `isosurface` whose function is zero on the surface is
- * evaluated on the spot and keeps full precision; it is found to within 1e-7 radii.
+/* POV-Ray has no ruled surface between two circles. It is of degree 4, so a `poly` holds it, but
+ * POV-Ray expands a poly about the start of the ray: from a distance of D radii its coefficients
+ * lose D^4 of their precision, and small vessels dissolve. An `isosurface` whose function is zero
+ * on the surface is evaluated on the spot and keeps full precision; it is found to within 1e-7
+ * radii.
  *
- * The function [docs/METHODS.md section 7]. In the frame of the first circle, x along e_1, y along f,
- * z along its axis, unit r_1, a ruling's x and z run straight from (cos p, 0) to a point of the line from
- * a = C_2(pi) to b = C_2(0). So the points of equal l lie in planes that hold the line from
- * (1 - l) (-1, 0) + l a to (1 - l) (1, 0) + l b, on the ellipse with that diameter in the plane and the
- * half axis R = 1 - l + l r_2 / r_1 along y. With s in [-1, 1] the place along the diameter,
- *   G = y^2 - R^2 (1 - s^2),
- * where l is the root of a quadratic: x and z lie on the line of l. Where rulings bunch together G has no
- * largest gradient, so that it is multiplied by J, the area that (l, s) has in (x, z). Outside the
- * planes of the circles and of the rulings in y = 0, the distance to these stands in for it. It does not
- * exceed half of max_gradient times the distance from the surface anywhere: POV-Ray needs that without
- * the half to find the first root, and with it to be right when it skips rays near one that missed. */
+ * The function [docs/METHODS.md section 7]. In the frame of the first circle, x along e_1, y along
+ * f, z along its axis, unit r_1, a ruling's x and z run straight from (cos p, 0) to a point of the
+ * line from a = C_2(pi) to b = C_2(0). So the points of equal l lie in planes that hold the line
+ * from (1 - l) (-1, 0) + l a to (1 - l) (1, 0) + l b, on the ellipse with that diameter in the
+ * plane and the half axis R = 1 - l + l r_2 / r_1 along y. With s in [-1, 1] the place along the
+ * diameter, G = y^2 - R^2 (1 - s^2), where l is the root of a quadratic: x and z lie on the line of
+ * l. Where rulings bunch together G has no largest gradient, so that it is multiplied by J, the
+ * area that (l, s) has in (x, z). Outside the planes of the circles and of the rulings in y = 0,
+ * the distance to these stands in for it. It does not exceed half of max_gradient times the
+ * distance from the surface anywhere: POV-Ray needs that without the half to find the first root,
+ * and with it to be right when it skips rays near one that missed. */
 #include "emit/povray_text.h"
 
 /* POV-Ray holds 1,048,575 different constants in functions; a joint has 6. */
@@ -43,8 +44,8 @@ static JointPlane joint_plane(const JointFrame *frame, Vec3 across, Vec3 axis)
                         .ratio = 1 + frame->radius_change * unit};
 }
 
-/* The length of the gradient of J G at (l, s) of the surface; along y the mean slope from there to the
- * side of the box that holds the joint. */
+/* The length of the gradient of J G at (l, s) of the surface; along y the mean slope from there to
+ * the side of the box that holds the joint. */
 static double gradient_at(const JointPlane *plane, double l, double s)
 {
     /* Half the diameter, and the change of the point (l, s) with l: J is their cross product. */

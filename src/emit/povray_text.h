@@ -28,11 +28,11 @@ MUST_CHECK Status put_terms(Text *text, const Scene *scene, const PovrayParams *
 /* Appends an isosurface for each cell. */
 MUST_CHECK Status put_cells(Text *text, const Scene *scene, const PovrayParams *params,
                             const CellTree *cells, Err *err);
-/* Appends the calls that make a blob, of which *n_cells is 0, or so many of them. STATUS_INFEASIBLE when
- * POV-Ray cannot hold them. */
+/* Appends the calls that make a blob, of which *n_cells is 0, or so many of them. STATUS_INFEASIBLE
+ * when POV-Ray cannot hold them. */
 MUST_CHECK Status put_blob(Text *text, const Scene *scene, size_t *n_cells, Err *err);
-/* Appends what tells the segments of a blob apart: the functions that find the largest term, the name of
- * the one for all, and the segments' paints in groups, and how many groups. */
+/* Appends what tells the segments of a blob apart: the functions that find the largest term, the
+ * name of the one for all, and the segments' paints in groups, and how many groups. */
 MUST_CHECK Status put_blob_paint(const Scene *scene, Text *functions, Text *top, Text *groups,
                                  Text *n_groups, Err *err);
 /* The sides of joints' meshes, 0 where POV-Ray holds all of the scene's exactly. */

@@ -41,8 +41,9 @@ int hit_sphere(Ray ray, Vec3 center, double radius, Hit hits[2]);
  * most 4, two but for lines through a rim. */
 int hit_cylinder(Ray ray, const CylinderFrame *cylinder, Hit hits[4]);
 
-/* Narrows [*low, *high] to where the line lies between two planes across an axis. In the plane of one
- * of them 0 * infinity is NaN, every comparison with it is false, and that plane does not narrow. */
+/* Narrows [*low, *high] to where the line lies between two planes across an axis. In the plane of
+ * one of them 0 * infinity is NaN, every comparison with it is false, and that plane does not
+ * narrow. */
 static inline void clip_slab(double from, double inverse, double box_low, double box_high,
                              double *low, double *high)
 {

@@ -1,10 +1,10 @@
 /* A line x(t) = o + t D meets the ruling of angle p where the two are coplanar:
  *   g(p) = D . ((C_1(p) - o) x (C_2(p) - C_1(p))) = 0,
- * a trigonometric polynomial of degree 2 without a sin^2 term. At a root, dg/dp = D . (S_p x S_l): it is
- * simple unless the line touches the surface, whatever the view, face-on and end-on included.
+ * a trigonometric polynomial of degree 2 without a sin^2 term. At a root, dg/dp = D . (S_p x S_l):
+ * it is simple unless the line touches the surface, whatever the view, face-on and end-on included.
  *
- * With tan(p / 2) or its complement in [-1, 1], g is a quartic on each half of the circle, whose roots
- * quartic.c isolates. */
+ * With tan(p / 2) or its complement in [-1, 1], g is a quartic on each half of the circle, whose
+ * roots quartic.c isolates. */
 #include "geom/joint.h"
 
 #include "geom/quartic.h"
@@ -61,8 +61,8 @@ static double triple(Vec3 a, Vec3 b, Vec3 c)
     return vec3_dot(a, vec3_cross(b, c));
 }
 
-/* Where the line meets the ruling of an angle at which g is 0: false when that is off the ends, or when
- * the ruling runs along the line beside it. The line starts near the joint. */
+/* Where the line meets the ruling of an angle at which g is 0: false when that is off the ends, or
+ * when the ruling runs along the line beside it. The line starts near the joint. */
 static bool ruling_hit(const JointFrame *joint, Ray line, double cosine, double sine, Hit *hit)
 {
     Vec3 start, run;

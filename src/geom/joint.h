@@ -18,17 +18,17 @@ typedef struct JointFrame {
     double radius, radius_change;
 } JointFrame;
 
-/* Circles of radius[i] > 0 about center[i] in the planes across axis[i]. The axes are unit vectors that
- * both lead from the first circle on to the second. Where they are parallel, any f will do and one is
- * chosen. */
+/* Circles of radius[i] > 0 about center[i] in the planes across axis[i]. The axes are unit vectors
+ * that both lead from the first circle on to the second. Where they are parallel, any f will do and
+ * one is chosen. */
 JointFrame joint_frame(const Vec3 center[2], const Vec3 axis[2], const double radius[2]);
 
 /* The point of the surface at angle p, given by its cosine and sine, and l. */
 Vec3 joint_point(const JointFrame *joint, double cosine, double sine, double l);
 
-/* All crossings of the line with the surface, in no order: at most 4. Lines that graze it, crossing it
- * twice within 2^-32 of half a circle, miss. The normals point outwards when each circle lies on one
- * side of the other's plane. */
+/* All crossings of the line with the surface, in no order: at most 4. Lines that graze it, crossing
+ * it twice within 2^-32 of half a circle, miss. The normals point outwards when each circle lies on
+ * one side of the other's plane. */
 int hit_joint(Ray ray, const JointFrame *joint, Hit hits[4]);
 
 #endif

@@ -1,7 +1,8 @@
-/* A quartic in Bernstein form has as many roots in its interval as its coefficients change sign, or fewer
- * by an even number. So no change proves that there is none, and one that there is just one; more are
- * decided by halving [Lane & Riesenfeld 1981, Bounds on a polynomial, BIT 21, 112]. Zero counts as positive,
- * which gives a root at the end of an interval to one of the two that share it. */
+/* A quartic in Bernstein form has as many roots in its interval as its coefficients change sign, or
+ * fewer by an even number. So no change proves that there is none, and one that there is just one;
+ * more are decided by halving [Lane & Riesenfeld 1981, Bounds on a polynomial, BIT 21, 112]. Zero
+ * counts as positive, which gives a root at the end of an interval to one of the two that share
+ * it. */
 #include "geom/quartic.h"
 
 #include <math.h>
@@ -21,8 +22,8 @@ static double quartic_at(const double b[5], double x, double *slope)
     return c[0] + (c[1] - c[0]) * x;
 }
 
-/* The one root of a quartic whose ends 0 and 1 differ in sign: Newton's method, kept inside the bracket
- * by halving it. An end where it is 0 is not the root: that counts as positive. */
+/* The one root of a quartic whose ends 0 and 1 differ in sign: Newton's method, kept inside the
+ * bracket by halving it. An end where it is 0 is not the root: that counts as positive. */
 static double quartic_root(const double b[5])
 {
     double low = 0, high = 1, x = 0.5;
@@ -63,8 +64,8 @@ static void quartic_halve(double b[5], double second[5])
         b[i] = first[i];
 }
 
-/* Appends the roots of the quartic, which is that of [low, high], to the `n` at `roots`: how many there
- * are then. */
+/* Appends the roots of the quartic, which is that of [low, high], to the `n` at `roots`: how many
+ * there are then. */
 static int isolate_roots(double b[5], double low, double high, int halvings, double roots[4], int n)
 {
     int changes = sign_changes(b);

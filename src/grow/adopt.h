@@ -8,20 +8,20 @@
 /* The number of roots of a tree. */
 size_t adopt_inlets(const Tree *from);
 
-/* Whether growth can go on from params->from with these parameters. STATUS_USAGE and STATUS_INPUT, as
- * grow_tree says. */
+/* Whether growth can go on from params->from with these parameters. STATUS_USAGE and STATUS_INPUT,
+ * as grow_tree says. */
 MUST_CHECK Status adopt_check(const GrowParams *params, const Domain *domain, Err *err);
 
 /* Makes the tree, which adopt_check accepts, part of `net`, which is empty and has traits. */
 void adopt_tree(const Tree *from, Network *net);
 
-/* Gives the nodes of `out`, which are those of `net`, that were in `from` their ids and types back, and
- * the others the smallest ids that are free; and appends those header lines of `from` whose keys `out`
- * has no line of. */
+/* Gives the nodes of `out`, which are those of `net`, that were in `from` their ids and types back,
+ * and the others the smallest ids that are free; and appends those header lines of `from` whose
+ * keys `out` has no line of. */
 MUST_CHECK Status adopt_restore(const Tree *from, const Network *net, Tree *out, Err *err);
 
-/* What the radii of the segments of `from` were multiplied by in `out`, whose ids are restored: median, least
- * and greatest in *report, 0 when none had a radius. */
+/* What the radii of the segments of `from` were multiplied by in `out`, whose ids are restored:
+ * median, least and greatest in *report, 0 when none had a radius. */
 MUST_CHECK Status adopt_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err);
 
 /* How many nodes of the tree are outside the domain. */

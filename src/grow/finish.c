@@ -3,10 +3,10 @@
  * is exact to a few units in the last place for any gamma: Murray's law holds by the definition of
  * P, and the daughters of a bifurcation see one pressure by that of g.
  *
- * Where viscosity depends on the radius, radii and viscosities are computed in turn until they agree.
- * A radius goes with the fourth root of the viscosity, which falls by far less than the fourth power of
- * the radius in all but the thinnest vessels, so this converges; where it does not, steps are
- * shortened. */
+ * Where viscosity depends on the radius, radii and viscosities are computed in turn until they
+ * agree. A radius goes with the fourth root of the viscosity, which falls by far less than the
+ * fourth power of the radius in all but the thinnest vessels, so this converges; where it does not,
+ * steps are shortened. */
 #include "grow/finish.h"
 
 #include "grow/adopt.h"
@@ -60,8 +60,8 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
 static const double agreement = 1e-13;
 enum { MAX_ROUNDS = 200 };
 
-/* Computes all radii, with the flows that the terminals' shares ask for and the viscosities at these
- * radii. `flow` has room for one a node. */
+/* Computes all radii, with the flows that the terminals' shares ask for and the viscosities at
+ * these radii. `flow` has room for one a node. */
 static Status settle_radii(Network *net, const GrowParams *params, double *flow, Tree *tree,
                            Err *err)
 {

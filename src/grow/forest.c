@@ -1,6 +1,6 @@
-/* Trees race for tissue: where two meet, a point goes to the one that connects it at the lesser cost.
- * One that is ahead of its share has to wait, and meanwhile the others get the points between them, so
- * that territories come to fit the shares while vessels are still few and long. */
+/* Trees race for tissue: where two meet, a point goes to the one that connects it at the lesser
+ * cost. One that is ahead of its share has to wait, and meanwhile the others get the points between
+ * them, so that territories come to fit the shares while vessels are still few and long. */
 #include "grow/forest.h"
 
 #include <math.h>

@@ -18,8 +18,8 @@ MUST_CHECK Status forest_init(Forest *forest, size_t trees, const double *share,
                               Err *err);
 void forest_release(Forest *forest);
 
-/* Sets the limits when there are so many terminals, so that no tree gets far ahead of its share of the terminals there are. Some tree
- * that lacks terminals is always allowed more. */
+/* Sets the limits when there are so many terminals, so that no tree gets far ahead of its share of
+ * the terminals there are. Some tree that lacks terminals is always allowed more. */
 void forest_limit(Forest *forest, size_t terminals);
 
 /* Counts what was taken off the limits. */

@@ -1,14 +1,14 @@
-/* Terminals are added in passes [METHODS 1.2]: random points are tossed; each that is far enough from
- * the tree is connected to that of the nearest segments where it is cheapest, at the bifurcation
- * that is best there, if there is room [plan.c]. Points of a pass are taken one by one, not in the order
- * of tossing but neighbourhood after neighbourhood when the tree is large [pass.c]. The domain has its
- * final size throughout: scaling all lengths scales all costs alike, so this chooses as a domain that
- * grows with the tree does.
+/* Terminals are added in passes [METHODS 1.2]: random points are tossed; each that is far enough
+ * from the tree is connected to that of the nearest segments where it is cheapest, at the
+ * bifurcation that is best there, if there is room [plan.c]. Points of a pass are taken one by one,
+ * not in the order of tossing but neighbourhood after neighbourhood when the tree is large
+ * [pass.c]. The domain has its final size throughout: scaling all lengths scales all costs alike,
+ * so this chooses as a domain that grows with the tree does.
  *
  * The toss distance is controlled so that a fixed share of the points is far enough. It follows the
  * filling of the domain by itself, and falls, too, when points have no way to the tree within the
- * tissue, because nearer ones may. When no point finds room at the vessels' real thickness, they are
- * taken to be thinner, in the end bare centrelines. */
+ * tissue, because nearer ones may. When no point finds room at the vessels' real thickness, they
+ * are taken to be thinner, in the end bare centrelines. */
 #include "grow/grow.h"
 
 #include "grow/adopt.h"
@@ -34,8 +34,8 @@ static const double toss_notch = 0.1, toss_notch_in_tiles = 0.5;
 static const double least_length_share = 0.1;
 /* Trees with fewer terminals than this have cells too large to be full after a few misses. */
 enum { LEAST_WITH_FULL_CELLS = 1000 };
-/* Points without a connection for one that has: then vessels count as half as thick, below the least
- * thickness as lines, and at last the domain is full. */
+/* Points without a connection for one that has: then vessels count as half as thick, below the
+ * least thickness as lines, and at last the domain is full. */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
 static const double least_thickness = 1.0 / 64;
 

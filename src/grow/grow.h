@@ -30,14 +30,14 @@ typedef struct GrowParams {
     double gamma;     /* Murray exponent, in (0, 10] */
     double lambda;    /* exponent of the target, >= 0 */
     uint64_t seed;    /* of the random points */
-    /* The tree (borrowed) to grow on from, with its inlets; NULL: none. Its nodes keep their places,
-     * ids and types, its segments stay straight; a node other than an inlet has at most two children,
-     * an inlet one or two. Its radii, flow shares and header fields are not looked at. */
+    /* The tree (borrowed) to grow on from, with its inlets; NULL: none. Its nodes keep their
+     * places, ids and types, its segments stay straight; a node other than an inlet has at most two
+     * children, an inlet one or two. Its radii, flow shares and header fields are not looked at. */
     const Tree *from;
     size_t inlets; /* at most GROW_MAX_INLETS; 0: one, the domain's default, or those of `from` */
-    const Vec3 *inlet; /* mm (borrowed); one tree grows from each */
-    size_t
-        inlet_shares; /* 0: all get as many terminals, or as those of `from` have; else as many as inlets */
+    const Vec3 *inlet;   /* mm (borrowed); one tree grows from each */
+    size_t inlet_shares; /* 0: all get as many terminals, or as those of `from` have; else as many
+                            as inlets */
     const double *inlet_share;  /* > 0 (borrowed): the trees' terminals, relative to each other */
     double p_perf_mmhg;         /* at the inlet */
     double p_term_mmhg;         /* at every terminal, below p_perf_mmhg */
@@ -79,22 +79,22 @@ typedef struct GrowReport {
 /* STATUS_USAGE with a sentence that names the option at fault. */
 MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err);
 
-/* Grows a tree, or a forest whose trees share all flow, into *out (release with tree_release). Node 0
- * is the inlet; nodes are in depth-first order, tree after tree in the order of the inlets, ids
+/* Grows a tree, or a forest whose trees share all flow, into *out (release with tree_release). Node
+ * 0 is the inlet; nodes are in depth-first order, tree after tree in the order of the inlets, ids
  * 1 .. 2 N in that order, and the header is filled. Murray's law and the pressures hold
- * to rounding for the coordinates and radii in *out, by Pries's law with the viscosity at those very
- * radii. By territory, the flow share of a terminal is the number of points of a fine lattice over
- * the domain that are nearer to it than to any other. Centrelines do not cross. The same parameters
- * give the same tree, bit for bit. `report` may be NULL.
+ * to rounding for the coordinates and radii in *out, by Pries's law with the viscosity at those
+ * very radii. By territory, the flow share of a terminal is the number of points of a fine lattice
+ * over the domain that are nearer to it than to any other. Centrelines do not cross. The same
+ * parameters give the same tree, bit for bit. `report` may be NULL.
  *
- * Grown on from another tree, all nodes of that one are in *out with their ids, types and header lines;
- * new nodes take the smallest ids that are free. New segments are in the domain and keep clear of each
- * other and of the given ones, but for those of a vessel of several segments, of which they only keep
- * off the centrelines; given segments may be anywhere.
+ * Grown on from another tree, all nodes of that one are in *out with their ids, types and header
+ * lines; new nodes take the smallest ids that are free. New segments are in the domain and keep
+ * clear of each other and of the given ones, but for those of a vessel of several segments, of
+ * which they only keep off the centrelines; given segments may be anywhere.
  *
- * Fails with STATUS_USAGE as grow_params_check does, STATUS_INPUT when `from` is not as above or leaves
- * the plane of a domain of two dimensions, STATUS_INFEASIBLE when there is no room for
- * all terminals, when the radii span more than a double can hold, or when vessels are too thin for
+ * Fails with STATUS_USAGE as grow_params_check does, STATUS_INPUT when `from` is not as above or
+ * leaves the plane of a domain of two dimensions, STATUS_INFEASIBLE when there is no room for all
+ * terminals, when the radii span more than a double can hold, or when vessels are too thin for
  * blood to pass by Pries's law, and STATUS_MEMORY. */
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
                             GrowReport *report, Err *err);
@@ -135,16 +135,16 @@ uint64_t refine_moves(GrowRefine level, size_t terminals);
  * lambda, p_perf, p_term, q_perf and viscosity; flows may be unequal. `domain` holds all of it;
  * NULL: it may be anywhere.
  *
- * Inlet, terminals, node types, flow shares and header stay. Nodes are in depth-first order with ids
- * 1 .. n, and radii follow from the places by Murray's law and the pressures, which hold to
+ * Inlet, terminals, node types, flow shares and header stay. Nodes are in depth-first order with
+ * ids 1 .. n, and radii follow from the places by Murray's law and the pressures, which hold to
  * rounding. All that moves stays in the domain; segments that are longer than wide and clear of
  * those they share no node with stay so, and where they were not it does not get worse; the levels
  * above geometry also try to make all of them so. If more than one in ten were not, all vessels
  * count at a smaller part of their radii [report].
  *
  * With a budget of moves alone, the same tree and parameters give the same bits. `report` may be
- * NULL. Fails, *tree unchanged, with STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree that
- * cannot be refined, STATUS_INFEASIBLE when the radii span more than a double can hold, and
+ * NULL. Fails, *tree unchanged, with STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree
+ * that cannot be refined, STATUS_INFEASIBLE when the radii span more than a double can hold, and
  * STATUS_MEMORY. */
 MUST_CHECK Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                               RefineReport *report, Err *err);

@@ -1,8 +1,9 @@
 /* Radii change all over the tree as it grows, so rules that held when a segment was made may be
- * broken, by a little and for few segments, at the end. Each of these has its two bifurcations moved
- * to the best of a few places around, the nearest ones first, where the three segments that meet
- * there break the rules least. Moves change the radii by much less than what they leave to spare, so
- * that it is enough to look at all segments once and afterwards at those that were within that. */
+ * broken, by a little and for few segments, at the end. Each of these has its two bifurcations
+ * moved to the best of a few places around, the nearest ones first, where the three segments that
+ * meet there break the rules least. Moves change the radii by much less than what they leave to
+ * spare, so that it is enough to look at all segments once and afterwards at those that were within
+ * that. */
 #include "grow/mend.h"
 
 #include <float.h>
@@ -46,8 +47,8 @@ static double width_there(const Mending *mending, int32_t i)
     return mending->rules->thickness * (double)mending->grid->item[i].radius;
 }
 
-/* How far apart segments i and j should be at a thickness: pieces of a vessel only have to keep their
- * centrelines apart, and given segments nothing from each other. */
+/* How far apart segments i and j should be at a thickness: pieces of a vessel only have to keep
+ * their centrelines apart, and given segments nothing from each other. */
 static double needed(const Mending *mending, int32_t i, int32_t j, double thickness)
 {
     const Network *net = mending->net;
@@ -99,8 +100,8 @@ static double fault(const Mending *mending, int32_t i, double margin, int32_t be
     return worst;
 }
 
-/* The faults of the three segments that meet at a bifurcation; anything from `enough` on when they are
- * that much. */
+/* The faults of the three segments that meet at a bifurcation; anything from `enough` on when they
+ * are that much. */
 static double fault_at(const Mending *mending, int32_t node, double enough)
 {
     const int32_t *child = mending->net->segment[node].child;

@@ -8,9 +8,9 @@
 #include "grow/place.h"
 
 /* Moves bifurcations until, at all radii as of the last refresh times rules->thickness,
- * every segment is longer than wide and clear of those it shares no node with, as far as small moves
- * can bring that about. *left: the number of segments for which it is still not so. `grid` holds the
- * segments of `net`. `threads` do not change the result. */
+ * every segment is longer than wide and clear of those it shares no node with, as far as small
+ * moves can bring that about. *left: the number of segments for which it is still not so. `grid`
+ * holds the segments of `net`. `threads` do not change the result. */
 MUST_CHECK Status mend_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules,
                                int threads, size_t *left, Err *err);
 

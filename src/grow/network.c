@@ -1,8 +1,8 @@
-/* Every segment holds flare and cost of its daughters, so a change at one place is carried towards the
- * root by recomputing the segments on the way and nothing else: one cache line each, and exact,
+/* Every segment holds flare and cost of its daughters, so a change at one place is carried towards
+ * the root by recomputing the segments on the way and nothing else: one cache line each, and exact,
  * because nothing is added to or taken from a running sum. A split is carried up a few levels at
- * once, where it is a large part of what hangs there; further up, where it is a small one, sums wait
- * until all are refreshed, as the sensitivities do.
+ * once, where it is a large part of what hangs there; further up, where it is a small one, sums
+ * wait until all are refreshed, as the sensitivities do.
  *
  * The sensitivities are the derivatives of the root's cost, carried down by the chain rule. They
  * price a change below a segment in O(1). They age as the tree grows, which only blurs the choice
@@ -284,8 +284,8 @@ static void count_terminals(Network *net, int32_t i)
         segment->terminals += net->segment[segment->child[slot]].terminals;
 }
 
-/* Sums up what hangs on node i, no inlet, and tells its parent. Keeps rho where the sensitivity will
- * be. */
+/* Sums up what hangs on node i, no inlet, and tells its parent. Keeps rho where the sensitivity
+ * will be. */
 static void sum_up(Network *net, int32_t i)
 {
     count_terminals(net, i);
@@ -338,9 +338,9 @@ static void refresh_subtree(size_t index, int worker, void *context)
         refresh_daughters(net, i);
 }
 
-/* Lists the nodes with at least so many terminals, all on the way from an inlet, from the workspace's
- * end on, mothers first; and from its beginning on the daughters of theirs that have less. Returns
- * how many there are of these. */
+/* Lists the nodes with at least so many terminals, all on the way from an inlet, from the
+ * workspace's end on, mothers first; and from its beginning on the daughters of theirs that have
+ * less. Returns how many there are of these. */
 static size_t find_tops(const Network *net, int32_t least, size_t *upper)
 {
     size_t count = 0;

@@ -2,8 +2,8 @@
  * moment.
  *
  * Every node but an inlet is the distal end of the segment of its index; what hangs on an inlet are
- * root segments, one where the tree is grown. Segments are split in place: the one that is split keeps
- * its index as the distal part. */
+ * root segments, one where the tree is grown. Segments are split in place: the one that is split
+ * keeps its index as the distal part. */
 #ifndef CORCAST_GROW_NETWORK_H
 #define CORCAST_GROW_NETWORK_H
 
@@ -30,7 +30,8 @@ typedef struct Sensitivity {
     double extra; /* dS_root for one more terminal on every segment above this one */
 } Sensitivity;
 
-/* What sets segments apart where terminals are unequal, viscosities differ, or several trees grow. */
+/* What sets segments apart where terminals are unequal, viscosities differ, or several trees
+ * grow. */
 typedef struct Trait {
     /* The segment's flow over that of as many mean terminals, times its viscosity over that of
      * radius_scale; as of the last refresh, or of its making. */
@@ -125,9 +126,9 @@ int32_t network_append(Network *net, int32_t parent, Vec3 position);
 void network_spare(Network *net, size_t nodes);
 
 /* Splits `segment` at `bifurcation` and hangs a new segment to `terminal` there. Its proximal part
- * becomes segment made[0] and the new one made[1], which are spare. What is above learns of it for a
- * few levels, while distal ends are in `zone`, all from network_refresh. The caller takes the two off
- * the spare nodes and tells network_grown. Threads may split at a time in zones without common
+ * becomes segment made[0] and the new one made[1], which are spare. What is above learns of it for
+ * a few levels, while distal ends are in `zone`, all from network_refresh. The caller takes the two
+ * off the spare nodes and tells network_grown. Threads may split at a time in zones without common
  * points, segments whose ends are in their own. */
 void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal,
                    const int32_t made[2], Box zone);
@@ -156,8 +157,9 @@ int32_t network_first_upward(const Network *net, int32_t i);
 /* Sums up lengths, terminals, flares and costs anew from positions and weights. */
 void network_resum(Network *net);
 
-/* Renumbers the nodes depth first, tree after tree, so that parents come before children and neighbours in the tree
- * are neighbours in memory, and none is spare. On failure `net` is only fit for network_release. */
+/* Renumbers the nodes depth first, tree after tree, so that parents come before children and
+ * neighbours in the tree are neighbours in memory, and none is spare. On failure `net` is only fit
+ * for network_release. */
 MUST_CHECK Status network_reorder(Network *net, Err *err);
 
 #endif

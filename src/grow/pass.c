@@ -1,12 +1,12 @@
-/* Tossed points are sorted into square tiles of grid cells, and each tile's are planned and connected
- * one by one. What they need of the tree then stays in the processor's cache, however large the tree
- * is.
+/* Tossed points are sorted into square tiles of grid cells, and each tile's are planned and
+ * connected one by one. What they need of the tree then stays in the processor's cache, however
+ * large the tree is.
  *
  * Tiles are worked on side by side. A tile's points may look at, and change, what lies in its zone,
- * which reaches half a tile further to all sides; tiles are taken in 2 x 2 (x 2) colours, so that zones
- * worked on at a time have nothing in common, and a tree does not depend on how many threads there
- * are. The few points that would need more than the zone are left over, and connected at the end.
- * Seams move from pass to pass. Small trees are one tile. */
+ * which reaches half a tile further to all sides; tiles are taken in 2 x 2 (x 2) colours, so that
+ * zones worked on at a time have nothing in common, and a tree does not depend on how many threads
+ * there are. The few points that would need more than the zone are left over, and connected at the
+ * end. Seams move from pass to pass. Small trees are one tile. */
 #include "grow/pass.h"
 
 #include <stdlib.h>

@@ -44,8 +44,8 @@ MUST_CHECK Status pass_use_grid(Pass *pass, const Grid *grid, Err *err);
 /* Makes room for so many points, whose places the caller sets. */
 MUST_CHECK Status pass_start(Pass *pass, size_t points, Err *err);
 
-/* Connects points, at most `most` and for each tree at most its limit, which goes down by what it got;
- * returns how many in *made. Points in full cells are skipped if `skip`. Fills the tally. */
+/* Connects points, at most `most` and for each tree at most its limit, which goes down by what it
+ * got; returns how many in *made. Points in full cells are skipped if `skip`. Fills the tally. */
 MUST_CHECK Status pass_run(Pass *pass, const Site *site, size_t most, bool skip, size_t *made,
                            Err *err);
 

@@ -3,9 +3,9 @@
  * for these derivatives as weights [fermat.h]. They vary slowly, so weights at one place and the
  * Fermat point for them in turn converge in a few rounds. To rank connections one round from a
  * middling place does, priced to first order by the same weights; the rest are for the one that is
- * made. A point that collapses onto an end is pushed off it to the shortest length the rules allow, in the
- * direction that costs least: such connections are among the best there are, so they must not be
- * lost. A segment that must stay straight is split at the best place along it. */
+ * made. A point that collapses onto an end is pushed off it to the shortest length the rules allow,
+ * in the direction that costs least: such connections are among the best there are, so they must
+ * not be lost. A segment that must stay straight is split at the best place along it. */
 #include "grow/place.h"
 
 #include "grow/cco/fermat.h"
@@ -129,8 +129,8 @@ static void find_ends(const Network *net, int32_t segment, Vec3 terminal, Vec3 e
     end[FRESH] = terminal;
 }
 
-/* Where the bifurcation is best by a trial's weights, as far as the rules allow. False when they are
- * beyond what a double can hold. */
+/* Where the bifurcation is best by a trial's weights, as far as the rules allow. False when they
+ * are beyond what a double can hold. */
 static bool find_place(const Rules *rules, const Host *host, const Vec3 end[PARTS],
                        const Trial *trial, Vec3 *place)
 {

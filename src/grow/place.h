@@ -54,8 +54,8 @@ bool place_connection(const Network *net, const Rules *rules, int32_t segment, V
  * short. */
 bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connection *connection);
 
-/* Whether the three segments are inside the domain, those of a given one wherever that is; in a convex
- * domain they are when the bifurcation is. */
+/* Whether the three segments are inside the domain, those of a given one wherever that is; in a
+ * convex domain they are when the bifurcation is. */
 bool place_is_inside(const Network *net, const Domain *domain, const Connection *connection,
                      Vec3 terminal);
 

@@ -40,9 +40,9 @@ typedef struct Planner {
 MUST_CHECK Status planner_init(Planner *planner, int candidates, Err *err);
 void planner_release(Planner *planner);
 
-/* Plans the connection of `terminal`, which is in the zone, in *out: the cheapest there is room for.
- * Looks at nothing but what is in the zone. left[k], at most limit[k]: terminals that tree k may get
- * from the caller. */
+/* Plans the connection of `terminal`, which is in the zone, in *out: the cheapest there is room
+ * for. Looks at nothing but what is in the zone. left[k], at most limit[k]: terminals that tree k
+ * may get from the caller. */
 PlanState plan_make(const Site *site, Planner *planner, Box zone, const size_t *left, Vec3 terminal,
                     Connection *out);
 

@@ -1,6 +1,6 @@
 /* A tree takes a far point for its first, and asks for less with every few points that will not do.
- * Root segments stay in the Voronoi cells of their inlets, so they cannot cross; only their thickness
- * is left to look after. */
+ * Root segments stay in the Voronoi cells of their inlets, so they cannot cross; only their
+ * thickness is left to look after. */
 #include "grow/plant.h"
 
 #include "grow/place.h"

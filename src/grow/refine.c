@@ -3,17 +3,19 @@
  *
  * Within the rules of room the search soon comes to a tree where vessels are in each other's way:
  * what would be better lies behind trees that cross. The topology level therefore makes a detour:
- * rules may be broken at a price [refine_toll.h], low at first and rising until no vessel breaks one.
- * When little more is to be gained, only what is near a broken rule is moved, until all are mended.
- * A detour that fails, or gains nothing, ends where it began, and the next begins dearer, closer to
- * the rules. This is what brings a tree of little length (lambda 0) near the shortest that there is.
+ * rules may be broken at a price [refine_toll.h], low at first and rising until no vessel breaks
+ * one. When little more is to be gained, only what is near a broken rule is moved, until all are
+ * mended. A detour that fails, or gains nothing, ends where it began, and the next begins dearer,
+ * closer to the rules. This is what brings a tree of little length (lambda 0) near the shortest
+ * that there is.
  *
- * Annealing lets the temperature fall geometrically over most of its budget, takes the best tree and
- * goes on as topology does.
+ * Annealing lets the temperature fall geometrically over most of its budget, takes the best tree
+ * and goes on as topology does.
  *
  * Whenever refinement stops, it has a tree that keeps all promises: the present one, or on a detour
- * or when annealing the best before. Viscosities that follow the radii stay as they are within a round and
- * are computed anew after it; should vessels then have come into each other, the tree stays as it was. */
+ * or when annealing the best before. Viscosities that follow the radii stay as they are within a
+ * round and are computed anew after it; should vessels then have come into each other, the tree
+ * stays as it was. */
 #include "grow/grow.h"
 
 #include "grow/refine/refine_arbor.h"
@@ -24,8 +26,8 @@
 #include "grow/refine/refine_toll.h"
 #include <stdlib.h>
 
-/* Temperatures of annealing over S_root a segment, at first and at last, and the share of the budget
- * that is left then. */
+/* Temperatures of annealing over S_root a segment, at first and at last, and the share of the
+ * budget that is left then. */
 static const double hot = 0.2, cold = 0.03;
 static const double last_part = 0.1;
 /* A round that gains less than this of S_root is the last: of sweeps; before a detour, on it and
@@ -213,7 +215,8 @@ static Status mend(Refinement *refinement, bool *over, Err *err)
     return STATUS_OK;
 }
 
-/* Rounds across the rules. *done tells whether that led to a better tree; if not, all is as it was. */
+/* Rounds across the rules. *done tells whether that led to a better tree; if not, all is as it
+ * was. */
 static Status detour(Refinement *refinement, double price, bool *done, bool *over, Err *err)
 {
     Surgery *surgery = &refinement->surgery;

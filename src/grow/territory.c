@@ -1,15 +1,15 @@
 /* The terminals stand in a grid of their own, as capsules without length or radius, and every
  * lattice point goes to the nearest. Of a lattice only the points in cells that a border runs
  * through are left to chance, so that the count of a territory with p points is off by about
- * p^(1/4), where random points would be off by p^(1/2). Threads take rows of the lattice and count for
- * themselves; whole numbers add up to the same sums in any order. */
+ * p^(1/4), where random points would be off by p^(1/2). Threads take rows of the lattice and count
+ * for themselves; whole numbers add up to the same sums in any order. */
 #include "grow/territory.h"
 
 #include "grow/cco/grid.h"
 #include <stdlib.h>
 
-/* A lattice over a box that is very thin for its length has at most POINTS_PER_ASKED as many points as a
- * box of that volume asks for, and LEAST_POINTS. */
+/* A lattice over a box that is very thin for its length has at most POINTS_PER_ASKED as many points
+ * as a box of that volume asks for, and LEAST_POINTS. */
 enum { POINTS_PER_ASKED = 8, LEAST_POINTS = 16384 };
 /* Cells of the grid a terminal. */
 static const double cells_per_terminal = 1;

@@ -1,6 +1,6 @@
-/* A weight is flow over terminals times viscosity over its reference, so that terminals times weight
- * is the burden of the law. Growth takes weights for the radii of the last refresh, each of which
- * moves them towards agreement; finish.c iterates until they agree. */
+/* A weight is flow over terminals times viscosity over its reference, so that terminals times
+ * weight is the burden of the law. Growth takes weights for the radii of the last refresh, each of
+ * which moves them towards agreement; finish.c iterates until they agree. */
 #include "grow/weigh.h"
 
 #include "grow/territory.h"

@@ -23,8 +23,8 @@ typedef enum WeighPrecision {
 void weigh_gather(const Network *net, double *flow);
 
 /* Sets the weights of all segments to what their flows and radii (mm) ask for, or moves them `part`
- * of the way, in (0, 1]; *change is the largest share by which one was off. What follows from weights
- * is not yet summed up. STATUS_INFEASIBLE when a vessel is too thin for blood to pass. */
+ * of the way, in (0, 1]; *change is the largest share by which one was off. What follows from
+ * weights is not yet summed up. STATUS_INFEASIBLE when a vessel is too thin for blood to pass. */
 MUST_CHECK Status weigh_segments(Network *net, const GrowParams *params, const double *flow,
                                  const double *radius, double part, double *change, Err *err);
 

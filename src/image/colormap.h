@@ -9,13 +9,13 @@ typedef struct Colormap {
     size_t n;         /* at least 2 */
 } Colormap;
 
-/* Reads a file of one colour a line, "red green blue" in sRGB from 0 to 1; '#' starts a comment line.
- * STATUS_INPUT naming file and line on anything else, and on fewer than 2 colours. */
+/* Reads a file of one colour a line, "red green blue" in sRGB from 0 to 1; '#' starts a comment
+ * line. STATUS_INPUT naming file and line on anything else, and on fewer than 2 colours. */
 MUST_CHECK Status colormap_read(Colormap *map, const char *path, Err *err);
 void colormap_release(Colormap *map);
 
-/* The linear colour at `fraction`, clamped to [0, 1], between neighbours interpolated in sRGB; middle
- * grey for NaN. */
+/* The linear colour at `fraction`, clamped to [0, 1], between neighbours interpolated in sRGB;
+ * middle grey for NaN. */
 void colormap_linear(const Colormap *map, double fraction, float rgb[3]);
 
 #endif

@@ -1,7 +1,7 @@
-/* OpenEXR through the C library OpenEXRCore: one flat image in scan lines or tiles, its channels R G B,
- * X Y Z or a single one, as 32-bit floats whatever they are in the file. Chunks are decoded one after the
- * other straight into a plane of the data window, from the file in memory; what the display window shows
- * of it is the image. */
+/* OpenEXR through the C library OpenEXRCore: one flat image in scan lines or tiles, its channels R
+ * G B, X Y Z or a single one, as 32-bit floats whatever they are in the file. Chunks are decoded
+ * one after the other straight into a plane of the data window, from the file in memory; what the
+ * display window shows of it is the image. */
 #include "image/formats.h"
 
 #include <errno.h>
@@ -254,9 +254,9 @@ static long long height_of(const exr_attr_box2i_t *window)
     return (long long)window->max.y - window->min.y + 1;
 }
 
-/* The bytes of floats that a file of this size can hold, with much to spare. Blank pictures shrink 1032-fold
- * by ZIP and ZIPS, 1376-fold by PXR24, 410-fold by PIZ, 64-fold by RLE and 11-fold by B44A; halves become floats
- * of twice their size. */
+/* The bytes of floats that a file of this size can hold, with much to spare. Blank pictures shrink
+ * 1032-fold by ZIP and ZIPS, 1376-fold by PXR24, 410-fold by PIZ, 64-fold by RLE and 11-fold by
+ * B44A; halves become floats of twice their size. */
 static size_t most_bytes(const Exr *self)
 {
     enum { RATIO = 10000 };
@@ -275,8 +275,8 @@ static Status make_plane(const Exr *self, Plane *plane, const exr_attr_box2i_t *
     return plane_init(plane, (int)width, (int)height, channels, err);
 }
 
-/* Makes the plane that of the display window, of which the file need hold no pixel: the room it may have
- * besides is that of 8192 x 8192 pixels. */
+/* Makes the plane that of the display window, of which the file need hold no pixel: the room it may
+ * have besides is that of 8192 x 8192 pixels. */
 static Status show_window(Exr *self, Err *err)
 {
     const exr_attr_box2i_t *data = &self->window, *display = &self->display;

@@ -1,7 +1,7 @@
-/* The file formats behind image_read and ImageWriter; private to the room image. Readers take a whole file
- * and its name for the error sentence. No reader asks for memory for the pixels that a header announces before
- * it has held them against the size of the file: PNM and PFM exactly, PNG, TIFF and OpenEXR by
- * image_check_claim. */
+/* The file formats behind image_read and ImageWriter; private to the room image. Readers take a
+ * whole file and its name for the error sentence. No reader asks for memory for the pixels that a
+ * header announces before it has held them against the size of the file: PNM and PFM exactly, PNG,
+ * TIFF and OpenEXR by image_check_claim. */
 #ifndef CORCAST_IMAGE_FORMATS_H
 #define CORCAST_IMAGE_FORMATS_H
 
@@ -17,8 +17,8 @@ typedef struct ImageBytes {
 /* STATUS_INPUT unless both sides, as a header states them, are in [1, IMAGE_MAX_SIDE]. */
 MUST_CHECK Status image_check_sides(const char *name, long long width, long long height, Err *err);
 
-/* STATUS_INPUT, naming the file, its size and the sides, when `bytes` of pixels are more than `most`, the
- * bytes that a file of this size can hold however well it is compressed. */
+/* STATUS_INPUT, naming the file, its size and the sides, when `bytes` of pixels are more than
+ * `most`, the bytes that a file of this size can hold however well it is compressed. */
 MUST_CHECK Status image_check_claim(const ImageBytes *file, long long width, long long height,
                                     size_t bytes, size_t most, Err *err);
 
@@ -51,8 +51,8 @@ void header_word(HeaderCursor *cursor, char *word, size_t size);
  * follow it. */
 MUST_CHECK Status header_end(HeaderCursor *cursor, size_t needed, Err *err);
 
-/* How a format is written. Rows come from the top down, `n` at a time, the first of them row `first`;
- * values are codes of 8 or 16 bits or floats, as the form says. */
+/* How a format is written. Rows come from the top down, `n` at a time, the first of them row
+ * `first`; values are codes of 8 or 16 bits or floats, as the form says. */
 typedef struct RowEncoder {
     /* Writes what comes first; *self is owned by the caller, who releases it, also on failure. */
     Status (*begin)(FILE *stream, const ImageForm *form, void **self, Err *err);

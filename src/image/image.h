@@ -66,8 +66,8 @@ static inline size_t picture_stride(const Picture *picture)
     return (size_t)picture->width * (size_t)picture->channels;
 }
 
-/* The codes of row `y` as 16-bit numbers: borrowed from the picture, or in `scratch`, which has room
- * for them. */
+/* The codes of row `y` as 16-bit numbers: borrowed from the picture, or in `scratch`, which has
+ * room for them. */
 const uint16_t *picture_row(const Picture *picture, int y, uint16_t *scratch);
 /* Whether row `y` is the same in two pictures of one shape, from pixel `x` on for `n` pixels. */
 bool picture_rows_equal(const Picture *a, const Picture *b, int y, int x, int n);
@@ -152,17 +152,17 @@ typedef struct ImageForm {
  * has its final name only after imagewriter_commit. */
 typedef struct ImageWriter ImageWriter;
 
-/* Floats go to PFM ("PF" 3 channels, "Pf" 1), little-endian, rows bottom-up in the file. Codes go by
- * extension: .ppm (P6; a grey picture with its channel three times), .pgm (P5, 1 channel), .png, .tif
- * or .tiff (deflated strips; BigTIFF above 4 GB); "-" is standard output and a PPM. PNG carries an sRGB
- * chunk when `encoding` is sRGB and gAMA 1.0 when it is linear, and no tIME. STATUS_USAGE on another
- * extension and on a colour picture that is to be a .pgm; STATUS_IO when the disk has no room for what
- * is certain to be written. Follow with exactly one of imagewriter_commit and imagewriter_discard, each
- * of which frees the writer, also on failure. */
+/* Floats go to PFM ("PF" 3 channels, "Pf" 1), little-endian, rows bottom-up in the file. Codes go
+ * by extension: .ppm (P6; a grey picture with its channel three times), .pgm (P5, 1 channel), .png,
+ * .tif or .tiff (deflated strips; BigTIFF above 4 GB); "-" is standard output and a PPM. PNG
+ * carries an sRGB chunk when `encoding` is sRGB and gAMA 1.0 when it is linear, and no tIME.
+ * STATUS_USAGE on another extension and on a colour picture that is to be a .pgm; STATUS_IO when
+ * the disk has no room for what is certain to be written. Follow with exactly one of
+ * imagewriter_commit and imagewriter_discard, each of which frees the writer, also on failure. */
 MUST_CHECK Status imagewriter_open(ImageWriter **out, const char *path, const ImageForm *form,
                                    Err *err);
-/* The next rows, all of the form's width, channels and bits. PFM and TIFF in parts need a file, not a
- * pipe. */
+/* The next rows, all of the form's width, channels and bits. PFM and TIFF in parts need a file, not
+ * a pipe. */
 MUST_CHECK Status imagewriter_codes(ImageWriter *writer, const Picture *rows, Err *err);
 MUST_CHECK Status imagewriter_floats(ImageWriter *writer, const Plane *rows, Err *err);
 MUST_CHECK Status imagewriter_commit(ImageWriter *writer, Err *err);
@@ -184,19 +184,19 @@ void image_release(Image *image);
 
 /* Reads a file, its format told by its first bytes; "-" is standard input.
  * Codes: PPM/PGM (P2, P3, P5, P6, maxval up to 65535, '#' comments; a maxval other than 255 and
- * 65535 is rescaled to 8 bits below 255 and to 16 above), PNG (8 and 16 bit, grey, RGB, palette; gamma
- * by gAMA, unless sRGB says otherwise; 0.4550 to 0.4560 is sRGB's), TIFF (8 and 16 bit, grey and RGB,
- * interleaved; turned as Orientation says).
- * Floats: PFM (both byte orders, scale 1), OpenEXR (half and float; channels R G B, X Y Z or a single
- * one; the display window, 0 outside the data window), TIFF (32 bit). Infinities and NaN are kept.
- * An alpha channel is refused unless opaque throughout, and so are colours of another space than sRGB
- * (profiles, primaries), animations and TIFF files of several pages. STATUS_INPUT with a sentence naming
- * the file on truncated, corrupt and other files. */
+ * 65535 is rescaled to 8 bits below 255 and to 16 above), PNG (8 and 16 bit, grey, RGB, palette;
+ * gamma by gAMA, unless sRGB says otherwise; 0.4550 to 0.4560 is sRGB's), TIFF (8 and 16 bit, grey
+ * and RGB, interleaved; turned as Orientation says). Floats: PFM (both byte orders, scale 1),
+ * OpenEXR (half and float; channels R G B, X Y Z or a single one; the display window, 0 outside the
+ * data window), TIFF (32 bit). Infinities and NaN are kept. An alpha channel is refused unless
+ * opaque throughout, and so are colours of another space than sRGB (profiles, primaries),
+ * animations and TIFF files of several pages. STATUS_INPUT with a sentence naming the file on
+ * truncated, corrupt and other files. */
 MUST_CHECK Status image_read(Image *image, const char *path, Err *err);
 /* Likewise, and STATUS_INPUT when the file does not hold codes, or floats. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, Err *err);
-/* As picture_read; but a PNG that is transparent anywhere is read as what it covers: no code is 0 where
- * it is at least half opaque, and all are elsewhere. */
+/* As picture_read; but a PNG that is transparent anywhere is read as what it covers: no code is 0
+ * where it is at least half opaque, and all are elsewhere. */
 MUST_CHECK Status picture_read_mask(Picture *picture, const char *path, Err *err);
 MUST_CHECK Status plane_read(Plane *plane, const char *path, Err *err);
 

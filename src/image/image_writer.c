@@ -1,5 +1,5 @@
-/* What a writer adds to the format's encoder: the file, under a temporary name until it is whole, and
- * the number of the next row. Whole pictures and planes go the same way in one step. */
+/* What a writer adds to the format's encoder: the file, under a temporary name until it is whole,
+ * and the number of the next row. Whole pictures and planes go the same way in one step. */
 #include "image/formats.h"
 
 #include <assert.h>
@@ -189,7 +189,8 @@ Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNote
     if (status == STATUS_OK)
         status = png_encoder.end(state, err);
     png_encoder.release(state);
-    /* Closing gives the bytes a block of their own, and tells only by NULL that there was no room. */
+    /* Closing gives the bytes a block of their own, and tells only by NULL that there was no
+     * room. */
     if ((fclose(stream) != 0 || !bytes) && status == STATUS_OK)
         status = err_set(err, STATUS_MEMORY, "out of memory: no room for a PNG of %zu bytes", size);
     if (status == STATUS_OK) {

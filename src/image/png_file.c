@@ -1,6 +1,7 @@
-/* PNG through libpng: writing, and reading what png_plain.c leaves to it. libpng reports an error by longjmp; setjmp therefore stands in functions
- * that only call the one that does the work, and everything that work allocates hangs on a struct
- * outside it, so that nothing leaks and no local is clobbered.
+/* PNG through libpng: writing, and reading what png_plain.c leaves to it. libpng reports an error
+ * by longjmp; setjmp therefore stands in functions that only call the one that does the work, and
+ * everything that work allocates hangs on a struct outside it, so that nothing leaks and no local
+ * is clobbered.
  *
  * What a header claims is bounded before allocation. */
 #include "image/formats.h"
@@ -273,9 +274,9 @@ static void write_header(Writer *self)
 {
     const ImageForm *form = &self->form;
     png_init_io(self->png, self->stream);
-    /* Vessels on a plain ground repeat whole stretches of bytes, which filters hide: without, most files
-     * are smaller, by up to a fourth, and written in half the time. Only where pixels are so many that
-     * shades hardly change from row to row, differences are shorter. */
+    /* Vessels on a plain ground repeat whole stretches of bytes, which filters hide: without, most
+     * files are smaller, by up to a fourth, and written in half the time. Only where pixels are so
+     * many that shades hardly change from row to row, differences are shorter. */
     png_set_filter(self->png, PNG_FILTER_TYPE_BASE,
                    form->height < MANY_ROWS ? PNG_FILTER_NONE : PNG_FILTER_UP);
     png_set_user_limits(self->png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);

@@ -98,8 +98,8 @@ static inline uint8_t paeth(int left, int up, int corner)
 }
 
 /* `in` lies above `out` in one buffer or in another one; `up` is the row before, all 0 for the
- * first. `pixel` is a constant where this is inlined, so that the samples of a pixel are undone side
- * by side. */
+ * first. `pixel` is a constant where this is inlined, so that the samples of a pixel are undone
+ * side by side. */
 static inline void unfilter(int filter, const uint8_t *in, const uint8_t *up, uint8_t *out,
                             size_t n, size_t pixel)
 {

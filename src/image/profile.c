@@ -1,5 +1,6 @@
-/* Which colours are sRGB's. An ICC profile is not applied, only recognised: by its description, in which every profile of sRGB
- * that is around says "sRGB", but for those of its primaries with linear codes, which say so. */
+/* Which colours are sRGB's. An ICC profile is not applied, only recognised: by its description, in
+ * which every profile of sRGB that is around says "sRGB", but for those of its primaries with
+ * linear codes, which say so. */
 #include "image/formats.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
-/* TIFF through libtiff, from the file in memory: a single page in strips or tiles, grey or RGB, 8 or 16
- * bits or 32-bit floats, however it is compressed. Its Orientation is undone on the way: the place of
- * a pixel is a linear function of its column and row in the file. */
+/* TIFF through libtiff, from the file in memory: a single page in strips or tiles, grey or RGB, 8
+ * or 16 bits or 32-bit floats, however it is compressed. Its Orientation is undone on the way: the
+ * place of a pixel is a linear function of its column and row in the file. */
 #include "image/formats.h"
 
 #include "image/tiff_memory.h"
@@ -32,7 +32,8 @@ bool tiff_is(const ImageBytes *file)
             memcmp(file->bytes, "II+\0", 4) == 0 || memcmp(file->bytes, "MM\0+", 4) == 0);
 }
 
-/* -------------------------------------------------------------------------------- what libtiff calls */
+/* -------------------------------------------------------------------------------- what libtiff
+ * calls */
 
 static tmsize_t on_read(thandle_t user, void *out, tmsize_t size)
 {
@@ -112,7 +113,8 @@ static TIFF *open_handle(Tiff *self)
     return handle;
 }
 
-/* ---------------------------------------------------------------------------------------- reading */
+/* ----------------------------------------------------------------------------------------
+ * reading */
 
 static Status unsound(Tiff *self, Err *err)
 {
@@ -169,9 +171,9 @@ static Status check_form(Tiff *self, Err *err)
         self->file.name, samples, bits);
 }
 
-/* The bytes that a file of this size can hold, with much to spare. Blank pictures shrink 1400-fold by LZW,
- * 1032-fold by deflate and 64-fold by PackBits; of the others ZSTD reaches 32768-fold, and WebP and LERC take
- * a few bytes for a blank strip of any size. */
+/* The bytes that a file of this size can hold, with much to spare. Blank pictures shrink 1400-fold
+ * by LZW, 1032-fold by deflate and 64-fold by PackBits; of the others ZSTD reaches 32768-fold, and
+ * WebP and LERC take a few bytes for a blank strip of any size. */
 static size_t most_bytes(const Tiff *self)
 {
     enum { COMMON_RATIO = 10000, RATIO = 100000, BLANK_STRIP = 64 << 20 };

@@ -1,8 +1,8 @@
-/* libtiff 4.5 does not look at all that it is given: of 57 allocations of reading a small file it reads through
- * NULL after 3 that fail, and of 44 of writing one after 4. It takes its memory by its own _TIFFmalloc,
- * _TIFFcalloc and _TIFFrealloc, and calls these as any program may: so those here come first, and a failed
- * one does not return to libtiff but jumps out of it. Where a libtiff is linked so that it calls its own,
- * these are never called, and all is as libtiff has it. */
+/* libtiff 4.5 does not look at all that it is given: of 57 allocations of reading a small file it
+ * reads through NULL after 3 that fail, and of 44 of writing one after 4. It takes its memory by
+ * its own _TIFFmalloc, _TIFFcalloc and _TIFFrealloc, and calls these as any program may: so those
+ * here come first, and a failed one does not return to libtiff but jumps out of it. Where a libtiff
+ * is linked so that it calls its own, these are never called, and all is as libtiff has it. */
 #include "image/tiff_memory.h"
 
 #include <setjmp.h>

@@ -1,6 +1,7 @@
 /* TIFF through libtiff, strip by strip: little-endian whatever the machine, deflated with the
- * horizontal predictor, no date, so that equal pictures are equal files. BigTIFF where offsets could
- * need more than 32 bits. libtiff goes back to the header at the end, so it needs a file with places. */
+ * horizontal predictor, no date, so that equal pictures are equal files. BigTIFF where offsets
+ * could need more than 32 bits. libtiff goes back to the header at the end, so it needs a file with
+ * places. */
 #include "image/formats.h"
 
 #include "image/tiff_memory.h"
@@ -25,7 +26,8 @@ typedef struct Writer {
     char complaint[200];
 } Writer;
 
-/* -------------------------------------------------------------------------------- what libtiff calls */
+/* -------------------------------------------------------------------------------- what libtiff
+ * calls */
 
 static tmsize_t on_read(thandle_t user, void *out, tmsize_t size)
 {
@@ -91,7 +93,8 @@ static TIFF *open_handle(Writer *self, bool big)
     return handle;
 }
 
-/* ---------------------------------------------------------------------------------------- writing */
+/* ----------------------------------------------------------------------------------------
+ * writing */
 
 static Status failed(Writer *self, Err *err)
 {

@@ -14,9 +14,9 @@ typedef enum RenderMethod {
     RENDER_ZBUFFER /* by points of the surfaces and a depth buffer, as the paper does */
 } RenderMethod;
 
-/* The instructions that a tile's samples are drawn with, several at once: those of any processor, AVX2
- * with FMA, AVX-512. Other pictures than RENDER_TRACE's of primitives and blobs may differ in the last
- * digits of single precision from one to the next. */
+/* The instructions that a tile's samples are drawn with, several at once: those of any processor,
+ * AVX2 with FMA, AVX-512. Other pictures than RENDER_TRACE's of primitives and blobs may differ in
+ * the last digits of single precision from one to the next. */
 typedef enum RenderKernels {
     KERNELS_FASTEST, /* of those that this processor has */
     KERNELS_PORTABLE,
@@ -28,8 +28,8 @@ typedef enum RenderKernels {
 extern const char *const render_kernel_names[];
 
 typedef struct RenderParams {
-    /* An implicit model has tiles of its own and takes none of these. What needs rays, soft shadows,
-     * occlusion and ground, is traced whatever the method. */
+    /* An implicit model has tiles of its own and takes none of these. What needs rays, soft
+     * shadows, occlusion and ground, is traced whatever the method. */
     RenderMethod method;
     RenderKernels kernels;
     int threads;   /* 0: all processors */
@@ -39,10 +39,10 @@ typedef struct RenderParams {
                                  * (0, 1], those only that differ from a neighbour by so much in
                                  * the square root of a channel, which no POV-Ray picture repeats */
     bool shadows;
-    double
-        shadow_from_mm; /* what is nearer to a lit place is not in its light; 0: POV-Ray's 0.001 mm */
-    int occlusion; /* 0: ambient light is the same everywhere; N: the part of it that reaches a point is
-                    * found by N rays, which no POV-Ray picture repeats */
+    double shadow_from_mm; /* what is nearer to a lit place is not in its light; 0: POV-Ray's 0.001
+                              mm */
+    int occlusion; /* 0: ambient light is the same everywhere; N: the part of it that reaches a
+                    * point is found by N rays, which no POV-Ray picture repeats */
     const CellParams *povray_cells; /* of an implicit model: where POV-Ray's root finder sees it in
                                      * these cells; NULL: where it is, by proof */
     bool
@@ -55,23 +55,23 @@ typedef struct RenderParams {
 typedef struct RenderStats {
     double prepare_s; /* building the search structure */
     double trace_s;
-    double
-        cpu_s; /* of all threads, for both: trace_s when nothing else runs is about cpu_s / threads */
-    size_t rays; /* primary */
-    size_t
-        preparations; /* how often camera, lights or antialiasing were not those of the band before */
+    double cpu_s; /* of all threads, for both: trace_s when nothing else runs is about cpu_s /
+                     threads */
+    size_t rays;  /* primary */
+    size_t preparations; /* how often camera, lights or antialiasing were not those of the band
+                            before */
 } RenderStats;
 
-/* Rows first .. first + rows of the picture. The outermost `above` and `below` of them are there only
- * for their neighbours to be told apart from: they get no further samples and are cut off at the
- * end. */
+/* Rows first .. first + rows of the picture. The outermost `above` and `below` of them are there
+ * only for their neighbours to be told apart from: they get no further samples and are cut off at
+ * the end. */
 typedef struct Band {
     int first, rows;
     int above, below;
 } Band;
 
-/* Says how far the whole picture is; `part` is of this pass over the band, whose further samples are a
- * pass of their own. */
+/* Says how far the whole picture is; `part` is of this pass over the band, whose further samples
+ * are a pass of their own. */
 void band_progress(const Band *band, const RenderParams *params, int height, bool further,
                    double part);
 

@@ -1,7 +1,8 @@
-/* The potential is drawn by fieldrender.c. For primitives rays are cast one a sample and rows are the
- * unit of work, so that the picture does not depend on the number of threads. Samples stand where POV-Ray puts them: the centre of the pixel, and with
- * antialiasing an N x N grid more; their mean weighs all N * N + 1 alike (tracetask.cpp
- * of 3.7.0.10: every pixel is supersampled when the threshold is 0). */
+/* The potential is drawn by fieldrender.c. For primitives rays are cast one a sample and rows are
+ * the unit of work, so that the picture does not depend on the number of threads. Samples stand
+ * where POV-Ray puts them: the centre of the pixel, and with antialiasing an N x N grid more; their
+ * mean weighs all N * N + 1 alike (tracetask.cpp of 3.7.0.10: every pixel is supersampled when the
+ * threshold is 0). */
 #include "render/render.h"
 
 #include "render/field/fieldrender.h"
@@ -161,7 +162,7 @@ static Status rayrender(const Renderer *renderer, const Band *band, Frame *frame
     return status;
 }
 
-/* ---- bands -------------------------------------------------------------------------------------- */
+/* ---- bands ----------------------------------------------------------------------------------- */
 
 static bool is_field(const Renderer *renderer)
 {
@@ -223,7 +224,8 @@ void renderer_free(Renderer *renderer)
     free(renderer);
 }
 
-/* What earlier bands had in common is forgotten if it is not of today's camera, lights and antialiasing. */
+/* What earlier bands had in common is forgotten if it is not of today's camera, lights and
+ * antialiasing. */
 static Status look_again(Renderer *renderer, Err *err)
 {
     const Scene *scene = renderer->scene;

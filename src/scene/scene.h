@@ -35,9 +35,9 @@ typedef struct Camera {
 Ray camera_ray(const Camera *camera, double i, double j);
 
 /* A point light at `location`, or, when `parallel`, light that travels from `location` towards
- * `target` everywhere. With `samples` of 2 or more, a power of 2, its shadows are those of samples x
- * samples points, from edge to edge of the parallelogram of these sides about its location; all else is
- * that of the point. */
+ * `target` everywhere. With `samples` of 2 or more, a power of 2, its shadows are those of samples
+ * x samples points, from edge to edge of the parallelogram of these sides about its location; all
+ * else is that of the point. */
 typedef struct Light {
     Vec3 location;
     Vec3 target;
@@ -53,8 +53,8 @@ typedef struct Finish {
     float ambient, diffuse, brilliance, phong, phong_size, specular, roughness;
 } Finish;
 
-/* A plane under or behind the vessels: the points x with normal . x = offset_mm. Only colour knows of
- * it; depth, normals and ids are of vessels. */
+/* A plane under or behind the vessels: the points x with normal . x = offset_mm. Only colour knows
+ * of it; depth, normals and ids are of vessels. */
 typedef struct Ground {
     bool present;
     Vec3 normal; /* unit, towards the vessels */
@@ -63,8 +63,8 @@ typedef struct Ground {
     Finish finish;
 } Ground;
 
-/* Where a ray meets the ground, if it does so between `near_mm` and `far_mm`; POV-Ray's plane, order of
- * evaluation included (plane.cpp of 3.7.0.10). */
+/* Where a ray meets the ground, if it does so between `near_mm` and `far_mm`; POV-Ray's plane,
+ * order of evaluation included (plane.cpp of 3.7.0.10). */
 bool ground_hit(const Ground *ground, Ray ray, double near_mm, double far_mm, double *t);
 
 typedef enum PrimitiveKind { PRIMITIVE_CYLINDER, PRIMITIVE_SPHERE, PRIMITIVE_JOINT } PrimitiveKind;
@@ -87,8 +87,8 @@ typedef struct Primitive {
 /* A primitive that is a joint, prepared for many rays. */
 JointFrame primitive_joint(const Primitive *primitive);
 
-/* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its two discs
- * bound a solid. Else rulings cross. */
+/* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its
+ * two discs bound a solid. Else rulings cross. */
 bool primitive_joint_is_solid(const Primitive *joint);
 
 /* One Gaussian line potential, or what stands in for it in a blob; METHODS section 2. */
@@ -111,8 +111,9 @@ typedef enum SceneModel {
 } SceneModel;
 
 /* Which segments blend. Without `first`, all with all: the surface is where the sum of all terms is
- * FIELD_LEVEL. Else segment i blends with neighbors[first[i] .. first[i + 1]), which rise and hold i
- * itself, and the surface bounds the union over all i of where the sum of their terms exceeds it. */
+ * FIELD_LEVEL. Else segment i blends with neighbors[first[i] .. first[i + 1]), which rise and hold
+ * i itself, and the surface bounds the union over all i of where the sum of their terms exceeds
+ * it. */
 typedef struct Blend {
     size_t *first;       /* owned; one more than there are segments, or NULL */
     uint32_t *neighbors; /* owned */
@@ -146,9 +147,10 @@ typedef struct Scene {
 
 void scene_release(Scene *scene);
 
-/* Moves a scene that lies far from the origin, for its size, next to it, by whole millimetres, so that no
- * digits are lost to the distance; nothing seen changes. POV-Ray keeps bounding boxes in single precision.
- */
+/* Moves a scene that lies far from the origin, for its size, next to it, by whole millimetres, so
+ * that no digits are lost to the distance; nothing seen changes. POV-Ray keeps bounding boxes in
+ * single
+ * precision. */
 void scene_move_to_origin(Scene *scene);
 
 /* An interval of depth that holds all of the geometry, whatever the pixel. */

@@ -1,5 +1,5 @@
-/* From either end of a segment the tree is walked away from it; in a tree each node is reached by one
- * way only, so nothing needs to be remembered but the way ahead. */
+/* From either end of a segment the tree is walked away from it; in a tree each node is reached by
+ * one way only, so nothing needs to be remembered but the way ahead. */
 #include "stage/blend.h"
 
 #include <stdlib.h>

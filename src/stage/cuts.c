@@ -1,13 +1,13 @@
-/* The cuts are the fixed point of t_i = max(0, max_j (t_j cos_ij + r_j sin_ij)), which is unique: the
- * right-hand side brings two guesses closer by the largest |cos_ij|. Applied again and again it gets
- * there, but slowly when vessels leave at a small angle. So each round asks which other end pushes each
- * end furthest, solves the linear system in which only that one does, and starts again from there
- * [policy iteration, Howard 1960]; a few rounds do where thousands of plain ones would not. Where rounds
- * do not settle, plain ones finish.
+/* The cuts are the fixed point of t_i = max(0, max_j (t_j cos_ij + r_j sin_ij)), which is unique:
+ * the right-hand side brings two guesses closer by the largest |cos_ij|. Applied again and again it
+ * gets there, but slowly when vessels leave at a small angle. So each round asks which other end
+ * pushes each end furthest, solves the linear system in which only that one does, and starts again
+ * from there [policy iteration, Howard 1960]; a few rounds do where thousands of plain ones would
+ * not. Where rounds do not settle, plain ones finish.
  *
- * Where many vessels meet, their ends stand in a binary tree of cones about their axes. A cone from which
- * no end can push as far as one that is known already is left out; the first to be known is the one
- * that pushed furthest in the round before. */
+ * Where many vessels meet, their ends stand in a binary tree of cones about their axes. A cone from
+ * which no end can push as far as one that is known already is left out; the first to be known is
+ * the one that pushed furthest in the round before. */
 #include "stage/cuts.h"
 
 #include <stdlib.h>
@@ -117,7 +117,8 @@ static void fit_nodes(Work *work)
     }
 }
 
-/* No end of a node pushes one along an axis further than this; below 0 when all are parallel to it. */
+/* No end of a node pushes one along an axis further than this; below 0 when all are parallel to
+ * it. */
 static double furthest_push(const Node *node, Vec3 axis)
 {
     double cosine = vec3_dot(axis, node->axis), sine = sine_of(axis, node->axis);
@@ -213,8 +214,8 @@ static double solve_circle(const Push *pushes, size_t first)
     return offset / (1 - slope);
 }
 
-/* Solves t_i = slope_i t[mover_i] + offset_i for all ends. Movers lead to an end that nothing pushes, to
- * one solved before, or around a circle. */
+/* Solves t_i = slope_i t[mover_i] + offset_i for all ends. Movers lead to an end that nothing
+ * pushes, to one solved before, or around a circle. */
 static void solve_pushes(size_t n, Work *work)
 {
     double *cut = work->cut;

@@ -1,14 +1,14 @@
-/* At each place the ends of vessels meet: that of the parent, the trunk, and those of the daughters; where
- * a tree begins with several vessels, the thickest is the trunk. All are cut back (cuts.c), and a ruled
- * surface leads from the rim of the trunk to that of each daughter. Cylinders stay closed, so every joint
- * is a solid between two discs, whose wall neither folds nor has holes as long as each disc lies on one
- * side of the other's plane, which the cuts see to.
+/* At each place the ends of vessels meet: that of the parent, the trunk, and those of the
+ * daughters; where a tree begins with several vessels, the thickest is the trunk. All are cut back
+ * (cuts.c), and a ruled surface leads from the rim of the trunk to that of each daughter. Cylinders
+ * stay closed, so every joint is a solid between two discs, whose wall neither folds nor has holes
+ * as long as each disc lies on one side of the other's plane, which the cuts see to.
  *
- * The construction breaks down at a place whose cuts do not fit into its vessels, or where a daughter
- * leaves at less than 60 degrees from the trunk's own direction, so that the joint would be pinched to
- * less than half its width. A robust model draws such a place as `rounded` does: cylinders that are
- * not cut, and one sphere. Both ends of a vessel need room on it; places take their turns, those that
- * need the smallest part of a vessel first, so that few are lost. */
+ * The construction breaks down at a place whose cuts do not fit into its vessels, or where a
+ * daughter leaves at less than 60 degrees from the trunk's own direction, so that the joint would
+ * be pinched to less than half its width. A robust model draws such a place as `rounded` does:
+ * cylinders that are not cut, and one sphere. Both ends of a vessel need room on it; places take
+ * their turns, those that need the smallest part of a vessel first, so that few are lost. */
 #include "stage/joints.h"
 
 #include "stage/cuts.h"
@@ -101,8 +101,8 @@ static size_t trunk_of(const Builder *builder, size_t place)
     return trunk;
 }
 
-/* Cuts the ends of a place as its joints ask for, and tells what kind of place that makes it and which
- * part of a vessel it takes. `ends` and `cut` have room for those of any place. */
+/* Cuts the ends of a place as its joints ask for, and tells what kind of place that makes it and
+ * which part of a vessel it takes. `ends` and `cut` have room for those of any place. */
 static Status cut_place(Builder *builder, size_t place, VesselEnd *ends, double *cut,
                         double *demand, Err *err)
 {
@@ -255,7 +255,8 @@ static void add_joint(const Builder *builder, const Paint *paint, size_t trunk, 
                     .color = paint_of(paint, end / 2)};
 }
 
-/* The sphere of a place that cannot be joined; of equals, the trunk gives it its size and colour. */
+/* The sphere of a place that cannot be joined; of equals, the trunk gives it its size and
+ * colour. */
 static void add_sphere(const Builder *builder, const Paint *paint, size_t place, Scene *scene)
 {
     const Tree *tree = builder->tree;

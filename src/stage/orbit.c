@@ -1,6 +1,6 @@
-/* A camera is moved by moving the parameters that make it, so that what a window shows can be said in
- * the options that draw it again. Turning is about the camera's own axes: what is under the hand follows
- * it, whatever is up. */
+/* A camera is moved by moving the parameters that make it, so that what a window shows can be said
+ * in the options that draw it again. Turning is about the camera's own axes: what is under the hand
+ * follows it, whatever is up. */
 #include "stage/stage.h"
 
 static const double degrees_pi = 3.14159265358979323846 / 180;

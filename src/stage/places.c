@@ -1,6 +1,6 @@
-/* Nodes joined by segments of no length are one place. A segment that shares both ends with a sister at
- * least as thick lies inside her and is left out; measured trees hold such pairs. Their distal nodes are
- * one place, too. */
+/* Nodes joined by segments of no length are one place. A segment that shares both ends with a
+ * sister at least as thick lies inside her and is left out; measured trees hold such pairs. Their
+ * distal nodes are one place, too. */
 #include "stage/places.h"
 
 #include <stdlib.h>
@@ -16,15 +16,16 @@ bool segment_can_be_drawn(const Tree *tree, size_t i)
     return tree_is_segment(tree, i) && tree->radius_mm[i] > 0 && has_length(tree, i);
 }
 
-/* Uncovered segments in lists, by the node they begin at and the cell of space they end in, so that a node
- * may have any number of daughters. */
+/* Uncovered segments in lists, by the node they begin at and the cell of space they end in, so that
+ * a node may have any number of daughters. */
 typedef struct Bins {
     int32_t *first; /* one a bin; below 0: none */
     int32_t *next;  /* one a node */
     size_t mask;    /* their number, a power of 2, less 1 */
 } Bins;
 
-/* Of a cell: so long that most places are clear of its faces, and so short that few fit into one. */
+/* Of a cell: so long that most places are clear of its faces, and so short that few fit into
+ * one. */
 static const double cell_mm = 16e-9;
 
 static size_t bin_of(const Bins *bins, int32_t parent, const double cell[3])
@@ -46,7 +47,8 @@ static void find_cell(Vec3 point, double by, double cell[3])
         cell[axis] = floor((vec3_component(point, axis) + by) / cell_mm) + 0.0;
 }
 
-/* What leads to the latest of the sisters in the lists that end where segment i does; NULL: none. */
+/* What leads to the latest of the sisters in the lists that end where segment i does; NULL:
+ * none. */
 static int32_t *find_sister(const Tree *tree, const Bins *bins, size_t i)
 {
     double ends[2][3], cell[3];

@@ -1,9 +1,9 @@
 /* A tree becomes a scene in three steps: the geometry of its model, the camera that frames it, and
  * the look's lights turned from the camera's axes to the world's.
  *
- * No two surfaces of a primitive model coincide, because which of two coincident surfaces is seen is
- * nobody's to say; hence places.c. `rounded` puts one sphere at a place, of the largest radius that
- * meets there. */
+ * No two surfaces of a primitive model coincide, because which of two coincident surfaces is seen
+ * is nobody's to say; hence places.c. `rounded` puts one sphere at a place, of the largest radius
+ * that meets there. */
 #include "stage/stage.h"
 
 #include "stage/blend.h"
@@ -41,8 +41,8 @@ static void add_cylinders(const Tree *tree, const Paint *paint, const Places *pl
     }
 }
 
-/* thickest[i] becomes the thickest segment that meets at node i, if that stands for its place, or -1;
- * of equals, the one that ends there. */
+/* thickest[i] becomes the thickest segment that meets at node i, if that stands for its place, or
+ * -1; of equals, the one that ends there. */
 static void find_thickest(const Tree *tree, const Places *places, int32_t *thickest)
 {
     for (size_t i = 0; i < tree->n; i++)
@@ -208,7 +208,8 @@ static Ground place_ground(const LookGround *look, const Ball *balls, size_t n, 
     return ground;
 }
 
-/* A light in the world. Parallel lights stand ten diagonals away, in front of everything they light. */
+/* A light in the world. Parallel lights stand ten diagonals away, in front of everything they
+ * light. */
 static Light place_light(const LookLight *light, const Scene *scene, bool shadows)
 {
     Vec3 right = vec3_normalized(scene->camera.right), up = vec3_normalized(scene->camera.up);

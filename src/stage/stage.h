@@ -11,12 +11,11 @@
  */
 typedef struct LookLight {
     bool is_point;
-    /* x right, y up, z towards the viewer. Of a parallel light: towards it, of any length. Of a point
-     * light: its place from the middle of the tree, in half diagonals of the tree's box. */
+    /* x right, y up, z towards the viewer. Of a parallel light: towards it, of any length. Of a
+     * point light: its place from the middle of the tree, in half diagonals of the tree's box. */
     Vec3 direction;
-    double
-        size; /* of a point light: the side of the square, facing the tree, that casts its shadows, in
-                  * half diagonals; 0: a point */
+    double size; /* of a point light: the side of the square, facing the tree, that casts its
+                  * shadows, in half diagonals; 0: a point */
     int samples; /* along that side: 2, 4, 8 or 16 */
     Rgb color;
 } LookLight;
@@ -44,12 +43,14 @@ typedef struct Look {
 
 /* Reads an INI file with the sections [vessel] color, [background] color, [finish] ambient diffuse
  * brilliance phong phong_size specular roughness, [light NAME] direction or position, color, size,
- * samples, and [ground] normal or axis, gap, color, ambient, diffuse. STATUS_INPUT naming file and line on an unknown section or key and on a bad value. */
+ * samples, and [ground] normal or axis, gap, color, ambient, diffuse. STATUS_INPUT naming file and
+ * line on an unknown section or key and on a bad value. */
 MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
 
 typedef enum View { VIEW_FRONT, VIEW_TOP, VIEW_LEFT, VIEW_ISO } View;
 
-/* What a joined model does where vessels are too short, or turn back too sharply, for their joints. */
+/* What a joined model does where vessels are too short, or turn back too sharply, for their
+ * joints. */
 typedef enum JointForm {
     JOINTS_ROBUST, /* draws the place as the rounded model does */
     JOINTS_PAPER   /* follows the construction of [N] to the letter */
@@ -76,9 +77,9 @@ StageParams stage_defaults(void);
 typedef struct StageReport {
     size_t drawn;   /* segments in the scene */
     size_t dropped; /* segments without length or radius, which cannot be drawn */
-    /* Of a joined model: joints drawn; places where the construction breaks down because a vessel is
-     * too short, of the others, because it turns back too sharply, and those where so many vessels meet
-     * that how they run into each other is not worked out. */
+    /* Of a joined model: joints drawn; places where the construction breaks down because a vessel
+     * is too short, of the others, because it turns back too sharply, and those where so many
+     * vessels meet that how they run into each other is not worked out. */
     size_t joints, places_short, places_sharp, places_crowded;
 } StageReport;
 
@@ -89,18 +90,18 @@ MUST_CHECK Status stage_scene(const Tree *tree, const Look *look, const Rgb *col
                               const StageParams *params, Scene *scene, StageReport *report,
                               Err *err);
 
-/* Aims the scene's camera anew, with lights and ground as they stand to it: all that stage_scene does for
- * these params, whose model, joints, graph and shadows must be those that the scene was built with, but
- * for the geometry. STATUS_USAGE when the vectors given make no camera, STATUS_INPUT when it is too far
- * away; the scene is unchanged then. */
+/* Aims the scene's camera anew, with lights and ground as they stand to it: all that stage_scene
+ * does for these params, whose model, joints, graph and shadows must be those that the scene was
+ * built with, but for the geometry. STATUS_USAGE when the vectors given make no camera,
+ * STATUS_INPUT when it is too far away; the scene is unchanged then. */
 MUST_CHECK Status stage_aim(const Look *look, const StageParams *params, Scene *scene, Err *err);
 
 /* Unit direction and up vector of a named view: front looks along -z with y up, top along -y with
  * -z up, left along +x with y up, iso along (-1, -1, -1) with y up. */
 void view_axes(View view, Vec3 *direction, Vec3 *up);
 
-/* ---- a camera that is moved about what it looks at: the parameters that make it, location, look_at, up,
- * projection, and height_mm or angle_deg, all of them given */
+/* ---- a camera that is moved about what it looks at: the parameters that make it, location,
+ * look_at, up, projection, and height_mm or angle_deg, all of them given */
 
 /* Sets these from the camera of a scene; it looks at the point of its axis nearest to the middle of
  * the geometry. */

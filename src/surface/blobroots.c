@@ -1,8 +1,8 @@
-/* Along a line of unit direction a component's field is f = S (1 - q)^2, q = d^2 / R^2, where q < 1. With
- * 0 <= q'' <= 2 / R^2 and q'^2 <= 4 q / R^2, f'' = 2 S (q'^2 - (1 - q) q'') lies between -4 S / R^2 and
- * 8 S / R^2; f' has no jump. So |F''| is at most M, the sum of 8 |S| / R^2 over what is felt in an interval of
- * width w, and F is within M w^2 / 8 of the straight line between its ends. If that keeps F off 1, it holds no
- * root; else it is halved. */
+/* Along a line of unit direction a component's field is f = S (1 - q)^2, q = d^2 / R^2, where q
+ * < 1. With 0 <= q'' <= 2 / R^2 and q'^2 <= 4 q / R^2, f'' = 2 S (q'^2 - (1 - q) q'') lies between
+ * -4 S / R^2 and 8 S / R^2; f' has no jump. So |F''| is at most M, the sum of 8 |S| / R^2 over what
+ * is felt in an interval of width w, and F is within M w^2 / 8 of the straight line between its
+ * ends. If that keeps F off 1, it holds no root; else it is halved. */
 #include "surface/blobroots.h"
 
 #include "surface/blob.h"
@@ -50,7 +50,8 @@ static Point less(Point a, Point b)
     return along(a, b, -1);
 }
 
-/* The component, if the ray comes as near as its radius to a ball about it between t_min and t_max. */
+/* The component, if the ray comes as near as its radius to a ball about it between t_min and
+ * t_max. */
 static bool take_component(const Search *search, const BlobComponent *component, bool tube,
                            long double t_min, long double t_max, Felt *felt)
 {
@@ -110,7 +111,8 @@ static size_t keep_felt(Felt *felt, size_t n, long double low, long double high,
     return kept;
 }
 
-/* Finds the roots between `low` and `high`, where the excess is `f_low` and `f_high`, among the first n. */
+/* Finds the roots between `low` and `high`, where the excess is `f_low` and `f_high`, among the
+ * first n. */
 static void search_between(Search *search, size_t n, long double low, long double high,
                            long double f_low, long double f_high)
 {

@@ -1,13 +1,14 @@
-/* A term is split into parts that POV-Ray evaluates cheaply and that lose nothing far from the origin:
- * two axes v and w across the segment and one along it, each an affine function of x in units of 1/c
- * = sqrt(2) s. The Gaussian is exp(-(v^2 + w^2)), a sum of squares and not a difference of large ones.
- * v is perpendicular to the coordinate axis that the segment is least along, so that it has one
- * coefficient less, and in a planar tree w has only one.
+/* A term is split into parts that POV-Ray evaluates cheaply and that lose nothing far from the
+ * origin: two axes v and w across the segment and one along it, each an affine function of x in
+ * units of 1/c = sqrt(2) s. The Gaussian is exp(-(v^2 + w^2)), a sum of squares and not a
+ * difference of large ones. v is perpendicular to the coordinate axis that the segment is least
+ * along, so that it has one coefficient less, and in a planar tree w has only one.
  *
- * The axial factor is (erf(start) + erf(end)) / 2, start and end being how far x is inside either end.
- * It is step(start) + step(end) - 1 with step(u) = (1 + erf u) / 2, and where one end is so far inside
- * that its step is 1, the other step alone, or 1. erf u is tanh(odd polynomial of u), least in the
- * largest error over all u for its degree; then step(u) = 1 / (1 + exp(-2 polynomial)) takes one exp. */
+ * The axial factor is (erf(start) + erf(end)) / 2, start and end being how far x is inside either
+ * end. It is step(start) + step(end) - 1 with step(u) = (1 + erf u) / 2, and where one end is so
+ * far inside that its step is 1, the other step alone, or 1. erf u is tanh(odd polynomial of u),
+ * least in the largest error over all u for its degree; then step(u) = 1 / (1 + exp(-2 polynomial))
+ * takes one exp. */
 #include "surface/surface.h"
 
 const double erf_forms[][ERF_TERMS] = {
@@ -26,9 +27,9 @@ double cell_displacement(double radius_mm, ErfForm form)
     return (3 * erf_form_error(form) + 2e-5) * radius_mm;
 }
 
-/* c (direction . x) + offset, zero at the origin given. Rounded to 12 digits of c and to 1e-10, so that equal
- * numbers are equal to the last bit: POV-Ray's time to read a scene grows with the square of how many
- * different ones there are. */
+/* c (direction . x) + offset, zero at the origin given. Rounded to 12 digits of c and to 1e-10, so
+ * that equal numbers are equal to the last bit: POV-Ray's time to read a scene grows with the
+ * square of how many different ones there are. */
 static Linear linear(Vec3 direction, double c, Vec3 origin)
 {
     double unit = pow(10, 11 - floor(log10(c)));

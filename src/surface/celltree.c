@@ -32,8 +32,8 @@ static const double significant = 1e-2;
 /* The accuracy of a cell over its local radius, and the most that a shadow may ask for. */
 static const double accuracy_ratio = 1.0 / 300, largest_accuracy_ratio = 1.0 / 60;
 
-/* Boxes reach beyond their cubes by this many accuracies, and by this part of their coordinates, because
- * POV-Ray keeps bounding boxes in single precision. */
+/* Boxes reach beyond their cubes by this many accuracies, and by this part of their coordinates,
+ * because POV-Ray keeps bounding boxes in single precision. */
 static const double overlap_accuracies = 5, overlap_rounding = 4 * FLT_EPSILON;
 
 /* With erf as a polynomial's tanh, s |A'| is at most this times A sqrt(-2 ln A) down to A =
@@ -42,8 +42,8 @@ static const double overlap_accuracies = 5, overlap_rounding = 4 * FLT_EPSILON;
 static const double tail_steepness[] = {[ERF_FAST] = 1.14, [ERF_EXACT] = 1.21};
 
 static const size_t max_cells = 1000000;
-/* Terms looked at in all cubes, those without surface included, and KEPT times more for one that is kept:
- * seconds of work. Of most trees, 80 a cell. */
+/* Terms looked at in all cubes, those without surface included, and KEPT times more for one that is
+ * kept: seconds of work. Of most trees, 80 a cell. */
 enum { KEPT = 3 };
 static const uint64_t max_looks = 30000000, max_looks_per_cell = 150;
 
@@ -247,9 +247,9 @@ static double max_gradient(const Builder *builder, const TermList *terms, const 
     return round_down(gradient, decimals_of(gradient, 4), -1);
 }
 
-/* How far the box of a cell reaches beyond its cube: not alike for any two neighbours, so that POV-Ray,
- * which halves what a ray has in the box, does not find the same wall at the same place in both, and the
- * order in which it looks at them does not matter. */
+/* How far the box of a cell reaches beyond its cube: not alike for any two neighbours, so that
+ * POV-Ray, which halves what a ray has in the box, does not find the same wall at the same place in
+ * both, and the order in which it looks at them does not matter. */
 static double overlap_of(const Builder *builder, const Cube *cube, double accuracy)
 {
     int64_t octant = (cube->at[0] & 1) | (cube->at[1] & 1) << 1 | (cube->at[2] & 1) << 2;

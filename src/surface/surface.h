@@ -31,8 +31,8 @@ double potential_term_bound(const FieldSegment *segment, Box box);
 
 /* The log form of the potential that POV-Ray traces: sqrt(-2 ln clamp(phi, LOG_FORM_FLOOR,
  * LOG_FORM_CEILING)) - 2, zero on the surface, (distance - 2 s) / s about a lone vessel. Where the
- * potential is below the floor the terms that were dropped begin to weigh as much as those that were
- * kept; above the ceiling nothing is seen, and the form would only grow steep. */
+ * potential is below the floor the terms that were dropped begin to weigh as much as those that
+ * were kept; above the ceiling nothing is seen, and the form would only grow steep. */
 #define LOG_FORM_FLOOR 1e-5
 #define LOG_FORM_CEILING 0.2
 double potential_log_form(double phi);

@@ -2,8 +2,9 @@
  *
  * Node i other than a root is the distal end of segment i, the straight tube from its parent's
  * position to its own, of radius radius_mm[i] throughout. A root is an inlet point, and its radius
- * that of the thickest segment that leaves it. Several roots make a forest. Parents come before children, so a
- * forward loop is a sweep from the roots and a backward loop one from the terminals. */
+ * that of the thickest segment that leaves it. Several roots make a forest. Parents come before
+ * children, so a forward loop is a sweep from the roots and a backward loop one from the
+ * terminals. */
 #ifndef CORCAST_TREE_TREE_H
 #define CORCAST_TREE_TREE_H
 

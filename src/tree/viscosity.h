@@ -20,8 +20,8 @@ typedef enum ViscosityLaw {
  *     m = 6 exp(-0.085 D) + 3.2 - 2.44 exp(-0.06 D^0.645),      the value at H = 0.45,
  *     C = (0.8 + exp(-0.075 D)) (-1 + e) + e,   e = 1 / (1 + 1e-11 D^12).
  *
- * `hematocrit` in [0, MAX_HEMATOCRIT], `plasma_viscosity_pa_s` > 0. INFINITY for D <= 1.1, where the law lets
- * nothing through. */
+ * `hematocrit` in [0, MAX_HEMATOCRIT], `plasma_viscosity_pa_s` > 0. INFINITY for D <= 1.1, where
+ * the law lets nothing through. */
 double viscosity_pries_pa_s(double radius_mm, double hematocrit, double plasma_viscosity_pa_s);
 
 #endif

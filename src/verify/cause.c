@@ -1,7 +1,7 @@
-/* What made B of A, where that can be said for certain: each guess is a map of one picture onto the other,
- * and it is named when it explains the pictures, not when it merely resembles them. Guesses about places
- * come before those about colours. Shifts and gains are tried on a few hundred of the pixels that differ,
- * and only the one that fits them on all. */
+/* What made B of A, where that can be said for certain: each guess is a map of one picture onto the
+ * other, and it is named when it explains the pictures, not when it merely resembles them. Guesses
+ * about places come before those about colours. Shifts and gains are tried on a few hundred of the
+ * pixels that differ, and only the one that fits them on all. */
 #include "verify/result.h"
 
 #include <math.h>
@@ -42,7 +42,7 @@ static int code_at(const Picture *picture, int x, int y, int c)
     return picture_code(picture, pixel * (size_t)picture->channels + (size_t)c);
 }
 
-/* ---- turned, or with other channels ------------------------------------------------------------ */
+/* ---- turned, or with other channels ---------------------------------------------------------- */
 
 typedef struct Turn {
     bool mirrored, upended, swapped; /* left and right, top and bottom, red and blue */
@@ -76,7 +76,7 @@ static const char *find_turn(const Picture *a, const Picture *b)
     return NULL;
 }
 
-/* ---- moved ------------------------------------------------------------------------------------- */
+/* ---- moved ----------------------------------------------------------------------------------- */
 
 typedef struct Shift {
     int dx, dy; /* pixel (x, y) of A is (x + dx, y + dy) of B */
@@ -148,7 +148,7 @@ static bool find_shift(const Picture *a, const Picture *b, const Samples *sample
     return true;
 }
 
-/* ---- brighter or darker ------------------------------------------------------------------------ */
+/* ---- brighter or darker ---------------------------------------------------------------------- */
 
 /* Of each code of a picture, what it means. */
 typedef struct Meaning {
@@ -259,7 +259,7 @@ static Status find_gain(const Picture *a, const Picture *b, const Samples *sampl
     return status;
 }
 
-/* ---- shading ----------------------------------------------------------------------------------- */
+/* ---- shading --------------------------------------------------------------------------------- */
 
 static bool has_equal_outlines(const CompareResult *result)
 {

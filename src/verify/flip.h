@@ -39,7 +39,8 @@ typedef struct FlipPair {
     const void *context; /* borrowed */
 } FlipPair;
 
-/* The error of each pixel in *map (owned; 1 channel), unless that is NULL, and what it sums up to. */
+/* The error of each pixel in *map (owned; 1 channel), unless that is NULL, and what it sums up
+ * to. */
 MUST_CHECK Status flip_run(const FlipPair *pair, Plane *map, FlipSummary *summary, Err *err);
 
 #endif

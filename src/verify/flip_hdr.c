@@ -1,6 +1,6 @@
-/* HDR-FLIP: LDR-FLIP of both images under a range of exposures, tone mapped by ACES' fit; of each pixel
- * the largest error. The exposures run from where the reference's brightest pixel is tone mapped to
- * 0.85 to where its median one is, one about every stop. */
+/* HDR-FLIP: LDR-FLIP of both images under a range of exposures, tone mapped by ACES' fit; of each
+ * pixel the largest error. The exposures run from where the reference's brightest pixel is tone
+ * mapped to 0.85 to where its median one is, one about every stop. */
 #include "verify/flip.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* Roots and powers without branches or calls, so that loops over pixels become vectors; in the ranges of
- * FLIP they are right to a few units of the last place. Private to FLIP. */
+/* Roots and powers without branches or calls, so that loops over pixels become vectors; in the
+ * ranges of FLIP they are right to a few units of the last place. Private to FLIP. */
 #ifndef CORCAST_VERIFY_FLIP_MATH_H
 #define CORCAST_VERIFY_FLIP_MATH_H
 

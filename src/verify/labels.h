@@ -46,8 +46,8 @@ typedef struct LabelWindow {
     uint32_t *scratch[2][3];
 } LabelWindow;
 
-/* Bytes of scratch memory, 4-byte aligned, that a window over images of this width needs; a multiple
- * of 4. */
+/* Bytes of scratch memory, 4-byte aligned, that a window over images of this width needs; a
+ * multiple of 4. */
 size_t label_window_size(int width);
 /* Opens the window at row `y`; `scratch` is borrowed. */
 void label_window_open(LabelWindow *window, const Labels *labels, int y, void *scratch);

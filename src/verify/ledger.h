@@ -1,5 +1,6 @@
 /* The account of each segment while two images are walked; private to the room verify. Everything
- * is kept in whole codes, so that accounts of parts of the images add up to the same in any order. */
+ * is kept in whole codes, so that accounts of parts of the images add up to the same in any
+ * order. */
 #ifndef CORCAST_VERIFY_LEDGER_H
 #define CORCAST_VERIFY_LEDGER_H
 

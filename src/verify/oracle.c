@@ -1,15 +1,16 @@
-/* POV-Ray writes all it has to say to standard error: progress as "Rendered 120 of 400 pixels (30%)"
- * ended by carriage returns, a banner with its version, and the reason of a failure somewhere between
- * statistics. All of it is read through a pipe, of which the beginning and the end are kept.
+/* POV-Ray writes all it has to say to standard error: progress as "Rendered 120 of 400 pixels
+ * (30%)" ended by carriage returns, a banner with its version, and the reason of a failure
+ * somewhere between statistics. All of it is read through a pipe, of which the beginning and the
+ * end are kept.
  *
- * POV-Ray takes only some paths on its command line: no letter beyond ASCII, no line end. So it is given
- * fixed names in a private folder beside the picture, which it reaches through an open handle: a link to
- * the scene, the picture, and its restart file. It runs in the scene's folder, where it finds what the
- * scene includes. The picture takes its final name when it is whole.
+ * POV-Ray takes only some paths on its command line: no letter beyond ASCII, no line end. So it is
+ * given fixed names in a private folder beside the picture, which it reaches through an open
+ * handle: a link to the scene, the picture, and its restart file. It runs in the scene's folder,
+ * where it finds what the scene includes. The picture takes its final name when it is whole.
  *
- * POV-Ray is a process group of its own, a script that stands for it included. It is killed when a signal
- * ends this process, before its files are removed, and when it falls silent; if this process is killed, POV-Ray
- * itself dies with it. */
+ * POV-Ray is a process group of its own, a script that stands for it included. It is killed when a
+ * signal ends this process, before its files are removed, and when it falls silent; if this process
+ * is killed, POV-Ray itself dies with it. */
 #include "verify/oracle.h"
 
 #include <errno.h>
@@ -124,7 +125,7 @@ static Status folder_of(const char *path, char **out, Err *err)
     return STATUS_OK;
 }
 
-/* ---- the private folder ------------------------------------------------------------------------ */
+/* ---- the private folder ---------------------------------------------------------------------- */
 
 /* All names are owned and removed by file_forget or by a signal. */
 typedef struct Workplace {
@@ -167,7 +168,7 @@ static void close_workplace(Workplace *place)
     file_forget(place->folder);
 }
 
-/* ---- the process -------------------------------------------------------------------------------- */
+/* ---- the process ----------------------------------------------------------------------------- */
 
 static void become_povray(char *const *arguments, const char *folder, int private_folder, int log)
 {
@@ -247,8 +248,8 @@ static Status end_povray(pid_t child, Status status)
     return status;
 }
 
-/* Waits for POV-Ray itself: what it has started may live on and keep the pipe open, and it may close the
- * pipe and live on. What is in the pipe when it ends is still read. */
+/* Waits for POV-Ray itself: what it has started may live on and keep the pipe open, and it may
+ * close the pipe and live on. What is in the pipe when it ends is still read. */
 static Status attend(const OracleParams *params, pid_t child, int handle, Log *log, int *ended,
                      Err *err)
 {
@@ -436,7 +437,7 @@ done:
     return status;
 }
 
-/* ---- planes ------------------------------------------------------------------------------------ */
+/* ---- planes ---------------------------------------------------------------------------------- */
 
 static Status read_deep(Picture *picture, const char *path, Err *err)
 {

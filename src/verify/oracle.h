@@ -27,18 +27,18 @@ typedef struct OracleRun {
     double seconds;   /* wall clock, parsing included */
 } OracleRun;
 
-/* Runs POV-Ray without a window, in the scene's folder. The picture appears under its name only when it
- * is a whole PNG of the size and depth asked for. STATUS_TOOL with POV-Ray's own words when it is missing
- * or fails, or when it falls silent or never stops talking; STATUS_INPUT when the scene is no regular
- * file. `run` may be NULL. */
+/* Runs POV-Ray without a window, in the scene's folder. The picture appears under its name only
+ * when it is a whole PNG of the size and depth asked for. STATUS_TOOL with POV-Ray's own words when
+ * it is missing or fails, or when it falls silent or never stops talking; STATUS_INPUT when the
+ * scene is no regular file. `run` may be NULL. */
 MUST_CHECK Status oracle_run(const OracleParams *params, OracleRun *run, Err *err);
 
 /* The switches of such a run as one line, for the report and for scripts; in *out (owned). */
 MUST_CHECK Status oracle_command(const OracleParams *params, char **out, Err *err);
 
-/* Reads the plane that oracle_run wrote as `output` into the frame: depth in mm between `near_mm` and
- * `far_mm` as the scene declares them, INFINITY where nothing is seen; unit normals; ids; colour
- * decoded to linear. */
+/* Reads the plane that oracle_run wrote as `output` into the frame: depth in mm between `near_mm`
+ * and `far_mm` as the scene declares them, INFINITY where nothing is seen; unit normals; ids;
+ * colour decoded to linear. */
 MUST_CHECK Status oracle_read_depth(Plane *depth, const char *path, double near_mm, double far_mm,
                                     Err *err);
 MUST_CHECK Status oracle_read_normal(Plane *normal, const char *path, Err *err);

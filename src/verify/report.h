@@ -10,15 +10,15 @@ const CompareResult *report_worst(const ReportCase *report);
 /* Why the report does not agree, a sentence, or NULL. Borrowed. */
 const char *report_reason(const ReportCase *report);
 
-/* Appends `text` with & < > " and ' as entities, without control characters, and with U+FFFD for what is not
- * UTF-8: for HTML and XML, in elements and attributes. */
+/* Appends `text` with & < > " and ' as entities, without control characters, and with U+FFFD for
+ * what is not UTF-8: for HTML and XML, in elements and attributes. */
 void text_escaped(Text *out, const char *text);
 
 /* Appends the JUnit XML: a test case for each plane. */
 void report_junit(const ReportCase *report, Text *out);
 
-/* By how much the rule that is broken most is exceeded: measured over allowed, at least 1; 0 when all
- * are met. */
+/* By how much the rule that is broken most is exceeded: measured over allowed, at least 1; 0 when
+ * all are met. */
 double report_severity(const ReportCase *report);
 
 /* The worst segments of a comparison as compare_json has them. New reference. */
@@ -35,10 +35,10 @@ void report_settled_rows(const ReportCase *report, Text *rules, Text *metrics);
 
 /* Appends a picture as a data: URI. */
 MUST_CHECK Status report_picture(Text *out, const Picture *picture, Err *err);
-/* Appends the depths and normals of both sides as data: URIs for the page's script, "data:," for what is
- * not known or larger than 4 million pixels. Depth: 0 for nothing, else 1 to 65534 over range_mm, in red and
- * green; normals: 128 + 127 n; the angle between them in 0.001 degrees, in red and green. B is less A, modulo
- * the range of the codes. */
+/* Appends the depths and normals of both sides as data: URIs for the page's script, "data:," for
+ * what is not known or larger than 4 million pixels. Depth: 0 for nothing, else 1 to 65534 over
+ * range_mm, in red and green; normals: 128 + 127 n; the angle between them in 0.001 degrees, in red
+ * and green. B is less A, modulo the range of the codes. */
 typedef enum ReportPlane {
     REPORT_DEPTH_A,
     REPORT_DEPTH_B,

@@ -103,7 +103,8 @@ static void append_numbered(Text *out, const char *part, size_t size, size_t num
     }
 }
 
-/* ------------------------------------------------------------------------------------------ power */
+/* ------------------------------------------------------------------------------------------
+ * power */
 
 /* A string of an object, "" where there is none. Borrowed. */
 static const char *text_of(json_t *row, const char *key)
@@ -192,7 +193,8 @@ static Status power_section(const char *path, Text *out, Err *err)
     return text_check(out, err);
 }
 
-/* ------------------------------------------------------------------------------------------- page */
+/* -------------------------------------------------------------------------------------------
+ * page */
 
 static Status write_page(const MergedCase *cases, size_t n, const Text *power,
                          const char *templates, const char *path, Err *err)

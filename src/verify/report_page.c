@@ -299,7 +299,8 @@ done:
     return status;
 }
 
-/* ---------------------------------------------------------------------------------- table of cases */
+/* ---------------------------------------------------------------------------------- table of
+ * cases */
 
 static void number_cell(Text *row, double value)
 {
@@ -336,7 +337,8 @@ static Status case_row(const ReportCase *report, Text *row, Err *err)
     return text_check(row, err);
 }
 
-/* ------------------------------------------------------------------------------------------- page */
+/* -------------------------------------------------------------------------------------------
+ * page */
 
 Status report_frame(const ReportFrame *frame, const char *templates, Text *out, Err *err)
 {

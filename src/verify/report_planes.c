@@ -1,5 +1,5 @@
-/* Planes as pictures of a page, of eight bits a channel; the page's script makes numbers of them again.
- * B holds only what it adds to A, so that it is nearly empty. */
+/* Planes as pictures of a page, of eight bits a channel; the page's script makes numbers of them
+ * again. B holds only what it adds to A, so that it is nearly empty. */
 #include "verify/report.h"
 #include "verify/result.h"
 
@@ -67,7 +67,8 @@ static void fill_normals(const Plane *a, const Plane *b, Picture pictures[REPORT
     }
 }
 
-/* Appends the pictures from `first` to `last`, or an empty document for each where there are none. */
+/* Appends the pictures from `first` to `last`, or an empty document for each where there are
+ * none. */
 static Status put_pictures(Picture pictures[REPORT_PLANES], bool filled, ReportPlane first,
                            ReportPlane last, Text *parts[REPORT_PLANES], Err *err)
 {

@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* What a picture may have of each cause, in words for reasons and tables. Of large pictures so many ppm, of
- * small ones so many pixels. */
+/* What a picture may have of each cause, in words for reasons and tables. Of large pictures so many
+ * ppm, of small ones so many pixels. */
 static const struct {
     const char *name, *sentence;
     double ppm;
@@ -101,7 +101,7 @@ void settled_describe(const SettledPixel *pixel, const char *name_a, const char 
         text_printf(out, ", the light is blocked %.6g mm away", pixel->distance_mm);
 }
 
-/* ---- which pixels ask for it --------------------------------------------------------------------- */
+/* ---- which pixels ask for it ----------------------------------------------------------------- */
 
 static bool color_beyond(const Rendering *a, const Rendering *b, size_t pixel, int codes)
 {
@@ -132,7 +132,7 @@ unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
            (sight_beyond(a, b, pixel, tolerance) ? BEYOND_SIGHT : 0u);
 }
 
-/* ---- JSON ---------------------------------------------------------------------------------------- */
+/* ---- JSON ------------------------------------------------------------------------------------ */
 
 static json_t *pixels_json(const Settled *settled)
 {

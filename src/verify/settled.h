@@ -1,6 +1,6 @@
-/* Pixels at which the two sides differ although B is right: something besides either, asked by the caller,
- * says so, and what A shows is explained. No limit of a tolerance counts them; limits of their own do. Part of
- * the room's door. */
+/* Pixels at which the two sides differ although B is right: something besides either, asked by the
+ * caller, says so, and what A shows is explained. No limit of a tolerance counts them; limits of
+ * their own do. Part of the room's door. */
 #ifndef CORCAST_VERIFY_SETTLED_H
 #define CORCAST_VERIFY_SETTLED_H
 
@@ -12,9 +12,10 @@ typedef enum SettledCause {
     SETTLED_NOT,
     SETTLED_ROOT, /* A's ray missed the first root of the field, and sees what lies behind */
     SETTLED_INEXACT_ROOT, /* A's root is a little off the first, and it shows what is there */
-    SETTLED_SHADOW_ROOT, /* A's ray to a light missed a root, and A is lit where a vessel is in the way */
-    SETTLED_SHADOW_CACHE, /* what is in the way of a light is so near that A's answer depends on the order of
-                           * its rays */
+    SETTLED_SHADOW_ROOT,  /* A's ray to a light missed a root, and A is lit where a vessel is in the
+                             way */
+    SETTLED_SHADOW_CACHE, /* what is in the way of a light is so near that A's answer depends on the
+                           * order of its rays */
     SETTLED_CAUSES
 } SettledCause;
 
@@ -42,26 +43,29 @@ typedef struct Settled {
     SettledCause from, to; /* the causes that were looked for, the last one included */
     size_t asked;          /* pixels that differ and were looked into */
     size_t unasked; /* pixels that differ beyond the first `asked`, when there are too many */
-    size_t count
-        [SETTLED_CAUSES]; /* of those asked, by cause; SETTLED_NOT: not explained, or B is wrong */
+    size_t count[SETTLED_CAUSES]; /* of those asked, by cause; SETTLED_NOT: not explained, or B is
+                                     wrong */
     SettledPixel first[SETTLED_LISTED]; /* the first of those that are settled */
     int n_first;
     bool agrees;      /* no cause has more pixels than it may */
     char reason[200]; /* a sentence; "" when it agrees */
 } Settled;
 
-/* Nothing settled yet in a picture of so many pixels; the causes `from` to `to` will be looked for. */
+/* Nothing settled yet in a picture of so many pixels; the causes `from` to `to` will be looked
+ * for. */
 MUST_CHECK Status settled_init(Settled *settled, size_t pixels, SettledCause from, SettledCause to,
                                Err *err);
 void settled_release(Settled *settled);
-/* Notes what was found about a pixel that differs; `pixel->cause` is SETTLED_NOT where nothing explains it. */
+/* Notes what was found about a pixel that differs; `pixel->cause` is SETTLED_NOT where nothing
+ * explains it. */
 void settled_note(Settled *settled, size_t index, const SettledPixel *pixel);
-/* How many pixels of a cause a picture may have: the ppm that hold for large ones, and in small ones a few. */
+/* How many pixels of a cause a picture may have: the ppm that hold for large ones, and in small
+ * ones a few. */
 size_t settled_allowed(const Settled *settled, SettledCause cause);
 /* Fills in `agrees` and `reason`. */
 void settled_judge(Settled *settled);
-/* Appends where and how A is wrong at a pixel: "at (118, 285), segment 2649: A sees 241.315 mm, ...", with
- * the names of both sides. */
+/* Appends where and how A is wrong at a pixel: "at (118, 285), segment 2649: A sees 241.315 mm,
+ * ...", with the names of both sides. */
 void settled_describe(const SettledPixel *pixel, const char *name_a, const char *name_b, Text *out);
 /* New reference, NULL when memory runs out. */
 json_t *settled_json(const Settled *settled);

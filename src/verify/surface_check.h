@@ -1,18 +1,18 @@
 /* The second step of verifying an implicit surface: the first holds POV-Ray's picture against a
- * repetition of its root finder, this one the repetition against where the surface is. Part of the room's
- * door. */
+ * repetition of its root finder, this one the repetition against where the surface is. Part of the
+ * room's door. */
 #ifndef CORCAST_VERIFY_SURFACE_CHECK_H
 #define CORCAST_VERIFY_SURFACE_CHECK_H
 
 #include "base/base.h"
 #include "image/image.h"
 
-/* One depth plane of either side, A the repetition and B the surface: 1 channel, mm along the ray, INFINITY
- * where nothing is seen. */
+/* One depth plane of either side, A the repetition and B the surface: 1 channel, mm along the ray,
+ * INFINITY where nothing is seen. */
 typedef struct SurfacePlanes {
     const Plane *a, *b;
-    /* How far A may be from B, mm; INFINITY where the ray grazes a surface in either and may go either
-     * way. 1 channel. */
+    /* How far A may be from B, mm; INFINITY where the ray grazes a surface in either and may go
+     * either way. 1 channel. */
     const Plane *allowed;
 } SurfacePlanes;
 

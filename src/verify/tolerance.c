@@ -173,8 +173,8 @@ static Status set_field(Tolerance *tolerance, const Field *field, const char *va
     return STATUS_OK;
 }
 
-/* The name is one that reads back to itself: control characters become blanks, and blanks neither begin nor
- * end it, nor begin a comment in it. */
+/* The name is one that reads back to itself: control characters become blanks, and blanks neither
+ * begin nor end it, nor begin a comment in it. */
 static Status take_name(char **name, const char *value, Err *err)
 {
     Text text = TEXT_INIT;

@@ -54,28 +54,29 @@ typedef struct Tolerance {
     double pixelmatch;     /* threshold of pixelmatch, in [0, 1]; NAN: not counted */
     double pixelmatch_ppm; /* pixels that it finds different */
     const char *title; /* of what is compared, in verdicts; NULL: the plane's name. Borrowed ... */
-    /* SettledCause of each pixel; no limit counts those that are settled. NULL: none is. Borrowed, and
-     * both in no file. */
+    /* SettledCause of each pixel; no limit counts those that are settled. NULL: none is. Borrowed,
+     * and both in no file. */
     const uint8_t *settled;
 } Tolerance;
 
 /* Nothing is judged but NaN; `tier` is "none". */
 Tolerance tolerance_none(void);
-/* Tier A, identity: but for 2 pixels in a million colours are off by no code of 8 bits and by at most
- * one of 16, ids are equal, depth is within one step of the reference's quantisation and normals
- * within 0.03 degrees; and off the edges no colour is off by more than a level. */
+/* Tier A, identity: but for 2 pixels in a million colours are off by no code of 8 bits and by at
+ * most one of 16, ids are equal, depth is within one step of the reference's quantisation and
+ * normals within 0.03 degrees; and off the edges no colour is off by more than a level. */
 Tolerance tolerance_identity(double depth_step_mm);
 /* Tier B: what a renderer in single precision keeps, whatever the scene. */
 Tolerance tolerance_tolerant(double depth_step_mm);
-/* Implicit surfaces, whose points both sides find by iteration: colours within 2 levels but for 2000 ppm
- * of the pixels off the edges and 15,000 ppm of those at them, of one gain to 0.0005 and one offset to 0.15
- * levels, no segment brighter or darker by more than a level on average, no outline of one off by 0.15 px, no region of more than 2 pixels missing or extra; depth at the 99th percentile within
- * `depth_mm`, or, where that is 0, 10^-4 of the depth. */
+/* Implicit surfaces, whose points both sides find by iteration: colours within 2 levels but for
+ * 2000 ppm of the pixels off the edges and 15,000 ppm of those at them, of one gain to 0.0005 and
+ * one offset to 0.15 levels, no segment brighter or darker by more than a level on average, no
+ * outline of one off by 0.15 px, no region of more than 2 pixels missing or extra; depth at the
+ * 99th percentile within `depth_mm`, or, where that is 0, 10^-4 of the depth. */
 Tolerance tolerance_surface(double depth_mm);
 /* Changes what an INI file names: "color_ppm = 20", the keys being the fields of Tolerance, "inf"
  * leaving a rule unjudged; `tier = NAME` is optional, "given" otherwise, and kept in *name (owned),
- * its control characters as blanks. STATUS_INPUT naming file and line on an unknown key and on a value below
- * 0. */
+ * its control characters as blanks. STATUS_INPUT naming file and line on an unknown key and on a
+ * value below 0. */
 MUST_CHECK Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *err);
 /* Appends such a file, which reads back to the same tolerance. */
 void tolerance_text(const Tolerance *tolerance, Text *out);
@@ -217,13 +218,13 @@ typedef struct Rendering {
 
 /* What a limit of one pixel finds at a pixel: in its colour, in what is seen and where. */
 enum { BEYOND_COLOR = 1, BEYOND_SIGHT = 2 };
-/* Which of these differ at a pixel by more than the tolerance lets one pixel be off: ids at all, colour,
- * depth, normals. Both have all planes, of one shape. */
+/* Which of these differ at a pixel by more than the tolerance lets one pixel be off: ids at all,
+ * colour, depth, normals. Both have all planes, of one shape. */
 unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
                       const Tolerance *tolerance);
 
-/* Compares two pictures, perception left out. `ledger` takes the account of all segments (owned), is
- * empty without ids, and may be NULL. STATUS_INPUT when sizes, channels or bits differ. */
+/* Compares two pictures, perception left out. `ledger` takes the account of all segments (owned),
+ * is empty without ids, and may be NULL. STATUS_INPUT when sizes, channels or bits differ. */
 MUST_CHECK Status compare_pictures(const Rendering *a, const Rendering *b,
                                    const Tolerance *tolerance, CompareResult *result,
                                    Ledger *ledger, Err *err);
@@ -233,9 +234,9 @@ MUST_CHECK Status compare_perception(const Picture *a, const Picture *b, Compare
 /* The class of every pixel, a PixelClass, as a grey picture of 8 bits. */
 MUST_CHECK Status class_picture(Picture *out, const Rendering *a, const Rendering *b,
                                 const Tolerance *tolerance, Err *err);
-/* Says in result->cause what made B of A, of the same gamma, where that is certain: turned, mirrored,
- * moved by whole pixels (up to 48), rounded, brighter or darker throughout, or other shades within equal
- * outlines. */
+/* Says in result->cause what made B of A, of the same gamma, where that is certain: turned,
+ * mirrored, moved by whole pixels (up to 48), rounded, brighter or darker throughout, or other
+ * shades within equal outlines. */
 MUST_CHECK Status compare_cause(const Picture *a, const Picture *b, CompareResult *result,
                                 Err *err);
 /* Compares two planes of linear colours, which may exceed 1, in levels of their sRGB encoding,
@@ -264,9 +265,9 @@ typedef struct FlipSummary {
  * which may be NULL. */
 MUST_CHECK Status flip_compute(const Picture *a, const Picture *b, Plane *map, FlipSummary *summary,
                                Err *err);
-/* HDR-FLIP [Andersson et al. 2021, HPG short papers; version 1.6] of two planes of linear colours, of
- * finite values, of the same shape: the largest LDR-FLIP over exposures chosen by the luminance of A,
- * tone mapped by ACES. */
+/* HDR-FLIP [Andersson et al. 2021, HPG short papers; version 1.6] of two planes of linear colours,
+ * of finite values, of the same shape: the largest LDR-FLIP over exposures chosen by the luminance
+ * of A, tone mapped by ACES. */
 MUST_CHECK Status hdr_flip_compute(const Plane *a, const Plane *b, Plane *map, FlipSummary *summary,
                                    Err *err);
 /* Mean SSIM of luma [Wang et al. 2004, IEEE Trans. Image Process. 13, 600]: 11 x 11 Gaussian of
@@ -294,18 +295,18 @@ extern const HeatStep heat_steps[HEAT_STEPS];
  * levels has the colour of the lower one, but for 16-bit codes below one level, which have that of
  * level 1: only equal pixels have that of 0. */
 MUST_CHECK Status heat_picture(Picture *out, const Picture *a, const Picture *b, Err *err);
-/* The signed difference as an 8-bit picture: 128 + 8 (B - A) in 8-bit levels, clipped; grey where they are
- * equal. */
+/* The signed difference as an 8-bit picture: 128 + 8 (B - A) in 8-bit levels, clipped; grey where
+ * they are equal. */
 MUST_CHECK Status difference_picture(Picture *out, const Picture *a, const Picture *b, Err *err);
-/* Appends a PNG that shows A and B in turn for half a second each, for ever [APNG 1.0]; viewers that
- * do not know animations show A. */
+/* Appends a PNG that shows A and B in turn for half a second each, for ever [APNG 1.0]; viewers
+ * that do not know animations show A. */
 MUST_CHECK Status flicker_png(const Picture *a, const Picture *b, Text *out, Err *err);
 
 /* A comparison as JSON, with the keys of `compare --json`; what is NAN or infinite is null. New
  * reference, NULL when memory runs out. */
 json_t *compare_json(const CompareResult *result);
-/* Appends the JUnit XML of a comparison that took `seconds`: a test case for each rule, the time shared
- * among them. `name` is of the suite. */
+/* Appends the JUnit XML of a comparison that took `seconds`: a test case for each rule, the time
+ * shared among them. `name` is of the suite. */
 void compare_junit(const CompareResult *result, const char *name, double seconds, Text *out);
 /* Appends what was measured, for people: the verdict, the rules, the measures, one a line. */
 void compare_text(const CompareResult *result, Text *out);
@@ -344,13 +345,13 @@ json_t *report_json(const ReportCase *report);
  * network. */
 MUST_CHECK Status report_write(const ReportCase *report, const char *templates, const char *folder,
                                Err *err);
-/* Writes the page alone, to `path`; the colours of the case were compared, its model may be "", and a side
- * may have no version (""), and no seconds (NAN). */
+/* Writes the page alone, to `path`; the colours of the case were compared, its model may be "", and
+ * a side may have no version (""), and no seconds (NAN). */
 MUST_CHECK Status report_write_page(const ReportCase *report, const char *templates,
                                     const char *path, Err *err);
-/* Writes one page about all cases that report_write wrote about, worst first, to `path`. `power` is the
- * file that `make power` leaves, or NULL; `all_agree` tells whether all of them do. STATUS_INPUT when a
- * folder has no report of this version. */
+/* Writes one page about all cases that report_write wrote about, worst first, to `path`. `power` is
+ * the file that `make power` leaves, or NULL; `all_agree` tells whether all of them do.
+ * STATUS_INPUT when a folder has no report of this version. */
 MUST_CHECK Status report_merge(const char *const *folders, size_t n, const char *power,
                                const char *templates, const char *path, bool *all_agree, Err *err);
 

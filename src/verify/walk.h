@@ -35,8 +35,8 @@ typedef struct Walk {
     size_t scratch_size;
 } Walk;
 
-/* Walks all rows; walk->sums[0] and walk->accounts hold the whole then. The rest of `walk` is filled in by
- * the caller. */
+/* Walks all rows; walk->sums[0] and walk->accounts hold the whole then. The rest of `walk` is
+ * filled in by the caller. */
 MUST_CHECK Status walk_all(Walk *walk, Err *err);
 void walk_release(Walk *walk);
 

@@ -1,22 +1,26 @@
-/* Fails one allocation after another, and holds the program to its promise: a library to be loaded before
- * a program's own, which runs the program's main again and again, each time in a process of its own
- * with one allocation that fails.
+/* Fails one allocation after another, and holds the program to its promise: a library to be loaded
+ * before a program's own, which runs the program's main again and again, each time in a process of
+ * its own with one allocation that fails.
  *
- *   LD_PRELOAD=failing.so [FAILING_STEP=K] [FAILING_LASTING=1] [FAILING_OUTPUTS=many] PROGRAM ARGUMENT...
+ *   LD_PRELOAD=failing.so [FAILING_STEP=K] [FAILING_LASTING=1] [FAILING_OUTPUTS=many] PROGRAM
+ * ARGUMENT...
  *
- * The first run is left alone; how many allocations it makes is how many can fail. Then every K-th of them
- * (all by default) is failed, and with FAILING_LASTING all that follow it. Each run has an empty folder
- * ./run as its current one; what the first has left stays in ./undisturbed. The promise is that a run
+ * The first run is left alone; how many allocations it makes is how many can fail. Then every K-th
+ * of them (all by default) is failed, and with FAILING_LASTING all that follow it. Each run has an
+ * empty folder
+ * ./run as its current one; what the first has left stays in ./undisturbed. The promise is that a
+ * run
  * - is never ended by a signal, nor takes a minute;
- * - or ends as the undisturbed one did, with the same bytes on standard output, on standard error and in
- *   the same files;
+ * - or ends as the undisturbed one did, with the same bytes on standard output, on standard error
+ * and in the same files;
  * - or ends with exit status 3 and one sentence on standard error, and leaves no file; with
- *   FAILING_OUTPUTS=many, for commands that write several, it may leave such as hold the same bytes as
- *   those of the undisturbed run.
- * The clock stands still, as seconds are in some outputs. Memory is filled with nonsense when it is taken
- * and when it is given back. Programs that the program runs are left alone.
+ *   FAILING_OUTPUTS=many, for commands that write several, it may leave such as hold the same bytes
+ * as those of the undisturbed run. The clock stands still, as seconds are in some outputs. Memory
+ * is filled with nonsense when it is taken and when it is given back. Programs that the program
+ * runs are left alone.
  *
- * FAILING_ONLY=N runs the program once, in this process and folder, with the N-th failed: for a debugger.
+ * FAILING_ONLY=N runs the program once, in this process and folder, with the N-th failed: for a
+ * debugger.
  *
  * Prints a line for each broken promise and how many allocations there were; exit status 1 when a
  * promise was broken. */
@@ -133,8 +137,8 @@ static void redirect(int descriptor, const char *path)
     close(file);
 }
 
-/* Runs the program in the new folder `name`, its output in the files name.stdout and name.stderr: how it
- * ended, as waitpid says. */
+/* Runs the program in the new folder `name`, its output in the files name.stdout and name.stderr:
+ * how it ended, as waitpid says. */
 static int run(const char *name, unsigned long fail, int argc, char **argv, char **environment)
 {
     char path[2][64];

@@ -1,5 +1,6 @@
-/* How far the blob is from the surface of the potential, at bifurcations and free ends: points of that
- * surface, the way along its normal from there to the blob's, and the angle between both normals. */
+/* How far the blob is from the surface of the potential, at bifurcations and free ends: points of
+ * that surface, the way along its normal from there to the blob's, and the angle between both
+ * normals. */
 #ifndef CORCAST_TESTS_BLOB_DEVIATION_H
 #define CORCAST_TESTS_BLOB_DEVIATION_H
 
@@ -16,9 +17,9 @@ typedef struct Fork {
     int n;
 } Fork;
 
-/* A parent of radius 1 and two daughters, thin over thick radius as given, by Murray's law with gamma = 3;
- * the angle between the daughters is split so that r^2 sin is the same on both sides of the parent's line.
- * Lengths are in radii of each. */
+/* A parent of radius 1 and two daughters, thin over thick radius as given, by Murray's law with
+ * gamma = 3; the angle between the daughters is split so that r^2 sin is the same on both sides of
+ * the parent's line. Lengths are in radii of each. */
 static inline Fork fork_of(double ratio, double angle_deg, double length)
 {
     double angle = angle_deg * acos(-1) / 180;
@@ -64,8 +65,8 @@ typedef struct Spot {
     double radius_mm; /* of the segment whose term is largest there */
 } Spot;
 
-/* Where the way from a point on an axis outwards leaves the surface: false where it does not begin within,
- * or leads into another vessel at once. */
+/* Where the way from a point on an axis outwards leaves the surface: false where it does not begin
+ * within, or leads into another vessel at once. */
 static inline bool find_spot(const Fork *fork, Vec3 from, Vec3 outwards, double radius, Spot *spot)
 {
     Vec3 gradient;
@@ -95,8 +96,8 @@ static inline bool find_spot(const Fork *fork, Vec3 from, Vec3 outwards, double 
 
 enum { MAX_SPOTS = 2048, SPOT_SIDES = 16 };
 
-/* Points around each segment from its end to its middle, at most 4 radii along; in a step of `step` radii.
- * How many: at most MAX_SPOTS. */
+/* Points around each segment from its end to its middle, at most 4 radii along; in a step of `step`
+ * radii. How many: at most MAX_SPOTS. */
 static inline int find_spots(const Fork *fork, double step, Spot spots[MAX_SPOTS])
 {
     int n = 0;

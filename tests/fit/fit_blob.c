@@ -1,10 +1,10 @@
 /* The numbers of blob_shape [src/surface/blob.c; docs/METHODS.md section 2.5].
  *
  *   fit_blob                  how far its surface is from the potential's
- *   fit_blob fit [ROUNDS]     searches anew: the least p-norm, p rising from 24 to 96, over all spots of
- *                             all forks, of distance / DISTANCE and of angle / ANGLE, by the simplex
- *                             method [Nelder & Mead 1965], from a shape of round numbers; minutes a round
- */
+ *   fit_blob fit [ROUNDS]     searches anew: the least p-norm, p rising from 24 to 96, over all
+ * spots of all forks, of distance / DISTANCE and of angle / ANGLE, by the simplex method [Nelder &
+ * Mead 1965], from a shape of round numbers; minutes a
+ * round */
 #include "blob_deviation.h"
 
 #include <stdio.h>
@@ -85,7 +85,7 @@ static double misfit(const double x[NUMBERS], double power)
     return pow(sum / FORKS, 1 / power);
 }
 
-/* ---- the simplex method -------------------------------------------------------------------------- */
+/* ---- the simplex method ---------------------------------------------------------------------- */
 
 typedef struct Corner {
     double x[NUMBERS], y;
@@ -145,7 +145,7 @@ static void improve(double x[NUMBERS], double power, int steps)
     memcpy(x, s[0].x, sizeof s[0].x);
 }
 
-/* ---- what is printed ----------------------------------------------------------------------------- */
+/* ---- what is printed ------------------------------------------------------------------------- */
 
 static void print_shape(const BlobShape *shape)
 {

@@ -2,10 +2,10 @@
  *
  *     int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
  *
- * which hands any bytes to a reader as a file and returns 0. Bytes for several files are parted by the
- * first zero bytes. `make fuzz` links it with libFuzzer, which thinks bytes out; the tests link it with
- * replay.c, which reads those of tests/fuzz/corpus. What must hold is an assert, or a matter for the
- * sanitizers. */
+ * which hands any bytes to a reader as a file and returns 0. Bytes for several files are parted by
+ * the first zero bytes. `make fuzz` links it with libFuzzer, which thinks bytes out; the tests link
+ * it with replay.c, which reads those of tests/fuzz/corpus. What must hold is an assert, or a
+ * matter for the sanitizers. */
 #ifndef CORCAST_TESTS_FUZZ_H
 #define CORCAST_TESTS_FUZZ_H
 
@@ -17,8 +17,8 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
-/* The path of a file of this name, which lies in a folder of this process and holds the bytes. Borrowed
- * until the next call. */
+/* The path of a file of this name, which lies in a folder of this process and holds the bytes.
+ * Borrowed until the next call. */
 const char *fuzz_file(const char *name, const void *bytes, size_t size);
 
 /* The next part of the bytes, up to a zero byte or their end, which *bytes and *size move past. */

@@ -1,5 +1,5 @@
-/* The checksums of the chunks are made right, or nothing behind them would ever be reached; also as a
- * mask. */
+/* The checksums of the chunks are made right, or nothing behind them would ever be reached; also as
+ * a mask. */
 #include "fuzz.h"
 
 #include "tissue.h"

@@ -1,5 +1,5 @@
-/* A folder of `verify`, and what `make power` leaves: the page, its JSON and that of --power. Run where
- * templates/ is. */
+/* A folder of `verify`, and what `make power` leaves: the page, its JSON and that of --power. Run
+ * where templates/ is. */
 #include "fuzz.h"
 
 #include "verify/verify.h"

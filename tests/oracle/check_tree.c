@@ -12,14 +12,14 @@
  * - every terminal is at p_term, to 1e-9 of p_perf - p_term, when all inlets are at p_perf and the
  *   terminals share q_perf evenly, or as the flow_share lines say (Poiseuille, with the viscosity
  *   constant or by Pries 1994);
- * - every point lies in the domain (disc, ball, rect, box, ellipsoid), to 1e-9 mm; of a shell, and of a
- *   polygon or a mask (PGM of 8 bits), whose file is looked for here, every segment, at 1 + 64 places and
- *   to 1e-6 of its size;
+ * - every point lies in the domain (disc, ball, rect, box, ellipsoid), to 1e-9 mm; of a shell, and
+ * of a polygon or a mask (PGM of 8 bits), whose file is looked for here, every segment, at 1 + 64
+ * places and to 1e-6 of its size;
  * - in two dimensions, no two segments share a point other than a common node.
- * Prints what `corcast info --json` should say, the largest deviations, how many segments are shorter
- * than wide, and how many pairs without a common node overlap at their real thickness, as "key
- * value" lines.
- */
+ * Prints what `corcast info --json` should say, the largest deviations, how many segments are
+ * shorter than wide, and how many pairs without a common node overlap at their real thickness, as
+ * "key value"
+ * lines. */
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>

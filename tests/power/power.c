@@ -1,6 +1,6 @@
-/* How much the judge sees: plants every fault in one side of a comparison and asks each rule; looks for
- * the smallest fault that each finds; and holds clean scenes, drawn in different ways that are all
- * right, against each other.
+/* How much the judge sees: plants every fault in one side of a comparison and asks each rule; looks
+ * for the smallest fault that each finds; and holds clean scenes, drawn in different ways that are
+ * all right, against each other.
  *
  *   power TREE.swc LOOK.ini        JSON on standard output
  *

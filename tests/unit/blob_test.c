@@ -1,5 +1,5 @@
-/* The blob: its numbers (docs/METHODS.md section 2.5), and its first hits against a walk in small steps
- * over a field written down once more, from POV-Ray's definition. */
+/* The blob: its numbers (docs/METHODS.md section 2.5), and its first hits against a walk in small
+ * steps over a field written down once more, from POV-Ray's definition. */
 #include "render/cast/blobcast.h"
 #include "stage/stage.h"
 #include "surface/surface.h"
@@ -41,7 +41,8 @@ static TestScene empty_scene(void)
     return test;
 }
 
-/* Where a ray from far outside towards `center` first meets the blob: the distance from there, or -1. */
+/* Where a ray from far outside towards `center` first meets the blob: the distance from there, or
+ * -1. */
 static double radius_towards(const Scene *scene, Vec3 center, Vec3 outwards)
 {
     Cast cast = cast_of(scene);
@@ -54,7 +55,7 @@ static double radius_towards(const Scene *scene, Vec3 center, Vec3 outwards)
     return hit ? 50 - t : -1;
 }
 
-/* ---- the field in long double, component by component -------------------------------------------- */
+/* ---- the field in long double, component by component ---------------------------------------- */
 
 static long double component_at(LongVec3 a, LongVec3 b, long double radius, long double strength,
                                 LongVec3 x)
@@ -112,7 +113,7 @@ static LongVec3 long_at(Ray ray, long double t)
                       (long double)ray.origin.z + t * (long double)ray.direction.z};
 }
 
-/* ---- what the fit promises ----------------------------------------------------------------------- */
+/* ---- what the fit promises ------------------------------------------------------------------- */
 
 static void a_long_vessel_has_its_own_radius(void **state)
 {
@@ -215,7 +216,7 @@ static void components_add_up_to_the_term_and_its_gradient(void **state)
     }
 }
 
-/* ---- first hits ---------------------------------------------------------------------------------- */
+/* ---- first hits ------------------------------------------------------------------------------ */
 
 /* Rays at random, along a vessel, across one, and along an axis of the world. */
 static Ray random_ray(Random *random, const TestScene *test, int i)
@@ -339,7 +340,7 @@ static void many_segments_in_one_place_are_no_trouble(void **state)
     release(&cast);
 }
 
-/* ---- the witness --------------------------------------------------------------------------------- */
+/* ---- the witness ----------------------------------------------------------------------------- */
 
 static BlobRoots roots_of(const Scene *scene, Ray ray, double t_min, double t_max)
 {

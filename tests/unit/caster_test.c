@@ -1,5 +1,5 @@
-/* How near and how far rays see, in every kind of geometry: POV-Ray's limits [docs/POVRAY.md, sections 3, 4
- * and 9]. */
+/* How near and how far rays see, in every kind of geometry: POV-Ray's limits [docs/POVRAY.md,
+ * sections 3, 4 and 9]. */
 #include "render/cast/caster.h"
 
 #include <math.h>
@@ -10,7 +10,8 @@
 
 #include <cmocka.h>
 
-/* Something so thin, square to the ray (0, 0, 1) from the origin, that it is met at about `at` mm only. */
+/* Something so thin, square to the ray (0, 0, 1) from the origin, that it is met at about `at` mm
+ * only. */
 typedef struct Wire {
     Primitive primitive;
     FieldSegment segment;

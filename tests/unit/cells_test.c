@@ -20,7 +20,7 @@ static CellTree cells_of(const TestScene *test, double beta, ErfForm erf)
     return cells;
 }
 
-/* ---- the form of a term -------------------------------------------------------------------------- */
+/* ---- the form of a term ---------------------------------------------------------------------- */
 
 static double odd_polynomial(ErfForm form, double u)
 {
@@ -58,7 +58,8 @@ static double step(ErfForm form, double u, double *slope)
     return value;
 }
 
-/* The largest s |A'| / (A sqrt(-2 ln A)) of an axial factor A >= least, over positions and lengths. */
+/* The largest s |A'| / (A sqrt(-2 ln A)) of an axial factor A >= least, over positions and
+ * lengths. */
 static double axial_steepness(ErfForm form, double least)
 {
     double worst = 0, slope, other_slope;
@@ -114,7 +115,7 @@ static void a_term_in_its_form_is_the_term(void **state)
     }
 }
 
-/* ---- cells --------------------------------------------------------------------------------------- */
+/* ---- cells ----------------------------------------------------------------------------------- */
 
 static double potential(const TestScene *test, Vec3 x)
 {
@@ -320,7 +321,8 @@ static void accuracy_follows_the_radius_but_for_shadows(void **state)
         assert_true(cell_accuracy(radius * 1.013) >= cell_accuracy(radius));
 }
 
-/* How far a cell reaches below its cube, whose corners are at multiples of `side`, over its accuracy. */
+/* How far a cell reaches below its cube, whose corners are at multiples of `side`, over its
+ * accuracy. */
 static double reach_of(const Cell *cell, double side)
 {
     double reach = ceil(cell->low.x / side) * side - cell->low.x;

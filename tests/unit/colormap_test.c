@@ -83,8 +83,8 @@ static void ships_the_published_tables(void **state)
     }
 }
 
-/* A quarter of the way lies at 63.75 of the entries 63 (0.231674 0.318106 0.544834) and 64, the middle at
- * 127.5 of 127 (0.128729 0.563265 0.551229) and 128. */
+/* A quarter of the way lies at 63.75 of the entries 63 (0.231674 0.318106 0.544834) and 64, the
+ * middle at 127.5 of 127 (0.128729 0.563265 0.551229) and 128. */
 static void takes_a_fraction_to_its_place_in_the_table(void **state)
 {
     (void)state;

@@ -362,8 +362,8 @@ static int picture_cell(Vec3 p)
 }
 
 /* Octants of the voxels of tests/data/oblique.nii.gz: 6 x 5 x 4 of 2 x 3 x 2.5 mm, turned by 30
- * degrees about z, the middle of the first one at (12.5, -7.25, 4); not tissue where 7 i + 3 j + 5 k
- * is divisible by 4. */
+ * degrees about z, the middle of the first one at (12.5, -7.25, 4); not tissue where 7 i + 3 j + 5
+ * k is divisible by 4. */
 static int oblique_cell(Vec3 p)
 {
     double c = sqrt(3) / 2, s = 0.5, x = p.x - 12.5, y = p.y + 7.25;

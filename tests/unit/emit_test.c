@@ -304,7 +304,8 @@ static void a_blob_is_given_by_the_ends_and_radii_of_its_segments(void **state)
     release(&out);
 }
 
-/* Each cell holds every segment that reaches into it, and all cells together all of space that any does. */
+/* Each cell holds every segment that reaches into it, and all cells together all of space that any
+ * does. */
 static void a_large_blob_is_cut_into_cells_that_miss_nothing(void **state)
 {
     (void)state;

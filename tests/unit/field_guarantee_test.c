@@ -1,10 +1,10 @@
 /* The tile renderer against brute force: every ray's hit must be the exact first hit for a level
  * within EPSILON of e^-2. The brute force adds up every term above e^-32 in long double, straight
  * from the definition, and walks the ray in steps that the slope and a bound of the terms' second
- * derivatives allow, at least 2e-5 of the smallest radius present, to where the potential first reaches level -
- * EPSILON and then level + EPSILON. Without a hit at the lower one there must be none; the hit must
- * lie between the two, widened by the tolerance. Rays for which the two are farther apart than the
- * tolerance graze, and are counted. */
+ * derivatives allow, at least 2e-5 of the smallest radius present, to where the potential first
+ * reaches level - EPSILON and then level + EPSILON. Without a hit at the lower one there must be
+ * none; the hit must lie between the two, widened by the tolerance. Rays for which the two are
+ * farther apart than the tolerance graze, and are counted. */
 #include "render/field/fieldtiles.h"
 
 #include "grow/grow.h"
@@ -72,8 +72,8 @@ static void line_distances(Ray ray, const FieldSegment *segment, double *to_segm
 }
 
 /* On a line with sine s and cosine c to the axis, a term is exp(-e^2) G A, G = exp(-w^2) and A the
- * axial factor: the suprema of G'', 2 |G'| |A'| and |A''| are 4 exp(-3/2) s^2, 2 sqrt(2/e) / sqrt(pi)
- * s c and sqrt(2/e) / sqrt(pi) c^2, times k^2. */
+ * axial factor: the suprema of G'', 2 |G'| |A'| and |A''| are 4 exp(-3/2) s^2, 2 sqrt(2/e) /
+ * sqrt(pi) s c and sqrt(2/e) / sqrt(pi) c^2, times k^2. */
 static double bend_of(const FieldSegment *segment, Ray ray, double to_line)
 {
     Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
@@ -224,7 +224,8 @@ static bool describes_hit(const Walk *walk, const Scene *scene, const Answer *an
     if (steepness > 0.1 * FIELD_LEVEL) {
         Vec3 difference = vec3_add_scaled(answer->normal[sample], sum, 1 / vec3_length(sum));
         /* What an error of the gradient turns a lone tube's normal by, whose steepness is 4 times
-         * the level: where tubes meet, the gradient is less, and the same error turns it by more. */
+         * the level: where tubes meet, the gradient is less, and the same error turns it by
+         * more. */
         double lone = fmin(1, steepness / (4 * FIELD_LEVEL));
         double degrees = vec3_length(difference) * 57.3 * lone;
         tally->worst_degrees = fmax(tally->worst_degrees, degrees);
@@ -232,8 +233,8 @@ static bool describes_hit(const Walk *walk, const Scene *scene, const Answer *an
     return exact_term(named, x, NULL) >= largest - 1e-4L;
 }
 
-/* How far a hit may be from where it is, mm: by the radius of its vessel and single precision's share of its
- * depth, so at every scale alike. */
+/* How far a hit may be from where it is, mm: by the radius of its vessel and single precision's
+ * share of its depth, so at every scale alike. */
 static double depth_within(double radius_mm, double depth_mm)
 {
     return 1e-4 * radius_mm + 2 * (double)FLT_EPSILON * depth_mm;
@@ -431,8 +432,8 @@ static void holds_for_adversarial_scenes(void **state)
     }
 }
 
-/* Square to a vessel just past its end a term all but attains the bounds of its peak and of its window, half
- * of what they are beside it. */
+/* Square to a vessel just past its end a term all but attains the bounds of its peak and of its
+ * window, half of what they are beside it. */
 static void holds_for_rays_just_past_an_end(void **state)
 {
     (void)state;

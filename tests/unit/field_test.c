@@ -126,8 +126,8 @@ typedef struct Tally {
     double worst_mm, worst_normal;
 } Tally;
 
-/* The hit satisfies the definition to 1e-7 of the level and the ray goes inwards there, or outwards if it
- * starts inside. */
+/* The hit satisfies the definition to 1e-7 of the level and the ray goes inwards there, or outwards
+ * if it starts inside. */
 static void check_hit(const Setup *setup, const Brute *brute, double t, Vec3 normal,
                       uint32_t segment, Tally *tally)
 {
@@ -376,8 +376,8 @@ static void a_wall_is_lit_from_its_own_side_alone(void **state)
         if (off < 0)
             assert_false(is_shadowed(&setup, bottom, up, 1.9 * r));
     }
-    /* Phi is e^(2 - 2 d^2 / r^2) of the level; where it is 1.01 of it at 1e-3 mm along the ray, or more, the
-     * place is inside and in the dark. */
+    /* Phi is e^(2 - 2 d^2 / r^2) of the level; where it is 1.01 of it at 1e-3 mm along the ray, or
+     * more, the place is inside and in the dark. */
     assert_false(is_shadowed(&setup, vec3(0.7, 0, r * (1 - 2.45e-3) - 1e-3), up, HUGE_VAL));
     assert_true(is_shadowed(&setup, vec3(0.7, 0, r * (1 - 2.53e-3) - 1e-3), up, HUGE_VAL));
     finish(&setup);

@@ -453,8 +453,8 @@ static void assert_finite(const Frame *frame)
     }
 }
 
-/* The second vessel is behind the first one's wall. Where its kernel looks along z, the first lies in one
- * plane with it. */
+/* The second vessel is behind the first one's wall. Where its kernel looks along z, the first lies
+ * in one plane with it. */
 static void a_camera_inside_a_vessel_sees_its_wall(void **state)
 {
     (void)state;

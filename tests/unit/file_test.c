@@ -162,8 +162,8 @@ static void only_regular_files_are_regular(void **state)
     unlink("file");
 }
 
-/* Opens temporaries in a child that `signal_number` then reaches; how the child ended. With `ignored`, the
- * child was started with the signal ignored and commits its file. */
+/* Opens temporaries in a child that `signal_number` then reaches; how the child ended. With
+ * `ignored`, the child was started with the signal ignored and commits its file. */
 static int signal_child(int signal_number, bool ignored)
 {
     fflush(stdout);

@@ -150,8 +150,9 @@ static void reproduces_the_table_of_ciede2000(void **state)
     assert_int_equal(rows, 34);
 }
 
-/* A square of 5 x 5 pixels that differ by so much from a grey ground counts up to the threshold at which
- * 0.5053 y^2 + 0.299 i^2 + 0.1957 q^2 of the difference is 35215 times its square, worked out in decimals. */
+/* A square of 5 x 5 pixels that differ by so much from a grey ground counts up to the threshold at
+ * which 0.5053 y^2 + 0.299 i^2 + 0.1957 q^2 of the difference is 35215 times its square, worked out
+ * in decimals. */
 static void counts_what_pixelmatch_counts_up_to_the_threshold(void **state)
 {
     (void)state;

@@ -43,9 +43,9 @@ static void no_point_between_two_corners_is_better_than_the_one_that_is_found(vo
     }
 }
 
-/* Between the ends of two legs of 1 and their right angle, (3 - sqrt 3) / 6 from both legs. And above an edge
- * at whose ends, 1 from its middle, two weights of 5 pull against one of 6: at the angle to the upright whose
- * cosine is 6 / 10. */
+/* Between the ends of two legs of 1 and their right angle, (3 - sqrt 3) / 6 from both legs. And
+ * above an edge at whose ends, 1 from its middle, two weights of 5 pull against one of 6: at the
+ * angle to the upright whose cosine is 6 / 10. */
 static void fermats_point_is_where_geometry_puts_it(void **state)
 {
     (void)state;
@@ -62,7 +62,8 @@ static void fermats_point_is_where_geometry_puts_it(void **state)
     assert_true(vec3_distance(found.place, vec3(0, 0.75, 0.5)) < 1e-15);
 }
 
-/* At the point found the weighted unit vectors to the corners cancel; at a corner they do not outweigh it. */
+/* At the point found the weighted unit vectors to the corners cancel; at a corner they do not
+ * outweigh it. */
 static void weighted_pulls_cancel_at_fermats_point(void **state)
 {
     (void)state;
@@ -136,7 +137,8 @@ static void a_territory_counts_the_points_that_are_nearest_whatever_the_threads(
     assert_int_equal(territory_count(&net, &domain, 5000, 3, many, NULL), STATUS_OK);
     assert_memory_equal(one, many, sizeof one);
     assert_true(one[inlet] == 0 && one[fork] == 0);
-    /* The points as near to (-10, 0) as to (4, 1) meet y = 0, the middle, at x = (17 - 100) / 28. */
+    /* The points as near to (-10, 0) as to (4, 1) meet y = 0, the middle, at x = (17 - 100) /
+     * 28. */
     double left_part = (15 - 83.0 / 28) / 30, total = one[left] + one[right];
     assert_true(fabs(one[left] / total - left_part) <= 2e-3);
     network_release(&net);

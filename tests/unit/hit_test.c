@@ -31,7 +31,8 @@ static Vec3 unit(Random *random)
     }
 }
 
-/* Signed distance to the surface of a closed cylinder: negative inside, zero on the wall or a disc. */
+/* Signed distance to the surface of a closed cylinder: negative inside, zero on the wall or a
+ * disc. */
 static double cylinder_distance(const CylinderFrame *c, Vec3 x)
 {
     Vec3 from = vec3_sub(x, c->base);

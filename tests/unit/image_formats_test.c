@@ -136,7 +136,8 @@ static void reads_tiles_as_strips(void **state)
     assert_same_image("strips.exr", "tiles.exr");
 }
 
-/* The 7 x 5 pixels of half-zip.exr in a display window of `width` x `height`, their first at (x, y). */
+/* The 7 x 5 pixels of half-zip.exr in a display window of `width` x `height`, their first at (x,
+ * y). */
 static void assert_shows(const char *name, int width, int height, int x0, int y0)
 {
     Image image = read_image(name), data = read_image("half-zip.exr");

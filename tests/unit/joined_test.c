@@ -175,7 +175,8 @@ static void a_place_is_round_from_60_degrees_to_the_trunk_on(void **state)
     }
 }
 
-/* Two bends of 90 degrees, each of which cuts the vessel between them by its radius: 2.6 mm in all. */
+/* Two bends of 90 degrees, each of which cuts the vessel between them by its radius: 2.6 mm in
+ * all. */
 static void two_places_share_a_vessel_down_to_a_thousandth_of_it(void **state)
 {
     (void)state;
@@ -277,8 +278,8 @@ static Tree throw_tree(Random *random, size_t n)
     return tree;
 }
 
-/* The first thing that a ray from outside meets is the outside of a vessel: where a joint were open or
- * turned inside out, it would be an inside. */
+/* The first thing that a ray from outside meets is the outside of a vessel: where a joint were open
+ * or turned inside out, it would be an inside. */
 static void no_ray_sees_the_inside_of_a_robust_tree(void **state)
 {
     (void)state;

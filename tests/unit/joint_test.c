@@ -31,8 +31,9 @@ typedef struct Discs {
     double radius[2];
 } Discs;
 
-/* Discs at the ends of two vessels that meet at a point, cut back far enough that each lies on one side of
- * the other's plane: by no more than that when `tight`, which makes the inner sides meet in a point. */
+/* Discs at the ends of two vessels that meet at a point, cut back far enough that each lies on one
+ * side of the other's plane: by no more than that when `tight`, which makes the inner sides meet in
+ * a point. */
 static Discs throw_discs(Random *random, bool tight)
 {
     for (;;) {
@@ -60,8 +61,8 @@ static JointFrame frame_of(const Discs *discs)
     return joint_frame(discs->center, discs->axis, discs->radius);
 }
 
-/* Whether x lies in the solid between the discs and the rulings, found through the ellipses of equal l,
- * by bisection for l: no root of any polynomial. */
+/* Whether x lies in the solid between the discs and the rulings, found through the ellipses of
+ * equal l, by bisection for l: no root of any polynomial. */
 static bool within(const JointFrame *joint, const Discs *discs, Vec3 x)
 {
     if (vec3_dot(vec3_sub(x, discs->center[0]), discs->axis[0]) < 0 ||

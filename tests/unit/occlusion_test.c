@@ -80,7 +80,8 @@ static void points_lie_outwards_by_area(void **state)
         }
 }
 
-/* The direction round the normal, in degrees, of point k of three: that of a small ball that hides it. */
+/* The direction round the normal, in degrees, of point k of three: that of a small ball that hides
+ * it. */
 static double direction_of(int k, double turn)
 {
     const double shift = 12 * turn - floor(12 * turn), out = sqrt((k + shift) / 3);
@@ -117,8 +118,8 @@ static void points_are_golden_angles_apart(void **state)
     assert_true(fabs(degrees_between(first, turned) - 30) < 0.2);
 }
 
-/* J. Jimenez: Next generation post processing in Call of Duty: Advanced Warfare. SIGGRAPH 2014; worked out in
- * decimals. */
+/* J. Jimenez: Next generation post processing in Call of Duty: Advanced Warfare. SIGGRAPH 2014;
+ * worked out in decimals. */
 static void turns_are_interleaved_gradient_noise(void **state)
 {
     (void)state;

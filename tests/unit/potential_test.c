@@ -21,8 +21,8 @@ static TestScene empty_scene(void)
     return test;
 }
 
-/* Where a ray from far outside towards `center` first meets the surface: the distance from there, or
- * -1 without a hit. */
+/* Where a ray from far outside towards `center` first meets the surface: the distance from there,
+ * or -1 without a hit. */
 static double radius_towards(const Scene *scene, Vec3 center, Vec3 outwards)
 {
     uint32_t all[MAX_SEGMENTS], segment;
@@ -40,7 +40,8 @@ static double radius_towards(const Scene *scene, Vec3 center, Vec3 outwards)
     return hit ? 50 - t : -1;
 }
 
-/* Segments from the origin into the plane z = 0, at equal angles; their radius across that plane. */
+/* Segments from the origin into the plane z = 0, at equal angles; their radius across that
+ * plane. */
 static double joint_radius(const double *radii, int n)
 {
     TestScene test = empty_scene();
@@ -93,7 +94,8 @@ static void short_segments_of_a_chain_do_not_vanish(void **state)
     assert_int_equal(vanished, 0);
 }
 
-/* Together 0.172 r long, they reach the level half way along the first, but not along the second. */
+/* Together 0.172 r long, they reach the level half way along the first, but not along the
+ * second. */
 static void what_vanishes_is_counted_half_way_along(void **state)
 {
     (void)state;
@@ -193,7 +195,8 @@ static void the_graph_joins_what_is_near_along_the_tree(void **state)
     scene_release(&scene);
 }
 
-/* By the radius of the one that blends: a vessel of 1.3 mm with what begins 3.9 mm on, not the other way. */
+/* By the radius of the one that blends: a vessel of 1.3 mm with what begins 3.9 mm on, not the
+ * other way. */
 static void the_graph_joins_up_to_three_radii_away(void **state)
 {
     (void)state;

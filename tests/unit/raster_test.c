@@ -483,8 +483,8 @@ static void a_depth_buffer_of_points_has_no_holes(void **state)
     }
 }
 
-/* What a hair along a row shows of the pixel in whose middle's column it begins, from `off` pixels beside
- * that middle. */
+/* What a hair along a row shows of the pixel in whose middle's column it begins, from `off` pixels
+ * beside that middle. */
 static bool is_caught(double off)
 {
     Staged staged;

@@ -325,7 +325,8 @@ static void antialiasing_weighs_the_centre_and_the_grid_alike(void **state)
     frame_release(&frame);
 }
 
-/* By the threshold or more, in the square root of a channel clipped to [0, 1]; corners do not count. */
+/* By the threshold or more, in the square root of a channel clipped to [0, 1]; corners do not
+ * count. */
 static void pixels_that_differ_from_a_neighbour_are_sampled_again(void **state)
 {
     (void)state;

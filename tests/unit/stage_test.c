@@ -19,8 +19,8 @@ static const Look look = {.color = {0.5f, 0.1f, 0.2f},
                           .lights = {{.direction = {1, 2, 3}, .color = {1, 1, 1}}},
                           .n_lights = 1};
 
-/* A parent along y that splits into a thick and a thin daughter, with a step of no length in the thick
- * one and a segment of no radius at the end of the thin one. */
+/* A parent along y that splits into a thick and a thin daughter, with a step of no length in the
+ * thick one and a segment of no radius at the end of the thin one. */
 static Tree make_tree(void)
 {
     static const int32_t parents[] = {-1, 0, 1, 1, 2, 3};
@@ -85,7 +85,8 @@ static void a_sphere_has_the_largest_radius_that_meets(void **state)
     StageParams params = stage_defaults();
     params.model = SCENE_ROUNDED;
     Scene scene = stage(&params, NULL);
-    /* Spheres at the inlet, the bifurcation and the two ends; one only where the step has no length. */
+    /* Spheres at the inlet, the bifurcation and the two ends; one only where the step has no
+     * length. */
     assert_int_equal(scene.n_primitives, 3 + 4);
     static const struct {
         double radius;
@@ -124,7 +125,8 @@ static void every_model_has_the_segments_at_their_radii(void **state)
     }
 }
 
-/* Two vessels of one radius in a row: the sphere between them is that of the one that ends there. */
+/* Two vessels of one radius in a row: the sphere between them is that of the one that ends
+ * there. */
 static void of_equals_the_segment_that_ends_at_a_place_gives_its_sphere(void **state)
 {
     (void)state;
@@ -203,8 +205,9 @@ static void a_framed_picture_has_its_margin_on_each_side(void **state)
     scene_release(&scene);
 }
 
-/* A vessel along the view, 11 mm long: its nearer ball, of radius 2.385, touches the sides of the picture, upright
- * or lying, that are nearer. Their half angle has the tangent 0.9 tan 15 degrees, less by the aspect. */
+/* A vessel along the view, 11 mm long: its nearer ball, of radius 2.385, touches the sides of the
+ * picture, upright or lying, that are nearer. Their half angle has the tangent 0.9 tan 15 degrees,
+ * less by the aspect. */
 static void a_perspective_camera_stands_where_the_nearest_ball_just_fits(void **state)
 {
     (void)state;
@@ -405,7 +408,7 @@ static void a_ground_moves_with_its_scene(void **state)
     assert_true(scene.origin.x > 9e5);
 }
 
-/* ---- cameras that move -------------------------------------------------------------------------- */
+/* ---- cameras that move ----------------------------------------------------------------------- */
 
 /* A scene of the tree, and the parameters that make its camera. */
 static Scene orbit_about(Tree *tree, StageParams *params)
@@ -563,7 +566,7 @@ static void a_camera_without_direction_leaves_the_scene_as_it_is(void **state)
     tree_release(&tree);
 }
 
-/* ---- looks -------------------------------------------------------------------------------------- */
+/* ---- looks ----------------------------------------------------------------------------------- */
 
 static Status read_look_text(const char *text, Look *out, Err *err)
 {

@@ -71,8 +71,8 @@ static void assert_row(const StatisticsTable *table, size_t at, StatisticsRow ex
     assert_true(fabs(row->length_mm.sd - expected.length_mm.sd) < 1e-12);
 }
 
-/* Three thicknesses, 4, 2 and 1 mm: a trunk (1), branches (2; 3 and 9, in series) and twigs. Segment 5,
- * a twig that forks, has Strahler order 2 but the thickness of order 1. */
+/* Three thicknesses, 4, 2 and 1 mm: a trunk (1), branches (2; 3 and 9, in series) and twigs.
+ * Segment 5, a twig that forks, has Strahler order 2 but the thickness of order 1. */
 enum { HAND_N = 12 };
 static const int32_t hand_parent[HAND_N] = {-1, 0, 1, 1, 2, 2, 5, 5, 3, 3, 9, 9};
 static const double hand_radius[HAND_N] = {4, 4, 2, 2.1, 1, 1.05, 0.95, 0.9, 1, 1.9, 1, 1.02};
@@ -99,8 +99,8 @@ static void orders_by_diameter_converge_to_the_three_thicknesses(void **state)
     tree_release(&tree);
 }
 
-/* A forest of COPIES trees: a trunk, two branches of order 2 and the diameters 1.6 mm and `thin` mm, in the
- * first `changed` trees, and four twigs. */
+/* A forest of COPIES trees: a trunk, two branches of order 2 and the diameters 1.6 mm and `thin`
+ * mm, in the first `changed` trees, and four twigs. */
 static Tree forest_of(size_t copies, size_t changed, double thin)
 {
     static const int32_t parent[8] = {-1, 0, 1, 1, 2, 2, 3, 3};
@@ -117,8 +117,8 @@ static Tree forest_of(size_t copies, size_t changed, double thin)
     return make_tree(8 * copies, parents, radii, lengths);
 }
 
-/* Twigs have the mean 1.2 mm and the standard deviation 0.231; with branches of 1.6 and x mm the bound is
- * x where x = (1.2 + 0.231 + (1.6 + x) / 2 - (1.6 - x) / sqrt2) / 2: at 1.3868 mm. */
+/* Twigs have the mean 1.2 mm and the standard deviation 0.231; with branches of 1.6 and x mm the
+ * bound is x where x = (1.2 + 0.231 + (1.6 + x) / 2 - (1.6 - x) / sqrt2) / 2: at 1.3868 mm. */
 static void the_bound_between_orders_lies_between_their_deviations(void **state)
 {
     (void)state;

@@ -249,7 +249,8 @@ static void put_small(Side *side, int n, uint32_t id)
         side->ids.ids[(TOP + 4 + i / 8) * W + LEFT + 4 + i % 8] = id;
 }
 
-/* What few pixels say is noise: a mean needs 64 pixels, an outline 8 of length, an absence 3 pixels. */
+/* What few pixels say is noise: a mean needs 64 pixels, an outline 8 of length, an absence 3
+ * pixels. */
 static void segments_too_small_to_judge_are_not_judged(void **state)
 {
     (void)state;
@@ -277,7 +278,8 @@ static void segments_too_small_to_judge_are_not_judged(void **state)
         side_release(&a);
         side_release(&b);
     }
-    /* Of 1 x 4 pixels the outline is 10 pi / 4 = 7.85 long, of 1 x 5 it is 9.42; another pixel moves it. */
+    /* Of 1 x 4 pixels the outline is 10 pi / 4 = 7.85 long, of 1 x 5 it is 9.42; another pixel
+     * moves it. */
     for (int n = 4; n <= 5; n++) {
         Side a, b;
         side_init(&a, 0);

@@ -7,9 +7,9 @@
  * other two together. All h_i are kept multiplied by sin A and sin theta, so nothing is divided by
  * an area that may be zero.
  *
- * On the line through the first two corners, at x, the sum is w_0 x - w_1 x + w_2 sqrt(h^2 + (x - f)^2)
- * but for a constant, with the third corner at the height h above f: least where the third's unit vector
- * has the component (w_1 - w_0) / w_2 along the line, or at an end. */
+ * On the line through the first two corners, at x, the sum is w_0 x - w_1 x + w_2 sqrt(h^2 + (x -
+ * f)^2) but for a constant, with the third corner at the height h above f: least where the third's
+ * unit vector has the component (w_1 - w_0) / w_2 along the line, or at an end. */
 #include "grow/cco/fermat.h"
 
 static Fermat at_corner(const Vec3 corner[3], const double weight[3], int i)

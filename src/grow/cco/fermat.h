@@ -1,5 +1,5 @@
-/* The weighted Fermat point: where three weighted lengths that meet are shortest; in space, and on a
- * straight line. */
+/* The weighted Fermat point: where three weighted lengths that meet are shortest; in space, and on
+ * a straight line. */
 #ifndef CORCAST_GROW_FERMAT_H
 #define CORCAST_GROW_FERMAT_H
 

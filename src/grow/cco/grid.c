@@ -2,8 +2,8 @@
  * is kept for another cell. What distance queries need of a segment lies in one table of half cache
  * lines, so that a cell costs four bytes a segment and a neighbourhood a few cache lines.
  *
- * A segment is entered wherever its capsule may reach, so that two capsules that meet always share a
- * cell, and so that the number of entries grows with the segments' total length and not with the
+ * A segment is entered wherever its capsule may reach, so that two capsules that meet always share
+ * a cell, and so that the number of entries grows with the segments' total length and not with the
  * boxes around them: the walk cuts the capsule into slabs of cells across its longest axis and
  * bounds each piece by itself. It reads the item alone, so that the same cells come out again when
  * the segment is taken out.
@@ -45,7 +45,8 @@ static double clamp01(double t)
 /* A grid has at most this many cells more than LEAST_CELLS for each that is asked for. */
 enum { CELLS_PER_ASKED = 8, LEAST_CELLS = 512 };
 
-/* The edge of the cells: cubes, unless the box is so thin for its length that these would be far too many. */
+/* The edge of the cells: cubes, unless the box is so thin for its length that these would be far
+ * too many. */
 static double edge_for(Vec3 size, double cells)
 {
     double edge =

@@ -72,7 +72,8 @@ size_t grid_cells(const Grid *grid);
 size_t grid_cell_at(const Grid *grid, Vec3 point);
 
 /* Ask for memory ahead of a query at `point`: for its cell, then for what the cell lists, then for
- * those items. Far apart points of a large tree are otherwise found one cache miss after another. */
+ * those items. Far apart points of a large tree are otherwise found one cache miss after
+ * another. */
 static inline void grid_fetch_cell(const Grid *grid, Vec3 point)
 {
     __builtin_prefetch(&grid->cell[grid_cell_at(grid, point)]);
@@ -90,8 +91,8 @@ static inline void grid_fetch_items(const Grid *grid, Vec3 point)
         __builtin_prefetch(&grid->item[cell->tag[i] >> 1]);
 }
 
-/* What lies inside these cells, by more than rounding; without bounds where they are the grid's first
- * or last. */
+/* What lies inside these cells, by more than rounding; without bounds where they are the grid's
+ * first or last. */
 Box grid_zone(const Grid *grid, GridBox box);
 /* How far `point`, in the zone, is from its bounds, along the axes, mm. */
 double grid_clearance(Box zone, Vec3 point);
@@ -139,8 +140,8 @@ typedef struct GridProbe {
 
 GridProbe grid_probe(const GridItem *item, double apart, double per_radius);
 
-/* Which of the next GRID_LANES segments of a cell, from its k-th on, have boxes that near, as bits; a
- * little more is allowed for rounding. */
+/* Which of the next GRID_LANES segments of a cell, from its k-th on, have boxes that near, as bits;
+ * a little more is allowed for rounding. */
 enum { GRID_LANES = 4 };
 unsigned grid_meet(const Grid *grid, const GridCell *cell, uint32_t k, const GridProbe *probe);
 

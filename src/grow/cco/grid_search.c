@@ -1,10 +1,10 @@
-/* What is near. The cells about a place list more segments than are near it, so most of the work is to
- * tell that one is not: that is done for four at a time, and without branches, which would go either way
- * as often as not.
+/* What is near. The cells about a place list more segments than are near it, so most of the work is
+ * to tell that one is not: that is done for four at a time, and without branches, which would go
+ * either way as often as not.
  *
  * The nearest are looked for within a guessed distance first. A segment counts in the one cell that
- * holds its point next to the place, so each is found once, and ranks come from counting. Where the guess
- * was short, rings of cells are searched one after the other. */
+ * holds its point next to the place, so each is found once, and ranks come from counting. Where the
+ * guess was short, rings of cells are searched one after the other. */
 #include "grow/cco/grid.h"
 
 #include <assert.h>
@@ -69,8 +69,8 @@ static inline Floats pick(Ints mask, Floats yes, Floats no)
     return (Floats)((mask & (Ints)yes) | (~mask & (Ints)no));
 }
 
-/* The items of the k-th and the next segments of a cell, number by number; the last one's again where
- * there are no more. */
+/* The items of the k-th and the next segments of a cell, number by number; the last one's again
+ * where there are no more. */
 static inline void load_items(const Grid *grid, const GridCell *cell, uint32_t k,
                               Floats out[2 * LANES], Ints *segments)
 {
@@ -277,9 +277,10 @@ static bool has_face(const Search *search, int ring, int axis)
     return home >= ring || search->grid->count[axis] - home > ring;
 }
 
-/* Gathers the cells at `ring` steps from the point's own, which are the faces of a cube: those across z
- * as layers, those across y as rows, those across x as the two ends of rows. Layers and rows without any
- * are stepped over, or a ring in a long and thin grid would take as many steps as its number. */
+/* Gathers the cells at `ring` steps from the point's own, which are the faces of a cube: those
+ * across z as layers, those across y as rows, those across x as the two ends of rows. Layers and
+ * rows without any are stepped over, or a ring in a long and thin grid would take as many steps as
+ * its number. */
 static void gather_ring(Search *search, int ring)
 {
     const int *home = search->home, *count = search->grid->count;
@@ -334,7 +335,8 @@ static void bounds_of(const Grid *grid, int cell, int axis, float out[2])
     out[1] = cell < grid->count[axis] - 1 ? (float)((cell + 1) * grid->edge) : FLT_MAX;
 }
 
-/* Catches those segments of a cell whose point next to `point` is in this very cell, so each once. */
+/* Catches those segments of a cell whose point next to `point` is in this very cell, so each
+ * once. */
 static void catch_cell(const Grid *grid, const GridCell *cell, float bounds[3][2],
                        const float point[3], float reach2, Catch *out)
 {

@@ -1,16 +1,15 @@
 /* How a segment and the subtree below it add up: Murray's law, Poiseuille's law and the target, in
  * the reduced quantities that make one step up the tree a few multiplications.
  *
- * With N the flow through a segment over a terminal's mean, m its viscosity over a reference mu, and
- * R*, V* its reduced resistance and target [METHODS 1], R* in units of 8 mu / pi:
- *     load  W = N R*             rho = W^(1/4)
- *     flare X = rho^gamma        Murray's law is addition: the subtree below a segment has the
- *                                flare G = sum of X over the daughters, and P = G^(1/gamma)
- *     cost  S = rho^lambda V*    so that S = rho^lambda l + (rho / P)^lambda sum of S over them
- *     W = N m l + P^4            with N m the segment's burden
- * A radius is r = q g rho, q = (8 mu / pi Q_term / (p_perf - p_term))^(1/4) and g the gauge: 1 at
- * the root and greater by rho / P from each segment to its daughters. The target is
- * T = q^lambda S_root, so for one number of terminals the least S_root is the least T. */
+ * With N the flow through a segment over a terminal's mean, m its viscosity over a reference mu,
+ * and R*, V* its reduced resistance and target [METHODS 1], R* in units of 8 mu / pi: load  W = N
+ * R*             rho = W^(1/4) flare X = rho^gamma        Murray's law is addition: the subtree
+ * below a segment has the flare G = sum of X over the daughters, and P = G^(1/gamma) cost  S =
+ * rho^lambda V*    so that S = rho^lambda l + (rho / P)^lambda sum of S over them W = N m l + P^4
+ * with N m the segment's burden A radius is r = q g rho, q = (8 mu / pi Q_term / (p_perf -
+ * p_term))^(1/4) and g the gauge: 1 at the root and greater by rho / P from each segment to its
+ * daughters. The target is T = q^lambda S_root, so for one number of terminals the least S_root is
+ * the least T. */
 #ifndef CORCAST_GROW_LAW_H
 #define CORCAST_GROW_LAW_H
 

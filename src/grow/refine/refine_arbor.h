@@ -94,7 +94,8 @@ static inline double arbor_cost(const Arbor *arbor)
     return arbor->branch[arbor_root(arbor)].cost;
 }
 
-/* The segment after `i` in depth-first order, which begins with the root segment; 0 after the last. */
+/* The segment after `i` in depth-first order, which begins with the root segment; 0 after the
+ * last. */
 int32_t arbor_next(const Arbor *arbor, int32_t i);
 
 /* Segment i with what hangs on it. */

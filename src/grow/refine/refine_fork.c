@@ -7,8 +7,8 @@
 
 #include "grow/cco/fermat.h"
 
-/* Lengths over the least after a push: radii move a little too, and vessels are given more room than
- * they need [refine_room.c]. */
+/* Lengths over the least after a push: radii move a little too, and vessels are given more room
+ * than they need [refine_room.c]. */
 static const double pushed = 1.06;
 
 bool fork_at(const Fork *fork, Vec3 place, ForkState *out)

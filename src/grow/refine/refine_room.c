@@ -54,8 +54,8 @@ static double distance_of(const Shape *a, const Shape *b)
     return sqrt(segment_distance2(a->from, a->to, b->from, b->to));
 }
 
-/* What a segment of `radius` books when it has this share of room: at 0 the radius, at 1 the reserve
- * as well, at -1 nothing. Never more than its length allows. */
+/* What a segment of `radius` books when it has this share of room: at 0 the radius, at 1 the
+ * reserve as well, at -1 nothing. Never more than its length allows. */
 static double booking(const Room *room, const Branch *branch, double radius, double share)
 {
     double longest = longest_booking(branch), least = fmin(room->level * radius, longest);

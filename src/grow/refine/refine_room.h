@@ -1,8 +1,8 @@
 /* Room: that vessels stay inside the domain, clear of each other and long enough, whatever moves.
  *
- * Vessels count at their radius times the `level`, in [0, 1]. A segment is longer than wide, and two
- * segments without a common node are apart by more than their radii. Where the tree that came in
- * broke this, it may stay so, but no vessel gets deeper into another than it was. */
+ * Vessels count at their radius times the `level`, in [0, 1]. A segment is longer than wide, and
+ * two segments without a common node are apart by more than their radii. Where the tree that came
+ * in broke this, it may stay so, but no vessel gets deeper into another than it was. */
 #ifndef CORCAST_GROW_REFINE_ROOM_H
 #define CORCAST_GROW_REFINE_ROOM_H
 
@@ -34,8 +34,8 @@ static inline bool room_is_clear(const Room *room, const Arbor *arbor, int32_t i
     return arbor->shape[i].booked >= room->level * room->radius[i];
 }
 
-/* Books for all vessels `reserved` times their radius, whether there is room for it or not; no radius
- * is too great then. */
+/* Books for all vessels `reserved` times their radius, whether there is room for it or not; no
+ * radius is too great then. */
 MUST_CHECK Status room_waive(Room *room, Arbor *arbor, double reserved, Err *err);
 
 /* Whether all that the present move has moved is inside the domain and not too short to be. */

@@ -1,16 +1,16 @@
-/* Along a ray a component's 1 - d^2 / R^2 is top - curve (t - nearest)^2: for a ball throughout, for a tube
- * with other numbers before, beside and beyond its axis. So each is a few *pieces*, and between any two
- * neighbours among the ends of all pieces the field is one quartic.
+/* Along a ray a component's 1 - d^2 / R^2 is top - curve (t - nearest)^2: for a ball throughout,
+ * for a tube with other numbers before, beside and beyond its axis. So each is a few *pieces*, and
+ * between any two neighbours among the ends of all pieces the field is one quartic.
  *
- * A hierarchy of boxes gives the segments whose field the ray may feel; each is felt in one interval of t.
- * Intervals that overlap make a group, and groups are taken in their order along the ray until one holds a
- * hit. Within a group the ends of pieces are passed in order. Where a piece is felt from l to h, its
- * 1 - d^2 / R^2 has the Bernstein coefficients w0, w1, w2 there, and its square, the field, has
- *   w0^2, w0 w1, (2 w1^2 + w0 w2) / 3, w1 w2, w2^2.
- * Nothing large is subtracted from anything large in these, however far the ray has come. Their sum less 1
- * is a quartic whose roots geom/quartic.h isolates by the signs of its coefficients, so none is missed but
- * two that lie within 2^-32 of the interval of each other. Where neighbouring quartics disagree about the
- * sign at their common end, by rounding, that end is the root. */
+ * A hierarchy of boxes gives the segments whose field the ray may feel; each is felt in one
+ * interval of t. Intervals that overlap make a group, and groups are taken in their order along the
+ * ray until one holds a hit. Within a group the ends of pieces are passed in order. Where a piece
+ * is felt from l to h, its 1 - d^2 / R^2 has the Bernstein coefficients w0, w1, w2 there, and its
+ * square, the field, has w0^2, w0 w1, (2 w1^2 + w0 w2) / 3, w1 w2, w2^2. Nothing large is
+ * subtracted from anything large in these, however far the ray has come. Their sum less 1 is a
+ * quartic whose roots geom/quartic.h isolates by the signs of its coefficients, so none is missed
+ * but two that lie within 2^-32 of the interval of each other. Where neighbouring quartics disagree
+ * about the sign at their common end, by rounding, that end is the root. */
 #include "render/cast/blobcast.h"
 
 #include "render/cast/bvh.h"
@@ -57,7 +57,7 @@ struct BlobScratch {
     uint32_t *active;
 };
 
-/* ---- building ------------------------------------------------------------------------------------ */
+/* ---- building -------------------------------------------------------------------------------- */
 
 Status blobcast_new(const Scene *scene, BlobCast **out, Err *err)
 {
@@ -123,7 +123,7 @@ void blobscratch_free(BlobScratch *scratch)
     free(scratch);
 }
 
-/* ---- pieces -------------------------------------------------------------------------------------- */
+/* ---- pieces ---------------------------------------------------------------------------------- */
 
 static Course course_of(const FieldSegment *segment, Ray ray)
 {
@@ -169,8 +169,8 @@ static Piece *put_piece(Piece *end, double nearest, double distance2, double cur
     return end + (end->t0 < end->t1);
 }
 
-/* Where the ray is before the plane across the axis at the segment's first end, between the planes of
- * both, and beyond that of the second; empty where `low` is above `high`. */
+/* Where the ray is before the plane across the axis at the segment's first end, between the planes
+ * of both, and beyond that of the second; empty where `low` is above `high`. */
 typedef struct Parts {
     double low[3], high[3];
 } Parts;
@@ -197,8 +197,8 @@ static double place_along(const FieldSegment *segment, Ray ray)
     return vec3_dot(vec3_sub(ray.origin, segment->a), span) / vec3_dot(span, span);
 }
 
-/* A tube and the two balls of minus half its strength at its ends: where the tube is a half ball itself,
- * half of it is left. */
+/* A tube and the two balls of minus half its strength at its ends: where the tube is a half ball
+ * itself, half of it is left. */
 static Piece *put_tube(Piece *end, const Course *course, const Parts *parts, const BlobTube *tube,
                        double radius_mm)
 {
@@ -284,7 +284,7 @@ static void sort_spans(Span *spans, size_t n)
         }
 }
 
-/* ---- roots --------------------------------------------------------------------------------------- */
+/* ---- roots ----------------------------------------------------------------------------------- */
 
 /* Adds the Bernstein coefficients on [low, high] of a piece's field. */
 static void add_piece(const Piece *piece, double low, double high, double b[5])
@@ -310,8 +310,8 @@ typedef struct Walk {
     size_t n_active;
 } Walk;
 
-/* Takes up the pieces that begin at `t` or before, drops those that end there: where the next one begins or
- * ends, infinity after the last. */
+/* Takes up the pieces that begin at `t` or before, drops those that end there: where the next one
+ * begins or ends, infinity after the last. */
 static double walk_to(Walk *walk, double t)
 {
     double until = INFINITY;
@@ -359,7 +359,7 @@ static bool first_root(BlobScratch *scratch, size_t n, double t_min, double t_ma
     return false;
 }
 
-/* ---- casting ------------------------------------------------------------------------------------- */
+/* ---- casting --------------------------------------------------------------------------------- */
 
 static size_t find_spans(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_max)
 {

@@ -1,8 +1,8 @@
 /* Built top-down by the surface area heuristic over the bins of the centres along each axis
- * [Wald 2007, On fast construction of SAH-based bounding volume hierarchies]: long vessels beside short
- * ones make median splits overlap. Past half the depth that the traversal's stack allows, items are
- * halved, which ends within 32 more levels. Nodes stand in depth-first order, the first child next to
- * its parent. */
+ * [Wald 2007, On fast construction of SAH-based bounding volume hierarchies]: long vessels beside
+ * short ones make median splits overlap. Past half the depth that the traversal's stack allows,
+ * items are halved, which ends within 32 more levels. Nodes stand in depth-first order, the first
+ * child next to its parent. */
 #include "render/cast/bvh.h"
 
 #include <stdlib.h>

@@ -6,8 +6,8 @@
 #include "render/cast/povray_isosurface.h"
 #include <stdlib.h>
 
-/* POV-Ray's limit [docs/POVRAY.md section 3]: blockers within it of the lit point or of the light cast no
- * shadow. */
+/* POV-Ray's limit [docs/POVRAY.md section 3]: blockers within it of the lit point or of the light
+ * cast no shadow. */
 static const double shadow_slack_mm = 1e-3;
 /* Of a blob neither sees anything nearer than this. */
 static const double blob_nearest_mm = 1e-2;

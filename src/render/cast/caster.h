@@ -23,15 +23,15 @@ typedef struct Surfel {
  * `cells`, an implicit surface is found as POV-Ray finds it in them; NULL: by proof. */
 MUST_CHECK Status caster_new(const Scene *scene, const CellParams *cells, int workers, Caster **out,
                              Err *err);
-/* From now on nothing nearer to a lit place than this, mm, is in its light; at first it is POV-Ray's limit.
- * A blob has a limit of its own. */
+/* From now on nothing nearer to a lit place than this, mm, is in its light; at first it is
+ * POV-Ray's limit. A blob has a limit of its own. */
 void caster_shadow_from(Caster *caster, double nearest_mm);
 void caster_free(Caster *caster);
 
 /* `worker` in [0, workers) is the calling thread's own. */
 bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel);
-/* Whether anything, the ground included, is in the way from `point` for `distance` mm (or HUGE_VAL) along
- * `towards` (unit). */
+/* Whether anything, the ground included, is in the way from `point` for `distance` mm (or HUGE_VAL)
+ * along `towards` (unit). */
 bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double distance);
 
 #endif

@@ -18,8 +18,9 @@
  *   If slope^2 >= 2 N lack, Phi reaches T, and rises all the way, before the smaller root of lack =
  *   slope x - N x^2 / 2: a bracket with one crossing, which Newton's method closes.
  *
- * The way out of a vessel in which a ray starts is the same with the sign of Phi - T turned, and needs
- * no windows. Of a union of bodies it is found by leaving one after the other until none is left. */
+ * The way out of a vessel in which a ray starts is the same with the sign of Phi - T turned, and
+ * needs no windows. Of a union of bodies it is found by leaving one after the other until none is
+ * left. */
 #include "render/cast/field.h"
 
 #include "render/cast/passage.h"
@@ -250,8 +251,8 @@ static void pass_joined(const Search *search, const uint32_t *list, size_t n, si
 }
 
 /* If the ray is at t_min inside the body that the scratch's passages make, moves t_min to where it
- * leaves, infinite if that is beyond t_max, describes that place and returns true. *deep tells whether
- * it was more than skin there, and is left alone if not. */
+ * leaves, infinite if that is beyond t_max, describes that place and returns true. *deep tells
+ * whether it was more than skin there, and is left alone if not. */
 static bool leave_body(Search *search, bool *deep)
 {
     const FieldScratch *scratch = search->scratch;

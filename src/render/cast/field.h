@@ -24,9 +24,9 @@ void fieldscratch_free(FieldScratch *scratch);
 size_t fieldindex_size(const FieldIndex *index);
 
 /* The first point at t in [t_min, t_max] where Phi crosses FIELD_LEVEL along the ray; t_min is
- * finite, t_max may be infinite. False when there is none. That is where Phi rises through it, but for
- * a ray that starts inside a vessel: that meets the wall from within, where Phi first falls to the
- * level.
+ * finite, t_max may be infinite. False when there is none. That is where Phi rises through it, but
+ * for a ray that starts inside a vessel: that meets the wall from within, where Phi first falls to
+ * the level.
  *
  * *normal is unit and outward, -grad Phi / |grad Phi|; *segment the index of the segment whose term
  * is largest there, the lowest of equals. Terms are left out where they are below 1e-9, so the
@@ -35,13 +35,14 @@ size_t fieldindex_size(const FieldIndex *index);
 bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                      double t_max, double *t, Vec3 *normal, uint32_t *segment);
 
-/* The same among the `n` segments listed of the scene, without an index. `scratch` has room for n. */
+/* The same among the `n` segments listed of the scene, without an index. `scratch` has room for
+ * n. */
 bool field_first_hit_among(const Scene *scene, const uint32_t *list, size_t n,
                            FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
                            Vec3 *normal, uint32_t *segment);
 
-/* Whether there is such a point on a ray that starts on the surface, up to 1e-3 r off it. So the wall
- * that the ray leaves outwards, but starts just within, does not count. */
+/* Whether there is such a point on a ray that starts on the surface, up to 1e-3 r off it. So the
+ * wall that the ray leaves outwards, but starts just within, does not count. */
 bool field_is_shadowed(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                        double t_max);
 

@@ -26,8 +26,8 @@ struct FieldScratch {
     uint32_t *near, *joined; /* segments on a ray, and those of them that blend */
 };
 
-/* Empties the scratch. Follow with passages_add for every segment that may matter in [t_min, t_max],
- * t_max finite, and then passages_order; passages_find does all three. */
+/* Empties the scratch. Follow with passages_add for every segment that may matter in [t_min,
+ * t_max], t_max finite, and then passages_order; passages_find does all three. */
 void passages_clear(FieldScratch *scratch);
 void passages_add(FieldScratch *scratch, const FieldTube *tube, Ray ray, double t_min,
                   double t_max);

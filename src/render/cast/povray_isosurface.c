@@ -1,19 +1,21 @@
-/* POV-Ray's IsoSurface object (shape/isosurf.cpp of 3.7.0.10), open and with max_trace 1, in its own
- * order of operations. On the part [t0, t1] of the ray in the box:
+/* POV-Ray's IsoSurface object (shape/isosurf.cpp of 3.7.0.10), open and with max_trace 1, in its
+ * own order of operations. On the part [t0, t1] of the ray in the box:
  *
  *   R(a, b):  if b - a < accuracy:                           a hit at b if f(b) < 0
  *             else if f(a) + f(b) < max_gradient (b - a):     R(a, m), then R(m, b), m the middle
  *
- * with f's sign turned when it is negative at t0, so that a ray from within finds its way out. A ray that
- * starts within an accuracy of the box and has |f| < 4 max_gradient accuracy there starts on the surface:
- * it is moved on by five accuracies, and f's sign is turned if it is negative there. So a shadow ray,
- * which starts up to an accuracy inside, sees its own surface again where it runs nearly along it.
+ * with f's sign turned when it is negative at t0, so that a ray from within finds its way out. A
+ * ray that starts within an accuracy of the box and has |f| < 4 max_gradient accuracy there starts
+ * on the surface: it is moved on by five accuracies, and f's sign is turned if it is negative
+ * there. So a shadow ray, which starts up to an accuracy inside, sees its own surface again where
+ * it runs nearly along it.
  *
- * POV-Ray also remembers the last cell that a ray missed, and takes a near ray for a miss of the same cell
- * if the least f it saw exceeds max_gradient times the distance of the two. Scenes of ours do not let it:
- * the last cell missed is always Cell_Guard of templates/povray/isosurface.inc.
+ * POV-Ray also remembers the last cell that a ray missed, and takes a near ray for a miss of the
+ * same cell if the least f it saw exceeds max_gradient times the distance of the two. Scenes of
+ * ours do not let it: the last cell missed is always Cell_Guard of templates/povray/isosurface.inc.
  *
- * The cells come in Morton order, so halving their array again and again makes a hierarchy of boxes. */
+ * The cells come in Morton order, so halving their array again and again makes a hierarchy of
+ * boxes. */
 #include "render/cast/povray_isosurface.h"
 
 #include <float.h>
@@ -36,10 +38,10 @@ struct PovrayIsosurface {
     uint32_t n_nodes;
 };
 
-/* ---- one cell ------------------------------------------------------------------------------------ */
+/* ---- one cell -------------------------------------------------------------------------------- */
 
-/* One axis of POV-Ray's box test. Beyond the first axis, `slack` keeps an end of the interval where it is
- * unless the new one is nearer by more. */
+/* One axis of POV-Ray's box test. Beyond the first axis, `slack` keeps an end of the interval where
+ * it is unless the new one is nearer by more. */
 static bool cut_axis(double from, double along, double low, double high, double slack, double *t0,
                      double *t1)
 {
@@ -133,7 +135,7 @@ static Vec3 cell_normal(const CellTree *tree, const Cell *cell, Vec3 x)
     return n.x == 0 && n.y == 0 && n.z == 0 ? vec3(1, 0, 0) : vec3_normalized(n);
 }
 
-/* ---- all cells ----------------------------------------------------------------------------------- */
+/* ---- all cells ------------------------------------------------------------------------------- */
 
 static void build_node(PovrayIsosurface *halving, uint32_t number, uint32_t first, uint32_t count)
 {

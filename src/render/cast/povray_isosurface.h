@@ -1,5 +1,6 @@
-/* Where POV-Ray 3.7 finds the cells of an implicit surface [docs/POVRAY.md section 5]: its own interval
- * halving, repeated operation by operation, so that its pictures can be told from ours to the last code. */
+/* Where POV-Ray 3.7 finds the cells of an implicit surface [docs/POVRAY.md section 5]: its own
+ * interval halving, repeated operation by operation, so that its pictures can be told from ours to
+ * the last code. */
 #ifndef CORCAST_RENDER_POVRAY_ISOSURFACE_H
 #define CORCAST_RENDER_POVRAY_ISOSURFACE_H
 
@@ -15,9 +16,9 @@ MUST_CHECK Status povray_isosurface_new(const Scene *scene, const CellParams *pa
                                         PovrayIsosurface **out, Err *err);
 void povray_isosurface_free(PovrayIsosurface *halving);
 
-/* The first hit with t >= t_min of all cells: true and *hit, with the forward-difference normal (unit, of
- * no particular side), and the segment whose term is largest there; or false. As in POV-Ray, a cell tells
- * of one hit alone. */
+/* The first hit with t >= t_min of all cells: true and *hit, with the forward-difference normal
+ * (unit, of no particular side), and the segment whose term is largest there; or false. As in
+ * POV-Ray, a cell tells of one hit alone. */
 bool povray_isosurface_first_hit(const PovrayIsosurface *halving, Ray ray, double t_min, Hit *hit,
                                  uint32_t *segment);
 

@@ -171,8 +171,8 @@ static void color_tile(const FieldPicture *picture, const SeenTile *seen, int wo
     picture->kernels->shade(&picture->look, surface, color);
 }
 
-/* Copies a tile's colours to rows of `width` pixels, as far as they reach: where `state` is TILE_MISS
- * the background's, which is nowhere when it is NULL. */
+/* Copies a tile's colours to rows of `width` pixels, as far as they reach: where `state` is
+ * TILE_MISS the background's, which is nowhere when it is NULL. */
 static void copy_tile(float color[3][TILE_SAMPLES], const uint8_t *state, Rgb background,
                       int columns, int rows, size_t width, float *to)
 {

@@ -13,14 +13,14 @@ typedef struct FieldPass {
     FieldTiles *tiles; /* owned; NULL: not made yet */
 } FieldPass;
 
-/* What the camera sees of an implicit scene: the centres of all pixels, and the further samples. Zeroed
- * before the first band, kept from band to band while camera and antialiasing stay. */
+/* What the camera sees of an implicit scene: the centres of all pixels, and the further samples.
+ * Zeroed before the first band, kept from band to band while camera and antialiasing stay. */
 typedef struct FieldPrepared {
     FieldPass center, further;
 } FieldPrepared;
 
-/* renderer_rows() for implicit scenes, into planes that are there. `caster` is for shadows; NULL without.
- * Adds the seconds taken to *stats. Makes of *prepared what is not there yet. */
+/* renderer_rows() for implicit scenes, into planes that are there. `caster` is for shadows; NULL
+ * without. Adds the seconds taken to *stats. Makes of *prepared what is not there yet. */
 MUST_CHECK Status fieldrender(const Scene *scene, const RenderParams *params, Caster *caster,
                               const Band *rows, FieldPrepared *prepared, Frame *frame,
                               RenderStats *stats, Err *err);

@@ -1,12 +1,12 @@
-/* A term is set out about the tile's middle ray, so that single precision is left with small numbers
- * however large the scene is. */
+/* A term is set out about the tile's middle ray, so that single precision is left with small
+ * numbers however large the scene is. */
 #include "render/field/fieldterms.h"
 
 #include <stdlib.h>
 
-/* The depths at which a ray of the tile may be within reach of the segment: those of the part of the
- * axis, from along - half to along + half, that is near enough to the middle ray, widened by the
- * reach. */
+/* The depths at which a ray of the tile may be within reach of the segment: those of the part of
+ * the axis, from along - half to along + half, that is near enough to the middle ray, widened by
+ * the reach. */
 static Range depths_of(const FrameSegment *segment, double along, double half)
 {
     double first = max_of(along - half, 0), last = min_of(along + half, segment->length);

@@ -1,9 +1,9 @@
 /* Segments are moved to the camera's frame once, in double precision, and counted into the rows of
- * tiles that their support touches (a capsule: the segment, widened by its reach). A row of tiles is
- * the unit of work. For it every segment is clipped to the slab of space that the row's rays fill,
- * which gives the columns that it touches there, and with them the list of every tile; a list holds
- * its segments by rising index, whatever the number of threads. What the kernel leaves undecided is
- * cast ray by ray in double precision among the terms of the tile. */
+ * tiles that their support touches (a capsule: the segment, widened by its reach). A row of tiles
+ * is the unit of work. For it every segment is clipped to the slab of space that the row's rays
+ * fill, which gives the columns that it touches there, and with them the list of every tile; a list
+ * holds its segments by rising index, whatever the number of threads. What the kernel leaves
+ * undecided is cast ray by ray in double precision among the terms of the tile. */
 #include "render/field/fieldtiles.h"
 
 #include "render/cast/field.h"
@@ -72,8 +72,9 @@ static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
     return near > segment->reach * (1 + 1e-9) ? 1 : far < -segment->reach ? -1 : 0;
 }
 
-/* The samples, and then the tiles, within a range of the camera's plane, one of whose directions has
- * `count` samples from `first` on in steps of `step`. A thousandth of a step covers rounding. */
+/* The samples, and then the tiles, within a range of the camera's plane, one of whose directions
+ * has `count` samples from `first` on in steps of `step`. A thousandth of a step covers
+ * rounding. */
 static TileSpan tiles_within(Range range, double first, double step, int count)
 {
     double from = (range.low - first) / step, to = (range.high - first) / step;
@@ -298,7 +299,8 @@ Vec3 fieldtiles_to_world(const FieldTiles *tiles, Vec3 direction)
     return vec3_add_scaled(world, tiles->axes[2], direction.z);
 }
 
-/* Height above the plane through the camera, the direction and a row at `y` of the camera's plane. */
+/* Height above the plane through the camera, the direction and a row at `y` of the camera's
+ * plane. */
 static double above(const FieldTiles *tiles, Vec3 p, double y)
 {
     return tiles->perspective ? (p.y - y * p.z) / sqrt(1 + y * y) : p.y - y;

@@ -1,5 +1,5 @@
-/* What the kernels of kernel_trace.h and kernel_trace_flat.h share: constants of the proof, the factor of a
- * segment's ends, and how hits are stored. */
+/* What the kernels of kernel_trace.h and kernel_trace_flat.h share: constants of the proof, the
+ * factor of a segment's ends, and how hits are stored. */
 #ifndef CORCAST_RENDER_KERNEL_TRACE_COMMON_H
 #define CORCAST_RENDER_KERNEL_TRACE_COMMON_H
 
@@ -8,8 +8,8 @@
 #include "scene/scene.h"
 
 #define LEVEL ((float)FIELD_LEVEL)
-/* No more than this may the margin be, and the lack of potential at which a hit that is just certain
- * is closed by Newton's method. */
+/* No more than this may the margin be, and the lack of potential at which a hit that is just
+ * certain is closed by Newton's method. */
 #define CLOSE_ENOUGH (1e-3f * LEVEL)
 /* The margin: a part for terms left out, one for each term's arithmetic, and one for the rounding
  * of places, in units of the last place of the packet's extent. */

@@ -3,16 +3,16 @@
  *
  * With q the square of the distance from the plane, a term is A exp(-k^2 q), A = exp(-E^2) (erf u +
  * erf v) / 2. So the potential falls strictly with q: a ray hits if the sum of A exceeds the level,
- * once on its way to the plane, and needs no search. About a lone vessel ln Phi = ln A - k^2 q gives
- * q at once. Else Halley's method finds it, in units of 1 / K^2, K the largest k of the tile: ln Phi
- * is convex in q, its first derivative is -m, m the mean, and its second v, the variance, of
+ * once on its way to the plane, and needs no search. About a lone vessel ln Phi = ln A - k^2 q
+ * gives q at once. Else Halley's method finds it, in units of 1 / K^2, K the largest k of the tile:
+ * ln Phi is convex in q, its first derivative is -m, m the mean, and its second v, the variance, of
  * p = (k / K)^2 among the terms.
  *
- * A step d of Halley's method solves a parabola but for v^2 |d|^3 / (4 m (1 + v d / (2 m))), and the
- * parabola leaves out |d|^3 / 6 of the third central moment somewhere on the way. With R the range
- * of p, that is at most R v there, so v grows by exp(R |d|) at most; and v <= m R [Bhatia & Davis
- * 2000]. Where R |d| <= 1 the step thus leaves ln Phi off by less than R v |d|^3. Rays that start
- * between surface and plane, and those within the margin of the level, are handed back. */
+ * A step d of Halley's method solves a parabola but for v^2 |d|^3 / (4 m (1 + v d / (2 m))), and
+ * the parabola leaves out |d|^3 / 6 of the third central moment somewhere on the way. With R the
+ * range of p, that is at most R v there, so v grows by exp(R |d|) at most; and v <= m R [Bhatia &
+ * Davis 2000]. Where R |d| <= 1 the step thus leaves ln Phi off by less than R v |d|^3. Rays that
+ * start between surface and plane, and those within the margin of the level, are handed back. */
 #include "render/field/kernel_trace_common.h"
 
 /* What the last step may leave ln Phi off by; 1e-6 more are for rounding. */
@@ -218,8 +218,8 @@ LANE_FN void fall_to(PlanePacket *packet)
     }
 }
 
-/* Takes Halley's step, of at most twice Newton's, and sets where it is the last: nowhere where it is
- * cut short, as v d > 2 m there. */
+/* Takes Halley's step, of at most twice Newton's, and sets where it is the last: nowhere where it
+ * is cut short, as v d > 2 m there. */
 LANE_FN void plane_step(PlanePacket *packet)
 {
     Lanes sum = packet->sum, above = lanes_log(lanes_max(sum * (1 / LEVEL), lanes_set(1e-30f)));
@@ -300,8 +300,8 @@ LANE_FN bool begin_packet(const FlatTile *plane, int number, const uint32_t *tou
     return lanes_any(packet->hit | packet->unsure);
 }
 
-/* What a packet needs is a long chain of operations, each waiting for the one before: so every stage
- * is done for all packets before the next begins. */
+/* What a packet needs is a long chain of operations, each waiting for the one before: so every
+ * stage is done for all packets before the next begins. */
 LANE_TARGET static __attribute__((noinline)) void PLANE_KERNEL(const FieldTile *tile, void *memory,
                                                                TileHits *hits)
 {

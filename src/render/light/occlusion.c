@@ -1,8 +1,8 @@
 /* Directions are points of a disc lifted to the hemisphere above it (Malley), which makes them as
- * frequent as their cosine, so that the mean needs no weights. The points are those of a sunflower: the
- * k-th of n at the radius sqrt((k + u) / n) and k golden angles round, evenly spread for every n. The
- * same points everywhere would leave bands; turned, and moved by another u, from pixel to pixel they
- * leave fine grain, and are right on average. */
+ * frequent as their cosine, so that the mean needs no weights. The points are those of a sunflower:
+ * the k-th of n at the radius sqrt((k + u) / n) and k golden angles round, evenly spread for every
+ * n. The same points everywhere would leave bands; turned, and moved by another u, from pixel to
+ * pixel they leave fine grain, and are right on average. */
 #include "render/light/occlusion.h"
 
 #include <math.h>

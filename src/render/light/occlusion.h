@@ -4,13 +4,14 @@
 
 #include "render/cast/caster.h"
 
-/* The part, from 0 to 1, of `rays` (at least 1) rays that leave the point without meeting anything. Their
- * directions are distributed as the cosine to `normal` (unit), and turned about it by `turn`, a part of a
- * full turn. METHODS section 3.1. */
+/* The part, from 0 to 1, of `rays` (at least 1) rays that leave the point without meeting anything.
+ * Their directions are distributed as the cosine to `normal` (unit), and turned about it by `turn`,
+ * a part of a full turn. METHODS section 3.1. */
 double occlusion_open(Caster *caster, int worker, Vec3 point, Vec3 normal, int rays, double turn);
 
-/* The turn of the sample at (i, j) of the picture, from 0 to 1: neighbours differ as much as they can.
- * J. Jimenez: Next generation post processing in Call of Duty: Advanced Warfare, SIGGRAPH 2014. */
+/* The turn of the sample at (i, j) of the picture, from 0 to 1: neighbours differ as much as they
+ * can. J. Jimenez: Next generation post processing in Call of Duty: Advanced Warfare, SIGGRAPH
+ * 2014. */
 double occlusion_turn(double i, double j);
 
 #endif

@@ -20,8 +20,8 @@ static Rgb rgb_add(Rgb a, Rgb b)
     return (Rgb){a.r + b.r, a.g + b.g, a.b + b.b};
 }
 
-/* The Phong highlight: the mirrored view ray against the light. POV-Ray leaves out sizes of 60 and more where
- * the cosine is below 0.0008, whose power is 0 in any colour. */
+/* The Phong highlight: the mirrored view ray against the light. POV-Ray leaves out sizes of 60 and
+ * more where the cosine is below 0.0008, whose power is 0 in any colour. */
 static double phong_intensity(const Finish *finish, Vec3 direction, Vec3 normal, Vec3 towards)
 {
     double along = vec3_dot(direction, normal);

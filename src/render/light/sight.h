@@ -15,8 +15,8 @@ typedef struct Sight {
  * tiles do not know. */
 bool sight_is_needed(const Scene *scene, const RenderParams *params);
 
-/* The colour of what is seen along the ray of the sample (i, j): of `surfel`, what it meets first of the
- * vessels (NULL: none), of the ground where that is nearer, or of the background. */
+/* The colour of what is seen along the ray of the sample (i, j): of `surfel`, what it meets first
+ * of the vessels (NULL: none), of the ground where that is nearer, or of the background. */
 Rgb sight_color(const Sight *sight, int worker, Ray ray, double i, double j, const Surfel *surfel);
 
 #endif

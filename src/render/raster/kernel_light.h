@@ -172,8 +172,9 @@ RASTER_FN void clip_to_ends(const RasterHull *hull, const Near *near, const Sigh
     }
 }
 
-/* Lines that between two depths may be in the cone about a joint. At t before or behind where a line is
- * nearest to the axis, it is, if (1 - taper^2) distance^2 - (middle - s taper)^2 = a t^2 + 2 b t + c
+/* Lines that between two depths may be in the cone about a joint. At t before or behind where a
+ * line is nearest to the axis, it is, if (1 - taper^2) distance^2 - (middle - s taper)^2 = a t^2 +
+ * 2 b t + c
  * <= 0; a line that runs more steeply than the cone, a <= 0, may be. */
 RASTER_FN LaneMask in_cone(const RasterHull *hull, const Passage *passage, Lanes from, Lanes to)
 {
@@ -187,9 +188,9 @@ RASTER_FN LaneMask in_cone(const RasterHull *hull, const Passage *passage, Lanes
     return (from < to) & ((a < least) | (lanes_fma(t, lanes_fma(t, a, b + b), c) <= 0.0f));
 }
 
-/* Lines that may enter a joint before depths z from its middle. Where it is looked at along its axis,
- * the capsule has no walls to tell that by. Its hits may lie off_joint_line beside a line, and so
- * before the wall of the capsule by the root of twice that at most, in radii. */
+/* Lines that may enter a joint before depths z from its middle. Where it is looked at along its
+ * axis, the capsule has no walls to tell that by. Its hits may lie off_joint_line beside a line,
+ * and so before the wall of the capsule by the root of twice that at most, in radii. */
 RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const Near *near,
                                    const SightLines *sight, Lanes z)
 {

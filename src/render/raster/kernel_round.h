@@ -163,7 +163,8 @@ typedef struct Passage {
     Lanes sine2;
 } Passage;
 
-/* How lines that are not parallel pass an axis u: n = D x u, P the place where they pass its middle's depth. */
+/* How lines that are not parallel pass an axis u: n = D x u, P the place where they pass its
+ * middle's depth. */
 typedef struct Crossing {
     Lanes sine2; /* |n|^2 */
     Lanes off;   /* n . P: the distance of the two, times |n| */

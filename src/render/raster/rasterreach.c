@@ -7,8 +7,8 @@ static const double slack_pixels = 1e-3; /* covers rounding where tiles are told
 static const TileSpan nowhere = {1, 0};
 static const Range everywhere = {-HUGE_VAL, HUGE_VAL}, nothing = {HUGE_VAL, -HUGE_VAL};
 
-/* A range as pixels, whose middles are whole numbers; pixel 0 is at `first`, and `per` pixels follow
- * in a unit. */
+/* A range as pixels, whose middles are whole numbers; pixel 0 is at `first`, and `per` pixels
+ * follow in a unit. */
 static Range pixels_within(Range range, double first, double per)
 {
     double from = (range.low - first) * per, to = (range.high - first) * per;

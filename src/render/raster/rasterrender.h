@@ -7,8 +7,8 @@
 #include "render/raster/rastershadow.h"
 #include "render/raster/rasterview.h"
 
-/* What the camera and the lights see of a scene of primitives. Zeroed before the first band, kept from
- * band to band while camera, lights and antialiasing stay. */
+/* What the camera and the lights see of a scene of primitives. Zeroed before the first band, kept
+ * from band to band while camera, lights and antialiasing stay. */
 typedef struct RasterPrepared {
     RasterBins *bins;       /* owned; of the whole picture; NULL: nothing is made yet */
     RasterShadow **shadows; /* owned; one a light; NULL where it casts none, or rays do */

@@ -1,9 +1,9 @@
 /* A light has a view of its own, a grid of tiles over the scene with lists as the camera's have.
  * A place lies in shadow if the first thing that the light sees on the way to it is something
  * else: so the same kernels find first hits, at places instead of on a grid. The places of many
- * tiles of the picture are asked about together, and tested tile by tile of the light. Lists hold boxes
- * and depths, several of which are compared with those of the places at once: few items are left
- * to be looked at, and memory is asked for them and for the next list ahead. */
+ * tiles of the picture are asked about together, and tested tile by tile of the light. Lists hold
+ * boxes and depths, several of which are compared with those of the places at once: few items are
+ * left to be looked at, and memory is asked for them and for the next list ahead. */
 #include "render/raster/rastershadow.h"
 
 #include <stdlib.h>
@@ -20,9 +20,9 @@ enum { MOST_LANES = 16 };
 enum { LINE_WORDS = 16, MOST_FETCHED = 8 * LINE_WORDS };
 enum { LEAST_SIDE = 16, MOST_SIDE = 512, SLAB_WORDS = 1 << 18 };
 
-/* The lists of a row of tiles. That of column i, of n = offsets[i + 1] - offsets[i] items, begins at
- * words[3 offsets[i]]: n items, their boxes, as RasterBox but in this tile, and the floats of their
- * RasterBox.near. */
+/* The lists of a row of tiles. That of column i, of n = offsets[i + 1] - offsets[i] items, begins
+ * at words[3 offsets[i]]: n items, their boxes, as RasterBox but in this tile, and the floats of
+ * their RasterBox.near. */
 typedef struct ShadowRow {
     const uint32_t *offsets, *words;
 } ShadowRow;

@@ -24,7 +24,8 @@ MUST_CHECK Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out,
 void rasterqueue_free(RasterQueue *queue);
 
 /* Asks about the places with a bit set in `wanted`, bit i for place i, which are on these items, as
- * in RasterHits and borrowed until the answer; that to place i is to be the one numbered answer + i. */
+ * in RasterHits and borrowed until the answer; that to place i is to be the one numbered answer +
+ * i. */
 void rasterqueue_ask(RasterQueue *queue, const RasterKernels *kernels, const RasterPlaces *places,
                      const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer);
 /* Answers what was asked, and empties the queue: 1 where a primitive stands farther than POV-Ray's

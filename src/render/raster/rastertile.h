@@ -27,7 +27,8 @@ static inline RasterTiles rastertiles_of(TileSpan span)
     return (RasterTiles){(uint16_t)span.first, (uint16_t)span.last};
 }
 
-/* A primitive, numbered as in the scene, or a capsule about it; a cylinder with its round ends. Its axis is (sine ex, sine ey, cosine). */
+/* A primitive, numbered as in the scene, or a capsule about it; a cylinder with its round ends. Its
+ * axis is (sine ex, sine ey, cosine). */
 typedef struct RasterItem {
     double x, y, z; /* its middle */
     float ex, ey;   /* unit */
@@ -72,9 +73,9 @@ typedef struct RasterJoint {
     float by[5][3];
 } RasterJoint;
 
-/* What holds a ruled joint, about the same point: the planes of its circles, a little farther out, so
- * that where n . x + d < 0 of one of them, (n, d) with n unit, there is nothing of it; and the cone
- * about balls in its circles' places, whose balls, s along the item's axis, have the radius
+/* What holds a ruled joint, about the same point: the planes of its circles, a little farther out,
+ * so that where n . x + d < 0 of one of them, (n, d) with n unit, there is nothing of it; and the
+ * cone about balls in its circles' places, whose balls, s along the item's axis, have the radius
  * middle - s taper. */
 typedef struct RasterHull {
     float plane[2][4];
@@ -98,9 +99,8 @@ typedef struct RasterTile {
     const RasterJoint *joints; /* NULL in a light's view */
     const uint32_t *list;      /* items, ascending */
     size_t n;
-    const float
-        *nears; /* of each of the list, a depth before which nothing of it is, less z_middle;
-                         * only for RasterKernels.cover */
+    const float *nears; /* of each of the list, a depth before which nothing of it is, less
+                         * z_middle; only for RasterKernels.cover */
     const RasterGrid *grid;
     bool perspective;
     double x, y; /* the middle of the tile, in the plane of the view */

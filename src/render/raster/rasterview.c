@@ -8,8 +8,8 @@
 #include "render/raster/rasterreach.h"
 #include <stdlib.h>
 
-/* Fewer primitives than LEAST_CHUNK are in the cache of one processor, from where others would fetch
- * them more slowly than it takes to work on them. */
+/* Fewer primitives than LEAST_CHUNK are in the cache of one processor, from where others would
+ * fetch them more slowly than it takes to work on them. */
 enum { LEAST_CHUNK = 1 << 16, MOST_CHUNKS = 64 };
 enum { CACHE_LINE = sizeof(RasterItem) };
 _Static_assert(CACHE_LINE == 64, "an item fills a line");

@@ -9,8 +9,8 @@
 #include "render/tile/tilekernels.h"
 #include <endian.h>
 
-/* x^y of x in (0, 1], y >= 0: by squaring where y is a small whole number, as it mostly is. What is below
- * 1e-15 need not be right, and so never comes near the slow arithmetic of tiny numbers. */
+/* x^y of x in (0, 1], y >= 0: by squaring where y is a small whole number, as it mostly is. What is
+ * below 1e-15 need not be right, and so never comes near the slow arithmetic of tiny numbers. */
 LANE_FN Lanes lanes_power(Lanes x, float y)
 {
     const Lanes least = lanes_set(1e-15f);

@@ -1,6 +1,6 @@
-/* What fieldtiles.c prepares and the kernels of kernel_trace.h trace: one tile of 8 x 8 samples, the
- * vessels near it, and what its rays meet. Lengths in mm, in the camera's frame: x right, y up, z
- * along the direction, its origin at the camera's location.
+/* What fieldtiles.c prepares and the kernels of kernel_trace.h trace: one tile of 8 x 8 samples,
+ * the vessels near it, and what its rays meet. Lengths in mm, in the camera's frame: x right, y up,
+ * z along the direction, its origin at the camera's location.
  *
  * The ray of the sample (x, y) of the camera's plane is (x, y, z) when orthographic and
  * (x z, y z, z) when perspective: z is the parameter of both. */
@@ -30,7 +30,8 @@ typedef struct TileTerm {
     uint32_t segment;             /* index in the scene */
 } TileTerm;
 
-/* Samples are numbered so that each run of 16, of 8, and of 4, is a compact block: tile_sample_x/y. */
+/* Samples are numbered so that each run of 16, of 8, and of 4, is a compact block:
+ * tile_sample_x/y. */
 typedef struct FieldTile {
     const TileTerm *terms; /* by rising `on`, unless in a plane */
     size_t n_terms;
