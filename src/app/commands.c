@@ -14,6 +14,11 @@ const CommandEntry command_entries[] = {
     {"verify", run_verify, "prove that POV-Ray and the native renderer agree"},
     {"compare", run_compare, "compare two images or planes"},
     {"report", run_report, "one page about several verifications"},
+    {"models", run_models, "the values of --model"},
+    {"fields", run_fields, "the values of --color-by, with their units"},
+    {"looks", run_looks, "the values of --look"},
+    {"colormaps", run_colormaps, "the values of --colormap"},
+    {"domains", run_domains, "the shapes of --domain"},
     {0},
 };
 

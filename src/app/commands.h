@@ -7,7 +7,8 @@
 typedef Status CommandRun(int argc, char **argv, Err *err);
 
 CommandRun run_grow, run_refine, run_info, run_convert, run_scene, run_povray, run_render,
-    run_compare, run_verify, run_report, run_view;
+    run_compare, run_verify, run_report, run_view, run_models, run_fields, run_looks, run_colormaps,
+    run_domains;
 
 typedef struct CommandEntry {
     const char *name; /* NULL ends the table */

@@ -518,8 +518,11 @@ static const char *argument_name(const Option *option)
 static void print_help(const Reader *reader)
 {
     const Command *command = reader->command;
-    printf("corcast %s: %s\n\nusage: corcast %s %s\n\nexamples:\n%s\noptions:\n", command->name,
-           command->summary, command->name, command->operands, command->examples);
+    printf("corcast %s: %s\n\nusage: corcast %s%s%s\n", command->name, command->summary,
+           command->name, *command->operands ? " " : "", command->operands);
+    if (command->examples)
+        printf("\nexamples:\n%s", command->examples);
+    puts("\noptions:");
     for (int t = 0; t < reader->n_tables; t++)
         for (const Option *option = reader->tables[t]; option->name; option++) {
             bool output = strcmp(option->name, "output") == 0;

@@ -57,7 +57,7 @@ typedef struct Command {
     const char *name;
     const char *summary;  /* one line */
     const char *operands; /* "T.swc -o P.png" */
-    const char *examples; /* lines */
+    const char *examples; /* lines; may be NULL */
     int min_operands, max_operands;
     bool needs_output; /* the option output must be given */
     bool writes_last;  /* the last operand is written; the others are read */

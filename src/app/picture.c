@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const models[] = {
+const char *const model_names[] = {
     [SCENE_CYLINDERS] = "cylinders",   [SCENE_JOINED] = "joined", [SCENE_ROUNDED] = "rounded",
     [SCENE_ISOSURFACE] = "isosurface", [SCENE_BLOB] = "blob",     NULL};
 static const char *const potentials[] = {"paper", "graph", NULL};
@@ -23,7 +23,7 @@ static const char *const erf_names[] = {[ERF_FAST] = "fast", [ERF_EXACT] = "exac
 
 const char *model_name(SceneModel model)
 {
-    return models[model];
+    return model_names[model];
 }
 
 void picture_options_init(PictureOptions *options)
@@ -37,7 +37,7 @@ void picture_options_init(PictureOptions *options)
     StageParams *stage = &options->stage;
     const double huge = 1e300, side = IMAGE_MAX_SIDE, far = 1e7;
     const Option table[] = {
-        {"model", OPTION_CHOICE, &options->model, NULL, 0, 0, models, NULL,
+        {"model", OPTION_CHOICE, &options->model, NULL, 0, 0, model_names, NULL,
          "how vessels are drawn (rounded)"},
         {"potential", OPTION_CHOICE, &options->potential, NULL, 0, 0, potentials, NULL,
          "isosurface: all vessels blend, or only neighbours in the tree (paper)"},
@@ -288,5 +288,5 @@ void picture_description(const Scene *scene, const char *tree_path, Text *out)
 {
     text_puts(out, "arterial tree ");
     text_put_line(out, file_name(tree_path));
-    text_printf(out, ", %zu segments as %s", scene->drawn, models[scene->model]);
+    text_printf(out, ", %zu segments as %s", scene->drawn, model_names[scene->model]);
 }

@@ -73,6 +73,8 @@ MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err 
 
 /* Name of a model as --model takes it. */
 const char *model_name(SceneModel model);
+/* All of them; NULL ends them. */
+extern const char *const model_names[];
 
 /* One line that says what a scene shows. */
 void picture_description(const Scene *scene, const char *tree_path, Text *out);

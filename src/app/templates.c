@@ -37,8 +37,10 @@ Status templates_folder(char **folder, Err *err)
                    "installed; name it in CORCAST_TEMPLATES");
 }
 
-/* The names, without their extension, of the files in the folder that have it: "a, b or c". */
-static void list_names(const char *folder, const char *extension, Text *out)
+/* Appends the names, without their extension, of the files in the folder that have it, `between`
+ * them and `before_last`. */
+static void list_names(const char *folder, const char *extension, const char *between,
+                       const char *before_last, Text *out)
 {
     struct dirent **entries = NULL;
     int n = scandir(folder, &entries, NULL, alphasort);
@@ -50,13 +52,28 @@ static void list_names(const char *folder, const char *extension, Text *out)
             continue;
         name[length - ending] = '\0';
         if (last)
-            text_printf(out, "%s%s", out->length ? ", " : "", last);
+            text_printf(out, "%s%s", out->length ? between : "", last);
         last = name;
     }
-    text_printf(out, "%s%s", out->length ? " or " : "", last ? last : "none");
+    text_printf(out, "%s%s", out->length ? before_last : "", last ? last : "none");
     for (int i = 0; i < n; i++)
         free(entries[i]);
     free(entries);
+}
+
+Status template_names(const char *folder, const char *extension, Text *lines, Err *err)
+{
+    char *templates = NULL, *place = NULL;
+    TRY(templates_folder(&templates, err));
+    Status status = file_join(templates, folder, &place, err);
+    if (status == STATUS_OK) {
+        list_names(place, extension, "\n", "\n", lines);
+        text_puts(lines, "\n");
+        status = text_check(lines, err);
+    }
+    free(templates);
+    free(place);
+    return status;
 }
 
 /* What there is in place of a file that is not there. */
@@ -64,7 +81,7 @@ static Status refuse_name(const char *option, const char *value, const char *fol
                           const char *extension, Err *err)
 {
     Text names = TEXT_INIT;
-    list_names(folder, extension, &names);
+    list_names(folder, extension, ", ", " or ", &names);
     Status status = text_check(&names, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE,

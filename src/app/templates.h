@@ -14,4 +14,8 @@ MUST_CHECK Status templates_folder(char **folder, Err *err);
 MUST_CHECK Status template_file(const char *option, const char *folder, const char *value,
                                 const char *extension, char **path, Err *err);
 
+/* Appends the names that template_file finds in a folder of templates/, sorted, one a line.
+ * STATUS_IO when there are no templates. */
+MUST_CHECK Status template_names(const char *folder, const char *extension, Text *lines, Err *err);
+
 #endif

@@ -52,6 +52,11 @@ const char *derive_field_name(size_t i)
     return i < N_RULES ? rules[i].name : NULL;
 }
 
+const char *derive_field_unit(size_t i)
+{
+    return i < N_RULES ? rules[i].unit : NULL;
+}
+
 static Status unknown_field(const char *name, Err *err)
 {
     Text known = TEXT_INIT;

@@ -62,8 +62,9 @@ MUST_CHECK Status derive_field(const Tree *tree, const FlowParams *params, const
                                Field *field, Err *err);
 void field_release(Field *field);
 
-/* Name of field `i`, from 0 on; NULL after the last. */
+/* Name and unit ("" for pure numbers) of field `i`, from 0 on; NULL after the last. */
 const char *derive_field_name(size_t i);
+const char *derive_field_unit(size_t i);
 
 typedef struct TreeSummary {
     struct {

@@ -27,6 +27,16 @@ static const DomainOps *ops_of(const Domain *domain)
     return kinds[domain->kind];
 }
 
+const char *domain_shape_name(size_t i)
+{
+    return i < KINDS ? kinds[i]->name : NULL;
+}
+
+const char *domain_shape_parameters(size_t i)
+{
+    return i < KINDS ? kinds[i]->parameters : NULL;
+}
+
 static Status refuse_shape(const char *spec, Err *err)
 {
     Text shapes = TEXT_INIT;

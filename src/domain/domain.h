@@ -93,4 +93,9 @@ Vec3 domain_default_inlet(const Domain *domain);
 /* The smallest box that holds the domain, mm; flat in two dimensions. */
 Box domain_bounds(const Domain *domain);
 
+/* Name of shape `i`, from 0 on, "disc", and what stands behind its colon, "R"; NULL after the last.
+ */
+const char *domain_shape_name(size_t i);
+const char *domain_shape_parameters(size_t i);
+
 #endif

@@ -2,7 +2,7 @@
 # render and the image formats, read back by netpbm, which shares no code with corcast.
 . "$(dirname "$0")/../lib.sh"
 
-MODELS="cylinders joined rounded isosurface blob"
+MODELS=$(corcast models)
 
 # colours FILE.ppm: how many different pixels there are.
 colours() {

@@ -151,6 +151,33 @@ END
     expect_only tree.swc
 }
 
+test_lists_hold_what_options_take() {
+    local name
+    grow_tree 5
+    for name in $(corcast models); do
+        run_ok corcast render tree.swc --quiet --size 16x12 --model "$name" -o picture.ppm
+    done
+    for name in $(corcast fields | cut -f 1); do
+        run_ok corcast render tree.swc --quiet --size 16x12 --color-by "$name" -o picture.ppm
+    done
+    for name in $(corcast looks); do
+        run_ok corcast render tree.swc --quiet --size 16x12 --look "$name" -o picture.ppm
+    done
+    for name in $(corcast colormaps); do
+        run_ok corcast render tree.swc --quiet --size 16x12 --color-by radius --colormap "$name" -o picture.ppm
+    done
+    for name in $(corcast domains); do
+        run corcast grow --domain "${name%%:*}:" -o other.swc
+        expect_status 2
+        ! grep -q 'unknown shape' stderr || fail "expected the shape $name to be known$(said)"
+    done
+    [ "$(corcast models | wc -l) $(corcast fields | wc -l)" = "5 11" ] || fail "expected 5 models and 11 fields"
+    corcast fields | grep -q "^wss	Pa$" || fail "expected the unit of wss"
+    ls "$REPO/templates/colormaps" | sed 's/\.txt$//' | sort >expected
+    corcast colormaps >listed
+    expect_same expected listed
+}
+
 # means SENTENCE ARGUMENT...: the arguments are refused with a name that may have been meant, or none.
 means() {
     local sentence=$1

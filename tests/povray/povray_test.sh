@@ -97,7 +97,7 @@ color = 0.8 0.6 0.4
 direction = 0 1.7320508075688772 1
 color = 0.4 0.2 0.6
 INI
-    for model in cylinders joined rounded isosurface blob; do
+    for model in $(corcast models); do
         # shellcheck disable=SC2086
         run_ok corcast render --quiet tree.swc --look ./look.ini --model $model $view -o native.png
         [ "$(codes native.png)" = " 177 169 173" ] || fail "expected 177 169 173, got $(codes native.png), from: $command_line"

@@ -190,7 +190,7 @@ test_a_picture_wider_than_high_and_one_higher_than_wide_agree() {
 test_a_tree_drawn_by_hand_agrees_in_every_model() {
     local model
     cp "$DATA/bifurcation.swc" tree.swc
-    for model in cylinders joined rounded isosurface blob; do
+    for model in $(corcast models); do
         agrees $model
         rm -r report
     done
@@ -262,7 +262,7 @@ test_a_measured_tree_agrees() {
 test_colours_by_a_field_agree_in_every_model() {
     local model
     tree_2d 20
-    for model in cylinders joined rounded isosurface blob; do
+    for model in $(corcast models); do
         agrees $model --color-by pressure
         rm -r report
     done
@@ -325,7 +325,7 @@ test_shadows_on_the_ground_agree() {
     local model
     tree_3d
     ground 'axis = 0 1 0'
-    for model in cylinders joined rounded isosurface blob; do
+    for model in $(corcast models); do
         agrees $model --look ./lights.ini --shadows on --projection perspective \
             --location 40,10,90 --look-at 0,-10,0 --angle 50
         rm -r report
