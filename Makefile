@@ -64,7 +64,7 @@ LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
 .PHONY: all deps demo validate bench bench-grow bench-render bench-compare verify-all power power-program fit-blob check check-quick program unit \
 	unit-programs layers format format-check asan tsan \
-	fuzz fuzz-programs golden-update install uninstall clean help packages
+	fuzz fuzz-programs golden-update install uninstall dist clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -241,11 +241,20 @@ install: build/corcast ## install under $(DESTDIR)$(PREFIX)
 	install -Dm755 build/corcast $(DESTDIR)$(PREFIX)/bin/corcast
 	install -d $(SHARE)/corcast
 	cp -R templates $(SHARE)/corcast
-	install -Dm644 -t $(SHARE)/doc/corcast README.md CHANGELOG.md LICENSE docs/*.md
+	install -Dm644 -t $(SHARE)/doc/corcast README.md CHANGELOG.md LICENSE
+	install -Dm644 -t $(SHARE)/doc/corcast/docs docs/*.md
+	install -Dm644 -t $(SHARE)/doc/corcast/docs/decisions docs/decisions/*.md
+	install -Dm644 -t $(SHARE)/doc/corcast/docs/images docs/images/*.png
 
 uninstall: ## remove what `make install` put there
 	rm -f $(DESTDIR)$(PREFIX)/bin/corcast
 	rm -rf $(SHARE)/corcast $(SHARE)/doc/corcast
+
+VERSION := $(shell sed -n 's/^.define CORCAST_VERSION "\(.*\)"/\1/p' src/base/version.h)
+dist: ## build/corcast-VERSION.tar.gz, the sources of the last commit, the same bytes each time
+	$(Q)mkdir -p build
+	$(Q)git archive --format=tar --prefix=corcast-$(VERSION)/ -o build/corcast-$(VERSION).tar HEAD
+	$(Q)gzip -9nf build/corcast-$(VERSION).tar
 
 clean: ## remove build/ and out/
 	rm -rf build out

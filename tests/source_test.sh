@@ -45,7 +45,7 @@ test_make_help_names_every_public_target() {
     local target
     run_ok make -C "$REPO" --no-print-directory help
     for target in all deps demo bench-compare verify-all power check unit layers format format-check asan tsan fuzz golden-update \
-        install uninstall clean help; do
+        install uninstall dist check-quick clean help; do
         expect_stdout "^  $target "
     done
 }
@@ -54,11 +54,29 @@ test_make_install_puts_program_templates_and_documents_under_the_prefix() {
     run_ok make -C "$REPO" --no-print-directory install "DESTDIR=$PWD/stage" PREFIX=/opt/corcast
     expect_file stage/opt/corcast/bin/corcast
     expect_file stage/opt/corcast/share/corcast/templates/povray/scene.pov
-    expect_file stage/opt/corcast/share/doc/corcast/README.md
+    (cd stage/opt/corcast/share/doc/corcast &&
+        for linked in $(grep -o '](docs/[^)#]*' README.md | cut -c 3- | grep -v '/decisions$'); do
+            [ -s "$linked" ] || fail "expected $linked, which README links to, to be installed"
+        done) || exit 1
     grow_tree 5
     run_ok stage/opt/corcast/bin/corcast scene tree.swc -o installed.pov
     run_ok make -C "$REPO" --no-print-directory uninstall "DESTDIR=$PWD/stage" PREFIX=/opt/corcast
     [ -z "$(find stage -type f)" ] || fail "expected nothing to be left, found $(find stage -type f)"
+}
+
+test_make_dist_packs_what_is_committed_into_the_same_bytes() {
+    local name
+    git -C "$REPO" rev-parse --quiet --verify HEAD >/dev/null 2>&1 || skip "these sources are no git repository"
+    name=corcast-$(corcast --version | cut -d ' ' -f 2)
+    run_ok make -C "$REPO" --no-print-directory dist
+    cp "$REPO/build/$name.tar.gz" first.tar.gz
+    sleep 1
+    run_ok make -C "$REPO" --no-print-directory dist
+    expect_same "$REPO/build/$name.tar.gz" first.tar.gz
+    tar -xzf first.tar.gz
+    (cd "$name" && find . -type f -o -type l) | sed 's|^\./||' | sort >packed
+    git -C "$REPO" ls-tree -r --name-only HEAD | sort >committed
+    expect_same committed packed
 }
 
 # A PATH that holds only the named programs, plus a dpkg-query that knows no package.
