@@ -273,9 +273,13 @@ run().catch(function (error) {
   console.log(error.message);
 }).finally(function () {
   clearTimeout(patience);
-  browser.on("exit", function () {
-    // Its children may write for a moment longer.
-    fs.rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 });
+  // Its children may write for a moment longer, and rmSync does not look again for what they write.
+  browser.on("exit", function removeProfile(code, signal, tries = 50) {
+    try {
+      fs.rmSync(profile, { recursive: true, force: true });
+    } catch (error) {
+      if (tries > 0) return setTimeout(removeProfile, 100, code, signal, tries - 1);
+    }
     process.exit(failures ? 1 : 0);
   });
   browser.kill("SIGKILL");
