@@ -1,7 +1,8 @@
-/* Of a blob the renderer is trusted in its shading alone, which POV-Ray agrees with at all other
- * pixels: places, normals, segments and what is in the way of light come from the field. Of other
- * models the scene is drawn again through a camera of one pixel, with either of POV-Ray's
- * limits. */
+/* For a blob, the place, the normal, the segment and the shadows of a pixel are computed from the
+ * field along its ray; of the renderer only the shading function is used, whose colours are
+ * POV-Ray's at all other pixels. For another model the renderer draws the pixel twice more, through
+ * a camera of one pixel: with shadow rays that count what they hit from 1e-3 mm on, as POV-Ray's
+ * do, and from 1e-4 mm on, as its shadow cache does. */
 #include "app/settle.h"
 
 #include "surface/surface.h"
@@ -162,8 +163,6 @@ static const FieldSegment *find_wall(const Asker *asker, Ray ray, Vec3 x, Vec3 *
         }
     }
     *normal = vec3_scale(vec3_normalized(sum), vec3_dot(sum, ray.direction) > 0 ? -1 : 1);
-    if (vec3_dot(*normal, ray.direction) > 0)
-        *normal = vec3_scale(*normal, -1);
     return largest;
 }
 
