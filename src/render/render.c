@@ -224,9 +224,9 @@ void renderer_free(Renderer *renderer)
     free(renderer);
 }
 
-/* What earlier bands had in common is forgotten if it is not of today's camera, lights and
- * antialiasing. */
-static Status look_again(Renderer *renderer, Err *err)
+/* Frees what was prepared for another camera, other lights or another antialiasing than the next
+ * band has, and remembers those that it has. */
+static Status forget_other_views(Renderer *renderer, Err *err)
 {
     const Scene *scene = renderer->scene;
     size_t size = scene->n_lights * sizeof *scene->lights;
@@ -284,7 +284,7 @@ static Status draw(Renderer *renderer, const Band *band, Frame *frame, Err *err)
     bool tiles = is_traced(renderer) ? is_field(renderer) : params->method == RENDER_RASTER;
     bool codes = params->codes_suffice && params->antialias == 1 && tiles;
     TRY(make_planes(renderer->scene->camera.width, band->rows, params, codes, frame, err));
-    TRY(look_again(renderer, err));
+    TRY(forget_other_views(renderer, err));
     if (!is_traced(renderer) && params->method == RENDER_RASTER)
         return rasterrender(renderer->scene, params, band, &renderer->raster, frame,
                             &renderer->stats, err);
