@@ -154,26 +154,6 @@ static Status put_pair(Text *text, const char *name, const char *value, Err *err
     return STATUS_OK;
 }
 
-static bool is_one_of(const char *name, const char *const *names)
-{
-    while (*names && strcmp(*names, name) != 0)
-        names++;
-    return *names;
-}
-
-/* Whether an option of a picture has a part in the one that is shown. The camera is put
- * otherwise. */
-static bool takes_part(const PictureOptions *options, const char *name)
-{
-    static const char *const camera[] = {"view", "margin", "angle", "height", NULL};
-    static const char *const of_isosurfaces[] = {"potential", "erf", "cell-beta", NULL};
-    if (is_one_of(name, of_isosurfaces))
-        return options->model == SCENE_ISOSURFACE;
-    if (strcmp(name, "joints") == 0)
-        return options->model == SCENE_JOINED;
-    return !is_one_of(name, camera);
-}
-
 static Status put_option(const Option *option, PutSetting *put, Text *text, Err *err)
 {
     Text value = TEXT_INIT;
@@ -185,24 +165,31 @@ static Status put_option(const Option *option, PutSetting *put, Text *text, Err 
     return status;
 }
 
+/* Of the options of a table, those that make the picture what it is; `plain` has their defaults. */
+static Status put_table(const PictureOptions *options, const Option *table, const Option *plain,
+                        PutSetting *put, Text *text, Err *err)
+{
+    static const char *const always[] = {"model", "size", "projection", NULL};
+    static const char *const framing[] = {"view", "margin", "angle", "height", NULL};
+    bool perspective = options->projection == PROJECTION_PERSPECTIVE;
+    for (; table->name; table++, plain++) {
+        bool extent = strcmp(table->name, perspective ? "angle" : "height") == 0;
+        bool differs = picture_takes(options, table->name) && !is_one_of(table->name, framing) &&
+                       option_differs(table, plain);
+        if (extent || differs || is_one_of(table->name, always))
+            TRY(put_option(table, put, text, err));
+    }
+    return STATUS_OK;
+}
+
 /* Model, size, projection, where the camera is, and all that is not by default. */
 static Status put_settings(const Viewer *viewer, PutSetting *put, Text *text, Err *err)
 {
-    static const char *const always[] = {"model", "size", "projection", NULL};
     const PictureOptions *options = viewer->options;
-    bool perspective = options->projection == PROJECTION_PERSPECTIVE;
     PictureOptions plain;
     picture_options_init(&plain);
-    for (int i = 0; options->table[i].name; i++) {
-        const Option *option = &options->table[i];
-        bool extent = strcmp(option->name, perspective ? "angle" : "height") == 0;
-        if (extent || is_one_of(option->name, always) ||
-            (takes_part(options, option->name) && option_differs(option, &plain.table[i])))
-            TRY(put_option(option, put, text, err));
-    }
-    for (int i = 0; options->coloring.field && options->coloring.table[i].name; i++)
-        if (option_differs(&options->coloring.table[i], &plain.coloring.table[i]))
-            TRY(put_option(&options->coloring.table[i], put, text, err));
+    TRY(put_table(options, options->table, plain.table, put, text, err));
+    TRY(put_table(options, options->coloring.table, plain.coloring.table, put, text, err));
     return text_check(text, err);
 }
 

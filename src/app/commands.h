@@ -23,6 +23,9 @@ const CommandEntry *command_find(const char *name);
 
 #define GENERATOR "corcast " CORCAST_VERSION
 
+/* Whether a word is one of a list that ends in NULL. */
+bool is_one_of(const char *word, const char *const *words);
+
 /* Appends a word as a shell reads it: in quotes where the shell would take it apart. */
 void put_shell_word(Text *text, const char *word);
 

@@ -32,10 +32,8 @@ static int finish(const char *command, Status status, Err *err)
     return status_exit(status);
 }
 
-static bool is_one_of(const char *word, const char *a, const char *b, const char *c)
-{
-    return strcmp(word, a) == 0 || strcmp(word, b) == 0 || strcmp(word, c) == 0;
-}
+static const char *const version_words[] = {"--version", "-V", "version", NULL};
+static const char *const help_words[] = {"--help", "-h", "help", NULL};
 
 static Status unknown_command(const char *name, Err *err)
 {
@@ -57,11 +55,11 @@ int main(int argc, char **argv)
         print_usage(stderr);
         return status_exit(STATUS_USAGE);
     }
-    if (is_one_of(argv[1], "--version", "-V", "version")) {
+    if (is_one_of(argv[1], version_words)) {
         puts("corcast " CORCAST_VERSION);
         return finish("", STATUS_OK, &err);
     }
-    bool asks_help = is_one_of(argv[1], "--help", "-h", "help");
+    bool asks_help = is_one_of(argv[1], help_words);
     if (asks_help && argc == 2) {
         print_usage(stdout);
         return finish("", STATUS_OK, &err);

@@ -107,13 +107,15 @@ static Status check_camera(const PictureOptions *options, Err *err)
     return STATUS_OK;
 }
 
-Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, Err *err)
+enum { PICTURE_NEEDS = 12 };
+
+static void find_needs(const PictureOptions *options, OptionNeed needs[PICTURE_NEEDS])
 {
     static const char of_isosurfaces[] = "is for --model isosurface";
     static const char of_colors[] = "needs --color-by";
     bool isosurface = options->model == SCENE_ISOSURFACE;
     bool colored = options->coloring.field != NULL;
-    const OptionNeed needs[] = {
+    const OptionNeed list[] = {
         {"potential", isosurface, of_isosurfaces},
         {"erf", isosurface, of_isosurfaces},
         {"cell-beta", isosurface, of_isosurfaces},
@@ -127,7 +129,25 @@ Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, 
         {"viscosity", colored, of_colors},
         {0},
     };
+    static_assert(sizeof list == PICTURE_NEEDS * sizeof *list, "PICTURE_NEEDS counts the list");
+    memcpy(needs, list, sizeof list);
+}
+
+Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, Err *err)
+{
+    OptionNeed needs[PICTURE_NEEDS];
+    find_needs(options, needs);
     return options_check_needs(parsed, needs, err);
+}
+
+bool picture_takes(const PictureOptions *options, const char *name)
+{
+    OptionNeed needs[PICTURE_NEEDS];
+    find_needs(options, needs);
+    for (const OptionNeed *need = needs; need->name; need++)
+        if (strcmp(need->name, name) == 0)
+            return need->met;
+    return true;
 }
 
 Status picture_check_povray(const PictureOptions *options, Err *err)

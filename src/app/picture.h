@@ -40,6 +40,9 @@ CellParams picture_cells(const PictureOptions *options);
 MUST_CHECK Status picture_check_needs(const PictureOptions *options, const Parsed *parsed,
                                       Err *err);
 
+/* Whether the option of this name has an effect on this picture, if it is given. */
+bool picture_takes(const PictureOptions *options, const char *name);
+
 /* STATUS_USAGE when an option is given that only the native renderer knows. */
 MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 
