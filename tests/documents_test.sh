@@ -33,16 +33,16 @@ test_the_numbers_of_growth_are_those_of_the_source() {
     says METHODS.md 'The nearest segments (8; `--candidates`)'
     agree METHODS.md <<'END'
 one point in three is far enough @ src/grow/grow.c @ TOSSES_PER_ADDED = 3 }
-1.15 times what the rule asks for, and distances 1.1 times @ src/grow/place.c @ length_reserve = 1.15, clearance_reserve = 1.1;
+1.15 times what the rule asks for, and distances 1.1 times @ src/grow/connection.c @ length_reserve = 1.15, clearance_reserve = 1.1;
 known at once to the eight vessels above @ src/grow/network.c @ LEVELS = 8 }
 with every fifth of growth @ src/grow/grow.c @ refresh_growth = 1.2;
 ahead of its share by more than a sixteenth @ src/grow/forest.c @ lead = 1.0 / 16;
-all rise by 1.1, and those of segments that break a rule by 2.2 @ src/grow/refine/refine_toll.c @ rise = 1.1, steep_rise = 2.2;
-up to two more follow @ src/grow/refine.c @ DETOURS = 3,
-each at four times the price @ src/grow/refine.c @ price_rise = 4;
-over nine tenths of the budget @ src/grow/refine.c @ last_part = 0.1;
+all rise by 1.1, and those of segments that break a rule by 2.2 @ src/grow/refine/refine_penalty.c @ rise = 1.1, steep_rise = 2.2;
+up to two more follow @ src/grow/refine/refine.c @ DETOURS = 3,
+each at four times the price @ src/grow/refine/refine.c @ price_rise = 4;
+over nine tenths of the budget @ src/grow/refine/refine.c @ last_part = 0.1;
 until they agree to 10⁻¹³ @ src/grow/finish.c @ agreement = 1e-13;
-256 points a terminal, up to 4,096 where that makes less than two million in all @ src/grow/weigh.c @ least_points = 256, most_points = 4096, all_points = 2e6;
+256 points a terminal, up to 4,096 where that makes less than two million in all @ src/grow/segment_weights.c @ least_points = 256, most_points = 4096, all_points = 2e6;
 END
 }
 

@@ -9,8 +9,8 @@
  * steps are shortened. */
 #include "grow/finish.h"
 
-#include "grow/adopt.h"
-#include "grow/weigh.h"
+#include "grow/continue_tree.h"
+#include "grow/segment_weights.h"
 #include <assert.h>
 #include <float.h>
 #include <inttypes.h>
@@ -66,10 +66,10 @@ static Status settle_radii(Network *net, const GrowParams *params, double *flow,
                            Err *err)
 {
     double part = 1, last = INFINITY, change;
-    weigh_gather(net, flow);
+    weights_flows(net, flow);
     for (int round = 0; round < MAX_ROUNDS; round++) {
         TRY(sweep_down(net, tree, err));
-        TRY(weigh_segments(net, params, flow, tree->radius_mm, part, &change, err));
+        TRY(weights_update(net, params, flow, tree->radius_mm, part, &change, err));
         if (change <= agreement)
             return STATUS_OK;
         part = change < last ? part : part / 2;
@@ -85,7 +85,7 @@ static Status settle_radii(Network *net, const GrowParams *params, double *flow,
 /* Radii, and flow shares where terminals have their own. */
 static Status write_radii(Network *net, const GrowParams *params, Tree *tree, Err *err)
 {
-    if (!weigh_is_needed(params))
+    if (!weights_are_needed(params))
         return sweep_down(net, tree, err);
     double *flow = NULL;
     Status status = STATUS_OK;
@@ -194,7 +194,7 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
     }
     tree_renumber(&made);
     if (params->from)
-        TRY_GOTO(adopt_restore(params->from, net, &made, err));
+        TRY_GOTO(continue_restore(params->from, net, &made, err));
     *out = made;
 done:
     if (status != STATUS_OK)

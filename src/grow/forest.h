@@ -8,7 +8,7 @@ typedef struct Forest {
     size_t trees, terminals;
     size_t *quota; /* terminals of each tree in the end */
     size_t *has;   /* and so far */
-    size_t *limit; /* how many more each may get in the pass at hand */
+    size_t *limit; /* how many more each may get in the round at hand */
     size_t *grant; /* the limit that it began with */
 } Forest;
 

@@ -1,8 +1,8 @@
-/* Terminals are added in passes [METHODS 1.2]: random points are tossed; each that is far enough
+/* Terminals are added in rounds [METHODS 1.2]: random points are tossed; each that is far enough
  * from the tree is connected to that of the nearest segments where it is cheapest, at the
- * bifurcation that is best there, if there is room [plan.c]. Points of a pass are taken one by one,
- * not in the order of tossing but neighbourhood after neighbourhood when the tree is large
- * [pass.c]. The domain has its final size throughout: scaling all lengths scales all costs alike,
+ * bifurcation that is best there, if there is room [plan.c]. Points of a round are taken one by
+ * one, not in the order of tossing but neighbourhood after neighbourhood when the tree is large
+ * [round.c]. The domain has its final size throughout: scaling all lengths scales all costs alike,
  * so this chooses as a domain that grows with the tree does.
  *
  * The toss distance is controlled so that a fixed share of the points is far enough. It follows the
@@ -11,24 +11,24 @@
  * are taken to be thinner, in the end bare centrelines. */
 #include "grow/grow.h"
 
-#include "grow/adopt.h"
+#include "grow/continue_tree.h"
 #include "grow/finish.h"
+#include "grow/first_segments.h"
 #include "grow/forest.h"
-#include "grow/mend.h"
-#include "grow/pass.h"
-#include "grow/plant.h"
-#include "grow/weigh.h"
+#include "grow/repair.h"
+#include "grow/round.h"
+#include "grow/segment_weights.h"
 #include <stdlib.h>
 
 /* Cells of the grid a terminal, when the grid is made; it serves until the terminals doubled. */
 static const double cells_per_terminal = 1;
 /* The sensitivities serve until there are this many times the terminals. */
 static const double refresh_growth = 1.2;
-/* A pass adds about one terminal for every so many there are; in tiles, more. */
+/* A round adds about one terminal for every so many there are; in tiles, more. */
 enum { TERMINALS_PER_ADDED = 64, TERMINALS_PER_ADDED_IN_TILES = 12 };
 /* Points tossed for each terminal to be added. */
 enum { TOSSES_PER_ADDED = 3 };
-/* How far the toss distance falls after a pass in which no point is far enough from the tree. */
+/* How far the toss distance falls after a round in which no point is far enough from the tree. */
 static const double toss_notch = 0.1, toss_notch_in_tiles = 0.5;
 /* Segments are no shorter than this share of the toss distance. */
 static const double least_length_share = 0.1;
@@ -50,13 +50,13 @@ typedef struct Growth {
     size_t grid_until, refresh_until; /* terminals */
     double toss_distance;             /* mm */
     Rules rules;
-    Pass pass;
-    double skipped; /* the share of points that was, in the last pass */
+    Round round;
+    double skipped; /* the share of points that was, in the last round */
     uint64_t tosses, rejected;
     size_t crowded, outside; /* points far enough from the tree since one was connected */
 } Growth;
 
-/* Terminals that a pass connects at most, where it is to connect so many. */
+/* Terminals that a round connects at most, where it is to connect so many. */
 static size_t most_added(size_t terminals)
 {
     return 2 * (terminals / TERMINALS_PER_ADDED_IN_TILES + 1);
@@ -74,11 +74,11 @@ static Status make_grid(Growth *growth, Err *err)
         most = growth->params->terminals;
     TRY(grid_reset(&growth->grid, domain_bounds(growth->domain),
                    cells_per_terminal * (double)terminals, net->n + 2 * (most - terminals),
-                   growth->pass.threads, err));
-    TRY(pass_use_grid(&growth->pass, &growth->grid, err));
+                   growth->round.threads, err));
+    TRY(round_use_grid(&growth->round, &growth->grid, err));
     for (size_t i = 0; i < net->n; i++)
         if (net->segment[i].parent >= 0)
-            TRY(place_enter(&growth->grid, &growth->rules, net, (int32_t)i, err));
+            TRY(entry_add(&growth->grid, &growth->rules, net, (int32_t)i, err));
     return STATUS_OK;
 }
 
@@ -88,12 +88,12 @@ static Status keep_up(Growth *growth, Err *err)
     Network *net = &growth->net;
     size_t terminals = net->terminals;
     if (terminals >= growth->refresh_until) {
-        if (weigh_is_needed(growth->params))
-            TRY(weigh_refresh(net, growth->params, growth->domain, WEIGH_ROUGH, err));
+        if (weights_are_needed(growth->params))
+            TRY(weights_refresh(net, growth->params, growth->domain, WEIGHTS_ROUGH, err));
         else
-            network_refresh(net, growth->pass.threads);
+            network_refresh(net, growth->round.threads);
         if (growth->grid.item)
-            TRY(place_widen(&growth->grid, &growth->rules, net, err));
+            TRY(entries_widen(&growth->grid, &growth->rules, net, err));
         growth->refresh_until = (size_t)(refresh_growth * (double)terminals) + 1;
     }
     return terminals >= growth->grid_until ? make_grid(growth, err) : STATUS_OK;
@@ -111,7 +111,7 @@ static Vec3 toss(Growth *growth)
     return domain_sample(growth->domain, &growth->random);
 }
 
-/* How many terminals the next pass should add. */
+/* How many terminals the next round should add. */
 static size_t to_be_added(const Growth *growth, bool tiled)
 {
     size_t terminals = growth->net.terminals, left = growth->params->terminals - terminals;
@@ -121,13 +121,13 @@ static size_t to_be_added(const Growth *growth, bool tiled)
 }
 
 /* Tosses points and connects those that can be. */
-static Status run_pass(Growth *growth, size_t added, size_t *made, Err *err)
+static Status run_round(Growth *growth, size_t added, size_t *made, Err *err)
 {
     size_t left = growth->params->terminals - growth->net.terminals;
     size_t points = (size_t)(TOSSES_PER_ADDED * (double)added / (1 - fmin(growth->skipped, 0.75)));
-    TRY(pass_start(&growth->pass, points, err));
+    TRY(round_start(&growth->round, points, err));
     for (size_t i = 0; i < points; i++)
-        growth->pass.point[i] = toss(growth);
+        growth->round.point[i] = toss(growth);
     forest_limit(&growth->forest, growth->net.terminals);
     Site site = {.net = &growth->net,
                  .limit = growth->forest.limit,
@@ -137,18 +137,18 @@ static Status run_pass(Growth *growth, size_t added, size_t *made, Err *err)
                  .toss_distance = growth->toss_distance,
                  .terminals_only = growth->params->toss == GROW_TOSS_TERMINAL,
                  .candidates = growth->params->candidates};
-    TRY(pass_run(&growth->pass, &site, 2 * added < left ? 2 * added : left,
-                 growth->net.terminals >= LEAST_WITH_FULL_CELLS, made, err));
+    TRY(round_run(&growth->round, &site, 2 * added < left ? 2 * added : left,
+                  growth->net.terminals >= LEAST_WITH_FULL_CELLS, made, err));
     forest_count(&growth->forest);
     network_grown(&growth->net, *made);
-    growth->skipped = (double)growth->pass.tally.skipped / (double)points;
+    growth->skipped = (double)growth->round.tally.skipped / (double)points;
     return STATUS_OK;
 }
 
 /* Holds the share of points that are far enough from the tree at one in TOSSES_PER_ADDED. */
 static void adapt_toss_distance(Growth *growth, bool tiled)
 {
-    const size_t *count = growth->pass.tally.count;
+    const size_t *count = growth->round.tally.count;
     size_t far = count[PLAN_CROWDED] + count[PLAN_READY];
     double free = (double)(far + count[PLAN_TOO_NEAR] + count[PLAN_OUTSIDE]);
     if (free > 0) {
@@ -162,7 +162,7 @@ static void adapt_toss_distance(Growth *growth, bool tiled)
 static Status be_patient(Growth *growth, size_t made, Err *err)
 {
     Rules *rules = &growth->rules;
-    const Tally *tally = &growth->pass.tally;
+    const Tally *tally = &growth->round.tally;
     size_t before = growth->crowded, troubled = growth->crowded + growth->outside;
     size_t crowded = tally->skipped + tally->count[PLAN_IN_VESSEL] + tally->count[PLAN_CROWDED];
     growth->rejected += crowded + tally->count[PLAN_OUTSIDE];
@@ -172,11 +172,12 @@ static Status be_patient(Growth *growth, size_t made, Err *err)
         growth->crowded = growth->outside = 0;
     } else if (growth->crowded / PATIENCE > before / PATIENCE) {
         rules->thickness = rules->thickness > least_thickness ? rules->thickness / 2 : 0;
-        TRY(pass_use_grid(&growth->pass, &growth->grid, err));
+        TRY(round_use_grid(&growth->round, &growth->grid, err));
     }
     if (troubled == 0 || growth->crowded + growth->outside < LAST_PATIENCE)
         return STATUS_OK;
-    size_t outside = growth->params->from ? adopt_outside(growth->params->from, growth->domain) : 0;
+    size_t outside =
+        growth->params->from ? continue_outside(growth->params->from, growth->domain) : 0;
     if (outside > 0)
         return err_set(err, STATUS_INFEASIBLE,
                        "no room for terminal %zu of --terminals %zu in %zu tries: the domain does "
@@ -206,14 +207,14 @@ static Status add_terminals(Growth *growth, Err *err)
     size_t made;
     TRY(check_range(growth, err));
     TRY(keep_up(growth, err));
-    bool tiled = growth->pass.is_tiled && growth->crowded + growth->outside == 0;
-    TRY(run_pass(growth, to_be_added(growth, tiled), &made, err));
+    bool tiled = growth->round.is_tiled && growth->crowded + growth->outside == 0;
+    TRY(run_round(growth, to_be_added(growth, tiled), &made, err));
     adapt_toss_distance(growth, tiled);
     return be_patient(growth, made, err);
 }
 
 /* New trees at the inlets. */
-static Status plant(Growth *growth, Err *err)
+static Status start_trees(Growth *growth, Err *err)
 {
     const GrowParams *params = growth->params;
     Network *net = &growth->net;
@@ -222,7 +223,7 @@ static Status plant(Growth *growth, Err *err)
         network_append(net, -1, domain_default_inlet(growth->domain));
     for (size_t k = 0; k < params->inlets; k++)
         network_append(net, -1, params->inlet[k]);
-    TRY(plant_trees(net, growth->domain, &growth->random, &distance, &growth->tosses, err));
+    TRY(first_segments_add(net, growth->domain, &growth->random, &distance, &growth->tosses, err));
     set_toss_distance(growth, distance);
     return STATUS_OK;
 }
@@ -264,21 +265,21 @@ static Status start(Growth *growth, Err *err)
     uint64_t turn = params->from ? 0x9e3779b97f4a7c15 * (uint64_t)params->from->n : 0;
     random_seed(&growth->random, params->seed ^ turn);
     int threads = params->threads > 0 ? params->threads : threads_available();
-    size_t inlets = params->from ? adopt_inlets(params->from) : params->inlets;
+    size_t inlets = params->from ? continue_inlets(params->from) : params->inlets;
     inlets = inlets > 0 ? inlets : 1;
-    TRY(pass_init(&growth->pass, params->candidates, inlets, threads, err));
+    TRY(round_init(&growth->round, params->candidates, inlets, threads, err));
 
     double drop = pa_from_mmhg(params->p_perf_mmhg) - pa_from_mmhg(params->p_term_mmhg);
-    double resistance = 8 * weigh_reference_pa_s(params) / pi;
+    double resistance = 8 * weights_reference_pa_s(params) / pi;
     double scale = sqrt(sqrt(resistance * mm3_s_from_ml_min(params->q_perf_ml_min) / drop));
-    bool traits = params->from || params->inlets > 1 || weigh_is_needed(params);
+    bool traits = params->from || params->inlets > 1 || weights_are_needed(params);
     size_t given = params->from ? params->from->n : 0;
     TRY(network_init(&growth->net, (Law){params->gamma, params->lambda}, scale,
                      given + 2 * params->terminals, inlets, traits, err));
     if (params->from)
-        adopt_tree(params->from, &growth->net);
+        continue_from(params->from, &growth->net);
     else
-        TRY(plant(growth, err));
+        TRY(start_trees(growth, err));
     return start_forest(growth, err);
 }
 
@@ -325,14 +326,14 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     }
     bool complete = status == STATUS_OK;
     size_t broken = 0;
-    if (weigh_is_needed(params))
-        TRY_GOTO(weigh_refresh(&growth.net, params, domain, WEIGH_FINE, err));
+    if (weights_are_needed(params))
+        TRY_GOTO(weights_refresh(&growth.net, params, domain, WEIGHTS_FINE, err));
     else
-        network_refresh(&growth.net, growth.pass.threads);
+        network_refresh(&growth.net, growth.round.threads);
     TRY_GOTO(check_range(&growth, err));
     if (growth.grid.item)
-        TRY_GOTO(mend_network(&growth.net, &growth.grid, domain, &growth.rules, growth.pass.threads,
-                              &broken, err));
+        TRY_GOTO(repair_network(&growth.net, &growth.grid, domain, &growth.rules,
+                                growth.round.threads, &broken, err));
     grid_release(&growth.grid);
     TRY_GOTO(finish_tree(&growth.net, params, domain, out, err));
     if (!report)
@@ -347,11 +348,11 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
                            .broken = broken,
                            .complete = complete};
     if (params->from)
-        status = adopt_changes(params->from, out, report, err);
+        status = continue_changes(params->from, out, report, err);
     if (status != STATUS_OK)
         tree_release(out);
 done:
-    pass_release(&growth.pass);
+    round_release(&growth.round);
     grid_release(&growth.grid);
     forest_release(&growth.forest);
     network_release(&growth.net);

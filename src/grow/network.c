@@ -1,8 +1,8 @@
-/* Every segment holds flare and cost of its daughters, so a change at one place is carried towards
- * the root by recomputing the segments on the way and nothing else: one cache line each, and exact,
- * because nothing is added to or taken from a running sum. A split is carried up a few levels at
- * once, where it is a large part of what hangs there; further up, where it is a small one, sums
- * wait until all are refreshed, as the sensitivities do.
+/* Every segment holds rho_gamma and cost of its daughters, so a change at one place is carried
+ * towards the root by recomputing the segments on the way and nothing else: one cache line each,
+ * and exact, because nothing is added to or taken from a running sum. A split is carried up a few
+ * levels at once, where it is a large part of what hangs there; further up, where it is a small
+ * one, sums wait until all are refreshed, as the sensitivities do.
  *
  * The sensitivities are the derivatives of the root's cost, carried down by the chain rule. They
  * price a change below a segment in O(1). They age as the tree grows, which only blurs the choice
@@ -82,11 +82,11 @@ static float narrow(double value)
 }
 
 /* Tells the parent of `i` what hangs there now. */
-static void report(Network *net, int32_t i, const Reduced *reduced)
+static void tell_parent(Network *net, int32_t i, const Reduced *reduced)
 {
     Segment *parent = &net->segment[net->segment[i].parent];
     int slot = parent->child[1] == i;
-    parent->flare[slot] = reduced->flare;
+    parent->rho_gamma[slot] = reduced->rho_gamma;
     parent->cost[slot] = reduced->cost;
 }
 
@@ -99,12 +99,12 @@ static void measure(Network *net, int32_t i)
 static void recompute(Network *net, int32_t i)
 {
     Reduced reduced = network_reduce(net, i);
-    report(net, i, &reduced);
+    tell_parent(net, i, &reduced);
 }
 
 /* Gives a segment the adjoint it has as a daughter of `parent`. */
-static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t parent,
-                  const Reduced *above)
+static void set_from_parent(Network *net, int32_t i, const Reduced *reduced, int32_t parent,
+                            const Reduced *above)
 {
     const Segment *mother = &net->segment[parent];
     double gauge = (double)mother->gauge;
@@ -119,7 +119,7 @@ static void adopt(Network *net, int32_t i, const Reduced *reduced, int32_t paren
                                                 network_burden(net, parent, 1)};
 }
 
-static void adopt_root(Network *net, int32_t root, const Reduced *reduced)
+static void set_root_from_parent(Network *net, int32_t root, const Reduced *reduced)
 {
     net->segment[root].gauge = 1;
     net->segment[root].radius = narrow(net->radius_unit * reduced->rho);
@@ -164,14 +164,14 @@ static bool holds(Box zone, Vec3 p)
 }
 
 /* Tells the segments above `i`, which reduced to this, that one more terminal hangs there. */
-static void rise(Network *net, int32_t i, const Reduced *reduced, Box zone)
+static void tell_ancestors(Network *net, int32_t i, const Reduced *reduced, Box zone)
 {
     Reduced here = *reduced;
     for (int level = 0; level < LEVELS; level++) {
         int32_t above = net->segment[i].parent;
         if (!holds(zone, net->position[above]))
             return;
-        report(net, i, &here);
+        tell_parent(net, i, &here);
         net->segment[above].terminals++;
         if (net->segment[above].parent < 0)
             return;
@@ -208,14 +208,14 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
     }
 
     Reduced daughters[2] = {network_reduce(net, segment), network_reduce(net, fresh)};
-    report(net, segment, &daughters[0]);
-    report(net, fresh, &daughters[1]);
+    tell_parent(net, segment, &daughters[0]);
+    tell_parent(net, fresh, &daughters[1]);
     Reduced mother = network_reduce(net, proximal);
     net->segment[proximal].radius =
         narrow(net->radius_unit * (double)net->segment[proximal].gauge * mother.rho);
-    adopt(net, segment, &daughters[0], proximal, &mother);
-    adopt(net, fresh, &daughters[1], proximal, &mother);
-    rise(net, proximal, &mother, zone);
+    set_from_parent(net, segment, &daughters[0], proximal, &mother);
+    set_from_parent(net, fresh, &daughters[1], proximal, &mother);
+    tell_ancestors(net, proximal, &mother, zone);
 }
 
 void network_move(Network *net, int32_t node, Vec3 place)
@@ -290,7 +290,7 @@ static void sum_up(Network *net, int32_t i)
 {
     count_terminals(net, i);
     Reduced reduced = network_reduce(net, i);
-    report(net, i, &reduced);
+    tell_parent(net, i, &reduced);
     net->sensitivity[i].load = reduced.rho;
 }
 
@@ -298,7 +298,7 @@ static void sum_up(Network *net, int32_t i)
 static Reduced summed(const Network *net, const Segment *mother, int slot)
 {
     double rho = net->sensitivity[mother->child[slot]].load, rho2 = rho * rho;
-    return (Reduced){.load = rho2 * rho2, .flare = mother->flare[slot], .rho = rho};
+    return (Reduced){.load = rho2 * rho2, .rho_gamma = mother->rho_gamma[slot], .rho = rho};
 }
 
 /* Passes on to its daughters what a node has itself. */
@@ -313,9 +313,9 @@ static void refresh_daughters(Network *net, int32_t i)
     for (int slot = 0; slot < 2 && segment->child[slot] >= 0; slot++) {
         Reduced daughter = summed(net, segment, slot);
         if (segment->parent >= 0)
-            adopt(net, segment->child[slot], &daughter, i, &mother);
+            set_from_parent(net, segment->child[slot], &daughter, i, &mother);
         else
-            adopt_root(net, segment->child[slot], &daughter);
+            set_root_from_parent(net, segment->child[slot], &daughter);
     }
 }
 

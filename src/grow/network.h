@@ -14,8 +14,8 @@
 
 /* What the walk towards the root needs of one segment, in one cache line. */
 typedef struct Segment {
-    double length;   /* mm */
-    double flare[2]; /* of the daughters; 0 where there is none */
+    double length;       /* mm */
+    double rho_gamma[2]; /* of the daughters; 0 where there is none */
     double cost[2];
     int32_t child[2]; /* -1: none */
     int32_t parent;   /* -1 at the inlet */
@@ -100,7 +100,7 @@ static inline double network_burden(const Network *net, int32_t i, int32_t termi
 static inline Below network_below(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
-    return law_gather(&net->law, segment->flare[0] + segment->flare[1],
+    return law_gather(&net->law, segment->rho_gamma[0] + segment->rho_gamma[1],
                       segment->cost[0] + segment->cost[1]);
 }
 

@@ -1,4 +1,4 @@
-#include "grow/adopt.h"
+#include "grow/continue_tree.h"
 #include "grow/grow.h"
 
 GrowParams grow_defaults(void)
@@ -108,8 +108,8 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
         return err_set(err, STATUS_USAGE, "--candidates %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);
     if (params->from) {
-        TRY(adopt_check(params, domain, err));
-        return check_shares(params, adopt_inlets(params->from), err);
+        TRY(continue_check(params, domain, err));
+        return check_shares(params, continue_inlets(params->from), err);
     }
     TRY(check_inlets(params, domain, err));
     return check_shares(params, params->inlets > 0 ? params->inlets : 1, err);

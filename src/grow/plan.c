@@ -62,9 +62,9 @@ static Offers collect(const Site *site, Planner *planner, Box zone, const size_t
         out.beyond = (spent && site->limit[tree] > 0) ||
                      !grid_zone_holds(site->grid, zone, &site->grid->item[segment]);
         if (!spent && !out.beyond &&
-            place_is_splittable(site->net, site->grid, site->rules, segment) &&
-            place_connection(site->net, site->rules, segment, terminal,
-                             &planner->connection[out.count]))
+            connection_may_split(site->net, site->grid, site->rules, segment) &&
+            connection_estimate(site->net, site->rules, segment, terminal,
+                                &planner->connection[out.count]))
             out.count++;
     }
     return out;
@@ -80,16 +80,17 @@ static PlanState choose(const Site *site, Planner *planner, Box zone, Vec3 termi
         int best = cheapest(connection, count);
         *out = connection[best];
         connection[best] = connection[count - 1];
-        if (!place_settle(site->net, site->rules, terminal, out))
+        if (!connection_optimise(site->net, site->rules, terminal, out))
             continue;
-        if (!place_is_inside(site->net, site->domain, out, terminal)) {
+        if (!connection_is_inside(site->net, site->domain, out, terminal)) {
             outside = true;
             continue;
         }
         inside = true;
-        PlaceRoom room = place_room(site->net, site->grid, site->rules, zone, out, terminal);
-        if (room != PLACE_TAKEN)
-            return room == PLACE_FREE ? PLAN_READY : PLAN_BEYOND;
+        ConnectionClearance room =
+            connection_clearance(site->net, site->grid, site->rules, zone, out, terminal);
+        if (room != CONNECTION_BLOCKED)
+            return room == CONNECTION_CLEAR ? PLAN_READY : PLAN_BEYOND;
     }
     return offers.ahead ? PLAN_AHEAD : outside && !inside ? PLAN_OUTSIDE : PLAN_CROWDED;
 }
@@ -99,8 +100,8 @@ PlanState plan_make(const Site *site, Planner *planner, Box zone, const size_t *
 {
     if (!(grid_clearance(zone, terminal) > site->toss_distance))
         return PLAN_BEYOND;
-    GridRoom room = grid_room(site->grid, terminal, site->toss_distance, site->terminals_only,
-                              site->rules->thickness);
+    GridVicinity room = grid_vicinity(site->grid, terminal, site->toss_distance,
+                                      site->terminals_only, site->rules->thickness);
     if (room != GRID_FREE)
         return room == GRID_TOO_NEAR ? PLAN_TOO_NEAR : PLAN_IN_VESSEL;
     Offers offers = collect(site, planner, zone, left, terminal);

@@ -4,8 +4,8 @@
 
 #include "domain/domain.h"
 #include "grow/cco/grid.h"
+#include "grow/connection.h"
 #include "grow/network.h"
-#include "grow/place.h"
 
 typedef enum PlanState {
     PLAN_BEYOND,   /* it takes more than the zone, or more terminals than there are left, to tell */
@@ -18,7 +18,7 @@ typedef enum PlanState {
     PLAN_STATES
 } PlanState;
 
-/* What all points of a pass are planned for. */
+/* What all points of a round are planned for. */
 typedef struct Site {
     Network *net;
     Grid *grid;

@@ -52,11 +52,11 @@ typedef struct Near {
 } Near;
 
 /* Where a point is. */
-typedef enum GridRoom {
+typedef enum GridVicinity {
     GRID_FREE,
     GRID_IN_VESSEL,
     GRID_TOO_NEAR, /* to the tree */
-} GridRoom;
+} GridVicinity;
 
 /* An empty grid over `box` with about `cells` cells for segments below `segments`; a flat box gives
  * one layer. Releases what `grid` held before, so start from (Grid){0}. Up to `workers` threads may
@@ -112,8 +112,8 @@ void grid_remove(Grid *grid, int32_t segment);
 
 /* Whether some segment's centreline, or with `terminals_only` some terminal's end point, is nearer
  * to `point` than `distance`; if not, whether a vessel of `thickness` times its radius holds it. */
-GridRoom grid_room(const Grid *grid, Vec3 point, double distance, bool terminals_only,
-                   double thickness);
+GridVicinity grid_vicinity(const Grid *grid, Vec3 point, double distance, bool terminals_only,
+                           double thickness);
 
 /* The up to `limit` segments whose centrelines are nearest to `point`, nearest first; returns how
  * many. Equal distances are ordered by segment. -1 when it takes cells that are not wholly within
@@ -134,16 +134,17 @@ double grid_length2(const GridItem *item);
 
 /* What is to be met: the box around an item's centreline, and how near to it, mm: `apart` and
  * `per_radius` of the other's radius. */
-typedef struct GridProbe {
+typedef struct GridBoxQuery {
     float low[3], high[3], apart, per_radius;
-} GridProbe;
+} GridBoxQuery;
 
-GridProbe grid_probe(const GridItem *item, double apart, double per_radius);
+GridBoxQuery grid_box_query(const GridItem *item, double apart, double per_radius);
 
 /* Which of the next GRID_LANES segments of a cell, from its k-th on, have boxes that near, as bits;
  * a little more is allowed for rounding. */
 enum { GRID_LANES = 4 };
-unsigned grid_meet(const Grid *grid, const GridCell *cell, uint32_t k, const GridProbe *probe);
+unsigned grid_boxes_near(const Grid *grid, const GridCell *cell, uint32_t k,
+                         const GridBoxQuery *probe);
 
 /* The cells that meet the cube of twice `distance` about `point`. */
 GridBox grid_box(const Grid *grid, Vec3 point, double distance);

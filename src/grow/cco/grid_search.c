@@ -115,10 +115,10 @@ static inline bool any(Ints mask)
     return (half[0] | half[1]) != 0;
 }
 
-GridProbe grid_probe(const GridItem *item, double apart, double per_radius)
+GridBoxQuery grid_box_query(const GridItem *item, double apart, double per_radius)
 {
     const double more = 1 + 1e-5;
-    GridProbe out = {.apart = (float)(apart * more), .per_radius = (float)(per_radius * more)};
+    GridBoxQuery out = {.apart = (float)(apart * more), .per_radius = (float)(per_radius * more)};
     for (int axis = 0; axis < 3; axis++) {
         float a = item->proximal[axis], b = item->distal[axis];
         out.low[axis] = a < b ? a : b;
@@ -127,7 +127,8 @@ GridProbe grid_probe(const GridItem *item, double apart, double per_radius)
     return out;
 }
 
-unsigned grid_meet(const Grid *grid, const GridCell *cell, uint32_t k, const GridProbe *probe)
+unsigned grid_boxes_near(const Grid *grid, const GridCell *cell, uint32_t k,
+                         const GridBoxQuery *probe)
 {
     Ints segments;
     Floats item[2 * LANES];
@@ -145,15 +146,15 @@ unsigned grid_meet(const Grid *grid, const GridCell *cell, uint32_t k, const Gri
     return bits;
 }
 
-/* What grid_room looks for. */
+/* What grid_vicinity looks for. */
 typedef struct Query {
     float at[3]; /* the point */
     float distance2, thickness;
     bool terminals_only;
 } Query;
 
-/* As cell_room, with distances from segments. */
-static GridRoom cell_room_along(const Grid *grid, const GridCell *cell, const Query *query)
+/* As cell_vicinity, with distances from segments. */
+static GridVicinity cell_vicinity_along(const Grid *grid, const GridCell *cell, const Query *query)
 {
     Ints in = {0};
     for (uint32_t k = 0; k < cell->count; k += LANES) {
@@ -166,12 +167,12 @@ static GridRoom cell_room_along(const Grid *grid, const GridCell *cell, const Qu
     return any(in) ? GRID_IN_VESSEL : GRID_FREE;
 }
 
-static GridRoom cell_room(const Grid *grid, size_t index, const Query *query)
+static GridVicinity cell_vicinity(const Grid *grid, size_t index, const Query *query)
 {
     const GridCell *cell = &grid->cell[index];
     if (!query->terminals_only)
-        return cell_room_along(grid, cell, query);
-    GridRoom room = GRID_FREE;
+        return cell_vicinity_along(grid, cell, query);
+    GridVicinity room = GRID_FREE;
     for (uint32_t i = 0; i < cell->count; i++) {
         const GridItem *item = &grid->item[cell->tag[i] >> 1];
         float distance2 = point_distance2(item, query->at);
@@ -184,8 +185,8 @@ static GridRoom cell_room(const Grid *grid, size_t index, const Query *query)
     return room;
 }
 
-GridRoom grid_room(const Grid *grid, Vec3 point, double distance, bool terminals_only,
-                   double thickness)
+GridVicinity grid_vicinity(const Grid *grid, Vec3 point, double distance, bool terminals_only,
+                           double thickness)
 {
     Query query = {.distance2 = (float)(distance * distance),
                    .thickness = (float)thickness,
@@ -193,7 +194,7 @@ GridRoom grid_room(const Grid *grid, Vec3 point, double distance, bool terminals
     grid_store(grid, point, query.at);
     /* Its own cell has every vessel that may hold the point, and most that are too near. */
     size_t home = grid_cell_at(grid, point);
-    GridRoom room = cell_room(grid, home, &query);
+    GridVicinity room = cell_vicinity(grid, home, &query);
     if (room == GRID_TOO_NEAR)
         return room;
     GridBox box = grid_box(grid, point, distance);
@@ -201,7 +202,7 @@ GridRoom grid_room(const Grid *grid, Vec3 point, double distance, bool terminals
         for (int y = box.low[1]; y <= box.high[1]; y++)
             for (int x = box.low[0]; x <= box.high[0]; x++) {
                 size_t index = grid_index(grid, x, y, z);
-                if (index != home && cell_room(grid, index, &query) == GRID_TOO_NEAR)
+                if (index != home && cell_vicinity(grid, index, &query) == GRID_TOO_NEAR)
                     return GRID_TOO_NEAR;
             }
     return room;

@@ -3,8 +3,8 @@
  *
  * With N the flow through a segment over a terminal's mean, m its viscosity over a reference mu,
  * and R*, V* its reduced resistance and target [METHODS 1], R* in units of 8 mu / pi: load  W = N
- * R*             rho = W^(1/4) flare X = rho^gamma        Murray's law is addition: the subtree
- * below a segment has the flare G = sum of X over the daughters, and P = G^(1/gamma) cost  S =
+ * R*             rho = W^(1/4) rho_gamma X = rho^gamma        Murray's law is addition: the subtree
+ * below a segment has the rho_gamma G = sum of X over the daughters, and P = G^(1/gamma) cost  S =
  * rho^lambda V*    so that S = rho^lambda l + (rho / P)^lambda sum of S over them W = N m l + P^4
  * with N m the segment's burden A radius is r = q g rho, q = (8 mu / pi Q_term / (p_perf -
  * p_term))^(1/4) and g the gauge: 1 at the root and greater by rho / P from each segment to its
@@ -25,20 +25,20 @@ typedef struct Law {
 
 /* What hangs on the distal end of a segment; all 0 at a terminal. */
 typedef struct Below {
-    double flare, cost; /* sums over the daughters */
-    double inverse;     /* 1 / P */
-    double load;        /* P^4 */
+    double rho_gamma, cost; /* sums over the daughters */
+    double inverse;         /* 1 / P */
+    double load;            /* P^4 */
 } Below;
 
 /* A segment together with all that hangs on it. */
 typedef struct Reduced {
-    double load;       /* W, mm */
-    double flare;      /* X */
-    double cost;       /* S */
-    double rho;        /* W^(1/4) */
-    double rho_lambda; /* rho^lambda */
-    double widening;   /* rho / P; 0 at a terminal */
-    double pass;       /* (rho / P)^lambda; 0 at a terminal */
+    double load;            /* W, mm */
+    double rho_gamma;       /* X */
+    double cost;            /* S */
+    double rho;             /* W^(1/4) */
+    double rho_lambda;      /* rho^lambda */
+    double widening;        /* rho / P; 0 at a terminal */
+    double widening_lambda; /* (rho / P)^lambda; 0 at a terminal */
     Below below;
 } Reduced;
 
@@ -78,16 +78,17 @@ static inline double law_lambda_power(const Law *law, double x)
     return pow(x, law->lambda);
 }
 
-/* What daughters make whose flares and costs sum up to `flare` and `cost`, both 0 at a terminal. */
-static inline Below law_gather(const Law *law, double flare, double cost)
+/* What daughters make whose flares and costs sum up to `rho_gamma` and `cost`, both 0 at a
+ * terminal. */
+static inline Below law_gather(const Law *law, double rho_gamma, double cost)
 {
-    Below out = {.flare = flare, .cost = cost};
-    if (flare > 0 && law->gamma == 3) {
-        out.inverse = inverse_cube_root(flare);
-        double p2 = flare * out.inverse;
+    Below out = {.rho_gamma = rho_gamma, .cost = cost};
+    if (rho_gamma > 0 && law->gamma == 3) {
+        out.inverse = inverse_cube_root(rho_gamma);
+        double p2 = rho_gamma * out.inverse;
         out.load = p2 * p2;
-    } else if (flare > 0) {
-        double p = pow(flare, 1 / law->gamma), p2 = p * p;
+    } else if (rho_gamma > 0) {
+        double p = pow(rho_gamma, 1 / law->gamma), p2 = p * p;
         out.inverse = 1 / p;
         out.load = p2 * p2;
     }
@@ -101,22 +102,22 @@ static inline Reduced law_extend(const Law *law, double burden, double length, c
     out.load = burden * length + below->load;
     out.rho = sqrt(sqrt(out.load));
     out.rho_lambda = law_lambda_power(law, out.rho);
-    out.flare = law->gamma == 3 ? out.rho * out.rho * out.rho : pow(out.rho, law->gamma);
+    out.rho_gamma = law->gamma == 3 ? out.rho * out.rho * out.rho : pow(out.rho, law->gamma);
     out.cost = out.rho_lambda * length;
-    if (below->flare > 0) {
+    if (below->rho_gamma > 0) {
         out.widening = out.rho * below->inverse;
-        out.pass = law_lambda_power(law, out.widening);
-        out.cost += out.pass * below->cost;
+        out.widening_lambda = law_lambda_power(law, out.widening);
+        out.cost += out.widening_lambda * below->cost;
     }
     return out;
 }
 
 /* The segment of `length` mm that carries `burden`, with daughters whose flares and costs sum up to
- * `flare_below` and `cost_below`, both 0 at a terminal. */
-static inline Reduced law_reduce(const Law *law, double burden, double length, double flare_below,
-                                 double cost_below)
+ * `rho_gamma_below` and `cost_below`, both 0 at a terminal. */
+static inline Reduced law_reduce(const Law *law, double burden, double length,
+                                 double rho_gamma_below, double cost_below)
 {
-    Below below = law_gather(law, flare_below, cost_below);
+    Below below = law_gather(law, rho_gamma_below, cost_below);
     return law_extend(law, burden, length, &below);
 }
 
@@ -130,10 +131,11 @@ static inline double law_total(const Law *law, const Reduced *at, Adjoint adjoin
 static inline Adjoint law_descend(const Law *law, const Reduced *parent, Adjoint adjoint,
                                   const Reduced *daughter)
 {
-    double cost = adjoint.cost * parent->pass;
+    double cost = adjoint.cost * parent->widening_lambda;
     double below = parent->below.load * law_total(law, parent, adjoint) -
                    law->lambda / 4 * cost * parent->below.cost;
-    return (Adjoint){below * (daughter->flare / parent->below.flare) / daughter->load, cost};
+    return (Adjoint){below * (daughter->rho_gamma / parent->below.rho_gamma) / daughter->load,
+                     cost};
 }
 
 /* dS_root / d length of the segment `at`, which carries `burden`. */

@@ -1,6 +1,6 @@
-/* Every segment holds flare, cost and fullness of itself with all that hangs on it, so a change at
- * one place is carried to the root by recomputing the segments on the way and nothing else:
- * O(depth) and exact, because nothing is added to or taken from a running sum. What a move
+/* Every segment holds rho_gamma, cost and utilisation of itself with all that hangs on it, so a
+ * change at one place is carried to the root by recomputing the segments on the way and nothing
+ * else: O(depth) and exact, because nothing is added to or taken from a running sum. What a move
  * overwrites is saved first, each segment once, so undoing it restores the very bits. */
 #include "grow/refine/refine_arbor.h"
 
@@ -21,7 +21,7 @@ Reduced arbor_reduce(const Arbor *arbor, int32_t i)
     const Branch *left = &arbor->branch[branch->child[0]];
     const Branch *right = &arbor->branch[branch->child[1]];
     return law_reduce(&arbor->law, (left->flow + right->flow) * viscosity, branch->length,
-                      left->flare + right->flare, left->cost + right->cost);
+                      left->rho_gamma + right->rho_gamma, left->cost + right->cost);
 }
 
 /* Sums up segment i from its daughters. */
@@ -29,16 +29,16 @@ static void sum(Arbor *arbor, int32_t i)
 {
     Branch *branch = &arbor->branch[i];
     Reduced reduced = arbor_reduce(arbor, i);
-    branch->flare = reduced.flare;
+    branch->rho_gamma = reduced.rho_gamma;
     branch->cost = reduced.cost;
-    branch->fullness = reduced.rho * branch->tightness;
+    branch->utilisation = reduced.rho * branch->inverse_limit;
     if (branch->child[0] < 0)
         return;
     const Branch *left = &arbor->branch[branch->child[0]];
     const Branch *right = &arbor->branch[branch->child[1]];
     branch->flow = left->flow + right->flow;
-    branch->fullness =
-        fmax(branch->fullness, reduced.widening * fmax(left->fullness, right->fullness));
+    branch->utilisation =
+        fmax(branch->utilisation, reduced.widening * fmax(left->utilisation, right->utilisation));
 }
 
 Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
@@ -57,7 +57,7 @@ Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&made.branch, made.n, sizeof *made.branch, "segments", err));
     TRY_GOTO(mem_calloc(&made.shape, made.n, sizeof *made.shape, "segments", err));
-    TRY_GOTO(mem_calloc(&made.outlook, made.n, sizeof *made.outlook, "segments", err));
+    TRY_GOTO(mem_calloc(&made.marginal, made.n, sizeof *made.marginal, "segments", err));
     TRY_GOTO(mem_calloc(&made.saved_branch, made.n, sizeof *made.saved_branch, "segments", err));
     if (pries) {
         TRY_GOTO(mem_calloc(&made.viscosity, made.n, sizeof *made.viscosity, "segments", err));
@@ -71,7 +71,7 @@ Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
     for (size_t i = 0; i < tree->n; i++)
         made.branch[i].flow = share[i] / total * (double)(tree->n / 2);
     arbor_arrange(&made, tree->parent, tree->position);
-    TRY_GOTO(arbor_thin(&made, err));
+    TRY_GOTO(arbor_update_viscosity(&made, err));
     *arbor = made;
 done:
     free(share);
@@ -84,7 +84,7 @@ void arbor_release(Arbor *arbor)
 {
     free(arbor->branch);
     free(arbor->shape);
-    free(arbor->outlook);
+    free(arbor->marginal);
     free(arbor->viscosity);
     free(arbor->saved_branch);
     *arbor = (Arbor){0};
@@ -129,18 +129,18 @@ void arbor_arrange(Arbor *arbor, const int32_t *parent, const Vec3 *place)
     arbor_sum(arbor);
 }
 
-Outlook arbor_outlook(const Arbor *arbor, int32_t i)
+Marginal arbor_marginal(const Arbor *arbor, int32_t i)
 {
     int32_t parent = arbor->branch[i].parent;
     if (parent == 0)
-        return (Outlook){{0, 1}, 1, 0};
-    const Outlook *above = &arbor->outlook[parent];
+        return (Marginal){{0, 1}, 1, 0};
+    const Marginal *above = &arbor->marginal[parent];
     Reduced mother = arbor_reduce(arbor, parent), daughter = arbor_reduce(arbor, i);
-    return (Outlook){law_descend(&arbor->law, &mother, above->adjoint, &daughter),
-                     above->gauge * mother.widening,
-                     above->extra + law_total(&arbor->law, &mother, above->adjoint) *
-                                        arbor->branch[parent].length *
-                                        arbor_viscosity(arbor, parent)};
+    return (Marginal){law_descend(&arbor->law, &mother, above->adjoint, &daughter),
+                      above->gauge * mother.widening,
+                      above->extra + law_total(&arbor->law, &mother, above->adjoint) *
+                                         arbor->branch[parent].length *
+                                         arbor_viscosity(arbor, parent)};
 }
 
 int32_t arbor_next(const Arbor *arbor, int32_t i)
@@ -155,7 +155,7 @@ int32_t arbor_next(const Arbor *arbor, int32_t i)
 
 double arbor_radius_seen(const Arbor *arbor, int32_t i)
 {
-    return arbor->radius_unit * arbor->outlook[i].gauge * arbor_reduce(arbor, i).rho;
+    return arbor->radius_unit * arbor->marginal[i].gauge * arbor_reduce(arbor, i).rho;
 }
 
 static Status too_thin(Err *err)
@@ -165,12 +165,12 @@ static Status too_thin(Err *err)
                    "settle");
 }
 
-Status arbor_thin(Arbor *arbor, Err *err)
+Status arbor_update_viscosity(Arbor *arbor, Err *err)
 {
     double change = arbor->viscosity ? INFINITY : 0;
     for (int round = 0; round < MOST_ROUNDS && change > settled; round++) {
         change = 0;
-        arbor_look(arbor);
+        arbor_refresh(arbor);
         for (size_t i = 1; i < arbor->n; i++) {
             double radius = arbor_radius_seen(arbor, (int32_t)i);
             double viscosity = viscosity_pries_pa_s(radius, arbor->hematocrit, 1);
@@ -192,27 +192,27 @@ double arbor_radius(const Arbor *arbor, int32_t i)
     return radius;
 }
 
-int32_t arbor_overfull(const Arbor *arbor, double *radius)
+int32_t arbor_find_overuse(const Arbor *arbor, double *radius)
 {
     int32_t i = arbor_root(arbor);
     double scale = arbor->radius_unit;
-    if (!(scale * arbor->branch[i].fullness > 1))
+    if (!(scale * arbor->branch[i].utilisation > 1))
         return 0;
     for (;;) {
         Reduced reduced = arbor_reduce(arbor, i);
         *radius = scale * reduced.rho;
         const int32_t *child = arbor->branch[i].child;
-        if (*radius * arbor->branch[i].tightness > 1 || child[0] < 0)
+        if (*radius * arbor->branch[i].inverse_limit > 1 || child[0] < 0)
             return i;
         scale *= reduced.widening;
-        i = child[arbor->branch[child[1]].fullness > arbor->branch[child[0]].fullness];
+        i = child[arbor->branch[child[1]].utilisation > arbor->branch[child[0]].utilisation];
     }
 }
 
-void arbor_look(Arbor *arbor)
+void arbor_refresh(Arbor *arbor)
 {
     for (int32_t i = arbor_root(arbor); i != 0; i = arbor_next(arbor, i))
-        arbor->outlook[i] = arbor_outlook(arbor, i);
+        arbor->marginal[i] = arbor_marginal(arbor, i);
 }
 
 bool arbor_is_below(const Arbor *arbor, int32_t i, int32_t top)
@@ -282,7 +282,7 @@ static void put(Arbor *arbor, int32_t i, Vec3 from, Vec3 to)
     branch_of(arbor, i)->length = vec3_distance(from, to);
 }
 
-void arbor_climb(Arbor *arbor, int32_t i)
+void arbor_sum_from(Arbor *arbor, int32_t i)
 {
     for (; i != 0; i = arbor->branch[i].parent) {
         branch_of(arbor, i);
@@ -299,7 +299,7 @@ static void pivot(Arbor *arbor, int32_t i, Vec3 from, Vec3 place)
         sum(arbor, child);
     }
     put(arbor, i, from, place);
-    arbor_climb(arbor, i);
+    arbor_sum_from(arbor, i);
 }
 
 void arbor_shift(Arbor *arbor, int32_t i, Vec3 place)
@@ -321,7 +321,7 @@ void arbor_prune(Arbor *arbor, int32_t i)
     int32_t fork = arbor->branch[i].parent, sibling = arbor_sibling(arbor, i);
     replace(arbor, fork, sibling);
     put(arbor, sibling, arbor->shape[fork].from, arbor->shape[sibling].to);
-    arbor_climb(arbor, sibling);
+    arbor_sum_from(arbor, sibling);
     arbor->pruned = i;
 }
 
@@ -341,8 +341,8 @@ void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place)
     arbor->pruned = 0;
 }
 
-void arbor_book(Arbor *arbor, int32_t i, double booked, double tightness)
+void arbor_reserve(Arbor *arbor, int32_t i, double reserved_radius, double inverse_limit)
 {
-    shape_of(arbor, i)->booked = booked;
-    branch_of(arbor, i)->tightness = tightness;
+    shape_of(arbor, i)->reserved_radius = reserved_radius;
+    branch_of(arbor, i)->inverse_limit = inverse_limit;
 }

@@ -10,27 +10,27 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "grow/cco/law.h"
-#include "grow/refine/refine_fork.h"
+#include "grow/refine/refine_bifurcation.h"
 #include "tree/tree.h"
 
 /* What the walk to the root needs of one segment, in one cache line. */
 typedef struct Branch {
-    double length;      /* mm */
-    double flow;        /* in units of the terminals' mean */
-    double flare, cost; /* [law.h] */
-    /* Radii must not outgrow the room they were given [refine_room.h]. The segment's radius times
-     * `tightness` must be at most 1, and so must `fullness` times q and the gauge: it is the
-     * greatest such product of the segment and all below it. */
-    double tightness, fullness; /* 1/mm; pure times mm^(1/4) */
-    int32_t parent;             /* -1 at the inlet */
-    int32_t child[2];           /* -1: none */
-    uint32_t saved;             /* the move that has saved it */
+    double length;          /* mm */
+    double flow;            /* in units of the terminals' mean */
+    double rho_gamma, cost; /* [law.h] */
+    /* Radii must not outgrow the room they were given [refine_clearance.h]. The segment's radius
+     * times `inverse_limit` must be at most 1, and so must `utilisation` times q and the gauge: it
+     * is the greatest such product of the segment and all below it. */
+    double inverse_limit, utilisation; /* 1/mm; pure times mm^(1/4) */
+    int32_t parent;                    /* -1 at the inlet */
+    int32_t child[2];                  /* -1: none */
+    uint32_t saved;                    /* the move that has saved it */
 } Branch;
 
 /* A segment as a body, in one cache line. */
 typedef struct Shape {
-    Vec3 from, to; /* mm */
-    double booked; /* mm; the radius that no other vessel comes in the way of */
+    Vec3 from, to;          /* mm */
+    double reserved_radius; /* mm; the radius that no other vessel comes in the way of */
     uint32_t saved;
 } Shape;
 
@@ -42,8 +42,9 @@ typedef struct Arbor {
     double radius_unit; /* q, mm^(3/4) */
     Branch *branch;
     Shape *shape;
-    Outlook *outlook; /* of each segment; as of the last arbor_look, or of its last move */
-    /* Of each segment, over the reference, as of the last arbor_thin; NULL where it is constant. */
+    Marginal *marginal; /* of each segment; as of the last arbor_refresh, or of its last move */
+    /* Of each segment, over the reference, as of the last arbor_update_viscosity; NULL where it is
+     * constant. */
     double *viscosity;
     double hematocrit;
     int32_t pruned; /* the segment that arbor_prune has cut off; 0: none */
@@ -67,15 +68,15 @@ typedef struct Arbor {
 MUST_CHECK Status arbor_init(Arbor *arbor, const Tree *tree, Err *err);
 void arbor_release(Arbor *arbor);
 
-/* Connects and places all nodes anew; bookings are the caller's. place[0] is the inlet. */
+/* Connects and places all nodes anew; reservations are the caller's. place[0] is the inlet. */
 void arbor_arrange(Arbor *arbor, const int32_t *parent, const Vec3 *place);
 /* Sums up all segments anew. */
 void arbor_sum(Arbor *arbor);
 /* Where viscosity follows the radius, computes both in turn until they agree to 1e-13, and sums up
  * anew. STATUS_INFEASIBLE where vessels are too narrow for that. */
-MUST_CHECK Status arbor_thin(Arbor *arbor, Err *err);
-/* Brings the outlook of all segments up to date. */
-void arbor_look(Arbor *arbor);
+MUST_CHECK Status arbor_update_viscosity(Arbor *arbor, Err *err);
+/* Brings the marginal of all segments up to date. */
+void arbor_refresh(Arbor *arbor);
 
 static inline int32_t arbor_root(const Arbor *arbor)
 {
@@ -100,16 +101,16 @@ int32_t arbor_next(const Arbor *arbor, int32_t i);
 
 /* Segment i with what hangs on it. */
 Reduced arbor_reduce(const Arbor *arbor, int32_t i);
-/* The outlook of segment i from what its parent is now and that one's outlook. */
-Outlook arbor_outlook(const Arbor *arbor, int32_t i);
+/* The marginal of segment i from what its parent is now and that one's marginal. */
+Marginal arbor_marginal(const Arbor *arbor, int32_t i);
 
-/* The radius of segment i, mm, as of the last arbor_look. */
+/* The radius of segment i, mm, as of the last arbor_refresh. */
 double arbor_radius_seen(const Arbor *arbor, int32_t i);
 /* The same as of now. O(depth). */
 double arbor_radius(const Arbor *arbor, int32_t i);
-/* A segment whose radius times its tightness is above 1, and that radius in *radius; 0 when
+/* A segment whose radius times its inverse_limit is above 1, and that radius in *radius; 0 when
  * there is none. O(depth). */
-int32_t arbor_overfull(const Arbor *arbor, double *radius);
+int32_t arbor_find_overuse(const Arbor *arbor, double *radius);
 
 static inline int32_t arbor_sibling(const Arbor *arbor, int32_t i)
 {
@@ -141,9 +142,10 @@ void arbor_prune(Arbor *arbor, int32_t i);
 /* Splits `host` at `place` and hangs what was pruned there. */
 void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place);
 
-/* Gives segment i `booked` and `tightness` [refine_room.h]. The caller resums from there. */
-void arbor_book(Arbor *arbor, int32_t i, double booked, double tightness);
+/* Gives segment i `reserved_radius` and `inverse_limit` [refine_clearance.h]. The caller resums
+ * from there. */
+void arbor_reserve(Arbor *arbor, int32_t i, double reserved_radius, double inverse_limit);
 /* Sums up anew from segment i to the inlet. */
-void arbor_climb(Arbor *arbor, int32_t i);
+void arbor_sum_from(Arbor *arbor, int32_t i);
 
 #endif

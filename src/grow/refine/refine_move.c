@@ -1,14 +1,14 @@
 /* A move is made in the arbor, where it costs O(depth); then S_root is exact, and only a move that
- * is wanted is tested for room. Candidates are priced in O(1) by outlooks that age a little: this
- * blurs the choice between them, never the decision to keep a move.
+ * is wanted is tested for clearance. Candidates are priced in O(1) by marginals that age a little:
+ * this blurs the choice between them, never the decision to keep a move.
  *
  * Connections are chosen from Boltzmann's distribution of their prices, so one draw stands for many
  * proposals of which all but one would be rejected; the error of the price is made up for by
  * Metropolis's rule.
  *
- * Tolls are counted exactly, but for radii that are as of the last booking: before and after, of
- * the segments that a move changes. A subtree changes places in two steps, and what it pays in a
- * place is what tolls rise by when it is put there from nowhere. */
+ * Penalties are counted exactly, but for radii that are as of the last reservation: before and
+ * after, of the segments that a move changes. A subtree changes places in two steps, and what it
+ * pays in a place is what penalties rise by when it is put there from nowhere. */
 #include "grow/refine/refine_move.h"
 
 #include <float.h>
@@ -18,149 +18,150 @@ enum { CANDIDATES = 12, NEIGHBOURS = 20 };
 /* Rounds of settling: of a candidate, and of the one that is chosen. */
 enum { ROUGH_ROUNDS = 1, ROUNDS = 2 };
 /* A bifurcation that may not be where it should tries shorter and shorter steps, and where it pays
- * tolls, then random ones; a subtree that cannot be connected where it was to be tries other
+ * penalties, then random ones; a subtree that cannot be connected where it was to be tries other
  * candidates. */
 enum { STEPS = 3, JOLTS = 4, ATTEMPTS = 4 };
 /* Gains of S_root, over S_root, too small to be worth a move. */
 static const double least_gain = 1e-9;
 
-static Burden burden_of(const Arbor *arbor, int32_t i)
+static Daughter daughter_of(const Arbor *arbor, int32_t i)
 {
     const Branch *branch = &arbor->branch[i];
     double viscosity = arbor_viscosity(arbor, i);
     if (branch->child[0] < 0)
-        return (Burden){branch->flow, viscosity, 0, 0};
+        return (Daughter){branch->flow, viscosity, 0, 0};
     const Branch *left = &arbor->branch[branch->child[0]];
     const Branch *right = &arbor->branch[branch->child[1]];
-    return (Burden){left->flow + right->flow, viscosity, left->flare + right->flare,
-                    left->cost + right->cost};
+    return (Daughter){left->flow + right->flow, viscosity, left->rho_gamma + right->rho_gamma,
+                      left->cost + right->cost};
 }
 
 /* The fork of segments `left` and `right` from where `proximal` begins. */
-static Fork fork_of(const Surgery *surgery, int32_t proximal, int32_t left, int32_t right,
-                    Outlook outlook)
+static Bifurcation bifurcation_of(const LocalSearch *search, int32_t proximal, int32_t left,
+                                  int32_t right, Marginal marginal)
 {
-    const Arbor *arbor = &surgery->arbor;
-    return (Fork){&arbor->law,
-                  {arbor->shape[proximal].from, arbor->shape[left].to, arbor->shape[right].to},
-                  {burden_of(arbor, left), burden_of(arbor, right)},
-                  arbor_viscosity(arbor, proximal),
-                  outlook,
-                  arbor->radius_unit,
-                  surgery->room.least_length,
-                  surgery->room.level};
+    const Arbor *arbor = &search->arbor;
+    return (Bifurcation){
+        &arbor->law,
+        {arbor->shape[proximal].from, arbor->shape[left].to, arbor->shape[right].to},
+        {daughter_of(arbor, left), daughter_of(arbor, right)},
+        arbor_viscosity(arbor, proximal),
+        marginal,
+        arbor->radius_unit,
+        search->clearance.least_length,
+        search->clearance.level};
 }
 
 /* Keeps the present move, which ends with a bifurcation at the end of segment i. */
-static Status keep(Surgery *surgery, int32_t i, Err *err)
+static Status keep(LocalSearch *search, int32_t i, Err *err)
 {
-    Arbor *arbor = &surgery->arbor;
-    surgery->kept++;
+    Arbor *arbor = &search->arbor;
+    search->kept++;
     const int32_t *child = arbor->branch[i].child;
-    arbor->outlook[i] = arbor_outlook(arbor, i);
-    arbor->outlook[child[0]] = arbor_outlook(arbor, child[0]);
-    arbor->outlook[child[1]] = arbor_outlook(arbor, child[1]);
-    return room_follow(&surgery->room, arbor, err);
+    arbor->marginal[i] = arbor_marginal(arbor, i);
+    arbor->marginal[child[0]] = arbor_marginal(arbor, child[0]);
+    arbor->marginal[child[1]] = arbor_marginal(arbor, child[1]);
+    return clearance_follow(&search->clearance, arbor, err);
 }
 
 /* What the bifurcation at the end of segment i, where the present move has put it, costs beside
- * S_root: tolls; while they are closed, nothing or more than any move can gain. */
-static double surcharge(Surgery *surgery, int32_t i)
+ * S_root: penalties; while they are closed, nothing or more than any move can gain. */
+static double surcharge(LocalSearch *search, int32_t i)
 {
-    Arbor *arbor = &surgery->arbor;
-    if (!surgery->tolls.open)
-        return room_allows(&surgery->room, arbor) ? 0 : INFINITY;
-    if (!room_encloses(&surgery->room, arbor))
+    Arbor *arbor = &search->arbor;
+    if (!search->penalties.active)
+        return clearance_allows(&search->clearance, arbor) ? 0 : INFINITY;
+    if (!clearance_is_inside(&search->clearance, arbor))
         return INFINITY;
-    return toll_of_fork(&surgery->tolls, &surgery->room, arbor, i);
+    return penalty_at_bifurcation(&search->penalties, &search->clearance, arbor, i);
 }
 
-static double toll(Surgery *surgery, const int32_t *segment, int count)
+static double penalty(LocalSearch *search, const int32_t *segment, int count)
 {
-    return toll_of(&surgery->tolls, &surgery->room, &surgery->arbor, segment, count);
+    return penalty_of(&search->penalties, &search->clearance, &search->arbor, segment, count);
 }
 
-/* Puts the bifurcation at the end of segment i to `place` if S_root and tolls then are below
+/* Puts the bifurcation at the end of segment i to `place` if S_root and penalties then are below
  * `cost`. */
-static bool shift(Surgery *surgery, int32_t i, Vec3 place, double cost)
+static bool shift(LocalSearch *search, int32_t i, Vec3 place, double cost)
 {
-    Arbor *arbor = &surgery->arbor;
+    Arbor *arbor = &search->arbor;
     arbor_begin(arbor);
     arbor_shift(arbor, i, place);
     double now = arbor_cost(arbor);
-    if (now < cost && now + surcharge(surgery, i) < cost)
+    if (now < cost && now + surcharge(search, i) < cost)
         return true;
     arbor_undo(arbor);
     return false;
 }
 
 /* A random step of about the size of the shortest segment at the bifurcation. */
-static Vec3 jolt(Surgery *surgery, int32_t i)
+static Vec3 jolt(LocalSearch *search, int32_t i)
 {
-    const Arbor *arbor = &surgery->arbor;
+    const Arbor *arbor = &search->arbor;
     const Branch *branch = &arbor->branch[i];
-    const Box *box = &surgery->room.box;
+    const Box *box = &search->clearance.box;
     double size = fmin(branch->length, fmin(arbor->branch[branch->child[0]].length,
                                             arbor->branch[branch->child[1]].length));
-    size = fmax(size, arbor->shape[i].booked);
+    size = fmax(size, arbor->shape[i].reserved_radius);
     Vec3 step;
-    step.x = random_uniform(&surgery->random) - 0.5;
-    step.y = random_uniform(&surgery->random) - 0.5;
-    step.z = box->high.z > box->low.z ? random_uniform(&surgery->random) - 0.5 : 0;
-    return vec3_scale(step, 2 * size * random_uniform(&surgery->random));
+    step.x = random_uniform(&search->random) - 0.5;
+    step.y = random_uniform(&search->random) - 0.5;
+    step.z = box->high.z > box->low.z ? random_uniform(&search->random) - 0.5 : 0;
+    return vec3_scale(step, 2 * size * random_uniform(&search->random));
 }
 
-Status move_bifurcation(Surgery *surgery, int32_t i, Err *err)
+Status move_bifurcation(LocalSearch *search, int32_t i, Err *err)
 {
-    Arbor *arbor = &surgery->arbor;
+    Arbor *arbor = &search->arbor;
     const int32_t *child = arbor->branch[i].child;
     const int32_t moved[] = {i, child[0], child[1]};
     Vec3 place = arbor->shape[i].to;
-    Fork fork = fork_of(surgery, i, child[0], child[1], arbor_outlook(arbor, i));
-    ForkState now, best;
-    surgery->tried++;
-    if (!fork_at(&fork, place, &now))
+    Bifurcation fork = bifurcation_of(search, i, child[0], child[1], arbor_marginal(arbor, i));
+    BifurcationState now, best;
+    search->tried++;
+    if (!bifurcation_at(&fork, place, &now))
         return STATUS_OK;
     best = now;
-    if (!fork_settle(&fork, ROUNDS, &best))
+    if (!bifurcation_optimise(&fork, ROUNDS, &best))
         return STATUS_OK;
     arbor_begin(arbor);
-    double due = toll(surgery, moved, 3), cost = arbor_cost(arbor);
+    double due = penalty(search, moved, 3), cost = arbor_cost(arbor);
     if (!(best.cost < now.cost + due - least_gain * cost))
         return STATUS_OK;
     Vec3 step = vec3_sub(best.place, place);
     for (int k = 0; k < STEPS; k++, step = vec3_scale(step, 0.5))
-        if (shift(surgery, i, vec3_add(place, step), cost + due))
-            return keep(surgery, i, err);
+        if (shift(search, i, vec3_add(place, step), cost + due))
+            return keep(search, i, err);
     for (int k = 0; k < JOLTS && due > 0; k++)
-        if (shift(surgery, i, vec3_add(place, jolt(surgery, i)), cost + due))
-            return keep(surgery, i, err);
+        if (shift(search, i, vec3_add(place, jolt(search, i)), cost + due))
+            return keep(search, i, err);
     return STATUS_OK;
 }
 
 typedef struct Candidate {
     int32_t host;
-    double price; /* of connecting there, by the outlooks */
-    Fork fork;
-    ForkState state;
+    double price; /* of connecting there, by the marginals */
+    Bifurcation fork;
+    BifurcationState state;
 } Candidate;
 
 /* Prices the connection of `subtree`, which is pruned, to `host`. */
-static bool price(const Surgery *surgery, int32_t subtree, int32_t host, Candidate *out)
+static bool price(const LocalSearch *search, int32_t subtree, int32_t host, Candidate *out)
 {
-    const Arbor *arbor = &surgery->arbor;
+    const Arbor *arbor = &search->arbor;
     const Shape *shape = &arbor->shape[host];
-    Outlook outlook = arbor_outlook(arbor, host);
+    Marginal marginal = arbor_marginal(arbor, host);
     Reduced before = arbor_reduce(arbor, host);
     out->host = host;
-    out->fork = fork_of(surgery, host, host, subtree, outlook);
+    out->fork = bifurcation_of(search, host, host, subtree, marginal);
     Vec3 middle = vec3_scale(vec3_add(shape->from, shape->to), 0.5);
     Vec3 place = vec3_add_scaled(vec3_scale(middle, 0.75), arbor->shape[subtree].to, 0.25);
-    if (!fork_at(&out->fork, place, &out->state) ||
-        !fork_settle(&out->fork, ROUGH_ROUNDS, &out->state))
+    if (!bifurcation_at(&out->fork, place, &out->state) ||
+        !bifurcation_optimise(&out->fork, ROUGH_ROUNDS, &out->state))
         return false;
-    out->price = out->state.cost - outlook.adjoint.load * before.load -
-                 outlook.adjoint.cost * before.cost + outlook.extra * arbor->branch[subtree].flow;
+    out->price = out->state.cost - marginal.adjoint.load * before.load -
+                 marginal.adjoint.cost * before.cost + marginal.extra * arbor->branch[subtree].flow;
     return isfinite(out->price);
 }
 
@@ -169,42 +170,42 @@ typedef struct Candidates {
     Candidate list[CANDIDATES]; /* the first is where the subtree came from */
 } Candidates;
 
-static void propose(const Surgery *surgery, int32_t subtree, int32_t host, Candidates *out)
+static void propose(const LocalSearch *search, int32_t subtree, int32_t host, Candidates *out)
 {
     for (int k = 0; k < out->count; k++)
         if (out->list[k].host == host)
             return;
     if (out->count < CANDIDATES)
-        out->count += price(surgery, subtree, host, &out->list[out->count]);
+        out->count += price(search, subtree, host, &out->list[out->count]);
 }
 
 /* Finds connections of `subtree`, which is pruned: to the segment that it came from, to those that
  * this one shares a node with, and to the nearest. None when the first has no price. */
-static void find_candidates(const Surgery *surgery, int32_t subtree, int32_t origin,
+static void find_candidates(const LocalSearch *search, int32_t subtree, int32_t origin,
                             Candidates *out)
 {
-    const Arbor *arbor = &surgery->arbor;
+    const Arbor *arbor = &search->arbor;
     int32_t fork = arbor->branch[subtree].parent, above = arbor->branch[origin].parent;
     const int32_t *below = arbor->branch[origin].child;
     Near near[NEIGHBOURS];
     out->count = 0;
-    propose(surgery, subtree, origin, out);
+    propose(search, subtree, origin, out);
     if (out->count == 0)
         return;
     if (above != 0) {
-        propose(surgery, subtree, above, out);
-        propose(surgery, subtree, arbor_sibling(arbor, origin), out);
+        propose(search, subtree, above, out);
+        propose(search, subtree, arbor_sibling(arbor, origin), out);
     }
     for (int side = 0; side < 2 && below[0] >= 0; side++)
-        propose(surgery, subtree, below[side], out);
+        propose(search, subtree, below[side], out);
     int found =
-        grid_nearest(&surgery->room.grid, arbor->shape[subtree].to, INFINITY, NEIGHBOURS, near);
+        grid_nearest(&search->clearance.grid, arbor->shape[subtree].to, INFINITY, NEIGHBOURS, near);
     for (int k = 0; k < found; k++)
         if (near[k].segment != fork && !arbor_is_below(arbor, near[k].segment, subtree))
-            propose(surgery, subtree, near[k].segment, out);
+            propose(search, subtree, near[k].segment, out);
 }
 
-static int choose(Surgery *surgery, const Candidate *candidate, int count, double temperature)
+static int choose(LocalSearch *search, const Candidate *candidate, int count, double temperature)
 {
     int best = 0;
     for (int k = 1; k < count; k++)
@@ -215,7 +216,7 @@ static int choose(Surgery *surgery, const Candidate *candidate, int count, doubl
     double weight[CANDIDATES], sum = 0;
     for (int k = 0; k < count; k++)
         sum += weight[k] = exp((candidate[best].price - candidate[k].price) / temperature);
-    double left = random_uniform(&surgery->random) * sum;
+    double left = random_uniform(&search->random) * sum;
     for (int k = 0; k < count; k++)
         if ((left -= weight[k]) < 0)
             return k;
@@ -223,28 +224,28 @@ static int choose(Surgery *surgery, const Candidate *candidate, int count, doubl
 }
 
 /* By how much the cost of a move may exceed what was expected of it, by Metropolis's rule. */
-static double tolerance(Surgery *surgery, double temperature)
+static double tolerance(LocalSearch *search, double temperature)
 {
-    return -temperature * log(random_uniform(&surgery->random));
+    return -temperature * log(random_uniform(&search->random));
 }
 
-/* Connects `subtree`, which is pruned, as the candidate says, if S_root and tolls are then below
- * `limit`. If not, the move is to be undone. */
-static bool connect(Surgery *surgery, int32_t subtree, Candidate *to, double limit)
+/* Connects `subtree`, which is pruned, as the candidate says, if S_root and penalties are then
+ * below `limit`. If not, the move is to be undone. */
+static bool connect(LocalSearch *search, int32_t subtree, Candidate *to, double limit)
 {
-    Arbor *arbor = &surgery->arbor;
-    if (!fork_settle(&to->fork, ROUNDS, &to->state))
+    Arbor *arbor = &search->arbor;
+    if (!bifurcation_optimise(&to->fork, ROUNDS, &to->state))
         return false;
-    limit += toll(surgery, &to->host, 1);
+    limit += penalty(search, &to->host, 1);
     arbor_graft(arbor, subtree, to->host, to->state.place);
     double now = arbor_cost(arbor);
-    return now < limit && now + surcharge(surgery, arbor->branch[subtree].parent) < limit;
+    return now < limit && now + surcharge(search, arbor->branch[subtree].parent) < limit;
 }
 
-Status move_subtree(Surgery *surgery, int32_t i, double temperature, Err *err)
+Status move_subtree(LocalSearch *search, int32_t i, double temperature, Err *err)
 {
-    Arbor *arbor = &surgery->arbor;
-    surgery->tried++;
+    Arbor *arbor = &search->arbor;
+    search->tried++;
     if (i == arbor_root(arbor))
         return STATUS_OK;
     int32_t fork = arbor->branch[i].parent, origin = arbor_sibling(arbor, i);
@@ -253,22 +254,22 @@ Status move_subtree(Surgery *surgery, int32_t i, double temperature, Err *err)
     Candidates candidates;
     Candidate *candidate = candidates.list;
     arbor_begin(arbor);
-    double due = toll(surgery, here, 3);
+    double due = penalty(search, here, 3);
     arbor_prune(arbor, i);
-    due -= toll(surgery, &origin, 1);
-    find_candidates(surgery, i, origin, &candidates);
+    due -= penalty(search, &origin, 1);
+    find_candidates(search, i, origin, &candidates);
     if (candidates.count > 0)
         candidate[0].price += due;
     for (int attempt = 0; attempt < ATTEMPTS && candidates.count > 1; attempt++) {
-        int chosen = choose(surgery, candidate, candidates.count, temperature);
+        int chosen = choose(search, candidate, candidates.count, temperature);
         if (chosen == 0)
             break;
         double limit = cost + due;
         if (temperature > 0)
-            limit += candidate[chosen].price - candidate[0].price + tolerance(surgery, temperature);
-        if (connect(surgery, i, &candidate[chosen], limit)) {
-            TRY(keep(surgery, fork, err));
-            arbor->outlook[origin] = arbor_outlook(arbor, origin);
+            limit += candidate[chosen].price - candidate[0].price + tolerance(search, temperature);
+        if (connect(search, i, &candidate[chosen], limit)) {
+            TRY(keep(search, fork, err));
+            arbor->marginal[origin] = arbor_marginal(arbor, origin);
             return STATUS_OK;
         }
         candidate[chosen] = candidate[--candidates.count];

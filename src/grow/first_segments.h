@@ -1,6 +1,6 @@
 /* The first segment of every tree. */
-#ifndef CORCAST_GROW_PLANT_H
-#define CORCAST_GROW_PLANT_H
+#ifndef CORCAST_GROW_FIRST_SEGMENTS_H
+#define CORCAST_GROW_FIRST_SEGMENTS_H
 
 #include "domain/domain.h"
 #include "grow/network.h"
@@ -10,7 +10,7 @@
  * clear of each other. *distance, mm, is how far points have to be at first, and becomes how far
  * those of the nearest had to be; *tosses counts the points drawn. STATUS_INFEASIBLE when there is
  * no such point. */
-MUST_CHECK Status plant_trees(Network *net, const Domain *domain, Random *random, double *distance,
-                              uint64_t *tosses, Err *err);
+MUST_CHECK Status first_segments_add(Network *net, const Domain *domain, Random *random,
+                                     double *distance, uint64_t *tosses, Err *err);
 
 #endif

@@ -6,7 +6,7 @@
  * made. A point that collapses onto an end is pushed off it to the shortest length the rules allow,
  * in the direction that costs least: such connections are among the best there are, so they must
  * not be lost. A segment that must stay straight is split at the best place along it. */
-#include "grow/place.h"
+#include "grow/connection.h"
 
 #include "grow/cco/fermat.h"
 #include <stdlib.h>
@@ -16,8 +16,6 @@
  * the end of growth for nearly all vessels at their final radii. For length, and for keeping clear
  * of others. */
 static const double length_reserve = 1.15, clearance_reserve = 1.1;
-/* And this much they may widen until the grid is made anew. */
-static const double reach_reserve = 1.4;
 /* How often the place of the connection that is made is found anew. */
 enum { ROUNDS = 2 };
 
@@ -65,7 +63,7 @@ static Trial evaluate(const Network *net, const Host *host, const double length[
     const double *burden = host->burden;
     Reduced distal = law_extend(law, burden[DISTAL], length[DISTAL], &host->below);
     Reduced fresh = law_extend(law, burden[FRESH], length[FRESH], &nothing);
-    Below fork = law_gather(law, distal.flare + fresh.flare, distal.cost + fresh.cost);
+    Below fork = law_gather(law, distal.rho_gamma + fresh.rho_gamma, distal.cost + fresh.cost);
     Reduced proximal = law_extend(law, burden[PROXIMAL], length[PROXIMAL], &fork);
 
     Trial out;
@@ -152,8 +150,8 @@ static bool find_place(const Rules *rules, const Host *host, const Vec3 end[PART
     return true;
 }
 
-bool place_connection(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
-                      Connection *out)
+bool connection_estimate(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
+                         Connection *out)
 {
     Vec3 end[PARTS], middle, place;
     find_ends(net, segment, terminal, end);
@@ -171,7 +169,7 @@ bool place_connection(const Network *net, const Rules *rules, int32_t segment, V
     return true;
 }
 
-bool place_is_splittable(const Network *net, const Grid *grid, const Rules *rules, int32_t segment)
+bool connection_may_split(const Network *net, const Grid *grid, const Rules *rules, int32_t segment)
 {
     if (network_is_piece(net, segment))
         return true;
@@ -189,7 +187,8 @@ static bool is_long_enough(const Rules *rules, const Host *host, const double le
     return true;
 }
 
-bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connection *connection)
+bool connection_optimise(const Network *net, const Rules *rules, Vec3 terminal,
+                         Connection *connection)
 {
     Vec3 end[PARTS], place = connection->bifurcation;
     find_ends(net, connection->segment, terminal, end);
@@ -209,18 +208,12 @@ bool place_settle(const Network *net, const Rules *rules, Vec3 terminal, Connect
     return true;
 }
 
-double place_reach(const Rules *rules, double radius)
-{
-    double reach = reach_reserve * rules->thickness * radius;
-    return (reach < rules->widest ? reach : rules->widest) + rules->gap;
-}
-
-GridItem place_item(const Network *net, const Grid *grid, const Rules *rules,
-                    const Connection *connection, Vec3 terminal, int part)
+GridItem connection_item(const Network *net, const Grid *grid, const Rules *rules,
+                         const Connection *connection, Vec3 terminal, int part)
 {
     int32_t host = connection->segment;
     double radius = connection->radius[part];
-    Capsule capsule = {connection->bifurcation, terminal, place_reach(rules, radius)};
+    Capsule capsule = {connection->bifurcation, terminal, entry_reach(rules, radius)};
     if (part == PROXIMAL)
         capsule = (Capsule){net->position[net->segment[host].parent], connection->bifurcation,
                             capsule.radius};
@@ -229,48 +222,8 @@ GridItem place_item(const Network *net, const Grid *grid, const Rules *rules,
     return grid_item(grid, capsule, radius);
 }
 
-/* An item of no length is in no cell. */
-static bool has_length(const GridItem *item)
-{
-    return memcmp(item->proximal, item->distal, sizeof item->distal) != 0;
-}
-
-Status place_enter(Grid *grid, const Rules *rules, const Network *net, int32_t segment, Err *err)
-{
-    Capsule capsule = network_capsule(net, segment);
-    double radius = capsule.radius;
-    capsule.radius = place_reach(rules, radius);
-    GridItem item = grid_item(grid, capsule, radius);
-    if (has_length(&item))
-        return grid_add(grid, 0, segment, net->segment[segment].child[0] < 0, item, err);
-    grid->item[segment] = item;
-    return STATUS_OK;
-}
-
-Status place_enter_again(Grid *grid, const Rules *rules, const Network *net, int32_t segment,
-                         Err *err)
-{
-    if (has_length(&grid->item[segment]))
-        grid_remove(grid, segment);
-    return place_enter(grid, rules, net, segment, err);
-}
-
-Status place_widen(Grid *grid, const Rules *rules, const Network *net, Err *err)
-{
-    for (size_t i = 0; i < net->n; i++) {
-        GridItem *item = &grid->item[i];
-        if (net->segment[i].parent < 0)
-            continue;
-        item->radius = net->segment[i].radius;
-        double reach = (double)item->reach;
-        if (rules->thickness * (double)item->radius > reach && reach < rules->widest)
-            TRY(place_enter_again(grid, rules, net, (int32_t)i, err));
-    }
-    return STATUS_OK;
-}
-
-bool place_is_inside(const Network *net, const Domain *domain, const Connection *connection,
-                     Vec3 terminal)
+bool connection_is_inside(const Network *net, const Domain *domain, const Connection *connection,
+                          Vec3 terminal)
 {
     int32_t host = connection->segment;
     Vec3 fork = connection->bifurcation;
@@ -287,7 +240,7 @@ bool place_is_inside(const Network *net, const Domain *domain, const Connection 
 typedef struct Newcomer {
     const Network *net;
     GridItem item;
-    GridProbe probe;
+    GridBoxQuery probe;
     double radius;    /* mm */
     double thickness; /* at which all radii count */
     double gap;       /* mm */
@@ -300,13 +253,13 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
 {
     int32_t host = connection->segment;
     Newcomer out = {.net = net,
-                    .item = place_item(net, grid, rules, connection, terminal, part),
+                    .item = connection_item(net, grid, rules, connection, terminal, part),
                     .radius = connection->radius[part],
                     .thickness = rules->thickness,
                     .gap = rules->gap,
                     .kin = {host, host, host, host}};
     double per_radius = clearance_reserve * rules->thickness;
-    out.probe = grid_probe(&out.item, per_radius * out.radius + rules->gap, per_radius);
+    out.probe = grid_box_query(&out.item, per_radius * out.radius + rules->gap, per_radius);
     if (part != FRESH) {
         int32_t node = part == PROXIMAL ? net->segment[host].parent : host;
         out.kin[1] = node;
@@ -335,7 +288,7 @@ static bool is_clear(const Grid *grid, const Newcomer *newcomer, const GridCell 
 {
     const int32_t *kin = newcomer->kin;
     for (uint32_t k = 0; k < cell->count; k += GRID_LANES) {
-        unsigned near = grid_meet(grid, cell, k, &newcomer->probe);
+        unsigned near = grid_boxes_near(grid, cell, k, &newcomer->probe);
         for (const int32_t *tag = cell->tag + k; near; near >>= 1, tag++) {
             int32_t other = *tag >> 1;
             if ((near & 1) && other != kin[0] && other != kin[1] && other != kin[2] &&
@@ -355,16 +308,16 @@ static bool is_clear_all_along(const Grid *grid, const Newcomer *newcomer)
     return true;
 }
 
-PlaceRoom place_room(const Network *net, const Grid *grid, const Rules *rules, Box zone,
-                     const Connection *connection, Vec3 terminal)
+ConnectionClearance connection_clearance(const Network *net, const Grid *grid, const Rules *rules,
+                                         Box zone, const Connection *connection, Vec3 terminal)
 {
     for (int part = 0; part < PARTS; part++) {
         Newcomer part_of = newcomer(net, grid, rules, connection, terminal, part);
         if (!grid_zone_holds(grid, zone, &part_of.item))
-            return PLACE_BEYOND;
+            return CONNECTION_BEYOND;
         bool is_given = part != FRESH && network_is_given(net, connection->segment);
         if (!is_given && !is_clear_all_along(grid, &part_of))
-            return PLACE_TAKEN;
+            return CONNECTION_BLOCKED;
     }
-    return PLACE_FREE;
+    return CONNECTION_CLEAR;
 }

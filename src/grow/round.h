@@ -1,7 +1,7 @@
-/* A pass tosses points all over the domain and connects those that can be, neighbourhood after
+/* A round tosses points all over the domain and connects those that can be, neighbourhood after
  * neighbourhood. */
-#ifndef CORCAST_GROW_PASS_H
-#define CORCAST_GROW_PASS_H
+#ifndef CORCAST_GROW_ROUND_H
+#define CORCAST_GROW_ROUND_H
 
 #include "grow/plan.h"
 
@@ -13,7 +13,7 @@ typedef struct Tally {
     size_t count[PLAN_STATES];
 } Tally;
 
-typedef struct Pass {
+typedef struct Round {
     Vec3 *point;
     size_t n, capacity; /* points */
     uint32_t *tile_of;  /* by point */
@@ -25,28 +25,28 @@ typedef struct Pass {
     size_t trees, *left; /* by tile and tree: terminals that it may get there */
     Planner *planner;    /* by thread */
     int threads;
-    uint32_t number; /* of passes so far */
+    uint32_t number; /* of rounds so far */
     double reach;    /* mm; what planners begin with */
-    uint8_t *misses; /* by cell: crowded points in it since one was connected, up to PASS_FULL */
+    uint8_t *misses; /* by cell: crowded points in it since one was connected, up to ROUND_FULL */
     Tally tally;
-} Pass;
+} Round;
 
 /* A cell with so many misses counts as full. */
-enum { PASS_FULL = 2 };
+enum { ROUND_FULL = 2 };
 
-/* Starts from (Pass){0}; `trees` may have limits. */
-MUST_CHECK Status pass_init(Pass *pass, int candidates, size_t trees, int threads, Err *err);
-void pass_release(Pass *pass);
+/* Starts from (Round){0}; `trees` may have limits. */
+MUST_CHECK Status round_init(Round *round, int candidates, size_t trees, int threads, Err *err);
+void round_release(Round *round);
 
 /* Forgets what it knew of the cells; to be called for every new grid, and when the rules change. */
-MUST_CHECK Status pass_use_grid(Pass *pass, const Grid *grid, Err *err);
+MUST_CHECK Status round_use_grid(Round *round, const Grid *grid, Err *err);
 
 /* Makes room for so many points, whose places the caller sets. */
-MUST_CHECK Status pass_start(Pass *pass, size_t points, Err *err);
+MUST_CHECK Status round_start(Round *round, size_t points, Err *err);
 
 /* Connects points, at most `most` and for each tree at most its limit, which goes down by what it
  * got; returns how many in *made. Points in full cells are skipped if `skip`. Fills the tally. */
-MUST_CHECK Status pass_run(Pass *pass, const Site *site, size_t most, bool skip, size_t *made,
-                           Err *err);
+MUST_CHECK Status round_run(Round *round, const Site *site, size_t most, bool skip, size_t *made,
+                            Err *err);
 
 #endif

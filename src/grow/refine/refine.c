@@ -3,7 +3,7 @@
  *
  * Within the rules of room the search soon comes to a tree where vessels are in each other's way:
  * what would be better lies behind trees that cross. The topology level therefore makes a detour:
- * rules may be broken at a price [refine_toll.h], low at first and rising until no vessel breaks
+ * rules may be broken at a price [refine_penalty.h], low at first and rising until no vessel breaks
  * one. When little more is to be gained, only what is near a broken rule is moved, until all are
  * mended. A detour that fails, or gains nothing, ends where it began, and the next begins dearer,
  * closer to the rules. This is what brings a tree of little length (lambda 0) near the shortest
@@ -20,10 +20,10 @@
 
 #include "grow/refine/refine_arbor.h"
 #include "grow/refine/refine_check.h"
+#include "grow/refine/refine_clearance.h"
 #include "grow/refine/refine_move.h"
+#include "grow/refine/refine_penalty.h"
 #include "grow/refine/refine_result.h"
-#include "grow/refine/refine_room.h"
-#include "grow/refine/refine_toll.h"
 #include <stdlib.h>
 
 /* Temperatures of annealing over S_root a segment, at first and at last, and the share of the
@@ -40,7 +40,7 @@ enum { DETOURS = 3, ROUNDS_PER_DETOUR = 40 };
 /* Segments that are moved around either end of one that breaks a rule. */
 enum { NEIGHBOURS = 8 };
 /* Rounds after which vessels get their room anew. */
-enum { ROUNDS_PER_BOOKING = 4 };
+enum { ROUNDS_PER_RESERVATION = 4 };
 /* Moves after which the clock is read. */
 enum { MOVES_PER_LOOK = 16 };
 
@@ -50,7 +50,7 @@ typedef struct Refinement {
     uint64_t moves;
     double fraction; /* of the budget that is spent */
     bool stopped;
-    Surgery surgery;
+    LocalSearch search;
     double first_cost;
     int32_t *order; /* in which subtrees move, from 1 */
     /* The tree that is remembered: */
@@ -72,7 +72,7 @@ uint64_t refine_moves(GrowRefine level, size_t terminals)
 static bool is_over(Refinement *refinement)
 {
     const RefineParams *params = refinement->params;
-    uint64_t tried = refinement->surgery.tried;
+    uint64_t tried = refinement->search.tried;
     refinement->stopped =
         refinement->stopped || (params->stop && params->stop(params->stop_context));
     if (refinement->stopped || tried >= refinement->moves)
@@ -90,12 +90,12 @@ static bool is_over(Refinement *refinement)
 
 static Status sweep(Refinement *refinement, bool *over, Err *err)
 {
-    const Arbor *arbor = &refinement->surgery.arbor;
-    arbor_look(&refinement->surgery.arbor);
+    const Arbor *arbor = &refinement->search.arbor;
+    arbor_refresh(&refinement->search.arbor);
     for (int32_t i = arbor_root(arbor); i != 0 && !*over; i = arbor_next(arbor, i)) {
         if (arbor->branch[i].child[0] < 0)
             continue;
-        TRY(move_bifurcation(&refinement->surgery, i, err));
+        TRY(move_bifurcation(&refinement->search, i, err));
         *over = is_over(refinement);
     }
     return STATUS_OK;
@@ -106,23 +106,23 @@ static double temperature(const Refinement *refinement)
     double part = refinement->fraction / (1 - last_part);
     if (refinement->params->level != GROW_REFINE_ANNEAL || part >= 1)
         return 0;
-    return refinement->first_cost / (double)refinement->surgery.arbor.n * hot *
+    return refinement->first_cost / (double)refinement->search.arbor.n * hot *
            pow(cold / hot, part);
 }
 
 static Status shuffle(Refinement *refinement, bool *over, Err *err)
 {
-    Surgery *surgery = &refinement->surgery;
-    size_t n = surgery->arbor.n;
+    LocalSearch *search = &refinement->search;
+    size_t n = search->arbor.n;
     int32_t *order = refinement->order;
     for (size_t k = 1; k < n && !*over; k++) {
         if (k % (n / 16 + 1) == 1)
-            arbor_look(&surgery->arbor);
-        size_t drawn = k + (size_t)(random_uniform(&surgery->random) * (double)(n - k));
+            arbor_refresh(&search->arbor);
+        size_t drawn = k + (size_t)(random_uniform(&search->random) * (double)(n - k));
         int32_t i = order[drawn];
         order[drawn] = order[k];
         order[k] = i;
-        TRY(move_subtree(surgery, i, temperature(refinement), err));
+        TRY(move_subtree(search, i, temperature(refinement), err));
         *over = is_over(refinement);
     }
     return STATUS_OK;
@@ -130,7 +130,7 @@ static Status shuffle(Refinement *refinement, bool *over, Err *err)
 
 static void remember(Refinement *refinement)
 {
-    const Arbor *arbor = &refinement->surgery.arbor;
+    const Arbor *arbor = &refinement->search.arbor;
     refinement->best_cost = arbor_cost(arbor);
     for (size_t i = 1; i < arbor->n; i++) {
         refinement->best_parent[i] = arbor->branch[i].parent;
@@ -138,49 +138,49 @@ static void remember(Refinement *refinement)
     }
 }
 
-/* Brings viscosities and bookings to the present radii. */
-static Status settle(Surgery *surgery, Err *err)
+/* Brings viscosities and reservations to the present radii. */
+static Status settle(LocalSearch *search, Err *err)
 {
-    TRY(arbor_thin(&surgery->arbor, err));
-    return room_book(&surgery->room, &surgery->arbor, err);
+    TRY(arbor_update_viscosity(&search->arbor, err));
+    return clearance_reserve(&search->clearance, &search->arbor, err);
 }
 
 /* Bookings may age for some rounds, viscosities for one. */
-static Status settle_for_round(Surgery *surgery, int round, Err *err)
+static Status settle_for_round(LocalSearch *search, int round, Err *err)
 {
-    bool is_due = round % ROUNDS_PER_BOOKING == 0 || surgery->arbor.viscosity;
-    return is_due ? settle(surgery, err) : STATUS_OK;
+    bool is_due = round % ROUNDS_PER_RESERVATION == 0 || search->arbor.viscosity;
+    return is_due ? settle(search, err) : STATUS_OK;
 }
 
-/* How many segments lack the room that they should have, as of the last room_book. */
-static size_t count_unclear(const Surgery *surgery)
+/* How many segments lack the room that they should have, as of the last clearance_reserve. */
+static size_t count_unclear(const LocalSearch *search)
 {
     size_t count = 0;
-    for (size_t i = 1; i < surgery->arbor.n; i++)
-        count += !room_is_clear(&surgery->room, &surgery->arbor, (int32_t)i);
+    for (size_t i = 1; i < search->arbor.n; i++)
+        count += !clearance_is_kept(&search->clearance, &search->arbor, (int32_t)i);
     return count;
 }
 
 /* Goes back to the tree that is remembered. */
 static Status recall(Refinement *refinement, Err *err)
 {
-    Surgery *surgery = &refinement->surgery;
-    arbor_arrange(&surgery->arbor, refinement->best_parent, refinement->best_place);
-    return settle(surgery, err);
+    LocalSearch *search = &refinement->search;
+    arbor_arrange(&search->arbor, refinement->best_parent, refinement->best_place);
+    return settle(search, err);
 }
 
 /* Rounds within the rules until one gains less than `least_gain` of S_root. */
 static Status descend(Refinement *refinement, double least_gain, bool *over, Err *err)
 {
-    Surgery *surgery = &refinement->surgery;
-    double before = INFINITY, cost = arbor_cost(&surgery->arbor);
+    LocalSearch *search = &refinement->search;
+    double before = INFINITY, cost = arbor_cost(&search->arbor);
     for (int round = 1; !*over && cost < before * (1 - least_gain); round++) {
         before = cost;
-        TRY(settle_for_round(surgery, round, err));
+        TRY(settle_for_round(search, round, err));
         if (refinement->params->level != GROW_REFINE_GEOMETRY)
             TRY(shuffle(refinement, over, err));
         TRY(sweep(refinement, over, err));
-        cost = arbor_cost(&surgery->arbor);
+        cost = arbor_cost(&search->arbor);
     }
     return STATUS_OK;
 }
@@ -188,26 +188,27 @@ static Status descend(Refinement *refinement, double least_gain, bool *over, Err
 /* Moves segment i in all ways. */
 static Status move(Refinement *refinement, int32_t i, bool *over, Err *err)
 {
-    Surgery *surgery = &refinement->surgery;
-    TRY(move_subtree(surgery, i, 0, err));
+    LocalSearch *search = &refinement->search;
+    TRY(move_subtree(search, i, 0, err));
     *over = is_over(refinement);
-    if (*over || surgery->arbor.branch[i].child[0] < 0)
+    if (*over || search->arbor.branch[i].child[0] < 0)
         return STATUS_OK;
-    TRY(move_bifurcation(surgery, i, err));
+    TRY(move_bifurcation(search, i, err));
     *over = is_over(refinement);
     return STATUS_OK;
 }
 
 /* Moves all segments that break a rule, and what is near them. */
-static Status mend(Refinement *refinement, bool *over, Err *err)
+static Status repair(Refinement *refinement, bool *over, Err *err)
 {
-    const Surgery *surgery = &refinement->surgery;
-    for (size_t k = 0; k < surgery->tolls.n_broken && !*over; k++) {
-        int32_t i = surgery->tolls.broken[k];
-        const Shape *shape = &surgery->arbor.shape[i];
+    const LocalSearch *search = &refinement->search;
+    for (size_t k = 0; k < search->penalties.n_broken && !*over; k++) {
+        int32_t i = search->penalties.broken[k];
+        const Shape *shape = &search->arbor.shape[i];
         Near near[2 * NEIGHBOURS];
-        int count = grid_nearest(&surgery->room.grid, shape->to, INFINITY, NEIGHBOURS, near);
-        count += grid_nearest(&surgery->room.grid, shape->from, INFINITY, NEIGHBOURS, near + count);
+        int count = grid_nearest(&search->clearance.grid, shape->to, INFINITY, NEIGHBOURS, near);
+        count +=
+            grid_nearest(&search->clearance.grid, shape->from, INFINITY, NEIGHBOURS, near + count);
         TRY(move(refinement, i, over, err));
         for (int m = 0; m < count && !*over; m++)
             TRY(move(refinement, near[m].segment, over, err));
@@ -219,27 +220,27 @@ static Status mend(Refinement *refinement, bool *over, Err *err)
  * was. */
 static Status detour(Refinement *refinement, double price, bool *done, bool *over, Err *err)
 {
-    Surgery *surgery = &refinement->surgery;
-    Arbor *arbor = &surgery->arbor;
-    Tolls *tolls = &surgery->tolls;
+    LocalSearch *search = &refinement->search;
+    Arbor *arbor = &search->arbor;
+    Penalties *penalties = &search->penalties;
     bool gains = true, clear = false;
     remember(refinement);
-    tolls_open(tolls, arbor, price);
+    penalties_begin(penalties, arbor, price);
     for (int round = 0; round < ROUNDS_PER_DETOUR && !clear && !*over; round++) {
         double before = arbor_cost(arbor);
-        TRY(tolls_book(&surgery->room, arbor, err));
+        TRY(penalties_reserve(&search->clearance, arbor, err));
         if (gains) {
             TRY(shuffle(refinement, over, err));
             TRY(sweep(refinement, over, err));
             gains = arbor_cost(arbor) < before * (1 - least_gain_across);
         } else {
-            TRY(mend(refinement, over, err));
+            TRY(repair(refinement, over, err));
         }
-        TRY(settle(surgery, err));
-        tolls_raise(tolls, &surgery->room, arbor);
-        clear = tolls->n_broken == 0;
+        TRY(settle(search, err));
+        penalties_raise(penalties, &search->clearance, arbor);
+        clear = penalties->n_broken == 0;
     }
-    tolls->open = false;
+    penalties->active = false;
     *done = clear && arbor_cost(arbor) < refinement->best_cost;
     return *done ? STATUS_OK : recall(refinement, err);
 }
@@ -247,7 +248,7 @@ static Status detour(Refinement *refinement, double price, bool *done, bool *ove
 static Status improve_topology(Refinement *refinement, bool *over, Err *err)
 {
     double price = first_price;
-    bool done = refinement->surgery.room.level == 0; /* vessels of no width pay nothing */
+    bool done = refinement->search.clearance.level == 0; /* vessels of no width pay nothing */
     TRY(descend(refinement, least_gain_before, over, err));
     for (int k = 0; k < DETOURS && !done && !*over; k++, price *= price_rise)
         TRY(detour(refinement, price, &done, over, err));
@@ -256,13 +257,13 @@ static Status improve_topology(Refinement *refinement, bool *over, Err *err)
 
 static Status anneal(Refinement *refinement, bool *over, Err *err)
 {
-    Surgery *surgery = &refinement->surgery;
+    LocalSearch *search = &refinement->search;
     remember(refinement);
     for (int round = 1; !*over && refinement->fraction < 1 - last_part; round++) {
-        TRY(settle_for_round(surgery, round, err));
+        TRY(settle_for_round(search, round, err));
         TRY(shuffle(refinement, over, err));
         TRY(sweep(refinement, over, err));
-        if (arbor_cost(&surgery->arbor) < refinement->best_cost)
+        if (arbor_cost(&search->arbor) < refinement->best_cost)
             remember(refinement);
     }
     return recall(refinement, err);
@@ -288,21 +289,21 @@ static double target_of(const Arbor *arbor)
 static Status start(Refinement *refinement, const Domain *domain, const Tree *tree, Err *err)
 {
     const RefineParams *params = refinement->params;
-    Surgery *surgery = &refinement->surgery;
+    LocalSearch *search = &refinement->search;
     refinement->moves = params->moves         ? params->moves
                         : params->seconds > 0 ? UINT64_MAX
                                               : refine_moves(params->level, tree->n / 2);
-    random_seed(&surgery->random, params->seed);
-    TRY(arbor_init(&surgery->arbor, tree, err));
-    double cost = refinement->first_cost = arbor_cost(&surgery->arbor);
+    random_seed(&search->random, params->seed);
+    TRY(arbor_init(&search->arbor, tree, err));
+    double cost = refinement->first_cost = arbor_cost(&search->arbor);
     if (!(cost > 0) || !isfinite(cost))
         return err_set(err, STATUS_INFEASIBLE,
                        "with gamma %g and lambda %g the radii span more than a double can hold",
                        tree->header.gamma, tree->header.lambda);
-    TRY(room_init(&surgery->room, domain, &surgery->arbor, err));
+    TRY(clearance_init(&search->clearance, domain, &search->arbor, err));
     if (params->level == GROW_REFINE_GEOMETRY)
         return STATUS_OK;
-    TRY(tolls_init(&surgery->tolls, tree->n, err));
+    TRY(penalties_init(&search->penalties, tree->n, err));
     TRY(mem_calloc(&refinement->best_parent, tree->n, sizeof *refinement->best_parent, "nodes",
                    err));
     TRY(mem_calloc(&refinement->best_place, tree->n, sizeof *refinement->best_place, "nodes", err));
@@ -319,32 +320,32 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
 {
     TRY(refine_check(params, domain, tree, err));
     Refinement refinement = {.params = params, .begun = clock_seconds()};
-    Surgery *surgery = &refinement.surgery;
+    LocalSearch *search = &refinement.search;
     Status status = STATUS_OK;
     TRY_GOTO(start(&refinement, domain, tree, err));
-    double before = target_of(&surgery->arbor), after = before;
-    size_t unclear = count_unclear(surgery);
+    double before = target_of(&search->arbor), after = before;
+    size_t unclear = count_unclear(search);
     TRY_GOTO(refine(&refinement, err));
-    if (surgery->arbor.viscosity)
-        TRY_GOTO(settle(surgery, err));
-    if (!surgery->arbor.viscosity || count_unclear(surgery) <= unclear) {
-        after = target_of(&surgery->arbor);
-        TRY_GOTO(result_write(&surgery->arbor, tree, err));
+    if (search->arbor.viscosity)
+        TRY_GOTO(settle(search, err));
+    if (!search->arbor.viscosity || count_unclear(search) <= unclear) {
+        after = target_of(&search->arbor);
+        TRY_GOTO(result_write(&search->arbor, tree, err));
     }
     if (report)
         *report = (RefineReport){.seconds = clock_seconds() - refinement.begun,
                                  .target_before = before,
                                  .target_after = after,
-                                 .moves_tried = surgery->tried,
-                                 .moves_kept = surgery->kept,
-                                 .thickness = surgery->room.level,
+                                 .moves_tried = search->tried,
+                                 .moves_kept = search->kept,
+                                 .thickness = search->clearance.level,
                                  .stopped = refinement.stopped};
 done:
     free(refinement.order);
     free(refinement.best_parent);
     free(refinement.best_place);
-    tolls_release(&surgery->tolls);
-    room_release(&surgery->room);
-    arbor_release(&surgery->arbor);
+    penalties_release(&search->penalties);
+    clearance_release(&search->clearance);
+    arbor_release(&search->arbor);
     return status;
 }

@@ -1,30 +1,30 @@
 /* Growing on from a tree that there is. */
-#ifndef CORCAST_GROW_ADOPT_H
-#define CORCAST_GROW_ADOPT_H
+#ifndef CORCAST_GROW_CONTINUE_TREE_H
+#define CORCAST_GROW_CONTINUE_TREE_H
 
 #include "grow/grow.h"
 #include "grow/network.h"
 
 /* The number of roots of a tree. */
-size_t adopt_inlets(const Tree *from);
+size_t continue_inlets(const Tree *from);
 
 /* Whether growth can go on from params->from with these parameters. STATUS_USAGE and STATUS_INPUT,
  * as grow_tree says. */
-MUST_CHECK Status adopt_check(const GrowParams *params, const Domain *domain, Err *err);
+MUST_CHECK Status continue_check(const GrowParams *params, const Domain *domain, Err *err);
 
-/* Makes the tree, which adopt_check accepts, part of `net`, which is empty and has traits. */
-void adopt_tree(const Tree *from, Network *net);
+/* Makes the tree, which continue_check accepts, part of `net`, which is empty and has traits. */
+void continue_from(const Tree *from, Network *net);
 
 /* Gives the nodes of `out`, which are those of `net`, that were in `from` their ids and types back,
  * and the others the smallest ids that are free; and appends those header lines of `from` whose
  * keys `out` has no line of. */
-MUST_CHECK Status adopt_restore(const Tree *from, const Network *net, Tree *out, Err *err);
+MUST_CHECK Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *err);
 
 /* What the radii of the segments of `from` were multiplied by in `out`, whose ids are restored:
  * median, least and greatest in *report, 0 when none had a radius. */
-MUST_CHECK Status adopt_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err);
+MUST_CHECK Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err);
 
 /* How many nodes of the tree are outside the domain. */
-size_t adopt_outside(const Tree *from, const Domain *domain);
+size_t continue_outside(const Tree *from, const Domain *domain);
 
 #endif

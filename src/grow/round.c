@@ -6,8 +6,8 @@
  * which reaches half a tile further to all sides; tiles are taken in 2 x 2 (x 2) colours, so that
  * zones worked on at a time have nothing in common, and a tree does not depend on how many threads
  * there are. The few points that would need more than the zone are left over, and connected at the
- * end. Seams move from pass to pass. Small trees are one tile. */
-#include "grow/pass.h"
+ * end. Seams move from round to round. Small trees are one tile. */
+#include "grow/round.h"
 
 #include <stdlib.h>
 
@@ -35,63 +35,63 @@ struct Tile {
     Err err;
 };
 
-Status pass_init(Pass *pass, int candidates, size_t trees, int threads, Err *err)
+Status round_init(Round *round, int candidates, size_t trees, int threads, Err *err)
 {
-    *pass = (Pass){.trees = trees, .threads = threads};
-    TRY(mem_calloc(&pass->planner, (size_t)threads, sizeof *pass->planner, "threads", err));
+    *round = (Round){.trees = trees, .threads = threads};
+    TRY(mem_calloc(&round->planner, (size_t)threads, sizeof *round->planner, "threads", err));
     for (int i = 0; i < threads; i++)
-        TRY(planner_init(&pass->planner[i], candidates, err));
+        TRY(planner_init(&round->planner[i], candidates, err));
     return STATUS_OK;
 }
 
-void pass_release(Pass *pass)
+void round_release(Round *round)
 {
-    for (int i = 0; pass->planner && i < pass->threads; i++)
-        planner_release(&pass->planner[i]);
-    free(pass->planner);
-    free(pass->point);
-    free(pass->tile_of);
-    free(pass->order);
-    free(pass->tile);
-    free(pass->left);
-    free(pass->misses);
-    *pass = (Pass){0};
+    for (int i = 0; round->planner && i < round->threads; i++)
+        planner_release(&round->planner[i]);
+    free(round->planner);
+    free(round->point);
+    free(round->tile_of);
+    free(round->order);
+    free(round->tile);
+    free(round->left);
+    free(round->misses);
+    *round = (Round){0};
 }
 
-Status pass_use_grid(Pass *pass, const Grid *grid, Err *err)
+Status round_use_grid(Round *round, const Grid *grid, Err *err)
 {
-    free(pass->misses);
-    free(pass->tile);
-    free(pass->left);
-    pass->misses = NULL;
-    pass->tile = NULL;
-    pass->left = NULL;
-    pass->tile_edge = grid->count[2] > 1 ? EDGE_3D : EDGE_2D;
-    pass->tiles = 1;
+    free(round->misses);
+    free(round->tile);
+    free(round->left);
+    round->misses = NULL;
+    round->tile = NULL;
+    round->left = NULL;
+    round->tile_edge = grid->count[2] > 1 ? EDGE_3D : EDGE_2D;
+    round->tiles = 1;
     size_t whole = 1;
     for (int axis = 0; axis < 3; axis++) {
-        size_t tiles = (size_t)(grid->count[axis] / pass->tile_edge);
+        size_t tiles = (size_t)(grid->count[axis] / round->tile_edge);
         whole *= tiles > 1 ? tiles : 1;
-        pass->tiles *= grid->count[axis] > 1 ? tiles + 2 : 1; /* with those that stick out */
+        round->tiles *= grid->count[axis] > 1 ? tiles + 2 : 1; /* with those that stick out */
     }
-    pass->is_tiled = whole >= LEAST_TILES;
-    TRY(mem_calloc(&pass->tile, pass->tiles, sizeof *pass->tile, "tiles", err));
-    TRY(mem_calloc(&pass->left, pass->tiles * pass->trees, sizeof *pass->left, "tiles", err));
-    return mem_calloc(&pass->misses, grid_cells(grid), sizeof *pass->misses, "grid cells", err);
+    round->is_tiled = whole >= LEAST_TILES;
+    TRY(mem_calloc(&round->tile, round->tiles, sizeof *round->tile, "tiles", err));
+    TRY(mem_calloc(&round->left, round->tiles * round->trees, sizeof *round->left, "tiles", err));
+    return mem_calloc(&round->misses, grid_cells(grid), sizeof *round->misses, "grid cells", err);
 }
 
-Status pass_start(Pass *pass, size_t points, Err *err)
+Status round_start(Round *round, size_t points, Err *err)
 {
-    pass->n = points;
-    pass->number++;
-    if (points <= pass->capacity)
+    round->n = points;
+    round->number++;
+    if (points <= round->capacity)
         return STATUS_OK;
-    free(pass->tile_of);
-    free(pass->order);
-    pass->tile_of = pass->order = NULL;
-    TRY(mem_reserve(&pass->point, &pass->capacity, points, sizeof *pass->point, "points", err));
-    TRY(mem_calloc(&pass->tile_of, pass->capacity, sizeof *pass->tile_of, "points", err));
-    return mem_calloc(&pass->order, pass->capacity, sizeof *pass->order, "points", err);
+    free(round->tile_of);
+    free(round->order);
+    round->tile_of = round->order = NULL;
+    TRY(mem_reserve(&round->point, &round->capacity, points, sizeof *round->point, "points", err));
+    TRY(mem_calloc(&round->tile_of, round->capacity, sizeof *round->tile_of, "points", err));
+    return mem_calloc(&round->order, round->capacity, sizeof *round->order, "points", err);
 }
 
 /* Connects a terminal; `made` are the nodes to be used. */
@@ -101,7 +101,7 @@ static Status connect(const Site *site, int worker, Box zone, const Connection *
     const int32_t segment[PARTS] = {made[0], connection->segment, made[1]};
     GridItem item[PARTS];
     for (int i = 0; i < PARTS; i++)
-        item[i] = place_item(site->net, site->grid, site->rules, connection, terminal, i);
+        item[i] = connection_item(site->net, site->grid, site->rules, connection, terminal, i);
     grid_remove(site->grid, connection->segment);
     network_split(site->net, connection->segment, connection->bifurcation, terminal, made, zone);
     for (int i = 0; i < PARTS; i++) {
@@ -113,40 +113,40 @@ static Status connect(const Site *site, int worker, Box zone, const Connection *
 
 /* What is done by one thread at a time. */
 typedef struct Running {
-    Pass *pass;
+    Round *round;
     const Site *site;
     bool skip;
     const uint32_t *turn; /* the tiles of one colour */
 } Running;
 
 /* Asks for memory that points further on will need. */
-static void fetch(const Pass *pass, const Tile *tile, const Grid *grid, size_t k)
+static void fetch(const Round *round, const Tile *tile, const Grid *grid, size_t k)
 {
     if (k + 8 * AHEAD < tile->end)
-        __builtin_prefetch(&pass->point[pass->order[k + 8 * AHEAD]]);
+        __builtin_prefetch(&round->point[round->order[k + 8 * AHEAD]]);
     if (k + 3 * AHEAD < tile->end)
-        grid_fetch_cell(grid, pass->point[pass->order[k + 3 * AHEAD]]);
+        grid_fetch_cell(grid, round->point[round->order[k + 3 * AHEAD]]);
     if (k + 2 * AHEAD < tile->end)
-        grid_fetch_tags(grid, pass->point[pass->order[k + 2 * AHEAD]]);
+        grid_fetch_tags(grid, round->point[round->order[k + 2 * AHEAD]]);
     if (k + AHEAD < tile->end)
-        grid_fetch_items(grid, pass->point[pass->order[k + AHEAD]]);
+        grid_fetch_items(grid, round->point[round->order[k + AHEAD]]);
 }
 
 static PlanState run_point(const Running *running, int worker, Tile *tile, Vec3 point)
 {
     const Site *site = running->site;
-    uint8_t *misses = &running->pass->misses[grid_cell_at(site->grid, point)];
-    if (running->skip && *misses == PASS_FULL) {
+    uint8_t *misses = &running->round->misses[grid_cell_at(site->grid, point)];
+    if (running->skip && *misses == ROUND_FULL) {
         tile->tally.skipped++;
         return PLAN_STATES;
     }
     Connection connection;
     if (tile->made == tile->most)
         return PLAN_BEYOND;
-    PlanState state = plan_make(site, &running->pass->planner[worker], tile->zone, tile->left,
+    PlanState state = plan_make(site, &running->round->planner[worker], tile->zone, tile->left,
                                 point, &connection);
     if (state == PLAN_CROWDED)
-        *misses = (uint8_t)(*misses + (*misses < PASS_FULL));
+        *misses = (uint8_t)(*misses + (*misses < ROUND_FULL));
     if (state == PLAN_READY) {
         *misses = 0;
         tile->left[network_tree(site->net, connection.segment)]--;
@@ -177,16 +177,16 @@ static void warm(const Site *site, const GridBox *box)
 
 static void run_tile(const Running *running, int worker, Tile *tile)
 {
-    Pass *pass = running->pass;
-    Planner *planner = &pass->planner[worker];
-    planner->reach = pass->reach;
+    Round *round = running->round;
+    Planner *planner = &round->planner[worker];
+    planner->reach = round->reach;
     if (tile->warm)
         warm(running->site, &tile->box);
     for (size_t k = tile->first; k < tile->end && tile->status == STATUS_OK; k++) {
-        fetch(pass, tile, running->site->grid, k);
-        PlanState state = run_point(running, worker, tile, pass->point[pass->order[k]]);
+        fetch(round, tile, running->site->grid, k);
+        PlanState state = run_point(running, worker, tile, round->point[round->order[k]]);
         if (state == PLAN_BEYOND)
-            pass->order[tile->first + tile->over++] = pass->order[k];
+            round->order[tile->first + tile->over++] = round->order[k];
         else if (state < PLAN_STATES)
             tile->tally.count[state]++;
     }
@@ -196,20 +196,20 @@ static void run_tile(const Running *running, int worker, Tile *tile)
 static void run_turn(size_t index, int worker, void *context)
 {
     const Running *running = context;
-    run_tile(running, worker, &running->pass->tile[running->turn[index]]);
+    run_tile(running, worker, &running->round->tile[running->turn[index]]);
 }
 
-/* How the grid is cut into tiles for one pass. */
+/* How the grid is cut into tiles for one round. */
 typedef struct Cut {
     int edge, shift[3], count[3];
 } Cut;
 
-/* Every pass moves the seams on by the golden section of a tile, along each axis. */
-static Cut make_cut(const Pass *pass, const Grid *grid)
+/* Every round moves the seams on by the golden section of a tile, along each axis. */
+static Cut make_cut(const Round *round, const Grid *grid)
 {
     const double golden = 0.618033988749895;
-    Cut cut = {.edge = pass->tile_edge};
-    double at = golden * pass->number;
+    Cut cut = {.edge = round->tile_edge};
+    double at = golden * round->number;
     for (int axis = 0; axis < 3; axis++) {
         int cells = grid->count[axis];
         cut.shift[axis] = cells > 1 ? (int)((at - floor(at)) * cut.edge) : 0;
@@ -262,61 +262,61 @@ static int colour_of(const Cut *cut, size_t index)
 }
 
 /* Sorts the points by tile. */
-static void sort(Pass *pass, const Cut *cut, const Grid *grid, size_t tiles)
+static void sort(Round *round, const Cut *cut, const Grid *grid, size_t tiles)
 {
     for (size_t t = 0; t < tiles; t++)
-        pass->tile[t] = (Tile){0};
-    for (size_t i = 0; i < pass->n; i++) {
-        size_t t = tile_at(cut, grid, pass->point[i]);
-        pass->tile_of[i] = (uint32_t)t;
-        pass->tile[t].end++;
+        round->tile[t] = (Tile){0};
+    for (size_t i = 0; i < round->n; i++) {
+        size_t t = tile_at(cut, grid, round->point[i]);
+        round->tile_of[i] = (uint32_t)t;
+        round->tile[t].end++;
     }
     size_t sum = 0;
     for (size_t t = 0; t < tiles; t++) {
-        size_t points = pass->tile[t].end;
-        pass->tile[t].first = pass->tile[t].end = sum;
+        size_t points = round->tile[t].end;
+        round->tile[t].first = round->tile[t].end = sum;
         sum += points;
     }
-    for (size_t i = 0; i < pass->n; i++)
-        pass->order[pass->tile[pass->tile_of[i]].end++] = (uint32_t)i;
+    for (size_t i = 0; i < round->n; i++)
+        round->order[round->tile[round->tile_of[i]].end++] = (uint32_t)i;
 }
 
 /* A tile's part of a whole, by its points. */
-static size_t part_of(const Pass *pass, const Tile *tile, size_t whole)
+static size_t part_of(const Round *round, const Tile *tile, size_t whole)
 {
-    return whole * (tile->end - tile->first) / pass->n;
+    return whole * (tile->end - tile->first) / round->n;
 }
 
 /* Gives every tile its zone, nodes, and its part of what may be connected. */
-static void endow(Pass *pass, const Site *site, const Cut *cut, size_t tiles, size_t most)
+static void endow(Round *round, const Site *site, const Cut *cut, size_t tiles, size_t most)
 {
     size_t nodes = 0;
     for (size_t t = 0; t < tiles; t++) {
-        Tile *tile = &pass->tile[t];
-        size_t points = tile->end - tile->first, part = part_of(pass, tile, most);
+        Tile *tile = &round->tile[t];
+        size_t points = tile->end - tile->first, part = part_of(round, tile, most);
         tile->zone = zone_of(cut, site->grid, t);
         tile->box = box_of(cut, site->grid, t);
         tile->warm = true;
         tile->most = points / POINTS_PER_CONNECTED < part ? points / POINTS_PER_CONNECTED : part;
-        tile->left = pass->left + t * pass->trees;
-        for (size_t k = 0; k < pass->trees; k++)
-            tile->left[k] = part_of(pass, tile, site->limit[k]);
+        tile->left = round->left + t * round->trees;
+        for (size_t k = 0; k < round->trees; k++)
+            tile->left[k] = part_of(round, tile, site->limit[k]);
         nodes += 2 * tile->most;
     }
     network_spare(site->net, nodes);
     nodes = 0;
     for (size_t t = 0; t < tiles; t++) {
-        pass->tile[t].spare = site->net->spare + nodes;
-        nodes += 2 * pass->tile[t].most;
+        round->tile[t].spare = site->net->spare + nodes;
+        nodes += 2 * round->tile[t].most;
     }
 }
 
 /* Takes the nodes that tiles have used off the spare ones. */
-static void settle_nodes(Pass *pass, Network *net, size_t tiles)
+static void settle_nodes(Round *round, Network *net, size_t tiles)
 {
     size_t kept = 0, k = 0;
     for (size_t t = 0; t < tiles; t++) {
-        const Tile *tile = &pass->tile[t];
+        const Tile *tile = &round->tile[t];
         for (k += 2 * tile->made; net->spare + k < tile->spare + 2 * tile->most; k++)
             net->spare[kept++] = net->spare[k];
     }
@@ -326,85 +326,85 @@ static void settle_nodes(Pass *pass, Network *net, size_t tiles)
 }
 
 /* Takes off the limits what trees got in tiles. */
-static void settle_limits(const Pass *pass, const Site *site, size_t tiles)
+static void settle_limits(const Round *round, const Site *site, size_t tiles)
 {
-    for (size_t k = 0; k < pass->trees; k++) {
+    for (size_t k = 0; k < round->trees; k++) {
         size_t got = 0;
         for (size_t t = 0; t < tiles; t++) {
-            const Tile *tile = &pass->tile[t];
-            got += part_of(pass, tile, site->limit[k]) - tile->left[k];
+            const Tile *tile = &round->tile[t];
+            got += part_of(round, tile, site->limit[k]) - tile->left[k];
         }
         site->limit[k] -= got;
     }
 }
 
 /* Adds up what became of the points; those left over are listed at the beginning of `order`. */
-static Status gather(Pass *pass, const Site *site, size_t tiles, size_t *made, size_t *over,
+static Status gather(Round *round, const Site *site, size_t tiles, size_t *made, size_t *over,
                      Err *err)
 {
     double reach = 0;
     size_t points = 0;
     *over = 0;
     for (size_t t = 0; t < tiles; t++) {
-        const Tile *tile = &pass->tile[t];
+        const Tile *tile = &round->tile[t];
         reach += tile->reach * (double)(tile->end - tile->first);
         points += tile->end - tile->first;
         if (tile->status != STATUS_OK)
             return err_set(err, tile->status, "%s", tile->err.text);
         *made += tile->made;
-        pass->tally.skipped += tile->tally.skipped;
+        round->tally.skipped += tile->tally.skipped;
         for (int state = 0; state < PLAN_STATES; state++)
-            pass->tally.count[state] += tile->tally.count[state];
+            round->tally.count[state] += tile->tally.count[state];
         for (size_t k = 0; k < tile->over; k++)
-            pass->order[(*over)++] = pass->order[tile->first + k];
+            round->order[(*over)++] = round->order[tile->first + k];
     }
     if (points > 0)
-        pass->reach = reach / (double)points;
-    settle_nodes(pass, site->net, tiles);
+        round->reach = reach / (double)points;
+    settle_nodes(round, site->net, tiles);
     return STATUS_OK;
 }
 
 /* Connects the points in tiles, and lists those left over. */
-static Status run_tiles(Pass *pass, const Site *site, size_t most, bool skip, size_t *made,
+static Status run_tiles(Round *round, const Site *site, size_t most, bool skip, size_t *made,
                         size_t *over, Err *err)
 {
     enum { COLOURS = 8 };
-    Cut cut = make_cut(pass, site->grid);
+    Cut cut = make_cut(round, site->grid);
     size_t tiles = (size_t)cut.count[0] * cut.count[1] * cut.count[2];
-    sort(pass, &cut, site->grid, tiles);
-    endow(pass, site, &cut, tiles, most);
-    uint32_t *turn = pass->tile_of; /* has served */
+    sort(round, &cut, site->grid, tiles);
+    endow(round, site, &cut, tiles, most);
+    uint32_t *turn = round->tile_of; /* has served */
     for (int colour = 0; colour < COLOURS; colour++) {
         size_t count = 0;
         for (size_t t = 0; t < tiles; t++)
             if (colour_of(&cut, t) == colour)
                 turn[count++] = (uint32_t)t;
-        Running running = {pass, site, skip, turn};
-        threads_for(count, pass->threads, run_turn, &running);
+        Running running = {round, site, skip, turn};
+        threads_for(count, round->threads, run_turn, &running);
     }
-    settle_limits(pass, site, tiles);
-    return gather(pass, site, tiles, made, over, err);
+    settle_limits(round, site, tiles);
+    return gather(round, site, tiles, made, over, err);
 }
 
-Status pass_run(Pass *pass, const Site *site, size_t most, bool skip, size_t *made, Err *err)
+Status round_run(Round *round, const Site *site, size_t most, bool skip, size_t *made, Err *err)
 {
     *made = 0;
-    pass->tally = (Tally){0};
-    size_t over = pass->n;
-    if (pass->is_tiled && pass->n >= LEAST_POINTS * pass->tiles)
-        TRY(run_tiles(pass, site, most, skip, made, &over, err));
+    round->tally = (Tally){0};
+    size_t over = round->n;
+    if (round->is_tiled && round->n >= LEAST_POINTS * round->tiles)
+        TRY(run_tiles(round, site, most, skip, made, &over, err));
     else
-        for (size_t i = 0; i < pass->n; i++)
-            pass->order[i] = (uint32_t)i;
+        for (size_t i = 0; i < round->n; i++)
+            round->order[i] = (uint32_t)i;
     size_t rest = most - *made < over ? most - *made : over;
     network_spare(site->net, 2 * rest);
     const Vec3 everywhere = vec3(INFINITY, INFINITY, INFINITY);
-    pass->tile[0] = (Tile){.end = over,
-                           .zone = {vec3_scale(everywhere, -1), everywhere},
-                           .spare = site->net->spare,
-                           .most = rest,
-                           .left = site->limit};
-    Running running = {pass, site, skip, NULL};
-    run_tile(&running, 0, &pass->tile[0]);
-    return gather(pass, site, 1, made, &over, err);
+    round->tile[0] = (Tile){.end = over,
+                            .zone = {vec3_scale(everywhere, -1), everywhere},
+                            .spare = site->net->spare,
+                            .most = rest,
+                            .left = site->limit};
+    Running running = {round, site, skip, NULL};
+    run_tile(&running, 0, &round->tile[0]);
+    return gather(round, site, 1, made, &over, err);
 }

@@ -1,12 +1,12 @@
 /* Nodes of the tree become nodes of the network one by one, in order, and remember where they come
  * from. A vessel that the tree makes up of several segments is told by its nodes of one child; its
  * pieces may be much shorter than wide, so growth does not hold them to its own rules. */
-#include "grow/adopt.h"
+#include "grow/continue_tree.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-size_t adopt_inlets(const Tree *from)
+size_t continue_inlets(const Tree *from)
 {
     size_t count = 0;
     for (size_t i = 0; i < from->n; i++)
@@ -40,7 +40,7 @@ static Status check_node(const Tree *from, size_t i, int32_t children, const Dom
     return STATUS_OK;
 }
 
-size_t adopt_outside(const Tree *from, const Domain *domain)
+size_t continue_outside(const Tree *from, const Domain *domain)
 {
     size_t count = 0;
     for (size_t i = 0; i < from->n; i++)
@@ -51,7 +51,7 @@ size_t adopt_outside(const Tree *from, const Domain *domain)
 /* Whether a part of the tree at least is in the domain. */
 static Status check_place(const Tree *from, const Domain *domain, Err *err)
 {
-    if (adopt_outside(from, domain) < from->n)
+    if (continue_outside(from, domain) < from->n)
         return STATUS_OK;
     Box tree = tree_bounds(from), box = domain_bounds(domain);
     return err_set(err, STATUS_INPUT,
@@ -62,10 +62,10 @@ static Status check_place(const Tree *from, const Domain *domain, Err *err)
                    box.low.x, box.high.x, box.low.y, box.high.y, box.low.z, box.high.z);
 }
 
-Status adopt_check(const GrowParams *params, const Domain *domain, Err *err)
+Status continue_check(const GrowParams *params, const Domain *domain, Err *err)
 {
     const Tree *from = params->from;
-    size_t inlets = adopt_inlets(from), terminals = 0;
+    size_t inlets = continue_inlets(from), terminals = 0;
     if (params->inlets > 0)
         return err_set(err, STATUS_USAGE,
                        "--inlet: the tree of --from has its own; give only one of the two");
@@ -97,7 +97,7 @@ static bool is_piece(const Network *net, int32_t i)
     return goes_on || (above->parent >= 0 && above->child[1] < 0);
 }
 
-void adopt_tree(const Tree *from, Network *net)
+void continue_from(const Tree *from, Network *net)
 {
     for (size_t i = 0; i < from->n; i++) {
         int32_t node = network_append(net, from->parent[i], from->position[i]);
@@ -148,7 +148,7 @@ static bool has_key_of(const Tree *tree, const char *line)
     return false;
 }
 
-Status adopt_restore(const Tree *from, const Network *net, Tree *out, Err *err)
+Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *err)
 {
     TRY(restore_nodes(from, net, out, err));
     for (size_t i = 0; i < from->header.n_lines; i++)
@@ -163,7 +163,7 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-Status adopt_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err)
+Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err)
 {
     int32_t *node = NULL; /* of `from`, by id, plus 1 */
     double *change = NULL;

@@ -4,7 +4,7 @@
  * meet there break the rules least. Moves change the radii by much less than what they leave to
  * spare, so that it is enough to look at all segments once and afterwards at those that were within
  * that. */
-#include "grow/mend.h"
+#include "grow/repair.h"
 
 #include <float.h>
 #include <math.h>
@@ -18,13 +18,13 @@ static const double spare = 2e-3;
 /* How far bifurcations are moved, over the radius of the segment that ends there. */
 static const double steps[] = {0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
 
-typedef struct Mending {
+typedef struct Repair {
     Network *net;
     Grid *grid;
     const Domain *domain;
     const Rules *rules;
     bool *close; /* by segment: whether it breaks the rules or is next to doing so */
-} Mending;
+} Repair;
 
 static Vec3 proximal(const Network *net, int32_t i)
 {
@@ -37,59 +37,60 @@ static bool are_joined(const Network *net, int32_t i, int32_t j)
     return i == j || above_i == above_j || above_i == j || above_j == i;
 }
 
-static double width(const Mending *mending, int32_t i)
+static double width(const Repair *repair, int32_t i)
 {
-    return mending->rules->thickness * (double)mending->net->segment[i].radius;
+    return repair->rules->thickness * (double)repair->net->segment[i].radius;
 }
 
-static double width_there(const Mending *mending, int32_t i)
+static double width_there(const Repair *repair, int32_t i)
 {
-    return mending->rules->thickness * (double)mending->grid->item[i].radius;
+    return repair->rules->thickness * (double)repair->grid->item[i].radius;
 }
 
 /* How far apart segments i and j should be at a thickness: pieces of a vessel only have to keep
  * their centrelines apart, and given segments nothing from each other. */
-static double needed(const Mending *mending, int32_t i, int32_t j, double thickness)
+static double needed(const Repair *repair, int32_t i, int32_t j, double thickness)
 {
-    const Network *net = mending->net;
+    const Network *net = repair->net;
     if (network_is_given(net, i) && network_is_given(net, j))
         return 0;
-    return mending->rules->gap +
+    return repair->rules->gap +
            (network_is_piece(net, i) || network_is_piece(net, j) ? 0 : thickness);
 }
 
 /* By how many mm segment i is too near to another, radii widened by `scale`. Centrelines that touch
  * are the worst fault there is. */
-static double overlap(const Mending *mending, int32_t i, const GridItem *item, double radius,
+static double overlap(const Repair *repair, int32_t i, const GridItem *item, double radius,
                       double scale, int32_t other)
 {
-    double gap = mending->rules->gap;
-    double need = needed(mending, i, other, scale * (radius + width_there(mending, other)));
-    double apart2 = grid_distance2(item, &mending->grid->item[other]);
-    return apart2 < gap * gap ? mending->rules->widest : need - sqrt(apart2);
+    double gap = repair->rules->gap;
+    double need = needed(repair, i, other, scale * (radius + width_there(repair, other)));
+    double apart2 = grid_distance2(item, &repair->grid->item[other]);
+    return apart2 < gap * gap ? repair->rules->widest : need - sqrt(apart2);
 }
 
 /* By how many mm segment i, its radius and the others' widened by `margin` of them, is too short or
  * too near to another `below` an index, *with, which is unchanged when there is none. */
-static double fault(const Mending *mending, int32_t i, double margin, int32_t below, int32_t *with)
+static double fault(const Repair *repair, int32_t i, double margin, int32_t below, int32_t *with)
 {
-    const Network *net = mending->net;
-    const Grid *grid = mending->grid;
-    double radius = width(mending, i), scale = 1 + margin, gap = mending->rules->gap;
+    const Network *net = repair->net;
+    const Grid *grid = repair->grid;
+    double radius = width(repair, i), scale = 1 + margin, gap = repair->rules->gap;
     Vec3 a = proximal(net, i), b = net->position[i];
     double worst = network_is_piece(net, i) ? 0 : fmax(0, 2 * scale * radius - vec3_distance(a, b));
     GridItem item = grid_item(grid, (Capsule){a, b, scale * radius + gap}, radius);
-    GridProbe probe = grid_probe(&item, scale * radius + gap, scale * mending->rules->thickness);
+    GridBoxQuery probe =
+        grid_box_query(&item, scale * radius + gap, scale * repair->rules->thickness);
     size_t index;
     for (GridWalk walk = grid_walk(grid, &item); grid_walk_next(&walk, &index);) {
         const GridCell *cell = &grid->cell[index];
         for (uint32_t k = 0; k < cell->count; k += GRID_LANES) {
-            unsigned near = grid_meet(grid, cell, k, &probe);
+            unsigned near = grid_boxes_near(grid, cell, k, &probe);
             for (const int32_t *tag = cell->tag + k; near; near >>= 1, tag++) {
                 int32_t other = *tag >> 1;
                 if (!(near & 1) || other >= below || are_joined(net, i, other))
                     continue;
-                double depth = overlap(mending, i, &item, radius, scale, other);
+                double depth = overlap(repair, i, &item, radius, scale, other);
                 if (depth > worst) {
                     worst = depth;
                     *with = other;
@@ -102,41 +103,41 @@ static double fault(const Mending *mending, int32_t i, double margin, int32_t be
 
 /* The faults of the three segments that meet at a bifurcation; anything from `enough` on when they
  * are that much. */
-static double fault_at(const Mending *mending, int32_t node, double enough)
+static double fault_at(const Repair *repair, int32_t node, double enough)
 {
-    const int32_t *child = mending->net->segment[node].child;
+    const int32_t *child = repair->net->segment[node].child;
     int32_t with;
-    double sum = fault(mending, node, spare, INT32_MAX, &with);
+    double sum = fault(repair, node, spare, INT32_MAX, &with);
     for (int slot = 0; slot < 2 && sum < enough; slot++)
-        sum += fault(mending, child[slot], spare, INT32_MAX, &with);
+        sum += fault(repair, child[slot], spare, INT32_MAX, &with);
     return sum;
 }
 
-static bool is_inside(const Mending *mending, int32_t node)
+static bool is_inside(const Repair *repair, int32_t node)
 {
-    const Network *net = mending->net;
+    const Network *net = repair->net;
     const int32_t *child = net->segment[node].child;
     Vec3 place = net->position[node];
-    return domain_inside(mending->domain, place, 0) &&
-           (domain_is_convex(mending->domain) ||
-            (domain_holds_segment(mending->domain, proximal(net, node), place) &&
-             domain_holds_segment(mending->domain, place, net->position[child[0]]) &&
-             domain_holds_segment(mending->domain, place, net->position[child[1]])));
+    return domain_inside(repair->domain, place, 0) &&
+           (domain_is_convex(repair->domain) ||
+            (domain_holds_segment(repair->domain, proximal(net, node), place) &&
+             domain_holds_segment(repair->domain, place, net->position[child[0]]) &&
+             domain_holds_segment(repair->domain, place, net->position[child[1]])));
 }
 
 /* Tries the places a step away from a bifurcation's own, up to the first without fault. */
-static void try_step(const Mending *mending, int32_t node, Vec3 from, double step, Vec3 *best,
+static void try_step(const Repair *repair, int32_t node, Vec3 from, double step, Vec3 *best,
                      double *least)
 {
-    Network *net = mending->net;
-    int depth = domain_dimension(mending->domain) == 3;
+    Network *net = repair->net;
+    int depth = domain_dimension(repair->domain) == 3;
     for (int z = -depth; z <= depth; z++)
         for (int y = -1; y <= 1; y++)
             for (int x = -1; x <= 1; x++) {
                 if ((x == 0 && y == 0 && z == 0) || *least == 0)
                     continue;
                 net->position[node] = vec3_add_scaled(from, vec3_normalized(vec3(x, y, z)), step);
-                double there = is_inside(mending, node) ? fault_at(mending, node, *least) : *least;
+                double there = is_inside(repair, node) ? fault_at(repair, node, *least) : *least;
                 if (there < *least) {
                     *least = there;
                     *best = net->position[node];
@@ -145,32 +146,32 @@ static void try_step(const Mending *mending, int32_t node, Vec3 from, double ste
 }
 
 /* The place around a bifurcation with the least fault. */
-static Vec3 best_place(const Mending *mending, int32_t node)
+static Vec3 best_place(const Repair *repair, int32_t node)
 {
-    Network *net = mending->net;
+    Network *net = repair->net;
     const Vec3 from = net->position[node];
     Vec3 best = from;
-    double least = fault_at(mending, node, INFINITY);
+    double least = fault_at(repair, node, INFINITY);
     for (size_t s = 0; s < sizeof steps / sizeof *steps && least > 0; s++)
-        try_step(mending, node, from, steps[s] * width(mending, node), &best, &least);
+        try_step(repair, node, from, steps[s] * width(repair, node), &best, &least);
     net->position[node] = from;
     return best;
 }
 
-static Status move(const Mending *mending, int32_t node, Err *err)
+static Status move(const Repair *repair, int32_t node, Err *err)
 {
-    Network *net = mending->net;
-    Grid *grid = mending->grid;
+    Network *net = repair->net;
+    Grid *grid = repair->grid;
     if (net->segment[node].parent < 0 || net->segment[node].child[0] < 0 ||
-        network_is_given(net, node) || !(fault_at(mending, node, DBL_MIN) > 0))
+        network_is_given(net, node) || !(fault_at(repair, node, DBL_MIN) > 0))
         return STATUS_OK;
-    Vec3 place = best_place(mending, node);
+    Vec3 place = best_place(repair, node);
     if (vec3_distance(place, net->position[node]) > 0) {
         const int32_t *child = net->segment[node].child;
         network_move(net, node, place);
         for (int k = 0; k < 3; k++) {
             int32_t i = k < 2 ? child[k] : node;
-            TRY(place_enter_again(grid, mending->rules, net, i, err));
+            TRY(entry_renew(grid, repair->rules, net, i, err));
         }
     }
     return STATUS_OK;
@@ -180,65 +181,65 @@ static Status move(const Mending *mending, int32_t node, Err *err)
 static void look_at_chunk(size_t index, int worker, void *context)
 {
     (void)worker;
-    const Mending *mending = context;
-    size_t end = (index + 1) * CHUNK < mending->net->n ? (index + 1) * CHUNK : mending->net->n;
+    const Repair *repair = context;
+    size_t end = (index + 1) * CHUNK < repair->net->n ? (index + 1) * CHUNK : repair->net->n;
     for (size_t k = index * CHUNK; k < end; k++) {
         int32_t i = (int32_t)k, with;
-        mending->close[k] =
-            mending->net->segment[k].parent >= 0 && fault(mending, i, spare, i, &with) > 0;
+        repair->close[k] =
+            repair->net->segment[k].parent >= 0 && fault(repair, i, spare, i, &with) > 0;
     }
 }
 
-static Status move_ends(const Mending *mending, int32_t i, Err *err)
+static Status move_ends(const Repair *repair, int32_t i, Err *err)
 {
-    TRY(move(mending, mending->net->segment[i].parent, err));
-    return move(mending, i, err);
+    TRY(move(repair, repair->net->segment[i].parent, err));
+    return move(repair, i, err);
 }
 
 /* Lists the close segments that break the rules in `broken`. */
-static size_t find_broken(const Mending *mending, int32_t *broken)
+static size_t find_broken(const Repair *repair, int32_t *broken)
 {
     size_t count = 0;
-    for (size_t k = 0; k < mending->net->n; k++) {
+    for (size_t k = 0; k < repair->net->n; k++) {
         int32_t with;
-        if (mending->close[k] && fault(mending, (int32_t)k, 0, INT32_MAX, &with) > 0)
+        if (repair->close[k] && fault(repair, (int32_t)k, 0, INT32_MAX, &with) > 0)
             broken[count++] = (int32_t)k;
     }
     return count;
 }
 
 /* Moves the ends of a broken segment, and if need be of what it is too near to. */
-static Status mend(const Mending *mending, int32_t i, Err *err)
+static Status repair_segment(const Repair *repair, int32_t i, Err *err)
 {
     int32_t with = -1;
-    TRY(move_ends(mending, i, err));
-    if (fault(mending, i, 0, INT32_MAX, &with) > 0 && with >= 0)
-        TRY(move_ends(mending, with, err));
+    TRY(move_ends(repair, i, err));
+    if (fault(repair, i, 0, INT32_MAX, &with) > 0 && with >= 0)
+        TRY(move_ends(repair, with, err));
     return STATUS_OK;
 }
 
-Status mend_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules, int threads,
-                    size_t *left, Err *err)
+Status repair_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules,
+                      int threads, size_t *left, Err *err)
 {
-    Mending mending = {net, grid, domain, rules, NULL};
+    Repair repair = {net, grid, domain, rules, NULL};
     int32_t *broken = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&mending.close, net->n, sizeof *mending.close, "segments", err));
+    TRY_GOTO(mem_calloc(&repair.close, net->n, sizeof *repair.close, "segments", err));
     TRY_GOTO(mem_calloc(&broken, net->n, sizeof *broken, "segments", err));
     for (int round = 0;; round++) {
         if (round > 0)
             network_refresh(net, threads);
-        TRY_GOTO(place_widen(grid, rules, net, err));
+        TRY_GOTO(entries_widen(grid, rules, net, err));
         if (round == 0)
-            threads_for((net->n + CHUNK - 1) / CHUNK, threads, look_at_chunk, &mending);
-        *left = find_broken(&mending, broken);
+            threads_for((net->n + CHUNK - 1) / CHUNK, threads, look_at_chunk, &repair);
+        *left = find_broken(&repair, broken);
         if (*left == 0 || *left > net->n / FEW || round == ROUNDS)
             break;
         for (size_t k = 0; k < *left; k++)
-            TRY_GOTO(mend(&mending, broken[k], err));
+            TRY_GOTO(repair_segment(&repair, broken[k], err));
     }
 done:
-    free(mending.close);
+    free(repair.close);
     free(broken);
     return status;
 }

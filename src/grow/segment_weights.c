@@ -1,7 +1,7 @@
 /* A weight is flow over terminals times viscosity over its reference, so that terminals times
  * weight is the burden of the law. Growth takes weights for the radii of the last refresh, each of
  * which moves them towards agreement; finish.c iterates until they agree. */
-#include "grow/weigh.h"
+#include "grow/segment_weights.h"
 
 #include "grow/territory.h"
 #include <stdlib.h>
@@ -14,13 +14,13 @@ static const double least_points = 256, most_points = 4096, all_points = 2e6;
 /* How often radii and weights are computed in turn for a fine result. */
 enum { FINE_ROUNDS = 3 };
 
-bool weigh_is_needed(const GrowParams *params)
+bool weights_are_needed(const GrowParams *params)
 {
     return params->viscosity_law != VISCOSITY_CONSTANT ||
            params->terminal_flow != TERMINAL_FLOW_EQUAL;
 }
 
-double weigh_reference_pa_s(const GrowParams *params)
+double weights_reference_pa_s(const GrowParams *params)
 {
     return pa_s_from_cp(params->viscosity_law == VISCOSITY_PRIES ? params->plasma_viscosity_cp
                                                                  : params->viscosity_cp);
@@ -40,10 +40,10 @@ static int threads_of(const GrowParams *params)
 
 /* Gives all terminals their shares; `share` has room for one a node. */
 static Status set_shares(Network *net, const GrowParams *params, const Domain *domain,
-                         WeighPrecision precision, double *share, Err *err)
+                         WeightsPrecision precision, double *share, Err *err)
 {
     double points = rough_points;
-    if (precision == WEIGH_FINE)
+    if (precision == WEIGHTS_FINE)
         points = fmin(fmax(all_points / (double)net->terminals, least_points), most_points);
     bool territory = params->terminal_flow == TERMINAL_FLOW_TERRITORY;
     if (territory)
@@ -54,7 +54,7 @@ static Status set_shares(Network *net, const GrowParams *params, const Domain *d
     return STATUS_OK;
 }
 
-void weigh_gather(const Network *net, double *flow)
+void weights_flows(const Network *net, double *flow)
 {
     double sum = 0;
     for (size_t i = 0; i < net->n; i++)
@@ -70,7 +70,7 @@ void weigh_gather(const Network *net, double *flow)
         flow[i] *= (double)net->terminals / sum;
 }
 
-Status weigh_segments(Network *net, const GrowParams *params, const double *flow,
+Status weights_update(Network *net, const GrowParams *params, const double *flow,
                       const double *radius, double part, double *change, Err *err)
 {
     double sum = 0;
@@ -96,29 +96,29 @@ Status weigh_segments(Network *net, const GrowParams *params, const double *flow
 }
 
 /* Weights for the radii there are, and the radii for these. `radius` has room for one a node. */
-static Status reweigh(Network *net, const GrowParams *params, const double *flow, double *radius,
-                      Err *err)
+static Status follow_radii(Network *net, const GrowParams *params, const double *flow,
+                           double *radius, Err *err)
 {
     double change;
     for (size_t i = 0; i < net->n; i++)
         radius[i] = (double)net->segment[i].radius;
-    TRY(weigh_segments(net, params, flow, radius, 1, &change, err));
+    TRY(weights_update(net, params, flow, radius, 1, &change, err));
     network_refresh(net, threads_of(params));
     return STATUS_OK;
 }
 
-Status weigh_refresh(Network *net, const GrowParams *params, const Domain *domain,
-                     WeighPrecision precision, Err *err)
+Status weights_refresh(Network *net, const GrowParams *params, const Domain *domain,
+                       WeightsPrecision precision, Err *err)
 {
     double *flow = NULL, *radius = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&flow, net->n, sizeof *flow, "flows", err));
     TRY_GOTO(mem_calloc(&radius, net->n, sizeof *radius, "radii", err));
     TRY_GOTO(set_shares(net, params, domain, precision, flow, err));
-    weigh_gather(net, flow);
+    weights_flows(net, flow);
     network_refresh(net, threads_of(params));
-    for (int round = 0; round < (precision == WEIGH_FINE ? FINE_ROUNDS : 1); round++)
-        TRY_GOTO(reweigh(net, params, flow, radius, err));
+    for (int round = 0; round < (precision == WEIGHTS_FINE ? FINE_ROUNDS : 1); round++)
+        TRY_GOTO(follow_radii(net, params, flow, radius, err));
 done:
     free(flow);
     free(radius);

@@ -1,0 +1,54 @@
+/* A segment stands in the grid as a capsule wider than the vessel, so that it need not be entered
+ * anew whenever radii are refreshed: only what outgrew its capsule is. */
+#include "grow/network_grid.h"
+
+#include <string.h>
+
+/* Vessels widen as the tree below them grows; they may widen by this much until the
+ * grid is made anew. */
+static const double reach_reserve = 1.4;
+
+double entry_reach(const Rules *rules, double radius)
+{
+    double reach = reach_reserve * rules->thickness * radius;
+    return (reach < rules->widest ? reach : rules->widest) + rules->gap;
+}
+
+/* An item of no length is in no cell. */
+static bool has_length(const GridItem *item)
+{
+    return memcmp(item->proximal, item->distal, sizeof item->distal) != 0;
+}
+
+Status entry_add(Grid *grid, const Rules *rules, const Network *net, int32_t segment, Err *err)
+{
+    Capsule capsule = network_capsule(net, segment);
+    double radius = capsule.radius;
+    capsule.radius = entry_reach(rules, radius);
+    GridItem item = grid_item(grid, capsule, radius);
+    if (has_length(&item))
+        return grid_add(grid, 0, segment, net->segment[segment].child[0] < 0, item, err);
+    grid->item[segment] = item;
+    return STATUS_OK;
+}
+
+Status entry_renew(Grid *grid, const Rules *rules, const Network *net, int32_t segment, Err *err)
+{
+    if (has_length(&grid->item[segment]))
+        grid_remove(grid, segment);
+    return entry_add(grid, rules, net, segment, err);
+}
+
+Status entries_widen(Grid *grid, const Rules *rules, const Network *net, Err *err)
+{
+    for (size_t i = 0; i < net->n; i++) {
+        GridItem *item = &grid->item[i];
+        if (net->segment[i].parent < 0)
+            continue;
+        item->radius = net->segment[i].radius;
+        double reach = (double)item->reach;
+        if (rules->thickness * (double)item->radius > reach && reach < rules->widest)
+            TRY(entry_renew(grid, rules, net, (int32_t)i, err));
+    }
+    return STATUS_OK;
+}

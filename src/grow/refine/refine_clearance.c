@@ -1,0 +1,281 @@
+/* Radii change all over the tree with every move, so that no test of the moved segments alone can
+ * keep vessels clear. Every segment therefore books a radius a little above its own, to which no
+ * other vessel's reservation comes near, and which is at most half its length. While all radii stay
+ * within their reservations the rules hold for the whole tree, and one number at the root tells
+ * whether they do [Branch.utilisation]. A move that makes some radius exceed its reservation must
+ * find it more clearance, or is undone. */
+#include "grow/refine/refine_clearance.h"
+
+#include <stdlib.h>
+
+/* Cells of the grid a terminal. */
+static const double cells_per_terminal = 4;
+/* Bookings over the radii: as a rule, and at least when a segment moves. Vessels that touch would
+ * make every other move impossible that widens them ever so little. */
+static const double reserve = 1.1, least_reserve = 1.04;
+/* The share of segments that must be clear at the level, and the least level but 0. */
+static const double clear_share = 0.9;
+static const double least_level = 1.0 / 64;
+/* Room for the rounding of radii and lengths, over them. */
+static const double slack = 1e-9;
+
+static Box box_of(const Domain *domain, const Arbor *arbor)
+{
+    if (domain)
+        return domain_bounds(domain);
+    Box box = box_empty();
+    for (size_t i = 1; i < arbor->n; i++)
+        box = box_with_ball(box_with_ball(box, arbor->shape[i].from, 0), arbor->shape[i].to, 0);
+    /* Not thinner than a hundredth of its length, or the grid's cells would be too small. */
+    Vec3 size = vec3_sub(box.high, box.low);
+    double least = 0.01 * fmax(size.x, fmax(size.y, size.z));
+    box.high.x = fmax(box.high.x, box.low.x + least);
+    box.high.y = fmax(box.high.y, box.low.y + least);
+    if (size.z > 0)
+        box.high.z = fmax(box.high.z, box.low.z + least);
+    return box;
+}
+
+static Status enter(Clearance *clearance, const Arbor *arbor, int32_t i, Err *err)
+{
+    const Shape *shape = &arbor->shape[i];
+    Capsule capsule = {shape->from, shape->to, shape->reserved_radius};
+    return grid_add(&clearance->grid, 0, i, arbor->branch[i].child[0] < 0,
+                    grid_item(&clearance->grid, capsule, shape->reserved_radius), err);
+}
+
+static double most_reservation(const Branch *branch)
+{
+    return branch->length / 2 * (1 - slack);
+}
+
+static double distance_of(const Shape *a, const Shape *b)
+{
+    return sqrt(segment_distance2(a->from, a->to, b->from, b->to));
+}
+
+/* What a segment of `radius` books when it has this share of room: at 0 the radius, at 1 the
+ * reserve as well, at -1 nothing. Never more than its length allows. */
+static double reservation(const Clearance *clearance, const Branch *branch, double radius,
+                          double share)
+{
+    double longest = most_reservation(branch), least = fmin(clearance->level * radius, longest);
+    if (share < 0)
+        return least * (1 + share);
+    return least + (fmin(reserve * clearance->level * radius, longest) - least) * share;
+}
+
+/* The greatest share of room at which two segments so far apart leave it to each other. */
+static double common_share(const Clearance *clearance, const Branch *a, double radius_a,
+                           const Branch *b, double radius_b, double apart)
+{
+    double least = reservation(clearance, a, radius_a, 0) + reservation(clearance, b, radius_b, 0);
+    double most = reservation(clearance, a, radius_a, 1) + reservation(clearance, b, radius_b, 1);
+    apart -= clearance->gap;
+    if (apart >= most)
+        return 1;
+    return apart >= least ? (apart - least) / (most - least) : fmax(apart, 0) / least - 1;
+}
+
+/* The greatest share that segment i and all it meets leave to each other. */
+static double fair_share(const Clearance *clearance, const Arbor *arbor, const double *radius,
+                         int32_t i)
+{
+    const Shape *shape = &arbor->shape[i];
+    const Branch *branch = arbor->branch;
+    Capsule capsule = {shape->from, shape->to, shape->reserved_radius + clearance->gap};
+    GridItem item = grid_item(&clearance->grid, capsule, 0);
+    double share = 1;
+    size_t index;
+    for (GridWalk walk = grid_walk(&clearance->grid, &item); grid_walk_next(&walk, &index);) {
+        const GridCell *cell = &clearance->grid.cell[index];
+        for (uint32_t k = 0; k < cell->count; k++) {
+            int32_t other = cell->tag[k] >> 1;
+            if (other != i && !arbor_are_joined(arbor, i, other))
+                share = fmin(share,
+                             common_share(clearance, &branch[i], radius[i], &branch[other],
+                                          radius[other], distance_of(shape, &arbor->shape[other])));
+        }
+    }
+    return share;
+}
+
+/* Finds the radii of all segments and empties the grid. */
+static Status measure(Clearance *clearance, Arbor *arbor, Err *err)
+{
+    TRY(grid_reset(&clearance->grid, clearance->box, cells_per_terminal * (double)(arbor->n / 2),
+                   arbor->n, 1, err));
+    arbor_refresh(arbor);
+    for (size_t i = 1; i < arbor->n; i++)
+        clearance->radius[i] = arbor_radius_seen(arbor, (int32_t)i);
+    return STATUS_OK;
+}
+
+/* Books at the room's level; *clear is the share of segments that have the room they should. */
+static Status book(Clearance *clearance, Arbor *arbor, double *clear, Err *err)
+{
+    TRY(measure(clearance, arbor, err));
+    for (size_t i = 1; i < arbor->n; i++) {
+        arbor->shape[i].reserved_radius =
+            reservation(clearance, &arbor->branch[i], clearance->radius[i], 1);
+        TRY(enter(clearance, arbor, (int32_t)i, err));
+    }
+    for (size_t i = 1; i < arbor->n; i++)
+        clearance->share[i] = fair_share(clearance, arbor, clearance->radius, (int32_t)i);
+    size_t count = 0;
+    for (size_t i = 1; i < arbor->n; i++) {
+        Branch *branch = &arbor->branch[i];
+        double radius = clearance->radius[i],
+               reserved_radius = reservation(clearance, branch, radius, clearance->share[i]);
+        arbor->shape[i].reserved_radius = reserved_radius;
+        count += clearance_is_kept(clearance, arbor, (int32_t)i);
+        branch->inverse_limit =
+            reserved_radius > 0 ? fmin(clearance->level / reserved_radius, 1 / radius) : 0;
+    }
+    arbor_sum(arbor);
+    *clear = (double)count / (double)(arbor->n - 1);
+    return STATUS_OK;
+}
+
+Status clearance_init(Clearance *clearance, const Domain *domain, Arbor *arbor, Err *err)
+{
+    double total = 0, clear;
+    for (size_t i = 1; i < arbor->n; i++)
+        total += arbor->branch[i].length;
+    Box box = box_of(domain, arbor);
+    *clearance = (Clearance){.domain = domain,
+                             .box = box,
+                             .level = 1,
+                             .least_length = 1e-3 * total / (double)(arbor->n - 1),
+                             .gap = 1e-7 * vec3_distance(box.low, box.high)};
+    TRY(mem_calloc(&clearance->radius, arbor->n, sizeof *clearance->radius, "radii", err));
+    TRY(mem_calloc(&clearance->share, arbor->n, sizeof *clearance->share, "reservations", err));
+    TRY(book(clearance, arbor, &clear, err));
+    while (clear < clear_share && clearance->level > 0) {
+        clearance->level = clearance->level > least_level ? clearance->level / 2 : 0;
+        TRY(book(clearance, arbor, &clear, err));
+    }
+    return STATUS_OK;
+}
+
+void clearance_release(Clearance *clearance)
+{
+    grid_release(&clearance->grid);
+    free(clearance->radius);
+    free(clearance->share);
+    *clearance = (Clearance){0};
+}
+
+Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err)
+{
+    double clear;
+    return book(clearance, arbor, &clear, err);
+}
+
+Status clearance_waive(Clearance *clearance, Arbor *arbor, double reserved, Err *err)
+{
+    TRY(measure(clearance, arbor, err));
+    for (size_t i = 1; i < arbor->n; i++) {
+        arbor->shape[i].reserved_radius = reserved * clearance->level * clearance->radius[i];
+        arbor->branch[i].inverse_limit = 0;
+        TRY(enter(clearance, arbor, (int32_t)i, err));
+    }
+    arbor_sum(arbor);
+    return STATUS_OK;
+}
+
+/* The most that segment i can book, up to `wish`, as the others' reservations are. */
+static double most_room(const Clearance *clearance, const Arbor *arbor, int32_t i, double wish)
+{
+    const Shape *shape = &arbor->shape[i];
+    double most = fmin(wish, most_reservation(&arbor->branch[i]));
+    size_t index;
+    Capsule capsule = {shape->from, shape->to, most + clearance->gap};
+    GridItem item = grid_item(&clearance->grid, capsule, 0);
+    for (GridWalk walk = grid_walk(&clearance->grid, &item); grid_walk_next(&walk, &index);) {
+        const GridCell *cell = &clearance->grid.cell[index];
+        for (uint32_t k = 0; k < cell->count; k++) {
+            int32_t other = cell->tag[k] >> 1;
+            const Shape *there = &arbor->shape[other];
+            if (there->saved != arbor->move && !arbor_are_joined(arbor, i, other))
+                most =
+                    fmin(most, distance_of(shape, there) - there->reserved_radius - clearance->gap);
+        }
+    }
+    for (int k = 0; k < arbor->n_saved_shapes; k++) { /* the grid has them as they were */
+        int32_t other = arbor->saved_shape[k].i;
+        const Shape *there = &arbor->shape[other];
+        if (other != i && !arbor_are_joined(arbor, i, other))
+            most = fmin(most, distance_of(shape, there) - there->reserved_radius - clearance->gap);
+    }
+    return most;
+}
+
+bool clearance_is_inside(const Clearance *clearance, const Arbor *arbor)
+{
+    const Domain *domain = clearance->domain;
+    for (int k = 0; k < arbor->n_saved_shapes; k++) {
+        int32_t i = arbor->saved_shape[k].i;
+        const Shape *was = &arbor->saved_shape[k].was, *shape = &arbor->shape[i];
+        if (!(arbor->branch[i].length >= clearance->least_length))
+            return false;
+        if (!domain)
+            continue;
+        bool moved = vec3_distance(was->to, shape->to) > 0;
+        if (moved && !domain_inside(domain, shape->to, 0))
+            return false;
+        if (!domain_is_convex(domain) && !domain_holds_segment(domain, shape->from, shape->to))
+            return false;
+    }
+    return true;
+}
+
+/* Books for the segments that the move has moved. */
+static bool reserve_moved(const Clearance *clearance, Arbor *arbor)
+{
+    int moved = arbor->n_saved_shapes;
+    double need[ARBOR_MOVE_SHAPES];
+    for (int k = 0; k < moved; k++) {
+        int32_t i = arbor->saved_shape[k].i;
+        need[k] = clearance->level * arbor_radius(arbor, i);
+        arbor_reserve(arbor, i, need[k], 0);
+    }
+    for (int k = 0; k < moved; k++) {
+        int32_t i = arbor->saved_shape[k].i;
+        double reserved_radius = most_room(clearance, arbor, i, reserve * need[k]);
+        if (!(reserved_radius >= least_reserve * need[k]))
+            return false;
+        arbor_reserve(arbor, i, reserved_radius,
+                      reserved_radius > 0 ? clearance->level / reserved_radius : 0);
+    }
+    for (int k = 0; k < moved; k++)
+        arbor_sum_from(arbor, arbor->saved_shape[k].i);
+    return true;
+}
+
+bool clearance_allows(const Clearance *clearance, Arbor *arbor)
+{
+    if (!clearance_is_inside(clearance, arbor) || !reserve_moved(clearance, arbor))
+        return false;
+    double radius;
+    for (int32_t i; (i = arbor_find_overuse(arbor, &radius)) != 0;) {
+        if (arbor->n_saved_shapes == ARBOR_MOVE_SHAPES)
+            return false;
+        double thickness = arbor->branch[i].inverse_limit * arbor->shape[i].reserved_radius;
+        double reserved_radius = most_room(clearance, arbor, i, reserve * thickness * radius);
+        if (!(reserved_radius >= thickness * radius * (1 + slack)))
+            return false;
+        arbor_reserve(arbor, i, reserved_radius, thickness / reserved_radius);
+        arbor_sum_from(arbor, i);
+    }
+    return true;
+}
+
+Status clearance_follow(Clearance *clearance, const Arbor *arbor, Err *err)
+{
+    for (int k = 0; k < arbor->n_saved_shapes; k++)
+        grid_remove(&clearance->grid, arbor->saved_shape[k].i);
+    for (int k = 0; k < arbor->n_saved_shapes; k++)
+        TRY(enter(clearance, arbor, arbor->saved_shape[k].i, err));
+    return STATUS_OK;
+}

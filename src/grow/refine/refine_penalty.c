@@ -1,0 +1,121 @@
+/* An exterior penalty in the l1 norm: at a finite price, the best tree keeps the rules exactly
+ * wherever a mm gained by breaking them is worth less than that. As not even the shape of the tree
+ * is known at which the rules hold, prices are not one number that rises, but one for each segment,
+ * which rises most while the segment breaks a rule ([METHODS M], the breakout method): where rules
+ * hold they stay low, and the tree can go on giving way to those places where they do not. */
+#include "grow/refine/refine_penalty.h"
+
+#include <stdlib.h>
+
+/* How prices rise: all, and those of segments that break the rules. */
+static const double rise = 1.1, steep_rise = 2.2;
+/* Bookings over the radii: radii grow a little before they are reserved_radius for anew. */
+static const double reserve = 1.05;
+
+Status penalties_init(Penalties *penalties, size_t segments, Err *err)
+{
+    TRY(mem_calloc(&penalties->rate, segments, sizeof *penalties->rate, "prices", err));
+    TRY(mem_calloc(&penalties->broken, segments, sizeof *penalties->broken, "segments", err));
+    return mem_calloc(&penalties->seen, segments, sizeof *penalties->seen, "segments", err);
+}
+
+void penalties_release(Penalties *penalties)
+{
+    free(penalties->rate);
+    free(penalties->broken);
+    free(penalties->seen);
+    *penalties = (Penalties){0};
+}
+
+void penalties_begin(Penalties *penalties, const Arbor *arbor, double price)
+{
+    double length = 0;
+    for (size_t i = 1; i < arbor->n; i++)
+        length += arbor->branch[i].length;
+    for (size_t i = 1; i < arbor->n; i++)
+        penalties->rate[i] = price * arbor_cost(arbor) / length;
+    penalties->active = true;
+}
+
+Status penalties_reserve(Clearance *clearance, Arbor *arbor, Err *err)
+{
+    return clearance_waive(clearance, arbor, reserve, err);
+}
+
+void penalties_raise(Penalties *penalties, const Clearance *clearance, const Arbor *arbor)
+{
+    penalties->n_broken = 0;
+    for (size_t i = 1; i < arbor->n; i++) {
+        bool clear = clearance_is_kept(clearance, arbor, (int32_t)i);
+        penalties->rate[i] *= clear ? rise : steep_rise;
+        if (!clear)
+            penalties->broken[penalties->n_broken++] = (int32_t)i;
+    }
+}
+
+/* What two segments pay together. */
+static double penalty_between(const Penalties *penalties, const Clearance *clearance,
+                              const Arbor *arbor, int32_t i, int32_t j)
+{
+    const Shape *a = &arbor->shape[i], *b = &arbor->shape[j];
+    double reach = a->reserved_radius + b->reserved_radius + clearance->gap;
+    double distance2 = segment_distance2(a->from, a->to, b->from, b->to);
+    if (distance2 >= reach * reach || arbor_are_joined(arbor, i, j) || !arbor_has(arbor, j))
+        return 0;
+    return (reach - sqrt(distance2)) * fmax(penalties->rate[i], penalties->rate[j]);
+}
+
+/* What segment i pays for itself and with all that this count has not come across yet. */
+static double penalty_of_segment(Penalties *penalties, const Clearance *clearance,
+                                 const Arbor *arbor, int32_t i)
+{
+    const Shape *shape = &arbor->shape[i];
+    double sum = fmax(0, 2 * shape->reserved_radius - arbor->branch[i].length) * penalties->rate[i];
+    Capsule capsule = {shape->from, shape->to, shape->reserved_radius + clearance->gap};
+    GridItem item = grid_item(&clearance->grid, capsule, 0);
+    size_t index;
+    for (GridWalk walk = grid_walk(&clearance->grid, &item); grid_walk_next(&walk, &index);) {
+        const GridCell *cell = &clearance->grid.cell[index];
+        for (uint32_t k = 0; k < cell->count; k++) {
+            int32_t other = cell->tag[k] >> 1;
+            if (penalties->seen[other] == penalties->count ||
+                arbor->shape[other].saved == arbor->move)
+                continue;
+            penalties->seen[other] = penalties->count;
+            sum += penalty_between(penalties, clearance, arbor, i, other);
+        }
+    }
+    for (int k = 0; k < arbor->n_saved_shapes; k++) { /* the grid has them as they were */
+        int32_t other = arbor->saved_shape[k].i;
+        if (penalties->seen[other] != penalties->count)
+            sum += penalty_between(penalties, clearance, arbor, i, other);
+    }
+    return sum;
+}
+
+double penalty_of(Penalties *penalties, const Clearance *clearance, const Arbor *arbor,
+                  const int32_t *segment, int count)
+{
+    double sum = 0;
+    for (int k = 0; k < count && penalties->active; k++) {
+        penalties->count++;
+        for (int j = 0; j <= k; j++)
+            penalties->seen[segment[j]] = penalties->count;
+        sum += penalty_of_segment(penalties, clearance, arbor, segment[k]);
+    }
+    return sum;
+}
+
+double penalty_at_bifurcation(Penalties *penalties, const Clearance *clearance, Arbor *arbor,
+                              int32_t i)
+{
+    const int32_t *child = arbor->branch[i].child;
+    Reduced mother = arbor_reduce(arbor, i);
+    double unit = reserve * clearance->level * arbor->radius_unit * arbor_marginal(arbor, i).gauge;
+    arbor_reserve(arbor, i, unit * mother.rho, 0);
+    for (int side = 0; side < 2; side++)
+        arbor_reserve(arbor, child[side],
+                      unit * mother.widening * arbor_reduce(arbor, child[side]).rho, 0);
+    const int32_t moved[] = {i, child[0], child[1]};
+    return penalty_of(penalties, clearance, arbor, moved, 3);
+}
