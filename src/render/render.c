@@ -1,13 +1,13 @@
-/* The potential is drawn by fieldrender.c. For primitives rays are cast one a sample and rows are
- * the unit of work, so that the picture does not depend on the number of threads. Samples stand
- * where POV-Ray puts them: the centre of the pixel, and with antialiasing an N x N grid more; their
- * mean weighs all N * N + 1 alike (tracetask.cpp of 3.7.0.10: every pixel is supersampled when the
- * threshold is 0). */
+/* Chooses the engine: implicit scenes are drawn by field/fieldrender.c, primitives by
+ * raster/rasterrender.c or raster/zbuffer.c where that is asked for and enough, all else ray by ray
+ * by light/rayrender.c. Rows are drawn in bands; what bands have in common is kept from one to the
+ * next. */
 #include "render/render.h"
 
 #include "render/field/fieldrender.h"
-#include "render/light/resample.h"
+#include "render/light/rayrender.h"
 #include "render/light/sight.h"
+#include "render/planes.h"
 #include "render/raster/rasterrender.h"
 #include "render/raster/zbuffer.h"
 #include "render/tile/tilekernels.h"
@@ -31,138 +31,6 @@ struct Renderer {
     size_t n_lights;
     int antialias;
 };
-
-typedef struct Job {
-    const Scene *scene;
-    const RenderParams *params;
-    Sight sight;
-    const Band *band;
-    Frame *frame;
-    double *offsets; /* of a pixel's further samples */
-    uint8_t *mask;   /* pixels that get them; NULL: all */
-} Job;
-
-static Rgb sample_color(const Job *job, int worker, double i, double j)
-{
-    Ray ray = camera_ray(&job->scene->camera, i, j);
-    Surfel surfel;
-    bool seen = caster_first(job->sight.caster, worker, ray, &surfel);
-    return sight_color(&job->sight, worker, ray, i, j, seen ? &surfel : NULL);
-}
-
-/* The mean of the centre sample and the grid around it, summed row by row in float. */
-static Rgb antialiased(const Job *job, int worker, int i, int j, Rgb center)
-{
-    int n = job->params->antialias;
-    Rgb sum = center;
-    for (int y = 0; y < n; y++) {
-        for (int x = 0; x < n; x++) {
-            Rgb sample = sample_color(job, worker, i + job->offsets[x], j + job->offsets[y]);
-            sum.r += sample.r;
-            sum.g += sample.g;
-            sum.b += sample.b;
-        }
-    }
-    double count = n * n + 1;
-    return (Rgb){(float)((double)sum.r / count), (float)((double)sum.g / count),
-                 (float)((double)sum.b / count)};
-}
-
-static void store_geometry(Frame *frame, size_t pixel, const Surfel *surfel)
-{
-    if (frame->depth.values)
-        frame->depth.values[pixel] = surfel ? (float)surfel->t : INFINITY;
-    if (frame->normal.values) {
-        float *normal = &frame->normal.values[3 * pixel];
-        normal[0] = surfel ? (float)surfel->normal.x : 0;
-        normal[1] = surfel ? (float)surfel->normal.y : 0;
-        normal[2] = surfel ? (float)surfel->normal.z : 0;
-    }
-    if (frame->id.ids)
-        frame->id.ids[pixel] = surfel ? surfel->id : 0;
-}
-
-static void report_progress(const Job *job, bool further, size_t row, int worker)
-{
-    if (worker == 0)
-        band_progress(job->band, job->params, job->scene->camera.height, further,
-                      (double)row / job->band->rows);
-}
-
-static void render_row(size_t row, int worker, void *context)
-{
-    const Job *job = context;
-    const Camera *camera = &job->scene->camera;
-    report_progress(job, false, row, worker);
-    for (int i = 0; i < camera->width; i++) {
-        size_t pixel = row * (size_t)camera->width + (size_t)i;
-        Ray ray = camera_ray(camera, i, job->band->first + (int)row);
-        Surfel surfel;
-        bool seen = caster_first(job->sight.caster, worker, ray, &surfel);
-        store_geometry(job->frame, pixel, seen ? &surfel : NULL);
-        if (!job->frame->color.values)
-            continue;
-        Rgb color = sight_color(&job->sight, worker, ray, i, job->band->first + (int)row,
-                                seen ? &surfel : NULL);
-        float *value = &job->frame->color.values[3 * pixel];
-        value[0] = color.r;
-        value[1] = color.g;
-        value[2] = color.b;
-    }
-}
-
-static void resample_row(size_t row, int worker, void *context)
-{
-    const Job *job = context;
-    const Camera *camera = &job->scene->camera;
-    report_progress(job, true, row, worker);
-    for (int i = 0; i < camera->width; i++) {
-        size_t pixel = row * (size_t)camera->width + (size_t)i;
-        if (job->mask && !job->mask[pixel])
-            continue;
-        float *value = &job->frame->color.values[3 * pixel];
-        Rgb color = antialiased(job, worker, i, job->band->first + (int)row,
-                                (Rgb){value[0], value[1], value[2]});
-        value[0] = color.r;
-        value[1] = color.g;
-        value[2] = color.b;
-    }
-}
-
-/* The further samples, of all pixels or of those that differ from their neighbours. */
-static Status resample(Job *job, int threads, Err *err)
-{
-    const RenderParams *params = job->params;
-    const Plane *color = &job->frame->color;
-    TRY(mem_calloc(&job->offsets, (size_t)params->antialias, sizeof *job->offsets, "samples", err));
-    resample_offsets(params->antialias, job->offsets);
-    if (params->antialias_threshold > 0) {
-        TRY(mem_calloc(&job->mask, (size_t)color->width * (size_t)color->height, 1, "masks", err));
-        resample_mask(color, job->band->above, job->band->below, (float)params->antialias_threshold,
-                      threads, job->mask);
-    }
-    threads_for((size_t)color->height, threads, resample_row, job);
-    return STATUS_OK;
-}
-
-static Status rayrender(const Renderer *renderer, const Band *band, Frame *frame, Err *err)
-{
-    const RenderParams *params = &renderer->params;
-    Job job = {.scene = renderer->scene,
-               .params = params,
-               .sight = {renderer->scene, params, renderer->caster},
-               .band = band,
-               .frame = frame};
-    Status status = STATUS_OK;
-    threads_for((size_t)band->rows, renderer->threads, render_row, &job);
-    if (params->antialias > 1 && frame->color.values)
-        status = resample(&job, renderer->threads, err);
-    free(job.offsets);
-    free(job.mask);
-    return status;
-}
-
-/* ---- bands ----------------------------------------------------------------------------------- */
 
 static bool is_field(const Renderer *renderer)
 {
@@ -261,29 +129,12 @@ RenderStats renderer_stats(const Renderer *renderer)
     return renderer->stats;
 }
 
-static Status make_planes(int width, int height, const RenderParams *params, bool codes,
-                          Frame *frame, Err *err)
-{
-    if (params->want_color && codes)
-        TRY(picture_init(&frame->codes, width, height, 3, 8, err));
-    else if (params->want_color)
-        TRY(plane_init(&frame->color, width, height, 3, err));
-    if (params->want_depth)
-        TRY(plane_init(&frame->depth, width, height, 1, err));
-    if (params->want_normal)
-        TRY(plane_init(&frame->normal, width, height, 3, err));
-    if (params->want_id)
-        TRY(idplane_init(&frame->id, width, height, err));
-    return STATUS_OK;
-}
-
 static Status draw(Renderer *renderer, const Band *band, Frame *frame, Err *err)
 {
-    double start_s = clock_seconds();
     const RenderParams *params = &renderer->params;
     bool tiles = is_traced(renderer) ? is_field(renderer) : params->method == RENDER_RASTER;
     bool codes = params->codes_suffice && params->antialias == 1 && tiles;
-    TRY(make_planes(renderer->scene->camera.width, band->rows, params, codes, frame, err));
+    TRY(planes_make(renderer->scene->camera.width, band->rows, params, codes, frame, err));
     TRY(forget_other_views(renderer, err));
     if (!is_traced(renderer) && params->method == RENDER_RASTER)
         return rasterrender(renderer->scene, params, band, &renderer->raster, frame,
@@ -293,33 +144,7 @@ static Status draw(Renderer *renderer, const Band *band, Frame *frame, Err *err)
     if (is_field(renderer))
         return fieldrender(renderer->scene, params, renderer->caster, band, &renderer->field, frame,
                            &renderer->stats, err);
-    TRY(rayrender(renderer, band, frame, err));
-    renderer->stats.trace_s += clock_seconds() - start_s;
-    return STATUS_OK;
-}
-
-static void cut_plane(Plane *plane, const Band *band)
-{
-    if (!plane->values)
-        return;
-    size_t row = (size_t)plane->width * (size_t)plane->channels;
-    plane->height = band->rows - band->above - band->below;
-    memmove(plane->values, plane->values + (size_t)band->above * row,
-            (size_t)plane->height * row * sizeof *plane->values);
-}
-
-/* Takes the neighbours away. */
-static void cut_frame(Frame *frame, const Band *band)
-{
-    cut_plane(&frame->color, band);
-    cut_plane(&frame->depth, band);
-    cut_plane(&frame->normal, band);
-    if (!frame->id.ids)
-        return;
-    size_t width = (size_t)frame->id.width;
-    frame->id.height = band->rows - band->above - band->below;
-    memmove(frame->id.ids, frame->id.ids + (size_t)band->above * width,
-            (size_t)frame->id.height * width * sizeof *frame->id.ids);
+    return rayrender(renderer->scene, params, renderer->caster, band, frame, &renderer->stats, err);
 }
 
 /* The band with the neighbours that adaptive antialiasing looks at. */
@@ -353,7 +178,7 @@ Status renderer_rows(Renderer *renderer, int first, int rows, Frame *frame, Err 
         return status;
     }
     if (band.above + band.below)
-        cut_frame(&made, &band);
+        planes_cut(&made, &band);
     *frame = made;
     return STATUS_OK;
 }

@@ -1,6 +1,7 @@
 #include "render/light/resample.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct MaskJob {
@@ -52,4 +53,31 @@ void resample_offsets(int n, double *offsets)
         offsets[i] = offset;
         offset += step;
     }
+}
+
+Status resampling_init(int antialias, Resampling *more, Err *err)
+{
+    *more = (Resampling){.side = antialias > 1 ? antialias : 0};
+    TRY(mem_calloc(&more->offsets, (size_t)more->side, sizeof *more->offsets, "samples", err));
+    if (more->side > 0)
+        resample_offsets(more->side, more->offsets);
+    return STATUS_OK;
+}
+
+Status resampling_choose(Resampling *more, const RenderParams *params, const Band *band,
+                         const Plane *color, int threads, Err *err)
+{
+    if (!(params->antialias_threshold > 0))
+        return STATUS_OK;
+    TRY(mem_calloc(&more->mask, (size_t)color->width * (size_t)color->height, 1, "masks", err));
+    resample_mask(color, band->above, band->below, (float)params->antialias_threshold, threads,
+                  more->mask);
+    return STATUS_OK;
+}
+
+void resampling_release(Resampling *more)
+{
+    free(more->offsets);
+    free(more->mask);
+    *more = (Resampling){0};
 }

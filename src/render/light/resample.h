@@ -1,8 +1,9 @@
-/* Which pixels adaptive antialiasing samples again. */
+/* The further samples of antialiasing, and which pixels get them. */
 #ifndef CORCAST_RENDER_RESAMPLE_H
 #define CORCAST_RENDER_RESAMPLE_H
 
 #include "image/image.h"
+#include "render/job.h"
 
 /* Sets mask[pixel] to 1 where the square root of a channel, clipped to [0, 1], differs by
  * `threshold` or more from that of a pixel to the left, right, above or below, else to 0, and to 0
@@ -13,5 +14,33 @@ void resample_mask(const Plane *color, int above, int below, float threshold, in
 /* Where a pixel's N x N further samples stand, from its centre, in pixels: offsets[n], the same in
  * both directions; POV-Ray's places [docs/POVRAY.md], summed up as it sums them. */
 void resample_offsets(int n, double *offsets);
+
+/* The further samples of the pixels of a band. */
+typedef struct Resampling {
+    int side;        /* N of N x N further samples a pixel; 0: none */
+    double *offsets; /* owned; resample_offsets(side) */
+    uint8_t *mask;   /* owned; 1 for pixels that get further samples; NULL: all do */
+} Resampling;
+
+/* Sets *more (owned by the caller even when this fails) for `antialias` as in RenderParams.
+ * STATUS_MEMORY. */
+MUST_CHECK Status resampling_init(int antialias, Resampling *more, Err *err);
+/* Sets the mask, if the threshold of `params` asks for one, by the colours of the centre samples.
+ * STATUS_MEMORY. */
+MUST_CHECK Status resampling_choose(Resampling *more, const RenderParams *params, const Band *band,
+                                    const Plane *color, int threads, Err *err);
+void resampling_release(Resampling *more);
+
+static inline bool resampling_wants(const Resampling *more, size_t pixel)
+{
+    return !more->mask || more->mask[pixel];
+}
+
+/* The mean of a pixel's centre and further samples, whose sum in float, in the order of the
+ * samples' rows, is `sum`. */
+static inline float resampling_mean(const Resampling *more, float sum)
+{
+    return (float)((double)sum / (more->side * more->side + 1));
+}
 
 #endif

@@ -9,6 +9,7 @@
 #include "render/raster/zbuffer.h"
 
 #include "render/light/shade.h"
+#include "render/planes.h"
 #include "render/raster/rasterview.h"
 #include <stdlib.h>
 
@@ -200,23 +201,13 @@ static void finish_pixel(const Buffers *buffers, const Point *point, int i, int 
     if (vec3_dot(normal, ray.direction) > 0)
         normal = vec3_scale(normal, -1);
     const Primitive *primitive = seen ? &scene->primitives[point->primitive] : NULL;
-    if (frame->depth.values)
-        frame->depth.values[pixel] = (float)t;
-    if (frame->normal.values) {
-        frame->normal.values[3 * pixel] = (float)normal.x;
-        frame->normal.values[3 * pixel + 1] = (float)normal.y;
-        frame->normal.values[3 * pixel + 2] = (float)normal.z;
-    }
-    if (frame->id.ids)
-        frame->id.ids[pixel] = seen ? primitive->id : 0;
+    planes_store(frame, pixel, t, normal, seen ? primitive->id : 0);
     if (!frame->color.values)
         return;
     Rgb color = scene->background;
     if (seen)
         color = shade(scene, primitive->color, ray_at(ray, t), normal, ray.direction, NULL, NULL);
-    frame->color.values[3 * pixel] = color.r;
-    frame->color.values[3 * pixel + 1] = color.g;
-    frame->color.values[3 * pixel + 2] = color.b;
+    planes_store_color(frame, pixel, color);
 }
 
 static void draw_row(size_t row, int worker, void *context)

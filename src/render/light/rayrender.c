@@ -1,0 +1,111 @@
+/* One ray a sample, its colour as light/sight.c finds it; a row of pixels is the unit of work, so
+ * that the picture does not depend on the number of threads. Samples stand where POV-Ray puts them:
+ * the centre of the pixel, and with antialiasing an N x N grid more; their mean weighs all N * N +
+ * 1 alike (tracetask.cpp of 3.7.0.10: every pixel is supersampled when the threshold is 0). */
+#include "render/light/rayrender.h"
+
+#include "render/light/resample.h"
+#include "render/light/sight.h"
+#include "render/planes.h"
+
+typedef struct RayPicture {
+    const Scene *scene;
+    const RenderParams *params;
+    Sight sight;
+    const Band *band;
+    Frame *frame;
+    Resampling more;
+} RayPicture;
+
+static Rgb sample_color(const RayPicture *picture, int worker, double i, double j)
+{
+    Ray ray = camera_ray(&picture->scene->camera, i, j);
+    Surfel surfel;
+    bool seen = caster_first(picture->sight.caster, worker, ray, &surfel);
+    return sight_color(&picture->sight, worker, ray, i, j, seen ? &surfel : NULL);
+}
+
+/* The mean of the centre sample and the grid around it, summed row by row in float. */
+static Rgb antialiased(const RayPicture *picture, int worker, int i, int j, Rgb center)
+{
+    int n = picture->more.side;
+    Rgb sum = center;
+    for (int y = 0; y < n; y++) {
+        for (int x = 0; x < n; x++) {
+            Rgb sample = sample_color(picture, worker, i + picture->more.offsets[x],
+                                      j + picture->more.offsets[y]);
+            sum.r += sample.r;
+            sum.g += sample.g;
+            sum.b += sample.b;
+        }
+    }
+    return (Rgb){resampling_mean(&picture->more, sum.r), resampling_mean(&picture->more, sum.g),
+                 resampling_mean(&picture->more, sum.b)};
+}
+
+static void report_progress(const RayPicture *picture, bool further, size_t row, int worker)
+{
+    if (worker == 0)
+        band_progress(picture->band, picture->params, picture->scene->camera.height, further,
+                      (double)row / picture->band->rows);
+}
+
+static void render_row(size_t row, int worker, void *context)
+{
+    const RayPicture *picture = context;
+    const Camera *camera = &picture->scene->camera;
+    report_progress(picture, false, row, worker);
+    for (int i = 0; i < camera->width; i++) {
+        size_t pixel = row * (size_t)camera->width + (size_t)i;
+        Ray ray = camera_ray(camera, i, picture->band->first + (int)row);
+        Surfel surfel;
+        bool seen = caster_first(picture->sight.caster, worker, ray, &surfel);
+        if (seen)
+            planes_store(picture->frame, pixel, surfel.t, surfel.normal, surfel.id);
+        else
+            planes_store_nothing(picture->frame, pixel);
+        if (picture->frame->color.values)
+            planes_store_color(picture->frame, pixel,
+                               sight_color(&picture->sight, worker, ray, i,
+                                           picture->band->first + (int)row, seen ? &surfel : NULL));
+    }
+}
+
+static void resample_row(size_t row, int worker, void *context)
+{
+    const RayPicture *picture = context;
+    const Camera *camera = &picture->scene->camera;
+    report_progress(picture, true, row, worker);
+    for (int i = 0; i < camera->width; i++) {
+        size_t pixel = row * (size_t)camera->width + (size_t)i;
+        if (!resampling_wants(&picture->more, pixel))
+            continue;
+        const float *center = &picture->frame->color.values[3 * pixel];
+        planes_store_color(picture->frame, pixel,
+                           antialiased(picture, worker, i, picture->band->first + (int)row,
+                                       (Rgb){center[0], center[1], center[2]}));
+    }
+}
+
+Status rayrender(const Scene *scene, const RenderParams *params, Caster *caster, const Band *band,
+                 Frame *frame, RenderStats *stats, Err *err)
+{
+    RayPicture picture = {.scene = scene,
+                          .params = params,
+                          .sight = {scene, params, caster},
+                          .band = band,
+                          .frame = frame};
+    int threads = params->threads > 0 ? params->threads : threads_available();
+    double start_s = clock_seconds();
+    Status status =
+        resampling_init(frame->color.values ? params->antialias : 1, &picture.more, err);
+    if (status == STATUS_OK)
+        threads_for((size_t)band->rows, threads, render_row, &picture);
+    if (status == STATUS_OK && picture.more.side > 0)
+        status = resampling_choose(&picture.more, params, band, &frame->color, threads, err);
+    if (status == STATUS_OK && picture.more.side > 0)
+        threads_for((size_t)band->rows, threads, resample_row, &picture);
+    resampling_release(&picture.more);
+    stats->trace_s += clock_seconds() - start_s;
+    return status;
+}

@@ -1,0 +1,13 @@
+/* Pictures ray by ray. */
+#ifndef CORCAST_RENDER_RAYRENDER_H
+#define CORCAST_RENDER_RAYRENDER_H
+
+#include "render/cast/caster.h"
+#include "render/job.h"
+
+/* Draws the band into planes that are there, one worker a row at a time, with the workspaces of
+ * `caster` for as many workers, and adds the seconds taken to *stats. STATUS_MEMORY. */
+MUST_CHECK Status rayrender(const Scene *scene, const RenderParams *params, Caster *caster,
+                            const Band *band, Frame *frame, RenderStats *stats, Err *err);
+
+#endif
