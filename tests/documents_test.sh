@@ -48,7 +48,7 @@ END
 
 test_the_numbers_of_the_potential_are_those_of_the_source() {
     agree METHODS.md <<'END'
-With eps = 10⁻⁶ (`TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r @ src/surface/surface.h @ #define TERM_CUTOFF 1e-6
+With eps = 10⁻⁶ (`CELL_TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r @ src/surface/surface.h @ #define CELL_TERM_CUTOFF 1e-6
 with Phi clamped to [10⁻⁵, 0.2] @ src/surface/surface.h @ #define LOG_FORM_FLOOR 1e-5
 with Phi clamped to [10⁻⁵, 0.2] @ src/surface/surface.h @ #define LOG_FORM_CEILING 0.2
 `Phi'^2 >= 4.6 M lack` @ src/render/field/kernel_trace.h @ lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46))
@@ -58,7 +58,7 @@ groups whose margin exceeds 10⁻³ C @ src/render/field/kernel_trace.h @ group.
 does not count where Phi is within 1 % of C and falls @ src/render/cast/field.c @ sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0
 lie in one plane (to 10⁻⁷ / k) @ src/render/field/fieldterms.c @ <= 1e-7;
 to within 4 · 10⁻⁶ of ln C @ src/render/field/kernel_trace_flat.h @ #define PLANE_CLOSE 3e-6f
-10⁻⁶ each: `exp(-d^2)` times the term's peak is below it @ src/render/tile/tile.h @ #define FIELD_CUTOFF 1e-6
+10⁻⁶ each: `exp(-d^2)` times the term's peak is below it @ src/surface/surface.h @ #define TILE_TERM_CUTOFF 1e-6
 20 terms being allowed to be left out @ src/render/field/kernel_trace_common.h @ #define MARGIN_DROPPED 2e-5f
 6 · 10⁻⁷ for each term @ src/render/field/kernel_trace_common.h @ #define MARGIN_TERM 6e-7f
 1.2 · 10⁻⁷ e k B for each term @ src/render/field/kernel_trace_common.h @ #define MARGIN_PLACE 1.2e-7f

@@ -7,7 +7,6 @@
 #include "app/picture.h"
 #include "app/povfiles.h"
 #include "app/settle.h"
-#include "app/surface_step.h"
 #include "app/templates.h"
 #include "render/render.h"
 #include "verify/verify.h"
@@ -356,6 +355,23 @@ static Tolerance exact_tolerance(const IdPlane *ids)
     return tolerance;
 }
 
+/* Holds where POV-Ray's root finder sees the surface against where it is. */
+static Status check_surface(Verification *v, Err *err)
+{
+    const Frame *seen = &v->native, *exact = &v->exact;
+    const SurfaceSight sight = {seen->depth.values, seen->normal.values, seen->id.ids};
+    const SurfaceSight exact_sight = {exact->depth.values, exact->normal.values, exact->id.ids};
+    Plane allowed = {0};
+    TRY(plane_init(&allowed, seen->depth.width, seen->depth.height, 1, err));
+    Status status =
+        surface_tolerance(&v->scene, v->cells.erf, &sight, &exact_sight, allowed.values, err);
+    const SurfacePlanes planes = {&seen->depth, &exact->depth, &allowed};
+    if (status == STATUS_OK)
+        status = surface_check(&planes, &v->surface, err);
+    plane_release(&allowed);
+    return status;
+}
+
 /* Holds the colours of the surface where it is against POV-Ray's, as they are shown. */
 static Status compare_exact(Verification *v, const Rendering *povray, Err *err)
 {
@@ -391,7 +407,7 @@ static Status compare_sides(Verification *v, Err *err)
     if (!is_isosurface(v))
         return STATUS_OK;
     TRY(compare_exact(v, &view_a, err));
-    return surface_step(&v->scene, v->cells.erf, &v->native, &v->exact, &v->surface, err);
+    return check_surface(v, err);
 }
 
 static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err)

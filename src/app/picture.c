@@ -162,8 +162,8 @@ Status picture_check_povray(const PictureOptions *options, Err *err)
 static Status warn_of_losses(const Scene *scene, const StageReport *report, JointForm joints,
                              size_t pruned, Err *err)
 {
-    size_t vanished;
-    TRY(render_count_vanished(scene, &vanished, err));
+    size_t hidden;
+    TRY(surface_count_hidden(scene, &hidden, err));
     size_t segments = report->dropped + report->drawn;
     if (pruned)
         fprintf(stderr, "corcast: %zu of %zu segments are pruned\n", pruned, pruned + segments);
@@ -171,11 +171,11 @@ static Status warn_of_losses(const Scene *scene, const StageReport *report, Join
         fprintf(stderr,
                 "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
                 report->dropped, segments);
-    if (vanished)
+    if (hidden)
         fprintf(stderr,
                 "corcast: %zu of %zu segments are too short for their radius: the potential is "
                 "below e^-2 there and shows nothing\n",
-                vanished, segments);
+                hidden, segments);
     if (report->places_short + report->places_sharp)
         fprintf(stderr,
                 "corcast: at %zu places vessels are too short for joints, at %zu they turn too "

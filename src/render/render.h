@@ -41,8 +41,4 @@ RenderStats renderer_stats(const Renderer *renderer);
 MUST_CHECK Status render(const Scene *scene, const RenderParams *params, Frame *frame,
                          RenderStats *stats, Err *err);
 
-/* How many segments of an implicit scene have no surface about them: the potential half way along
- * the segment is below the level. */
-MUST_CHECK Status render_count_vanished(const Scene *scene, size_t *count, Err *err);
-
 #endif

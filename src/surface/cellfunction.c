@@ -46,7 +46,7 @@ static Vec3 least_along(Vec3 axis)
 
 TermForm term_form(const FieldSegment *segment)
 {
-    double c = sqrt(2) / segment->radius_mm;
+    double c = potential_k(segment->radius_mm);
     Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
     Vec3 v = vec3_normalized(vec3_cross(axis, least_along(axis)));
     return (TermForm){linear(v, c, segment->a), linear(vec3_cross(v, axis), c, segment->a),

@@ -105,7 +105,7 @@ static double gradient_bound(const Builder *builder, const TermList *terms, doub
     return sqrt(log(sum) / half_l2);
 }
 
-/* Pushes those terms of `from` whose bound in the box is above TERM_CUTOFF. */
+/* Pushes those terms of `from` whose bound in the box is above CELL_TERM_CUTOFF. */
 static Status filter_terms(Builder *builder, const TermList *from, Box box, TermList *out, Err *err)
 {
     TRY(mem_reserve(&builder->stack, &builder->stack_capacity, builder->depth + from->count,
@@ -341,7 +341,7 @@ static Support support_of(const FieldSegment *segment)
 {
     double peak = potential_term_peak(segment);
     double decay = 2 / (segment->radius_mm * segment->radius_mm);
-    return (Support){peak, decay, log(peak / TERM_CUTOFF) / decay};
+    return (Support){peak, decay, log(peak / CELL_TERM_CUTOFF) / decay};
 }
 
 static Status build(Builder *builder, size_t n_segments, Err *err)

@@ -17,7 +17,7 @@ typedef struct Place {
 
 static Place place_of(const FieldSegment *segment, Vec3 x)
 {
-    Place place = {.k = sqrt(2) / segment->radius_mm};
+    Place place = {.k = potential_k(segment->radius_mm)};
     place.axis = vec3_normalized(vec3_sub(segment->b, segment->a));
     Vec3 from_a = vec3_sub(x, segment->a);
     double along = vec3_dot(from_a, place.axis);
@@ -106,7 +106,7 @@ double segment_box_distance2(const FieldSegment *segment, const Box *box)
 
 double potential_term_peak(const FieldSegment *segment)
 {
-    double k = sqrt(2) / segment->radius_mm;
+    double k = potential_k(segment->radius_mm);
     return erf(0.5 * k * vec3_distance(segment->a, segment->b));
 }
 
@@ -115,7 +115,7 @@ double potential_term_peak(const FieldSegment *segment)
  * exp(-e^2) erf(k l) / 2, which is at most exp(-e^2) erf(k l / 2); and e^2 + E^2 = (k dist)^2. */
 double potential_term_bound(const FieldSegment *segment, Box box)
 {
-    double k = sqrt(2) / segment->radius_mm;
+    double k = potential_k(segment->radius_mm);
     return exp(-k * k * segment_box_distance2(segment, &box)) * potential_term_peak(segment);
 }
 

@@ -9,9 +9,17 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "scene/scene.h"
-#include "surface/blob.h"      // IWYU pragma: export
-#include "surface/blobroots.h" // IWYU pragma: export
-#include "surface/cells.h"     // IWYU pragma: export
+#include "surface/blob.h"       // IWYU pragma: export
+#include "surface/blobroots.h"  // IWYU pragma: export
+#include "surface/cells.h"      // IWYU pragma: export
+#include "surface/fieldindex.h" // IWYU pragma: export
+
+/* 1 / (sqrt2 s), 1/mm: with lengths in units of 1 / k a term is exp(-E^2) (erf u + erf v) / 2, E
+ * the distance from the axis line, u and v how far x is inside either end. */
+static inline double potential_k(double radius_mm)
+{
+    return sqrt(2) / radius_mm;
+}
 
 /* One term of the potential at x, in [0, 1], to a few units of the last place of its largest
  * factor, tails included. */
@@ -25,9 +33,14 @@ double potential_term_peak(const FieldSegment *segment);
  * the segment. */
 double potential_term_bound(const FieldSegment *segment, Box box);
 
-/* Terms below this are dropped: a cell leaves out segments whose term is below it all over, and n
- * of them move the surface of a lone vessel by at most n TERM_CUTOFF r / (4 FIELD_LEVEL). */
-#define TERM_CUTOFF 1e-6
+/* Terms below these are left out: n of them, below eps each, move the surface of a lone vessel by
+ * at most n eps r / (4 FIELD_LEVEL). CELL: of a cell of POV-Ray's scene, a segment whose term is
+ * below it all over the cell. TILE: of a tile or packet of rays in single precision, a segment
+ * whose term is below it on all of them. Which terms a cell drops and which a tile does is not the
+ * same set. RAY: of a ray in double precision; the surface that is called exact. */
+#define CELL_TERM_CUTOFF 1e-6
+#define TILE_TERM_CUTOFF 1e-6
+#define RAY_TERM_CUTOFF 1e-9
 
 /* The log form of the potential that POV-Ray traces: sqrt(-2 ln clamp(phi, LOG_FORM_FLOOR,
  * LOG_FORM_CEILING)) - 2, zero on the surface, (distance - 2 s) / s about a lone vessel. Where the
@@ -36,5 +49,23 @@ double potential_term_bound(const FieldSegment *segment, Box box);
 #define LOG_FORM_FLOOR 1e-5
 #define LOG_FORM_CEILING 0.2
 double potential_log_form(double phi);
+
+/* How many segments have no surface about them: the sum of all terms half way along the segment is
+ * below the level. STATUS_MEMORY. */
+MUST_CHECK Status surface_count_hidden(const Scene *scene, size_t *count, Err *err);
+
+/* What a picture of the scene's camera knows of each pixel, rows from the top; borrowed. */
+typedef struct SurfaceSight {
+    const float *depth;  /* mm along the ray; INFINITY where nothing is seen */
+    const float *normal; /* 3 a pixel, unit */
+    const uint32_t *ids; /* of segments of the scene, where something is seen */
+} SurfaceSight;
+
+/* Fills allowed[pixel], mm, with how far apart along the ray two sights may be: `seen`, what
+ * POV-Ray's root finder sees of the scene in cells with this form of erf, and `exact`, where the
+ * surface is. 0 where neither sees anything, HUGE_VAL where the ray grazes what either sees.
+ * STATUS_MEMORY. */
+MUST_CHECK Status surface_tolerance(const Scene *scene, ErfForm erf, const SurfaceSight *seen,
+                                    const SurfaceSight *exact, float *allowed, Err *err);
 
 #endif

@@ -20,8 +20,7 @@ typedef struct Setup {
 static void start(Setup *setup)
 {
     assert_int_equal(fieldindex_build(&setup->test.scene, &setup->index, NULL), STATUS_OK);
-    assert_int_equal(fieldscratch_new(fieldindex_size(setup->index), &setup->scratch, NULL),
-                     STATUS_OK);
+    assert_int_equal(fieldscratch_new(setup->index->n_tubes, &setup->scratch, NULL), STATUS_OK);
 }
 
 static void finish(Setup *setup)

@@ -77,7 +77,7 @@ static void short_segments_shrink_and_vanish(void **state)
         double radius = radius_towards(&test.scene, vec3(0, 0, 0), vec3(0, 0, 1));
         assert_true(fabs(radius - cases[i].radius) < 1e-3);
         size_t vanished;
-        assert_int_equal(render_count_vanished(&test.scene, &vanished, NULL), STATUS_OK);
+        assert_int_equal(surface_count_hidden(&test.scene, &vanished, NULL), STATUS_OK);
         assert_int_equal(vanished, cases[i].radius < 0);
     }
 }
@@ -90,7 +90,7 @@ static void short_segments_of_a_chain_do_not_vanish(void **state)
     for (int i = 0; i < 50; i++)
         put_segment(&test, vec3(0.1 * i, 0, 0), vec3(0.1 * (i + 1), 0, 0), 1);
     size_t vanished;
-    assert_int_equal(render_count_vanished(&test.scene, &vanished, NULL), STATUS_OK);
+    assert_int_equal(surface_count_hidden(&test.scene, &vanished, NULL), STATUS_OK);
     assert_int_equal(vanished, 0);
 }
 
@@ -104,7 +104,7 @@ static void what_vanishes_is_counted_half_way_along(void **state)
     put_segment(&test, vec3(0, 0, 0), vec3(0.16, 0, 0), 1);
     put_segment(&test, vec3(0.16, 0, 0), vec3(0.172, 0, 0), 1);
     size_t vanished;
-    assert_int_equal(render_count_vanished(&test.scene, &vanished, NULL), STATUS_OK);
+    assert_int_equal(surface_count_hidden(&test.scene, &vanished, NULL), STATUS_OK);
     assert_int_equal(vanished, 1);
 }
 

@@ -45,8 +45,7 @@ static void views_init(Views *views, SceneKind kind, Random *random)
     make_test_scene(kind, random, &views->test);
     views->halving = halving_of(&views->test.scene);
     assert_int_equal(fieldindex_build(&views->test.scene, &views->index, NULL), STATUS_OK);
-    assert_int_equal(fieldscratch_new(fieldindex_size(views->index), &views->scratch, NULL),
-                     STATUS_OK);
+    assert_int_equal(fieldscratch_new(views->index->n_tubes, &views->scratch, NULL), STATUS_OK);
 }
 
 static void views_release(Views *views)

@@ -47,7 +47,7 @@ Status caster_new(const Scene *scene, const CellParams *cells, int workers, Cast
         TRY_GOTO(mem_calloc(&caster->scratch, (size_t)workers, sizeof *caster->scratch,
                             "workspaces", err));
         for (int i = 0; i < workers; i++)
-            TRY_GOTO(fieldscratch_new(fieldindex_size(caster->field), &caster->scratch[i], err));
+            TRY_GOTO(fieldscratch_new(caster->field->n_tubes, &caster->scratch[i], err));
     }
     *out = caster;
     return STATUS_OK;

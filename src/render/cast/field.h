@@ -5,13 +5,7 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "scene/scene.h"
-
-/* The search structure over the segments of a scene, constant once built and shared by threads. */
-typedef struct FieldIndex FieldIndex;
-
-/* scene->segments is borrowed and must outlive the index; there may be none. */
-MUST_CHECK Status fieldindex_build(const Scene *scene, FieldIndex **out, Err *err);
-void fieldindex_free(FieldIndex *index);
+#include "surface/surface.h"
 
 /* The workspace of one thread: room for `capacity` segments on one ray, of which only the part that
  * rays need is ever touched. Nothing is allocated later. */
@@ -20,18 +14,15 @@ typedef struct FieldScratch FieldScratch;
 MUST_CHECK Status fieldscratch_new(size_t capacity, FieldScratch **out, Err *err);
 void fieldscratch_free(FieldScratch *scratch);
 
-/* How many segments the index holds: what a ray may need room for. */
-size_t fieldindex_size(const FieldIndex *index);
-
 /* The first point at t in [t_min, t_max] where Phi crosses FIELD_LEVEL along the ray; t_min is
  * finite, t_max may be infinite. False when there is none. That is where Phi rises through it, but
  * for a ray that starts inside a vessel: that meets the wall from within, where Phi first falls to
  * the level.
  *
  * *normal is unit and outward, -grad Phi / |grad Phi|; *segment the index of the segment whose term
- * is largest there, the lowest of equals. Terms are left out where they are below 1e-9, so the
- * surface of a lone vessel is off by at most 1.9e-9 r each; a ray that grazes within that of the
- * level may go either way. Where only neighbours blend, the union of their bodies is met. */
+ * is largest there, the lowest of equals. Terms are left out where they are below RAY_TERM_CUTOFF,
+ * so the surface of a lone vessel is off by at most 1.9e-9 r each; a ray that grazes within that of
+ * the level may go either way. Where only neighbours blend, the union of their bodies is met. */
 bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                      double t_max, double *t, Vec3 *normal, uint32_t *segment);
 

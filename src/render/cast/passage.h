@@ -3,7 +3,7 @@
 #ifndef CORCAST_RENDER_PASSAGE_H
 #define CORCAST_RENDER_PASSAGE_H
 
-#include "render/cast/fieldindex.h"
+#include "render/cast/field.h"
 
 /* How the ray passes a tube: the term at t_mid + x is radial exp(-w^2) (erf(u) + erf(h - u)) / 2,
  * w = w0 + w1 x, u = u0 + u1 x. */

@@ -122,11 +122,11 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
         *out = (FrameSegment){.a = fieldtiles_to_frame(tiles, vec3_sub(segment->a, origin)),
                               .b = fieldtiles_to_frame(tiles, vec3_sub(segment->b, origin)),
                               .length = vec3_length(span),
-                              .k = sqrt(2) / segment->radius_mm};
+                              .k = potential_k(segment->radius_mm)};
         out->axis = vec3_scale(fieldtiles_to_frame(tiles, span), 1 / out->length);
         out->sine = sqrt(out->axis.x * out->axis.x + out->axis.y * out->axis.y);
         out->per_sine = out->sine > 0 ? 1 / out->sine : 0;
-        double reach2 = log(potential_term_peak(segment) / FIELD_CUTOFF);
+        double reach2 = log(potential_term_peak(segment) / TILE_TERM_CUTOFF);
         TileSpan rows = {1, 0};
         if (reach2 > 0) {
             out->reach = sqrt(reach2) / out->k;

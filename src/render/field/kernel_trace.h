@@ -235,7 +235,7 @@ typedef struct Sample {
 /* Whether the term is above the cut-off on some of the rays. */
 LANE_FN bool matters(const PacketTerm *term, LaneMask rays)
 {
-    return lanes_any(rays & (term->peak > (float)FIELD_CUTOFF));
+    return lanes_any(rays & (term->peak > (float)TILE_TERM_CUTOFF));
 }
 
 LANE_FN void add_sample(const PacketTerm *term, Lanes z, Sample *sample)

@@ -12,11 +12,8 @@
 
 enum { TILE_SIDE = 8, TILE_SAMPLES = TILE_SIDE * TILE_SIDE };
 
-/* Terms below this are left out. */
-#define FIELD_CUTOFF 1e-6
-
 /* A term of the potential as the tile sees it. `o` is where the middle ray passes at z = z_near:
- * its place less the point of the axis that is nearest to the ray. k = sqrt(2) / radius. */
+ * its place less the point of the axis that is nearest to the ray. k = potential_k. */
 typedef struct TileTerm {
     double z_near;
     double on, off; /* z between which the term may exceed the cut-off on a ray of the tile */

@@ -1,24 +1,20 @@
 /* Top-down, the longest side of the box of the middles split at its median: the depth is at most
  * log2 n + 1, so that a short fixed stack is enough for traversal, and the tubes end up in the
  * order of the leaves. */
-#include "render/cast/fieldindex.h"
-
 #include "surface/surface.h"
-#include <stdlib.h>
 
-/* Terms below this are left out. */
-static const double cutoff = 1e-9;
+#include <stdlib.h>
 
 FieldTube fieldtube_of(const FieldSegment *segment, uint32_t number)
 {
     Vec3 span = vec3_sub(segment->b, segment->a);
     FieldTube tube = {.a = segment->a, .length = vec3_length(span), .segment = number};
     tube.axis = vec3_scale(span, 1 / tube.length);
-    tube.k = sqrt(2) / segment->radius_mm;
+    tube.k = potential_k(segment->radius_mm);
     tube.length_k = tube.k * tube.length;
     tube.peak = potential_term_peak(segment);
     tube.log_peak = log(tube.peak);
-    tube.reach2 = tube.log_peak - log(cutoff);
+    tube.reach2 = tube.log_peak - log(RAY_TERM_CUTOFF);
     return tube;
 }
 
@@ -103,9 +99,35 @@ done:
     return status;
 }
 
-size_t fieldindex_size(const FieldIndex *index)
+static bool holds(const FieldNode *node, const double x[3])
 {
-    return index->n_tubes;
+    for (int axis = 0; axis < 3; axis++)
+        if (!(x[axis] >= node->bounds[0][axis] && x[axis] <= node->bounds[1][axis]))
+            return false;
+    return true;
+}
+
+double fieldindex_potential(const FieldIndex *index, Vec3 point)
+{
+    const double x[3] = {point.x, point.y, point.z};
+    uint32_t stack[FIELD_STACK_SIZE];
+    int top = 0;
+    double sum = 0;
+    if (index->n_nodes)
+        stack[top++] = 0;
+    while (top > 0) {
+        uint32_t number = stack[--top];
+        const FieldNode *node = &index->nodes[number];
+        if (!holds(node, x))
+            continue;
+        if (node->n_tubes == 0) {
+            stack[top++] = node->first;
+            stack[top++] = number + 1;
+        }
+        for (uint32_t i = node->first; i < node->first + node->n_tubes; i++)
+            sum += potential_term(&index->scene->segments[index->tubes[i].segment], point);
+    }
+    return sum;
 }
 
 void fieldindex_free(FieldIndex *index)
