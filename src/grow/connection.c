@@ -1,171 +1,64 @@
-/* The cost of a connection depends on the bifurcation through three lengths only. Where it is
- * least, the derivatives with respect to them pull evenly: the point is the weighted Fermat point
- * for these derivatives as weights [fermat.h]. They vary slowly, so weights at one place and the
- * Fermat point for them in turn converge in a few rounds. To rank connections one round from a
- * middling place does, priced to first order by the same weights; the rest are for the one that is
- * made. A point that collapses onto an end is pushed off it to the shortest length the rules allow,
- * in the direction that costs least: such connections are among the best there are, so they must
- * not be lost. A segment that must stay straight is split at the best place along it. */
+/* The place of a connection is found by the optimiser of a bifurcation [bifurcation.h]. To rank
+ * connections (connection_estimate) one round of it from a middling place does, priced to first
+ * order by the same weights; the rest of the rounds (connection_optimise) are for the one that is
+ * to be made. Whether it may be made is asked last, because that is dearest: whether its segments
+ * are in the domain (connection_is_inside), and clear of all others (connection_clearance). */
 #include "grow/connection.h"
 
-#include "grow/cco/fermat.h"
-#include <stdlib.h>
 #include <string.h>
 
 /* Vessels widen as the tree below them grows: the rules hold for radii this much greater, and so at
  * the end of growth for nearly all vessels at their final radii. For length, and for keeping clear
  * of others. */
 static const double length_reserve = 1.15, clearance_reserve = 1.1;
+/* Bifurcations keep so many times the least length from the ends: radii move a little too. */
+static const double margin = 1.02;
 /* How often the place of the connection that is made is found anew. */
 enum { ROUNDS = 2 };
 
-/* The segment to be split, as it is. */
-typedef struct Host {
-    double burden[PARTS]; /* of the segments that splitting it makes */
-    double gauge;
-    Below below;
-    Reduced whole;
-    Adjoint adjoint;
-    double extra;
-    bool given, piece;
-    double length; /* mm */
-} Host;
+/* A piece of a vessel may be split into parts a little shorter than a quarter of it, however wide
+ * it is. */
+static const double least_part_of_piece = 0.24;
 
-typedef struct Trial {
-    double price;
-    double weight[PARTS]; /* d price / d length */
-    double radius[PARTS]; /* mm */
-} Trial;
-
-static Host host_of(const Network *net, int32_t i)
+/* The bifurcation at which `segment` would be split for `terminal`. */
+static Bifurcation bifurcation_of(const Network *net, const Rules *rules, int32_t i, Vec3 terminal)
 {
     const Segment *segment = &net->segment[i];
     int32_t terminals = segment->terminals;
-    Host host = {.burden = {[PROXIMAL] = network_burden(net, i, terminals + 1),
-                            [DISTAL] = network_burden(net, i, terminals),
-                            [FRESH] = net->fresh_weight},
-                 .gauge = (double)segment->gauge,
-                 .below = network_below(net, i),
-                 .extra = net->sensitivity[i].extra,
-                 .given = network_is_given(net, i),
-                 .piece = network_is_piece(net, i),
-                 .length = segment->length};
-    host.whole = law_extend(&net->law, host.burden[DISTAL], segment->length, &host.below);
-    host.adjoint = (Adjoint){net->sensitivity[i].load, law_lambda_power(&net->law, host.gauge)};
-    return host;
-}
-
-/* What splitting the host costs when the parts have these lengths. */
-static Trial evaluate(const Network *net, const Host *host, const double length[PARTS])
-{
-    const Law *law = &net->law;
-    const Below nothing = {0};
-    const double *burden = host->burden;
-    Reduced distal = law_extend(law, burden[DISTAL], length[DISTAL], &host->below);
-    Reduced fresh = law_extend(law, burden[FRESH], length[FRESH], &nothing);
-    Below fork = law_gather(law, distal.rho_gamma + fresh.rho_gamma, distal.cost + fresh.cost);
-    Reduced proximal = law_extend(law, burden[PROXIMAL], length[PROXIMAL], &fork);
-
-    Trial out;
-    Adjoint top = host->adjoint;
-    Adjoint distal_adjoint = law_descend(law, &proximal, top, &distal);
-    Adjoint fresh_adjoint = law_descend(law, &proximal, top, &fresh);
-    out.price = top.load * (proximal.load - host->whole.load) +
-                top.cost * (proximal.cost - host->whole.cost) + host->extra;
-    out.weight[PROXIMAL] = law_length_weight(law, &proximal, top, burden[PROXIMAL]);
-    out.weight[DISTAL] = law_length_weight(law, &distal, distal_adjoint, burden[DISTAL]);
-    out.weight[FRESH] = law_length_weight(law, &fresh, fresh_adjoint, burden[FRESH]);
-
-    double unit = net->radius_unit * host->gauge;
-    out.radius[PROXIMAL] = unit * proximal.rho;
-    out.radius[DISTAL] = unit * proximal.widening * distal.rho;
-    out.radius[FRESH] = unit * proximal.widening * fresh.rho;
+    double gauge = (double)segment->gauge;
+    Bifurcation out = {.end = {net->position[segment->parent], net->position[i], terminal},
+                       .burden = {network_burden(net, i, terminals + 1),
+                                  network_burden(net, i, terminals), net->fresh_weight},
+                       .below = {network_below(net, i)},
+                       .adjoint = {net->sensitivity[i].load, law_lambda_power(&net->law, gauge)},
+                       .radius_unit = net->radius_unit * gauge,
+                       .extra = net->sensitivity[i].extra,
+                       .least_length = rules->least_length,
+                       .least_widths = length_reserve * rules->thickness,
+                       .least_part = network_is_piece(net, i)
+                                         ? least_part_of_piece * segment->length
+                                         : (double)INFINITY,
+                       .margin = margin,
+                       .straight = network_is_given(net, i)};
+    Reduced whole = law_extend(&net->law, out.burden[DISTAL], segment->length, &out.below[0]);
+    out.load_before = whole.load;
+    out.cost_before = whole.cost;
     return out;
-}
-
-static double shortest(const Rules *rules, double radius)
-{
-    double width = 2 * length_reserve * rules->thickness * radius;
-    return width > rules->least_length ? width : rules->least_length;
-}
-
-/* The shortest that a part of the host may be: of a piece of a vessel, nearly a quarter will do. */
-static double shortest_part(const Rules *rules, const Host *host, int part, double radius)
-{
-    double least = shortest(rules, radius);
-    return host->piece && part != FRESH ? fmin(least, 0.24 * host->length) : least;
-}
-
-/* Keeps the bifurcation off the three ends. */
-static Vec3 push_off(const Rules *rules, const Vec3 end[PARTS], const double radius[PARTS],
-                     const Fermat *fermat)
-{
-    Vec3 place = fermat->place;
-    for (int i = 0; i < PARTS; i++) {
-        double least = 1.02 * shortest(rules, radius[i]); /* the radius moves a little too */
-        Vec3 away = vec3_sub(place, end[i]);
-        if (vec3_dot(away, away) >= least * least)
-            continue;
-        Vec3 direction = fermat->corner == i ? fermat->inward : away;
-        double length = vec3_length(direction);
-        if (length > 0)
-            place = vec3_add_scaled(end[i], direction, least / length);
-    }
-    return place;
-}
-
-static void measure(const Vec3 end[PARTS], Vec3 place, double length[PARTS])
-{
-    for (int i = 0; i < PARTS; i++)
-        length[i] = vec3_distance(end[i], place);
-}
-
-static void find_ends(const Network *net, int32_t segment, Vec3 terminal, Vec3 end[PARTS])
-{
-    end[PROXIMAL] = net->position[net->segment[segment].parent];
-    end[DISTAL] = net->position[segment];
-    end[FRESH] = terminal;
-}
-
-/* Where the bifurcation is best by a trial's weights, as far as the rules allow. False when they
- * are beyond what a double can hold. */
-static bool find_place(const Rules *rules, const Host *host, const Vec3 end[PARTS],
-                       const Trial *trial, Vec3 *place)
-{
-    double greatest = fmax(trial->weight[0], fmax(trial->weight[1], trial->weight[2]));
-    if (!isfinite(trial->price) || !isfinite(greatest) || !(greatest > 0))
-        return false;
-    double weight[PARTS];
-    for (int i = 0; i < PARTS; i++) /* none pushes: Fermat's point wants weights above 0 */
-        weight[i] = fmax(trial->weight[i] / greatest, 1e-9);
-    if (host->given) {
-        double margin[2];
-        for (int i = 0; i < 2; i++)
-            margin[i] = 1.02 * shortest_part(rules, host, i, trial->radius[i]);
-        *place = fermat_point_between(end, weight, margin);
-        return true;
-    }
-    Fermat fermat = fermat_point(end, weight);
-    *place = push_off(rules, end, trial->radius, &fermat);
-    return true;
 }
 
 bool connection_estimate(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
                          Connection *out)
 {
-    Vec3 end[PARTS], middle, place;
-    find_ends(net, segment, terminal, end);
-    Host host = host_of(net, segment);
-    middle = vec3_scale(vec3_add(end[PROXIMAL], end[DISTAL]), 0.5);
-    double from[PARTS], to[PARTS];
-    measure(end, vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25), from);
-    Trial trial = evaluate(net, &host, from);
-    if (!find_place(rules, &host, end, &trial, &place))
+    Bifurcation problem = bifurcation_of(net, rules, segment, terminal);
+    BifurcationState state;
+    Vec3 middle = vec3_scale(vec3_add(problem.end[PROXIMAL], problem.end[DISTAL]), 0.5), place;
+    bifurcation_at(&net->law, &problem, vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25),
+                   &state);
+    if (!bifurcation_next(&problem, &state, &place))
         return false;
-    measure(end, place, to);
-    *out = (Connection){.segment = segment, .price = trial.price, .bifurcation = place};
+    *out = (Connection){.segment = segment, .price = state.price, .bifurcation = place};
     for (int i = 0; i < PARTS; i++)
-        out->price += trial.weight[i] * (to[i] - from[i]);
+        out->price += state.weight[i] * (vec3_distance(problem.end[i], place) - state.length[i]);
     return true;
 }
 
@@ -174,35 +67,25 @@ bool connection_may_split(const Network *net, const Grid *grid, const Rules *rul
     if (network_is_piece(net, segment))
         return true;
     const GridItem *item = &grid->item[segment];
-    double least = 2 * shortest(rules, (double)item->radius);
+    double width = 2 * length_reserve * rules->thickness * (double)item->radius;
+    double least = 2 * (width > rules->least_length ? width : rules->least_length);
     return grid_length2(item) > least * least;
-}
-
-static bool is_long_enough(const Rules *rules, const Host *host, const double length[PARTS],
-                           const double radius[PARTS])
-{
-    for (int i = 0; i < PARTS; i++)
-        if (!(length[i] >= shortest_part(rules, host, i, radius[i])))
-            return false;
-    return true;
 }
 
 bool connection_optimise(const Network *net, const Rules *rules, Vec3 terminal,
                          Connection *connection)
 {
-    Vec3 end[PARTS], place = connection->bifurcation;
-    find_ends(net, connection->segment, terminal, end);
-    Host host = host_of(net, connection->segment);
+    Bifurcation problem = bifurcation_of(net, rules, connection->segment, terminal);
+    Vec3 place = connection->bifurcation;
     for (int round = 0; round <= ROUNDS; round++) {
-        double length[PARTS];
-        measure(end, place, length);
-        Trial trial = evaluate(net, &host, length);
-        if (!isfinite(trial.price) || !is_long_enough(rules, &host, length, trial.radius))
+        BifurcationState state;
+        bifurcation_at(&net->law, &problem, place, &state);
+        if (!isfinite(state.price) || !bifurcation_is_long_enough(&problem, &state))
             return round > 0;
-        connection->price = trial.price;
+        connection->price = state.price;
         connection->bifurcation = place;
-        memcpy(connection->radius, trial.radius, sizeof trial.radius);
-        if (!find_place(rules, &host, end, &trial, &place))
+        memcpy(connection->radius, state.radius, sizeof state.radius);
+        if (!bifurcation_next(&problem, &state, &place))
             break;
     }
     return true;

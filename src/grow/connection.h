@@ -3,11 +3,17 @@
 #define CORCAST_GROW_CONNECTION_H
 
 #include "domain/domain.h"
+#include "grow/cco/bifurcation.h"
 #include "grow/network.h"
 #include "grow/network_grid.h"
 
 /* The three segments that a connection makes. */
-enum { PROXIMAL, DISTAL, FRESH, PARTS };
+enum {
+    PROXIMAL = BIFURCATION_PROXIMAL,
+    DISTAL = BIFURCATION_LEFT,
+    FRESH = BIFURCATION_RIGHT,
+    PARTS = BIFURCATION_ENDS
+};
 
 /* A way to connect a terminal: `segment` is split at `bifurcation`. */
 typedef struct Connection {

@@ -4,16 +4,6 @@
 
 #include <string.h>
 
-/* Vessels widen as the tree below them grows; they may widen by this much until the
- * grid is made anew. */
-static const double reach_reserve = 1.4;
-
-double entry_reach(const Rules *rules, double radius)
-{
-    double reach = reach_reserve * rules->thickness * radius;
-    return (reach < rules->widest ? reach : rules->widest) + rules->gap;
-}
-
 /* An item of no length is in no cell. */
 static bool has_length(const GridItem *item)
 {

@@ -15,7 +15,12 @@ typedef struct Rules {
 
 /* The radius of the capsule that stands in the grid for a vessel of `radius`: with room to widen
  * until the grid is made anew. */
-double entry_reach(const Rules *rules, double radius);
+static inline double entry_reach(const Rules *rules, double radius)
+{
+    const double reserve = 1.4;
+    double reach = reserve * rules->thickness * radius;
+    return (reach < rules->widest ? reach : rules->widest) + rules->gap;
+}
 
 /* Enters a segment of the tree, unless it has no length: others begin and end there. */
 MUST_CHECK Status entry_add(Grid *grid, const Rules *rules, const Network *net, int32_t segment,

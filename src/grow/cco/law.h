@@ -112,15 +112,6 @@ static inline Reduced law_extend(const Law *law, double burden, double length, c
     return out;
 }
 
-/* The segment of `length` mm that carries `burden`, with daughters whose flares and costs sum up to
- * `rho_gamma_below` and `cost_below`, both 0 at a terminal. */
-static inline Reduced law_reduce(const Law *law, double burden, double length,
-                                 double rho_gamma_below, double cost_below)
-{
-    Below below = law_gather(law, rho_gamma_below, cost_below);
-    return law_extend(law, burden, length, &below);
-}
-
 /* dS_root / d load of `at`, now with the part that goes through its own cost. */
 static inline double law_total(const Law *law, const Reduced *at, Adjoint adjoint)
 {

@@ -15,13 +15,11 @@ enum { MOST_ROUNDS = 100 };
 Reduced arbor_reduce(const Arbor *arbor, int32_t i)
 {
     const Branch *branch = &arbor->branch[i];
-    double viscosity = arbor_viscosity(arbor, i);
-    if (branch->child[0] < 0)
-        return law_reduce(&arbor->law, branch->flow * viscosity, branch->length, 0, 0);
-    const Branch *left = &arbor->branch[branch->child[0]];
-    const Branch *right = &arbor->branch[branch->child[1]];
-    return law_reduce(&arbor->law, (left->flow + right->flow) * viscosity, branch->length,
-                      left->rho_gamma + right->rho_gamma, left->cost + right->cost);
+    const int32_t *child = branch->child;
+    double flow =
+        child[0] < 0 ? branch->flow : arbor->branch[child[0]].flow + arbor->branch[child[1]].flow;
+    Below below = arbor_below(arbor, i);
+    return law_extend(&arbor->law, flow * arbor_viscosity(arbor, i), branch->length, &below);
 }
 
 /* Sums up segment i from its daughters. */

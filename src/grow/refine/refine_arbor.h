@@ -10,7 +10,6 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "grow/cco/law.h"
-#include "grow/refine/refine_bifurcation.h"
 #include "tree/tree.h"
 
 /* What the walk to the root needs of one segment, in one cache line. */
@@ -33,6 +32,13 @@ typedef struct Shape {
     double reserved_radius; /* mm; the radius that no other vessel comes in the way of */
     uint32_t saved;
 } Shape;
+
+/* How S_root, to first order, depends on the segment at one place in the tree. */
+typedef struct Marginal {
+    Adjoint adjoint;
+    double gauge; /* [law.h] */
+    double extra; /* dS_root for one more unit of flow through all segments above */
+} Marginal;
 
 enum { ARBOR_MOVE_SHAPES = 24 };
 
@@ -98,6 +104,16 @@ static inline double arbor_cost(const Arbor *arbor)
 /* The segment after `i` in depth-first order, which begins with the root segment; 0 after the
  * last. */
 int32_t arbor_next(const Arbor *arbor, int32_t i);
+
+/* What hangs on the distal end of segment i. */
+static inline Below arbor_below(const Arbor *arbor, int32_t i)
+{
+    const int32_t *child = arbor->branch[i].child;
+    if (child[0] < 0)
+        return (Below){0};
+    const Branch *left = &arbor->branch[child[0]], *right = &arbor->branch[child[1]];
+    return law_gather(&arbor->law, left->rho_gamma + right->rho_gamma, left->cost + right->cost);
+}
 
 /* Segment i with what hangs on it. */
 Reduced arbor_reduce(const Arbor *arbor, int32_t i);

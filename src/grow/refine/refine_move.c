@@ -11,6 +11,8 @@
  * pays in a place is what penalties rise by when it is put there from nowhere. */
 #include "grow/refine/refine_move.h"
 
+#include "grow/cco/bifurcation.h"
+
 #include <float.h>
 
 /* Candidates for a connection, and how many segments are looked at to find them. */
@@ -21,35 +23,30 @@ enum { ROUGH_ROUNDS = 1, ROUNDS = 2 };
  * penalties, then random ones; a subtree that cannot be connected where it was to be tries other
  * candidates. */
 enum { STEPS = 3, JOLTS = 4, ATTEMPTS = 4 };
+/* Bifurcations keep so many times the least length from the ends: radii move a little too, and
+ * vessels are given more room than they need [refine_clearance.c]. */
+static const double margin = 1.06;
 /* Gains of S_root, over S_root, too small to be worth a move. */
 static const double least_gain = 1e-9;
 
-static Daughter daughter_of(const Arbor *arbor, int32_t i)
-{
-    const Branch *branch = &arbor->branch[i];
-    double viscosity = arbor_viscosity(arbor, i);
-    if (branch->child[0] < 0)
-        return (Daughter){branch->flow, viscosity, 0, 0};
-    const Branch *left = &arbor->branch[branch->child[0]];
-    const Branch *right = &arbor->branch[branch->child[1]];
-    return (Daughter){left->flow + right->flow, viscosity, left->rho_gamma + right->rho_gamma,
-                      left->cost + right->cost};
-}
-
-/* The fork of segments `left` and `right` from where `proximal` begins. */
+/* The bifurcation of segments `left` and `right` from where `proximal` begins. */
 static Bifurcation bifurcation_of(const LocalSearch *search, int32_t proximal, int32_t left,
-                                  int32_t right, Marginal marginal)
+                                  int32_t right, const Marginal *marginal)
 {
     const Arbor *arbor = &search->arbor;
+    double left_flow = arbor->branch[left].flow, right_flow = arbor->branch[right].flow;
     return (Bifurcation){
-        &arbor->law,
-        {arbor->shape[proximal].from, arbor->shape[left].to, arbor->shape[right].to},
-        {daughter_of(arbor, left), daughter_of(arbor, right)},
-        arbor_viscosity(arbor, proximal),
-        marginal,
-        arbor->radius_unit,
-        search->clearance.least_length,
-        search->clearance.level};
+        .end = {arbor->shape[proximal].from, arbor->shape[left].to, arbor->shape[right].to},
+        .burden = {(left_flow + right_flow) * arbor_viscosity(arbor, proximal),
+                   left_flow * arbor_viscosity(arbor, left),
+                   right_flow * arbor_viscosity(arbor, right)},
+        .below = {arbor_below(arbor, left), arbor_below(arbor, right)},
+        .adjoint = marginal->adjoint,
+        .radius_unit = arbor->radius_unit * marginal->gauge,
+        .least_length = search->clearance.least_length,
+        .least_widths = search->clearance.level,
+        .least_part = INFINITY,
+        .margin = margin};
 }
 
 /* Keeps the present move, which ends with a bifurcation at the end of segment i. */
@@ -117,17 +114,17 @@ Status move_bifurcation(LocalSearch *search, int32_t i, Err *err)
     const int32_t *child = arbor->branch[i].child;
     const int32_t moved[] = {i, child[0], child[1]};
     Vec3 place = arbor->shape[i].to;
-    Bifurcation fork = bifurcation_of(search, i, child[0], child[1], arbor_marginal(arbor, i));
+    Marginal marginal = arbor_marginal(arbor, i);
+    Bifurcation problem = bifurcation_of(search, i, child[0], child[1], &marginal);
     BifurcationState now, best;
     search->tried++;
-    if (!bifurcation_at(&fork, place, &now))
-        return STATUS_OK;
+    bifurcation_at(&arbor->law, &problem, place, &now);
     best = now;
-    if (!bifurcation_optimise(&fork, ROUNDS, &best))
+    if (!bifurcation_optimise(&arbor->law, &problem, ROUNDS, &best))
         return STATUS_OK;
     arbor_begin(arbor);
     double due = penalty(search, moved, 3), cost = arbor_cost(arbor);
-    if (!(best.cost < now.cost + due - least_gain * cost))
+    if (!(best.price < now.price + due - least_gain * cost))
         return STATUS_OK;
     Vec3 step = vec3_sub(best.place, place);
     for (int k = 0; k < STEPS; k++, step = vec3_scale(step, 0.5))
@@ -142,7 +139,7 @@ Status move_bifurcation(LocalSearch *search, int32_t i, Err *err)
 typedef struct Candidate {
     int32_t host;
     double price; /* of connecting there, by the marginals */
-    Bifurcation fork;
+    Bifurcation problem;
     BifurcationState state;
 } Candidate;
 
@@ -154,13 +151,13 @@ static bool price(const LocalSearch *search, int32_t subtree, int32_t host, Cand
     Marginal marginal = arbor_marginal(arbor, host);
     Reduced before = arbor_reduce(arbor, host);
     out->host = host;
-    out->fork = bifurcation_of(search, host, host, subtree, marginal);
+    out->problem = bifurcation_of(search, host, host, subtree, &marginal);
     Vec3 middle = vec3_scale(vec3_add(shape->from, shape->to), 0.5);
     Vec3 place = vec3_add_scaled(vec3_scale(middle, 0.75), arbor->shape[subtree].to, 0.25);
-    if (!bifurcation_at(&out->fork, place, &out->state) ||
-        !bifurcation_optimise(&out->fork, ROUGH_ROUNDS, &out->state))
+    bifurcation_at(&arbor->law, &out->problem, place, &out->state);
+    if (!bifurcation_optimise(&arbor->law, &out->problem, ROUGH_ROUNDS, &out->state))
         return false;
-    out->price = out->state.cost - marginal.adjoint.load * before.load -
+    out->price = out->state.price - marginal.adjoint.load * before.load -
                  marginal.adjoint.cost * before.cost + marginal.extra * arbor->branch[subtree].flow;
     return isfinite(out->price);
 }
@@ -234,7 +231,7 @@ static double tolerance(LocalSearch *search, double temperature)
 static bool connect(LocalSearch *search, int32_t subtree, Candidate *to, double limit)
 {
     Arbor *arbor = &search->arbor;
-    if (!bifurcation_optimise(&to->fork, ROUNDS, &to->state))
+    if (!bifurcation_optimise(&arbor->law, &to->problem, ROUNDS, &to->state))
         return false;
     limit += penalty(search, &to->host, 1);
     arbor_graft(arbor, subtree, to->host, to->state.place);

@@ -1,0 +1,123 @@
+/* With all else as it is, S_root depends on the bifurcation through three lengths only. Where it is
+ * least, the derivatives with respect to them pull evenly: the point is the weighted Fermat point
+ * for these derivatives as weights [fermat.h]. They vary slowly, so weights at one place
+ * (bifurcation_at) and the Fermat point for them (bifurcation_next) in turn converge in a few
+ * rounds.
+ *
+ * A point that collapses onto an end is pushed off it to the least length allowed, in the direction
+ * that costs least: such bifurcations are among the best there are, so they must not be lost. A
+ * segment that must stay straight is split at the best place along it. */
+#include "grow/cco/bifurcation.h"
+
+#include "grow/cco/fermat.h"
+
+enum {
+    PROXIMAL = BIFURCATION_PROXIMAL,
+    LEFT = BIFURCATION_LEFT,
+    RIGHT = BIFURCATION_RIGHT,
+    ENDS = BIFURCATION_ENDS
+};
+
+/* fmax, without a call */
+static double greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+void bifurcation_at(const Law *law, const Bifurcation *problem, Vec3 place, BifurcationState *out)
+{
+    const double *burden = problem->burden;
+    out->place = place;
+    for (int i = 0; i < ENDS; i++)
+        out->length[i] = vec3_distance(problem->end[i], place);
+    Reduced left = law_extend(law, burden[LEFT], out->length[LEFT], &problem->below[0]);
+    Reduced right = law_extend(law, burden[RIGHT], out->length[RIGHT], &problem->below[1]);
+    Below fork = law_gather(law, left.rho_gamma + right.rho_gamma, left.cost + right.cost);
+    Reduced proximal = law_extend(law, burden[PROXIMAL], out->length[PROXIMAL], &fork);
+
+    Adjoint top = problem->adjoint;
+    Adjoint left_adjoint = law_descend(law, &proximal, top, &left);
+    Adjoint right_adjoint = law_descend(law, &proximal, top, &right);
+    out->price = top.load * (proximal.load - problem->load_before) +
+                 top.cost * (proximal.cost - problem->cost_before) + problem->extra;
+    out->weight[PROXIMAL] = law_length_weight(law, &proximal, top, burden[PROXIMAL]);
+    out->weight[LEFT] = law_length_weight(law, &left, left_adjoint, burden[LEFT]);
+    out->weight[RIGHT] = law_length_weight(law, &right, right_adjoint, burden[RIGHT]);
+
+    double unit = problem->radius_unit;
+    out->radius[PROXIMAL] = unit * proximal.rho;
+    out->radius[LEFT] = unit * proximal.widening * left.rho;
+    out->radius[RIGHT] = unit * proximal.widening * right.rho;
+}
+
+/* The shortest that a segment may be. */
+static double shortest(const Bifurcation *problem, int i, double radius)
+{
+    double least = greater(2 * problem->least_widths * radius, problem->least_length);
+    return i == RIGHT || least < problem->least_part ? least : problem->least_part;
+}
+
+bool bifurcation_is_long_enough(const Bifurcation *problem, const BifurcationState *state)
+{
+    for (int i = 0; i < ENDS; i++)
+        if (!(state->length[i] >= shortest(problem, i, state->radius[i])))
+            return false;
+    return true;
+}
+
+/* Keeps the Fermat point off the three ends. */
+static Vec3 push_off(const Bifurcation *problem, const BifurcationState *state,
+                     const Fermat *fermat)
+{
+    Vec3 place = fermat->place;
+    for (int i = 0; i < ENDS; i++) {
+        double least = problem->margin * shortest(problem, i, state->radius[i]);
+        Vec3 away = vec3_sub(place, problem->end[i]);
+        if (vec3_dot(away, away) >= least * least)
+            continue;
+        Vec3 direction = fermat->corner == i ? fermat->inward : away;
+        double length = vec3_length(direction);
+        if (length > 0)
+            place = vec3_add_scaled(problem->end[i], direction, least / length);
+    }
+    return place;
+}
+
+/* The greatest weight; 0 when a figure is not finite. */
+static double scale_of(const BifurcationState *state)
+{
+    const double *weight = state->weight;
+    double greatest = greater(weight[0], greater(weight[1], weight[2]));
+    return isfinite(state->price) && isfinite(greatest) && greatest > 0 ? greatest : 0;
+}
+
+bool bifurcation_next(const Bifurcation *problem, const BifurcationState *state, Vec3 *place)
+{
+    double weight[ENDS], scale = scale_of(state);
+    if (scale == 0)
+        return false;
+    for (int i = 0; i < ENDS; i++) /* none pushes: Fermat's point wants weights above 0 */
+        weight[i] = greater(state->weight[i] / scale, 1e-9);
+    if (problem->straight) {
+        double margin[2];
+        for (int i = 0; i < 2; i++)
+            margin[i] = problem->margin * shortest(problem, i, state->radius[i]);
+        *place = fermat_point_between(problem->end, weight, margin);
+        return true;
+    }
+    Fermat fermat = fermat_point(problem->end, weight);
+    *place = push_off(problem, state, &fermat);
+    return true;
+}
+
+bool bifurcation_optimise(const Law *law, const Bifurcation *problem, int rounds,
+                          BifurcationState *state)
+{
+    Vec3 place;
+    for (int i = 0; i < rounds; i++) {
+        if (!bifurcation_next(problem, state, &place))
+            return false;
+        bifurcation_at(law, problem, place, state);
+    }
+    return scale_of(state) > 0;
+}
