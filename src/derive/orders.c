@@ -1,3 +1,6 @@
+/* Orders of segments, each in one or two sweeps over the tree's arrays, in which a parent stands
+ * before its children: forwards for what a segment inherits (level, branch), backwards for what it
+ * gets from below (Strahler's order). No recursion, so a tree of any depth needs no stack. */
 #include "derive/fields.h"
 
 #include <stdlib.h>

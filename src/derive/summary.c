@@ -1,3 +1,5 @@
+/* The numbers that `info` prints of a whole tree: sums and extremes over its segments, then the
+ * largest values of the fields of derive.c. */
 #include "derive/fields.h"
 
 #include <stdlib.h>

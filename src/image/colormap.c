@@ -1,9 +1,30 @@
+/* Colour maps are text, a colour a line, which stand at equal distances from 0 to 1; between them
+ * the encoded values are interpolated, as the makers of the maps meant, and then decoded. */
 #include "image/image.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Takes one line, which is a colour, blank or a comment. */
+static Status take_line(Colormap *map, size_t *capacity, const char *line, Err *err)
+{
+    double c[3];
+    line += strspn(line, " \t");
+    if (*line == '#' || *line == '\0')
+        return STATUS_OK;
+    bool fits = numbers_parse(line, 3, c);
+    for (int i = 0; i < 3; i++)
+        fits = fits && c[i] >= 0 && c[i] <= 1;
+    if (!fits)
+        return err_set(err, STATUS_INPUT,
+                       "'%.40s' is not three numbers from 0 to 1, red green blue", line);
+    TRY(mem_reserve(&map->srgb, capacity, map->n + 1, sizeof *map->srgb, "colours", err));
+    for (int i = 0; i < 3; i++)
+        map->srgb[map->n][i] = (float)c[i];
+    map->n++;
+    return STATUS_OK;
+}
 
 Status colormap_read(Colormap *map, const char *path, Err *err)
 {
@@ -13,29 +34,14 @@ Status colormap_read(Colormap *map, const char *path, Err *err)
     TRY(file_read(path, &form, &text, &size, err));
     Colormap read = {0};
     Status status = STATUS_OK;
-    int line = 1;
-    for (char *at = text; *at && status == STATUS_OK; line++) {
-        char *end = at + strcspn(at, "\n");
-        char *next = *end ? end + 1 : end;
-        *end = '\0';
-        double c[3];
-        at += strspn(at, " \t");
-        if (*at != '#' && *at != '\0') {
-            bool fits = numbers_parse(at, 3, c);
-            for (int i = 0; i < 3; i++)
-                fits = fits && c[i] >= 0 && c[i] <= 1;
-            if (!fits)
-                status = err_set(err, STATUS_INPUT,
-                                 "%s:%d: '%.40s' is not three numbers from 0 to 1, red green blue",
-                                 path, line, at);
-            if (status == STATUS_OK)
-                status = mem_reserve(&read.srgb, &capacity, read.n + 1, sizeof *read.srgb,
-                                     "colours", err);
-            for (int i = 0; status == STATUS_OK && i < 3; i++)
-                read.srgb[read.n][i] = (float)c[i];
-            read.n += status == STATUS_OK;
-        }
-        at = next;
+    int number = 1;
+    for (char *line = text, *next; line && status == STATUS_OK; line = next, number++) {
+        next = strchr(line, '\n');
+        if (next)
+            *next++ = '\0';
+        status = take_line(&read, &capacity, line, err);
+        if (status == STATUS_INPUT)
+            err_prefix(err, "%s:%d: ", path, number);
     }
     free(text);
     if (status == STATUS_OK && read.n < 2)

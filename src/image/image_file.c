@@ -23,13 +23,6 @@ static Status decode(const ImageBytes *file, Image *image, Err *err)
     return tiff_decode(file, image, err);
 }
 
-void image_plain_text(char *text)
-{
-    for (; *text; text++)
-        if (*text < ' ' || *text > '~')
-            *text = ' ';
-}
-
 static const char *name_of(const char *path)
 {
     return strcmp(path, "-") ? path : "standard input";

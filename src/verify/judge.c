@@ -63,8 +63,8 @@ static void add_coverage_rules(CompareResult *result)
         add_count_rule(result, missing, tolerance->segments_missing,
                        "segments seen in only one image");
     add_rule(result, silhouette, tolerance->silhouette_px,
-             result->has_ids ? "outline of what is seen is off"
-                             : "outline of what is not background is off");
+             result->has_ids ? "shift of the outline of what is seen"
+                             : "shift of the outline of what is not background");
 }
 
 /* What only the account of every segment and the straight line through all colours tell. */
@@ -77,10 +77,10 @@ static void add_segment_rules(CompareResult *result)
     Finding moved = {"px", result->segment_px, result->segment_px_at, "its middle is"};
     Finding gain = {"", fabs(result->gain - 1), result->worst, "the worst pixel is"};
     Finding offset = {"levels", fabs(result->offset_levels), result->worst, "the worst pixel is"};
-    add_rule(result, moved, tolerance->segment_px, "outline of a segment is off");
-    add_rule(result, levels, tolerance->segment_levels, "mean of a segment is off");
-    add_rule(result, gain, tolerance->gain, "gain is off 1");
-    add_rule(result, offset, tolerance->offset_levels, "offset is off 0");
+    add_rule(result, moved, tolerance->segment_px, "shift of the outline of a segment");
+    add_rule(result, levels, tolerance->segment_levels, "mean difference of a segment");
+    add_rule(result, gain, tolerance->gain, "distance of the gain from 1");
+    add_rule(result, offset, tolerance->offset_levels, "distance of the offset from 0");
 }
 
 static void add_color_rules(CompareResult *result)
@@ -110,7 +110,7 @@ static void add_color_rules(CompareResult *result)
     }
     add_segment_rules(result);
     add_rule(result, bias, tolerance->bias_levels, "mean difference");
-    add_rule(result, signs, tolerance->sign_sigma, "more pixels brighter than darker, or fewer");
+    add_rule(result, signs, tolerance->sign_sigma, "excess of brighter or of darker pixels");
     if (!isnan(result->pixelmatch_pixels)) {
         snprintf(name, sizeof name, "pixels that pixelmatch finds at %g", tolerance->pixelmatch);
         add_rule(result, matched, tolerance->pixelmatch_ppm, name);
@@ -192,7 +192,7 @@ void rule_sentence(const CompareResult *result, const Rule *rule, char *out, siz
     snprintf(out + length, size - (size_t)length, "; %s %s", rule->at_what, place);
 }
 
-void compare_judge(CompareResult *result)
+static void judge(CompareResult *result)
 {
     Finding nan = {"pixels", (double)(result->nan_pixels_a + result->nan_pixels_b), result->nan_at,
                    "the first is"};
@@ -214,4 +214,21 @@ void compare_judge(CompareResult *result)
         result->agrees = false;
         rule_sentence(result, &result->rules[i], result->reason, sizeof result->reason);
     }
+}
+
+static void name_ids(PixelPlace *place, const IdPlane *a, const IdPlane *b)
+{
+    if (!a || place->x < 0)
+        return;
+    size_t pixel = (size_t)place->y * (size_t)a->width + (size_t)place->x;
+    place->id_a = a->ids[pixel];
+    place->id_b = b->ids[pixel];
+}
+
+void result_finish(CompareResult *result, const IdPlane *a, const IdPlane *b)
+{
+    name_ids(&result->worst, a, b);
+    name_ids(&result->largest_region_at, a, b);
+    name_ids(&result->nan_at, a, b);
+    judge(result);
 }

@@ -4,34 +4,15 @@
 
 #include "verify/verify.h"
 
-/* The first plane that differs, or NULL. Borrowed. */
-const CompareResult *report_worst(const ReportCase *report);
-
-/* Why the report does not agree, a sentence, or NULL. Borrowed. */
-const char *report_reason(const ReportCase *report);
-
-/* Appends `text` with & < > " and ' as entities, without control characters, and with U+FFFD for
- * what is not UTF-8: for HTML and XML, in elements and attributes. */
-void text_escaped(Text *out, const char *text);
-
 /* Appends the JUnit XML: a test case for each plane. */
 void report_junit(const ReportCase *report, Text *out);
-
-/* By how much the rule that is broken most is exceeded: measured over allowed, at least 1; 0 when
- * all are met. */
-double report_severity(const ReportCase *report);
 
 /* The worst segments of a comparison as compare_json has them. New reference. */
 json_t *worst_segments_json(const CompareResult *result);
 
-/* Appends a number for people, to three digits but for counts, and its unit, "level" of 1. */
-void report_number(Text *out, double value, const char *unit);
-/* HTML about one plane: the rows of its rules, and tables of its measures. */
-void report_rule_rows(const CompareResult *plane, Text *out);
-void report_metric_tables(const CompareResult *plane, Text *out);
-void report_surface_rows(const SurfaceCheck *surface, Text *rules, Text *metrics);
-void report_exact_rows(const CompareResult *exact, Text *rules, Text *metrics);
-void report_settled_rows(const ReportCase *report, Text *rules, Text *metrics);
+/* Appends the rows of the page's table of rules, and its tables of measures. */
+MUST_CHECK Status report_tables(const ReportCase *report, const char *templates, Text *rules,
+                                Text *measures, Err *err);
 
 /* Appends a picture as a data: URI. */
 MUST_CHECK Status report_picture(Text *out, const Picture *picture, Err *err);
@@ -52,24 +33,27 @@ MUST_CHECK Status report_planes(const ReportSide *a, const ReportSide *b,
 /* A small copy of a picture, at most 96 pixels across, each the mean of a box. */
 MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *err);
 
-/* What marks the parts of a page with one case, for report_merge to find. */
+/* How the templates case.html and row.html call their case, and what marks it in a page, for
+ * report_merge to find. */
 #define REPORT_FIRST_CASE "case-1"
 #define REPORT_ROW_BEGIN "<!-- row: begin -->\n"
 #define REPORT_ROW_END "<!-- row: end -->\n"
 #define REPORT_CASE_BEGIN "<!-- case: begin -->\n"
 #define REPORT_CASE_END "<!-- case: end -->\n"
 
-/* A page about cases; all is HTML and borrowed. */
+/* A page about cases. `title`, `heading` and `sentence` are text, `rows`, `cases` and `power`
+ * markup; all is borrowed. */
 typedef struct ReportFrame {
     const char *title, *heading, *sentence;
-    const char *rows, *cases, *power;
+    const Text *rows, *cases, *power;
     size_t n_cases;
     bool agrees;
 } ReportFrame;
 
-/* Appends the page; `templates` is the folder with report.html and case.html. */
-MUST_CHECK Status report_frame(const ReportFrame *frame, const char *templates, Text *out,
-                               Err *err);
+/* Writes the page to `path`; `templates` is the folder with report.html and the templates of its
+ * parts. */
+MUST_CHECK Status report_write_frame(const ReportFrame *frame, const char *templates,
+                                     const char *path, Err *err);
 /* Writes the page to `path`; `heat` is the difference picture. */
 MUST_CHECK Status report_page(const ReportCase *report, const Picture *heat, const char *templates,
                               const char *path, Err *err);

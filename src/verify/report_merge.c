@@ -1,5 +1,6 @@
 /* One page from the pages of several cases: each holds its row of the table and its section between
  * marks, and report.json its verdict, so that nothing is drawn or measured again. */
+#include "verify/html.h"
 #include "verify/report.h"
 
 #include <errno.h>
@@ -119,78 +120,67 @@ static const char *mark(json_t *row, const char *rule)
     return !value ? "" : json_is_true(value) ? "✓" : "–";
 }
 
-static void put_faults(json_t *json, Text *out)
+static Status put_fault(json_t *row, const char *templates, Text *out, Err *err)
 {
     static const char *const rules[] = {"A", "B", "pixelmatch", "flip", "psnr", "blender", "ssim"};
-    enum { RULES = sizeof rules / sizeof *rules };
-    json_t *row;
-    size_t i;
-    text_puts(out, "<div class=\"scroll\"><table class=\"kills\"><thead><tr><th>Fault</th>"
-                   "<th>Model</th>");
-    for (size_t k = 0; k < RULES; k++)
-        text_printf(out, "<th>%s%s</th>", k < 2 ? "tier " : "", rules[k]);
-    text_puts(out, "</tr></thead><tbody>\n");
-    json_array_foreach(json_object_get(json, "faults"), i, row)
-    {
-        text_puts(out, "<tr><th>");
-        text_escaped(out, text_of(row, "fault"));
-        text_puts(out, "</th><td>");
-        text_escaped(out, text_of(row, "model"));
-        text_puts(out, "</td>");
-        for (size_t k = 0; k < RULES; k++)
-            text_printf(out, "<td>%s</td>", mark(row, rules[k]));
-        text_puts(out, "</tr>\n");
-    }
-    text_puts(out, "</tbody></table></div>\n");
+    HtmlParts parts = {0};
+    text_puts(html_text(&parts, "fault"), text_of(row, "fault"));
+    text_puts(html_text(&parts, "model"), text_of(row, "model"));
+    for (size_t k = 0; k < sizeof rules / sizeof *rules; k++)
+        text_puts(html_text(&parts, rules[k]), mark(row, rules[k]));
+    return html_put(&parts, templates, "power_fault.html", out, err);
 }
 
-static void put_limits(json_t *json, Text *out)
+static Status put_limit(json_t *row, const char *templates, Text *out, Err *err)
 {
     static const char *const texts[] = {"parameter", "model", "unit"};
     static const char *const limits[] = {"A", "B", "pixelmatch", "blender"};
-    json_t *row;
-    size_t i;
-    text_puts(out, "<h3>The smallest fault found</h3>\n<div class=\"scroll\"><table><thead><tr>"
-                   "<th>Parameter</th><th>Model</th><th>Unit</th><th class=\"number\">tier A</th>"
-                   "<th class=\"number\">tier B</th><th class=\"number\">pixelmatch</th>"
-                   "<th class=\"number\">Blender</th></tr></thead><tbody>\n");
-    json_array_foreach(json_object_get(json, "limits"), i, row)
-    {
-        text_puts(out, "<tr>");
-        for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
-            text_puts(out, "<td>");
-            text_escaped(out, text_of(row, texts[k]));
-            text_puts(out, "</td>");
-        }
-        for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
-            json_t *limit = json_object_get(row, limits[k]);
-            if (json_is_number(limit))
-                text_printf(out, "<td class=\"number\">%.2g</td>", json_number_value(limit));
-            else
-                text_puts(out, "<td class=\"number\">never</td>");
-        }
-        text_puts(out, "</tr>\n");
+    HtmlParts parts = {0};
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
+        text_puts(html_text(&parts, texts[k]), text_of(row, texts[k]));
+    for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
+        json_t *limit = json_object_get(row, limits[k]);
+        if (json_is_number(limit))
+            text_printf(html_text(&parts, limits[k]), "%.2g", json_number_value(limit));
+        else
+            text_puts(html_text(&parts, limits[k]), "never");
     }
-    text_puts(out, "</tbody></table></div>\n");
+    return html_put(&parts, templates, "power_limit.html", out, err);
 }
 
-/* The kill matrix of `make power` and its smallest faults. */
-static Status power_section(const char *path, Text *out, Err *err)
+static Status put_rows(json_t *rows, Status (*put)(json_t *, const char *, Text *, Err *),
+                       const char *templates, Text *out, Err *err)
+{
+    json_t *row;
+    size_t i;
+    json_array_foreach(rows, i, row)
+    {
+        TRY(put(row, templates, out, err));
+    }
+    return STATUS_OK;
+}
+
+/* The faults that `make power` planted and which rule found them, and the smallest it found. */
+static Status put_power(const char *path, const char *templates, Text *out, Err *err)
 {
     json_t *json = NULL;
+    HtmlParts parts = {0};
     TRY(read_json(&json, path, err));
-    text_puts(out, "<section>\n<h2>What the judge finds</h2>\n<p>Faults planted in one side, and "
-                   "the rules that find them: the tiers, and pixelmatch at 0.1, FLIP mean above "
-                   "0.01, PSNR below 40, Blender's 1 % of pixels off by 0.016, SSIM below 0.99. ");
-    text_printf(out, "%zu false alarms about %lld clean scenes.</p>\n",
-                json_array_size(json_object_get(json, "alarms")),
+    text_printf(html_text(&parts, "alarms"), "%zu",
+                json_array_size(json_object_get(json, "alarms")));
+    text_printf(html_text(&parts, "scenes"), "%lld",
                 json_integer_value(json_object_get(json, "clean_scenes")) +
                     json_integer_value(json_object_get(json, "povray_scenes")));
-    put_faults(json, out);
-    put_limits(json, out);
-    text_puts(out, "</section>\n");
+    Status status = put_rows(json_object_get(json, "faults"), put_fault, templates,
+                             html_markup(&parts, "faults"), err);
+    if (status == STATUS_OK)
+        status = put_rows(json_object_get(json, "limits"), put_limit, templates,
+                          html_markup(&parts, "limits"), err);
+    if (status == STATUS_OK)
+        status = html_put(&parts, templates, "power.html", out, err);
+    html_release(&parts);
     json_decref(json);
-    return text_check(out, err);
+    return status;
 }
 
 /* -------------------------------------------------------------------------------------------
@@ -199,34 +189,30 @@ static Status power_section(const char *path, Text *out, Err *err)
 static Status write_page(const MergedCase *cases, size_t n, const Text *power,
                          const char *templates, const char *path, Err *err)
 {
-    Text rows = TEXT_INIT, sections = TEXT_INIT, heading = TEXT_INIT, page = TEXT_INIT;
+    Text rows = TEXT_INIT, sections = TEXT_INIT, heading = TEXT_INIT;
     size_t differing = 0;
-    Status status = STATUS_OK;
     for (size_t i = 0; i < n; i++) {
         append_numbered(&rows, cases[i].row, cases[i].row_size, cases[i].number);
         append_numbered(&sections, cases[i].section, cases[i].section_size, cases[i].number);
         differing += cases[i].severity > 0;
     }
     if (differing)
-        text_printf(&heading, "%zu of %zu cases <span class=\"bad\">differ</span>", differing, n);
+        text_printf(&heading, "%zu of %zu cases", differing, n);
     else
-        text_printf(&heading, "All %zu cases <span class=\"good\">agree</span>", n);
+        text_printf(&heading, "All %zu cases", n);
     const ReportFrame frame = {
         .title = differing ? "corcast: cases differ" : "corcast: all cases agree",
         .heading = text_chars(&heading),
         .sentence = "Each case is one scene, drawn by POV-Ray (A) and by corcast (B).",
-        .rows = text_chars(&rows),
-        .cases = text_chars(&sections),
-        .power = text_chars(power),
+        .rows = &rows,
+        .cases = &sections,
+        .power = power,
         .n_cases = n,
         .agrees = differing == 0};
-    TRY_GOTO(report_frame(&frame, templates, &page, err));
-    status = file_write_text(path, &page, err);
-done:
+    Status status = report_write_frame(&frame, templates, path, err);
     text_release(&rows);
     text_release(&sections);
     text_release(&heading);
-    text_release(&page);
     return status;
 }
 
@@ -244,7 +230,7 @@ Status report_merge(const char *const *folders, size_t n, const char *power, con
         agree = agree && cases[i].severity == 0;
     }
     if (power)
-        TRY_GOTO(power_section(power, &of_power, err));
+        TRY_GOTO(put_power(power, templates, &of_power, err));
     qsort(cases, n, sizeof *cases, worst_first);
     TRY_GOTO(write_page(cases, n, &of_power, templates, path, err));
     *all_agree = agree;

@@ -1,86 +1,59 @@
-/* The page for people. The template has the words that never change, the look and the viewer; what
- * repeats or depends on the case is made here as fragments of HTML. Pictures go in as data: URIs,
- * because a page opened from disk may not read the pixels of a file beside it. */
+/* The page for people. The templates have the markup, the look and the viewer; what repeats or
+ * depends on the case is filled in here, from the inside out: rows, the case, the page. Pictures go
+ * in as data: URIs, because a page opened from disk may not read the pixels of a file beside it. */
+#include "verify/check.h"
+#include "verify/html.h"
 #include "verify/report.h"
 
-#include "tmpl/tmpl.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/utsname.h>
 #include <time.h>
 
-typedef enum Fragment {
-    PART_ID,
-    PART_SEGMENTS,
-    PART_EDGE,
-    PART_VERDICT_TITLE,
-    PART_VERDICT_SENTENCE,
-    PART_SUBJECT,
-    PART_RULES,
-    PART_METRICS,
-    PART_SEGMENT_LINES,
-    PART_LEGEND,
-    PART_SIDES,
-    PART_TOLERANCE,
-    PART_COMMANDS,
-    PART_NAME_A,
-    PART_NAME_B,
-    PART_ALT_A,
-    PART_ALT_B,
-    PART_IMAGE_A,
-    PART_IMAGE_B,
-    PART_HEAT,
-    PART_IDS_A,
-    PART_IDS_B,
-    PART_RANGE,
-    PART_CLASSES,
-    PART_DEPTH_A, /* the planes in the order of ReportPlane */
-    PART_DEPTH_B,
-    PART_NORMAL_A,
-    PART_NORMAL_B,
-    PART_ANGLES,
-    PARTS
-} Fragment;
+static const char *class_of(bool agrees)
+{
+    return agrees ? "good" : "bad";
+}
 
-static const char *const part_names[PARTS] = {
-    "id",      "segments",  "verdict_edge", "verdict_title", "verdict_sentence",
-    "subject", "rule_rows", "metric_rows",  "segment_lines", "legend",
-    "sides",   "tolerance", "commands",     "name_a",        "name_b",
-    "alt_a",   "alt_b",     "image_a",      "image_b",       "image_heat",
-    "ids_a",   "ids_b",     "depth_range",  "classes",       "depth_a",
-    "depth_b", "normal_a",  "normal_b",     "angles"};
+static const char *verdict_of(bool agrees)
+{
+    return agrees ? "agree" : "differ";
+}
 
 /* ------------------------------------------------------------------------------------- verdict */
 
 /* Who is right where the sides differ, cause by cause. */
-static void settled_sentence(const ReportCase *report, Text *sentence)
+static void put_settled(const ReportCase *report, Text *sentence)
 {
     const Settled *settled = report->settled;
     for (SettledCause cause = settled->from; cause <= settled->to; cause++)
-        if (settled->count[cause]) {
-            text_printf(sentence, " Settled: %s, ", settled_cause_sentence(cause));
-            report_number(sentence, (double)settled->count[cause], "");
-            text_puts(sentence, "; ");
-            text_escaped(sentence, report->b.name);
-            text_puts(sentence, " is right there.");
-        }
+        if (settled->count[cause])
+            text_printf(sentence, " Settled: %s, %zu; %s is right there.",
+                        settled_cause_sentence(cause), settled->count[cause], report->b.name);
 }
 
-/* What tells the case from others of the same tree and model: the options of its command. */
-static void put_options(const ReportCase *report, Text *out)
+static void put_agreement(const ReportCase *report, int compared, Text *sentence)
 {
-    if (report->n_commands == 0)
-        return;
-    const char *command = report->commands[0];
-    for (int words = 0; words < 2 && strchr(command, ' '); words++) /* corcast verify */
-        command = strchr(command, ' ') + 1;
-    text_puts(out, "<code>");
-    text_escaped(out, command);
-    text_puts(out, "</code> ");
+    const CompareResult *color = report->planes[PLANE_COLOR];
+    if (color->differing_pixels == 0)
+        text_printf(sentence, "All %zu pixels have the same colour in both pictures. ",
+                    color->pixels);
+    else
+        text_printf(sentence,
+                    "%zu of %zu pixels differ in colour, the worst by %.3g of 255 levels. ",
+                    color->differing_pixels, color->pixels, color->max_abs);
+    text_printf(sentence, compared == 1 ? "The %d plane compared is" : "The %d planes compared are",
+                compared);
+    text_puts(sentence, " within tolerance.");
+    if (report->settled)
+        put_settled(report, sentence);
+    if (report->surface)
+        text_puts(sentence, " What POV-Ray's root finder sees is the surface to its accuracy, and "
+                            "the surface has POV-Ray's colours.");
 }
 
-static void verdict_parts(const ReportCase *report, Text parts[PARTS])
+static void put_sentence(const ReportCase *report, Text *sentence)
 {
     const char *reason = report_reason(report);
     const CompareResult *color = report->planes[PLANE_COLOR];
@@ -89,73 +62,42 @@ static void verdict_parts(const ReportCase *report, Text parts[PARTS])
         compared += report->planes[kind] != NULL;
         differing += report->planes[kind] && !report->planes[kind]->agrees;
     }
-    text_puts(&parts[PART_ID], REPORT_FIRST_CASE);
-    text_puts(&parts[PART_EDGE], reason ? "bad-edge" : "good-edge");
-    text_escaped(&parts[PART_VERDICT_TITLE], report->name);
-    text_puts(&parts[PART_VERDICT_TITLE], *report->model ? ", " : "");
-    text_escaped(&parts[PART_VERDICT_TITLE], report->model);
-    text_puts(&parts[PART_VERDICT_TITLE], reason ? ": <span class=\"bad\">differ</span>"
-                                                 : ": <span class=\"good\">agree</span>");
-    Text *sentence = &parts[PART_VERDICT_SENTENCE];
-    const char *cause = color->agrees ? "" : color->cause;
-    if (reason) {
-        if (differing)
-            text_printf(sentence, "%d of %d planes differ%s. First, ", differing, compared,
-                        differing == 1 ? "s" : "");
-        text_escaped(sentence, reason);
-        text_puts(sentence, ".");
-        text_puts(sentence, *cause ? " The pictures: " : "");
-        text_escaped(sentence, cause);
-        text_puts(sentence, *cause ? "." : "");
-    } else {
-        if (color->differing_pixels == 0)
-            text_printf(sentence, "All %zu pixels have the same colour in both pictures. ",
-                        color->pixels);
-        else
-            text_printf(sentence,
-                        "%zu of %zu pixels differ in colour, the worst by %.3g of 255 levels. ",
-                        color->differing_pixels, color->pixels, color->max_abs);
-        text_printf(sentence,
-                    compared == 1 ? "The %d plane compared is" : "The %d planes compared are",
-                    compared);
-        text_puts(sentence, " within tolerance.");
-        if (report->settled)
-            settled_sentence(report, sentence);
-        if (report->surface)
-            text_puts(sentence,
-                      " What POV-Ray's root finder sees is the surface to its accuracy, and "
-                      "the surface has POV-Ray's colours.");
+    if (!reason) {
+        put_agreement(report, compared, sentence);
+        return;
     }
-    Text *subject = &parts[PART_SUBJECT];
-    put_options(report, subject);
-    text_printf(subject, "%d × %d pixels, tolerance tier ", color->width, color->height);
-    text_escaped(subject, color->tolerance.tier);
+    if (differing)
+        text_printf(sentence, "%d of %d planes differ%s. First, ", differing, compared,
+                    differing == 1 ? "s" : "");
+    text_printf(sentence, "%s.", reason);
+    if (!color->agrees && *color->cause)
+        text_printf(sentence, " The pictures: %s.", color->cause);
+}
+
+/* What tells the case from others of the same tree and model: the options of its command. */
+static const char *options_of(const ReportCase *report)
+{
+    const char *command = report->n_commands ? report->commands[0] : "";
+    for (int words = 0; words < 2 && strchr(command, ' '); words++) /* corcast verify */
+        command = strchr(command, ' ') + 1;
+    return command;
 }
 
 /* --------------------------------------------------------------------------------------- parts */
 
-static void table_parts(const ReportCase *report, Text parts[PARTS])
+static Status put_legend(const char *templates, Text *out, Err *err)
 {
-    for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
-        if (report->planes[kind]) {
-            report_rule_rows(report->planes[kind], &parts[PART_RULES]);
-            report_metric_tables(report->planes[kind], &parts[PART_METRICS]);
-        }
-    if (report->settled)
-        report_settled_rows(report, &parts[PART_RULES], &parts[PART_METRICS]);
-    if (report->exact)
-        report_exact_rows(report->exact, &parts[PART_RULES], &parts[PART_METRICS]);
-    if (report->surface)
-        report_surface_rows(report->surface, &parts[PART_RULES], &parts[PART_METRICS]);
     for (int i = 0; i < HEAT_STEPS; i++) {
         const HeatStep *step = &heat_steps[i];
         int to = i + 1 < HEAT_STEPS ? heat_steps[i + 1].from_level - 1 : 255;
-        text_printf(&parts[PART_LEGEND], "<span><i style=\"background:#%02x%02x%02x\"></i>%d",
-                    step->red, step->green, step->blue, step->from_level);
-        if (to > step->from_level)
-            text_printf(&parts[PART_LEGEND], "–%d", to);
-        text_puts(&parts[PART_LEGEND], "</span>");
+        HtmlParts parts = {0};
+        text_printf(html_text(&parts, "color"), "#%02x%02x%02x", step->red, step->green,
+                    step->blue);
+        text_printf(html_text(&parts, "levels"), to > step->from_level ? "%d–%d" : "%d",
+                    step->from_level, to);
+        TRY(html_put(&parts, templates, "legend.html", out, err));
     }
+    return STATUS_OK;
 }
 
 static Status class_part(const ReportCase *report, Text *part, Err *err)
@@ -173,15 +115,20 @@ static Status class_part(const ReportCase *report, Text *part, Err *err)
     return status;
 }
 
-static Status plane_parts(const ReportCase *report, Text parts[PARTS], Err *err)
+static Status plane_parts(const ReportCase *report, HtmlParts *parts, Err *err)
 {
+    static const char *const names[REPORT_PLANES] = {[REPORT_DEPTH_A] = "depth_a",
+                                                     [REPORT_DEPTH_B] = "depth_b",
+                                                     [REPORT_NORMAL_A] = "normal_a",
+                                                     [REPORT_NORMAL_B] = "normal_b",
+                                                     [REPORT_ANGLES] = "angles"};
     Text *planes[REPORT_PLANES];
     double range_mm[2];
     for (int i = 0; i < REPORT_PLANES; i++)
-        planes[i] = &parts[PART_DEPTH_A + i];
+        planes[i] = html_markup(parts, names[i]);
     TRY(report_planes(&report->a, &report->b, planes, range_mm, err));
-    text_printf(&parts[PART_RANGE], "%.9g %.9g", range_mm[0], range_mm[1]);
-    return class_part(report, &parts[PART_CLASSES], err);
+    text_printf(html_text(parts, "depth_range"), "%.9g %.9g", range_mm[0], range_mm[1]);
+    return class_part(report, html_markup(parts, "classes"), err);
 }
 
 /* "data:," is an empty document: the viewer then knows no ids. */
@@ -198,24 +145,23 @@ static Status ids_part(Text *part, const IdPlane *ids, Err *err)
     return status;
 }
 
-/* ---------------------------------------------------------------------------------------- words */
-
-static void side_parts(const ReportSide *side, Fragment name, Fragment alt, Text parts[PARTS])
+static void side_words(const ReportSide *side, Text *alt, Text *sides)
 {
-    text_escaped(&parts[name], side->name);
-    text_puts(&parts[alt], isnan(side->seconds) ? "The picture " : "The scene as rendered by ");
-    text_escaped(&parts[alt], side->name);
-    if (isnan(side->seconds))
-        return;
-    text_escaped(&parts[PART_SIDES], side->name);
-    text_puts(&parts[PART_SIDES], " ");
-    text_escaped(&parts[PART_SIDES], side->version);
-    text_printf(&parts[PART_SIDES], " took %.2f s for the picture. ", side->seconds);
+    bool timed = !isnan(side->seconds);
+    text_printf(alt, "%s %s", timed ? "The scene as rendered by" : "The picture", side->name);
+    if (timed)
+        text_printf(sides, "%s %s took %.2f s for the picture. ", side->name, side->version,
+                    side->seconds);
 }
 
 /* When, by what and where the case was made. */
-static void origin_part(Text *part)
+static void put_origin(Text *out)
 {
+#ifdef __clang__
+    static const char compiler[] = __VERSION__;
+#else
+    static const char compiler[] = "gcc " __VERSION__;
+#endif
     char day[40] = "";
     struct utsname machine = {0};
     struct tm utc;
@@ -223,171 +169,153 @@ static void origin_part(Text *part)
     if (gmtime_r(&now, &utc))
         strftime(day, sizeof day, "%Y-%m-%d %H:%M UTC", &utc);
     uname(&machine);
-    text_printf(part, "Compared on %s by corcast %s, compiled by %s, on ", day, CORCAST_VERSION,
-#ifdef __clang__
-                __VERSION__
-#else
-                "gcc " __VERSION__
-#endif
-    );
-    text_escaped(part, machine.sysname);
-    text_puts(part, " ");
-    text_escaped(part, machine.machine);
-    text_puts(part, ".");
+    text_printf(out, "Compared on %s by corcast %s, compiled by %s, on %s %s.", day,
+                CORCAST_VERSION, compiler, machine.sysname, machine.machine);
 }
 
-static void tolerance_part(const Tolerance *tolerance, Text *part)
+static void put_segments(const CompareResult *color, Text *out)
 {
-    text_puts(part, "Tolerance tier ");
-    text_escaped(part, tolerance->tier);
-    text_puts(part, ". A is the reference; a difference is B less A, in 8-bit levels.");
-}
-
-/* The segments in words, and for the viewer's crops as JSON in an attribute. */
-static void segment_parts(const CompareResult *color, Text parts[PARTS])
-{
-    Text *lines = &parts[PART_SEGMENT_LINES];
     for (int i = 0; i < color->n_worst_segments; i++)
-        text_printf(lines, "%ssegment %u with %zu", i ? ", " : "", color->worst_segments[i].id,
+        text_printf(out, "%ssegment %u with %zu", i ? ", " : "", color->worst_segments[i].id,
                     color->worst_segments[i].differing);
-    text_puts(lines, color->n_worst_segments ? " pixels."
-                     : color->has_ids        ? "No segment differs."
-                                             : "Not told apart: no id planes were given.");
-    Text json = TEXT_INIT;
-    text_json(&json, worst_segments_json(color), 0);
-    text_escaped(&parts[PART_SEGMENTS], text_chars(&json));
-    text_release(&json);
+    text_puts(out, color->n_worst_segments ? " pixels."
+                   : color->has_ids        ? "No segment differs."
+                                           : "Not told apart: no id planes were given.");
 }
 
-static Status fill_parts(const ReportCase *report, const Picture *heat, Text parts[PARTS], Err *err)
-{
-    verdict_parts(report, parts);
-    table_parts(report, parts);
-    side_parts(&report->a, PART_NAME_A, PART_ALT_A, parts);
-    side_parts(&report->b, PART_NAME_B, PART_ALT_B, parts);
-    origin_part(&parts[PART_SIDES]);
-    tolerance_part(&report->planes[PLANE_COLOR]->tolerance, &parts[PART_TOLERANCE]);
-    for (size_t i = 0; i < report->n_commands; i++) {
-        text_escaped(&parts[PART_COMMANDS], report->commands[i]);
-        text_puts(&parts[PART_COMMANDS], "\n");
-    }
-    segment_parts(report->planes[PLANE_COLOR], parts);
-    TRY(report_picture(&parts[PART_IMAGE_A], report->a.picture, err));
-    TRY(report_picture(&parts[PART_IMAGE_B], report->b.picture, err));
-    TRY(report_picture(&parts[PART_HEAT], heat, err));
-    TRY(ids_part(&parts[PART_IDS_A], report->a.ids, err));
-    TRY(ids_part(&parts[PART_IDS_B], report->b.ids, err));
-    return plane_parts(report, parts, err);
-}
-
-static Status expand_case(const ReportCase *report, const Picture *heat, const char *templates,
-                          Text *out, Err *err)
-{
-    Text parts[PARTS] = {0};
-    TmplValue values[PARTS];
-    char *path = NULL;
-    Status status = STATUS_OK;
-    TRY_GOTO(fill_parts(report, heat, parts, err));
-    for (int i = 0; i < PARTS; i++)
-        values[i] = (TmplValue){part_names[i], text_chars(&parts[i])};
-    TRY_GOTO(file_join(templates, "case.html", &path, err));
-    status = tmpl_expand(path, values, PARTS, out, err);
-done:
-    for (int i = 0; i < PARTS; i++)
-        text_release(&parts[i]);
-    free(path);
-    return status;
-}
-
-/* ---------------------------------------------------------------------------------- table of
- * cases */
-
-static void number_cell(Text *row, double value)
-{
-    text_printf(row, "<td class=\"number\" data-value=\"%.9g\">", isnan(value) ? -1 : value);
-    if (!isnan(value))
-        report_number(row, value, "");
-    text_puts(row, "</td>");
-}
-
-static Status case_row(const ReportCase *report, Text *row, Err *err)
+static void fill_words(const ReportCase *report, HtmlParts *parts)
 {
     const CompareResult *color = report->planes[PLANE_COLOR];
     bool agrees = report_agrees(report);
+    text_puts(html_text(parts, "name"), report->name);
+    text_puts(html_text(parts, "parted"), *report->model ? ", " : "");
+    text_puts(html_text(parts, "model"), report->model);
+    text_puts(html_text(parts, "class"), class_of(agrees));
+    text_puts(html_text(parts, "verdict"), verdict_of(agrees));
+    put_sentence(report, html_text(parts, "sentence"));
+    text_puts(html_text(parts, "options"), options_of(report));
+    text_printf(html_text(parts, "size"), "%d × %d", color->width, color->height);
+    text_puts(html_text(parts, "tier"), color->tolerance.tier);
+    text_puts(html_text(parts, "name_a"), report->a.name);
+    text_puts(html_text(parts, "name_b"), report->b.name);
+    Text *sides = html_text(parts, "sides");
+    side_words(&report->a, html_text(parts, "alt_a"), sides);
+    side_words(&report->b, html_text(parts, "alt_b"), sides);
+    put_origin(sides);
+    Text *commands = html_text(parts, "commands");
+    for (size_t i = 0; i < report->n_commands; i++)
+        text_printf(commands, "%s\n", report->commands[i]);
+    put_segments(color, html_text(parts, "segment_lines"));
+    text_json(html_text(parts, "segments"), worst_segments_json(color), 0);
+}
+
+static Status put_case(const ReportCase *report, const Picture *heat, const char *templates,
+                       Text *out, Err *err)
+{
+    HtmlParts parts = {0};
+    Status status = STATUS_OK;
+    fill_words(report, &parts);
+    Text *rules = html_markup(&parts, "rules"), *measures = html_markup(&parts, "measures");
+    TRY_GOTO(report_tables(report, templates, rules, measures, err));
+    TRY_GOTO(put_legend(templates, html_markup(&parts, "legend"), err));
+    TRY_GOTO(report_picture(html_markup(&parts, "image_a"), report->a.picture, err));
+    TRY_GOTO(report_picture(html_markup(&parts, "image_b"), report->b.picture, err));
+    TRY_GOTO(report_picture(html_markup(&parts, "image_heat"), heat, err));
+    TRY_GOTO(ids_part(html_markup(&parts, "ids_a"), report->a.ids, err));
+    TRY_GOTO(ids_part(html_markup(&parts, "ids_b"), report->b.ids, err));
+    TRY_GOTO(plane_parts(report, &parts, err));
+    status = html_put(&parts, templates, "case.html", out, err);
+done:
+    html_release(&parts);
+    return status;
+}
+
+/* ---------------------------------------------------------------------------- row of the case */
+
+/* A number to sort by, -1 where it is not known, and as it is shown. */
+static void put_cell(HtmlParts *parts, const char *sorted, const char *shown, double value)
+{
+    Text *text = html_text(parts, shown);
+    text_printf(html_text(parts, sorted), "%.9g", isnan(value) ? -1 : value);
+    if (!isnan(value))
+        text_rounded(text, value, "");
+}
+
+static Status put_row(const ReportCase *report, const char *templates, Text *row, Err *err)
+{
+    const CompareResult *color = report->planes[PLANE_COLOR];
+    bool agrees = report_agrees(report);
+    HtmlParts parts = {0};
     Picture thumbnail;
-    text_puts(row,
-              REPORT_ROW_BEGIN "<tr data-case=\"" REPORT_FIRST_CASE "\"><td><img alt=\"\" src=\"");
     TRY(report_thumbnail(&thumbnail, report->b.picture, err));
-    Status status = report_picture(row, &thumbnail, err);
+    Status status = report_picture(html_markup(&parts, "thumbnail"), &thumbnail, err);
     picture_release(&thumbnail);
-    TRY(status);
-    text_puts(row, "\"></td><th><a href=\"#" REPORT_FIRST_CASE "\">");
-    text_escaped(row, report->name);
-    text_puts(row, "</a><small>");
-    put_options(report, row);
-    text_puts(row, "</small></th><td>");
-    text_escaped(row, report->model);
-    text_printf(row, "</td><td class=\"verdict %s\" data-value=\"%.9g\">%s</td>",
-                agrees ? "good" : "bad", report_severity(report), agrees ? "✓ agree" : "✗ differ");
-    number_cell(row, (double)color->differing_pixels);
-    number_cell(row, color->max_abs);
-    number_cell(row, color->flip_mean);
-    number_cell(row, color->ssim);
-    text_puts(row, "</tr>\n" REPORT_ROW_END);
-    return text_check(row, err);
+    text_puts(html_text(&parts, "name"), report->name);
+    text_puts(html_text(&parts, "options"), options_of(report));
+    text_puts(html_text(&parts, "model"), report->model);
+    text_puts(html_text(&parts, "class"), class_of(agrees));
+    text_puts(html_text(&parts, "verdict"), agrees ? "✓ agree" : "✗ differ");
+    text_printf(html_text(&parts, "severity"), "%.9g", report_severity(report));
+    put_cell(&parts, "differing_value", "differing", (double)color->differing_pixels);
+    put_cell(&parts, "largest_value", "largest", color->max_abs);
+    put_cell(&parts, "flip_value", "flip", color->flip_mean);
+    put_cell(&parts, "ssim_value", "ssim", color->ssim);
+    if (status == STATUS_OK)
+        status = html_put(&parts, templates, "row.html", row, err);
+    html_release(&parts);
+    return status;
 }
 
 /* -------------------------------------------------------------------------------------------
  * page */
 
-Status report_frame(const ReportFrame *frame, const char *templates, Text *out, Err *err)
+Status report_write_frame(const ReportFrame *frame, const char *templates, const char *path,
+                          Err *err)
 {
-    const TmplValue values[] = {{"title", frame->title},
-                                {"edge", frame->agrees ? "good-edge" : "bad-edge"},
-                                {"heading", frame->heading},
-                                {"sentence", frame->sentence},
-                                {"table_hidden", frame->n_cases == 1 ? " hidden" : ""},
-                                {"rows", frame->rows},
-                                {"cases", frame->cases},
-                                {"power", frame->power}};
-    char *path;
-    TRY(file_join(templates, "report.html", &path, err));
-    Status status = tmpl_expand(path, values, sizeof values / sizeof *values, out, err);
-    free(path);
+    HtmlParts parts = {0};
+    Text page = TEXT_INIT;
+    text_puts(html_text(&parts, "title"), frame->title);
+    text_puts(html_text(&parts, "class"), class_of(frame->agrees));
+    text_puts(html_text(&parts, "verdict"), verdict_of(frame->agrees));
+    text_puts(html_text(&parts, "heading"), frame->heading);
+    text_puts(html_text(&parts, "sentence"), frame->sentence);
+    text_puts(html_text(&parts, "table_hidden"), frame->n_cases == 1 ? " hidden" : "");
+    text_add(html_markup(&parts, "rows"), frame->rows);
+    text_add(html_markup(&parts, "cases"), frame->cases);
+    text_add(html_markup(&parts, "power"), frame->power);
+    Status status = html_put(&parts, templates, "report.html", &page, err);
+    if (status == STATUS_OK)
+        status = file_write_text(path, &page, err);
+    text_release(&page);
     return status;
 }
 
 Status report_page(const ReportCase *report, const Picture *heat, const char *templates,
                    const char *path, Err *err)
 {
-    Text row = TEXT_INIT, section = TEXT_INIT, title = TEXT_INIT, heading = TEXT_INIT,
-         page = TEXT_INIT;
+    Text row = TEXT_INIT, section = TEXT_INIT, title = TEXT_INIT, heading = TEXT_INIT;
     bool agrees = report_agrees(report);
     Status status = STATUS_OK;
-    TRY_GOTO(case_row(report, &row, err));
-    TRY_GOTO(expand_case(report, heat, templates, &section, err));
-    text_escaped(&title, report->name);
-    text_puts(&title, agrees ? ": the pictures agree" : ": the pictures differ");
-    text_escaped(&heading, *report->model ? report->b.name : report->name);
-    text_puts(&heading, *report->model ? " and " : "");
-    text_escaped(&heading, *report->model ? report->a.name : "");
-    text_puts(&heading,
-              agrees ? " <span class=\"good\">agree</span>" : " <span class=\"bad\">differ</span>");
+    TRY_GOTO(put_row(report, templates, &row, err));
+    TRY_GOTO(put_case(report, heat, templates, &section, err));
+    text_printf(&title, "%s: the pictures %s", report->name, verdict_of(agrees));
+    if (*report->model)
+        text_printf(&heading, "%s and %s", report->b.name, report->a.name);
+    else
+        text_puts(&heading, report->name);
     const ReportFrame frame = {.title = text_chars(&title),
                                .heading = text_chars(&heading),
                                .sentence = "",
-                               .rows = text_chars(&row),
-                               .cases = text_chars(&section),
-                               .power = "",
+                               .rows = &row,
+                               .cases = &section,
+                               .power = &TEXT_INIT,
                                .n_cases = 1,
                                .agrees = agrees};
-    TRY_GOTO(report_frame(&frame, templates, &page, err));
-    status = file_write_text(path, &page, err);
+    status = report_write_frame(&frame, templates, path, err);
 done:
     text_release(&row);
     text_release(&section);
     text_release(&title);
     text_release(&heading);
-    text_release(&page);
     return status;
 }

@@ -1,3 +1,5 @@
+/* What comparisons of all kinds begin with: a result of which nothing is measured yet, the names of
+ * planes and of classes of pixels, and the angle between two normals. */
 #include "verify/result.h"
 
 #include <math.h>
@@ -76,23 +78,6 @@ CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane 
 PixelPlace place_of(size_t pixel, int width)
 {
     return (PixelPlace){.x = (int)(pixel % (size_t)width), .y = (int)(pixel / (size_t)width)};
-}
-
-static void name_ids(PixelPlace *place, const IdPlane *a, const IdPlane *b)
-{
-    if (!a || place->x < 0)
-        return;
-    size_t pixel = (size_t)place->y * (size_t)a->width + (size_t)place->x;
-    place->id_a = a->ids[pixel];
-    place->id_b = b->ids[pixel];
-}
-
-void result_finish(CompareResult *result, const IdPlane *a, const IdPlane *b)
-{
-    name_ids(&result->worst, a, b);
-    name_ids(&result->largest_region_at, a, b);
-    name_ids(&result->nan_at, a, b);
-    compare_judge(result);
 }
 
 Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *err)

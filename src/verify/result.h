@@ -7,10 +7,9 @@
 /* Nothing measured yet. `ids` is of one of the images, or NULL. */
 CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane *ids,
                            const Tolerance *tolerance);
-/* Names the segments at the places found, and judges. */
+/* Names the segments at the places found (the id planes are both or neither NULL), and holds the
+ * result against its tolerance: fills in rules, agrees and reason. */
 void result_finish(CompareResult *result, const IdPlane *a, const IdPlane *b);
-/* Holds the result against its tolerance: rules, agrees, reason. */
-void compare_judge(CompareResult *result);
 
 /* STATUS_INPUT unless both sides are equal. */
 MUST_CHECK Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *err);

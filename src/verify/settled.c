@@ -1,3 +1,6 @@
+/* The causes, and how many pixels of each a picture may have, are one table. A limit is the larger
+ * of so many parts in a million and of a few pixels, because in a small picture a million's part is
+ * less than one. */
 #include "verify/result.h"
 
 #include <math.h>

@@ -1,3 +1,5 @@
+/* One pass over the pixels: which side sees a surface, and by how much of what is allowed the two
+ * depths differ. Percentiles are by nearest rank in the sorted errors. */
 #include "verify/surface_check.h"
 
 #include <math.h>

@@ -560,7 +560,7 @@ test_a_hundredth_more_diffuse_light_is_found_in_the_exact_isosurface() {
         povray_with "Declare=$change"
         run corcast verify tree.swc --model isosurface --size 160x120 --view iso --shadows on -o report
         expect_status 1
-        expect_json report/report.json '.exact.verdict == "differ" and any(.exact.rules[]; .name == "gain is off 1" and (.met | not))'
+        expect_json report/report.json '.exact.verdict == "differ" and any(.exact.rules[]; .name == "distance of the gain from 1" and (.met | not))'
     done
 }
 

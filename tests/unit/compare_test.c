@@ -351,7 +351,7 @@ static void judges_surfaces_by_their_gain(void **state)
     assert_false(r.agrees);
     int broken = 0;
     for (int i = 0; i < r.n_rules; i++)
-        broken += !r.rules[i].met && strcmp(r.rules[i].name, "gain is off 1") == 0;
+        broken += !r.rules[i].met && strcmp(r.rules[i].name, "distance of the gain from 1") == 0;
     assert_int_equal(broken, 1);
     pair_release(&pair);
 }

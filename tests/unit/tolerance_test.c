@@ -113,7 +113,7 @@ static void tier_b_finds_one_segment_a_little_brighter(void **state)
             b.picture.codes8[3 * (y * W + x)] += 1;
     CompareResult r = compare(&a, &b, tolerance_tolerant(0), &ledger);
     assert_false(r.agrees);
-    const Rule *rule = rule_named(&r, "mean of a segment");
+    const Rule *rule = rule_named(&r, "mean difference of a segment");
     assert_false(rule->met);
     assert_near(rule->measured, 0.25, 1e-12);
     assert_int_equal(rule->at.id_a, 85);
