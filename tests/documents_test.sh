@@ -17,13 +17,16 @@ says() {
 }
 
 # agree DOCUMENT: lines "WORDS @ FILE @ CODE" on standard input: the document has the words, and the file of
-# the repository the code. Numbers that no result shows are held so: change both.
+# that name (of src, templates or tests/fit; names are unique there) the code. Numbers that no result shows are held
+# so: change both.
 agree() {
-    local words file code
+    local words file code path
     while IFS=@ read -r words file code; do
         words=$(echo "$words" | sed 's/^ *//; s/ *$//') file=${file// /}
         says "$1" "$words"
-        grep -qF -- "${code# }" "$REPO/$file" || fail "docs/$1 says '$words', but $file does not have '${code# }'"
+        path=$(find "$REPO/src" "$REPO/templates" "$REPO/tests/fit" -name "$file")
+        [ -f "$path" ] || fail "docs/$1 says '$words', but there is no one file $file that could hold it"
+        tr -s '\n ' '  ' <"$path" | grep -qF -- "${code# }" || fail "docs/$1 says '$words', but $file does not have '${code# }'"
     done
 }
 
@@ -32,98 +35,167 @@ test_the_numbers_of_growth_are_those_of_the_source() {
     expect_stdout 'nearest segments tried for each terminal \(8\)'
     says METHODS.md 'The nearest segments (8; `--candidates`)'
     agree METHODS.md <<'END'
-one point in three is far enough @ src/grow/grow.c @ TOSSES_PER_ADDED = 3 }
-1.15 times what the rule asks for, and distances 1.1 times @ src/grow/connection.c @ length_reserve = 1.15, clearance_reserve = 1.1;
-known at once to the eight vessels above @ src/grow/network.c @ LEVELS = 8 }
-with every fifth of growth @ src/grow/grow.c @ refresh_growth = 1.2;
-ahead of its share by more than a sixteenth @ src/grow/forest.c @ lead = 1.0 / 16;
-all rise by 1.1, and those of segments that break a rule by 2.2 @ src/grow/refine/refine_penalty.c @ rise = 1.1, steep_rise = 2.2;
-up to two more follow @ src/grow/refine/refine.c @ DETOURS = 3,
-each at four times the price @ src/grow/refine/refine.c @ price_rise = 4;
-over nine tenths of the budget @ src/grow/refine/refine.c @ last_part = 0.1;
-until they agree to 10⁻¹³ @ src/grow/finish.c @ agreement = 1e-13;
-256 points a terminal, up to 4,096 where that makes less than two million in all @ src/grow/segment_weights.c @ least_points = 256, most_points = 4096, all_points = 2e6;
+one point in three is far enough @ grow.c @ TOSSES_PER_ADDED = 3 }
+1.15 times what the rule asks for, and distances 1.1 times @ connection.c @ length_reserve = 1.15, clearance_reserve = 1.1;
+known at once to the eight vessels above @ network.c @ LEVELS = 8 }
+with every fifth of growth @ grow.c @ refresh_growth = 1.2;
+ahead of its share by more than a sixteenth @ forest.c @ lead = 1.0 / 16;
+all rise by 1.1, and those of segments that break a rule by 2.2 @ refine_penalty.c @ rise = 1.1, steep_rise = 2.2;
+up to two more follow @ refine.c @ DETOURS = 3,
+each at four times the price @ refine.c @ price_rise = 4;
+over nine tenths of the budget @ refine.c @ last_part = 0.1;
+until they agree to 10⁻¹³ @ finish.c @ agreement = 1e-13;
+256 points a terminal, up to 4,096 where that makes less than two million in all @ segment_weights.c @ least_points = 256, most_points = 4096, all_points = 2e6;
 END
 }
 
 test_the_numbers_of_the_potential_are_those_of_the_source() {
     agree METHODS.md <<'END'
-With eps = 10⁻⁶ (`CELL_TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r @ src/surface/surface.h @ #define CELL_TERM_CUTOFF 1e-6
-with Phi clamped to [10⁻⁵, 0.2] @ src/surface/surface.h @ #define LOG_FORM_FLOOR 1e-5
-with Phi clamped to [10⁻⁵, 0.2] @ src/surface/surface.h @ #define LOG_FORM_CEILING 0.2
-`Phi'^2 >= 4.6 M lack` @ src/render/field/kernel_trace.h @ lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46))
-Within 2 % of C and with ten times that certainty @ src/render/field/kernel_trace.h @ #define NEAR_ENOUGH (2e-2f * LEVEL)
-or within 0.1 %, Newton's method closes it @ src/render/field/kernel_trace_common.h @ #define CLOSE_ENOUGH (1e-3f * LEVEL)
-groups whose margin exceeds 10⁻³ C @ src/render/field/kernel_trace.h @ group.margin > CLOSE_ENOUGH
-does not count where Phi is within 1 % of C and falls @ src/render/cast/field.c @ sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0
-lie in one plane (to 10⁻⁷ / k) @ src/render/field/fieldterms.c @ <= 1e-7;
-to within 4 · 10⁻⁶ of ln C @ src/render/field/kernel_trace_flat.h @ #define PLANE_CLOSE 3e-6f
-10⁻⁶ each: `exp(-d^2)` times the term's peak is below it @ src/surface/surface.h @ #define TILE_TERM_CUTOFF 1e-6
-20 terms being allowed to be left out @ src/render/field/kernel_trace_common.h @ #define MARGIN_DROPPED 2e-5f
-6 · 10⁻⁷ for each term @ src/render/field/kernel_trace_common.h @ #define MARGIN_TERM 6e-7f
-1.2 · 10⁻⁷ e k B for each term @ src/render/field/kernel_trace_common.h @ #define MARGIN_PLACE 1.2e-7f
-have a node within 3 of its radii of one of its ends @ src/stage/blend.h @ #define BLEND_RADII 3
-1 % of the one weighing as much as 4.3° of the other @ tests/fit/fit_blob.c @ #define DISTANCE 0.03
-1 % of the one weighing as much as 4.3° of the other @ tests/fit/fit_blob.c @ #define ANGLE 13.0
-p from 24 to 96 @ tests/fit/fit_blob.c @ for (double power = 24; power <= 96; power *= 2)
+With eps = 10⁻⁶ (`CELL_TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r @ surface.h @ #define CELL_TERM_CUTOFF 1e-6
+with Phi clamped to [10⁻⁵, 0.2] @ surface.h @ #define LOG_FORM_FLOOR 1e-5
+with Phi clamped to [10⁻⁵, 0.2] @ surface.h @ #define LOG_FORM_CEILING 0.2
+`Phi'^2 >= 4.6 M lack` @ kernel_trace.h @ lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46))
+Within 2 % of C and with ten times that certainty @ kernel_trace.h @ #define NEAR_ENOUGH (2e-2f * LEVEL)
+or within 0.1 %, Newton's method closes it @ kernel_trace_common.h @ #define CLOSE_ENOUGH (1e-3f * LEVEL)
+groups whose margin exceeds 10⁻³ C @ kernel_trace.h @ group.margin > CLOSE_ENOUGH
+does not count where Phi is within 1 % of C and falls @ field.c @ sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0
+lie in one plane (to 10⁻⁷ / k) @ fieldterms.c @ <= 1e-7;
+to within 4 · 10⁻⁶ of ln C @ kernel_trace_flat.h @ #define PLANE_CLOSE 3e-6f
+10⁻⁶ each: `exp(-d^2)` times the term's peak is below it @ surface.h @ #define TILE_TERM_CUTOFF 1e-6
+20 terms being allowed to be left out @ kernel_trace_common.h @ #define MARGIN_DROPPED 2e-5f
+6 · 10⁻⁷ for each term @ kernel_trace_common.h @ #define MARGIN_TERM 6e-7f
+1.2 · 10⁻⁷ e k B for each term @ kernel_trace_common.h @ #define MARGIN_PLACE 1.2e-7f
+have a node within 3 of its radii of one of its ends @ blend.h @ #define BLEND_RADII 3
+1 % of the one weighing as much as 4.3° of the other @ fit_blob.c @ #define DISTANCE 0.03
+1 % of the one weighing as much as 4.3° of the other @ fit_blob.c @ #define ANGLE 13.0
+p from 24 to 96 @ fit_blob.c @ for (double power = 24; power <= 96; power *= 2)
 END
 }
 
 test_the_numbers_of_pictures_are_those_of_the_source() {
     agree METHODS.md <<'END'
-`Phi_i <= B = exp(-d^2) min(1, h / s)` @ src/render/field/kernel_trace.h @ term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
-4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ src/render/field/kernel_trace.h @ term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
-packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays @ src/render/tile/lanes.h @ #define LANES 16
-A band begins at a multiple of eight rows @ src/render/render.h @ RENDER_BAND_STEP = 8 }
-in which tiles of 8 x 8 pixels @ src/render/tile/tile.h @ TILE_SIDE = 8,
-longer than 2 x 16384 pixels @ src/render/raster/rasteritem.c @ most_pixels = 16384;
-4 eps H, 0.004 pixels for the longest @ src/render/raster/rasteritem.c @ length / 2 + radius > most_pixels * pixel
-cylinders seen within 0.02 rad of their axis @ src/render/raster/rasteritem.c @ 0.02; /* of the angle
-cylinders seen within 0.02 rad of their axis @ src/render/raster/kernel_round.h @ steep_sine2 = 4e-4f;
-within 10⁻⁴ r of the ray @ src/render/raster/kernel_joint.h @ off_joint_line = 1e-4f;
-0.001 mm and 3 · 2^-23 of the scene's radius @ src/render/raster/rastershadow.c @ aim.slack = slack_mm + 0x3p-23 * scene_radius
-0.001 mm and 3 · 2^-23 of the scene's radius @ src/render/raster/rastershadow.c @ slack_mm = 1e-3;
-within 1.16 radii of the scene's middle cast rays @ src/render/raster/rastershadow.c @ least_radii = 1.16;
-at most a quarter of a pixel apart @ src/render/raster/zbuffer.c @ pixels_apart = 0.25;
+`Phi_i <= B = exp(-d^2) min(1, h / s)` @ kernel_trace.h @ term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
+4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ kernel_trace.h @ term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
+packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays @ lanes.h @ #define LANES 16
+A band begins at a multiple of eight rows @ render.h @ RENDER_BAND_STEP = 8 }
+in which tiles of 8 x 8 pixels @ tile.h @ TILE_SIDE = 8,
+longer than 2 x 16384 pixels @ rasteritem.c @ most_pixels = 16384;
+4 eps H, 0.004 pixels for the longest @ rasteritem.c @ length / 2 + radius > most_pixels * pixel
+cylinders seen within 0.02 rad of their axis @ rasteritem.c @ 0.02; /* of the angle
+cylinders seen within 0.02 rad of their axis @ kernel_round.h @ steep_sine2 = 4e-4f;
+within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
+0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ aim.slack = slack_mm + 0x3p-23 * scene_radius
+0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ slack_mm = 1e-3;
+within 1.16 radii of the scene's middle cast rays @ rastershadow.c @ least_radii = 1.16;
+at most a quarter of a pixel apart @ zbuffer.c @ pixels_apart = 0.25;
 END
 }
 
 test_the_limits_of_the_tiers_are_those_of_the_source() {
     agree METHODS.md <<'END'
-| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ src/verify/tolerance.c @ tolerance.color_ppm = 2;
-| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ src/verify/tolerance.c @ tolerance.color_levels = 1 / 257.0;
-| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ src/verify/tolerance.c @ tolerance.interior_ppm = 2000;
-| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ src/verify/tolerance.c @ tolerance.band_ppm = 10000;
-| largest difference off the band | 1 level | @ src/verify/tolerance.c @ tolerance.interior_levels = 1;
-| mean difference | | 0.01 levels | @ src/verify/tolerance.c @ tolerance.bias_levels = 0.01;
-| pixels brighter less pixels darker, over the root of their sum | | 6 | @ src/verify/tolerance.c @ tolerance.sign_sigma = 6;
-| gain, offset | | 0.0005, 0.0255 levels | @ src/verify/tolerance.c @ tolerance.gain = 0.0005;
-| gain, offset | | 0.0005, 0.0255 levels | @ src/verify/tolerance.c @ tolerance.offset_levels = 0.0255;
-| outline of what is seen | | 0.002 px | @ src/verify/tolerance.c @ tolerance.silhouette_px = 0.002;
-outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ src/verify/tolerance.c @ tolerance.segment_levels = 0.12;
-outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ src/verify/tolerance.c @ tolerance.segment_px = 0.15;
-| segments of more than 2 pixels seen in one picture only | | 0 | @ src/verify/tolerance.c @ tolerance.segments_missing = 0;
-| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ src/verify/tolerance.c @ tolerance.id_ppm = 2;
-| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ src/verify/tolerance.c @ tolerance.id_interior_ppm = 0;
-| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ src/verify/tolerance.c @ tolerance.id_band_ppm = 2000;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ src/verify/tolerance.c @ tolerance.normal_max_deg = 0.03;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ src/verify/tolerance.c @ tolerance.normal_max_deg = 0.1;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ src/verify/tolerance.c @ tolerance.normal_ppm = 10000;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ src/verify/tolerance.c @ tolerance.normal_median_deg = 0.02;
-| seen in one plane only (depth, normal) | 2 ppm | @ src/verify/tolerance.c @ tolerance.coverage_ppm = 2;
+| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ tolerance.c @ tolerance.color_ppm = 2;
+| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ tolerance.c @ tolerance.color_levels = 1 / 257.0;
+| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ tolerance.c @ tolerance.interior_ppm = 2000;
+| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ tolerance.c @ tolerance.band_ppm = 10000;
+| largest difference off the band | 1 level | @ tolerance.c @ tolerance.interior_levels = 1;
+| mean difference | | 0.01 levels | @ tolerance.c @ tolerance.bias_levels = 0.01;
+| pixels brighter less pixels darker, over the root of their sum | | 6 | @ tolerance.c @ tolerance.sign_sigma = 6;
+| gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ tolerance.gain = 0.0005;
+| gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ tolerance.offset_levels = 0.0255;
+| outline of what is seen | | 0.002 px | @ tolerance.c @ tolerance.silhouette_px = 0.002;
+outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ tolerance.segment_levels = 0.12;
+outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ tolerance.segment_px = 0.15;
+| segments of more than 2 pixels seen in one picture only | | 0 | @ tolerance.c @ tolerance.segments_missing = 0;
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ tolerance.id_ppm = 2;
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ tolerance.id_interior_ppm = 0;
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ tolerance.id_band_ppm = 2000;
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_max_deg = 0.03;
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_max_deg = 0.1;
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_ppm = 10000;
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_median_deg = 0.02;
+| seen in one plane only (depth, normal) | 2 ppm | @ tolerance.c @ tolerance.coverage_ppm = 2;
+2000 ppm, 15000 ppm, N = 2 | @ tolerance.c @ tolerance.band_ppm = 15000;
+0.0005, 0.15 levels | @ tolerance.c @ tolerance.offset_levels = 0.15;
+1 level, 0.15 px | @ tolerance.c @ tolerance.segment_levels = 1; tolerance.segment_px = 0.15;
+99 % within 10⁻⁴ of the depth @ tolerance.c @ tolerance.depth_p99_part = 1e-4;
+| largest missing or extra region | | | 2 pixels | @ tolerance.c @ tolerance.region_pixels = 2;
+one segment: mean difference (of at least 64 pixels), outline (of at least 8 px) @ ledger.c @ LEVELS_MIN_PIXELS = 64, OUTLINE_MIN_PX = 8
+segments of more than 2 pixels seen in one picture only @ ledger.c @ MISSING_MIN_PIXELS = 3
 END
+}
+
+test_the_numbers_of_comparing_are_those_of_the_source() {
+    agree METHODS.md <<'END'
+one side over 1.5 times as bright @ walk.c @ sum_a > 1.5 * sum_b || sum_b > 1.5 * sum_a
+moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause.c @ REACH = 48
+moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause.c @ after > before / 50
+49 of 50 codes that are off by more than a level @ cause.c @ 50 * light->misfits <= light->beyond
+POV-Ray sees a later root, to 0.02 r @ settle.c @ same_root_radii = 0.02;
+(cosine to the normal below 0.1) @ settle.c @ grazing_cosine = 0.1;
+shadows that count from 10⁻³ on, which is corcast's, and from 10⁻⁴ on @ settle.c @ first_slack_mm = 1e-3, cached_slack_mm = 1e-4;
+no neighbouring pixel differs | 40 ppm, or 6 pixels | @ settled.c @ [SETTLED_ROOT] = {"missed root", "pixels at which POV-Ray missed a root", 40, 6},
+so far before and behind | 40 ppm, or 6 pixels | @ settled.c @ "pixels at which POV-Ray's root is a little off", 40, 6},
+as many rays as graze | 200 ppm, or 12 pixels | @ settled.c @ "pixels at which POV-Ray missed a root on the way to a light", 200, 12},
+| 1000 ppm, or 20 pixels | @ settled.c @ "pixels on their own horizon, left to POV-Ray's shadow cache", 1000, 20},
+it may be off by the accuracy of its cell, r / 300 @ celltree.c @ accuracy_ratio = 1.0 / 300,
+not judged but the mean difference is, to 1.5 levels @ cmd_verify.c @ bias_levels = 1.5;
+at 67.02 pixels a degree @ flip_kernels.c @ pixels_per_degree = 67.0206451f;
+Gaussian window of 11 x 11 @ ssim.c @ RADIUS = 5, TAPS = 2 * RADIUS + 1
+K1 = 0.01, K2 = 0.03 @ ssim.c @ c1 = 0.01 * 255 * 0.01 * 255, c2 = 0.03 * 255 * 0.03 * 255
+END
+}
+
+test_the_numbers_of_fields_and_joints_are_those_of_the_source() {
+    agree METHODS.md <<'END'
+1 mmHg = 133.322387415 Pa @ units.h @ mmhg * 133.322387415;
+rho = 1.05 · 10⁻³ g/mm³ @ flow.c @ density_g_mm3 = 1.05e-3;
+`m = 6 exp(-0.085 D) + 3.2 - 2.44 exp(-0.06 D^0.645)` @ viscosity.c @ 6 * exp(-0.085 * diameter) + 3.2 - 2.44 * exp(-0.06 * pow(diameter, 0.645));
+Nothing passes at D <= 1.1 @ viscosity.c @ wall_layer = 1.1;
+it ends when at most 1 % of the vessels change @ diameter_orders.c @ assign(vessels, bin, largest, made) * 100 <= vessels->n;
+parent and a daughter is less than 60 degrees @ joints.c @ sharp_cosine = 0.5;
+END
+}
+
+test_the_numbers_of_formats_are_those_of_the_source() {
+    agree FORMATS.md <<'END'
+trees, scenes and reports above 4 GB @ swc_read.c @ .most_bytes = 4e9
+trees, scenes and reports above 4 GB @ cmd_povray.c @ .most_bytes = 4e9
+trees, scenes and reports above 4 GB @ report_merge.c @ .most_bytes = 4e9
+polygons and NIfTI files above 1 GB @ polygon_file.c @ .most_bytes = 1e9
+polygons and NIfTI files above 1 GB @ mask_file.c @ .most_bytes = 1e9
+meshes above 8 GB @ mesh_file.c @ .name = "an STL file", .most_bytes = 8e9
+meshes above 8 GB @ mesh_file.c @ .name = "an OBJ file", .most_bytes = 8e9
+pictures above 16 GB @ image_file.c @ .most_bytes = 16e9
+INI files above 1 MB @ ini.c @ .most_bytes = 1e6
+is a whole number from 1 to 16777215 @ tree.h @ TREE_MAX_ID = 0xffffff
+for `pries`, in [0, 0.95] @ viscosity.h @ MAX_HEMATOCRIT 0.95
+less than a thousandth of the box around it @ domain.c @ least_filled = 1e-3;
+more than 0.002 from its own @ profile.c @ <= 0.002
+Of pictures above 4 million pixels the page has no depths @ report_planes.c @ MOST_PIXELS = 1 << 22
+END
+    run_ok corcast render --help
+    expect_stdout "memory MB .*\(128\)"
+    says FORMATS.md 'larger pictures than `--memory` MB (128)'
+}
+
+# `--tolerance` takes the keys that FORMATS.md lists, and no other.
+test_formats_lists_the_keys_of_a_tolerance() {
+    sed -n '/^## Tolerances/,/^## /p' "$REPO/docs/FORMATS.md" | tr '\n' ' ' | sed 's/.*The keys: `\([^`]*\)`.*/\1/; s/\. .*//' |
+        tr ' ' '\n' | grep . | sort >listed
+    sed -n 's/^    \(NUMBER(\|COUNT(\|{"\)\([a-z0-9_]*\).*/\2/p' "$REPO/src/verify/tolerance.c" | sort >known
+    expect_same listed known
 }
 
 test_the_numbers_for_povray_are_those_of_the_source() {
     agree POVRAY.md <<'END'
-for each light with n . L >= 1e-10 @ src/render/light/shade.c @ if (cosine < 1e-10)
-is within 2.85 · 10⁻⁴ of it @ src/surface/cellfunction.c @ return form == ERF_FAST ? 2.85e-4
-no wall by more than three times that @ src/surface/cellfunction.c @ return (3 * erf_form_error(form) + 2e-5) * radius_mm;
-POV-Ray holds at most 1,048,575 different constants @ src/emit/povray_joint.c @ holds 1,048,575 different constants in functions; a joint has 6.
-more than 174,000 joints @ src/emit/povray_joint.c @ MOST_EXACT = 174000,
-- `f(x) <= M d(x) / 2`, because a ray that missed @ src/emit/povray_joint.c @ 2 * steepest};
-Its hits are within 10⁻⁷ radii @ templates/povray/joints.inc @ accuracy 1e-7 open
-for at most 65,536 segments @ src/emit/povray_blob.c @ GROUP = 256, MAX_PAINTED = GROUP * GROUP,
+for each light with n . L >= 1e-10 @ shade.c @ if (cosine < 1e-10)
+is within 2.85 · 10⁻⁴ of it @ cellfunction.c @ return form == ERF_FAST ? 2.85e-4
+no wall by more than three times that @ cellfunction.c @ return (3 * erf_form_error(form) + 2e-5) * radius_mm;
+POV-Ray holds at most 1,048,575 different constants @ povray_joint.c @ holds 1,048,575 different constants in functions; a joint has 6.
+more than 174,000 joints @ povray_joint.c @ MOST_EXACT = 174000,
+- `f(x) <= M d(x) / 2`, because a ray that missed @ povray_joint.c @ 2 * steepest};
+Its hits are within 10⁻⁷ radii @ joints.inc @ accuracy 1e-7 open
+for at most 65,536 segments @ povray_blob.c @ GROUP = 256, MAX_PAINTED = GROUP * GROUP,
 END
     # The polynomial in tanh is half of what stands in the source.
     local linear cubic

@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# Every command in a code block of the documents, as it stands but for the size of pictures. One that cannot run here
+# says so: its line ends in a comment that begins with "needs".
+. "$(dirname "$0")/../lib.sh"
+
+# commands DOCUMENT: its code lines that run programs, in their order, the name of an INI block in front of it as
+# `file NAME`, its lines as `line TEXT`.
+commands() {
+    awk '!/^    / { inside = 0; next }
+         { text = substr($0, 5) }
+         text ~ /^; / { inside = 1; print "file " substr(text, 3); next }
+         text ~ /^(build\/corcast|povray|make) / { inside = 0; print "run " text; next }
+         inside { print "line " text }' "$REPO/$1"
+}
+
+# small COMMAND: with pictures of at most 64 x 48 pixels.
+small() {
+    local small
+    small=$(echo "$1" | sed -E 's/ #.*//; s/--size [0-9]+x[0-9]+/--size 64x48/; s/\+W[0-9]+ \+H[0-9]+/+W64 +H48/')
+    case $small in
+    *' --size '* | *--recipe*) ;;
+    *'corcast render '* | *'corcast povray '* | *'corcast verify '*) small="$small --size 64x48" ;;
+    esac
+    echo "$small"
+}
+
+# make_target COMMAND: only that there is such a target; what each does is tested where it is made.
+make_target() {
+    local word
+    for word in $(echo "$1" | sed 's/#.*//; s/&&.*//; s/^make//'); do
+        case $word in
+        *=*) ;;
+        *) grep -qE "^([a-z -]* )?$word( [a-z -]*)?:" "$REPO/Makefile" || fail "expected the Makefile to have the target $word" ;;
+        esac
+    done
+}
+
+run_commands() {
+    local kind text file=
+    while read -r kind text; do
+        case $kind$text in
+        file*) file=$text && : >"$file" ;;
+        line*) echo "$text" | sed -E 's/^size = .*/size = 64x48/' >>"$file" ;;
+        run*'# needs '*) ;;
+        runmake*) make_target "$text" ;;
+        run*) run_ok bash -c "$(small "$text" | sed "s|build/corcast|'$CORCAST'|g")" ;;
+        esac
+    done < <(commands "$1")
+}
+
+test_the_commands_of_the_readme_run() {
+    run_commands README.md
+    expect_file tree.png
+    expect_file report/report.html
+}
+
+test_the_commands_of_the_walkthrough_run() {
+    run_commands docs/WALKTHROUGH.md
+    expect_file blue.png
+    expect_file forest.swc
+}
+
+test_no_other_document_has_commands_that_are_not_run() {
+    local document
+    for document in $(cd "$REPO" && echo docs/*.md docs/decisions/*.md); do
+        [ "$document" != docs/WALKTHROUGH.md ] || continue
+        [ -z "$(commands "$document" | grep '^run')" ] || fail "expected the commands of $document to be run by a test"
+    done
+}
+
+run_tests "$@"
