@@ -72,30 +72,30 @@ static void print_summary(const char *path, const TreeSummary *summary)
 
 Status run_info(int argc, char **argv, Err *err)
 {
-    static const char *const laws[] = {
-        [VISCOSITY_CONSTANT] = "constant", [VISCOSITY_PRIES] = "pries", NULL};
     bool as_json = false, with_statistics = false;
-    FlowParams flow = {0};
+    TreeMeta flow = {0};
     int law = VISCOSITY_CONSTANT;
     const double huge = 1e300;
     const Option own[] = {
         {"json", OPTION_FLAG, &as_json, NULL, 0, 0, NULL, NULL, "as JSON"},
         {"stats", OPTION_FLAG, &with_statistics, NULL, 0, 0, NULL, NULL,
          "radius and length by level and order, branching ratios"},
-        {"lambda", OPTION_NUMBER, &flow.lambda, &flow.has.lambda, 0, huge, NULL, NULL,
-         "exponent of the target (the tree's)"},
-        {"q-perf", OPTION_NUMBER, &flow.q_perf_ml_min, &flow.has.q_perf, 1e-300, huge, NULL,
-         "ML/MIN", "flow through the inlet (the tree's)"},
-        {"p-perf", OPTION_NUMBER, &flow.p_perf_mmhg, &flow.has.p_perf, -huge, huge, NULL, "MMHG",
-         "pressure at the inlet (the tree's)"},
-        {"viscosity", OPTION_NUMBER, &flow.viscosity_cp, &flow.has.viscosity, 1e-300, huge, NULL,
-         "CP", "of the blood (the tree's)"},
-        {"viscosity-law", OPTION_CHOICE, &law, &flow.has.viscosity_law, 0, 0, laws, NULL,
+        {"lambda", OPTION_NUMBER, &flow.number[META_LAMBDA], &flow.known[META_LAMBDA], 0, huge,
+         NULL, NULL, "exponent of the target (the tree's)"},
+        {"q-perf", OPTION_NUMBER, &flow.number[META_Q_PERF], &flow.known[META_Q_PERF], 1e-300, huge,
+         NULL, "ML/MIN", "flow through the inlet (the tree's)"},
+        {"p-perf", OPTION_NUMBER, &flow.number[META_P_PERF], &flow.known[META_P_PERF], -huge, huge,
+         NULL, "MMHG", "pressure at the inlet (the tree's)"},
+        {"viscosity", OPTION_NUMBER, &flow.number[META_VISCOSITY], &flow.known[META_VISCOSITY],
+         1e-300, huge, NULL, "CP", "of the blood (the tree's)"},
+        {"viscosity-law", OPTION_CHOICE, &law, &flow.known[META_VISCOSITY_LAW], 0, 0,
+         meta_rows[META_VISCOSITY_LAW].words, NULL,
          "constant, or pries: by vessel diameter (the tree's)"},
-        {"hematocrit", OPTION_NUMBER, &flow.hematocrit, &flow.has.hematocrit, 0, MAX_HEMATOCRIT,
-         NULL, "H", "of the blood, for pries (the tree's)"},
-        {"plasma-viscosity", OPTION_NUMBER, &flow.plasma_viscosity_cp, &flow.has.plasma_viscosity,
-         1e-300, huge, NULL, "CP", "of the plasma, for pries (the tree's)"},
+        {"hematocrit", OPTION_NUMBER, &flow.number[META_HEMATOCRIT], &flow.known[META_HEMATOCRIT],
+         0, MAX_HEMATOCRIT, NULL, "H", "of the blood, for pries (the tree's)"},
+        {"plasma-viscosity", OPTION_NUMBER, &flow.number[META_PLASMA_VISCOSITY],
+         &flow.known[META_PLASMA_VISCOSITY], 1e-300, huge, NULL, "CP",
+         "of the plasma, for pries (the tree's)"},
         {0},
     };
     const Option *const tables[] = {own, NULL};
@@ -105,7 +105,7 @@ Status run_info(int argc, char **argv, Err *err)
     Tree tree = {0};
     TreeSummary summary;
     TreeStatistics statistics = {0};
-    flow.viscosity_law = (ViscosityLaw)law;
+    flow.number[META_VISCOSITY_LAW] = law;
     if (parsed.common.help)
         goto done;
     TRY_GOTO(tree_read(&tree, parsed.operands[0], err));

@@ -10,7 +10,7 @@
 void coloring_init(Coloring *coloring)
 {
     *coloring = (Coloring){.colormap = "viridis"};
-    FlowParams *flow = &coloring->flow;
+    TreeMeta *flow = &coloring->flow;
     const double huge = 1e300;
     const Option table[] = {
         {"color-by", OPTION_TEXT, &coloring->field, NULL, 0, 0, NULL, "FIELD",
@@ -21,12 +21,12 @@ void coloring_init(Coloring *coloring)
         {"range", OPTION_RANGE, coloring->range, &coloring->has_range, 0, 0, NULL, NULL,
          "values at the ends of the colour map (the field's)"},
         {"log", OPTION_FLAG, &coloring->log, NULL, 0, 0, NULL, NULL, "logarithmic colours"},
-        {"q-perf", OPTION_NUMBER, &flow->q_perf_ml_min, &flow->has.q_perf, 1e-300, huge, NULL,
-         "ML/MIN", "flow through the inlet (the tree's)"},
-        {"p-perf", OPTION_NUMBER, &flow->p_perf_mmhg, &flow->has.p_perf, -huge, huge, NULL, "MMHG",
-         "pressure at the inlet (the tree's)"},
-        {"viscosity", OPTION_NUMBER, &flow->viscosity_cp, &flow->has.viscosity, 1e-300, huge, NULL,
-         "CP", "of the blood (the tree's)"},
+        {"q-perf", OPTION_NUMBER, &flow->number[META_Q_PERF], &flow->known[META_Q_PERF], 1e-300,
+         huge, NULL, "ML/MIN", "flow through the inlet (the tree's)"},
+        {"p-perf", OPTION_NUMBER, &flow->number[META_P_PERF], &flow->known[META_P_PERF], -huge,
+         huge, NULL, "MMHG", "pressure at the inlet (the tree's)"},
+        {"viscosity", OPTION_NUMBER, &flow->number[META_VISCOSITY], &flow->known[META_VISCOSITY],
+         1e-300, huge, NULL, "CP", "of the blood (the tree's)"},
         {0},
     };
     static_assert(sizeof table <= sizeof coloring->table, "COLORING_OPTIONS is too small");

@@ -15,7 +15,7 @@ typedef struct Coloring {
     const char *colormap;
     double range[2];
     bool has_range, log;
-    FlowParams flow;
+    TreeMeta flow; /* what the user says of the tree */
     Option table[COLORING_OPTIONS];
 } Coloring;
 

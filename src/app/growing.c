@@ -66,34 +66,32 @@ void growing_init(Growing *growing)
     memcpy(growing->table, table, sizeof table);
 }
 
-static void take(double *value, bool given, bool has, double header)
+static void take(double *value, bool given, const TreeMeta *meta, MetaKey key)
 {
-    if (!given && has)
-        *value = header;
+    if (!given && meta->known[key])
+        *value = meta->number[key];
 }
 
-/* What the header of the tree tells and no option does. */
-static Status take_header(Growing *growing, Err *err)
+/* What is known of the tree and no option says. */
+static Status take_meta(Growing *growing, Err *err)
 {
-    const TreeHeader *header = &growing->from.header;
+    const TreeMeta *meta = &growing->from.meta;
     GrowParams *params = &growing->params;
-    take(&params->gamma, growing->given.gamma, header->has.gamma, header->gamma);
-    take(&params->lambda, growing->given.lambda, header->has.lambda, header->lambda);
-    take(&params->p_perf_mmhg, growing->given.p_perf, header->has.p_perf, header->p_perf_mmhg);
-    take(&params->p_term_mmhg, growing->given.p_term, header->has.p_term, header->p_term_mmhg);
-    take(&params->q_perf_ml_min, growing->given.q_perf, header->has.q_perf, header->q_perf_ml_min);
-    take(&params->viscosity_cp, growing->given.viscosity, header->has.viscosity,
-         header->viscosity_cp);
-    take(&params->hematocrit, growing->given.hematocrit, header->has.hematocrit,
-         header->hematocrit);
-    take(&params->plasma_viscosity_cp, growing->given.plasma_viscosity,
-         header->has.plasma_viscosity, header->plasma_viscosity_cp);
-    if (!growing->given.viscosity_law && !growing->given.viscosity && header->has.viscosity_law)
-        params->viscosity_law = header->viscosity_law;
+    take(&params->gamma, growing->given.gamma, meta, META_GAMMA);
+    take(&params->lambda, growing->given.lambda, meta, META_LAMBDA);
+    take(&params->p_perf_mmhg, growing->given.p_perf, meta, META_P_PERF);
+    take(&params->p_term_mmhg, growing->given.p_term, meta, META_P_TERM);
+    take(&params->q_perf_ml_min, growing->given.q_perf, meta, META_Q_PERF);
+    take(&params->viscosity_cp, growing->given.viscosity, meta, META_VISCOSITY);
+    take(&params->hematocrit, growing->given.hematocrit, meta, META_HEMATOCRIT);
+    take(&params->plasma_viscosity_cp, growing->given.plasma_viscosity, meta,
+         META_PLASMA_VISCOSITY);
+    if (!growing->given.viscosity_law && !growing->given.viscosity)
+        params->viscosity_law = (ViscosityLaw)meta_number(meta, META_VISCOSITY_LAW);
     if (growing->given.terminal_flow)
         return STATUS_OK;
-    if (header->has.terminal_flow)
-        params->terminal_flow = header->terminal_flow;
+    if (meta->known[META_TERMINAL_FLOW])
+        params->terminal_flow = (TerminalFlow)meta->number[META_TERMINAL_FLOW];
     else if (growing->from.flow_share)
         return err_set(
             err, STATUS_USAGE,
@@ -106,7 +104,7 @@ static Status read_from(Growing *growing, bool *has_domain, Err *err)
 {
     TRY(tree_read(&growing->from, growing->from_path, err));
     growing->params.from = &growing->from;
-    TRY(take_header(growing, err));
+    TRY(take_meta(growing, err));
     if (growing->domain_spec)
         return STATUS_OK;
     TRY(tree_domain(&growing->from, &growing->domain, has_domain, err));

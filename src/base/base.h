@@ -9,6 +9,7 @@
 #include "base/memory.h"    // IWYU pragma: export
 #include "base/progress.h"  // IWYU pragma: export
 #include "base/random.h"    // IWYU pragma: export
+#include "base/range.h"     // IWYU pragma: export
 #include "base/slab.h"      // IWYU pragma: export
 #include "base/status.h"    // IWYU pragma: export
 #include "base/text.h"      // IWYU pragma: export

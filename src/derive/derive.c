@@ -7,16 +7,16 @@
 #include <string.h>
 #include <strings.h>
 
-static Status field_radius(const Tree *tree, const FlowParams *params, double *value, Err *err)
+static Status field_radius(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
-    (void)params, (void)err;
+    (void)said, (void)err;
     memcpy(value, tree->radius_mm, tree->n * sizeof *value);
     return STATUS_OK;
 }
 
-static Status field_length(const Tree *tree, const FlowParams *params, double *value, Err *err)
+static Status field_length(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
-    (void)params, (void)err;
+    (void)said, (void)err;
     for (size_t i = 0; i < tree->n; i++)
         value[i] = tree_segment_length(tree, i);
     return STATUS_OK;
@@ -24,7 +24,7 @@ static Status field_length(const Tree *tree, const FlowParams *params, double *v
 
 typedef struct FieldRule {
     const char *name, *unit;
-    Status (*fill)(const Tree *tree, const FlowParams *params, double *value, Err *err);
+    Status (*fill)(const Tree *tree, const TreeMeta *said, double *value, Err *err);
 } FieldRule;
 
 static const FieldRule rules[] = {
@@ -70,7 +70,7 @@ static Status unknown_field(const char *name, Err *err)
     return status;
 }
 
-Status derive_field(const Tree *tree, const FlowParams *params, const char *name, Field *field,
+Status derive_field(const Tree *tree, const TreeMeta *said, const char *name, Field *field,
                     Err *err)
 {
     const FieldRule *rule = find_rule(name);
@@ -78,7 +78,7 @@ Status derive_field(const Tree *tree, const FlowParams *params, const char *name
         return unknown_field(name, err);
     double *value = NULL;
     TRY(mem_calloc(&value, tree->n, sizeof *value, "field values", err));
-    Status status = rule->fill(tree, params, value, err);
+    Status status = rule->fill(tree, said, value, err);
     if (status != STATUS_OK) {
         if (status == STATUS_INPUT) /* a need(), whose sentence goes on from here */
             err_prefix(err, "the field %s ", rule->name);

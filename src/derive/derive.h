@@ -10,21 +10,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What the user says about the flow; it overrides the tree's header keys of the same name. */
-typedef struct FlowParams {
-    struct {
-        bool q_perf, p_perf, viscosity, lambda;
-        bool viscosity_law, hematocrit, plasma_viscosity;
-    } has;
-    double q_perf_ml_min; /* > 0, through all roots together */
-    double p_perf_mmhg;   /* at every root */
-    double viscosity_cp;  /* > 0, of the blood; without viscosity_law it means the constant law */
-    double lambda;        /* >= 0, exponent of the target; only derive_summary uses it */
-    ViscosityLaw viscosity_law; /* constant, when the tree does not say either */
-    double hematocrit;          /* in [0, MAX_HEMATOCRIT], by Pries's law */
-    double plasma_viscosity_cp; /* > 0, by Pries's law */
-} FlowParams;
-
 /* One value a node: that of segment i, taken at its distal end, and NAN at roots. */
 typedef struct Field {
     const char *name; /* borrowed */
@@ -55,10 +40,10 @@ typedef struct Field {
  *
  * mu is the constant viscosity of the blood, or viscosity_pries_pa_s of each segment's radius.
  * Velocity, wall shear stress and Reynolds number of a segment of radius 0 are not defined: NAN;
- * so are the pressures at and below one. Capitals in a name are as small letters. STATUS_USAGE for
- * an unknown name; STATUS_INPUT, naming the option and the header key, when neither `params` nor
- * the header says what the field needs. */
-MUST_CHECK Status derive_field(const Tree *tree, const FlowParams *params, const char *name,
+ * so are the pressures at and below one. Capitals in a name are as small letters. What the
+ * user has `said` goes before what the tree says. STATUS_USAGE for an unknown name; STATUS_INPUT,
+ * naming the option and the key of the file, when neither says what the field needs. */
+MUST_CHECK Status derive_field(const Tree *tree, const TreeMeta *said, const char *name,
                                Field *field, Err *err);
 void field_release(Field *field);
 
@@ -75,7 +60,7 @@ typedef struct TreeSummary {
     double total_length_mm;
     double volume_mm3;     /* sum of pi r^2 l */
     double target;         /* sum of l r^lambda [Neumann et al. 1996, eq. 2] */
-    double gamma, lambda;  /* lambda: from the params, else from the header */
+    double gamma, lambda;  /* lambda: as said, else the tree's */
     double root_radius_mm; /* the largest of the roots and of the segments that leave them */
     double min_radius_mm;  /* of all segments; NAN when there is none */
     int max_level;         /* 0 when there is no segment */
@@ -84,11 +69,11 @@ typedef struct TreeSummary {
     double terminal_pressure_min_mmhg, terminal_pressure_mean_mmhg, terminal_pressure_max_mmhg;
 } TreeSummary;
 
-/* The law that a tree's viscosity follows: the params', else constant where they give a viscosity,
+/* The law that a tree's viscosity follows: the one said, else constant where a viscosity is said,
  * else the tree's. */
-ViscosityLaw derive_viscosity_law(const Tree *tree, const FlowParams *params);
+ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *said);
 
-MUST_CHECK Status derive_summary(const Tree *tree, const FlowParams *params, TreeSummary *summary,
+MUST_CHECK Status derive_summary(const Tree *tree, const TreeMeta *said, TreeSummary *summary,
                                  Err *err);
 
 /* A vessel is the chain of segments between two branchings, which the morphometric literature calls

@@ -96,9 +96,9 @@ done:
     return status;
 }
 
-Status field_diameter_strahler(const Tree *tree, const FlowParams *params, double *value, Err *err)
+Status field_diameter_strahler(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
-    (void)params;
+    (void)said;
     Vessels vessels;
     TRY(vessels_init(&vessels, tree, err));
     int32_t *order = NULL;

@@ -9,62 +9,17 @@
 static const double density_g_mm3 = 1.05e-3; /* of blood */
 static const double pi = 3.14159265358979323846;
 
-/* A quantity that an option or the header may say. */
-typedef struct Given {
-    bool known;
-    double value;
-    const char *what, *option, *key;
-} Given;
-
-static Given given_q_perf(const Tree *tree, const FlowParams *params)
-{
-    const TreeHeader *header = &tree->header;
-    return (Given){params->has.q_perf || header->has.q_perf,
-                   params->has.q_perf ? params->q_perf_ml_min : header->q_perf_ml_min,
-                   "flow through the inlet", "--q-perf ML_MIN", "q_perf_ml_min"};
-}
-
-static Given given_p_perf(const Tree *tree, const FlowParams *params)
-{
-    const TreeHeader *header = &tree->header;
-    return (Given){params->has.p_perf || header->has.p_perf,
-                   params->has.p_perf ? params->p_perf_mmhg : header->p_perf_mmhg,
-                   "pressure at the inlet", "--p-perf MMHG", "p_perf_mmHg"};
-}
-
-static Given given_viscosity(const Tree *tree, const FlowParams *params)
-{
-    const TreeHeader *header = &tree->header;
-    return (Given){params->has.viscosity || header->has.viscosity,
-                   params->has.viscosity ? params->viscosity_cp : header->viscosity_cp,
-                   "viscosity of the blood", "--viscosity CP", "viscosity_cP"};
-}
-
-static Given given_plasma_viscosity(const Tree *tree, const FlowParams *params)
-{
-    const TreeHeader *header = &tree->header;
-    return (Given){params->has.plasma_viscosity || header->has.plasma_viscosity,
-                   params->has.plasma_viscosity ? params->plasma_viscosity_cp
-                                                : header->plasma_viscosity_cp,
-                   "viscosity of the plasma", "--plasma-viscosity CP", "plasma_viscosity_cP"};
-}
-
-static Given given_hematocrit(const Tree *tree, const FlowParams *params)
-{
-    const TreeHeader *header = &tree->header;
-    return (Given){params->has.hematocrit || header->has.hematocrit,
-                   params->has.hematocrit ? params->hematocrit : header->hematocrit, "hematocrit",
-                   "--hematocrit H", "hematocrit"};
-}
-
 /* The sentence goes on from "the field NAME ". */
-static Status need(const Given *given, Err *err)
+static Status need(const Tree *tree, const TreeMeta *said, MetaKey key, double *value, Err *err)
 {
-    if (given->known)
+    const TreeMeta *source = who_says(tree, said, key);
+    const MetaRow *row = &meta_rows[key];
+    *value = source->number[key];
+    if (source->known[key])
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
                    "needs the %s, which the tree does not say; give %s, or the header key %s",
-                   given->what, given->option, given->key);
+                   row->meaning, row->option, row->name);
 }
 
 /* What viscosity follows from. */
@@ -74,25 +29,24 @@ typedef struct Blood {
     double hematocrit;     /* by Pries's law */
 } Blood;
 
-ViscosityLaw derive_viscosity_law(const Tree *tree, const FlowParams *params)
+ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *said)
 {
-    if (params->has.viscosity_law)
-        return params->viscosity_law;
-    if (params->has.viscosity || !tree->header.has.viscosity_law)
+    if (said->known[META_VISCOSITY] && !said->known[META_VISCOSITY_LAW])
         return VISCOSITY_CONSTANT;
-    return tree->header.viscosity_law;
+    const TreeMeta *source = who_says(tree, said, META_VISCOSITY_LAW);
+    return (ViscosityLaw)meta_number(source, META_VISCOSITY_LAW);
 }
 
-static Status blood_of(const Tree *tree, const FlowParams *params, Blood *blood, Err *err)
+static Status blood_of(const Tree *tree, const TreeMeta *said, Blood *blood, Err *err)
 {
-    ViscosityLaw law = derive_viscosity_law(tree, params);
-    Given viscosity = law == VISCOSITY_CONSTANT ? given_viscosity(tree, params)
-                                                : given_plasma_viscosity(tree, params);
-    Given hematocrit = given_hematocrit(tree, params);
-    TRY(need(&viscosity, err));
-    if (law == VISCOSITY_PRIES)
-        TRY(need(&hematocrit, err));
-    *blood = (Blood){law, pa_s_from_cp(viscosity.value), hematocrit.value};
+    Blood made = {.law = derive_viscosity_law(tree, said)};
+    bool constant = made.law == VISCOSITY_CONSTANT;
+    double viscosity_cp;
+    TRY(need(tree, said, constant ? META_VISCOSITY : META_PLASMA_VISCOSITY, &viscosity_cp, err));
+    if (!constant)
+        TRY(need(tree, said, META_HEMATOCRIT, &made.hematocrit, err));
+    made.viscosity_pa_s = pa_s_from_cp(viscosity_cp);
+    *blood = made;
     return STATUS_OK;
 }
 
@@ -103,11 +57,13 @@ static double viscosity_pa_s(const Blood *blood, double radius_mm)
     return viscosity_pries_pa_s(radius_mm, blood->hematocrit, blood->viscosity_pa_s);
 }
 
-bool pressure_is_known(const Tree *tree, const FlowParams *params)
+bool pressure_is_known(const Tree *tree, const TreeMeta *said)
 {
     Blood blood;
-    return given_q_perf(tree, params).known && given_p_perf(tree, params).known &&
-           blood_of(tree, params, &blood, NULL) == STATUS_OK;
+    double value;
+    return need(tree, said, META_Q_PERF, &value, NULL) == STATUS_OK &&
+           need(tree, said, META_P_PERF, &value, NULL) == STATUS_OK &&
+           blood_of(tree, said, &blood, NULL) == STATUS_OK;
 }
 
 /* Fills `value` with the flow shares at and below every node; *total is that of all roots. */
@@ -128,29 +84,28 @@ static Status gather_shares(const Tree *tree, double *value, double *total, Err 
 }
 
 /* mm^3/s; a root has the sum of what leaves it. All 0 in a tree without shares above 0. */
-static Status flow_mm3_s(const Tree *tree, const FlowParams *params, double *value, Err *err)
+static Status flow_mm3_s(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
-    Given given = given_q_perf(tree, params);
-    TRY(need(&given, err));
-    double q_perf = mm3_s_from_ml_min(given.value);
-    double total;
+    double q_perf_ml_min, total;
+    TRY(need(tree, said, META_Q_PERF, &q_perf_ml_min, err));
+    double q_perf = mm3_s_from_ml_min(q_perf_ml_min);
     TRY(gather_shares(tree, value, &total, err));
     for (size_t i = 0; i < tree->n; i++)
         value[i] = total > 0 ? value[i] * q_perf / total : 0;
     return STATUS_OK;
 }
 
-Status field_flow(const Tree *tree, const FlowParams *params, double *value, Err *err)
+Status field_flow(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
-    TRY(flow_mm3_s(tree, params, value, err));
+    TRY(flow_mm3_s(tree, said, value, err));
     for (size_t i = 0; i < tree->n; i++)
         value[i] = ml_min_from_mm3_s(value[i]);
     return STATUS_OK;
 }
 
-Status field_velocity(const Tree *tree, const FlowParams *params, double *value, Err *err)
+Status field_velocity(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
-    TRY(flow_mm3_s(tree, params, value, err));
+    TRY(flow_mm3_s(tree, said, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i];
         value[i] = radius > 0 ? value[i] / (pi * radius * radius) : (double)NAN;
@@ -158,11 +113,11 @@ Status field_velocity(const Tree *tree, const FlowParams *params, double *value,
     return STATUS_OK;
 }
 
-Status field_wss(const Tree *tree, const FlowParams *params, double *value, Err *err)
+Status field_wss(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
     Blood blood;
-    TRY(blood_of(tree, params, &blood, err));
-    TRY(flow_mm3_s(tree, params, value, err));
+    TRY(blood_of(tree, said, &blood, err));
+    TRY(flow_mm3_s(tree, said, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i], viscosity = viscosity_pa_s(&blood, radius);
         value[i] =
@@ -171,11 +126,11 @@ Status field_wss(const Tree *tree, const FlowParams *params, double *value, Err 
     return STATUS_OK;
 }
 
-Status field_reynolds(const Tree *tree, const FlowParams *params, double *value, Err *err)
+Status field_reynolds(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
     Blood blood;
-    TRY(blood_of(tree, params, &blood, err));
-    TRY(field_velocity(tree, params, value, err));
+    TRY(blood_of(tree, said, &blood, err));
+    TRY(field_velocity(tree, said, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i];
         value[i] *= 2 * density_g_mm3 * radius / viscosity_pa_s(&blood, radius);
@@ -189,16 +144,16 @@ static double poiseuille_drop_pa(double viscosity, double length, double flow, d
     return radius > 0 ? 8 * viscosity * length * flow / (pi * radius2 * radius2) : (double)NAN;
 }
 
-Status field_pressure(const Tree *tree, const FlowParams *params, double *value, Err *err)
+Status field_pressure(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
-    Given p_perf = given_p_perf(tree, params);
+    double p_perf_mmhg;
     Blood blood;
-    TRY(need(&p_perf, err));
-    TRY(blood_of(tree, params, &blood, err));
-    TRY(flow_mm3_s(tree, params, value, err));
+    TRY(need(tree, said, META_P_PERF, &p_perf_mmhg, err));
+    TRY(blood_of(tree, said, &blood, err));
+    TRY(flow_mm3_s(tree, said, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i)) {
-            value[i] = p_perf.value;
+            value[i] = p_perf_mmhg;
             continue;
         }
         double radius = tree->radius_mm[i];

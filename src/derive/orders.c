@@ -5,9 +5,9 @@
 
 #include <stdlib.h>
 
-Status field_level(const Tree *tree, const FlowParams *params, double *value, Err *err)
+Status field_level(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
-    (void)params;
+    (void)said;
     int32_t *children = NULL;
     TRY(tree_child_counts(tree, &children, err));
     for (size_t i = 0; i < tree->n; i++) {
@@ -20,9 +20,9 @@ Status field_level(const Tree *tree, const FlowParams *params, double *value, Er
 
 /* Backwards, all children of a node come before it: until then value[i] holds the largest order
  * among them, and alike[i] how many have it. */
-Status field_strahler(const Tree *tree, const FlowParams *params, double *value, Err *err)
+Status field_strahler(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
-    (void)params;
+    (void)said;
     int32_t *alike = NULL;
     TRY(mem_calloc(&alike, tree->n, sizeof *alike, "counts of equal orders", err));
     for (size_t i = tree->n; i-- > 0;) {
@@ -42,9 +42,9 @@ Status field_strahler(const Tree *tree, const FlowParams *params, double *value,
     return STATUS_OK;
 }
 
-Status field_branch(const Tree *tree, const FlowParams *params, double *value, Err *err)
+Status field_branch(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
-    (void)params;
+    (void)said;
     enum { NONE = 0 }; /* index 0 is a root, and no node's daughter */
     int32_t *thickest = NULL;
     TRY(mem_calloc(&thickest, tree->n, sizeof *thickest, "thickest daughters", err));

@@ -39,11 +39,10 @@ static void count_ends(const Tree *tree, const int32_t *children, TreeSummary *s
 }
 
 /* The largest value of a field that is a count; 0 when there is no segment. */
-static Status largest(const Tree *tree, const FlowParams *params, const char *name, int *out,
-                      Err *err)
+static Status largest(const Tree *tree, const TreeMeta *said, const char *name, int *out, Err *err)
 {
     Field field;
-    TRY(derive_field(tree, params, name, &field, err));
+    TRY(derive_field(tree, said, name, &field, err));
     double maximum = 0;
     for (size_t i = 0; i < field.n; i++)
         maximum = fmax(maximum, field.value[i]);
@@ -52,14 +51,13 @@ static Status largest(const Tree *tree, const FlowParams *params, const char *na
     return STATUS_OK;
 }
 
-static Status sum_terminal_pressures(const Tree *tree, const FlowParams *params,
+static Status sum_terminal_pressures(const Tree *tree, const TreeMeta *said,
                                      const int32_t *children, TreeSummary *summary, Err *err)
 {
-    if (!pressure_is_known(tree, params) || summary->terminals == 0 ||
-        !(summary->min_radius_mm > 0))
+    if (!pressure_is_known(tree, said) || summary->terminals == 0 || !(summary->min_radius_mm > 0))
         return STATUS_OK;
     Field pressure;
-    TRY(derive_field(tree, params, "pressure", &pressure, err));
+    TRY(derive_field(tree, said, "pressure", &pressure, err));
     double low = HUGE_VAL, high = -HUGE_VAL, sum = 0;
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i) || children[i] > 0)
@@ -78,20 +76,21 @@ static Status sum_terminal_pressures(const Tree *tree, const FlowParams *params,
     return STATUS_OK;
 }
 
-Status derive_summary(const Tree *tree, const FlowParams *params, TreeSummary *summary, Err *err)
+Status derive_summary(const Tree *tree, const TreeMeta *said, TreeSummary *summary, Err *err)
 {
-    const TreeHeader *header = &tree->header;
-    TreeSummary made = {.gamma = header->gamma, .bounds = tree_bounds(tree)};
-    made.has.gamma = header->has.gamma;
-    made.has.lambda = made.has.target = params->has.lambda || header->has.lambda;
-    made.lambda = params->has.lambda ? params->lambda : header->lambda;
+    const TreeMeta *lambda = who_says(tree, said, META_LAMBDA);
+    TreeSummary made = {.gamma = meta_number(&tree->meta, META_GAMMA),
+                        .lambda = meta_number(lambda, META_LAMBDA),
+                        .bounds = tree_bounds(tree)};
+    made.has.gamma = tree->meta.known[META_GAMMA];
+    made.has.lambda = made.has.target = lambda->known[META_LAMBDA];
     sum_segments(tree, &made);
-    TRY(largest(tree, params, "level", &made.max_level, err));
-    TRY(largest(tree, params, "strahler", &made.max_strahler, err));
+    TRY(largest(tree, said, "level", &made.max_level, err));
+    TRY(largest(tree, said, "strahler", &made.max_strahler, err));
     int32_t *children = NULL;
     TRY(tree_child_counts(tree, &children, err));
     count_ends(tree, children, &made);
-    Status status = sum_terminal_pressures(tree, params, children, &made, err);
+    Status status = sum_terminal_pressures(tree, said, children, &made, err);
     free(children);
     if (status == STATUS_OK)
         *summary = made;

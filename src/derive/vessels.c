@@ -37,7 +37,7 @@ static void find_vessels(const Tree *tree, const int32_t *children, const double
 
 Status vessels_init(Vessels *vessels, const Tree *tree, Err *err)
 {
-    const FlowParams none = {0};
+    const TreeMeta none = {0};
     Vessels made = {0};
     int32_t *children = NULL;
     double *level = NULL, *strahler = NULL;

@@ -138,22 +138,12 @@ static Status restore_nodes(const Tree *from, const Network *net, Tree *out, Err
     return STATUS_OK;
 }
 
-/* Whether some line of the tree has the key of `line`: what stands up to its colon. */
-static bool has_key_of(const Tree *tree, const char *line)
-{
-    size_t length = strcspn(line, ":");
-    for (size_t i = 0; i < tree->header.n_lines && line[length]; i++)
-        if (strncmp(tree->header.lines[i], line, length + 1) == 0)
-            return true;
-    return false;
-}
-
 Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *err)
 {
     TRY(restore_nodes(from, net, out, err));
-    for (size_t i = 0; i < from->header.n_lines; i++)
-        if (!has_key_of(out, from->header.lines[i]))
-            TRY(tree_add_line(out, from->header.lines[i], err));
+    for (size_t i = 0; i < from->meta.n_lines; i++)
+        if (from->meta.line[i].text)
+            TRY(meta_add_text(&out->meta, from->meta.line[i].key, from->meta.line[i].text, err));
     return STATUS_OK;
 }
 

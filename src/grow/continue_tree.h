@@ -16,8 +16,8 @@ MUST_CHECK Status continue_check(const GrowParams *params, const Domain *domain,
 void continue_from(const Tree *from, Network *net);
 
 /* Gives the nodes of `out`, which are those of `net`, that were in `from` their ids and types back,
- * and the others the smallest ids that are free; and appends those header lines of `from` whose
- * keys `out` has no line of. */
+ * and the others the smallest ids that are free; and appends the remarks and command
+ * lines of `from`. */
 MUST_CHECK Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *err);
 
 /* What the radii of the segments of `from` were multiplied by in `out`, whose ids are restored:

@@ -13,7 +13,6 @@
 #include "grow/segment_weights.h"
 #include <assert.h>
 #include <float.h>
-#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -101,78 +100,32 @@ done:
     return status;
 }
 
-static Status add_number(Tree *tree, const char *key, double value, Err *err)
+/* Of a domain from a file, the tree knows the file's name, not the user's folders. */
+static Status describe_domain(const Domain *domain, TreeMeta *meta, Err *err)
 {
-    char number[NUMBER_TEXT_SIZE], line[128];
-    snprintf(line, sizeof line, "%s: %s", key, number_text(value, number));
-    return tree_add_line(tree, line, err);
-}
-
-/* Of a domain from a file, the header tells the file's name, not the user's folders. */
-static Status add_domain(Tree *tree, const Domain *domain, Err *err)
-{
-    Text spec = TEXT_INIT, line = TEXT_INIT;
+    Text spec = TEXT_INIT, bare = TEXT_INIT;
     domain_text(domain, &spec);
     Status status = text_check(&spec, err);
     if (status == STATUS_OK) {
         const char *chars = text_chars(&spec);
         size_t kind = strcspn(chars, ":") + 1;
-        text_printf(&line, "domain: %.*s%s", (int)kind, chars, file_name(chars + kind));
-        status = text_check(&line, err);
+        text_printf(&bare, "%.*s%s", (int)kind, chars, file_name(chars + kind));
+        status = text_check(&bare, err);
     }
     if (status == STATUS_OK)
-        status = tree_add_line(tree, text_chars(&line), err);
+        status = meta_set_text(meta, META_DOMAIN, text_chars(&bare), err);
     text_release(&spec);
-    text_release(&line);
+    text_release(&bare);
     return status;
 }
 
-static Status write_blood(const GrowParams *params, Tree *tree, Err *err)
+static Status describe(const GrowParams *params, const Domain *domain, TreeMeta *meta, Err *err)
 {
-    TreeHeader *header = &tree->header;
-    if (params->viscosity_law == VISCOSITY_CONSTANT) {
-        header->has.viscosity = true;
-        header->viscosity_cp = params->viscosity_cp;
-        return add_number(tree, "viscosity_cP", header->viscosity_cp, err);
-    }
-    header->has.viscosity_law = header->has.hematocrit = header->has.plasma_viscosity = true;
-    header->viscosity_law = params->viscosity_law;
-    header->hematocrit = params->hematocrit;
-    header->plasma_viscosity_cp = params->plasma_viscosity_cp;
-    TRY(tree_add_line(tree, "viscosity_law: pries", err));
-    TRY(add_number(tree, "hematocrit", header->hematocrit, err));
-    return add_number(tree, "plasma_viscosity_cP", header->plasma_viscosity_cp, err);
-}
-
-static Status write_header(const GrowParams *params, const Domain *domain, Tree *tree, Err *err)
-{
-    TreeHeader *header = &tree->header;
-    header->has.seed = header->has.dimension = header->has.gamma = header->has.lambda = true;
-    header->has.p_perf = header->has.p_term = header->has.q_perf = true;
-    header->seed = params->seed;
-    header->dimension = domain_dimension(domain);
-    header->gamma = params->gamma;
-    header->lambda = params->lambda;
-    header->p_perf_mmhg = params->p_perf_mmhg;
-    header->p_term_mmhg = params->p_term_mmhg;
-    header->q_perf_ml_min = params->q_perf_ml_min;
-    char seed[64];
-    snprintf(seed, sizeof seed, "seed: %" PRIu64, params->seed);
-    TRY(tree_add_line(tree, "generator: corcast " CORCAST_VERSION, err));
-    TRY(tree_add_line(tree, seed, err));
-    TRY(add_number(tree, "dimension", header->dimension, err));
-    TRY(add_domain(tree, domain, err));
-    TRY(add_number(tree, "gamma", header->gamma, err));
-    TRY(add_number(tree, "lambda", header->lambda, err));
-    TRY(add_number(tree, "p_perf_mmHg", header->p_perf_mmhg, err));
-    TRY(add_number(tree, "p_term_mmHg", header->p_term_mmhg, err));
-    TRY(add_number(tree, "q_perf_ml_min", header->q_perf_ml_min, err));
-    TRY(write_blood(params, tree, err));
-    if (params->terminal_flow == TERMINAL_FLOW_EQUAL)
-        return STATUS_OK;
-    header->has.terminal_flow = true;
-    header->terminal_flow = params->terminal_flow;
-    return tree_add_line(tree, "terminal_flow: territory", err);
+    grow_describe(params, meta);
+    meta_set_number(meta, META_DIMENSION, domain_dimension(domain));
+    TRY(meta_set_text(meta, META_GENERATOR, "corcast " CORCAST_VERSION, err));
+    TRY(describe_domain(domain, meta, err));
+    return meta_add_lines(meta, err);
 }
 
 Status finish_tree(Network *net, const GrowParams *params, const Domain *domain, Tree *out,
@@ -185,7 +138,7 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
     Status status = STATUS_OK;
     TRY_GOTO(tree_init(&made, net->n, err));
     TRY_GOTO(write_radii(net, params, &made, err));
-    TRY_GOTO(write_header(params, domain, &made, err));
+    TRY_GOTO(describe(params, domain, &made.meta, err));
     static_assert(TREE_NO_PARENT == -1, "as in a Segment");
     for (size_t i = 0; i < net->n; i++) {
         made.type[i] = GROW_SWC_TYPE;

@@ -6,7 +6,7 @@
 #include "grow/network.h"
 
 /* Renumbers `net`, whose terminals have their shares, computes all radii from the coordinates and
- * writes the tree with its header into *out. STATUS_INFEASIBLE when a radius is beyond the range of
+ * writes the tree and its meta into *out. STATUS_INFEASIBLE when a radius is beyond the range of
  * a double. */
 MUST_CHECK Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
                               Tree *out, Err *err);

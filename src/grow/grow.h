@@ -27,12 +27,13 @@ enum { GROW_SWC_TYPE = 3 };
 
 typedef struct GrowParams {
     size_t terminals; /* in [1, GROW_MAX_TERMINALS] */
-    double gamma;     /* Murray exponent, in (0, 10] */
-    double lambda;    /* exponent of the target, >= 0 */
+    double gamma;     /* Murray exponent; META_GAMMA has its range, and so on */
+    double lambda;    /* exponent of the target */
     uint64_t seed;    /* of the random points */
     /* The tree (borrowed) to grow on from, with its inlets; NULL: none. Its nodes keep their
      * places, ids and types, its segments stay straight; a node other than an inlet has at most two
-     * children, an inlet one or two. Its radii, flow shares and header fields are not looked at. */
+     * children, an inlet one or two. Its radii, its flow shares and what is known of it are not
+     * looked at. */
     const Tree *from;
     size_t inlets; /* at most GROW_MAX_INLETS; 0: one, the domain's default, or those of `from` */
     const Vec3 *inlet;   /* mm (borrowed); one tree grows from each */
@@ -41,12 +42,12 @@ typedef struct GrowParams {
     const double *inlet_share;  /* > 0 (borrowed): the trees' terminals, relative to each other */
     double p_perf_mmhg;         /* at the inlet */
     double p_term_mmhg;         /* at every terminal, below p_perf_mmhg */
-    double q_perf_ml_min;       /* through the inlet, > 0 */
+    double q_perf_ml_min;       /* through the inlet */
     TerminalFlow terminal_flow; /* how the terminals share it */
     ViscosityLaw viscosity_law;
-    double viscosity_cp;        /* of the blood, by the constant law; > 0 */
-    double hematocrit;          /* by Pries's law; in [0, MAX_HEMATOCRIT] */
-    double plasma_viscosity_cp; /* by Pries's law; > 0 */
+    double viscosity_cp;        /* of the blood, by the constant law */
+    double hematocrit;          /* by Pries's law */
+    double plasma_viscosity_cp; /* by Pries's law */
     int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
     GrowToss toss;
     int threads;  /* 0: all processors. They do not change the tree */
@@ -76,21 +77,24 @@ typedef struct GrowReport {
     bool complete; /* false: a partial tree; err holds the sentence that says why */
 } GrowReport;
 
+/* Sets in *meta what the parameters say of a tree grown by them. */
+void grow_describe(const GrowParams *params, TreeMeta *meta);
+
 /* STATUS_USAGE with a sentence that names the option at fault. */
 MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err);
 
 /* Grows a tree, or a forest whose trees share all flow, into *out (release with tree_release). Node
  * 0 is the inlet; nodes are in depth-first order, tree after tree in the order of the inlets, ids
- * 1 .. 2 N in that order, and the header is filled. Murray's law and the pressures hold
+ * 1 .. 2 N in that order, and its meta says how it was made. Murray's law and the pressures hold
  * to rounding for the coordinates and radii in *out, by Pries's law with the viscosity at those
  * very radii. By territory, the flow share of a terminal is the number of points of a fine lattice
  * over the domain that are nearer to it than to any other. Centrelines do not cross. The same
  * parameters give the same tree, bit for bit. `report` may be NULL.
  *
- * Grown on from another tree, all nodes of that one are in *out with their ids, types and header
- * lines; new nodes take the smallest ids that are free. New segments are in the domain and keep
- * clear of each other and of the given ones, but for those of a vessel of several segments, of
- * which they only keep off the centrelines; given segments may be anywhere.
+ * Grown on from another tree, all nodes of that one are in *out with their ids and types, and so
+ * are its remarks; new nodes take the smallest ids that are free. New segments are in the domain
+ * and keep clear of each other and of the given ones, but for those of a vessel of several
+ * segments, of which they only keep off the centrelines; given segments may be anywhere.
  *
  * Fails with STATUS_USAGE as grow_params_check does, STATUS_INPUT when `from` is not as above or
  * leaves the plane of a domain of two dimensions, STATUS_INFEASIBLE when there is no room for all
@@ -131,11 +135,11 @@ typedef struct RefineReport {
 uint64_t refine_moves(GrowRefine level, size_t terminals);
 
 /* Lowers the target of a tree, grown or read, by moving bifurcations and by connecting subtrees
- * elsewhere. The tree is binary with one root, which has one child, and its header tells gamma,
- * lambda, p_perf, p_term, q_perf and viscosity; flows may be unequal. `domain` holds all of it;
+ * elsewhere. The tree is binary with one root, which has one child, and its meta has all that
+ * meta_check_cco asks for; flows may be unequal. `domain` holds all of it;
  * NULL: it may be anywhere.
  *
- * Inlet, terminals, node types, flow shares and header stay. Nodes are in depth-first order with
+ * Inlet, terminals, node types, flow shares and meta stay. Nodes are in depth-first order with
  * ids 1 .. n, and radii follow from the places by Murray's law and the pressures, which hold to
  * rounding. All that moves stays in the domain; segments that are longer than wide and clear of
  * those they share no node with stay so, and where they were not it does not get worse; the levels

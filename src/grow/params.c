@@ -17,23 +17,30 @@ GrowParams grow_defaults(void)
                         .toss = GROW_TOSS_SEGMENT};
 }
 
-static Status refuse(const char *option, double value, const char *allowed, Err *err)
+void grow_describe(const GrowParams *params, TreeMeta *meta)
 {
-    char number[NUMBER_TEXT_SIZE];
-    return err_set(err, STATUS_USAGE, "%s %s: must be %s", option, number_text(value, number),
-                   allowed);
+    meta_set_seed(meta, params->seed);
+    meta_set_number(meta, META_GAMMA, params->gamma);
+    meta_set_number(meta, META_LAMBDA, params->lambda);
+    meta_set_number(meta, META_P_PERF, params->p_perf_mmhg);
+    meta_set_number(meta, META_P_TERM, params->p_term_mmhg);
+    meta_set_number(meta, META_Q_PERF, params->q_perf_ml_min);
+    if (params->viscosity_law == VISCOSITY_CONSTANT) {
+        meta_set_number(meta, META_VISCOSITY, params->viscosity_cp);
+    } else {
+        meta_set_number(meta, META_VISCOSITY_LAW, params->viscosity_law);
+        meta_set_number(meta, META_HEMATOCRIT, params->hematocrit);
+        meta_set_number(meta, META_PLASMA_VISCOSITY, params->plasma_viscosity_cp);
+    }
+    if (params->terminal_flow != TERMINAL_FLOW_EQUAL)
+        meta_set_number(meta, META_TERMINAL_FLOW, params->terminal_flow);
 }
 
-static Status check_blood(const GrowParams *params, Err *err)
+static Status check_physics(const GrowParams *params, Err *err)
 {
-    if (!(params->viscosity_cp > 0) || !isfinite(params->viscosity_cp))
-        return refuse("--viscosity", params->viscosity_cp, "a finite number of cP above 0", err);
-    if (!(params->hematocrit >= 0) || !(params->hematocrit <= MAX_HEMATOCRIT))
-        return refuse("--hematocrit", params->hematocrit, "from 0 to 0.95", err);
-    if (!(params->plasma_viscosity_cp > 0) || !isfinite(params->plasma_viscosity_cp))
-        return refuse("--plasma-viscosity", params->plasma_viscosity_cp,
-                      "a finite number of cP above 0", err);
-    return STATUS_OK;
+    TreeMeta meta = {0};
+    grow_describe(params, &meta);
+    return meta_check_cco(&meta, META_OF_OPTIONS, err);
 }
 
 static Status check_inlet(Vec3 inlet, const Domain *domain, Err *err)
@@ -80,7 +87,8 @@ static Status check_shares(const GrowParams *params, size_t trees, Err *err)
                        params->inlet_shares, trees);
     for (size_t k = 0; k < params->inlet_shares; k++)
         if (!(params->inlet_share[k] > 0) || !isfinite(params->inlet_share[k]))
-            return refuse("--inlet-shares", params->inlet_share[k], "finite numbers above 0", err);
+            return err_set(err, STATUS_USAGE, "--inlet-shares %g: must be finite numbers above 0",
+                           params->inlet_share[k]);
     return STATUS_OK;
 }
 
@@ -89,21 +97,7 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     if (params->terminals < 1 || params->terminals > GROW_MAX_TERMINALS)
         return err_set(err, STATUS_USAGE, "--terminals %zu: must be from 1 to %d",
                        params->terminals, GROW_MAX_TERMINALS);
-    if (!(params->gamma > 0) || !(params->gamma <= 10))
-        return refuse("--gamma", params->gamma, "above 0 and at most 10", err);
-    if (!(params->lambda >= 0) || !isfinite(params->lambda))
-        return refuse("--lambda", params->lambda, "a finite number not below 0", err);
-    if (!isfinite(params->p_perf_mmhg))
-        return refuse("--p-perf", params->p_perf_mmhg, "a finite number of mmHg", err);
-    if (!isfinite(params->p_term_mmhg) || !(params->p_term_mmhg < params->p_perf_mmhg)) {
-        char number[NUMBER_TEXT_SIZE], allowed[96];
-        snprintf(allowed, sizeof allowed, "a finite number of mmHg below --p-perf, which is %s",
-                 number_text(params->p_perf_mmhg, number));
-        return refuse("--p-term", params->p_term_mmhg, allowed, err);
-    }
-    if (!(params->q_perf_ml_min > 0) || !isfinite(params->q_perf_ml_min))
-        return refuse("--q-perf", params->q_perf_ml_min, "a finite number of ml/min above 0", err);
-    TRY(check_blood(params, err));
+    TRY(check_physics(params, err));
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
         return err_set(err, STATUS_USAGE, "--candidates %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);

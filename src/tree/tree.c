@@ -36,9 +36,7 @@ void tree_release(Tree *tree)
     free(tree->position);
     free(tree->radius_mm);
     free(tree->flow_share);
-    for (size_t i = 0; i < tree->header.n_lines; i++)
-        free(tree->header.lines[i]);
-    free(tree->header.lines);
+    meta_release(&tree->meta);
     *tree = (Tree){0};
 }
 
@@ -128,17 +126,6 @@ done:
     return status;
 }
 
-/* Copies the header of `tree` into `out`, whose header is still empty. */
-static Status copy_header(const Tree *tree, Tree *out, Err *err)
-{
-    out->header = tree->header;
-    out->header.lines = NULL;
-    out->header.n_lines = out->header.lines_capacity = 0;
-    for (size_t i = 0; i < tree->header.n_lines; i++)
-        TRY(tree_add_line(out, tree->header.lines[i], err));
-    return STATUS_OK;
-}
-
 enum { DROPPED = -1 };
 
 /* Gives `out` the flow shares of `tree`, those of dropped nodes summed into the node they hung on:
@@ -159,7 +146,7 @@ static Status prune_flow_shares(const Tree *tree, const int32_t *place, Tree *ou
     }
     free(share);
     if (!tree->flow_share)
-        out->header.has.terminal_flow = false;
+        out->meta.known[META_TERMINAL_FLOW] = false;
     return STATUS_OK;
 }
 
@@ -176,7 +163,7 @@ Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
     Tree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(tree_init(&made, (size_t)n, err));
-    TRY_GOTO(copy_header(tree, &made, err));
+    TRY_GOTO(meta_copy(&made.meta, &tree->meta, err));
     for (size_t i = 0; i < tree->n; i++) {
         int32_t at = place[i];
         if (at == DROPPED)
@@ -211,16 +198,4 @@ Box tree_bounds(const Tree *tree)
             box = box_with_ball(box, tree->position[tree->parent[i]], tree->radius_mm[i]);
     }
     return box;
-}
-
-Status tree_add_line(Tree *tree, const char *line, Err *err)
-{
-    TreeHeader *header = &tree->header;
-    if (strpbrk(line, "\r\n"))
-        return err_set(err, STATUS_INPUT, "a header line may not hold a line end: %s", line);
-    TRY(mem_reserve(&header->lines, &header->lines_capacity, header->n_lines + 1,
-                    sizeof *header->lines, "header lines", err));
-    TRY(mem_strdup(&header->lines[header->n_lines], line, err));
-    header->n_lines++;
-    return STATUS_OK;
 }

@@ -10,42 +10,12 @@
 
 #include "base/base.h"
 #include "geom/geom.h"
+#include "tree/meta.h"      // IWYU pragma: export
 #include "tree/viscosity.h" // IWYU pragma: export
 #include <stdbool.h>
 #include <stdint.h>
 
 enum { TREE_NO_PARENT = -1, TREE_MAX_ID = 0xffffff };
-
-/* What the flow through each terminal was made after. */
-typedef enum TerminalFlow {
-    TERMINAL_FLOW_EQUAL,    /* the same for all; the tree has no flow shares */
-    TERMINAL_FLOW_TERRITORY /* the tissue that each supplies; the flow shares tell */
-} TerminalFlow;
-
-/* Header keys of SPEC that a tree file may carry; `has` tells which are known. */
-typedef struct TreeHeader {
-    struct {
-        bool seed, dimension, gamma, lambda, p_perf, p_term, q_perf, viscosity;
-        bool viscosity_law, hematocrit, plasma_viscosity, terminal_flow;
-    } has;
-    uint64_t seed;
-    int dimension;        /* 2 or 3 */
-    double gamma;         /* Murray exponent */
-    double lambda;        /* exponent of the target */
-    double p_perf_mmhg;   /* at the inlet */
-    double p_term_mmhg;   /* at every terminal */
-    double q_perf_ml_min; /* through the inlet */
-    double viscosity_cp;  /* of the blood, by the constant law */
-    ViscosityLaw viscosity_law;
-    double hematocrit;          /* in [0, MAX_HEMATOCRIT], by Pries's law */
-    double plasma_viscosity_cp; /* by Pries's law */
-    TerminalFlow terminal_flow;
-    /* Every header comment in file order, known keys included: "key: value" lines are rewritten
-     * from the fields above; all other lines are kept as they are. */
-    char **lines; /* owned; without "# " and line end */
-    size_t n_lines;
-    size_t lines_capacity;
-} TreeHeader;
 
 typedef struct Tree {
     size_t n;          /* nodes; at least 1 */
@@ -57,13 +27,13 @@ typedef struct Tree {
     /* The part of the flow that leaves the tree at each node, >= 0, relative to the others; NULL:
      * the same at every terminal and none elsewhere. */
     double *flow_share;
-    TreeHeader header;
+    TreeMeta meta;
 } Tree;
 
 /* Room for n >= 1 zeroed nodes, parents TREE_NO_PARENT, in *tree (owned; tree_release).
  * STATUS_INFEASIBLE when there are more nodes than ids. */
 MUST_CHECK Status tree_init(Tree *tree, size_t n, Err *err);
-/* Frees the arrays and header lines and zeroes *tree; a zeroed tree may be released. */
+/* Frees the arrays and what is known, and zeroes *tree; a zeroed tree may be released. */
 void tree_release(Tree *tree);
 
 static inline bool tree_is_segment(const Tree *tree, size_t i)
@@ -91,8 +61,8 @@ MUST_CHECK Status tree_flow_shares(const Tree *tree, double **share, Err *err);
 MUST_CHECK Status tree_check(const Tree *tree, Err *err);
 
 /* A new tree in *out (owned) without the segments thinner than `radius_mm` and without what hangs
- * on them; ids, order and header are kept. A root always stays. What is left carries the flow that
- * it carried before: the flow shares of what is cut off go to the node it hung on. */
+ * on them; ids, order and what is known are kept. A root always stays. What is left carries the
+ * flow that it carried before: the flow shares of what is cut off go to the node it hung on. */
 MUST_CHECK Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err);
 
 /* Gives the nodes the ids 1 to n in array order. */
@@ -100,8 +70,5 @@ void tree_renumber(Tree *tree);
 
 /* The box of all nodes and of all segments with their radii, a segment rounded at its ends. */
 Box tree_bounds(const Tree *tree);
-
-/* Appends a header line (copied). STATUS_INPUT when it holds a line end. */
-MUST_CHECK Status tree_add_line(Tree *tree, const char *line, Err *err);
 
 #endif

@@ -7,24 +7,6 @@
 MUST_CHECK Status swc_read(Tree *tree, const char *path, Err *err);
 MUST_CHECK Status swc_write(const Tree *tree, const char *path, Err *err);
 
-/* The known header keys are numbered 0 .. SWC_N_KEYS - 1. */
-enum { SWC_N_KEYS = 12, SWC_NO_KEY = -1 };
-
-/* What follows "name:" and blanks in a header line; NULL when it does not begin so. */
-const char *swc_value_of(const char *line, const char *name);
-
-/* The key of a header line "key: value", or SWC_NO_KEY. */
-int swc_key_of_line(const char *line);
-
-/* Sets the field of `key` from the value of `line`. STATUS_INPUT, without file and line, when the
- * value is not allowed or differs from one set before. */
-MUST_CHECK Status swc_key_parse(TreeHeader *header, int key, const char *line, Err *err);
-
-bool swc_key_known(const TreeHeader *header, int key);
-
-/* Writes "# key: value" and a line end. */
-void swc_key_write(const TreeHeader *header, int key, FILE *stream);
-
 /* Header lines "flow_share: ID SHARE" that have been read; `name` is the file's. */
 typedef struct FlowShareLines {
     const char *name;

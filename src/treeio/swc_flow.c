@@ -1,5 +1,6 @@
 /* Flow shares travel as header lines, which every SWC reader skips. They may stand before the rows
  * they speak of, so they are kept as read and given to the tree when it is whole. */
+#include "treeio/comments.h"
 #include "treeio/swc.h"
 
 #include <stdlib.h>
@@ -16,7 +17,7 @@ typedef struct FlowShareLine {
 
 bool swc_is_flow_share(const char *line)
 {
-    return swc_value_of(line, key) != NULL;
+    return comment_value(line, key) != NULL;
 }
 
 /* Copies the next word at *at, and moves past it; false when there is none or it is too long. */
@@ -46,7 +47,7 @@ static bool parse(const char *text, FlowShareLine *out)
 Status swc_flow_share_parse(FlowShareLines *lines, const char *line, size_t number, Err *err)
 {
     FlowShareLine read = {.number = number};
-    const char *text = swc_value_of(line, key);
+    const char *text = comment_value(line, key);
     if (!parse(text, &read))
         return err_set(err, STATUS_INPUT,
                        "%s:%zu: flow_share is '%.40s'; it must be the id of a node and a number "
@@ -87,10 +88,10 @@ static Status assign(const FlowShareLines *lines, const int32_t *table, Tree *tr
 }
 
 /* The key terminal_flow must go with the lines. */
-static Status check_rule(const FlowShareLines *lines, const TreeHeader *header, Err *err)
+static Status check_rule(const FlowShareLines *lines, const TreeMeta *meta, Err *err)
 {
-    bool territory = header->terminal_flow == TERMINAL_FLOW_TERRITORY;
-    if (!header->has.terminal_flow || territory == (lines->n > 0))
+    bool territory = meta_number(meta, META_TERMINAL_FLOW) == TERMINAL_FLOW_TERRITORY;
+    if (!meta->known[META_TERMINAL_FLOW] || territory == (lines->n > 0))
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
                    territory ? "%s: terminal_flow is territory, but there are no flow_share lines"
@@ -100,7 +101,7 @@ static Status check_rule(const FlowShareLines *lines, const TreeHeader *header, 
 
 Status swc_flow_shares_apply(const FlowShareLines *lines, Tree *tree, Err *err)
 {
-    TRY(check_rule(lines, &tree->header, err));
+    TRY(check_rule(lines, &tree->meta, err));
     if (lines->n == 0)
         return STATUS_OK;
     int32_t *table = NULL;

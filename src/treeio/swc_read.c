@@ -3,6 +3,7 @@
  * the root collects the ancestors that are not placed either, and they go before it. A file with
  * parents first keeps its order, every row is walked over twice at most, and a walk that meets
  * itself is a cycle. */
+#include "treeio/comments.h"
 #include "treeio/swc.h"
 
 #include <stdlib.h>
@@ -28,7 +29,7 @@ typedef struct Reader {
     size_t line;      /* counted from 1 */
     Row *rows;
     size_t n, capacity;
-    Tree header_holder; /* its header lines and fields, and nothing else */
+    TreeMeta meta;
     FlowShareLines flow_shares;
 } Reader;
 
@@ -73,18 +74,13 @@ static Status read_row(Reader *reader, char *const field[N_FIELDS], Err *err)
     return STATUS_OK;
 }
 
-/* `text` is what follows '#'. */
-static Status read_comment(Reader *reader, const char *text, Err *err)
+/* `comment` is what follows '#'. */
+static Status read_comment(Reader *reader, const char *comment, Err *err)
 {
-    text += *text == ' ';
-    if (swc_is_flow_share(text))
-        return swc_flow_share_parse(&reader->flow_shares, text, reader->line, err);
-    TRY(tree_add_line(&reader->header_holder, text, err));
-    int key = swc_key_of_line(text);
-    if (key == SWC_NO_KEY)
-        return STATUS_OK;
-    Status status = swc_key_parse(&reader->header_holder.header, key, text, err);
-    if (status != STATUS_OK)
+    if (swc_is_flow_share(comment))
+        return swc_flow_share_parse(&reader->flow_shares, comment, reader->line, err);
+    Status status = comment_read(&reader->meta, comment, err);
+    if (status == STATUS_INPUT)
         err_prefix(err, "%s:%zu: ", reader->name, reader->line);
     return status;
 }
@@ -231,8 +227,8 @@ static Status build_tree(Reader *reader, Tree *out, Err *err)
         TRY_GOTO(place_with_ancestors(reader, (int32_t)i, place, &placed, err));
     TRY_GOTO(tree_init(&tree, reader->n, err));
     fill_tree(reader, place, &tree);
-    tree.header = reader->header_holder.header;
-    reader->header_holder.header = (TreeHeader){0};
+    tree.meta = reader->meta;
+    reader->meta = (TreeMeta){0};
     TRY_GOTO(swc_flow_shares_apply(&reader->flow_shares, &tree, err));
     *out = tree;
 done:
@@ -253,7 +249,7 @@ Status swc_read(Tree *tree, const char *path, Err *err)
     TRY_GOTO(read_lines(&reader, bytes, err));
     TRY_GOTO(build_tree(&reader, tree, err));
 done:
-    tree_release(&reader.header_holder);
+    meta_release(&reader.meta);
     swc_flow_shares_release(&reader.flow_shares);
     free(reader.rows);
     free(bytes);

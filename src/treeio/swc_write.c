@@ -1,25 +1,7 @@
+#include "treeio/comments.h"
 #include "treeio/swc.h"
 
 #include <string.h>
-
-/* Lines in order, known keys from their fields; then the known fields that no line names. */
-static void write_header(const TreeHeader *header, FILE *stream)
-{
-    bool written[SWC_N_KEYS] = {false};
-    for (size_t i = 0; i < header->n_lines; i++) {
-        const char *line = header->lines[i];
-        int key = swc_key_of_line(line);
-        if (key == SWC_NO_KEY)
-            fprintf(stream, *line ? "# %s\n" : "#%s\n", line);
-        else if (swc_key_known(header, key) && !written[key])
-            swc_key_write(header, key, stream);
-        if (key != SWC_NO_KEY)
-            written[key] = true;
-    }
-    for (int key = 0; key < SWC_N_KEYS; key++)
-        if (swc_key_known(header, key) && !written[key])
-            swc_key_write(header, key, stream);
-}
 
 /* Appends the decimal digits of the number, and then a blank. */
 static char *put_whole(char *to, int64_t value)
@@ -66,7 +48,11 @@ Status swc_write(const Tree *tree, const char *path, Err *err)
 {
     OutFile file;
     TRY(outfile_open(&file, path, err));
-    write_header(&tree->header, file.stream);
+    Status status = comments_write(&tree->meta, file.stream, err);
+    if (status != STATUS_OK) {
+        outfile_discard(&file);
+        return status;
+    }
     swc_flow_shares_write(tree, file.stream);
     for (size_t i = 0; i < tree->n; i++)
         write_row(tree, i, file.stream);

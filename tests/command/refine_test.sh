@@ -35,7 +35,7 @@ test_trees_whose_viscosity_follows_the_radius_are_refined() {
     grep -v '^# hematocrit' plain.swc >without.swc
     run corcast refine without.swc -o refused.swc
     expect_status 2
-    expect_sentence 'no header line "hematocrit'
+    expect_sentence 'no header key hematocrit'
 }
 
 test_annealing_stays_within_its_moves_and_is_repeatable() {

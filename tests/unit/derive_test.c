@@ -9,7 +9,9 @@
 
 #include <cmocka.h>
 
-static const FlowParams no_options;
+static const TreeMeta no_options;
+
+#define SAYS(key, value) .known[META_##key] = true, .number[META_##key] = (value)
 
 static void must(Status status, const Err *err)
 {
@@ -41,7 +43,7 @@ static Tree make_tree(size_t n, const int32_t *parent, const double *radius)
 }
 
 /* NAN stands for NAN; else equal to 1e-13 of the value. */
-static void assert_field(const Tree *tree, const FlowParams *params, const char *name,
+static void assert_field(const Tree *tree, const TreeMeta *params, const char *name,
                          const char *unit, const double *expected)
 {
     Field field;
@@ -94,10 +96,7 @@ static void options_override_the_header(void **state)
 {
     (void)state;
     Tree tree = read_tree("tests/data/bifurcation.swc");
-    FlowParams params = {.has = {.q_perf = true, .p_perf = true, .viscosity = true},
-                         .q_perf_ml_min = 425,
-                         .p_perf_mmhg = 104.3,
-                         .viscosity_cp = 1.725};
+    TreeMeta params = {SAYS(Q_PERF, 425), SAYS(P_PERF, 104.3), SAYS(VISCOSITY, 1.725)};
     const double flow[] = {none, 425, 212.5, 212.5};
     const double pressure[] = {none, 104.17345254835641, 103.90108418011108, 104.0809660298394};
     const double wss[] = {none, 1.146757918267365, 1.7159827102602663, 0.8865944950177453};
@@ -115,7 +114,7 @@ static void orders_of_a_trifurcation_and_a_second_root(void **state)
     const double strahler[] = {none, 2, 2, 2, 1, 1, 1, 1, none, 1};
     const double branch[] = {none, 1, 1, 2, 1, 3, 4, 2, none, 5};
     const double flow[] = {none, 26, 26, 13, 6.5, 6.5, 6.5, 6.5, none, 6.5};
-    FlowParams params = {.has.q_perf = true, .q_perf_ml_min = 32.5};
+    TreeMeta params = {SAYS(Q_PERF, 32.5)};
     assert_field(&tree, &no_options, "level", "", level);
     assert_field(&tree, &no_options, "strahler", "", strahler);
     assert_field(&tree, &no_options, "branch", "", branch);
@@ -159,10 +158,7 @@ static void what_a_radius_of_zero_leaves_undefined_is_nan(void **state)
     const double radius[] = {1.25, 1.25, 0, 0.75, 1.0625};
     const int32_t parent[] = {-1, 0, 1, 2, 1};
     Tree tree = make_tree(5, parent, radius);
-    FlowParams params = {.has = {.q_perf = true, .p_perf = true, .viscosity = true},
-                         .q_perf_ml_min = 12.5,
-                         .p_perf_mmhg = 88.5,
-                         .viscosity_cp = 3.6};
+    TreeMeta params = {SAYS(Q_PERF, 12.5), SAYS(P_PERF, 88.5), SAYS(VISCOSITY, 3.6)};
     const double flow[] = {none, 12.5, 6.25, 6.25, 6.25};
     assert_field(&tree, &params, "flow", "ml/min", flow);
 
@@ -193,10 +189,7 @@ static void a_step_of_length_zero_drops_no_pressure(void **state)
 {
     (void)state;
     Tree tree = read_tree("tests/data/trifurcation.swc");
-    FlowParams params = {.has = {.q_perf = true, .p_perf = true, .viscosity = true},
-                         .q_perf_ml_min = 32.5,
-                         .p_perf_mmhg = 88.5,
-                         .viscosity_cp = 3.6};
+    TreeMeta params = {SAYS(Q_PERF, 32.5), SAYS(P_PERF, 88.5), SAYS(VISCOSITY, 3.6)};
     Field pressure;
     Err err;
     must(derive_field(&tree, &params, "pressure", &pressure, &err), &err);
@@ -206,7 +199,7 @@ static void a_step_of_length_zero_drops_no_pressure(void **state)
     tree_release(&tree);
 }
 
-static void assert_needs(const FlowParams *params, const char *name, const char *sentence)
+static void assert_needs(const TreeMeta *params, const char *name, const char *sentence)
 {
     Tree tree = read_tree("tests/data/trifurcation.swc");
     Field field = {.n = 77};
@@ -220,21 +213,20 @@ static void assert_needs(const FlowParams *params, const char *name, const char 
 static void missing_data_are_asked_for_by_option(void **state)
 {
     (void)state;
-    FlowParams params = {0};
+    TreeMeta params = {0};
     assert_needs(&params, "flow",
                  "the field flow needs the flow through the inlet, which the tree does not say; "
-                 "give --q-perf ML_MIN, or the header key q_perf_ml_min");
+                 "give --q-perf, or the header key q_perf_ml_min");
     assert_needs(&params, "pressure",
                  "the field pressure needs the pressure at the inlet, which the tree does not say; "
-                 "give --p-perf MMHG, or the header key p_perf_mmHg");
-    params.has.q_perf = true;
-    params.q_perf_ml_min = 32.5;
+                 "give --p-perf, or the header key p_perf_mmHg");
+    meta_set_number(&params, META_Q_PERF, 32.5);
     static const char *const viscous[] = {"wss", "reynolds"};
     for (size_t i = 0; i < 2; i++) {
         char sentence[200];
         snprintf(sentence, sizeof sentence,
                  "the field %s needs the viscosity of the blood, which the tree does not say; give "
-                 "--viscosity CP, or the header key viscosity_cP",
+                 "--viscosity, or the header key viscosity_cP",
                  viscous[i]);
         assert_needs(&params, viscous[i], sentence);
     }
@@ -264,7 +256,7 @@ static void flow_goes_by_the_shares_of_the_nodes(void **state)
     tree.flow_share[6] = 0.5;
     tree.flow_share[7] = 1.125;
     tree.flow_share[9] = 1.5;
-    FlowParams params = {.has.q_perf = true, .q_perf_ml_min = 24};
+    TreeMeta params = {SAYS(Q_PERF, 24)};
     const double flow[] = {none, 15, 15, 10.5, 0, 4.5, 3, 6.75, none, 9};
     assert_field(&tree, &params, "flow", "ml/min", flow);
     memset(tree.flow_share, 0, tree.n * sizeof *tree.flow_share);
@@ -284,16 +276,9 @@ static void pressures_follow_the_law_of_pries_vessel_by_vessel(void **state)
     must(tree_add_flow_shares(&tree, &err), &err);
     tree.flow_share[2] = 0.75;
     tree.flow_share[3] = 0.0625;
-    tree.header = (TreeHeader){.has = {.q_perf = true,
-                                       .p_perf = true,
-                                       .viscosity_law = true,
-                                       .hematocrit = true,
-                                       .plasma_viscosity = true},
-                               .q_perf_ml_min = 0.00325,
-                               .p_perf_mmhg = 88.5,
-                               .viscosity_law = VISCOSITY_PRIES,
-                               .hematocrit = 0.45,
-                               .plasma_viscosity_cp = 1.25};
+    tree.meta =
+        (TreeMeta){SAYS(Q_PERF, 0.00325), SAYS(P_PERF, 88.5), SAYS(VISCOSITY_LAW, VISCOSITY_PRIES),
+                   SAYS(HEMATOCRIT, 0.45), SAYS(PLASMA_VISCOSITY, 1.25)};
     const double share[] = {0, 1, 0.75 / 0.8125, 0.0625 / 0.8125};
     double pressure[] = {none, 0, 0, 0}, wss[] = {none, 0, 0, 0}, above = 88.5;
     for (int i = 1; i < 4; i++) {
@@ -317,7 +302,7 @@ static void pressures_follow_the_law_of_pries_vessel_by_vessel(void **state)
     tree.radius_mm[3] = 0.0005; /* closed */
     must(derive_summary(&tree, &no_options, &summary, &err), &err);
     assert_false(summary.has.terminal_pressure);
-    tree.header.has.hematocrit = false;
+    tree.meta.known[META_HEMATOCRIT] = false;
     must(derive_summary(&tree, &no_options, &summary, &err), &err);
     assert_false(summary.has.terminal_pressure);
     tree_release(&tree);
@@ -327,27 +312,24 @@ static void a_viscosity_given_alone_means_a_constant_one(void **state)
 {
     (void)state;
     Tree tree = read_tree("tests/data/bifurcation.swc");
-    tree.header.has.viscosity_law = true;
-    tree.header.viscosity_law = VISCOSITY_PRIES;
-    FlowParams params = {.has.viscosity = true, .viscosity_cp = 3.45};
+    meta_set_number(&tree.meta, META_VISCOSITY_LAW, VISCOSITY_PRIES);
+    TreeMeta params = {SAYS(VISCOSITY, 3.45)};
     const double wss[] = {none, 1.146757918267365, 1.7159827102602663, 0.8865944950177453};
     assert_field(&tree, &params, "wss", "Pa", wss);
 
-    params.has.viscosity_law = true;
-    params.viscosity_law = VISCOSITY_PRIES;
-    params.has.plasma_viscosity = true;
-    params.plasma_viscosity_cp = 1.25;
+    meta_set_number(&params, META_VISCOSITY_LAW, VISCOSITY_PRIES);
+    meta_set_number(&params, META_PLASMA_VISCOSITY, 1.25);
     Field field;
     Err err;
     assert_int_equal(derive_field(&tree, &params, "wss", &field, &err), STATUS_INPUT);
     assert_string_equal(err.text,
                         "the field wss needs the hematocrit, which the tree does not say; give "
-                        "--hematocrit H, or the header key hematocrit");
-    params.has.plasma_viscosity = false;
+                        "--hematocrit, or the header key hematocrit");
+    params.known[META_PLASMA_VISCOSITY] = false;
     assert_int_equal(derive_field(&tree, &params, "wss", &field, &err), STATUS_INPUT);
     assert_string_equal(err.text,
                         "the field wss needs the viscosity of the plasma, which the tree does not "
-                        "say; give --plasma-viscosity CP, or the header key plasma_viscosity_cP");
+                        "say; give --plasma-viscosity, or the header key plasma_viscosity_cP");
     tree_release(&tree);
 }
 
@@ -379,7 +361,7 @@ static void the_summary_of_a_bifurcation(void **state)
     assert_close(summary.terminal_pressure_mean_mmhg, 96.99102510497525);
     assert_close(summary.terminal_pressure_max_mmhg, 97.0809660298394);
 
-    FlowParams params = {.has.lambda = true, .lambda = 0.7};
+    TreeMeta params = {SAYS(LAMBDA, 0.7)};
     must(derive_summary(&tree, &params, &summary, &err), &err);
     assert_true(summary.lambda == 0.7);
     assert_close(summary.target, 80.96151134235501);
@@ -412,10 +394,7 @@ static void a_lone_root_has_a_summary(void **state)
     const int32_t parent[] = {-1};
     const double radius[] = {1.375};
     Tree tree = make_tree(1, parent, radius);
-    tree.header = (TreeHeader){.has = {.q_perf = true, .p_perf = true, .viscosity = true},
-                               .q_perf_ml_min = 32.5,
-                               .p_perf_mmhg = 88.5,
-                               .viscosity_cp = 3.6};
+    tree.meta = (TreeMeta){SAYS(Q_PERF, 32.5), SAYS(P_PERF, 88.5), SAYS(VISCOSITY, 3.6)};
     TreeSummary summary;
     Err err;
     must(derive_summary(&tree, &no_options, &summary, &err), &err);

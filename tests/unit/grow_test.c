@@ -267,23 +267,29 @@ static void the_header_tells_how_the_tree_was_made(void **state)
     params.gamma = 2.55;
     params.lambda = 0.1;
     Tree tree = grown(&params, "disc:23.85", NULL);
-    const char *lines[] = {("generator: corcast " CORCAST_VERSION),
-                           "seed: 12345678901234567890",
-                           "dimension: 2",
-                           "domain: disc:23.85",
-                           "gamma: 2.55",
-                           "lambda: 0.1",
-                           "p_perf_mmHg: 100",
-                           "p_term_mmHg: 60",
-                           "q_perf_ml_min: 500",
-                           "viscosity_cP: 3.6"};
-    assert_int_equal(tree.header.n_lines, sizeof lines / sizeof *lines);
-    for (size_t i = 0; i < tree.header.n_lines; i++)
-        assert_string_equal(tree.header.lines[i], lines[i]);
-    assert_true(tree.header.has.seed && tree.header.has.dimension && tree.header.has.gamma &&
-                tree.header.has.lambda && tree.header.has.p_perf && tree.header.has.p_term &&
-                tree.header.has.q_perf && tree.header.has.viscosity);
-    assert_true(tree.header.seed == params.seed && tree.header.gamma == 2.55);
+    static const struct {
+        MetaKey key;
+        const char *value;
+    } expected[] = {{META_GENERATOR, "corcast " CORCAST_VERSION},
+                    {META_SEED, "12345678901234567890"},
+                    {META_DIMENSION, "2"},
+                    {META_DOMAIN, "disc:23.85"},
+                    {META_GAMMA, "2.55"},
+                    {META_LAMBDA, "0.1"},
+                    {META_P_PERF, "100"},
+                    {META_P_TERM, "60"},
+                    {META_Q_PERF, "500"},
+                    {META_VISCOSITY, "3.6"}};
+    MetaWalk walk = {.meta = &tree.meta};
+    MetaLine line;
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        Text value = TEXT_INIT;
+        assert_true(meta_walk(&walk, &line) && line.key == expected[i].key);
+        meta_put_value(&tree.meta, line.key, &value);
+        assert_string_equal(text_chars(&value), expected[i].value);
+        text_release(&value);
+    }
+    assert_false(meta_walk(&walk, &line));
     tree_release(&tree);
 }
 

@@ -44,7 +44,8 @@ static double target_of(const Tree *tree)
 {
     double sum = 0;
     for (size_t i = 1; i < tree->n; i++)
-        sum += tree_segment_length(tree, i) * pow(tree->radius_mm[i], tree->header.lambda);
+        sum +=
+            tree_segment_length(tree, i) * pow(tree->radius_mm[i], tree->meta.number[META_LAMBDA]);
     return sum;
 }
 
@@ -72,7 +73,7 @@ static Vec3 *terminal_places(const Tree *tree)
 static void assert_promises(const Tree *tree, size_t terminals)
 {
     assert_binary(tree, terminals);
-    assert_murray(tree, tree->header.gamma);
+    assert_murray(tree, tree->meta.number[META_GAMMA]);
     assert_pressures(tree);
 }
 

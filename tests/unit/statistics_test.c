@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-static const FlowParams no_options;
+static const TreeMeta no_options;
 
 static void must(Status status, const Err *err)
 {

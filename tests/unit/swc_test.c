@@ -117,8 +117,8 @@ static void reads_a_messy_file(void **state)
 {
     (void)state;
     Tree tree = read_path("tests/data/messy.swc");
-    assert_true(tree.header.has.gamma && tree.header.gamma == 2.85);
-    assert_false(tree.header.has.lambda);
+    assert_true(tree.meta.known[META_GAMMA] && tree.meta.number[META_GAMMA] == 2.85);
+    assert_false(tree.meta.known[META_LAMBDA]);
     assert_written(&tree, "# ORIGINAL_SOURCE  by hand \n"
                           "# \tVERSION_DATE 2007-07-24\n"
                           "# gamma: 2.85\n"
@@ -168,20 +168,29 @@ static void every_known_key_fills_its_field_and_unknown_lines_stay(void **state)
                                "# gamma rays: 7\n"
                                "1 5 0 0 0 2.385 -1\n";
     Tree tree = read_text(text);
-    const TreeHeader *header = &tree.header;
-    assert_true(header->has.seed && header->seed == UINT64_MAX);
-    assert_true(header->has.dimension && header->dimension == 3);
-    assert_true(header->has.gamma && header->gamma == 2.7);
-    assert_true(header->has.lambda && header->lambda == 0);
-    assert_true(header->has.p_perf && header->p_perf_mmhg == 97.3);
-    assert_true(header->has.p_term && header->p_term_mmhg == -3.25);
-    assert_true(header->has.q_perf && header->q_perf_ml_min == 212.5);
-    assert_true(header->has.viscosity && header->viscosity_cp == 3.45);
-    assert_true(header->has.viscosity_law && header->viscosity_law == VISCOSITY_PRIES);
-    assert_true(header->has.hematocrit && header->hematocrit == 0.4375);
-    assert_true(header->has.plasma_viscosity && header->plasma_viscosity_cp == 1.1875);
-    assert_true(header->has.terminal_flow && header->terminal_flow == TERMINAL_FLOW_EQUAL);
-    assert_int_equal(header->n_lines, 16);
+    const TreeMeta *meta = &tree.meta;
+    static const struct {
+        MetaKey key;
+        double number;
+    } expected[] = {{META_DIMENSION, 3},
+                    {META_GAMMA, 2.7},
+                    {META_LAMBDA, 0},
+                    {META_P_PERF, 97.3},
+                    {META_P_TERM, -3.25},
+                    {META_Q_PERF, 212.5},
+                    {META_VISCOSITY, 3.45},
+                    {META_VISCOSITY_LAW, VISCOSITY_PRIES},
+                    {META_HEMATOCRIT, 0.4375},
+                    {META_PLASMA_VISCOSITY, 1.1875},
+                    {META_TERMINAL_FLOW, TERMINAL_FLOW_EQUAL}};
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        assert_true(meta->known[expected[i].key]);
+        assert_true(meta->number[expected[i].key] == expected[i].number);
+    }
+    assert_true(meta->known[META_SEED] && meta->seed == UINT64_MAX);
+    assert_string_equal(meta->text[META_GENERATOR], "corcast 1.2");
+    assert_string_equal(meta->text[META_DOMAIN], "ball:28.794");
+    assert_int_equal(meta->n_lines, 16);
 
     char *bytes = written(&tree);
     assert_non_null(strstr(bytes, "# viscosity_cP: 3.45\n# viscosity_law: pries\n# hematocrit: "
@@ -197,12 +206,14 @@ static void known_fields_are_written_whether_a_line_names_them_or_not(void **sta
     (void)state;
     Err err;
     Tree tree = read_text("# gamma: 2.7\n# kept\n# seed: 41\n1 0 0 0 0 .5 -1\n");
-    tree.header.gamma = 2.85;
-    tree.header.has.seed = false;
-    tree.header.has.dimension = true;
-    tree.header.dimension = 2;
-    must(tree_add_line(&tree, "domain: disc:50", &err), &err);
-    assert_written(&tree, "# gamma: 2.85\n# kept\n# domain: disc:50\n# dimension: 2\n"
+    tree.meta.number[META_GAMMA] = 2.85;
+    tree.meta.known[META_SEED] = false;
+    must(meta_set_text(&tree.meta, META_DOMAIN, "disc:50", &err), &err);
+    meta_set_number(&tree.meta, META_DIMENSION, 2);
+    must(meta_add_text(&tree.meta, META_COMMAND, "corcast refine", &err), &err);
+    must(meta_add_text(&tree.meta, META_COMMAND, "corcast convert", &err), &err);
+    assert_written(&tree, "# gamma: 2.85\n# kept\n# command: corcast refine\n# command: corcast "
+                          "convert\n# dimension: 2\n# domain: disc:50\n"
                           "1 0 0 0 0 0.5 -1\n");
     tree_release(&tree);
 }
@@ -219,21 +230,23 @@ static void rejects_a_known_key_of_bad_value(void **state)
 {
     (void)state;
     assert_refused("# x\n# gamma: high\n",
-                   ":2: gamma is 'high'; it must be above 0 and at most 10");
-    assert_refused("# gamma: 0", ":1: gamma is '0'; it must be above 0 and at most 10");
-    assert_refused("# gamma: 10.5", ":1: gamma is '10.5'; it must be above 0 and at most 10");
-    assert_refused("# gamma:", ":1: gamma is ''; it must be above 0 and at most 10");
-    assert_refused("# lambda: -1", ":1: lambda is '-1'; it must be a number that is not negative");
-    assert_refused("# lambda: inf",
-                   ":1: lambda is 'inf'; it must be a number that is not negative");
-    assert_refused("# dimension: 2.5", ":1: dimension is '2.5'; it must be 2 or 3");
+                   ":2: gamma is 'high'; it must be a number above 0 and at most 10");
+    assert_refused("# gamma: 0", ":1: gamma is '0'; it must be a number above 0 and at most 10");
+    assert_refused("# gamma: 10.5",
+                   ":1: gamma is '10.5'; it must be a number above 0 and at most 10");
+    assert_refused("# gamma:", ":1: gamma is ''; it must be a number above 0 and at most 10");
+    assert_refused("# lambda: -1", ":1: lambda is '-1'; it must be a number of at least 0");
+    assert_refused("# lambda: inf", ":1: lambda is 'inf'; it must be a number of at least 0");
+    assert_refused("# dimension: 2.5",
+                   ":1: dimension is '2.5'; it must be a whole number from 2 to 3");
     assert_refused("# p_perf_mmHg: nan", ":1: p_perf_mmHg is 'nan'; it must be a finite number");
     assert_refused("# p_term_mmHg: 1 2", ":1: p_term_mmHg is '1 2'; it must be a finite number");
     assert_refused("# q_perf_ml_min: 0", ":1: q_perf_ml_min is '0'; it must be a number above 0");
     assert_refused("# viscosity_cP: -3", ":1: viscosity_cP is '-3'; it must be a number above 0");
     assert_refused("# viscosity_law: casson",
                    ":1: viscosity_law is 'casson'; it must be constant or pries");
-    assert_refused("# hematocrit: 0.951", ":1: hematocrit is '0.951'; it must be from 0 to 0.95");
+    assert_refused("# hematocrit: 0.951",
+                   ":1: hematocrit is '0.951'; it must be a number from 0 to 0.95");
     assert_refused("# terminal_flow:", ":1: terminal_flow is ''; it must be equal or territory");
     assert_refused("# terminal_flow: equal\n#terminal_flow: territory",
                    ":2: terminal_flow is 'territory', but an earlier line says otherwise");
@@ -547,7 +560,7 @@ static void measured_trees_are_read(void **state)
     (void)state;
     static const struct {
         const char *name;
-        size_t n, header_lines;
+        size_t n, lines;
     } files[] = {{"brava/BG0002records.swc", 3514, 0}, {"brava/test1.swc", 8, 14}};
     const char *shared = getenv("CORCAST_SHARED");
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
@@ -559,7 +572,7 @@ static void measured_trees_are_read(void **state)
         }
         Tree tree = read_path(path);
         assert_int_equal(tree.n, files[i].n);
-        assert_int_equal(tree.header.n_lines, files[i].header_lines);
+        assert_int_equal(tree.meta.n_lines, files[i].lines);
         tree_release(&tree);
         assert_round_trip(path);
     }

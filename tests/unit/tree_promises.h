@@ -58,10 +58,10 @@ static inline void assert_murray(const Tree *tree, double gamma)
  * 1e-9 of the drop. */
 static inline void assert_pressures(const Tree *tree)
 {
-    const TreeHeader *header = &tree->header;
+    const double *said = tree->meta.number;
     const double pa = 133.322387415;
-    double drop = (header->p_perf_mmhg - header->p_term_mmhg) * pa;
-    double flow = header->q_perf_ml_min * 1000 / 60, viscosity = header->viscosity_cp * 1e-3;
+    double drop = (said[META_P_PERF] - said[META_P_TERM]) * pa;
+    double flow = said[META_Q_PERF] * 1000 / 60, viscosity = said[META_VISCOSITY] * 1e-3;
     int32_t *children = child_counts(tree);
     double *share = calloc(tree->n, sizeof *share), *pressure = calloc(tree->n, sizeof *pressure);
     assert_true(share && pressure);
@@ -69,14 +69,14 @@ static inline void assert_pressures(const Tree *tree)
         share[i] += tree->flow_share ? tree->flow_share[i] : children[i] == 0;
         share[tree->parent[i]] += share[i];
     }
-    pressure[0] = header->p_perf_mmhg * pa;
+    pressure[0] = said[META_P_PERF] * pa;
     for (size_t i = 1; i < tree->n; i++) {
         double r2 = tree->radius_mm[i] * tree->radius_mm[i];
         double fall = 8 * viscosity / pi * tree_segment_length(tree, i) / r2 * flow * share[i] /
                       share[0] / r2;
         pressure[i] = pressure[tree->parent[i]] - fall;
         if (!children[i])
-            assert_true(fabs(pressure[i] - header->p_term_mmhg * pa) <= 1e-9 * drop);
+            assert_true(fabs(pressure[i] - said[META_P_TERM] * pa) <= 1e-9 * drop);
     }
     free(share);
     free(children);

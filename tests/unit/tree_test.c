@@ -124,9 +124,9 @@ static void pruning_drops_thin_segments_and_what_hangs_on_them(void **state)
     (void)state;
     Err err;
     Tree tree = small_tree();
-    tree.header.has.gamma = true;
-    tree.header.gamma = 2.7;
-    must(tree_add_line(&tree, "domain: disc:50", &err), &err);
+    meta_set_number(&tree.meta, META_GAMMA, 2.7);
+    must(meta_set_text(&tree.meta, META_DOMAIN, "disc:50", &err), &err);
+    must(meta_add_text(&tree.meta, META_KEYS, "by hand", &err), &err);
     tree.radius_mm[4] = 3.5; /* thick, behind a thin one */
 
     Tree pruned;
@@ -137,9 +137,10 @@ static void pruning_drops_thin_segments_and_what_hangs_on_them(void **state)
     assert_memory_equal(pruned.id, id, sizeof id);
     assert_memory_equal(pruned.parent, parent, sizeof parent);
     assert_true(pruned.position[1].y == 5.25);
-    assert_true(pruned.header.has.gamma && pruned.header.gamma == 2.7);
-    assert_int_equal(pruned.header.n_lines, 1);
-    assert_string_equal(pruned.header.lines[0], "domain: disc:50");
+    assert_true(pruned.meta.known[META_GAMMA] && pruned.meta.number[META_GAMMA] == 2.7);
+    assert_string_equal(pruned.meta.text[META_DOMAIN], "disc:50");
+    assert_int_equal(pruned.meta.n_lines, 1);
+    assert_string_equal(pruned.meta.line[0].text, "by hand");
     must(tree_check(&pruned, &err), &err);
     tree_release(&pruned);
 
@@ -158,17 +159,18 @@ static void pruning_leaves_the_flow_of_what_stays(void **state)
     (void)state;
     Err err;
     Tree tree = small_tree(), pruned;
-    tree.header.has.terminal_flow = true; /* equal: 30 and 41 are the terminals */
+    meta_set_number(&tree.meta, META_TERMINAL_FLOW,
+                    TERMINAL_FLOW_EQUAL); /*: 30 and 41 are the terminals */
     must(tree_pruned(&tree, 0, &pruned, &err), &err);
     assert_null(pruned.flow_share);
-    assert_true(pruned.header.has.terminal_flow);
+    assert_true(pruned.meta.known[META_TERMINAL_FLOW]);
     tree_release(&pruned);
 
     must(tree_pruned(&tree, 1.75, &pruned, &err), &err); /* 12 -> 7 -> 9, and 5 */
     static const double counted[] = {0, 1, 1, 0};
     assert_int_equal(pruned.n, 4);
     assert_memory_equal(pruned.flow_share, counted, sizeof counted);
-    assert_false(pruned.header.has.terminal_flow);
+    assert_false(pruned.meta.known[META_TERMINAL_FLOW]);
     tree_release(&pruned);
 
     must(tree_add_flow_shares(&tree, &err), &err);
@@ -179,7 +181,7 @@ static void pruning_leaves_the_flow_of_what_stays(void **state)
     static const double summed[] = {0, 2.75, 0};
     assert_int_equal(pruned.n, 3);
     assert_memory_equal(pruned.flow_share, summed, sizeof summed);
-    assert_true(pruned.header.has.terminal_flow);
+    assert_true(pruned.meta.known[META_TERMINAL_FLOW]);
     must(tree_check(&pruned, &err), &err);
     tree_release(&pruned);
 
@@ -187,6 +189,107 @@ static void pruning_leaves_the_flow_of_what_stays(void **state)
     assert_int_equal(tree_check(&tree, &err), STATUS_INPUT);
     assert_string_equal(err.text, "node 41: flow share -2.25; it must be finite and not negative");
     tree_release(&tree);
+}
+
+static void a_key_says_what_its_values_may_be(void **state)
+{
+    (void)state;
+    static const struct {
+        MetaKey key;
+        double in, out;
+        const char *allowed;
+    } expected[] = {{META_GAMMA, 10, 10.5, "a number above 0 and at most 10"},
+                    {META_GAMMA, 5e-324, 0, "a number above 0 and at most 10"},
+                    {META_LAMBDA, 0, -0.125, "a number of at least 0"},
+                    {META_P_TERM, -3.25, HUGE_VAL, "a finite number"},
+                    {META_HEMATOCRIT, 0.95, 0.951, "a number from 0 to 0.95"},
+                    {META_DIMENSION, 3, 2.5, "a whole number from 2 to 3"},
+                    {META_VISCOSITY_LAW, VISCOSITY_PRIES, 2, "constant or pries"}};
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        Text allowed = TEXT_INIT;
+        meta_allowed(expected[i].key, &allowed);
+        assert_string_equal(text_chars(&allowed), expected[i].allowed);
+        assert_true(meta_allows(expected[i].key, expected[i].in));
+        assert_false(meta_allows(expected[i].key, expected[i].out));
+        assert_false(meta_allows(expected[i].key, (double)NAN));
+        text_release(&allowed);
+    }
+}
+
+static void every_key_is_found_by_its_name(void **state)
+{
+    (void)state;
+    for (int key = 0; key < META_KEYS; key++)
+        assert_int_equal(meta_find(meta_rows[key].name, strlen(meta_rows[key].name)), key);
+    assert_int_equal(meta_find("gamma rays", 10), META_KEYS);
+    assert_int_equal(meta_find("gamma rays", 4), META_KEYS);
+    assert_int_equal(meta_find("gamma rays", 5), META_GAMMA);
+}
+
+/* The keys and texts of a walk, one letter a key or the text. */
+static void assert_walk(const TreeMeta *meta, const char *expected)
+{
+    Text seen = TEXT_INIT;
+    MetaLine line;
+    for (MetaWalk walk = {.meta = meta}; meta_walk(&walk, &line);)
+        text_printf(&seen, "%s%s ", line.key == META_KEYS ? "#" : meta_rows[line.key].name,
+                    line.text ? line.text : "");
+    assert_string_equal(text_chars(&seen), expected);
+    text_release(&seen);
+}
+
+static void what_is_known_keeps_the_order_of_its_lines(void **state)
+{
+    (void)state;
+    Err err;
+    TreeMeta meta = {0}, copy;
+    meta_set_number(&meta, META_GAMMA, 2.7);
+    must(meta_parse(&meta, META_LAMBDA, "\t1.5 ", &err), &err);
+    must(meta_add_text(&meta, META_KEYS, "a", &err), &err);
+    must(meta_parse(&meta, META_COMMAND, "x", &err), &err);
+    must(meta_parse(&meta, META_LAMBDA, "1.50", &err), &err);
+    assert_walk(&meta, "lambda #a commandx gamma ");
+    must(meta_add_lines(&meta, &err), &err);
+    must(meta_add_text(&meta, META_COMMAND, "y", &err), &err);
+    must(meta_copy(&copy, &meta, &err), &err);
+    assert_walk(&copy, "lambda #a commandx gamma commandy ");
+    copy.known[META_COMMAND] = copy.known[META_LAMBDA] = false;
+    assert_walk(&copy, "#a gamma ");
+    meta_release(&copy);
+
+    assert_int_equal(meta_parse(&meta, META_LAMBDA, "2", &err), STATUS_INPUT);
+    assert_string_equal(err.text, "lambda is '2', but an earlier line says otherwise");
+    assert_true(meta.number[META_LAMBDA] == 1.5);
+    assert_int_equal(meta_add_text(&meta, META_KEYS, "a\rb", &err), STATUS_INPUT);
+    assert_int_equal(meta_set_text(&meta, META_DOMAIN, "mesh:a\nb.stl", &err), STATUS_INPUT);
+    assert_false(meta.known[META_DOMAIN]);
+    meta_release(&meta);
+}
+
+static void cco_asks_for_what_it_rests_on(void **state)
+{
+    (void)state;
+    Err err;
+    TreeMeta meta = {.known = {[META_GAMMA] = true, [META_LAMBDA] = true, [META_P_PERF] = true},
+                     .number = {[META_GAMMA] = 3, [META_P_PERF] = 97.5}};
+    assert_int_equal(meta_check_cco(&meta, META_OF_FILE, &err), STATUS_INPUT);
+    assert_string_equal(err.text,
+                        "it has no header key p_term_mmHg, the pressure at every terminal");
+    meta_set_number(&meta, META_P_TERM, 97.5);
+    meta_set_number(&meta, META_Q_PERF, 312.5);
+    assert_int_equal(meta_check_cco(&meta, META_OF_OPTIONS, &err), STATUS_USAGE);
+    assert_string_equal(err.text, "--p-term 97.5: must be below --p-perf, which is 97.5");
+    meta_set_number(&meta, META_P_TERM, 60);
+    meta_set_number(&meta, META_VISCOSITY, 3.6);
+    must(meta_check_cco(&meta, META_OF_FILE, &err), &err);
+    meta_set_number(&meta, META_VISCOSITY_LAW, VISCOSITY_PRIES);
+    meta_set_number(&meta, META_HEMATOCRIT, 0.96);
+    assert_int_equal(meta_check_cco(&meta, META_OF_FILE, &err), STATUS_INPUT);
+    assert_string_equal(err.text, "hematocrit 0.96: must be a number from 0 to 0.95");
+    meta_set_number(&meta, META_HEMATOCRIT, 0.4375);
+    assert_int_equal(meta_check_cco(&meta, META_OF_FILE, &err), STATUS_INPUT);
+    assert_string_equal(err.text,
+                        "it has no header key plasma_viscosity_cP, the viscosity of the plasma");
 }
 
 static void renumbering_counts_from_one(void **state)
@@ -211,21 +314,6 @@ static void the_bounds_hold_both_ends_with_the_segment_radius(void **state)
     assert_true(box.high.x == 9.5 + 1.655);
     assert_true(box.high.y == 14.25 + 0.0875);
     assert_true(box.high.z == 7.75 + 0.625);
-    tree_release(&tree);
-}
-
-static void a_header_line_holds_no_line_end(void **state)
-{
-    (void)state;
-    Err err;
-    Tree tree = small_tree();
-    char line[] = "remark: 3";
-    must(tree_add_line(&tree, line, &err), &err);
-    line[0] = 'R';
-    assert_string_equal(tree.header.lines[0], "remark: 3");
-    assert_int_equal(tree_add_line(&tree, "domain: mesh:a\nb.stl", &err), STATUS_INPUT);
-    assert_int_equal(tree_add_line(&tree, "a\rb", &err), STATUS_INPUT);
-    assert_int_equal(tree.header.n_lines, 1);
     tree_release(&tree);
 }
 
@@ -260,9 +348,12 @@ int main(void)
         cmocka_unit_test(check_names_the_node_at_fault),
         cmocka_unit_test(pruning_drops_thin_segments_and_what_hangs_on_them),
         cmocka_unit_test(pruning_leaves_the_flow_of_what_stays),
+        cmocka_unit_test(a_key_says_what_its_values_may_be),
+        cmocka_unit_test(every_key_is_found_by_its_name),
+        cmocka_unit_test(what_is_known_keeps_the_order_of_its_lines),
+        cmocka_unit_test(cco_asks_for_what_it_rests_on),
         cmocka_unit_test(renumbering_counts_from_one),
         cmocka_unit_test(the_bounds_hold_both_ends_with_the_segment_radius),
-        cmocka_unit_test(a_header_line_holds_no_line_end),
         cmocka_unit_test(a_chain_of_a_million_segments_is_no_deeper_than_a_bush),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

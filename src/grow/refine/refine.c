@@ -299,7 +299,7 @@ static Status start(Refinement *refinement, const Domain *domain, const Tree *tr
     if (!(cost > 0) || !isfinite(cost))
         return err_set(err, STATUS_INFEASIBLE,
                        "with gamma %g and lambda %g the radii span more than a double can hold",
-                       tree->header.gamma, tree->header.lambda);
+                       tree->meta.number[META_GAMMA], tree->meta.number[META_LAMBDA]);
     TRY(clearance_init(&search->clearance, domain, &search->arbor, err));
     if (params->level == GROW_REFINE_GEOMETRY)
         return STATUS_OK;

@@ -41,15 +41,15 @@ static void sum(Arbor *arbor, int32_t i)
 
 Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
 {
-    const TreeHeader *header = &tree->header;
-    double drop = pa_from_mmhg(header->p_perf_mmhg) - pa_from_mmhg(header->p_term_mmhg);
-    bool pries = header->has.viscosity_law && header->viscosity_law == VISCOSITY_PRIES;
-    double reference_cp = pries ? header->plasma_viscosity_cp : header->viscosity_cp;
+    const double *number = tree->meta.number;
+    double drop = pa_from_mmhg(number[META_P_PERF]) - pa_from_mmhg(number[META_P_TERM]);
+    bool pries = meta_number(&tree->meta, META_VISCOSITY_LAW) == VISCOSITY_PRIES;
+    double reference_cp = number[pries ? META_PLASMA_VISCOSITY : META_VISCOSITY];
     double resistance = 8 * pa_s_from_cp(reference_cp) / pi;
-    double flow = mm3_s_from_ml_min(header->q_perf_ml_min) / (double)(tree->n / 2);
-    Arbor made = {.law = {header->gamma, header->lambda},
+    double flow = mm3_s_from_ml_min(number[META_Q_PERF]) / (double)(tree->n / 2);
+    Arbor made = {.law = {number[META_GAMMA], number[META_LAMBDA]},
                   .n = tree->n,
-                  .hematocrit = header->hematocrit,
+                  .hematocrit = number[META_HEMATOCRIT],
                   .radius_unit = sqrt(sqrt(resistance * flow / drop))};
     double *share = NULL;
     Status status = STATUS_OK;
@@ -60,7 +60,7 @@ Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
     if (pries) {
         TRY_GOTO(mem_calloc(&made.viscosity, made.n, sizeof *made.viscosity, "segments", err));
         for (size_t i = 1; i < made.n; i++)
-            made.viscosity[i] = viscosity_pries_pa_s(tree->radius_mm[i], header->hematocrit, 1);
+            made.viscosity[i] = viscosity_pries_pa_s(tree->radius_mm[i], made.hematocrit, 1);
     }
     TRY_GOTO(tree_flow_shares(tree, &share, err));
     double total = 0;

@@ -2,50 +2,12 @@
 
 #include <stdlib.h>
 
-static Status check_range(const char *key, double value, bool fits, const char *allowed, Err *err)
+static Status check_meta(const TreeMeta *meta, Err *err)
 {
-    char number[NUMBER_TEXT_SIZE];
-    if (fits && isfinite(value))
-        return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "header key %s: %s; refinement needs %s", key,
-                   number_text(value, number), allowed);
-}
-
-static Status check_header(const TreeHeader *header, Err *err)
-{
-    bool pries = header->has.viscosity_law && header->viscosity_law == VISCOSITY_PRIES;
-    const struct {
-        const char *key;
-        bool has;
-    } needed[] = {{"gamma", header->has.gamma},
-                  {"lambda", header->has.lambda},
-                  {"p_perf_mmHg", header->has.p_perf},
-                  {"p_term_mmHg", header->has.p_term},
-                  {"q_perf_ml_min", header->has.q_perf},
-                  {"viscosity_cP", header->has.viscosity || pries},
-                  {"hematocrit", header->has.hematocrit || !pries},
-                  {"plasma_viscosity_cP", header->has.plasma_viscosity || !pries}};
-    for (size_t k = 0; k < sizeof needed / sizeof *needed; k++)
-        if (!needed[k].has)
-            return err_set(err, STATUS_INPUT,
-                           "the tree has no header line \"%s: ...\", which refinement needs",
-                           needed[k].key);
-    double gamma = header->gamma, lambda = header->lambda;
-    TRY(check_range("gamma", gamma, gamma > 0 && gamma <= 10, "above 0 and at most 10", err));
-    TRY(check_range("lambda", lambda, lambda >= 0, "a finite number not below 0", err));
-    TRY(check_range("p_perf_mmHg", header->p_perf_mmhg, true, "a finite number", err));
-    TRY(check_range("p_term_mmHg", header->p_term_mmhg, header->p_term_mmhg < header->p_perf_mmhg,
-                    "a finite number below p_perf_mmHg", err));
-    TRY(check_range("q_perf_ml_min", header->q_perf_ml_min, header->q_perf_ml_min > 0,
-                    "a finite number above 0", err));
-    if (!pries)
-        return check_range("viscosity_cP", header->viscosity_cp, header->viscosity_cp > 0,
-                           "a finite number above 0", err);
-    TRY(check_range("hematocrit", header->hematocrit,
-                    header->hematocrit >= 0 && header->hematocrit <= MAX_HEMATOCRIT,
-                    "from 0 to 0.95", err));
-    return check_range("plasma_viscosity_cP", header->plasma_viscosity_cp,
-                       header->plasma_viscosity_cp > 0, "a finite number above 0", err);
+    Status status = meta_check_cco(meta, META_OF_FILE, err);
+    if (status != STATUS_OK)
+        err_prefix(err, "the tree cannot be refined: ");
+    return status;
 }
 
 /* Node i, which has so many children. */
@@ -100,7 +62,7 @@ Status refine_check(const RefineParams *params, const Domain *domain, const Tree
         return err_set(err, STATUS_USAGE,
                        "--refine-seconds %s: must be a finite number of seconds not below 0",
                        number_text(params->seconds, number));
-    TRY(check_header(&tree->header, err));
+    TRY(check_meta(&tree->meta, err));
     int32_t *children = NULL;
     TRY(tree_child_counts(tree, &children, err));
     Status status = STATUS_OK;

@@ -55,8 +55,8 @@ Status result_write(const Arbor *arbor, Tree *tree, Err *err)
     write_node(tree, arbor, 0, 0, &made);
     TRY_GOTO(write_segments(tree, arbor, place, gauge, &made, err));
     tree_renumber(&made);
-    made.header = tree->header;
-    tree->header = (TreeHeader){0};
+    made.meta = tree->meta;
+    tree->meta = (TreeMeta){0};
     tree_release(tree);
     *tree = made;
     made = (Tree){0};

@@ -7,13 +7,13 @@
 /* The depths at which a ray of the tile may be within reach of the segment: those of the part of
  * the axis, from along - half to along + half, that is near enough to the middle ray, widened by
  * the reach. */
-static Range depths_of(const FrameSegment *segment, double along, double half)
+static Interval depths_of(const FrameSegment *segment, double along, double half)
 {
     double first = max_of(along - half, 0), last = min_of(along + half, segment->length);
     double z_first = segment->a.z + first * segment->axis.z;
     double z_last = segment->a.z + last * segment->axis.z;
-    return (Range){min_of(z_first, z_last) - segment->reach,
-                   max_of(z_first, z_last) + segment->reach};
+    return (Interval){min_of(z_first, z_last) - segment->reach,
+                      max_of(z_first, z_last) + segment->reach};
 }
 
 /* How a segment lies to the middle ray of a tile. */
@@ -81,7 +81,7 @@ static bool make_term(const FieldTile *tile, const FrameSegment *segment, uint32
     if (vec3_dot(met.o, met.o) > far * far)
         return false;
     bool crossing = met.per_sine > 0;
-    Range depths = depths_of(segment, met.line, crossing ? far * met.per_sine : HUGE_VAL);
+    Interval depths = depths_of(segment, met.line, crossing ? far * met.per_sine : HUGE_VAL);
     double k = segment->k;
     Vec3 axis = segment->axis;
     *term = (TileTerm){.z_near = met.z,

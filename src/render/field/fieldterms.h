@@ -2,7 +2,7 @@
 #ifndef CORCAST_RENDER_FIELDTERMS_H
 #define CORCAST_RENDER_FIELDTERMS_H
 
-#include "render/tile/range.h"
+#include "render/tile/interval.h"
 #include "render/tile/tile.h"
 
 typedef struct FrameSegment {

@@ -55,12 +55,12 @@ struct FieldTiles {
 /* What a segment's ends, where they are at these coordinates in one direction of the camera's plane
  * and at these depths, and all between them cover there. In perspective it must be in front of the
  * camera. */
-static Range capsule_shadow(const FieldTiles *tiles, double a, double a_z, double b, double b_z,
-                            double reach)
+static Interval capsule_shadow(const FieldTiles *tiles, double a, double a_z, double b, double b_z,
+                               double reach)
 {
     if (!tiles->perspective)
-        return range_union((Range){a - reach, a + reach}, (Range){b - reach, b + reach});
-    return range_union(ball_shadow(a, a_z, reach), ball_shadow(b, b_z, reach));
+        return interval_union((Interval){a - reach, a + reach}, (Interval){b - reach, b + reach});
+    return interval_union(ball_shadow(a, a_z, reach), ball_shadow(b, b_z, reach));
 }
 
 /* 1: all in front of the camera, or orthographic; -1: all behind; 0: beside it. */
@@ -75,7 +75,7 @@ static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
 /* The samples, and then the tiles, within a range of the camera's plane, one of whose directions
  * has `count` samples from `first` on in steps of `step`. A thousandth of a step covers
  * rounding. */
-static TileSpan tiles_within(Range range, double first, double step, int count)
+static TileSpan tiles_within(Interval range, double first, double step, int count)
 {
     double from = (range.low - first) / step, to = (range.high - first) / step;
     double low = max_of(min_of(from, to) - 1e-3, 0);
@@ -100,7 +100,7 @@ static TileSpan rows_of(const FieldTiles *tiles, const FrameSegment *segment)
     int side = side_of_camera(tiles, segment);
     if (side < 0)
         return (TileSpan){1, 0};
-    Range range = {-HUGE_VAL, HUGE_VAL};
+    Interval range = {-HUGE_VAL, HUGE_VAL};
     if (side > 0)
         range = capsule_shadow(tiles, segment->a.y, segment->a.z, segment->b.y, segment->b.z,
                                segment->reach);
@@ -325,7 +325,7 @@ static TileSpan columns_of(const FieldTiles *tiles, const FrameSegment *segment,
     Vec3 span = vec3_sub(segment->b, segment->a);
     Vec3 first = vec3_add_scaled(segment->a, span, from);
     Vec3 last = vec3_add_scaled(segment->a, span, to);
-    Range range = capsule_shadow(tiles, first.x, first.z, last.x, last.z, segment->reach);
+    Interval range = capsule_shadow(tiles, first.x, first.z, last.x, last.z, segment->reach);
     return tiles_within(range, tiles->x[0], tiles->step_x, tiles->grid.n_columns);
 }
 

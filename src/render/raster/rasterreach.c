@@ -5,18 +5,18 @@
 static const double slack_pixels = 1e-3; /* covers rounding where tiles are told apart */
 
 static const TileSpan nowhere = {1, 0};
-static const Range everywhere = {-HUGE_VAL, HUGE_VAL}, nothing = {HUGE_VAL, -HUGE_VAL};
+static const Interval everywhere = {-HUGE_VAL, HUGE_VAL}, nothing = {HUGE_VAL, -HUGE_VAL};
 
 /* A range as pixels, whose middles are whole numbers; pixel 0 is at `first`, and `per` pixels
  * follow in a unit. */
-static Range pixels_within(Range range, double first, double per)
+static Interval pixels_within(Interval range, double first, double per)
 {
     double from = (range.low - first) * per, to = (range.high - first) * per;
-    return (Range){min_of(from, to) - slack_pixels, max_of(from, to) + slack_pixels};
+    return (Interval){min_of(from, to) - slack_pixels, max_of(from, to) + slack_pixels};
 }
 
 /* The tiles of `count` pixels from pixel `least` on that samples in a range of pixels lie in. */
-static TileSpan tiles_within(Range pixels, double stray, int least, int count)
+static TileSpan tiles_within(Interval pixels, double stray, int least, int count)
 {
     double low = max_of(pixels.low - stray, least);
     double high = min_of(pixels.high + stray, least + count - 1);
@@ -39,9 +39,9 @@ static Vec3 item_point(const RasterItem *item, double along)
     return vec3_add_scaled(vec3(item->x, item->y, item->z), item_axis(item), along);
 }
 
-static Range capsule_shadow(double c0, double z0, double c1, double z1, double radius)
+static Interval capsule_shadow(double c0, double z0, double c1, double z1, double radius)
 {
-    return range_union(ball_shadow(c0, z0, radius), ball_shadow(c1, z1, radius));
+    return interval_union(ball_shadow(c0, z0, radius), ball_shadow(c1, z1, radius));
 }
 
 RasterSlab rasterslab_of(const RasterView *view, size_t row)
@@ -56,7 +56,7 @@ RasterSlab rasterslab_of(const RasterView *view, size_t row)
 }
 
 /* What the part of the capsule within reach of the slab covers of a row. */
-static Range parallel_range(const RasterItem *item, const RasterSlab *slab)
+static Interval parallel_range(const RasterItem *item, const RasterSlab *slab)
 {
     double radius = (double)item->radius, ex = (double)item->ex, ey = (double)item->ey;
     double half = (double)item->sine * (double)item->half, low = -half, high = half;
@@ -70,10 +70,10 @@ static Range parallel_range(const RasterItem *item, const RasterSlab *slab)
         high = min_of(high, max_of(one, other));
     }
     double from = ex * low, to = ex * high;
-    return (Range){item->x + min_of(from, to) - radius, item->x + max_of(from, to) + radius};
+    return (Interval){item->x + min_of(from, to) - radius, item->x + max_of(from, to) + radius};
 }
 
-static Range perspective_range(const RasterItem *item, const RasterSlab *slab)
+static Interval perspective_range(const RasterItem *item, const RasterSlab *slab)
 {
     double half = (double)item->half, radius = (double)item->radius, from = 0, to = 1;
     Vec3 a = item_point(item, -half), span = vec3_scale(item_axis(item), 2 * half);
@@ -89,7 +89,7 @@ static Range perspective_range(const RasterItem *item, const RasterSlab *slab)
     return capsule_shadow(first.x, first.z, last.x, last.z, radius);
 }
 
-static TileSpan columns_of(const RasterView *view, Range across)
+static TileSpan columns_of(const RasterView *view, Interval across)
 {
     return tiles_within(across, view->stray, 0, view->columns);
 }
@@ -104,7 +104,7 @@ static uint32_t part_of(double pixel, int tile)
 }
 
 /* From where in the first tile to where in the last. */
-static uint32_t parts_of(Range pixels, TileSpan tiles)
+static uint32_t parts_of(Interval pixels, TileSpan tiles)
 {
     return part_of(pixels.high, tiles.last) |
            (RASTERBOX_PARTS - 1 - part_of(pixels.low, tiles.first)) << 8;
@@ -113,12 +113,12 @@ static uint32_t parts_of(Range pixels, TileSpan tiles)
 /* ---- items ----------------------------------------------------------------------------------- */
 
 /* The pixels that the whole of it covers, across the picture or down it. */
-static inline Range whole_pixels(const RasterView *view, const RasterItem *item, bool across)
+static inline Interval whole_pixels(const RasterView *view, const RasterItem *item, bool across)
 {
     double half = (double)item->half, radius = (double)item->radius;
     double middle = across ? item->x : item->y, slope = (double)(across ? item->ex : item->ey);
     double reach = fabs(slope) * (double)item->sine * half + radius;
-    Range range = {middle - reach, middle + reach};
+    Interval range = {middle - reach, middle + reach};
     if (view->perspective) {
         if (item_is_close(item))
             return everywhere;
@@ -138,10 +138,10 @@ void rasterreach_set(const RasterView *view, RasterItem *item)
 {
     TileSpan rows = nowhere, columns = nowhere;
     if (!is_behind(item)) {
-        Range across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
+        Interval across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
         rows = tiles_within(down, view->stray, view->first, view->rows);
         columns = columns_of(view, across);
-        Range from_first = {down.low - view->first, down.high - view->first};
+        Interval from_first = {down.low - view->first, down.high - view->first};
         if (view->light)
             item->box =
                 RASTERBOX_GUARDS | parts_of(across, columns) | parts_of(from_first, rows) << 16;
@@ -166,7 +166,7 @@ TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int 
     if (item->rows.last - item->rows.first <= few || columns.last - columns.first <= few ||
         (view->perspective && item_is_close(item)))
         return columns;
-    Range range = view->perspective ? perspective_range(item, slab) : parallel_range(item, slab);
+    Interval range = view->perspective ? perspective_range(item, slab) : parallel_range(item, slab);
     if (range.low > range.high)
         return nowhere;
     range = pixels_within(range, view->left, view->per_x);

@@ -7,7 +7,7 @@
 #ifndef CORCAST_RENDER_RASTERTILE_H
 #define CORCAST_RENDER_RASTERTILE_H
 
-#include "render/tile/range.h"
+#include "render/tile/interval.h"
 #include "render/tile/tile.h"
 
 typedef enum RasterKind {

@@ -1,13 +1,13 @@
 /* What of a picture's plane, or of its tiles, something may be seen in. */
-#ifndef CORCAST_RENDER_RANGE_H
-#define CORCAST_RENDER_RANGE_H
+#ifndef CORCAST_RENDER_INTERVAL_H
+#define CORCAST_RENDER_INTERVAL_H
 
 #include <math.h>
 
 /* Empty if low > high. */
-typedef struct Range {
+typedef struct Interval {
     double low, high;
-} Range;
+} Interval;
 
 /* Rows or columns of tiles; none if first > last. */
 typedef struct TileSpan {
@@ -24,18 +24,18 @@ static inline double max_of(double a, double b)
     return a > b ? a : b;
 }
 
-static inline Range range_union(Range a, Range b)
+static inline Interval interval_union(Interval a, Interval b)
 {
-    return (Range){min_of(a.low, b.low), max_of(a.high, b.high)};
+    return (Interval){min_of(a.low, b.low), max_of(a.high, b.high)};
 }
 
 /* What a ball at coordinate c in one direction of a perspective view's plane, and at depth z >
  * radius, covers there. */
-static inline Range ball_shadow(double c, double z, double radius)
+static inline Interval ball_shadow(double c, double z, double radius)
 {
     double half = radius * sqrt(max_of(c * c + z * z - radius * radius, 0));
     double per = 1 / ((z - radius) * (z + radius));
-    return (Range){(c * z - half) * per, (c * z + half) * per};
+    return (Interval){(c * z - half) * per, (c * z + half) * per};
 }
 
 /* The part [*from, *to] of the way where something that is at_a at its beginning and at_b at its

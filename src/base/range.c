@@ -1,0 +1,34 @@
+/* A range that 0 is not in begins at the least number above 0, and one without end ends at the
+ * greatest number: so all ranges are closed, and only their text knows the difference. */
+#include "base/range.h"
+
+#include "base/text.h"
+#include <stdio.h>
+
+const char *range_text(Range range, char out[RANGE_TEXT_SIZE])
+{
+    char low[NUMBER_TEXT_SIZE], high[NUMBER_TEXT_SIZE];
+    bool ends = range.high < RANGE_NO_END, above_0 = range.low <= RANGE_ABOVE_0 && range.low > 0;
+    number_text(range.low, low);
+    number_text(range.high, high);
+    if (above_0)
+        snprintf(out, RANGE_TEXT_SIZE, ends ? "above 0 and at most %s" : "above 0", high);
+    else if (range.low <= -RANGE_NO_END)
+        snprintf(out, RANGE_TEXT_SIZE, ends ? "of at most %s" : "%s", ends ? high : "");
+    else if (ends)
+        snprintf(out, RANGE_TEXT_SIZE, "from %s to %s", low, high);
+    else
+        snprintf(out, RANGE_TEXT_SIZE, "of at least %s", low);
+    return out;
+}
+
+Status range_check(const char *field, Range range, double value, Err *err)
+{
+    if (range_has(range, value))
+        return STATUS_OK;
+    char number[NUMBER_TEXT_SIZE], allowed[RANGE_TEXT_SIZE];
+    range_text(range, allowed);
+    return err_set(err, STATUS_USAGE, "`%s`: %s is not a %snumber%s%s", field,
+                   number_text(value, number), *allowed ? "" : "finite ", *allowed ? " " : "",
+                   allowed);
+}

@@ -1,0 +1,381 @@
+/* A value is kept by its key's number, not in a member of its own, so that reading, writing,
+ * checking and overriding are each one loop or one lookup for all keys. Where a key stood in its
+ * file is kept apart from its value: a tree that the program makes has no lines, and is written in
+ * the order of the table. */
+#include "tree/meta.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const viscosity_laws[] = {
+    [VISCOSITY_CONSTANT] = "constant", [VISCOSITY_PRIES] = "pries", NULL};
+static const char *const terminal_flows[] = {
+    [TERMINAL_FLOW_EQUAL] = "equal", [TERMINAL_FLOW_TERRITORY] = "territory", NULL};
+
+const MetaRow meta_rows[META_KEYS] = {
+    [META_GENERATOR] = {.name = "generator",
+                        .meaning = "program and version that made the tree",
+                        .kind = META_TEXT},
+    [META_COMMAND] = {.name = "command",
+                      .meaning = "command line that made the tree",
+                      .kind = META_LINES},
+    [META_SEED] = {.name = "seed", .meaning = "seed of the random numbers", .kind = META_BITS},
+    [META_DIMENSION] = {.name = "dimension",
+                        .meaning = "dimension of the tissue",
+                        .kind = META_WHOLE,
+                        .range = {2, 3}},
+    [META_DOMAIN] = {.name = "domain",
+                     .meaning = "tissue that the tree supplies",
+                     .option = "--domain",
+                     .kind = META_TEXT},
+    [META_GAMMA] = {.name = "gamma",
+                    .meaning = "Murray exponent",
+                    .option = "--gamma",
+                    .range = {RANGE_ABOVE_0, 10}},
+    [META_LAMBDA] = {.name = "lambda",
+                     .meaning = "exponent of the target",
+                     .option = "--lambda",
+                     .range = {0, RANGE_NO_END}},
+    [META_P_PERF] = {.name = "p_perf_mmHg",
+                     .unit = "mmHg",
+                     .meaning = "pressure at the inlet",
+                     .option = "--p-perf",
+                     .range = {-RANGE_NO_END, RANGE_NO_END}},
+    [META_P_TERM] = {.name = "p_term_mmHg",
+                     .unit = "mmHg",
+                     .meaning = "pressure at every terminal",
+                     .option = "--p-term",
+                     .range = {-RANGE_NO_END, RANGE_NO_END}},
+    [META_Q_PERF] = {.name = "q_perf_ml_min",
+                     .unit = "ml/min",
+                     .meaning = "flow through the inlet",
+                     .option = "--q-perf",
+                     .range = {RANGE_ABOVE_0, RANGE_NO_END}},
+    [META_VISCOSITY] = {.name = "viscosity_cP",
+                        .unit = "cP",
+                        .meaning = "viscosity of the blood",
+                        .option = "--viscosity",
+                        .range = {RANGE_ABOVE_0, RANGE_NO_END}},
+    [META_VISCOSITY_LAW] = {.name = "viscosity_law",
+                            .meaning = "law of viscosity",
+                            .option = "--viscosity-law",
+                            .kind = META_WORD,
+                            .words = viscosity_laws},
+    [META_HEMATOCRIT] = {.name = "hematocrit",
+                         .meaning = "hematocrit",
+                         .option = "--hematocrit",
+                         .range = {0, MAX_HEMATOCRIT}},
+    [META_PLASMA_VISCOSITY] = {.name = "plasma_viscosity_cP",
+                               .unit = "cP",
+                               .meaning = "viscosity of the plasma",
+                               .option = "--plasma-viscosity",
+                               .range = {RANGE_ABOVE_0, RANGE_NO_END}},
+    [META_TERMINAL_FLOW] = {.name = "terminal_flow",
+                            .meaning = "what the flow through the terminals was made after",
+                            .option = "--terminal-flow",
+                            .kind = META_WORD,
+                            .words = terminal_flows},
+};
+
+void meta_release(TreeMeta *meta)
+{
+    for (int key = 0; key < META_KEYS; key++)
+        free(meta->text[key]);
+    for (size_t i = 0; i < meta->n_lines; i++)
+        free(meta->line[i].text);
+    free(meta->line);
+    *meta = (TreeMeta){0};
+}
+
+/* Takes over the line's text. */
+static Status add_line(TreeMeta *meta, MetaLine line, Err *err)
+{
+    Status status = mem_reserve(&meta->line, &meta->lines_capacity, meta->n_lines + 1, sizeof line,
+                                "header lines", err);
+    if (status == STATUS_OK)
+        meta->line[meta->n_lines++] = line;
+    else
+        free(line.text);
+    return status;
+}
+
+Status meta_copy(TreeMeta *out, const TreeMeta *meta, Err *err)
+{
+    TreeMeta made = *meta;
+    memset(made.text, 0, sizeof made.text);
+    made.line = NULL;
+    made.n_lines = made.lines_capacity = 0;
+    Status status = STATUS_OK;
+    for (int key = 0; key < META_KEYS; key++)
+        if (meta->text[key])
+            TRY_GOTO(mem_strdup(&made.text[key], meta->text[key], err));
+    for (size_t i = 0; i < meta->n_lines; i++) {
+        MetaLine line = {.key = meta->line[i].key};
+        if (meta->line[i].text)
+            TRY_GOTO(mem_strdup(&line.text, meta->line[i].text, err));
+        TRY_GOTO(add_line(&made, line, err));
+    }
+    *out = made;
+done:
+    if (status != STATUS_OK)
+        meta_release(&made);
+    return status;
+}
+
+MetaKey meta_find(const char *name, size_t length)
+{
+    int key = 0;
+    while (key < META_KEYS &&
+           (strncmp(name, meta_rows[key].name, length) != 0 || meta_rows[key].name[length] != '\0'))
+        key++;
+    return (MetaKey)key;
+}
+
+static size_t count_words(const MetaRow *row)
+{
+    size_t n = 0;
+    while (row->words[n])
+        n++;
+    return n;
+}
+
+bool meta_allows(MetaKey key, double value)
+{
+    const MetaRow *row = &meta_rows[key];
+    if (row->kind == META_WORD)
+        return value == floor(value) && value >= 0 && value < (double)count_words(row);
+    return range_has(row->range, value) && (row->kind != META_WHOLE || value == floor(value));
+}
+
+void meta_allowed(MetaKey key, Text *text)
+{
+    const MetaRow *row = &meta_rows[key];
+    char range[RANGE_TEXT_SIZE];
+    if (row->kind == META_WORD)
+        for (size_t i = 0; row->words[i]; i++)
+            text_printf(text, "%s%s", i ? " or " : "", row->words[i]);
+    else if (row->kind == META_BITS)
+        text_printf(text, "a whole number from 0 to %" PRIu64, UINT64_MAX);
+    else if (*range_text(row->range, range))
+        text_printf(text, "a %snumber %s", row->kind == META_WHOLE ? "whole " : "", range);
+    else
+        text_puts(text, "a finite number");
+}
+
+void meta_set_number(TreeMeta *meta, MetaKey key, double value)
+{
+    meta->known[key] = true;
+    meta->number[key] = value;
+}
+
+void meta_set_seed(TreeMeta *meta, uint64_t seed)
+{
+    meta->known[META_SEED] = true;
+    meta->seed = seed;
+}
+
+static Status check_line(const char *text, Err *err)
+{
+    if (strpbrk(text, "\r\n"))
+        return err_set(err, STATUS_INPUT, "a header line may not hold a line end: %s", text);
+    return STATUS_OK;
+}
+
+Status meta_set_text(TreeMeta *meta, MetaKey key, const char *text, Err *err)
+{
+    char *copy = NULL;
+    TRY(check_line(text, err));
+    TRY(mem_strdup(&copy, text, err));
+    free(meta->text[key]);
+    meta->text[key] = copy;
+    meta->known[key] = true;
+    return STATUS_OK;
+}
+
+Status meta_add_text(TreeMeta *meta, MetaKey key, const char *text, Err *err)
+{
+    MetaLine line = {.key = key};
+    TRY(check_line(text, err));
+    TRY(mem_strdup(&line.text, text, err));
+    TRY(add_line(meta, line, err));
+    if (key != META_KEYS)
+        meta->known[key] = true;
+    return STATUS_OK;
+}
+
+static Status refuse_value(MetaKey key, const char *value, Err *err)
+{
+    Text allowed = TEXT_INIT;
+    meta_allowed(key, &allowed);
+    Status status = text_check(&allowed, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be %s", meta_rows[key].name,
+                         value, text_chars(&allowed));
+    text_release(&allowed);
+    return status;
+}
+
+static bool parse_bits(const char *text, uint64_t *bits)
+{
+    if (*text < '0' || *text > '9')
+        return false;
+    char *end;
+    errno = 0;
+    *bits = strtoull(text, &end, 10);
+    return *end == '\0' && errno == 0;
+}
+
+static bool parse_word(const MetaRow *row, const char *text, double *value)
+{
+    size_t word = 0;
+    while (row->words[word] && strcmp(text, row->words[word]) != 0)
+        word++;
+    *value = (double)word;
+    return row->words[word] != NULL;
+}
+
+static Status contradict(MetaKey key, const char *value, Err *err)
+{
+    return err_set(err, STATUS_INPUT, "%s is '%.40s', but an earlier line says otherwise",
+                   meta_rows[key].name, value);
+}
+
+static Status set_bits(TreeMeta *meta, MetaKey key, const char *value, Err *err)
+{
+    uint64_t bits;
+    if (!parse_bits(value, &bits))
+        return refuse_value(key, value, err);
+    if (meta->known[key] && bits != meta->seed)
+        return contradict(key, value, err);
+    meta_set_seed(meta, bits);
+    return STATUS_OK;
+}
+
+static Status set_number(TreeMeta *meta, MetaKey key, const char *value, Err *err)
+{
+    const MetaRow *row = &meta_rows[key];
+    double number;
+    bool valid = row->kind == META_WORD ? parse_word(row, value, &number)
+                                        : number_parse(value, &number) && meta_allows(key, number);
+    if (!valid)
+        return refuse_value(key, value, err);
+    if (meta->known[key] && number != meta->number[key])
+        return contradict(key, value, err);
+    meta_set_number(meta, key, number);
+    return STATUS_OK;
+}
+
+static Status set_text(TreeMeta *meta, MetaKey key, const char *value, Err *err)
+{
+    if (meta->known[key] && strcmp(value, meta->text[key]) != 0)
+        return contradict(key, value, err);
+    return meta_set_text(meta, key, value, err);
+}
+
+Status meta_parse(TreeMeta *meta, MetaKey key, const char *value, Err *err)
+{
+    static const char blanks[] = " \t\v\f";
+    MetaKind kind = meta_rows[key].kind;
+    char *bare = NULL;
+    TRY(mem_strdup(&bare, value + strspn(value, blanks), err));
+    for (size_t length = strlen(bare); length && strchr(blanks, bare[length - 1]); length--)
+        bare[length - 1] = '\0';
+    Status status = kind == META_LINES  ? meta_add_text(meta, key, bare, err)
+                    : kind == META_TEXT ? set_text(meta, key, bare, err)
+                    : kind == META_BITS ? set_bits(meta, key, bare, err)
+                                        : set_number(meta, key, bare, err);
+    free(bare);
+    if (status == STATUS_OK && kind != META_LINES)
+        status = add_line(meta, (MetaLine){.key = key}, err);
+    return status;
+}
+
+void meta_put_value(const TreeMeta *meta, MetaKey key, Text *text)
+{
+    const MetaRow *row = &meta_rows[key];
+    if (row->kind == META_BITS)
+        text_printf(text, "%" PRIu64, meta->seed);
+    else if (row->kind == META_WORD)
+        text_puts(text, row->words[(size_t)meta->number[key]]);
+    else if (row->kind == META_NUMBER || row->kind == META_WHOLE)
+        text_number(text, meta->number[key]);
+    else
+        text_puts(text, meta->text[key]);
+}
+
+bool meta_walk(MetaWalk *walk, MetaLine *line)
+{
+    const TreeMeta *meta = walk->meta;
+    while (walk->at < meta->n_lines + META_KEYS) {
+        size_t at = walk->at++;
+        *line =
+            at < meta->n_lines ? meta->line[at] : (MetaLine){.key = (MetaKey)(at - meta->n_lines)};
+        if (line->key == META_KEYS || (line->text && meta->known[line->key]))
+            return true;
+        if (meta->known[line->key] && !walk->done[line->key] &&
+            meta_rows[line->key].kind != META_LINES)
+            return walk->done[line->key] = true;
+    }
+    return false;
+}
+
+Status meta_add_lines(TreeMeta *meta, Err *err)
+{
+    bool has_line[META_KEYS + 1] = {false};
+    for (size_t i = 0; i < meta->n_lines; i++)
+        has_line[meta->line[i].key] = true;
+    for (int key = 0; key < META_KEYS; key++)
+        if (meta->known[key] && !has_line[key])
+            TRY(add_line(meta, (MetaLine){.key = (MetaKey)key}, err));
+    return STATUS_OK;
+}
+
+/* What a value is called in a sentence. */
+static const char *name_of(MetaKey key, MetaSource source)
+{
+    return source == META_OF_OPTIONS ? meta_rows[key].option : meta_rows[key].name;
+}
+
+/* `allowed` and what follows it say what the number must be. */
+static Status refuse_number(const TreeMeta *meta, MetaKey key, MetaSource source,
+                            const char *allowed, const char *more, Err *err)
+{
+    char number[NUMBER_TEXT_SIZE];
+    return err_set(err, source == META_OF_OPTIONS ? STATUS_USAGE : STATUS_INPUT,
+                   "%s %s: must be %s%s", name_of(key, source),
+                   number_text(meta->number[key], number), allowed, more);
+}
+
+static Status check_key(const TreeMeta *meta, MetaKey key, MetaSource source, Err *err)
+{
+    if (!meta->known[key])
+        return err_set(err, STATUS_INPUT, "it has no header key %s, the %s", meta_rows[key].name,
+                       meta_rows[key].meaning);
+    if (meta_allows(key, meta->number[key]))
+        return STATUS_OK;
+    char range[RANGE_TEXT_SIZE];
+    bool any = !*range_text(meta_rows[key].range, range);
+    return refuse_number(meta, key, source, any ? "a finite number" : "a number ", range, err);
+}
+
+Status meta_check_cco(const TreeMeta *meta, MetaSource source, Err *err)
+{
+    static const MetaKey always[] = {META_GAMMA, META_LAMBDA, META_P_PERF, META_P_TERM,
+                                     META_Q_PERF};
+    for (size_t i = 0; i < sizeof always / sizeof *always; i++)
+        TRY(check_key(meta, always[i], source, err));
+    if (!(meta->number[META_P_TERM] < meta->number[META_P_PERF])) {
+        char number[NUMBER_TEXT_SIZE], below[NUMBER_TEXT_SIZE + 64];
+        snprintf(below, sizeof below, "%s, which is %s", name_of(META_P_PERF, source),
+                 number_text(meta->number[META_P_PERF], number));
+        return refuse_number(meta, META_P_TERM, source, "below ", below, err);
+    }
+    if (meta_number(meta, META_VISCOSITY_LAW) == VISCOSITY_CONSTANT)
+        return check_key(meta, META_VISCOSITY, source, err);
+    TRY(check_key(meta, META_HEMATOCRIT, source, err));
+    return check_key(meta, META_PLASMA_VISCOSITY, source, err);
+}

@@ -1,0 +1,51 @@
+/* A comment is read by the table of keys, one blank behind its '#' left out. A remark is written as
+ * it was read but for that blank, so that what corcast has written once it writes again. */
+#include "treeio/comments.h"
+
+#include <string.h>
+
+static const char blanks[] = " \t\v\f";
+
+const char *comment_value(const char *comment, const char *name)
+{
+    comment += strspn(comment, blanks);
+    size_t length = strlen(name);
+    if (strncmp(comment, name, length) != 0)
+        return NULL;
+    comment += length;
+    comment += strspn(comment, blanks);
+    return *comment == ':' ? comment + 1 + strspn(comment + 1, blanks) : NULL;
+}
+
+Status comment_read(TreeMeta *meta, const char *comment, Err *err)
+{
+    for (int key = 0; key < META_KEYS; key++) {
+        const char *value = comment_value(comment, meta_rows[key].name);
+        if (value)
+            return meta_parse(meta, (MetaKey)key, value, err);
+    }
+    return meta_add_text(meta, META_KEYS, comment + (*comment == ' '), err);
+}
+
+Status comments_write(const TreeMeta *meta, FILE *stream, Err *err)
+{
+    Text value = TEXT_INIT;
+    MetaLine line;
+    for (MetaWalk walk = {.meta = meta}; meta_walk(&walk, &line);) {
+        text_clear(&value);
+        if (line.text)
+            text_puts(&value, line.text);
+        else
+            meta_put_value(meta, line.key, &value);
+        const char *chars = text_chars(&value);
+        if (!chars)
+            break;
+        if (line.key == META_KEYS)
+            fprintf(stream, *chars ? "# %s\n" : "#%s\n", chars);
+        else
+            fprintf(stream, "# %s: %s\n", meta_rows[line.key].name, chars);
+    }
+    Status status = text_check(&value, err);
+    text_release(&value);
+    return status;
+}

@@ -1,0 +1,18 @@
+/* What is known of a tree as comments "key: value" of a text file, which programs that do not know
+ * them skip. */
+#ifndef CORCAST_TREEIO_COMMENTS_H
+#define CORCAST_TREEIO_COMMENTS_H
+
+#include "tree/tree.h"
+
+/* What follows "name:" and blanks in a comment; NULL when it does not begin so. */
+const char *comment_value(const char *comment, const char *name);
+
+/* Sets the key of a comment "key: value", or keeps the comment as a remark; `comment` is what
+ * follows the '#'. STATUS_INPUT, without file and line, as meta_parse. */
+MUST_CHECK Status comment_read(TreeMeta *meta, const char *comment, Err *err);
+
+/* Writes all that is known, a comment a line. STATUS_MEMORY. */
+MUST_CHECK Status comments_write(const TreeMeta *meta, FILE *stream, Err *err);
+
+#endif
