@@ -15,6 +15,25 @@ static const Command command = {
     .needs_output = true,
 };
 
+/* The emitter for a file of this name; standard output gets POV-Ray's. */
+static Status find_emitter(const char *output, const Emitter **emitter, Err *err)
+{
+    *emitter = emitter_of_extension(strcmp(output, "-") ? file_extension(output) : "pov");
+    if (*emitter)
+        return STATUS_OK;
+    Text extensions = TEXT_INIT;
+    for (const Emitter *row = emitters; row->name; row++)
+        text_printf(&extensions, "%s.%s",
+                    row == emitters ? ""
+                    : row[1].name   ? ", "
+                                    : " or ",
+                    row->extension);
+    Status status =
+        err_set(err, STATUS_USAGE, "-o: '%s' does not end in %s", output, text_chars(&extensions));
+    text_release(&extensions);
+    return status;
+}
+
 Status run_scene(int argc, char **argv, Err *err)
 {
     PictureOptions picture;
@@ -33,7 +52,8 @@ Status run_scene(int argc, char **argv, Err *err)
     TRY(options_parse(&command, tables, argc, argv, &parsed, err));
     Status status = STATUS_OK;
     Scene scene = {0};
-    PovrayReport report = {0};
+    EmitReport report = {0};
+    const Emitter *emitter = NULL;
     if (parsed.common.help)
         goto done;
     const OptionNeed needs[] = {
@@ -43,15 +63,14 @@ Status run_scene(int argc, char **argv, Err *err)
     TRY_GOTO(options_check_needs(&parsed, needs, err));
     TRY_GOTO(picture_check_needs(&picture, &parsed, err));
     TRY_GOTO(picture_check_povray(&picture, err));
-    if (strcmp(output, "-") != 0 && strcmp(file_extension(output), "pov") != 0) {
-        status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pov", output);
-        goto done;
-    }
-    TRY_GOTO(povfiles_note(output, &parsed.files, err));
+    TRY_GOTO(find_emitter(output, &emitter, err));
+    TRY_GOTO(scene_files_note(emitter, output, &parsed.files, err));
     TRY_GOTO(picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, NULL, err));
-    const CellParams cells = picture_cells(&picture);
-    TRY_GOTO(povfiles_write(&scene, parsed.operands[0], output, picture.stage.shadows, ids, &cells,
-                            &report, err));
+    const EmitParams params = {.scene = &scene,
+                               .shadows = picture.stage.shadows,
+                               .ids = ids,
+                               .cells = picture_cells(&picture)};
+    TRY_GOTO(scene_files_write(emitter, &params, parsed.operands[0], output, &report, err));
     if (report.joint_sides > 0 && !parsed.common.quiet)
         fprintf(stderr,
                 "corcast: more joints than POV-Ray holds exactly; they are meshes of %d sides, of "

@@ -275,8 +275,9 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
 static Status write_scene(Verification *v, bool ids, char **scene, Err *err)
 {
     TRY(file_join(v->folder, ids ? "ids.pov" : "scene.pov", scene, err));
-    return povfiles_write(&v->scene, v->tree, *scene, v->picture->stage.shadows, ids, &v->cells,
-                          NULL, err);
+    const EmitParams params = {
+        .scene = &v->scene, .shadows = v->picture->stage.shadows, .ids = ids, .cells = v->cells};
+    return scene_files_write(emitter_of_extension("pov"), &params, v->tree, *scene, NULL, err);
 }
 
 static Status run_oracle(Verification *v, Err *err)

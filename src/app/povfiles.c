@@ -4,56 +4,58 @@
 #include "app/picture.h"
 #include "app/templates.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-Status povfiles_note(const char *path, Files *files, Err *err)
+/* The path of the emitter's second file in *second (owned); NULL when it writes one. */
+static Status second_path(const Emitter *emitter, const char *path, char **second, Err *err)
 {
-    char *geometry_path = NULL;
-    if (strcmp(path, "-") == 0)
+    char suffix[16];
+    if (!emitter->second_extension || strcmp(path, "-") == 0)
         return STATUS_OK;
-    TRY(file_with_suffix(path, ".inc", &geometry_path, err));
-    Status status = povray_check_name(file_name(geometry_path), err);
-    if (status == STATUS_OK)
-        status = files_write(files, "the geometry", geometry_path, err);
-    free(geometry_path);
+    snprintf(suffix, sizeof suffix, ".%s", emitter->second_extension);
+    return file_with_suffix(path, suffix, second, err);
+}
+
+Status scene_files_note(const Emitter *emitter, const char *path, Files *files, Err *err)
+{
+    char *second = NULL;
+    TRY(second_path(emitter, path, &second, err));
+    Status status = STATUS_OK;
+    if (second && emitter->check_name)
+        status = emitter->check_name(file_name(second), err);
+    if (second && status == STATUS_OK)
+        status = files_write(files, "the geometry", second, err);
+    free(second);
     return status;
 }
 
-Status povfiles_write(const Scene *scene, const char *tree_path, const char *path, bool shadows,
-                      bool ids, const CellParams *cells, PovrayReport *report, Err *err)
+Status scene_files_write(const Emitter *emitter, const EmitParams *params, const char *tree_path,
+                         const char *path, EmitReport *report, Err *err)
 {
-    if (scene->blend.first)
+    if (params->scene->blend.first)
         return err_set(
             err, STATUS_USAGE,
             "--potential graph is corcast's own and has no POV-Ray scene; use --potential "
             "paper, or render");
-    bool to_stdout = strcmp(path, "-") == 0;
-    Text description = TEXT_INIT, pov = TEXT_INIT, inc = TEXT_INIT;
-    char *templates = NULL, *geometry_path = NULL;
-    Status status = templates_folder(&templates, err);
-    if (status != STATUS_OK)
-        return status;
-    picture_description(scene, tree_path, &description);
-    TRY_GOTO(file_with_suffix(path, ".inc", &geometry_path, err));
-    PovrayParams params = {.templates = templates,
-                           .scene_file = to_stdout ? "scene.pov" : file_name(path),
-                           .geometry_file = to_stdout ? NULL : file_name(geometry_path),
-                           .description = text_chars(&description),
-                           .generator = GENERATOR,
-                           .shadows = shadows,
-                           .ids = ids,
-                           .cells = *cells};
-    TRY_GOTO(emit_povray(scene, &params, &pov, &inc, report, err));
-    if (!to_stdout)
-        TRY_GOTO(file_write_text(geometry_path, &inc, err));
-    TRY_GOTO(file_write_text(path, &pov, err));
+    Text description = TEXT_INIT;
+    char *templates = NULL, *second = NULL;
+    Status status;
+    TRY_GOTO(templates_folder(&templates, err));
+    TRY_GOTO(second_path(emitter, path, &second, err));
+    picture_description(params->scene, tree_path, &description);
+    EmitParams all = *params;
+    all.templates = templates;
+    all.file = strcmp(path, "-") == 0 ? "scene.pov" : file_name(path);
+    all.second_file = second ? file_name(second) : NULL;
+    all.description = text_chars(&description);
+    all.generator = GENERATOR;
+    status = emit_files(emitter, &all, path, second, report, err);
 done:
     text_release(&description);
-    text_release(&pov);
-    text_release(&inc);
     free(templates);
-    free(geometry_path);
+    free(second);
     return status;
 }
 

@@ -1,4 +1,4 @@
-/* A scene as the files that POV-Ray reads. */
+/* A scene as the files that another program reads, and which POV-Ray to run. */
 #ifndef CORCAST_APP_POVFILES_H
 #define CORCAST_APP_POVFILES_H
 
@@ -8,15 +8,17 @@
 #include "scene/scene.h"
 #include "verify/verify.h"
 
-/* Takes note of the geometry that povfiles_write writes beside the scene `path`. STATUS_USAGE when
- * POV-Ray could not include it. */
-MUST_CHECK Status povfiles_note(const char *path, Files *files, Err *err);
+/* Takes note of the file that scene_files_write writes beside the scene `path`. STATUS_USAGE when
+ * the format cannot name it so. */
+MUST_CHECK Status scene_files_note(const Emitter *emitter, const char *path, Files *files,
+                                   Err *err);
 
-/* Writes `path` and, beside it, its geometry with the extension .inc; "-" is one file on standard
- * output. The rest as in PovrayParams; `report` may be NULL. */
-MUST_CHECK Status povfiles_write(const Scene *scene, const char *tree_path, const char *path,
-                                 bool shadows, bool ids, const CellParams *cells,
-                                 PovrayReport *report, Err *err);
+/* Writes `path` and, beside it, the emitter's second file; "-" is one file on standard output.
+ * `params` lacks what follows from the paths, the templates, and who writes. The rest as
+ * emit_files. */
+MUST_CHECK Status scene_files_write(const Emitter *emitter, const EmitParams *params,
+                                    const char *tree_path, const char *path, EmitReport *report,
+                                    Err *err);
 
 /* Which POV-Ray to run and how long to bear its silence, as the environment says: CORCAST_POVRAY
  * (povray) and CORCAST_POVRAY_PATIENCE, in seconds (600). STATUS_USAGE when that is no number. */

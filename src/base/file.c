@@ -427,23 +427,94 @@ Status outfile_open(OutFile *file, const char *path, Err *err)
     return STATUS_OK;
 }
 
-Status outfile_commit(OutFile *file, Err *err)
+/* Ends writing; whether all of it has arrived. */
+static Status close_stream(OutFile *file, Err *err)
 {
-    Status status = STATUS_OK;
     bool broken = fflush(file->stream) != 0 || ferror(file->stream);
     if (file->stream != stdout)
         broken = fclose(file->stream) != 0 || broken;
-    if (broken)
-        status = err_set(err, STATUS_IO, "%s: writing failed: %s",
-                         strcmp(file->path, "-") ? file->path : "standard output", strerror(errno));
-    if (file->temporary) {
-        if (status == STATUS_OK)
-            status = file_rename(file->temporary, file->path, err);
-        else
-            file_forget(file->temporary);
+    file->stream = NULL;
+    if (!broken)
+        return STATUS_OK;
+    return err_set(err, STATUS_IO, "%s: writing failed: %s",
+                   strcmp(file->path, "-") ? file->path : "standard output", strerror(errno));
+}
+
+/* Gives the file its name. */
+static Status take_name(OutFile *file, Err *err)
+{
+    char *temporary = file->temporary;
+    file->temporary = NULL;
+    return temporary ? file_rename(temporary, file->path, err) : STATUS_OK;
+}
+
+Status outfile_commit(OutFile *file, Err *err)
+{
+    Status status = close_stream(file, err);
+    if (status == STATUS_OK)
+        status = take_name(file, err);
+    outfile_discard(file);
+    return status;
+}
+
+/* A second name for what stands at the file's path, in *spare (owned), which stays NULL where
+ * nothing does. */
+static Status keep_old(const OutFile *file, char **spare, Err *err)
+{
+    if (!file->temporary || access(file->path, F_OK) != 0)
+        return STATUS_OK;
+    char *name = NULL;
+    TRY(temporary_file(file->path, &name, err));
+    if (unlink(name) == 0 && link(file->path, name) == 0) {
+        *spare = name;
+        return STATUS_OK;
     }
-    free(file->path);
-    *file = (OutFile){0};
+    file_forget(name);
+    return STATUS_OK;
+}
+
+/* Undoes take_name; frees `spare`. */
+static void bring_back(const char *path, char *spare)
+{
+    if (!spare) {
+        remove(path);
+    } else if (rename(spare, path) == 0) {
+        give_up(spare);
+        free(spare);
+    } else {
+        file_forget(spare);
+    }
+}
+
+/* Commits the last of the files after the others, so that each can still be undone. */
+static Status take_names(OutFile *files, size_t n, Err *err)
+{
+    char *spare = NULL;
+    if (n == 1)
+        return take_name(files, err);
+    TRY(keep_old(files, &spare, err));
+    bool is_new = access(files->path, F_OK) != 0, named = files->temporary;
+    Status status = take_name(files, err);
+    if (status == STATUS_OK) {
+        status = take_names(files + 1, n - 1, err);
+        if (status != STATUS_OK && named && (spare || is_new)) {
+            bring_back(files->path, spare);
+            spare = NULL;
+        }
+    }
+    file_forget(spare);
+    return status;
+}
+
+Status outfiles_commit(OutFile *files, size_t n, Err *err)
+{
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < n && status == STATUS_OK; i++)
+        status = close_stream(&files[i], err);
+    if (status == STATUS_OK)
+        status = take_names(files, n, err);
+    for (size_t i = 0; i < n; i++)
+        outfile_discard(&files[i]);
     return status;
 }
 

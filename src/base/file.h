@@ -51,6 +51,10 @@ MUST_CHECK Status outfile_check(const char *path, Err *err);
 MUST_CHECK Status outfile_open(OutFile *file, const char *path, Err *err);
 MUST_CHECK Status outfile_commit(OutFile *file, Err *err);
 void outfile_discard(OutFile *file);
+/* Commits n files, all or none: what stood under their names before stands there again when one of
+ * them cannot take its name (where the file system has no hard links, only if that is the first).
+ * Releases all of them, also on failure. */
+MUST_CHECK Status outfiles_commit(OutFile *files, size_t n, Err *err);
 
 /* STATUS_IO when the disk that `file` goes to has fewer than `bytes` left; always STATUS_OK for
  * what is no file. */

@@ -1,15 +1,28 @@
 #include "base/text.h"
 
 #include "base/memory.h"
+#include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* How much a text with a stream gathers before it writes. */
+enum { PIECE = 1 << 16 };
+
 void text_release(Text *text)
 {
     free(text->chars);
     *text = TEXT_INIT;
+}
+
+/* Writes what a text with a stream holds. */
+static void flow(Text *text)
+{
+    errno = 0;
+    if (fwrite(text->chars, 1, text->length, text->stream) != text->length)
+        text->failed = errno ? errno : EIO;
+    text_clear(text);
 }
 
 void text_append(Text *text, const char *chars, size_t length)
@@ -18,12 +31,14 @@ void text_append(Text *text, const char *chars, size_t length)
         return;
     if (mem_reserve(&text->chars, &text->capacity, text->length + length + 1, 1, "bytes of text",
                     NULL) != STATUS_OK) {
-        text->failed = true;
+        text->failed = ENOMEM;
         return;
     }
     memcpy(text->chars + text->length, chars, length);
     text->length += length;
     text->chars[text->length] = '\0';
+    if (text->stream && text->length >= PIECE)
+        flow(text);
 }
 
 void text_puts(Text *text, const char *chars)
@@ -31,13 +46,13 @@ void text_puts(Text *text, const char *chars)
     if (chars)
         text_append(text, chars, strlen(chars));
     else
-        text->failed = true;
+        text->failed = ENOMEM;
 }
 
 void text_add(Text *text, const Text *part)
 {
     text_append(text, part->length ? part->chars : "", part->length);
-    text->failed = text->failed || part->failed;
+    text->failed = text->failed ? text->failed : part->failed;
 }
 
 void text_printf(Text *text, const char *format, ...)
@@ -57,7 +72,7 @@ void text_printf(Text *text, const char *format, ...)
             text_append(text, longer, (size_t)length);
             free(longer);
         } else {
-            text->failed = true;
+            text->failed = ENOMEM;
         }
     }
     va_end(again);
@@ -89,7 +104,7 @@ size_t utf8_length(const char *bytes)
 void text_put_line(Text *text, const char *chars)
 {
     if (!chars)
-        text->failed = true;
+        text->failed = ENOMEM;
     while (chars && *chars) {
         size_t length = utf8_length(chars);
         bool control = (unsigned char)*chars < ' ' || *chars == '\x7f' ||
@@ -107,10 +122,19 @@ void text_put_line(Text *text, const char *chars)
 
 Status text_check(const Text *text, Err *err)
 {
+    if (text->failed && text->stream && ferror(text->stream))
+        return err_set(err, STATUS_IO, "writing failed: %s", strerror(text->failed));
     if (text->failed)
         return err_set(err, STATUS_MEMORY, "out of memory: no room for text of %zu bytes",
                        text->length);
     return STATUS_OK;
+}
+
+Status text_flush(Text *text, Err *err)
+{
+    if (text->stream && text->length && !text->failed)
+        flow(text);
+    return text_check(text, err);
 }
 
 const char *text_chars(const Text *text)
@@ -145,7 +169,7 @@ void text_clear(Text *text)
 void text_utf8(Text *text, const char *chars)
 {
     if (!chars)
-        text->failed = true;
+        text->failed = ENOMEM;
     while (chars && *chars) {
         size_t length = utf8_length(chars);
         if (length)

@@ -5,20 +5,25 @@
 #include "base/status.h"
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
-/* Text that grows. A failed append is remembered in `failed` and reported once by text_check, so
- * that writers of long files need no check a line. What is made of a text that failed fails, too:
- * its characters are NULL, and what takes text to write takes NULL for a failure. Initialise with
- * TEXT_INIT or zeros, free with text_release. The members are for the room base alone; others ask
- * text_chars. */
+/* Text that grows, or flows into a stream. A failed append is remembered in `failed` and reported
+ * once by text_check, so that writers of long files need no check a line. What is made of a text
+ * that failed fails, too: its characters are NULL, and what takes text to write takes NULL for a
+ * failure. Initialise with TEXT_INIT or zeros, free with text_release. The members are for the room
+ * base alone; others ask text_chars. */
 typedef struct Text {
-    char *chars;
+    char *chars; /* with a stream: what has not been written yet */
     size_t length;
     size_t capacity;
-    bool failed;
+    int failed;   /* errno of what failed first; 0: nothing has */
+    FILE *stream; /* borrowed; NULL: the text stays */
 } Text;
 
 #define TEXT_INIT ((Text){0})
+/* A text that goes to `stream` in large pieces, so that it takes little memory however long it is;
+ * end it with text_flush. Bytes of any kind may be appended. */
+#define TEXT_TO(to) ((Text){.stream = (to)})
 
 void text_release(Text *text);
 void text_append(Text *text, const char *chars, size_t length);
@@ -30,8 +35,11 @@ void text_printf(Text *text, const char *format, ...) PRINTF_LIKE(2, 3);
 /* Appends text from outside, say a file's name, as part of one line of UTF-8: a control character
  * becomes a blank, and a byte that is no UTF-8 becomes U+FFFD. */
 void text_put_line(Text *text, const char *chars);
-/* STATUS_MEMORY when an append has failed, else STATUS_OK. */
+/* STATUS_MEMORY when an append has failed, STATUS_IO when the stream took no more, else
+ * STATUS_OK. */
 MUST_CHECK Status text_check(const Text *text, Err *err);
+/* Hands the rest of a text with a stream over to it. As text_check. */
+MUST_CHECK Status text_flush(Text *text, Err *err);
 /* The characters, zero-terminated, "" when none were appended; NULL when an append has failed.
  * Borrowed until the text changes. */
 const char *text_chars(const Text *text);

@@ -1,5 +1,5 @@
-/* The door of the room emit: scene -> text for other programs. Their languages stand in templates/;
- * C writes only numbers and calls of what the templates define. */
+/* The door of the room emit: scene -> files for other programs. Their languages stand in
+ * templates/; C writes only numbers and calls of what the templates define. */
 #ifndef CORCAST_EMIT_EMIT_H
 #define CORCAST_EMIT_EMIT_H
 
@@ -7,31 +7,57 @@
 #include "scene/scene.h"
 #include "surface/surface.h"
 
-typedef struct PovrayParams {
-    const char *templates;     /* folder that holds povray/ */
-    const char *scene_file;    /* names as they stand in the header comments and the #include, */
-    const char *geometry_file; /* without folders; NULL: the geometry stands in the scene itself */
-    const char *description;   /* what the scene shows; what would break its line becomes a blank */
-    const char *generator;     /* program and version */
+/* What is written, and how it is called. All is borrowed. */
+typedef struct EmitParams {
+    const Scene *scene;
+    const char *templates;   /* the folder of templates, one folder for each language */
+    const char *file;        /* names of the files as they stand in them, without folders; */
+    const char *second_file; /* NULL: what would go to the second file stands in the first */
+    const char *description; /* what the scene shows; what would break its line becomes a blank */
+    const char *generator;   /* program and version */
     bool shadows;
     bool ids;         /* isosurface, blob: with the paint that the id plane needs */
     CellParams cells; /* isosurface */
-} PovrayParams;
+} EmitParams;
 
-typedef struct PovrayReport {
+typedef struct EmitReport {
     size_t cells;    /* of an isosurface; of a blob that is cut into cells, else 0 */
     int joint_sides; /* of a joint's mesh; 0: joints are exact, which POV-Ray can hold 174,000 of */
-} PovrayReport;
+} EmitReport;
 
-/* STATUS_USAGE when POV-Ray cannot #include a file of this name: it takes printable ASCII but for
- * '"'. */
-MUST_CHECK Status povray_check_name(const char *geometry_file, Err *err);
+/* A format that scenes are written in: one row of `emitters`. */
+typedef struct Emitter {
+    const char *name;             /* "povray" */
+    const char *extension;        /* of its file: "pov" */
+    const char *second_extension; /* of the file beside it: "inc"; NULL: it writes one file */
+    const char *description;      /* "a scene for POV-Ray 3.7" */
+    bool binary;
+    unsigned models; /* those it can write: bits emit_model(SceneModel) */
+    /* STATUS_USAGE when the format cannot name a second file so. NULL: it takes any name. */
+    Status (*check_name)(const char *second_file, Err *err);
+    /* Appends the file to *out and, where params->second_file is given, the second one to *second,
+     * as they are made: with streams [base/text.h] memory does not grow with the scene. *report is
+     * zeroed before. STATUS_INPUT when a template is missing or does not fit, STATUS_USAGE as
+     * check_name, STATUS_INFEASIBLE when the format or its program cannot hold the scene,
+     * STATUS_IO, STATUS_MEMORY; the texts then end anywhere. */
+    Status (*write)(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                    Err *err);
+} Emitter;
 
-/* Writes a scene for POV-Ray 3.7 and its geometry include (appended to *scene and *geometry; the
- * latter stays empty without geometry_file). STATUS_INPUT when a template is missing or does not
- * fit, STATUS_USAGE as povray_check_name.
- */
-MUST_CHECK Status emit_povray(const Scene *scene, const PovrayParams *params, Text *scene_text,
-                              Text *geometry_text, PovrayReport *report, Err *err);
+static inline unsigned emit_model(SceneModel model)
+{
+    return 1U << model;
+}
+
+/* A row without a name ends them. */
+extern const Emitter emitters[];
+/* The emitter of files with this extension ("pov"), or NULL. */
+const Emitter *emitter_of_extension(const char *extension);
+
+/* Writes `path`, "-" being standard output, and `second_path`, which is NULL when and only when
+ * params->second_file is: both take their final names, or neither does. `report` may be NULL.
+ * STATUS_USAGE when the emitter cannot write the scene's model, and all that `write` returns. */
+MUST_CHECK Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
+                             const char *second_path, EmitReport *report, Err *err);
 
 #endif

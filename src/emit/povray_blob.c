@@ -7,9 +7,10 @@
  * a point: POV-Ray's own blending of a blob's textures is by strength and never lets one segment
  * win. Its function is a hierarchy of boxes, written as functions that call each other and look
  * only into boxes that hold the point. */
+#include "emit/povray_members.h"
 #include "emit/povray_text.h"
+#include "emit/values.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 /* A pigment map holds 256 entries, and so does a colour map: two of them in one another count
@@ -121,14 +122,17 @@ static size_t take_those_in(Cells *cells, size_t first, size_t n, Box box)
     return count;
 }
 
-/* Writes the cells of a box into which lists[first .. first + n) reach. */
-static Status put_cells_of(Cells *cells, size_t first, size_t n, Box box, bool whole, Err *err)
+/* Halves a box into which lists[first .. first + n) reach, unless few do or most would reach into
+ * both halves: *is_cut. */
+static Status halve(Cells *cells, size_t first, size_t n, Box box, Box half[2], bool *is_cut,
+                    Err *err)
 {
+    *is_cut = false;
     if (n <= CELL)
-        return put_cell(cells, first, n, whole ? NULL : &box, err);
+        return STATUS_OK;
     TRY(mem_reserve(&cells->lists, &cells->room, first + 2 * n, sizeof *cells->lists, "cells",
                     err));
-    Box half[2] = {box, box};
+    half[0] = half[1] = box;
     Vec3 middle = box_center(box);
     switch (box_longest_axis(box)) {
     case 0:
@@ -142,7 +146,17 @@ static Status put_cells_of(Cells *cells, size_t first, size_t n, Box box, bool w
     }
     size_t in_halves = take_those_in(cells, first, n, half[0]);
     in_halves += take_those_in(cells, first, n, half[1]);
-    if (2 * in_halves > 3 * n)
+    *is_cut = 2 * in_halves <= 3 * n;
+    return STATUS_OK;
+}
+
+/* Writes the cells of a box into which lists[first .. first + n) reach. */
+static Status put_cells_of(Cells *cells, size_t first, size_t n, Box box, bool whole, Err *err)
+{
+    Box half[2];
+    bool is_cut;
+    TRY(halve(cells, first, n, box, half, &is_cut, err));
+    if (!is_cut)
         return put_cell(cells, first, n, whole ? NULL : &box, err);
     for (int i = 0; i < 2; i++) {
         size_t count = take_those_in(cells, first, n, half[i]);
@@ -152,19 +166,43 @@ static Status put_cells_of(Cells *cells, size_t first, size_t n, Box box, bool w
     return STATUS_OK;
 }
 
-Status put_blob(Text *text, const Scene *scene, size_t *n_cells, Err *err)
+/* All segments, and the box that they reach into. */
+static Status all_segments(Cells *cells, Box *box, Err *err)
 {
-    Cells cells = {.scene = scene, .text = text, .room = scene->n_segments};
-    Box box = box_empty();
-    TRY(mem_calloc(&cells.lists, cells.room, sizeof *cells.lists, "cells", err));
+    const Scene *scene = cells->scene;
+    cells->room = scene->n_segments;
+    TRY(mem_calloc(&cells->lists, cells->room, sizeof *cells->lists, "cells", err));
+    *box = box_empty();
     for (size_t i = 0; i < scene->n_segments; i++) {
-        cells.lists[i] = (uint32_t)i;
-        box = box_union(box, reach_of(&scene->segments[i]));
+        cells->lists[i] = (uint32_t)i;
+        *box = box_union(*box, reach_of(&scene->segments[i]));
     }
-    Status status = put_cells_of(&cells, 0, scene->n_segments, box, true, err);
+    return STATUS_OK;
+}
+
+Status blob_is_whole(const Scene *scene, bool *whole, Err *err)
+{
+    Cells cells = {.scene = scene};
+    Box box, half[2];
+    bool is_cut;
+    TRY(all_segments(&cells, &box, err));
+    Status status = halve(&cells, 0, scene->n_segments, box, half, &is_cut, err);
     free(cells.lists);
-    *n_cells = cells.written;
+    if (status == STATUS_OK)
+        *whole = !is_cut;
     return status;
+}
+
+Status put_blob(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    Cells cells = {.scene = geometry->scene, .text = out};
+    Box box;
+    TRY(all_segments(&cells, &box, err));
+    Status status = put_cells_of(&cells, 0, cells.scene->n_segments, box, true, err);
+    free(cells.lists);
+    geometry->report->cells = cells.written;
+    return status == STATUS_OK ? text_check(out, err) : status;
 }
 
 /* ---- which term is largest ------------------------------------------------------------------- */
@@ -176,6 +214,7 @@ typedef struct Item {
 
 typedef struct Paints {
     const Scene *scene;
+    const Tmpl *node; /* the function of a box */
     Item *items;
     Text *text;
     unsigned nodes;
@@ -201,78 +240,147 @@ static void put_term(Text *text, const Scene *scene, uint32_t number)
     text_printf(text, "%u)", number);
 }
 
-/* A little more than the extent along an axis, in few digits. */
-static void put_extent_along(Text *text, char name, double low, double high)
+/* The middle of an extent along an axis, and a little more than its half, in few digits. */
+static void extent_along(double low, double high, char middle[NUMBER_TEXT_SIZE],
+                         char half[NUMBER_TEXT_SIZE])
 {
-    double middle = (low + high) / 2, half = (high - low) / 2;
-    text_printf(text, "abs(%c-(%.6g))-%.6g", name, middle, half * 1.001 + fabs(middle) * 1e-5);
+    double center = (low + high) / 2;
+    snprintf(middle, NUMBER_TEXT_SIZE, "%.6g", center);
+    snprintf(half, NUMBER_TEXT_SIZE, "%.6g", (high - low) / 2 * 1.001 + fabs(center) * 1e-5);
 }
 
-/* Declares the function of items[first .. first + n), after those of its halves: its number. */
-static unsigned put_node(Paints *paints, size_t first, size_t n)
+/* Declares the function of a box, the largest of those listed where the box holds the point. */
+static Status put_function(Paints *paints, Box box, const Text *list, Err *err)
+{
+    char number[NUMBER_TEXT_SIZE], middle[3][NUMBER_TEXT_SIZE], half[3][NUMBER_TEXT_SIZE];
+    for (int axis = 0; axis < 3; axis++)
+        extent_along(vec3_component(box.low, axis), vec3_component(box.high, axis), middle[axis],
+                     half[axis]);
+    snprintf(number, sizeof number, "%u", paints->nodes++);
+    const TmplValue values[] = {{"number", number},  {"x", middle[0]},          {"half_x", half[0]},
+                                {"y", middle[1]},    {"half_y", half[1]},       {"z", middle[2]},
+                                {"half_z", half[2]}, {"list", text_chars(list)}};
+    return tmpl_apply(paints->node, values, sizeof values / sizeof *values, paints->text, err);
+}
+
+static void sort_along(Paints *paints, Item *items, size_t n, int axis)
+{
+    for (size_t i = 0; i < n; i++) {
+        const FieldSegment *segment = &paints->scene->segments[items[i].segment];
+        items[i].key = vec3_component(vec3_add(segment->a, segment->b), axis);
+    }
+    qsort(items, n, sizeof *items, by_key);
+}
+
+/* Declares the function of items[first .. first + n), after those of its halves. */
+static Status put_node(Paints *paints, size_t first, size_t n, Err *err)
 {
     Item *items = paints->items + first;
+    Text list = TEXT_INIT;
     Box box = box_empty();
     for (size_t i = 0; i < n; i++)
         box = box_union(box, reach_of(&paints->scene->segments[items[i].segment]));
-    unsigned half[2] = {0, 0};
     if (n > LEAF) {
-        int axis = box_longest_axis(box);
-        for (size_t i = 0; i < n; i++) {
-            const FieldSegment *segment = &paints->scene->segments[items[i].segment];
-            items[i].key = vec3_component(vec3_add(segment->a, segment->b), axis);
+        sort_along(paints, items, n, box_longest_axis(box));
+        for (int half = 0; half < 2; half++) {
+            TRY(put_node(paints, half ? first + n / 2 : first, half ? n - n / 2 : n / 2, err));
+            text_printf(&list, ",Fn%u(x,y,z)", paints->nodes - 1);
         }
-        qsort(items, n, sizeof *items, by_key);
-        half[0] = put_node(paints, first, n / 2);
-        half[1] = put_node(paints, first + n / 2, n - n / 2);
     }
-    Text *text = paints->text;
-    text_printf(text, "#declare Fn%u=function(x,y,z){select(max(", paints->nodes);
-    put_extent_along(text, 'x', box.low.x, box.high.x);
-    text_puts(text, ",");
-    put_extent_along(text, 'y', box.low.y, box.high.y);
-    text_puts(text, ",");
-    put_extent_along(text, 'z', box.low.z, box.high.z);
-    text_puts(text, "),max(0");
     for (size_t i = 0; n <= LEAF && i < n; i++) {
-        text_puts(text, ",");
-        put_term(text, paints->scene, items[i].segment);
+        text_puts(&list, ",");
+        put_term(&list, paints->scene, items[i].segment);
     }
-    for (int i = 0; n > LEAF && i < 2; i++)
-        text_printf(text, ",Fn%u(x,y,z)", half[i]);
-    text_puts(text, "),0)};\n");
-    return paints->nodes++;
+    Status status = put_function(paints, box, &list, err);
+    text_release(&list);
+    return status;
 }
 
-static void put_groups(Text *text, const Scene *scene)
+/* How many functions put_node declares. */
+static size_t count_nodes(size_t n)
 {
+    return n <= LEAF ? 1 : 1 + count_nodes(n / 2) + count_nodes(n - n / 2);
+}
+
+/* The functions that find the largest term. */
+static Status put_functions(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    Tmpl node = {0};
+    Paints paints = {.scene = geometry->scene, .node = &node, .text = out};
+    size_t n = paints.scene->n_segments;
+    Status status;
+    TRY(load_template(&node, geometry->params, "povray/blob_node.inc", err));
+    TRY_GOTO(mem_calloc(&paints.items, n, sizeof *paints.items, "segments", err));
+    for (size_t i = 0; i < n; i++)
+        paints.items[i].segment = (uint32_t)i;
+    TRY_GOTO(put_node(&paints, 0, n, err));
+done:
+    free(paints.items);
+    tmpl_release(&node);
+    return status;
+}
+
+/* The segments' paints. */
+static Status put_groups(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Scene *scene = geometry->scene;
     for (size_t i = 0; i < scene->n_segments; i++) {
         const FieldSegment *segment = &scene->segments[i];
         if (i % GROUP == 0)
-            text_printf(text, "Blob_Group(%zu)\n", i / GROUP);
-        text_printf(text, "Blob_Color(%zu,", i);
-        put_paint(text, scene, segment->id, segment->color);
-        text_puts(text, ")\n");
+            text_printf(out, "Blob_Group(%zu)\n", i / GROUP);
+        text_printf(out, "Blob_Color(%zu,", i);
+        put_paint(out, scene, segment->id, segment->color);
+        text_puts(out, ")\n");
         if (i % GROUP == GROUP - 1 || i + 1 == scene->n_segments)
-            text_printf(text, "Blob_Group_End(%zu)\n", i / GROUP);
+            text_printf(out, "Blob_Group_End(%zu)\n", i / GROUP);
     }
+    return text_check(out, err);
 }
 
-Status put_blob_paint(const Scene *scene, Text *functions, Text *top, Text *groups, Text *n_groups,
-                      Err *err)
+static Status put_nothing(Text *out, void *context, Err *err)
 {
+    (void)context;
+    return text_check(out, err);
+}
+
+static void add_shape(Values *values)
+{
+    const BlobTube *tube = blob_shape.tube;
+    const BlobBead *bead = blob_shape.bead;
+    add_number(values, "r1", tube[0].radius);
+    add_number(values, "s1", tube[0].strength);
+    add_number(values, "r2", tube[1].radius);
+    add_number(values, "s2", tube[1].strength);
+    add_number(values, "h1", bead[0].offset);
+    add_number(values, "q1", bead[0].radius);
+    add_number(values, "c1", bead[0].strength);
+    add_number(values, "h2", bead[1].offset);
+    add_number(values, "q2", bead[1].radius);
+    add_number(values, "c2", bead[1].strength);
+}
+
+Status put_blob_macros(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Scene *scene = geometry->scene;
     size_t n = scene->n_segments;
-    Paints paints = {.scene = scene, .text = functions};
-    if (n > MAX_PAINTED)
+    bool painted = !scene->uniform_color || geometry->params->ids;
+    Values values = {0};
+    if (painted && n > MAX_PAINTED)
         return err_set(err, STATUS_INFEASIBLE,
                        "POV-Ray can paint at most %d segments of a blob one by one, not %zu",
                        MAX_PAINTED, n);
-    TRY(mem_calloc(&paints.items, n, sizeof *paints.items, "segments", err));
-    for (size_t i = 0; i < n; i++)
-        paints.items[i].segment = (uint32_t)i;
-    text_printf(top, "Fn%u", put_node(&paints, 0, n));
-    free(paints.items);
-    put_groups(groups, scene);
-    text_printf(n_groups, "%zu", (n + GROUP - 1) / GROUP);
-    return STATUS_OK;
+    add_shape(&values);
+    add_flag(&values, "painted", painted);
+    add_flag(&values, "many_colors", !scene->uniform_color);
+    Text *top = add_value(&values, "top"), *n_groups = add_value(&values, "n_groups");
+    if (painted) {
+        text_printf(top, "Fn%zu", count_nodes(n) - 1);
+        text_printf(n_groups, "%zu", (n + GROUP - 1) / GROUP);
+    }
+    add_part(&values, "paint", painted ? put_functions : put_nothing, context);
+    add_part(&values, "groups", painted ? put_groups : put_nothing, context);
+    return values_expand(&values, geometry->params, "povray/blob.inc", out, err);
 }

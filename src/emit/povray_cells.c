@@ -2,7 +2,9 @@
  * `surface`'s cellfunction.c, so that what POV-Ray evaluates is what cell_function returns. A
  * segment has one function for each part of it that a cell feels, so that cells are short to
  * read. */
+#include "emit/povray_members.h"
 #include "emit/povray_text.h"
+#include "emit/values.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,13 +57,16 @@ static int scale_number(const Cell *cell)
     return ilogb(cell->scale) + SCALE_ONE;
 }
 
-Status put_scales(Text *text, const PovrayParams *params, const CellTree *cells, Err *err)
+/* A log form for each scale of a cell. */
+static Status put_scales(Text *out, void *context, Err *err)
 {
+    const PovrayGeometry *geometry = context;
+    const CellTree *cells = &geometry->cells;
     Tmpl template = {0};
     bool used[N_SCALES] = {false};
     for (size_t i = 0; i < cells->n_cells; i++)
         used[scale_number(&cells->cells[i])] = true;
-    Status status = load_template(&template, params, "scale.inc", err);
+    Status status = load_template(&template, geometry->params, "povray/scale.inc", err);
     for (int number = 0; status == STATUS_OK && number < N_SCALES; number++) {
         char digits[12], scale[NUMBER_TEXT_SIZE], low[NUMBER_TEXT_SIZE], high[NUMBER_TEXT_SIZE],
             slope[NUMBER_TEXT_SIZE];
@@ -72,21 +77,15 @@ Status put_scales(Text *text, const PovrayParams *params, const CellTree *cells,
                                     {"ceiling", number_text(LOG_FORM_CEILING, high)},
                                     {"slope", number_text(TUBE_SLOPE, slope)}};
         if (used[number])
-            status = tmpl_apply(&template, values, sizeof values / sizeof *values, text, err);
+            status = tmpl_apply(&template, values, sizeof values / sizeof *values, out, err);
     }
     tmpl_release(&template);
     return status;
 }
 
-Status put_terms(Text *text, const Scene *scene, const PovrayParams *params, const CellTree *cells,
-                 Err *err)
+/* Sets a bit of used[segment] for each of its functions that a cell calls. */
+static void find_used(const CellTree *cells, uint8_t *used)
 {
-    Tmpl term = {0}, tube = {0};
-    uint8_t *used = NULL; /* a bit for each function of a segment */
-    Status status;
-    TRY_GOTO(load_template(&term, params, "term.inc", err));
-    TRY_GOTO(load_template(&tube, params, "tube.inc", err));
-    TRY_GOTO(mem_calloc(&used, scene->n_segments, sizeof *used, "functions", err));
     for (size_t i = 0; i < cells->n_cells; i++) {
         const Cell *cell = &cells->cells[i];
         const CellTerm *terms = cells->terms + cell->first;
@@ -95,10 +94,25 @@ Status put_terms(Text *text, const Scene *scene, const PovrayParams *params, con
             used[terms[k].segment] |= (uint8_t)(1U << function);
         }
     }
-    for (uint32_t i = 0; i < scene->n_segments; i++) {
+}
+
+/* A function for each segment and part that a cell uses. */
+static Status put_terms(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const CellTree *cells = &geometry->cells;
+    size_t n = geometry->scene->n_segments;
+    Tmpl term = {0}, tube = {0};
+    uint8_t *used = NULL;
+    Status status;
+    TRY_GOTO(load_template(&term, geometry->params, "povray/term.inc", err));
+    TRY_GOTO(load_template(&tube, geometry->params, "povray/tube.inc", err));
+    TRY_GOTO(mem_calloc(&used, n, sizeof *used, "functions", err));
+    find_used(cells, used);
+    for (uint32_t i = 0; i < n; i++) {
         for (int function = 0; function < N_FUNCTIONS; function++) {
             if (used[i] & (1 << function))
-                TRY_GOTO(put_function(text, function == TUBE ? &tube : &term, i, &cells->forms[i],
+                TRY_GOTO(put_function(out, function == TUBE ? &tube : &term, i, &cells->forms[i],
                                       function, err));
         }
     }
@@ -107,6 +121,23 @@ done:
     tmpl_release(&term);
     tmpl_release(&tube);
     return status;
+}
+
+Status put_cell_macros(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Scene *scene = geometry->scene;
+    ErfForm erf = geometry->cells.erf;
+    Values values = {0};
+    static const char *const names[ERF_TERMS] = {"erf1", "erf3", "erf5", "erf7", "erf9"};
+    for (int i = 0; i < ERF_TERMS; i++)
+        add_number(&values, names[i], erf_forms[erf][i]);
+    add_flag(&values, "exact_erf", erf == ERF_EXACT);
+    add_flag(&values, "painted", !scene->uniform_color || geometry->params->ids);
+    add_flag(&values, "many_colors", !scene->uniform_color);
+    add_part(&values, "scales", put_scales, context);
+    add_part(&values, "terms", put_terms, context);
+    return values_expand(&values, geometry->params, "povray/isosurface.inc", out, err);
 }
 
 /* ---- cells ----------------------------------------------------------------------------------- */
@@ -228,24 +259,27 @@ static Status put_cell(Text *text, const Tmpl *template, const CellTree *cells, 
     return tmpl_apply(template, values, sizeof values / sizeof *values, text, err);
 }
 
-Status put_cells(Text *text, const Scene *scene, const PovrayParams *params, const CellTree *cells,
-                 Err *err)
+Status put_cells(Text *out, void *context, Err *err)
 {
-    bool painted = params->ids || !scene->uniform_color;
+    const PovrayGeometry *geometry = context;
+    const Scene *scene = geometry->scene;
+    const CellTree *cells = &geometry->cells;
+    bool painted = geometry->params->ids || !scene->uniform_color;
     Tmpl plain = {0}, many_paints = {0};
     CellText part = {0};
     Status status;
-    TRY_GOTO(load_template(&plain, params, "cell.inc", err));
-    TRY_GOTO(load_template(&many_paints, params, "cell_paints.inc", err));
-    text_puts(text, "Cell_Guard()\n");
+    TRY_GOTO(load_template(&plain, geometry->params, "povray/cell.inc", err));
+    TRY_GOTO(load_template(&many_paints, geometry->params, "povray/cell_paints.inc", err));
+    text_puts(out, "Cell_Guard()\n");
     for (size_t i = 0; i < cells->n_cells; i++) {
         const Cell *cell = &cells->cells[i];
         cleared(&part.paint);
         if (painted)
             TRY_GOTO(put_cell_paint(&part.paint, &many_paints, scene, cells, cell, &part, err));
-        TRY_GOTO(put_cell(text, &plain, cells, cell, &part, err));
+        TRY_GOTO(put_cell(out, &plain, cells, cell, &part, err));
     }
-    text_puts(text, "Vessel_Texture(0,Vessel_Color)\n");
+    text_puts(out, "Vessel_Texture(0,Vessel_Color)\n");
+    status = text_check(out, err);
 done:
     release_cell_text(&part);
     tmpl_release(&plain);

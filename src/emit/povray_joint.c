@@ -15,7 +15,9 @@
  * the distance to these stands in for it. It does not exceed half of max_gradient times the
  * distance from the surface anywhere: POV-Ray needs that without the half to find the first root,
  * and with it to be right when it skips rays near one that missed. */
+#include "emit/povray_members.h"
 #include "emit/povray_text.h"
+#include "emit/values.h"
 
 /* POV-Ray holds 1,048,575 different constants in functions; a joint has 6. */
 enum { MOST_EXACT = 174000, SIDES_OF_MANY = 16 };
@@ -71,12 +73,23 @@ static double largest_gradient(const JointPlane *plane)
     return gradient_margin * largest;
 }
 
-int joint_sides(const Scene *scene)
+/* The sides of joints' meshes, 0 where POV-Ray holds all of the scene's exactly. */
+static int joint_sides(const Scene *scene)
 {
     size_t n = 0;
     for (size_t i = 0; i < scene->n_primitives; i++)
         n += scene->primitives[i].kind == PRIMITIVE_JOINT;
     return n > MOST_EXACT ? SIDES_OF_MANY : 0;
+}
+
+Status put_joint_macros(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    Values values = {0};
+    TRY(put_primitive_macros(out, context, err));
+    geometry->report->joint_sides = joint_sides(geometry->scene);
+    text_printf(add_value(&values, "sides"), "%d", geometry->report->joint_sides);
+    return values_expand(&values, geometry->params, "povray/joints.inc", out, err);
 }
 
 void put_joint(Text *text, const Scene *scene, const Primitive *joint)

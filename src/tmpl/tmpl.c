@@ -1,5 +1,6 @@
-/* One pass from '$' to '$'. The expansion grows in a Text of its own, so that a failing template
- * leaves the caller's text alone. Values are few, so a linear search finds them. */
+/* Two passes from '$' to '$', the first of which writes nothing and finds all that is wrong, so
+ * that a failing template leaves the caller's text alone. Values are few, so a linear search finds
+ * them. */
 #include "tmpl/tmpl.h"
 
 #include <stdbool.h>
@@ -9,9 +10,10 @@
 typedef struct Expansion {
     const char *path;
     const TmplValue *values;
-    bool *used; /* owned; one for each value */
-    size_t n;
-    Text text; /* owned */
+    const TmplPart *parts;
+    size_t n, n_parts;
+    bool *used; /* owned; one for each value, then one for each part */
+    Text *out;  /* NULL in the first pass */
 } Expansion;
 
 static bool is_name_char(char c, bool first)
@@ -29,11 +31,40 @@ static size_t name_length(const char *chars)
     return length;
 }
 
+static bool is_name(const char *name, const char *chars, size_t length)
+{
+    return strlen(name) == length && memcmp(name, chars, length) == 0;
+}
+
+/* Appends the value or part of this name; *found says whether there is one. */
+static Status put_named(Expansion *self, const char *name, size_t length, bool *found, Err *err)
+{
+    *found = true;
+    for (size_t i = 0; i < self->n; i++) {
+        if (!is_name(self->values[i].name, name, length))
+            continue;
+        self->used[i] = true;
+        if (self->out)
+            text_puts(self->out, self->values[i].text);
+        return STATUS_OK;
+    }
+    for (size_t i = 0; i < self->n_parts; i++) {
+        const TmplPart *part = &self->parts[i];
+        if (!is_name(part->name, name, length))
+            continue;
+        self->used[self->n + i] = true;
+        return self->out ? part->put(self->out, part->context, err) : STATUS_OK;
+    }
+    *found = false;
+    return STATUS_OK;
+}
+
 /* Appends what the '$' at `dollar` stands for; *next is the first character after it. */
 static Status expand_one(Expansion *self, const char *dollar, int line, const char **next, Err *err)
 {
     if (dollar[1] == '$') {
-        text_append(&self->text, "$", 1);
+        if (self->out)
+            text_append(self->out, "$", 1);
         *next = dollar + 2;
         return STATUS_OK;
     }
@@ -43,15 +74,11 @@ static Status expand_one(Expansion *self, const char *dollar, int line, const ch
         return err_set(err, STATUS_INPUT,
                        "%s:%d: '$' starts neither ${name} nor $$, which stands for one '$'",
                        self->path, line);
-    for (size_t i = 0; i < self->n; i++) {
-        const TmplValue *value = &self->values[i];
-        if (strlen(value->name) == length && memcmp(value->name, name, length) == 0) {
-            text_puts(&self->text, value->text);
-            self->used[i] = true;
-            *next = name + length + 1;
-            return STATUS_OK;
-        }
-    }
+    bool found;
+    TRY(put_named(self, name, length, &found, err));
+    *next = name + length + 1;
+    if (found)
+        return STATUS_OK;
     return err_set(err, STATUS_INPUT, "%s:%d: ${%.*s} is not a value this template is given",
                    self->path, line, (int)length, name);
 }
@@ -61,18 +88,24 @@ static Status expand_all(Expansion *self, const char *source, Err *err)
     int line = 1;
     for (const char *at = source; *at;) {
         size_t plain = strcspn(at, "$");
-        text_append(&self->text, at, plain);
+        if (self->out)
+            text_append(self->out, at, plain);
         for (size_t i = 0; i < plain; i++)
             line += at[i] == '\n';
         at += plain;
         if (*at)
             TRY(expand_one(self, at, line, &at, err));
     }
-    for (size_t i = 0; i < self->n; i++)
+    return STATUS_OK;
+}
+
+static Status check_used(const Expansion *self, Err *err)
+{
+    for (size_t i = 0; i < self->n + self->n_parts; i++)
         if (!self->used[i])
             return err_set(err, STATUS_INPUT, "%s: the template never uses ${%s}", self->path,
-                           self->values[i].name);
-    return text_check(&self->text, err);
+                           i < self->n ? self->values[i].name : self->parts[i - self->n].name);
+    return STATUS_OK;
 }
 
 Status tmpl_load(Tmpl *tmpl, const char *path, Err *err)
@@ -97,19 +130,26 @@ void tmpl_release(Tmpl *tmpl)
     *tmpl = (Tmpl){0};
 }
 
-Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out, Err *err)
+Status tmpl_stream(const Tmpl *tmpl, const TmplValue *values, size_t n, const TmplPart *parts,
+                   size_t n_parts, Text *out, Err *err)
 {
-    Expansion self = {.path = tmpl->path, .values = values, .n = n};
-    Status status = mem_calloc(&self.used, n, sizeof *self.used, "template values", err);
+    Expansion self = {
+        .path = tmpl->path, .values = values, .parts = parts, .n = n, .n_parts = n_parts};
+    Status status = mem_calloc(&self.used, n + n_parts, sizeof *self.used, "template values", err);
     if (status == STATUS_OK)
         status = expand_all(&self, tmpl->source, err);
-    if (status == STATUS_OK) {
-        text_add(out, &self.text);
-        status = text_check(out, err);
-    }
-    text_release(&self.text);
+    if (status == STATUS_OK)
+        status = check_used(&self, err);
+    self.out = out;
+    if (status == STATUS_OK)
+        status = expand_all(&self, tmpl->source, err);
     free(self.used);
-    return status;
+    return status == STATUS_OK ? text_check(out, err) : status;
+}
+
+Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out, Err *err)
+{
+    return tmpl_stream(tmpl, values, n, NULL, 0, out, err);
 }
 
 Status tmpl_expand(const char *path, const TmplValue *values, size_t n, Text *out, Err *err)

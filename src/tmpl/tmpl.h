@@ -26,6 +26,18 @@ void tmpl_release(Tmpl *tmpl);
 MUST_CHECK Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out,
                              Err *err);
 
+/* What stands for ${name} and is appended as it is made, for what is too long to be held whole. */
+typedef struct TmplPart {
+    const char *name;
+    Status (*put)(Text *out, void *context, Err *err);
+    void *context;
+} TmplPart;
+
+/* As tmpl_apply, for a text that may have a stream, with parts beside the values. When a part fails
+ * `out` holds what came before it; of all other failures it holds nothing. */
+MUST_CHECK Status tmpl_stream(const Tmpl *tmpl, const TmplValue *values, size_t n,
+                              const TmplPart *parts, size_t n_parts, Text *out, Err *err);
+
 /* Loads, applies once and releases. */
 MUST_CHECK Status tmpl_expand(const char *path, const TmplValue *values, size_t n, Text *out,
                               Err *err);

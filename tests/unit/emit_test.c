@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 #include <stdio.h>
@@ -71,22 +72,29 @@ static Scene make_scene(SceneModel model)
     return scene;
 }
 
-static const PovrayParams two_files = {.templates = "templates",
-                                       .scene_file = "tree.pov",
-                                       .geometry_file = "tree.inc",
-                                       .description = "a test",
-                                       .generator = "corcast"};
+static const EmitParams two_files = {.templates = "templates",
+                                     .file = "tree.pov",
+                                     .second_file = "tree.inc",
+                                     .description = "a test",
+                                     .generator = "corcast"};
 
 typedef struct Emitted {
     Text scene, geometry;
-    PovrayReport report;
+    EmitReport report;
 } Emitted;
 
-static Emitted emit(const Scene *scene, const PovrayParams *params)
+static Status write_povray(const Scene *scene, const EmitParams *params, Emitted *out, Err *err)
+{
+    EmitParams all = *params;
+    all.scene = scene;
+    return emitter_of_extension("pov")->write(&all, &out->scene, &out->geometry, &out->report, err);
+}
+
+static Emitted emit(const Scene *scene, const EmitParams *params)
 {
     Emitted out = {.scene = TEXT_INIT};
     Err err = {{0}};
-    if (emit_povray(scene, params, &out.scene, &out.geometry, &out.report, &err) != STATUS_OK)
+    if (write_povray(scene, params, &out, &err) != STATUS_OK)
         fail_msg("%s", err.text);
     return out;
 }
@@ -225,8 +233,8 @@ static void without_a_geometry_file_all_stands_in_the_scene(void **state)
 {
     (void)state;
     Scene scene = make_scene(SCENE_CYLINDERS);
-    PovrayParams params = two_files;
-    params.geometry_file = NULL;
+    EmitParams params = two_files;
+    params.second_file = NULL;
     Emitted out = emit(&scene, &params);
     assert_int_equal(out.geometry.length, 0);
     assert_null(strstr(out.scene.chars, "\n#include"));
@@ -270,7 +278,7 @@ static void ids_are_painted_only_when_asked_for(void **state)
     Emitted plain = emit(&scene, &two_files);
     assert_null(strstr(plain.geometry.chars, "open Cell_One_Paint("));
     assert_int_equal(count(plain.geometry.chars, "\nVessel_Texture(0,Vessel_Color)\n"), 1);
-    PovrayParams with_ids = two_files;
+    EmitParams with_ids = two_files;
     with_ids.ids = true;
     Emitted painted = emit(&scene, &with_ids);
     size_t one = count(painted.geometry.chars, "open Cell_One_Paint(");
@@ -400,7 +408,7 @@ static void the_segments_of_a_blob_are_painted_only_when_asked_for(void **state)
     Scene scene = make_scene(SCENE_BLOB);
     Emitted plain = emit(&scene, &two_files);
     assert_null(strstr(plain.geometry.chars, "\nBlob_Color("));
-    PovrayParams with_ids = two_files;
+    EmitParams with_ids = two_files;
     with_ids.ids = true;
     Emitted painted = emit(&scene, &with_ids);
     assert_int_equal(count(painted.geometry.chars, "\nBlob_Color("), 3);
@@ -417,22 +425,22 @@ static void a_missing_template_is_named(void **state)
 {
     (void)state;
     Scene scene = make_scene(SCENE_CYLINDERS);
-    PovrayParams params = two_files;
+    EmitParams params = two_files;
     params.templates = "/nowhere";
-    Text a = TEXT_INIT, b = TEXT_INIT;
+    Emitted out = {.scene = TEXT_INIT};
     Err err;
-    assert_int_equal(emit_povray(&scene, &params, &a, &b, NULL, &err), STATUS_INPUT);
+    assert_int_equal(write_povray(&scene, &params, &out, &err), STATUS_INPUT);
     assert_non_null(strstr(err.text, "/nowhere/povray/"));
-    assert_int_equal(a.length + b.length, 0);
+    assert_int_equal(out.scene.length + out.geometry.length, 0);
 }
 
 static void names_stay_in_their_comments(void **state)
 {
     (void)state;
     Scene scene = make_scene(SCENE_ROUNDED);
-    PovrayParams params = two_files;
-    params.geometry_file = NULL;
-    params.scene_file = "a\n#error \"b\"\r#error.pov";
+    EmitParams params = two_files;
+    params.second_file = NULL;
+    params.file = "a\n#error \"b\"\r#error.pov";
     params.description = "tree\v\xff\n#error \"c\"";
     Emitted out = emit(&scene, &params);
     const char *file = "// File: a #error \"b\" #error.pov\n";
@@ -449,17 +457,79 @@ static void a_geometry_that_cannot_be_included_is_refused(void **state)
     (void)state;
     static const char *const names[] = {"a\"b.inc", "a\nb.inc", "\xc3\xa9.inc", "\xff.inc",
                                         "a\x7f.inc"};
-    Scene scene = make_scene(SCENE_ROUNDED);
-    PovrayParams params = two_files;
+    const Emitter *povray = emitter_of_extension("pov");
     Err err;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        Text text = TEXT_INIT, geometry = TEXT_INIT;
-        params.geometry_file = names[i];
-        assert_int_equal(emit_povray(&scene, &params, &text, &geometry, NULL, &err), STATUS_USAGE);
+        assert_int_equal(povray->check_name(names[i], &err), STATUS_USAGE);
         assert_non_null(strstr(err.text, "printable ASCII"));
-        assert_null(text.chars);
     }
-    assert_int_equal(povray_check_name("-a b;c&d'e%f\\g.inc", &err), STATUS_OK);
+    assert_int_equal(povray->check_name("-a b;c&d'e%f\\g.inc", &err), STATUS_OK);
+}
+
+static Status write_files(SceneModel model, const char *path, const char *second, Err *err)
+{
+    const Scene scene = make_scene(model);
+    EmitParams params = two_files;
+    params.scene = &scene;
+    return emit_files(emitter_of_extension("pov"), &params, path, second, NULL, err);
+}
+
+static void expect_file(const char *path, const char *expected)
+{
+    static const FileForm form = {.name = "a scene", .most_bytes = 1e7, .is_text = true};
+    char *text = NULL;
+    size_t size;
+    assert_int_equal(file_read(path, &form, &text, &size, NULL), STATUS_OK);
+    assert_string_equal(text, expected);
+    free(text);
+}
+
+static void files_hold_what_a_text_holds(void **state)
+{
+    (void)state;
+    for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_BLOB; model++) {
+        const Scene scene = make_scene(model);
+        Emitted out = emit(&scene, &two_files);
+        assert_int_equal(write_files(model, "build/e.pov", "build/e.inc", NULL), STATUS_OK);
+        expect_file("build/e.pov", text_chars(&out.scene));
+        expect_file("build/e.inc", text_chars(&out.geometry));
+        release(&out);
+    }
+    remove("build/e.pov");
+    remove("build/e.inc");
+}
+
+/* The second cannot take its name, which a folder has. */
+static void of_two_files_both_are_put_in_place_or_neither(void **state)
+{
+    (void)state;
+    OutFile files[2];
+    Err err;
+    for (int old = 0; old < 2; old++) {
+        remove("build/e.pov");
+        if (old)
+            assert_int_equal(file_write("build/e.pov", "old", 3, NULL), STATUS_OK);
+        assert_int_equal(outfile_open(&files[0], "build/e.pov", NULL), STATUS_OK);
+        assert_int_equal(outfile_open(&files[1], "build/e.inc", NULL), STATUS_OK);
+        fputs("new", files[0].stream);
+        assert_int_equal(file_make_folder("build/e.inc", NULL), STATUS_OK);
+        assert_int_equal(outfiles_commit(files, 2, &err), STATUS_IO);
+        assert_non_null(strstr(err.text, "e.inc"));
+        remove("build/e.inc");
+        if (old)
+            expect_file("build/e.pov", "old");
+        else
+            assert_int_not_equal(access("build/e.pov", F_OK), 0);
+    }
+    remove("build/e.pov");
+}
+
+static void a_full_disk_is_said(void **state)
+{
+    (void)state;
+    Err err;
+    assert_int_equal(write_files(SCENE_ROUNDED, "/dev/full", NULL, &err), STATUS_IO);
+    assert_non_null(strstr(err.text, "No space left on device"));
 }
 
 /* What guards a geometry against being included twice. */
@@ -467,12 +537,12 @@ static void long_names_have_guards_of_their_own_that_fit_an_identifier(void **st
 {
     (void)state;
     Scene scene = make_scene(SCENE_ROUNDED);
-    PovrayParams params = two_files;
+    EmitParams params = two_files;
     char name[256] = {0}, guards[2][300];
     for (int i = 0; i < 2; i++) {
         memset(name, 'n', 250);
         name[249] = (char)('a' + i);
-        params.geometry_file = name;
+        params.second_file = name;
         Emitted out = emit(&scene, &params);
         const char *guard = strstr(out.geometry.chars, "#ifndef (Inc_");
         assert_non_null(guard);
@@ -501,6 +571,9 @@ int main(void)
         cmocka_unit_test(a_missing_template_is_named),
         cmocka_unit_test(names_stay_in_their_comments),
         cmocka_unit_test(a_geometry_that_cannot_be_included_is_refused),
+        cmocka_unit_test(files_hold_what_a_text_holds),
+        cmocka_unit_test(of_two_files_both_are_put_in_place_or_neither),
+        cmocka_unit_test(a_full_disk_is_said),
         cmocka_unit_test(long_names_have_guards_of_their_own_that_fit_an_identifier),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

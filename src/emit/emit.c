@@ -1,0 +1,69 @@
+/* A format is a row: what it is called, what it can hold, and a function that appends it to texts.
+ * The texts flow into temporary files that take their names together once all is written, so that a
+ * failure half way leaves what the user had. */
+#include "emit/rows.h"
+
+#include <string.h>
+
+#define ALL_MODELS                                                                                 \
+    (1U << SCENE_CYLINDERS | 1U << SCENE_JOINED | 1U << SCENE_ROUNDED | 1U << SCENE_ISOSURFACE |   \
+     1U << SCENE_BLOB)
+
+const Emitter emitters[] = {
+    {.name = "povray",
+     .extension = "pov",
+     .second_extension = "inc",
+     .description = "a scene for POV-Ray 3.7",
+     .models = ALL_MODELS,
+     .check_name = povray_check_name,
+     .write = povray_write},
+    {0},
+};
+
+const Emitter *emitter_of_extension(const char *extension)
+{
+    for (const Emitter *emitter = emitters; emitter->name; emitter++)
+        if (strcmp(emitter->extension, extension) == 0)
+            return emitter;
+    return NULL;
+}
+
+/* Fills the files, of which there are one or two. */
+static Status write_streams(const Emitter *emitter, const EmitParams *params, const OutFile *files,
+                            EmitReport *report, Err *err)
+{
+    Text out = TEXT_TO(files[0].stream), second = TEXT_TO(files[1].stream);
+    Status status = emitter->write(params, &out, &second, report, err);
+    if (status == STATUS_OK)
+        status = text_flush(&out, err);
+    if (status == STATUS_OK)
+        status = text_flush(&second, err);
+    if (status == STATUS_IO)
+        err_prefix(err, "%s: ", (ferror(files[0].stream) ? files[0] : files[1]).path);
+    text_release(&out);
+    text_release(&second);
+    return status;
+}
+
+Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
+                  const char *second_path, EmitReport *report, Err *err)
+{
+    OutFile files[2] = {0};
+    EmitReport written = {0};
+    Status status;
+    size_t n = second_path ? 2 : 1;
+    if (second_path && emitter->check_name)
+        TRY(emitter->check_name(params->second_file, err));
+    TRY_GOTO(outfile_open(&files[0], path, err));
+    if (second_path)
+        TRY_GOTO(outfile_open(&files[1], second_path, err));
+    TRY_GOTO(write_streams(emitter, params, files, &written, err));
+    TRY(outfiles_commit(files, n, err));
+    if (report)
+        *report = written;
+    return STATUS_OK;
+done:
+    outfile_discard(&files[0]);
+    outfile_discard(&files[1]);
+    return status;
+}

@@ -1,0 +1,41 @@
+/* A union of one macro call for each primitive. */
+#include "emit/povray_members.h"
+#include "emit/povray_text.h"
+#include "emit/values.h"
+
+static void put_primitive(Text *text, const Scene *scene, const Primitive *primitive)
+{
+    bool cylinder = primitive->kind == PRIMITIVE_CYLINDER;
+    text_puts(text, cylinder ? "Vessel_Cylinder(" : "Vessel_Sphere(");
+    put_vector(text, primitive->a);
+    if (cylinder) {
+        text_puts(text, ",");
+        put_vector(text, primitive->b);
+    }
+    text_puts(text, ",");
+    text_number(text, primitive->radius_mm);
+    text_puts(text, ",");
+    put_paint(text, scene, primitive->id, primitive->color);
+    text_puts(text, ")\n");
+}
+
+Status put_primitives(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Scene *scene = geometry->scene;
+    for (size_t i = 0; i < scene->n_primitives; i++) {
+        const Primitive *primitive = &scene->primitives[i];
+        if (primitive->kind == PRIMITIVE_JOINT)
+            put_joint(out, scene, primitive);
+        else
+            put_primitive(out, scene, primitive);
+    }
+    return text_check(out, err);
+}
+
+Status put_primitive_macros(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    Values values = {0};
+    return values_expand(&values, geometry->params, "povray/primitives.inc", out, err);
+}

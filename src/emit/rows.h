@@ -1,0 +1,11 @@
+/* The writers that stand in the table of emitters; private to the room. Each as Emitter.write. */
+#ifndef CORCAST_EMIT_ROWS_H
+#define CORCAST_EMIT_ROWS_H
+
+#include "emit/emit.h"
+
+Status povray_check_name(const char *second_file, Err *err);
+Status povray_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                    Err *err);
+
+#endif
