@@ -188,7 +188,7 @@ test_formats_lists_the_keys_of_a_tolerance() {
 
 test_the_numbers_for_povray_are_those_of_the_source() {
     agree POVRAY.md <<'END'
-for each light with n . L >= 1e-10 @ shade.c @ if (cosine < 1e-10)
+for each light with n . L >= 1e-10 @ shade.h @ #define LEAST_LIT_COSINE 1e-10
 is within 2.85 · 10⁻⁴ of it @ cellfunction.c @ return form == ERF_FAST ? 2.85e-4
 no wall by more than three times that @ cellfunction.c @ return (3 * erf_form_error(form) + 2e-5) * radius_mm;
 POV-Ray holds at most 1,048,575 different constants @ povray_joint.c @ holds 1,048,575 different constants in functions; a joint has 6.

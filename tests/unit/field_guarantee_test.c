@@ -174,7 +174,7 @@ typedef struct Answer {
     double t[TILE_SAMPLES];
     Vec3 normal[TILE_SAMPLES];
     uint32_t segment[TILE_SAMPLES];
-    const FieldTiles *tiles;
+    Viewpoint eye;
 } Answer;
 
 static void keep_answer(const SeenTile *seen, int worker, void *context)
@@ -186,11 +186,11 @@ static void keep_answer(const SeenTile *seen, int worker, void *context)
         if (!answer->hit[sample])
             continue;
         const TileHits *hits = seen->hits;
-        answer->t[sample] = tile_depth(seen->tile, hits, sample);
+        answer->t[sample] = seen_depth(seen, sample);
         answer->segment[sample] = hits->segment[sample];
-        answer->normal[sample] = fieldtiles_to_world(
-            answer->tiles, vec3((double)hits->normal[0][sample], (double)hits->normal[1][sample],
-                                (double)hits->normal[2][sample]));
+        answer->normal[sample] = viewpoint_to_world(
+            &answer->eye, vec3((double)hits->normal[0][sample], (double)hits->normal[1][sample],
+                               (double)hits->normal[2][sample]));
     }
 }
 
@@ -201,7 +201,7 @@ static void ask(const Scene *scene, FieldKernel *kernel, Answer *answer)
     FieldTiles *tiles;
     assert_int_equal(fieldtiles_new(scene, &grid, 1e-4, 1, &tiles, NULL), STATUS_OK);
     fieldtiles_use_kernel(tiles, kernel);
-    *answer = (Answer){.tiles = tiles};
+    *answer = (Answer){.eye = viewpoint_of_camera(&scene->camera)};
     assert_int_equal(fieldtiles_trace(tiles, 0, 0, NULL, keep_answer, answer, NULL), STATUS_OK);
     fieldtiles_free(tiles);
 }

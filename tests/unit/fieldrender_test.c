@@ -349,7 +349,7 @@ static void kernels_shade_as_single_rays_are_shaded(void **state)
     Light lights[2];
     Scene scene = {.n_lights = 0};
     light_test_scene(&scene, lights);
-    const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const Viewpoint eye = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     TileLight *tile_lights;
     TileLook look;
     Random random;
@@ -359,8 +359,7 @@ static void kernels_shade_as_single_rays_are_shaded(void **state)
     for (int n = 0; n < 30; n++) {
         scene.finish.phong_size = sizes[n % 3];
         scene.finish.brilliance = n % 2 ? 1 : 1.3f;
-        assert_int_equal(tilelook_make(&scene, vec3(0, 0, 0), axes, &tile_lights, &look, NULL),
-                         STATUS_OK);
+        assert_int_equal(tilelook_make(&scene, &eye, &tile_lights, &look, NULL), STATUS_OK);
         TileHits hits;
         TileSurface surface = {0};
         make_surface(&random, &hits, &surface);

@@ -616,8 +616,8 @@ static void boxes_hold_the_axes_of_vessels(void **state)
                 const Primitive *primitive = &staged.scene.primitives[i];
                 Vec3 span = vec3_sub(primitive->b, primitive->a);
                 Vec3 at = vec3_add_scaled(primitive->a, span, step / 8.0);
-                at = rasterview_to_frame(&view, vec3_sub(at, view.location));
-                double depth = view.perspective ? at.z : 1;
+                at = viewpoint_place(&view.eye, at);
+                double depth = view.eye.perspective ? at.z : 1;
                 double x = ((at.x / depth - view.left) / view.step_x + 0.5) / TILE_SIDE;
                 double y = ((at.y / depth - view.top) / view.step_y + 0.5) / TILE_SIDE;
                 if (at.z <= 0 || x < 0 || x >= WIDTH / TILE_SIDE || y < 0 ||

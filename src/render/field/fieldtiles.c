@@ -36,9 +36,8 @@ typedef struct TilePlaces {
 struct FieldTiles {
     const Scene *scene;
     SampleGrid grid;
-    Vec3 axes[3];         /* of the camera's frame */
+    Viewpoint eye;
     double width, height; /* of the picture, in the camera's plane */
-    bool perspective;
     double z_min;
     double *x, *y; /* of the grid's columns and rows, in the camera's plane */
     double step_x, step_y;
@@ -58,7 +57,7 @@ struct FieldTiles {
 static Interval capsule_shadow(const FieldTiles *tiles, double a, double a_z, double b, double b_z,
                                double reach)
 {
-    if (!tiles->perspective)
+    if (!tiles->eye.perspective)
         return interval_union((Interval){a - reach, a + reach}, (Interval){b - reach, b + reach});
     return interval_union(ball_shadow(a, a_z, reach), ball_shadow(b, b_z, reach));
 }
@@ -66,7 +65,7 @@ static Interval capsule_shadow(const FieldTiles *tiles, double a, double a_z, do
 /* 1: all in front of the camera, or orthographic; -1: all behind; 0: beside it. */
 static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
 {
-    if (!tiles->perspective)
+    if (!tiles->eye.perspective)
         return 1;
     double near = min_of(segment->a.z, segment->b.z), far = max_of(segment->a.z, segment->b.z);
     return near > segment->reach * (1 + 1e-9) ? 1 : far < -segment->reach ? -1 : 0;
@@ -87,12 +86,6 @@ static TileSpan tiles_within(Interval range, double first, double step, int coun
     if (begin > end)
         return (TileSpan){1, 0};
     return (TileSpan){begin / TILE_SIDE, end / TILE_SIDE};
-}
-
-Vec3 fieldtiles_to_frame(const FieldTiles *tiles, Vec3 v)
-{
-    return vec3(vec3_dot(v, tiles->axes[0]), vec3_dot(v, tiles->axes[1]),
-                vec3_dot(v, tiles->axes[2]));
 }
 
 static TileSpan rows_of(const FieldTiles *tiles, const FrameSegment *segment)
@@ -117,13 +110,13 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
     size_t end = (chunk + 1) * CHUNK < scene->n_segments ? (chunk + 1) * CHUNK : scene->n_segments;
     for (size_t i = chunk * CHUNK; i < end; i++) {
         const FieldSegment *segment = &scene->segments[i];
-        Vec3 origin = scene->camera.location, span = vec3_sub(segment->b, segment->a);
+        Vec3 span = vec3_sub(segment->b, segment->a);
         FrameSegment *out = &tiles->segments[i];
-        *out = (FrameSegment){.a = fieldtiles_to_frame(tiles, vec3_sub(segment->a, origin)),
-                              .b = fieldtiles_to_frame(tiles, vec3_sub(segment->b, origin)),
+        *out = (FrameSegment){.a = viewpoint_place(&tiles->eye, segment->a),
+                              .b = viewpoint_place(&tiles->eye, segment->b),
                               .length = vec3_length(span),
                               .k = potential_k(segment->radius_mm)};
-        out->axis = vec3_scale(fieldtiles_to_frame(tiles, span), 1 / out->length);
+        out->axis = vec3_scale(viewpoint_to_frame(&tiles->eye, span), 1 / out->length);
         out->sine = sqrt(out->axis.x * out->axis.x + out->axis.y * out->axis.y);
         out->per_sine = out->sine > 0 ? 1 / out->sine : 0;
         double reach2 = log(potential_term_peak(segment) / TILE_TERM_CUTOFF);
@@ -221,10 +214,7 @@ Status fieldtiles_new(const Scene *scene, const SampleGrid *grid, double z_min, 
     tiles->z_min = z_min;
     tiles->workers = workers;
     tiles->trace = fieldkernels[kernels_kind(KERNELS_FASTEST)];
-    tiles->perspective = camera->projection == PROJECTION_PERSPECTIVE;
-    tiles->axes[0] = vec3_normalized(camera->right);
-    tiles->axes[1] = vec3_normalized(camera->up);
-    tiles->axes[2] = camera->direction;
+    tiles->eye = viewpoint_of_camera(camera);
     tiles->width = vec3_length(camera->right);
     tiles->height = vec3_length(camera->up);
     tiles->tile_columns = (grid->n_columns + TILE_SIDE - 1) / TILE_SIDE;
@@ -292,18 +282,9 @@ size_t fieldtiles_columns(const FieldTiles *tiles)
     return (size_t)tiles->tile_columns;
 }
 
-Vec3 fieldtiles_to_world(const FieldTiles *tiles, Vec3 direction)
-{
-    Vec3 world = vec3_scale(tiles->axes[0], direction.x);
-    world = vec3_add_scaled(world, tiles->axes[1], direction.y);
-    return vec3_add_scaled(world, tiles->axes[2], direction.z);
-}
-
-/* Height above the plane through the camera, the direction and a row at `y` of the camera's
- * plane. */
 static double above(const FieldTiles *tiles, Vec3 p, double y)
 {
-    return tiles->perspective ? (p.y - y * p.z) / sqrt(1 + y * y) : p.y - y;
+    return tiles->eye.perspective ? (p.y - y * p.z) / sqrt(1 + y * y) : p.y - y;
 }
 
 /* The tiles of a row, whose rays are between y_low and y_high, that the support of the segment may
@@ -375,7 +356,7 @@ static void place_row(const FieldTiles *tiles, size_t row, FieldTile *tile)
 {
     const TilePlaces *y = &tiles->tile_y[row];
     *tile = (FieldTile){.blend = &tiles->scene->blend,
-                        .perspective = tiles->perspective,
+                        .perspective = tiles->eye.perspective,
                         .y = y->samples,
                         .middle_y = y->middle,
                         .z_min = tiles->z_min};
@@ -388,6 +369,20 @@ static void place_column(const FieldTiles *tiles, size_t column, size_t row, Fie
     tile->x = x->samples;
     tile->middle_x = x->middle;
     tile->half_size = (float)sqrt(x->half * x->half + y->half * y->half);
+}
+
+static SeenTile place_samples(const FieldTiles *tiles, int column, size_t row)
+{
+    const TilePlaces *x = &tiles->tile_x[column], *y = &tiles->tile_y[row];
+    return (SeenTile){.column = column * TILE_SIDE,
+                      .row = (int)row * TILE_SIDE,
+                      .n_columns = tile_extent(tiles->grid.n_columns - column * TILE_SIDE),
+                      .n_rows = tile_extent(tiles->grid.n_rows - (int)row * TILE_SIDE),
+                      .perspective = tiles->eye.perspective,
+                      .x = x->samples,
+                      .y = y->samples,
+                      .middle_x = x->middle,
+                      .middle_y = y->middle};
 }
 
 static Status grow_scratch(Workspace *space, size_t n, Err *err)
@@ -416,10 +411,10 @@ static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile 
                                tiles->z_min, HUGE_VAL, &t, &normal, &segment))
         return STATUS_OK;
     bool within = vec3_dot(normal, ray.direction) > 0;
-    normal = fieldtiles_to_frame(tiles, within ? vec3_scale(normal, -1) : normal);
+    normal = viewpoint_to_frame(&tiles->eye, within ? vec3_scale(normal, -1) : normal);
     hits->any_hit = true;
     hits->state[sample] = TILE_HIT;
-    hits->z[sample] = t * vec3_dot(ray.direction, tiles->axes[2]);
+    hits->z[sample] = t * vec3_dot(ray.direction, tiles->eye.axes[2]);
     hits->normal[0][sample] = (float)normal.x;
     hits->normal[1][sample] = (float)normal.y;
     hits->normal[2][sample] = (float)normal.z;
@@ -427,16 +422,17 @@ static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile 
     return STATUS_OK;
 }
 
-static Status decide_all(const FieldTiles *tiles, Workspace *space, const SeenTile *seen,
-                         TileHits *hits, Err *err)
+static Status decide_all(const FieldTiles *tiles, Workspace *space, const FieldTile *tile,
+                         const SeenTile *seen, TileHits *hits, Err *err)
 {
     const SampleGrid *grid = &tiles->grid;
     for (int sample = 0; hits->any_unsure && sample < TILE_SAMPLES; sample++) {
-        int i = seen->column + tile_sample_x(sample), j = seen->row + tile_sample_y(sample);
-        if (hits->state[sample] != TILE_UNSURE || i >= grid->n_columns || j >= grid->n_rows)
+        int i = tile_sample_x(sample), j = tile_sample_y(sample);
+        if (hits->state[sample] != TILE_UNSURE || i >= seen->n_columns || j >= seen->n_rows)
             continue;
-        Ray ray = camera_ray(&tiles->scene->camera, grid->columns[i], grid->rows[j]);
-        TRY(decide(tiles, space, seen->tile, ray, sample, hits, err));
+        Ray ray = camera_ray(&tiles->scene->camera, grid->columns[seen->column + i],
+                             grid->rows[seen->row + j]);
+        TRY(decide(tiles, space, tile, ray, sample, hits, err));
     }
     return STATUS_OK;
 }
@@ -452,7 +448,7 @@ Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t
         if (wanted && !wanted[column])
             continue;
         TileHits hits;
-        SeenTile seen = {.column = column * TILE_SIDE, .row = (int)row * TILE_SIDE, .tile = &tile};
+        SeenTile seen = place_samples(tiles, column, row);
         if (space->offsets[column] < space->offsets[column + 1]) {
             place_column(tiles, (size_t)column, row, &tile);
             uint32_t list = space->offsets[column];
@@ -460,22 +456,13 @@ Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t
                             &tile, space->terms, space->candidates);
             if (tile.n_terms) {
                 tiles->trace(&tile, &space->work, &hits);
-                TRY(decide_all(tiles, space, &seen, &hits, err));
+                TRY(decide_all(tiles, space, &tile, &seen, &hits, err));
                 seen.hits = hits.any_hit ? &hits : NULL;
             }
         }
         visit(&seen, worker, context);
     }
     return STATUS_OK;
-}
-
-double tile_depth(const FieldTile *tile, const TileHits *hits, int sample)
-{
-    if (!tile->perspective)
-        return hits->z[sample];
-    double x = tile->middle_x + (double)tile->x[sample];
-    double y = tile->middle_y + (double)tile->y[sample];
-    return hits->z[sample] * sqrt(1 + x * x + y * y);
 }
 
 Status tilework_reserve(TileWork *work, size_t n, Err *err)

@@ -4,7 +4,7 @@
 #define CORCAST_RENDER_FIELDTILES_H
 
 #include "render/field/fieldkernels.h"
-#include "scene/scene.h"
+#include "render/tile/viewpoint.h"
 
 /* Where rays go through the picture: every pair of a column and a row, in pixels as camera_ray
  * takes them. Both ascend in steps of `spacing`. */
@@ -28,14 +28,8 @@ size_t fieldtiles_rows(const FieldTiles *tiles);
 /* Tiles in a row. */
 size_t fieldtiles_columns(const FieldTiles *tiles);
 
-/* A tile whose samples are known, none of them TILE_UNSURE. Its sample n is that of the grid at
- * (column + tile_sample_x(n), row + tile_sample_y(n)) if that is inside the grid. */
-typedef struct SeenTile {
-    int column, row;
-    const FieldTile *tile;
-    const TileHits *hits; /* NULL: nothing is seen in the whole tile */
-} SeenTile;
-
+/* Is shown a tile whose samples are known, none of them TILE_UNSURE. Its sample n is that of the
+ * grid at (column + tile_sample_x(n), row + tile_sample_y(n)) if that is inside the grid. */
 typedef void TileVisitor(const SeenTile *seen, int worker, void *context);
 
 /* Finds the hits of one row of tiles and shows each tile to `visit`, from left to right: those only
@@ -43,12 +37,6 @@ typedef void TileVisitor(const SeenTile *seen, int worker, void *context);
  * when a workspace cannot grow. */
 MUST_CHECK Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t *wanted,
                                    TileVisitor *visit, void *context, Err *err);
-
-/* A direction from the camera's frame to the world, and back. */
-Vec3 fieldtiles_to_world(const FieldTiles *tiles, Vec3 direction);
-Vec3 fieldtiles_to_frame(const FieldTiles *tiles, Vec3 direction);
-/* The depth, in mm along the unit ray, of a hit of the tile. */
-double tile_depth(const FieldTile *tile, const TileHits *hits, int sample);
 
 /* Traces with this kernel from now on, not with the fastest. */
 void fieldtiles_use_kernel(FieldTiles *tiles, FieldKernel *trace);

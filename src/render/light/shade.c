@@ -76,20 +76,27 @@ static double visible_part(const Light *light, Vec3 point, Vec3 towards, double 
     return (double)reach / (n * n);
 }
 
+Vec3 light_direction(const Light *light, Vec3 point, double *distance)
+{
+    Vec3 to_light = vec3_sub(light->location, point);
+    if (light->parallel) {
+        Vec3 towards = vec3_normalized(vec3_sub(light->location, light->target));
+        *distance = vec3_dot(to_light, towards);
+        return towards;
+    }
+    *distance = vec3_length(to_light);
+    return vec3_scale(to_light, 1 / *distance);
+}
+
 Rgb shade_point(const Scene *scene, const ShadePoint *at, ShadowTest *shadow, void *context)
 {
     Rgb color = rgb_scale(at->pigment, (double)at->finish->ambient * at->open);
     for (size_t i = 0; i < scene->n_lights; i++) {
         const Light *light = &scene->lights[i];
-        Vec3 to_light = vec3_sub(light->location, at->point);
-        double distance = vec3_length(to_light);
-        Vec3 towards = vec3_scale(to_light, 1 / distance);
-        if (light->parallel) {
-            towards = vec3_normalized(vec3_sub(light->location, light->target));
-            distance = vec3_dot(to_light, towards);
-        }
+        double distance;
+        Vec3 towards = light_direction(light, at->point, &distance);
         double cosine = vec3_dot(at->normal, towards);
-        if (cosine < 1e-10)
+        if (cosine < LEAST_LIT_COSINE)
             continue;
         double part = visible_part(light, at->point, towards, distance, shadow, context);
         if (part > 0)

@@ -5,6 +5,13 @@
 #include "geom/geom.h"
 #include "scene/scene.h"
 
+/* A surface is lit where the cosine between its normal and the direction to the light is at least
+ * this [docs/METHODS.md section 3]. */
+#define LEAST_LIT_COSINE 1e-10
+
+/* The unit direction from a point to a light, and how far the light is along it, mm. */
+Vec3 light_direction(const Light *light, Vec3 point, double *distance);
+
 /* Tells whether anything stands between `point` and a light in direction `towards` (unit) at
  * `distance` mm. */
 typedef bool ShadowTest(void *context, Vec3 point, Vec3 towards, double distance);

@@ -1,11 +1,11 @@
 /* What a light sees of the places that a tile of the picture sees, several at once: included by
- * each source that compiles it for its lanes, after kernel_raster.h. Loops over samples have no
+ * each source that compiles it for its lanes. Loops over samples have no
  * branches, for compilers to make vectors of. */
 #ifndef RASTER_KERNEL
 #error "define RASTER_KERNEL(name), the name of a function"
 #endif
 
-#include "render/raster/kernel_round.h"
+#include "render/raster/kernel_raster.h"
 #include "render/raster/rasterkernels.h"
 #include "render/raster/rasterview.h"
 
@@ -314,3 +314,11 @@ LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, RasterProbe
         else
             cover_block(tile, probes, first, false);
 }
+
+const RasterKernels RASTER_KERNEL(rasterkernels) = {.trace = RASTER_KERNEL(trace),
+                                                    .resolve = RASTER_KERNEL(resolve),
+                                                    .locate = RASTER_KERNEL(locate),
+                                                    .face = RASTER_KERNEL(face),
+                                                    .aim = RASTER_KERNEL(aim),
+                                                    .within = RASTER_KERNEL(within),
+                                                    .cover = RASTER_KERNEL(cover)};

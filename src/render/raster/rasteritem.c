@@ -44,14 +44,14 @@ static RasterJoint make_joint(const RasterView *view, const Primitive *primitive
 {
     RasterJoint made;
     JointFrame joint = primitive_joint(primitive);
-    Vec3 from_eye = vec3_sub(joint.base, view->location), part[6];
-    joint.base = vec3_sub(rasterview_to_frame(view, from_eye), middle);
-    joint.span = rasterview_to_frame(view, joint.span);
+    Vec3 from_eye = vec3_sub(joint.base, view->eye.location), part[6];
+    joint.base = vec3_sub(viewpoint_to_frame(&view->eye, from_eye), middle);
+    joint.span = viewpoint_to_frame(&view->eye, joint.span);
     /* The frame is left-handed; turning the other way round keeps S_p x S_l outward in it. */
-    joint.side = vec3_scale(rasterview_to_frame(view, joint.side), -1);
-    joint.across = rasterview_to_frame(view, joint.across);
-    joint.across_change = rasterview_to_frame(view, joint.across_change);
-    face_sight(&joint, view->perspective ? middle : vec3(0, 0, 1), part);
+    joint.side = vec3_scale(viewpoint_to_frame(&view->eye, joint.side), -1);
+    joint.across = viewpoint_to_frame(&view->eye, joint.across);
+    joint.across_change = viewpoint_to_frame(&view->eye, joint.across_change);
+    face_sight(&joint, view->eye.perspective ? middle : vec3(0, 0, 1), part);
     Vec3 base = part[0], span = part[1], a = part[2], b = part[3], da = part[4], db = part[5];
     store_vec3(made.base, base);
     store_vec3(made.span, span);
@@ -80,9 +80,9 @@ static RasterHull make_hull(const RasterView *view, const Primitive *primitive, 
     RasterHull hull;
     double a = primitive->radius_mm, b = primitive->radius_b_mm;
     bool tapers = fabs(a - b) < length;
-    store_plane(hull.plane[0], rasterview_to_frame(view, primitive->axis_a), vec3_scale(span, -0.5),
-                a);
-    store_plane(hull.plane[1], vec3_scale(rasterview_to_frame(view, primitive->axis_b), -1),
+    store_plane(hull.plane[0], viewpoint_to_frame(&view->eye, primitive->axis_a),
+                vec3_scale(span, -0.5), a);
+    store_plane(hull.plane[1], vec3_scale(viewpoint_to_frame(&view->eye, primitive->axis_b), -1),
                 vec3_scale(span, 0.5), b);
     hull.middle = (float)((tapers ? (a + b) / 2 : max_of(a, b)) * 1.0005);
     hull.taper = (float)(tapers ? turn * (a - b) / length : 0);
@@ -94,8 +94,8 @@ void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, Ra
     const RasterView *view = &bins->view;
     const Primitive *primitive = &bins->scene->primitives[number];
     Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
-    middle = rasterview_to_frame(view, vec3_sub(middle, view->location));
-    Vec3 span = rasterview_to_frame(view, vec3_sub(primitive->b, primitive->a));
+    middle = viewpoint_place(&view->eye, middle);
+    Vec3 span = viewpoint_to_frame(&view->eye, vec3_sub(primitive->b, primitive->a));
     double length = vec3_length(span), radius = primitive->radius_mm, cosine = 0, sine = 1;
     double ex = 1, ey = 0, turn = span.z < 0 ? -1 : 1;
     if (length > 0) {
@@ -107,7 +107,7 @@ void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, Ra
     }
     RasterKind kind = RASTER_SPHERE;
     if (primitive->kind == PRIMITIVE_CYLINDER)
-        kind = !view->perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
+        kind = !view->eye.perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
     if (primitive->kind == PRIMITIVE_JOINT) {
         kind = bins->scene->open_joints || !primitive_joint_is_solid(primitive) ? RASTER_EXACT
                                                                                 : RASTER_JOINT;
@@ -130,7 +130,7 @@ void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, Ra
     item->round_high = turn > 0 ? primitive->round_b : primitive->round_a;
     item->joint = joint & (MOST_ITEMS - 1);
     double near = middle.z - cosine * length / 2 - radius;
-    double pixel = min_of(view->step_x, -view->step_y) * (view->perspective ? near : 1);
+    double pixel = min_of(view->step_x, -view->step_y) * (view->eye.perspective ? near : 1);
     bool odd = item_is_close(item) || length / 2 + radius > most_pixels * pixel;
     item->kind = (unsigned)(odd ? RASTER_EXACT : kind) & 3;
 }
@@ -166,7 +166,7 @@ double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, 
         if (hits[i].t >= NEAREST_SEEN_MM && hits[i].t < nearest) {
             nearest = hits[i].t;
             if (normal)
-                *normal = rasterview_to_frame(&bins->view, hits[i].normal);
+                *normal = viewpoint_to_frame(&bins->view.eye, hits[i].normal);
         }
-    return nearest * vec3_dot(ray.direction, bins->view.axes[2]);
+    return nearest * vec3_dot(ray.direction, bins->view.eye.axes[2]);
 }

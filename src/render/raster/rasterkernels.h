@@ -48,10 +48,6 @@ typedef struct RasterKernels {
     uint64_t (*trace)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
     /* State, item (as `segment`) and all other normals of the hits. */
     void (*resolve)(const RasterTile *tile, const RasterHits *hits, TileHits *surface);
-    /* Gives the samples that see nothing the background. */
-    void (*clear)(const RasterHits *hits, const float background[3], float color[3][TILE_SAMPLES]);
-    /* Stores a whole tile's colours as rows of pixels, `stride` floats from row to row. */
-    void (*paint)(float color[3][TILE_SAMPLES], float *pixels, size_t stride);
     /* The places that the hits are at. */
     void (*locate)(const RasterTile *tile, const RasterHits *hits, RasterPlaces *places);
     /* facing[i] is 1 where the visible side of the surface at a place faces the light, else 0. */
@@ -65,6 +61,7 @@ typedef struct RasterKernels {
     void (*cover)(const RasterTile *tile, RasterProbes *probes);
 } RasterKernels;
 
+extern const RasterKernels rasterkernels_portable;
 #ifdef __x86_64__
 extern const RasterKernels rasterkernels_avx2, rasterkernels_avx512;
 #endif

@@ -119,7 +119,7 @@ static inline Interval whole_pixels(const RasterView *view, const RasterItem *it
     double middle = across ? item->x : item->y, slope = (double)(across ? item->ex : item->ey);
     double reach = fabs(slope) * (double)item->sine * half + radius;
     Interval range = {middle - reach, middle + reach};
-    if (view->perspective) {
+    if (view->eye.perspective) {
         if (item_is_close(item))
             return everywhere;
         Vec3 a = item_point(item, -half), b = item_point(item, half);
@@ -164,9 +164,10 @@ TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int 
            (row > item->rows.first ? RASTERBOX_LOW_X << 16 : 0);
     int few = view->light ? 1 : 0;
     if (item->rows.last - item->rows.first <= few || columns.last - columns.first <= few ||
-        (view->perspective && item_is_close(item)))
+        (view->eye.perspective && item_is_close(item)))
         return columns;
-    Interval range = view->perspective ? perspective_range(item, slab) : parallel_range(item, slab);
+    Interval range =
+        view->eye.perspective ? perspective_range(item, slab) : parallel_range(item, slab);
     if (range.low > range.high)
         return nowhere;
     range = pixels_within(range, view->left, view->per_x);

@@ -72,20 +72,21 @@ static int tiles_for(const Scene *scene)
 /* The view of a light, just wide enough for the scene. */
 static RasterView light_view(const Scene *scene, const Light *light)
 {
-    RasterView view = {.location = light->location, .perspective = !light->parallel, .light = true};
+    RasterView view = {.eye = {.location = light->location, .perspective = !light->parallel},
+                       .light = true};
     Vec3 center, towards = vec3_sub(light->target, light->location);
     scene_radius(scene, &center);
     if (!light->parallel)
         towards = vec3_sub(center, light->location);
-    view.axes[2] = vec3_normalized(towards);
-    Vec3 other = fabs(view.axes[2].x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
-    view.axes[0] = vec3_normalized(vec3_cross(view.axes[2], other));
-    view.axes[1] = vec3_cross(view.axes[0], view.axes[2]);
+    view.eye.axes[2] = vec3_normalized(towards);
+    Vec3 other = fabs(view.eye.axes[2].x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    view.eye.axes[0] = vec3_normalized(vec3_cross(view.eye.axes[2], other));
+    view.eye.axes[1] = vec3_cross(view.eye.axes[0], view.eye.axes[2]);
     Box box = box_empty();
     for (int i = 0; i < 8; i++) {
         Vec3 at = vec3_sub(corner(&scene->bounds, i), light->location);
-        at = rasterview_to_frame(&view, at);
-        if (view.perspective)
+        at = viewpoint_to_frame(&view.eye, at);
+        if (view.eye.perspective)
             at = vec3(at.x / at.z, at.y / at.z, at.z);
         box = box_with_ball(box, at, 0);
     }
@@ -159,7 +160,7 @@ static Status list_rows(RasterShadow *shadow, Err *err)
 static RasterAim aim_of(const Scene *scene, const RasterView *view, const RasterView *camera)
 {
     Vec3 center;
-    RasterAim aim = {.perspective = view->perspective,
+    RasterAim aim = {.perspective = view->eye.perspective,
                      .left = view->left - view->step_x / 2,
                      .top = view->top - view->step_y / 2,
                      .per_x = 1 / (TILE_SIDE * view->step_x),
@@ -170,8 +171,8 @@ static RasterAim aim_of(const Scene *scene, const RasterView *view, const Raster
     /* Places and depths are rounded to 2^-24 of the scene's size, thrice. */
     aim.slack = slack_mm + 0x3p-23 * scene_radius(scene, &center);
     for (int i = 0; i < 3; i++)
-        aim.axes[i] = rasterview_to_frame(camera, view->axes[i]);
-    aim.offset = rasterview_to_frame(view, vec3_sub(camera->location, view->location));
+        aim.axes[i] = viewpoint_to_frame(&camera->eye, view->eye.axes[i]);
+    aim.offset = viewpoint_place(&view->eye, camera->eye.location);
     return aim;
 }
 

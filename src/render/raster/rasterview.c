@@ -20,10 +20,7 @@ RasterView rasterview_of_camera(const Scene *scene, int first, int rows, int ant
     double width = vec3_length(camera->right), height = vec3_length(camera->up);
     double near, far;
     scene_depth_range(scene, &near, &far);
-    return (RasterView){.location = camera->location,
-                        .axes = {vec3_normalized(camera->right), vec3_normalized(camera->up),
-                                 vec3_normalized(camera->direction)},
-                        .perspective = camera->projection == PROJECTION_PERSPECTIVE,
+    return (RasterView){.eye = viewpoint_of_camera(camera),
                         .left = (0.5 / camera->width - 0.5) * width,
                         .top = (0.5 - 0.5 / camera->height) * height,
                         .step_x = width / camera->width,
@@ -37,16 +34,10 @@ RasterView rasterview_of_camera(const Scene *scene, int first, int rows, int ant
 
 Ray rasterview_ray(const RasterView *view, double x, double y)
 {
-    Vec3 across = vec3_add_scaled(vec3_scale(view->axes[0], x), view->axes[1], y);
-    if (view->perspective)
-        return (Ray){view->location, vec3_normalized(vec3_add(view->axes[2], across))};
-    return (Ray){vec3_add(view->location, across), view->axes[2]};
-}
-
-Vec3 rasterview_to_world(const RasterView *view, Vec3 v)
-{
-    Vec3 world = vec3_add_scaled(vec3_scale(view->axes[0], v.x), view->axes[1], v.y);
-    return vec3_add_scaled(world, view->axes[2], v.z);
+    Vec3 across = vec3_add_scaled(vec3_scale(view->eye.axes[0], x), view->eye.axes[1], y);
+    if (view->eye.perspective)
+        return (Ray){view->eye.location, vec3_normalized(vec3_add(view->eye.axes[2], across))};
+    return (Ray){vec3_add(view->eye.location, across), view->eye.axes[2]};
 }
 
 /* ---- rows ------------------------------------------------------------------------------------ */
@@ -306,7 +297,7 @@ RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const ui
                         .list = list,
                         .n = n,
                         .grid = grid,
-                        .perspective = view->perspective,
+                        .perspective = view->eye.perspective,
                         .x = view->left + (column * TILE_SIDE + middle) * view->step_x,
                         .y = view->top + (view->first + row * TILE_SIDE + middle) * view->step_y,
                         .z_middle = view->z_middle};

@@ -4,13 +4,12 @@
 #define CORCAST_RENDER_RASTERVIEW_H
 
 #include "render/raster/rastertile.h"
+#include "render/tile/viewpoint.h"
 #include "scene/scene.h"
 
 /* Parallel lines of sight through a plane, or lines through one point, on a grid of pixels. */
 typedef struct RasterView {
-    Vec3 location;
-    Vec3 axes[3]; /* right, up and along the view: orthonormal */
-    bool perspective;
+    Viewpoint eye;
     double left, top; /* the middle of the first pixel: mm from the location, or per mm of depth */
     double step_x, step_y; /* from pixel to pixel, to the right and down: above and below 0 */
     double per_x, per_y;   /* 1 / step, set by rasterbins_new */
@@ -26,13 +25,6 @@ RasterView rasterview_of_camera(const Scene *scene, int first, int rows, int ant
 
 /* The line of sight at a point of the view's plane, its direction a unit vector. */
 Ray rasterview_ray(const RasterView *view, double x, double y);
-
-static inline Vec3 rasterview_to_frame(const RasterView *view, Vec3 v)
-{
-    return vec3(vec3_dot(v, view->axes[0]), vec3_dot(v, view->axes[1]), vec3_dot(v, view->axes[2]));
-}
-
-Vec3 rasterview_to_world(const RasterView *view, Vec3 v);
 
 /* A box within a tile in 128ths of its sides, from the left and the top, for one subtraction to
  * compare with another: 7 bits each of the greatest x, 127 less the least x, the greatest y and

@@ -43,7 +43,7 @@ typedef struct Brush {
 static void put_point(const Brush *brush, Vec3 at, Vec3 normal)
 {
     const RasterView *view = brush->view;
-    double scale = view->perspective ? 1 / at.z : 1;
+    double scale = view->eye.perspective ? 1 / at.z : 1;
     double x = (at.x * scale - view->left) * view->per_x;
     double y = (at.y * scale - view->top) * view->per_y;
     double column = floor(x + 0.5), row = floor(y + 0.5);
@@ -68,7 +68,7 @@ static bool touches_row(const Brush *brush, Vec3 center, double radius)
 {
     const RasterView *view = brush->view;
     double low = center.y - radius, high = center.y + radius;
-    if (view->perspective) {
+    if (view->eye.perspective) {
         low /= low < 0 ? center.z - radius : center.z + radius;
         high /= high < 0 ? center.z + radius : center.z - radius;
     }
@@ -162,12 +162,12 @@ static void draw_primitive(const Buffers *buffers, const RasterItem *item, uint3
     const RasterView *view = brush->view;
     const Primitive *primitive = &buffers->scene->primitives[number];
     double pixel = fmin(view->step_x, -view->step_y);
-    if (view->perspective) /* a step across a slanting line of sight is foreshortened */
+    if (view->eye.perspective) /* a step across a slanting line of sight is foreshortened */
         pixel *= item_nearest(item) / (1 + view->left * view->left + view->top * view->top);
     brush->apart = pixel * pixels_apart;
     brush->primitive = number;
-    Vec3 a = rasterview_to_frame(view, vec3_sub(primitive->a, view->location));
-    Vec3 b = rasterview_to_frame(view, vec3_sub(primitive->b, view->location));
+    Vec3 a = viewpoint_place(&view->eye, primitive->a);
+    Vec3 b = viewpoint_place(&view->eye, primitive->b);
     if (primitive->kind == PRIMITIVE_CYLINDER) {
         draw_cylinder(brush, a, b, primitive->radius_mm);
         if (primitive->round_a)
@@ -179,10 +179,10 @@ static void draw_primitive(const Buffers *buffers, const RasterItem *item, uint3
     } else {
         JointFrame joint = primitive_joint(primitive);
         joint.base = a;
-        joint.span = rasterview_to_frame(view, joint.span);
-        joint.side = rasterview_to_frame(view, joint.side);
-        joint.across = rasterview_to_frame(view, joint.across);
-        joint.across_change = rasterview_to_frame(view, joint.across_change);
+        joint.span = viewpoint_to_frame(&view->eye, joint.span);
+        joint.side = viewpoint_to_frame(&view->eye, joint.side);
+        joint.across = viewpoint_to_frame(&view->eye, joint.across);
+        joint.across_change = viewpoint_to_frame(&view->eye, joint.across_change);
         draw_joint(brush, &joint);
     }
 }
@@ -196,8 +196,8 @@ static void finish_pixel(const Buffers *buffers, const Point *point, int i, int 
     size_t pixel = (size_t)j * (size_t)scene->camera.width + (size_t)i;
     bool seen = point->z < HUGE_VAL;
     Ray ray = camera_ray(&scene->camera, i, buffers->band->first + j);
-    double t = seen ? point->z / vec3_dot(ray.direction, view->axes[2]) : HUGE_VAL;
-    Vec3 normal = seen ? rasterview_to_world(view, point->normal) : vec3(0, 0, 0);
+    double t = seen ? point->z / vec3_dot(ray.direction, view->eye.axes[2]) : HUGE_VAL;
+    Vec3 normal = seen ? viewpoint_to_world(&view->eye, point->normal) : vec3(0, 0, 0);
     if (vec3_dot(normal, ray.direction) > 0)
         normal = vec3_scale(normal, -1);
     const Primitive *primitive = seen ? &scene->primitives[point->primitive] : NULL;
@@ -234,7 +234,7 @@ static Status check_outside(const RasterBins *bins, Err *err)
     for (size_t i = 0; i < rasterbins_items(bins->scene); i++) {
         const RasterItem *item = &bins->items[i];
         double deep = item_depth(item);
-        if (item->z + deep > 0 && item->z - deep < (bins->view.perspective ? deep * 0.01 : 0))
+        if (item->z + deep > 0 && item->z - deep < (bins->view.eye.perspective ? deep * 0.01 : 0))
             return err_set(err, STATUS_USAGE,
                            "--method zbuffer needs a camera that is not among the vessels");
     }

@@ -1,8 +1,8 @@
-/* shade.c's model for the samples of a tile, and the codes of the colours, several at once and in
- * single precision: included by each source that compiles it for its lanes, SHADE_KERNEL and
- * ENCODE_KERNEL being the names of the functions. */
-#ifndef SHADE_KERNEL
-#error "define SHADE_KERNEL and ENCODE_KERNEL, the names of the functions"
+/* shade.c's model for the samples of a tile, their pixels, and the codes of the colours, several at
+ * once and in single precision: included by each source that compiles it for its lanes,
+ * TILE_KERNEL(name) making the names of its functions. */
+#ifndef TILE_KERNEL
+#error "define TILE_KERNEL(name), the name of a function"
 #endif
 
 #include "render/tile/lanes.h"
@@ -103,8 +103,8 @@ LANE_FN void add_light(Shading *shading, size_t number)
     }
 }
 
-LANE_TARGET static void SHADE_KERNEL(const TileLook *look, const TileSurface *surface,
-                                     float color[3][TILE_SAMPLES])
+LANE_TARGET static void TILE_KERNEL(shade)(const TileLook *look, const TileSurface *surface,
+                                           float color[3][TILE_SAMPLES])
 {
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
         if (!lanes_any(lanes_of_bytes(&surface->hits->state[first])))
@@ -149,9 +149,9 @@ LANE_FN void store_eight_bytes(uint8_t *to, uint64_t bytes)
     __builtin_memcpy(to, &bytes, sizeof bytes);
 }
 
-LANE_TARGET static void ENCODE_KERNEL(const SrgbCodes *codes, float color[3][TILE_SAMPLES],
-                                      const uint8_t *state, const uint8_t background[3],
-                                      uint8_t *to, size_t stride)
+LANE_TARGET static void TILE_KERNEL(encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES],
+                                            const uint8_t *state, const uint8_t background[3],
+                                            uint8_t *to, size_t stride)
 {
     uint32_t pixels[TILE_SAMPLES];
     int32_t other = background[0] | background[1] << 8 | background[2] << 16;
@@ -175,3 +175,56 @@ LANE_TARGET static void ENCODE_KERNEL(const SrgbCodes *codes, float color[3][TIL
         store_eight_bytes(to + 16, right >> 32 | last << 16);
     }
 }
+
+/* ---- pixels ---------------------------------------------------------------------------------- */
+
+typedef float Quad __attribute__((vector_size(16)));
+
+/* Four pixels of three channels each. */
+LANE_FN void store_pixels(float *to, Quad r, Quad g, Quad b)
+{
+    Quad low = __builtin_shufflevector(r, g, 0, 4, 1, 5);
+    Quad high = __builtin_shufflevector(r, g, 2, 6, 3, 7);
+    Quad middle = __builtin_shufflevector(low, b, 3, 5, 3, 5);
+    Quad first = __builtin_shufflevector(low, b, 0, 1, 4, 2);
+    Quad second = __builtin_shufflevector(middle, high, 0, 1, 4, 5);
+    Quad third = __builtin_shufflevector(b, high, 2, 6, 7, 3);
+    __builtin_memcpy(to, &first, sizeof first);
+    __builtin_memcpy(to + 4, &second, sizeof second);
+    __builtin_memcpy(to + 8, &third, sizeof third);
+}
+
+LANE_TARGET static void TILE_KERNEL(paint)(float color[3][TILE_SAMPLES], float *pixels,
+                                           size_t stride)
+{
+    for (int block = 0; block < TILE_SAMPLES / 8; block++) {
+        Quad upper[3], lower[3];
+        for (int c = 0; c < 3; c++) {
+            Quad left, right;
+            __builtin_memcpy(&left, &color[c][8 * block], sizeof left);
+            __builtin_memcpy(&right, &color[c][8 * block + 4], sizeof right);
+            upper[c] = __builtin_shufflevector(left, right, 0, 1, 4, 5);
+            lower[c] = __builtin_shufflevector(left, right, 2, 3, 6, 7);
+        }
+        float *to =
+            pixels + (size_t)tile_sample_y(8 * block) * stride + 3 * tile_sample_x(8 * block);
+        store_pixels(to, upper[0], upper[1], upper[2]);
+        store_pixels(to + stride, lower[0], lower[1], lower[2]);
+    }
+}
+
+LANE_TARGET static void TILE_KERNEL(clear)(const uint8_t *state, const float background[3],
+                                           float color[3][TILE_SAMPLES])
+{
+    for (int first = 0; first < TILE_SAMPLES; first += LANES) {
+        LaneMask seen = lanes_of_bytes(&state[first]);
+        for (int c = 0; c < 3; c++)
+            lanes_store(&color[c][first],
+                        lanes_select(seen, lanes_load(&color[c][first]), lanes_set(background[c])));
+    }
+}
+
+const TileKernels TILE_KERNEL(tilekernels) = {.shade = TILE_KERNEL(shade),
+                                              .clear = TILE_KERNEL(clear),
+                                              .paint = TILE_KERNEL(paint),
+                                              .encode = TILE_KERNEL(encode)};

@@ -74,6 +74,45 @@ typedef struct TileHits {
     bool any_hit, any_unsure;    /* whether a state is such, or was before it was decided */
 } TileHits;
 
+/* A tile of a picture: the lines of sight of its samples, and what they see. */
+typedef struct SeenTile {
+    int column, row;       /* of its first sample, in the grid of all samples of the picture */
+    int n_columns, n_rows; /* how many of its samples are inside that grid */
+    bool perspective;
+    const float *x, *y; /* where samples are in the view's plane, from the tile's middle */
+    double middle_x, middle_y;
+    const TileHits *hits; /* NULL: nothing is seen in the whole tile */
+} SeenTile;
+
+/* How many of a tile's columns or rows are in a picture of which so many are left. */
+static inline int tile_extent(int left)
+{
+    return left < TILE_SIDE ? left : TILE_SIDE;
+}
+
+/* In perspective: where a sample's line of sight is at the depth 1 of the view. */
+static inline Vec3 seen_line(const SeenTile *seen, int sample)
+{
+    return vec3(seen->middle_x + (double)seen->x[sample], seen->middle_y + (double)seen->y[sample],
+                1);
+}
+
+/* Where a sample that is a hit meets the surface, in the frame of the view. */
+static inline Vec3 seen_place(const SeenTile *seen, int sample)
+{
+    Vec3 line = seen_line(seen, sample);
+    double z = seen->hits->z[sample], scale = seen->perspective ? z : 1;
+    return vec3(line.x * scale, line.y * scale, z);
+}
+
+/* How far that is along the line of sight, mm. */
+static inline double seen_depth(const SeenTile *seen, int sample)
+{
+    Vec3 line = seen_line(seen, sample);
+    double z = seen->hits->z[sample];
+    return seen->perspective ? z * sqrt(1 + line.x * line.x + line.y * line.y) : z;
+}
+
 /* The workspace of a kernel, for up to `capacity` terms. */
 typedef struct TileWork {
     void *memory;

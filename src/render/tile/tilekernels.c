@@ -1,12 +1,9 @@
 /* The kernels for any processor, and the choice among all. */
-#define SHADE_KERNEL shade_portable
-#define ENCODE_KERNEL encode_portable
+#define TILE_KERNEL(name) name##_portable
 #include "render/tile/kernel_shade.h"
 
-static const TileKernels portable = {shade_portable, encode_portable};
-
 const TileKernels *const tilekernels[] = {
-    &portable,
+    &tilekernels_portable,
 #ifdef __x86_64__
     &tilekernels_avx2,
     &tilekernels_avx512,

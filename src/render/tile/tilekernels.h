@@ -33,6 +33,10 @@ typedef struct TileSurface {
 typedef struct TileKernels {
     /* Colours of the hits as shade() gives, to 2e-5 of the light's colour. */
     void (*shade)(const TileLook *look, const TileSurface *surface, float color[3][TILE_SAMPLES]);
+    /* Gives the samples whose TileState is TILE_MISS the background. */
+    void (*clear)(const uint8_t *state, const float background[3], float color[3][TILE_SAMPLES]);
+    /* Stores a whole tile's colours as rows of pixels, `stride` floats from row to row. */
+    void (*paint)(float color[3][TILE_SAMPLES], float *pixels, size_t stride);
     /* Stores the codes of a whole tile's colours as rows of pixels, `stride` bytes from row to row:
      * the background's where a TileState is TILE_MISS. `state` NULL: none is. */
     void (*encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES], const uint8_t *state,
@@ -40,6 +44,7 @@ typedef struct TileKernels {
 } TileKernels;
 
 /* Kernels come in kinds: the portable ones first, then those for ever more able processors. */
+extern const TileKernels tilekernels_portable;
 #ifdef __x86_64__
 enum { KINDS_OF_KERNELS = 3 };
 extern const TileKernels tilekernels_avx2, tilekernels_avx512;

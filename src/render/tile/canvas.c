@@ -1,0 +1,292 @@
+/* Tiles of a row come from left to right, and only those that may see something: what lies between
+ * them is filled row of pixels by row of pixels, so that a pixel is written once. A worker that
+ * fails draws nothing any more, and its error is returned when all others are done. */
+#include "render/tile/canvas.h"
+
+#include "render/tile/tilelook.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- setting up ------------------------------------------------------------------------------ */
+
+/* Fills a row with the mean of so many samples of the background, summed in float. */
+static void fill_row(const Canvas *canvas, int samples, float *row)
+{
+    const Rgb color = canvas->scene->background;
+    const float background[3] = {color.r, color.g, color.b};
+    for (int c = 0; c < 3; c++) {
+        float sum = background[c];
+        for (int i = 1; i < samples; i++)
+            sum += background[c];
+        for (int i = 0; i < canvas->scene->camera.width; i++)
+            row[3 * i + c] = (float)((double)sum / samples);
+    }
+}
+
+static Status make_background(Canvas *canvas, Err *err)
+{
+    size_t n = 3 * (size_t)canvas->scene->camera.width;
+    TRY(mem_calloc(&canvas->background, n, sizeof *canvas->background, "background", err));
+    TRY(mem_calloc(&canvas->blank, n, sizeof *canvas->blank, "background", err));
+    fill_row(canvas, 1, canvas->background);
+    fill_row(canvas, 1, canvas->blank);
+    if (!canvas->frame->codes.codes8)
+        return STATUS_OK;
+    srgb_codes_init(&canvas->codes);
+    TRY(mem_calloc(&canvas->background_codes, n, 1, "background", err));
+    for (size_t i = 0; i < n; i++)
+        canvas->background_codes[i] = srgb_code(&canvas->codes, canvas->background[i]);
+    return STATUS_OK;
+}
+
+Status canvas_init(const Scene *scene, const RenderParams *params, const Band *band, Frame *frame,
+                   const Viewpoint *eye, Canvas *canvas, Err *err)
+{
+    *canvas = (Canvas){.scene = scene,
+                       .params = params,
+                       .band = band,
+                       .frame = frame,
+                       .eye = *eye,
+                       .kernels = tilekernels[kernels_kind(params->kernels)],
+                       .needs_places = tilelook_needs_places(scene),
+                       .wants_color = frame->color.values || frame->codes.codes8,
+                       .wants_geometry = planes_want_geometry(frame)};
+    canvas->workers = params->threads > 0 ? params->threads : threads_available();
+    int antialias = frame->color.values ? params->antialias : 1;
+    TRY(resampling_init(antialias, &canvas->more, err));
+    TRY(tilelook_make(scene, eye, &canvas->lights, &canvas->look, err));
+    TRY(make_background(canvas, err));
+    TRY(mem_calloc(&canvas->each, (size_t)canvas->workers, sizeof *canvas->each, "canvases", err));
+    for (int i = 0; i < canvas->workers; i++)
+        tilesurface_init(scene, &canvas->each[i].surface);
+    return STATUS_OK;
+}
+
+void canvas_release(Canvas *canvas)
+{
+    resampling_release(&canvas->more);
+    free(canvas->lights);
+    free(canvas->background);
+    free(canvas->blank);
+    free(canvas->background_codes);
+    free(canvas->each);
+    *canvas = (Canvas){0};
+}
+
+void canvas_blank_is_mean(Canvas *canvas)
+{
+    fill_row(canvas, canvas->more.side * canvas->more.side + 1, canvas->blank);
+}
+
+Status canvas_choose(Canvas *canvas, Err *err)
+{
+    return resampling_choose(&canvas->more, canvas->params, canvas->band, &canvas->frame->color,
+                             canvas->workers, err);
+}
+
+/* ---- colours --------------------------------------------------------------------------------- */
+
+static Rgb pigment_of(const Scene *scene, uint32_t number)
+{
+    return scene->model == SCENE_ISOSURFACE ? scene->segments[number].color
+                                            : scene->primitives[number].color;
+}
+
+static uint32_t id_of(const Scene *scene, uint32_t number)
+{
+    return scene->model == SCENE_ISOSURFACE ? scene->segments[number].id
+                                            : scene->primitives[number].id;
+}
+
+static void store_vec3(float values[3][TILE_SAMPLES], int sample, Vec3 v)
+{
+    values[0][sample] = (float)v.x;
+    values[1][sample] = (float)v.y;
+    values[2][sample] = (float)v.z;
+}
+
+static Vec3 load_vec3(const float values[3][TILE_SAMPLES], int sample)
+{
+    return vec3((double)values[0][sample], (double)values[1][sample], (double)values[2][sample]);
+}
+
+static void set_pigments(const Scene *scene, const TileHits *hits, TileSurface *surface)
+{
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        if (hits->state[sample] != TILE_HIT)
+            continue;
+        Rgb pigment = pigment_of(scene, hits->segment[sample]);
+        surface->pigment[0][sample] = pigment.r;
+        surface->pigment[1][sample] = pigment.g;
+        surface->pigment[2][sample] = pigment.b;
+    }
+}
+
+/* Points, and in perspective the directions towards them; parallel lines of sight never change. */
+static void set_places(const SeenTile *seen, TileSurface *surface)
+{
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        if (seen->hits->state[sample] != TILE_HIT)
+            continue;
+        Vec3 through = seen_line(seen, sample);
+        store_vec3(surface->point, sample, seen_place(seen, sample));
+        if (seen->perspective)
+            store_vec3(surface->direction, sample, vec3_normalized(through));
+    }
+}
+
+float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
+                     const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES]
+{
+    const Scene *scene = canvas->scene;
+    CanvasWorker *own = &canvas->each[worker];
+    own->surface.hits = seen->hits;
+    own->surface.shadowed = shadowed;
+    if (!scene->uniform_color)
+        set_pigments(scene, seen->hits, &own->surface);
+    if (canvas->needs_places)
+        set_places(seen, &own->surface);
+    canvas->kernels->shade(&canvas->look, &own->surface, own->color);
+    if (canvas->frame->color.values)
+        canvas->kernels->clear(seen->hits->state, canvas->background, own->color);
+    return own->color;
+}
+
+/* ---- pixels ---------------------------------------------------------------------------------- */
+
+void canvas_store(const Canvas *canvas, int columns, int rows, float color[3][TILE_SAMPLES],
+                  float *pixels, size_t stride)
+{
+    size_t n = 3 * (size_t)columns;
+    float whole[TILE_SIDE][3 * TILE_SIDE];
+    if (color && columns == TILE_SIDE && rows == TILE_SIDE) {
+        canvas->kernels->paint(color, pixels, stride);
+        return;
+    }
+    if (color)
+        canvas->kernels->paint(color, whole[0], 3 * TILE_SIDE);
+    for (int row = 0; row < rows; row++)
+        memcpy(pixels + (size_t)row * stride, color ? whole[row] : canvas->background,
+               n * sizeof *pixels);
+}
+
+static void store_codes(const Canvas *canvas, const SeenTile *seen, float color[3][TILE_SAMPLES],
+                        uint8_t *pixels, size_t stride)
+{
+    const uint8_t *state = canvas->wholly_colored ? NULL : seen->hits->state;
+    uint8_t whole[TILE_SIDE][3 * TILE_SIDE];
+    bool is_whole = seen->n_columns == TILE_SIDE && seen->n_rows == TILE_SIDE;
+    canvas->kernels->encode(&canvas->codes, color, state, canvas->background_codes,
+                            is_whole ? pixels : whole[0], is_whole ? stride : sizeof whole[0]);
+    for (int row = 0; row < seen->n_rows && !is_whole; row++)
+        memcpy(pixels + (size_t)row * stride, whole[row], 3 * (size_t)seen->n_columns);
+}
+
+static void store_geometry(const Canvas *canvas, const SeenTile *seen)
+{
+    const TileHits *hits = seen->hits;
+    for (int j = 0; j < seen->n_rows; j++)
+        for (int i = 0; i < seen->n_columns; i++) {
+            size_t pixel = canvas_pixel(canvas, seen->column + i, seen->row + j);
+            int sample = hits ? tile_sample_at(i, j) : 0;
+            if (!hits || hits->state[sample] != TILE_HIT) {
+                planes_store_nothing(canvas->frame, pixel);
+                continue;
+            }
+            Vec3 normal = viewpoint_to_world(&canvas->eye, load_vec3(hits->normal, sample));
+            planes_store(canvas->frame, pixel, seen_depth(seen, sample), normal,
+                         id_of(canvas->scene, hits->segment[sample]));
+        }
+}
+
+/* Pixels, not of one tile alone, where nothing is seen. */
+static void store_nothing(const Canvas *canvas, const SeenTile *empty, const float *background)
+{
+    const Frame *frame = canvas->frame;
+    size_t n = 3 * (size_t)empty->n_columns;
+    for (int j = 0; j < empty->n_rows; j++) {
+        size_t first = 3 * canvas_pixel(canvas, empty->column, empty->row + j);
+        if (frame->color.values)
+            memcpy(frame->color.values + first, background, n * sizeof *background);
+        if (frame->codes.codes8)
+            memcpy(frame->codes.codes8 + first, canvas->background_codes, n);
+    }
+    if (canvas->wants_geometry)
+        store_geometry(canvas, empty);
+}
+
+/* What the worker has not drawn of a row of tiles up to this column. */
+static void store_blank(const Canvas *canvas, CanvasWorker *own, int end, int row)
+{
+    const Camera *camera = &canvas->scene->camera;
+    const SeenTile empty = {.column = own->column,
+                            .row = row,
+                            .n_columns = end - own->column,
+                            .n_rows = tile_extent(camera->height - row)};
+    if (empty.n_columns > 0)
+        store_nothing(canvas, &empty, canvas->blank);
+}
+
+void canvas_draw(const Canvas *canvas, int worker, const SeenTile *seen,
+                 float color[3][TILE_SAMPLES])
+{
+    Frame *frame = canvas->frame;
+    CanvasWorker *own = &canvas->each[worker];
+    size_t width = 3 * (size_t)canvas->scene->camera.width;
+    size_t first = 3 * canvas_pixel(canvas, seen->column, seen->row);
+    store_blank(canvas, own, seen->column, seen->row);
+    own->column = seen->column + seen->n_columns;
+    if (!seen->hits && !color) {
+        store_nothing(canvas, seen, canvas->background);
+        return;
+    }
+    if (frame->color.values)
+        canvas_store(canvas, seen->n_columns, seen->n_rows, color, frame->color.values + first,
+                     width);
+    if (frame->codes.codes8)
+        store_codes(canvas, seen, color, frame->codes.codes8 + first, width);
+    if (canvas->wants_geometry)
+        store_geometry(canvas, seen);
+}
+
+/* ---- passes ---------------------------------------------------------------------------------- */
+
+typedef struct Pass {
+    Canvas *canvas;
+    bool further;
+    CanvasRow *draw;
+    void *context;
+} Pass;
+
+static void draw_row(size_t number, int worker, void *context)
+{
+    const Pass *pass = context;
+    Canvas *canvas = pass->canvas;
+    const Band *band = canvas->band;
+    const Camera *camera = &canvas->scene->camera;
+    CanvasWorker *own = &canvas->each[worker];
+    int row = band->first / TILE_SIDE + (int)number;
+    if (worker == 0)
+        band_progress(band, canvas->params, camera->height, pass->further,
+                      (double)number * TILE_SIDE / band->rows);
+    if (own->status != STATUS_OK)
+        return;
+    own->column = 0;
+    own->status = pass->draw(pass->context, row, worker, &own->err);
+    if (own->status == STATUS_OK && !pass->further)
+        store_blank(canvas, own, camera->width, row * TILE_SIDE);
+}
+
+Status canvas_pass(Canvas *canvas, bool further, CanvasRow *draw, void *context, Err *err)
+{
+    Pass pass = {canvas, further, draw, context};
+    size_t rows = ((size_t)canvas->band->rows + TILE_SIDE - 1) / TILE_SIDE;
+    threads_for(rows, canvas->workers, draw_row, &pass);
+    for (int i = 0; i < canvas->workers; i++)
+        if (canvas->each[i].status != STATUS_OK) {
+            if (err)
+                *err = canvas->each[i].err;
+            return canvas->each[i].status;
+        }
+    return STATUS_OK;
+}
