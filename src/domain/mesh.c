@@ -48,7 +48,7 @@ static bool count_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *count)
     uint32_t i;
     *count = 0;
     Box around = box_with_ball(box_with_ball(box_empty(), point, 0), end, 0);
-    for (BoxWalk walk = boxwalk_box(mesh->tree, around); boxwalk_next(&walk, &i);) {
+    for (BoxWalk walk = boxwalk_box(&mesh->tree, around); boxwalk_next(&walk, &i);) {
         Crossing crossing;
         if (!cross_plane(&mesh->triangles[i], point, d, &crossing)) {
             safe = false;
@@ -109,7 +109,7 @@ static bool is_near(const Mesh *mesh, Vec3 point, double reach)
 {
     uint32_t i;
     Box around = box_with_ball(box_empty(), point, reach);
-    for (BoxWalk walk = boxwalk_box(mesh->tree, around); boxwalk_next(&walk, &i);)
+    for (BoxWalk walk = boxwalk_box(&mesh->tree, around); boxwalk_next(&walk, &i);)
         if (distance2(&mesh->triangles[i], point) <= reach * reach)
             return true;
     return false;
@@ -138,7 +138,7 @@ static bool mesh_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     Vec3 d = vec3_sub(b, a);
     uint32_t i;
     double t;
-    for (BoxWalk walk = boxwalk_segment(mesh->tree, a, b); boxwalk_next(&walk, &i);)
+    for (BoxWalk walk = boxwalk_segment(&mesh->tree, a, b); boxwalk_next(&walk, &i);)
         if (find_contact(&mesh->triangles[i], a, d, &t) && t >= -CONTACT_MARGIN &&
             t <= 1 + CONTACT_MARGIN)
             contacts_add(&contacts, t);
@@ -165,7 +165,7 @@ static Vec3 find_inlet(const Mesh *mesh, const Box *bounds)
     Vec3 d = vec3_scale(inwards, reach);
     double nearest = 1;
     uint32_t i;
-    for (BoxWalk walk = boxwalk_segment(mesh->tree, from, vec3_add(from, d));
+    for (BoxWalk walk = boxwalk_segment(&mesh->tree, from, vec3_add(from, d));
          boxwalk_next(&walk, &i);)
         if (i != top && find_contact(&mesh->triangles[i], from, d, &t) && t > 0)
             nearest = fmin(nearest, t);
@@ -250,7 +250,7 @@ static void mesh_release(Domain *domain)
 {
     if (!domain->mesh)
         return;
-    boxtree_free(domain->mesh->tree);
+    boxtree_release(&domain->mesh->tree);
     free(domain->mesh->triangles);
     free(domain->mesh);
 }

@@ -2,7 +2,6 @@
 #ifndef CORCAST_DOMAIN_MESH_H
 #define CORCAST_DOMAIN_MESH_H
 
-#include "domain/boxtree.h"
 #include "domain/domain.h"
 
 /* Corners a, a + ab, a + ac, counter-clockwise seen from outside. */
@@ -13,7 +12,7 @@ typedef struct Triangle {
 struct Mesh {
     Triangle *triangles; /* owned */
     size_t n;
-    BoxTree *tree; /* over the triangles; owned */
+    BoxTree tree; /* over the triangles; owned */
 };
 
 /* Triangles as a file holds them: three corners each, nothing shared. */

@@ -22,7 +22,7 @@ static bool is_odd(const Polygon *polygon, const Box *bounds, Vec3 point, uint32
     bool odd = false;
     uint32_t i;
     Box ray = {point, vec3(fmax(point.x, bounds->high.x), point.y, 0)};
-    for (BoxWalk walk = boxwalk_box(polygon->tree, ray); boxwalk_next(&walk, &i);)
+    for (BoxWalk walk = boxwalk_box(&polygon->tree, ray); boxwalk_next(&walk, &i);)
         odd ^= i != except && crosses_ray(&polygon->edges[i], point);
     return odd;
 }
@@ -39,7 +39,7 @@ static bool is_near(const Polygon *polygon, Vec3 point, double reach)
 {
     uint32_t i;
     Box around = box_with_ball(box_empty(), point, reach);
-    for (BoxWalk walk = boxwalk_box(polygon->tree, around); boxwalk_next(&walk, &i);)
+    for (BoxWalk walk = boxwalk_box(&polygon->tree, around); boxwalk_next(&walk, &i);)
         if (distance2(&polygon->edges[i], point) <= reach * reach)
             return true;
     return false;
@@ -69,7 +69,7 @@ static bool polygon_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
     Contacts contacts = {.n = 0};
     uint32_t i;
-    for (BoxWalk walk = boxwalk_segment(domain->polygon->tree, a, b); boxwalk_next(&walk, &i);)
+    for (BoxWalk walk = boxwalk_segment(&domain->polygon->tree, a, b); boxwalk_next(&walk, &i);)
         find_contact(&domain->polygon->edges[i], a, b, &contacts);
     return contacts_hold_segment(&contacts, domain, a, b);
 }
@@ -164,7 +164,7 @@ static void polygon_release(Domain *domain)
 {
     if (!domain->polygon)
         return;
-    boxtree_free(domain->polygon->tree);
+    boxtree_release(&domain->polygon->tree);
     free(domain->polygon->edges);
     free(domain->polygon);
 }

@@ -2,7 +2,6 @@
 #ifndef CORCAST_DOMAIN_POLYGON_H
 #define CORCAST_DOMAIN_POLYGON_H
 
-#include "domain/boxtree.h"
 #include "domain/domain.h"
 
 typedef struct Edge {
@@ -15,7 +14,7 @@ typedef struct Edge {
 struct Polygon {
     Edge *edges; /* owned */
     size_t n, capacity;
-    BoxTree *tree; /* over the edges; owned */
+    BoxTree tree; /* over the edges; owned */
 };
 
 /* Reads the rings of `path`, each unit of it `mm`, into a zeroed polygon; builds no tree.

@@ -150,7 +150,7 @@ Status polygon_check_crossings(const Polygon *polygon, const char *path, Err *er
     for (size_t i = 0; i < polygon->n; i++) {
         const Edge *e = &polygon->edges[i];
         uint32_t j;
-        for (BoxWalk walk = boxwalk_segment(polygon->tree, e->a, e->b); boxwalk_next(&walk, &j);) {
+        for (BoxWalk walk = boxwalk_segment(&polygon->tree, e->a, e->b); boxwalk_next(&walk, &j);) {
             const Edge *f = &polygon->edges[j];
             if (j <= i)
                 continue;

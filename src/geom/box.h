@@ -9,6 +9,17 @@ typedef struct Box {
     Vec3 low, high;
 } Box;
 
+/* fmin and fmax of numbers, as one instruction each. */
+static inline double box_least(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double box_greatest(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* The box that holds nothing. */
 static inline Box box_empty(void)
 {
@@ -23,19 +34,28 @@ static inline bool box_is_empty(Box box)
 /* The smallest box that holds `box` and the ball of `radius` about `center`. */
 static inline Box box_with_ball(Box box, Vec3 center, double radius)
 {
-    box.low.x = fmin(box.low.x, center.x - radius);
-    box.low.y = fmin(box.low.y, center.y - radius);
-    box.low.z = fmin(box.low.z, center.z - radius);
-    box.high.x = fmax(box.high.x, center.x + radius);
-    box.high.y = fmax(box.high.y, center.y + radius);
-    box.high.z = fmax(box.high.z, center.z + radius);
+    box.low.x = box_least(box.low.x, center.x - radius);
+    box.low.y = box_least(box.low.y, center.y - radius);
+    box.low.z = box_least(box.low.z, center.z - radius);
+    box.high.x = box_greatest(box.high.x, center.x + radius);
+    box.high.y = box_greatest(box.high.y, center.y + radius);
+    box.high.z = box_greatest(box.high.z, center.z + radius);
     return box;
 }
 
 static inline Box box_union(Box a, Box b)
 {
-    return (Box){{fmin(a.low.x, b.low.x), fmin(a.low.y, b.low.y), fmin(a.low.z, b.low.z)},
-                 {fmax(a.high.x, b.high.x), fmax(a.high.y, b.high.y), fmax(a.high.z, b.high.z)}};
+    return (Box){
+        {box_least(a.low.x, b.low.x), box_least(a.low.y, b.low.y), box_least(a.low.z, b.low.z)},
+        {box_greatest(a.high.x, b.high.x), box_greatest(a.high.y, b.high.y),
+         box_greatest(a.high.z, b.high.z)}};
+}
+
+/* The box with all its faces moved outwards by `by`. */
+static inline Box box_padded(Box box, double by)
+{
+    Vec3 pad = vec3(by, by, by);
+    return (Box){vec3_sub(box.low, pad), vec3_add(box.high, pad)};
 }
 
 /* Whether they have a point in common. */

@@ -3,6 +3,7 @@
 #define CORCAST_GEOM_GEOM_H
 
 #include "geom/box.h"     // IWYU pragma: export
+#include "geom/boxtree.h" // IWYU pragma: export
 #include "geom/hit.h"     // IWYU pragma: export
 #include "geom/joint.h"   // IWYU pragma: export
 #include "geom/quartic.h" // IWYU pragma: export

@@ -1,0 +1,211 @@
+/* Built top-down by the surface area heuristic over the bins of the boxes' centres along each axis
+ * [Wald 2007, On fast construction of SAH-based bounding volume hierarchies]: long boxes beside
+ * short ones make median splits overlap. Past half the depth that a walk's stack allows, items are
+ * halved, which ends within 32 more levels. */
+#include "geom/boxtree.h"
+
+#include <stdlib.h>
+
+enum { LEAF_SIZE = 2, BINS = 16 };
+
+typedef struct Item {
+    Box box;
+    Vec3 center;
+    uint32_t number;
+} Item;
+
+typedef struct Builder {
+    Item *items;
+    BoxNode *nodes;
+    uint32_t n_nodes;
+} Builder;
+
+/* Half the surface of a box: the chance that a ray meets it. */
+static double box_area(Box box)
+{
+    Vec3 size = vec3_sub(box.high, box.low);
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+/* A split of items by the bins of their centres along one axis. */
+typedef struct Split {
+    int axis;
+    int bin; /* the first one of the second child */
+    double cost;
+} Split;
+
+/* How centres are put into bins along an axis. */
+typedef struct Scale {
+    int bins;
+    double low, per_bin;
+} Scale;
+
+/* No more bins than items: most nodes are small. */
+static Scale scale_of(Box centers, int axis, uint32_t n)
+{
+    double low = vec3_component(centers.low, axis), size = vec3_component(centers.high, axis) - low;
+    int bins = n < BINS ? (int)n : BINS;
+    return (Scale){bins, low, size > 0 ? bins / size : 0};
+}
+
+static int bin_of(const Item *item, int axis, Scale scale)
+{
+    int bin = (int)((vec3_component(item->center, axis) - scale.low) * scale.per_bin);
+    return bin < scale.bins ? bin : scale.bins - 1;
+}
+
+/* The cheapest split along an axis by the surface area heuristic. */
+static Split best_split(const Item *items, uint32_t n, Box centers, int axis)
+{
+    Box box[BINS];
+    uint32_t count[BINS] = {0};
+    Scale scale = scale_of(centers, axis, n);
+    for (int i = 0; i < scale.bins; i++)
+        box[i] = box_empty();
+    for (uint32_t i = 0; i < n; i++) {
+        int bin = bin_of(&items[i], axis, scale);
+        box[bin] = box_union(box[bin], items[i].box);
+        count[bin]++;
+    }
+    double cost_above[BINS]; /* of bin i and those above it */
+    Box sum = box_empty();
+    uint32_t above = 0;
+    for (int i = scale.bins - 1; i > 0; i--) {
+        sum = box_union(sum, box[i]);
+        above += count[i];
+        cost_above[i] = above ? above * box_area(sum) : 0;
+    }
+    Split best = {axis, 0, INFINITY};
+    sum = box_empty();
+    uint32_t below = 0;
+    for (int i = 1; i < scale.bins; i++) {
+        sum = box_union(sum, box[i - 1]);
+        below += count[i - 1];
+        double cost = below ? below * box_area(sum) + cost_above[i] : (double)INFINITY;
+        if (below < n && cost < best.cost)
+            best = (Split){axis, i, cost};
+    }
+    return best;
+}
+
+/* Moves the items of the first child to the front; how many they are. */
+static uint32_t partition(Item *items, uint32_t n, Box centers, Split split)
+{
+    uint32_t front = 0;
+    Scale scale = scale_of(centers, split.axis, n);
+    for (uint32_t i = 0; i < n; i++) {
+        if (bin_of(&items[i], split.axis, scale) >= split.bin)
+            continue;
+        Item item = items[i];
+        items[i] = items[front];
+        items[front++] = item;
+    }
+    return front;
+}
+
+static uint32_t build_node(Builder *builder, uint32_t first, uint32_t n, int depth)
+{
+    uint32_t index = builder->n_nodes++;
+    Item *items = builder->items + first;
+    Box box = box_empty(), centers = box_empty();
+    for (uint32_t i = 0; i < n; i++) {
+        box = box_union(box, items[i].box);
+        centers = box_with_ball(centers, items[i].center, 0);
+    }
+    builder->nodes[index] = (BoxNode){box, first, n};
+    if (n <= LEAF_SIZE)
+        return index;
+    Split best = {0, 0, INFINITY};
+    for (int axis = 0; axis < 3; axis++) {
+        Split split = best_split(items, n, centers, axis);
+        if (split.cost < best.cost)
+            best = split;
+    }
+    /* Centres that coincide, or a tree that grows too deep, are halved as they stand. */
+    bool halve = best.cost == (double)INFINITY || depth > BOXTREE_DEPTH / 2;
+    uint32_t half = halve ? n / 2 : partition(items, n, centers, best);
+    build_node(builder, first, half, depth + 1);
+    uint32_t second = build_node(builder, first + half, n - half, depth + 1);
+    builder->nodes[index].first = second;
+    builder->nodes[index].n_items = 0;
+    return index;
+}
+
+Status boxtree_build(const Box *boxes, size_t n, BoxTree *out, Err *err)
+{
+    Builder builder = {0};
+    BoxTree made = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&builder.items, n, sizeof *builder.items, "boxes", err));
+    TRY_GOTO(mem_calloc(&made.nodes, 2 * n, sizeof *made.nodes, "nodes", err));
+    TRY_GOTO(mem_calloc(&made.items, n, sizeof *made.items, "boxes", err));
+    builder.nodes = made.nodes;
+    for (size_t i = 0; i < n; i++) {
+        double slack = 1e-12 * (vec3_length(boxes[i].low) + vec3_length(boxes[i].high));
+        builder.items[i] = (Item){box_padded(boxes[i], slack), box_center(boxes[i]), (uint32_t)i};
+    }
+    build_node(&builder, 0, (uint32_t)n, 0);
+    for (size_t i = 0; i < n; i++)
+        made.items[i] = builder.items[i].number;
+    *out = made;
+    made = (BoxTree){0};
+done:
+    free(builder.items);
+    boxtree_release(&made);
+    return status;
+}
+
+void boxtree_release(BoxTree *tree)
+{
+    free(tree->nodes);
+    free(tree->items);
+    *tree = (BoxTree){0};
+}
+
+BoxWalk boxwalk_box(const BoxTree *tree, Box box)
+{
+    BoxWalk walk;
+    walk.tree = tree;
+    walk.is_box = true;
+    walk.around = box;
+    walk.item = walk.end = 0;
+    walk.stack[0] = 0;
+    walk.top = 1;
+    return walk;
+}
+
+BoxWalk boxwalk_segment(const BoxTree *tree, Vec3 a, Vec3 b)
+{
+    BoxWalk walk;
+    boxwalk_start(&walk, tree, a, vec3_sub(b, a), 0, false);
+    return walk;
+}
+
+/* The next leaf that meets the box looked for. */
+static const BoxNode *leaf_in_box(BoxWalk *walk)
+{
+    while (walk->top > 0) {
+        uint32_t index = walk->stack[--walk->top];
+        const BoxNode *node = &walk->tree->nodes[index];
+        if (!box_meets(walk->around, node->box))
+            continue;
+        if (node->n_items > 0)
+            return node;
+        walk->stack[walk->top++] = node->first;
+        walk->stack[walk->top++] = index + 1;
+    }
+    return NULL;
+}
+
+bool boxwalk_next(BoxWalk *walk, uint32_t *item)
+{
+    if (walk->item == walk->end) {
+        const BoxNode *leaf = walk->is_box ? leaf_in_box(walk) : boxwalk_leaf(walk, 1);
+        if (!leaf)
+            return false;
+        walk->item = leaf->first;
+        walk->end = leaf->first + leaf->n_items;
+    }
+    *item = walk->tree->items[walk->item++];
+    return true;
+}
