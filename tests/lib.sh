@@ -8,6 +8,7 @@
 #   expect_sentence PATTERN    standard error of the last run is one line that says PATTERN (grep -E)
 #   expect_stdout PATTERN      standard output of the last run says PATTERN
 #   expect_same A B            two files hold the same bytes
+#   expect_differing N M A B   N to M pixels of two PPM or PNG pictures differ
 #   expect_file F              the file is there and not empty
 #   expect_only F ...          the current folder holds these files and no other
 #   expect_json FILE FILTER    the jq filter is true of the file
@@ -74,8 +75,19 @@ expect_same() {
     cmp -s "$1" "$2" || fail "expected $1 and $2 to hold the same bytes: $(cmp "$1" "$2" 2>&1)"
 }
 
-expect_different() {
-    ! cmp -s "$1" "$2" || fail "expected $1 and $2 to differ"
+# expect_differing LEAST MOST A B: so many pixels of two PPM or PNG pictures of one size differ.
+expect_differing() {
+    local least=$1 most=$2 header found picture
+    for picture in "$3" "$4"; do
+        case $picture in
+        *.png) pngtopnm "$picture" ;;
+        *) cat "$picture" ;;
+        esac >"$picture.decoded"
+    done
+    header=$(head -3 "$3.decoded" | wc -c)
+    found=$(cmp -l "$3.decoded" "$4.decoded" | awk -v header="$header" '{ pixels[int(($1 - header - 1) / 3)] } END { print length(pixels) }')
+    [ "$found" -ge "$least" ] && [ "$found" -le "$most" ] ||
+        fail "expected $least to $most pixels of $3 and $4 to differ, got $found"
 }
 
 expect_file() {

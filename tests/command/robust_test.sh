@@ -335,7 +335,7 @@ test_a_recipe_may_say_what_has_no_effect_in_this_run() {
     run_ok corcast grow --terminals 3 --recipe all.ini -o x.swc
     run_ok corcast render tree.swc --recipe all.ini -o x.png
     run_ok corcast render tree.swc --recipe all.ini --color-by radius -o y.png
-    expect_different x.png y.png
+    expect_differing 12 12 x.png y.png
 }
 
 # ---- names ----------------------------------------------------------------------------------------

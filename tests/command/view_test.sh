@@ -113,7 +113,7 @@ test_the_window_shows_what_its_options_draw() {
     xdotool mousedown 3 mousemove_relative 5 20 mouseup 3
     press o 2
     shows_what_render_draws
-    expect_different before.ppm drawn.ppm
+    expect_differing 5000 20000 before.ppm drawn.ppm
     press r
     press o 3
     shows_what_render_draws
