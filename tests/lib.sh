@@ -137,9 +137,10 @@ wait_for() {
     return 1
 }
 
-# run_test NUMBER NAME: one test in its own folder; its TAP in the file NUMBER.tap beside it.
+# run_test NUMBER NAME: one test in its own folder; its TAP in the file NUMBER.tap beside it. A test that takes ten
+# seconds is named, unless the line above it says why it does: "# Slow: ...".
 run_test() {
-    local number=$1 name=$2 folder=$tests_folder/$1 result reason
+    local number=$1 name=$2 folder=$tests_folder/$1 start=$SECONDS result reason
     mkdir "$folder"
     (cd "$folder" && "test_$name") 9>"$folder.reason" >"$folder.output" 2>&1
     result=$?
@@ -152,6 +153,8 @@ run_test() {
         printf '%s\n' "${reason:-ended with status $result: $(tail -3 "$folder.output")}" | sed 's/^/# /'
         ;;
     esac >"$folder.tap"
+    [ $((SECONDS - start)) -lt 10 ] || grep -B1 "^test_$name() {" "$0" | grep -q '^# Slow: ' ||
+        echo "# slow: $name took $((SECONDS - start)) s" >>"$folder.tap"
     chmod -R u+w "$folder"
     rm -rf "$folder"
 }

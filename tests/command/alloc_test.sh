@@ -134,7 +134,7 @@ test_failed_allocations_in_verify_and_povray() {
         number=$((number + 1))
     done
     stored_povray
-    fail_each 13 many verify ../tree.swc --size 20x20 -o v
+    fail_each 31 many verify ../tree.swc --size 20x20 -o v
     fail_each 1 one povray ../stored/scene.pov -o o.png
 }
 
