@@ -11,6 +11,15 @@ test_documents_link_only_to_what_exists() {
     done
 }
 
+# But for tables, code, links to pictures, and what `make power` writes.
+test_documents_are_wrapped_at_100_columns() {
+    local document
+    for document in README.md $(cd "$REPO" && echo docs/*.md docs/decisions/*.md); do
+        sed '/^<!-- .*: begin -->/,/^<!-- .*: end -->/d; /^|/d; /^    /d; /^!\[/d' "$REPO/$document" >prose
+        ! LC_ALL=C.UTF-8 grep -E '^.{101}' prose >long || fail "$document has a line of more than 100 columns: $(head -1 long)"
+    done
+}
+
 # says DOCUMENT WORDS: the document of docs has these words, wherever its lines end.
 says() {
     tr -s '\n ' '  ' <"$REPO/docs/$1" | grep -qF -- "$2" || fail "expected docs/$1 to say '$2'"
@@ -37,8 +46,8 @@ test_the_numbers_of_growth_are_those_of_the_source() {
     agree METHODS.md <<'END'
 one point in three is far enough @ grow.c @ TOSSES_PER_ADDED = 3 }
 1.15 times what the rule asks for, and distances 1.1 times @ connection.c @ length_reserve = 1.15, clearance_reserve = 1.1;
-known at once to the eight vessels above @ network.c @ LEVELS = 8 }
-with every fifth of growth @ grow.c @ refresh_growth = 1.2;
+changes the numbers of its eight nearest ancestors at once @ network.c @ LEVELS = 8 }
+whenever the tree has grown by a fifth @ grow.c @ refresh_growth = 1.2;
 ahead of its share by more than a sixteenth @ forest.c @ lead = 1.0 / 16;
 all rise by 1.1, and those of segments that break a rule by 2.2 @ refine_penalty.c @ rise = 1.1, steep_rise = 2.2;
 up to two more follow @ refine.c @ DETOURS = 3,
