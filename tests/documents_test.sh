@@ -41,7 +41,7 @@ agree() {
 
 test_the_numbers_of_growth_are_those_of_the_source() {
     run_ok corcast grow --help
-    expect_stdout 'nearest segments tried for each terminal \(8\)'
+    expect_stdout 'nearest segments tried for each terminal; from 1 to 1000 \(8\)'
     says METHODS.md 'The nearest segments (8; `--candidates`)'
     agree METHODS.md <<'END'
 one point in three is far enough @ grow.c @ TOSSES_PER_ADDED = 3 }

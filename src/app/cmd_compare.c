@@ -7,32 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const Command command = {
-    .name = "compare",
-    .summary = "compare two images or planes",
-    .operands = "A B",
-    .examples =
-        "  corcast compare reference.png mine.png\n"
-        "  corcast compare a.ppm b.ppm --ids-a a.id.ppm --ids-b b.id.ppm --tier B --json\n"
-        "  corcast compare a.exr b.exr --metrics on --tolerance mine.ini\n"
-        "  corcast compare a.depth.pfm b.depth.pfm --depth-mm 0.01\n"
-        "  corcast compare reference.png mine.png --html page.html\n"
-        "\ntiers of agreement:\n"
-        "  A        identity: on all but 2 pixels in a million the same colours, ids and depths\n"
-        "  B        what a renderer in single precision keeps: a few pixels at edges, no bias,\n"
-        "           no segment missing, moved or of another colour\n"
-        "  surface  what iteration towards a surface keeps: 99.5 % of colours within 2 levels,\n"
-        "           99 % of depths within 0.01 mm, nothing missing\n"
-        "  none     everything is measured, nothing is judged but numbers that are none\n",
-    .min_operands = 2,
-    .max_operands = 2,
-};
-
 typedef enum Tier { TIER_A, TIER_B, TIER_SURFACE, TIER_NONE } Tier;
 
 typedef struct CompareOptions {
-    int kind; /* a PlaneKind, or PLANE_KINDS: told by the names */
-    int tier;
+    PlaneKind kind; /* PLANE_KINDS: told by the names */
+    Tier tier;
     const char *ids_a, *ids_b;
     const char *tolerance, *junit;
     const char *heat, *difference, *flicker, *ledger, *page;
@@ -142,7 +121,7 @@ static Status match_pictures(Image images[2], Err *err)
 static Status make_tolerance(const CompareOptions *options, Tolerance *tolerance, char **name,
                              Err *err)
 {
-    Tier tier = options->tolerance && !options->has_tier ? TIER_NONE : (Tier)options->tier;
+    Tier tier = options->tolerance && !options->has_tier ? TIER_NONE : options->tier;
     *tolerance = tier == TIER_A         ? tolerance_identity(options->depth_mm)
                  : tier == TIER_B       ? tolerance_tolerant(options->depth_mm)
                  : tier == TIER_SURFACE ? tolerance_surface(options->depth_mm)
@@ -385,62 +364,126 @@ static Status check_options(const CompareOptions *options, PlaneKind kind, Err *
     return STATUS_OK;
 }
 
-Status run_compare(int argc, char **argv, Err *err)
+static const char *const kinds[] = {"color", "depth", "normal", "id", "auto", NULL};
+static const char *const tiers[] = {"A", "B", "surface", "none", NULL};
+
+static const Option own[] = {
+    {.name = "json", SETS(FLAG, CompareOptions, json), .help = "as JSON"},
+    {.name = "junit",
+     SETS(OUTPUT, CompareOptions, junit),
+     .argument = "FILE.xml",
+     .help = "JUnit XML, a test case for each rule"},
+    {.name = "kind",
+     SETS(CHOICE, CompareOptions, kind),
+     .choices = kinds,
+     .help = "what the files hold; auto: by their names"},
+    {.name = "tier",
+     SETS(CHOICE, CompareOptions, tier),
+     GIVEN(CompareOptions, has_tier),
+     .choices = tiers,
+     .group = GROUP_JUDGE,
+     .help = "what is still agreement"},
+    {.name = "tolerance",
+     SETS(INPUT, CompareOptions, tolerance),
+     .group = GROUP_JUDGE,
+     .argument = "FILE.ini",
+     .help = "limits of one's own, the others unjudged unless --tier is given"},
+    {.name = "levels",
+     SETS(NUMBER, CompareOptions, levels),
+     GIVEN(CompareOptions, has_levels),
+     FROM_TO(0, 255),
+     .group = GROUP_JUDGE,
+     .help = "8-bit levels a pixel may be off"},
+    {.name = "ppm",
+     SETS(NUMBER, CompareOptions, ppm),
+     GIVEN(CompareOptions, has_ppm),
+     FROM_TO(0, 1e6),
+     .group = GROUP_JUDGE,
+     .otherwise = "2 in tier A",
+     .help = "pixels in a million that may be off by more"},
+    {.name = "depth-mm",
+     SETS(NUMBER, CompareOptions, depth_mm),
+     FROM_TO(0, 1e7),
+     .group = GROUP_JUDGE,
+     .unit = "mm",
+     .help = "a depth may be off"},
+    {.name = "pixelmatch",
+     SETS(NUMBER, CompareOptions, pixelmatch),
+     GIVEN(CompareOptions, has_pixelmatch),
+     FROM_TO(0, 1),
+     .group = GROUP_JUDGE,
+     .argument = "T",
+     .otherwise = "",
+     .help = "count pixels as pixelmatch 7.2.0 does at this threshold; 0.1 is its own"},
+    {.name = "metrics",
+     SETS(SWITCH, CompareOptions, metrics),
+     GIVEN(CompareOptions, has_metrics),
+     .group = GROUP_JUDGE,
+     .otherwise = "on with --json",
+     .help = "FLIP, SSIM, CIEDE2000 and all that was measured"},
+    {.name = "ids-a",
+     SETS(INPUT, CompareOptions, ids_a),
+     .help = "id plane of A; tells silhouettes from surfaces"},
+    {.name = "ids-b", SETS(INPUT, CompareOptions, ids_b), .help = "id plane of B"},
+    {.name = "output",
+     SETS(OUTPUT, CompareOptions, heat),
+     .argument = "H.png",
+     .help = "heat map of the difference of two pictures"},
+    {.name = "difference",
+     SETS(OUTPUT, CompareOptions, difference),
+     .argument = "D.png",
+     .help = "signed difference, 128 + 8 (B - A)"},
+    {.name = "flicker",
+     SETS(OUTPUT, CompareOptions, flicker),
+     .argument = "F.png",
+     .help = "animated PNG that shows A and B in turn"},
+    {.name = "ledger",
+     SETS(OUTPUT, CompareOptions, ledger),
+     .argument = "L.csv",
+     .help = "the account of every segment"},
+    {.name = "html",
+     SETS(OUTPUT, CompareOptions, page),
+     .argument = "PAGE.html",
+     .help = "one page about two pictures: swipe, blink, zoom, differences, numbers"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
 {
-    static const char *const kinds[] = {"color", "depth", "normal", "id", "auto", NULL};
-    static const char *const tiers[] = {"A", "B", "surface", "none", NULL};
-    CompareOptions options = {.kind = PLANE_KINDS};
-    const Option own[] = {
-        {"json", OPTION_FLAG, &options.json, NULL, 0, 0, NULL, NULL, "as JSON"},
-        {"junit", OPTION_OUTPUT, &options.junit, NULL, 0, 0, NULL, "FILE.xml",
-         "JUnit XML, a test case for each rule"},
-        {"kind", OPTION_CHOICE, &options.kind, NULL, 0, 0, kinds, NULL,
-         "what the files hold (auto: by their names)"},
-        {"tier", OPTION_CHOICE, &options.tier, &options.has_tier, 0, 0, tiers, NULL,
-         "what is still agreement (A)"},
-        {"tolerance", OPTION_INPUT, &options.tolerance, NULL, 0, 0, NULL, "FILE.ini",
-         "limits of one's own, the others unjudged unless --tier is given"},
-        {"levels", OPTION_NUMBER, &options.levels, &options.has_levels, 0, 255, NULL, NULL,
-         "8-bit levels a pixel may be off (0)"},
-        {"ppm", OPTION_NUMBER, &options.ppm, &options.has_ppm, 0, 1e6, NULL, NULL,
-         "pixels in a million that may be off by more (2 in tier A)"},
-        {"depth-mm", OPTION_NUMBER, &options.depth_mm, NULL, 0, 1e7, NULL, "MM",
-         "a depth may be off (0)"},
-        {"pixelmatch", OPTION_NUMBER, &options.pixelmatch, &options.has_pixelmatch, 0, 1, NULL, "T",
-         "count pixels as pixelmatch 7.2.0 does at this threshold (0.1 is its own)"},
-        {"metrics", OPTION_SWITCH, &options.metrics, &options.has_metrics, 0, 0, NULL, NULL,
-         "FLIP, SSIM, CIEDE2000 and all that was measured (on with --json)"},
-        {"ids-a", OPTION_INPUT, &options.ids_a, NULL, 0, 0, NULL, "FILE",
-         "id plane of A; tells silhouettes from surfaces"},
-        {"ids-b", OPTION_INPUT, &options.ids_b, NULL, 0, 0, NULL, "FILE", "id plane of B"},
-        {"output", OPTION_OUTPUT, &options.heat, NULL, 0, 0, NULL, "H.png",
-         "heat map of the difference of two pictures"},
-        {"difference", OPTION_OUTPUT, &options.difference, NULL, 0, 0, NULL, "D.png",
-         "signed difference, 128 + 8 (B - A)"},
-        {"flicker", OPTION_OUTPUT, &options.flicker, NULL, 0, 0, NULL, "F.png",
-         "animated PNG that shows A and B in turn"},
-        {"ledger", OPTION_OUTPUT, &options.ledger, NULL, 0, 0, NULL, "L.csv",
-         "the account of every segment"},
-        {"html", OPTION_OUTPUT, &options.page, NULL, 0, 0, NULL, "PAGE.html",
-         "one page about two pictures: swipe, blink, zoom, differences, numbers"},
-        {0},
-    };
-    const Option *const tables[] = {own, NULL};
-    Parsed parsed;
-    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
-    Status status = STATUS_OK;
+    ((CompareOptions *)options)->kind = PLANE_KINDS;
+}
+
+/* Reads, compares and says what was found. */
+static Status compare(const CompareOptions *options, PlaneKind kind, const Parsed *parsed,
+                      bool *agrees, Err *err)
+{
     CompareResult result;
     Tolerance tolerance;
     char *tier_name = NULL, *name = NULL;
-    Sides sides = {0};
-    if (parsed.common.help)
-        goto done;
-    sides.paths[0] = parsed.operands[0];
-    sides.paths[1] = parsed.operands[1];
-    if (!options.has_metrics)
-        options.metrics = options.json;
+    Sides sides = {.paths = {parsed->operands[0], parsed->operands[1]}};
+    double start_s = clock_seconds();
+    Status status = STATUS_OK;
+    TRY_GOTO(make_tolerance(options, &tolerance, &tier_name, err));
+    TRY_GOTO(
+        compare_files(options, kind, &sides, &tolerance, parsed->common.threads, &result, err));
+    TRY_GOTO(shown_name(parsed->operands[0], &name, err));
+    TRY_GOTO(write_junit(&result, options->junit, name, clock_seconds() - start_s, err));
+    TRY_GOTO(print_result(options, &result, parsed->common.quiet, err));
+    *agrees = result.agrees;
+done:
+    sides_release(&sides);
+    free(tier_name);
+    free(name);
+    return status;
+}
+
+static Status run_compare(void *options, Parsed *parsed, Err *err)
+{
+    CompareOptions *own_options = options;
+    bool agrees;
     PlaneKind kind =
-        options.kind == PLANE_KINDS ? kind_of(parsed.operands[0]) : (PlaneKind)options.kind;
+        own_options->kind == PLANE_KINDS ? kind_of(parsed->operands[0]) : own_options->kind;
     bool color = kind == PLANE_COLOR;
     const OptionNeed needs[] = {{"depth-mm", kind == PLANE_DEPTH, "is for two depth planes"},
                                 {"levels", color, "is for two pictures"},
@@ -448,22 +491,38 @@ Status run_compare(int argc, char **argv, Err *err)
                                 {"ids-a", kind != PLANE_ID, "is for other planes than ids"},
                                 {"ids-b", kind != PLANE_ID, "is for other planes than ids"},
                                 {0}};
-    TRY_GOTO(options_check_needs(&parsed, needs, err));
-    TRY_GOTO(check_options(&options, kind, err));
-    TRY_GOTO(command_line_text("compare", argc, argv, &options.line, err));
-    TRY_GOTO(make_tolerance(&options, &tolerance, &tier_name, err));
-    double start_s = clock_seconds();
-    TRY_GOTO(
-        compare_files(&options, kind, &sides, &tolerance, parsed.common.threads, &result, err));
-    TRY_GOTO(shown_name(parsed.operands[0], &name, err));
-    TRY_GOTO(write_junit(&result, options.junit, name, clock_seconds() - start_s, err));
-    TRY_GOTO(print_result(&options, &result, parsed.common.quiet, err));
-    status = result.agrees ? STATUS_OK : STATUS_DIFFERS;
-done:
-    sides_release(&sides);
-    free(options.line);
-    free(tier_name);
-    free(name);
-    parsed_release(&parsed);
-    return status;
+    TRY(options_check_needs(parsed, needs, err));
+    TRY(check_options(own_options, kind, err));
+    TRY(command_line_text(parsed, &own_options->line, err));
+    if (!own_options->has_metrics)
+        own_options->metrics = own_options->json;
+    Status status = compare(own_options, kind, parsed, &agrees, err);
+    free(own_options->line);
+    TRY(status);
+    return agrees ? STATUS_OK : STATUS_DIFFERS;
 }
+
+const Command command_compare = {
+    .name = "compare",
+    .summary = "compare two images or planes",
+    .operands = "A B",
+    .examples =
+        "  corcast compare reference.png mine.png\n"
+        "  corcast compare a.ppm b.ppm --ids-a a.id.ppm --ids-b b.id.ppm --tier B --json\n"
+        "  corcast compare a.exr b.exr --metrics on --tolerance mine.ini\n"
+        "  corcast compare a.depth.pfm b.depth.pfm --depth-mm 0.01\n"
+        "  corcast compare reference.png mine.png --html page.html\n"
+        "\ntiers of agreement:\n"
+        "  A        identity: on all but 2 pixels in a million the same colours, ids and depths\n"
+        "  B        what a renderer in single precision keeps: a few pixels at edges, no bias,\n"
+        "           no segment missing, moved or of another colour\n"
+        "  surface  what iteration towards a surface keeps: 99.5 % of colours within 2 levels,\n"
+        "           99 % of depths within 0.01 mm, nothing missing\n"
+        "  none     everything is measured, nothing is judged but numbers that are none\n",
+    .min_operands = 2,
+    .max_operands = 2,
+    .size = sizeof(CompareOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}},
+    .run = run_compare,
+};

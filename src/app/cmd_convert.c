@@ -4,19 +4,6 @@
 #include "treeio/treeio.h"
 #include <string.h>
 
-static const Command command = {
-    .name = "convert",
-    .summary = "convert trees and images",
-    .operands = "IN OUT",
-    .examples = "  corcast convert measured.swc tidy.swc\n"
-                "  corcast convert picture.ppm picture.png\n"
-                "  corcast convert render.exr render.pfm\n"
-                "  corcast convert - - < measured.swc > tidy.swc\n",
-    .min_operands = 2,
-    .max_operands = 2,
-    .writes_last = true,
-};
-
 /* A tree in its normal form: parents before children, ids 1, 2, ... in that order. */
 static Status convert_tree(const char *from, const char *to, Err *err)
 {
@@ -81,35 +68,38 @@ static FileKind kind_of(const char *path)
     return FILE_UNKNOWN;
 }
 
-Status run_convert(int argc, char **argv, Err *err)
+static Status run_convert(void *options, Parsed *parsed, Err *err)
 {
-    const Option *const tables[] = {NULL};
-    Parsed parsed;
-    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
-    Status status = STATUS_OK;
-    if (parsed.common.help)
-        goto done;
-    const char *from = parsed.operands[0], *to = parsed.operands[1];
+    (void)options;
+    const char *from = parsed->operands[0], *to = parsed->operands[1];
     FileKind kind = kind_of(to);
     if (kind_of(from) == FILE_UNKNOWN || kind == FILE_UNKNOWN)
-        status = err_set(err, STATUS_USAGE,
-                         "'%s' has an unknown extension; known are .swc for trees, and .png, .ppm, "
-                         ".pgm, .tif and .pfm for images, and .exr for one that is read",
-                         kind == FILE_UNKNOWN ? to : from);
-    else if (kind == FILE_INPUT)
-        status = err_set(err, STATUS_USAGE,
-                         "'%s' cannot be written: OpenEXR is only read; floats become .pfm", to);
-    else if ((kind_of(from) == FILE_TREE) != (kind == FILE_TREE))
-        status =
-            err_set(err, STATUS_USAGE,
-                    "'%s' cannot become '%s': a tree and an image are different things", from, to);
-    else if (kind == FILE_TREE)
-        status = convert_tree(from, to, err);
-    else if (kind == FILE_PICTURE)
-        status = convert_picture(from, to, err);
-    else
-        status = convert_plane(from, to, err);
-done:
-    parsed_release(&parsed);
-    return status;
+        return err_set(err, STATUS_USAGE,
+                       "'%s' has an unknown extension; known are .swc for trees, and .png, .ppm, "
+                       ".pgm, .tif and .pfm for images, and .exr for one that is read",
+                       kind == FILE_UNKNOWN ? to : from);
+    if (kind == FILE_INPUT)
+        return err_set(err, STATUS_USAGE,
+                       "'%s' cannot be written: OpenEXR is only read; floats become .pfm", to);
+    if ((kind_of(from) == FILE_TREE) != (kind == FILE_TREE))
+        return err_set(err, STATUS_USAGE,
+                       "'%s' cannot become '%s': a tree and an image are different things", from,
+                       to);
+    if (kind == FILE_TREE)
+        return convert_tree(from, to, err);
+    return kind == FILE_PICTURE ? convert_picture(from, to, err) : convert_plane(from, to, err);
 }
+
+const Command command_convert = {
+    .name = "convert",
+    .summary = "convert trees and images",
+    .operands = "IN OUT",
+    .examples = "  corcast convert measured.swc tidy.swc\n"
+                "  corcast convert picture.ppm picture.png\n"
+                "  corcast convert render.exr render.pfm\n"
+                "  corcast convert - - < measured.swc > tidy.swc\n",
+    .min_operands = 2,
+    .max_operands = 2,
+    .writes_last = true,
+    .run = run_convert,
+};

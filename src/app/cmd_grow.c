@@ -5,18 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const Command command = {
-    .name = "grow",
-    .summary = "grow an arterial tree by constrained constructive optimization",
-    .operands = "-o T.swc",
-    .examples = "  corcast grow --terminals 4000 --seed 7 -o tree.swc\n"
-                "  corcast grow --domain ball:30 --gamma 2.55 --lambda 1 -o tree.swc\n"
-                "  corcast grow --from tree.swc --terminals 8000 -o larger.swc\n"
-                "  corcast grow --inlet 0,50 --inlet 30,-40 --inlet-shares 0.7,0.3 -o forest.swc\n",
-    .max_operands = 0,
-    .needs_output = true,
-};
-
 static Status write_report(const char *path, const GrowReport *report, const RefineReport *refined,
                            int threads, Err *err)
 {
@@ -94,10 +82,10 @@ static Status check_refining(const Growing *growing, const Refining *refining, E
     if (growing->from_path)
         return err_set(err, STATUS_USAGE,
                        "--refine: would move the tree of --from; use corcast refine afterwards");
-    if (growing->inlets.n > 1)
+    if (growing->inlet.n > 1)
         return err_set(err, STATUS_USAGE,
                        "--refine: takes one tree, not one from each of %zu inlets",
-                       growing->inlets.n);
+                       growing->inlet.n);
     return STATUS_OK;
 }
 
@@ -114,54 +102,82 @@ static Status grow(Growing *growing, bool quiet, Tree *tree, GrowReport *report,
     return status;
 }
 
-Status run_grow(int argc, char **argv, Err *err)
-{
+typedef struct GrowOptions {
+    const char *output, *json;
     Growing growing;
-    growing_init(&growing);
     Refining refining;
-    refining_init(&refining);
-    const char *output = NULL, *json = NULL;
-    const Option own[] = {
-        {"output", OPTION_OUTPUT, &output, NULL, 0, 0, NULL, "T.swc", "the tree"},
-        {"json", OPTION_OUTPUT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
-        {0},
-    };
-    const Option *const tables[] = {own, growing.table, refining.table, NULL};
-    Parsed parsed;
-    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
-    Status status = STATUS_OK;
+} GrowOptions;
+
+static const Option own[] = {
+    {.name = "output", SETS(OUTPUT, GrowOptions, output), .argument = "T.swc", .help = "the tree"},
+    {.name = "json", SETS(OUTPUT, GrowOptions, json), .help = "what was done, as JSON"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    growing_set_defaults(&((GrowOptions *)options)->growing);
+}
+
+/* Writes the tree and the report, and says what was done. */
+static Status finish(const GrowOptions *options, const Common *common, const Tree *tree,
+                     const GrowReport *report, const RefineReport *refined, const Err *why,
+                     Err *err)
+{
+    int threads = common->threads ? common->threads : threads_available();
+    TRY(tree_write(tree, options->output, err));
+    if (options->json)
+        TRY(write_report(options->json, report, refined, threads, err));
+    if (!report->complete)
+        fprintf(stderr, "corcast grow: %s\n", why->text);
+    if (!common->quiet)
+        print_report(report);
+    print_warnings(report, &options->growing.domain, refined->target_before > 0);
+    if (!common->quiet)
+        refining_print(refined);
+    return STATUS_OK;
+}
+
+static Status run_grow(void *options, Parsed *parsed, Err *err)
+{
+    GrowOptions *own_options = options;
+    Growing *growing = &own_options->growing;
+    const Refining *refining = &own_options->refining;
     Tree tree = {0};
     GrowReport report;
     RefineReport refined;
     Err why;
-    if (parsed.common.help)
-        goto done;
-    if (!tree_format_known(output)) {
-        status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .swc", output);
-        goto done;
-    }
-    TRY_GOTO(check_refining(&growing, &refining, err));
-    TRY_GOTO(refining_check(&refining, &parsed, err));
-    TRY_GOTO(growing_prepare(&growing, &parsed, err));
-    TRY_GOTO(grow(&growing, parsed.common.quiet, &tree, &report, &why, err));
-    TRY_GOTO(refining_apply(&refining, &parsed.common, &growing.domain, &tree, &refined, err));
+    Status status = STATUS_OK;
+    if (!tree_format_known(own_options->output))
+        return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .swc", own_options->output);
+    TRY_GOTO(check_refining(growing, refining, err));
+    TRY_GOTO(refining_check(refining, parsed, err));
+    TRY_GOTO(growing_prepare(growing, parsed, err));
+    TRY_GOTO(grow(growing, parsed->common.quiet, &tree, &report, &why, err));
+    TRY_GOTO(refining_apply(refining, &parsed->common, &growing->domain, &tree, &refined, err));
     if (refined.target_before > 0)
         report.root_radius_mm = tree.radius_mm[0];
-    TRY_GOTO(tree_write(&tree, output, err));
-    if (json)
-        TRY_GOTO(write_report(json, &report, &refined,
-                              parsed.common.threads ? parsed.common.threads : threads_available(),
-                              err));
-    if (!report.complete)
-        fprintf(stderr, "corcast grow: %s\n", why.text);
-    if (!parsed.common.quiet)
-        print_report(&report);
-    print_warnings(&report, &growing.domain, refined.target_before > 0);
-    if (!parsed.common.quiet)
-        refining_print(&refined);
+    status = finish(own_options, &parsed->common, &tree, &report, &refined, &why, err);
 done:
-    growing_release(&growing);
+    growing_release(growing);
     tree_release(&tree);
-    parsed_release(&parsed);
     return status;
 }
+
+const Command command_grow = {
+    .name = "grow",
+    .summary = "grow an arterial tree by constrained constructive optimization",
+    .operands = "-o T.swc",
+    .examples = "  corcast grow --terminals 4000 --seed 7 -o tree.swc\n"
+                "  corcast grow --domain ball:30 --gamma 2.55 --lambda 1 -o tree.swc\n"
+                "  corcast grow --from tree.swc --terminals 8000 -o larger.swc\n"
+                "  corcast grow --inlet 0,50 --inlet 30,-40 --inlet-shares 0.7,0.3 -o forest.swc\n",
+    .needs_output = true,
+    .size = sizeof(GrowOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0},
+               {&growing_table, offsetof(GrowOptions, growing)},
+               {&refining_table, offsetof(GrowOptions, refining)}},
+    .run = run_grow,
+};

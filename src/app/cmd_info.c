@@ -5,17 +5,6 @@
 #include "treeio/treeio.h"
 #include <stdio.h>
 
-static const Command command = {
-    .name = "info",
-    .summary = "count, measure and check a tree",
-    .operands = "T.swc [--stats] [--json]",
-    .examples = "  corcast info tree.swc\n"
-                "  corcast info tree.swc --json | jq .volume_mm3\n"
-                "  corcast info tree.swc --stats --json | jq .stats.by_strahler\n",
-    .min_operands = 1,
-    .max_operands = 1,
-};
-
 static json_t *summary_json(const TreeSummary *summary)
 {
     const Box *box = &summary->bounds;
@@ -70,67 +59,128 @@ static void print_summary(const char *path, const TreeSummary *summary)
            box->high.x, box->low.y, box->high.y, box->low.z, box->high.z);
 }
 
-Status run_info(int argc, char **argv, Err *err)
+typedef struct InfoOptions {
+    bool json, stats;
+    TreeMeta flow; /* what the user says of the tree */
+    ViscosityLaw law;
+} InfoOptions;
+
+static const char of_tree[] = "the tree's";
+
+static const Option own[] = {
+    {.name = "json", SETS(FLAG, InfoOptions, json), .help = "as JSON"},
+    {.name = "stats",
+     SETS(FLAG, InfoOptions, stats),
+     .help = "radius and length by level and order, branching ratios"},
+    {.name = "lambda",
+     SETS(NUMBER, InfoOptions, flow.number[META_LAMBDA]),
+     GIVEN(InfoOptions, flow.known[META_LAMBDA]),
+     .range = &meta_rows[META_LAMBDA].range,
+     .group = GROUP_OPTIMUM,
+     .otherwise = of_tree,
+     .help = "exponent of the target"},
+    {.name = "q-perf",
+     SETS(NUMBER, InfoOptions, flow.number[META_Q_PERF]),
+     GIVEN(InfoOptions, flow.known[META_Q_PERF]),
+     .range = &meta_rows[META_Q_PERF].range,
+     .group = GROUP_BLOOD,
+     .unit = "ml/min",
+     .otherwise = of_tree,
+     .help = "flow through the inlet"},
+    {.name = "p-perf",
+     SETS(NUMBER, InfoOptions, flow.number[META_P_PERF]),
+     GIVEN(InfoOptions, flow.known[META_P_PERF]),
+     .range = &meta_rows[META_P_PERF].range,
+     .group = GROUP_BLOOD,
+     .unit = "mmHg",
+     .otherwise = of_tree,
+     .help = "pressure at the inlet"},
+    {.name = "viscosity",
+     SETS(NUMBER, InfoOptions, flow.number[META_VISCOSITY]),
+     GIVEN(InfoOptions, flow.known[META_VISCOSITY]),
+     .range = &meta_rows[META_VISCOSITY].range,
+     .group = GROUP_BLOOD,
+     .unit = "cP",
+     .otherwise = of_tree,
+     .help = "of the blood"},
+    {.name = "viscosity-law",
+     SETS(CHOICE, InfoOptions, law),
+     GIVEN(InfoOptions, flow.known[META_VISCOSITY_LAW]),
+     .choices = viscosity_law_names,
+     .group = GROUP_BLOOD,
+     .otherwise = of_tree,
+     .help = "the same in all vessels, or by their diameter"},
+    {.name = "hematocrit",
+     SETS(NUMBER, InfoOptions, flow.number[META_HEMATOCRIT]),
+     GIVEN(InfoOptions, flow.known[META_HEMATOCRIT]),
+     .range = &meta_rows[META_HEMATOCRIT].range,
+     .group = GROUP_BLOOD,
+     .argument = "H",
+     .otherwise = of_tree,
+     .help = "of the blood, for pries"},
+    {.name = "plasma-viscosity",
+     SETS(NUMBER, InfoOptions, flow.number[META_PLASMA_VISCOSITY]),
+     GIVEN(InfoOptions, flow.known[META_PLASMA_VISCOSITY]),
+     .range = &meta_rows[META_PLASMA_VISCOSITY].range,
+     .group = GROUP_BLOOD,
+     .unit = "cP",
+     .otherwise = of_tree,
+     .help = "of the plasma, for pries"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static Status show(const InfoOptions *options, const char *path, const TreeSummary *summary,
+                   const TreeStatistics *statistics, Err *err)
 {
-    bool as_json = false, with_statistics = false;
-    TreeMeta flow = {0};
-    int law = VISCOSITY_CONSTANT;
-    const double huge = 1e300;
-    const Option own[] = {
-        {"json", OPTION_FLAG, &as_json, NULL, 0, 0, NULL, NULL, "as JSON"},
-        {"stats", OPTION_FLAG, &with_statistics, NULL, 0, 0, NULL, NULL,
-         "radius and length by level and order, branching ratios"},
-        {"lambda", OPTION_NUMBER, &flow.number[META_LAMBDA], &flow.known[META_LAMBDA], 0, huge,
-         NULL, NULL, "exponent of the target (the tree's)"},
-        {"q-perf", OPTION_NUMBER, &flow.number[META_Q_PERF], &flow.known[META_Q_PERF], 1e-300, huge,
-         NULL, "ML/MIN", "flow through the inlet (the tree's)"},
-        {"p-perf", OPTION_NUMBER, &flow.number[META_P_PERF], &flow.known[META_P_PERF], -huge, huge,
-         NULL, "MMHG", "pressure at the inlet (the tree's)"},
-        {"viscosity", OPTION_NUMBER, &flow.number[META_VISCOSITY], &flow.known[META_VISCOSITY],
-         1e-300, huge, NULL, "CP", "of the blood (the tree's)"},
-        {"viscosity-law", OPTION_CHOICE, &law, &flow.known[META_VISCOSITY_LAW], 0, 0,
-         meta_rows[META_VISCOSITY_LAW].words, NULL,
-         "constant, or pries: by vessel diameter (the tree's)"},
-        {"hematocrit", OPTION_NUMBER, &flow.number[META_HEMATOCRIT], &flow.known[META_HEMATOCRIT],
-         0, MAX_HEMATOCRIT, NULL, "H", "of the blood, for pries (the tree's)"},
-        {"plasma-viscosity", OPTION_NUMBER, &flow.number[META_PLASMA_VISCOSITY],
-         &flow.known[META_PLASMA_VISCOSITY], 1e-300, huge, NULL, "CP",
-         "of the plasma, for pries (the tree's)"},
-        {0},
-    };
-    const Option *const tables[] = {own, NULL};
-    Parsed parsed;
-    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
+    if (options->json) {
+        json_t *json = summary_json(summary);
+        if (options->stats)
+            json = json_with(json, "stats", statistics_json(statistics));
+        return json_write(json, "-", err);
+    }
+    print_summary(path, summary);
+    if (options->stats)
+        statistics_print(statistics);
+    return STATUS_OK;
+}
+
+static Status run_info(void *options, Parsed *parsed, Err *err)
+{
+    InfoOptions *own_options = options;
+    TreeMeta *flow = &own_options->flow;
+    flow->number[META_VISCOSITY_LAW] = own_options->law;
     Status status = STATUS_OK;
     Tree tree = {0};
     TreeSummary summary;
     TreeStatistics statistics = {0};
-    flow.number[META_VISCOSITY_LAW] = law;
-    if (parsed.common.help)
-        goto done;
-    TRY_GOTO(tree_read(&tree, parsed.operands[0], err));
-    bool pries = derive_viscosity_law(&tree, &flow) == VISCOSITY_PRIES;
+    TRY(tree_read(&tree, parsed->operands[0], err));
+    bool pries = derive_viscosity_law(&tree, flow) == VISCOSITY_PRIES;
     const OptionNeed needs[] = {{"viscosity", !pries, "is for --viscosity-law constant"},
                                 {"hematocrit", pries, "is for --viscosity-law pries"},
                                 {"plasma-viscosity", pries, "is for --viscosity-law pries"},
                                 {0}};
-    TRY_GOTO(options_check_needs(&parsed, needs, err));
-    TRY_GOTO(derive_summary(&tree, &flow, &summary, err));
-    if (with_statistics)
+    TRY_GOTO(options_check_needs(parsed, needs, err));
+    TRY_GOTO(derive_summary(&tree, flow, &summary, err));
+    if (own_options->stats)
         TRY_GOTO(derive_statistics(&tree, &statistics, err));
-    if (as_json) {
-        json_t *json = summary_json(&summary);
-        if (with_statistics)
-            json = json_with(json, "stats", statistics_json(&statistics));
-        status = json_write(json, "-", err);
-    } else {
-        print_summary(parsed.operands[0], &summary);
-        if (with_statistics)
-            statistics_print(&statistics);
-    }
+    status = show(own_options, parsed->operands[0], &summary, &statistics, err);
 done:
     statistics_release(&statistics);
     tree_release(&tree);
-    parsed_release(&parsed);
     return status;
 }
+
+const Command command_info = {
+    .name = "info",
+    .summary = "count, measure and check a tree",
+    .operands = "T.swc [--stats] [--json]",
+    .examples = "  corcast info tree.swc\n"
+                "  corcast info tree.swc --json | jq .volume_mm3\n"
+                "  corcast info tree.swc --stats --json | jq .stats.by_strahler\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .size = sizeof(InfoOptions),
+    .tables = {{&own_table, 0}},
+    .run = run_info,
+};

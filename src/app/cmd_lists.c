@@ -10,23 +10,15 @@
 /* Fills `lines`. */
 typedef Status ListNames(Text *lines, Err *err);
 
-static Status list(const char *name, const char *summary, ListNames *names, int argc, char **argv,
-                   Err *err)
+static Status list(ListNames *names, Err *err)
 {
-    const Command command = {.name = name, .summary = summary, .operands = ""};
-    const Option *const tables[] = {NULL};
     Text lines = TEXT_INIT;
-    Parsed parsed;
-    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
-    Status status = STATUS_OK;
-    if (!parsed.common.help)
-        status = names(&lines, err);
+    Status status = names(&lines, err);
     if (status == STATUS_OK)
         status = text_check(&lines, err);
     if (status == STATUS_OK && text_chars(&lines))
         fputs(text_chars(&lines), stdout);
     text_release(&lines);
-    parsed_release(&parsed);
     return status;
 }
 
@@ -62,28 +54,52 @@ static Status list_colormaps(Text *lines, Err *err)
     return template_names("colormaps", ".txt", lines, err);
 }
 
-Status run_models(int argc, char **argv, Err *err)
+static Status run_models(void *options, Parsed *parsed, Err *err)
 {
-    return list("models", "the values of --model", list_models, argc, argv, err);
+    (void)options;
+    (void)parsed;
+    return list(list_models, err);
 }
 
-Status run_fields(int argc, char **argv, Err *err)
+static Status run_fields(void *options, Parsed *parsed, Err *err)
 {
-    return list("fields", "the values of --color-by, with their units", list_fields, argc, argv,
-                err);
+    (void)options;
+    (void)parsed;
+    return list(list_fields, err);
 }
 
-Status run_domains(int argc, char **argv, Err *err)
+static Status run_looks(void *options, Parsed *parsed, Err *err)
 {
-    return list("domains", "the shapes of --domain", list_domains, argc, argv, err);
+    (void)options;
+    (void)parsed;
+    return list(list_looks, err);
 }
 
-Status run_looks(int argc, char **argv, Err *err)
+static Status run_colormaps(void *options, Parsed *parsed, Err *err)
 {
-    return list("looks", "the values of --look", list_looks, argc, argv, err);
+    (void)options;
+    (void)parsed;
+    return list(list_colormaps, err);
 }
 
-Status run_colormaps(int argc, char **argv, Err *err)
+static Status run_domains(void *options, Parsed *parsed, Err *err)
 {
-    return list("colormaps", "the values of --colormap", list_colormaps, argc, argv, err);
+    (void)options;
+    (void)parsed;
+    return list(list_domains, err);
 }
+
+const Command command_models = {
+    .name = "models", .summary = "the values of --model", .operands = "", .run = run_models};
+const Command command_fields = {.name = "fields",
+                                .summary = "the values of --color-by, with their units",
+                                .operands = "",
+                                .run = run_fields};
+const Command command_looks = {
+    .name = "looks", .summary = "the values of --look", .operands = "", .run = run_looks};
+const Command command_colormaps = {.name = "colormaps",
+                                   .summary = "the values of --colormap",
+                                   .operands = "",
+                                   .run = run_colormaps};
+const Command command_domains = {
+    .name = "domains", .summary = "the shapes of --domain", .operands = "", .run = run_domains};

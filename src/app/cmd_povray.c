@@ -6,22 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const Command command = {
-    .name = "povray",
-    .summary = "run POV-Ray on a scene",
-    .operands = "S.pov -o P.png",
-    .examples = "  corcast povray tree.pov -o tree.png\n"
-                "  corcast povray tree.pov --size 4000x4000 --antialias 3 -o large.png\n"
-                "  corcast povray tree.pov --plane depth -o depth.png\n"
-                "environment, here and for verify:\n"
-                "  CORCAST_POVRAY           the program, or a script that stands for it (povray)\n"
-                "  CORCAST_POVRAY_PATIENCE  seconds without a word after which it is ended (600; "
-                "0: never)\n",
-    .min_operands = 1,
-    .max_operands = 1,
-    .needs_output = true,
-};
-
 /* The size that the scene's "// Size: WxH" comment asks for. */
 static Status size_of_scene(const char *path, int size[2], Err *err)
 {
@@ -38,60 +22,105 @@ static Status size_of_scene(const char *path, int size[2], Err *err)
     return err_set(err, STATUS_USAGE, "%s has no line '// Size: WxH'; give --size", path);
 }
 
-Status run_povray(int argc, char **argv, Err *err)
+typedef struct PovrayOptions {
+    const char *output;
+    int size[2];
+    bool has_size;
+    int antialias, bits;
+    OraclePlane plane;
+} PovrayOptions;
+
+static const char *const planes[] = {"color", "depth", "normal", "id", NULL};
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, PovrayOptions, output),
+     .argument = "P.png",
+     .help = "the picture"},
+    {.name = "size",
+     SETS(SIZE, PovrayOptions, size),
+     GIVEN(PovrayOptions, has_size),
+     FROM_TO(1, IMAGE_MAX_SIDE),
+     .group = GROUP_CAMERA,
+     .otherwise = "what the scene says",
+     .help = "pixels"},
+    {.name = "antialias",
+     SETS(WHOLE, PovrayOptions, antialias),
+     FROM_TO(1, 9),
+     .group = GROUP_LIGHT,
+     .help = "N x N samples a pixel"},
+    {.name = "bits",
+     SETS(WHOLE, PovrayOptions, bits),
+     FROM_TO(8, 16),
+     .argument = "8|16",
+     .help = "of the colours: 8, sRGB, or 16, linear"},
+    {.name = "plane",
+     SETS(CHOICE, PovrayOptions, plane),
+     .choices = planes,
+     .help = "what a scene of ours shows"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
 {
-    static const char *const planes[] = {"color", "depth", "normal", "id", NULL};
-    const char *output = NULL;
-    int size[2] = {0, 0}, antialias = 1, plane = ORACLE_COLOR, bits = 8;
-    bool has_size = false;
-    const Option own[] = {
-        {"output", OPTION_OUTPUT, &output, NULL, 0, 0, NULL, "P.png", "the picture"},
-        {"size", OPTION_SIZE, size, &has_size, 1, IMAGE_MAX_SIDE, NULL, NULL,
-         "pixels (what the scene says)"},
-        {"antialias", OPTION_WHOLE, &antialias, NULL, 1, 9, NULL, "N", "N x N samples a pixel (1)"},
-        {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16",
-         "of the colours: 8, sRGB, or 16, linear (8)"},
-        {"plane", OPTION_CHOICE, &plane, NULL, 0, 0, planes, NULL,
-         "what a scene of ours shows (color)"},
-        {0},
-    };
-    const Option *const tables[] = {own, NULL};
-    Parsed parsed;
-    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
-    Status status = STATUS_OK;
+    *(PovrayOptions *)options = (PovrayOptions){.antialias = 1, .bits = 8, .plane = ORACLE_COLOR};
+}
+
+static Status check(PovrayOptions *options, const Parsed *parsed, Err *err)
+{
+    bool color = options->plane == ORACLE_COLOR;
+    const OptionNeed needs[] = {
+        {"antialias", color, "is for --plane color"}, {"bits", color, "is for --plane color"}, {0}};
+    if (strcmp(file_extension(options->output), "png") != 0)
+        return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png", options->output);
+    TRY(bits_check(options->bits, err));
+    TRY(options_check_needs(parsed, needs, err));
+    TRY(file_check_regular(parsed->operands[0], err));
+    return options->has_size ? STATUS_OK : size_of_scene(parsed->operands[0], options->size, err);
+}
+
+static Status run_povray(void *options, Parsed *parsed, Err *err)
+{
+    PovrayOptions *own_options = options;
     Progress progress;
     OracleRun run;
-    if (parsed.common.help)
-        goto done;
-    if (strcmp(file_extension(output), "png") != 0) {
-        status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png", output);
-        goto done;
-    }
-    TRY_GOTO(bits_check(bits, err));
-    const OptionNeed needs[] = {{"antialias", plane == ORACLE_COLOR, "is for --plane color"},
-                                {"bits", plane == ORACLE_COLOR, "is for --plane color"},
-                                {0}};
-    TRY_GOTO(options_check_needs(&parsed, needs, err));
-    TRY_GOTO(file_check_regular(parsed.operands[0], err));
-    if (!has_size)
-        TRY_GOTO(size_of_scene(parsed.operands[0], size, err));
-    OracleParams params = {.scene = parsed.operands[0],
-                           .output = output,
-                           .width = size[0],
-                           .height = size[1],
-                           .antialias = antialias,
-                           .threads = parsed.common.threads,
-                           .plane = (OraclePlane)plane,
-                           .bits = bits,
+    TRY(check(own_options, parsed, err));
+    OracleParams params = {.scene = parsed->operands[0],
+                           .output = own_options->output,
+                           .width = own_options->size[0],
+                           .height = own_options->size[1],
+                           .antialias = own_options->antialias,
+                           .threads = parsed->common.threads,
+                           .plane = own_options->plane,
+                           .bits = own_options->bits,
                            .progress = progress_report,
                            .progress_context = &progress};
-    TRY_GOTO(povray_from_environment(&params, err));
-    progress_start(&progress, "POV-Ray", parsed.common.quiet);
-    status = oracle_run(&params, &run, err);
+    TRY(povray_from_environment(&params, err));
+    progress_start(&progress, "POV-Ray", parsed->common.quiet);
+    Status status = oracle_run(&params, &run, err);
     progress_end(&progress);
-    if (status == STATUS_OK && !parsed.common.quiet)
+    if (status == STATUS_OK && !parsed->common.quiet)
         fprintf(stderr, "POV-Ray %s took %.1f s\n", run.version, run.seconds);
-done:
-    parsed_release(&parsed);
     return status;
 }
+
+const Command command_povray = {
+    .name = "povray",
+    .summary = "run POV-Ray on a scene",
+    .operands = "S.pov -o P.png",
+    .examples = "  corcast povray tree.pov -o tree.png\n"
+                "  corcast povray tree.pov --size 4000x4000 --antialias 3 -o large.png\n"
+                "  corcast povray tree.pov --plane depth -o depth.png\n"
+                "environment, here and for verify:\n"
+                "  CORCAST_POVRAY           the program, or a script that stands for it (povray)\n"
+                "  CORCAST_POVRAY_PATIENCE  seconds without a word after which it is ended (600; "
+                "0: never)\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .size = sizeof(PovrayOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}},
+    .run = run_povray,
+};

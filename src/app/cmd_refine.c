@@ -4,7 +4,68 @@
 #include "treeio/treeio.h"
 #include <stdio.h>
 
-static const Command command = {
+typedef struct RefineOptions {
+    const char *output, *domain;
+    Refining refining;
+} RefineOptions;
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, RefineOptions, output),
+     .argument = "R.swc",
+     .help = "the refined tree"},
+    {.name = "domain",
+     SETS(TEXT, RefineOptions, domain),
+     .group = GROUP_TREE,
+     .argument = "SHAPE",
+     .otherwise = "the tree's",
+     .help = "tissue to stay in; a tree without one may go anywhere"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    ((RefineOptions *)options)->refining.level = GROW_REFINE_TOPOLOGY;
+}
+
+/* The domain of the option, or of the tree; *found says whether there is one. */
+static Status find_domain(const char *spec, const Tree *tree, Domain *domain, bool *found, Err *err)
+{
+    if (!spec)
+        return tree_domain(tree, domain, found, err);
+    *found = true;
+    return domain_parse(domain, spec, err);
+}
+
+static Status run_refine(void *options, Parsed *parsed, Err *err)
+{
+    const RefineOptions *own_options = options;
+    const Refining *refining = &own_options->refining;
+    if (!tree_format_known(own_options->output))
+        return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .swc", own_options->output);
+    TRY(refining_check(refining, parsed, err));
+    Tree tree = {0};
+    Domain domain = {0};
+    bool has_domain;
+    RefineReport report;
+    Status status = STATUS_OK;
+    TRY_GOTO(tree_read(&tree, parsed->operands[0], err));
+    TRY_GOTO(find_domain(own_options->domain, &tree, &domain, &has_domain, err));
+    if (domain.file)
+        TRY_GOTO(files_read(&parsed->files, "--domain", domain.file, err));
+    TRY_GOTO(refining_apply(refining, &parsed->common, has_domain ? &domain : NULL, &tree, &report,
+                            err));
+    TRY_GOTO(tree_write(&tree, own_options->output, err));
+    if (!parsed->common.quiet)
+        refining_print(&report);
+done:
+    domain_release(&domain);
+    tree_release(&tree);
+    return status;
+}
+
+const Command command_refine = {
     .name = "refine",
     .summary = "lower the target of a grown or measured tree",
     .operands = "T.swc -o R.swc",
@@ -13,50 +74,8 @@ static const Command command = {
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
+    .size = sizeof(RefineOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}, {&refining_table, offsetof(RefineOptions, refining)}},
+    .run = run_refine,
 };
-
-Status run_refine(int argc, char **argv, Err *err)
-{
-    Refining refining;
-    refining_init(&refining);
-    refining.level = GROW_REFINE_TOPOLOGY;
-    const char *output = NULL, *spec = NULL;
-    const Option own[] = {
-        {"output", OPTION_OUTPUT, &output, NULL, 0, 0, NULL, "R.swc", "the refined tree"},
-        {"domain", OPTION_TEXT, &spec, NULL, 0, 0, NULL, "SHAPE",
-         "tissue to stay in (the tree's; a tree without one may go anywhere)"},
-        {0},
-    };
-    const Option *const tables[] = {own, refining.table, NULL};
-    Parsed parsed;
-    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
-    Status status = STATUS_OK;
-    Tree tree = {0};
-    Domain domain = {0};
-    bool has_domain = true;
-    RefineReport report;
-    if (parsed.common.help)
-        goto done;
-    if (!tree_format_known(output)) {
-        status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in .swc", output);
-        goto done;
-    }
-    TRY_GOTO(refining_check(&refining, &parsed, err));
-    TRY_GOTO(tree_read(&tree, parsed.operands[0], err));
-    if (spec)
-        TRY_GOTO(domain_parse(&domain, spec, err));
-    else
-        TRY_GOTO(tree_domain(&tree, &domain, &has_domain, err));
-    if (domain.file)
-        TRY_GOTO(files_read(&parsed.files, "--domain", domain.file, err));
-    TRY_GOTO(refining_apply(&refining, &parsed.common, has_domain ? &domain : NULL, &tree, &report,
-                            err));
-    TRY_GOTO(tree_write(&tree, output, err));
-    if (!parsed.common.quiet)
-        refining_print(&report);
-done:
-    domain_release(&domain);
-    tree_release(&tree);
-    parsed_release(&parsed);
-    return status;
-}

@@ -5,22 +5,77 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const Command command = {
-    .name = "render",
-    .summary = "render a tree with the native renderer",
-    .operands = "T.swc -o P.png",
-    .examples = "  corcast render tree.swc -o tree.png\n"
-                "  corcast render tree.swc --model isosurface --antialias 3 -o tree.ppm\n"
-                "  corcast render tree.swc --planes depth,normal,id -o tree.png\n",
-    .min_operands = 1,
-    .max_operands = 1,
-    .needs_output = true,
-};
+typedef struct RenderOptions {
+    const char *output, *planes, *json;
+    int bits;
+    unsigned hits;
+    RenderMethod method;
+    RenderKernels kernels;
+    double threshold, memory_mb;
+    PictureOptions picture;
+} RenderOptions;
 
 enum { HITS_EXACT, HITS_POVRAY };
 static const char *const hits_names[] = {"exact", "povray", NULL};
 static const char *const methods[] = {
     [RENDER_TRACE] = "trace", [RENDER_RASTER] = "raster", [RENDER_ZBUFFER] = "zbuffer", NULL};
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, RenderOptions, output),
+     .argument = "P",
+     .help = "the picture: .png, .ppm, .tif or .pfm"},
+    {.name = "planes",
+     SETS(TEXT, RenderOptions, planes),
+     .argument = "LIST",
+     .help = "planes beside it: color,depth,normal,id"},
+    {.name = "bits",
+     SETS(WHOLE, RenderOptions, bits),
+     FROM_TO(8, 16),
+     .argument = "8|16",
+     .help = "of a PNG or PPM"},
+    {.name = "method",
+     SETS(CHOICE, RenderOptions, method),
+     .choices = methods,
+     .group = GROUP_RUN,
+     .help = "all but isosurfaces: as POV-Ray does, fast, or as the paper does"},
+    {.name = "hits",
+     SETS(CHOICE, RenderOptions, hits),
+     .choices = hits_names,
+     .group = GROUP_POVRAY,
+     .help = "isosurface: where it is, or where POV-Ray's root finder sees it"},
+    {.name = "antialias-threshold",
+     SETS(NUMBER, RenderOptions, threshold),
+     FROM_TO(0, 1),
+     .group = GROUP_LIGHT,
+     .argument = "T",
+     .help = "antialias only pixels that differ by T from a neighbour; 0: all, as POV-Ray"},
+    {.name = "kernels",
+     SETS(CHOICE, RenderOptions, kernels),
+     .choices = render_kernel_names,
+     .group = GROUP_RUN,
+     .help = "instructions that tiles are drawn with, for tests"},
+    {.name = "memory",
+     SETS(NUMBER, RenderOptions, memory_mb),
+     FROM_TO(1e-3, 1e9),
+     .group = GROUP_RUN,
+     .aside = true,
+     .unit = "MB",
+     .help = "of a band; larger pictures are drawn and written band by band"},
+    {.name = "json", SETS(OUTPUT, RenderOptions, json), .help = "what was done, as JSON"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    RenderOptions *own_options = options;
+    picture_set_defaults(&own_options->picture);
+    own_options->bits = 8;
+    own_options->method = RENDER_TRACE;
+    own_options->kernels = KERNELS_FASTEST;
+    own_options->memory_mb = 128;
+}
 
 /* --planes: which planes are written beside the picture. */
 static Status read_planes(const char *list, RenderParams *params, Err *err)
@@ -108,107 +163,114 @@ static Status draw(const Scene *scene, const RenderParams *params, const FramesF
     return status;
 }
 
-Status run_render(int argc, char **argv, Err *err)
+/* Options that fight each other, or that the method does not know. */
+static Status check(const RenderOptions *options, const Parsed *parsed, Err *err)
 {
-    PictureOptions picture;
-    picture_options_init(&picture);
-    const char *output = NULL, *planes = NULL, *json = NULL;
-    int bits = 8, hits = HITS_EXACT, method = RENDER_TRACE, kernels = KERNELS_FASTEST;
-    double threshold = 0, memory_mb = 128;
-    const Option own[] = {
-        {"output", OPTION_OUTPUT, &output, NULL, 0, 0, NULL, "P",
-         "the picture: .png, .ppm, .tif or .pfm"},
-        {"planes", OPTION_TEXT, &planes, NULL, 0, 0, NULL, "LIST",
-         "planes beside it: color,depth,normal,id"},
-        {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16", "of a PNG or PPM (8)"},
-        {"method", OPTION_CHOICE, &method, NULL, 0, 0, methods, NULL,
-         "all but isosurfaces: as POV-Ray does, fast, or as the paper does (trace)"},
-        {"hits", OPTION_CHOICE, &hits, NULL, 0, 0, hits_names, NULL,
-         "isosurface: where it is, or where POV-Ray's root finder sees it (exact)"},
-        {"antialias-threshold", OPTION_NUMBER, &threshold, NULL, 0, 1, NULL, "T",
-         "antialias only pixels that differ by T from a neighbour (0: all, as POV-Ray)"},
-        {"kernels", OPTION_CHOICE, &kernels, NULL, 0, 0, render_kernel_names, NULL,
-         "instructions that tiles are drawn with, for tests (fastest)"},
-        {"memory", OPTION_NUMBER, &memory_mb, NULL, 1e-3, 1e9, NULL, "MB",
-         "of a band; larger pictures are drawn and written band by band (128)"},
-        {"json", OPTION_OUTPUT, &json, NULL, 0, 0, NULL, "FILE", "what was done, as JSON"},
-        {0},
-    };
-    const Option *const tables[] = {own, picture.table, picture.coloring.table, NULL};
-    Parsed parsed;
-    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
-    Status status = STATUS_OK;
+    const PictureOptions *picture = &options->picture;
+    TRY(bits_check(options->bits, err));
+    const OptionNeed needs[] = {{"bits", strcmp(file_extension(options->output), "pfm") != 0,
+                                 "is for whole numbers; a .pfm holds floats"},
+                                {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    TRY(picture_check_needs(picture, parsed, err));
+    if (options->threshold > 0 && picture->antialias == 1)
+        return err_set(err, STATUS_USAGE,
+                       "--antialias-threshold needs --antialias N, with N from 2 to 9");
+    if (options->method != RENDER_TRACE &&
+        (picture->model == SCENE_ISOSURFACE || picture->model == SCENE_BLOB))
+        return err_set(err, STATUS_USAGE,
+                       "--method %s is for cylinders, joined and rounded, not for %s",
+                       methods[options->method], model_name((SceneModel)picture->model));
+    if (options->method == RENDER_ZBUFFER &&
+        (picture->stage.shadows || picture->antialias > 1 || picture->occlusion > 0))
+        return err_set(err, STATUS_USAGE,
+                       "--method zbuffer draws neither shadows nor antialiased pictures nor "
+                       "ambient occlusion");
+    return STATUS_OK;
+}
+
+/* The files that --planes asks for, beside the picture. */
+static Status plan_files(const RenderOptions *options, RenderParams *params, FramesForm *form,
+                         Err *err)
+{
+    TRY(read_planes(options->planes, params, err));
+    *form = (FramesForm){.width = options->picture.size[0],
+                         .height = options->picture.size[1],
+                         .path = options->output,
+                         .bits = options->bits,
+                         .encoding = ENCODING_SRGB,
+                         .picture = true,
+                         .color = params->want_color,
+                         .depth = params->want_depth,
+                         .normal = params->want_normal,
+                         .id = params->want_id};
+    params->codes_suffice =
+        form->bits == 8 && !form->color && strcmp(file_extension(form->path), "pfm") != 0;
+    params->want_color = true;
+    return frames_check_output(options->output, options->planes != NULL, err);
+}
+
+static Status draw_picture(const RenderOptions *options, Parsed *parsed, RenderParams *params,
+                           FramesForm *form, Err *err)
+{
+    const PictureOptions *picture = &options->picture;
+    const CellParams cells = picture_cells(picture);
+    bool quiet = parsed->common.quiet;
     Scene scene = {0};
     RenderStats stats;
     StageReport staged;
     char *line = NULL;
     Progress progress;
-    RenderParams params = {.threads = parsed.common.threads,
-                           .progress = progress_report,
-                           .progress_context = &progress,
-                           .antialias = picture.antialias,
-                           .shadows = picture.stage.shadows};
-    if (parsed.common.help)
-        goto done;
-    TRY_GOTO(bits_check(bits, err));
-    const OptionNeed needs[] = {{"bits", strcmp(file_extension(output), "pfm") != 0,
-                                 "is for whole numbers; a .pfm holds floats"},
-                                {0}};
-    TRY_GOTO(options_check_needs(&parsed, needs, err));
-    TRY_GOTO(picture_check_needs(&picture, &parsed, err));
-    if (threshold > 0 && picture.antialias == 1) {
-        status = err_set(err, STATUS_USAGE,
-                         "--antialias-threshold needs --antialias N, with N from 2 to 9");
-        goto done;
-    }
-    if (method != RENDER_TRACE &&
-        (picture.model == SCENE_ISOSURFACE || picture.model == SCENE_BLOB)) {
-        status = err_set(err, STATUS_USAGE,
-                         "--method %s is for cylinders, joined and rounded, not for %s",
-                         methods[method], model_name((SceneModel)picture.model));
-        goto done;
-    }
-    if (method == RENDER_ZBUFFER &&
-        (params.shadows || picture.antialias > 1 || picture.occlusion > 0)) {
-        status = err_set(err, STATUS_USAGE,
-                         "--method zbuffer draws neither shadows nor antialiased pictures nor "
-                         "ambient occlusion");
-        goto done;
-    }
-    params.method = (RenderMethod)method;
-    params.kernels = (RenderKernels)kernels;
-    params.antialias_threshold = threshold;
-    params.occlusion = picture.occlusion;
-    TRY_GOTO(read_planes(planes, &params, err));
-    FramesForm form = {.width = picture.size[0],
-                       .height = picture.size[1],
-                       .path = output,
-                       .bits = bits,
-                       .encoding = ENCODING_SRGB,
-                       .picture = true,
-                       .color = params.want_color,
-                       .depth = params.want_depth,
-                       .normal = params.want_normal,
-                       .id = params.want_id};
-    params.codes_suffice = bits == 8 && !form.color && strcmp(file_extension(output), "pfm") != 0;
-    params.want_color = true;
-    TRY_GOTO(frames_check_output(output, planes != NULL, err));
-    TRY_GOTO(frames_note_planes(&form, &parsed.files, err));
-    TRY_GOTO(
-        picture_scene(&picture, parsed.operands[0], parsed.common.quiet, &scene, &staged, err));
-    const CellParams cells = picture_cells(&picture);
-    params.povray_cells = hits == HITS_POVRAY ? &cells : NULL;
-    TRY_GOTO(command_line_text("render", argc, argv, &line, err));
-    form.provenance = line;
-    progress_start(&progress, "rendering", parsed.common.quiet);
-    status = draw(&scene, &params, &form, memory_mb, &stats, err);
+    Status status = STATUS_OK;
+    TRY(picture_scene(picture, parsed->operands[0], quiet, &scene, &staged, err));
+    params->povray_cells = options->hits == HITS_POVRAY ? &cells : NULL;
+    params->progress = progress_report;
+    params->progress_context = &progress;
+    TRY_GOTO(command_line_text(parsed, &line, err));
+    form->provenance = line;
+    progress_start(&progress, "rendering", quiet);
+    status = draw(&scene, params, form, options->memory_mb, &stats, err);
     progress_end(&progress);
-    TRY_GOTO(status);
-    if (json)
-        TRY_GOTO(write_report(json, &scene, &stats, &staged, params.threads, err));
+    if (status == STATUS_OK && options->json)
+        status = write_report(options->json, &scene, &stats, &staged, params->threads, err);
 done:
     free(line);
     scene_release(&scene);
-    parsed_release(&parsed);
     return status;
 }
+
+static Status run_render(void *options, Parsed *parsed, Err *err)
+{
+    const RenderOptions *own_options = options;
+    const PictureOptions *picture = &own_options->picture;
+    FramesForm form;
+    RenderParams params = {.threads = parsed->common.threads,
+                           .antialias = picture->antialias,
+                           .antialias_threshold = own_options->threshold,
+                           .shadows = picture->stage.shadows,
+                           .occlusion = picture->occlusion,
+                           .method = own_options->method,
+                           .kernels = own_options->kernels};
+    TRY(check(own_options, parsed, err));
+    TRY(plan_files(own_options, &params, &form, err));
+    TRY(frames_note_planes(&form, &parsed->files, err));
+    return draw_picture(own_options, parsed, &params, &form, err);
+}
+
+const Command command_render = {
+    .name = "render",
+    .summary = "render a tree with the native renderer",
+    .operands = "T.swc -o P.png",
+    .examples = "  corcast render tree.swc -o tree.png\n"
+                "  corcast render tree.swc --model isosurface --antialias 3 -o tree.ppm\n"
+                "  corcast render tree.swc --planes depth,normal,id -o tree.png\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .size = sizeof(RenderOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0},
+               {&picture_table, offsetof(RenderOptions, picture)},
+               {&coloring_table, offsetof(RenderOptions, picture.coloring)}},
+    .run = run_render,
+};

@@ -19,17 +19,6 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-static const Command command = {
-    .name = "verify",
-    .summary = "prove that POV-Ray and the native renderer agree",
-    .operands = "T.swc -o DIR",
-    .examples = "  corcast verify tree.swc -o check\n"
-                "  corcast verify tree.swc --model isosurface --size 400x400 -o check\n",
-    .min_operands = 1,
-    .max_operands = 1,
-    .needs_output = true,
-};
-
 typedef struct Verification {
     const PictureOptions *picture;
     const Common *common;
@@ -524,66 +513,108 @@ static Status print_verdict(const Verification *v, bool agrees, Err *err)
     return STATUS_OK;
 }
 
-Status run_verify(int argc, char **argv, Err *err)
-{
+typedef struct VerifyOptions {
+    const char *folder;
+    int bits;
+    RenderKernels kernels;
+    bool json;
     PictureOptions picture;
-    picture_options_init(&picture);
-    const char *folder = NULL;
-    bool as_json = false;
-    int bits = 8, kernels = KERNELS_FASTEST;
-    const Option own[] = {
-        {"output", OPTION_FOLDER, &folder, NULL, 0, 0, NULL, "DIR",
-         "folder for the report, the scene and all planes"},
-        {"bits", OPTION_WHOLE, &bits, NULL, 8, 16, NULL, "8|16",
-         "of the colours compared: 8, sRGB, or 16, linear (8)"},
-        {"kernels", OPTION_CHOICE, &kernels, NULL, 0, 0, render_kernel_names, NULL,
-         "instructions that the exact isosurface is drawn with, for tests (fastest)"},
-        {"json", OPTION_FLAG, &as_json, NULL, 0, 0, NULL, NULL, "the report on standard output"},
-        {0},
-    };
-    const Option *const tables[] = {own, picture.table, picture.coloring.table, NULL};
-    Parsed parsed;
-    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
+} VerifyOptions;
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(FOLDER, VerifyOptions, folder),
+     .argument = "DIR",
+     .help = "folder for the report, the scene and all planes"},
+    {.name = "bits",
+     SETS(WHOLE, VerifyOptions, bits),
+     FROM_TO(8, 16),
+     .group = GROUP_JUDGE,
+     .argument = "8|16",
+     .help = "of the colours compared: 8, sRGB, or 16, linear"},
+    {.name = "kernels",
+     SETS(CHOICE, VerifyOptions, kernels),
+     .choices = render_kernel_names,
+     .group = GROUP_RUN,
+     .help = "instructions that the exact isosurface is drawn with, for tests"},
+    {.name = "json", SETS(FLAG, VerifyOptions, json), .help = "the report on standard output"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    VerifyOptions *own_options = options;
+    picture_set_defaults(&own_options->picture);
+    own_options->bits = 8;
+    own_options->kernels = KERNELS_FASTEST;
+}
+
+static Status check(const VerifyOptions *options, const Parsed *parsed, Err *err)
+{
+    const PictureOptions *picture = &options->picture;
+    if (strcmp(options->folder, "-") == 0)
+        return err_set(err, STATUS_USAGE, "-o: a report is a folder, not standard output");
+    TRY(bits_check(options->bits, err));
+    TRY(picture_check_needs(picture, parsed, err));
+    TRY(picture_check_povray(picture, err));
+    return picture_fits(picture->size[0], picture->size[1], 120, err);
+}
+
+/* Reads the tree, makes the folder, draws both sides and compares them. */
+static Status verify(Verification *v, Parsed *parsed, Err *err)
+{
+    char *line = NULL;
+    TRY(claim_folder(v, &parsed->files, err));
+    TRY(picture_scene(v->picture, v->tree, parsed->common.quiet, &v->scene, NULL, err));
+    v->cells = picture_cells(v->picture);
+    TRY(file_make_folder(v->folder, err));
+    TRY(claim_folder(v, &parsed->files, err));
+    TRY(shown_name(v->tree, &v->name, err));
+    TRY(command_line_text(parsed, &line, err));
+    v->commands[v->n_commands++] = line;
+    TRY(run_oracle(v, err));
+    TRY(render_native(v, line, err));
+    TRY(show_both(v, err));
+    return compare_sides(v, err);
+}
+
+static Status run_verify(void *options, Parsed *parsed, Err *err)
+{
+    const VerifyOptions *own_options = options;
     Status status = STATUS_OK;
     bool agrees = false;
-    char *line = NULL;
-    Verification v = {.picture = &picture,
-                      .common = &parsed.common,
-                      .tree = parsed.operands[0],
-                      .folder = folder,
+    Verification v = {.picture = &own_options->picture,
+                      .common = &parsed->common,
+                      .tree = parsed->operands[0],
+                      .folder = own_options->folder,
+                      .bits = own_options->bits,
+                      .kernels = own_options->kernels,
                       .lock = -1};
-    if (parsed.common.help)
-        goto done;
-    if (strcmp(folder, "-") == 0) {
-        status = err_set(err, STATUS_USAGE, "-o: a report is a folder, not standard output");
-        goto done;
-    }
-    TRY_GOTO(bits_check(bits, err));
-    v.bits = bits;
-    v.kernels = (RenderKernels)kernels;
-    TRY_GOTO(picture_check_needs(&picture, &parsed, err));
-    TRY_GOTO(picture_check_povray(&picture, err));
-    TRY_GOTO(picture_fits(picture.size[0], picture.size[1], 120, err));
-    TRY_GOTO(claim_folder(&v, &parsed.files, err));
-    TRY_GOTO(picture_scene(&picture, v.tree, parsed.common.quiet, &v.scene, NULL, err));
-    v.cells = picture_cells(&picture);
-    TRY_GOTO(file_make_folder(folder, err));
-    TRY_GOTO(claim_folder(&v, &parsed.files, err));
-    TRY_GOTO(shown_name(v.tree, &v.name, err));
-    TRY_GOTO(command_line_text("verify", argc, argv, &line, err));
-    TRY_GOTO(mem_strdup(&v.commands[0], line, err));
-    v.n_commands = 1;
-    TRY_GOTO(run_oracle(&v, err));
-    TRY_GOTO(render_native(&v, line, err));
-    TRY_GOTO(show_both(&v, err));
-    TRY_GOTO(compare_sides(&v, err));
-    TRY_GOTO(write_report(&v, as_json, &agrees, err));
-    if (!as_json && !parsed.common.quiet)
+    TRY(check(own_options, parsed, err));
+    TRY_GOTO(verify(&v, parsed, err));
+    TRY_GOTO(write_report(&v, own_options->json, &agrees, err));
+    if (!own_options->json && !parsed->common.quiet)
         TRY_GOTO(print_verdict(&v, agrees, err));
     status = agrees ? STATUS_OK : STATUS_DIFFERS;
 done:
-    free(line);
     verification_release(&v);
-    parsed_release(&parsed);
     return status;
 }
+
+const Command command_verify = {
+    .name = "verify",
+    .summary = "prove that POV-Ray and the native renderer agree",
+    .operands = "T.swc -o DIR",
+    .examples = "  corcast verify tree.swc -o check\n"
+                "  corcast verify tree.swc --model isosurface --size 400x400 -o check\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .size = sizeof(VerifyOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0},
+               {&picture_table, offsetof(VerifyOptions, picture)},
+               {&coloring_table, offsetof(VerifyOptions, picture.coloring)}},
+    .run = run_verify,
+};

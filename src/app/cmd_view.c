@@ -10,27 +10,9 @@
 #include <string.h>
 #include <strings.h>
 
-static const Command command = {
-    .name = "view",
-    .summary = "look at a tree in a window",
-    .operands = "T.swc",
-    .examples = "  corcast view tree.swc\n"
-                "  corcast view tree.swc --model isosurface --color-by pressure --antialias 3\n"
-                "in the window:\n"
-                "  drag turns, drag with the right button or shift moves, the wheel zooms\n"
-                "  1 ... 5    cylinders, joined, rounded, isosurface, blob\n"
-                "  c          the next field that colours the vessels, or none\n"
-                "  p s a      projection, shadows, ambient occlusion\n"
-                "  r          back to where the camera was\n"
-                "  o          print the options that draw this picture\n"
-                "  w          write them as a recipe, for --recipe\n"
-                "  q, Escape  quit\n",
-    .min_operands = 1,
-    .max_operands = 1,
-};
-
 typedef struct Viewer {
     PictureOptions *options; /* camera included, once there is a scene */
+    const Parsed *parsed;
     const Common *common;
     const char *tree, *recipe;
     PictureSource source;
@@ -128,13 +110,13 @@ static Status use_next_field(Viewer *viewer, Err *err)
 /* ---- what is shown, as options --------------------------------------------------------------- */
 
 /* Appends what stands for one option. */
-typedef Status PutSetting(Text *text, const char *name, const char *value, Err *err);
+typedef Status PutSetting(Text *text, const Option *option, const char *value, Err *err);
 
-static Status put_argument(Text *text, const char *name, const char *value, Err *err)
+static Status put_argument(Text *text, const Option *option, const char *value, Err *err)
 {
     (void)err;
-    text_printf(text, " --%s", name);
-    if (strcmp(name, "log") == 0) /* a flag */
+    text_printf(text, " --%s", option->name);
+    if (option->kind == OPTION_FLAG)
         return STATUS_OK;
     text_puts(text, " ");
     put_shell_word(text, value);
@@ -143,53 +125,58 @@ static Status put_argument(Text *text, const char *name, const char *value, Err 
 
 /* An INI file takes blanks at the ends of a value away, and what follows a semicolon after a
  * blank. */
-static Status put_pair(Text *text, const char *name, const char *value, Err *err)
+static Status put_pair(Text *text, const Option *option, const char *value, Err *err)
 {
     size_t length = strlen(value);
     bool bare = *value == ';' || strstr(value, " ;") || strpbrk(value, "\t\r\n") ||
                 (length && (value[0] == ' ' || value[length - 1] == ' '));
     if (bare)
-        return err_set(err, STATUS_USAGE, "--%s: a recipe cannot hold '%s'", name, value);
-    text_printf(text, "%s = %s\n", name, value);
+        return err_set(err, STATUS_USAGE, "--%s: a recipe cannot hold '%s'", option->name, value);
+    text_printf(text, "%s = %s\n", option->name, value);
     return STATUS_OK;
 }
 
-static Status put_option(const Option *option, PutSetting *put, Text *text, Err *err)
+static Status put_setting(const Setting *setting, PutSetting *put, Text *text, Err *err)
 {
-    Text value = TEXT_INIT;
-    option_put(option, &value);
-    Status status = text_check(&value, err);
-    if (status == STATUS_OK)
-        status = put(text, option->name, text_chars(&value), err);
-    text_release(&value);
+    Status status = STATUS_OK;
+    for (size_t at = 0; at < setting_count(setting) && status == STATUS_OK; at++) {
+        Text value = TEXT_INIT;
+        setting_put(setting, at, &value);
+        status = text_check(&value, err);
+        if (status == STATUS_OK)
+            status = put(text, setting->option, text_chars(&value), err);
+        text_release(&value);
+    }
     return status;
 }
 
-/* Of the options of a table, those that make the picture what it is; `plain` has their defaults. */
-static Status put_table(const PictureOptions *options, const Option *table, const Option *plain,
-                        PutSetting *put, Text *text, Err *err)
+/* Whether the option makes the picture what it is; `plain` has its default. */
+static bool is_shown(const PictureOptions *options, const Setting *setting, const Setting *plain)
 {
     static const char *const always[] = {"model", "size", "projection", NULL};
     static const char *const framing[] = {"view", "margin", "angle", "height", NULL};
+    const char *name = setting->option->name;
     bool perspective = options->projection == PROJECTION_PERSPECTIVE;
-    for (; table->name; table++, plain++) {
-        bool extent = strcmp(table->name, perspective ? "angle" : "height") == 0;
-        bool differs = picture_takes(options, table->name) && !is_one_of(table->name, framing) &&
-                       option_differs(table, plain);
-        if (extent || differs || is_one_of(table->name, always))
-            TRY(put_option(table, put, text, err));
-    }
-    return STATUS_OK;
+    if (is_one_of(name, always) || strcmp(name, perspective ? "angle" : "height") == 0)
+        return true;
+    return picture_takes(options, name) && !is_one_of(name, framing) &&
+           setting_differs(setting, plain);
 }
 
-/* Model, size, projection, where the camera is, and all that is not by default. */
+/* Model, size, projection, where the camera is, and all that is not by default; the first settings
+ * of a view are its own. */
 static Status put_settings(const Viewer *viewer, PutSetting *put, Text *text, Err *err)
 {
-    const PictureOptions *options = viewer->options;
-    PictureOptions plain;
-    picture_options_init(&plain);
-    TRY(put_table(options, options->table, plain.table, put, text, err));
-    TRY(put_table(options, options->coloring.table, plain.coloring.table, put, text, err));
+    Parsed plain;
+    TRY(parsed_init(&plain, &command_view, err));
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < plain.n_settings && status == STATUS_OK; i++) {
+        const Setting *setting = &viewer->parsed->settings[i];
+        if (!setting->option->aside && is_shown(viewer->options, setting, &plain.settings[i]))
+            status = put_setting(setting, put, text, err);
+    }
+    parsed_release(&plain);
+    TRY(status);
     return text_check(text, err);
 }
 
@@ -402,36 +389,75 @@ static Status open_viewer(Viewer *viewer, Err *err)
     return STATUS_OK;
 }
 
-Status run_view(int argc, char **argv, Err *err)
-{
+typedef struct ViewOptions {
+    const char *recipe;
+    int turn;
     PictureOptions picture;
-    picture_options_init(&picture);
-    const char *recipe = NULL;
-    int turn = 0;
-    const Option own[] = {
-        {"save", OPTION_OUTPUT, &recipe, NULL, 0, 0, NULL, "FILE",
-         "the recipe that key w writes (view.ini)"},
-        {"turn", OPTION_WHOLE, &turn, NULL, 1, 100000, NULL, "N",
-         "turn once around in N pictures, say how many a second, and quit"},
-        {0},
-    };
-    const Option *const tables[] = {own, picture.table, picture.coloring.table, NULL};
-    Parsed parsed;
-    TRY(options_parse(&command, tables, argc, argv, &parsed, err));
-    Status status = STATUS_OK;
-    Viewer viewer = {.options = &picture,
-                     .common = &parsed.common,
-                     .tree = parsed.operands[0],
-                     .recipe = recipe ? recipe : "view.ini"};
-    if (parsed.common.help)
-        goto done;
-    TRY_GOTO(open_viewer(&viewer, err));
-    status = turn ? turn_around(&viewer, turn, err) : run(&viewer, err);
-done:
+} ViewOptions;
+
+static const Option own[] = {
+    {.name = "save",
+     SETS(OUTPUT, ViewOptions, recipe),
+     .aside = true,
+     .help = "the recipe that key w writes"},
+    {.name = "turn",
+     SETS(WHOLE, ViewOptions, turn),
+     FROM_TO(1, 100000),
+     .group = GROUP_RUN,
+     .aside = true,
+     .otherwise = "",
+     .help = "turn once around in N pictures, say how many a second, and quit"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    ViewOptions *own_options = options;
+    picture_set_defaults(&own_options->picture);
+    own_options->recipe = "view.ini";
+}
+
+static Status run_view(void *options, Parsed *parsed, Err *err)
+{
+    ViewOptions *own_options = options;
+    Viewer viewer = {.options = &own_options->picture,
+                     .parsed = parsed,
+                     .common = &parsed->common,
+                     .tree = parsed->operands[0],
+                     .recipe = own_options->recipe};
+    Status status = open_viewer(&viewer, err);
+    if (status == STATUS_OK)
+        status =
+            own_options->turn ? turn_around(&viewer, own_options->turn, err) : run(&viewer, err);
     window_close(viewer.window);
     display_free(viewer.display);
     scene_release(&viewer.scene);
     picture_source_release(&viewer.source);
-    parsed_release(&parsed);
     return status;
 }
+
+const Command command_view = {
+    .name = "view",
+    .summary = "look at a tree in a window",
+    .operands = "T.swc",
+    .examples = "  corcast view tree.swc\n"
+                "  corcast view tree.swc --model isosurface --color-by pressure --antialias 3\n"
+                "in the window:\n"
+                "  drag turns, drag with the right button or shift moves, the wheel zooms\n"
+                "  1 ... 5    cylinders, joined, rounded, isosurface, blob\n"
+                "  c          the next field that colours the vessels, or none\n"
+                "  p s a      projection, shadows, ambient occlusion\n"
+                "  r          back to where the camera was\n"
+                "  o          print the options that draw this picture\n"
+                "  w          write them as a recipe, for --recipe\n"
+                "  q, Escape  quit\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .size = sizeof(ViewOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0},
+               {&picture_table, offsetof(ViewOptions, picture)},
+               {&coloring_table, offsetof(ViewOptions, picture.coloring)}},
+    .run = run_view,
+};

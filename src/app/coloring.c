@@ -2,35 +2,63 @@
 
 #include "app/templates.h"
 #include "image/image.h"
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-void coloring_init(Coloring *coloring)
+static const char of_tree[] = "the tree's";
+
+static const Option rows[] = {
+    {.name = "color-by",
+     SETS(TEXT, Coloring, field),
+     .group = GROUP_COLOR,
+     .argument = "FIELD",
+     .list = "fields",
+     .help = "radius or length (mm), flow (ml/min), velocity (mm/s), pressure (mmHg), wss (wall "
+             "shear stress, Pa), reynolds, level, strahler, diameter-strahler or branch"},
+    {.name = "colormap",
+     SETS(LOOKUP, Coloring, colormap),
+     .group = GROUP_COLOR,
+     .list = "colormaps",
+     .help = "a file of templates/colormaps, or a path"},
+    {.name = "range",
+     SETS(RANGE, Coloring, range),
+     GIVEN(Coloring, has_range),
+     .group = GROUP_COLOR,
+     .otherwise = "the field's",
+     .help = "values at the ends of the colour map"},
+    {.name = "log", SETS(FLAG, Coloring, log), .group = GROUP_COLOR, .help = "logarithmic colours"},
+    {.name = "q-perf",
+     SETS(NUMBER, Coloring, flow.number[META_Q_PERF]),
+     GIVEN(Coloring, flow.known[META_Q_PERF]),
+     .range = &meta_rows[META_Q_PERF].range,
+     .group = GROUP_BLOOD,
+     .unit = "ml/min",
+     .otherwise = of_tree,
+     .help = "flow through the inlet"},
+    {.name = "p-perf",
+     SETS(NUMBER, Coloring, flow.number[META_P_PERF]),
+     GIVEN(Coloring, flow.known[META_P_PERF]),
+     .range = &meta_rows[META_P_PERF].range,
+     .group = GROUP_BLOOD,
+     .unit = "mmHg",
+     .otherwise = of_tree,
+     .help = "pressure at the inlet"},
+    {.name = "viscosity",
+     SETS(NUMBER, Coloring, flow.number[META_VISCOSITY]),
+     GIVEN(Coloring, flow.known[META_VISCOSITY]),
+     .range = &meta_rows[META_VISCOSITY].range,
+     .group = GROUP_BLOOD,
+     .unit = "cP",
+     .otherwise = of_tree,
+     .help = "of the blood"},
+};
+
+const OptionTable coloring_table = OPTION_TABLE(rows);
+
+void coloring_set_defaults(Coloring *coloring)
 {
-    *coloring = (Coloring){.colormap = "viridis"};
-    TreeMeta *flow = &coloring->flow;
-    const double huge = 1e300;
-    const Option table[] = {
-        {"color-by", OPTION_TEXT, &coloring->field, NULL, 0, 0, NULL, "FIELD",
-         "radius or length (mm), flow (ml/min), velocity (mm/s), pressure (mmHg), wss (wall shear "
-         "stress, Pa), reynolds, level, strahler, diameter-strahler or branch"},
-        {"colormap", OPTION_LOOKUP, &coloring->colormap, NULL, 0, 0, NULL, "NAME",
-         "a file of templates/colormaps, or a path (viridis)"},
-        {"range", OPTION_RANGE, coloring->range, &coloring->has_range, 0, 0, NULL, NULL,
-         "values at the ends of the colour map (the field's)"},
-        {"log", OPTION_FLAG, &coloring->log, NULL, 0, 0, NULL, NULL, "logarithmic colours"},
-        {"q-perf", OPTION_NUMBER, &flow->number[META_Q_PERF], &flow->known[META_Q_PERF], 1e-300,
-         huge, NULL, "ML/MIN", "flow through the inlet (the tree's)"},
-        {"p-perf", OPTION_NUMBER, &flow->number[META_P_PERF], &flow->known[META_P_PERF], -huge,
-         huge, NULL, "MMHG", "pressure at the inlet (the tree's)"},
-        {"viscosity", OPTION_NUMBER, &flow->number[META_VISCOSITY], &flow->known[META_VISCOSITY],
-         1e-300, huge, NULL, "CP", "of the blood (the tree's)"},
-        {0},
-    };
-    static_assert(sizeof table <= sizeof coloring->table, "COLORING_OPTIONS is too small");
-    memcpy(coloring->table, table, sizeof table);
+    coloring->colormap = "viridis";
 }
 
 static double scaled(const Coloring *coloring, double value)

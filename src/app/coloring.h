@@ -8,19 +8,17 @@
 #include "scene/scene.h"
 #include "tree/tree.h"
 
-enum { COLORING_OPTIONS = 8 };
-
 typedef struct Coloring {
     const char *field; /* NULL: the look's one colour */
     const char *colormap;
     double range[2];
     bool has_range, log;
     TreeMeta flow; /* what the user says of the tree */
-    Option table[COLORING_OPTIONS];
 } Coloring;
 
-/* Defaults, and the table that sets them; `coloring` must not move afterwards. */
-void coloring_init(Coloring *coloring);
+/* Of a zeroed Coloring. */
+void coloring_set_defaults(Coloring *coloring);
+extern const OptionTable coloring_table; /* sets a Coloring */
 
 /* The colour map of --colormap in *map (owned). STATUS_USAGE when templates/ lacks the name. */
 MUST_CHECK Status coloring_read_map(const Coloring *coloring, Colormap *map, Err *err);

@@ -1,25 +1,18 @@
-/* The subcommands. Each gets the arguments after its name. */
+/* The subcommands, and what their output has in common. */
 #ifndef CORCAST_APP_COMMANDS_H
 #define CORCAST_APP_COMMANDS_H
 
+#include "app/options.h"
 #include "base/base.h"
 
-typedef Status CommandRun(int argc, char **argv, Err *err);
+extern const Command command_grow, command_refine, command_info, command_convert, command_scene,
+    command_povray, command_render, command_view, command_verify, command_compare, command_report,
+    command_models, command_fields, command_looks, command_colormaps, command_domains;
 
-CommandRun run_grow, run_refine, run_info, run_convert, run_scene, run_povray, run_render,
-    run_compare, run_verify, run_report, run_view, run_models, run_fields, run_looks, run_colormaps,
-    run_domains;
-
-typedef struct CommandEntry {
-    const char *name; /* NULL ends the table */
-    CommandRun *run;
-    const char *summary; /* one line */
-} CommandEntry;
-
-/* In the order of the help. */
-extern const CommandEntry command_entries[];
+/* In the order of the help; NULL ends them. */
+extern const Command *const all_commands[];
 /* NULL when no command has this name. */
-const CommandEntry *command_find(const char *name);
+const Command *command_find(const char *name);
 
 #define GENERATOR "corcast " CORCAST_VERSION
 
@@ -32,11 +25,11 @@ void put_shell_word(Text *text, const char *word);
 /* The last component of a path as one line of UTF-8 for people and reports, in *out (owned). */
 MUST_CHECK Status shown_name(const char *path, char **out, Err *err);
 
-/* The command line as text for provenance, in *out (owned), one line of UTF-8: every argument that
- * is a path cut to its last component, so that no folder of the user's is told, and quoted as for a
- * shell. */
-MUST_CHECK Status command_line_text(const char *command, int argc, char **argv, char **out,
-                                    Err *err);
+/* The command line for provenance, in *out (owned), one line of UTF-8 that a shell takes: the
+ * operands, each option that differs from its default, whether it came from the command line or a
+ * recipe, and the output; without what the result does not depend on, and of each path the last
+ * component alone, so that no folder of the user's is told. */
+MUST_CHECK Status command_line_text(const Parsed *parsed, char **out, Err *err);
 
 /* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets
  * go of it. Numbers that are not finite must have been left out or set to null. */

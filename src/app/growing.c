@@ -1,69 +1,132 @@
+/* What a command line says of growth becomes grow's parameters in three steps: defaults, the header
+ * of a tree to grow on from, and what the user gave, each over the one before. */
 #include "app/growing.h"
 
 #include "app/tree_domain.h"
 #include "treeio/treeio.h"
-#include <assert.h>
-#include <string.h>
 
-void growing_init(Growing *growing)
+static const char *const tosses[] = {
+    [GROW_TOSS_SEGMENT] = "segment", [GROW_TOSS_TERMINAL] = "terminal", NULL};
+static const char plain_domain[] = "disc:50";
+
+static const Option rows[] = {
+    {.name = "terminals",
+     SETS(COUNT, Growing, params.terminals),
+     FROM_TO(1, GROW_MAX_TERMINALS),
+     .group = GROUP_TREE,
+     .help = "in the whole tree"},
+    {.name = "domain",
+     SETS(TEXT, Growing, domain_spec),
+     .group = GROUP_TREE,
+     .argument = "SHAPE",
+     .otherwise = plain_domain,
+     .help = "tissue, mm: disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
+             "shell:A,B,C,THICKNESS, polygon:FILE, mask:FILE, mesh:FILE"},
+    {.name = "inlet",
+     SETS(VECTORS, Growing, inlet),
+     .group = GROUP_TREE,
+     .otherwise = "top of the rim",
+     .help = "where the tree starts, mm; given several times: one tree from each"},
+    {.name = "inlet-shares",
+     SETS(NUMBERS, Growing, inlet_share),
+     .group = GROUP_TREE,
+     .otherwise = "equal",
+     .help = "of the terminals for the trees, in the order of the inlets, any sum"},
+    {.name = "from",
+     SETS(INPUT, Growing, from_path),
+     .group = GROUP_FILES,
+     .argument = "T.swc",
+     .help = "grow on from this tree: its nodes keep places, ids and types, its segments stay "
+             "straight; all radii follow anew. What its header says holds unless options say "
+             "otherwise"},
+    {.name = "gamma",
+     SETS(NUMBER, Growing, params.gamma),
+     GIVEN(Growing, given.gamma),
+     .range = &meta_rows[META_GAMMA].range,
+     .group = GROUP_BLOOD,
+     .help = "Murray exponent"},
+    {.name = "lambda",
+     SETS(NUMBER, Growing, params.lambda),
+     GIVEN(Growing, given.lambda),
+     .range = &meta_rows[META_LAMBDA].range,
+     .group = GROUP_OPTIMUM,
+     .help = "target: sum of length * radius^lambda"},
+    {.name = "p-perf",
+     SETS(NUMBER, Growing, params.p_perf_mmhg),
+     GIVEN(Growing, given.p_perf),
+     .range = &meta_rows[META_P_PERF].range,
+     .group = GROUP_BLOOD,
+     .unit = "mmHg",
+     .help = "pressure at the inlet"},
+    {.name = "p-term",
+     SETS(NUMBER, Growing, params.p_term_mmhg),
+     GIVEN(Growing, given.p_term),
+     .range = &meta_rows[META_P_TERM].range,
+     .group = GROUP_BLOOD,
+     .unit = "mmHg",
+     .help = "pressure at every terminal"},
+    {.name = "q-perf",
+     SETS(NUMBER, Growing, params.q_perf_ml_min),
+     GIVEN(Growing, given.q_perf),
+     .range = &meta_rows[META_Q_PERF].range,
+     .group = GROUP_BLOOD,
+     .unit = "ml/min",
+     .help = "flow through all inlets"},
+    {.name = "viscosity",
+     SETS(NUMBER, Growing, params.viscosity_cp),
+     GIVEN(Growing, given.viscosity),
+     .range = &meta_rows[META_VISCOSITY].range,
+     .group = GROUP_BLOOD,
+     .unit = "cP",
+     .help = "of the blood"},
+    {.name = "viscosity-law",
+     SETS(CHOICE, Growing, params.viscosity_law),
+     GIVEN(Growing, given.viscosity_law),
+     .choices = viscosity_law_names,
+     .group = GROUP_BLOOD,
+     .help = "the same in all vessels, or by their diameter, Pries 1994"},
+    {.name = "hematocrit",
+     SETS(NUMBER, Growing, params.hematocrit),
+     GIVEN(Growing, given.hematocrit),
+     .range = &meta_rows[META_HEMATOCRIT].range,
+     .group = GROUP_BLOOD,
+     .argument = "H",
+     .help = "for pries"},
+    {.name = "plasma-viscosity",
+     SETS(NUMBER, Growing, params.plasma_viscosity_cp),
+     GIVEN(Growing, given.plasma_viscosity),
+     .range = &meta_rows[META_PLASMA_VISCOSITY].range,
+     .group = GROUP_BLOOD,
+     .unit = "cP",
+     .help = "for pries"},
+    {.name = "terminal-flow",
+     SETS(CHOICE, Growing, params.terminal_flow),
+     GIVEN(Growing, given.terminal_flow),
+     .choices = terminal_flow_names,
+     .group = GROUP_BLOOD,
+     .help = "the same through all terminals, or as large as the tissue nearest to each"},
+    {.name = "candidates",
+     SETS(WHOLE, Growing, params.candidates),
+     FROM_TO(1, GROW_MAX_CANDIDATES),
+     .group = GROUP_OPTIMUM,
+     .argument = "K",
+     .help = "nearest segments tried for each terminal"},
+    {.name = "toss",
+     SETS(CHOICE, Growing, params.toss),
+     .choices = tosses,
+     .group = GROUP_OPTIMUM,
+     .help = "new terminals keep their distance to"},
+    {.name = "partial",
+     SETS(FLAG, Growing, params.partial),
+     .group = GROUP_TREE,
+     .help = "write the tree so far when no more terminals find room"},
+};
+
+const OptionTable growing_table = OPTION_TABLE(rows);
+
+void growing_set_defaults(Growing *growing)
 {
-    static const char *const tosses[] = {
-        [GROW_TOSS_SEGMENT] = "segment", [GROW_TOSS_TERMINAL] = "terminal", NULL};
-    static const char *const laws[] = {
-        [VISCOSITY_CONSTANT] = "constant", [VISCOSITY_PRIES] = "pries", NULL};
-    static const char *const flows[] = {
-        [TERMINAL_FLOW_EQUAL] = "equal", [TERMINAL_FLOW_TERRITORY] = "territory", NULL};
-    *growing = (Growing){.params = grow_defaults()};
-    GrowParams *params = &growing->params;
-    growing->toss = (int)params->toss;
-    const double huge = 1e300;
-    const Option table[] = {
-        {"terminals", OPTION_COUNT, &params->terminals, NULL, 1, 8000000, NULL, NULL,
-         "in the whole tree (1000)"},
-        {"domain", OPTION_TEXT, &growing->domain_spec, NULL, 0, 0, NULL, "SHAPE",
-         "tissue, mm: disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
-         "shell:A,B,C,THICKNESS,\n"
-         "                                 polygon:FILE, mask:FILE, mesh:FILE (disc:50)"},
-        {"inlet", OPTION_VECTORS, &growing->inlets, NULL, 0, 0, NULL, NULL,
-         "where the tree starts, mm (top of the rim); given several times: one tree from each"},
-        {"inlet-shares", OPTION_NUMBERS, &growing->shares, NULL, 0, 0, NULL, NULL,
-         "of the terminals for the trees, in the order of the inlets, any sum (equal)"},
-        {"from", OPTION_INPUT, &growing->from_path, NULL, 0, 0, NULL, "T.swc",
-         "grow on from this tree: its nodes keep places, ids and types, its segments stay\n"
-         "                                 straight; all radii follow anew. What its header says "
-         "holds unless options\n"
-         "                                 say otherwise"},
-        {"gamma", OPTION_NUMBER, &params->gamma, &growing->given.gamma, -huge, huge, NULL, NULL,
-         "Murray exponent (3)"},
-        {"lambda", OPTION_NUMBER, &params->lambda, &growing->given.lambda, -huge, huge, NULL, NULL,
-         "target: sum of length * radius^lambda (2)"},
-        {"p-perf", OPTION_NUMBER, &params->p_perf_mmhg, &growing->given.p_perf, -huge, huge, NULL,
-         "MMHG", "pressure at the inlet (100)"},
-        {"p-term", OPTION_NUMBER, &params->p_term_mmhg, &growing->given.p_term, -huge, huge, NULL,
-         "MMHG", "pressure at every terminal (60)"},
-        {"q-perf", OPTION_NUMBER, &params->q_perf_ml_min, &growing->given.q_perf, -huge, huge, NULL,
-         "ML/MIN", "flow through all inlets (500)"},
-        {"viscosity", OPTION_NUMBER, &params->viscosity_cp, &growing->given.viscosity, -huge, huge,
-         NULL, "CP", "of the blood (3.6)"},
-        {"viscosity-law", OPTION_CHOICE, &growing->viscosity_law, &growing->given.viscosity_law, 0,
-         0, laws, NULL, "the same in all vessels, or by their diameter, Pries 1994 (constant)"},
-        {"hematocrit", OPTION_NUMBER, &params->hematocrit, &growing->given.hematocrit, 0,
-         MAX_HEMATOCRIT, NULL, "H", "for pries (0.45)"},
-        {"plasma-viscosity", OPTION_NUMBER, &params->plasma_viscosity_cp,
-         &growing->given.plasma_viscosity, -huge, huge, NULL, "CP", "for pries (1.2)"},
-        {"terminal-flow", OPTION_CHOICE, &growing->terminal_flow, &growing->given.terminal_flow, 0,
-         0, flows, NULL,
-         "the same through all terminals, or as large as the tissue nearest to each (equal)"},
-        {"candidates", OPTION_WHOLE, &params->candidates, NULL, 1, 1000, NULL, "K",
-         "nearest segments tried for each terminal (8)"},
-        {"toss", OPTION_CHOICE, &growing->toss, NULL, 0, 0, tosses, NULL,
-         "new terminals keep their distance to (segment)"},
-        {"partial", OPTION_FLAG, &params->partial, NULL, 0, 0, NULL, NULL,
-         "write the tree so far when no more terminals find room"},
-        {0},
-    };
-    static_assert(sizeof table <= sizeof growing->table, "GROWING_OPTIONS is too small");
-    memcpy(growing->table, table, sizeof table);
+    growing->params = grow_defaults();
 }
 
 static void take(double *value, bool given, const TreeMeta *meta, MetaKey key)
@@ -134,19 +197,16 @@ Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
     GrowParams *params = &growing->params;
     params->seed = parsed->common.seed;
     params->threads = parsed->common.threads;
-    params->inlets = growing->inlets.n;
-    params->inlet = growing->inlets.at;
-    params->inlet_shares = growing->shares.n;
-    params->inlet_share = growing->shares.at;
-    params->toss = (GrowToss)growing->toss;
-    params->viscosity_law = (ViscosityLaw)growing->viscosity_law;
-    params->terminal_flow = (TerminalFlow)growing->terminal_flow;
+    params->inlets = growing->inlet.n;
+    params->inlet = growing->inlet.at;
+    params->inlet_shares = growing->inlet_share.n;
+    params->inlet_share = growing->inlet_share.at;
     bool has_domain = false;
     if (growing->from_path)
         TRY(read_from(growing, &has_domain, err));
     if (!has_domain)
-        TRY(domain_parse(&growing->domain, growing->domain_spec ? growing->domain_spec : "disc:50",
-                         err));
+        TRY(domain_parse(&growing->domain,
+                         growing->domain_spec ? growing->domain_spec : plain_domain, err));
     return check(growing, parsed, err);
 }
 

@@ -1,5 +1,6 @@
 #include "app/commands.h"
 
+#include "app/help.h"
 #include "app/suggest.h"
 #include <stdio.h>
 #include <string.h>
@@ -9,8 +10,8 @@ static void print_usage(FILE *stream)
     fputs("corcast " CORCAST_VERSION ": grow, draw and verify arterial trees\n\n"
           "usage: corcast COMMAND [options] [files]\n\n",
           stream);
-    for (const CommandEntry *entry = command_entries; entry->name; entry++)
-        fprintf(stream, "  %-9s %s\n", entry->name, entry->summary);
+    for (const Command *const *command = all_commands; *command; command++)
+        fprintf(stream, "  %-9s %s\n", (*command)->name, (*command)->summary);
     fputs("\ncorcast COMMAND --help tells the options of a command; '-' stands for standard input\n"
           "or output wherever a file may stand. Exit status: 0 done, 1 a comparison found a\n"
           "difference, 2 wrong usage or input, 3 a file, program or the memory failed.\n",
@@ -38,11 +39,23 @@ static const char *const help_words[] = {"--help", "-h", "help", NULL};
 static Status unknown_command(const char *name, Err *err)
 {
     Suggestion suggestion = suggestion_for(name, strlen(name));
-    for (const CommandEntry *entry = command_entries; entry->name; entry++)
-        suggestion_offer(&suggestion, entry->name);
+    for (const Command *const *command = all_commands; *command; command++)
+        suggestion_offer(&suggestion, (*command)->name);
     Status status = err_set(err, STATUS_USAGE,
                             "unknown command '%s'; corcast --help lists those there are", name);
     suggestion_add(&suggestion, "", err);
+    return status;
+}
+
+static Status run(const Command *command, int argc, char **argv, Err *err)
+{
+    Parsed parsed;
+    TRY(parsed_init(&parsed, command, err));
+    Status status = options_parse(&parsed, argc, argv, err);
+    if (status == STATUS_OK)
+        status = parsed.common.help ? help_print(command, err)
+                                    : command->run(parsed.options, &parsed, err);
+    parsed_release(&parsed);
     return status;
 }
 
@@ -65,11 +78,9 @@ int main(int argc, char **argv)
         return finish("", STATUS_OK, &err);
     }
     const char *name = argv[asks_help ? 2 : 1];
-    const CommandEntry *command = command_find(name);
+    const Command *command = command_find(name);
     if (!command)
         return finish("", unknown_command(name, &err), &err);
-    char help[] = "--help", *help_argv[] = {help};
-    return finish(
-        name, asks_help ? command->run(1, help_argv, &err) : command->run(argc - 2, argv + 2, &err),
-        &err);
+    Status status = asks_help ? help_print(command, &err) : run(command, argc - 2, argv + 2, &err);
+    return finish(name, status, &err);
 }

@@ -40,20 +40,74 @@ Status shown_name(const char *path, char **out, Err *err)
     return take_line(&name, out, err);
 }
 
-Status command_line_text(const char *command, int argc, char **argv, char **out, Err *err)
+/* Of a path the last component. What stands before a colon in a text is no path, as in
+ * mesh:FILE, and a file of the user's own is told from a template by its '/'. */
+static void put_shown_value(const Setting *setting, size_t at, Text *text)
 {
-    Text text = TEXT_INIT;
-    text_printf(&text, "corcast %s", command);
-    for (int i = 0; i < argc; i++) {
-        const char *equals = strchr(argv[i], '=');
-        size_t kept = equals ? (size_t)(equals + 1 - argv[i]) : 0;
-        Text word = TEXT_INIT;
-        text_append(&word, argv[i], kept);
-        text_puts(&word, file_name(argv[i] + kept));
-        text_puts(&text, " ");
-        put_shell_word(&text, text_chars(&word));
-        text_release(&word);
+    Text value = TEXT_INIT;
+    setting_put(setting, at, &value);
+    const char *whole = text_chars(&value), *name = whole;
+    OptionKind kind = setting->option->kind;
+    size_t kept = kind == OPTION_TEXT && whole && strchr(whole, ':')
+                      ? (size_t)(strchr(whole, ':') + 1 - whole)
+                      : 0;
+    Text shown = TEXT_INIT;
+    if (whole && (option_is_path(setting->option) || kept))
+        name = file_name(whole + kept);
+    text_append(&shown, whole, whole ? kept : 0);
+    text_puts(&shown, kind == OPTION_LOOKUP && name != whole ? "./" : "");
+    text_puts(&shown, name);
+    put_shell_word(text, text_chars(&shown));
+    text_release(&shown);
+    text_release(&value);
+}
+
+/* Appends the option as often as it has to be given. */
+static void put_shown(const Setting *setting, Text *text)
+{
+    bool output = strcmp(setting->option->name, "output") == 0;
+    for (size_t at = 0; at < setting_count(setting); at++) {
+        text_printf(text, output ? " -o" : " --%s", setting->option->name);
+        if (setting->option->kind == OPTION_FLAG)
+            continue;
+        text_puts(text, " ");
+        put_shown_value(setting, at, text);
     }
+}
+
+static bool is_told(const Setting *setting, const Setting *plain)
+{
+    const Option *option = setting->option;
+    return !option->aside && option->kind != OPTION_OUTPUT && option->kind != OPTION_FOLDER &&
+           setting_differs(setting, plain);
+}
+
+/* A name that looks like an option is no longer one behind "./". */
+static void put_operand(const char *path, Text *text)
+{
+    const char *name = file_name(path);
+    Text word = TEXT_INIT;
+    text_printf(&word, "%s%s", name[0] == '-' && name[1] ? "./" : "", name);
+    text_puts(text, " ");
+    put_shell_word(text, text_chars(&word));
+    text_release(&word);
+}
+
+Status command_line_text(const Parsed *parsed, char **out, Err *err)
+{
+    Parsed plain;
+    TRY(parsed_init(&plain, parsed->command, err));
+    Text text = TEXT_INIT;
+    text_printf(&text, "corcast %s", parsed->command->name);
+    for (int i = 0; i < parsed->n_operands; i++)
+        put_operand(parsed->operands[i], &text);
+    for (size_t i = 0; i < parsed->n_settings; i++)
+        if (is_told(&parsed->settings[i], &plain.settings[i]))
+            put_shown(&parsed->settings[i], &text);
+    const Setting *output = parsed_find(parsed, "output", strlen("output"));
+    if (output)
+        put_shown(output, &text);
+    parsed_release(&plain);
     return take_line(&text, out, err);
 }
 

@@ -10,8 +10,6 @@
 #include "surface/surface.h"
 #include "tree/tree.h"
 
-enum { PICTURE_OPTIONS = 24 };
-
 typedef struct PictureOptions {
     StageParams stage;
     int model, potential, joints, projection, view; /* choices */
@@ -26,11 +24,11 @@ typedef struct PictureOptions {
     int erf;          /* choice: ErfForm */
     double cell_beta; /* as in CellParams */
     Coloring coloring;
-    Option table[PICTURE_OPTIONS];
 } PictureOptions;
 
-/* Defaults, and the table that sets them; `options` must not move afterwards. */
-void picture_options_init(PictureOptions *options);
+/* Of zeroed options. */
+void picture_set_defaults(PictureOptions *options);
+extern const OptionTable picture_table; /* sets a PictureOptions */
 
 /* How POV-Ray's isosurface is cut into cells. */
 CellParams picture_cells(const PictureOptions *options);

@@ -1,29 +1,35 @@
+/* One driver for both commands that refine: it shows progress, and hears the first SIGINT. */
 #include "app/refining.h"
 
-#include <assert.h>
 #include <stdio.h>
-#include <string.h>
 
-void refining_init(Refining *refining)
-{
-    static const char *const levels[] = {[GROW_REFINE_NONE] = "none",
-                                         [GROW_REFINE_GEOMETRY] = "geometry",
-                                         [GROW_REFINE_TOPOLOGY] = "topology",
-                                         [GROW_REFINE_ANNEAL] = "anneal",
-                                         NULL};
-    *refining = (Refining){.level = GROW_REFINE_NONE};
-    const Option table[] = {
-        {"refine", OPTION_CHOICE, &refining->level, NULL, 0, 0, levels, "LEVEL",
-         "whole-tree optimisation"},
-        {"refine-seconds", OPTION_NUMBER, &refining->seconds, NULL, 0, 1e6, NULL, "S",
-         "at most this long; results then depend on the machine (0: as the moves allow)"},
-        {"refine-moves", OPTION_COUNT, &refining->moves, NULL, 0, 1e12, NULL, "N",
-         "moves tried at most (0: enough for the tree)"},
-        {0},
-    };
-    static_assert(sizeof table <= sizeof refining->table, "REFINING_OPTIONS is too small");
-    memcpy(refining->table, table, sizeof table);
-}
+static const char *const levels[] = {[GROW_REFINE_NONE] = "none",
+                                     [GROW_REFINE_GEOMETRY] = "geometry",
+                                     [GROW_REFINE_TOPOLOGY] = "topology",
+                                     [GROW_REFINE_ANNEAL] = "anneal",
+                                     NULL};
+
+static const Option rows[] = {
+    {.name = "refine",
+     SETS(CHOICE, Refining, level),
+     .choices = levels,
+     .group = GROUP_OPTIMUM,
+     .argument = "LEVEL",
+     .help = "whole-tree optimisation"},
+    {.name = "refine-seconds",
+     SETS(NUMBER, Refining, seconds),
+     FROM_TO(0, 1e6),
+     .group = GROUP_OPTIMUM,
+     .unit = "s",
+     .help = "at most this long, and results then depend on the machine; 0: as the moves allow"},
+    {.name = "refine-moves",
+     SETS(COUNT, Refining, moves),
+     FROM_TO(0, 1e12),
+     .group = GROUP_OPTIMUM,
+     .help = "moves tried at most; 0: enough for the tree"},
+};
+
+const OptionTable refining_table = OPTION_TABLE(rows);
 
 Status refining_check(const Refining *refining, const Parsed *parsed, Err *err)
 {
@@ -41,7 +47,7 @@ Status refining_apply(const Refining *refining, const Common *common, const Doma
     if (refining->level == GROW_REFINE_NONE)
         return STATUS_OK;
     Progress progress;
-    const RefineParams params = {.level = (GrowRefine)refining->level,
+    const RefineParams params = {.level = refining->level,
                                  .seconds = refining->seconds,
                                  .moves = refining->moves,
                                  .seed = common->seed,

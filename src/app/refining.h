@@ -5,17 +5,13 @@
 #include "app/options.h"
 #include "grow/grow.h"
 
-enum { REFINING_OPTIONS = 4 };
-
 typedef struct Refining {
-    int level; /* a GrowRefine */
+    GrowRefine level;
     double seconds;
     size_t moves;
-    Option table[REFINING_OPTIONS];
 } Refining;
 
-/* No refinement, and the table that sets it; `refining` must not move afterwards. */
-void refining_init(Refining *refining);
+extern const OptionTable refining_table; /* sets a Refining; a zeroed one is no refinement */
 
 /* STATUS_USAGE for bounds of a refinement that nobody asks for. */
 MUST_CHECK Status refining_check(const Refining *refining, const Parsed *parsed, Err *err);

@@ -11,9 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const viscosity_laws[] = {
+const char *const viscosity_law_names[] = {
     [VISCOSITY_CONSTANT] = "constant", [VISCOSITY_PRIES] = "pries", NULL};
-static const char *const terminal_flows[] = {
+const char *const terminal_flow_names[] = {
     [TERMINAL_FLOW_EQUAL] = "equal", [TERMINAL_FLOW_TERRITORY] = "territory", NULL};
 
 const MetaRow meta_rows[META_KEYS] = {
@@ -64,7 +64,7 @@ const MetaRow meta_rows[META_KEYS] = {
                             .meaning = "law of viscosity",
                             .option = "--viscosity-law",
                             .kind = META_WORD,
-                            .words = viscosity_laws},
+                            .words = viscosity_law_names},
     [META_HEMATOCRIT] = {.name = "hematocrit",
                          .meaning = "hematocrit",
                          .option = "--hematocrit",
@@ -78,7 +78,7 @@ const MetaRow meta_rows[META_KEYS] = {
                             .meaning = "what the flow through the terminals was made after",
                             .option = "--terminal-flow",
                             .kind = META_WORD,
-                            .words = terminal_flows},
+                            .words = terminal_flow_names},
 };
 
 void meta_release(TreeMeta *meta)

@@ -58,6 +58,9 @@ typedef struct MetaRow {
     const char *const *words; /* of META_WORD: those of the values 0, 1, ...; ends with NULL */
 } MetaRow;
 
+/* The words of a ViscosityLaw and of a TerminalFlow; NULL ends them. */
+extern const char *const viscosity_law_names[], *const terminal_flow_names[];
+
 /* The table, by MetaKey. */
 extern const MetaRow meta_rows[META_KEYS];
 

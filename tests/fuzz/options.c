@@ -6,54 +6,99 @@
 
 enum { MAX_ARGUMENTS = 40 };
 
+typedef struct Values {
+    bool flag, on, given;
+    const char *text;
+    int whole, size[2];
+    unsigned choice;
+    uint64_t seed;
+    size_t count;
+    double number, range[2];
+    Vec3 vector, color;
+    VectorList vectors;
+    NumberList numbers;
+} Values;
+
+static const char *const choices[] = {"one", "two", NULL};
+
+static const Option rows[] = {
+    {.name = "output", SETS(TEXT, Values, text), GIVEN(Values, given), .help = ""},
+    {.name = "flag", SETS(FLAG, Values, flag), .help = ""},
+    {.name = "on", SETS(SWITCH, Values, on), .help = ""},
+    {.name = "whole", SETS(WHOLE, Values, whole), FROM_TO(1, 9), .help = ""},
+    {.name = "from", SETS(SEED, Values, seed), .help = ""},
+    {.name = "count", SETS(COUNT, Values, count), FROM_TO(1, 1e6), .help = ""},
+    {.name = "number", SETS(NUMBER, Values, number), FROM_TO(0.5, RANGE_NO_END), .help = ""},
+    {.name = "vector", SETS(VECTOR, Values, vector), .help = ""},
+    {.name = "vectors", SETS(VECTORS, Values, vectors), .help = ""},
+    {.name = "numbers", SETS(NUMBERS, Values, numbers), .help = ""},
+    {.name = "color", SETS(COLOR, Values, color), .help = ""},
+    {.name = "size", SETS(SIZE, Values, size), FROM_TO(1, 9999), .help = ""},
+    {.name = "range", SETS(RANGE, Values, range), .help = ""},
+    {.name = "choice", SETS(CHOICE, Values, choice), .choices = choices, .help = ""},
+};
+
+static const OptionTable table = OPTION_TABLE(rows);
+
+static void set_defaults(void *options)
+{
+    *(Values *)options =
+        (Values){.whole = 4, .size = {1, 1}, .count = 4, .number = 4, .range[1] = 1};
+}
+
 static const Command command = {.name = "render",
                                 .summary = "fuzzed",
                                 .operands = "A",
                                 .examples = "",
-                                .min_operands = 0,
-                                .max_operands = 3};
+                                .max_operands = 3,
+                                .size = sizeof(Values),
+                                .set_defaults = set_defaults,
+                                .tables = {{&table, 0}}};
+
+static void check(const Values *values)
+{
+    assert(values->whole >= 1 && values->whole <= 9);
+    assert(values->count >= 1 && values->count <= 1000000 && values->number >= 0.5);
+    assert(values->size[0] >= 1 && values->size[0] <= 9999);
+    assert(values->size[1] >= 1 && values->size[1] <= 9999);
+    assert(values->range[0] < values->range[1] && values->choice < 2);
+    assert(values->color.x >= 0 && values->color.y <= 1);
+    assert(values->vectors.n <= MAX_LIST && values->numbers.n <= MAX_LIST);
+}
+
+/* What is written of an option reads back to what is written the same. */
+static void check_written(const Setting *setting, Parsed *again)
+{
+    const Setting *same = parsed_find(again, setting->option->name, strlen(setting->option->name));
+    Err err = {{0}};
+    for (size_t at = 0; at < setting_count(setting); at++) {
+        Text value = TEXT_INIT, other = TEXT_INIT;
+        setting_put(setting, at, &value);
+        Status status = setting_read(same, text_chars(&value), &err);
+        assert(status == STATUS_OK);
+        setting_put(same, at, &other);
+        assert(strcmp(text_chars(&value), text_chars(&other)) == 0);
+        text_release(&value);
+        text_release(&other);
+    }
+}
 
 static void parse(int n, char **arguments)
 {
-    static const char *const choices[] = {"one", "two", NULL};
-    bool flag, on, given;
-    const char *text = NULL;
-    int whole = 4, size[2] = {1, 1}, choice = 0;
-    uint64_t seed;
-    size_t count = 4;
-    double number = 4, range[2] = {0, 1};
-    Vec3 vector, color = {0};
-    VectorList vectors = {0};
-    NumberList numbers = {0};
-    const Option own[] = {
-        {"output", OPTION_TEXT, &text, &given, 0, 0, NULL, NULL, ""},
-        {"flag", OPTION_FLAG, &flag, NULL, 0, 0, NULL, NULL, ""},
-        {"on", OPTION_SWITCH, &on, NULL, 0, 0, NULL, NULL, ""},
-        {"whole", OPTION_WHOLE, &whole, NULL, 1, 9, NULL, NULL, ""},
-        {"from", OPTION_SEED, &seed, NULL, 0, 0, NULL, NULL, ""},
-        {"count", OPTION_COUNT, &count, NULL, 1, 1e6, NULL, NULL, ""},
-        {"number", OPTION_NUMBER, &number, NULL, 0.5, 1e300, NULL, NULL, ""},
-        {"vector", OPTION_VECTOR, &vector, NULL, 0, 0, NULL, NULL, ""},
-        {"vectors", OPTION_VECTORS, &vectors, NULL, 0, 0, NULL, NULL, ""},
-        {"numbers", OPTION_NUMBERS, &numbers, NULL, 0, 0, NULL, NULL, ""},
-        {"color", OPTION_COLOR, &color, NULL, 0, 0, NULL, NULL, ""},
-        {"size", OPTION_SIZE, size, NULL, 1, 9999, NULL, NULL, ""},
-        {"range", OPTION_RANGE, range, NULL, 0, 0, NULL, NULL, ""},
-        {"choice", OPTION_CHOICE, &choice, NULL, 0, 0, choices, NULL, ""},
-        {0},
-    };
-    const Option *const tables[] = {own, NULL};
-    Parsed parsed = {0};
+    Parsed parsed, again;
     Err err = {{0}};
-    if (options_parse(&command, tables, n, arguments, &parsed, &err) != STATUS_OK) {
-        assert(*err.text);
+    if (parsed_init(&parsed, &command, &err) != STATUS_OK)
         return;
+    if (options_parse(&parsed, n, arguments, &err) != STATUS_OK) {
+        assert(*err.text);
+    } else if (parsed_init(&again, &command, &err) == STATUS_OK) {
+        const Values *values = parsed.options;
+        check(values);
+        assert(parsed.n_operands <= 3 && (!values->text || strlen(values->text) < 1u << 20));
+        for (size_t i = 0; i < parsed.n_settings; i++)
+            check_written(&parsed.settings[i], &again);
+        parsed_release(&again);
     }
-    assert(whole >= 1 && whole <= 9 && count >= 1 && count <= 1000000 && number >= 0.5);
-    assert(size[0] >= 1 && size[0] <= 9999 && size[1] >= 1 && size[1] <= 9999);
-    assert(range[0] < range[1] && choice >= 0 && choice < 2);
-    assert(color.x >= 0 && color.y <= 1 && vectors.n <= MAX_LIST && numbers.n <= MAX_LIST);
-    assert(parsed.n_operands <= 3 && (!text || strlen(text) < 1u << 20));
     parsed_release(&parsed);
 }
 

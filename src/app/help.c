@@ -1,0 +1,104 @@
+/* The help of a command, made from its descriptions: usage, examples, and its options under their
+ * headings, each with what it takes and what holds without it. */
+#include "app/help.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { HELP_INDENT = 27, HELP_WIDTH = 90 };
+
+/* Appends words, wrapped, from column `column` on. */
+static void put_wrapped(const char *words, size_t column, Text *text)
+{
+    while (words && *words) {
+        size_t length = strcspn(words, " ");
+        if (column > HELP_INDENT && column + 1 + length > HELP_WIDTH) {
+            text_printf(text, "\n%*s", HELP_INDENT, "");
+            column = HELP_INDENT;
+        } else if (column > HELP_INDENT) {
+            text_puts(text, " ");
+            column++;
+        }
+        text_append(text, words, length);
+        column += length;
+        words += length + (words[length] == ' ');
+    }
+    text_puts(text, "\n");
+}
+
+void help_put_meaning(const Setting *plain, Text *text)
+{
+    const Option *option = plain->option;
+    Text allowed = TEXT_INIT, value = TEXT_INIT;
+    text_puts(text, option->help);
+    option_put_allowed(option, &allowed);
+    if (allowed.length)
+        text_puts(text, option->choices ? ": " : "; ");
+    text_add(text, &allowed);
+    if (option->otherwise)
+        text_puts(&value, option->otherwise);
+    else if (option->kind != OPTION_FLAG && setting_count(plain) > 0)
+        setting_put(plain, 0, &value);
+    if (value.length)
+        text_printf(text, " (%s)", text_chars(&value));
+    text_release(&allowed);
+    text_release(&value);
+}
+
+static void put_option(const Setting *plain, Text *text)
+{
+    const Option *option = plain->option;
+    Text left = TEXT_INIT, meaning = TEXT_INIT;
+    bool output = strcmp(option->name, "output") == 0;
+    text_printf(&left, "  %s--%s ", output ? "-o, " : "", option->name);
+    option_put_argument(option, &left);
+    help_put_meaning(plain, &meaning);
+    text_add(text, &left);
+    size_t column = left.length;
+    if (column + 2 > HELP_INDENT) {
+        text_puts(text, "\n");
+        column = 0;
+    }
+    text_printf(text, "%*s", (int)(HELP_INDENT - column), "");
+    put_wrapped(text_chars(&meaning), HELP_INDENT, text);
+    text_release(&left);
+    text_release(&meaning);
+}
+
+static void put_group(const Parsed *plain, OptionGroup group, Text *text)
+{
+    bool headed = false;
+    for (size_t i = 0; i < plain->n_settings; i++) {
+        if (plain->settings[i].option->group != group)
+            continue;
+        if (!headed)
+            text_printf(text, "\n%s:\n", option_group_names[group]);
+        headed = true;
+        put_option(&plain->settings[i], text);
+    }
+}
+
+static void put_help(const Parsed *plain, Text *text)
+{
+    const Command *command = plain->command;
+    text_printf(text, "corcast %s: %s\n\nusage: corcast %s%s%s\n", command->name, command->summary,
+                command->name, *command->operands ? " " : "", command->operands);
+    if (command->examples)
+        text_printf(text, "\nexamples:\n%s", command->examples);
+    for (int group = 0; group < OPTION_GROUPS; group++)
+        put_group(plain, (OptionGroup)group, text);
+}
+
+Status help_print(const Command *command, Err *err)
+{
+    Parsed plain;
+    Text text = TEXT_INIT;
+    TRY(parsed_init(&plain, command, err));
+    put_help(&plain, &text);
+    Status status = text_check(&text, err);
+    if (status == STATUS_OK)
+        fputs(text_chars(&text), stdout);
+    text_release(&text);
+    parsed_release(&plain);
+    return status;
+}
