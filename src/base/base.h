@@ -7,6 +7,7 @@
 #include "base/interrupt.h" // IWYU pragma: export
 #include "base/json.h"      // IWYU pragma: export
 #include "base/memory.h"    // IWYU pragma: export
+#include "base/number.h"    // IWYU pragma: export
 #include "base/progress.h"  // IWYU pragma: export
 #include "base/random.h"    // IWYU pragma: export
 #include "base/range.h"     // IWYU pragma: export

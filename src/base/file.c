@@ -4,6 +4,7 @@
 #include "base/file.h"
 
 #include "base/memory.h"
+#include "base/number.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>

@@ -1,6 +1,6 @@
 #include "base/memory.h"
 
-#include "base/text.h"
+#include "base/number.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
  * reading: the value m 2^e scaled to so many digits before the point is N / 2^shift with the whole
  * number N = m 5^k, which 128 bits hold, and the spacing of doubles there is 5^k in units of N. The
  * program never calls setlocale, so that printf and strtod use '.'. */
-#include "base/text.h"
+#include "base/number.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -2,7 +2,7 @@
  * greatest number: so all ranges are closed, and only their text knows the difference. */
 #include "base/range.h"
 
-#include "base/text.h"
+#include "base/number.h"
 #include <stdio.h>
 
 const char *range_text(Range range, char out[RANGE_TEXT_SIZE])

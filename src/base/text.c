@@ -1,6 +1,7 @@
 #include "base/text.h"
 
 #include "base/memory.h"
+#include "base/number.h"
 #include <errno.h>
 #include <stdint.h>
 #include <stdio.h>

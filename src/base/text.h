@@ -60,28 +60,7 @@ size_t utf8_length(const char *bytes);
  * of files, which may be any bytes, where UTF-8 is promised. */
 void text_utf8(Text *text, const char *chars);
 
-enum { NUMBER_TEXT_SIZE = 32 };
-
-/* The shortest decimal text that reads back to the same double, always with '.' as its decimal
- * point whatever the locale ("nan", "inf" and "-inf" for what is not finite). Writes to `out` and
- * returns it. */
-const char *number_text(double value, char out[NUMBER_TEXT_SIZE]);
-/* Likewise the shortest that reads back to the same float. */
-const char *number_text_float(float value, char out[NUMBER_TEXT_SIZE]);
+/* Appends it as number_text [base/number.h] writes it. */
 void text_number(Text *text, double value);
-
-enum { BYTES_TEXT_SIZE = 32 };
-
-/* A number of bytes as a reader says it, "312 bytes", "4.3 GB". Writes to `out` and returns it. */
-const char *bytes_text(double bytes, char out[BYTES_TEXT_SIZE]);
-
-/* Reads the whole of `chars` (zero-terminated; blanks at either end are not allowed) as a number
- * in decimal or exponent form. False when anything is left over or nothing is there; "nan" and
- * "inf" are read as such, so callers check with isfinite. */
-bool number_parse(const char *chars, double *out);
-/* Likewise `count` numbers parted by blanks, which may also stand at either end. */
-bool numbers_parse(const char *chars, size_t count, double *out);
-/* Likewise for a whole number in [minimum, maximum]. */
-bool integer_parse(const char *chars, long long minimum, long long maximum, long long *out);
 
 #endif

@@ -226,11 +226,11 @@ typedef struct Group {
     Lanes margin;
 } Group;
 
-typedef struct Sample {
+typedef struct PacketSample {
     Lanes phi, slope,
         curvature; /* curvature: M of the terms counted, and they are all until next */
     float next;
-} Sample;
+} PacketSample;
 
 /* Whether the term is above the cut-off on some of the rays. */
 LANE_FN bool matters(const PacketTerm *term, LaneMask rays)
@@ -238,7 +238,7 @@ LANE_FN bool matters(const PacketTerm *term, LaneMask rays)
     return lanes_any(rays & (term->peak > (float)TILE_TERM_CUTOFF));
 }
 
-LANE_FN void add_sample(const PacketTerm *term, Lanes z, Sample *sample)
+LANE_FN void add_sample(const PacketTerm *term, Lanes z, PacketSample *sample)
 {
     Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
     Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;
@@ -256,12 +256,12 @@ LANE_FN void add_sample(const PacketTerm *term, Lanes z, Sample *sample)
     sample->slope = lanes_fma(gauss, change, sample->slope);
 }
 
-LANE_FN Sample sample_at(const Group *group, Lanes z, LaneMask live)
+LANE_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
 {
     const Lanes far = lanes_set(1e30f);
     float first = lanes_least(lanes_select(live, z, far));
     float last = lanes_largest(lanes_select(live, z, -far));
-    Sample sample = {lanes_set(0), lanes_set(0), lanes_set(0), 1e30f};
+    PacketSample sample = {lanes_set(0), lanes_set(0), lanes_set(0), 1e30f};
     for (size_t i = 0; i < group->n; i++) {
         const PacketTerm *term = group->terms[i];
         if (term->on > last) {
@@ -313,7 +313,7 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, Lanes end, LaneM
                    LaneMask *unsure)
 {
     for (int steps = 0; lanes_any(live); steps++) {
-        Sample sample = sample_at(group, *z, live);
+        PacketSample sample = sample_at(group, *z, live);
         Lanes lack = LEVEL - sample.phi, safe = lack - group->margin, slope = sample.slope;
         Lanes curvature = lanes_max(sample.curvature, lanes_set(1e-30f));
         Lanes slope2 = square(slope);

@@ -24,7 +24,7 @@ typedef struct Ruling {
     Lanes k[5];
 } Ruling;
 
-RASTER_FN Lanes ruling_part(const Near *near, const SightLines *sight, const float by[3],
+RASTER_FN Lanes ruling_part(const NearItem *near, const SightLines *sight, const float by[3],
                             const float *run)
 {
     if (!near->perspective) {
@@ -42,7 +42,7 @@ RASTER_FN Lanes ruling_part(const Near *near, const SightLines *sight, const flo
     return lanes_fma(sight->y, lanes_fma(-sight->dx, rz, lanes_set(run[0])), part);
 }
 
-RASTER_FN Ruling ruling_of(const Near *near, const RasterJoint *joint, const SightLines *sight)
+RASTER_FN Ruling ruling_of(const NearItem *near, const RasterJoint *joint, const SightLines *sight)
 {
     return (Ruling){{ruling_part(near, sight, joint->by[0], joint->span),
                      ruling_part(near, sight, joint->by[1], joint->da),
@@ -117,20 +117,20 @@ RASTER_FN void add_fall(Falls *falls, LaneMask there, float low, float high, flo
     }
 }
 
-typedef struct Piece {
+typedef struct QuarticPiece {
     Bernstein g;
     LaneMask among;
     float low, size;
-} Piece;
+} QuarticPiece;
 
 /* Parts the falls in one half of the circle. */
 LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, Falls *falls)
 {
-    Piece pieces[MOST_PIECES];
+    QuarticPiece pieces[MOST_PIECES];
     int n = 0;
-    pieces[n++] = (Piece){half_circle(g, half), among, -1, 2};
+    pieces[n++] = (QuarticPiece){half_circle(g, half), among, -1, 2};
     while (n > 0) {
-        Piece *piece = &pieces[n - 1];
+        QuarticPiece *piece = &pieces[n - 1];
         LaneMask count = changes_of(&piece->g);
         LaneMask single = piece->among & (count == -1) & (piece->g.b[0] >= 0.0f);
         if (lanes_any(single))
@@ -244,7 +244,7 @@ RASTER_FN Line3 ruling_line(const RasterJoint *joint, Lanes cosine, Lanes sine)
 }
 
 /* How far along the ruling, in its length, the lines pass it. */
-RASTER_FN Lanes ruling_place(const Near *near, const SightLines *sight, const Line3 *line,
+RASTER_FN Lanes ruling_place(const NearItem *near, const SightLines *sight, const Line3 *line,
                              Lanes off[2], Lanes run[2])
 {
     off[0] = line->start[0] - sight->x;
@@ -263,9 +263,9 @@ RASTER_FN Lanes ruling_place(const Near *near, const SightLines *sight, const Li
 
 /* Where the lines `among` enter the joint; *unsure is set where that takes double precision. Of the
  * lines `known` one entry is known, and only others count. */
-RASTER_FN LaneMask joint_entry(const Near *near, const RasterJoint *joint, const SightLines *sight,
-                               LaneMask among, LaneMask known, Lanes *z, Lanes *ruling,
-                               LaneMask *unsure)
+RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
+                               const SightLines *sight, LaneMask among, LaneMask known, Lanes *z,
+                               Lanes *ruling, LaneMask *unsure)
 {
     Ruling g = ruling_of(near, joint, sight);
     Falls falls;
@@ -300,7 +300,7 @@ RASTER_FN LaneMask joint_entry(const Near *near, const RasterJoint *joint, const
     return met & ~*unsure;
 }
 
-RASTER_FN void joint_normal(const Near *near, const RasterJoint *joint, const SightLines *sight,
+RASTER_FN void joint_normal(const NearItem *near, const RasterJoint *joint, const SightLines *sight,
                             Lanes u, Lanes normal[3])
 {
     Lanes u2 = u * u, per = 1.0f / (1.0f + u2), off[2], run[2];

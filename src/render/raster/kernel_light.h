@@ -114,7 +114,7 @@ typedef struct ProbeBlock {
 } ProbeBlock;
 
 /* As item_covers() of one probe, in double precision. */
-LANE_TARGET static bool decide_probe(const Near *near, const RasterTile *tile,
+LANE_TARGET static bool decide_probe(const NearItem *near, const RasterTile *tile,
                                      const RasterProbes *probes, int probe)
 {
     uint32_t place = probes->place[probe], sample = place % TILE_SAMPLES;
@@ -125,7 +125,7 @@ LANE_TARGET static bool decide_probe(const Near *near, const RasterTile *tile,
 
 /* Lines that may enter the item before depths z from its middle, by its capsule and without a root.
  * Joints may be hit 1e-4 of their radius beside the line. */
-RASTER_FN LaneMask may_enter(const Near *near, const SightLines *sight, Lanes z)
+RASTER_FN LaneMask may_enter(const NearItem *near, const SightLines *sight, Lanes z)
 {
     const RasterItem *item = near->item;
     const float radius = item->radius * 1.0002f;
@@ -152,7 +152,7 @@ RASTER_FN LaneMask may_enter(const Near *near, const SightLines *sight, Lanes z)
 }
 
 /* Narrows the depths between which lines may be in a joint to those between its ends. */
-RASTER_FN void clip_to_ends(const RasterHull *hull, const Near *near, const SightLines *sight,
+RASTER_FN void clip_to_ends(const RasterHull *hull, const NearItem *near, const SightLines *sight,
                             Lanes *from, Lanes *to)
 {
     for (int i = 0; i < 2; i++) {
@@ -176,7 +176,8 @@ RASTER_FN void clip_to_ends(const RasterHull *hull, const Near *near, const Sigh
  * line is nearest to the axis, it is, if (1 - taper^2) distance^2 - (middle - s taper)^2 = a t^2 +
  * 2 b t + c
  * <= 0; a line that runs more steeply than the cone, a <= 0, may be. */
-RASTER_FN LaneMask in_cone(const RasterHull *hull, const Passage *passage, Lanes from, Lanes to)
+RASTER_FN LaneMask in_cone(const RasterHull *hull, const CylinderPassage *passage, Lanes from,
+                           Lanes to)
 {
     const float least = 1e-3f;
     Lanes taper = lanes_set(hull->taper), per = 1.0f - taper * taper;
@@ -191,13 +192,13 @@ RASTER_FN LaneMask in_cone(const RasterHull *hull, const Passage *passage, Lanes
 /* Lines that may enter a joint before depths z from its middle. Where it is looked at along its
  * axis, the capsule has no walls to tell that by. Its hits may lie off_joint_line beside a line,
  * and so before the wall of the capsule by the root of twice that at most, in radii. */
-RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const Near *near,
+RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const NearItem *near,
                                    const SightLines *sight, Lanes z)
 {
     const RasterHull *hull = &tile->bins->hulls[near->item->joint];
     if (!(near->per_sine < most_per_sine))
         return ~(LaneMask){0};
-    Passage passage = pass_cylinder(near, sight);
+    CylinderPassage passage = pass_cylinder(near, sight);
     float margin = 0.015f * near->item->radius * near->per_sine;
     Lanes from = passage.middle - passage.half - margin;
     Lanes to = lanes_min(z, passage.middle + passage.half);
@@ -206,8 +207,9 @@ RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const Near *near,
 }
 
 /* Whether the item is seen before the probes' depths. */
-RASTER_FN LaneMask item_covers(const Near *near, const RasterTile *tile, const RasterProbes *probes,
-                               int first, const ProbeBlock *block, LaneMask among)
+RASTER_FN LaneMask item_covers(const NearItem *near, const RasterTile *tile,
+                               const RasterProbes *probes, int first, const ProbeBlock *block,
+                               LaneMask among)
 {
     const Lanes z = block->z;
     SightLines sight = sight_of(near, block->x, block->y);
@@ -287,7 +289,8 @@ RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int fir
         for (uint32_t left = bits; left; left &= left - 1)
             __builtin_prefetch(&tile->items[tile->list[i + (size_t)__builtin_ctz(left)]]);
         for (; bits; bits &= bits - 1) {
-            Near near = approach(tile, tile->list[i + (size_t)__builtin_ctz(bits)], perspective);
+            NearItem near =
+                approach(tile, tile->list[i + (size_t)__builtin_ctz(bits)], perspective);
             LaneMask among = open & (block.z > near.z_near) & (block.item != (int32_t)near.number);
             if (lanes_any(among))
                 open &= ~item_covers(&near, tile, probes, first, &block, among);

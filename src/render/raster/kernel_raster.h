@@ -35,7 +35,7 @@ RASTER_FN void set_farthest(RasterState *state, int block, float depth)
 }
 
 /* Keeps what is nearer, and returns where that is. */
-RASTER_FN LaneMask keep_nearer(RasterState *state, const Near *near, uint32_t number, int block,
+RASTER_FN LaneMask keep_nearer(RasterState *state, const NearItem *near, uint32_t number, int block,
                                LaneMask met, Lanes z)
 {
     RasterHits *hits = state->hits;
@@ -66,7 +66,7 @@ RASTER_FN void keep_normal(TileHits *surface, int block, LaneMask of, const Lane
 }
 
 /* Decides the samples `unsure` of a block in double precision. */
-LANE_TARGET static void decide_block(RasterState *state, const Near *near, int block,
+LANE_TARGET static void decide_block(RasterState *state, const NearItem *near, int block,
                                      LaneMask unsure)
 {
     const RasterTile *tile = state->tile;
@@ -86,7 +86,7 @@ LANE_TARGET static void decide_block(RasterState *state, const Near *near, int b
     set_farthest(state, block, lanes_largest(lanes_load(&hits->z[block * LANES])));
 }
 
-RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
+RASTER_FN void meet_block(RasterState *state, const NearItem *near, int block)
 {
     const RasterGrid *grid = state->tile->grid;
     SightLines sight =
@@ -124,7 +124,7 @@ RASTER_FN void meet_block(RasterState *state, const Near *near, int block)
 
 /* The parts of the tile that the item's capsule may touch and that do not all see something
  * nearer, as bits. */
-RASTER_FN unsigned touched_parts(const RasterState *state, const Near *near)
+RASTER_FN unsigned touched_parts(const RasterState *state, const NearItem *near)
 {
     const RasterGrid *grid = state->tile->grid;
     const float *xs = PART == 8 ? grid->block8_x : grid->block4_x;
@@ -155,7 +155,7 @@ RASTER_FN void trace_items(RasterState *state, bool perspective)
 {
     const RasterTile *tile = state->tile;
     for (size_t i = 0; i < tile->n; i++) {
-        Near near = approach(tile, tile->list[i], perspective);
+        NearItem near = approach(tile, tile->list[i], perspective);
         outline(tile, &near);
         unsigned parts = touched_parts(state, &near);
         if (item_is_close(near.item))
@@ -206,7 +206,7 @@ RASTER_FN void resolve_joint(const RasterTile *tile, const RasterHits *hits, uin
                              int block, LaneMask of, bool perspective, TileHits *surface)
 {
     int first = block * LANES;
-    Near near = approach(tile, number, perspective);
+    NearItem near = approach(tile, number, perspective);
     SightLines sight =
         sight_of(&near, lanes_load(&tile->grid->x[first]), lanes_load(&tile->grid->y[first]));
     Lanes normal[3];

@@ -31,7 +31,7 @@ typedef struct SightLines {
 } SightLines;
 
 /* An item as one tile sees it. */
-typedef struct Near {
+typedef struct NearItem {
     const RasterItem *item;
     bool perspective;
     uint32_t kind;
@@ -45,12 +45,12 @@ typedef struct Near {
         reach_across; /* its capsule's outline at the middle's depth */
     float axis[3];
     float per_sine; /* depth on the tile's middle line per distance from the axis */
-} Near;
+} NearItem;
 
 /* The outline of the capsule in the plane of its middle's depth, looked at along the tile's
  * middle; wider in perspective, where what is nearer or farther than the middle is seen at
  * another scale. */
-RASTER_FN void outline(const RasterTile *tile, Near *near)
+RASTER_FN void outline(const RasterTile *tile, NearItem *near)
 {
     const RasterItem *item = near->item;
     near->along_x = item->ex;
@@ -69,10 +69,10 @@ RASTER_FN void outline(const RasterTile *tile, Near *near)
     near->reach_along = size * item->half + near->reach_across;
 }
 
-RASTER_FN Near approach(const RasterTile *tile, uint32_t number, bool perspective)
+RASTER_FN NearItem approach(const RasterTile *tile, uint32_t number, bool perspective)
 {
     const RasterItem *item = &tile->items[number];
-    Near near;
+    NearItem near;
     near.item = item;
     near.perspective = perspective;
     near.kind = item->kind;
@@ -106,7 +106,7 @@ RASTER_FN Near approach(const RasterTile *tile, uint32_t number, bool perspectiv
     return near;
 }
 
-RASTER_FN SightLines sight_of(const Near *near, Lanes x, Lanes y)
+RASTER_FN SightLines sight_of(const NearItem *near, Lanes x, Lanes y)
 {
     SightLines sight;
     if (near->perspective) {
@@ -123,7 +123,7 @@ RASTER_FN SightLines sight_of(const Near *near, Lanes x, Lanes y)
 }
 
 /* Whether lines of sight may touch the item's capsule. */
-RASTER_FN LaneMask within_outline(const Near *near, const SightLines *sight)
+RASTER_FN LaneMask within_outline(const NearItem *near, const SightLines *sight)
 {
     Lanes x = lanes_set(near->along_x), y = lanes_set(near->along_y);
     Lanes off = lanes_abs(lanes_fma(sight->y, x, -(sight->x * y)));
@@ -134,7 +134,7 @@ RASTER_FN LaneMask within_outline(const Near *near, const SightLines *sight)
 /* ---- spheres and cylinders ------------------------------------------------------------------- */
 
 /* Where the lines enter the sphere, as depth from its middle. */
-RASTER_FN LaneMask sphere_entry(const Near *near, const SightLines *sight, Lanes *z)
+RASTER_FN LaneMask sphere_entry(const NearItem *near, const SightLines *sight, Lanes *z)
 {
     float radius2 = near->item->radius * near->item->radius;
     if (!near->perspective) {
@@ -153,7 +153,7 @@ RASTER_FN LaneMask sphere_entry(const Near *near, const SightLines *sight, Lanes
 }
 
 /* How lines of sight run through an endless cylinder. */
-typedef struct Passage {
+typedef struct CylinderPassage {
     LaneMask met;
     Lanes middle; /* depth where they are nearest to the axis, from that of the cylinder's middle */
     Lanes half;   /* of what is inside, in depth */
@@ -161,7 +161,7 @@ typedef struct Passage {
     Lanes rate;   /* of that with depth */
     Lanes off2;   /* their distance there, squared; t of depth farther it has grown by sine2 t^2 */
     Lanes sine2;
-} Passage;
+} CylinderPassage;
 
 /* How lines that are not parallel pass an axis u: n = D x u, P the place where they pass its
  * middle's depth. */
@@ -172,7 +172,7 @@ typedef struct Crossing {
     Lanes rate;  /* D . u */
 } Crossing;
 
-RASTER_FN Crossing cross_axis(const Near *near, const SightLines *sight)
+RASTER_FN Crossing cross_axis(const NearItem *near, const SightLines *sight)
 {
     Lanes ux = lanes_set(near->axis[0]), uy = lanes_set(near->axis[1]);
     Lanes uz = lanes_set(near->axis[2]);
@@ -187,9 +187,9 @@ RASTER_FN Crossing cross_axis(const Near *near, const SightLines *sight)
     return crossing;
 }
 
-RASTER_FN Passage pass_cylinder(const Near *near, const SightLines *sight)
+RASTER_FN CylinderPassage pass_cylinder(const NearItem *near, const SightLines *sight)
 {
-    Passage passage;
+    CylinderPassage passage;
     const RasterItem *item = near->item;
     float radius2 = item->radius * item->radius;
     Lanes zero = lanes_set(0);
@@ -223,13 +223,13 @@ RASTER_FN Passage pass_cylinder(const Near *near, const SightLines *sight)
 /* How lines of sight enter a cylinder. */
 typedef struct CylinderEntry {
     LaneMask on_disc;
-    Lanes rate;  /* as in Passage */
+    Lanes rate;  /* as in CylinderPassage */
     Lanes along; /* of the point of the axis that the surface is about, but that of a disc */
 } CylinderEntry;
 
 /* Of lines that come to the endless cylinder off its ends, `along` its axis, those that may enter a
  * round end. */
-RASTER_FN LaneMask before_ball(const Near *near, Lanes along, LaneMask outside)
+RASTER_FN LaneMask before_ball(const NearItem *near, Lanes along, LaneMask outside)
 {
     LaneMask low = along < 0.0f;
     LaneMask flat_low = low & -(int32_t)!near->item->round_low;
@@ -238,7 +238,7 @@ RASTER_FN LaneMask before_ball(const Near *near, Lanes along, LaneMask outside)
 }
 
 /* Where the lines enter the ball of the cylinder's radius that is so far along its axis. */
-RASTER_FN LaneMask ball_entry(const Near *near, const SightLines *sight, Lanes along, Lanes *z)
+RASTER_FN LaneMask ball_entry(const NearItem *near, const SightLines *sight, Lanes along, Lanes *z)
 {
     Lanes depth = along * near->axis[2];
     SightLines ball = *sight;
@@ -254,12 +254,12 @@ RASTER_FN LaneMask ball_entry(const Near *near, const SightLines *sight, Lanes a
 }
 
 /* Where the lines enter the cylinder. */
-RASTER_FN LaneMask cylinder_entry(const Near *near, const SightLines *sight, Lanes *z,
+RASTER_FN LaneMask cylinder_entry(const NearItem *near, const SightLines *sight, Lanes *z,
                                   CylinderEntry *entry)
 {
     const RasterItem *item = near->item;
     float half = item->half;
-    Passage passage = pass_cylinder(near, sight);
+    CylinderPassage passage = pass_cylinder(near, sight);
     /* Counted from the end that a line comes to first, lengths grow with depth. */
     Lanes along = passage.along, rate = passage.rate, grows = lanes_set(1);
     if (near->perspective) {
@@ -290,7 +290,8 @@ RASTER_FN LaneMask cylinder_entry(const Near *near, const SightLines *sight, Lan
 }
 
 /* The normals where the lines enter the sphere at depths z. */
-RASTER_FN void sphere_normal(const Near *near, const SightLines *sight, Lanes z, Lanes normal[3])
+RASTER_FN void sphere_normal(const NearItem *near, const SightLines *sight, Lanes z,
+                             Lanes normal[3])
 {
     float per = 1 / near->item->radius;
     normal[0] = lanes_fma(z, sight->dx, sight->x) * per;
@@ -299,7 +300,7 @@ RASTER_FN void sphere_normal(const Near *near, const SightLines *sight, Lanes z,
 }
 
 /* The normals where the lines enter the cylinder at depths z. */
-RASTER_FN void cylinder_normal(const Near *near, const SightLines *sight, Lanes z,
+RASTER_FN void cylinder_normal(const NearItem *near, const SightLines *sight, Lanes z,
                                const CylinderEntry *entry, Lanes normal[3])
 {
     float per = 1 / near->item->radius;
