@@ -1,16 +1,16 @@
 /* The proof of a first hit.
  *
  * Along a ray every term is exp(-e^2 - w^2) (erf(u) + erf(h - u)) / 2 with a constant e, the
- * distance of the ray from the axis line, and w and u affine in t. Only passages, the stretches
- * where a term may exceed the cut-off, are looked at, and the ray is done group by group, a group
- * being a maximal run of passages that overlap. T is the level.
+ * distance of the ray from the axis line, and w and u affine in t. A term counts
+ * on the stretch where it may exceed the cut-off, and the ray is done group by group, a group being
+ * a maximal run of terms whose stretches overlap. T is the level.
  *
  * - Windows. Phi >= T among n terms needs one of them to be T / n at least. With the peak p of the
  *   term that is w^2 <= ln(n p / T) - e^2, and beyond an end by x, where the term is at most
  *   exp(-e^2 - x^2) / 2, x^2 <= ln(n / 2T) - e^2. Outside these windows there is no hit.
- * - Safe steps. On [t, next), until another passage begins, Phi'' is at most M, the sum over terms
- *   of exp(-e^2) (0.8926 p w'^2 + 0.9682 |w' u'| + 0.4840 u'^2): with G = exp(-w^2) and A the axial
- *   factor, the suprema of G'', 2 |G'| |A'| and A'' are 4 exp(-3/2), 2 sqrt(2/e) / sqrt(pi) and
+ * - Safe steps. On [t, next), until another term's stretch begins, Phi'' is at most M, the sum over
+ * terms of exp(-e^2) (0.8926 p w'^2 + 0.9682 |w' u'| + 0.4840 u'^2): with G = exp(-w^2) and A the
+ * axial factor, the suprema of G'', 2 |G'| |A'| and A'' are 4 exp(-3/2), 2 sqrt(2/e) / sqrt(pi) and
  *   sqrt(2/e) / sqrt(pi). With lack = T - Phi(t) and the slope of Phi at t, Phi stays below T up to
  *   the positive root of lack = slope x + M x^2 / 2. Such steps converge quadratically from before
  *   the surface.
@@ -23,7 +23,7 @@
  * left. */
 #include "render/cast/field.h"
 
-#include "render/cast/passage.h"
+#include "render/cast/rayterms.h"
 #include "surface/surface.h"
 #include <float.h>
 
@@ -40,9 +40,9 @@ static double next_window(const FieldScratch *scratch, double t)
 {
     double next = HUGE_VAL;
     for (size_t i = 0; i < scratch->n_group; i++) {
-        const Passage *passage = scratch->group[i];
-        if (passage->window1 >= t)
-            next = fmin(next, fmax(passage->window0, t));
+        const RayTerm *term = scratch->group[i];
+        if (term->window1 >= t)
+            next = fmin(next, fmax(term->window0, t));
     }
     return next;
 }
@@ -51,35 +51,35 @@ static double next_window(const FieldScratch *scratch, double t)
 typedef struct Sample {
     double phi, slope;
     double convex, concave; /* bounds of phi'' and -phi'' until `next` */
-    double next;            /* where the next passage begins */
+    double next;            /* where the next term's stretch begins */
 } Sample;
 
-static void add_term(const Passage *passage, double t, Sample *sample)
+static void add_term(const RayTerm *term, double t, Sample *sample)
 {
-    double x = t - passage->t_mid;
-    double w = passage->w0 + passage->w1 * x;
-    double u = passage->u0 + passage->u1 * x;
-    double v = passage->h - u;
-    double gauss = passage->radial * exp(-w * w);
+    double x = t - term->t_mid;
+    double w = term->w0 + term->w1 * x;
+    double u = term->u0 + term->u1 * x;
+    double v = term->h - u;
+    double gauss = term->radial * exp(-w * w);
     double ends = (u < saturated ? erf(u) : 1) + (v < saturated ? erf(v) : 1);
     double end_slope = (u < saturated ? exp(-u * u) : 0) - (v < saturated ? exp(-v * v) : 0);
     sample->phi += 0.5 * gauss * ends;
-    sample->slope += gauss * (inv_sqrt_pi * passage->u1 * end_slope - w * passage->w1 * ends);
-    sample->convex += passage->convex;
-    sample->concave += passage->concave;
+    sample->slope += gauss * (inv_sqrt_pi * term->u1 * end_slope - w * term->w1 * ends);
+    sample->convex += term->convex;
+    sample->concave += term->concave;
 }
 
 static Sample sample_at(const FieldScratch *scratch, double t)
 {
     Sample sample = {.next = HUGE_VAL};
     for (size_t i = 0; i < scratch->n_group; i++) {
-        const Passage *passage = scratch->group[i];
-        if (passage->t0 > t) {
-            sample.next = passage->t0;
+        const RayTerm *term = scratch->group[i];
+        if (term->t0 > t) {
+            sample.next = term->t0;
             break;
         }
-        if (passage->t1 >= t)
-            add_term(passage, t, &sample);
+        if (term->t1 >= t)
+            add_term(term, t, &sample);
     }
     return sample;
 }
@@ -196,15 +196,15 @@ static void describe_hit(Search *search, double t)
     double largest = -1;
     search->t = t;
     for (size_t i = 0; i < scratch->n_group; i++) {
-        const Passage *passage = scratch->group[i];
-        if (passage->t0 > t || passage->t1 < t)
+        const RayTerm *term = scratch->group[i];
+        if (term->t0 > t || term->t1 < t)
             continue;
         Vec3 gradient;
-        uint32_t number = passage->segment;
-        double term = potential_term_gradient(&search->scene->segments[number], x, &gradient);
+        uint32_t number = term->segment;
+        double value = potential_term_gradient(&search->scene->segments[number], x, &gradient);
         sum = vec3_add(sum, gradient);
-        if (term > largest || (term == largest && number < search->segment)) {
-            largest = term;
+        if (value > largest || (value == largest && number < search->segment)) {
+            largest = value;
             search->segment = number;
         }
     }
@@ -213,11 +213,11 @@ static void describe_hit(Search *search, double t)
                                 steepness > 0 ? -1 / steepness : -1);
 }
 
-/* The first hit of the sum of the passages that the scratch holds. */
+/* The first hit of the sum of the terms that the scratch holds. */
 static bool hit_of_sum(Search *search)
 {
-    while (passages_next_group(search->scratch)) {
-        if (!passages_find_windows(search->scratch))
+    while (rayterms_next_group(search->scratch)) {
+        if (!rayterms_find_windows(search->scratch))
             continue;
         double t = first_crossing(search);
         if (t <= search->t_max) {
@@ -228,19 +228,19 @@ static bool hit_of_sum(Search *search)
     return false;
 }
 
-/* Makes the terms listed the scratch's passages. */
+/* Makes the scratch hold the terms of the segments listed. */
 static void pass_all(const Search *search, const uint32_t *list, size_t n)
 {
-    passages_clear(search->scratch);
+    rayterms_clear(search->scratch);
     for (size_t i = 0; i < n; i++) {
         FieldTube tube = fieldtube_of(&search->scene->segments[list[i]], list[i]);
         if (tube.reach2 > 0)
-            passages_add(search->scratch, &tube, search->ray, search->t_min, search->t_max);
+            rayterms_add(search->scratch, &tube, search->ray, search->t_min, search->t_max);
     }
-    passages_order(search->scratch);
+    rayterms_order(search->scratch);
 }
 
-/* The same for those of the terms that blend with the one numbered i. */
+/* The same for those of the segments that blend with the one numbered i. */
 static void pass_joined(const Search *search, const uint32_t *list, size_t n, size_t i)
 {
     size_t joined = 0;
@@ -250,14 +250,14 @@ static void pass_joined(const Search *search, const uint32_t *list, size_t n, si
     pass_all(search, search->scratch->joined, joined);
 }
 
-/* If the ray is at t_min inside the body that the scratch's passages make, moves t_min to where it
+/* If the ray is at t_min inside the body that the scratch's terms make, moves t_min to where it
  * leaves, infinite if that is beyond t_max, describes that place and returns true. *deep tells
  * whether it was more than skin there, and is left alone if not. */
 static bool leave_body(Search *search, bool *deep)
 {
     const FieldScratch *scratch = search->scratch;
-    while (passages_next_group(search->scratch) && scratch->group[0]->t0 <= search->t_min) {
-        if (!passages_find_windows(search->scratch))
+    while (rayterms_next_group(search->scratch) && scratch->group[0]->t0 <= search->t_min) {
+        if (!rayterms_find_windows(search->scratch))
             continue;
         Sample start = sample_at(scratch, search->t_min);
         if (!is_inside(&start))
@@ -329,12 +329,12 @@ bool field_first_hit_among(const Scene *scene, const uint32_t *list, size_t n,
 static bool search_index(const FieldIndex *index, Search *search)
 {
     FieldScratch *scratch = search->scratch;
-    passages_find(index, scratch, search->ray, search->t_min, search->t_max);
+    rayterms_find(index, scratch, search->ray, search->t_min, search->t_max);
     if (!index->scene->blend.first)
         return hit_of_sum(search);
-    size_t n = scratch->n_passages;
+    size_t n = scratch->n_terms;
     for (size_t i = 0; i < n; i++)
-        scratch->near[i] = scratch->passages[i].segment;
+        scratch->near[i] = scratch->terms[i].segment;
     return hit_of_union(search, scratch->near, n);
 }
 

@@ -4,15 +4,9 @@
 
 #include "base/base.h"
 #include "geom/geom.h"
+#include "render/cast/rayterms.h"
 #include "scene/scene.h"
 #include "surface/surface.h"
-
-/* The workspace of one thread: room for `capacity` segments on one ray, of which only the part that
- * rays need is ever touched. Nothing is allocated later. */
-typedef struct FieldScratch FieldScratch;
-
-MUST_CHECK Status fieldscratch_new(size_t capacity, FieldScratch **out, Err *err);
-void fieldscratch_free(FieldScratch *scratch);
 
 /* The first point at t in [t_min, t_max] where Phi crosses FIELD_LEVEL along the ray; t_min is
  * finite, t_max may be infinite. False when there is none. That is where Phi rises through it, but

@@ -1,8 +1,8 @@
-/* A passage is kept relative to t_mid, where the ray is nearest to the segment, so that nothing is
+/* A term is kept relative to t_mid, where the ray is nearest to the segment, so that nothing is
  * lost to a distant camera or a long segment. The support of a term is taken to be a cylinder about
- * its capsule; both are convex, so a passage is one interval. Passages are ordered by a heap: a ray
- * that hits its first group never orders the rest. */
-#include "render/cast/passage.h"
+ * its capsule; both are convex, so a term counts on one interval. Terms are ordered by a heap: a
+ * ray that hits its first group never orders the rest. */
+#include "render/cast/rayterms.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -14,11 +14,11 @@ Status fieldscratch_new(size_t n, FieldScratch **out, Err *err)
     Status status;
     FieldScratch *scratch = NULL;
     TRY_GOTO(mem_calloc(&scratch, 1, sizeof *scratch, "field workspaces", err));
-    TRY_GOTO(mem_calloc(&scratch->passages, n, sizeof *scratch->passages, "passages", err));
-    TRY_GOTO(mem_calloc(&scratch->heap, n, sizeof *scratch->heap, "passages", err));
-    TRY_GOTO(mem_calloc(&scratch->group, n, sizeof *scratch->group, "passages", err));
-    TRY_GOTO(mem_calloc(&scratch->near, n, sizeof *scratch->near, "passages", err));
-    TRY_GOTO(mem_calloc(&scratch->joined, n, sizeof *scratch->joined, "passages", err));
+    TRY_GOTO(mem_calloc(&scratch->terms, n, sizeof *scratch->terms, "terms of a ray", err));
+    TRY_GOTO(mem_calloc(&scratch->heap, n, sizeof *scratch->heap, "terms of a ray", err));
+    TRY_GOTO(mem_calloc(&scratch->group, n, sizeof *scratch->group, "terms of a ray", err));
+    TRY_GOTO(mem_calloc(&scratch->near, n, sizeof *scratch->near, "terms of a ray", err));
+    TRY_GOTO(mem_calloc(&scratch->joined, n, sizeof *scratch->joined, "terms of a ray", err));
     *out = scratch;
     return STATUS_OK;
 done:
@@ -30,7 +30,7 @@ void fieldscratch_free(FieldScratch *scratch)
 {
     if (!scratch)
         return;
-    free(scratch->passages);
+    free(scratch->terms);
     free(scratch->heap);
     free(scratch->group);
     free(scratch->near);
@@ -39,26 +39,26 @@ void fieldscratch_free(FieldScratch *scratch)
 }
 
 /* Where w^2 <= w2_max and u is at most `beyond` outside [0, h]. */
-static bool stretch(const Passage *passage, double w2_max, double beyond, double *t0, double *t1)
+static bool stretch(const RayTerm *term, double w2_max, double beyond, double *t0, double *t1)
 {
     if (w2_max < 0)
         return false;
     double low = -HUGE_VAL, high = HUGE_VAL;
-    if (passage->w1 > 0) {
+    if (term->w1 > 0) {
         double w_max = sqrt(w2_max);
-        low = (-w_max - passage->w0) / passage->w1;
-        high = (w_max - passage->w0) / passage->w1;
+        low = (-w_max - term->w0) / term->w1;
+        high = (w_max - term->w0) / term->w1;
     }
-    double u_low = -beyond - passage->u0, u_high = passage->h + beyond - passage->u0;
-    if (passage->u1 != 0) {
-        double first = u_low / passage->u1, last = u_high / passage->u1;
+    double u_low = -beyond - term->u0, u_high = term->h + beyond - term->u0;
+    if (term->u1 != 0) {
+        double first = u_low / term->u1, last = u_high / term->u1;
         low = fmax(low, fmin(first, last));
         high = fmin(high, fmax(first, last));
     } else if (u_low > 0 || u_high < 0) {
         return false;
     }
-    *t0 = passage->t_mid + low;
-    *t1 = passage->t_mid + high;
+    *t0 = term->t_mid + low;
+    *t1 = term->t_mid + high;
     return low <= high;
 }
 
@@ -73,7 +73,7 @@ static double nearest_parameter(const FieldTube *tube, Ray ray, double cosine)
     return vec3_dot(vec3_add_scaled(to_a, tube->axis, along), ray.direction);
 }
 
-static bool pass_tube(const FieldTube *tube, Ray ray, Passage *passage)
+static bool pass_tube(const FieldTube *tube, Ray ray, RayTerm *term)
 {
     double k = tube->k, cosine = vec3_dot(tube->axis, ray.direction);
     double t_mid = nearest_parameter(tube, ray, cosine);
@@ -84,27 +84,26 @@ static bool pass_tube(const FieldTube *tube, Ray ray, Passage *passage)
     double w1 = vec3_length(across1);
     double w0 = w1 > 0 ? vec3_dot(across, across1) / w1 : 0;
     double e2 = fmax(vec3_dot(across, across) - w0 * w0, 0);
-    *passage = (Passage){.t_mid = t_mid,
-                         .w0 = w0,
-                         .w1 = w1,
-                         .u0 = k * along,
-                         .u1 = k * cosine,
-                         .h = tube->length_k,
-                         .e2 = e2,
-                         .peak = tube->peak,
-                         .log_peak = tube->log_peak,
-                         .segment = tube->segment};
-    return stretch(passage, tube->reach2 - e2, sqrt(tube->reach2), &passage->t0, &passage->t1);
+    *term = (RayTerm){.t_mid = t_mid,
+                      .w0 = w0,
+                      .w1 = w1,
+                      .u0 = k * along,
+                      .u1 = k * cosine,
+                      .h = tube->length_k,
+                      .e2 = e2,
+                      .peak = tube->peak,
+                      .log_peak = tube->log_peak,
+                      .segment = tube->segment};
+    return stretch(term, tube->reach2 - e2, sqrt(tube->reach2), &term->t0, &term->t1);
 }
 
-static void bound_curvature(Passage *passage)
+static void bound_curvature(RayTerm *term)
 {
-    double w1 = passage->w1, u1 = fabs(passage->u1);
-    passage->radial = exp(-passage->e2);
+    double w1 = term->w1, u1 = fabs(term->u1);
+    term->radial = exp(-term->e2);
     double both = 0.9682 * w1 * u1;
-    passage->convex =
-        passage->radial * (0.8926 * passage->peak * w1 * w1 + both + 0.4840 * u1 * u1);
-    passage->concave = passage->radial * (2 * passage->peak * w1 * w1 + both + 0.9680 * u1 * u1);
+    term->convex = term->radial * (0.8926 * term->peak * w1 * w1 + both + 0.4840 * u1 * u1);
+    term->concave = term->radial * (2 * term->peak * w1 * w1 + both + 0.9680 * u1 * u1);
 }
 
 /* Whether the ray meets the box in [t0, t1]. Where the ray runs within the plane of a face the
@@ -122,14 +121,14 @@ static bool meets_node(const FieldNode *node, const double origin[3], const doub
     return t0 <= t1;
 }
 
-static bool is_before(const Passage *a, const Passage *b)
+static bool is_before(const RayTerm *a, const RayTerm *b)
 {
     return a->t0 != b->t0 ? a->t0 < b->t0 : a->segment < b->segment;
 }
 
-static void sift_down(Passage **heap, size_t n, size_t hole)
+static void sift_down(RayTerm **heap, size_t n, size_t hole)
 {
-    Passage *item = heap[hole];
+    RayTerm *item = heap[hole];
     for (size_t child; (child = 2 * hole + 1) < n; hole = child) {
         if (child + 1 < n && is_before(heap[child + 1], heap[child]))
             child++;
@@ -140,35 +139,35 @@ static void sift_down(Passage **heap, size_t n, size_t hole)
     heap[hole] = item;
 }
 
-void passages_clear(FieldScratch *scratch)
+void rayterms_clear(FieldScratch *scratch)
 {
-    scratch->n_passages = 0;
+    scratch->n_terms = 0;
 }
 
-void passages_add(FieldScratch *scratch, const FieldTube *tube, Ray ray, double t_min, double t_max)
+void rayterms_add(FieldScratch *scratch, const FieldTube *tube, Ray ray, double t_min, double t_max)
 {
-    Passage *passage = &scratch->passages[scratch->n_passages];
-    if (pass_tube(tube, ray, passage) && passage->t1 >= t_min && passage->t0 <= t_max)
-        scratch->n_passages++;
+    RayTerm *term = &scratch->terms[scratch->n_terms];
+    if (pass_tube(tube, ray, term) && term->t1 >= t_min && term->t0 <= t_max)
+        scratch->n_terms++;
 }
 
-void passages_order(FieldScratch *scratch)
+void rayterms_order(FieldScratch *scratch)
 {
-    scratch->n_heap = scratch->n_passages;
+    scratch->n_heap = scratch->n_terms;
     for (size_t i = 0; i < scratch->n_heap; i++)
-        scratch->heap[i] = &scratch->passages[i];
+        scratch->heap[i] = &scratch->terms[i];
     for (size_t i = scratch->n_heap / 2; i-- > 0;)
         sift_down(scratch->heap, scratch->n_heap, i);
 }
 
-void passages_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
+void rayterms_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                    double t_max)
 {
     const double origin[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
     const double inverse[3] = {1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
     uint32_t stack[FIELD_STACK_SIZE];
     int top = 0;
-    passages_clear(scratch);
+    rayterms_clear(scratch);
     if (index->n_nodes)
         stack[top++] = 0;
     while (top > 0) {
@@ -181,19 +180,19 @@ void passages_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, doub
             stack[top++] = number + 1;
         }
         for (uint32_t i = node->first; i < node->first + node->n_tubes; i++)
-            passages_add(scratch, &index->tubes[i], ray, t_min, t_max);
+            rayterms_add(scratch, &index->tubes[i], ray, t_min, t_max);
     }
-    passages_order(scratch);
+    rayterms_order(scratch);
 }
 
-bool passages_next_group(FieldScratch *scratch)
+bool rayterms_next_group(FieldScratch *scratch)
 {
     double end = HUGE_VAL;
     scratch->n_group = 0;
     while (scratch->n_heap && scratch->heap[0]->t0 <= end) {
-        Passage *passage = scratch->heap[0];
-        end = scratch->n_group ? fmax(end, passage->t1) : passage->t1;
-        scratch->group[scratch->n_group++] = passage;
+        RayTerm *term = scratch->heap[0];
+        end = scratch->n_group ? fmax(end, term->t1) : term->t1;
+        scratch->group[scratch->n_group++] = term;
         scratch->heap[0] = scratch->heap[--scratch->n_heap];
         if (scratch->n_heap)
             sift_down(scratch->heap, scratch->n_heap, 0);
@@ -201,19 +200,19 @@ bool passages_next_group(FieldScratch *scratch)
     return scratch->n_group > 0;
 }
 
-bool passages_find_windows(FieldScratch *scratch)
+bool rayterms_find_windows(FieldScratch *scratch)
 {
     bool any = false;
     double log_share = log((double)scratch->n_group / FIELD_LEVEL);
     for (size_t i = 0; i < scratch->n_group; i++) {
-        Passage *passage = scratch->group[i];
-        double w2_max = log_share + passage->log_peak - passage->e2;
-        double beyond = sqrt(fmax(log_share - ln2 - passage->e2, 0));
-        if (stretch(passage, w2_max, beyond, &passage->window0, &passage->window1)) {
+        RayTerm *term = scratch->group[i];
+        double w2_max = log_share + term->log_peak - term->e2;
+        double beyond = sqrt(fmax(log_share - ln2 - term->e2, 0));
+        if (stretch(term, w2_max, beyond, &term->window0, &term->window1)) {
             any = true;
         } else {
-            passage->window0 = HUGE_VAL;
-            passage->window1 = -HUGE_VAL;
+            term->window0 = HUGE_VAL;
+            term->window1 = -HUGE_VAL;
         }
     }
     for (size_t i = 0; any && i < scratch->n_group; i++)

@@ -1,0 +1,52 @@
+/* The terms of the potential along one ray, and the groups in which their stretches overlap;
+ * field.c says why. */
+#ifndef CORCAST_RENDER_RAYTERMS_H
+#define CORCAST_RENDER_RAYTERMS_H
+
+#include "base/base.h"
+#include "surface/surface.h"
+
+/* How the ray passes a tube: the term at t_mid + x is radial exp(-w^2) (erf(u) + erf(h - u)) / 2,
+ * w = w0 + w1 x, u = u0 + u1 x. */
+typedef struct RayTerm {
+    double t0, t1;           /* the term may exceed the cut-off in between */
+    double window0, window1; /* it may be what the group needs in between; empty when reversed */
+    double t_mid;
+    double w0, w1, u0, u1, h;
+    double e2, radial; /* e^2, exp(-e^2) */
+    double peak, log_peak;
+    double convex, concave; /* bounds of the second derivative and of its negative, 1/mm^2 */
+    uint32_t segment;
+} RayTerm;
+
+/* The workspace of one thread: room for so many segments on one ray, of which only the part that
+ * rays need is ever touched. Nothing is allocated later. */
+typedef struct FieldScratch {
+    RayTerm *terms;
+    RayTerm **heap;  /* by t0, then segment */
+    RayTerm **group; /* by t0 */
+    size_t n_terms, n_heap, n_group;
+    uint32_t *near, *joined; /* segments on a ray, and those of them that blend */
+} FieldScratch;
+
+/* Room for `n` segments. STATUS_MEMORY. */
+MUST_CHECK Status fieldscratch_new(size_t n, FieldScratch **out, Err *err);
+void fieldscratch_free(FieldScratch *scratch);
+
+/* Empties the scratch. Follow with rayterms_add for every segment that may matter in [t_min,
+ * t_max], t_max finite, and then rayterms_order; rayterms_find does all three. */
+void rayterms_clear(FieldScratch *scratch);
+void rayterms_add(FieldScratch *scratch, const FieldTube *tube, Ray ray, double t_min,
+                  double t_max);
+void rayterms_order(FieldScratch *scratch);
+void rayterms_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
+                   double t_max);
+
+/* Makes the next run of terms whose stretches overlap the group. False when none is left. */
+bool rayterms_next_group(FieldScratch *scratch);
+
+/* Sets the windows of the group, outside which its potential is below the level, and, when there is
+ * any, `radial` and the bounds of the curvature. False when there is none. */
+bool rayterms_find_windows(FieldScratch *scratch);
+
+#endif
