@@ -1,5 +1,7 @@
 #include "any_file.h"
+#include "verify/check.h"
 #include "verify/verify.h"
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -243,6 +245,135 @@ static void merges_a_page_with_an_empty_part(void **state)
     free(page);
 }
 
+static const char *at_of(const char *page, const char *part)
+{
+    const char *at = strstr(page, part);
+    if (!at)
+        fail_msg("\"%s\" is missing", part);
+    return at;
+}
+
+/* The first case agrees, the second differs by 31 levels; A's limit of 2 ppm is broken 4,630 fold.
+ */
+static void merges_cases_worst_first_under_numbers_of_their_own(void **state)
+{
+    (void)state;
+    static const char *const folders[] = {"build/report_test/one", "build/report_test/two"};
+    bool agree = true;
+    for (int i = 0; i < 2; i++) {
+        Scene scene;
+        scene_init(&scene, i * 31);
+        scene.report.name = i ? "second" : "first";
+        assert_int_equal(file_make_folder(folders[i], &err), STATUS_OK);
+        assert_int_equal(report_write(&scene.report, templates, folders[i], &err), STATUS_OK);
+        assert_float_equal(report_severity(&scene.report), i ? 4629.62963F : 0, 1e-3F);
+        scene_release(&scene);
+    }
+    write_output("power.json",
+                 "{\"faults\": [{\"fault\": \"<f>\", \"model\": \"blob\", \"A\": true,"
+                 " \"B\": false}], \"limits\": [{\"parameter\": \"p\", \"A\": 0.0123}],"
+                 " \"alarms\": [], \"clean_scenes\": 3, \"povray_scenes\": 4}");
+    assert_int_equal(report_merge(folders, 2, "build/report_test/power.json", templates,
+                                  "build/report_test/all.html", &agree, &err),
+                     STATUS_OK);
+    assert_false(agree);
+    char *page = read_output("all.html");
+    assert_holds(page, "1 of 2 cases <span class=\"bad\">differ</span>");
+    assert_true(at_of(page, "<tr data-case=\"case-2\">") <
+                at_of(page, "<tr data-case=\"case-1\">"));
+    assert_true(at_of(page, "id=\"case-2\"") < at_of(page, "id=\"case-1\""));
+    assert_true(at_of(page, "<a href=\"#case-2\">second</a>") <
+                at_of(page, "<a href=\"#case-1\">first</a>"));
+    assert_holds(page, "<th>&lt;f&gt;</th><td>blob</td><td>✓</td><td>–</td><td></td>");
+    assert_holds(page, "<td>p</td><td></td><td></td><td class=\"number\">0.012</td>");
+    assert_holds(page, "0 false alarms about 7 clean scenes");
+    free(page);
+}
+
+static void merges_no_page_of_another_program(void **state)
+{
+    (void)state;
+    bool agree = true;
+    assert_int_equal(file_make_folder(folder, &err), STATUS_OK);
+    write_output("report.html", "<html></html>");
+    write_output("report.json", "{\"severity\": 3}");
+    assert_int_equal(
+        report_merge(&folder, 1, NULL, templates, "build/report_test/no.html", &agree, &err),
+        STATUS_INPUT);
+    assert_holds(err.text, "report.html: is not a report of this version of corcast");
+    write_output("report.html", "<!-- row: begin -->\n<!-- row: end -->\n<!-- case: begin -->\n"
+                                "<!-- case: end -->\n");
+    write_output("report.json", "{\"severity\": \"3\"}");
+    assert_int_equal(
+        report_merge(&folder, 1, NULL, templates, "build/report_test/no.html", &agree, &err),
+        STATUS_INPUT);
+    assert_holds(err.text, "report.json: has no number \"severity\"");
+}
+
+/* ---- surface --------------------------------------------------------------------------------- */
+
+/* Depths of 7 pixels in a row, how far they may be apart, and what is found. */
+typedef struct Surface {
+    float a[7], b[7], allowed[7];
+    SurfaceCheck found;
+} Surface;
+
+static void check_surface_of(Surface *surface)
+{
+    const Plane a = {.width = 7, .height = 1, .channels = 1, .values = surface->a};
+    const Plane b = {.width = 7, .height = 1, .channels = 1, .values = surface->b};
+    const Plane allowed = {.width = 7, .height = 1, .channels = 1, .values = surface->allowed};
+    const SurfacePlanes planes = {.a = &a, .b = &b, .allowed = &allowed};
+    assert_int_equal(surface_check(&planes, &surface->found, &err), STATUS_OK);
+}
+
+#define OUT INFINITY
+
+static void an_isosurface_is_where_the_search_saw_it_to_what_is_allowed(void **state)
+{
+    (void)state;
+    Surface s = {.a = {3, 5.5f, 7, OUT, 9, OUT, 11},
+                 .b = {3, 5.25f, 7.125f, OUT, OUT, 6, 11.5f},
+                 .allowed = {1, 0.5f, 0.25f, 1, OUT, OUT, 0.5f}};
+    check_surface_of(&s);
+    assert_true(s.found.agrees);
+    assert_string_equal(s.found.reason, "");
+    assert_int_equal(s.found.pixels, 7);
+    assert_int_equal(s.found.common, 4);
+    assert_int_equal(s.found.grazing, 2); /* seen on one side only, as a grazing ray may be */
+    assert_int_equal(s.found.missing + s.found.extra + s.found.beyond, 0);
+    assert_float_equal(s.found.median_mm, 0.125, 0);
+    assert_float_equal(s.found.p99_mm, 0.5, 0);
+    assert_float_equal(s.found.max_mm, 0.5, 0);
+    assert_float_equal(s.found.max_ratio, 1, 0);
+    assert_int_equal(s.found.worst_x, 6);
+}
+
+static void a_surface_that_is_missing_extra_or_too_far_is_found_out(void **state)
+{
+    (void)state;
+    static const struct {
+        float a, b;
+        size_t missing, extra, beyond;
+        const char *reason;
+    } cases[] = {
+        {9, OUT, 1, 0, 0, "1 pixels are seen by POV-Ray's root finder alone and 0 by proof"},
+        {OUT, 9, 0, 1, 0, "0 pixels are seen by POV-Ray's root finder alone and 1 by proof"},
+        {9, 10, 0, 0, 1, "the worst 4 times, at (4, 0)"},
+        {9, NAN, 1, 0, 0, "1 pixels are seen by POV-Ray's root finder alone"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Surface s = {.a = {3, 5, 7, OUT, cases[i].a, OUT, OUT},
+                     .b = {3, 5, 7, OUT, cases[i].b, OUT, OUT},
+                     .allowed = {1, 1, 1, 1, 0.25f, 1, 1}};
+        check_surface_of(&s);
+        assert_false(s.found.agrees);
+        assert_int_equal(s.found.missing, cases[i].missing);
+        assert_int_equal(s.found.extra, cases[i].extra);
+        assert_int_equal(s.found.beyond, cases[i].beyond);
+        assert_holds(s.found.reason, cases[i].reason);
+    }
+}
+
 static void writes_the_same_bytes_again(void **state)
 {
     (void)state;
@@ -287,6 +418,10 @@ int main(void)
         cmocka_unit_test(writes_numbers_that_read_back_to_the_same_double),
         cmocka_unit_test(shows_names_that_are_not_utf8_with_replacement_characters),
         cmocka_unit_test(merges_a_page_with_an_empty_part),
+        cmocka_unit_test(merges_cases_worst_first_under_numbers_of_their_own),
+        cmocka_unit_test(merges_no_page_of_another_program),
+        cmocka_unit_test(an_isosurface_is_where_the_search_saw_it_to_what_is_allowed),
+        cmocka_unit_test(a_surface_that_is_missing_extra_or_too_far_is_found_out),
         cmocka_unit_test(writes_the_same_bytes_again),
         cmocka_unit_test(says_when_the_template_is_missing),
     };
