@@ -1,5 +1,5 @@
-/* One table row a field. The functions write every node, roots with whatever suits their sweep;
- * here the roots become NAN. */
+/* One table row a field; what no row names may be a column of the tree. The functions write every
+ * node, roots with whatever suits their sweep; here the roots become NAN. */
 #include "derive/derive.h"
 
 #include "derive/fields.h"
@@ -57,11 +57,13 @@ const char *derive_field_unit(size_t i)
     return i < N_RULES ? rules[i].unit : NULL;
 }
 
-static Status unknown_field(const char *name, Err *err)
+static Status unknown_field(const Tree *tree, const char *name, Err *err)
 {
     Text known = TEXT_INIT;
     for (size_t i = 0; i < N_RULES; i++)
         text_printf(&known, "%s%s", i ? ", " : "", rules[i].name);
+    for (size_t k = 0; k < tree->n_columns; k++)
+        text_printf(&known, ", %s", tree->column[k].name);
     Status status = text_check(&known, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE, "there is no field '%.40s'; known are %s", name,
@@ -74,11 +76,14 @@ Status derive_field(const Tree *tree, const TreeMeta *said, const char *name, Fi
                     Err *err)
 {
     const FieldRule *rule = find_rule(name);
-    if (!rule)
-        return unknown_field(name, err);
+    const TreeColumn *column = tree_column(tree, name);
+    if (!rule && !column)
+        return unknown_field(tree, name, err);
     double *value = NULL;
     TRY(mem_calloc(&value, tree->n, sizeof *value, "field values", err));
-    Status status = rule->fill(tree, said, value, err);
+    if (!rule)
+        memcpy(value, column->value, tree->n * sizeof *value);
+    Status status = rule ? rule->fill(tree, said, value, err) : STATUS_OK;
     if (status != STATUS_OK) {
         if (status == STATUS_INPUT) /* a need(), whose sentence goes on from here */
             err_prefix(err, "the field %s ", rule->name);
@@ -88,7 +93,8 @@ Status derive_field(const Tree *tree, const TreeMeta *said, const char *name, Fi
     for (size_t i = 0; i < tree->n; i++)
         if (!tree_is_segment(tree, i))
             value[i] = (double)NAN;
-    *field = (Field){rule->name, rule->unit, value, tree->n};
+    *field =
+        (Field){rule ? rule->name : column->name, rule ? rule->unit : column->unit, value, tree->n};
     return STATUS_OK;
 }
 

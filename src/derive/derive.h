@@ -20,29 +20,34 @@ typedef struct Field {
 
 /* The field called `name` in *field (owned; field_release) [Neumann et al. 1996, sec. 2]:
  *
- *     radius    mm
- *     length    mm
- *     flow      ml/min  Q = S Q_perf / S_all, S the flow shares at and below the segment and S_all
- *                       those of the tree; in a tree without shares of its own, S counts terminals
- *     velocity  mm/s    the mean, v = Q / (pi r^2)
- *     pressure  mmHg    p_perf less the drops 8 mu l Q / (pi r^4) from the root to here
- * (Poiseuille) wss       Pa      wall shear stress 4 mu Q / (pi r^3) reynolds          2 rho v r /
- * mu, rho = 1.05e-3 g/mm^3 level             bifurcations from the root to the segment's start
- *     strahler          1 at terminals; the largest order m of the daughters, m + 1 where at least
- *                       two have it [Strahler 1957]
- *     diameter-strahler Strahler orders that heed diameters [Jiang, Kassab & Fung, J. Appl.
- * Physiol. 76 (1994) 882-892]: 1 at terminals; else m, the largest of the daughters, or m + 1 if
- * the diameter is above (D_m + S_m + D_m+1 - S_m+1) / 2, D and S mean and standard deviation of the
- * diameters of all vessels of that order, from Strahler orders on until at most 1 % of the vessels
- * change. A vessel is all that lies between two branchings branch            main branch, numbered
- * from 1 in array order: at each bifurcation the thickest daughter (the first of several) continues
- * its parent's, and the others begin new ones, as do all segments that leave a root
+ *     radius     mm
+ *     length     mm
+ *     flow       ml/min  Q = S Q_perf / S_all, S the flow shares at and below the segment and S_all
+ *                        those of the tree; in a tree without shares of its own, S counts terminals
+ *     velocity   mm/s    the mean, v = Q / (pi r^2)
+ *     pressure   mmHg    p_perf less the drops 8 mu l Q / (pi r^4) on the way (Poiseuille)
+ *     wss        Pa      wall shear stress 4 mu Q / (pi r^3)
+ *     reynolds           2 rho v r / mu, rho = 1.05e-3 g/mm^3
+ *     level              bifurcations from the root to the segment's start
+ *     strahler           1 at terminals; the largest order m of the daughters, m + 1 where at least
+ *                        two have it [Strahler 1957]
+ *     diameter-strahler  1 at terminals; else m, the largest of the daughters, or m + 1 if the
+ *                        diameter is above (D_m + S_m + D_m+1 - S_m+1) / 2, D and S mean and
+ *                        standard deviation of the diameters of all vessels of that order, from
+ *                        Strahler orders on until at most 1 % of the vessels change; a vessel is
+ *                        all that lies between two branchings [Jiang, Kassab & Fung, J. Appl.
+ *                        Physiol. 76 (1994) 882-892]
+ *     branch             main branch, numbered from 1 in array order: at each bifurcation the
+ *                        thickest daughter (the first of several) continues its parent's, and the
+ *                        others begin new ones, as do all segments that leave a root
  *
- * mu is the constant viscosity of the blood, or viscosity_pries_pa_s of each segment's radius.
- * Velocity, wall shear stress and Reynolds number of a segment of radius 0 are not defined: NAN;
- * so are the pressures at and below one. Capitals in a name are as small letters. What the
- * user has `said` goes before what the tree says. STATUS_USAGE for an unknown name; STATUS_INPUT,
- * naming the option and the key of the file, when neither says what the field needs. */
+ * or else the column of the tree of this name. mu is the constant viscosity of the blood, or
+ * viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and Reynolds number of
+ * a segment of radius 0 are not defined: NAN; so are the pressures at and below one. Capitals in
+ * the name of a field are as small letters. What the user has `said` goes before what the tree
+ * says. The names in *field are borrowed, of a column from the tree. STATUS_USAGE for an unknown
+ * name; STATUS_INPUT, naming the option and the key of the file, when neither says what the field
+ * needs. */
 MUST_CHECK Status derive_field(const Tree *tree, const TreeMeta *said, const char *name,
                                Field *field, Err *err);
 void field_release(Field *field);

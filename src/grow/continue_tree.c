@@ -138,9 +138,24 @@ static Status restore_nodes(const Tree *from, const Network *net, Tree *out, Err
     return STATUS_OK;
 }
 
+/* New nodes have no value. */
+static Status restore_columns(const Tree *from, const Network *net, Tree *out, Err *err)
+{
+    for (size_t k = 0; k < from->n_columns; k++) {
+        const TreeColumn *column = &from->column[k];
+        double *value;
+        TRY(tree_add_column(out, column->name, column->unit, &value, err));
+        for (size_t i = 0; i < out->n; i++)
+            if (net->trait[i].origin >= 0)
+                value[i] = column->value[net->trait[i].origin];
+    }
+    return STATUS_OK;
+}
+
 Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *err)
 {
     TRY(restore_nodes(from, net, out, err));
+    TRY(restore_columns(from, net, out, err));
     for (size_t i = 0; i < from->meta.n_lines; i++)
         if (from->meta.line[i].text)
             TRY(meta_add_text(&out->meta, from->meta.line[i].key, from->meta.line[i].text, err));

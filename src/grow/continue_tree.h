@@ -15,8 +15,8 @@ MUST_CHECK Status continue_check(const GrowParams *params, const Domain *domain,
 /* Makes the tree, which continue_check accepts, part of `net`, which is empty and has traits. */
 void continue_from(const Tree *from, Network *net);
 
-/* Gives the nodes of `out`, which are those of `net`, that were in `from` their ids and types back,
- * and the others the smallest ids that are free; and appends the remarks and command
+/* Gives the nodes of `out`, which are those of `net`, that were in `from` their ids, types and
+ * columns back, and the others the smallest ids that are free; and appends the remarks and command
  * lines of `from`. */
 MUST_CHECK Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *err);
 

@@ -141,7 +141,7 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
     TRY_GOTO(describe(params, domain, &made.meta, err));
     static_assert(TREE_NO_PARENT == -1, "as in a Segment");
     for (size_t i = 0; i < net->n; i++) {
-        made.type[i] = GROW_SWC_TYPE;
+        made.type[i] = TREE_VESSEL_TYPE;
         made.parent[i] = net->segment[i].parent;
         made.position[i] = net->position[i];
     }

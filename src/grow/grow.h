@@ -21,10 +21,6 @@ typedef enum GrowToss {
 
 enum { GROW_MAX_TERMINALS = 8000000, GROW_MAX_CANDIDATES = 1000, GROW_MAX_INLETS = 64 };
 
-/* The SWC type code of all nodes of a grown tree: SWC has none for arteries, and 3 is what files of
- * arterial trees use. */
-enum { GROW_SWC_TYPE = 3 };
-
 typedef struct GrowParams {
     size_t terminals; /* in [1, GROW_MAX_TERMINALS] */
     double gamma;     /* Murray exponent; META_GAMMA has its range, and so on */
@@ -91,9 +87,9 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  * over the domain that are nearer to it than to any other. Centrelines do not cross. The same
  * parameters give the same tree, bit for bit. `report` may be NULL.
  *
- * Grown on from another tree, all nodes of that one are in *out with their ids and types, and so
- * are its remarks; new nodes take the smallest ids that are free. New segments are in the domain
- * and keep clear of each other and of the given ones, but for those of a vessel of several
+ * Grown on from another tree, all nodes of that one are in *out with their ids, types and columns,
+ * and so are its remarks; new nodes take the smallest ids that are free. New segments are in the
+ * domain and keep clear of each other and of the given ones, but for those of a vessel of several
  * segments, of which they only keep off the centrelines; given segments may be anywhere.
  *
  * Fails with STATUS_USAGE as grow_params_check does, STATUS_INPUT when `from` is not as above or
@@ -139,12 +135,12 @@ uint64_t refine_moves(GrowRefine level, size_t terminals);
  * meta_check_cco asks for; flows may be unequal. `domain` holds all of it;
  * NULL: it may be anywhere.
  *
- * Inlet, terminals, node types, flow shares and meta stay. Nodes are in depth-first order with
- * ids 1 .. n, and radii follow from the places by Murray's law and the pressures, which hold to
- * rounding. All that moves stays in the domain; segments that are longer than wide and clear of
- * those they share no node with stay so, and where they were not it does not get worse; the levels
- * above geometry also try to make all of them so. If more than one in ten were not, all vessels
- * count at a smaller part of their radii [report].
+ * Inlet, terminals, node types, flow shares and meta stay, columns go. Nodes are in depth-first
+ * order with ids 1 .. n, and radii follow from the places by Murray's law and the pressures, which
+ * hold to rounding. All that moves stays in the domain; segments that are longer than wide and
+ * clear of those they share no node with stay so, and where they were not it does not get worse;
+ * the levels above geometry also try to make all of them so. If more than one in ten were not, all
+ * vessels count at a smaller part of their radii [report].
  *
  * With a budget of moves alone, the same tree and parameters give the same bits. `report` may be
  * NULL. Fails, *tree unchanged, with STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree

@@ -28,6 +28,13 @@ done:
     return status;
 }
 
+static void release_column(TreeColumn *column)
+{
+    free(column->name);
+    free(column->unit);
+    free(column->value);
+}
+
 void tree_release(Tree *tree)
 {
     free(tree->id);
@@ -36,6 +43,9 @@ void tree_release(Tree *tree)
     free(tree->position);
     free(tree->radius_mm);
     free(tree->flow_share);
+    for (size_t k = 0; k < tree->n_columns; k++)
+        release_column(&tree->column[k]);
+    free(tree->column);
     meta_release(&tree->meta);
     *tree = (Tree){0};
 }
@@ -62,6 +72,34 @@ Status tree_add_flow_shares(Tree *tree, Err *err)
 {
     assert(!tree->flow_share);
     return mem_calloc(&tree->flow_share, tree->n, sizeof *tree->flow_share, "flow shares", err);
+}
+
+const TreeColumn *tree_column(const Tree *tree, const char *name)
+{
+    for (size_t k = 0; k < tree->n_columns; k++)
+        if (strcmp(tree->column[k].name, name) == 0)
+            return &tree->column[k];
+    return NULL;
+}
+
+Status tree_add_column(Tree *tree, const char *name, const char *unit, double **value, Err *err)
+{
+    assert(*name && !tree_column(tree, name));
+    TreeColumn made = {0};
+    Status status = STATUS_OK;
+    size_t capacity = tree->n_columns;
+    TRY_GOTO(mem_strdup(&made.name, name, err));
+    TRY_GOTO(mem_strdup(&made.unit, unit, err));
+    TRY_GOTO(mem_calloc(&made.value, tree->n, sizeof *made.value, "values of a column", err));
+    TRY_GOTO(mem_reserve(&tree->column, &capacity, capacity + 1, sizeof made, "columns", err));
+    for (size_t i = 0; i < tree->n; i++)
+        made.value[i] = (double)NAN;
+    tree->column[tree->n_columns++] = made;
+    *value = made.value;
+done:
+    if (status != STATUS_OK)
+        release_column(&made);
+    return status;
 }
 
 Status tree_flow_shares(const Tree *tree, double **share, Err *err)
@@ -150,6 +188,19 @@ static Status prune_flow_shares(const Tree *tree, const int32_t *place, Tree *ou
     return STATUS_OK;
 }
 
+static Status prune_columns(const Tree *tree, const int32_t *place, Tree *out, Err *err)
+{
+    for (size_t k = 0; k < tree->n_columns; k++) {
+        const TreeColumn *column = &tree->column[k];
+        double *value;
+        TRY(tree_add_column(out, column->name, column->unit, &value, err));
+        for (size_t i = 0; i < tree->n; i++)
+            if (place[i] != DROPPED)
+                value[place[i]] = column->value[i];
+    }
+    return STATUS_OK;
+}
+
 Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
 {
     int32_t *place = NULL; /* of each node in the new tree */
@@ -175,6 +226,7 @@ Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
         made.radius_mm[at] = tree->radius_mm[i];
     }
     TRY_GOTO(prune_flow_shares(tree, place, &made, err));
+    TRY_GOTO(prune_columns(tree, place, &made, err));
     *out = made;
 done:
     if (status != STATUS_OK)

@@ -10,6 +10,7 @@
 
 #include "base/base.h"
 #include "geom/geom.h"
+#include "tree/builder.h"   // IWYU pragma: export
 #include "tree/meta.h"      // IWYU pragma: export
 #include "tree/viscosity.h" // IWYU pragma: export
 #include <stdbool.h>
@@ -17,7 +18,18 @@
 
 enum { TREE_NO_PARENT = -1, TREE_MAX_ID = 0xffffff };
 
-typedef struct Tree {
+/* The SWC type code of nodes whose file has none, and of grown trees: SWC has no code for arteries,
+ * and 3 is what files of arterial trees use. */
+enum { TREE_VESSEL_TYPE = 3 };
+
+/* Values of all segments under a name, as a file brought them. */
+typedef struct TreeColumn {
+    char *name;    /* owned; not empty, different from the others' */
+    char *unit;    /* owned; "" for pure numbers */
+    double *value; /* owned; one a node, that of its segment; NAN where there is none */
+} TreeColumn;
+
+struct Tree {
     size_t n;          /* nodes; at least 1 */
     int32_t *id;       /* SWC id, in [1, TREE_MAX_ID] */
     int32_t *type;     /* SWC type code */
@@ -27,13 +39,15 @@ typedef struct Tree {
     /* The part of the flow that leaves the tree at each node, >= 0, relative to the others; NULL:
      * the same at every terminal and none elsewhere. */
     double *flow_share;
+    TreeColumn *column; /* owned */
+    size_t n_columns;
     TreeMeta meta;
-} Tree;
+};
 
 /* Room for n >= 1 zeroed nodes, parents TREE_NO_PARENT, in *tree (owned; tree_release).
  * STATUS_INFEASIBLE when there are more nodes than ids. */
 MUST_CHECK Status tree_init(Tree *tree, size_t n, Err *err);
-/* Frees the arrays and what is known, and zeroes *tree; a zeroed tree may be released. */
+/* Frees the arrays, columns and meta, and zeroes *tree; a zeroed tree may be released. */
 void tree_release(Tree *tree);
 
 static inline bool tree_is_segment(const Tree *tree, size_t i)
@@ -51,6 +65,12 @@ MUST_CHECK Status tree_child_counts(const Tree *tree, int32_t **count, Err *err)
 /* Gives the tree, which has none, flow shares of 0 for the caller to fill. */
 MUST_CHECK Status tree_add_flow_shares(Tree *tree, Err *err);
 
+/* Adds a column (name and unit copied) of NAN, for the caller to fill; *value is borrowed. */
+MUST_CHECK Status tree_add_column(Tree *tree, const char *name, const char *unit, double **value,
+                                  Err *err);
+/* NULL when there is none of this name. */
+const TreeColumn *tree_column(const Tree *tree, const char *name);
+
 /* The flow share of every node in *share (owned, n entries): tree->flow_share, or without it 1 at
  * terminals and 0 elsewhere. */
 MUST_CHECK Status tree_flow_shares(const Tree *tree, double **share, Err *err);
@@ -61,8 +81,9 @@ MUST_CHECK Status tree_flow_shares(const Tree *tree, double **share, Err *err);
 MUST_CHECK Status tree_check(const Tree *tree, Err *err);
 
 /* A new tree in *out (owned) without the segments thinner than `radius_mm` and without what hangs
- * on them; ids, order and what is known are kept. A root always stays. What is left carries the
- * flow that it carried before: the flow shares of what is cut off go to the node it hung on. */
+ * on them; ids, order, columns and what is known are kept. A root always stays. What is left
+ * carries the flow that it carried before: the flow shares of what is cut off go to the node it
+ * hung on. */
 MUST_CHECK Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err);
 
 /* Gives the nodes the ids 1 to n in array order. */

@@ -1,63 +1,157 @@
-/* One table row a format. */
+/* One table row a format. What a path's extension names is read as that; standard input, and what
+ * several formats share an extension of, as what its first bytes tell, and else as the first row of
+ * the table. Files are opened, built into trees, checked and committed here alone. */
 #include "treeio/treeio.h"
 
-#include "treeio/swc.h"
+#include "treeio/formats.h"
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+enum { MAX_EXTENSIONS = 3 };
+
 typedef struct Format {
-    const char *extension;
-    Status (*read)(Tree *tree, const char *path, Err *err);
-    Status (*write)(const Tree *tree, const char *path, Err *err);
+    const char *name, *description;
+    const char *extensions[MAX_EXTENSIONS + 1]; /* without the '.'; ends with NULL */
+    FileForm form;
+    TreeDetect *detect; /* NULL: nothing tells */
+    TreeRead *read;
+    TreeWrite *write;
 } Format;
 
+/* As many rows as there are ids, of the longest numbers, have 3 GB. */
+enum { MOST_GB = 4 };
+
 static const Format formats[] = {
-    {"swc", swc_read, swc_write},
+    {.name = "SWC",
+     .description = "id type x y z radius parent, a node a line, in mm",
+     .extensions = {"swc"},
+     .form = {.name = "an SWC file", .most_bytes = MOST_GB * 1e9, .is_text = true},
+     .read = swc_read,
+     .write = swc_write},
+    {.name = "CSV",
+     .description = "a node a line, columns by name, any columns of values beside them",
+     .extensions = {"csv"},
+     .form = {.name = "a CSV file", .most_bytes = MOST_GB * 1e9, .is_text = true},
+     .detect = csv_detect,
+     .read = csv_read,
+     .write = csv_write},
 };
 
-/* NULL when the extension is unknown. */
-static const Format *find_format(const char *path)
+enum { N_FORMATS = sizeof formats / sizeof *formats };
+
+static const FileForm any_form = {
+    .name = "a tree file", .most_bytes = MOST_GB * 1e9, .is_text = true};
+
+static bool is_standard(const char *path)
 {
-    const char *extension = strcmp(path, "-") == 0 ? "swc" : file_extension(path);
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
-        if (strcasecmp(extension, formats[i].extension) == 0)
-            return &formats[i];
-    return NULL;
+    return strcmp(path, "-") == 0;
 }
 
-static Status unknown_format(const char *path, Err *err)
+/* Whether a file of this name may be of the format. */
+static bool may_be(const Format *format, const char *path)
 {
-    return err_set(err, STATUS_USAGE,
-                   "%s: not the name of a tree file; known are .swc, and - for SWC on standard "
-                   "input or output",
-                   path);
+    if (is_standard(path))
+        return true;
+    for (const char *const *extension = format->extensions; *extension; extension++)
+        if (strcasecmp(file_extension(path), *extension) == 0)
+            return true;
+    return false;
+}
+
+/* Of the formats that a file of this name may be, the one that its first bytes tell, or else the
+ * first; NULL when there is none. Without `start` the number of them in *count. */
+static const Format *find_format(const char *path, const char *start, size_t *count)
+{
+    const Format *first = NULL;
+    *count = 0;
+    for (size_t i = 0; i < N_FORMATS; i++) {
+        if (!may_be(&formats[i], path))
+            continue;
+        ++*count;
+        if (!first)
+            first = &formats[i];
+        if (start && formats[i].detect && formats[i].detect(start))
+            return &formats[i];
+    }
+    return first;
+}
+
+const char *tree_format_name(size_t i)
+{
+    return i < N_FORMATS ? formats[i].name : NULL;
+}
+
+const char *tree_format_extension(size_t i)
+{
+    return i < N_FORMATS ? formats[i].extensions[0] : NULL;
+}
+
+const char *tree_format_description(size_t i)
+{
+    return i < N_FORMATS ? formats[i].description : NULL;
 }
 
 bool tree_format_known(const char *path)
 {
-    return find_format(path) != NULL;
+    size_t count;
+    return find_format(path, NULL, &count) != NULL;
+}
+
+void tree_format_list(Text *text)
+{
+    for (size_t i = 0; i < N_FORMATS; i++)
+        text_printf(text, "%s.%s",
+                    i == 0              ? ""
+                    : i + 1 < N_FORMATS ? ", "
+                                        : " or ",
+                    formats[i].extensions[0]);
+}
+
+static Status unknown_format(const char *path, Err *err)
+{
+    Text known = TEXT_INIT;
+    tree_format_list(&known);
+    Status status = text_check(&known, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE,
+                         "%s: not the name of a tree file, which ends in %s, or is - for standard "
+                         "input or output",
+                         path, text_chars(&known));
+    text_release(&known);
+    return status;
 }
 
 Status tree_read(Tree *tree, const char *path, Err *err)
 {
-    const Format *format = find_format(path);
-    Tree read;
-    TRY(format ? format->read(&read, path, err) : unknown_format(path, err));
-    Status status = tree_check(&read, err);
-    if (status != STATUS_OK) {
-        err_prefix(err, "%s: ", path);
-        tree_release(&read);
-        return status;
-    }
-    *tree = read;
-    return STATUS_OK;
+    size_t count, size = 0;
+    char *bytes = NULL;
+    const Format *format = find_format(path, NULL, &count);
+    if (!format)
+        return unknown_format(path, err);
+    TRY(file_read(path, count == 1 ? &format->form : &any_form, &bytes, &size, err));
+    format = find_format(path, bytes, &count);
+    TreeBuilder builder = {.name = is_standard(path) ? "standard input" : path};
+    Status status = format->read(&builder, bytes, size, err);
+    if (status == STATUS_OK)
+        status = builder_build(&builder, tree, err);
+    builder_release(&builder);
+    free(bytes);
+    return status;
 }
 
 Status tree_write(const Tree *tree, const char *path, Err *err)
 {
-    const Format *format = find_format(path);
+    size_t count;
+    const Format *format = find_format(path, NULL, &count);
+    OutFile file;
     if (!format)
         return unknown_format(path, err);
     TRY(tree_check(tree, err));
-    return format->write(tree, path, err);
+    TRY(outfile_open(&file, path, err));
+    Status status = format->write(tree, file.stream, err);
+    if (status == STATUS_OK)
+        return outfile_commit(&file, err);
+    outfile_discard(&file);
+    return status;
 }

@@ -86,6 +86,39 @@ test_an_unknown_header_key_is_kept() {
     expect_same tree.swc out.swc
 }
 
+test_csv_holds_all_that_swc_does() {
+    local options
+    for options in '' '--terminal-flow territory --viscosity-law pries' '--inlet 0,50 --inlet 30,-40'; do
+        # shellcheck disable=SC2086
+        run_ok corcast grow --terminals 12 --seed 5 --q-perf 3 $options -o tree.swc
+        run_ok corcast convert tree.swc tree.CSV
+        run_ok corcast convert tree.CSV again.swc
+        expect_same tree.swc again.swc
+    done
+}
+
+test_a_tree_on_standard_input_is_told_by_its_first_bytes() {
+    grow_tree 7
+    run_ok corcast convert tree.swc tree.csv
+    grep -v '^#' tree.csv >bare.csv
+    local file
+    for file in tree.csv bare.csv tree.swc; do
+        run_ok sh -c "corcast info - --json <$file"
+        expect_json stdout '.terminals == 7'
+    done
+}
+
+test_a_column_of_a_csv_colours_its_segments() {
+    printf '%s\n' 'id,parent,x_mm,y_mm,z_mm,radius_mm,age [a]' 1,,0,9,0,1, 2,1,0,4,0,1,41 3,2,-4,0,0,0.5,37.5 \
+        4,2,4,0,0,0.5, >tree.csv
+    run_ok corcast render tree.csv --color-by age --range 30,50 --size 40x30 -o age.ppm
+    run_ok corcast render tree.csv --color-by radius --range 30,50 --size 40x30 -o radius.ppm
+    ! cmp -s age.ppm radius.ppm || fail "expected the ages to be seen"
+    run corcast render tree.csv --color-by weight --size 40x30 -o weight.ppm
+    expect_status 2
+    expect_sentence "weight.*branch, age"
+}
+
 test_an_extension_that_is_no_tree_is_refused() {
     grow_tree 3
     run corcast convert tree.swc tree.docx

@@ -297,13 +297,13 @@ static void rejects_flow_shares_that_make_no_sense(void **state)
         assert_refused(text, expected);
     }
     assert_refused("1 0 0 0 0 1 -1\n# flow_share: 2 1.5\n",
-                   ":2: flow_share names the node 2, which is no row's id");
+                   ":2: flow_share names the node 2, which is no node's id");
     assert_refused("# flow_share: 1 1.5\n# flow_share: 1 1.5\n1 0 0 0 0 1 -1\n",
-                   ":2: an earlier line says the flow share of node 1, too");
+                   ":2: the flow share of node 1 has been said before");
     assert_refused("# terminal_flow: territory\n1 0 0 0 0 1 -1\n",
-                   ": terminal_flow is territory, but there are no flow_share lines");
+                   ": terminal_flow is territory, but there are no flow shares");
     assert_refused("# terminal_flow: equal\n# flow_share: 1 2\n1 0 0 0 0 1 -1\n",
-                   ": terminal_flow is equal, but there are flow_share lines");
+                   ": terminal_flow is equal, but there are flow shares");
 }
 
 static void rejects_a_wrong_field_count(void **state)
@@ -379,7 +379,7 @@ static void rejects_a_duplicate_id_naming_both_lines(void **state)
 {
     (void)state;
     assert_refused("7 2 0 0 0 .5 -1\n#\n8 2 0 0 1 .5 7\n7 2 0 0 2 .5 8\n",
-                   ":4: the id 7 is already that of line 1; every row needs its own");
+                   ":4: the id 7 is already that of line 1; every node needs its own");
 }
 
 static void rejects_an_unknown_parent(void **state)
@@ -391,7 +391,7 @@ static void rejects_an_unknown_parent(void **state)
         snprintf(text, sizeof text, "7 2 0 0 0 .5 -1\n8 2 0 0 1 .5 %s\n", parents[i]);
         snprintf(
             expected, sizeof expected,
-            ":2: the parent is %s, which is no row's id; it must be the id of a row, or -1 for "
+            ":2: the parent is %s, which is no node's id; it must be the id of a node, or -1 for "
             "a root",
             parents[i]);
         assert_refused(text, expected);
@@ -414,13 +414,11 @@ static void rejects_cycles(void **state)
 static void rejects_files_without_rows(void **state)
 {
     (void)state;
-    static const char no_rows[] =
-        ": the file has no rows; an SWC file has at least one, id type x y z radius parent";
-    static const char empty[] = ": the file is empty; an SWC file has at least one row";
-    assert_refused("", empty);
-    assert_refused("\xef\xbb\xbf", empty);
-    assert_refused("# only\n\n \t\n", no_rows);
-    assert_refused("\n", no_rows);
+    static const char sentence[] = ": the file has no nodes; a tree has at least one";
+    assert_refused("", sentence);
+    assert_refused("\xef\xbb\xbf", sentence);
+    assert_refused("# only\n\n \t\n", sentence);
+    assert_refused("\n", sentence);
 }
 
 static void rejects_binary_files(void **state)
@@ -438,8 +436,8 @@ static void rejects_missing_files_and_unknown_extensions(void **state)
     Err err;
     assert_int_equal(tree_read(&tree, "/nonexistent/t.swc", &err), STATUS_INPUT);
     assert_int_equal(tree_read(&tree, "t.vtp", &err), STATUS_USAGE);
-    assert_string_equal(err.text, "t.vtp: not the name of a tree file; known are .swc, and - for "
-                                  "SWC on standard input or output");
+    assert_string_equal(err.text, "t.vtp: not the name of a tree file, which ends in .swc or .csv, "
+                                  "or is - for standard input or output");
     assert_int_equal(tree_write(&tree, "t", &err), STATUS_USAGE);
     assert_true(tree_format_known("a.b/T.SWC") && tree_format_known("-"));
     assert_false(tree_format_known("swc") || tree_format_known("t.swc.gz"));

@@ -27,7 +27,7 @@ static inline void assert_binary(const Tree *tree, size_t terminals)
     assert_true(tree->radius_mm[0] == tree->radius_mm[1]);
     for (size_t i = 0; i < tree->n; i++) {
         assert_int_equal(tree->id[i], (int32_t)i + 1);
-        assert_int_equal(tree->type[i], GROW_SWC_TYPE);
+        assert_int_equal(tree->type[i], TREE_VESSEL_TYPE);
         if (i > 0) {
             assert_true(children[i] == 0 || children[i] == 2);
             assert_true(tree_segment_length(tree, i) > 0 && tree->radius_mm[i] > 0);

@@ -191,6 +191,92 @@ static void pruning_leaves_the_flow_of_what_stays(void **state)
     tree_release(&tree);
 }
 
+static void give(TreeBuilder *builder, int64_t id, int64_t parent, double radius_mm)
+{
+    Err err;
+    must(builder_node(builder,
+                      &(BuilderNode){.id = id,
+                                     .parent = parent,
+                                     .position = {(double)id, 0.25, -1},
+                                     .radius_mm = radius_mm,
+                                     .record = builder->n},
+                      &err),
+         &err);
+}
+
+static void a_builder_takes_nodes_and_shares_in_any_order(void **state)
+{
+    (void)state;
+    Err err;
+    Tree tree;
+    size_t late;
+    TreeBuilder builder = {.name = "t", .record = "point"};
+    must(builder_share(&builder, 5, 0.625, 0, &err), &err);
+    give(&builder, 5, 3, 0.5); /* needs 3, which needs 9 */
+    give(&builder, 4, 9, 0.75);
+    must(builder_column(&builder, "age", "a", &late, &err), &err);
+    give(&builder, 9, TREE_NO_PARENT, 1.5);
+    must(builder_value(&builder, late, 41.5, &err), &err);
+    give(&builder, 3, 9, 1.25);
+    meta_set_number(&builder.meta, META_GAMMA, 2.7);
+    must(builder_build(&builder, &tree, &err), &err);
+    static const int32_t id[] = {9, 3, 5, 4}, parent[] = {TREE_NO_PARENT, 0, 1, 0};
+    static const double share[] = {0, 0, 0.625, 0};
+    assert_memory_equal(tree.id, id, sizeof id);
+    assert_memory_equal(tree.parent, parent, sizeof parent);
+    assert_memory_equal(tree.flow_share, share, sizeof share);
+    assert_true(tree.position[1].x == 3 && tree.radius_mm[1] == 1.25);
+    const double *age = tree_column(&tree, "age")->value;
+    assert_true(age[0] == 41.5 && isnan(age[1]) && isnan(age[2]) && isnan(age[3]));
+    assert_true(tree.meta.number[META_GAMMA] == 2.7);
+    assert_null(tree_column(&tree, "a"));
+    builder_release(&builder);
+    tree_release(&tree);
+}
+
+static void a_builder_names_file_and_record(void **state)
+{
+    (void)state;
+    static const struct {
+        int64_t id, parent, share_of; /* share_of 0: none */
+        const char *sentence;
+    } bad[] = {
+        {7, 4, 0, "t: point 1: the id 7 is already that of point 0; every node needs its own"},
+        {1, 6, 0,
+         "t: point 1: the parent is 6, which is no node's id; it must be the id of a "
+         "node, or -1 for a root"},
+        {8, 8, 0,
+         "t: point 1: node 8 is its own parent; parents must lead to a root, whose parent "
+         "is -1"},
+        {8, 7, 9, "t: point 31: flow_share names the node 9, which is no node's id"},
+    };
+    Err err;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        Tree tree = {.n = 77};
+        TreeBuilder builder = {.name = "t", .record = "point"};
+        give(&builder, 7, TREE_NO_PARENT, 0.5);
+        give(&builder, bad[i].id, bad[i].parent, 0.25);
+        if (bad[i].share_of)
+            must(builder_share(&builder, bad[i].share_of, 0.5, 31, &err), &err);
+        assert_int_equal(builder_build(&builder, &tree, &err), STATUS_INPUT);
+        assert_string_equal(err.text, bad[i].sentence);
+        assert_int_equal(tree.n, 77);
+        builder_release(&builder);
+    }
+    TreeBuilder builder = {.name = "t"};
+    BuilderNode node = {.id = TREE_MAX_ID + 1, .parent = TREE_NO_PARENT};
+    assert_int_equal(builder_node(&builder, &node, &err), STATUS_INPUT);
+    node = (BuilderNode){.id = 1, .parent = 4000000000};
+    assert_int_equal(builder_node(&builder, &node, &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "the parent is 4000000000, which is no node's id"));
+    node = (BuilderNode){.id = 1, .parent = TREE_NO_PARENT, .position = {0, HUGE_VAL, 0}};
+    assert_int_equal(builder_blame(&builder, 3, builder_node(&builder, &node, &err), &err),
+                     STATUS_INPUT);
+    assert_string_equal(err.text, "t:3: the position is not finite");
+    assert_int_equal(builder_share(&builder, 1, -0.5, 3, &err), STATUS_INPUT);
+    builder_release(&builder);
+}
+
 static void a_key_says_what_its_values_may_be(void **state)
 {
     (void)state;
@@ -348,6 +434,8 @@ int main(void)
         cmocka_unit_test(check_names_the_node_at_fault),
         cmocka_unit_test(pruning_drops_thin_segments_and_what_hangs_on_them),
         cmocka_unit_test(pruning_leaves_the_flow_of_what_stays),
+        cmocka_unit_test(a_builder_takes_nodes_and_shares_in_any_order),
+        cmocka_unit_test(a_builder_names_file_and_record),
         cmocka_unit_test(a_key_says_what_its_values_may_be),
         cmocka_unit_test(every_key_is_found_by_its_name),
         cmocka_unit_test(what_is_known_keeps_the_order_of_its_lines),

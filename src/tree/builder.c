@@ -1,0 +1,344 @@
+/* Rows are kept as given until all are there. Then parents are found in a direct table of ids, and
+ * rows placed: from each row not yet placed, the walk towards the root collects the ancestors that
+ * are not placed either, and they go before it. Rows with parents first keep their order, every row
+ * is walked over twice at most, and a walk that meets itself is a cycle. */
+#include "tree/builder.h"
+
+#include "tree/tree.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct BuilderRow {
+    int32_t id, type;
+    int32_t parent; /* id; from find_parents on a row index; or TREE_NO_PARENT */
+    Vec3 position;
+    double radius_mm;
+    size_t record;
+} BuilderRow;
+
+typedef struct BuilderColumn {
+    char *name, *unit;
+    double *value; /* of the first `n` rows */
+    size_t n, capacity;
+} BuilderColumn;
+
+typedef struct BuilderShare {
+    int32_t id;
+    double share;
+    size_t record;
+} BuilderShare;
+
+enum { NO_ROW = -1 };
+
+void builder_release(TreeBuilder *builder)
+{
+    for (size_t k = 0; k < builder->n_columns; k++) {
+        free(builder->column[k].name);
+        free(builder->column[k].unit);
+        free(builder->column[k].value);
+    }
+    free(builder->row);
+    free(builder->column);
+    free(builder->share);
+    meta_release(&builder->meta);
+    *builder = (TreeBuilder){0};
+}
+
+Status builder_blame(const TreeBuilder *builder, size_t record, Status status, Err *err)
+{
+    if (status == STATUS_INPUT && builder->record)
+        err_prefix(err, "%s: %s %zu: ", builder->name, builder->record, record);
+    else if (status == STATUS_INPUT)
+        err_prefix(err, "%s:%zu: ", builder->name, record);
+    return status;
+}
+
+static bool is_id(int64_t id)
+{
+    return id >= 1 && id <= TREE_MAX_ID;
+}
+
+static Status unknown_parent(int64_t id, Err *err)
+{
+    return err_set(err, STATUS_INPUT,
+                   "the parent is %lld, which is no node's id; it must be the id of a node, or %d "
+                   "for a root",
+                   (long long)id, TREE_NO_PARENT);
+}
+
+static Status unknown_share(int64_t id, Err *err)
+{
+    return err_set(err, STATUS_INPUT, "flow_share names the node %lld, which is no node's id",
+                   (long long)id);
+}
+
+static Status check_node(const BuilderNode *node, Err *err)
+{
+    char number[NUMBER_TEXT_SIZE];
+    if (!is_id(node->id))
+        return err_set(err, STATUS_INPUT,
+                       "the id is '%lld'; it must be a whole number from 1 to %d",
+                       (long long)node->id, TREE_MAX_ID);
+    if (node->parent != TREE_NO_PARENT && !is_id(node->parent))
+        return unknown_parent(node->parent, err);
+    if (!vec3_finite(node->position))
+        return err_set(err, STATUS_INPUT, "the position is not finite");
+    if (!(node->radius_mm >= 0) || !isfinite(node->radius_mm))
+        return err_set(err, STATUS_INPUT,
+                       "the radius is '%s'; it must be a finite number that is not negative",
+                       number_text(node->radius_mm, number));
+    return STATUS_OK;
+}
+
+Status builder_node(TreeBuilder *builder, const BuilderNode *node, Err *err)
+{
+    TRY(check_node(node, err));
+    TRY(mem_reserve(&builder->row, &builder->capacity, builder->n + 1, sizeof *builder->row,
+                    "nodes", err));
+    builder->row[builder->n++] = (BuilderRow){.id = (int32_t)node->id,
+                                              .type = node->type,
+                                              .parent = (int32_t)node->parent,
+                                              .position = node->position,
+                                              .radius_mm = node->radius_mm,
+                                              .record = node->record};
+    if (node->id > builder->last_id)
+        builder->last_id = (int32_t)node->id;
+    return STATUS_OK;
+}
+
+Status builder_column(TreeBuilder *builder, const char *name, const char *unit, size_t *column,
+                      Err *err)
+{
+    if (!*name)
+        return err_set(err, STATUS_INPUT, "a column has no name");
+    for (size_t k = 0; k < builder->n_columns; k++)
+        if (strcmp(builder->column[k].name, name) == 0)
+            return err_set(err, STATUS_INPUT, "two columns are called '%.40s'", name);
+    BuilderColumn made = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_strdup(&made.name, name, err));
+    TRY_GOTO(mem_strdup(&made.unit, unit, err));
+    TRY_GOTO(mem_reserve(&builder->column, &builder->columns_capacity, builder->n_columns + 1,
+                         sizeof made, "columns", err));
+    *column = builder->n_columns;
+    builder->column[builder->n_columns++] = made;
+    return STATUS_OK;
+done:
+    free(made.name);
+    free(made.unit);
+    return status;
+}
+
+/* Sets the values of the column that are not set, of the first `n` rows, to NAN. */
+static Status fill_column(const TreeBuilder *builder, BuilderColumn *column, size_t n, Err *err)
+{
+    TRY(mem_reserve(&column->value, &column->capacity, builder->n, sizeof *column->value,
+                    "values of a column", err));
+    while (column->n < n)
+        column->value[column->n++] = (double)NAN;
+    return STATUS_OK;
+}
+
+Status builder_value(TreeBuilder *builder, size_t column_number, double value, Err *err)
+{
+    BuilderColumn *column = &builder->column[column_number];
+    TRY(fill_column(builder, column, builder->n, err));
+    column->value[builder->n - 1] = value;
+    return STATUS_OK;
+}
+
+Status builder_share(TreeBuilder *builder, int64_t id, double share, size_t record, Err *err)
+{
+    char number[NUMBER_TEXT_SIZE];
+    if (!(share > 0) || !isfinite(share))
+        return err_set(err, STATUS_INPUT,
+                       "the flow share is '%s'; it must be a finite number above 0",
+                       number_text(share, number));
+    if (!is_id(id))
+        return unknown_share(id, err);
+    TRY(mem_reserve(&builder->share, &builder->shares_capacity, builder->n_shares + 1,
+                    sizeof *builder->share, "flow shares", err));
+    builder->share[builder->n_shares++] =
+        (BuilderShare){.id = (int32_t)id, .share = share, .record = record};
+    return STATUS_OK;
+}
+
+/* Index + 1 of the row of every id up to the largest, 0 where there is none, in *table (owned). */
+static Status index_ids(const TreeBuilder *builder, int32_t **table, Err *err)
+{
+    int32_t *made = NULL;
+    TRY(mem_calloc(&made, (size_t)builder->last_id + 1, sizeof *made, "table entries for ids",
+                   err));
+    for (size_t i = 0; i < builder->n; i++) {
+        const BuilderRow *row = &builder->row[i];
+        int32_t *entry = &made[row->id];
+        if (*entry) {
+            size_t first = builder->row[*entry - 1].record;
+            free(made);
+            return builder_blame(builder, row->record,
+                                 err_set(err, STATUS_INPUT,
+                                         "the id %d is already that of %s %zu; every node needs "
+                                         "its own",
+                                         row->id, builder->record ? builder->record : "line",
+                                         first),
+                                 err);
+        }
+        *entry = (int32_t)i + 1;
+    }
+    *table = made;
+    return STATUS_OK;
+}
+
+/* NO_ROW where there is none. */
+static int32_t row_of(const TreeBuilder *builder, const int32_t *table, int32_t id)
+{
+    return id > builder->last_id ? NO_ROW : table[id] - 1;
+}
+
+/* Makes the rows' parents, which are ids, indices. */
+static Status find_parents(TreeBuilder *builder, const int32_t *table, Err *err)
+{
+    for (size_t i = 0; i < builder->n; i++) {
+        BuilderRow *row = &builder->row[i];
+        if (row->parent == TREE_NO_PARENT)
+            continue;
+        int32_t parent = row_of(builder, table, row->parent);
+        if (parent == NO_ROW)
+            return builder_blame(builder, row->record, unknown_parent(row->parent, err), err);
+        row->parent = parent;
+    }
+    return STATUS_OK;
+}
+
+enum { UNPLACED = -1, WALKED = -2 };
+
+/* Places row `start` and its unplaced ancestors, the topmost at *placed. */
+static Status place_with_ancestors(const TreeBuilder *builder, int32_t start, int32_t *place,
+                                   int32_t *placed, Err *err)
+{
+    const BuilderRow *row = builder->row;
+    int32_t length = 0, at = start;
+    for (; at != TREE_NO_PARENT && place[at] == UNPLACED; at = row[at].parent) {
+        place[at] = WALKED;
+        length++;
+    }
+    if (at != TREE_NO_PARENT && place[at] == WALKED)
+        return builder_blame(builder, row[at].record,
+                             err_set(err, STATUS_INPUT,
+                                     "node %d is its own %s; parents must lead to a root, whose "
+                                     "parent is %d",
+                                     row[at].id, row[at].parent == at ? "parent" : "ancestor",
+                                     TREE_NO_PARENT),
+                             err);
+    at = start;
+    for (int32_t below = length; below > 0; at = row[at].parent)
+        place[at] = *placed + --below;
+    *placed += length;
+    return STATUS_OK;
+}
+
+/* The place of every row in the tree in *place (owned). */
+static Status place_rows(const TreeBuilder *builder, int32_t **place, Err *err)
+{
+    int32_t *made = NULL, placed = 0;
+    Status status = STATUS_OK;
+    TRY(mem_calloc(&made, builder->n, sizeof *made, "places of nodes", err));
+    for (size_t i = 0; i < builder->n; i++)
+        made[i] = UNPLACED;
+    for (size_t i = 0; i < builder->n; i++)
+        TRY_GOTO(place_with_ancestors(builder, (int32_t)i, made, &placed, err));
+    *place = made;
+done:
+    if (status != STATUS_OK)
+        free(made);
+    return status;
+}
+
+static void fill_nodes(const TreeBuilder *builder, const int32_t *place, Tree *tree)
+{
+    for (size_t i = 0; i < builder->n; i++) {
+        const BuilderRow *row = &builder->row[i];
+        int32_t at = place[i];
+        tree->id[at] = row->id;
+        tree->type[at] = row->type;
+        tree->parent[at] = row->parent == TREE_NO_PARENT ? TREE_NO_PARENT : place[row->parent];
+        tree->position[at] = row->position;
+        tree->radius_mm[at] = row->radius_mm;
+    }
+}
+
+static Status fill_columns(const TreeBuilder *builder, const int32_t *place, Tree *tree, Err *err)
+{
+    for (size_t k = 0; k < builder->n_columns; k++) {
+        BuilderColumn *column = &builder->column[k];
+        double *value;
+        TRY(fill_column(builder, column, builder->n, err));
+        TRY(tree_add_column(tree, column->name, column->unit, &value, err));
+        for (size_t i = 0; i < builder->n; i++)
+            value[place[i]] = column->value[i];
+    }
+    return STATUS_OK;
+}
+
+/* The key terminal_flow must go with the shares. */
+static Status check_rule(const TreeBuilder *builder, Err *err)
+{
+    bool known = builder->meta.known[META_TERMINAL_FLOW];
+    bool territory = builder->meta.number[META_TERMINAL_FLOW] == TERMINAL_FLOW_TERRITORY;
+    if (!known || territory == (builder->n_shares > 0))
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   territory ? "%s: terminal_flow is territory, but there are no flow shares"
+                             : "%s: terminal_flow is equal, but there are flow shares",
+                   builder->name);
+}
+
+/* A share is above 0, so a node that has one is a node that was named. */
+static Status fill_shares(const TreeBuilder *builder, const int32_t *table, const int32_t *place,
+                          Tree *tree, Err *err)
+{
+    TRY(check_rule(builder, err));
+    if (builder->n_shares > 0)
+        TRY(tree_add_flow_shares(tree, err));
+    for (size_t k = 0; k < builder->n_shares; k++) {
+        const BuilderShare *said = &builder->share[k];
+        int32_t row = row_of(builder, table, said->id);
+        Status status = STATUS_OK;
+        if (row == NO_ROW)
+            status = unknown_share(said->id, err);
+        else if (tree->flow_share[place[row]] > 0)
+            status = err_set(err, STATUS_INPUT, "the flow share of node %d has been said before",
+                             said->id);
+        TRY(builder_blame(builder, said->record, status, err));
+        tree->flow_share[place[row]] = said->share;
+    }
+    return STATUS_OK;
+}
+
+Status builder_build(TreeBuilder *builder, Tree *out, Err *err)
+{
+    if (builder->n == 0)
+        return err_set(err, STATUS_INPUT, "%s: the file has no nodes; a tree has at least one",
+                       builder->name);
+    int32_t *table = NULL, *place = NULL;
+    Tree tree = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(index_ids(builder, &table, err));
+    TRY_GOTO(find_parents(builder, table, err));
+    TRY_GOTO(place_rows(builder, &place, err));
+    TRY_GOTO(tree_init(&tree, builder->n, err));
+    fill_nodes(builder, place, &tree);
+    TRY_GOTO(fill_columns(builder, place, &tree, err));
+    TRY_GOTO(fill_shares(builder, table, place, &tree, err));
+    TRY_GOTO(tree_check(&tree, err));
+    tree.meta = builder->meta;
+    builder->meta = (TreeMeta){0};
+    *out = tree;
+done:
+    if (status != STATUS_OK)
+        tree_release(&tree);
+    free(table);
+    free(place);
+    return status;
+}

@@ -1,0 +1,272 @@
+/* CSV of nodes: a line that names the columns, then a line a node. The table has the columns that
+ * every tree has; all others become columns of the tree. Quotes are taken off in place, as what is
+ * left is never longer. */
+#include "treeio/comments.h"
+#include "treeio/formats.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+typedef enum NodeColumn { ID, PARENT, X, Y, Z, RADIUS, TYPE, SHARE, NODE_COLUMNS } NodeColumn;
+
+static const char *const node_columns[NODE_COLUMNS] = {
+    [ID] = "id",  [PARENT] = "parent",    [X] = "x_mm",    [Y] = "y_mm",
+    [Z] = "z_mm", [RADIUS] = "radius_mm", [TYPE] = "type", [SHARE] = "flow_share"};
+
+enum { LAST_NEEDED = RADIUS };
+
+/* What a column of the file is. */
+typedef struct Column {
+    const char *title; /* borrowed from the text */
+    size_t meaning;    /* a NodeColumn, or NODE_COLUMNS + its number in the builder */
+} Column;
+
+typedef struct Columns {
+    Column *column; /* owned */
+    size_t n, capacity;
+    bool has[NODE_COLUMNS];
+} Columns;
+
+/* Takes the next field off *at, which becomes NULL behind the last; blanks around it go. A quoted
+ * one ends with a quote that no other follows. */
+static Status next_field(char **at, char **field, Err *err)
+{
+    char *from = *at + strspn(*at, TEXT_BLANKS), *to = from;
+    *field = from;
+    if (*from != '"') {
+        to = from + strcspn(from, ",");
+        *at = *to ? to + 1 : NULL;
+        while (to > from && strchr(TEXT_BLANKS, to[-1]))
+            to--;
+        *to = '\0';
+        return STATUS_OK;
+    }
+    for (from++; *from && (*from != '"' || from[1] == '"'); from++) {
+        from += *from == '"';
+        *to++ = *from;
+    }
+    if (!*from)
+        return err_set(err, STATUS_INPUT, "a quote is not closed");
+    from += 1 + strspn(from + 1, TEXT_BLANKS);
+    if (*from && *from != ',')
+        return err_set(err, STATUS_INPUT, "a quote is followed by '%.40s'", from);
+    *at = *from ? from + 1 : NULL;
+    *to = '\0';
+    return STATUS_OK;
+}
+
+/* Parts "name [unit]"; the unit is "" where there is none. */
+static const char *cut_unit(char *title)
+{
+    size_t length = strlen(title);
+    char *open = strrchr(title, '[');
+    if (length == 0 || title[length - 1] != ']' || !open || open - title < 2 || open[-1] != ' ')
+        return "";
+    title[length - 1] = open[-1] = '\0';
+    return open + 1;
+}
+
+static Status read_title(TreeBuilder *builder, Columns *columns, char *title, Err *err)
+{
+    size_t meaning = 0;
+    while (meaning < NODE_COLUMNS && strcmp(title, node_columns[meaning]) != 0)
+        meaning++;
+    if (meaning < NODE_COLUMNS && columns->has[meaning])
+        return err_set(err, STATUS_INPUT, "two columns are called '%s'", title);
+    if (meaning < NODE_COLUMNS) {
+        columns->has[meaning] = true;
+    } else {
+        size_t number;
+        const char *unit = cut_unit(title);
+        TRY(builder_column(builder, title, unit, &number, err));
+        meaning += number;
+    }
+    TRY(mem_reserve(&columns->column, &columns->capacity, columns->n + 1, sizeof *columns->column,
+                    "columns", err));
+    columns->column[columns->n++] = (Column){title, meaning};
+    return STATUS_OK;
+}
+
+static Status read_titles(TreeBuilder *builder, Columns *columns, char *line, Err *err)
+{
+    for (char *at = line; at;) {
+        char *title;
+        TRY(next_field(&at, &title, err));
+        TRY(read_title(builder, columns, title, err));
+    }
+    for (int column = 0; column <= LAST_NEEDED; column++)
+        if (!columns->has[column])
+            return err_set(err, STATUS_INPUT,
+                           "there is no column %s; a CSV of nodes has id, parent, x_mm, y_mm, "
+                           "z_mm, radius_mm and any others",
+                           node_columns[column]);
+    return STATUS_OK;
+}
+
+/* An empty parent is none. */
+static Status read_id(NodeColumn column, const char *text, int64_t *id, Err *err)
+{
+    bool is_parent = column == PARENT;
+    int32_t number = TREE_NO_PARENT;
+    if (*text || !is_parent)
+        TRY(field_whole(node_columns[column], text, is_parent ? TREE_NO_PARENT : 1, TREE_MAX_ID,
+                        &number, err));
+    *id = number;
+    return STATUS_OK;
+}
+
+static Status read_node_field(NodeColumn column, const char *text, BuilderNode *node, double *share,
+                              Err *err)
+{
+    double *const number[NODE_COLUMNS] = {[X] = &node->position.x,
+                                          [Y] = &node->position.y,
+                                          [Z] = &node->position.z,
+                                          [RADIUS] = &node->radius_mm,
+                                          [SHARE] = share};
+    bool not_negative = column == RADIUS || column == SHARE;
+    if (column == ID || column == PARENT)
+        return read_id(column, text, column == ID ? &node->id : &node->parent, err);
+    if (column == TYPE)
+        return field_whole("type", text, INT32_MIN, INT32_MAX, &node->type, err);
+    if (column == SHARE && !*text)
+        return STATUS_OK;
+    return field_number(node_columns[column], text, not_negative ? 0 : -HUGE_VAL, number[column],
+                        err);
+}
+
+/* Of a column of the tree: empty, NA and NaN are no value. */
+static Status read_value(const char *title, const char *text, double *value, Err *err)
+{
+    *value = (double)NAN;
+    if (!*text || strcasecmp(text, "na") == 0 || strcasecmp(text, "nan") == 0)
+        return STATUS_OK;
+    return field_number(title, text, -HUGE_VAL, value, err);
+}
+
+/* A row's fields; what becomes of columns of the tree waits in `value` until the node is added. */
+static Status read_row(TreeBuilder *builder, const Columns *columns, size_t line, char *text,
+                       double *value, Err *err)
+{
+    BuilderNode node = {.type = TREE_VESSEL_TYPE, .record = line};
+    double share = 0;
+    size_t n = 0;
+    for (char *at = text; at; n++) {
+        char *field;
+        TRY(next_field(&at, &field, err));
+        if (n >= columns->n)
+            continue;
+        const Column *column = &columns->column[n];
+        if (column->meaning < NODE_COLUMNS)
+            TRY(read_node_field((NodeColumn)column->meaning, field, &node, &share, err));
+        else
+            TRY(read_value(column->title, field, &value[column->meaning - NODE_COLUMNS], err));
+    }
+    if (n != columns->n)
+        return err_set(err, STATUS_INPUT, "the row has %zu field%s; there are %zu columns", n,
+                       n == 1 ? "" : "s", columns->n);
+    TRY(builder_node(builder, &node, err));
+    for (size_t k = 0; k < builder->n_columns; k++)
+        TRY(builder_value(builder, k, value[k], err));
+    return share > 0 ? builder_share(builder, node.id, share, line, err) : STATUS_OK;
+}
+
+/* What is read so far; `value` has room for one row. */
+typedef struct Reader {
+    TreeBuilder *builder;
+    Columns columns;
+    double *value; /* owned */
+} Reader;
+
+static Status read_line(Reader *reader, size_t number, char *line, Err *err)
+{
+    TreeBuilder *builder = reader->builder;
+    if (*line == '#')
+        return comment_read(&builder->meta, line + 1, err);
+    if (!line[strspn(line, TEXT_BLANKS)])
+        return STATUS_OK;
+    if (reader->columns.n > 0)
+        return read_row(builder, &reader->columns, number, line, reader->value, err);
+    TRY(read_titles(builder, &reader->columns, line, err));
+    return mem_calloc(&reader->value, builder->n_columns, sizeof *reader->value, "values of a row",
+                      err);
+}
+
+Status csv_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
+{
+    (void)size;
+    Reader reader = {.builder = builder};
+    Status status = STATUS_OK;
+    size_t number = 1;
+    for (char *at = bytes, *next; at && status == STATUS_OK; at = next, number++) {
+        next = strchr(at, '\n');
+        if (next)
+            *next++ = '\0';
+        status = builder_blame(builder, number, read_line(&reader, number, at, err), err);
+    }
+    free(reader.columns.column);
+    free(reader.value);
+    return status;
+}
+
+/* The first line that is no comment names an id and a parent. */
+bool csv_detect(const char *start)
+{
+    while (*start == '#' || *start == '\n')
+        start += strcspn(start, "\n") + (start[strcspn(start, "\n")] != '\0');
+    size_t length = strcspn(start, "\n");
+    const char *comma = memchr(start, ',', length), *parent = strstr(start, "parent");
+    return comma && parent && parent < start + length;
+}
+
+static void write_title(const TreeColumn *column, FILE *stream)
+{
+    fputs(",\"", stream);
+    for (const char *at = column->name; *at; at++)
+        fprintf(stream, *at == '"' ? "\"\"" : "%c", *at);
+    fprintf(stream, *column->unit ? " [%s]\"" : "%s\"", column->unit);
+}
+
+static void write_titles(const Tree *tree, FILE *stream)
+{
+    for (int column = 0; column < (tree->flow_share ? NODE_COLUMNS : SHARE); column++)
+        fprintf(stream, "%s%s", column ? "," : "", node_columns[column]);
+    for (size_t k = 0; k < tree->n_columns; k++)
+        write_title(&tree->column[k], stream);
+    putc('\n', stream);
+}
+
+static void write_number(double value, FILE *stream)
+{
+    char number[NUMBER_TEXT_SIZE];
+    putc(',', stream);
+    if (!isnan(value))
+        fputs(number_text(value, number), stream);
+}
+
+static void write_row(const Tree *tree, size_t i, FILE *stream)
+{
+    Vec3 at = tree->position[i];
+    fprintf(stream, "%d,%d", tree->id[i],
+            tree_is_segment(tree, i) ? tree->id[tree->parent[i]] : -1);
+    write_number(at.x, stream);
+    write_number(at.y, stream);
+    write_number(at.z, stream);
+    write_number(tree->radius_mm[i], stream);
+    fprintf(stream, ",%d", tree->type[i]);
+    if (tree->flow_share)
+        write_number(tree->flow_share[i], stream);
+    for (size_t k = 0; k < tree->n_columns; k++)
+        write_number(tree->column[k].value[i], stream);
+    putc('\n', stream);
+}
+
+Status csv_write(const Tree *tree, FILE *stream, Err *err)
+{
+    TRY(comments_write(&tree->meta, stream, err));
+    write_titles(tree, stream);
+    for (size_t i = 0; i < tree->n; i++)
+        write_row(tree, i, stream);
+    return STATUS_OK;
+}

@@ -1,0 +1,29 @@
+/* What text formats have in common: numbers as fields of a record. */
+#include "treeio/formats.h"
+
+#include <math.h>
+
+enum { SHOWN = 40 /* characters of a bad value */ };
+
+Status field_number(const char *what, const char *text, double minimum, double *out, Err *err)
+{
+    double value;
+    if (!number_parse(text, &value) || !isfinite(value) || value < minimum)
+        return err_set(err, STATUS_INPUT, "the %s is '%.*s'; it must be a finite number%s", what,
+                       SHOWN, text, minimum == 0 ? " that is not negative" : "");
+    *out = value;
+    return STATUS_OK;
+}
+
+Status field_whole(const char *what, const char *text, int32_t minimum, int32_t maximum,
+                   int32_t *out, Err *err)
+{
+    double value;
+    if (!number_parse(text, &value) || !(value >= minimum && value <= maximum) ||
+        value != floor(value))
+        return err_set(err, STATUS_INPUT,
+                       "the %s is '%.*s'; it must be a whole number from %d to %d", what, SHOWN,
+                       text, minimum, maximum);
+    *out = (int32_t)value;
+    return STATUS_OK;
+}
