@@ -167,7 +167,7 @@ END
 
 test_the_numbers_of_formats_are_those_of_the_source() {
     agree FORMATS.md <<'END'
-trees, scenes and reports above 4 GB @ swc_read.c @ .most_bytes = 4e9
+trees, scenes and reports above 4 GB @ treeio.c @ MOST_BYTES 4e9
 trees, scenes and reports above 4 GB @ cmd_povray.c @ .most_bytes = 4e9
 trees, scenes and reports above 4 GB @ report_merge.c @ .most_bytes = 4e9
 polygons and NIfTI files above 1 GB @ polygon_file.c @ .most_bytes = 1e9
@@ -185,6 +185,12 @@ END
     run_ok corcast render --help
     expect_stdout "memory MB .*\(128\)"
     says FORMATS.md 'larger pictures than `--memory` MB (128)'
+}
+
+test_formats_lists_the_keys_of_a_tree() {
+    sed -n '/^### Header/,/^## /s/^| `\([A-Za-z_]*\)` |.*/\1/p' "$REPO/docs/FORMATS.md" | sort >listed
+    sed -n 's/.*{\.name = "\([A-Za-z_]*\)".*/\1/p' "$REPO/src/tree/meta.c" | sort >known
+    expect_same listed known
 }
 
 # `--tolerance` takes the keys that FORMATS.md lists, and no other.

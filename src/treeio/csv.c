@@ -220,12 +220,22 @@ bool csv_detect(const char *start)
     return comma && parent && parent < start + length;
 }
 
+static void write_quoted(const char *text, FILE *stream)
+{
+    for (; *text; text++)
+        fprintf(stream, *text == '"' ? "\"\"" : "%c", *text);
+}
+
 static void write_title(const TreeColumn *column, FILE *stream)
 {
     fputs(",\"", stream);
-    for (const char *at = column->name; *at; at++)
-        fprintf(stream, *at == '"' ? "\"\"" : "%c", *at);
-    fprintf(stream, *column->unit ? " [%s]\"" : "%s\"", column->unit);
+    write_quoted(column->name, stream);
+    if (*column->unit) {
+        fputs(" [", stream);
+        write_quoted(column->unit, stream);
+        putc(']', stream);
+    }
+    putc('"', stream);
 }
 
 static void write_titles(const Tree *tree, FILE *stream)

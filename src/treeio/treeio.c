@@ -19,20 +19,20 @@ typedef struct Format {
     TreeWrite *write;
 } Format;
 
-/* As many rows as there are ids, of the longest numbers, have 3 GB. */
-enum { MOST_GB = 4 };
+/* As many rows of SWC as there are ids, of the longest numbers, have 3 GB. */
+#define MOST_BYTES 4e9
 
 static const Format formats[] = {
     {.name = "SWC",
      .description = "id type x y z radius parent, a node a line, in mm",
      .extensions = {"swc"},
-     .form = {.name = "an SWC file", .most_bytes = MOST_GB * 1e9, .is_text = true},
+     .form = {.name = "an SWC file", .most_bytes = MOST_BYTES, .is_text = true},
      .read = swc_read,
      .write = swc_write},
     {.name = "CSV",
      .description = "a node a line, columns by name, any columns of values beside them",
      .extensions = {"csv"},
-     .form = {.name = "a CSV file", .most_bytes = MOST_GB * 1e9, .is_text = true},
+     .form = {.name = "a CSV file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = csv_detect,
      .read = csv_read,
      .write = csv_write},
@@ -40,8 +40,7 @@ static const Format formats[] = {
 
 enum { N_FORMATS = sizeof formats / sizeof *formats };
 
-static const FileForm any_form = {
-    .name = "a tree file", .most_bytes = MOST_GB * 1e9, .is_text = true};
+static const FileForm any_form = {.name = "a tree file", .most_bytes = MOST_BYTES, .is_text = true};
 
 static bool is_standard(const char *path)
 {

@@ -103,7 +103,7 @@ test_a_tree_on_standard_input_is_told_by_its_first_bytes() {
     grep -v '^#' tree.csv >bare.csv
     local file
     for file in tree.csv bare.csv tree.swc; do
-        run_ok sh -c "corcast info - --json <$file"
+        run_ok corcast info - --json <"$file"
         expect_json stdout '.terminals == 7'
     done
 }

@@ -74,7 +74,7 @@ static void assert_refused(const char *text, const char *expected)
 static const char tidy[] = "# gamma: 2.7\n"
                            "# by hand\n"
                            "id,parent,x_mm,y_mm,z_mm,radius_mm,type,flow_share,\"wss [Pa]\",\"a, "
-                           "\"\"b\"\"\"\n"
+                           "\"\"b\"\" [\"\"]\"\n"
                            "12,-1,0.5,1.25,-2,2.385,3,0,,\n"
                            "7,12,3.5,5.25,-2,2.385,3,0,3.125,-7\n"
                            "30,7,9.5,4.75,1.5,1.655,5,0.75,1e-12,\n"
@@ -88,7 +88,7 @@ static void what_is_written_reads_back_to_the_same_bytes(void **state)
     assert_string_equal(tree.column[0].name, "wss");
     assert_string_equal(tree.column[0].unit, "Pa");
     assert_string_equal(tree.column[1].name, "a, \"b\"");
-    assert_string_equal(tree.column[1].unit, "");
+    assert_string_equal(tree.column[1].unit, "\"");
     assert_true(isnan(tree.column[0].value[0]) && tree.column[0].value[1] == 3.125);
     assert_true(tree.column[1].value[3] == 0.1 && tree.flow_share[2] == 0.75);
     assert_true(tree.type[2] == 5 && tree.meta.number[META_GAMMA] == 2.7);

@@ -1,0 +1,8 @@
+/* A tree in CSV. */
+#include "forest.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+{
+    fuzz_tree("tree.csv", bytes, size);
+    return 0;
+}

@@ -1,0 +1,46 @@
+/* A tree from a file of these bytes and this name. One that is read is written so that it reads
+ * back to the same bytes. */
+#ifndef CORCAST_TESTS_FUZZ_FOREST_H
+#define CORCAST_TESTS_FUZZ_FOREST_H
+
+#include "fuzz.h"
+
+#include "treeio/treeio.h"
+
+static const FileForm tree_form = {.name = "a tree", .most_bytes = 1e8};
+
+static inline void read_whole(const char *path, char **bytes, size_t *size)
+{
+    Err err;
+    Status status = file_read(path, &tree_form, bytes, size, &err);
+    assert(status == STATUS_OK);
+    (void)status;
+}
+
+static inline void fuzz_tree(const char *name, const uint8_t *bytes, size_t size)
+{
+    Tree tree, again;
+    Err err = {{0}};
+    char *first, *second, path[128];
+    size_t first_size, second_size;
+    strcpy(path, fuzz_file(name, bytes, size));
+    Status status = tree_read(&tree, path, &err);
+    fuzz_check_refusal(status, &err, path);
+    if (status != STATUS_OK)
+        return;
+    status = tree_write(&tree, path, &err);
+    assert(status == STATUS_OK);
+    read_whole(path, &first, &first_size);
+    status = tree_read(&again, path, &err);
+    assert(status == STATUS_OK);
+    status = tree_write(&again, path, &err);
+    assert(status == STATUS_OK);
+    read_whole(path, &second, &second_size);
+    assert(first_size == second_size && memcmp(first, second, first_size) == 0);
+    free(first);
+    free(second);
+    tree_release(&tree);
+    tree_release(&again);
+}
+
+#endif
