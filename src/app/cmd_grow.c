@@ -155,6 +155,7 @@ static Status run_grow(void *options, Parsed *parsed, Err *err)
     TRY_GOTO(refining_check(refining, parsed, err));
     TRY_GOTO(growing_prepare(growing, parsed, err));
     TRY_GOTO(grow(growing, parsed->common.quiet, &tree, &report, &why, err));
+    options_name_fields(parsed, &why);
     TRY_GOTO(refining_apply(refining, &parsed->common, &growing->domain, &tree, &refined, err));
     if (refined.target_before > 0)
         report.root_radius_mm = tree.radius_mm[0];

@@ -55,6 +55,8 @@ static Status run(const Command *command, int argc, char **argv, Err *err)
     if (status == STATUS_OK)
         status = parsed.common.help ? help_print(command, err)
                                     : command->run(parsed.options, &parsed, err);
+    if (status != STATUS_OK)
+        options_name_fields(&parsed, err);
     parsed_release(&parsed);
     return status;
 }

@@ -9,6 +9,7 @@
 
 #include "app/commands.h"
 #include "app/suggest.h"
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -314,4 +315,53 @@ Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *
             return err_set(err, STATUS_USAGE, "--%s %s", need->name, need->sentence);
     }
     return STATUS_OK;
+}
+
+/* ---- fields ---------------------------------------------------------------------------------- */
+
+/* Whether an option's name, and then its unit, read like the field. */
+static bool is_called(const Option *option, const char *field, size_t length)
+{
+    Text name = TEXT_INIT;
+    text_printf(&name, "%s-%s", option->name, option->unit ? option->unit : "");
+    const char *chars = text_chars(&name);
+    size_t bare = strlen(option->name), i = 0;
+    while (chars && chars[i] && i < length &&
+           (tolower((unsigned char)chars[i]) == tolower((unsigned char)field[i]) ||
+            (field[i] == '_' && strchr("-/", chars[i]))))
+        i++;
+    bool same = chars && i == length && (i == bare || (option->unit && !chars[i]));
+    text_release(&name);
+    return same;
+}
+
+static bool sets(const Option *option, const char *field, size_t length)
+{
+    const char *dot = strrchr(option->member, '.'), *member = dot ? dot + 1 : option->member;
+    return (strlen(member) == length && strncmp(member, field, length) == 0) ||
+           is_called(option, field, length);
+}
+
+void options_name_fields(const Parsed *parsed, Err *err)
+{
+    Text named = TEXT_INIT;
+    const char *rest = err->text;
+    for (const char *open; (open = strchr(rest, '`')); rest = open + 1) {
+        const char *field = open + 1;
+        size_t length = strspn(field, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"),
+               i = 0;
+        while (i < parsed->n_settings && !sets(parsed->settings[i].option, field, length))
+            i++;
+        text_append(&named, rest, (size_t)(open - rest));
+        if (field[length] != '`' || i == parsed->n_settings) {
+            text_puts(&named, "`");
+            continue;
+        }
+        text_printf(&named, "--%s", parsed->settings[i].option->name);
+        open = field + length;
+    }
+    text_puts(&named, rest);
+    if (text_chars(&named))
+        snprintf(err->text, sizeof err->text, "%s", text_chars(&named));
+    text_release(&named);
 }

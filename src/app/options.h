@@ -196,6 +196,11 @@ MUST_CHECK Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
  * effect. A recipe's options are defaults for many runs, and may be without effect in this one. */
 MUST_CHECK Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *err);
 
+/* Rooms name fields, in backquotes: `p_perf_mmhg`. Puts the option that sets the field there,
+ * --p-perf: the one whose name, with its unit or without, or whose member is called so. What no
+ * option sets stays as it is. */
+void options_name_fields(const Parsed *parsed, Err *err);
+
 /* The option of this name, which may be longer than `length`; NULL when there is none. */
 const Setting *parsed_find(const Parsed *parsed, const char *name, size_t length);
 

@@ -48,7 +48,7 @@ static Status refuse_shape(const char *spec, Err *err)
                     kinds[kind]->name, kinds[kind]->parameters);
     Status status = text_check(&shapes, err);
     if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "--domain %s: unknown shape; use %s, lengths in mm",
+        status = err_set(err, STATUS_USAGE, "`domain` %s: unknown shape; use %s, lengths in mm",
                          spec, text_chars(&shapes));
     text_release(&shapes);
     return status;
@@ -82,7 +82,7 @@ Status domain_parse(Domain *domain, const char *spec, Err *err)
             status = check_filling(&loaded, err);
         if (status != STATUS_OK) {
             if (status == STATUS_USAGE)
-                err_prefix(err, "--domain %s: ", spec);
+                err_prefix(err, "`domain` %s: ", spec);
             domain_release(&loaded);
             return status;
         }

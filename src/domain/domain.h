@@ -50,7 +50,7 @@ typedef struct Domain {
     double slack_mm; /* 1e-6 of the diagonal of the bounds */
 } Domain;
 
-/* Reads a text as listed at DomainKind, and the file it names. STATUS_USAGE, naming --domain, the
+/* Reads a text as listed at DomainKind, and the file it names. STATUS_USAGE, naming `domain`, the
  * text and what is allowed, for a wrong text; STATUS_INPUT, naming the file, for a file that is
  * missing, malformed or no domain (an empty mask, a mesh that is open or inside out, a polygon that
  * crosses itself). Both also for a domain that fills less than 1e-3 of its bounds, masks excepted.

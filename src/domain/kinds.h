@@ -9,7 +9,7 @@ typedef struct DomainOps {
     const char *parameters; /* "R" */
     bool is_convex;
     /* Reads what stands behind the colon into a zeroed domain that knows its kind: sizes, file,
-     * dimension, bounds, volume, inlet. Of STATUS_USAGE the sentence lacks "--domain TEXT: ". On
+     * dimension, bounds, volume, inlet. Of STATUS_USAGE the sentence lacks "`domain` TEXT: ". On
      * failure the caller releases what there is. */
     Status (*load)(Domain *domain, const char *values, Err *err);
     bool (*inside)(const Domain *domain, Vec3 point, double tolerance_mm);

@@ -66,7 +66,7 @@ static Status check_crowd(const Cells *cells, const uint32_t *list, size_t n, Er
             return err_set(
                 err, STATUS_INFEASIBLE,
                 "%zu segments lie in one another at (%.6g, %.6g, %.6g), more than POV-Ray "
-                "draws as a blob in good time; leave out thin ones (--prune-radius) or "
+                "draws as a blob in good time; leave out thin ones (`prune_radius`) or "
                 "choose another model",
                 felt, middle.x, middle.y, middle.z);
     }
@@ -82,7 +82,7 @@ static Status put_cell(Cells *cells, size_t first, size_t n, const Box *clip, Er
         return err_set(
             err, STATUS_INFEASIBLE,
             "%zu segments overlap in one place, more than POV-Ray draws in one blob; leave "
-            "out thin ones (--prune-radius) or choose another model",
+            "out thin ones (`prune_radius`) or choose another model",
             n);
     TRY(check_crowd(cells, list, n, err));
     text_puts(text, clip ? "Blob_Cell()\n" : "Blob_Start()\n");

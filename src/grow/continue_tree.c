@@ -22,19 +22,19 @@ static Status check_node(const Tree *from, size_t i, int32_t children, const Dom
     if (children > 2)
         return err_set(
             err, STATUS_INPUT,
-            "--from: node %d has %d children; growth goes on from trees in which no node "
+            "`from`: node %d has %d children; growth goes on from trees in which no node "
             "has more than 2",
             id, children);
     if (!tree_is_segment(from, i) && children == 0)
-        return err_set(err, STATUS_INPUT, "--from: node %d is an inlet without a vessel", id);
+        return err_set(err, STATUS_INPUT, "`from`: node %d is an inlet without a vessel", id);
     if (tree_is_segment(from, i) && children == 0 && !(tree_segment_length(from, i) > 0))
         return err_set(err, STATUS_INPUT,
-                       "--from: node %d, a terminal, is where its parent is; its segment needs a "
+                       "`from`: node %d, a terminal, is where its parent is; its segment needs a "
                        "length",
                        id);
     if (domain_dimension(domain) == 2 && from->position[i].z != 0)
         return err_set(err, STATUS_INPUT,
-                       "--from: node %d is at z = %g; with a --domain of two dimensions the tree "
+                       "`from`: node %d is at z = %g; with a `domain` of two dimensions the tree "
                        "must lie in the plane z = 0",
                        id, from->position[i].z);
     return STATUS_OK;
@@ -55,7 +55,7 @@ static Status check_place(const Tree *from, const Domain *domain, Err *err)
         return STATUS_OK;
     Box tree = tree_bounds(from), box = domain_bounds(domain);
     return err_set(err, STATUS_INPUT,
-                   "--from: the domain does not hold the tree: it is at x %.4g to %.4g, y %.4g to "
+                   "`from`: the domain does not hold the tree: it is at x %.4g to %.4g, y %.4g to "
                    "%.4g, z %.4g to %.4g mm, and the domain at x %.4g to %.4g, y %.4g to %.4g, "
                    "z %.4g to %.4g mm",
                    tree.low.x, tree.high.x, tree.low.y, tree.high.y, tree.low.z, tree.high.z,
@@ -68,9 +68,9 @@ Status continue_check(const GrowParams *params, const Domain *domain, Err *err)
     size_t inlets = continue_inlets(from), terminals = 0;
     if (params->inlets > 0)
         return err_set(err, STATUS_USAGE,
-                       "--inlet: the tree of --from has its own; give only one of the two");
+                       "`inlet`: the tree of `from` has its own; give only one of the two");
     if (inlets > GROW_MAX_INLETS)
-        return err_set(err, STATUS_INPUT, "--from: the tree has %zu roots; at most %d can grow",
+        return err_set(err, STATUS_INPUT, "`from`: the tree has %zu roots; at most %d can grow",
                        inlets, GROW_MAX_INLETS);
     int32_t *children = NULL;
     TRY(tree_child_counts(from, &children, err));
@@ -84,7 +84,7 @@ Status continue_check(const GrowParams *params, const Domain *domain, Err *err)
         status = check_place(from, domain, err);
     if (status == STATUS_OK && params->terminals <= terminals)
         status = err_set(err, STATUS_USAGE,
-                         "--terminals %zu: must be above the %zu that the tree of --from has",
+                         "`terminals` %zu: must be above the %zu that the tree of `from` has",
                          params->terminals, terminals);
     return status;
 }

@@ -40,7 +40,7 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
         bool fits = tree->radius_mm[i] >= DBL_MIN && isfinite(tree->radius_mm[i]);
         if (!fits && net->segment[i].parent >= 0)
             status = err_set(err, STATUS_INFEASIBLE,
-                             "the radii span more than a double can hold; move --gamma, now %g, "
+                             "the radii span more than a double can hold; move `gamma`, now %g, "
                              "towards 3",
                              net->law.gamma);
     }
@@ -76,8 +76,8 @@ static Status settle_radii(Network *net, const GrowParams *params, double *flow,
         network_resum(net);
     }
     return err_set(err, STATUS_INFEASIBLE,
-                   "the vessels of %zu terminals are too thin for --viscosity-law pries: radii and "
-                   "viscosities do not settle; lower --terminals or raise --q-perf",
+                   "the vessels of %zu terminals are too thin for `viscosity_law` pries: radii and "
+                   "viscosities do not settle; lower `terminals` or raise `q_perf`",
                    net->terminals);
 }
 

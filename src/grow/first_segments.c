@@ -64,10 +64,10 @@ static Status add_first_segment(Network *net, size_t tree, const Domain *domain,
     }
     if (net->inlets == 1)
         return err_set(err, STATUS_INFEASIBLE,
-                       "no straight vessel leads from the inlet into the domain; choose an --inlet "
+                       "no straight vessel leads from the inlet into the domain; choose an `inlet` "
                        "further inside");
     return err_set(err, STATUS_INFEASIBLE,
-                   "no straight vessel leads from --inlet %.9g,%.9g,%.9g into the domain, clear of "
+                   "no straight vessel leads from `inlet` %.9g,%.9g,%.9g into the domain, clear of "
                    "those of the other inlets; choose inlets further inside and further apart",
                    from.x, from.y, from.z);
 }

@@ -180,13 +180,13 @@ static Status be_patient(Growth *growth, size_t made, Err *err)
         growth->params->from ? continue_outside(growth->params->from, growth->domain) : 0;
     if (outside > 0)
         return err_set(err, STATUS_INFEASIBLE,
-                       "no room for terminal %zu of --terminals %zu in %zu tries: the domain does "
-                       "not hold the tree of --from, of which %zu of %zu nodes are outside",
+                       "no room for terminal %zu of `terminals` %zu in %zu tries: the domain does "
+                       "not hold the tree of `from`, of which %zu of %zu nodes are outside",
                        growth->net.terminals + 1, growth->params->terminals,
                        growth->crowded + growth->outside, outside, growth->params->from->n);
     return err_set(err, STATUS_INFEASIBLE,
-                   "no room for terminal %zu of --terminals %zu in %zu tries: lower --terminals, "
-                   "choose a larger --domain, or move --gamma and --lambda towards 3 and 2",
+                   "no room for terminal %zu of `terminals` %zu in %zu tries: lower `terminals`, "
+                   "choose a larger `domain`, or move `gamma` and `lambda` towards 3 and 2",
                    growth->net.terminals + 1, growth->params->terminals,
                    growth->crowded + growth->outside);
 }
@@ -197,8 +197,8 @@ static Status check_range(const Growth *growth, Err *err)
     if (cost > 0 && isfinite(cost))
         return STATUS_OK;
     return err_set(err, STATUS_INFEASIBLE,
-                   "with --gamma %g and --lambda %g the radii of %zu terminals span more than a "
-                   "double can hold; move --gamma towards 3, or lower --lambda",
+                   "with `gamma` %g and `lambda` %g the radii of %zu terminals span more than a "
+                   "double can hold; move `gamma` towards 3, or lower `lambda`",
                    growth->params->gamma, growth->params->lambda, growth->params->terminals);
 }
 
@@ -245,8 +245,8 @@ static Status start_forest(Growth *growth, Err *err)
         forest->has[k] = (size_t)has;
         if ((size_t)has > forest->quota[k])
             return err_set(err, STATUS_USAGE,
-                           "--inlet-shares: tree %zu of --from has %d terminals, and its share of "
-                           "--terminals %zu is only %zu",
+                           "`inlet_shares`: tree %zu of `from` has %d terminals, and its share of "
+                           "`terminals` %zu is only %zu",
                            k + 1, has, params->terminals, forest->quota[k]);
     }
     return STATUS_OK;

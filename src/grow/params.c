@@ -51,7 +51,7 @@ static Status check_inlet(Vec3 inlet, const Domain *domain, Err *err)
     domain_text(domain, &text);
     Status status = text_check(&text, err);
     if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "--inlet %.9g,%.9g,%.9g: must lie in the domain %s",
+        status = err_set(err, STATUS_USAGE, "`inlet` %.9g,%.9g,%.9g: must lie in the domain %s",
                          inlet.x, inlet.y, inlet.z, text_chars(&text));
     text_release(&text);
     return status;
@@ -61,11 +61,11 @@ static Status check_inlets(const GrowParams *params, const Domain *domain, Err *
 {
     size_t trees = params->inlets > 0 ? params->inlets : 1;
     if (trees > GROW_MAX_INLETS)
-        return err_set(err, STATUS_USAGE, "--inlet: %zu of them; at most %d may be given", trees,
+        return err_set(err, STATUS_USAGE, "`inlet`: %zu of them; at most %d may be given", trees,
                        GROW_MAX_INLETS);
     if (params->terminals < trees)
         return err_set(err, STATUS_USAGE,
-                       "--terminals %zu: must be at least one for each of %zu inlets",
+                       "`terminals` %zu: must be at least one for each of %zu inlets",
                        params->terminals, trees);
     for (size_t k = 0; k < params->inlets; k++) {
         Vec3 inlet = params->inlet[k];
@@ -73,7 +73,7 @@ static Status check_inlets(const GrowParams *params, const Domain *domain, Err *
         for (size_t i = 0; i < k; i++)
             if (vec3_distance(inlet, params->inlet[i]) <= domain->slack_mm)
                 return err_set(err, STATUS_USAGE,
-                               "--inlet %.9g,%.9g,%.9g: is given twice; inlets must be apart",
+                               "`inlet` %.9g,%.9g,%.9g: is given twice; inlets must be apart",
                                inlet.x, inlet.y, inlet.z);
     }
     return STATUS_OK;
@@ -83,11 +83,11 @@ static Status check_shares(const GrowParams *params, size_t trees, Err *err)
 {
     if (params->inlet_shares != 0 && params->inlet_shares != trees)
         return err_set(err, STATUS_USAGE,
-                       "--inlet-shares: %zu shares for %zu inlets; there must be one for each",
+                       "`inlet_shares`: %zu shares for %zu inlets; there must be one for each",
                        params->inlet_shares, trees);
     for (size_t k = 0; k < params->inlet_shares; k++)
         if (!(params->inlet_share[k] > 0) || !isfinite(params->inlet_share[k]))
-            return err_set(err, STATUS_USAGE, "--inlet-shares %g: must be finite numbers above 0",
+            return err_set(err, STATUS_USAGE, "`inlet_shares` %g: must be finite numbers above 0",
                            params->inlet_share[k]);
     return STATUS_OK;
 }
@@ -95,11 +95,11 @@ static Status check_shares(const GrowParams *params, size_t trees, Err *err)
 Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err)
 {
     if (params->terminals < 1 || params->terminals > GROW_MAX_TERMINALS)
-        return err_set(err, STATUS_USAGE, "--terminals %zu: must be from 1 to %d",
+        return err_set(err, STATUS_USAGE, "`terminals` %zu: must be from 1 to %d",
                        params->terminals, GROW_MAX_TERMINALS);
     TRY(check_physics(params, err));
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
-        return err_set(err, STATUS_USAGE, "--candidates %d: must be from 1 to %d",
+        return err_set(err, STATUS_USAGE, "`candidates` %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);
     if (params->from) {
         TRY(continue_check(params, domain, err));

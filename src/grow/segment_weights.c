@@ -81,8 +81,8 @@ Status weights_update(Network *net, const GrowParams *params, const double *flow
         double viscosity = relative_viscosity(params, radius[i]);
         if (!isfinite(viscosity))
             return err_set(err, STATUS_INFEASIBLE,
-                           "with --viscosity-law pries no blood passes a vessel %.3g um wide, and "
-                           "with %zu terminals there is one; lower --terminals or raise --q-perf",
+                           "with `viscosity_law` pries no blood passes a vessel %.3g um wide, and "
+                           "with %zu terminals there is one; lower `terminals` or raise `q_perf`",
                            2e3 * radius[i], net->terminals);
         double *weight = &net->trait[i].weight;
         double ratio = flow[i] / net->segment[i].terminals * viscosity / *weight;

@@ -49,7 +49,7 @@ static Status check_kernels(RenderKernels kernels, Err *err)
     int usable = kernels_usable();
     if ((int)kernels <= usable)
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "--kernels: this processor cannot run %s, at most %s",
+    return err_set(err, STATUS_USAGE, "`kernels`: this processor cannot run %s, at most %s",
                    render_kernel_names[kernels], render_kernel_names[usable]);
 }
 

@@ -30,11 +30,11 @@ static Status camera_axes(const StageParams *params, Vec3 center, Vec3 *directio
         Vec3 span = vec3_sub(target, params->location);
         if (!isfinite(vec3_length(span)))
             return err_set(err, STATUS_USAGE,
-                           "--location and --look-at (%s) are farther apart than 1e150 mm",
+                           "`location` and `look_at` (%s) are farther apart than 1e150 mm",
                            params->has_look_at ? "given" : "the middle of the tree");
         if (!(vec3_length(span) > 0))
             return err_set(err, STATUS_USAGE,
-                           "--location and --look-at are the same point, so the camera has no "
+                           "`location` and `look_at` are the same point, so the camera has no "
                            "direction; give two different points");
         *direction = vec3_normalized(span);
         sky = vec3(0, 1, 0);
@@ -48,7 +48,7 @@ static Status camera_axes(const StageParams *params, Vec3 center, Vec3 *directio
     }
     if (!(vec3_length(across) > 1e-9 * vec3_length(sky)))
         return err_set(err, STATUS_USAGE,
-                       "--up points along the camera's direction; give a vector that does not");
+                       "`up` points along the camera's direction; give a vector that does not");
     *right = vec3_normalized(across);
     *up = vec3_cross(*right, *direction);
     return STATUS_OK;

@@ -30,53 +30,40 @@ const MetaRow meta_rows[META_KEYS] = {
                         .range = {2, 3}},
     [META_DOMAIN] = {.name = "domain",
                      .meaning = "tissue that the tree supplies",
-                     .option = "--domain",
                      .kind = META_TEXT},
-    [META_GAMMA] = {.name = "gamma",
-                    .meaning = "Murray exponent",
-                    .option = "--gamma",
-                    .range = {RANGE_ABOVE_0, 10}},
+    [META_GAMMA] = {.name = "gamma", .meaning = "Murray exponent", .range = {RANGE_ABOVE_0, 10}},
     [META_LAMBDA] = {.name = "lambda",
                      .meaning = "exponent of the target",
-                     .option = "--lambda",
                      .range = {0, RANGE_NO_END}},
     [META_P_PERF] = {.name = "p_perf_mmHg",
                      .unit = "mmHg",
                      .meaning = "pressure at the inlet",
-                     .option = "--p-perf",
                      .range = {-RANGE_NO_END, RANGE_NO_END}},
     [META_P_TERM] = {.name = "p_term_mmHg",
                      .unit = "mmHg",
                      .meaning = "pressure at every terminal",
-                     .option = "--p-term",
                      .range = {-RANGE_NO_END, RANGE_NO_END}},
     [META_Q_PERF] = {.name = "q_perf_ml_min",
                      .unit = "ml/min",
                      .meaning = "flow through the inlet",
-                     .option = "--q-perf",
                      .range = {RANGE_ABOVE_0, RANGE_NO_END}},
     [META_VISCOSITY] = {.name = "viscosity_cP",
                         .unit = "cP",
                         .meaning = "viscosity of the blood",
-                        .option = "--viscosity",
                         .range = {RANGE_ABOVE_0, RANGE_NO_END}},
     [META_VISCOSITY_LAW] = {.name = "viscosity_law",
                             .meaning = "law of viscosity",
-                            .option = "--viscosity-law",
                             .kind = META_WORD,
                             .words = viscosity_law_names},
     [META_HEMATOCRIT] = {.name = "hematocrit",
                          .meaning = "hematocrit",
-                         .option = "--hematocrit",
                          .range = {0, MAX_HEMATOCRIT}},
     [META_PLASMA_VISCOSITY] = {.name = "plasma_viscosity_cP",
                                .unit = "cP",
                                .meaning = "viscosity of the plasma",
-                               .option = "--plasma-viscosity",
                                .range = {RANGE_ABOVE_0, RANGE_NO_END}},
     [META_TERMINAL_FLOW] = {.name = "terminal_flow",
                             .meaning = "what the flow through the terminals was made after",
-                            .option = "--terminal-flow",
                             .kind = META_WORD,
                             .words = terminal_flow_names},
 };
@@ -334,10 +321,10 @@ Status meta_add_lines(TreeMeta *meta, Err *err)
     return STATUS_OK;
 }
 
-/* What a value is called in a sentence. */
-static const char *name_of(MetaKey key, MetaSource source)
+/* What stands about the name of a value: options are named as range_check does. */
+static const char *quote_of(MetaSource source)
 {
-    return source == META_OF_OPTIONS ? meta_rows[key].option : meta_rows[key].name;
+    return source == META_OF_OPTIONS ? "`" : "";
 }
 
 /* `allowed` and what follows it say what the number must be. */
@@ -346,8 +333,8 @@ static Status refuse_number(const TreeMeta *meta, MetaKey key, MetaSource source
 {
     char number[NUMBER_TEXT_SIZE];
     return err_set(err, source == META_OF_OPTIONS ? STATUS_USAGE : STATUS_INPUT,
-                   "%s %s: must be %s%s", name_of(key, source),
-                   number_text(meta->number[key], number), allowed, more);
+                   "%s%s%s %s: must be %s%s", quote_of(source), meta_rows[key].name,
+                   quote_of(source), number_text(meta->number[key], number), allowed, more);
 }
 
 static Status check_key(const TreeMeta *meta, MetaKey key, MetaSource source, Err *err)
@@ -370,7 +357,8 @@ Status meta_check_cco(const TreeMeta *meta, MetaSource source, Err *err)
         TRY(check_key(meta, always[i], source, err));
     if (!(meta->number[META_P_TERM] < meta->number[META_P_PERF])) {
         char number[NUMBER_TEXT_SIZE], below[NUMBER_TEXT_SIZE + 64];
-        snprintf(below, sizeof below, "%s, which is %s", name_of(META_P_PERF, source),
+        snprintf(below, sizeof below, "%s%s%s, which is %s", quote_of(source),
+                 meta_rows[META_P_PERF].name, quote_of(source),
                  number_text(meta->number[META_P_PERF], number));
         return refuse_number(meta, META_P_TERM, source, "below ", below, err);
     }

@@ -52,7 +52,6 @@ typedef struct MetaRow {
     const char *name;    /* in files */
     const char *unit;    /* NULL for pure numbers and for what is no number */
     const char *meaning; /* "flow through the inlet" */
-    const char *option;  /* of commands that set it: "--q-perf"; NULL: none does */
     MetaKind kind;
     Range range;              /* of META_NUMBER and META_WHOLE */
     const char *const *words; /* of META_WORD: those of the values 0, 1, ...; ends with NULL */
@@ -136,7 +135,7 @@ typedef enum MetaSource { META_OF_OPTIONS, META_OF_FILE } MetaSource;
 
 /* Checks that CCO has all it needs and can go by it: gamma, lambda, pressures, flow and what the
  * law of viscosity asks for, all known and in range, and p_term below p_perf. The sentence names
- * options (STATUS_USAGE) or keys of the file (STATUS_INPUT). */
+ * fields (STATUS_USAGE) or keys of the file (STATUS_INPUT). */
 MUST_CHECK Status meta_check_cco(const TreeMeta *meta, MetaSource source, Err *err);
 
 #endif

@@ -55,7 +55,7 @@ static void expect_refused(const char *spec, Status status, const char *fragment
     Err err = {""};
     Status got = domain_parse(&domain, spec, &err);
     char name[200];
-    snprintf(name, sizeof name, "%s%s", status == STATUS_USAGE ? "--domain " : "",
+    snprintf(name, sizeof name, "%s%s", status == STATUS_USAGE ? "`domain` " : "",
              status == STATUS_USAGE ? spec : strchr(spec, ':') + 1);
     if (status == STATUS_INPUT && strchr(name, ','))
         *strchr(name, ',') = '\0';

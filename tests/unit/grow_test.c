@@ -334,30 +334,30 @@ static void assert_refused(GrowParams params, const char *option)
 static void refuses_parameters_out_of_range_and_names_the_option(void **state)
 {
     (void)state;
-    REFUSES(terminals, 0, "--terminals 0");
-    REFUSES(terminals, GROW_MAX_TERMINALS + 1, "--terminals 8000001");
-    REFUSES(gamma, 0, "--gamma 0");
-    REFUSES(gamma, -2.5, "--gamma -2.5");
-    REFUSES(gamma, 10.01, "--gamma 10.01");
-    REFUSES(gamma, NAN, "--gamma nan");
-    REFUSES(lambda, -0.5, "--lambda -0.5");
-    REFUSES(lambda, INFINITY, "--lambda inf");
-    REFUSES(p_perf_mmhg, INFINITY, "--p-perf inf");
-    REFUSES(p_term_mmhg, 100, "--p-term 100");
-    REFUSES(p_term_mmhg, 100.5, "--p-term 100.5");
-    REFUSES(p_term_mmhg, -INFINITY, "--p-term -inf");
-    REFUSES(q_perf_ml_min, 0, "--q-perf 0");
-    REFUSES(q_perf_ml_min, NAN, "--q-perf nan");
-    REFUSES(viscosity_cp, -3.6, "--viscosity -3.6");
-    REFUSES(viscosity_cp, INFINITY, "--viscosity inf");
-    REFUSES(candidates, 0, "--candidates 0");
-    REFUSES(candidates, GROW_MAX_CANDIDATES + 1, "--candidates 1001");
+    REFUSES(terminals, 0, "`terminals` 0");
+    REFUSES(terminals, GROW_MAX_TERMINALS + 1, "`terminals` 8000001");
+    REFUSES(gamma, 0, "`gamma` 0");
+    REFUSES(gamma, -2.5, "`gamma` -2.5");
+    REFUSES(gamma, 10.01, "`gamma` 10.01");
+    REFUSES(gamma, NAN, "`gamma` nan");
+    REFUSES(lambda, -0.5, "`lambda` -0.5");
+    REFUSES(lambda, INFINITY, "`lambda` inf");
+    REFUSES(p_perf_mmhg, INFINITY, "`p_perf_mmHg` inf");
+    REFUSES(p_term_mmhg, 100, "`p_term_mmHg` 100");
+    REFUSES(p_term_mmhg, 100.5, "`p_term_mmHg` 100.5");
+    REFUSES(p_term_mmhg, -INFINITY, "`p_term_mmHg` -inf");
+    REFUSES(q_perf_ml_min, 0, "`q_perf_ml_min` 0");
+    REFUSES(q_perf_ml_min, NAN, "`q_perf_ml_min` nan");
+    REFUSES(viscosity_cp, -3.6, "`viscosity_cP` -3.6");
+    REFUSES(viscosity_cp, INFINITY, "`viscosity_cP` inf");
+    REFUSES(candidates, 0, "`candidates` 0");
+    REFUSES(candidates, GROW_MAX_CANDIDATES + 1, "`candidates` 1001");
     GrowParams params = grow_defaults();
     params.inlets = 1;
     const Vec3 inlets[] = {{0, 50.1, 0}, {3, 4, 0.01}, {NAN, 0, 0}};
     for (size_t i = 0; i < sizeof inlets / sizeof *inlets; i++) {
         params.inlet = &inlets[i];
-        assert_refused(params, "--inlet");
+        assert_refused(params, "`inlet`");
     }
     const Vec3 rim = vec3(35.3553391, 35.3553391, 0); /* but for typing */
     params.inlet = &rim;
@@ -380,13 +380,13 @@ static void says_what_to_change_when_the_radii_exceed_all_numbers(void **state)
     (void)state;
     GrowParams params = grow_defaults();
     params.gamma = 0.01;
-    assert_infeasible(&params, "disc:50", "--gamma 0.01");
+    assert_infeasible(&params, "disc:50", "`gamma` 0.01");
     params.lambda = 100;
     params.gamma = 0.05;
-    assert_infeasible(&params, "disc:50", "no room for terminal 2 of --terminals 1000");
+    assert_infeasible(&params, "disc:50", "no room for terminal 2 of `terminals` 1000");
     params.gamma = 3;
     params.lambda = 5000;
-    assert_infeasible(&params, "disc:50", "--lambda 5000");
+    assert_infeasible(&params, "disc:50", "`lambda` 5000");
 }
 
 int main(void)

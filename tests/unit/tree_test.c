@@ -364,7 +364,7 @@ static void cco_asks_for_what_it_rests_on(void **state)
     meta_set_number(&meta, META_P_TERM, 97.5);
     meta_set_number(&meta, META_Q_PERF, 312.5);
     assert_int_equal(meta_check_cco(&meta, META_OF_OPTIONS, &err), STATUS_USAGE);
-    assert_string_equal(err.text, "--p-term 97.5: must be below --p-perf, which is 97.5");
+    assert_string_equal(err.text, "`p_term_mmHg` 97.5: must be below `p_perf_mmHg`, which is 97.5");
     meta_set_number(&meta, META_P_TERM, 60);
     meta_set_number(&meta, META_VISCOSITY, 3.6);
     must(meta_check_cco(&meta, META_OF_FILE, &err), &err);

@@ -60,7 +60,7 @@ Status refine_check(const RefineParams *params, const Domain *domain, const Tree
     char number[NUMBER_TEXT_SIZE];
     if (!(params->seconds >= 0) || !isfinite(params->seconds))
         return err_set(err, STATUS_USAGE,
-                       "--refine-seconds %s: must be a finite number of seconds not below 0",
+                       "`seconds` %s: must be a finite number of seconds not below 0",
                        number_text(params->seconds, number));
     TRY(check_meta(&tree->meta, err));
     int32_t *children = NULL;

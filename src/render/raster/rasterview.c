@@ -176,10 +176,10 @@ static Status make_bins(RasterBins *bins, int threads, Err *err)
 {
     size_t n = rasterbins_items(bins->scene), chunks = chunks_for(bins->scene, (size_t)threads);
     if (n > MOST_ITEMS)
-        return err_set(err, STATUS_MEMORY, "too many primitives for --method raster");
+        return err_set(err, STATUS_MEMORY, "too many primitives for `method` raster");
     if (bins->tile_columns > UINT16_MAX || bins->tile_rows > UINT16_MAX)
         return err_set(err, STATUS_USAGE,
-                       "--method raster draws pictures of up to %d pixels a side, --method trace "
+                       "`method` raster draws pictures of up to %d pixels a side, `method` trace "
                        "larger ones",
                        UINT16_MAX * TILE_SIDE);
     TRY(mem_calloc(&bins->item_memory, n + 1, sizeof *bins->items, "items", err));

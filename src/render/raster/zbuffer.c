@@ -236,7 +236,7 @@ static Status check_outside(const RasterBins *bins, Err *err)
         double deep = item_depth(item);
         if (item->z + deep > 0 && item->z - deep < (bins->view.eye.perspective ? deep * 0.01 : 0))
             return err_set(err, STATUS_USAGE,
-                           "--method zbuffer needs a camera that is not among the vessels");
+                           "`method` zbuffer needs a camera that is not among the vessels");
     }
     return STATUS_OK;
 }
