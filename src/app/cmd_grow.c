@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/growing.h"
+#include "app/progress.h"
 #include "app/refining.h"
 #include "treeio/treeio.h"
 #include <stdio.h>

@@ -2,6 +2,7 @@
 #include "app/frames.h"
 #include "app/options.h"
 #include "app/povfiles.h"
+#include "app/progress.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

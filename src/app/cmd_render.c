@@ -1,6 +1,7 @@
 #include "app/commands.h"
 #include "app/frames.h"
 #include "app/picture.h"
+#include "app/progress.h"
 #include "render/render.h"
 #include <stdlib.h>
 #include <string.h>

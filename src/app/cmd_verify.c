@@ -6,6 +6,7 @@
 #include "app/frames.h"
 #include "app/picture.h"
 #include "app/povfiles.h"
+#include "app/progress.h"
 #include "app/settle.h"
 #include "app/templates.h"
 #include "render/render.h"

@@ -1,6 +1,8 @@
 /* One driver for both commands that refine: it shows progress, and hears the first SIGINT. */
 #include "app/refining.h"
 
+#include "app/progress.h"
+
 #include <stdio.h>
 
 static const char *const levels[] = {[GROW_REFINE_NONE] = "none",

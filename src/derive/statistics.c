@@ -138,12 +138,6 @@ static OrderRatios order_ratios(const StatisticsTable *table)
                          growth_ratio(table, element_length)};
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Sorts `value`. */
 static BifurcationSpread spread_of(double *value, size_t n)
 {
@@ -156,7 +150,7 @@ static BifurcationSpread spread_of(double *value, size_t n)
     double mean = sum / (double)n;
     for (size_t i = 0; i < n; i++)
         squares += (value[i] - mean) * (value[i] - mean);
-    qsort(value, n, sizeof *value, compare_numbers);
+    sort_numbers(value, n);
     double sd = n > 1 ? sqrt(squares / (double)(n - 1)) : 0;
     return (BifurcationSpread){n, mean, sd, (value[(n - 1) / 2] + value[n / 2]) / 2};
 }

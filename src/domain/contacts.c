@@ -10,22 +10,11 @@ void contacts_add(Contacts *contacts, double t)
     contacts->n += contacts->n <= CONTACTS_MAX;
 }
 
-static void sort(double *t, int n)
-{
-    for (int i = 1; i < n; i++) {
-        double value = t[i];
-        int at = i;
-        for (; at > 0 && t[at - 1] > value; at--)
-            t[at] = t[at - 1];
-        t[at] = value;
-    }
-}
-
 bool contacts_hold_segment(Contacts *contacts, const Domain *domain, Vec3 a, Vec3 b)
 {
     if (contacts->n > CONTACTS_MAX)
         return false;
-    sort(contacts->t, contacts->n);
+    sort_numbers(contacts->t, (size_t)contacts->n);
     Vec3 along = vec3_sub(b, a);
     double shortest = domain->slack_mm / vec3_length(along), from = 0;
     for (int i = 0; i <= contacts->n; i++) {

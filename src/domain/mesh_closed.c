@@ -15,15 +15,10 @@ typedef struct SoupEdge {
     int way;            /* 1: from low to high; -1: from high to low */
 } SoupEdge;
 
-static int order(double a, double b)
-{
-    return (a > b) - (a < b);
-}
-
 static int compare_places(Vec3 a, Vec3 b)
 {
-    int by_x = order(a.x, b.x), by_y = order(a.y, b.y);
-    return by_x ? by_x : by_y ? by_y : order(a.z, b.z);
+    int by_x = number_order(a.x, b.x), by_y = number_order(a.y, b.y);
+    return by_x ? by_x : by_y ? by_y : number_order(a.z, b.z);
 }
 
 static int compare_corners(const void *a, const void *b)

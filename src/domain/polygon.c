@@ -74,12 +74,6 @@ static bool polygon_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return contacts_hold_segment(&contacts, domain, a, b);
 }
 
-static int ascending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The middle of the widest stretch inside, a thousandth of the height below the top. */
 static Status find_inlet(Domain *domain, Err *err)
 {
@@ -94,7 +88,7 @@ static Status find_inlet(Domain *domain, Err *err)
         if ((a.y <= y) != (b.y <= y))
             x[n++] = a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
     }
-    qsort(x, n, sizeof *x, ascending);
+    sort_numbers(x, n);
     for (size_t i = 0; i + 1 < n; i += 2) {
         if (x[i + 1] - x[i] <= widest)
             continue;

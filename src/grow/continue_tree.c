@@ -162,12 +162,6 @@ Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *er
     return STATUS_OK;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err)
 {
     int32_t *node = NULL; /* of `from`, by id, plus 1 */
@@ -182,7 +176,7 @@ Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, E
     for (size_t i = 0; i < out->n; i++)
         if (node[out->id[i]] > 0)
             change[n++] = out->radius_mm[i] / from->radius_mm[node[out->id[i]] - 1];
-    qsort(change, n, sizeof *change, ascending);
+    sort_numbers(change, n);
     if (n > 0) {
         report->median_change = (change[(n - 1) / 2] + change[n / 2]) / 2;
         report->least_change = change[0];

@@ -7,37 +7,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The item of rank `rank` (0: smallest) of n numbers, which are reordered: Hoare's selection. */
-static double select_rank(double *values, size_t n, size_t rank)
-{
-    size_t low = 0, high = n - 1;
-    while (low < high) {
-        double pivot = values[low + (high - low) / 2];
-        size_t i = low, j = high;
-        for (;; i++, j--) {
-            while (values[i] < pivot)
-                i++;
-            while (values[j] > pivot)
-                j--;
-            if (i >= j)
-                break;
-            double swap = values[i];
-            values[i] = values[j];
-            values[j] = swap;
-        }
-        if (rank <= j)
-            high = j;
-        else
-            low = j + 1;
-    }
-    return values[rank];
-}
-
 /* Nearest rank: the smallest value that at least `fraction` of all do not exceed. */
 static double percentile(double *values, size_t n, double fraction)
 {
     size_t rank = (size_t)ceil(fraction * (double)n);
-    return select_rank(values, n, rank ? rank - 1 : 0);
+    return select_number(values, n, rank ? rank - 1 : 0);
 }
 
 static bool is_settled(const Tolerance *tolerance, size_t pixel)

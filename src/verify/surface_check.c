@@ -6,12 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 /* Classes one pixel; its error is appended to `errors` when it is common. */
 static void count_pixel(const SurfacePlanes *planes, size_t i, SurfaceCheck *check, double *errors)
 {
@@ -75,7 +69,7 @@ Status surface_check(const SurfacePlanes *planes, SurfaceCheck *out, Err *err)
     for (size_t i = 0; i < check.pixels; i++)
         count_pixel(planes, i, &check, errors);
     if (check.common) {
-        qsort(errors, check.common, sizeof *errors, compare_doubles);
+        sort_numbers(errors, check.common);
         check.median_mm = errors[(check.common - 1) / 2];
         check.p99_mm = errors[(size_t)ceil(0.99 * (double)check.common) - 1];
         check.max_mm = errors[check.common - 1];

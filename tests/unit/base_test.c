@@ -435,6 +435,25 @@ static void a_log_gets_a_line_of_progress_every_ten_seconds(void **state)
     assert_string_equal(said, "");
 }
 
+static void a_selected_number_is_that_of_its_rank_in_the_sorted_ones(void **state)
+{
+    (void)state;
+    enum { N = 137 };
+    double numbers[N], sorted[N];
+    Random random;
+    random_seed(&random, 2385);
+    for (size_t i = 0; i < N; i++) /* many of them equal */
+        sorted[i] = floor(40 * random_uniform(&random)) / 7 - 1.3;
+    memcpy(numbers, sorted, sizeof numbers);
+    sort_numbers(sorted, N);
+    for (size_t i = 0; i + 1 < N; i++)
+        assert_true(sorted[i] <= sorted[i + 1]);
+    for (size_t k = 0; k < N; k++) {
+        size_t rank = (k * 61 + 5) % N;
+        assert_true(select_number(numbers, N, rank) == sorted[rank]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -459,6 +478,7 @@ int main(void)
         cmocka_unit_test(suffixes_replace_extensions_only),
         cmocka_unit_test(a_parallel_loop_visits_every_index_once),
         cmocka_unit_test(the_random_stream_is_the_published_one),
+        cmocka_unit_test(a_selected_number_is_that_of_its_rank_in_the_sorted_ones),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

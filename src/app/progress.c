@@ -1,22 +1,10 @@
-#include "base/progress.h"
+/* One line of standard error, written over where that is a terminal. The time left is what the rest
+ * takes at the speed so far. */
+#include "app/progress.h"
 
+#include "base/base.h"
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
-
-double clock_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
-}
-
-double clock_cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
-}
 
 void progress_start(Progress *progress, const char *what, bool quiet)
 {

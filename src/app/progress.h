@@ -1,7 +1,7 @@
 /* How far something is, on standard error: a line that changes on a terminal, a line every ten
  * seconds elsewhere, so that a log of a long run says that it goes on. */
-#ifndef CORCAST_BASE_PROGRESS_H
-#define CORCAST_BASE_PROGRESS_H
+#ifndef CORCAST_APP_PROGRESS_H
+#define CORCAST_APP_PROGRESS_H
 
 #include <stdbool.h>
 
@@ -21,10 +21,5 @@ void progress_show(Progress *progress, double fraction);
 void progress_report(double fraction, void *progress);
 /* Clears the line. */
 void progress_end(Progress *progress);
-
-/* Seconds of a monotonic clock. */
-double clock_seconds(void);
-/* Seconds that processors have spent on this program, all threads together. */
-double clock_cpu_seconds(void);
 
 #endif
