@@ -148,12 +148,16 @@ $(BUILD)/rooms.a: $(ROOM_OBJECTS)
 	$(call say,AR,$@)
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
+$(BUILD)/app.a: $(filter-out %/main.o,$(APP_OBJECTS))
+	$(call say,AR,$@)
+	$(Q)rm -f $@ && $(AR) rcs $@ $^
+
 $(BUILD)/%.o: %.c Makefile | packages
 	$(call say,CC,$<)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
-$(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/rooms.a
+$(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/app.a $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka
@@ -165,7 +169,7 @@ $(FIT): $(BUILD)/tests/fit/fit_blob.o $(BUILD)/rooms.a
 
 # Replayed from files, or driven by libFuzzer.
 $(FUZZ_PROGRAMS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/fuzz/fuzz.o \
-	$(if $(filter fuzz,$(MODE)),,$(BUILD)/tests/fuzz/replay.o) $(filter-out %/main.o,$(APP_OBJECTS)) $(BUILD)/rooms.a
+	$(if $(filter fuzz,$(MODE)),,$(BUILD)/tests/fuzz/replay.o) $(BUILD)/app.a $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(subst fuzzer-no-link,fuzzer,$(LDFLAGS)) -o $@ $^ $(LDLIBS)
 
