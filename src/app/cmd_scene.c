@@ -4,21 +4,32 @@
 #include <stdio.h>
 #include <string.h>
 
+/* How a model for OpenSCAD is made. */
+typedef enum ScadForm { SCAD_PARAMETRIC, SCAD_POLYHEDRON } ScadForm;
+static const char *const scad_forms[] = {
+    [SCAD_PARAMETRIC] = "parametric", [SCAD_POLYHEDRON] = "polyhedron", NULL};
+
 typedef struct SceneOptions {
     const char *output;
     bool ids;
+    ScadForm scad;
     PictureOptions picture;
 } SceneOptions;
 
 static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, SceneOptions, output),
-     .argument = "S.pov",
-     .help = "the scene; its geometry goes to S.inc beside it"},
+     .argument = "S.pov|S.scad",
+     .help = "a scene for POV-Ray, its geometry in S.inc beside it, or a model for OpenSCAD"},
     {.name = "ids",
      SETS(SWITCH, SceneOptions, ids),
      .group = GROUP_POVRAY,
      .help = "isosurface, blob: with what POV-Ray needs for the id plane"},
+    {.name = "scad",
+     SETS(CHOICE, SceneOptions, scad),
+     .choices = scad_forms,
+     .group = GROUP_VESSELS,
+     .help = "S.scad: modules that answer to the customizer, or one closed surface"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -48,16 +59,78 @@ static Status find_emitter(const char *output, const Emitter **emitter, Err *err
     return status;
 }
 
-static Status check(const SceneOptions *options, const Parsed *parsed, Err *err)
+/* STATUS_USAGE for an option that has no effect on a file of this format. */
+static Status check_format(const Emitter *emitter, const Parsed *parsed, Err *err)
+{
+    static const char of_view[] = "is for scenes with a camera (.pov); a solid has none";
+    static const char of_povray[] = "is for scenes of POV-Ray (.pov)";
+    const bool view = emitter->has_view, povray = strcmp(emitter->name, "povray") == 0;
+    const OptionNeed needs[] = {{"size", view, of_view},
+                                {"projection", view, of_view},
+                                {"view", view, of_view},
+                                {"location", view, of_view},
+                                {"look-at", view, of_view},
+                                {"up", view, of_view},
+                                {"angle", view, of_view},
+                                {"height", view, of_view},
+                                {"margin", view, of_view},
+                                {"antialias", view, of_view},
+                                {"shadows", view, of_view},
+                                {"background", view, of_view},
+                                {"ids", povray, of_povray},
+                                {"scad", !povray, "is for models of OpenSCAD (.scad)"},
+                                {0}};
+    return options_check_needs(parsed, needs, err);
+}
+
+/* STATUS_USAGE when the format cannot hold the model, in the form that is asked for. */
+static Status check_model(const Emitter *emitter, SceneModel model, ScadForm form, Err *err)
+{
+    if (form == SCAD_POLYHEDRON)
+        return err_set(err, STATUS_USAGE,
+                       "--scad polyhedron needs a closed mesh of the tree, which corcast does not "
+                       "make; use --scad parametric");
+    if (emitter->models & emit_model(model))
+        return STATUS_OK;
+    Text able = TEXT_INIT;
+    for (int i = 0; model_names[i]; i++)
+        if (emitter->models & emit_model((SceneModel)i))
+            text_printf(&able, "%s%s", *text_chars(&able) ? " or " : "", model_names[i]);
+    Status status = err_set(err, STATUS_USAGE, "--model %s: %s takes --model %s",
+                            model_names[model], emitter->description, text_chars(&able));
+    text_release(&able);
+    return status;
+}
+
+static Status check(const SceneOptions *options, const Emitter *emitter, const Parsed *parsed,
+                    Err *err)
 {
     const PictureOptions *picture = &options->picture;
     const OptionNeed needs[] = {
         {"ids", picture->model == SCENE_ISOSURFACE || picture->model == SCENE_BLOB,
          "is for --model isosurface and blob; other scenes have ids anyway"},
         {0}};
+    TRY(check_format(emitter, parsed, err));
     TRY(options_check_needs(parsed, needs, err));
     TRY(picture_check_needs(picture, parsed, err));
-    return picture_check_povray(picture, err);
+    TRY(picture_check_povray(picture, err));
+    return check_model(emitter, (SceneModel)picture->model, options->scad, err);
+}
+
+/* What the user should know of the file besides. */
+static void say_limits(const EmitReport *report, const Scene *scene)
+{
+    enum { QUICK = 100 };
+    if (report->joint_sides > 0)
+        fprintf(stderr,
+                "corcast: more joints than POV-Ray holds exactly; they are meshes of %d sides, of "
+                "more with Declare=Joint_Sides=N\n",
+                report->joint_sides);
+    if (report->openscad_s > 0 && scene->drawn > QUICK)
+        fprintf(stderr,
+                "corcast: OpenSCAD takes about %.2g s to make a solid of %zu vessels, and its "
+                "preview a moment\n",
+                report->openscad_s, scene->drawn);
 }
 
 static Status run_scene(void *options, Parsed *parsed, Err *err)
@@ -68,8 +141,8 @@ static Status run_scene(void *options, Parsed *parsed, Err *err)
     const Emitter *emitter;
     Scene scene = {0};
     EmitReport report = {0};
-    TRY(check(own_options, parsed, err));
     TRY(find_emitter(output, &emitter, err));
+    TRY(check(own_options, emitter, parsed, err));
     TRY(scene_files_note(emitter, output, &parsed->files, err));
     TRY(picture_scene(picture, tree, parsed->common.quiet, &scene, NULL, err));
     const EmitParams params = {.scene = &scene,
@@ -77,21 +150,19 @@ static Status run_scene(void *options, Parsed *parsed, Err *err)
                                .ids = own_options->ids,
                                .cells = picture_cells(picture)};
     Status status = scene_files_write(emitter, &params, tree, output, &report, err);
-    if (status == STATUS_OK && report.joint_sides > 0 && !parsed->common.quiet)
-        fprintf(stderr,
-                "corcast: more joints than POV-Ray holds exactly; they are meshes of %d sides, of "
-                "more with Declare=Joint_Sides=N\n",
-                report.joint_sides);
+    if (status == STATUS_OK && !parsed->common.quiet)
+        say_limits(&report, &scene);
     scene_release(&scene);
     return status;
 }
 
 const Command command_scene = {
     .name = "scene",
-    .summary = "write a tree as a POV-Ray scene",
-    .operands = "T.swc -o S.pov",
+    .summary = "write a tree as a scene for POV-Ray or OpenSCAD",
+    .operands = "T.swc -o S.pov|S.scad",
     .examples = "  corcast scene tree.swc -o tree.pov\n"
-                "  corcast scene tree.swc --model isosurface --size 2000x2000 -o tree.pov\n",
+                "  corcast scene tree.swc --model isosurface --size 2000x2000 -o tree.pov\n"
+                "  corcast scene tree.swc -o tree.scad\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,

@@ -14,9 +14,15 @@ const Emitter emitters[] = {
      .extension = "pov",
      .second_extension = "inc",
      .description = "a scene for POV-Ray 3.7",
+     .has_view = true,
      .models = ALL_MODELS,
      .check_name = povray_check_name,
      .write = povray_write},
+    {.name = "openscad",
+     .extension = "scad",
+     .description = "a parametric model for OpenSCAD",
+     .models = 1U << SCENE_CYLINDERS | 1U << SCENE_ROUNDED,
+     .write = openscad_write},
     {0},
 };
 

@@ -23,6 +23,7 @@ typedef struct EmitParams {
 typedef struct EmitReport {
     size_t cells;    /* of an isosurface; of a blob that is cut into cells, else 0 */
     int joint_sides; /* of a joint's mesh; 0: joints are exact, which POV-Ray can hold 174,000 of */
+    double openscad_s; /* about how long OpenSCAD takes to make a solid of it; else 0 */
 } EmitReport;
 
 /* A format that scenes are written in: one row of `emitters`. */
@@ -32,6 +33,7 @@ typedef struct Emitter {
     const char *second_extension; /* of the file beside it: "inc"; NULL: it writes one file */
     const char *description;      /* "a scene for POV-Ray 3.7" */
     bool binary;
+    bool has_view;   /* it holds camera, lights and background, and not the vessels alone */
     unsigned models; /* those it can write: bits emit_model(SceneModel) */
     /* STATUS_USAGE when the format cannot name a second file so. NULL: it takes any name. */
     Status (*check_name)(const char *second_file, Err *err);

@@ -1,0 +1,198 @@
+/* A model in OpenSCAD's own manner: one call for each vessel and for each place where vessels meet
+ * or end, of modules that the template defines, so that all of it answers to the customizer.
+ *
+ * A scene of cylinders and balls has no nodes, but its balls lie where cylinders begin and end, to
+ * the last bit: how many do tells a bifurcation from a bend and an end. */
+#include "emit/rows.h"
+#include "emit/values.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What OpenSCAD 2021.01 takes for each cylinder and ball of 12 sides, the mean of trees of 5 to 100
+ * vessels. */
+static const double seconds_a_primitive = 0.3;
+
+/* An end of a cylinder, and the direction in which it leaves it, unit. */
+typedef struct CylinderEnd {
+    Vec3 at, outwards;
+} CylinderEnd;
+
+typedef struct Model {
+    const EmitParams *params;
+    const Scene *scene;
+    CylinderEnd *ends; /* in order of place; owned */
+    size_t n_ends;
+} Model;
+
+static int by_place(const void *a, const void *b)
+{
+    const Vec3 *p = &((const CylinderEnd *)a)->at, *q = &((const CylinderEnd *)b)->at;
+    for (int axis = 0; axis < 3; axis++) {
+        double x = vec3_component(*p, axis), y = vec3_component(*q, axis);
+        if (x != y)
+            return x < y ? -1 : 1;
+    }
+    return 0;
+}
+
+static Status find_ends(Model *model, Err *err)
+{
+    const Scene *scene = model->scene;
+    TRY(mem_calloc(&model->ends, 2 * scene->n_primitives, sizeof *model->ends, "ends", err));
+    for (size_t i = 0; i < scene->n_primitives; i++) {
+        const Primitive *primitive = &scene->primitives[i];
+        if (primitive->kind != PRIMITIVE_CYLINDER)
+            continue;
+        Vec3 along = vec3_normalized(vec3_sub(primitive->b, primitive->a));
+        model->ends[model->n_ends++] = (CylinderEnd){primitive->b, along};
+        model->ends[model->n_ends++] = (CylinderEnd){primitive->a, vec3_scale(along, -1)};
+    }
+    qsort(model->ends, model->n_ends, sizeof *model->ends, by_place);
+    return STATUS_OK;
+}
+
+/* How many cylinders end at a point, and the first of these ends. */
+static size_t ends_at(const Model *model, Vec3 point, const CylinderEnd **first)
+{
+    const CylinderEnd key = {.at = point};
+    const CylinderEnd *last = model->ends + model->n_ends;
+    *first = bsearch(&key, model->ends, model->n_ends, sizeof key, by_place);
+    if (!*first)
+        return 0;
+    while (*first > model->ends && by_place(*first - 1, &key) == 0)
+        (*first)--;
+    size_t n = 0;
+    while (*first + n < last && by_place(*first + n, &key) == 0)
+        n++;
+    return n;
+}
+
+/* ---- calls ----------------------------------------------------------------------------------- */
+
+static void put_numbers(Text *text, double x, double y, double z)
+{
+    text_puts(text, "[");
+    text_number(text, x + 0); /* adding 0 turns -0 into 0 */
+    text_puts(text, ",");
+    text_number(text, y + 0);
+    text_puts(text, ",");
+    text_number(text, z + 0);
+    text_puts(text, "]");
+}
+
+static void put_point(Text *text, Vec3 v)
+{
+    put_numbers(text, v.x, v.y, v.z);
+}
+
+static void put_rgb(Text *text, Rgb color)
+{
+    char r[NUMBER_TEXT_SIZE], g[NUMBER_TEXT_SIZE], b[NUMBER_TEXT_SIZE];
+    text_printf(text, "[%s,%s,%s]", number_text_float(color.r, r), number_text_float(color.g, g),
+                number_text_float(color.b, b));
+}
+
+/* The radius, what follows it, and the colour, if there is more than one. */
+static void put_rest(Text *text, const Scene *scene, const Primitive *primitive,
+                     const Vec3 *outwards)
+{
+    text_puts(text, ",");
+    text_number(text, primitive->radius_mm);
+    if (outwards) {
+        text_puts(text, ",");
+        put_point(text, *outwards);
+    }
+    if (!scene->uniform_color) {
+        text_puts(text, ",");
+        put_rgb(text, primitive->color);
+    }
+    text_puts(text, ");\n");
+}
+
+static void put_vessel(Text *text, const Scene *scene, const Primitive *cylinder)
+{
+    text_printf(text, "  vessel(%u,", cylinder->id);
+    put_point(text, cylinder->a);
+    text_puts(text, ",");
+    put_point(text, cylinder->b);
+    put_rest(text, scene, cylinder, NULL);
+}
+
+static void put_ball(Text *text, const Model *model, const Primitive *ball)
+{
+    const CylinderEnd *first;
+    size_t n = ends_at(model, ball->a, &first);
+    text_puts(text, n == 1 ? "  end(" : n == 2 ? "  bend(" : "  bifurcation(");
+    put_point(text, ball->a);
+    put_rest(text, model->scene, ball, n == 1 ? &first->outwards : NULL);
+}
+
+static Status put_calls(Text *out, void *context, Err *err)
+{
+    const Model *model = context;
+    for (size_t i = 0; i < model->scene->n_primitives; i++) {
+        const Primitive *primitive = &model->scene->primitives[i];
+        if (primitive->kind == PRIMITIVE_CYLINDER)
+            put_vessel(out, model->scene, primitive);
+        else
+            put_ball(out, model, primitive);
+    }
+    return text_check(out, err);
+}
+
+/* ---- the file -------------------------------------------------------------------------------- */
+
+/* About how long CGAL takes to unite them, with 12 sides. */
+static double openscad_seconds(const Scene *scene)
+{
+    return seconds_a_primitive * (double)scene->n_primitives;
+}
+
+static double largest_radius(const Scene *scene)
+{
+    double largest = 0;
+    for (size_t i = 0; i < scene->n_primitives; i++)
+        largest = fmax(largest, scene->primitives[i].radius_mm);
+    return largest;
+}
+
+static void add_header(Values *values, const EmitParams *params)
+{
+    const Scene *scene = params->scene;
+    Text stem = TEXT_INIT;
+    size_t extension = strlen(file_extension(params->file));
+    text_append(&stem, params->file,
+                strlen(params->file) - (extension ? extension + 1 : extension));
+    text_put_line(add_value(values, "file"), params->file);
+    text_put_line(add_value(values, "stem"), text_chars(&stem));
+    text_release(&stem);
+    text_put_line(add_value(values, "description"), params->description);
+    text_puts(add_value(values, "generator"), params->generator);
+    text_printf(add_value(values, "count"), "%zu", scene->drawn);
+    text_printf(add_value(values, "seconds"), "%.2g", openscad_seconds(scene));
+    text_printf(add_value(values, "extent"), "%.4g to %.4g, %.4g to %.4g, %.4g to %.4g mm",
+                scene->bounds.low.x, scene->bounds.high.x, scene->bounds.low.y,
+                scene->bounds.high.y, scene->bounds.low.z, scene->bounds.high.z);
+}
+
+Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                      Err *err)
+{
+    (void)second;
+    const Scene *scene = params->scene;
+    Model model = {.params = params, .scene = scene};
+    Values values = {0};
+    TRY(find_ends(&model, err));
+    add_header(&values, params);
+    text_printf(add_value(&values, "max_radius"), "%.2g", largest_radius(scene));
+    put_rgb(add_value(&values, "color"), scene->color);
+    put_point(add_value(&values, "origin"), scene->origin);
+    put_point(add_value(&values, "low"), scene->bounds.low);
+    put_point(add_value(&values, "high"), scene->bounds.high);
+    add_part(&values, "calls", put_calls, &model);
+    report->openscad_s = openscad_seconds(scene);
+    Status status = values_expand(&values, params, "openscad/parametric.scad", out, err);
+    free(model.ends);
+    return status;
+}

@@ -1,0 +1,209 @@
+#!/usr/bin/env bash
+# scene for OpenSCAD. OpenSCAD itself makes solids of what is written, admesh looks whether they are closed, and volume
+# and outline are held against ours: a third witness of the geometry. Seconds each, as CGAL needs them.
+. "$(dirname "$0")/../lib.sh"
+
+# A bifurcation in space.
+fork() {
+    cat >fork.swc <<'END'
+1 1 0 14.2 0.5 2.385 -1
+2 1 1.7 3.1 -0.8 2.385 1
+3 1 -7.9 -8.3 2.1 1.93 2
+4 1 9.6 -6.2 -3.7 1.71 2
+END
+    run_ok corcast scene fork.swc -o fork.scad
+}
+
+# A vessel on its own.
+vessel() {
+    printf '1 1 0 14.2 0.5 2.385 -1\n2 1 1.7 3.1 -0.8 2.385 1\n' >vessel.swc
+    run_ok corcast scene vessel.swc "$@" -o vessel.scad
+}
+
+# scad OUTPUT INPUT NAME=VALUE...: runs OpenSCAD.
+scad() {
+    local output=$1 input=$2 set=()
+    command -v openscad >/dev/null || skip "openscad is not installed"
+    shift 2
+    for value; do
+        set+=(-D "$value")
+    done
+    run_ok timeout 120 openscad -q -o "$output" "${set[@]}" "$input"
+    expect_file "$output"
+    [ ! -s stderr ] || fail "expected no word of OpenSCAD$(said)"
+}
+
+# volume FILE.stl: its volume, once admesh has found nothing to mend.
+volume() {
+    command -v admesh >/dev/null || skip "admesh is not installed"
+    admesh "$1" >admesh.txt || fail "admesh failed"
+    grep -q 'Total disconnected facets *: *0 *0' admesh.txt || fail "expected $1 to be closed: $(cat admesh.txt)"
+    grep -qE 'Number of parts *: *1 ' admesh.txt || fail "expected $1 to be one part"
+    sed -n 's/.*Volume *: *\([0-9.]*\)$/\1/p' admesh.txt
+}
+
+# euler FILE.stl: vertices - edges + facets.
+euler() {
+    awk '$1 == "vertex" { if (!seen[$2, $3, $4]++) v++; n++ } END { print v - n / 3 / 2 }' "$1"
+}
+
+# within SHARE A B
+within() {
+    awk -v share="$1" -v a="$2" -v b="$3" 'BEGIN { exit !(a > 0 && (a - b) ^ 2 <= (share * b) ^ 2) }' ||
+        fail "expected $2 to be $3 to within a share of $1"
+}
+
+test_a_vessel_is_the_prism_that_it_says() {
+    vessel --model cylinders
+    scad vessel.stl vessel.scad '$fn=8'
+    # n / 2 sin(2 pi / n) r^2 l
+    within 1e-5 "$(volume vessel.stl)" \
+        "$(awk 'BEGIN { print 4 * sin(atan2(1, 1)) * 2.385 ^ 2 * sqrt(1.7 ^ 2 + 11.1 ^ 2 + 1.3 ^ 2) }')"
+}
+
+# What n sides lose of the volume falls with n^2, so that two of them say what none would lose.
+test_the_volume_of_a_bifurcation_is_the_integral_over_its_vessels() {
+    /usr/bin/python3 -c 'import numpy' 2>import.log || skip "python3-numpy is not installed"
+    fork
+    scad fork8.stl fork.scad '$fn=8'
+    scad fork12.stl fork.scad '$fn=12'
+    /usr/bin/python3 - >integral <<'END' || fail "the integral failed: $(cat integral)"
+import numpy as np
+rows = [line.split() for line in open("fork.swc")]
+place = {row[0]: np.array([float(x) for x in row[2:5]]) for row in rows}
+tubes = [(place[row[6]], place[row[0]], float(row[5])) for row in rows if row[6] != "-1"]
+low = np.min([np.minimum(a, b) - r for a, b, r in tubes], 0)
+step = (np.max([np.maximum(a, b) + r for a, b, r in tubes], 0) - low) / 128
+grid = [low[i] + (np.arange(128) + 0.5) * step[i] for i in range(3)]
+x, y = np.meshgrid(grid[0], grid[1], indexing="ij")
+inside = 0
+for z in grid[2]:
+    any_tube = np.zeros(x.shape, bool)
+    for a, b, r in tubes:
+        d = b - a
+        t = np.clip(((x - a[0]) * d[0] + (y - a[1]) * d[1] + (z - a[2]) * d[2]) / d.dot(d), 0, 1)
+        any_tube |= (x - a[0] - t * d[0])**2 + (y - a[1] - t * d[1])**2 + (z - a[2] - t * d[2])**2 < r * r
+    inside += any_tube.sum()
+print(inside * step.prod())
+END
+    within 0.005 "$(awk -v v8="$(volume fork8.stl)" -v v12="$(volume fork12.stl)" \
+        'BEGIN { print (144 * v12 - 64 * v8) / 80 }')" "$(cat integral)"
+}
+
+# 20 pixels a mm. Sixteen sides cut off up to 3.9 % of a radius, 1.9 pixels, and either may miss an edge by one.
+test_the_outline_is_the_silhouette_that_render_draws() {
+    /usr/bin/python3 -c 'import skimage' 2>import.log || skip "python3-skimage is not installed"
+    fork
+    scad fork.svg fork.scad 'part="outline"' '$fn=16'
+    run_ok corcast render fork.swc --location 0,0,100 --look-at 0,0,0 --height 40 --size 800x800 --planes id -o ours.ppm
+    /usr/bin/python3 - >silhouette <<'END' || fail "the silhouettes differ: $(cat silhouette)"
+import re, sys
+import numpy as np
+from skimage.draw import polygon
+from skimage.io import imread
+from skimage.morphology import binary_dilation, binary_erosion, disk
+ours = imread("ours.id.ppm").reshape(800, 800, 3).any(axis=2)
+theirs = np.zeros((800, 800), bool)
+for part in re.search(r'<path d="([^"]*)"', open("fork.svg").read()).group(1).split("z"):
+    points = np.array([[float(x) for x in pair.split(",")] for pair in re.findall(r"[-0-9.e]+,[-0-9.e]+", part)])
+    if len(points):
+        rows, columns = polygon(points[:, 1] * 20 + 399.5, points[:, 0] * 20 + 399.5, (800, 800))
+        theirs[rows, columns] ^= True
+beyond = theirs & ~binary_dilation(ours, disk(1))
+short = binary_erosion(ours, disk(3)) & ~theirs
+print("pixels of ours", ours.sum(), "of theirs", theirs.sum(), "beyond", beyond.sum(), "short", short.sum())
+like = abs(int(ours.sum()) - int(theirs.sum())) <= 0.02 * ours.sum()
+sys.exit(0 if like and ours.sum() > 1000 and not beyond.any() and not short.any() else 1)
+END
+}
+
+test_a_wall_is_a_tube_and_with_closed_ends_a_shell() {
+    vessel
+    scad open.stl vessel.scad 'part="wall"' wall=0.7 '$fn=6'
+    scad closed.stl vessel.scad 'part="wall"' wall=0.7 open_ends=false '$fn=6'
+    [ "$(euler open.stl)" = 0 ] || fail "expected one hole through the wall: $(euler open.stl)"
+    [ "$(euler closed.stl)" = 4 ] || fail "expected an outside and an inside: $(euler closed.stl)"
+}
+
+test_the_customizer_chooses_parts_radii_and_vessels() {
+    fork
+    scad all.csg fork.scad
+    scad joints.csg fork.scad 'part="bifurcations"'
+    scad thick.csg fork.scad min_radius=1.8 radius_scale=1.5
+    scad block.csg fork.scad 'part="block"' margin=2.5
+    [ "$(grep -c 'cylinder(' all.csg) $(grep -c 'sphere(' all.csg)" = "3 4" ] || fail "expected 3 vessels and 4 balls"
+    [ "$(grep -c 'cylinder(' joints.csg) $(grep -c 'sphere(' joints.csg)" = "0 4" ] || fail "expected balls alone"
+    [ "$(grep -c 'cylinder(' thick.csg)" = 2 ] || fail "expected two vessels above 1.8 mm"
+    grep -q 'r1 = 3.5775, r2 = 3.5775' thick.csg || fail "expected a radius of 1.5 x 2.385"
+    grep -q 'cube(' block.csg || fail "expected a block"
+}
+
+test_each_place_is_called_what_it_is() {
+    fork
+    sed -i '$a5 1 12.1 -9.4 -3.1 1.71 4' fork.swc
+    run_ok corcast scene fork.swc -o fork.scad
+    [ "$(grep -cE '^  (vessel|bifurcation|bend|end)\(' fork.scad)" = 9 ] || fail "expected 4 vessels and 5 places"
+    grep -q '^  bifurcation(\[1.7,3.1,-0.8\],2.385);' fork.scad || fail "expected the bifurcation at node 2"
+    grep -q '^  bend(\[9.6,-6.2,-3.7\],1.71);' fork.scad || fail "expected the bend at node 4"
+    [ "$(grep -c '^  end(' fork.scad)" = 3 ] || fail "expected three ends"
+}
+
+test_vessels_have_the_colours_that_are_asked_for() {
+    fork
+    run_ok corcast scene fork.swc --color-by length -o colored.scad
+    scad colored.csg colored.scad
+    [ "$(grep -o 'color(\[[^]]*' colored.csg | sort -u | wc -l)" = 3 ] || fail "expected three colours"
+}
+
+test_the_commands_of_the_page_run() {
+    local line
+    cp "$DATA/bifurcation.swc" .
+    while read -r line; do
+        case $line in
+        xvfb-run*) command -v xvfb-run >/dev/null || continue ;;
+        openscad*) command -v openscad >/dev/null || skip "openscad is not installed" ;;
+        esac
+        run_ok timeout 120 bash -c "$(sed "s|build/corcast|'$CORCAST'|; s|tests/data/||; s/fn=24/fn=5/; s/scad *#.*/scad/" <<<"$line")"
+    done < <(sed -n ':a; /\\$/{N; s/\\\n *//; ba}; s/^    \(build\/corcast\|openscad\|xvfb-run\)/\1/p' "$REPO/docs/OPENSCAD.md")
+    volume tree.stl
+    expect_file outline.svg
+}
+
+test_names_stay_in_their_comments() {
+    fork
+    cp fork.swc $'a\ncube(9);.swc'
+    run_ok corcast scene $'a\ncube(9);.swc' -o $'b\ncube(8); ${file} $fn.scad'
+    mv $'b\ncube(8); ${file} $fn.scad' b.scad
+    scad b.csg b.scad
+    ! grep -q 'cube(' b.csg || fail "expected no cube"
+}
+
+test_what_a_solid_cannot_have_is_refused() {
+    fork
+    run corcast scene fork.swc --size 320x240 -o x.scad
+    expect_status 2
+    expect_sentence '--size is for scenes with a camera'
+    run corcast scene fork.swc --model blob -o x.scad
+    expect_status 2
+    expect_sentence '--model blob: .*takes --model cylinders or rounded'
+    run corcast scene fork.swc --scad polyhedron -o x.scad
+    expect_status 2
+    expect_sentence '--scad polyhedron needs a closed mesh'
+    run corcast scene fork.swc --scad parametric -o x.pov
+    expect_status 2
+    expect_sentence '--scad is for models of OpenSCAD'
+    run corcast scene fork.swc -o x.stl
+    expect_status 2
+    expect_sentence "'x.stl' does not end in .pov or .scad"
+    [ ! -e x.scad ] || fail "expected no file"
+}
+
+test_a_large_tree_says_how_long_openscad_takes() {
+    grow_tree 60
+    run_ok corcast scene tree.swc -o tree.scad
+    expect_sentence 'OpenSCAD takes about [0-9.e+]+ s to make a solid of 119 vessels'
+    run_ok corcast scene tree.swc -o tree.scad --quiet
+    [ ! -s stderr ] || fail "expected no word$(said)"
+}
+
+run_tests
