@@ -4,7 +4,9 @@
 
 #include "render/tile/tilekernels.h"
 
-/* Finds the first hits; `work` has room for the tile's terms. */
+/* Finds the first hits of a tile that has terms: sets all of *hits. `work` has room for those terms
+ * [TILE_WORK_BYTES each] and holds nothing from one call to the next. Reads x and y of all
+ * TILE_SAMPLES samples, those outside the picture included. */
 typedef void FieldKernel(const FieldTile *tile, TileWork *work, TileHits *hits);
 
 FieldKernel trace_portable;

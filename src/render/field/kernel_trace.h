@@ -10,8 +10,8 @@
  * passes the segment's axis beyond an end, else 1:
  *
  * - Peak. The term is the integral of exp(-|x - y|^2) / sqrt(pi) over the points y of the segment,
- *   and on the ray |x - y|^2 = rho^2 + q^2 with rho >= d the distance of y from the ray.
- * Integrated, Phi_i <= B = exp(-d^2) min(1, h / s).
+ *   and on the ray |x - y|^2 = rho^2 + q^2, where rho >= d is the distance of y from the ray:
+ *   Phi_i <= B = exp(-d^2) min(1, h / s).
  * - Curvature. (exp(-q^2))'' is at most 4 exp(-3/2), and its positive part and its negative part
  *   integrate to 2 sqrt(2 / e) each: Phi_i'' <= M = k^2 exp(-d^2) min(4 exp(-3/2) h / s, 2 sqrt(2 /
  *   e) / sqrt(pi) / a). Since (exp(-q^2))'' >= -2, also Phi_i'' >= -M exp(3/2) / 2.

@@ -1,6 +1,6 @@
 /* What a light sees of the places that a tile of the picture sees, several at once: included by
- * each source that compiles it for its lanes. Loops over samples have no
- * branches, for compilers to make vectors of. */
+ * each source that compiles it for its lanes. Loops over samples have no branches, for compilers to
+ * make vectors of. */
 #ifndef RASTER_KERNEL
 #error "define RASTER_KERNEL(name), the name of a function"
 #endif
@@ -267,7 +267,8 @@ RASTER_FN ProbeBlock load_probes(const RasterTile *tile, const RasterProbes *pro
     return block;
 }
 
-/* Of LANES items from `first` of the list on, as bits, those that may be before a probe. */
+/* Of LANES items from `first` of the list on, as bits, those that may be before a probe. Reads
+ * LANES boxes and depths, of which those behind the end of the list are masked away. */
 RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const ProbeBlock *block)
 {
     typedef uint32_t LaneWords __attribute__((vector_size(4 * LANES)));

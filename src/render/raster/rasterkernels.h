@@ -1,12 +1,14 @@
 /* What is done to a tile of primitives several samples at once, in one version for each kind of
- * processor. */
+ * processor. Kernels read and write whole blocks of as many samples as a processor has lanes, 16 at
+ * most: of arrays of TILE_SAMPLES nothing else is touched, what reaches farther says so. */
 #ifndef CORCAST_RENDER_RASTERKERNELS_H
 #define CORCAST_RENDER_RASTERKERNELS_H
 
 #include "render/raster/rastertile.h"
 #include "render/tile/tilekernels.h"
 
-/* Where the samples of a tile see something, in the frame of the view; senseless for others. */
+/* Where the samples of a tile see something, mm in the frame of the view; undefined for samples
+ * that see nothing. */
 typedef struct RasterPlaces {
     double x[TILE_SAMPLES], y[TILE_SAMPLES], z[TILE_SAMPLES];
 } RasterPlaces;
@@ -37,16 +39,22 @@ typedef struct RasterProbes {
     uint32_t place[MOST_PROBES]; /* TILE_SAMPLES times the number in `spots`, and the sample's */
     float x[MOST_PROBES], y[MOST_PROBES]; /* in the plane of the view, less the tile's middle */
     float z[MOST_PROBES];                 /* less z_middle */
-    uint32_t item[MOST_PROBES];   /* that the place is on, as in RasterHits: no sphere or cylinder
-                                   * seen in single precision shadows itself */
+    /* Index of the item whose surface the place lies on, as in RasterHits. If that is a sphere or a
+     * cylinder whose hit was found in single precision, it is not tested as a blocker of this
+     * place: rounding would let it shadow itself. */
+    uint32_t item[MOST_PROBES];
     uint8_t covered[MOST_PROBES]; /* 1 where an item is seen before that depth, else 0 */
 } RasterProbes;
 
 typedef struct RasterKernels {
-    /* Finds the first items of the tile, and of spheres and cylinders the normals; bit i is set
-     * where sample i sees one. */
+    /* Finds the first item at each sample, in *hits, and where that is a sphere or a cylinder the
+     * normal, in surface->normal; nothing else of *surface is set. Bit i of what is returned is set
+     * if sample i sees an item. Reads tile->list[0 .. n), and of the bins what raster_decide
+     * does. */
     uint64_t (*trace)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
-    /* State, item (as `segment`) and all other normals of the hits. */
+    /* Completes *surface after `trace` with the same tile and hits: state, item (as `segment`), and
+     * the normals of joints and of what was decided in double precision. Leaves z, any_hit and
+     * any_unsure alone. */
     void (*resolve)(const RasterTile *tile, const RasterHits *hits, TileHits *surface);
     /* The places that the hits are at. */
     void (*locate)(const RasterTile *tile, const RasterHits *hits, RasterPlaces *places);
@@ -54,10 +62,15 @@ typedef struct RasterKernels {
     void (*face)(const RasterTile *tile, const RasterPlaces *places,
                  const float normal[3][TILE_SAMPLES], const TileLight *light,
                  uint8_t facing[TILE_SAMPLES]);
+    /* Sets the places as the light sees them; where a sample sees nothing, to a tile of the light
+     * all the same. */
     void (*aim)(const RasterAim *aim, const RasterPlaces *places, RasterSpots *spots);
     /* Of the samples, as bits, those that lie in a tile. */
     uint64_t (*within)(const RasterSpots *spots, int32_t tile);
-    /* Sets `covered` of the probes, all of which lie in this tile. */
+    /* Sets `covered` of the probes, all of which lie in this tile of a light, and overwrites what
+     * follows the last of them up to a multiple of the lanes. tile->list holds, behind its n items,
+     * their n boxes [RasterBox], and `nears` their depths: of both, up to 15 words behind the end
+     * are read and ignored. */
     void (*cover)(const RasterTile *tile, RasterProbes *probes);
 } RasterKernels;
 

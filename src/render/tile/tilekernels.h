@@ -1,4 +1,6 @@
-/* What is done to a tile several samples at once, in one version for each kind of processor. */
+/* What is done to a tile several samples at once, in one version for each kind of processor.
+ * Kernels read and write whole blocks of as many samples as a processor has lanes, 16 at most: what
+ * an array holds for samples that see nothing does not matter, and may be overwritten. */
 #ifndef CORCAST_RENDER_TILEKERNELS_H
 #define CORCAST_RENDER_TILEKERNELS_H
 
@@ -31,14 +33,18 @@ typedef struct TileSurface {
 } TileSurface;
 
 typedef struct TileKernels {
-    /* Colours of the hits as shade() gives, to 2e-5 of the light's colour. */
+    /* Colours of the hits as shade() gives, to 2e-5 of the light's colour. Reads of the surface
+     * what the look asks for, and sets the colours of other samples in the same block to anything.
+     */
     void (*shade)(const TileLook *look, const TileSurface *surface, float color[3][TILE_SAMPLES]);
     /* Gives the samples whose TileState is TILE_MISS the background. */
     void (*clear)(const uint8_t *state, const float background[3], float color[3][TILE_SAMPLES]);
-    /* Stores a whole tile's colours as rows of pixels, `stride` floats from row to row. */
+    /* Stores a whole tile's colours as TILE_SIDE rows of pixels, `stride` floats from row to row.
+     */
     void (*paint)(float color[3][TILE_SAMPLES], float *pixels, size_t stride);
-    /* Stores the codes of a whole tile's colours as rows of pixels, `stride` bytes from row to row:
-     * the background's where a TileState is TILE_MISS. `state` NULL: none is. */
+    /* Stores the 8-bit codes of a whole tile's colours as TILE_SIDE rows of pixels, `stride` bytes
+     * from row to row: the background's where a TileState is TILE_MISS. `state` NULL: none is.
+     * Colours that are not a number have code 0. */
     void (*encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES], const uint8_t *state,
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
 } TileKernels;
