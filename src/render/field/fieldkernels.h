@@ -2,6 +2,7 @@
 #ifndef CORCAST_RENDER_FIELDKERNELS_H
 #define CORCAST_RENDER_FIELDKERNELS_H
 
+#include "render/field/fieldterms.h"
 #include "render/tile/tilekernels.h"
 
 /* Finds the first hits of a tile that has terms: sets all of *hits. `work` has room for those terms

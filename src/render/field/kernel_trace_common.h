@@ -3,8 +3,8 @@
 #ifndef CORCAST_RENDER_KERNEL_TRACE_COMMON_H
 #define CORCAST_RENDER_KERNEL_TRACE_COMMON_H
 
+#include "render/field/fieldterms.h"
 #include "render/tile/lanes.h"
-#include "render/tile/tile.h"
 #include "scene/scene.h"
 
 #define LEVEL ((float)FIELD_LEVEL)

@@ -1,9 +1,9 @@
-/* What fieldtiles.c prepares and the kernels of kernel_trace.h trace: one tile of 8 x 8 samples,
- * the vessels near it, and what its rays meet. Lengths in mm, in the camera's frame: x right, y up,
- * z along the direction, its origin at the camera's location.
+/* A tile of a picture: 8 x 8 samples, their lines of sight, and what these see.
  *
- * The ray of the sample (x, y) of the camera's plane is (x, y, z) when orthographic and
- * (x z, y z, z) when perspective: z is the parameter of both. */
+ * Lengths are in mm, in the frame of a viewpoint [viewpoint.h]: x right, y up, z along the view,
+ * the origin at its location. The line of sight of the sample (x, y) of the view's plane consists
+ * of the points (x, y, z) when lines are parallel and (x z, y z, z) in perspective: z is the
+ * parameter of both. */
 #ifndef CORCAST_RENDER_TILE_H
 #define CORCAST_RENDER_TILE_H
 
@@ -12,35 +12,8 @@
 
 enum { TILE_SIDE = 8, TILE_SAMPLES = TILE_SIDE * TILE_SIDE };
 
-/* A term of the potential as the tile sees it. `o` is where the middle ray passes at z = z_near:
- * its place less the point of the axis that is nearest to the ray. k = potential_k. */
-typedef struct TileTerm {
-    double z_near;
-    double on, off; /* z between which the term may exceed the cut-off on a ray of the tile */
-    float k, per_k2;
-    float reach2; /* the term is below the cut-off where (k distance)^2 of the segment exceeds it */
-    float u, v;   /* k times the distances of that point from the two ends */
-    float o[3];
-    float axis[3];                /* unit */
-    float cross[3];               /* (middle ray's direction) x axis; orthographic: of length k */
-    float sine, per_sine, cosine; /* orthographic: of the angle between axis and ray */
-    uint32_t segment;             /* index in the scene */
-} TileTerm;
-
-/* Samples are numbered so that each run of 16, of 8, and of 4, is a compact block:
- * tile_sample_x/y. */
-typedef struct FieldTile {
-    const TileTerm *terms; /* by rising `on`, unless in a plane */
-    size_t n_terms;
-    const Blend *blend;
-    bool perspective;
-    bool plane;         /* all blend, and lie in one plane, square to all rays */
-    const float *x, *y; /* of the samples, relative to the middle ray */
-    double middle_x, middle_y;
-    float half_size; /* largest distance of a sample from the middle ray */
-    double z_min;    /* nothing is seen before it */
-} FieldTile;
-
+/* Samples of a tile are numbered so that each run of 16, of 8, and of 4, is a compact block; these
+ * are column and row of a sample in its tile. */
 static inline int tile_sample_x(int sample)
 {
     return (sample >> 4 & 1) * 4 + (sample >> 2 & 1) * 2 + (sample & 1);
@@ -58,20 +31,20 @@ static inline int tile_sample_at(int x, int y)
            (x & 1);
 }
 
-enum { TILE_WORK_BYTES = 1344 }; /* of one term in a kernel's workspace */
-
 typedef enum TileState {
     TILE_MISS = 0, /* proven: nothing is there */
     TILE_HIT,      /* proven: the first hit is there */
     TILE_UNSURE    /* within the margin of the arithmetic, or seen from inside */
 } TileState;
 
+/* What the samples see; undefined, but for the state, of samples that are no hits. */
 typedef struct TileHits {
     double z[TILE_SAMPLES];
-    float normal[3][TILE_SAMPLES]; /* unit, facing the viewer, in the camera's frame */
-    uint32_t segment[TILE_SAMPLES];
-    uint8_t state[TILE_SAMPLES]; /* TileState; z, normal and segment are 0 unless it is a hit */
-    bool any_hit, any_unsure;    /* whether a state is such, or was before it was decided */
+    float normal[3][TILE_SAMPLES];  /* unit; either side of the surface until geometry is stored */
+    uint32_t segment[TILE_SAMPLES]; /* index of the scene's segment or primitive */
+    uint8_t state[TILE_SAMPLES];    /* TileState */
+    bool any_hit, any_unsure; /* of the potential: whether a state is such, or was before it was
+                               * decided */
 } TileHits;
 
 /* A tile of a picture: the lines of sight of its samples, and what they see. */
@@ -112,15 +85,5 @@ static inline double seen_depth(const SeenTile *seen, int sample)
     double z = seen->hits->z[sample];
     return seen->perspective ? z * sqrt(1 + line.x * line.x + line.y * line.y) : z;
 }
-
-/* The workspace of a kernel, for up to `capacity` terms. */
-typedef struct TileWork {
-    void *memory;
-    size_t capacity;
-} TileWork;
-
-/* Makes room for `n` terms. */
-MUST_CHECK Status tilework_reserve(TileWork *work, size_t n, Err *err);
-void tilework_release(TileWork *work);
 
 #endif
