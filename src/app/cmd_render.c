@@ -104,11 +104,11 @@ static Status write_report(const char *path, const Scene *scene, const RenderSta
 {
     json_t *report =
         json_pack("{s:s, s:s, s:i, s:i, s:f, s:f, s:f, s:I, s:i}", "generator", GENERATOR, "model",
-                  model_name(scene->model), "width", scene->camera.width, "height",
-                  scene->camera.height, "prepare_seconds", stats->prepare_s, "trace_seconds",
+                  model_name(scene->geometry.model), "width", scene->view.camera.width, "height",
+                  scene->view.camera.height, "prepare_seconds", stats->prepare_s, "trace_seconds",
                   stats->trace_s, "cpu_seconds", stats->cpu_s, "rays", (json_int_t)stats->rays,
                   "threads", threads ? threads : threads_available());
-    if (scene->model == SCENE_JOINED) {
+    if (scene->geometry.model == SCENE_JOINED) {
         const JsonMember of_joints[] = {
             {"joints", json_integer((json_int_t)staged->joints)},
             {"places_short", json_integer((json_int_t)staged->places_short)},
@@ -132,12 +132,14 @@ static int band_rows(const FramesForm *form, double memory_mb)
 }
 
 /* Draws band after band and writes each before the next. */
-static Status draw_bands(Renderer *renderer, FramesWriter *writer, int height, int step, Err *err)
+static Status draw_bands(Renderer *renderer, const Scene *scene, FramesWriter *writer, int step,
+                         Err *err)
 {
+    int height = scene->view.camera.height;
     for (int first = 0; first < height; first += step) {
         Frame band;
         int rows = step < height - first ? step : height - first;
-        TRY(renderer_rows(renderer, first, rows, &band, err));
+        TRY(renderer_rows(renderer, &scene->view, &scene->appearance, first, rows, &band, err));
         Status status = frames_rows(writer, &band, err);
         frame_release(&band);
         TRY(status);
@@ -151,11 +153,11 @@ static Status draw(const Scene *scene, const RenderParams *params, const FramesF
     int step = band_rows(form, memory_mb);
     TRY(picture_fits(form->width, step, 40, err));
     Renderer *renderer;
-    TRY(renderer_new(scene, params, &renderer, err));
+    TRY(renderer_new(&scene->geometry, params, &renderer, err));
     FramesWriter *writer = NULL;
     Status status = frames_open(&writer, form, err);
     if (status == STATUS_OK)
-        status = draw_bands(renderer, writer, form->height, step, err);
+        status = draw_bands(renderer, scene, writer, step, err);
     *stats = renderer_stats(renderer);
     renderer_free(renderer);
     if (status == STATUS_OK)

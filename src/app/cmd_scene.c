@@ -126,11 +126,11 @@ static void say_limits(const EmitReport *report, const Scene *scene)
                 "corcast: more joints than POV-Ray holds exactly; they are meshes of %d sides, of "
                 "more with Declare=Joint_Sides=N\n",
                 report->joint_sides);
-    if (report->openscad_s > 0 && scene->drawn > QUICK)
+    if (report->openscad_s > 0 && scene->geometry.drawn > QUICK)
         fprintf(stderr,
                 "corcast: OpenSCAD takes about %.2g s to make a solid of %zu vessels, and its "
                 "preview a moment\n",
-                report->openscad_s, scene->drawn);
+                report->openscad_s, scene->geometry.drawn);
 }
 
 static Status run_scene(void *options, Parsed *parsed, Err *err)

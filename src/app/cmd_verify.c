@@ -124,13 +124,13 @@ static Status claim_folder(Verification *v, Files *files, Err *err)
 
 static bool is_isosurface(const Verification *v)
 {
-    return v->scene.model == SCENE_ISOSURFACE;
+    return v->scene.geometry.model == SCENE_ISOSURFACE;
 }
 
 /* Whether POV-Ray needs a scene of its own to paint ids. */
 static bool has_id_scene(const Verification *v)
 {
-    return is_isosurface(v) || v->scene.model == SCENE_BLOB;
+    return is_isosurface(v) || v->scene.geometry.model == SCENE_BLOB;
 }
 
 static RenderParams render_params(const Verification *v, const CellParams *povray_cells)
@@ -202,7 +202,7 @@ static Status show_both(Verification *v, Err *err)
 static Status read_plane(Verification *v, OraclePlane plane, const char *path, Err *err)
 {
     double near_mm, far_mm;
-    scene_depth_range(&v->scene, &near_mm, &far_mm);
+    camera_depth_range(&v->scene.view.camera, v->scene.geometry.bounds, &near_mm, &far_mm);
     switch (plane) {
     case ORACLE_COLOR:
         return picture_read(&v->povray_picture, path, err);
@@ -354,8 +354,8 @@ static Status check_surface(Verification *v, Err *err)
     const SurfaceSight exact_sight = {exact->depth.values, exact->normal.values, exact->id.ids};
     Plane allowed = {0};
     TRY(plane_init(&allowed, seen->depth.width, seen->depth.height, 1, err));
-    Status status =
-        surface_tolerance(&v->scene, v->cells.erf, &sight, &exact_sight, allowed.values, err);
+    Status status = surface_tolerance(&v->scene.geometry, &v->scene.view.camera, v->cells.erf,
+                                      &sight, &exact_sight, allowed.values, err);
     const SurfacePlanes planes = {&seen->depth, &exact->depth, &allowed};
     if (status == STATUS_OK)
         status = surface_check(&planes, &v->surface, err);
@@ -380,7 +380,7 @@ static Status compare_exact(Verification *v, const Rendering *povray, Err *err)
 static Status compare_sides(Verification *v, Err *err)
 {
     double near_mm, far_mm;
-    scene_depth_range(&v->scene, &near_mm, &far_mm);
+    camera_depth_range(&v->scene.view.camera, v->scene.geometry.bounds, &near_mm, &far_mm);
     Tolerance tolerance = tolerance_identity((far_mm - near_mm) / 65535);
     const IdPlane *a = &v->povray.id, *b = &v->native.id;
     const Rendering view_a = {&v->povray_picture, a, &v->povray.depth, &v->povray.normal};
@@ -404,7 +404,7 @@ static Status compare_sides(Verification *v, Err *err)
 static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err)
 {
     ReportCase report = {.name = v->name,
-                         .model = model_name(v->scene.model),
+                         .model = model_name(v->scene.geometry.model),
                          .a = {.name = "POV-Ray",
                                .key = "povray",
                                .version = v->run.version,

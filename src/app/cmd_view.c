@@ -38,36 +38,49 @@ static Status make_display(Viewer *viewer, Err *err)
                                  .want_color = true};
     display_free(viewer->display);
     viewer->display = NULL;
-    TRY(display_new(&viewer->scene, &params, &viewer->display, err));
+    TRY(display_new(&viewer->scene.geometry, &params, &viewer->display, err));
     if (coarseness)
         display_set_coarseness(viewer->display, coarseness);
     viewer->moved = true;
     return STATUS_OK;
 }
 
-/* Builds the scene anew; the one there is stays on failure. */
-static Status make_scene(Viewer *viewer, Err *err)
+static Status aim(Viewer *viewer, Err *err)
 {
-    Scene scene;
-    TRY(picture_build(viewer->options, &viewer->source, &scene, NULL, err));
-    scene_release(&viewer->scene);
-    viewer->scene = scene;
+    viewer->moved = true;
+    return picture_view(viewer->options, &viewer->source, &viewer->scene.geometry,
+                        &viewer->scene.view, err);
+}
+
+/* Makes the geometry anew; the one there is stays on failure. */
+static Status make_geometry(Viewer *viewer, Err *err)
+{
+    Geometry made;
+    TRY(picture_geometry(viewer->options, &viewer->source, &made, NULL, err));
+    geometry_release(&viewer->scene.geometry);
+    viewer->scene.geometry = made;
+    TRY(aim(viewer, err));
     return make_display(viewer, err);
 }
 
-static Status aim(Viewer *viewer, Err *err)
+/* Makes the appearance anew; the one there is stays on failure. */
+static Status make_appearance(Viewer *viewer, Err *err)
 {
-    const StageParams params = picture_stage(viewer->options);
+    Appearance made;
+    TRY(picture_appearance(viewer->options, &viewer->source, &made, err));
+    appearance_release(&viewer->scene.appearance);
+    viewer->scene.appearance = made;
     viewer->moved = true;
-    return stage_aim(&viewer->source.look, &params, &viewer->scene, err);
+    return STATUS_OK;
 }
 
 static void set_title(const Viewer *viewer)
 {
     Text title = TEXT_INIT;
     const char *field = viewer->options->coloring.field;
-    text_printf(&title, "%s: %zu segments, %s%s%s", file_name(viewer->tree), viewer->scene.drawn,
-                model_name(viewer->scene.model), field ? ", " : "", field ? field : "");
+    text_printf(&title, "%s: %zu segments, %s%s%s", file_name(viewer->tree),
+                viewer->scene.geometry.drawn, model_name(viewer->scene.geometry.model),
+                field ? ", " : "", field ? field : "");
     if (text_chars(&title))
         window_title(viewer->window, text_chars(&title));
     text_release(&title);
@@ -76,7 +89,7 @@ static void set_title(const Viewer *viewer)
 static Status use_model(Viewer *viewer, SceneModel model, Err *err)
 {
     viewer->options->model = (int)model;
-    TRY(make_scene(viewer, err));
+    TRY(make_geometry(viewer, err));
     set_title(viewer);
     return STATUS_OK;
 }
@@ -99,7 +112,7 @@ static Status use_next_field(Viewer *viewer, Err *err)
     for (size_t number = field_number(*field);;) {
         number = number == none ? 0 : number + 1;
         *field = derive_field_name(number);
-        Status status = make_scene(viewer, err);
+        Status status = make_appearance(viewer, err);
         if (number == none || (status != STATUS_INPUT && status != STATUS_USAGE)) {
             set_title(viewer);
             return status;
@@ -216,7 +229,7 @@ static Status use_projection(Viewer *viewer, Err *err)
     StageParams stage = picture_stage(viewer->options);
     Projection other = stage.projection == PROJECTION_PERSPECTIVE ? PROJECTION_ORTHOGRAPHIC
                                                                   : PROJECTION_PERSPECTIVE;
-    orbit_project(&stage, other, &viewer->scene);
+    orbit_project(&stage, other, &viewer->scene.geometry);
     viewer->options->stage = stage;
     viewer->options->projection = (int)other;
     return aim(viewer, err);
@@ -324,11 +337,12 @@ static Status on_event(Viewer *viewer, const WindowEvent *event, Err *err)
 static Status draw(Viewer *viewer, bool *done, Err *err)
 {
     DisplayPicture picture;
+    const Scene *scene = &viewer->scene;
     if (viewer->moved) {
-        TRY(display_quick(viewer->display, &picture, err));
+        TRY(display_quick(viewer->display, &scene->view, &scene->appearance, &picture, err));
         *done = false;
     } else {
-        TRY(display_refine(viewer->display, &picture, done, err));
+        TRY(display_refine(viewer->display, &scene->view, &scene->appearance, &picture, done, err));
     }
     viewer->moved = false;
     return window_show(viewer->window, picture.rgb, picture.width, picture.height, err);
@@ -376,12 +390,14 @@ static Status open_viewer(Viewer *viewer, Err *err)
 {
     PictureOptions *options = viewer->options;
     TRY(picture_read_source(options, viewer->tree, &viewer->source, err));
-    Status status = make_scene(viewer, err);
+    Status status = make_appearance(viewer, err);
+    if (status == STATUS_OK)
+        status = make_geometry(viewer, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", viewer->tree);
     TRY(status);
     StageParams stage = picture_stage(options);
-    orbit_begin(&stage, &viewer->scene);
+    orbit_begin(&stage, &viewer->scene.view.camera, &viewer->scene.geometry);
     viewer->home = options->stage = stage;
     TRY(window_open(&viewer->window, file_name(viewer->tree), options->size[0], options->size[1],
                     err));

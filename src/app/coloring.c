@@ -1,8 +1,8 @@
+/* A field of the tree, and a scale for its values: of the options, or fitted to them. */
 #include "app/coloring.h"
 
 #include "app/templates.h"
 #include "image/image.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -61,36 +61,22 @@ void coloring_set_defaults(Coloring *coloring)
     coloring->colormap = "viridis";
 }
 
-static double scaled(const Coloring *coloring, double value)
+/* The ends of the scale: given, or the field's. */
+static Status set_range(const Coloring *coloring, const Field *field, ColorScale *scale, Err *err)
 {
-    return coloring->log ? (value > 0 ? log(value) : (double)NAN) : value;
-}
-
-/* The ends of the colour map, on the scale of the colours. */
-static Status find_range(const Coloring *coloring, const Field *field, double range[2], Err *err)
-{
-    if (coloring->has_range && coloring->log && !(coloring->range[0] > 0))
+    if (!coloring->has_range && !colorscale_fit(scale, field->value, field->n))
+        return err_set(err, STATUS_INPUT, "--color-by: the field %s has no value%s", field->name,
+                       scale->log ? " above 0" : "");
+    if (!coloring->has_range)
+        return STATUS_OK;
+    if (scale->log && !(coloring->range[0] > 0))
         return err_set(err, STATUS_USAGE, "--range: with --log both ends must be positive, not %g",
                        coloring->range[0]);
-    range[0] = INFINITY;
-    range[1] = -INFINITY;
-    for (size_t i = 0; i < field->n && !coloring->has_range; i++) {
-        double value = scaled(coloring, field->value[i]);
-        if (isfinite(value)) {
-            range[0] = fmin(range[0], value);
-            range[1] = fmax(range[1], value);
-        }
-    }
-    if (coloring->has_range)
-        for (int i = 0; i < 2; i++)
-            range[i] = scaled(coloring, coloring->range[i]);
-    if (!(range[0] <= range[1]))
-        return err_set(err, STATUS_INPUT, "--color-by: the field %s has no value%s", field->name,
-                       coloring->log ? " above 0" : "");
+    memcpy(scale->range, coloring->range, sizeof scale->range);
     return STATUS_OK;
 }
 
-Status coloring_read_map(const Coloring *coloring, Colormap *map, Err *err)
+static Status read_map(const Coloring *coloring, Colormap *map, Err *err)
 {
     char *path = NULL;
     TRY(template_file("colormap", "colormaps", coloring->colormap, ".txt", &path, err));
@@ -99,29 +85,23 @@ Status coloring_read_map(const Coloring *coloring, Colormap *map, Err *err)
     return status;
 }
 
-Status coloring_apply(const Coloring *coloring, const Colormap *map, const Tree *tree, Rgb **colors,
-                      Err *err)
+Status coloring_appearance(const Coloring *coloring, const Tree *tree, const Look *look,
+                           Appearance *appearance, Err *err)
 {
-    *colors = NULL;
     if (!coloring->field)
-        return STATUS_OK;
+        return stage_appearance(look, NULL, NULL, appearance, err);
     Field field = {0};
-    Rgb *made = NULL;
-    double range[2] = {0, 0};
-    Status status = derive_field(tree, &coloring->flow, coloring->field, &field, err);
-    if (status != STATUS_OK)
-        return status;
-    TRY_GOTO(find_range(coloring, &field, range, err));
-    TRY_GOTO(mem_calloc(&made, tree->n, sizeof *made, "colours", err));
-    for (size_t i = 0; i < tree->n; i++) {
-        double width = range[1] - range[0];
-        double value = scaled(coloring, field.value[i]);
-        float rgb[3];
-        colormap_linear(map, width > 0 ? (value - range[0]) / width : value - range[0] + 0.5, rgb);
-        made[i] = (Rgb){rgb[0], rgb[1], rgb[2]};
-    }
-    *colors = made;
+    ColorScale scale = {.log = coloring->log};
+    Status status;
+    TRY_GOTO(read_map(coloring, &scale.map, err));
+    TRY_GOTO(derive_field(tree, &coloring->flow, coloring->field, &field, err));
+    TRY_GOTO(set_range(coloring, &field, &scale, err));
+    scale.name = field.name;
+    scale.unit = field.unit;
+    TRY_GOTO(stage_appearance(look, &field, &scale, appearance, err));
 done:
+    if (status != STATUS_OK)
+        colormap_release(&scale.map);
     field_release(&field);
     return status;
 }

@@ -6,6 +6,7 @@
 #include "derive/derive.h"
 #include "image/image.h"
 #include "scene/scene.h"
+#include "stage/stage.h"
 #include "tree/tree.h"
 
 typedef struct Coloring {
@@ -20,12 +21,12 @@ typedef struct Coloring {
 void coloring_set_defaults(Coloring *coloring);
 extern const OptionTable coloring_table; /* sets a Coloring */
 
-/* The colour map of --colormap in *map (owned). STATUS_USAGE when templates/ lacks the name. */
-MUST_CHECK Status coloring_read_map(const Coloring *coloring, Colormap *map, Err *err);
-
-/* One linear colour of the map a node in *colors (owned), NULL when no field is asked for. Without
- * --range, the colours run from the least to the greatest finite value of the field. */
-MUST_CHECK Status coloring_apply(const Coloring *coloring, const Colormap *map, const Tree *tree,
-                                 Rgb **colors, Err *err);
+/* What a look's vessels are to be coloured by, in *appearance (owned; appearance_release): without
+ * --color-by the look's one colour; else the values of a field of the tree on a scale of the map,
+ * from the least to the greatest finite value unless --range gives its ends. STATUS_USAGE when
+ * templates/ lacks the map or the range cannot be logarithmic; else as derive_field; STATUS_INPUT
+ * when the field has no value to show. */
+MUST_CHECK Status coloring_appearance(const Coloring *coloring, const Tree *tree, const Look *look,
+                                      Appearance *appearance, Err *err);
 
 #endif

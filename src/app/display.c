@@ -1,8 +1,8 @@
-/* While the camera moves, a pixel stands for k x k of the window, k steered by the clock: what
- * takes longer than the time of a frame makes k larger, what takes less makes it smaller by 1,
- * unless that took too long a short while ago. When it rests, the coarse picture is replaced from
- * the top down by the whole one and that by the antialiased one, some rows at a time, so that a
- * hand on the mouse never waits for more than a few rows. */
+/* Progressive display. While the camera moves, pictures are drawn at 1 / k of the resolution. k
+ * grows when a frame overran its time and shrinks by 1 when it did not, but does not return to a
+ * value that was too slow within the last WHILE frames (hysteresis). When the camera rests, the
+ * coarse picture is replaced from the top down by the whole one and that by the antialiased one,
+ * some rows at a time, so that a hand on the mouse never waits for more than a few rows. */
 #include "app/display.h"
 
 #include "image/image.h"
@@ -15,7 +15,6 @@ static const double frame_s = 1.0 / 40, refine_s = 1.0 / 40;
 enum { MAX_COARSENESS = 16, WHILE = 60 /* pictures */ };
 
 struct Display {
-    Scene *scene;
     Renderer *renderer;
     int antialias;
     int coarseness;
@@ -28,13 +27,12 @@ struct Display {
     int rows;          /* at a time */
 };
 
-Status display_new(Scene *scene, const RenderParams *params, Display **out, Err *err)
+Status display_new(const Geometry *geometry, const RenderParams *params, Display **out, Err *err)
 {
     Display *display;
     TRY(mem_calloc(&display, 1, sizeof *display, "displays", err));
-    *display = (Display){
-        .scene = scene, .antialias = params->antialias, .coarseness = 2, .rows = RENDER_BAND_STEP};
-    Status status = renderer_new(scene, params, &display->renderer, err);
+    *display = (Display){.antialias = params->antialias, .coarseness = 2, .rows = RENDER_BAND_STEP};
+    Status status = renderer_new(geometry, params, &display->renderer, err);
     if (status != STATUS_OK) {
         display_free(display);
         return status;
@@ -71,13 +69,21 @@ static Status set_size(Display *display, int width, int height, Err *err)
     return STATUS_OK;
 }
 
-/* Rows first .. first + rows of the scene's picture go to the display's. */
-static Status draw_rows(Display *display, int first, int rows, int antialias, Err *err)
+/* What is drawn. */
+typedef struct Subject {
+    const View *view;
+    const Appearance *appearance;
+} Subject;
+
+/* Rows first .. first + rows of the subject's picture go to the display's. */
+static Status draw_rows(Display *display, Subject subject, int first, int rows, int antialias,
+                        Err *err)
 {
     Frame band;
     size_t row = 3 * (size_t)display->width;
     renderer_antialias(display->renderer, antialias);
-    TRY(renderer_rows(display->renderer, first, rows, &band, err));
+    TRY(renderer_rows(display->renderer, subject.view, subject.appearance, first, rows, &band,
+                      err));
     Status status = STATUS_OK;
     if (!band.codes.codes8)
         status = picture_from_plane(&band.codes, &band.color, ENCODING_SRGB, 8, err);
@@ -109,29 +115,28 @@ static void steer(Display *display, double seconds)
     display->coarseness = k < MAX_COARSENESS ? k : MAX_COARSENESS;
 }
 
-Status display_quick(Display *display, DisplayPicture *picture, Err *err)
+Status display_quick(Display *display, const View *view, const Appearance *appearance,
+                     DisplayPicture *picture, Err *err)
 {
-    Camera *camera = &display->scene->camera;
-    int width = camera->width, height = camera->height, k = display->coarseness;
+    View coarse = *view;
+    Camera *camera = &coarse.camera;
+    int k = display->coarseness;
     double start_s = clock_seconds();
-    camera->width = (width + k - 1) / k;
-    camera->height = (height + k - 1) / k;
+    camera->width = (camera->width + k - 1) / k;
+    camera->height = (camera->height + k - 1) / k;
     Status status = set_size(display, camera->width, camera->height, err);
     if (status == STATUS_OK)
-        status = draw_rows(display, 0, camera->height, 1, err);
-    camera->width = width;
-    camera->height = height;
+        status = draw_rows(display, (Subject){&coarse, appearance}, 0, camera->height, 1, err);
     display->pass = k > 1 ? 0 : 1;
-    display->next = k > 1 ? 0 : height;
+    display->next = k > 1 ? 0 : camera->height;
     steer(display, clock_seconds() - start_s);
     *picture = picture_of(display);
     return status;
 }
 
 /* The coarse picture with the pixels of the window. */
-static Status enlarge(Display *display, Err *err)
+static Status enlarge(Display *display, const Camera *camera, Err *err)
 {
-    const Camera *camera = &display->scene->camera;
     int width = display->width, height = display->height;
     uint8_t *coarse = display->rgb;
     display->rgb = NULL;
@@ -148,11 +153,12 @@ static Status enlarge(Display *display, Err *err)
     return status;
 }
 
-Status display_refine(Display *display, DisplayPicture *picture, bool *done, Err *err)
+Status display_refine(Display *display, const View *view, const Appearance *appearance,
+                      DisplayPicture *picture, bool *done, Err *err)
 {
-    int height = display->scene->camera.height, passes = display->antialias > 1 ? 2 : 1;
+    int height = view->camera.height, passes = display->antialias > 1 ? 2 : 1;
     if (display->pass == 0)
-        TRY(enlarge(display, err));
+        TRY(enlarge(display, &view->camera, err));
     if (display->pass == 0 || (display->next == height && display->pass < passes)) {
         display->pass++;
         display->next = 0;
@@ -162,8 +168,8 @@ Status display_refine(Display *display, DisplayPicture *picture, bool *done, Err
     while (display->next < height && clock_seconds() < end_s) {
         int left = height - display->next, rows = display->rows < left ? display->rows : left;
         double start_s = clock_seconds();
-        TRY(draw_rows(display, display->next, rows, display->pass == 1 ? 1 : display->antialias,
-                      err));
+        TRY(draw_rows(display, (Subject){view, appearance}, display->next, rows,
+                      display->pass == 1 ? 1 : display->antialias, err));
         display->next += rows;
         if (clock_seconds() - start_s < refine_s / 4)
             display->rows *= 2;

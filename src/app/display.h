@@ -7,9 +7,9 @@
 
 typedef struct Display Display;
 
-/* Of a scene (borrowed); when nothing moves, pictures end with `params->antialias`. Camera, lights
- * and size of the scene may change between calls, its geometry may not. */
-MUST_CHECK Status display_new(Scene *scene, const RenderParams *params, Display **out, Err *err);
+/* Of a geometry (borrowed); when nothing moves, pictures end with `params->antialias`. */
+MUST_CHECK Status display_new(const Geometry *geometry, const RenderParams *params, Display **out,
+                              Err *err);
 void display_free(Display *display);
 
 /* What is to be shown now. */
@@ -18,12 +18,14 @@ typedef struct DisplayPicture {
     int width, height;
 } DisplayPicture;
 
-/* Draws the whole picture with as many pixels as a thirtieth of a second allows, judged by the
- * pictures before. */
-MUST_CHECK Status display_quick(Display *display, DisplayPicture *picture, Err *err);
-/* Draws on at what is shown, for about a fortieth of a second: at every pixel, then antialiased.
- * *done says that nothing is left. */
-MUST_CHECK Status display_refine(Display *display, DisplayPicture *picture, bool *done, Err *err);
+/* Draws the whole picture of a view with as many pixels as a thirtieth of a second allows, judged
+ * by the pictures before. */
+MUST_CHECK Status display_quick(Display *display, const View *view, const Appearance *appearance,
+                                DisplayPicture *picture, Err *err);
+/* Draws on at what display_quick has begun, with the same view and appearance, for about a fortieth
+ * of a second: at every pixel, then antialiased. *done says that nothing is left. */
+MUST_CHECK Status display_refine(Display *display, const View *view, const Appearance *appearance,
+                                 DisplayPicture *picture, bool *done, Err *err);
 
 /* A pixel of quick pictures has so many of the window's along each side. */
 int display_coarseness(const Display *display);

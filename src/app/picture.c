@@ -232,11 +232,11 @@ Status picture_check_povray(const PictureOptions *options, Err *err)
 }
 
 /* What of the tree the picture cannot show. */
-static Status warn_of_losses(const Scene *scene, const StageReport *report, JointForm joints,
+static Status warn_of_losses(const Geometry *geometry, const StageReport *report, JointForm joints,
                              size_t pruned, Err *err)
 {
     size_t hidden;
-    TRY(surface_count_hidden(scene, &hidden, err));
+    TRY(surface_count_hidden(geometry, &hidden, err));
     size_t segments = report->dropped + report->drawn;
     if (pruned)
         fprintf(stderr, "corcast: %zu of %zu segments are pruned\n", pruned, pruned + segments);
@@ -291,7 +291,6 @@ Status picture_read_source(const PictureOptions *options, const char *tree_path,
     Status status = STATUS_OK;
     TRY(check_camera(options, err));
     TRY(read_look(options, &made.look, err));
-    TRY_GOTO(coloring_read_map(&options->coloring, &made.map, err));
     TRY_GOTO(tree_read(&made.tree, tree_path, err));
     if (options->prune_radius_mm > 0) {
         Tree pruned;
@@ -316,7 +315,6 @@ done:
 
 void picture_source_release(PictureSource *source)
 {
-    colormap_release(&source->map);
     tree_release(&source->tree);
 }
 
@@ -327,23 +325,38 @@ StageParams picture_stage(const PictureOptions *options)
     stage.graph = options->potential != 0 && options->model == SCENE_ISOSURFACE;
     stage.joints = (JointForm)options->joints;
     stage.projection = (Projection)options->projection;
-    stage.view = (View)options->view;
+    stage.view = (NamedView)options->view;
     stage.width = options->size[0];
     stage.height = options->size[1];
     return stage;
 }
 
-Status picture_build(const PictureOptions *options, const PictureSource *source, Scene *scene,
-                     StageReport *report, Err *err)
+Status picture_geometry(const PictureOptions *options, const PictureSource *source,
+                        Geometry *geometry, StageReport *report, Err *err)
 {
-    Rgb *colors = NULL;
     const StageParams stage = picture_stage(options);
-    TRY(coloring_apply(&options->coloring, &source->map, &source->tree, &colors, err));
-    Status status = stage_scene(&source->tree, &source->look, colors, &stage, scene, report, err);
-    free(colors);
-    if (status == STATUS_OK)
-        scene_move_to_origin(scene);
-    return status;
+    return stage_geometry(&source->tree, &stage, geometry, report, err);
+}
+
+Status picture_appearance(const PictureOptions *options, const PictureSource *source,
+                          Appearance *appearance, Err *err)
+{
+    return coloring_appearance(&options->coloring, &source->tree, &source->look, appearance, err);
+}
+
+Status picture_view(const PictureOptions *options, const PictureSource *source,
+                    const Geometry *geometry, View *view, Err *err)
+{
+    const StageParams stage = picture_stage(options);
+    return stage_view(&source->look, &stage, geometry, view, err);
+}
+
+static Status make_scene(const PictureOptions *options, const PictureSource *source, Scene *scene,
+                         StageReport *report, Err *err)
+{
+    TRY(picture_appearance(options, source, &scene->appearance, err));
+    TRY(picture_geometry(options, source, &scene->geometry, report, err));
+    return picture_view(options, source, &scene->geometry, &scene->view, err);
 }
 
 Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet, Scene *scene,
@@ -351,19 +364,23 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
 {
     PictureSource source;
     StageReport staged;
+    Scene made = {0};
     TRY(picture_read_source(options, tree_path, &source, err));
-    Status status = picture_build(options, &source, scene, &staged, err);
+    Status status = make_scene(options, &source, &made, &staged, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", tree_path);
-    if (status == STATUS_OK && !quiet) {
-        status = warn_of_losses(scene, &staged, (JointForm)options->joints, source.pruned, err);
-        if (status != STATUS_OK)
-            scene_release(scene);
-    }
-    if (status == STATUS_OK && report)
-        *report = staged;
+    if (status == STATUS_OK && !quiet)
+        status =
+            warn_of_losses(&made.geometry, &staged, (JointForm)options->joints, source.pruned, err);
     picture_source_release(&source);
-    return status;
+    if (status != STATUS_OK) {
+        scene_release(&made);
+        return status;
+    }
+    *scene = made;
+    if (report)
+        *report = staged;
+    return STATUS_OK;
 }
 
 Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
@@ -377,9 +394,9 @@ Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
                    height, needed * 1e-9, memory * 1e-9);
 }
 
-void picture_description(const Scene *scene, const char *tree_path, Text *out)
+void picture_description(const Geometry *geometry, const char *tree_path, Text *out)
 {
     text_puts(out, "arterial tree ");
     text_put_line(out, file_name(tree_path));
-    text_printf(out, ", %zu segments as %s", scene->drawn, model_names[scene->model]);
+    text_printf(out, ", %zu segments as %s", geometry->drawn, model_names[geometry->model]);
 }

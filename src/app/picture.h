@@ -47,22 +47,26 @@ MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 /* What a picture is made from. */
 typedef struct PictureSource {
     Look look;
-    Colormap map;
     Tree tree;
     size_t pruned; /* segments that were cut off */
 } PictureSource;
 
-/* Reads look, colour map and tree. STATUS_USAGE when options fight each other. */
+/* Reads look and tree. STATUS_USAGE when options fight each other. */
 MUST_CHECK Status picture_read_source(const PictureOptions *options, const char *tree_path,
                                       PictureSource *source, Err *err);
 void picture_source_release(PictureSource *source);
 /* The parameters of the stage that the options ask for. */
 StageParams picture_stage(const PictureOptions *options);
-/* Builds the scene, moved next to the origin. */
-MUST_CHECK Status picture_build(const PictureOptions *options, const PictureSource *source,
-                                Scene *scene, StageReport *report, Err *err);
+/* Each of the three things that a picture is of, as the options ask for it. `report` may be NULL.
+ */
+MUST_CHECK Status picture_geometry(const PictureOptions *options, const PictureSource *source,
+                                   Geometry *geometry, StageReport *report, Err *err);
+MUST_CHECK Status picture_appearance(const PictureOptions *options, const PictureSource *source,
+                                     Appearance *appearance, Err *err);
+MUST_CHECK Status picture_view(const PictureOptions *options, const PictureSource *source,
+                               const Geometry *geometry, View *view, Err *err);
 
-/* Reads the tree and the look and builds the scene. Says on standard error, unless quiet, how many
+/* Reads the tree and the look and makes all three. Says on standard error, unless quiet, how many
  * segments are pruned, cannot be drawn, or have no surface, and how many places are not joined.
  * `report` may be NULL. */
 MUST_CHECK Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet,
@@ -77,7 +81,7 @@ const char *model_name(SceneModel model);
 /* All of them; NULL ends them. */
 extern const char *const model_names[];
 
-/* One line that says what a scene shows. */
-void picture_description(const Scene *scene, const char *tree_path, Text *out);
+/* One line that says what a geometry shows. */
+void picture_description(const Geometry *geometry, const char *tree_path, Text *out);
 
 #endif

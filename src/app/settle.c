@@ -26,28 +26,25 @@ static const double grazing_cosine = 0.1;
 static const double normal_slack = 2e-4;
 
 /* What is between a place and a light. */
-typedef struct LightWay {
+typedef struct Blockage {
     double part;       /* of the light, that arrives */
     double blocked_mm; /* from the place to the wall that a ray grazes most; NAN: none is there */
     double cosine;     /* of that ray and the wall's normal */
-    int grazed;        /* samples whose rays graze the first wall in their way */
-} LightWay;
+    int grazed;        /* points whose rays graze the first wall in their way */
+} Blockage;
 
 typedef struct Asker {
     const SettleCase *asked;
-    Scene one; /* the scene through one pixel, or in dimmer lights, which are owned; the rest is
-                  borrowed */
+    View one; /* the view through one pixel, or in dimmer lights */
     Renderer *first,
-        *cached;    /* of other models: with POV-Ray's limit, and that of its shadow cache */
-    LightWay *ways; /* owned; of each light, to the place last asked about */
+        *cached; /* of other models: with POV-Ray's limit, and that of its shadow cache */
+    Blockage blockages[VIEW_MAX_LIGHTS]; /* of each light, to the place last asked about */
 } Asker;
 
 static void asker_release(Asker *asker)
 {
     renderer_free(asker->first);
     renderer_free(asker->cached);
-    free(asker->one.lights);
-    free(asker->ways);
 }
 
 static Status new_renderer(Asker *asker, double shadow_from_mm, Renderer **out, Err *err)
@@ -55,19 +52,14 @@ static Status new_renderer(Asker *asker, double shadow_from_mm, Renderer **out, 
     RenderParams params = *asker->asked->params;
     params.threads = 1;
     params.shadow_from_mm = shadow_from_mm;
-    return renderer_new(&asker->one, &params, out, err);
+    return renderer_new(&asker->asked->scene->geometry, &params, out, err);
 }
 
 static Status asker_init(Asker *asker, const SettleCase *asked, Err *err)
 {
-    const Scene *scene = asked->scene;
-    size_t n = scene->n_lights;
-    *asker = (Asker){.asked = asked, .one = *scene};
-    asker->one.lights = NULL;
-    TRY(mem_calloc(&asker->one.lights, n, sizeof *scene->lights, "lights", err));
-    memcpy(asker->one.lights, scene->lights, n * sizeof *scene->lights);
-    TRY(mem_calloc(&asker->ways, n, sizeof *asker->ways, "lights", err));
-    if (scene->model == SCENE_BLOB)
+    asker->asked = asked;
+    asker->one = asked->scene->view;
+    if (asked->scene->geometry.model == SCENE_BLOB)
         return STATUS_OK;
     TRY(new_renderer(asker, first_slack_mm, &asker->first, err));
     return new_renderer(asker, cached_slack_mm, &asker->cached, err);
@@ -75,28 +67,10 @@ static Status asker_init(Asker *asker, const SettleCase *asked, Err *err)
 
 /* ---- the shadow cache ------------------------------------------------------------------------ */
 
-/* The camera that sees one pixel as the picture does, its further samples included. */
-static void aim_at(Asker *asker, int i, int j)
-{
-    const Camera *whole = &asker->asked->scene->camera;
-    Camera *camera = &asker->one.camera;
-    double x0 = (i + 0.5) / whole->width - 0.5;
-    double y0 = ((whole->height - 1) - (j - 0.5)) / whole->height - 0.5;
-    Vec3 across = vec3_add(vec3_scale(whole->right, x0), vec3_scale(whole->up, y0));
-    *camera = *whole;
-    camera->width = camera->height = 1;
-    camera->right = vec3_scale(whole->right, 1.0 / whole->width);
-    camera->up = vec3_scale(whole->up, 1.0 / whole->height);
-    if (whole->projection == PROJECTION_ORTHOGRAPHIC)
-        camera->location = vec3_add(whole->location, across);
-    else
-        camera->direction = vec3_add(whole->direction, across);
-}
-
-static Status draw_one(Renderer *renderer, Rgb *color, Err *err)
+static Status draw_one(const Asker *asker, Renderer *renderer, Rgb *color, Err *err)
 {
     Frame frame;
-    TRY(renderer_rows(renderer, 0, 1, &frame, err));
+    TRY(renderer_rows(renderer, &asker->one, &asker->asked->scene->appearance, 0, 1, &frame, err));
     const float *values = frame.color.values;
     *color = (Rgb){values[0], values[1], values[2]};
     frame_release(&frame);
@@ -126,9 +100,9 @@ static bool has_color(const Asker *asker, const Rendering *side, Rgb color, size
 static Status ask_cache(Asker *asker, size_t pixel, SettledPixel *found, Err *err)
 {
     Rgb first, cached;
-    aim_at(asker, found->x, found->y);
-    TRY(draw_one(asker->first, &first, err));
-    TRY(draw_one(asker->cached, &cached, err));
+    asker->one.camera = camera_of_pixel(&asker->asked->scene->view.camera, found->x, found->y);
+    TRY(draw_one(asker, asker->first, &first, err));
+    TRY(draw_one(asker, asker->cached, &cached, err));
     if (has_color(asker, asker->asked->b, first, pixel) &&
         lies_between(asker, asker->asked->a, cached, first, pixel))
         found->cause = SETTLED_SHADOW_CACHE;
@@ -140,26 +114,26 @@ static Status ask_cache(Asker *asker, size_t pixel, SettledPixel *found, Err *er
 static Status ask_field(const Asker *asker, Ray ray, double t_min, double t_max, BlobRoots *roots,
                         Err *err)
 {
-    const Scene *scene = asker->asked->scene;
-    return blob_roots(scene->segments, scene->n_segments, ray, t_min, t_max, roots, err);
+    const Geometry *geometry = &asker->asked->scene->geometry;
+    return blob_roots(geometry->segments, geometry->n_segments, ray, t_min, t_max, roots, err);
 }
 
 /* The field's normal at `x`, against the ray, and the segment of the largest term there. */
 static const FieldSegment *find_wall(const Asker *asker, Ray ray, Vec3 x, Vec3 *normal)
 {
-    const Scene *scene = asker->asked->scene;
-    const FieldSegment *largest = &scene->segments[0];
+    const Geometry *geometry = &asker->asked->scene->geometry;
+    const FieldSegment *largest = &geometry->segments[0];
     Vec3 sum = vec3(0, 0, 0);
     double most = -HUGE_VAL;
-    for (size_t i = 0; i < scene->n_segments; i++) {
+    for (size_t i = 0; i < geometry->n_segments; i++) {
         BlobComponent components[BLOB_COMPONENTS];
         Vec3 gradient;
-        blob_components(&blob_shape, &scene->segments[i], components);
+        blob_components(&blob_shape, &geometry->segments[i], components);
         double term = blob_components_at(components, x, &gradient);
         sum = vec3_add(sum, gradient);
         if (term > most) {
             most = term;
-            largest = &scene->segments[i];
+            largest = &geometry->segments[i];
         }
     }
     *normal = vec3_scale(vec3_normalized(sum), vec3_dot(sum, ray.direction) > 0 ? -1 : 1);
@@ -167,14 +141,14 @@ static const FieldSegment *find_wall(const Asker *asker, Ray ray, Vec3 x, Vec3 *
 }
 
 /* Whether the way from `place` to a light is free, by the field. */
-static Status ask_way(const Asker *asker, Vec3 place, Vec3 towards, double distance, bool *free,
-                      LightWay *way, Err *err)
+static Status ask_way(const Asker *asker, Vec3 place, LightWay way, bool *free, Blockage *found,
+                      Err *err)
 {
-    Ray ray = {place, towards};
-    double far = distance - first_slack_mm, t;
+    Ray ray = {place, way.towards};
+    double far = way.distance - first_slack_mm, t;
     BlobRoots roots;
     Vec3 normal;
-    *free = !ground_hit(&asker->asked->scene->ground, ray, first_slack_mm, far, &t);
+    *free = !ground_hit(&asker->asked->scene->view.ground, ray, first_slack_mm, far, &t);
     if (!*free)
         return STATUS_OK;
     TRY(ask_field(asker, ray, blob_nearest_mm, far, &roots, err));
@@ -182,65 +156,49 @@ static Status ask_way(const Asker *asker, Vec3 place, Vec3 towards, double dista
     if (*free)
         return STATUS_OK;
     find_wall(asker, ray, ray_at(ray, roots.t[0]), &normal);
-    double cosine = fabs(vec3_dot(normal, towards));
-    way->grazed += cosine <= grazing_cosine;
-    if (!(cosine >= way->cosine)) {
-        way->cosine = cosine;
-        way->blocked_mm = roots.t[0];
+    double cosine = fabs(vec3_dot(normal, way.towards));
+    found->grazed += cosine <= grazing_cosine;
+    if (!(cosine >= found->cosine)) {
+        found->cosine = cosine;
+        found->blocked_mm = roots.t[0];
     }
     return STATUS_OK;
 }
 
-/* Side of the square of samples that a light is. */
-static int samples_across(const Light *light)
+static Status ask_light(const Asker *asker, const Light *light, Vec3 place, Blockage *found,
+                        Err *err)
 {
-    return light->samples > 1 ? light->samples : 1;
-}
-
-static Status ask_light(const Asker *asker, const Light *light, Vec3 place, LightWay *way, Err *err)
-{
-    int n = samples_across(light), reach = 0;
-    *way = (LightWay){1, (double)NAN, (double)NAN, 0};
+    int n = light_points(light), reach = 0;
+    *found = (Blockage){1, (double)NAN, (double)NAN, 0};
     if (!asker->asked->params->shadows || !light->casts_shadows)
         return STATUS_OK;
-    for (int s = 0; s < n * n; s++) {
-        Vec3 sample = light->location;
-        if (n > 1) {
-            sample = vec3_add_scaled(sample, light->sides[0], s % n / (n - 1.0) - 0.5);
-            sample = vec3_add_scaled(sample, light->sides[1], s / n / (n - 1.0) - 0.5);
-        }
-        Vec3 to_light = vec3_sub(sample, place);
-        double distance = vec3_length(to_light);
-        Vec3 towards = vec3_scale(to_light, 1 / distance);
-        if (light->parallel) {
-            towards = vec3_normalized(vec3_sub(light->location, light->target));
-            distance = vec3_dot(to_light, towards);
-        }
+    for (int k = 0; k < n; k++) {
         bool free;
-        TRY(ask_way(asker, place, towards, distance, &free, way, err));
+        TRY(ask_way(asker, place, light_way_to_point(light, k, place), &free, found, err));
         reach += free;
     }
-    way->part = (double)reach / (n * n);
+    found->part = (double)reach / n;
     return STATUS_OK;
 }
 
 static Status ask_lights(Asker *asker, Vec3 place, Err *err)
 {
-    const Scene *scene = asker->asked->scene;
-    for (size_t i = 0; i < scene->n_lights; i++)
-        TRY(ask_light(asker, &scene->lights[i], place, &asker->ways[i], err));
+    const View *view = &asker->asked->scene->view;
+    for (size_t i = 0; i < view->n_lights; i++)
+        TRY(ask_light(asker, &view->lights[i], place, &asker->blockages[i], err));
     return STATUS_OK;
 }
 
-/* Lights as bright as they arrive; that of number `brighter`, if there is one, by some samples
+/* Lights as bright as they arrive; that of number `brighter`, if there is one, by some points
  * more. */
 static void set_lights(Asker *asker, size_t brighter, int more)
 {
-    const Scene *scene = asker->asked->scene;
-    for (size_t i = 0; i < scene->n_lights; i++) {
-        const Light *light = &scene->lights[i];
-        int n = samples_across(light);
-        double part = asker->ways[i].part + (i == brighter ? (double)more / (n * n) : 0);
+    const View *view = &asker->asked->scene->view;
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
+        double part = asker->blockages[i].part;
+        if (i == brighter)
+            part += (double)more / light_points(light);
         asker->one.lights[i].color =
             (Rgb){(float)((double)light->color.r * part), (float)((double)light->color.g * part),
                   (float)((double)light->color.b * part)};
@@ -260,9 +218,9 @@ typedef struct Look {
 static Rgb lit(Asker *asker, const Look *seen, size_t brighter, int more)
 {
     if (seen->t == HUGE_VAL)
-        return asker->asked->scene->background;
+        return asker->asked->scene->view.background;
     set_lights(asker, brighter, more);
-    return shade_point(&asker->one, &seen->at, NULL, NULL);
+    return shade(&asker->one, &seen->at, NULL, NULL);
 }
 
 /* The wall at `t`. */
@@ -271,17 +229,17 @@ static Look wall_at(const Asker *asker, Ray ray, double t)
     const Scene *scene = asker->asked->scene;
     Look seen = {.t = t, .at = {.point = ray_at(ray, t), .direction = ray.direction, .open = 1}};
     const FieldSegment *wall = find_wall(asker, ray, seen.at.point, &seen.at.normal);
-    seen.id = wall->id;
-    seen.at.finish = &scene->finish;
-    seen.at.pigment = wall->color;
+    seen.id = scene->geometry.ids[wall->segment];
+    seen.at.finish = &scene->appearance.finish;
+    seen.at.pigment = appearance_color(&scene->appearance, wall->segment);
     return seen;
 }
 
-/* What a ray sees that meets a wall at `t` and none before. Leaves in asker->ways what arrives
- * there of each light. */
+/* What a ray sees that meets a wall at `t` and none before. Leaves in asker->blockages what
+ * arrives there of each light. */
 static Status look_to(Asker *asker, Ray ray, double t, Look *seen, Err *err)
 {
-    const Ground *ground = &asker->asked->scene->ground;
+    const Ground *ground = &asker->asked->scene->view.ground;
     if (ground_hit(ground, ray, cached_slack_mm, t, &t)) {
         bool below = vec3_dot(ground->normal, ray.direction) > 0;
         *seen = (Look){t,
@@ -321,7 +279,7 @@ static int samples_of(const Asker *asker)
 /* The pixel's middle first. */
 static Ray sample_ray(const Asker *asker, int i, int j, int sample)
 {
-    const Camera *camera = &asker->asked->scene->camera;
+    const Camera *camera = &asker->asked->scene->view.camera;
     int n = asker->asked->params->antialias;
     if (sample == 0)
         return camera_ray(camera, i, j);
@@ -381,10 +339,10 @@ static bool native_is_right(const Asker *asker, const Sample *samples, size_t pi
 
 static double radius_of(const Asker *asker, uint32_t id)
 {
-    const Scene *scene = asker->asked->scene;
-    for (size_t i = 0; i < scene->n_segments; i++)
-        if (scene->segments[i].id == id)
-            return scene->segments[i].radius_mm;
+    const Geometry *geometry = &asker->asked->scene->geometry;
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        if (geometry->ids[geometry->segments[i].segment] == id)
+            return geometry->segments[i].radius_mm;
     return 0;
 }
 
@@ -414,7 +372,7 @@ static double grazing_of(const Asker *asker, const Sample *sample)
 /* Whether no neighbour of the pixel differs. */
 static bool is_alone(const Asker *asker, const SettledPixel *found)
 {
-    const Camera *camera = &asker->asked->scene->camera;
+    const Camera *camera = &asker->asked->scene->view.camera;
     for (int y = found->y - 1; y <= found->y + 1; y++)
         for (int x = found->x - 1; x <= found->x + 1; x++) {
             bool inside = x >= 0 && x < camera->width && y >= 0 && y < camera->height;
@@ -471,7 +429,7 @@ static Status ask_inexact(Asker *asker, const Sample *sample, size_t pixel, Sett
 static bool misses_of_light(Asker *asker, const Sample *samples, int s, size_t pixel,
                             const Look *seen, size_t light)
 {
-    int most = asker->ways[light].grazed > 1 ? asker->ways[light].grazed : 1;
+    int most = asker->blockages[light].grazed > 1 ? asker->blockages[light].grazed : 1;
     for (int more = 1; more <= most; more++)
         if (explains(asker, samples, s, lit(asker, seen, light, more), pixel))
             return true;
@@ -485,14 +443,14 @@ static Status ask_shadows(Asker *asker, const Sample *samples, int s, size_t pix
     const Sample *sample = &samples[s];
     Look seen;
     TRY(look_to(asker, sample->ray, root_of(&sample->roots, 0), &seen, err));
-    for (size_t i = 0; i < asker->asked->scene->n_lights && seen.t < HUGE_VAL; i++) {
-        const LightWay *way = &asker->ways[i];
-        if (!may_miss(asker, found, way->cosine) ||
+    for (size_t i = 0; i < asker->asked->scene->view.n_lights && seen.t < HUGE_VAL; i++) {
+        const Blockage *blockage = &asker->blockages[i];
+        if (!may_miss(asker, found, blockage->cosine) ||
             !misses_of_light(asker, samples, s, pixel, &seen, i))
             continue;
         found->cause = SETTLED_SHADOW_ROOT;
-        found->distance_mm = way->blocked_mm;
-        found->cosine = way->cosine;
+        found->distance_mm = blockage->blocked_mm;
+        found->cosine = blockage->cosine;
         return STATUS_OK;
     }
     return STATUS_OK;
@@ -556,13 +514,13 @@ static Status ask_blob(Asker *asker, size_t pixel, unsigned beyond, SettledPixel
 
 bool settle_applies(const SettleCase *asked)
 {
-    return asked->scene->model == SCENE_BLOB || asked->params->shadows;
+    return asked->scene->geometry.model == SCENE_BLOB || asked->params->shadows;
 }
 
 static Status ask_pixel(Asker *asker, size_t pixel, unsigned beyond, Settled *settled, Err *err)
 {
     const SettleCase *asked = asker->asked;
-    int width = asked->scene->camera.width;
+    int width = asked->scene->view.camera.width;
     SettledPixel found = {.x = (int)(pixel % (size_t)width),
                           .y = (int)(pixel / (size_t)width),
                           .id = asked->b->ids->ids[pixel],
@@ -571,7 +529,7 @@ static Status ask_pixel(Asker *asker, size_t pixel, unsigned beyond, Settled *se
                           .root_mm = (double)NAN,
                           .distance_mm = (double)NAN,
                           .cosine = (double)NAN};
-    if (asked->scene->model == SCENE_BLOB)
+    if (asked->scene->geometry.model == SCENE_BLOB)
         TRY(ask_blob(asker, pixel, beyond, &found, err));
     else if (!(beyond & BEYOND_SIGHT))
         TRY(ask_cache(asker, pixel, &found, err));
@@ -581,12 +539,12 @@ static Status ask_pixel(Asker *asker, size_t pixel, unsigned beyond, Settled *se
 
 Status settle_pixels(const SettleCase *asked, Settled *settled, Err *err)
 {
-    const Camera *camera = &asked->scene->camera;
+    const Camera *camera = &asked->scene->view.camera;
     size_t pixels = (size_t)camera->width * (size_t)camera->height;
     Asker asker = {0};
     Settled made = {0};
     Status status;
-    bool blob = asked->scene->model == SCENE_BLOB;
+    bool blob = asked->scene->geometry.model == SCENE_BLOB;
     TRY_GOTO(settled_init(&made, pixels, blob ? SETTLED_ROOT : SETTLED_SHADOW_CACHE,
                           blob ? SETTLED_SHADOW_ROOT : SETTLED_SHADOW_CACHE, err));
     for (size_t i = 0; i < pixels; i++) {

@@ -39,9 +39,10 @@ static int by_place(const void *a, const void *b)
 static Status find_ends(Model *model, Err *err)
 {
     const Scene *scene = model->scene;
-    TRY(mem_calloc(&model->ends, 2 * scene->n_primitives, sizeof *model->ends, "ends", err));
-    for (size_t i = 0; i < scene->n_primitives; i++) {
-        const Primitive *primitive = &scene->primitives[i];
+    TRY(mem_calloc(&model->ends, 2 * scene->geometry.n_primitives, sizeof *model->ends, "ends",
+                   err));
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++) {
+        const Primitive *primitive = &scene->geometry.primitives[i];
         if (primitive->kind != PRIMITIVE_CYLINDER)
             continue;
         Vec3 along = vec3_normalized(vec3_sub(primitive->b, primitive->a));
@@ -103,16 +104,16 @@ static void put_rest(Text *text, const Scene *scene, const Primitive *primitive,
         text_puts(text, ",");
         put_point(text, *outwards);
     }
-    if (!scene->uniform_color) {
+    if (scene->appearance.colors) {
         text_puts(text, ",");
-        put_rgb(text, primitive->color);
+        put_rgb(text, scene->appearance.colors[primitive->segment]);
     }
     text_puts(text, ");\n");
 }
 
 static void put_vessel(Text *text, const Scene *scene, const Primitive *cylinder)
 {
-    text_printf(text, "  vessel(%u,", cylinder->id);
+    text_printf(text, "  vessel(%u,", scene->geometry.ids[cylinder->segment]);
     put_point(text, cylinder->a);
     text_puts(text, ",");
     put_point(text, cylinder->b);
@@ -131,8 +132,8 @@ static void put_ball(Text *text, const Model *model, const Primitive *ball)
 static Status put_calls(Text *out, void *context, Err *err)
 {
     const Model *model = context;
-    for (size_t i = 0; i < model->scene->n_primitives; i++) {
-        const Primitive *primitive = &model->scene->primitives[i];
+    for (size_t i = 0; i < model->scene->geometry.n_primitives; i++) {
+        const Primitive *primitive = &model->scene->geometry.primitives[i];
         if (primitive->kind == PRIMITIVE_CYLINDER)
             put_vessel(out, model->scene, primitive);
         else
@@ -146,14 +147,14 @@ static Status put_calls(Text *out, void *context, Err *err)
 /* About how long CGAL takes to unite them, with 12 sides. */
 static double openscad_seconds(const Scene *scene)
 {
-    return seconds_a_primitive * (double)scene->n_primitives;
+    return seconds_a_primitive * (double)scene->geometry.n_primitives;
 }
 
 static double largest_radius(const Scene *scene)
 {
     double largest = 0;
-    for (size_t i = 0; i < scene->n_primitives; i++)
-        largest = fmax(largest, scene->primitives[i].radius_mm);
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++)
+        largest = fmax(largest, scene->geometry.primitives[i].radius_mm);
     return largest;
 }
 
@@ -169,11 +170,12 @@ static void add_header(Values *values, const EmitParams *params)
     text_release(&stem);
     text_put_line(add_value(values, "description"), params->description);
     text_puts(add_value(values, "generator"), params->generator);
-    text_printf(add_value(values, "count"), "%zu", scene->drawn);
+    text_printf(add_value(values, "count"), "%zu", scene->geometry.drawn);
     text_printf(add_value(values, "seconds"), "%.2g", openscad_seconds(scene));
     text_printf(add_value(values, "extent"), "%.4g to %.4g, %.4g to %.4g, %.4g to %.4g mm",
-                scene->bounds.low.x, scene->bounds.high.x, scene->bounds.low.y,
-                scene->bounds.high.y, scene->bounds.low.z, scene->bounds.high.z);
+                scene->geometry.bounds.low.x, scene->geometry.bounds.high.x,
+                scene->geometry.bounds.low.y, scene->geometry.bounds.high.y,
+                scene->geometry.bounds.low.z, scene->geometry.bounds.high.z);
 }
 
 Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
@@ -186,10 +188,10 @@ Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitRep
     TRY(find_ends(&model, err));
     add_header(&values, params);
     text_printf(add_value(&values, "max_radius"), "%.2g", largest_radius(scene));
-    put_rgb(add_value(&values, "color"), scene->color);
-    put_point(add_value(&values, "origin"), scene->origin);
-    put_point(add_value(&values, "low"), scene->bounds.low);
-    put_point(add_value(&values, "high"), scene->bounds.high);
+    put_rgb(add_value(&values, "color"), scene->appearance.color);
+    put_point(add_value(&values, "origin"), scene->geometry.origin);
+    put_point(add_value(&values, "low"), scene->geometry.bounds.low);
+    put_point(add_value(&values, "high"), scene->geometry.bounds.high);
     add_part(&values, "calls", put_calls, &model);
     report->openscad_s = openscad_seconds(scene);
     Status status = values_expand(&values, params, "openscad/parametric.scad", out, err);

@@ -65,20 +65,20 @@ static void put_extent(Text *text, Box box, Vec3 origin)
 static Status put_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    return geometries[geometry->scene->model].put_macros(out, context, err);
+    return geometries[geometry->scene->geometry.model].put_macros(out, context, err);
 }
 
 static Status put_body(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    return geometries[geometry->scene->model].put_body(out, context, err);
+    return geometries[geometry->scene->geometry.model].put_body(out, context, err);
 }
 
 static Status put_tree(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     bool one_blob = false;
-    if (geometry->scene->model == SCENE_BLOB)
+    if (geometry->scene->geometry.model == SCENE_BLOB)
         TRY(blob_is_whole(geometry->scene, &one_blob, err));
     Values values = {0};
     add_part(&values, "body", put_body, context);
@@ -107,12 +107,12 @@ static Status put_geometry(Text *out, void *context, Err *err)
     text_put_line(add_value(&values, "file"), file);
     text_put_line(add_value(&values, "description"), params->description);
     text_puts(add_value(&values, "generator"), params->generator);
-    put_extent(add_value(&values, "extent"), scene->bounds, scene->origin);
+    put_extent(add_value(&values, "extent"), scene->geometry.bounds, scene->geometry.origin);
     put_guard(add_value(&values, "guard"), file);
-    add_float(&values, "red", scene->color.r);
-    add_float(&values, "green", scene->color.g);
-    add_float(&values, "blue", scene->color.b);
-    add_finish(&values, &scene->finish);
+    add_float(&values, "red", scene->appearance.color.r);
+    add_float(&values, "green", scene->appearance.color.g);
+    add_float(&values, "blue", scene->appearance.color.b);
+    add_finish(&values, &scene->appearance.finish);
     add_part(&values, "macros", put_macros, geometry);
     add_part(&values, "tree", put_tree, geometry);
     return values_expand(&values, params, "povray/vessels.inc", out, err);
@@ -157,9 +157,9 @@ static Status put_lights(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Scene *scene = geometry->scene;
-    for (size_t i = 0; i < scene->n_lights; i++)
-        put_light(out, &scene->lights[i]);
-    return put_ground(out, &scene->ground, geometry->params, err);
+    for (size_t i = 0; i < scene->view.n_lights; i++)
+        put_light(out, &scene->view.lights[i]);
+    return put_ground(out, &scene->view.ground, geometry->params, err);
 }
 
 static void put_stem(Text *text, const char *name)
@@ -199,19 +199,19 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     const EmitParams *params = geometry->params;
     const Scene *scene = geometry->scene;
     double near_mm, far_mm;
-    scene_depth_range(scene, &near_mm, &far_mm);
+    camera_depth_range(&scene->view.camera, scene->geometry.bounds, &near_mm, &far_mm);
     text_put_line(add_value(&values, "file"), params->file);
     put_stem(add_value(&values, "stem"), params->file);
     text_put_line(add_value(&values, "geometry_file"),
                   params->second_file ? params->second_file : "the last part of this file");
     text_put_line(add_value(&values, "description"), params->description);
     text_puts(add_value(&values, "generator"), params->generator);
-    put_extent(add_value(&values, "extent"), scene->bounds, scene->origin);
-    add_camera(&values, &scene->camera);
+    put_extent(add_value(&values, "extent"), scene->geometry.bounds, scene->geometry.origin);
+    add_camera(&values, &scene->view.camera);
     add_flag(&values, "shadows", params->shadows);
-    add_float(&values, "background_red", scene->background.r);
-    add_float(&values, "background_green", scene->background.g);
-    add_float(&values, "background_blue", scene->background.b);
+    add_float(&values, "background_red", scene->view.background.r);
+    add_float(&values, "background_green", scene->view.background.g);
+    add_float(&values, "background_blue", scene->view.background.b);
     add_number(&values, "depth_near", near_mm);
     add_number(&values, "depth_far", far_mm);
     add_part(&values, "lights", put_lights, geometry);
@@ -223,8 +223,8 @@ Status povray_write(const EmitParams *params, Text *out, Text *second, EmitRepor
 {
     PovrayGeometry geometry = {.params = params, .scene = params->scene, .report = report};
     Status status = STATUS_OK;
-    if (params->scene->model == SCENE_ISOSURFACE)
-        TRY(celltree_build(params->scene, &params->cells, &geometry.cells, err));
+    if (params->scene->geometry.model == SCENE_ISOSURFACE)
+        TRY(celltree_build(&params->scene->geometry, &params->cells, &geometry.cells, err));
     report->cells = geometry.cells.n_cells;
     if (params->second_file)
         TRY_GOTO(put_geometry(second, &geometry, err));

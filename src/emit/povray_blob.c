@@ -50,7 +50,7 @@ static size_t count_felt(const Cells *cells, const uint32_t *list, size_t n, Vec
 {
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
-        count += blob_term(&cells->scene->segments[list[i]], x) != 0;
+        count += blob_term(&cells->scene->geometry.segments[list[i]], x) != 0;
     return count;
 }
 
@@ -59,7 +59,7 @@ static Status check_crowd(const Cells *cells, const uint32_t *list, size_t n, Er
     if (n <= CROWD)
         return STATUS_OK;
     for (size_t i = 0; i < n; i += n / PROBES) {
-        const FieldSegment *segment = &cells->scene->segments[list[i]];
+        const FieldSegment *segment = &cells->scene->geometry.segments[list[i]];
         Vec3 middle = vec3_scale(vec3_add(segment->a, segment->b), 0.5);
         size_t felt = count_felt(cells, list, n, middle);
         if (felt > CROWD)
@@ -87,7 +87,7 @@ static Status put_cell(Cells *cells, size_t first, size_t n, const Box *clip, Er
     TRY(check_crowd(cells, list, n, err));
     text_puts(text, clip ? "Blob_Cell()\n" : "Blob_Start()\n");
     for (size_t i = 0; i < n; i++) {
-        const FieldSegment *segment = &cells->scene->segments[list[i]];
+        const FieldSegment *segment = &cells->scene->geometry.segments[list[i]];
         text_puts(text, "Vessel_Blob(");
         put_vector(text, segment->a);
         text_puts(text, ",");
@@ -117,7 +117,7 @@ static size_t take_those_in(Cells *cells, size_t first, size_t n, Box box)
     uint32_t *list = cells->lists + first;
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
-        if (box_meets(reach_of(&cells->scene->segments[list[i]]), box))
+        if (box_meets(reach_of(&cells->scene->geometry.segments[list[i]]), box))
             list[n + count++] = list[i];
     return count;
 }
@@ -170,12 +170,12 @@ static Status put_cells_of(Cells *cells, size_t first, size_t n, Box box, bool w
 static Status all_segments(Cells *cells, Box *box, Err *err)
 {
     const Scene *scene = cells->scene;
-    cells->room = scene->n_segments;
+    cells->room = scene->geometry.n_segments;
     TRY(mem_calloc(&cells->lists, cells->room, sizeof *cells->lists, "cells", err));
     *box = box_empty();
-    for (size_t i = 0; i < scene->n_segments; i++) {
+    for (size_t i = 0; i < scene->geometry.n_segments; i++) {
         cells->lists[i] = (uint32_t)i;
-        *box = box_union(*box, reach_of(&scene->segments[i]));
+        *box = box_union(*box, reach_of(&scene->geometry.segments[i]));
     }
     return STATUS_OK;
 }
@@ -186,7 +186,7 @@ Status blob_is_whole(const Scene *scene, bool *whole, Err *err)
     Box box, half[2];
     bool is_cut;
     TRY(all_segments(&cells, &box, err));
-    Status status = halve(&cells, 0, scene->n_segments, box, half, &is_cut, err);
+    Status status = halve(&cells, 0, scene->geometry.n_segments, box, half, &is_cut, err);
     free(cells.lists);
     if (status == STATUS_OK)
         *whole = !is_cut;
@@ -199,7 +199,7 @@ Status put_blob(Text *out, void *context, Err *err)
     Cells cells = {.scene = geometry->scene, .text = out};
     Box box;
     TRY(all_segments(&cells, &box, err));
-    Status status = put_cells_of(&cells, 0, cells.scene->n_segments, box, true, err);
+    Status status = put_cells_of(&cells, 0, cells.scene->geometry.n_segments, box, true, err);
     free(cells.lists);
     geometry->report->cells = cells.written;
     return status == STATUS_OK ? text_check(out, err) : status;
@@ -230,7 +230,7 @@ static int by_key(const void *a, const void *b)
 
 static void put_term(Text *text, const Scene *scene, uint32_t number)
 {
-    TermForm form = term_form(&scene->segments[number]);
+    TermForm form = term_form(&scene->geometry.segments[number]);
     const Linear *const parts[] = {&form.v, &form.w, &form.start, &form.end};
     text_puts(text, "Fn_Blob_Term(");
     for (int i = 0; i < 4; i++) {
@@ -266,7 +266,7 @@ static Status put_function(Paints *paints, Box box, const Text *list, Err *err)
 static void sort_along(Paints *paints, Item *items, size_t n, int axis)
 {
     for (size_t i = 0; i < n; i++) {
-        const FieldSegment *segment = &paints->scene->segments[items[i].segment];
+        const FieldSegment *segment = &paints->scene->geometry.segments[items[i].segment];
         items[i].key = vec3_component(vec3_add(segment->a, segment->b), axis);
     }
     qsort(items, n, sizeof *items, by_key);
@@ -279,7 +279,7 @@ static Status put_node(Paints *paints, size_t first, size_t n, Err *err)
     Text list = TEXT_INIT;
     Box box = box_empty();
     for (size_t i = 0; i < n; i++)
-        box = box_union(box, reach_of(&paints->scene->segments[items[i].segment]));
+        box = box_union(box, reach_of(&paints->scene->geometry.segments[items[i].segment]));
     if (n > LEAF) {
         sort_along(paints, items, n, box_longest_axis(box));
         for (int half = 0; half < 2; half++) {
@@ -308,7 +308,7 @@ static Status put_functions(Text *out, void *context, Err *err)
     const PovrayGeometry *geometry = context;
     Tmpl node = {0};
     Paints paints = {.scene = geometry->scene, .node = &node, .text = out};
-    size_t n = paints.scene->n_segments;
+    size_t n = paints.scene->geometry.n_segments;
     Status status;
     TRY(load_template(&node, geometry->params, "povray/blob_node.inc", err));
     TRY_GOTO(mem_calloc(&paints.items, n, sizeof *paints.items, "segments", err));
@@ -326,14 +326,14 @@ static Status put_groups(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Scene *scene = geometry->scene;
-    for (size_t i = 0; i < scene->n_segments; i++) {
-        const FieldSegment *segment = &scene->segments[i];
+    for (size_t i = 0; i < scene->geometry.n_segments; i++) {
+        const FieldSegment *segment = &scene->geometry.segments[i];
         if (i % GROUP == 0)
             text_printf(out, "Blob_Group(%zu)\n", i / GROUP);
         text_printf(out, "Blob_Color(%zu,", i);
-        put_paint(out, scene, segment->id, segment->color);
+        put_paint(out, scene, segment->segment);
         text_puts(out, ")\n");
-        if (i % GROUP == GROUP - 1 || i + 1 == scene->n_segments)
+        if (i % GROUP == GROUP - 1 || i + 1 == scene->geometry.n_segments)
             text_printf(out, "Blob_Group_End(%zu)\n", i / GROUP);
     }
     return text_check(out, err);
@@ -365,8 +365,8 @@ Status put_blob_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Scene *scene = geometry->scene;
-    size_t n = scene->n_segments;
-    bool painted = !scene->uniform_color || geometry->params->ids;
+    size_t n = scene->geometry.n_segments;
+    bool painted = scene->appearance.colors || geometry->params->ids;
     Values values = {0};
     if (painted && n > MAX_PAINTED)
         return err_set(err, STATUS_INFEASIBLE,
@@ -374,7 +374,7 @@ Status put_blob_macros(Text *out, void *context, Err *err)
                        MAX_PAINTED, n);
     add_shape(&values);
     add_flag(&values, "painted", painted);
-    add_flag(&values, "many_colors", !scene->uniform_color);
+    add_flag(&values, "many_colors", scene->appearance.colors != NULL);
     Text *top = add_value(&values, "top"), *n_groups = add_value(&values, "n_groups");
     if (painted) {
         text_printf(top, "Fn%zu", count_nodes(n) - 1);

@@ -101,7 +101,7 @@ static Status put_terms(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const CellTree *cells = &geometry->cells;
-    size_t n = geometry->scene->n_segments;
+    size_t n = geometry->scene->geometry.n_segments;
     Tmpl term = {0}, tube = {0};
     uint8_t *used = NULL;
     Status status;
@@ -133,8 +133,8 @@ Status put_cell_macros(Text *out, void *context, Err *err)
     for (int i = 0; i < ERF_TERMS; i++)
         add_number(&values, names[i], erf_forms[erf][i]);
     add_flag(&values, "exact_erf", erf == ERF_EXACT);
-    add_flag(&values, "painted", !scene->uniform_color || geometry->params->ids);
-    add_flag(&values, "many_colors", !scene->uniform_color);
+    add_flag(&values, "painted", scene->appearance.colors || geometry->params->ids);
+    add_flag(&values, "many_colors", scene->appearance.colors != NULL);
     add_part(&values, "scales", put_scales, context);
     add_part(&values, "terms", put_terms, context);
     return values_expand(&values, geometry->params, "povray/isosurface.inc", out, err);
@@ -212,7 +212,7 @@ static void put_pick(Text *text, const CellTerm *terms, uint32_t count)
 
 static void put_segment_paint(Text *text, const Scene *scene, uint32_t segment)
 {
-    put_paint(text, scene, scene->segments[segment].id, scene->segments[segment].color);
+    put_paint(text, scene, scene->geometry.segments[segment].segment);
 }
 
 /* Appends the paint of a cell: that of the term that is largest all over it, or of each. */
@@ -264,7 +264,7 @@ Status put_cells(Text *out, void *context, Err *err)
     const PovrayGeometry *geometry = context;
     const Scene *scene = geometry->scene;
     const CellTree *cells = &geometry->cells;
-    bool painted = geometry->params->ids || !scene->uniform_color;
+    bool painted = geometry->params->ids || scene->appearance.colors;
     Tmpl plain = {0}, many_paints = {0};
     CellText part = {0};
     Status status;

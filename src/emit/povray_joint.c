@@ -77,8 +77,8 @@ static double largest_gradient(const JointPlane *plane)
 static int joint_sides(const Scene *scene)
 {
     size_t n = 0;
-    for (size_t i = 0; i < scene->n_primitives; i++)
-        n += scene->primitives[i].kind == PRIMITIVE_JOINT;
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++)
+        n += scene->geometry.primitives[i].kind == PRIMITIVE_JOINT;
     return n > MOST_EXACT ? SIDES_OF_MANY : 0;
 }
 
@@ -118,6 +118,6 @@ void put_joint(Text *text, const Scene *scene, const Primitive *joint)
         text_number(text, numbers[i]);
     }
     text_puts(text, folded ? ",1," : ",0,");
-    put_paint(text, scene, joint->id, joint->color);
+    put_paint(text, scene, joint->segment);
     text_puts(text, ")\n");
 }

@@ -15,7 +15,7 @@ static void put_primitive(Text *text, const Scene *scene, const Primitive *primi
     text_puts(text, ",");
     text_number(text, primitive->radius_mm);
     text_puts(text, ",");
-    put_paint(text, scene, primitive->id, primitive->color);
+    put_paint(text, scene, primitive->segment);
     text_puts(text, ")\n");
 }
 
@@ -23,8 +23,8 @@ Status put_primitives(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Scene *scene = geometry->scene;
-    for (size_t i = 0; i < scene->n_primitives; i++) {
-        const Primitive *primitive = &scene->primitives[i];
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++) {
+        const Primitive *primitive = &scene->geometry.primitives[i];
         if (primitive->kind == PRIMITIVE_JOINT)
             put_joint(out, scene, primitive);
         else

@@ -21,13 +21,13 @@ void put_color(Text *text, Rgb color)
                 number_text_float(color.b, b));
 }
 
-void put_paint(Text *text, const Scene *scene, uint32_t id, Rgb color)
+void put_paint(Text *text, const Scene *scene, uint32_t segment)
 {
-    text_printf(text, "%u,", id);
-    if (scene->uniform_color)
-        text_puts(text, "Vessel_Color");
+    text_printf(text, "%u,", scene->geometry.ids[segment]);
+    if (scene->appearance.colors)
+        put_color(text, scene->appearance.colors[segment]);
     else
-        put_color(text, color);
+        text_puts(text, "Vessel_Color");
 }
 
 void put_linear(Text *text, const Linear *linear)

@@ -8,7 +8,8 @@
 #define CORCAST_IMAGE_IMAGE_H
 
 #include "base/base.h"
-#include "image/colormap.h" // IWYU pragma: export
+#include "image/colormap.h"   // IWYU pragma: export
+#include "image/colorscale.h" // IWYU pragma: export
 #include <stdint.h>
 #include <string.h>
 

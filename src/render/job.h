@@ -58,7 +58,7 @@ typedef struct RenderStats {
     double cpu_s; /* of all threads, for both: trace_s when nothing else runs is about cpu_s /
                      threads */
     size_t rays;  /* primary */
-    size_t preparations; /* how often camera, lights or antialiasing were not those of the band
+    size_t preparations; /* how often camera, lights or antialiasing were not those of the rows
                             before */
 } RenderStats;
 
@@ -69,6 +69,16 @@ typedef struct Band {
     int first, rows;
     int above, below;
 } Band;
+
+/* What an engine draws: a band of a picture of one geometry. */
+typedef struct Drawing {
+    const Geometry *geometry;
+    const View *view;
+    const Appearance *appearance;
+    const RenderParams *params;
+    struct Caster *caster; /* for the rays that the engine asks for; NULL where it asks for none */
+    Band band;
+} Drawing;
 
 /* Says how far the whole picture is; `part` is of this pass over the band, whose further samples
  * are a pass of their own. */

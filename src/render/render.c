@@ -1,7 +1,10 @@
-/* Chooses the engine: implicit scenes are drawn by field/fieldrender.c, primitives by
- * raster/rasterrender.c or raster/zbuffer.c where that is asked for and enough, all else ray by ray
- * by light/rayrender.c. Rows are drawn in bands; what bands have in common is kept from one to the
- * next. */
+/* What the geometry alone decides, the search structure of rays (Caster), is made once and kept.
+ * What a view decides, tiles and their lists, is kept until a camera, lights or an antialiasing
+ * come that are not the same to the last bit. An appearance decides nothing but colours.
+ *
+ * Implicit models are drawn by field/fieldrender.c, primitives by raster/rasterrender.c or
+ * raster/zbuffer.c where that is asked for and enough, all else ray by ray by
+ * light/rayrender.c. */
 #include "render/render.h"
 
 #include "render/field/fieldrender.h"
@@ -17,31 +20,55 @@
 #include <string.h>
 
 struct Renderer {
-    const Scene *scene;
+    const Geometry *geometry;
     RenderParams params;
     int threads;
-    Caster
-        *caster; /* NULL when the potential is drawn and nothing asks what is in the way of light */
+    Caster *caster; /* of the geometry; NULL until a view needs it */
     RenderStats stats;
-    /* What bands have in common, of this camera, these lights and this antialiasing. */
+    /* What is kept while camera, lights and antialiasing are these. */
     RasterPrepared raster;
     FieldPrepared field;
     Camera camera;
-    Light *lights; /* owned */
+    Light lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
     int antialias;
 };
 
+/* ---- what is prepared ------------------------------------------------------------------------ */
+
 static bool is_field(const Renderer *renderer)
 {
-    return renderer->scene->model == SCENE_ISOSURFACE && !renderer->params.povray_cells;
+    return renderer->geometry->model == SCENE_ISOSURFACE && !renderer->params.povray_cells;
 }
 
-/* Soft shadows, occlusion and the ground are for rays to find. */
-static bool is_traced(const Renderer *renderer)
+/* Area lights, occlusion and the ground are for rays to find. */
+static bool is_traced(const Renderer *renderer, const View *view)
 {
-    return renderer->scene->n_primitives == 0 || renderer->params.method == RENDER_TRACE ||
-           sight_is_needed(renderer->scene, &renderer->params);
+    return renderer->geometry->n_primitives == 0 || renderer->params.method == RENDER_TRACE ||
+           sight_is_needed(view, &renderer->params);
+}
+
+static bool needs_caster(const Renderer *renderer, const View *view)
+{
+    const RenderParams *params = &renderer->params;
+    if (is_traced(renderer, view))
+        return !is_field(renderer) || params->shadows || params->occlusion > 0;
+    return params->method == RENDER_RASTER && params->shadows &&
+           rastershadows_need_rays(renderer->geometry, view);
+}
+
+/* Makes the caster if the view needs it and none before did. */
+static Status prepare_caster(Renderer *renderer, const View *view, Err *err)
+{
+    if (renderer->caster || !needs_caster(renderer, view))
+        return STATUS_OK;
+    double start_s = clock_seconds();
+    TRY(caster_new(renderer->geometry, renderer->params.povray_cells, renderer->threads,
+                   &renderer->caster, err));
+    if (renderer->params.shadow_from_mm > 0)
+        caster_shadow_from(renderer->caster, renderer->params.shadow_from_mm);
+    renderer->stats.prepare_s += clock_seconds() - start_s;
+    return STATUS_OK;
 }
 
 static Status check_kernels(RenderKernels kernels, Err *err)
@@ -53,30 +80,27 @@ static Status check_kernels(RenderKernels kernels, Err *err)
                    render_kernel_names[kernels], render_kernel_names[usable]);
 }
 
-Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **out, Err *err)
+Status renderer_new(const Geometry *geometry, const RenderParams *params, Renderer **out, Err *err)
 {
+    static const View plain; /* no lights, no ground: what it needs, all views need */
     Renderer *renderer;
-    double start_s = clock_seconds(), start_cpu_s = clock_cpu_seconds();
+    double start_cpu_s = clock_cpu_seconds();
     TRY(check_kernels(params->kernels, err));
     TRY(mem_calloc(&renderer, 1, sizeof *renderer, "renderers", err));
-    *renderer = (Renderer){.scene = scene, .params = *params};
+    renderer->geometry = geometry;
+    renderer->params = *params;
     renderer->threads = params->threads > 0 ? params->threads : threads_available();
-    Status status = STATUS_OK;
-    if (is_traced(renderer) && (!is_field(renderer) || params->shadows || params->occlusion > 0))
-        status = caster_new(scene, params->povray_cells, renderer->threads, &renderer->caster, err);
-    if (renderer->caster && params->shadow_from_mm > 0)
-        caster_shadow_from(renderer->caster, params->shadow_from_mm);
+    Status status = prepare_caster(renderer, &plain, err);
     if (status != STATUS_OK) {
         renderer_free(renderer);
         return status;
     }
-    renderer->stats.prepare_s = clock_seconds() - start_s;
     renderer->stats.cpu_s = clock_cpu_seconds() - start_cpu_s;
     *out = renderer;
     return STATUS_OK;
 }
 
-static void forget(Renderer *renderer)
+static void forget_view(Renderer *renderer)
 {
     rasterprepared_release(&renderer->raster);
     fieldprepared_release(&renderer->field);
@@ -86,37 +110,26 @@ void renderer_free(Renderer *renderer)
 {
     if (!renderer)
         return;
-    forget(renderer);
-    free(renderer->lights);
+    forget_view(renderer);
     caster_free(renderer->caster);
     free(renderer);
 }
 
 /* Frees what was prepared for another camera, other lights or another antialiasing than the next
- * band has, and remembers those that it has. */
-static Status forget_other_views(Renderer *renderer, Err *err)
+ * rows have, and remembers those that they have. */
+static void forget_other_views(Renderer *renderer, const View *view)
 {
-    const Scene *scene = renderer->scene;
-    size_t size = scene->n_lights * sizeof *scene->lights;
-    bool same = renderer->n_lights == scene->n_lights &&
-                renderer->antialias == renderer->params.antialias &&
-                memcmp(&renderer->camera, &scene->camera, sizeof scene->camera) == 0 &&
-                (size == 0 || memcmp(renderer->lights, scene->lights, size) == 0);
-    if (same)
-        return STATUS_OK;
-    forget(renderer);
-    free(renderer->lights);
-    renderer->lights = NULL;
-    renderer->n_lights = 0;
-    renderer->antialias = 0; /* of no picture */
-    TRY(mem_calloc(&renderer->lights, scene->n_lights, sizeof *scene->lights, "lights", err));
-    if (size > 0)
-        memcpy(renderer->lights, scene->lights, size);
-    renderer->n_lights = scene->n_lights;
+    size_t size = view->n_lights * sizeof *view->lights;
+    if (renderer->n_lights == view->n_lights && renderer->antialias == renderer->params.antialias &&
+        memcmp(&renderer->camera, &view->camera, sizeof view->camera) == 0 &&
+        memcmp(renderer->lights, view->lights, size) == 0)
+        return;
+    forget_view(renderer);
+    memcpy(&renderer->camera, &view->camera, sizeof view->camera);
+    memcpy(renderer->lights, view->lights, size);
+    renderer->n_lights = view->n_lights;
     renderer->antialias = renderer->params.antialias;
-    memcpy(&renderer->camera, &scene->camera, sizeof scene->camera);
     renderer->stats.preparations++;
-    return STATUS_OK;
 }
 
 void renderer_antialias(Renderer *renderer, int antialias)
@@ -129,30 +142,29 @@ RenderStats renderer_stats(const Renderer *renderer)
     return renderer->stats;
 }
 
-static Status draw(Renderer *renderer, const Band *band, Frame *frame, Err *err)
+static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
 {
-    const RenderParams *params = &renderer->params;
-    bool tiles = is_traced(renderer) ? is_field(renderer) : params->method == RENDER_RASTER;
+    const RenderParams *params = drawing->params;
+    RenderStats *stats = &renderer->stats;
+    bool traced = is_traced(renderer, drawing->view);
+    bool tiles = traced ? is_field(renderer) : params->method == RENDER_RASTER;
     bool codes = params->codes_suffice && params->antialias == 1 && tiles;
-    TRY(planes_make(renderer->scene->camera.width, band->rows, params, codes, frame, err));
-    TRY(forget_other_views(renderer, err));
-    if (!is_traced(renderer) && params->method == RENDER_RASTER)
-        return rasterrender(renderer->scene, params, band, &renderer->raster, frame,
-                            &renderer->stats, err);
-    if (!is_traced(renderer))
-        return zbuffer_render(renderer->scene, params, band, frame, &renderer->stats, err);
+    TRY(planes_make(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
+    forget_other_views(renderer, drawing->view);
+    if (!traced && params->method == RENDER_RASTER)
+        return rasterrender(drawing, &renderer->raster, frame, stats, err);
+    if (!traced)
+        return zbuffer_render(drawing, frame, stats, err);
     if (is_field(renderer))
-        return fieldrender(renderer->scene, params, renderer->caster, band, &renderer->field, frame,
-                           &renderer->stats, err);
-    return rayrender(renderer->scene, params, renderer->caster, band, frame, &renderer->stats, err);
+        return fieldrender(drawing, &renderer->field, frame, stats, err);
+    return rayrender(drawing, frame, stats, err);
 }
 
 /* The band with the neighbours that adaptive antialiasing looks at. */
-static Band band_of(const Renderer *renderer, int first, int rows)
+static Band band_of(const RenderParams *params, int height, int first, int rows)
 {
-    const RenderParams *params = &renderer->params;
     Band band = {.first = first, .rows = rows};
-    int left = renderer->scene->camera.height - first - rows;
+    int left = height - first - rows;
     if (params->antialias > 1 && params->antialias_threshold > 0) {
         band.above = first > 0 ? RENDER_BAND_STEP : 0;
         band.below = left < RENDER_BAND_STEP ? left : RENDER_BAND_STEP;
@@ -162,23 +174,29 @@ static Band band_of(const Renderer *renderer, int first, int rows)
     return band;
 }
 
-Status renderer_rows(Renderer *renderer, int first, int rows, Frame *frame, Err *err)
+Status renderer_rows(Renderer *renderer, const View *view, const Appearance *appearance, int first,
+                     int rows, Frame *frame, Err *err)
 {
-    const Camera *camera = &renderer->scene->camera;
-    assert(first >= 0 && rows > 0 && first + rows <= camera->height &&
-           first % RENDER_BAND_STEP == 0);
+    int height = view->camera.height;
+    assert(first >= 0 && rows > 0 && first + rows <= height && first % RENDER_BAND_STEP == 0);
     Frame made = {0};
     double start_cpu_s = clock_cpu_seconds();
-    const Band band = band_of(renderer, first, rows);
-    Status status = draw(renderer, &band, &made, err);
+    TRY(prepare_caster(renderer, view, err));
+    const Drawing drawing = {.geometry = renderer->geometry,
+                             .view = view,
+                             .appearance = appearance,
+                             .params = &renderer->params,
+                             .caster = renderer->caster,
+                             .band = band_of(&renderer->params, height, first, rows)};
+    Status status = draw(renderer, &drawing, &made, err);
     renderer->stats.cpu_s += clock_cpu_seconds() - start_cpu_s;
-    renderer->stats.rays += (size_t)camera->width * (size_t)band.rows;
+    renderer->stats.rays += (size_t)view->camera.width * (size_t)drawing.band.rows;
     if (status != STATUS_OK) {
         frame_release(&made);
         return status;
     }
-    if (band.above + band.below)
-        planes_cut(&made, &band);
+    if (drawing.band.above + drawing.band.below)
+        planes_cut(&made, &drawing.band);
     *frame = made;
     return STATUS_OK;
 }
@@ -187,8 +205,9 @@ Status render(const Scene *scene, const RenderParams *params, Frame *frame, Rend
               Err *err)
 {
     Renderer *renderer;
-    TRY(renderer_new(scene, params, &renderer, err));
-    Status status = renderer_rows(renderer, 0, scene->camera.height, frame, err);
+    TRY(renderer_new(&scene->geometry, params, &renderer, err));
+    Status status = renderer_rows(renderer, &scene->view, &scene->appearance, 0,
+                                  scene->view.camera.height, frame, err);
     if (status == STATUS_OK && stats)
         *stats = renderer->stats;
     renderer_free(renderer);

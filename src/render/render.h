@@ -1,5 +1,5 @@
-/* The door of the room render: scene -> image, in double precision with float colours, arranged so
- * that it repeats POV-Ray 3.7's arithmetic [docs/POVRAY.md]. */
+/* The door of the room render: geometry, view and appearance -> image, in double precision with
+ * float colours, arranged so that it repeats POV-Ray 3.7's arithmetic [docs/POVRAY.md]. */
 #ifndef CORCAST_RENDER_RENDER_H
 #define CORCAST_RENDER_RENDER_H
 
@@ -13,24 +13,30 @@
 /* Bands begin at multiples of so many rows. */
 enum { RENDER_BAND_STEP = 8 };
 
-/* A scene made ready to be drawn, whole or band by band. */
+/* Draws one geometry in any views and appearances. */
 typedef struct Renderer Renderer;
 
-/* Builds what rays need of the geometry; the scene is borrowed, and `params` as long as this call.
- * Until renderer_free, camera, lights and colours of the scene may change between calls, geometry
- * may not. What tiles need is built with the first rows, and anew only where camera, lights or
- * antialiasing have changed. STATUS_USAGE when this processor cannot run the kernels;
- * STATUS_MEMORY. */
-MUST_CHECK Status renderer_new(const Scene *scene, const RenderParams *params, Renderer **out,
+/* Builds what every view needs of the geometry, which is borrowed until renderer_free; `params` is
+ * copied. STATUS_USAGE when this processor cannot run the kernels; STATUS_MEMORY;
+ * STATUS_INFEASIBLE when POV-Ray's cells of an isosurface cannot be built. */
+MUST_CHECK Status renderer_new(const Geometry *geometry, const RenderParams *params, Renderer **out,
                                Err *err);
 void renderer_free(Renderer *renderer);
 
-/* Renders the rows first .. first + rows of the picture into *frame (owned), which has as many: the
- * very bytes that those rows have in the whole picture. `first` is a multiple of RENDER_BAND_STEP,
- * and so is `rows` unless they end with the picture. STATUS_MEMORY when the planes do not fit. */
-MUST_CHECK Status renderer_rows(Renderer *renderer, int first, int rows, Frame *frame, Err *err);
+/* Renders the rows first .. first + rows of the picture of a view into *frame (owned), which has as
+ * many: the very bytes that those rows have in the whole picture. `first` is a multiple of
+ * RENDER_BAND_STEP, and so is `rows` unless they end with the picture.
+ *
+ * What the view needs of the geometry is prepared with its first rows and kept for the next ones as
+ * long as camera and lights, bit by bit, and antialiasing stay the same. Another appearance, ground
+ * or background costs its pixels alone. Neither view nor appearance is kept. Not to be called by
+ * two threads at once. STATUS_MEMORY when the planes do not fit; STATUS_USAGE when the method
+ * cannot draw this view (RENDER_ZBUFFER from among the vessels, RENDER_RASTER of more than 524,280
+ * pixels a side). */
+MUST_CHECK Status renderer_rows(Renderer *renderer, const View *view, const Appearance *appearance,
+                                int first, int rows, Frame *frame, Err *err);
 
-/* What comes next has `antialias` of RenderParams. */
+/* Sets `antialias` of RenderParams for the rows to come. */
 void renderer_antialias(Renderer *renderer, int antialias);
 
 /* Of all calls so far, renderer_new included. */

@@ -61,10 +61,10 @@ static int compare_numbers(const void *a, const void *b)
     return (one > other) - (one < other);
 }
 
-static Status find_all(Walk *walk, Scene *scene, Err *err)
+static Status find_all(Walk *walk, Geometry *geometry, Err *err)
 {
     const Tree *tree = walk->tree;
-    size_t *first = scene->blend.first;
+    size_t *first = geometry->blend.first;
     for (size_t i = 0; i < tree->n; i++) {
         int32_t self = walk->number[i], parent = tree->parent[i];
         if (self < 0)
@@ -81,15 +81,15 @@ static Status find_all(Walk *walk, Scene *scene, Err *err)
     return STATUS_OK;
 }
 
-Status blend_find(const Tree *tree, const int32_t *number, Scene *scene, Err *err)
+Status blend_find(const Tree *tree, const int32_t *number, Geometry *geometry, Err *err)
 {
     Status status;
     Walk walk = {.tree = tree, .number = number};
     TRY_GOTO(mem_calloc(&walk.child, tree->n, sizeof *walk.child, "nodes", err));
     TRY_GOTO(mem_calloc(&walk.sibling, tree->n, sizeof *walk.sibling, "nodes", err));
     TRY_GOTO(mem_calloc(&walk.stack, tree->n + 1, sizeof *walk.stack, "nodes", err));
-    TRY_GOTO(mem_calloc(&scene->blend.first, scene->n_segments + 1, sizeof *scene->blend.first,
-                        "neighbours", err));
+    TRY_GOTO(mem_calloc(&geometry->blend.first, geometry->n_segments + 1,
+                        sizeof *geometry->blend.first, "neighbours", err));
     for (size_t i = 0; i < tree->n; i++)
         walk.child[i] = walk.sibling[i] = -1;
     for (size_t i = tree->n; i-- > 0;)
@@ -97,8 +97,8 @@ Status blend_find(const Tree *tree, const int32_t *number, Scene *scene, Err *er
             walk.sibling[i] = walk.child[tree->parent[i]];
             walk.child[tree->parent[i]] = (int32_t)i;
         }
-    TRY_GOTO(find_all(&walk, scene, err));
-    scene->blend.neighbors = walk.found;
+    TRY_GOTO(find_all(&walk, geometry, err));
+    geometry->blend.neighbors = walk.found;
     walk.found = NULL;
 done:
     free(walk.child);

@@ -5,7 +5,7 @@
 
 static const double degrees_pi = 3.14159265358979323846 / 180;
 
-void view_axes(View view, Vec3 *direction, Vec3 *up)
+void view_axes(NamedView view, Vec3 *direction, Vec3 *up)
 {
     static const struct {
         Vec3 direction, up;
@@ -51,6 +51,28 @@ static Status camera_axes(const StageParams *params, Vec3 center, Vec3 *directio
                        "`up` points along the camera's direction; give a vector that does not");
     *right = vec3_normalized(across);
     *up = vec3_cross(*right, *direction);
+    return STATUS_OK;
+}
+
+Status framing_balls(const Geometry *geometry, Ball **balls, size_t *n, Err *err)
+{
+    size_t count = 0;
+    Ball *made;
+    TRY(mem_calloc(&made, 2 * (geometry->n_primitives + geometry->n_segments), sizeof *made,
+                   "balls", err));
+    for (size_t i = 0; i < geometry->n_primitives; i++) {
+        const Primitive *primitive = &geometry->primitives[i];
+        bool joint = primitive->kind == PRIMITIVE_JOINT;
+        made[count++] = (Ball){primitive->a, primitive->radius_mm};
+        made[count++] = (Ball){primitive->b, joint ? primitive->radius_b_mm : primitive->radius_mm};
+    }
+    for (size_t i = 0; i < geometry->n_segments; i++) {
+        const FieldSegment *segment = &geometry->segments[i];
+        made[count++] = (Ball){segment->a, 2 * segment->radius_mm};
+        made[count++] = (Ball){segment->b, 2 * segment->radius_mm};
+    }
+    *balls = made;
+    *n = count;
     return STATUS_OK;
 }
 

@@ -1,4 +1,4 @@
-/* The camera of a picture. */
+/* The camera of a picture, and what it has to frame. */
 #ifndef CORCAST_STAGE_FRAMING_H
 #define CORCAST_STAGE_FRAMING_H
 
@@ -8,6 +8,11 @@ typedef struct Ball {
     Vec3 center;
     double radius;
 } Ball;
+
+/* The two end balls of every segment drawn, in *balls (owned). The implicit surface reaches beyond
+ * its segments by 0.551 r at free ends and by less than r where vessels meet, so that its balls
+ * have twice the radius. */
+MUST_CHECK Status framing_balls(const Geometry *geometry, Ball **balls, size_t *n, Err *err);
 
 /* The camera that params asks for, framing the balls where it leaves that open. `bounds` holds
  * them. STATUS_USAGE when the vectors given make no camera. */

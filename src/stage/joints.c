@@ -224,26 +224,25 @@ static void trim_cuts(Builder *builder, JointForm form)
     }
 }
 
-static void add_cylinder(const Builder *builder, const Paint *paint, size_t i, Scene *scene)
+static void add_cylinder(const Builder *builder, size_t i, Geometry *geometry)
 {
     double left = tree_segment_length(builder->tree, i);
     left -= builder->cut[2 * i] + builder->cut[2 * i + 1];
     if (left <= (1 - usable_part) / 2 * tree_segment_length(builder->tree, i))
         return;
-    scene->primitives[scene->n_primitives++] = (Primitive){.kind = PRIMITIVE_CYLINDER,
-                                                           .a = end_center(builder, 2 * i),
-                                                           .b = end_center(builder, 2 * i + 1),
-                                                           .radius_mm = builder->tree->radius_mm[i],
-                                                           .id = (uint32_t)builder->tree->id[i],
-                                                           .color = paint_of(paint, i)};
+    geometry->primitives[geometry->n_primitives++] =
+        (Primitive){.kind = PRIMITIVE_CYLINDER,
+                    .a = end_center(builder, 2 * i),
+                    .b = end_center(builder, 2 * i + 1),
+                    .radius_mm = builder->tree->radius_mm[i],
+                    .segment = (uint32_t)i};
 }
 
-static void add_joint(const Builder *builder, const Paint *paint, size_t trunk, size_t end,
-                      Scene *scene)
+static void add_joint(const Builder *builder, size_t trunk, size_t end, Geometry *geometry)
 {
     const Tree *tree = builder->tree;
     Vec3 at;
-    scene->primitives[scene->n_primitives++] =
+    geometry->primitives[geometry->n_primitives++] =
         (Primitive){.kind = PRIMITIVE_JOINT,
                     .a = end_center(builder, trunk),
                     .b = end_center(builder, end),
@@ -251,13 +250,12 @@ static void add_joint(const Builder *builder, const Paint *paint, size_t trunk, 
                     .radius_b_mm = tree->radius_mm[end / 2],
                     .axis_a = vec3_scale(end_axis(builder, trunk, &at), -1),
                     .axis_b = end_axis(builder, end, &at),
-                    .id = (uint32_t)tree->id[end / 2],
-                    .color = paint_of(paint, end / 2)};
+                    .segment = (uint32_t)(end / 2)};
 }
 
 /* The sphere of a place that cannot be joined; of equals, the trunk gives it its size and
  * colour. */
-static void add_sphere(const Builder *builder, const Paint *paint, size_t place, Scene *scene)
+static void add_sphere(const Builder *builder, size_t place, Geometry *geometry)
 {
     const Tree *tree = builder->tree;
     size_t thickest = trunk_of(builder, place) / 2;
@@ -266,16 +264,16 @@ static void add_sphere(const Builder *builder, const Paint *paint, size_t place,
         if (tree->radius_mm[segment] > tree->radius_mm[thickest])
             thickest = segment;
     }
-    scene->primitives[scene->n_primitives++] = (Primitive){.kind = PRIMITIVE_SPHERE,
-                                                           .a = tree->position[place],
-                                                           .b = tree->position[place],
-                                                           .radius_mm = tree->radius_mm[thickest],
-                                                           .id = (uint32_t)tree->id[thickest],
-                                                           .color = paint_of(paint, thickest)};
+    geometry->primitives[geometry->n_primitives++] =
+        (Primitive){.kind = PRIMITIVE_SPHERE,
+                    .a = tree->position[place],
+                    .b = tree->position[place],
+                    .radius_mm = tree->radius_mm[thickest],
+                    .segment = (uint32_t)thickest};
 }
 
-static void add_place(const Builder *builder, const Paint *paint, size_t place, JointForm form,
-                      Scene *scene, StageReport *report)
+static void add_place(const Builder *builder, size_t place, JointForm form, Geometry *geometry,
+                      StageReport *report)
 {
     PlaceKind kind = builder->kinds[place];
     report->places_short += kind == PLACE_SHORT;
@@ -284,20 +282,20 @@ static void add_place(const Builder *builder, const Paint *paint, size_t place, 
     if (kind == PLACE_OPEN)
         return;
     if (!is_joined(kind, form)) {
-        add_sphere(builder, paint, place, scene);
+        add_sphere(builder, place, geometry);
         return;
     }
     size_t trunk = trunk_of(builder, place);
     for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
         if (builder->ends[k] == trunk)
             continue;
-        add_joint(builder, paint, trunk, builder->ends[k], scene);
+        add_joint(builder, trunk, builder->ends[k], geometry);
         report->joints++;
     }
 }
 
-Status joints_add(const Tree *tree, const Paint *paint, const Places *places, JointForm form,
-                  Scene *scene, StageReport *report, Err *err)
+Status joints_add(const Tree *tree, const Places *places, JointForm form, Geometry *geometry,
+                  StageReport *report, Err *err)
 {
     Builder builder = {.tree = tree, .places = places, .steps = most_steps};
     Status status = collect_ends(&builder, err);
@@ -307,9 +305,9 @@ Status joints_add(const Tree *tree, const Paint *paint, const Places *places, Jo
         trim_cuts(&builder, form);
         for (size_t i = 0; i < tree->n; i++)
             if (places_draw(places, tree, i))
-                add_cylinder(&builder, paint, i, scene);
+                add_cylinder(&builder, i, geometry);
         for (size_t place = 0; place < tree->n; place++)
-            add_place(&builder, paint, place, form, scene, report);
+            add_place(&builder, place, form, geometry, report);
     }
     free(builder.first);
     free(builder.ends);

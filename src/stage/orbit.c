@@ -41,14 +41,13 @@ static double height_mm(const StageParams *params, double distance)
     return width_per_distance(params) * distance * params->height / params->width;
 }
 
-void orbit_begin(StageParams *params, const Scene *scene)
+void orbit_begin(StageParams *params, const Camera *camera, const Geometry *geometry)
 {
-    const Camera *camera = &scene->camera;
-    Vec3 center = box_center(scene->bounds);
+    Vec3 center = box_center(geometry->bounds);
     double along = vec3_dot(vec3_sub(center, camera->location), camera->direction);
     if (!(along > 0))
-        along = vec3_distance(scene->bounds.low, scene->bounds.high);
-    params->location = vec3_add(camera->location, scene->origin);
+        along = vec3_distance(geometry->bounds.low, geometry->bounds.high);
+    params->location = vec3_add(camera->location, geometry->origin);
     params->look_at = vec3_add_scaled(params->location, camera->direction, along);
     params->up = vec3_normalized(camera->up);
     params->has_location = params->has_look_at = params->has_up = true;
@@ -97,7 +96,7 @@ void orbit_pan(StageParams *params, double right, double up)
     params->look_at = vec3_add(params->look_at, move);
 }
 
-void orbit_project(StageParams *params, Projection projection, const Scene *scene)
+void orbit_project(StageParams *params, Projection projection, const Geometry *geometry)
 {
     if (params->projection == projection)
         return;
@@ -109,9 +108,9 @@ void orbit_project(StageParams *params, Projection projection, const Scene *scen
     } else {
         /* In front of everything. */
         params->height_mm = height;
-        Vec3 center = vec3_add(box_center(scene->bounds), scene->origin);
+        Vec3 center = vec3_add(box_center(geometry->bounds), geometry->origin);
         axes.distance = vec3_distance(center, params->look_at) +
-                        vec3_distance(scene->bounds.low, scene->bounds.high);
+                        vec3_distance(geometry->bounds.low, geometry->bounds.high);
     }
     params->projection = projection;
     set_axes(params, axes);

@@ -1,8 +1,9 @@
-/* The door of the room stage: tree + fields + look -> scene. */
+/* The door of the room stage: tree + fields + look -> geometry, appearance and view. */
 #ifndef CORCAST_STAGE_STAGE_H
 #define CORCAST_STAGE_STAGE_H
 
 #include "base/base.h"
+#include "derive/derive.h"
 #include "geom/geom.h"
 #include "scene/scene.h"
 #include "tree/tree.h"
@@ -20,7 +21,7 @@ typedef struct LookLight {
     Rgb color;
 } LookLight;
 
-enum { LOOK_MAX_LIGHTS = 64 };
+enum { LOOK_MAX_LIGHTS = VIEW_MAX_LIGHTS };
 
 /* A plane beyond the tree, on which shadows fall. */
 typedef struct LookGround {
@@ -47,7 +48,7 @@ typedef struct Look {
  * line on an unknown section or key and on a bad value. */
 MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
 
-typedef enum View { VIEW_FRONT, VIEW_TOP, VIEW_LEFT, VIEW_ISO } View;
+typedef enum NamedView { VIEW_FRONT, VIEW_TOP, VIEW_LEFT, VIEW_ISO } NamedView;
 
 /* What a joined model does where vessels are too short, or turn back too sharply, for their
  * joints. */
@@ -61,7 +62,7 @@ typedef struct StageParams {
     JointForm joints;
     int width, height; /* pixels, >= 1 */
     Projection projection;
-    View view; /* used when has_location is false */
+    NamedView view; /* used when has_location is false */
     bool has_location, has_look_at, has_up;
     Vec3 location, look_at, up;
     double angle_deg; /* full horizontal angle of a perspective camera, in (0, 180) */
@@ -83,29 +84,36 @@ typedef struct StageReport {
     size_t joints, places_short, places_sharp, places_crowded;
 } StageReport;
 
-/* Builds the scene of a tree. `colors` has one linear colour a node, for the segment that ends
- * there, or is NULL for the look's one colour. STATUS_INPUT when nothing can be drawn or a number
- * is out of range. */
-MUST_CHECK Status stage_scene(const Tree *tree, const Look *look, const Rgb *colors,
-                              const StageParams *params, Scene *scene, StageReport *report,
-                              Err *err);
+/* The shape of a tree by model, joints and graph of `params`, in *geometry (owned;
+ * geometry_release). If the tree lies farther from the origin than 16 times its size, the geometry
+ * is moved next to it by whole millimetres, geometry->origin, and nothing seen changes. `report`
+ * may be NULL. STATUS_INPUT when nothing can be drawn or a number is out of range. */
+MUST_CHECK Status stage_geometry(const Tree *tree, const StageParams *params, Geometry *geometry,
+                                 StageReport *report, Err *err);
 
-/* Aims the scene's camera anew, with lights and ground as they stand to it: all that stage_scene
- * does for these params, whose model, joints, graph and shadows must be those that the scene was
- * built with, but for the geometry. STATUS_USAGE when the vectors given make no camera,
- * STATUS_INPUT when it is too far away; the scene is unchanged then. */
-MUST_CHECK Status stage_aim(const Look *look, const StageParams *params, Scene *scene, Err *err);
+/* The finish of the look, and a colour for each segment: that of its value on the scale, whose map
+ * *appearance owns from then on (appearance_release); or, if `field` is NULL, the look's one
+ * colour, and `scale` is not read. STATUS_MEMORY, and the map stays the caller's. */
+MUST_CHECK Status stage_appearance(const Look *look, const Field *field, const ColorScale *scale,
+                                   Appearance *appearance, Err *err);
+
+/* The camera that `params` asks for, all of it but model, joints and graph, with lights, ground and
+ * background of the look about the geometry. Vectors are in the coordinates of the tree.
+ * STATUS_USAGE when the vectors given make no camera, STATUS_INPUT when it is too far away. O(size
+ * of the geometry). */
+MUST_CHECK Status stage_view(const Look *look, const StageParams *params, const Geometry *geometry,
+                             View *view, Err *err);
 
 /* Unit direction and up vector of a named view: front looks along -z with y up, top along -y with
  * -z up, left along +x with y up, iso along (-1, -1, -1) with y up. */
-void view_axes(View view, Vec3 *direction, Vec3 *up);
+void view_axes(NamedView view, Vec3 *direction, Vec3 *up);
 
 /* ---- a camera that is moved about what it looks at: the parameters that make it, location,
  * look_at, up, projection, and height_mm or angle_deg, all of them given */
 
-/* Sets these from the camera of a scene; it looks at the point of its axis nearest to the middle of
- * the geometry. */
-void orbit_begin(StageParams *params, const Scene *scene);
+/* Sets these from a camera; it looks at the point of its axis nearest to the middle of the
+ * geometry. */
+void orbit_begin(StageParams *params, const Camera *camera, const Geometry *geometry);
 
 /* Turns what is seen to the right and up, in radians. */
 void orbit_turn(StageParams *params, double right, double up);
@@ -114,6 +122,6 @@ void orbit_zoom(StageParams *params, double factor);
 /* Moves what is seen to the right and up, in heights of the picture. */
 void orbit_pan(StageParams *params, double right, double up);
 /* Changes the projection; what is looked at keeps its size. */
-void orbit_project(StageParams *params, Projection projection, const Scene *scene);
+void orbit_project(StageParams *params, Projection projection, const Geometry *geometry);
 
 #endif

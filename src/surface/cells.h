@@ -44,7 +44,7 @@ typedef enum TermPart { TERM_BOTH_ENDS, TERM_START, TERM_END, TERM_MIDDLE } Term
 double term_form_value(const TermForm *term, TermPart part, ErfForm form, Vec3 x);
 
 typedef struct CellTerm {
-    uint32_t segment; /* index into scene->segments */
+    uint32_t segment; /* index into geometry->segments */
     uint32_t part;    /* TermPart */
 } CellTerm;
 
@@ -90,8 +90,8 @@ double cell_displacement(double radius_mm, ErfForm form);
  * of their multiples, in Morton order; what matters in a cell is a term that exceeds 1e-2 in it.
  * Owned by the caller. STATUS_INFEASIBLE beyond a million cells, and where it takes too long to
  * find them. */
-MUST_CHECK Status celltree_build(const Scene *scene, const CellParams *params, CellTree *cells,
-                                 Err *err);
+MUST_CHECK Status celltree_build(const Geometry *geometry, const CellParams *params,
+                                 CellTree *cells, Err *err);
 void celltree_release(CellTree *cells);
 
 /* POV-Ray counts what a shadow ray meets from 1e-3 mm on, but in the cell that last cast a shadow
@@ -109,7 +109,7 @@ static inline bool cell_is_tube(const CellTree *cells, const Cell *cell)
 
 /* The function of the cell at x, bit for bit as POV-Ray evaluates it. */
 double cell_function(const CellTree *cells, const Cell *cell, Vec3 x);
-/* The index in scene->segments of its largest term at x, the first of equals. */
+/* The index in geometry->segments of its largest term at x, the first of equals. */
 uint32_t cell_largest_term(const CellTree *cells, const Cell *cell, Vec3 x);
 
 #endif

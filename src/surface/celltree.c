@@ -379,12 +379,12 @@ static double chosen_beta(size_t n_segments)
     return n_segments <= 3000 ? 3 : 6;
 }
 
-Status celltree_build(const Scene *scene, const CellParams *params, CellTree *cells, Err *err)
+Status celltree_build(const Geometry *geometry, const CellParams *params, CellTree *cells, Err *err)
 {
-    Builder builder = {.segments = scene->segments,
-                       .beta = params->beta > 0 ? params->beta : chosen_beta(scene->n_segments),
+    Builder builder = {.segments = geometry->segments,
+                       .beta = params->beta > 0 ? params->beta : chosen_beta(geometry->n_segments),
                        .tree = {.erf = params->erf}};
-    Status status = build(&builder, scene->n_segments, err);
+    Status status = build(&builder, geometry->n_segments, err);
     free(builder.supports);
     free(builder.stack);
     if (status == STATUS_OK)

@@ -76,17 +76,17 @@ static uint32_t build_node(FieldIndex *index, uint32_t first, uint32_t n)
     return node;
 }
 
-Status fieldindex_build(const Scene *scene, FieldIndex **out, Err *err)
+Status fieldindex_build(const Geometry *geometry, FieldIndex **out, Err *err)
 {
     Status status;
     FieldIndex *index = NULL;
-    size_t n = scene->n_segments;
+    size_t n = geometry->n_segments;
     TRY_GOTO(mem_calloc(&index, 1, sizeof *index, "field indices", err));
     TRY_GOTO(mem_calloc(&index->tubes, n, sizeof *index->tubes, "tubes", err));
     TRY_GOTO(mem_calloc(&index->nodes, 2 * n, sizeof *index->nodes, "nodes", err));
-    index->scene = scene;
+    index->geometry = geometry;
     for (size_t i = 0; i < n; i++) {
-        FieldTube tube = fieldtube_of(&scene->segments[i], (uint32_t)i);
+        FieldTube tube = fieldtube_of(&geometry->segments[i], (uint32_t)i);
         if (tube.reach2 > 0)
             index->tubes[index->n_tubes++] = tube;
     }
@@ -125,7 +125,7 @@ double fieldindex_potential(const FieldIndex *index, Vec3 point)
             stack[top++] = number + 1;
         }
         for (uint32_t i = node->first; i < node->first + node->n_tubes; i++)
-            sum += potential_term(&index->scene->segments[index->tubes[i].segment], point);
+            sum += potential_term(&index->geometry->segments[index->tubes[i].segment], point);
     }
     return sum;
 }

@@ -18,7 +18,7 @@ typedef struct FieldTube {
     double peak;     /* largest value of the term */
     double log_peak;
     double reach2;    /* beyond E^2 = reach2 of the segment the term is below RAY_TERM_CUTOFF */
-    uint32_t segment; /* index into scene->segments */
+    uint32_t segment; /* index into geometry->segments */
 } FieldTube;
 
 FieldTube fieldtube_of(const FieldSegment *segment, uint32_t number);
@@ -34,16 +34,16 @@ typedef struct FieldNode {
 
 /* Constant once built, shared by threads. */
 typedef struct FieldIndex {
-    const Scene *scene;
+    const Geometry *geometry;
     FieldTube *tubes; /* without the segments whose term is below the cut-off everywhere */
     size_t n_tubes;
     FieldNode *nodes; /* depth first; at most log2(n_tubes) + 1 deep */
     size_t n_nodes;
 } FieldIndex;
 
-/* scene->segments, of which there may be none, is borrowed and must outlive the index, which the
+/* geometry->segments, of which there may be none, is borrowed and must outlive the index, which the
  * caller frees with fieldindex_free. O(n log^2 n). STATUS_MEMORY. */
-MUST_CHECK Status fieldindex_build(const Scene *scene, FieldIndex **out, Err *err);
+MUST_CHECK Status fieldindex_build(const Geometry *geometry, FieldIndex **out, Err *err);
 void fieldindex_free(FieldIndex *index);
 
 /* The sum of all terms of the scene at x, whatever blends with what, but for those below

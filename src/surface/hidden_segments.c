@@ -4,16 +4,16 @@
  * there is such a segment. */
 #include "surface/surface.h"
 
-Status surface_count_hidden(const Scene *scene, size_t *count, Err *err)
+Status surface_count_hidden(const Geometry *geometry, size_t *count, Err *err)
 {
     FieldIndex *index = NULL;
     size_t found = 0;
-    for (size_t i = 0; i < scene->n_segments; i++) {
-        const FieldSegment *segment = &scene->segments[i];
+    for (size_t i = 0; i < geometry->n_segments; i++) {
+        const FieldSegment *segment = &geometry->segments[i];
         if (potential_term_peak(segment) >= FIELD_LEVEL)
             continue;
         if (!index)
-            TRY(fieldindex_build(scene, &index, err));
+            TRY(fieldindex_build(geometry, &index, err));
         Vec3 middle = vec3_scale(vec3_add(segment->a, segment->b), 0.5);
         found += fieldindex_potential(index, middle) < FIELD_LEVEL;
     }

@@ -52,20 +52,21 @@ double potential_log_form(double phi);
 
 /* How many segments have no surface about them: the sum of all terms half way along the segment is
  * below the level. STATUS_MEMORY. */
-MUST_CHECK Status surface_count_hidden(const Scene *scene, size_t *count, Err *err);
+MUST_CHECK Status surface_count_hidden(const Geometry *geometry, size_t *count, Err *err);
 
-/* What a picture of the scene's camera knows of each pixel, rows from the top; borrowed. */
+/* What a picture knows of each pixel, rows from the top; borrowed. */
 typedef struct SurfaceSight {
     const float *depth;  /* mm along the ray; INFINITY where nothing is seen */
     const float *normal; /* 3 a pixel, unit */
-    const uint32_t *ids; /* of segments of the scene, where something is seen */
+    const uint32_t *ids; /* of segments of the geometry, where something is seen */
 } SurfaceSight;
 
-/* Fills allowed[pixel], mm, with how far apart along the ray two sights may be: `seen`, what
- * POV-Ray's root finder sees of the scene in cells with this form of erf, and `exact`, where the
- * surface is. 0 where neither sees anything, HUGE_VAL where the ray grazes what either sees.
- * STATUS_MEMORY. */
-MUST_CHECK Status surface_tolerance(const Scene *scene, ErfForm erf, const SurfaceSight *seen,
-                                    const SurfaceSight *exact, float *allowed, Err *err);
+/* Fills allowed[pixel], mm, with how far apart along the ray two sights through a camera may be:
+ * `seen`, what POV-Ray's root finder sees of the geometry in cells with this form of erf, and
+ * `exact`, where the surface is. 0 where neither sees anything, HUGE_VAL where the ray grazes what
+ * either sees. STATUS_MEMORY. */
+MUST_CHECK Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm erf,
+                                    const SurfaceSight *seen, const SurfaceSight *exact,
+                                    float *allowed, Err *err);
 
 #endif

@@ -10,15 +10,15 @@
 /* Rays within about 3 degrees of the tangent plane may pass on either side of it. */
 static const double grazing_cosine = 0.05;
 
-static Status radii_by_id(const Scene *scene, double **out, Err *err)
+static Status radii_by_id(const Geometry *geometry, double **out, Err *err)
 {
     uint32_t largest = 0;
-    for (size_t i = 0; i < scene->n_segments; i++)
-        largest = scene->segments[i].id > largest ? scene->segments[i].id : largest;
+    for (size_t i = 0; i < geometry->n_ids; i++)
+        largest = geometry->ids[i] > largest ? geometry->ids[i] : largest;
     double *radii = NULL;
     TRY(mem_calloc(&radii, (size_t)largest + 1, sizeof *radii, "radii", err));
-    for (size_t i = 0; i < scene->n_segments; i++)
-        radii[scene->segments[i].id] = scene->segments[i].radius_mm;
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        radii[geometry->ids[geometry->segments[i].segment]] = geometry->segments[i].radius_mm;
     *out = radii;
     return STATUS_OK;
 }
@@ -38,12 +38,12 @@ static double tolerance_at(const SurfaceSight *sight, size_t pixel, Vec3 directi
            depth * (double)FLT_EPSILON;
 }
 
-Status surface_tolerance(const Scene *scene, ErfForm erf, const SurfaceSight *seen,
-                         const SurfaceSight *exact, float *allowed, Err *err)
+Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm erf,
+                         const SurfaceSight *seen, const SurfaceSight *exact, float *allowed,
+                         Err *err)
 {
-    const Camera *camera = &scene->camera;
     double *radii = NULL;
-    TRY(radii_by_id(scene, &radii, err));
+    TRY(radii_by_id(geometry, &radii, err));
     for (int j = 0; j < camera->height; j++) {
         for (int i = 0; i < camera->width; i++) {
             size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;

@@ -18,14 +18,14 @@
 
 enum { MOST_RUNS = 99 };
 
-typedef struct Drawing {
+typedef struct Packets {
     const Scene *scene;
     RTCScene rtc;
     Plane color;
     TileLook look;
-    TileLight lights[LOOK_MAX_LIGHTS];
+    TileLight lights[VIEW_MAX_LIGHTS];
     const TileKernels *kernels;
-} Drawing;
+} Packets;
 
 static void fail(const Err *err)
 {
@@ -38,14 +38,14 @@ static RTCScene make_curves(RTCDevice device, const Scene *scene)
 {
     RTCGeometry curves = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
     size_t n = 0;
-    for (size_t i = 0; i < scene->n_primitives; i++)
-        n += scene->primitives[i].kind == PRIMITIVE_CYLINDER;
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++)
+        n += scene->geometry.primitives[i].kind == PRIMITIVE_CYLINDER;
     float *vertices = rtcSetNewGeometryBuffer(curves, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
                                               4 * sizeof(float), 2 * n);
     unsigned *first = rtcSetNewGeometryBuffer(curves, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
                                               sizeof *first, n);
-    for (size_t i = 0, k = 0; i < scene->n_primitives; i++) {
-        const Primitive *primitive = &scene->primitives[i];
+    for (size_t i = 0, k = 0; i < scene->geometry.n_primitives; i++) {
+        const Primitive *primitive = &scene->geometry.primitives[i];
         if (primitive->kind != PRIMITIVE_CYLINDER)
             continue;
         for (int end = 0; end < 2; end++, vertices += 4) {
@@ -67,9 +67,9 @@ static RTCScene make_curves(RTCDevice device, const Scene *scene)
 }
 
 /* Eight samples of a tile, whose first pixel is (column, row). */
-static bool cast_packet(const Drawing *picture, int column, int row, int first, TileHits *hits)
+static bool cast_packet(const Packets *picture, int column, int row, int first, TileHits *hits)
 {
-    const Camera *camera = &picture->scene->camera;
+    const Camera *camera = &picture->scene->view.camera;
     struct RTCRayHit8 packet;
     struct RTCIntersectContext context;
     int valid[8] __attribute__((aligned(32)));
@@ -112,11 +112,13 @@ static bool cast_packet(const Drawing *picture, int column, int row, int first, 
 static void draw_row(size_t number, int worker, void *context)
 {
     (void)worker;
-    Drawing *picture = context;
+    Packets *picture = context;
     const Scene *scene = picture->scene;
-    const Camera *camera = &scene->camera;
-    const float background[3] = {scene->background.r, scene->background.g, scene->background.b};
-    const float pigment[3] = {scene->color.r, scene->color.g, scene->color.b};
+    const Camera *camera = &scene->view.camera;
+    const float background[3] = {scene->view.background.r, scene->view.background.g,
+                                 scene->view.background.b};
+    const float pigment[3] = {scene->appearance.color.r, scene->appearance.color.g,
+                              scene->appearance.color.b};
     const Vec3 d = camera->direction;
     const float direction[3] = {(float)d.x, (float)d.y, (float)d.z};
     int row = (int)number * TILE_SIDE;
@@ -146,17 +148,17 @@ static void draw_row(size_t number, int worker, void *context)
     }
 }
 
-static void set_lights(Drawing *picture)
+static void set_lights(Packets *picture)
 {
     const Scene *scene = picture->scene;
-    for (size_t i = 0; i < scene->n_lights; i++) {
-        const Light *light = &scene->lights[i];
+    for (size_t i = 0; i < scene->view.n_lights; i++) {
+        const Light *light = &scene->view.lights[i];
         Vec3 v = vec3_normalized(vec3_sub(light->location, light->target));
         picture->lights[i] = (TileLight){.towards = {(float)v.x, (float)v.y, (float)v.z},
                                          .color = {light->color.r, light->color.g, light->color.b},
                                          .parallel = true};
     }
-    picture->look = (TileLook){scene->finish, picture->lights, scene->n_lights};
+    picture->look = (TileLook){scene->appearance.finish, picture->lights, scene->view.n_lights};
     picture->kernels = tilekernels[kernels_kind(KERNELS_FASTEST)];
 }
 
@@ -184,12 +186,14 @@ int main(int argc, char **argv)
     params.width = params.height = atoi(argv[2]);
     if (tree_read(&tree, argv[1], &err) != STATUS_OK ||
         look_read(&look, argv[5], &err) != STATUS_OK ||
-        stage_scene(&tree, &look, NULL, &params, &scene, NULL, &err) != STATUS_OK)
+        stage_appearance(&look, NULL, NULL, &scene.appearance, &err) != STATUS_OK ||
+        stage_geometry(&tree, &params, &scene.geometry, NULL, &err) != STATUS_OK ||
+        stage_view(&look, &params, &scene.geometry, &scene.view, &err) != STATUS_OK)
         fail(&err);
     double wall_ms[MOST_RUNS], cpu_ms[MOST_RUNS];
     for (int run = 0; run < runs; run++) {
         RTCDevice device = rtcNewDevice(options);
-        Drawing picture = {.scene = &scene};
+        Packets picture = {.scene = &scene};
         double start_s = clock_seconds(), start_cpu_s = clock_cpu_seconds();
         set_lights(&picture);
         if (plane_init(&picture.color, params.width, params.height, 3, &err) != STATUS_OK)

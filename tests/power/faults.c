@@ -8,22 +8,28 @@
 
 /* ------------------------------------------------------------------------------------ geometry */
 
+/* Whether a part is of the segment with this id. */
+static bool is_of(const Scene *scene, uint32_t segment, uint32_t id)
+{
+    return scene->geometry.ids[segment] == id;
+}
+
 /* Changes the parts of a scene that stand for one segment, or for all (id 0). */
 static void change_parts(Subject *subject, uint32_t id, double radius_factor, Vec3 shift)
 {
     Scene *scene = &subject->scene;
-    for (size_t i = 0; i < scene->n_primitives; i++) {
-        Primitive *p = &scene->primitives[i];
-        if (id && p->id != id)
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++) {
+        Primitive *p = &scene->geometry.primitives[i];
+        if (id && !is_of(scene, p->segment, id))
             continue;
         p->radius_mm *= radius_factor;
         p->radius_b_mm *= radius_factor;
         p->a = vec3_add(p->a, shift);
         p->b = vec3_add(p->b, shift);
     }
-    for (size_t i = 0; i < scene->n_segments; i++) {
-        FieldSegment *s = &scene->segments[i];
-        if (id && s->id != id)
+    for (size_t i = 0; i < scene->geometry.n_segments; i++) {
+        FieldSegment *s = &scene->geometry.segments[i];
+        if (id && !is_of(scene, s->segment, id))
             continue;
         s->radius_mm *= radius_factor;
         s->a = vec3_add(s->a, shift);
@@ -36,7 +42,7 @@ static const Vec3 nowhere = {0, 0, 0};
 /* Across the picture, `px` pixels wide. */
 static Vec3 across(const Subject *subject, double px)
 {
-    return vec3_scale(vec3_normalized(subject->scene.camera.right), px * subject->pixel_mm);
+    return vec3_scale(vec3_normalized(subject->scene.view.camera.right), px * subject->pixel_mm);
 }
 
 static void all_radii(Subject *subject, double by)
@@ -56,7 +62,7 @@ static void shift_one(Subject *subject, double px)
 
 static void shift_image(Subject *subject, double px)
 {
-    Camera *camera = &subject->scene.camera;
+    Camera *camera = &subject->scene.view.camera;
     camera->location = vec3_sub(camera->location, across(subject, px));
 }
 
@@ -64,10 +70,11 @@ static void shift_image(Subject *subject, double px)
 static void drop_primitives(Scene *scene, uint32_t id, int kind)
 {
     size_t kept = 0;
-    for (size_t i = 0; i < scene->n_primitives; i++)
-        if (scene->primitives[i].id != id || (int)scene->primitives[i].kind != kind)
-            scene->primitives[kept++] = scene->primitives[i];
-    scene->n_primitives = kept;
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++)
+        if (!is_of(scene, scene->geometry.primitives[i].segment, id) ||
+            (int)scene->geometry.primitives[i].kind != kind)
+            scene->geometry.primitives[kept++] = scene->geometry.primitives[i];
+    scene->geometry.n_primitives = kept;
 }
 
 static void drop_segment(Subject *subject, double unused)
@@ -76,10 +83,10 @@ static void drop_segment(Subject *subject, double unused)
     Scene *scene = &subject->scene;
     drop_primitives(scene, subject->target, PRIMITIVE_CYLINDER);
     size_t kept = 0;
-    for (size_t i = 0; i < scene->n_segments; i++)
-        if (scene->segments[i].id != subject->target)
-            scene->segments[kept++] = scene->segments[i];
-    scene->n_segments = kept;
+    for (size_t i = 0; i < scene->geometry.n_segments; i++)
+        if (!is_of(scene, scene->geometry.segments[i].segment, subject->target))
+            scene->geometry.segments[kept++] = scene->geometry.segments[i];
+    scene->geometry.n_segments = kept;
 }
 
 static void drop_joint(Subject *subject, double unused)
@@ -94,9 +101,9 @@ static void flip_joint(Subject *subject, double unused)
 {
     (void)unused;
     Scene *scene = &subject->scene;
-    for (size_t i = 0; i < scene->n_primitives; i++) {
-        Primitive *p = &scene->primitives[i];
-        if (p->id != subject->target || p->kind != PRIMITIVE_JOINT)
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++) {
+        Primitive *p = &scene->geometry.primitives[i];
+        if (!is_of(scene, p->segment, subject->target) || p->kind != PRIMITIVE_JOINT)
             continue;
         double radius = p->radius_mm;
         p->radius_mm = p->radius_b_mm;
@@ -108,30 +115,30 @@ static void flip_joint(Subject *subject, double unused)
 static void taper(Subject *subject, double by)
 {
     Scene *scene = &subject->scene;
-    for (size_t i = 0; i < scene->n_primitives; i++) {
-        Primitive *whole = &scene->primitives[i];
-        if (whole->id != subject->target || whole->kind != PRIMITIVE_CYLINDER)
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++) {
+        Primitive *whole = &scene->geometry.primitives[i];
+        if (!is_of(scene, whole->segment, subject->target) || whole->kind != PRIMITIVE_CYLINDER)
             continue;
         Primitive half = *whole;
         half.a = whole->b = vec3_scale(vec3_add(whole->a, whole->b), 0.5);
         half.radius_mm *= 1 + by;
         whole->radius_mm *= 1 - by;
-        size_t bytes = (scene->n_primitives + 1) * sizeof half;
-        scene->primitives = realloc(scene->primitives, bytes);
-        scene->primitives[scene->n_primitives++] = half;
+        size_t bytes = (scene->geometry.n_primitives + 1) * sizeof half;
+        scene->geometry.primitives = realloc(scene->geometry.primitives, bytes);
+        scene->geometry.primitives[scene->geometry.n_primitives++] = half;
         return;
     }
-    for (size_t i = 0; i < scene->n_segments; i++) {
-        FieldSegment *whole = &scene->segments[i];
-        if (whole->id != subject->target)
+    for (size_t i = 0; i < scene->geometry.n_segments; i++) {
+        FieldSegment *whole = &scene->geometry.segments[i];
+        if (!is_of(scene, whole->segment, subject->target))
             continue;
         FieldSegment half = *whole;
         half.a = whole->b = vec3_scale(vec3_add(whole->a, whole->b), 0.5);
         half.radius_mm *= 1 + by;
         whole->radius_mm *= 1 - by;
-        size_t bytes = (scene->n_segments + 1) * sizeof half;
-        scene->segments = realloc(scene->segments, bytes);
-        scene->segments[scene->n_segments++] = half;
+        size_t bytes = (scene->geometry.n_segments + 1) * sizeof half;
+        scene->geometry.segments = realloc(scene->geometry.segments, bytes);
+        scene->geometry.segments[scene->geometry.n_segments++] = half;
         return;
     }
 }
@@ -145,15 +152,15 @@ static double rounded_to(double x, double step)
 static void few_digits(Subject *subject, double step)
 {
     Scene *scene = &subject->scene;
-    for (size_t i = 0; i < scene->n_primitives; i++) {
-        Primitive *p = &scene->primitives[i];
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++) {
+        Primitive *p = &scene->geometry.primitives[i];
         p->a = (Vec3){rounded_to(p->a.x, step), rounded_to(p->a.y, step), rounded_to(p->a.z, step)};
         p->b = (Vec3){rounded_to(p->b.x, step), rounded_to(p->b.y, step), rounded_to(p->b.z, step)};
         p->radius_mm = fmax(rounded_to(p->radius_mm, step), step);
         p->radius_b_mm = fmax(rounded_to(p->radius_b_mm, step), step);
     }
-    for (size_t i = 0; i < scene->n_segments; i++) {
-        FieldSegment *s = &scene->segments[i];
+    for (size_t i = 0; i < scene->geometry.n_segments; i++) {
+        FieldSegment *s = &scene->geometry.segments[i];
         s->a = (Vec3){rounded_to(s->a.x, step), rounded_to(s->a.y, step), rounded_to(s->a.z, step)};
         s->b = (Vec3){rounded_to(s->b.x, step), rounded_to(s->b.y, step), rounded_to(s->b.z, step)};
         s->radius_mm = fmax(rounded_to(s->radius_mm, step), step);
@@ -171,32 +178,32 @@ static void threshold(Subject *subject, double by)
 
 static void phong(Subject *subject, double by)
 {
-    subject->scene.finish.phong *= (float)(1 + by);
+    subject->scene.appearance.finish.phong *= (float)(1 + by);
 }
 
 static void phong_size(Subject *subject, double by)
 {
-    subject->scene.finish.phong_size *= (float)(1 + by);
+    subject->scene.appearance.finish.phong_size *= (float)(1 + by);
 }
 
 static void diffuse(Subject *subject, double by)
 {
-    subject->scene.finish.diffuse *= (float)(1 + by);
+    subject->scene.appearance.finish.diffuse *= (float)(1 + by);
 }
 
 static void ambient(Subject *subject, double by)
 {
-    subject->scene.finish.ambient *= (float)(1 + by);
+    subject->scene.appearance.finish.ambient *= (float)(1 + by);
 }
 
 static void brilliance(Subject *subject, double by)
 {
-    subject->scene.finish.brilliance *= (float)(1 + by);
+    subject->scene.appearance.finish.brilliance *= (float)(1 + by);
 }
 
 static void light_color(Subject *subject, double by)
 {
-    Rgb *color = &subject->scene.lights[0].color;
+    Rgb *color = &subject->scene.view.lights[0].color;
     *color =
         (Rgb){color->r * (float)(1 + by), color->g * (float)(1 + by), color->b * (float)(1 + by)};
 }
@@ -204,13 +211,13 @@ static void light_color(Subject *subject, double by)
 static void drop_light(Subject *subject, double unused)
 {
     (void)unused;
-    subject->scene.n_lights--;
+    subject->scene.view.n_lights--;
 }
 
 /* Turned about the picture's vertical. */
 static Vec3 turned(const Subject *subject, Vec3 v, double deg)
 {
-    Vec3 axis = vec3_normalized(subject->scene.camera.up);
+    Vec3 axis = vec3_normalized(subject->scene.view.camera.up);
     double angle = deg * 3.14159265358979323846 / 180;
     Vec3 along = vec3_scale(axis, vec3_dot(axis, v) * (1 - cos(angle)));
     return vec3_add(vec3_add(vec3_scale(v, cos(angle)), along),
@@ -219,7 +226,7 @@ static Vec3 turned(const Subject *subject, Vec3 v, double deg)
 
 static void turn_light(Subject *subject, double deg)
 {
-    Light *light = &subject->scene.lights[0];
+    Light *light = &subject->scene.view.lights[0];
     light->location =
         vec3_add(light->target, turned(subject, vec3_sub(light->location, light->target), deg));
 }
@@ -228,27 +235,27 @@ static void no_shadows(Subject *subject, double unused)
 {
     (void)unused;
     subject->params.shadows = false;
-    for (size_t i = 0; i < subject->scene.n_lights; i++)
-        subject->scene.lights[i].casts_shadows = false;
+    for (size_t i = 0; i < subject->scene.view.n_lights; i++)
+        subject->scene.view.lights[i].casts_shadows = false;
 }
 
 /* A fill light that casts no shadow. */
 static void one_shadow_less(Subject *subject, double unused)
 {
     (void)unused;
-    subject->scene.lights[subject->scene.n_lights - 1].casts_shadows = false;
+    subject->scene.view.lights[subject->scene.view.n_lights - 1].casts_shadows = false;
 }
 
 static void field_of_view(Subject *subject, double by)
 {
-    Camera *camera = &subject->scene.camera;
+    Camera *camera = &subject->scene.view.camera;
     camera->right = vec3_scale(camera->right, 1 + by);
     camera->up = vec3_scale(camera->up, 1 + by);
 }
 
 static void roll(Subject *subject, double deg)
 {
-    Camera *camera = &subject->scene.camera;
+    Camera *camera = &subject->scene.view.camera;
     double angle = deg * 3.14159265358979323846 / 180,
            aspect = vec3_length(camera->right) / vec3_length(camera->up);
     Vec3 right = camera->right, up = camera->up;
@@ -258,19 +265,19 @@ static void roll(Subject *subject, double deg)
 
 static void background(Subject *subject, double by)
 {
-    subject->scene.background.b -= (float)by;
+    subject->scene.view.background.b -= (float)by;
 }
 
 static void one_color(Subject *subject, double by)
 {
     Scene *scene = &subject->scene;
-    scene->uniform_color = false;
-    for (size_t i = 0; i < scene->n_primitives; i++)
-        if (scene->primitives[i].id == subject->target)
-            scene->primitives[i].color.r *= (float)(1 + by);
-    for (size_t i = 0; i < scene->n_segments; i++)
-        if (scene->segments[i].id == subject->target)
-            scene->segments[i].color.r *= (float)(1 + by);
+    Appearance *appearance = &scene->appearance;
+    appearance->colors = malloc(scene->geometry.n_ids * sizeof *appearance->colors);
+    for (uint32_t i = 0; i < scene->geometry.n_ids; i++) {
+        appearance->colors[i] = appearance->color;
+        if (is_of(scene, i, subject->target))
+            appearance->colors[i].r *= (float)(1 + by);
+    }
 }
 
 static void other_antialias(Subject *subject, double samples)
@@ -504,15 +511,15 @@ void reverse_order(Subject *subject, double unused)
 {
     (void)unused;
     Scene *scene = &subject->scene;
-    for (size_t i = 0, j = scene->n_primitives; i + 1 < j; i++) {
-        Primitive kept = scene->primitives[i];
-        scene->primitives[i] = scene->primitives[--j];
-        scene->primitives[j] = kept;
+    for (size_t i = 0, j = scene->geometry.n_primitives; i + 1 < j; i++) {
+        Primitive kept = scene->geometry.primitives[i];
+        scene->geometry.primitives[i] = scene->geometry.primitives[--j];
+        scene->geometry.primitives[j] = kept;
     }
-    for (size_t i = 0, j = scene->n_segments; i + 1 < j; i++) {
-        FieldSegment kept = scene->segments[i];
-        scene->segments[i] = scene->segments[--j];
-        scene->segments[j] = kept;
+    for (size_t i = 0, j = scene->geometry.n_segments; i + 1 < j; i++) {
+        FieldSegment kept = scene->geometry.segments[i];
+        scene->geometry.segments[i] = scene->geometry.segments[--j];
+        scene->geometry.segments[j] = kept;
     }
 }
 

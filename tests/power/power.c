@@ -73,7 +73,8 @@ static bool tier_differs(Lab *lab, const Subject *a, const Subject *b, const Tol
 static double depth_step(const Subject *subject)
 {
     double near_mm, far_mm;
-    scene_depth_range(&subject->scene, &near_mm, &far_mm);
+    camera_depth_range(&subject->scene.view.camera, subject->scene.geometry.bounds, &near_mm,
+                       &far_mm);
     return (far_mm - near_mm) / 65535;
 }
 
@@ -104,7 +105,7 @@ static bool rule_differs(Lab *lab, JudgeRule rule, const Subject *a, const Subje
 
 /* --------------------------------------------------------------------------------------- scenes */
 
-static void stage_subject(Lab *lab, SceneModel model, Projection projection, View view,
+static void stage_subject(Lab *lab, SceneModel model, Projection projection, NamedView view,
                           bool shadows, int antialias, Subject *subject)
 {
     StageParams params = stage_defaults();
@@ -122,8 +123,10 @@ static void stage_subject(Lab *lab, SceneModel model, Projection projection, Vie
                                     .want_depth = true,
                                     .want_normal = true,
                                     .want_id = true}};
-    must(lab,
-         stage_scene(&lab->tree, &lab->look, NULL, &params, &subject->scene, &report, &lab->err));
+    Scene *scene = &subject->scene;
+    must(lab, stage_appearance(&lab->look, NULL, NULL, &scene->appearance, &lab->err));
+    must(lab, stage_geometry(&lab->tree, &params, &scene->geometry, &report, &lab->err));
+    must(lab, stage_view(&lab->look, &params, &scene->geometry, &scene->view, &lab->err));
 }
 
 /* Draws a copy of `clean` with a fault planted. */
@@ -205,7 +208,7 @@ static json_t *count_alarms(Lab *lab, SceneModel model, int *scenes)
         for (int view = VIEW_FRONT; view <= VIEW_ISO; view++) {
             bool shadows = (view + projection) % 2 == 0;
             Subject clean, other;
-            stage_subject(lab, model, (Projection)projection, (View)view, shadows, 1, &clean);
+            stage_subject(lab, model, (Projection)projection, (NamedView)view, shadows, 1, &clean);
             clean.params.threads = 1;
             must(lab, subject_draw(&clean, &lab->err));
             for (int way = 0; way < 2; way++) {

@@ -22,17 +22,18 @@ Status subject_copy(Subject *copy, const Subject *subject, Err *err)
                     .target = subject->target,
                     .beside = subject->beside,
                     .pixel_mm = subject->pixel_mm};
-    made.scene.lights = NULL;
-    made.scene.primitives = NULL;
-    made.scene.segments = NULL;
-    Status status =
-        copy_array(&made.scene.lights, scene->lights, scene->n_lights, sizeof *scene->lights, err);
+    const Geometry *from = &scene->geometry;
+    Geometry *to = &made.scene.geometry;
+    to->primitives = NULL;
+    to->segments = NULL;
+    to->ids = NULL;
+    Status status = copy_array(&to->primitives, from->primitives, from->n_primitives,
+                               sizeof *from->primitives, err);
     if (status == STATUS_OK)
-        status = copy_array(&made.scene.primitives, scene->primitives, scene->n_primitives,
-                            sizeof *scene->primitives, err);
+        status = copy_array(&to->segments, from->segments, from->n_segments, sizeof *from->segments,
+                            err);
     if (status == STATUS_OK)
-        status = copy_array(&made.scene.segments, scene->segments, scene->n_segments,
-                            sizeof *scene->segments, err);
+        status = copy_array(&to->ids, from->ids, from->n_ids, sizeof *from->ids, err);
     if (status != STATUS_OK) {
         scene_release(&made.scene);
         return status;
@@ -51,7 +52,7 @@ void subject_release(Subject *subject)
 Status subject_draw(Subject *subject, Err *err)
 {
     subject->params.povray_cells =
-        subject->scene.model == SCENE_ISOSURFACE ? &subject->cells : NULL;
+        subject->scene.geometry.model == SCENE_ISOSURFACE ? &subject->cells : NULL;
     TRY(render(&subject->scene, &subject->params, &subject->frame, NULL, err));
     return picture_from_plane(&subject->picture, &subject->frame.color, ENCODING_SRGB, 8, err);
 }
@@ -75,11 +76,11 @@ static uint32_t most_seen(const IdPlane *ids, uint32_t except)
 
 void subject_choose_target(Subject *subject)
 {
-    const Camera *camera = &subject->scene.camera;
+    const Camera *camera = &subject->scene.view.camera;
     subject->target = most_seen(&subject->frame.id, 0);
     subject->beside = most_seen(&subject->frame.id, subject->target);
     double near_mm, far_mm;
-    scene_depth_range(&subject->scene, &near_mm, &far_mm);
+    camera_depth_range(camera, subject->scene.geometry.bounds, &near_mm, &far_mm);
     double distance = camera->projection == PROJECTION_PERSPECTIVE ? (near_mm + far_mm) / 2 : 1;
     subject->pixel_mm = vec3_length(camera->right) * distance / camera->width;
 }

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "test_stage.h"
 #include <cmocka.h>
 #include <stdio.h>
 
@@ -44,7 +45,7 @@ static Scene staged(SceneModel model, Projection projection)
     params.width = WIDTH;
     params.height = HEIGHT;
     assert_int_equal(tree_read(&tree, "tests/golden/ball60.swc", &err), STATUS_OK);
-    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, &err), STATUS_OK);
+    assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, &err), STATUS_OK);
     tree_release(&tree);
     return scene;
 }
@@ -67,11 +68,13 @@ static void assert_bands_are_the_whole(const Scene *scene, const RenderParams *p
     Renderer *renderer;
     assert_int_equal(render(scene, params, &whole, &stats, &err), STATUS_OK);
     assert_int_equal(whole.color.height, HEIGHT);
-    assert_int_equal(renderer_new(scene, params, &renderer, &err), STATUS_OK);
+    assert_int_equal(renderer_new(&scene->geometry, params, &renderer, &err), STATUS_OK);
     for (int first = 0; first < HEIGHT; first += step) {
         Frame band;
         int rows = step < HEIGHT - first ? step : HEIGHT - first;
-        assert_int_equal(renderer_rows(renderer, first, rows, &band, &err), STATUS_OK);
+        assert_int_equal(
+            renderer_rows(renderer, &scene->view, &scene->appearance, first, rows, &band, &err),
+            STATUS_OK);
         assert_int_equal(band.color.height, rows);
         assert_int_equal(band.id.height, rows);
         assert_same_rows(&whole, &band, first);
@@ -137,11 +140,13 @@ static void bands_of_tiles_have_the_bytes_of_the_whole(void **state)
 }
 
 /* Draws the first rows twice and tells how often they were prepared in all. */
-static size_t prepared(Renderer *renderer, Frame *rows)
+static size_t prepared(Renderer *renderer, const Scene *scene, Frame *rows)
 {
-    assert_int_equal(renderer_rows(renderer, 0, 8, rows, &err), STATUS_OK);
+    assert_int_equal(renderer_rows(renderer, &scene->view, &scene->appearance, 0, 8, rows, &err),
+                     STATUS_OK);
     frame_release(rows);
-    assert_int_equal(renderer_rows(renderer, 0, 8, rows, &err), STATUS_OK);
+    assert_int_equal(renderer_rows(renderer, &scene->view, &scene->appearance, 0, 8, rows, &err),
+                     STATUS_OK);
     return renderer_stats(renderer).preparations;
 }
 
@@ -154,7 +159,7 @@ static void assert_rows_of_today(const Scene *scene, const RenderParams *params,
     frame_release(rows);
 }
 
-static void what_bands_have_in_common_is_made_anew_for_another_view_alone(void **state)
+static void bands_prepare_again_for_another_view_alone_not_for_other_colours(void **state)
 {
     (void)state;
     static const SceneModel models[] = {SCENE_JOINED, SCENE_ISOSURFACE};
@@ -166,18 +171,30 @@ static void what_bands_have_in_common_is_made_anew_for_another_view_alone(void *
         Frame rows;
         params.method = RENDER_RASTER;
         params.shadows = true;
-        assert_int_equal(renderer_new(&scene, &params, &renderer, &err), STATUS_OK);
-        assert_int_equal(prepared(renderer, &rows), 1);
+        assert_int_equal(renderer_new(&scene.geometry, &params, &renderer, &err), STATUS_OK);
+        assert_int_equal(prepared(renderer, &scene, &rows), 1);
         assert_rows_of_today(&scene, &params, &rows);
-        scene.camera.location = vec3_add_scaled(scene.camera.location, scene.camera.right, 0.125);
-        assert_int_equal(prepared(renderer, &rows), 2);
+        scene.view.camera.location =
+            vec3_add_scaled(scene.view.camera.location, scene.view.camera.right, 0.125);
+        assert_int_equal(prepared(renderer, &scene, &rows), 2);
         assert_rows_of_today(&scene, &params, &rows);
-        scene.lights[0].location = vec3_add_scaled(scene.lights[0].location, scene.camera.up, 3);
-        assert_int_equal(prepared(renderer, &rows), 3);
+        scene.view.lights[0].location =
+            vec3_add_scaled(scene.view.lights[0].location, scene.view.camera.up, 3);
+        assert_int_equal(prepared(renderer, &scene, &rows), 3);
         assert_rows_of_today(&scene, &params, &rows);
+        Rgb colors[200];
+        for (size_t k = 0; k < sizeof colors / sizeof *colors; k++)
+            colors[k] = (Rgb){0.1f, (float)k / 200, 0.7f};
+        assert_true(scene.geometry.n_ids <= sizeof colors / sizeof *colors);
+        scene.appearance.colors = colors;
+        scene.appearance.finish.diffuse = 0.4f;
+        scene.view.background.r = 0.375f;
+        assert_int_equal(prepared(renderer, &scene, &rows), 3);
+        assert_rows_of_today(&scene, &params, &rows);
+        scene.appearance.colors = NULL;
         params.antialias = 2;
         renderer_antialias(renderer, 2);
-        assert_int_equal(prepared(renderer, &rows), 4);
+        assert_int_equal(prepared(renderer, &scene, &rows), 4);
         assert_rows_of_today(&scene, &params, &rows);
         renderer_free(renderer);
         scene_release(&scene);
@@ -221,11 +238,13 @@ static void progress_rises_from_band_to_band(void **state)
                                      .progress = rises,
                                      .progress_context = &said};
         Renderer *renderer;
-        assert_int_equal(renderer_new(&scene, &params, &renderer, &err), STATUS_OK);
+        assert_int_equal(renderer_new(&scene.geometry, &params, &renderer, &err), STATUS_OK);
         for (int first = 0; first < HEIGHT; first += 32) {
             Frame band;
             int rows = first + 32 < HEIGHT ? 32 : HEIGHT - first;
-            assert_int_equal(renderer_rows(renderer, first, rows, &band, &err), STATUS_OK);
+            assert_int_equal(
+                renderer_rows(renderer, &scene.view, &scene.appearance, first, rows, &band, &err),
+                STATUS_OK);
             frame_release(&band);
         }
         assert_true(said.calls >= 16 && said.last > 0.8);
@@ -239,7 +258,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bands_have_the_bytes_of_the_whole),
         cmocka_unit_test(bands_of_tiles_have_the_bytes_of_the_whole),
-        cmocka_unit_test(what_bands_have_in_common_is_made_anew_for_another_view_alone),
+        cmocka_unit_test(bands_prepare_again_for_another_view_alone_not_for_other_colours),
         cmocka_unit_test(bands_of_povrays_view_have_the_bytes_of_the_whole),
         cmocka_unit_test(progress_rises_from_band_to_band),
     };

@@ -19,10 +19,10 @@ typedef struct Cast {
     BlobScratch *scratch;
 } Cast;
 
-static Cast cast_of(const Scene *scene)
+static Cast cast_of(const Geometry *geometry)
 {
     Cast cast;
-    assert_int_equal(blobcast_new(scene, &cast.cast, NULL), STATUS_OK);
+    assert_int_equal(blobcast_new(geometry, &cast.cast, NULL), STATUS_OK);
     assert_int_equal(blobscratch_new(cast.cast, &cast.scratch, NULL), STATUS_OK);
     return cast;
 }
@@ -37,15 +37,15 @@ static TestScene empty_scene(void)
 {
     TestScene test;
     memset(&test, 0, sizeof test);
-    test.scene.model = SCENE_BLOB;
+    test.geometry.model = SCENE_BLOB;
     return test;
 }
 
 /* Where a ray from far outside towards `center` first meets the blob: the distance from there, or
  * -1. */
-static double radius_towards(const Scene *scene, Vec3 center, Vec3 outwards)
+static double radius_towards(const Geometry *geometry, Vec3 center, Vec3 outwards)
 {
-    Cast cast = cast_of(scene);
+    Cast cast = cast_of(geometry);
     Vec3 d = vec3_normalized(outwards), normal;
     Ray ray = {vec3_add_scaled(center, d, 50), vec3_scale(d, -1)};
     double t;
@@ -98,11 +98,11 @@ static long double segment_at(const FieldSegment *segment, LongVec3 x)
     return sum;
 }
 
-static long double field_at(const Scene *scene, LongVec3 x)
+static long double field_at(const Geometry *geometry, LongVec3 x)
 {
     long double sum = 0;
-    for (size_t i = 0; i < scene->n_segments; i++)
-        sum += segment_at(&scene->segments[i], x);
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        sum += segment_at(&geometry->segments[i], x);
     return sum;
 }
 
@@ -121,10 +121,10 @@ static void a_long_vessel_has_its_own_radius(void **state)
     assert_int_equal(BLOB_COMPONENTS, 14);
     assert_int_equal(BLOB_POVRAY_COMPONENTS, 18);
     TestScene test = empty_scene();
-    test.scene.segments = test.segments;
+    test.geometry.segments = test.segments;
     put_segment(&test, vec3(-20, 3, 1), vec3(20, -3, 2), 1.7);
     Vec3 middle = vec3(0.4, -0.06, 1.51);
-    double radius = radius_towards(&test.scene, middle, vec3(0.15, 1, 0));
+    double radius = radius_towards(&test.geometry, middle, vec3(0.15, 1, 0));
     assert_true(fabs(radius - 1.7) < 1e-10);
     assert_true(fabs(blob_first_strength(&blob_shape) - blob_shape.tube[0].strength) < 1e-12);
 }
@@ -135,22 +135,22 @@ static void a_chain_of_one_radius_is_one_vessel(void **state)
     (void)state;
     const double nodes[] = {-11, -6.2, -6.15, -5, -0.3, 0.02, 4.1, 7.7, 12};
     TestScene chain = empty_scene(), whole = empty_scene();
-    chain.scene.segments = chain.segments;
-    whole.scene.segments = whole.segments;
+    chain.geometry.segments = chain.segments;
+    whole.geometry.segments = whole.segments;
     Vec3 axis = vec3_normalized(vec3(1, -0.4, 0.3)), side = vec3_normalized(vec3(0.4, 1, 0));
     for (int i = 0; i < 8; i++)
         put_segment(&chain, vec3_scale(axis, nodes[i]), vec3_scale(axis, nodes[i + 1]), 1.3);
     put_segment(&whole, vec3_scale(axis, nodes[0]), vec3_scale(axis, nodes[8]), 1.3);
     for (double t = -8; t < 8; t += 0.013) {
-        double radius = radius_towards(&chain.scene, vec3_scale(axis, t), side);
+        double radius = radius_towards(&chain.geometry, vec3_scale(axis, t), side);
         assert_true(fabs(radius - 1.3) < 1.3e-6);
     }
     Random random;
     random_seed(&random, 81);
     for (int i = 0; i < 20000; i++) {
         Vec3 x = vec3_add(vec3_scale(axis, uniform(&random, -14, 14)), random_point(&random, 2));
-        long double one = field_at(&whole.scene, long_vec3(x));
-        assert_true(fabsl(field_at(&chain.scene, long_vec3(x)) - one) < 1e-12L);
+        long double one = field_at(&whole.geometry, long_vec3(x));
+        assert_true(fabsl(field_at(&chain.geometry, long_vec3(x)) - one) < 1e-12L);
     }
 }
 
@@ -158,9 +158,9 @@ static void free_ends_overshoot_as_those_of_the_potential(void **state)
 {
     (void)state;
     TestScene test = empty_scene();
-    test.scene.segments = test.segments;
+    test.geometry.segments = test.segments;
     put_segment(&test, vec3(-20, 0, 0), vec3(0, 0, 0), 1.7);
-    double reach = radius_towards(&test.scene, vec3(0, 0, 0), vec3(1, 0, 0)) / 1.7;
+    double reach = radius_towards(&test.geometry, vec3(0, 0, 0), vec3(1, 0, 0)) / 1.7;
     assert_true(fabs(reach - 0.551) < 0.1);
     assert_true(fabs(reach - overshoot_of(&blob_shape)) < 1e-9);
 }
@@ -221,7 +221,7 @@ static void components_add_up_to_the_term_and_its_gradient(void **state)
 /* Rays at random, along a vessel, across one, and along an axis of the world. */
 static Ray random_ray(Random *random, const TestScene *test, int i)
 {
-    const FieldSegment *segment = &test->segments[i % (int)test->scene.n_segments];
+    const FieldSegment *segment = &test->segments[i % (int)test->geometry.n_segments];
     Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
     Vec3 through =
         vec3_add_scaled(segment->a, vec3_sub(segment->b, segment->a), uniform(random, -0.2, 1.2));
@@ -255,7 +255,7 @@ static void check_ray(const Cast *cast, const TestScene *test, Ray ray, long dou
     tally->rays++;
     tally->hits += hit;
     for (long double s = 45; s < (hit ? (long double)t - 1e-6L : 75); s += step) {
-        long double value = field_at(&test->scene, long_at(ray, s));
+        long double value = field_at(&test->geometry, long_at(ray, s));
         tally->grazing += value > 1 && value <= 1 + slack;
         if (value > 1 + slack)
             fail_msg("inside at %Lg, before the hit at %g", s, hit ? t : -1);
@@ -263,16 +263,16 @@ static void check_ray(const Cast *cast, const TestScene *test, Ray ray, long dou
     if (!hit)
         return;
     LongVec3 x = long_at(ray, (long double)t);
-    assert_true(fabsl(field_at(&test->scene, x) - 1) < 1e-9L);
+    assert_true(fabsl(field_at(&test->geometry, x) - 1) < 1e-9L);
     assert_true(fabs(vec3_length(normal) - 1) < 1e-12);
     const long double h = 1e-5L;
     long double inwards = 0;
     LongVec3 back = {x.x - h * (long double)normal.x, x.y - h * (long double)normal.y,
                      x.z - h * (long double)normal.z};
-    inwards = field_at(&test->scene, back);
+    inwards = field_at(&test->geometry, back);
     assert_true(inwards > 1 - 1e-9L);
     long double most = segment_at(&test->segments[segment], x);
-    for (size_t i = 0; i < test->scene.n_segments; i++)
+    for (size_t i = 0; i < test->geometry.n_segments; i++)
         assert_true(segment_at(&test->segments[i], x) <= most + 1e-9L);
 }
 
@@ -286,7 +286,7 @@ static void first_hits_are_those_of_a_walk_in_small_steps(void **state)
         for (int scene = 0; scene < 2; scene++) {
             TestScene test;
             make_test_scene((SceneKind)kind, &random, &test);
-            Cast cast = cast_of(&test.scene);
+            Cast cast = cast_of(&test.geometry);
             for (int i = 0; i < 60; i++)
                 check_ray(&cast, &test, random_ray(&random, &test, i), 0.03L, &tally);
             release(&cast);
@@ -299,9 +299,9 @@ static void a_ray_from_within_finds_its_way_out(void **state)
 {
     (void)state;
     TestScene test = empty_scene();
-    test.scene.segments = test.segments;
+    test.geometry.segments = test.segments;
     put_segment(&test, vec3(-20, 0, 0), vec3(20, 0, 0), 1.7);
-    Cast cast = cast_of(&test.scene);
+    Cast cast = cast_of(&test.geometry);
     double t;
     Vec3 normal;
     uint32_t segment;
@@ -323,7 +323,7 @@ static void many_segments_in_one_place_are_no_trouble(void **state)
     random_seed(&random, 84);
     TestScene test;
     make_test_scene(KIND_WIDE_STAR, &random, &test);
-    Cast cast = cast_of(&test.scene);
+    Cast cast = cast_of(&test.geometry);
     int hits = 0;
     for (int i = 0; i < 3000; i++) {
         Ray ray = random_ray(&random, &test, i);
@@ -334,7 +334,7 @@ static void many_segments_in_one_place_are_no_trouble(void **state)
             continue;
         hits++;
         assert_true(isfinite(t) && fabs(vec3_length(normal) - 1) < 1e-12);
-        assert_true(fabsl(field_at(&test.scene, long_at(ray, (long double)t)) - 1) < 1e-4L);
+        assert_true(fabsl(field_at(&test.geometry, long_at(ray, (long double)t)) - 1) < 1e-4L);
     }
     assert_true(hits > 500);
     release(&cast);
@@ -342,11 +342,12 @@ static void many_segments_in_one_place_are_no_trouble(void **state)
 
 /* ---- the witness ----------------------------------------------------------------------------- */
 
-static BlobRoots roots_of(const Scene *scene, Ray ray, double t_min, double t_max)
+static BlobRoots roots_of(const Geometry *geometry, Ray ray, double t_min, double t_max)
 {
     BlobRoots roots;
     assert_int_equal(
-        blob_roots(scene->segments, scene->n_segments, ray, t_min, t_max, &roots, NULL), STATUS_OK);
+        blob_roots(geometry->segments, geometry->n_segments, ray, t_min, t_max, &roots, NULL),
+        STATUS_OK);
     return roots;
 }
 
@@ -354,19 +355,19 @@ static void roots_of_two_vessels_are_where_their_walls_are(void **state)
 {
     (void)state;
     TestScene test = empty_scene();
-    test.scene.segments = test.segments;
+    test.geometry.segments = test.segments;
     put_segment(&test, vec3(-20, 0, 0), vec3(20, 0, 0), 1.7);
     put_segment(&test, vec3(-20, 9, 0), vec3(20, 9, 0), 0.6);
     const Ray ray = {{0.3, -50, 0}, {0, 1, 0}};
     const double walls[] = {48.3, 51.7, 58.4, 59.6};
-    BlobRoots roots = roots_of(&test.scene, ray, 0, INFINITY);
+    BlobRoots roots = roots_of(&test.geometry, ray, 0, INFINITY);
     assert_true(roots.sure);
     assert_int_equal(roots.n, 4);
     for (int i = 0; i < 4; i++)
         assert_true(fabs(roots.t[i] - walls[i]) < 1e-12);
-    roots = roots_of(&test.scene, ray, 48.4, 51.6);
+    roots = roots_of(&test.geometry, ray, 48.4, 51.6);
     assert_true(roots.sure && roots.n == 0);
-    roots = roots_of(&test.scene, ray, 50, 58.5);
+    roots = roots_of(&test.geometry, ray, 50, 58.5);
     assert_int_equal(roots.n, 2);
 }
 
@@ -375,16 +376,16 @@ static void a_wall_is_grazed_or_missed_by_a_hair(void **state)
 {
     (void)state;
     TestScene test = empty_scene();
-    test.scene.segments = test.segments;
+    test.geometry.segments = test.segments;
     put_segment(&test, vec3(-20, 0, 0), vec3(20, 0, 0), 1.7);
     const Ray inside = {{0.3, -50, 1.7 * (1 - 1e-9)}, {0, 1, 0}};
     const Ray outside = {{0.3, -50, 1.7 * (1 + 1e-9)}, {0, 1, 0}};
-    BlobRoots roots = roots_of(&test.scene, inside, 0, INFINITY);
+    BlobRoots roots = roots_of(&test.geometry, inside, 0, INFINITY);
     double half = 1.7 * sqrt(2e-9);
     assert_true(roots.sure);
     assert_int_equal(roots.n, 2);
     assert_true(fabs(roots.t[0] - (50 - half)) < 1e-6 && fabs(roots.t[1] - (50 + half)) < 1e-6);
-    roots = roots_of(&test.scene, outside, 0, INFINITY);
+    roots = roots_of(&test.geometry, outside, 0, INFINITY);
     assert_true(roots.sure && roots.n == 0);
 }
 
@@ -397,7 +398,7 @@ static void the_witness_agrees_with_the_renderer(void **state)
     for (int kind = 0; kind < N_TAME_KINDS; kind++) {
         TestScene test;
         make_test_scene((SceneKind)kind, &random, &test);
-        Cast cast = cast_of(&test.scene);
+        Cast cast = cast_of(&test.geometry);
         for (int i = 0; i < 100; i++) {
             Ray ray = random_ray(&random, &test, i);
             double t;
@@ -405,7 +406,7 @@ static void the_witness_agrees_with_the_renderer(void **state)
             uint32_t segment;
             bool hit =
                 blobcast_first_hit(cast.cast, cast.scratch, ray, 0, 120, &t, &normal, &segment);
-            BlobRoots roots = roots_of(&test.scene, ray, 0, 120);
+            BlobRoots roots = roots_of(&test.geometry, ray, 0, 120);
             assert_true(roots.sure);
             assert_true(hit == (roots.n > 0));
             if (!hit)
@@ -417,7 +418,7 @@ static void the_witness_agrees_with_the_renderer(void **state)
                          roots.t[0], t);
             for (int k = 0; k < roots.n; k++) {
                 LongVec3 x = long_at(ray, (long double)roots.t[k]);
-                assert_true(fabsl(field_at(&test.scene, x) - 1) < 1e-10L);
+                assert_true(fabsl(field_at(&test.geometry, x) - 1) < 1e-10L);
                 assert_true(k == 0 || roots.t[k] > roots.t[k - 1]);
             }
         }

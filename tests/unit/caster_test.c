@@ -15,7 +15,7 @@
 typedef struct Wire {
     Primitive primitive;
     FieldSegment segment;
-    Scene scene;
+    Geometry geometry;
 } Wire;
 
 static const double thickness = 2e-6;
@@ -24,15 +24,15 @@ static void make_wire(Wire *wire, SceneModel model, double at)
 {
     Vec3 a = vec3(-0.01, 0, at), b = vec3(0.01, 0, at);
     wire->primitive = (Primitive){
-        .kind = PRIMITIVE_CYLINDER, .a = a, .b = b, .radius_mm = thickness / 2, .id = 23};
-    wire->segment = (FieldSegment){.a = a, .b = b, .radius_mm = thickness / 2, .id = 23};
-    wire->scene = (Scene){.model = model};
+        .kind = PRIMITIVE_CYLINDER, .a = a, .b = b, .radius_mm = thickness / 2, .segment = 23};
+    wire->segment = (FieldSegment){.a = a, .b = b, .radius_mm = thickness / 2, .segment = 23};
+    wire->geometry = (Geometry){.model = model};
     if (model == SCENE_ISOSURFACE || model == SCENE_BLOB) {
-        wire->scene.segments = &wire->segment;
-        wire->scene.n_segments = 1;
+        wire->geometry.segments = &wire->segment;
+        wire->geometry.n_segments = 1;
     } else {
-        wire->scene.primitives = &wire->primitive;
-        wire->scene.n_primitives = 1;
+        wire->geometry.primitives = &wire->primitive;
+        wire->geometry.n_primitives = 1;
     }
 }
 
@@ -42,9 +42,9 @@ static bool is_seen(SceneModel model, double at)
     Caster *caster;
     Surfel surfel;
     make_wire(&wire, model, at);
-    assert_int_equal(caster_new(&wire.scene, NULL, 1, &caster, NULL), STATUS_OK);
+    assert_int_equal(caster_new(&wire.geometry, NULL, 1, &caster, NULL), STATUS_OK);
     bool seen = caster_first(caster, 0, (Ray){{0, 0, 0}, {0, 0, 1}}, &surfel);
-    assert_true(!seen || (surfel.id == 23 && fabs(surfel.t - at) <= thickness));
+    assert_true(!seen || (surfel.segment == 23 && fabs(surfel.t - at) <= thickness));
     caster_free(caster);
     return seen;
 }
@@ -54,8 +54,9 @@ static bool casts_shadow(SceneModel model, double at, double light)
     Wire wire;
     Caster *caster;
     make_wire(&wire, model, at);
-    assert_int_equal(caster_new(&wire.scene, NULL, 1, &caster, NULL), STATUS_OK);
-    bool dark = caster_shadow(caster, 0, vec3(0, 0, 0), vec3(0, 0, 1), light);
+    assert_int_equal(caster_new(&wire.geometry, NULL, 1, &caster, NULL), STATUS_OK);
+    const Ground no_ground = {0};
+    bool dark = caster_shadow(caster, 0, &no_ground, vec3(0, 0, 0), vec3(0, 0, 1), light);
     caster_free(caster);
     return dark;
 }

@@ -15,7 +15,7 @@ static CellTree cells_of(const TestScene *test, double beta, ErfForm erf)
 {
     CellTree cells;
     assert_int_equal(
-        celltree_build(&test->scene, &(CellParams){.beta = beta, .erf = erf}, &cells, NULL),
+        celltree_build(&test->geometry, &(CellParams){.beta = beta, .erf = erf}, &cells, NULL),
         STATUS_OK);
     return cells;
 }
@@ -120,7 +120,7 @@ static void a_term_in_its_form_is_the_term(void **state)
 static double potential(const TestScene *test, Vec3 x)
 {
     double sum = 0;
-    for (size_t i = 0; i < test->scene.n_segments; i++)
+    for (size_t i = 0; i < test->geometry.n_segments; i++)
         sum += potential_term(&test->segments[i], x);
     return sum;
 }
@@ -168,7 +168,7 @@ static void the_surface_lies_in_cells_whose_functions_are_zero_there(void **stat
         int found = 0;
         for (int i = 0; i < 1500; i++) {
             const FieldSegment *segment =
-                &test.segments[random_bits(&random) % test.scene.n_segments];
+                &test.segments[random_bits(&random) % test.geometry.n_segments];
             Vec3 x;
             Vec3 from = vec3_add_scaled(segment->a, vec3_sub(segment->b, segment->a),
                                         random_uniform(&random));
@@ -241,7 +241,7 @@ static void gradient_in_a_cell_never_exceeds_its_bound(void **state)
 static void coincident_segments_reach_the_bound(void **state)
 {
     (void)state;
-    TestScene test = {.scene = {.segments = test.segments}};
+    TestScene test = {.geometry = {.segments = test.segments}};
     for (int i = 0; i < 4; i++)
         put_segment(&test, vec3(-8, 0.1, 0.2), vec3(9, 0.1, 0.2), 0.73);
     CellTree cells = cells_of(&test, 4, ERF_FAST);
@@ -258,7 +258,7 @@ static void coincident_segments_reach_the_bound(void **state)
 static void a_long_vessel_is_made_of_tubes(void **state)
 {
     (void)state;
-    TestScene test = {.scene = {.segments = test.segments}};
+    TestScene test = {.geometry = {.segments = test.segments}};
     put_segment(&test, vec3(-38.5, 0.11, 0.23), vec3(49, 0.42, -0.71), 0.73);
     CellTree cells = cells_of(&test, 3, ERF_FAST);
     size_t tubes = 0;
@@ -332,7 +332,7 @@ static double reach_of(const Cell *cell, double side)
 static void cells_reach_five_accuracies_and_a_part_beyond_their_cubes(void **state)
 {
     (void)state;
-    TestScene test = {.scene = {.segments = test.segments}};
+    TestScene test = {.geometry = {.segments = test.segments}};
     put_segment(&test, vec3(-7.5, 0.11, 0.23), vec3(9, 2.42, -1.71), 0.73);
     CellTree cells = cells_of(&test, 3, ERF_FAST);
     double least = HUGE_VAL, most = 0;
@@ -348,21 +348,21 @@ static void cells_reach_five_accuracies_and_a_part_beyond_their_cubes(void **sta
 /* The cells of one vessel among others that are too short to be seen, without a given beta. */
 static double side_among(size_t n)
 {
-    Scene scene = {.model = SCENE_ISOSURFACE, .n_segments = n};
-    scene.segments = calloc(n, sizeof *scene.segments);
-    assert_non_null(scene.segments);
+    Geometry geometry = {.model = SCENE_ISOSURFACE, .n_segments = n};
+    geometry.segments = calloc(n, sizeof *geometry.segments);
+    assert_non_null(geometry.segments);
     for (size_t i = 0; i < n; i++) {
         double z = 9 * (double)i;
-        scene.segments[i] =
+        geometry.segments[i] =
             (FieldSegment){.a = {i ? 0 : -7, 0, z}, .b = {i ? 0.01 : 7, 0, z}, .radius_mm = 0.73};
     }
     CellTree cells;
     const CellParams params = {.beta = 0, .erf = ERF_FAST};
-    assert_int_equal(celltree_build(&scene, &params, &cells, NULL), STATUS_OK);
+    assert_int_equal(celltree_build(&geometry, &params, &cells, NULL), STATUS_OK);
     assert_true(cells.n_cells > 0);
     double side = cells.cells[0].high.x - cells.cells[0].low.x;
     celltree_release(&cells);
-    free(scene.segments);
+    free(geometry.segments);
     return side / 0.73;
 }
 
@@ -376,7 +376,7 @@ static void cells_of_many_segments_are_larger(void **state)
 static void nothing_has_no_cells(void **state)
 {
     (void)state;
-    TestScene test = {.scene = {.model = SCENE_ISOSURFACE}};
+    TestScene test = {.geometry = {.model = SCENE_ISOSURFACE}};
     CellTree cells = cells_of(&test, 4, ERF_FAST);
     assert_int_equal(cells.n_cells, 0);
     celltree_release(&cells);
@@ -385,11 +385,11 @@ static void nothing_has_no_cells(void **state)
 static void refuses_a_scene_of_countless_cells(void **state)
 {
     (void)state;
-    TestScene test = {.scene = {.segments = test.segments}};
+    TestScene test = {.geometry = {.segments = test.segments}};
     put_segment(&test, vec3(-48.5, 3, 0), vec3(51.25, 7, 2), 1e-7);
     CellTree cells = {0};
     Err err;
-    assert_int_equal(celltree_build(&test.scene, &(CellParams){.beta = 4}, &cells, &err),
+    assert_int_equal(celltree_build(&test.geometry, &(CellParams){.beta = 4}, &cells, &err),
                      STATUS_INFEASIBLE);
     assert_non_null(strstr(err.text, "1000000 cells"));
     assert_null(cells.cells);

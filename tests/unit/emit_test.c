@@ -17,14 +17,8 @@ static Primitive primitives[] = {
      .a = {0, 50, 0},
      .b = {1.0 / 3, 12.5, -2.385},
      .radius_mm = 2.385,
-     .id = 2,
-     .color = {0.56f, 0.055f, 0.045f}},
-    {.kind = PRIMITIVE_SPHERE,
-     .a = {0, 50, 0},
-     .b = {0, 50, 0},
-     .radius_mm = 2.385,
-     .id = 70000,
-     .color = {0.1f, 0.2f, 0.3f}},
+     .segment = 0},
+    {.kind = PRIMITIVE_SPHERE, .a = {0, 50, 0}, .b = {0, 50, 0}, .radius_mm = 2.385, .segment = 1},
 };
 
 /* A thick circle across y and, at right angles to it, one a third as large. */
@@ -35,39 +29,42 @@ static Primitive joint = {.kind = PRIMITIVE_JOINT,
                           .radius_b_mm = 1,
                           .axis_a = {0, -1, 0},
                           .axis_b = {1, 0, 0},
-                          .id = 9,
-                          .color = {0.1f, 0.2f, 0.3f}};
+                          .segment = 2};
+
+static uint32_t ids[] = {2, 70000, 9};
+static Rgb colors[] = {{0.56f, 0.055f, 0.045f}, {0.1f, 0.2f, 0.3f}, {0.1f, 0.2f, 0.3f}};
 
 static FieldSegment segments[] = {
-    {{0, 9, 0}, {0, 0, 0}, 1.5, 2, {0.5f, 0.1f, 0.1f}},
-    {{0, 0, 0}, {-4, -7, 1}, 1.2, 3, {0.1f, 0.5f, 0.1f}},
-    {{0, 0, 0}, {5, -6, -1}, 1.1, 4, {0.1f, 0.1f, 0.5f}},
+    {{0, 9, 0}, {0, 0, 0}, 1.5, 0},
+    {{0, 0, 0}, {-4, -7, 1}, 1.2, 1},
+    {{0, 0, 0}, {5, -6, -1}, 1.1, 2},
 };
-
-static Light light = {.location = {0, 10, 90}, .color = {1, 1, 1}, .parallel = true};
+static uint32_t segment_ids[] = {2, 3, 4};
+static Rgb segment_colors[] = {{0.5f, 0.1f, 0.1f}, {0.1f, 0.5f, 0.1f}, {0.1f, 0.1f, 0.5f}};
 
 static Scene make_scene(SceneModel model)
 {
-    Scene scene = {.model = model,
-                   .camera = {.location = {0, 0, 90},
-                              .right = {120, 0, 0},
-                              .up = {0, 90, 0},
-                              .direction = {0, 0, -1},
-                              .width = 400,
-                              .height = 300},
-                   .background = {1, 1, 1},
-                   .finish = {0.1f, 0.6f, 1, 0.3f, 32, 0, 0.05f},
-                   .lights = &light,
-                   .n_lights = 1,
-                   .uniform_color = true,
-                   .color = {0.56f, 0.055f, 0.045f},
-                   .bounds = {{-3, 10, -5}, {3, 53, 3}}};
+    Scene scene = {
+        .geometry = {.model = model, .bounds = {{-3, 10, -5}, {3, 53, 3}}, .n_ids = 3},
+        .appearance = {.finish = {0.1f, 0.6f, 1, 0.3f, 32, 0, 0.05f},
+                       .color = {0.56f, 0.055f, 0.045f}},
+        .view = {.camera = {.location = {0, 0, 90},
+                            .right = {120, 0, 0},
+                            .up = {0, 90, 0},
+                            .direction = {0, 0, -1},
+                            .width = 400,
+                            .height = 300},
+                 .background = {1, 1, 1},
+                 .lights = {{.location = {0, 10, 90}, .color = {1, 1, 1}, .parallel = true}},
+                 .n_lights = 1}};
     if (model == SCENE_ISOSURFACE || model == SCENE_BLOB) {
-        scene.segments = segments;
-        scene.n_segments = 3;
+        scene.geometry.segments = segments;
+        scene.geometry.n_segments = 3;
+        scene.geometry.ids = segment_ids;
     } else {
-        scene.primitives = primitives;
-        scene.n_primitives = 2;
+        scene.geometry.primitives = primitives;
+        scene.geometry.n_primitives = 2;
+        scene.geometry.ids = ids;
     }
     return scene;
 }
@@ -151,9 +148,9 @@ static void more_joints_than_povray_holds_are_meshes(void **state)
     for (size_t i = 0; i < N; i++)
         joints[i] = one;
     Scene scene = make_scene(SCENE_JOINED);
-    scene.primitives = joints;
+    scene.geometry.primitives = joints;
     for (int many = 0; many < 2; many++) {
-        scene.n_primitives = many ? N : N - 1;
+        scene.geometry.n_primitives = many ? N : N - 1;
         Emitted out = emit(&scene, &two_files);
         assert_int_equal(out.report.joint_sides, many ? 16 : 0);
         const char *sides = strstr(out.geometry.chars, "#declare Joint_Sides = ");
@@ -169,8 +166,8 @@ static void a_joint_is_given_in_the_frame_of_its_first_circle(void **state)
 {
     (void)state;
     Scene scene = make_scene(SCENE_JOINED);
-    scene.primitives = &joint;
-    scene.n_primitives = 1;
+    scene.geometry.primitives = &joint;
+    scene.geometry.n_primitives = 1;
     Emitted out = emit(&scene, &two_files);
     const char *call = strstr(out.geometry.chars, "\nVessel_Joint(");
     assert_non_null(call);
@@ -200,7 +197,7 @@ static void segments_of_different_colours_carry_their_own(void **state)
 {
     (void)state;
     Scene scene = make_scene(SCENE_ROUNDED);
-    scene.uniform_color = false;
+    scene.appearance.colors = colors;
     Emitted out = emit(&scene, &two_files);
     assert_non_null(strstr(out.geometry.chars, ",70000,<0.1,0.2,0.3>)\n"));
     release(&out);
@@ -287,7 +284,7 @@ static void ids_are_painted_only_when_asked_for(void **state)
     assert_int_equal(one + many, painted.report.cells);
     assert_non_null(strstr(painted.geometry.chars, "Cell_One_Paint(2,Vessel_Color)"));
     release(&plain);
-    scene.uniform_color = false;
+    scene.appearance.colors = segment_colors;
     plain = emit(&scene, &two_files);
     assert_non_null(strstr(plain.geometry.chars, "Cell_One_Paint(3,<0.1,0.5,0.1>)"));
     release(&plain);
@@ -329,8 +326,8 @@ static void a_large_blob_is_cut_into_cells_that_miss_nothing(void **state)
         many[i] = (FieldSegment){.a = a, .b = vec3_add_scaled(a, span, 2.7), .radius_mm = 0.23};
     }
     Scene scene = make_scene(SCENE_BLOB);
-    scene.segments = many;
-    scene.n_segments = MANY;
+    scene.geometry.segments = many;
+    scene.geometry.n_segments = MANY;
     Emitted out = emit(&scene, &two_files);
     size_t cells = 0;
     double volume = 0, reach = blob_reach(&blob_shape) * 0.23;
@@ -375,9 +372,9 @@ static void a_blob_is_halved_from_129_segments_on(void **state)
     for (int i = 0; i < 129; i++)
         row[i] = (FieldSegment){.a = {3 * i, 0, 0}, .b = {3 * i, 1, 0}, .radius_mm = 0.23};
     Scene scene = make_scene(SCENE_BLOB);
-    scene.segments = row;
+    scene.geometry.segments = row;
     for (int many = 0; many < 2; many++) {
-        scene.n_segments = many ? 129 : 128;
+        scene.geometry.n_segments = many ? 129 : 128;
         Emitted out = emit(&scene, &two_files);
         assert_int_equal(out.report.cells, many ? 2 : 0);
         const char *clip = out.geometry.chars;
@@ -414,7 +411,7 @@ static void the_segments_of_a_blob_are_painted_only_when_asked_for(void **state)
     assert_int_equal(count(painted.geometry.chars, "\nBlob_Color("), 3);
     assert_non_null(strstr(painted.geometry.chars, "\nBlob_Color(1,3,Vessel_Color)"));
     release(&plain);
-    scene.uniform_color = false;
+    scene.appearance.colors = segment_colors;
     plain = emit(&scene, &two_files);
     assert_non_null(strstr(plain.geometry.chars, "\nBlob_Color(1,3,<0.1,0.5,0.1>)"));
     release(&plain);

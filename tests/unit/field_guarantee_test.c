@@ -84,11 +84,11 @@ static double bend_of(const FieldSegment *segment, Ray ray, double to_line)
            (0.8926 * s * s + 0.9682 * s * c + 0.4841 * c * c);
 }
 
-static Walk walk_start(const Scene *scene, Ray ray, Near *near)
+static Walk walk_start(const Geometry *geometry, Ray ray, Near *near)
 {
     Walk walk = {.ray = ray, .near = near};
-    for (size_t i = 0; i < scene->n_segments; i++) {
-        const FieldSegment *segment = &scene->segments[i];
+    for (size_t i = 0; i < geometry->n_segments; i++) {
+        const FieldSegment *segment = &geometry->segments[i];
         double r = segment->radius_mm, to_segment, to_line;
         line_distances(ray, segment, &to_segment, &to_line);
         if (to_segment > 4 * r)
@@ -194,21 +194,21 @@ static void keep_answer(const SeenTile *seen, int worker, void *context)
     }
 }
 
-static void ask(const Scene *scene, FieldKernel *kernel, Answer *answer)
+static void ask(const Geometry *geometry, const Camera *camera, FieldKernel *kernel, Answer *answer)
 {
     const double places[] = {0, 1, 2, 3, 4, 5, 6, 7};
     const SampleGrid grid = {places, places, 8, 8, 1};
     FieldTiles *tiles;
-    assert_int_equal(fieldtiles_new(scene, &grid, 1e-4, 1, &tiles, NULL), STATUS_OK);
+    assert_int_equal(fieldtiles_new(geometry, camera, &grid, 1e-4, 1, &tiles, NULL), STATUS_OK);
     fieldtiles_use_kernel(tiles, kernel);
-    *answer = (Answer){.eye = viewpoint_of_camera(&scene->camera)};
+    *answer = (Answer){.eye = viewpoint_of_camera(camera)};
     assert_int_equal(fieldtiles_trace(tiles, 0, 0, NULL, keep_answer, answer, NULL), STATUS_OK);
     fieldtiles_free(tiles);
 }
 
 /* The normal is the gradient's direction, and the segment that of the largest term. */
-static bool describes_hit(const Walk *walk, const Scene *scene, const Answer *answer, int sample,
-                          Tally *tally)
+static bool describes_hit(const Walk *walk, const Geometry *geometry, const Answer *answer,
+                          int sample, Tally *tally)
 {
     LongVec3 x = point_at(walk, answer->t[sample]);
     Vec3 sum = vec3(0, 0, 0);
@@ -219,7 +219,7 @@ static bool describes_hit(const Walk *walk, const Scene *scene, const Answer *an
         largest = term > largest ? term : largest;
         sum = vec3_add(sum, vec3((double)gradient.x, (double)gradient.y, (double)gradient.z));
     }
-    const FieldSegment *named = &scene->segments[answer->segment[sample]];
+    const FieldSegment *named = &geometry->segments[answer->segment[sample]];
     double steepness = vec3_length(sum) * named->radius_mm;
     if (steepness > 0.1 * FIELD_LEVEL) {
         Vec3 difference = vec3_add_scaled(answer->normal[sample], sum, 1 / vec3_length(sum));
@@ -240,10 +240,11 @@ static double depth_within(double radius_mm, double depth_mm)
     return 1e-4 * radius_mm + 2 * (double)FLT_EPSILON * depth_mm;
 }
 
-static void judge(const Scene *scene, const Answer *answer, int sample, Near *near, Tally *tally)
+static void judge(const Geometry *geometry, const Camera *camera, const Answer *answer, int sample,
+                  Near *near, Tally *tally)
 {
-    Ray ray = camera_ray(&scene->camera, tile_sample_x(sample), tile_sample_y(sample));
-    Walk walk = walk_start(scene, ray, near);
+    Ray ray = camera_ray(camera, tile_sample_x(sample), tile_sample_y(sample));
+    Walk walk = walk_start(geometry, ray, near);
     long double epsilon = epsilon_of(walk.n);
     bool hit = answer->hit[sample];
     double t = answer->t[sample];
@@ -251,7 +252,7 @@ static void judge(const Scene *scene, const Answer *answer, int sample, Near *ne
     double from = walk.t;
     bool latest = earliest && walk_to(&walk, (long double)FIELD_LEVEL + epsilon);
     double to = latest ? walk.t : HUGE_VAL;
-    double radius = hit ? scene->segments[answer->segment[sample]].radius_mm : 0;
+    double radius = hit ? geometry->segments[answer->segment[sample]].radius_mm : 0;
     double tolerance = depth_within(radius, t);
     bool right = hit ? earliest && t >= from - tolerance && t <= to + tolerance : !latest;
     tally->rays++;
@@ -260,7 +261,7 @@ static void judge(const Scene *scene, const Answer *answer, int sample, Near *ne
     if (right && hit && to - from <= tolerance)
         tally->worst = fmax(tally->worst, fabs(t - (from + to) / 2) / tolerance),
         tally->part = fmax(tally->part, fabs(t - (from + to) / 2) / radius);
-    if (!right || (hit && !describes_hit(&walk, scene, answer, sample, tally))) {
+    if (!right || (hit && !describes_hit(&walk, geometry, answer, sample, tally))) {
         tally->wrong++;
         print_error("%s: %s at %.9g, exact between %.9g and %.9g, sample %d\n", tally->name,
                     hit ? "hit" : "none", t, from, to, sample);
@@ -276,9 +277,9 @@ typedef enum Aim {
     AIM_FACING = N_AIMS /* along z, orthographic: scenes in a plane have a kernel of their own */
 } Aim;
 
-static Camera aim(Aim kind, const Scene *scene, double extent, Random *random)
+static Camera aim(Aim kind, const Geometry *geometry, double extent, Random *random)
 {
-    const FieldSegment *segment = &scene->segments[random_bits(random) % scene->n_segments];
+    const FieldSegment *segment = &geometry->segments[random_bits(random) % geometry->n_segments];
     Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a)), d = random_direction(random);
     Vec3 target =
         vec3_add_scaled(segment->a, vec3_sub(segment->b, segment->a), uniform(random, -0.05, 1.05));
@@ -316,22 +317,24 @@ static Camera aim(Aim kind, const Scene *scene, double extent, Random *random)
     return camera;
 }
 
-static void try_cameras(Scene *scene, int cameras, bool facing, Random *random, Tally *tally)
+static void try_cameras(const Geometry *geometry, int cameras, bool facing, Random *random,
+                        Tally *tally)
 {
     double extent = 0;
-    for (size_t i = 0; i < scene->n_segments; i++)
-        extent = fmax(extent, vec3_distance(scene->segments[0].a, scene->segments[i].b) +
-                                  4 * scene->segments[i].radius_mm);
-    Near *near = calloc(scene->n_segments, sizeof *near);
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        extent = fmax(extent, vec3_distance(geometry->segments[0].a, geometry->segments[i].b) +
+                                  4 * geometry->segments[i].radius_mm);
+    Near *near = calloc(geometry->n_segments, sizeof *near);
     assert_non_null(near);
     Answer answer;
     int n_kernels = kernels_usable();
     for (int i = 0; i < cameras; i++) {
-        scene->camera = aim(facing ? AIM_FACING : (Aim)(i % N_AIMS), scene, extent, random);
+        const Camera camera =
+            aim(facing ? AIM_FACING : (Aim)(i % N_AIMS), geometry, extent, random);
         for (int k = i % 8 ? n_kernels - 1 : 0; k < n_kernels; k++) {
-            ask(scene, fieldkernels[k], &answer);
+            ask(geometry, &camera, fieldkernels[k], &answer);
             for (int sample = 0; sample < TILE_SAMPLES; sample++)
-                judge(scene, &answer, sample, near, tally);
+                judge(geometry, &camera, &answer, sample, near, tally);
         }
     }
     free(near);
@@ -351,21 +354,21 @@ static void finish(const Tally *tally)
 
 static void try_tree(const Tree *tree, const char *name, bool facing, uint64_t seed)
 {
-    Scene scene = {.model = SCENE_ISOSURFACE};
-    scene.segments = calloc(tree->n, sizeof *scene.segments);
-    assert_non_null(scene.segments);
+    Geometry geometry = {.model = SCENE_ISOSURFACE};
+    geometry.segments = calloc(tree->n, sizeof *geometry.segments);
+    assert_non_null(geometry.segments);
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i) && tree_segment_length(tree, i) > 0)
-            scene.segments[scene.n_segments++] =
+            geometry.segments[geometry.n_segments++] =
                 (FieldSegment){.a = tree->position[tree->parent[i]],
                                .b = tree->position[i],
                                .radius_mm = tree->radius_mm[i]};
     Random random;
     random_seed(&random, seed);
     Tally tally = {.name = name};
-    try_cameras(&scene, facing ? 80 / SHARE : 240 / SHARE, facing, &random, &tally);
+    try_cameras(&geometry, facing ? 80 / SHARE : 240 / SHARE, facing, &random, &tally);
     finish(&tally);
-    free(scene.segments);
+    free(geometry.segments);
 }
 
 static void try_grown(const char *name, const char *spec, double lambda, bool facing)
@@ -426,7 +429,7 @@ static void holds_for_adversarial_scenes(void **state)
         for (int run = 0; run < 10; run++) {
             TestScene test;
             make_test_scene((SceneKind)kind, &random, &test);
-            try_cameras(&test.scene, 8 / (SHARE > 1 ? 2 : 1), false, &random, &tally);
+            try_cameras(&test.geometry, 8 / (SHARE > 1 ? 2 : 1), false, &random, &tally);
         }
         finish(&tally);
     }
@@ -443,8 +446,8 @@ static void holds_for_rays_just_past_an_end(void **state)
     Tally tally = {.name = "past an end"};
     for (int run = 0; run < 6; run++) {
         memset(&test, 0, sizeof test);
-        test.scene.model = SCENE_ISOSURFACE;
-        test.scene.segments = test.segments;
+        test.geometry.model = SCENE_ISOSURFACE;
+        test.geometry.segments = test.segments;
         double radius = uniform(&random, 0.4, 1.7), per_k = radius / sqrt(2);
         Vec3 axis = random_direction(&random), side = random_normal_to(&random, axis);
         Vec3 end = random_point(&random, 3), d = vec3_cross(side, axis);
@@ -453,19 +456,19 @@ static void holds_for_rays_just_past_an_end(void **state)
         Vec3 target = vec3_add_scaled(end, axis, -0.012 * per_k);
         target = vec3_add_scaled(target, side, (sqrt(2 - log(2)) - 0.012) * per_k);
         const double distance = 40, width = 0.024 * per_k / distance;
-        test.scene.camera = (Camera){.projection = PROJECTION_PERSPECTIVE,
-                                     .location = vec3_add_scaled(target, d, -distance),
-                                     .direction = d,
-                                     .right = vec3_scale(axis, width),
-                                     .up = vec3_scale(side, width),
-                                     .width = 8,
-                                     .height = 8};
+        const Camera camera = {.projection = PROJECTION_PERSPECTIVE,
+                               .location = vec3_add_scaled(target, d, -distance),
+                               .direction = d,
+                               .right = vec3_scale(axis, width),
+                               .up = vec3_scale(side, width),
+                               .width = 8,
+                               .height = 8};
         Answer answer;
         Near near[1];
         for (int k = 0; k < kernels_usable(); k++) {
-            ask(&test.scene, fieldkernels[k], &answer);
+            ask(&test.geometry, &camera, fieldkernels[k], &answer);
             for (int sample = 0; sample < TILE_SAMPLES; sample++)
-                judge(&test.scene, &answer, sample, near, &tally);
+                judge(&test.geometry, &camera, &answer, sample, near, &tally);
         }
     }
     finish(&tally);
@@ -490,9 +493,9 @@ static void holds_for_adversarial_scenes_in_a_plane(void **state)
             TestScene test;
             make_test_scene((SceneKind)kind, &random, &test);
             double height = uniform(&random, -30, 30);
-            for (size_t i = 0; i < test.scene.n_segments; i++)
+            for (size_t i = 0; i < test.geometry.n_segments; i++)
                 test.segments[i].a.z = test.segments[i].b.z = height;
-            try_cameras(&test.scene, 8 / (SHARE > 1 ? 2 : 1), true, &random, &tally);
+            try_cameras(&test.geometry, 8 / (SHARE > 1 ? 2 : 1), true, &random, &tally);
         }
         finish(&tally);
     }
@@ -500,7 +503,7 @@ static void holds_for_adversarial_scenes_in_a_plane(void **state)
 
 static void scale_scene(TestScene *test, double scale)
 {
-    for (size_t i = 0; i < test->scene.n_segments; i++) {
+    for (size_t i = 0; i < test->geometry.n_segments; i++) {
         FieldSegment *segment = &test->segments[i];
         segment->a = vec3_scale(segment->a, scale);
         segment->b = vec3_scale(segment->b, scale);
@@ -521,7 +524,7 @@ static void holds_at_every_scale(void **state)
             TestScene test;
             make_test_scene((SceneKind)kind, &random, &test);
             scale_scene(&test, scales[i]);
-            try_cameras(&test.scene, 4, false, &random, &tally);
+            try_cameras(&test.geometry, 4, false, &random, &tally);
         }
         finish(&tally);
     }

@@ -25,7 +25,7 @@ static const char *const kind_names[N_KINDS] = {"tree",  "bifurcation", "chain",
 
 typedef struct TestScene {
     FieldSegment segments[MAX_SEGMENTS];
-    Scene scene;
+    Geometry geometry;
 } TestScene;
 
 static inline double uniform(Random *random, double low, double high)
@@ -55,8 +55,8 @@ static inline Vec3 random_normal_to(Random *random, Vec3 axis)
 
 static inline void put_segment(TestScene *test, Vec3 a, Vec3 b, double radius)
 {
-    size_t n = test->scene.n_segments++;
-    test->segments[n] = (FieldSegment){.a = a, .b = b, .radius_mm = radius, .id = (uint32_t)n + 2};
+    size_t n = test->geometry.n_segments++;
+    test->segments[n] = (FieldSegment){.a = a, .b = b, .radius_mm = radius, .segment = (uint32_t)n};
 }
 
 static inline void put_subtree(TestScene *test, Random *random, Vec3 from, Vec3 direction,
@@ -125,8 +125,8 @@ static inline void put_star(TestScene *test, Random *random, double smallest)
 static inline void make_test_scene(SceneKind kind, Random *random, TestScene *test)
 {
     memset(test, 0, sizeof *test);
-    test->scene.model = SCENE_ISOSURFACE;
-    test->scene.segments = test->segments;
+    test->geometry.model = SCENE_ISOSURFACE;
+    test->geometry.segments = test->segments;
     switch (kind) {
     case KIND_TREE:
         put_subtree(test, random, random_point(random, 2), random_direction(random), 2.385, 4);

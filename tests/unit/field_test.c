@@ -19,7 +19,7 @@ typedef struct Setup {
 
 static void start(Setup *setup)
 {
-    assert_int_equal(fieldindex_build(&setup->test.scene, &setup->index, NULL), STATUS_OK);
+    assert_int_equal(fieldindex_build(&setup->test.geometry, &setup->index, NULL), STATUS_OK);
     assert_int_equal(fieldscratch_new(setup->index->n_tubes, &setup->scratch, NULL), STATUS_OK);
 }
 
@@ -32,7 +32,7 @@ static void finish(Setup *setup)
 static void begin_empty(Setup *setup)
 {
     memset(setup, 0, sizeof *setup);
-    setup->test.scene.segments = setup->test.segments;
+    setup->test.geometry.segments = setup->test.segments;
 }
 
 static bool first_hit(Setup *setup, Ray ray, double *t)
@@ -58,7 +58,7 @@ static Brute brute_start(const TestScene *test, Ray ray)
     brute.t0 = HUGE_VAL;
     brute.t1 = -HUGE_VAL;
     Vec3 d = ray.direction, inverse = vec3(1 / d.x, 1 / d.y, 1 / d.z);
-    for (size_t i = 0; i < test->scene.n_segments; i++) {
+    for (size_t i = 0; i < test->geometry.n_segments; i++) {
         const FieldSegment *segment = &test->segments[i];
         Box box = box_with_ball(box_empty(), segment->a, 4 * segment->radius_mm);
         box = box_with_ball(box, segment->b, 4 * segment->radius_mm);
@@ -142,7 +142,7 @@ static void check_hit(const Setup *setup, const Brute *brute, double t, Vec3 nor
     assert_true(-brute_side(brute) * vec3_dot(g, brute->ray.direction) > -1e-4 * steepness);
     LongVec3 x = long_vec3(ray_at(brute->ray, t));
     long double largest = exact_term(&setup->test.segments[segment], x, NULL);
-    for (size_t i = 0; i < setup->test.scene.n_segments; i++)
+    for (size_t i = 0; i < setup->test.geometry.n_segments; i++)
         assert_true(exact_term(&setup->test.segments[i], x, NULL) <= largest + 1e-9L);
 }
 
@@ -194,7 +194,7 @@ typedef enum RayKind {
 
 static Ray random_ray(RayKind kind, const TestScene *test, Random *random)
 {
-    const FieldSegment *segment = &test->segments[random_bits(random) % test->scene.n_segments];
+    const FieldSegment *segment = &test->segments[random_bits(random) % test->geometry.n_segments];
     Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
     Vec3 at =
         vec3_add_scaled(segment->a, vec3_sub(segment->b, segment->a), uniform(random, -0.05, 1.05));

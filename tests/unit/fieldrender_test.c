@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 #include "field_scenes.h"
-#include "test_lights.h"
+#include "test_scene.h"
 #include <cmocka.h>
 #include <stdio.h>
 
@@ -23,8 +23,8 @@ enum { WIDTH = 101, HEIGHT = 67 };
 /* A tree under a parallel and a point light. */
 typedef struct Staged {
     TestScene test;
-    Light lights[2];
-    Scene *scene;
+    Rgb colors[MAX_SEGMENTS];
+    Scene scene;
 } Staged;
 
 static void set_camera(Scene *scene, Projection projection, Vec3 direction, Vec3 center,
@@ -32,15 +32,15 @@ static void set_camera(Scene *scene, Projection projection, Vec3 direction, Vec3
 {
     Vec3 right = vec3_normalized(vec3_cross(direction, vec3(0.1, 1, 0)));
     Vec3 up = vec3_cross(right, direction);
-    double aspect = (double)scene->camera.width / scene->camera.height;
+    double aspect = (double)scene->view.camera.width / scene->view.camera.height;
     double distance = 5 * height;
-    scene->camera.projection = projection;
-    scene->camera.direction = direction;
-    scene->camera.location = vec3_add_scaled(center, direction, -distance);
+    scene->view.camera.projection = projection;
+    scene->view.camera.direction = direction;
+    scene->view.camera.location = vec3_add_scaled(center, direction, -distance);
     if (projection == PROJECTION_PERSPECTIVE)
         height /= distance;
-    scene->camera.right = vec3_scale(right, height * aspect);
-    scene->camera.up = vec3_scale(up, height);
+    scene->view.camera.right = vec3_scale(right, height * aspect);
+    scene->view.camera.up = vec3_scale(up, height);
 }
 
 static void stage(Staged *staged, SceneKind kind, Projection projection)
@@ -48,16 +48,28 @@ static void stage(Staged *staged, SceneKind kind, Projection projection)
     Random random;
     random_seed(&random, 71);
     make_test_scene(kind, &random, &staged->test);
-    Scene *scene = staged->scene = &staged->test.scene;
-    for (size_t i = 0; i < scene->n_segments; i++)
-        staged->test.segments[i].color = (Rgb){0.2f + 0.01f * (float)i, 0.3f, 0.7f};
-    light_test_scene(scene, staged->lights);
-    scene->camera.width = WIDTH;
-    scene->camera.height = HEIGHT;
+    Scene *scene = &staged->scene;
+    *scene = (Scene){.geometry = staged->test.geometry, .appearance = {.colors = staged->colors}};
+    scene->geometry.ids = test_ids();
+    for (size_t i = 0; i < scene->geometry.n_segments; i++)
+        staged->colors[i] = (Rgb){0.2f + 0.01f * (float)i, 0.3f, 0.7f};
+    light_test_scene(scene);
+    scene->view.camera.width = WIDTH;
+    scene->view.camera.height = HEIGHT;
     Vec3 center = vec3(0, 0, 0);
-    for (size_t i = 0; i < scene->n_segments; i++)
-        center = vec3_add_scaled(center, scene->segments[i].b, 1.0 / (double)scene->n_segments);
+    for (size_t i = 0; i < scene->geometry.n_segments; i++)
+        center = vec3_add_scaled(center, scene->geometry.segments[i].b,
+                                 1.0 / (double)scene->geometry.n_segments);
     set_camera(scene, projection, vec3_normalized(vec3(-0.3, -0.4, -1)), center, 18);
+}
+
+/* Puts a segment, the first one in the place of all that were there. */
+static void put_only(Staged *staged, bool first, Vec3 a, Vec3 b, double radius)
+{
+    if (first)
+        staged->test.geometry.n_segments = 0;
+    put_segment(&staged->test, a, b, radius);
+    staged->scene.geometry.n_segments = staged->test.geometry.n_segments;
 }
 
 static Frame drawn(const Scene *scene, int threads, int antialias, double threshold)
@@ -96,9 +108,9 @@ static void the_picture_does_not_depend_on_the_number_of_threads(void **state)
         for (size_t i = 0; i < 3; i++) {
             Staged staged;
             stage(&staged, KIND_TREE, (Projection)projection);
-            Frame one = drawn(staged.scene, 1, cases[i].antialias, cases[i].threshold);
+            Frame one = drawn(&staged.scene, 1, cases[i].antialias, cases[i].threshold);
             for (int threads = 2; threads <= 7; threads += 5) {
-                Frame many = drawn(staged.scene, threads, cases[i].antialias, cases[i].threshold);
+                Frame many = drawn(&staged.scene, threads, cases[i].antialias, cases[i].threshold);
                 assert_same_frames(&one, &many, WIDTH * HEIGHT);
                 frame_release(&many);
             }
@@ -119,9 +131,9 @@ static void codes_are_those_of_the_colors(void **state)
                                .want_color = true};
         Frame colors, codes;
         Picture picture;
-        assert_int_equal(render(staged.scene, &params, &colors, NULL, NULL), STATUS_OK);
+        assert_int_equal(render(&staged.scene, &params, &colors, NULL, NULL), STATUS_OK);
         params.codes_suffice = true;
-        assert_int_equal(render(staged.scene, &params, &codes, NULL, NULL), STATUS_OK);
+        assert_int_equal(render(&staged.scene, &params, &codes, NULL, NULL), STATUS_OK);
         assert_int_equal(picture_from_plane(&picture, &colors.color, ENCODING_SRGB, 8, NULL),
                          STATUS_OK);
         assert_null(codes.color.values);
@@ -132,25 +144,27 @@ static void codes_are_those_of_the_colors(void **state)
     }
 }
 
-typedef struct Shadows {
-    Caster *caster;
-} Shadows;
+static const Ground no_ground;
 
 static bool is_shadowed(void *context, Vec3 point, Vec3 towards, double distance)
 {
-    return caster_shadow(((Shadows *)context)->caster, 0, point, towards, distance);
+    return caster_shadow(context, 0, &no_ground, point, towards, distance);
 }
 
 /* The colour of a place of the picture, in double precision. */
 static Rgb color_at(const Scene *scene, Caster *caster, double i, double j)
 {
-    Ray ray = camera_ray(&scene->camera, i, j);
+    Ray ray = camera_ray(&scene->view.camera, i, j);
     Surfel surfel;
-    Shadows shadows = {caster};
     if (!caster_first(caster, 0, ray, &surfel))
-        return scene->background;
-    return shade(scene, surfel.pigment, ray_at(ray, surfel.t), surfel.normal, ray.direction,
-                 is_shadowed, &shadows);
+        return scene->view.background;
+    const ShadePoint at = {&scene->appearance.finish,
+                           appearance_color(&scene->appearance, surfel.segment),
+                           ray_at(ray, surfel.t),
+                           surfel.normal,
+                           ray.direction,
+                           1};
+    return shade(&scene->view, &at, is_shadowed, caster);
 }
 
 static double color_distance(Rgb a, const float *b)
@@ -167,11 +181,11 @@ static void the_picture_is_that_of_single_rays(void **state)
             Staged staged;
             stage(&staged, (SceneKind)kind, (Projection)projection);
             Caster *caster;
-            assert_int_equal(caster_new(staged.scene, NULL, 1, &caster, NULL), STATUS_OK);
-            Frame frame = drawn(staged.scene, 2, 1, 0);
+            assert_int_equal(caster_new(&staged.scene.geometry, NULL, 1, &caster, NULL), STATUS_OK);
+            Frame frame = drawn(&staged.scene, 2, 1, 0);
             int seen = 0, different = 0;
             for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
-                Rgb color = color_at(staged.scene, caster, pixel % WIDTH, pixel / WIDTH);
+                Rgb color = color_at(&staged.scene, caster, pixel % WIDTH, pixel / WIDTH);
                 seen += frame.id.ids[pixel] != 0;
                 different += color_distance(color, &frame.color.values[3 * pixel]) > 2e-4;
             }
@@ -191,16 +205,16 @@ static void antialiasing_weighs_the_centre_and_the_grid_alike(void **state)
         Staged staged;
         stage(&staged, KIND_TREE, n == 2 ? PROJECTION_ORTHOGRAPHIC : PROJECTION_PERSPECTIVE);
         Caster *caster;
-        assert_int_equal(caster_new(staged.scene, NULL, 1, &caster, NULL), STATUS_OK);
-        Frame frame = drawn(staged.scene, 2, n, 0);
+        assert_int_equal(caster_new(&staged.scene.geometry, NULL, 1, &caster, NULL), STATUS_OK);
+        Frame frame = drawn(&staged.scene, 2, n, 0);
         double offsets[3];
-        resample_offsets(n, offsets);
+        camera_sample_offsets(n, offsets);
         int different = 0;
         for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel += 7) {
             int i = pixel % WIDTH, j = pixel / WIDTH;
-            Rgb sum = color_at(staged.scene, caster, i, j);
+            Rgb sum = color_at(&staged.scene, caster, i, j);
             for (int k = 0; k < n * n; k++) {
-                Rgb more = color_at(staged.scene, caster, i + offsets[k % n], j + offsets[k / n]);
+                Rgb more = color_at(&staged.scene, caster, i + offsets[k % n], j + offsets[k / n]);
                 sum = (Rgb){sum.r + more.r, sum.g + more.g, sum.b + more.b};
             }
             float count = (float)(n * n + 1);
@@ -218,8 +232,8 @@ static void adaptive_antialiasing_changes_edges_alone(void **state)
     (void)state;
     Staged staged;
     stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
-    Frame plain = drawn(staged.scene, 2, 1, 0), full = drawn(staged.scene, 2, 3, 0);
-    Frame adaptive = drawn(staged.scene, 2, 3, 0.1);
+    Frame plain = drawn(&staged.scene, 2, 1, 0), full = drawn(&staged.scene, 2, 3, 0);
+    Frame adaptive = drawn(&staged.scene, 2, 3, 0.1);
     uint8_t *mask = calloc(WIDTH * HEIGHT, 1);
     assert_non_null(mask);
     resample_mask(&plain.color, 0, 0, 0.1f, 1, mask);
@@ -275,7 +289,7 @@ static void all_kernels_agree(void **state)
         .towards = {0.48f, 0.6f, -0.64f}, .color = {1, 1, 1}, .parallel = true};
     Staged staged;
     stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
-    const TileLook look = {staged.scene->finish, &light, 1};
+    const TileLook look = {staged.scene.appearance.finish, &light, 1};
     double places[64];
     for (int i = 0; i < 64; i++)
         places[i] = i;
@@ -285,7 +299,9 @@ static void all_kernels_agree(void **state)
     for (int k = 0; k < n_kernels; k++) {
         FieldTiles *field;
         KernelVisit visit = {tilekernels[k], &look, tiles[k], 0};
-        assert_int_equal(fieldtiles_new(staged.scene, &grid, 0, 1, &field, NULL), STATUS_OK);
+        assert_int_equal(fieldtiles_new(&staged.scene.geometry, &staged.scene.view.camera, &grid, 0,
+                                        1, &field, NULL),
+                         STATUS_OK);
         fieldtiles_use_kernel(field, fieldkernels[k]);
         for (size_t row = 0; row < fieldtiles_rows(field); row++)
             assert_int_equal(fieldtiles_trace(field, row, 0, NULL, keep_tile, &visit, NULL),
@@ -322,7 +338,8 @@ static Rgb shaded(const Scene *scene, const TileSurface *surface, int sample)
                    surface->pigment[2][sample]};
     if (vec3_dot(at[1], at[2]) > 0)
         at[1] = vec3_scale(at[1], -1);
-    return shade(scene, pigment, at[0], at[1], at[2], NULL, NULL);
+    const ShadePoint point = {&scene->appearance.finish, pigment, at[0], at[1], at[2], 1};
+    return shade(&scene->view, &point, NULL, NULL);
 }
 
 /* Fills all samples with normals, directions and places at random. */
@@ -346,9 +363,8 @@ static void make_surface(Random *random, TileHits *hits, TileSurface *surface)
 static void kernels_shade_as_single_rays_are_shaded(void **state)
 {
     (void)state;
-    Light lights[2];
-    Scene scene = {.n_lights = 0};
-    light_test_scene(&scene, lights);
+    Scene scene = {0};
+    light_test_scene(&scene);
     const Viewpoint eye = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     TileLight *tile_lights;
     TileLook look;
@@ -357,9 +373,11 @@ static void kernels_shade_as_single_rays_are_shaded(void **state)
     double worst = 0;
     const float sizes[] = {35, 200, 41.5f};
     for (int n = 0; n < 30; n++) {
-        scene.finish.phong_size = sizes[n % 3];
-        scene.finish.brilliance = n % 2 ? 1 : 1.3f;
-        assert_int_equal(tilelook_make(&scene, &eye, &tile_lights, &look, NULL), STATUS_OK);
+        scene.appearance.finish.phong_size = sizes[n % 3];
+        scene.appearance.finish.brilliance = n % 2 ? 1 : 1.3f;
+        assert_int_equal(
+            tilelook_make(&scene.view, &scene.appearance.finish, &eye, &tile_lights, &look, NULL),
+            STATUS_OK);
         TileHits hits;
         TileSurface surface = {0};
         make_surface(&random, &hits, &surface);
@@ -422,14 +440,14 @@ static void a_distant_scene_is_the_same_scene(void **state)
     for (int projection = 0; projection < 2; projection++) {
         Staged staged;
         stage(&staged, KIND_TREE, (Projection)projection);
-        staged.scene->n_lights = 1;
-        Frame near = drawn(staged.scene, 2, 1, 0);
-        for (size_t i = 0; i < staged.scene->n_segments; i++) {
+        staged.scene.view.n_lights = 1;
+        Frame near = drawn(&staged.scene, 2, 1, 0);
+        for (size_t i = 0; i < staged.scene.geometry.n_segments; i++) {
             staged.test.segments[i].a = vec3_add(staged.test.segments[i].a, away);
             staged.test.segments[i].b = vec3_add(staged.test.segments[i].b, away);
         }
-        staged.scene->camera.location = vec3_add(staged.scene->camera.location, away);
-        Frame far = drawn(staged.scene, 2, 1, 0);
+        staged.scene.view.camera.location = vec3_add(staged.scene.view.camera.location, away);
+        Frame far = drawn(&staged.scene, 2, 1, 0);
         int different = 0;
         for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++)
             different +=
@@ -461,15 +479,14 @@ static void a_camera_inside_a_vessel_sees_its_wall(void **state)
         for (int tilted = 0; tilted < 2; tilted++) {
             Staged staged;
             stage(&staged, KIND_TREE, (Projection)projection);
-            staged.test.scene.n_segments = 0;
-            put_segment(&staged.test, vec3(-20, 0, tilted), vec3(20, 0, -tilted), 1.23);
-            put_segment(&staged.test, vec3(-20, 0, -7.5), vec3(20, 0, -7.5), 0.61);
-            Camera *camera = &staged.scene->camera;
+            put_only(&staged, true, vec3(-20, 0, tilted), vec3(20, 0, -tilted), 1.23);
+            put_only(&staged, false, vec3(-20, 0, -7.5), vec3(20, 0, -7.5), 0.61);
+            Camera *camera = &staged.scene.view.camera;
             camera->location = vec3(0, 0, 0.2);
             camera->direction = vec3(0, 0, -1);
             camera->right = vec3(0.9, 0, 0);
             camera->up = vec3(0, 0.6, 0);
-            Frame frame = drawn(staged.scene, 1, 1, 0);
+            Frame frame = drawn(&staged.scene, 1, 1, 0);
             assert_finite(&frame);
             for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
                 Ray ray = camera_ray(camera, pixel % WIDTH, pixel / WIDTH);
@@ -478,7 +495,7 @@ static void a_camera_inside_a_vessel_sees_its_wall(void **state)
                 Vec3 x = ray_at(ray, t), normal = vec3((double)n[0], (double)n[1], (double)n[2]);
                 Vec3 axis = vec3_normalized(vec3(20, 0, -tilted));
                 Vec3 across = vec3_add_scaled(x, axis, -vec3_dot(x, axis));
-                assert_int_equal(frame.id.ids[pixel], 2);
+                assert_int_equal(frame.id.ids[pixel], 1);
                 assert_true(fabs(vec3_length(across) - 1.23) < 1e-5);
                 assert_true(vec3_dot(normal, ray.direction) < 0);
                 assert_true(vec3_distance(vec3_scale(across, -1 / 1.23), normal) < 1e-5);
@@ -497,16 +514,15 @@ static void extremes_are_drawn_without_harm(void **state)
         for (int projection = 0; projection < 2; projection++) {
             Staged staged;
             stage(&staged, KIND_TREE, (Projection)projection);
-            staged.test.scene.n_segments = 0;
             double half = cases[i].length / 2;
-            put_segment(&staged.test, vec3(-half, 0.1, 0), vec3(half, 0.1, 0), cases[i].radius);
-            put_segment(&staged.test, vec3(-5, 3, 0), vec3(5, 3, 0), 0.5);
-            set_camera(staged.scene, (Projection)projection, vec3(0, 0, -1), vec3(0, 0, 0), 12);
-            Frame frame = drawn(staged.scene, 2, 2, 0);
+            put_only(&staged, true, vec3(-half, 0.1, 0), vec3(half, 0.1, 0), cases[i].radius);
+            put_only(&staged, false, vec3(-5, 3, 0), vec3(5, 3, 0), 0.5);
+            set_camera(&staged.scene, (Projection)projection, vec3(0, 0, -1), vec3(0, 0, 0), 12);
+            Frame frame = drawn(&staged.scene, 2, 2, 0);
             assert_finite(&frame);
             int seen = 0;
             for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++)
-                seen += frame.id.ids[pixel] == 3;
+                seen += frame.id.ids[pixel] == 2;
             /* The second vessel is seen, unless the camera stands within the first. */
             if (cases[i].radius < 1e9)
                 assert_true(seen > 300);
@@ -519,17 +535,16 @@ static void coincident_segments_add_up(void **state)
     (void)state;
     Staged staged;
     stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
-    staged.test.scene.n_segments = 0;
     for (int i = 0; i < 60; i++)
-        put_segment(&staged.test, vec3(-20, 0, 0), vec3(20, 0, 0), 1);
-    set_camera(staged.scene, PROJECTION_ORTHOGRAPHIC, vec3(0, 0, -1), vec3(0, 0, 0), 12);
-    Frame frame = drawn(staged.scene, 2, 1, 0);
+        put_only(&staged, i == 0, vec3(-20, 0, 0), vec3(20, 0, 0), 1);
+    set_camera(&staged.scene, PROJECTION_ORTHOGRAPHIC, vec3(0, 0, -1), vec3(0, 0, 0), 12);
+    Frame frame = drawn(&staged.scene, 2, 1, 0);
     assert_finite(&frame);
     /* 60 exp(-2 d^2) = e^-2 */
     int middle = HEIGHT / 2 * WIDTH + WIDTH / 2;
     double expected = 5 * 12 - sqrt(1 + log(60) / 2);
     assert_true(fabs((double)frame.depth.values[middle] - expected) < 1e-4);
-    assert_int_equal(frame.id.ids[middle], 2);
+    assert_int_equal(frame.id.ids[middle], 1);
     frame_release(&frame);
 }
 
@@ -538,8 +553,8 @@ static void nothing_is_background(void **state)
     (void)state;
     Staged staged;
     stage(&staged, KIND_TREE, PROJECTION_PERSPECTIVE);
-    staged.scene->n_segments = 0;
-    Frame frame = drawn(staged.scene, 2, 2, 0);
+    staged.scene.geometry.n_segments = 0;
+    Frame frame = drawn(&staged.scene, 2, 2, 0);
     for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
         assert_true(isinf(frame.depth.values[pixel]));
         assert_true(frame.color.values[3 * pixel + 2] == 1);

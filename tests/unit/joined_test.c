@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "test_stage.h"
 #include <cmocka.h>
 
 static const Look look = {.color = {0.5f, 0.1f, 0.2f},
@@ -40,7 +41,7 @@ static Scene stage(const Tree *tree, JointForm joints, StageReport *report)
     params.joints = joints;
     Scene scene;
     Err err = {{0}};
-    if (stage_scene(tree, &look, NULL, &params, &scene, report, &err) != STATUS_OK)
+    if (stage_all(tree, &look, &params, &scene, report, &err) != STATUS_OK)
         fail_msg("%s", err.text);
     return scene;
 }
@@ -48,8 +49,8 @@ static Scene stage(const Tree *tree, JointForm joints, StageReport *report)
 static size_t count(const Scene *scene, PrimitiveKind kind)
 {
     size_t n = 0;
-    for (size_t i = 0; i < scene->n_primitives; i++)
-        n += scene->primitives[i].kind == kind;
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++)
+        n += scene->geometry.primitives[i].kind == kind;
     return n;
 }
 
@@ -71,10 +72,11 @@ static void joints_lead_from_the_rim_of_the_parent_to_those_of_the_daughters(voi
     assert_int_equal(report.places_short + report.places_sharp, 0);
     assert_int_equal(count(&scene, PRIMITIVE_CYLINDER), 3);
     for (size_t k = 0; k < 2; k++) {
-        const Primitive *joint = &scene.primitives[3 + k], *daughter = &scene.primitives[1 + k];
-        const Primitive *parent = &scene.primitives[0];
+        const Primitive *joint = &scene.geometry.primitives[3 + k],
+                        *daughter = &scene.geometry.primitives[1 + k];
+        const Primitive *parent = &scene.geometry.primitives[0];
         assert_int_equal(joint->kind, PRIMITIVE_JOINT);
-        assert_int_equal(joint->id, 3 + k);
+        assert_int_equal(scene.geometry.ids[joint->segment], 3 + k);
         assert_true(vec3_distance(joint->a, parent->b) == 0);
         assert_true(vec3_distance(joint->b, daughter->a) == 0);
         assert_true(joint->radius_mm == 1.5 && joint->radius_b_mm == tree.radius_mm[2 + k]);
@@ -92,8 +94,8 @@ static void each_disc_of_a_joint_lies_on_one_side_of_the_other(void **state)
     (void)state;
     Tree tree = bifurcation(vec3(-6, 1, 2));
     Scene scene = stage(&tree, JOINTS_ROBUST, NULL);
-    for (size_t i = 0; i < scene.n_primitives; i++) {
-        const Primitive *joint = &scene.primitives[i];
+    for (size_t i = 0; i < scene.geometry.n_primitives; i++) {
+        const Primitive *joint = &scene.geometry.primitives[i];
         if (joint->kind != PRIMITIVE_JOINT)
             continue;
         double sine = vec3_length(vec3_cross(joint->axis_a, joint->axis_b));
@@ -114,8 +116,8 @@ static void a_straight_place_needs_no_joint(void **state)
     StageReport report;
     Scene scene = stage(&tree, JOINTS_ROBUST, &report);
     assert_int_equal(report.joints + report.places_short + report.places_sharp, 0);
-    assert_int_equal(scene.n_primitives, 2);
-    assert_true(scene.primitives[0].b.y == 5 && scene.primitives[1].a.y == 5);
+    assert_int_equal(scene.geometry.n_primitives, 2);
+    assert_true(scene.geometry.primitives[0].b.y == 5 && scene.geometry.primitives[1].a.y == 5);
     scene_release(&scene);
     tree_release(&tree);
 }
@@ -131,9 +133,10 @@ static void where_a_vessel_is_too_short_the_place_is_round(void **state)
     assert_int_equal(count(&scene, PRIMITIVE_CYLINDER), 3);
     assert_int_equal(count(&scene, PRIMITIVE_SPHERE), 1);
     for (size_t i = 0; i < 3; i++)
-        assert_true(vec3_distance(scene.primitives[i].a, tree.position[tree.parent[i + 1]]) == 0);
-    assert_true(scene.primitives[3].radius_mm == 1.5);
-    assert_int_equal(scene.primitives[3].id, 2);
+        assert_true(
+            vec3_distance(scene.geometry.primitives[i].a, tree.position[tree.parent[i + 1]]) == 0);
+    assert_true(scene.geometry.primitives[3].radius_mm == 1.5);
+    assert_int_equal(scene.geometry.ids[scene.geometry.primitives[3].segment], 2);
     scene_release(&scene);
     tree_release(&tree);
 }
@@ -203,9 +206,10 @@ static void to_the_letter_a_vessel_that_is_too_short_vanishes_into_its_joints(vo
     assert_int_equal(report.places_short, 1);
     assert_int_equal(report.joints, 2);
     assert_int_equal(count(&scene, PRIMITIVE_CYLINDER), 2);
-    for (size_t i = 0; i < scene.n_primitives; i++)
-        if (scene.primitives[i].kind == PRIMITIVE_JOINT && scene.primitives[i].id == 3)
-            assert_true(vec3_distance(scene.primitives[i].b, tree.position[2]) < 1e-12);
+    for (size_t i = 0; i < scene.geometry.n_primitives; i++)
+        if (scene.geometry.primitives[i].kind == PRIMITIVE_JOINT &&
+            scene.geometry.ids[scene.geometry.primitives[i].segment] == 3)
+            assert_true(vec3_distance(scene.geometry.primitives[i].b, tree.position[2]) < 1e-12);
     scene_release(&scene);
     tree_release(&tree);
 }
@@ -221,9 +225,9 @@ static void a_vessel_between_two_places_keeps_the_joint_that_needs_less(void **s
     Scene scene = stage(&tree, JOINTS_ROBUST, &report);
     assert_int_equal(report.joints, 1);
     assert_int_equal(report.places_short, 1);
-    for (size_t i = 0; i < scene.n_primitives; i++)
-        if (scene.primitives[i].kind == PRIMITIVE_SPHERE)
-            assert_true(scene.primitives[i].a.x == 0);
+    for (size_t i = 0; i < scene.geometry.n_primitives; i++)
+        if (scene.geometry.primitives[i].kind == PRIMITIVE_SPHERE)
+            assert_true(scene.geometry.primitives[i].a.x == 0);
     scene_release(&scene);
     tree_release(&tree);
 }
@@ -238,8 +242,8 @@ static void where_trees_begin_the_thickest_vessel_is_the_trunk(void **state)
     Scene scene = stage(&tree, JOINTS_ROBUST, &report);
     assert_int_equal(report.joints, 2);
     for (size_t i = 3; i < 5; i++) {
-        assert_true(scene.primitives[i].radius_mm == 1.4);
-        assert_int_equal(scene.primitives[i].id, i == 3 ? 2 : 4);
+        assert_true(scene.geometry.primitives[i].radius_mm == 1.4);
+        assert_int_equal(scene.geometry.ids[scene.geometry.primitives[i].segment], i == 3 ? 2 : 4);
     }
     scene_release(&scene);
     tree_release(&tree);
@@ -254,8 +258,8 @@ static void of_equally_thick_vessels_the_first_is_the_trunk(void **state)
     StageReport report;
     Scene scene = stage(&tree, JOINTS_ROBUST, &report);
     assert_int_equal(report.joints, 2);
-    assert_int_equal(scene.primitives[3].id, 2);
-    assert_int_equal(scene.primitives[4].id, 4);
+    assert_int_equal(scene.geometry.ids[scene.geometry.primitives[3].segment], 2);
+    assert_int_equal(scene.geometry.ids[scene.geometry.primitives[4].segment], 4);
     scene_release(&scene);
     tree_release(&tree);
 }
@@ -293,13 +297,16 @@ static void no_ray_sees_the_inside_of_a_robust_tree(void **state)
         joints += report.joints;
         round += report.places_short + report.places_sharp;
         Bvh *bvh;
-        assert_int_equal(bvh_build(scene.primitives, scene.n_primitives, &bvh, NULL), STATUS_OK);
-        Vec3 size = vec3_sub(scene.bounds.high, scene.bounds.low);
+        assert_int_equal(
+            bvh_build(scene.geometry.primitives, scene.geometry.n_primitives, &bvh, NULL),
+            STATUS_OK);
+        Vec3 size = vec3_sub(scene.geometry.bounds.high, scene.geometry.bounds.low);
         for (int i = 0; i < 4000; i++) {
             double u = random_uniform(&random), v = random_uniform(&random);
             double w = random_uniform(&random);
-            Vec3 target = vec3(scene.bounds.low.x + u * size.x, scene.bounds.low.y + v * size.y,
-                               scene.bounds.low.z + w * size.z);
+            Vec3 target = vec3(scene.geometry.bounds.low.x + u * size.x,
+                               scene.geometry.bounds.low.y + v * size.y,
+                               scene.geometry.bounds.low.z + w * size.z);
             double x = number(&random, -1, 1), y = number(&random, -1, 1);
             Vec3 direction = vec3_normalized(vec3(x, y, number(&random, 0.1, 1)));
             Ray ray = {vec3_add_scaled(target, direction, -200), direction};

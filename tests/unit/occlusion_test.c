@@ -9,15 +9,19 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "test_scene.h"
 #include <cmocka.h>
 
 static Err err;
 
-static double open_part(const Scene *scene, Vec3 point, Vec3 normal, int rays, double turn)
+static const Ground no_ground;
+
+static double open_part(const Geometry *geometry, const Ground *ground, Vec3 point, Vec3 normal,
+                        int rays, double turn)
 {
     Caster *caster;
-    assert_int_equal(caster_new(scene, NULL, 1, &caster, &err), STATUS_OK);
-    double open = occlusion_open(caster, 0, point, normal, rays, turn);
+    assert_int_equal(caster_new(geometry, NULL, 1, &caster, &err), STATUS_OK);
+    double open = occlusion_open(caster, 0, ground, point, normal, rays, turn);
     caster_free(caster);
     return open;
 }
@@ -26,11 +30,11 @@ static double open_part(const Scene *scene, Vec3 point, Vec3 normal, int rays, d
 static void a_ball_overhead_hides_the_square_of_its_sine(void **state)
 {
     (void)state;
-    Primitive ball = {.kind = PRIMITIVE_SPHERE, .a = {2, 3, 10}, .b = {2, 3, 10}, .id = 2};
-    const Scene scene = {.model = SCENE_ROUNDED, .primitives = &ball, .n_primitives = 1};
+    Primitive ball = {.kind = PRIMITIVE_SPHERE, .a = {2, 3, 10}, .b = {2, 3, 10}};
+    const Geometry geometry = {.model = SCENE_ROUNDED, .primitives = &ball, .n_primitives = 1};
     for (double sine = 0.1; sine < 0.95; sine += 0.2) {
         ball.radius_mm = 10 * sine;
-        double open = open_part(&scene, vec3(2, 3, 0), vec3(0, 0, 1), 4000, 0.3);
+        double open = open_part(&geometry, &no_ground, vec3(2, 3, 0), vec3(0, 0, 1), 4000, 0.3);
         assert_true(fabs(open - (1 - sine * sine)) < 1e-3);
     }
 }
@@ -41,13 +45,11 @@ static void a_plane_hides_what_its_angle_says(void **state)
     (void)state;
     Primitive far = {
         .kind = PRIMITIVE_SPHERE, .a = {0, 900, 0}, .b = {0, 900, 0}, .radius_mm = 1e-3};
-    const Scene scene = {.model = SCENE_ROUNDED,
-                         .primitives = &far,
-                         .n_primitives = 1,
-                         .ground = {.present = true, .normal = {0, 1, 0}, .offset_mm = -5}};
+    const Geometry geometry = {.model = SCENE_ROUNDED, .primitives = &far, .n_primitives = 1};
+    const Ground ground = {.present = true, .normal = {0, 1, 0}, .offset_mm = -5};
     for (double angle = 0; angle < 3.2; angle += 0.4) {
         Vec3 normal = vec3(sin(angle) * 0.6, cos(angle), sin(angle) * 0.8);
-        double open = open_part(&scene, vec3(1, 2, 3), normal, 4000, 0.7);
+        double open = open_part(&geometry, &ground, vec3(1, 2, 3), normal, 4000, 0.7);
         assert_true(fabs(open - (1 + cos(angle)) / 2) < 5e-3);
     }
 }
@@ -56,11 +58,12 @@ static void few_rays_are_right_on_average(void **state)
 {
     (void)state;
     Primitive ball = {.kind = PRIMITIVE_SPHERE, .a = {3, 0, 10}, .b = {3, 0, 10}, .radius_mm = 4};
-    const Scene scene = {.model = SCENE_ROUNDED, .primitives = &ball, .n_primitives = 1};
-    double many = open_part(&scene, vec3(0, 0, 0), vec3(0, 0, 1), 20000, 0), sum = 0;
+    const Geometry geometry = {.model = SCENE_ROUNDED, .primitives = &ball, .n_primitives = 1};
+    double many = open_part(&geometry, &no_ground, vec3(0, 0, 0), vec3(0, 0, 1), 20000, 0), sum = 0;
     for (int j = 0; j < 32; j++)
         for (int i = 0; i < 32; i++)
-            sum += open_part(&scene, vec3(0, 0, 0), vec3(0, 0, 1), 8, occlusion_turn(i, j));
+            sum += open_part(&geometry, &no_ground, vec3(0, 0, 0), vec3(0, 0, 1), 8,
+                             occlusion_turn(i, j));
     assert_true(fabs(sum / 1024 - many) < 4e-3);
 }
 
@@ -70,12 +73,13 @@ static void points_lie_outwards_by_area(void **state)
     (void)state;
     enum { RAYS = 7 };
     const double turn = 0.2385, shift = 12 * turn - floor(12 * turn);
-    Primitive ball = {.kind = PRIMITIVE_SPHERE, .a = {0, 0, 10}, .b = {0, 0, 10}, .id = 2};
-    const Scene scene = {.model = SCENE_ROUNDED, .primitives = &ball, .n_primitives = 1};
+    Primitive ball = {.kind = PRIMITIVE_SPHERE, .a = {0, 0, 10}, .b = {0, 0, 10}};
+    const Geometry geometry = {.model = SCENE_ROUNDED, .primitives = &ball, .n_primitives = 1};
     for (int k = 0; k < RAYS; k++)
         for (int side = 0; side < 2; side++) {
             ball.radius_mm = 10 * sqrt((k + shift) / RAYS + (side ? 1e-6 : -1e-6));
-            double open = open_part(&scene, vec3(0, 0, 0), vec3(0, 0, 1), RAYS, turn);
+            double open =
+                open_part(&geometry, &no_ground, vec3(0, 0, 0), vec3(0, 0, 1), RAYS, turn);
             assert_true(fabs(open - (RAYS - k - side) / (double)RAYS) < 1e-12);
         }
 }
@@ -90,8 +94,8 @@ static double direction_of(int k, double turn)
         double angle = step * 6.283185307179586 / 3600;
         Vec3 center = vec3(out * cos(angle), out * sin(angle), sqrt(1 - out * out));
         Primitive ball = {.kind = PRIMITIVE_SPHERE, .a = center, .b = center, .radius_mm = 0.01};
-        const Scene scene = {.model = SCENE_ROUNDED, .primitives = &ball, .n_primitives = 1};
-        if (open_part(&scene, vec3(0, 0, 0), vec3(0, 0, 1), 3, turn) == 1)
+        const Geometry geometry = {.model = SCENE_ROUNDED, .primitives = &ball, .n_primitives = 1};
+        if (open_part(&geometry, &no_ground, vec3(0, 0, 0), vec3(0, 0, 1), 3, turn) == 1)
             continue;
         first = first < 0 || step / 10.0 - last > 90 ? step / 10.0 : first;
         last = step / 10.0;
@@ -147,19 +151,21 @@ static void turns_are_spread_over_the_circle(void **state)
 static void only_ambient_light_is_held_back(void **state)
 {
     (void)state;
-    Primitive balls[] = {
-        {.kind = PRIMITIVE_SPHERE, .a = {-2, 0, 0}, .radius_mm = 2, .id = 2, .color = {1, 1, 1}},
-        {.kind = PRIMITIVE_SPHERE, .a = {2, 0, 0}, .radius_mm = 2, .id = 3, .color = {1, 1, 1}}};
-    const Scene scene = {.model = SCENE_ROUNDED,
-                         .primitives = balls,
-                         .n_primitives = 2,
-                         .finish = {.ambient = 0.5f, .diffuse = 0.5f, .brilliance = 1},
-                         .camera = {.location = {0, 0, 20},
-                                    .right = {10, 0, 0},
-                                    .up = {0, 10, 0},
-                                    .direction = {0, 0, -1},
-                                    .width = 100,
-                                    .height = 100}};
+    Primitive balls[] = {{.kind = PRIMITIVE_SPHERE, .a = {-2, 0, 0}, .radius_mm = 2, .segment = 0},
+                         {.kind = PRIMITIVE_SPHERE, .a = {2, 0, 0}, .radius_mm = 2, .segment = 1}};
+    const Scene scene = {
+        .geometry = {.model = SCENE_ROUNDED,
+                     .primitives = balls,
+                     .n_primitives = 2,
+                     .ids = test_ids()},
+        .appearance = {.finish = {.ambient = 0.5f, .diffuse = 0.5f, .brilliance = 1},
+                       .color = {1, 1, 1}},
+        .view = {.camera = {.location = {0, 0, 20},
+                            .right = {10, 0, 0},
+                            .up = {0, 10, 0},
+                            .direction = {0, 0, -1},
+                            .width = 100,
+                            .height = 100}}};
     RenderParams params = {.threads = 2, .antialias = 1, .occlusion = 64, .want_color = true};
     Frame with, without;
     assert_int_equal(render(&scene, &params, &with, NULL, &err), STATUS_OK);

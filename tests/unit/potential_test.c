@@ -11,30 +11,31 @@
 #include <stdlib.h>
 
 #include "field_scenes.h"
+#include "test_stage.h"
 #include <cmocka.h>
 
 static TestScene empty_scene(void)
 {
     TestScene test;
     memset(&test, 0, sizeof test);
-    test.scene.model = SCENE_ISOSURFACE;
+    test.geometry.model = SCENE_ISOSURFACE;
     return test;
 }
 
 /* Where a ray from far outside towards `center` first meets the surface: the distance from there,
  * or -1 without a hit. */
-static double radius_towards(const Scene *scene, Vec3 center, Vec3 outwards)
+static double radius_towards(const Geometry *geometry, Vec3 center, Vec3 outwards)
 {
     uint32_t all[MAX_SEGMENTS], segment;
     FieldScratch *scratch;
     double t;
     Vec3 normal;
     assert_int_equal(fieldscratch_new(MAX_SEGMENTS, &scratch, NULL), STATUS_OK);
-    for (uint32_t i = 0; i < scene->n_segments; i++)
+    for (uint32_t i = 0; i < geometry->n_segments; i++)
         all[i] = i;
     Vec3 d = vec3_normalized(outwards);
     Ray ray = {vec3_add_scaled(center, d, 50), vec3_scale(d, -1)};
-    bool hit = field_first_hit_among(scene, all, scene->n_segments, scratch, ray, 0, 100, &t,
+    bool hit = field_first_hit_among(geometry, all, geometry->n_segments, scratch, ray, 0, 100, &t,
                                      &normal, &segment);
     fieldscratch_free(scratch);
     return hit ? 50 - t : -1;
@@ -45,21 +46,21 @@ static double radius_towards(const Scene *scene, Vec3 center, Vec3 outwards)
 static double joint_radius(const double *radii, int n)
 {
     TestScene test = empty_scene();
-    test.scene.segments = test.segments;
+    test.geometry.segments = test.segments;
     for (int i = 0; i < n; i++) {
         double angle = 6.283185307179586 * i / n;
         put_segment(&test, vec3(0, 0, 0), vec3(30 * cos(angle), 30 * sin(angle), 0), radii[i]);
     }
-    return radius_towards(&test.scene, vec3(0, 0, 0), vec3(0, 0, 1));
+    return radius_towards(&test.geometry, vec3(0, 0, 0), vec3(0, 0, 1));
 }
 
 static void free_ends_overshoot_by_half_a_radius(void **state)
 {
     (void)state;
     TestScene test = empty_scene();
-    test.scene.segments = test.segments;
+    test.geometry.segments = test.segments;
     put_segment(&test, vec3(-20, 0, 0), vec3(0, 0, 0), 1.7);
-    double length = radius_towards(&test.scene, vec3(0, 0, 0), vec3(1, 0, 0));
+    double length = radius_towards(&test.geometry, vec3(0, 0, 0), vec3(1, 0, 0));
     assert_true(fabs(length / 1.7 - 0.5508) < 1e-4);
 }
 
@@ -72,12 +73,12 @@ static void short_segments_shrink_and_vanish(void **state)
                  {1, 0.900}, {2, 0.988},   {4, 1.000}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         TestScene test = empty_scene();
-        test.scene.segments = test.segments;
+        test.geometry.segments = test.segments;
         put_segment(&test, vec3(-cases[i].length / 2, 0, 0), vec3(cases[i].length / 2, 0, 0), 1);
-        double radius = radius_towards(&test.scene, vec3(0, 0, 0), vec3(0, 0, 1));
+        double radius = radius_towards(&test.geometry, vec3(0, 0, 0), vec3(0, 0, 1));
         assert_true(fabs(radius - cases[i].radius) < 1e-3);
         size_t vanished;
-        assert_int_equal(surface_count_hidden(&test.scene, &vanished, NULL), STATUS_OK);
+        assert_int_equal(surface_count_hidden(&test.geometry, &vanished, NULL), STATUS_OK);
         assert_int_equal(vanished, cases[i].radius < 0);
     }
 }
@@ -86,11 +87,11 @@ static void short_segments_of_a_chain_do_not_vanish(void **state)
 {
     (void)state;
     TestScene test = empty_scene();
-    test.scene.segments = test.segments;
+    test.geometry.segments = test.segments;
     for (int i = 0; i < 50; i++)
         put_segment(&test, vec3(0.1 * i, 0, 0), vec3(0.1 * (i + 1), 0, 0), 1);
     size_t vanished;
-    assert_int_equal(surface_count_hidden(&test.scene, &vanished, NULL), STATUS_OK);
+    assert_int_equal(surface_count_hidden(&test.geometry, &vanished, NULL), STATUS_OK);
     assert_int_equal(vanished, 0);
 }
 
@@ -100,11 +101,11 @@ static void what_vanishes_is_counted_half_way_along(void **state)
 {
     (void)state;
     TestScene test = empty_scene();
-    test.scene.segments = test.segments;
+    test.geometry.segments = test.segments;
     put_segment(&test, vec3(0, 0, 0), vec3(0.16, 0, 0), 1);
     put_segment(&test, vec3(0.16, 0, 0), vec3(0.172, 0, 0), 1);
     size_t vanished;
-    assert_int_equal(surface_count_hidden(&test.scene, &vanished, NULL), STATUS_OK);
+    assert_int_equal(surface_count_hidden(&test.geometry, &vanished, NULL), STATUS_OK);
     assert_int_equal(vanished, 1);
 }
 
@@ -127,11 +128,11 @@ static void parallel_vessels_merge_below_a_third_of_a_radius(void **state)
     (void)state;
     for (int merged = 0; merged < 2; merged++) {
         TestScene test = empty_scene();
-        test.scene.segments = test.segments;
+        test.geometry.segments = test.segments;
         double y = 1.3 * (2 + (merged ? 0.320 : 0.322)) / 2;
         put_segment(&test, vec3(-20, y, 0), vec3(20, y, 0), 1.3);
         put_segment(&test, vec3(-20, -y, 0), vec3(20, -y, 0), 1.3);
-        assert_int_equal(radius_towards(&test.scene, vec3(0, 0, 0), vec3(0, 0, 1)) > -1, merged);
+        assert_int_equal(radius_towards(&test.geometry, vec3(0, 0, 0), vec3(0, 0, 1)) > -1, merged);
     }
 }
 
@@ -161,7 +162,7 @@ static Scene staged_hairpin(bool graph)
     params.height = 120;
     params.graph = graph;
     make_hairpin(&tree);
-    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
+    assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, NULL), STATUS_OK);
     tree_release(&tree);
     return scene;
 }
@@ -171,11 +172,12 @@ static void the_graph_keeps_strangers_apart(void **state)
     (void)state;
     Scene paper = staged_hairpin(false), graph = staged_hairpin(true);
     Vec3 gap = vec3(15, 0, 0), joint = vec3(-10, 0, 0), up = vec3(0, 0, 1);
-    assert_true(radius_towards(&paper, gap, up) > 0);
-    assert_true(radius_towards(&graph, gap, up) < 0);
-    assert_true(fabs(radius_towards(&graph, joint, up) - radius_towards(&paper, joint, up)) < 1e-6);
+    assert_true(radius_towards(&paper.geometry, gap, up) > 0);
+    assert_true(radius_towards(&graph.geometry, gap, up) < 0);
+    assert_true(fabs(radius_towards(&graph.geometry, joint, up) -
+                     radius_towards(&paper.geometry, joint, up)) < 1e-6);
     Vec3 beside = vec3(10, 1.1, 0);
-    assert_true(fabs(radius_towards(&graph, beside, up) - 1) < 1e-6);
+    assert_true(fabs(radius_towards(&graph.geometry, beside, up) - 1) < 1e-6);
     scene_release(&paper);
     scene_release(&graph);
 }
@@ -190,7 +192,7 @@ static void the_graph_joins_what_is_near_along_the_tree(void **state)
             bool strangers = (i == 0 && (j == 2 || j == 4)) || (i == 2 && j != 1 && j != 2) ||
                              (i == 4 && j != 3 && j != 4) || (i == 1 && j == 4) ||
                              (i == 3 && j == 2);
-            assert_int_equal(blend_joins(&scene.blend, i, j), !strangers);
+            assert_int_equal(blend_joins(&scene.geometry.blend, i, j), !strangers);
         }
     scene_release(&scene);
 }
@@ -211,15 +213,14 @@ static void the_graph_joins_up_to_three_radii_away(void **state)
             tree.position[i] = vec3(x[i], 0, 0);
             tree.radius_mm[i] = radii[i];
         }
-        Look look = {0};
         StageParams params = stage_defaults();
         params.model = SCENE_ISOSURFACE;
         params.graph = true;
-        Scene scene;
-        assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
-        assert_int_equal(blend_joins(&scene.blend, 0, 2), within);
-        assert_false(blend_joins(&scene.blend, 2, 0));
-        scene_release(&scene);
+        Geometry geometry;
+        assert_int_equal(stage_geometry(&tree, &params, &geometry, NULL, NULL), STATUS_OK);
+        assert_int_equal(blend_joins(&geometry.blend, 0, 2), within);
+        assert_false(blend_joins(&geometry.blend, 2, 0));
+        geometry_release(&geometry);
         tree_release(&tree);
     }
 }
@@ -236,11 +237,11 @@ static void the_picture_of_the_graph_is_that_of_single_rays(void **state)
     assert_int_equal(fieldscratch_new(5, &scratch, NULL), STATUS_OK);
     int hits = 0;
     for (int pixel = 0; pixel < 200 * 120; pixel++) {
-        Ray ray = camera_ray(&scene.camera, pixel % 200, pixel / 200);
+        Ray ray = camera_ray(&scene.view.camera, pixel % 200, pixel / 200);
         double t;
         Vec3 normal;
-        bool hit =
-            field_first_hit_among(&scene, all, 5, scratch, ray, 0, HUGE_VAL, &t, &normal, &segment);
+        bool hit = field_first_hit_among(&scene.geometry, all, 5, scratch, ray, 0, HUGE_VAL, &t,
+                                         &normal, &segment);
         assert_int_equal(hit, isfinite(frame.depth.values[pixel]));
         assert_true(!hit || fabs((double)frame.depth.values[pixel] - t) < 1e-3);
         hits += hit;
@@ -252,14 +253,14 @@ static void the_picture_of_the_graph_is_that_of_single_rays(void **state)
 }
 
 /* Whether any of the sums about one segment reaches the level, from the definition. */
-static bool is_in_graph(const Scene *scene, Vec3 x)
+static bool is_in_graph(const Geometry *geometry, Vec3 x)
 {
-    for (uint32_t i = 0; i < scene->n_segments; i++) {
+    for (uint32_t i = 0; i < geometry->n_segments; i++) {
         double sum = 0;
-        for (uint32_t j = 0; j < scene->n_segments; j++) {
+        for (uint32_t j = 0; j < geometry->n_segments; j++) {
             Vec3 gradient;
-            if (blend_joins(&scene->blend, i, j))
-                sum += potential_term_gradient(&scene->segments[j], x, &gradient);
+            if (blend_joins(&geometry->blend, i, j))
+                sum += potential_term_gradient(&geometry->segments[j], x, &gradient);
         }
         if (sum >= FIELD_LEVEL)
             return true;
@@ -278,17 +279,17 @@ static void the_graph_is_left_where_all_its_bodies_are_left(void **state)
     Random random;
     random_seed(&random, 74);
     for (int i = 0; i < 2000; i++) {
-        const FieldSegment *in = &scene.segments[i % 5];
+        const FieldSegment *in = &scene.geometry.segments[i % 5];
         Vec3 span = vec3_sub(in->b, in->a), d = random_direction(&random);
         Ray ray = {vec3_add_scaled(in->a, span, uniform(&random, 0.1, 0.9)), d};
         double t, step = 0.02 * in->radius_mm;
         Vec3 normal;
-        assert_true(field_first_hit_among(&scene, all, 5, scratch, ray, 0, HUGE_VAL, &t, &normal,
-                                          &segment));
+        assert_true(field_first_hit_among(&scene.geometry, all, 5, scratch, ray, 0, HUGE_VAL, &t,
+                                          &normal, &segment));
         for (double at = 0; at < t - 1e-6; at += step)
-            assert_true(is_in_graph(&scene, ray_at(ray, at)));
-        assert_true(is_in_graph(&scene, ray_at(ray, t - 1e-6)));
-        assert_false(is_in_graph(&scene, ray_at(ray, t + 1e-6)));
+            assert_true(is_in_graph(&scene.geometry, ray_at(ray, at)));
+        assert_true(is_in_graph(&scene.geometry, ray_at(ray, t - 1e-6)));
+        assert_false(is_in_graph(&scene.geometry, ray_at(ray, t + 1e-6)));
     }
     fieldscratch_free(scratch);
     scene_release(&scene);

@@ -14,17 +14,17 @@
 
 static const CellParams cells = {.beta = 3};
 
-static PovrayIsosurface *halving_of(const Scene *scene)
+static PovrayIsosurface *halving_of(const Geometry *geometry)
 {
     PovrayIsosurface *halving = NULL;
-    assert_int_equal(povray_isosurface_new(scene, &cells, &halving, NULL), STATUS_OK);
+    assert_int_equal(povray_isosurface_new(geometry, &cells, &halving, NULL), STATUS_OK);
     return halving;
 }
 
 /* A ray from 200 mm away through a place near some segment. */
 static Ray random_ray(const TestScene *test, Random *random)
 {
-    const FieldSegment *segment = &test->segments[random_bits(random) % test->scene.n_segments];
+    const FieldSegment *segment = &test->segments[random_bits(random) % test->geometry.n_segments];
     Vec3 at = vec3_add_scaled(segment->a, vec3_sub(segment->b, segment->a), random_uniform(random));
     at = vec3_add_scaled(at, random_direction(random), 0.8 * segment->radius_mm);
     Vec3 direction = random_direction(random);
@@ -43,8 +43,8 @@ typedef struct Views {
 static void views_init(Views *views, SceneKind kind, Random *random)
 {
     make_test_scene(kind, random, &views->test);
-    views->halving = halving_of(&views->test.scene);
-    assert_int_equal(fieldindex_build(&views->test.scene, &views->index, NULL), STATUS_OK);
+    views->halving = halving_of(&views->test.geometry);
+    assert_int_equal(fieldindex_build(&views->test.geometry, &views->index, NULL), STATUS_OK);
     assert_int_equal(fieldscratch_new(views->index->n_tubes, &views->scratch, NULL), STATUS_OK);
 }
 
@@ -130,7 +130,7 @@ static void no_seam_shows_between_cells_at_any_magnification(void **state)
     for (int kind = 0; kind < N_TAME_KINDS; kind++) {
         views_init(&views, (SceneKind)kind, &random);
         CellTree tree;
-        assert_int_equal(celltree_build(&views.test.scene, &cells, &tree, NULL), STATUS_OK);
+        assert_int_equal(celltree_build(&views.test.geometry, &cells, &tree, NULL), STATUS_OK);
         for (int i = 0; i < 2500; i++) {
             const Cell *cell = &tree.cells[random_bits(&random) % tree.n_cells];
             Vec3 at;
@@ -155,9 +155,9 @@ static void no_seam_shows_between_cells_at_any_magnification(void **state)
 static void a_hit_is_behind_the_wall_by_less_than_the_accuracy(void **state)
 {
     (void)state;
-    TestScene test = {.scene = {.segments = test.segments}};
+    TestScene test = {.geometry = {.segments = test.segments}};
     put_segment(&test, vec3(-38.5, 0, 0), vec3(49, 0, 0), 0.73);
-    PovrayIsosurface *halving = halving_of(&test.scene);
+    PovrayIsosurface *halving = halving_of(&test.geometry);
     for (double y = -0.7; y < 0.7; y += 0.0137) {
         Ray ray = {vec3(2.385, y, 30), vec3(0, 0, -1)};
         Hit hit;
@@ -173,10 +173,10 @@ static void a_hit_is_behind_the_wall_by_less_than_the_accuracy(void **state)
 static void a_shadow_ray_leaves_its_own_wall_alone(void **state)
 {
     (void)state;
-    TestScene test = {.scene = {.segments = test.segments}};
+    TestScene test = {.geometry = {.segments = test.segments}};
     put_segment(&test, vec3(-38.5, 0, 0), vec3(49, 0, 0), 0.73);
     put_segment(&test, vec3(-38.5, 0, 5), vec3(49, 0, 5), 0.41);
-    PovrayIsosurface *halving = halving_of(&test.scene);
+    PovrayIsosurface *halving = halving_of(&test.geometry);
     double inside = 0.5 * cell_accuracy(0.73);
     Vec3 start = vec3(2.385, 0, 0.73 - inside);
     assert_true(povray_isosurface_any_hit(halving, (Ray){start, vec3(0, 0, 1)}, 1e-3, 60));
@@ -193,8 +193,8 @@ static void a_shadow_ray_leaves_its_own_wall_alone(void **state)
 static void an_empty_scene_shows_nothing(void **state)
 {
     (void)state;
-    Scene scene = {.model = SCENE_ISOSURFACE};
-    PovrayIsosurface *halving = halving_of(&scene);
+    const Geometry geometry = {.model = SCENE_ISOSURFACE};
+    PovrayIsosurface *halving = halving_of(&geometry);
     Hit hit;
     uint32_t segment;
     Ray ray = {vec3(0, 0, 30), vec3(0, 0, -1)};

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "test_lights.h"
+#include "test_scene.h"
 #include <cmocka.h>
 
 enum { WIDTH = 203, HEIGHT = 141, PIXELS = WIDTH * HEIGHT, N_TUBES = 60 };
@@ -29,23 +29,23 @@ static Vec3 point(Random *random, double size)
     return vec3(x, y, number(random, -size, size));
 }
 
+enum { MOST_PRIMITIVES = 6 * N_TUBES + 8 };
+
 typedef struct Staged {
-    Primitive primitives[6 * N_TUBES + 8];
-    Light lights[2];
+    Primitive primitives[MOST_PRIMITIVES];
+    Rgb colors[MOST_PRIMITIVES];
     Scene scene;
 } Staged;
 
 static Primitive *add(Staged *staged, PrimitiveKind kind, Vec3 a, Vec3 b, double radius)
 {
     Scene *scene = &staged->scene;
-    Primitive *primitive = &staged->primitives[scene->n_primitives++];
-    float shade = (float)scene->n_primitives / (3 * N_TUBES);
-    *primitive = (Primitive){.kind = kind,
-                             .a = a,
-                             .b = b,
-                             .radius_mm = radius,
-                             .id = (uint32_t)scene->n_primitives,
-                             .color = {shade, 0.5f, 1 - shade}};
+    size_t number = scene->geometry.n_primitives++;
+    Primitive *primitive = &staged->primitives[number];
+    float shade = (float)(number + 1) / (3 * N_TUBES);
+    staged->colors[number] = (Rgb){shade, 0.5f, 1 - shade};
+    *primitive =
+        (Primitive){.kind = kind, .a = a, .b = b, .radius_mm = radius, .segment = (uint32_t)number};
     return primitive;
 }
 
@@ -78,24 +78,26 @@ static void set_camera(Scene *scene, Projection projection, Vec3 direction)
     Vec3 right = vec3_normalized(vec3_cross(direction, vec3(0.1, 1, 0)));
     Vec3 up = vec3_cross(right, direction);
     double height = 22, distance = 40;
-    scene->camera = (Camera){.projection = projection,
-                             .direction = direction,
-                             .location = vec3_scale(direction, -distance),
-                             .width = WIDTH,
-                             .height = HEIGHT};
+    scene->view.camera = (Camera){.projection = projection,
+                                  .direction = direction,
+                                  .location = vec3_scale(direction, -distance),
+                                  .width = WIDTH,
+                                  .height = HEIGHT};
     if (projection == PROJECTION_PERSPECTIVE)
         height /= distance;
-    scene->camera.right = vec3_scale(right, height * WIDTH / HEIGHT);
-    scene->camera.up = vec3_scale(up, height);
+    scene->view.camera.right = vec3_scale(right, height * WIDTH / HEIGHT);
+    scene->view.camera.up = vec3_scale(up, height);
 }
 
 static void bound(Scene *scene)
 {
-    scene->bounds = box_empty();
-    for (size_t i = 0; i < scene->n_primitives; i++) {
-        const Primitive *primitive = &scene->primitives[i];
-        scene->bounds = box_with_ball(scene->bounds, primitive->a, primitive->radius_mm);
-        scene->bounds = box_with_ball(scene->bounds, primitive->b, primitive->radius_mm);
+    scene->geometry.bounds = box_empty();
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++) {
+        const Primitive *primitive = &scene->geometry.primitives[i];
+        scene->geometry.bounds =
+            box_with_ball(scene->geometry.bounds, primitive->a, primitive->radius_mm);
+        scene->geometry.bounds =
+            box_with_ball(scene->geometry.bounds, primitive->b, primitive->radius_mm);
     }
 }
 
@@ -103,7 +105,7 @@ static void bound(Scene *scene)
 static void round_ends(Staged *staged)
 {
     Scene *scene = &staged->scene;
-    size_t n = scene->n_primitives;
+    size_t n = scene->geometry.n_primitives;
     for (size_t i = 0; i < n; i++) {
         Primitive *cylinder = &staged->primitives[i];
         if (cylinder->kind != PRIMITIVE_CYLINDER)
@@ -115,9 +117,8 @@ static void round_ends(Staged *staged)
                 continue;
             Vec3 at = end ? cylinder->b : cylinder->a;
             Primitive *ball = add(staged, PRIMITIVE_SPHERE, at, at, cylinder->radius_mm);
-            ball->id = cylinder->id;
-            ball->color = cylinder->color;
-            scene->n_ends++;
+            ball->segment = cylinder->segment;
+            scene->geometry.n_ends++;
         }
     }
 }
@@ -129,8 +130,10 @@ static void stage(Staged *staged, Projection projection)
     random_seed(&random, 2385);
     memset(staged, 0, sizeof *staged);
     Scene *scene = &staged->scene;
-    scene->model = SCENE_JOINED;
-    scene->primitives = staged->primitives;
+    scene->geometry.model = SCENE_JOINED;
+    scene->geometry.primitives = staged->primitives;
+    scene->geometry.ids = test_ids();
+    scene->appearance.colors = staged->colors;
     for (int i = 0; i < N_TUBES / 2; i++) {
         add_elbow(staged, &random);
         Vec3 a = point(&random, 10);
@@ -139,7 +142,7 @@ static void stage(Staged *staged, Projection projection)
         add(staged, PRIMITIVE_CYLINDER, a, b, number(&random, 0.02, 0.5));
     }
     round_ends(staged);
-    light_test_scene(scene, staged->lights);
+    light_test_scene(scene);
     set_camera(scene, projection, vec3_normalized(vec3(-0.3, -0.4, -1)));
     bound(scene);
 }
@@ -232,7 +235,7 @@ static void a_camera_among_the_vessels_sees_what_rays_see(void **state)
     for (int projection = 0; projection < 2; projection++) {
         Staged staged;
         stage(&staged, (Projection)projection);
-        staged.scene.camera.location = vec3(0.1, 0.2, 0.3);
+        staged.scene.view.camera.location = vec3(0.1, 0.2, 0.3);
         Gap gap = gap_to_trace(&staged.scene);
         assert_true(gap.seen > 1000);
         assert_true(gap.ids <= 2);
@@ -244,7 +247,7 @@ static void a_camera_among_the_vessels_sees_what_rays_see(void **state)
 static Scene *empty(Staged *staged, Projection projection)
 {
     stage(staged, projection);
-    staged->scene.n_primitives = staged->scene.n_ends = 0;
+    staged->scene.geometry.n_primitives = staged->scene.geometry.n_ends = 0;
     return &staged->scene;
 }
 
@@ -276,13 +279,13 @@ static void joints_that_bound_no_solid_are_seen_from_both_sides(void **state)
     (void)state;
     Staged staged;
     stage(&staged, PROJECTION_ORTHOGRAPHIC);
-    staged.scene.open_joints = true;
+    staged.scene.geometry.open_joints = true;
     size_t n = 0;
-    for (size_t i = 0; i < staged.scene.n_primitives; i++)
+    for (size_t i = 0; i < staged.scene.geometry.n_primitives; i++)
         if (staged.primitives[i].kind == PRIMITIVE_JOINT)
             staged.primitives[n++] = staged.primitives[i];
-    staged.scene.n_primitives = n;
-    staged.scene.n_ends = 0;
+    staged.scene.geometry.n_primitives = n;
+    staged.scene.geometry.n_ends = 0;
     Gap gap = gap_to_trace(&staged.scene);
     assert_true(gap.seen > 300);
     assert_int_equal(gap.ids, 0);
@@ -296,11 +299,12 @@ static void vessels_along_the_view_are_seen_end_on(void **state)
         Staged staged;
         stage(&staged, (Projection)projection);
         Scene *scene = &staged.scene;
-        scene->n_primitives = scene->n_ends = 0;
+        scene->geometry.n_primitives = scene->geometry.n_ends = 0;
         for (int i = 0; i < 20; i++) {
-            Vec3 a = vec3_add_scaled(vec3(i - 10, 0.3 * i - 3, 0), scene->camera.direction, -3);
+            Vec3 a =
+                vec3_add_scaled(vec3(i - 10, 0.3 * i - 3, 0), scene->view.camera.direction, -3);
             Vec3 lean = vec3(i % 4 ? pow(10, -i / 3.0) : 0, 0, 0);
-            Vec3 along = vec3_normalized(vec3_add(scene->camera.direction, lean));
+            Vec3 along = vec3_normalized(vec3_add(scene->view.camera.direction, lean));
             add(&staged, PRIMITIVE_CYLINDER, a, vec3_add_scaled(a, along, 9), 0.43);
         }
         round_ends(&staged);
@@ -359,11 +363,13 @@ static void bands_are_the_rows_of_the_whole(void **state)
                                      .want_color = true,
                                      .want_depth = true};
         Renderer *renderer;
-        assert_int_equal(renderer_new(&staged.scene, &params, &renderer, NULL), STATUS_OK);
+        assert_int_equal(renderer_new(&staged.scene.geometry, &params, &renderer, NULL), STATUS_OK);
         for (int first = 0, rows; first < HEIGHT; first += rows) {
             Frame band;
             rows = first + 24 < HEIGHT ? 24 : HEIGHT - first;
-            assert_int_equal(renderer_rows(renderer, first, rows, &band, NULL), STATUS_OK);
+            assert_int_equal(renderer_rows(renderer, &staged.scene.view, &staged.scene.appearance,
+                                           first, rows, &band, NULL),
+                             STATUS_OK);
             size_t start = (size_t)first * WIDTH, n = (size_t)rows * WIDTH;
             assert_memory_equal(band.color.values, whole.color.values + 3 * start,
                                 3 * n * sizeof(float));
@@ -437,7 +443,7 @@ static void shadows_of_tiles_are_shadows_of_rays(void **state)
             Staged staged;
             stage(&staged, (Projection)projection);
             if (near) /* too near for a view of its own */
-                staged.lights[1].location = vec3(1, 2, 11);
+                staged.scene.view.lights[1].location = vec3(1, 2, 11);
             Frame lit = drawn(&staged.scene,
                               (Settings){.method = RENDER_TRACE, .threads = 2, .antialias = 1});
             Frame traced = drawn(
@@ -474,8 +480,8 @@ static bool inside(const IdPlane *ids, int pixel)
 /* 0.177 pixels, within which a pixel's point lies, are this much in space. */
 static double caught_mm(const Scene *scene)
 {
-    double pixel = vec3_length(scene->camera.up) / HEIGHT;
-    return 0.177 * pixel * (scene->camera.projection == PROJECTION_PERSPECTIVE ? 55 : 1);
+    double pixel = vec3_length(scene->view.camera.up) / HEIGHT;
+    return 0.177 * pixel * (scene->view.camera.projection == PROJECTION_PERSPECTIVE ? 55 : 1);
 }
 
 static void a_depth_buffer_of_points_has_no_holes(void **state)
@@ -516,7 +522,7 @@ static bool is_caught(double off)
     Staged staged;
     Scene *scene = empty(&staged, PROJECTION_ORTHOGRAPHIC);
     set_camera(scene, PROJECTION_ORTHOGRAPHIC, vec3(0, 0, -1));
-    const Camera *camera = &scene->camera;
+    const Camera *camera = &scene->view.camera;
     double pixel = vec3_length(camera->up) / HEIGHT;
     Ray ray = camera_ray(camera, 100, 70);
     Vec3 along = vec3_normalized(camera->right), down = vec3_scale(camera->up, -off / HEIGHT);
@@ -550,7 +556,7 @@ static void a_depth_buffer_does_not_depend_on_the_number_of_threads(void **state
     assert_same_frames(&one, &three);
     frame_release(&one);
     frame_release(&three);
-    staged.scene.camera.location = vec3(0.1, 0.2, 0.3);
+    staged.scene.view.camera.location = vec3(0.1, 0.2, 0.3);
     const RenderParams params = {.method = RENDER_ZBUFFER, .antialias = 1, .want_color = true};
     Err err;
     assert_int_equal(render(&staged.scene, &params, &one, NULL, &err), STATUS_USAGE);
@@ -615,14 +621,15 @@ static void boxes_hold_the_axes_of_vessels(void **state)
     for (int projection = 0; projection < 2; projection++) {
         Staged staged;
         stage(&staged, (Projection)projection);
-        RasterView view = rasterview_of_camera(&staged.scene, 0, HEIGHT, 2);
+        RasterView view = rasterview_of_camera(&staged.scene.view.camera,
+                                               staged.scene.geometry.bounds, 0, HEIGHT, 2);
         view.light = true;
         RasterBins *bins;
-        assert_int_equal(rasterbins_new(&staged.scene, &view, 2, &bins, NULL), STATUS_OK);
+        assert_int_equal(rasterbins_new(&staged.scene.geometry, &view, 2, &bins, NULL), STATUS_OK);
         int held = 0;
-        for (uint32_t i = 0; i < rasterbins_items(bins->scene); i++)
+        for (uint32_t i = 0; i < rasterbins_items(bins->geometry); i++)
             for (int step = 0; step <= 8; step++) {
-                const Primitive *primitive = &staged.scene.primitives[i];
+                const Primitive *primitive = &staged.scene.geometry.primitives[i];
                 Vec3 span = vec3_sub(primitive->b, primitive->a);
                 Vec3 at = vec3_add_scaled(primitive->a, span, step / 8.0);
                 at = viewpoint_place(&view.eye, at);

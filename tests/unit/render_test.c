@@ -36,8 +36,7 @@ static void throw_primitives(Primitive primitives[N_PRIMITIVES])
                                     .a = a,
                                     .b = i % 3 ? vec3_add(a, point(&random, 3)) : a,
                                     .radius_mm = number(&random, 0.05, 0.8),
-                                    .id = i + 1,
-                                    .color = {0.6f, 0.2f, 0.1f}};
+                                    .segment = i};
     }
 }
 
@@ -84,33 +83,40 @@ static void the_hierarchy_finds_what_trying_all_finds(void **state)
     bvh_free(bvh);
 }
 
+/* The colour of the origin under one light, seen along a direction. */
+static Rgb seen_under(const Light *light, const Finish *finish, Rgb pigment, Vec3 direction,
+                      ShadowTest *shadow, void *context)
+{
+    const View view = {.lights = {*light}, .n_lights = 1};
+    const ShadePoint at = {finish, pigment, {0, 0, 0}, {0, 0, 1}, direction, 1};
+    return shade(&view, &at, shadow, context);
+}
+
 /* A plane facing +z, lit from straight above the viewer's shoulder. */
 static void shading_is_the_formula(void **state)
 {
     (void)state;
     Light light = {
         .location = {0, 30, 40}, .target = {0, 0, 0}, .color = {1, 0.5f, 0.25f}, .parallel = true};
-    Scene scene = {.finish = {.ambient = 0.125f,
-                              .diffuse = 0.5f,
-                              .brilliance = 1,
-                              .phong = 0.25f,
-                              .phong_size = 2,
-                              .specular = 0,
-                              .roughness = 0.05f},
-                   .lights = &light,
-                   .n_lights = 1};
+    Finish finish = {.ambient = 0.125f,
+                     .diffuse = 0.5f,
+                     .brilliance = 1,
+                     .phong = 0.25f,
+                     .phong_size = 2,
+                     .specular = 0,
+                     .roughness = 0.05f};
     Rgb pigment = {0.5f, 0.25f, 1};
-    Rgb seen = shade(&scene, pigment, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), NULL, NULL);
+    Rgb seen = seen_under(&light, &finish, pigment, vec3(0, 0, -1), NULL, NULL);
     /* cos alpha = cos beta = 0.8: ambient + light (diffuse pigment 0.8 + phong 0.8^2) */
     assert_true(fabs((double)seen.r - (0.125 * 0.5 + (0.5 * 0.5 * 0.8 + 0.25 * 0.64))) < 1e-6);
     assert_true(fabs((double)seen.g - (0.125 * 0.25 + 0.5 * (0.5 * 0.25 * 0.8 + 0.25 * 0.64))) <
                 1e-6);
     assert_true(fabs((double)seen.b - (0.125 + 0.25 * (0.5 * 0.8 + 0.25 * 0.64))) < 1e-6);
 
-    scene.finish.phong = 0;
-    scene.finish.specular = 0.5f;
-    scene.finish.roughness = 0.25f; /* exponent 4, half vector (0, 0.3, 0.9) / |.| */
-    seen = shade(&scene, pigment, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), NULL, NULL);
+    finish.phong = 0;
+    finish.specular = 0.5f;
+    finish.roughness = 0.25f; /* exponent 4, half vector (0, 0.3, 0.9) / |.| */
+    seen = seen_under(&light, &finish, pigment, vec3(0, 0, -1), NULL, NULL);
     double cosine = 0.9 / sqrt(0.09 + 0.81);
     assert_true(fabs((double)seen.r - (0.0625 + 0.2 + 0.5 * pow(cosine, 4))) < 1e-6);
 }
@@ -120,11 +126,9 @@ static void brilliance_is_the_exponent_of_the_cosine(void **state)
 {
     (void)state;
     Light light = {.location = {0, 30, 40}, .color = {1, 1, 1}, .parallel = true};
-    Scene scene = {.finish = {.diffuse = 0.5f, .brilliance = 2.5f, .phong = 0.25f, .phong_size = 3},
-                   .lights = &light,
-                   .n_lights = 1};
+    Finish finish = {.diffuse = 0.5f, .brilliance = 2.5f, .phong = 0.25f, .phong_size = 3};
     const Rgb pigment = {0.8f, 0.4f, 0.2f};
-    Rgb seen = shade(&scene, pigment, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), NULL, NULL);
+    Rgb seen = seen_under(&light, &finish, pigment, vec3(0, 0, -1), NULL, NULL);
     assert_true(fabs((double)seen.r - (0.5 * 0.8 * pow(0.8, 2.5) + 0.25 * 0.512)) < 1e-6);
 }
 
@@ -135,11 +139,8 @@ static void a_light_counts_from_a_least_cosine_on(void **state)
     for (int lit = 0; lit < 2; lit++) {
         Light light = {
             .location = {1, 0, lit ? 1.01e-10 : 0.99e-10}, .color = {1, 1, 1}, .parallel = true};
-        Scene scene = {.finish = {.ambient = 0.25f, .phong = 0.5f, .phong_size = 1},
-                       .lights = &light,
-                       .n_lights = 1};
-        Rgb seen = shade(&scene, (Rgb){1, 1, 1}, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0.6, 0, -0.8),
-                         NULL, NULL);
+        Finish finish = {.ambient = 0.25f, .phong = 0.5f, .phong_size = 1};
+        Rgb seen = seen_under(&light, &finish, (Rgb){1, 1, 1}, vec3(0.6, 0, -0.8), NULL, NULL);
         assert_true(fabs((double)seen.r - (lit ? 0.25 + 0.5 * 0.6 : 0.25)) < 1e-6);
     }
 }
@@ -156,17 +157,14 @@ static void a_shadow_leaves_the_ambient_light(void **state)
 {
     (void)state;
     Light light = {.location = {0, 3, 4}, .color = {1, 1, 1}, .casts_shadows = true};
-    Scene scene = {.finish = {.ambient = 0.25f, .diffuse = 0.5f, .brilliance = 1},
-                   .lights = &light,
-                   .n_lights = 1};
+    Finish finish = {.ambient = 0.25f, .diffuse = 0.5f, .brilliance = 1};
     Rgb pigment = {0.5f, 0.5f, 0.5f};
     double distance = 0;
-    Rgb seen =
-        shade(&scene, pigment, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), always, &distance);
+    Rgb seen = seen_under(&light, &finish, pigment, vec3(0, 0, -1), always, &distance);
     assert_true(seen.r == 0.125f);
     assert_true(fabs(distance - 5) < 1e-12);
     light.casts_shadows = false;
-    seen = shade(&scene, pigment, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), always, &distance);
+    seen = seen_under(&light, &finish, pigment, vec3(0, 0, -1), always, &distance);
     assert_true(fabs((double)seen.r - (0.125 + 0.25 * 0.8)) < 1e-6);
 }
 
@@ -185,12 +183,12 @@ static void a_soft_shadow_weighs_the_points_of_the_light_alike(void **state)
                    .casts_shadows = true,
                    .samples = 4,
                    .sides = {{3, 0, 0}, {0, 3, 0}}};
-    Scene scene = {.finish = {.diffuse = 0.5f, .brilliance = 1}, .lights = &light, .n_lights = 1};
+    Finish finish = {.diffuse = 0.5f, .brilliance = 1};
     Rgb white = {1, 1, 1};
-    Rgb seen = shade(&scene, white, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), left, NULL);
+    Rgb seen = seen_under(&light, &finish, white, vec3(0, 0, -1), left, NULL);
     assert_true(seen.r == 0.25f); /* columns at -1.5, -0.5, 0.5, 1.5: two of four */
     light.sides[0].x = 0.15;
-    seen = shade(&scene, white, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), left, NULL);
+    seen = seen_under(&light, &finish, white, vec3(0, 0, -1), left, NULL);
     assert_true(seen.r == 0.5f);
 }
 
@@ -210,12 +208,12 @@ static void the_points_of_a_soft_light_reach_its_edges(void **state)
                    .casts_shadows = true,
                    .samples = 4,
                    .sides = {{3, 0, 0}, {0, 3, 0}}};
-    Scene scene = {.finish = {.diffuse = 0.5f, .brilliance = 1}, .lights = &light, .n_lights = 1};
+    Finish finish = {.diffuse = 0.5f, .brilliance = 1};
     Rgb white = {1, 1, 1};
-    Rgb seen = shade(&scene, white, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), far_right, NULL);
+    Rgb seen = seen_under(&light, &finish, white, vec3(0, 0, -1), far_right, NULL);
     assert_true(seen.r == 0.375f);
     light.sides[0].x = 2.9;
-    seen = shade(&scene, white, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), far_right, NULL);
+    seen = seen_under(&light, &finish, white, vec3(0, 0, -1), far_right, NULL);
     assert_true(seen.r == 0.5f);
 }
 
@@ -223,35 +221,30 @@ static void the_back_of_a_surface_gets_no_light(void **state)
 {
     (void)state;
     Light light = {.location = {0, 0, -9}, .color = {1, 1, 1}};
-    Scene scene = {
-        .finish = {.ambient = 0.25f, .diffuse = 0.5f, .brilliance = 1, .phong = 1, .phong_size = 1},
-        .lights = &light,
-        .n_lights = 1};
-    Rgb seen =
-        shade(&scene, (Rgb){1, 1, 1}, vec3(0, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), NULL, NULL);
+    Finish finish = {
+        .ambient = 0.25f, .diffuse = 0.5f, .brilliance = 1, .phong = 1, .phong_size = 1};
+    Rgb seen = seen_under(&light, &finish, (Rgb){1, 1, 1}, vec3(0, 0, -1), NULL, NULL);
     assert_true(seen.r == 0.25f);
 }
 
 /* One sphere of radius 2 in the middle of a 40 x 20 picture, 20 x 10 mm. */
 static Frame render_sphere(int threads, int antialias)
 {
-    static Primitive sphere = {
-        .kind = PRIMITIVE_SPHERE, .radius_mm = 2, .id = 70000, .color = {0.5f, 0.25f, 0.125f}};
-    static Light light = {.location = {0, 0, 50}, .color = {1, 1, 1}, .parallel = true};
-    const Scene scene = {.model = SCENE_ROUNDED,
-                         .camera = {.projection = PROJECTION_ORTHOGRAPHIC,
-                                    .location = {0, 0, 30},
-                                    .right = {20, 0, 0},
-                                    .up = {0, 10, 0},
-                                    .direction = {0, 0, -1},
-                                    .width = 40,
-                                    .height = 20},
-                         .background = {0.25f, 0.5f, 1},
-                         .finish = {.diffuse = 1, .brilliance = 1},
-                         .lights = &light,
-                         .n_lights = 1,
-                         .primitives = &sphere,
-                         .n_primitives = 1};
+    static Primitive sphere = {.kind = PRIMITIVE_SPHERE, .radius_mm = 2};
+    static uint32_t id = 70000;
+    const Scene scene = {
+        .geometry = {.model = SCENE_ROUNDED, .primitives = &sphere, .n_primitives = 1, .ids = &id},
+        .appearance = {.finish = {.diffuse = 1, .brilliance = 1}, .color = {0.5f, 0.25f, 0.125f}},
+        .view = {.camera = {.projection = PROJECTION_ORTHOGRAPHIC,
+                            .location = {0, 0, 30},
+                            .right = {20, 0, 0},
+                            .up = {0, 10, 0},
+                            .direction = {0, 0, -1},
+                            .width = 40,
+                            .height = 20},
+                 .background = {0.25f, 0.5f, 1},
+                 .lights = {{.location = {0, 0, 50}, .color = {1, 1, 1}, .parallel = true}},
+                 .n_lights = 1}};
     const RenderParams params = {.threads = threads,
                                  .antialias = antialias,
                                  .want_color = true,

@@ -8,75 +8,113 @@
 
 #include <cmocka.h>
 
-typedef struct Fixture {
-    Primitive primitive;
-    FieldSegment segment;
-    Light light;
-    Scene scene;
-} Fixture;
+static const Camera cameras[] = {
+    {.projection = PROJECTION_ORTHOGRAPHIC,
+     .location = {12, -3.5, 90},
+     .right = {38.4, 0, 28.8},
+     .up = {0, 30.5, 0},
+     .direction = {0.6, 0, -0.8},
+     .width = 203,
+     .height = 141},
+    {.projection = PROJECTION_PERSPECTIVE,
+     .location = {12, -3.5, 90},
+     .right = {0.4, 0, 0.3},
+     .up = {0, 0.31, 0},
+     .direction = {0.6, 0, -0.8},
+     .width = 203,
+     .height = 141},
+};
 
-/* All places `far` mm along (1, -2, 3) from where they would be. */
-static void fixture_init(Fixture *f, double far)
-{
-    Vec3 move = {far, -2 * far, 3 * far};
-    *f = (Fixture){
-        .primitive = {.a = vec3_add(move, vec3(1.25, 2, 3)), .b = vec3_add(move, vec3(4, 5, -6))},
-        .segment = {.a = vec3_add(move, vec3(1.5, 2, 3)), .b = vec3_add(move, vec3(4, 5.5, -6))},
-        .light = {.location = vec3_add(move, vec3(70, 80, 90)), .target = move}};
-    f->scene = (Scene){.camera = {.location = vec3_add(move, vec3(0, 0, 90)),
-                                  .right = {12, 0, 0},
-                                  .up = {0, 9, 0},
-                                  .direction = {0, 0, -1},
-                                  .width = 40,
-                                  .height = 30},
-                       .lights = &f->light,
-                       .n_lights = 1,
-                       .primitives = &f->primitive,
-                       .n_primitives = 1,
-                       .segments = &f->segment,
-                       .n_segments = 1,
-                       .bounds = {vec3_add(move, vec3(1, 2, -6)), vec3_add(move, vec3(4, 6, 3))}};
-}
-
-static void assert_vec3(Vec3 a, double x, double y, double z)
-{
-    assert_true(a.x == x && a.y == y && a.z == z);
-}
-
-static void a_scene_near_the_origin_stays(void **state)
+static void a_point_is_seen_where_the_ray_meets_it(void **state)
 {
     (void)state;
-    Fixture f;
-    fixture_init(&f, 20);
-    scene_move_to_origin(&f.scene);
-    assert_vec3(f.scene.origin, 0, 0, 0);
-    assert_vec3(f.primitive.a, 21.25, -38, 63);
+    Random random;
+    random_seed(&random, 2385);
+    for (int n = 0; n < 1000; n++) {
+        const Camera *camera = &cameras[n % 2];
+        double i = 203 * random_uniform(&random) - 0.5, j = 141 * random_uniform(&random) - 0.5;
+        double t = 0.1 + 200 * random_uniform(&random), seen_i, seen_j, depth;
+        Vec3 point = ray_at(camera_ray(camera, i, j), t);
+        assert_true(camera_project(camera, point, &seen_i, &seen_j, &depth));
+        assert_true(fabs(seen_i - i) < 1e-9 && fabs(seen_j - j) < 1e-9);
+        assert_true(fabs(depth - t) < 1e-11 * t + 1e-11);
+    }
 }
 
-static void a_scene_far_from_the_origin_moves_as_a_whole(void **state)
+static void a_perspective_camera_sees_nothing_behind_itself(void **state)
 {
     (void)state;
-    Fixture f;
-    fixture_init(&f, 1048576); /* where quarters are exact */
-    Ray before = camera_ray(&f.scene.camera, 7, 11);
-    double near_before, far_before, near_after, far_after;
-    scene_depth_range(&f.scene, &near_before, &far_before);
-    scene_move_to_origin(&f.scene);
-    Vec3 o = f.scene.origin;
-    assert_true(o.x == round(o.x) && o.y == round(o.y) && o.z == round(o.z));
-    assert_true(vec3_distance(o, vec3(1048576, -2097152, 3145728)) < 10);
-    Vec3 at = vec3_sub(vec3(1048576, -2097152, 3145728), o);
-    assert_vec3(f.primitive.a, at.x + 1.25, at.y + 2, at.z + 3);
-    assert_vec3(f.primitive.b, at.x + 4, at.y + 5, at.z - 6);
-    assert_vec3(f.segment.a, at.x + 1.5, at.y + 2, at.z + 3);
-    assert_vec3(f.segment.b, at.x + 4, at.y + 5.5, at.z - 6);
-    assert_vec3(f.light.location, at.x + 70, at.y + 80, at.z + 90);
-    assert_vec3(f.light.target, at.x, at.y, at.z);
-    assert_vec3(f.scene.bounds.low, at.x + 1, at.y + 2, at.z - 6);
-    Ray after = camera_ray(&f.scene.camera, 7, 11);
-    assert_true(vec3_distance(vec3_add(after.origin, o), before.origin) < 1e-9);
-    scene_depth_range(&f.scene, &near_after, &far_after);
-    assert_true(near_after == near_before && far_after == far_before);
+    double i = 7, j = 8, depth = 9;
+    Vec3 behind = vec3_add_scaled(cameras[1].location, cameras[1].direction, -2.385);
+    assert_false(camera_project(&cameras[1], behind, &i, &j, &depth));
+    assert_true(i == 7 && j == 8 && depth == 9);
+    behind = vec3_add_scaled(cameras[0].location, cameras[0].direction, -2.385);
+    assert_true(camera_project(&cameras[0], behind, &i, &j, &depth));
+    assert_true(fabs(i - 101) < 1e-9 && fabs(j - 70) < 1e-9 && fabs(depth + 2.385) < 1e-12);
+}
+
+static void a_camera_of_one_pixel_sees_what_the_pixel_sees(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 2; n++) {
+        const Camera one = camera_of_pixel(&cameras[n], 37, 101);
+        const double places[][2] = {{0, 0}, {-0.25, 0.375}, {0.5, -0.5}};
+        for (int k = 0; k < 3; k++) {
+            Ray whole = camera_ray(&cameras[n], 37 + places[k][0], 101 + places[k][1]);
+            Ray alone = camera_ray(&one, places[k][0], places[k][1]);
+            assert_true(vec3_distance(whole.origin, alone.origin) < 1e-12);
+            assert_true(vec3_distance(whole.direction, alone.direction) < 1e-14);
+            double i, j, depth; /* of a camera whose vectors are not square to each other */
+            assert_true(camera_project(&one, ray_at(whole, 23.85), &i, &j, &depth));
+            assert_true(fabs(i - places[k][0]) < 1e-9 && fabs(j - places[k][1]) < 1e-9);
+            assert_true(fabs(depth - 23.85) < 1e-12);
+        }
+    }
+}
+
+static void the_depth_range_holds_the_box(void **state)
+{
+    (void)state;
+    const Box box = {{3, -9, 20}, {30.5, 7, 41}};
+    for (int n = 0; n < 2; n++) {
+        double near, far, i, j, depth;
+        camera_depth_range(&cameras[n], box, &near, &far);
+        for (int corner = 0; corner < 8; corner++) {
+            Vec3 at = vec3(corner & 1 ? box.low.x : box.high.x, corner & 2 ? box.low.y : box.high.y,
+                           corner & 4 ? box.low.z : box.high.z);
+            assert_true(camera_project(&cameras[n], at, &i, &j, &depth));
+            assert_true(depth >= near && depth <= far);
+        }
+        assert_true(far - near < 40);
+    }
+}
+
+static void the_way_to_a_light_is_straight(void **state)
+{
+    (void)state;
+    const Light point = {.location = {3, 4, 12}};
+    LightWay way = light_way(&point, vec3(0, 0, 0));
+    assert_true(fabs(way.distance - 13) < 1e-14 && fabs(way.towards.y - 4.0 / 13) < 1e-15);
+    const Light parallel = {.location = {3, 4, 12}, .target = {3, 4, 2}, .parallel = true};
+    way = light_way(&parallel, vec3(77, -5, 2.5));
+    assert_true(way.towards.z == 1 && way.distance == 9.5);
+}
+
+/* Rows of four along the first side. */
+static void the_points_of_an_area_light_span_its_sides(void **state)
+{
+    (void)state;
+    const Light area = {.location = {0, 0, 5}, .samples = 4, .sides = {{3, 0, 0}, {0, 6, 0}}};
+    assert_int_equal(light_points(&area), 16);
+    const struct {
+        int k;
+        double x, y;
+    } cases[] = {{0, -1.5, -3}, {3, 1.5, -3}, {5, -0.5, -1}, {15, 1.5, 3}};
+    for (int i = 0; i < 4; i++) {
+        LightWay way = light_way_to_point(&area, cases[i].k, vec3(0, 0, 0));
+        Vec3 at = vec3_scale(way.towards, way.distance);
+        assert_true(vec3_distance(at, vec3(cases[i].x, cases[i].y, 5)) < 1e-14);
+    }
 }
 
 /* POV-Ray's limits [docs/POVRAY.md, section 4]. */
@@ -96,8 +134,12 @@ static void a_ground_is_not_seen_along_itself_nor_beyond_all_bounds(void **state
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_scene_near_the_origin_stays),
-        cmocka_unit_test(a_scene_far_from_the_origin_moves_as_a_whole),
+        cmocka_unit_test(a_point_is_seen_where_the_ray_meets_it),
+        cmocka_unit_test(a_perspective_camera_sees_nothing_behind_itself),
+        cmocka_unit_test(a_camera_of_one_pixel_sees_what_the_pixel_sees),
+        cmocka_unit_test(the_depth_range_holds_the_box),
+        cmocka_unit_test(the_way_to_a_light_is_straight),
+        cmocka_unit_test(the_points_of_an_area_light_span_its_sides),
         cmocka_unit_test(a_ground_is_not_seen_along_itself_nor_beyond_all_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "test_stage.h"
 #include <cmocka.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -38,12 +39,18 @@ static Tree make_tree(void)
     return tree;
 }
 
+static void assert_near(Vec3 a, Vec3 b, double within)
+{
+    if (!(vec3_distance(a, b) <= within))
+        fail_msg("%.12g %.12g %.12g is not %.12g %.12g %.12g", a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
 static Scene stage(const StageParams *params, StageReport *report)
 {
     Tree tree = make_tree();
     Scene scene;
     Err err = {{0}};
-    if (stage_scene(&tree, &look, NULL, params, &scene, report, &err) != STATUS_OK)
+    if (stage_all(&tree, &look, params, &scene, report, &err) != STATUS_OK)
         fail_msg("%s", err.text);
     tree_release(&tree);
     return scene;
@@ -58,9 +65,9 @@ static void segments_without_length_or_radius_are_counted_not_drawn(void **state
     Scene scene = stage(&params, &report);
     assert_int_equal(report.drawn, 3);
     assert_int_equal(report.dropped, 2);
-    assert_int_equal(scene.n_primitives, 3);
-    for (size_t i = 0; i < scene.n_primitives; i++)
-        assert_int_equal(scene.primitives[i].id, 12 + i);
+    assert_int_equal(scene.geometry.n_primitives, 3);
+    for (size_t i = 0; i < scene.geometry.n_primitives; i++)
+        assert_int_equal(scene.geometry.ids[scene.geometry.primitives[i].segment], 12 + i);
     scene_release(&scene);
 }
 
@@ -71,10 +78,10 @@ static void a_segment_inside_its_sister_is_left_out(void **state)
     tree.position[3] = tree.position[2]; /* the thin daughter runs within the thick one */
     StageParams params = stage_defaults();
     Scene scene;
-    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
-    assert_int_equal(scene.n_primitives, 2 + 3);
-    for (size_t i = 0; i < scene.n_primitives; i++)
-        assert_int_not_equal(scene.primitives[i].id, 14);
+    assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, NULL), STATUS_OK);
+    assert_int_equal(scene.geometry.n_primitives, 2 + 3);
+    for (size_t i = 0; i < scene.geometry.n_primitives; i++)
+        assert_int_not_equal(scene.geometry.ids[scene.geometry.primitives[i].segment], 14);
     scene_release(&scene);
     tree_release(&tree);
 }
@@ -87,22 +94,22 @@ static void a_sphere_has_the_largest_radius_that_meets(void **state)
     Scene scene = stage(&params, NULL);
     /* Spheres at the inlet, the bifurcation and the two ends; one only where the step has no
      * length. */
-    assert_int_equal(scene.n_primitives, 3 + 4);
+    assert_int_equal(scene.geometry.n_primitives, 3 + 4);
     static const struct {
         double radius;
         uint32_t id;
     } expected[] = {{2.385, 12}, {2.385, 12}, {1.9, 13}, {1.2, 14}};
     for (size_t i = 0; i < 4; i++) {
-        const Primitive *sphere = &scene.primitives[3 + i];
+        const Primitive *sphere = &scene.geometry.primitives[3 + i];
         assert_int_equal(sphere->kind, PRIMITIVE_SPHERE);
         assert_true(sphere->radius_mm == expected[i].radius);
-        assert_int_equal(sphere->id, expected[i].id);
+        assert_int_equal(scene.geometry.ids[sphere->segment], expected[i].id);
     }
     /* All of them end a cylinder of their own: the parent's both ends, and one of each daughter. */
-    assert_int_equal(scene.n_ends, 4);
+    assert_int_equal(scene.geometry.n_ends, 4);
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(scene.primitives[i].round_a, i == 0);
-        assert_true(scene.primitives[i].round_b);
+        assert_int_equal(scene.geometry.primitives[i].round_a, i == 0);
+        assert_true(scene.geometry.primitives[i].round_b);
     }
     scene_release(&scene);
 }
@@ -116,10 +123,12 @@ static void every_model_has_the_segments_at_their_radii(void **state)
         params.model = (SceneModel)model;
         Scene scene = stage(&params, NULL);
         for (size_t i = 0; i < 3; i++) {
-            bool field = scene.n_segments > 0;
-            assert_true((field ? scene.segments[i].radius_mm : scene.primitives[i].radius_mm) ==
-                        radii[i]);
-            assert_int_equal(field ? scene.segments[i].id : scene.primitives[i].id, 12 + i);
+            bool field = scene.geometry.n_segments > 0;
+            assert_true((field ? scene.geometry.segments[i].radius_mm
+                               : scene.geometry.primitives[i].radius_mm) == radii[i]);
+            assert_int_equal(field ? scene.geometry.ids[scene.geometry.segments[i].segment]
+                                   : scene.geometry.ids[scene.geometry.primitives[i].segment],
+                             12 + i);
         }
         scene_release(&scene);
     }
@@ -134,10 +143,10 @@ static void of_equals_the_segment_that_ends_at_a_place_gives_its_sphere(void **s
     tree.radius_mm[2] = tree.radius_mm[3] = 2.385;
     StageParams params = stage_defaults();
     Scene scene;
-    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
-    assert_int_equal(scene.primitives[4].kind, PRIMITIVE_SPHERE);
-    assert_true(scene.primitives[4].a.y == 10);
-    assert_int_equal(scene.primitives[4].id, 12);
+    assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, NULL), STATUS_OK);
+    assert_int_equal(scene.geometry.primitives[4].kind, PRIMITIVE_SPHERE);
+    assert_true(scene.geometry.primitives[4].a.y == 10);
+    assert_int_equal(scene.geometry.ids[scene.geometry.primitives[4].segment], 12);
     scene_release(&scene);
     tree_release(&tree);
 }
@@ -159,16 +168,16 @@ static void every_view_frames_the_whole_tree(void **state)
     for (int view = VIEW_FRONT; view <= VIEW_ISO; view++)
         for (int projection = 0; projection < 2; projection++) {
             StageParams params = stage_defaults();
-            params.view = (View)view;
+            params.view = (NamedView)view;
             params.projection = (Projection)projection;
             params.width = 300;
             params.height = 170;
             Scene scene = stage(&params, NULL);
-            const Camera *camera = &scene.camera;
+            const Camera *camera = &scene.view.camera;
             double widest = 0, highest = 0;
-            for (size_t k = 0; k < scene.n_primitives; k++) {
+            for (size_t k = 0; k < scene.geometry.n_primitives; k++) {
                 double i, j;
-                project(camera, scene.primitives[k].b, &i, &j);
+                project(camera, scene.geometry.primitives[k].b, &i, &j);
                 widest = fmax(widest, fabs(i));
                 highest = fmax(highest, fabs(j));
             }
@@ -186,9 +195,11 @@ static void the_front_view_has_x_to_the_right_and_y_up(void **state)
     (void)state;
     StageParams params = stage_defaults();
     Scene scene = stage(&params, NULL);
-    assert_true(scene.camera.right.x > 0 && scene.camera.right.y == 0 && scene.camera.right.z == 0);
-    assert_true(scene.camera.up.y > 0 && scene.camera.up.x == 0 && scene.camera.up.z == 0);
-    assert_true(scene.camera.direction.z == -1);
+    assert_true(scene.view.camera.right.x > 0 && scene.view.camera.right.y == 0 &&
+                scene.view.camera.right.z == 0);
+    assert_true(scene.view.camera.up.y > 0 && scene.view.camera.up.x == 0 &&
+                scene.view.camera.up.z == 0);
+    assert_true(scene.view.camera.direction.z == -1);
     scene_release(&scene);
 }
 
@@ -199,9 +210,9 @@ static void a_framed_picture_has_its_margin_on_each_side(void **state)
     StageParams params = stage_defaults();
     params.margin = 0.12;
     Scene scene = stage(&params, NULL);
-    assert_true(fabs(scene.camera.up.y - 20.585 / 0.76) < 1e-12);
-    assert_true(fabs(scene.camera.location.x - 0.15) < 1e-12);
-    assert_true(fabs(scene.camera.location.y - 12.0925) < 1e-12);
+    assert_true(fabs(scene.view.camera.up.y - 20.585 / 0.76) < 1e-12);
+    assert_true(fabs(scene.view.camera.location.x - 0.15) < 1e-12);
+    assert_true(fabs(scene.view.camera.location.y - 12.0925) < 1e-12);
     scene_release(&scene);
 }
 
@@ -225,9 +236,9 @@ static void a_perspective_camera_stands_where_the_nearest_ball_just_fits(void **
         params.width = lying ? 1000 : 400;
         params.height = lying ? 400 : 1000;
         Scene scene;
-        assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
+        assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, NULL), STATUS_OK);
         Vec3 expected = vec3(3.5, -2, lying ? 30.33960084026736 : 15.67344740904526);
-        assert_true(vec3_distance(scene.camera.location, expected) < 1e-12);
+        assert_true(vec3_distance(scene.view.camera.location, expected) < 1e-12);
         scene_release(&scene);
     }
     tree_release(&tree);
@@ -258,7 +269,7 @@ static void a_given_camera_is_taken_as_it_is(void **state)
     params.look_at = vec3(0, 0, 0);
     params.up = vec3(1, 0, 0);
     Scene scene = stage(&params, NULL);
-    const Camera *camera = &scene.camera;
+    const Camera *camera = &scene.view.camera;
     assert_true(fabs(vec3_length(camera->right) - 2) < 1e-12);
     assert_true(fabs(vec3_length(camera->up) - 1) < 1e-12);
     assert_true(fabs(camera->up.x - 1) < 1e-12);
@@ -275,12 +286,12 @@ static void cameras_that_cannot_be_are_refused(void **state)
     StageParams params = stage_defaults();
     params.has_location = params.has_look_at = true;
     params.location = params.look_at = vec3(1, 2, 3);
-    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, &err), STATUS_USAGE);
+    assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, &err), STATUS_USAGE);
     assert_non_null(strstr(err.text, "`look_at`"));
     params.look_at = vec3(1, 2, 9);
     params.has_up = true;
     params.up = vec3(0, 0, -2);
-    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, &err), STATUS_USAGE);
+    assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, &err), STATUS_USAGE);
     assert_non_null(strstr(err.text, "`up`"));
     tree_release(&tree);
 }
@@ -294,7 +305,7 @@ static void a_tree_with_nothing_to_draw_is_refused(void **state)
     Scene scene;
     Err err;
     StageParams params = stage_defaults();
-    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, &err), STATUS_INPUT);
+    assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, &err), STATUS_INPUT);
     assert_non_null(strstr(err.text, "nothing to draw"));
     tree_release(&tree);
 }
@@ -304,15 +315,16 @@ static void lights_turn_with_the_camera(void **state)
     (void)state;
     for (int view = VIEW_FRONT; view <= VIEW_ISO; view++) {
         StageParams params = stage_defaults();
-        params.view = (View)view;
+        params.view = (NamedView)view;
         Scene scene = stage(&params, NULL);
-        Vec3 towards = vec3_sub(scene.lights[0].location, scene.lights[0].target);
+        Vec3 towards = vec3_sub(scene.view.lights[0].location, scene.view.lights[0].target);
         towards = vec3_normalized(towards);
         double length = sqrt(1 + 4 + 9);
-        assert_true(fabs(vec3_dot(towards, vec3_normalized(scene.camera.right)) - 1 / length) <
+        assert_true(fabs(vec3_dot(towards, vec3_normalized(scene.view.camera.right)) - 1 / length) <
                     1e-9);
-        assert_true(fabs(vec3_dot(towards, vec3_normalized(scene.camera.up)) - 2 / length) < 1e-9);
-        assert_true(fabs(vec3_dot(towards, scene.camera.direction) + 3 / length) < 1e-9);
+        assert_true(fabs(vec3_dot(towards, vec3_normalized(scene.view.camera.up)) - 2 / length) <
+                    1e-9);
+        assert_true(fabs(vec3_dot(towards, scene.view.camera.direction) + 3 / length) < 1e-9);
         scene_release(&scene);
     }
 }
@@ -343,10 +355,10 @@ static void a_point_light_stands_in_half_diagonals_from_the_middle(void **state)
         .is_point = true, .direction = {0, 0, 3}, .size = 0.5, .samples = 4, .color = {1, 1, 1}};
     StageParams params = stage_defaults();
     Scene scene;
-    assert_int_equal(stage_scene(&tree, &soft, NULL, &params, &scene, NULL, NULL), STATUS_OK);
-    const Light *light = &scene.lights[0];
-    double half = vec3_distance(scene.bounds.low, scene.bounds.high) / 2;
-    Vec3 center = box_center(scene.bounds);
+    assert_int_equal(stage_all(&tree, &soft, &params, &scene, NULL, NULL), STATUS_OK);
+    const Light *light = &scene.view.lights[0];
+    double half = vec3_distance(scene.geometry.bounds.low, scene.geometry.bounds.high) / 2;
+    Vec3 center = box_center(scene.geometry.bounds);
     assert_false(light->parallel);
     assert_true(vec3_distance(light->location, vec3(center.x, center.y, center.z + 3 * half)) <
                 1e-12);
@@ -374,38 +386,114 @@ static void the_ground_lies_just_beyond_the_tree(void **state)
                                            .ambient = 0.375,
                                            .diffuse = 0.5};
             StageParams params = stage_defaults();
-            params.view = (View)view;
+            params.view = (NamedView)view;
             Scene scene;
-            assert_int_equal(stage_scene(&tree, &grounded, NULL, &params, &scene, NULL, NULL),
-                             STATUS_OK);
-            const Ground *ground = &scene.ground;
-            Vec3 expected = in_world ? vec3(0, 0, 1) : vec3_scale(scene.camera.direction, -1);
+            assert_int_equal(stage_all(&tree, &grounded, &params, &scene, NULL, NULL), STATUS_OK);
+            const Ground *ground = &scene.view.ground;
+            Vec3 expected = in_world ? vec3(0, 0, 1) : vec3_scale(scene.view.camera.direction, -1);
             assert_true(vec3_distance(ground->normal, expected) < 1e-12);
             assert_true(ground->finish.ambient == 0.375f && ground->color.b == 1);
             double nearest = HUGE_VAL;
-            for (size_t i = 0; i < scene.n_primitives; i++)
+            for (size_t i = 0; i < scene.geometry.n_primitives; i++)
                 for (int end = 0; end < 2; end++) {
-                    const Primitive *primitive = &scene.primitives[i];
+                    const Primitive *primitive = &scene.geometry.primitives[i];
                     Vec3 place = end ? primitive->b : primitive->a;
                     nearest = fmin(nearest, vec3_dot(ground->normal, place) - primitive->radius_mm -
                                                 ground->offset_mm);
                 }
-            double half = vec3_distance(scene.bounds.low, scene.bounds.high) / 2;
+            double half = vec3_distance(scene.geometry.bounds.low, scene.geometry.bounds.high) / 2;
             assert_true(fabs(nearest - half / 4) < 1e-9);
             scene_release(&scene);
         }
     tree_release(&tree);
 }
 
-static void a_ground_moves_with_its_scene(void **state)
+/* By whole millimetres, and so by the same bits where quarters are exact. */
+static void a_tree_far_from_the_origin_is_staged_next_to_it(void **state)
 {
     (void)state;
-    Scene scene = {.bounds = {{1e6, 0, 0}, {1e6 + 10, 9, 8}},
-                   .ground = {.present = true, .normal = {0.6, 0, 0.8}, .offset_mm = 600000 + 7}};
-    scene_move_to_origin(&scene);
-    assert_true(fabs(scene.ground.offset_mm -
-                     (600007 - 0.6 * scene.origin.x - 0.8 * scene.origin.z)) < 1e-6);
-    assert_true(scene.origin.x > 9e5);
+    Tree tree = make_tree();
+    Look grounded = look;
+    grounded.ground = (LookGround){.present = true, .normal = {0.6, 0, 0.8}};
+    for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_BLOB; model++) {
+        StageParams params = stage_defaults();
+        Scene near, far;
+        Tree moved = make_tree();
+        params.model = model;
+        for (size_t i = 0; i < moved.n; i++)
+            moved.position[i] = vec3_add(tree.position[i], vec3(1048576, -2097152, 3145728));
+        assert_int_equal(stage_all(&tree, &grounded, &params, &near, NULL, NULL), STATUS_OK);
+        assert_int_equal(stage_all(&moved, &grounded, &params, &far, NULL, NULL), STATUS_OK);
+        Vec3 o = far.geometry.origin, by = vec3_sub(vec3(1048576, -2097152, 3145728), o);
+        assert_near(near.geometry.origin, vec3(0, 0, 0), 0);
+        assert_true(o.x == round(o.x) && o.y == round(o.y) && o.z == round(o.z));
+        assert_true(vec3_length(by) < 30);
+        for (size_t i = 0; model != SCENE_JOINED && i < near.geometry.n_primitives; i++)
+            assert_near(far.geometry.primitives[i].b, vec3_add(near.geometry.primitives[i].b, by),
+                        0);
+        for (size_t i = 0; i < near.geometry.n_segments; i++)
+            assert_near(far.geometry.segments[i].a, vec3_add(near.geometry.segments[i].a, by), 0);
+        assert_near(far.geometry.bounds.low, vec3_add(near.geometry.bounds.low, by), 1e-8);
+        assert_near(far.view.camera.location, vec3_add(near.view.camera.location, by), 1e-8);
+        assert_near(far.view.lights[0].location, vec3_add(near.view.lights[0].location, by), 1e-7);
+        assert_true(fabs(far.view.ground.offset_mm - near.view.ground.offset_mm -
+                         vec3_dot(far.view.ground.normal, by)) < 1e-8);
+        scene_release(&near);
+        scene_release(&far);
+        tree_release(&moved);
+    }
+    tree_release(&tree);
+}
+
+static void every_model_numbers_its_segments_alike(void **state)
+{
+    (void)state;
+    Tree tree = make_tree();
+    for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_BLOB; model++) {
+        StageParams params = stage_defaults();
+        Geometry geometry;
+        params.model = model;
+        assert_int_equal(stage_geometry(&tree, &params, &geometry, NULL, NULL), STATUS_OK);
+        assert_int_equal(geometry.n_ids, tree.n);
+        for (size_t i = 0; i < tree.n; i++)
+            assert_int_equal(geometry.ids[i], tree.id[i]);
+        bool found[6] = {false};
+        for (size_t i = 0; i < geometry.n_primitives; i++)
+            found[geometry.primitives[i].segment] = true;
+        for (size_t i = 0; i < geometry.n_segments; i++)
+            found[geometry.segments[i].segment] = true;
+        for (size_t i = 0; i < tree.n; i++) /* a root, three vessels, and two without extent */
+            assert_int_equal(found[i], i >= 1 && i <= 3);
+        geometry_release(&geometry);
+    }
+    tree_release(&tree);
+}
+
+static void an_appearance_has_the_colours_of_its_field(void **state)
+{
+    (void)state;
+    double values[] = {(double)NAN, 2, 8, 32, 4};
+    static float map[2][3] = {{0, 0, 0}, {1, 0, 1}};
+    float(*owned)[3] = malloc(sizeof map);
+    assert_non_null(owned);
+    memcpy(owned, map, sizeof map);
+    const Field field = {.name = "flow", .unit = "ml/min", .value = values, .n = 5};
+    ColorScale scale = {
+        .name = "flow", .unit = "ml/min", .log = true, .map = {.srgb = owned, .n = 2}};
+    Appearance appearance;
+    assert_true(colorscale_fit(&scale, values, 5));
+    assert_int_equal(stage_appearance(&look, &field, &scale, &appearance, NULL), STATUS_OK);
+    assert_true(appearance_color(&appearance, 1).r == 0);
+    assert_true(appearance_color(&appearance, 3).r == 1);
+    assert_true(fabs((double)(appearance_color(&appearance, 2).b - srgb_decode(0.5f))) < 1e-6);
+    assert_true(appearance_color(&appearance, 0).g == srgb_decode(0.5f)); /* grey: no value */
+    assert_true(appearance.finish.diffuse == look.finish.diffuse);
+    assert_string_equal(appearance.scale.unit, "ml/min");
+    appearance_release(&appearance);
+    assert_int_equal(stage_appearance(&look, NULL, NULL, &appearance, NULL), STATUS_OK);
+    assert_true(appearance_color(&appearance, 3).g == look.color.g);
+    assert_null(appearance.scale.name);
+    appearance_release(&appearance);
 }
 
 /* ---- cameras that move ----------------------------------------------------------------------- */
@@ -415,15 +503,9 @@ static Scene orbit_about(Tree *tree, StageParams *params)
 {
     Scene scene;
     *tree = make_tree();
-    assert_int_equal(stage_scene(tree, &look, NULL, params, &scene, NULL, NULL), STATUS_OK);
-    orbit_begin(params, &scene);
+    assert_int_equal(stage_all(tree, &look, params, &scene, NULL, NULL), STATUS_OK);
+    orbit_begin(params, &scene.view.camera, &scene.geometry);
     return scene;
-}
-
-static void assert_near(Vec3 a, Vec3 b, double within)
-{
-    if (!(vec3_distance(a, b) <= within))
-        fail_msg("%.12g %.12g %.12g is not %.12g %.12g %.12g", a.x, a.y, a.z, b.x, b.y, b.z);
 }
 
 static void a_camera_that_has_not_moved_is_what_it_was(void **state)
@@ -434,17 +516,18 @@ static void a_camera_that_has_not_moved_is_what_it_was(void **state)
             Tree tree;
             StageParams params = stage_defaults();
             params.projection = (Projection)projection;
-            params.view = (View)view;
+            params.view = (NamedView)view;
             params.width = 700;
             Scene scene = orbit_about(&tree, &params);
-            const Camera before = scene.camera;
-            const Light light = scene.lights[0];
-            assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_OK);
-            assert_near(scene.camera.location, before.location, 1e-9);
-            assert_near(scene.camera.right, before.right, 1e-9);
-            assert_near(scene.camera.up, before.up, 1e-9);
-            assert_near(scene.camera.direction, before.direction, 1e-12);
-            assert_near(scene.lights[0].location, light.location, 1e-6);
+            const Camera before = scene.view.camera;
+            const Light light = scene.view.lights[0];
+            assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL),
+                             STATUS_OK);
+            assert_near(scene.view.camera.location, before.location, 1e-9);
+            assert_near(scene.view.camera.right, before.right, 1e-9);
+            assert_near(scene.view.camera.up, before.up, 1e-9);
+            assert_near(scene.view.camera.direction, before.direction, 1e-12);
+            assert_near(scene.view.lights[0].location, light.location, 1e-6);
             scene_release(&scene);
             tree_release(&tree);
         }
@@ -456,7 +539,7 @@ static void what_is_turned_moves_with_the_hand(void **state)
     Tree tree;
     StageParams params = stage_defaults();
     Scene scene = orbit_about(&tree, &params);
-    const Camera before = scene.camera;
+    const Camera before = scene.view.camera;
     const Vec3 target = params.look_at, in_front = vec3_add_scaled(target, before.direction, -3);
     const struct {
         double right, up;
@@ -466,13 +549,13 @@ static void what_is_turned_moves_with_the_hand(void **state)
         orbit_turn(&moved, cases[i].right, cases[i].up);
         assert_true(fabs(vec3_distance(moved.location, target) -
                          vec3_distance(params.location, target)) < 1e-9);
-        assert_int_equal(stage_aim(&look, &moved, &scene, NULL), STATUS_OK);
-        Vec3 v = vec3_sub(in_front, scene.camera.location);
-        double right = vec3_dot(v, vec3_normalized(scene.camera.right));
-        double up = vec3_dot(v, vec3_normalized(scene.camera.up));
+        assert_int_equal(stage_view(&look, &moved, &scene.geometry, &scene.view, NULL), STATUS_OK);
+        Vec3 v = vec3_sub(in_front, scene.view.camera.location);
+        double right = vec3_dot(v, vec3_normalized(scene.view.camera.right));
+        double up = vec3_dot(v, vec3_normalized(scene.view.camera.up));
         assert_true(right * cases[i].right >= 0 && up * cases[i].up >= 0);
         assert_true(fabs(right) + fabs(up) > 0.1);
-        assert_true(fabs(vec3_dot(moved.up, scene.camera.direction)) < 1e-9);
+        assert_true(fabs(vec3_dot(moved.up, scene.view.camera.direction)) < 1e-9);
     }
     for (int step = 0; step < 1000; step++)
         orbit_turn(&params, 0.013, -0.007);
@@ -484,8 +567,8 @@ static void what_is_turned_moves_with_the_hand(void **state)
 /* Height over half of what is shown, of a point beside the one that is looked at. */
 static double seen_height(const Scene *scene, Vec3 point)
 {
-    const Camera *camera = &scene->camera;
-    Vec3 v = vec3_sub(vec3_add(point, vec3_scale(scene->origin, -1)), camera->location);
+    const Camera *camera = &scene->view.camera;
+    Vec3 v = vec3_sub(vec3_add(point, vec3_scale(scene->geometry.origin, -1)), camera->location);
     double up = vec3_dot(v, camera->up) / vec3_dot(camera->up, camera->up);
     if (camera->projection == PROJECTION_PERSPECTIVE)
         up /= vec3_dot(v, camera->direction);
@@ -503,10 +586,10 @@ static void zooming_and_panning_are_by_what_is_looked_at(void **state)
         const Vec3 beside = vec3_add_scaled(params.look_at, params.up, 0.5);
         double before = seen_height(&scene, beside);
         orbit_zoom(&params, 1.5);
-        assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_OK);
+        assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL), STATUS_OK);
         assert_true(fabs(seen_height(&scene, beside) / before - 1.5) < 1e-9);
         orbit_pan(&params, 0, 0.125);
-        assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_OK);
+        assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL), STATUS_OK);
         assert_true(fabs(seen_height(&scene, beside) - 1.5 * before - 0.125) < 1e-9);
         scene_release(&scene);
         tree_release(&tree);
@@ -523,15 +606,16 @@ static void another_projection_keeps_the_size_of_what_is_looked_at(void **state)
     const Vec3 beside = vec3_add_scaled(params.look_at, params.up, 0.5);
     double before = seen_height(&scene, beside);
     for (int i = 0; i < 2; i++) {
-        orbit_project(&params, i ? PROJECTION_ORTHOGRAPHIC : PROJECTION_PERSPECTIVE, &scene);
-        assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_OK);
+        orbit_project(&params, i ? PROJECTION_ORTHOGRAPHIC : PROJECTION_PERSPECTIVE,
+                      &scene.geometry);
+        assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL), STATUS_OK);
         assert_true(fabs(seen_height(&scene, beside) / before - 1) < 1e-9);
     }
     scene_release(&scene);
     tree_release(&tree);
 }
 
-static void a_scene_is_aimed_where_it_was_moved_to(void **state)
+static void a_view_is_of_where_the_tree_was_moved_to(void **state)
 {
     (void)state;
     Tree tree = make_tree();
@@ -539,29 +623,28 @@ static void a_scene_is_aimed_where_it_was_moved_to(void **state)
         tree.position[i].x += 5e5;
     StageParams params = stage_defaults();
     Scene scene;
-    assert_int_equal(stage_scene(&tree, &look, NULL, &params, &scene, NULL, NULL), STATUS_OK);
-    scene_move_to_origin(&scene);
-    assert_true(scene.origin.x > 4e5);
-    orbit_begin(&params, &scene);
+    assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, NULL), STATUS_OK);
+    assert_true(scene.geometry.origin.x > 4e5);
+    orbit_begin(&params, &scene.view.camera, &scene.geometry);
     assert_true(params.location.x > 4e5 && params.look_at.x > 4e5);
-    const Camera before = scene.camera;
-    assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_OK);
-    assert_near(scene.camera.location, before.location, 1e-6);
+    const Camera before = scene.view.camera;
+    assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL), STATUS_OK);
+    assert_near(scene.view.camera.location, before.location, 1e-6);
     scene_release(&scene);
     tree_release(&tree);
 }
 
-static void a_camera_without_direction_leaves_the_scene_as_it_is(void **state)
+static void a_camera_without_direction_leaves_the_view_as_it_is(void **state)
 {
     (void)state;
     Tree tree;
     StageParams params = stage_defaults();
     Scene scene = orbit_about(&tree, &params);
-    const Vec3 before = scene.camera.location;
+    const Vec3 before = scene.view.camera.location;
     params.location = params.look_at;
-    assert_int_equal(stage_aim(&look, &params, &scene, NULL), STATUS_USAGE);
-    assert_near(scene.camera.location, before, 0);
-    assert_int_equal(scene.n_lights, look.n_lights);
+    assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL), STATUS_USAGE);
+    assert_near(scene.view.camera.location, before, 0);
+    assert_int_equal(scene.view.n_lights, look.n_lights);
     scene_release(&scene);
     tree_release(&tree);
 }
@@ -716,13 +799,15 @@ int main(void)
         cmocka_unit_test(the_rays_of_a_camera_go_through_pixel_centres),
         cmocka_unit_test(a_point_light_stands_in_half_diagonals_from_the_middle),
         cmocka_unit_test(the_ground_lies_just_beyond_the_tree),
-        cmocka_unit_test(a_ground_moves_with_its_scene),
+        cmocka_unit_test(a_tree_far_from_the_origin_is_staged_next_to_it),
+        cmocka_unit_test(every_model_numbers_its_segments_alike),
+        cmocka_unit_test(an_appearance_has_the_colours_of_its_field),
         cmocka_unit_test(a_camera_that_has_not_moved_is_what_it_was),
         cmocka_unit_test(what_is_turned_moves_with_the_hand),
         cmocka_unit_test(zooming_and_panning_are_by_what_is_looked_at),
         cmocka_unit_test(another_projection_keeps_the_size_of_what_is_looked_at),
-        cmocka_unit_test(a_scene_is_aimed_where_it_was_moved_to),
-        cmocka_unit_test(a_camera_without_direction_leaves_the_scene_as_it_is),
+        cmocka_unit_test(a_view_is_of_where_the_tree_was_moved_to),
+        cmocka_unit_test(a_camera_without_direction_leaves_the_view_as_it_is),
         cmocka_unit_test(a_look_is_read),
         cmocka_unit_test(a_bad_look_names_its_line),
     };

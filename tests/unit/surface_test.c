@@ -156,19 +156,20 @@ static void log_form_is_the_distance_from_a_lone_vessel(void **state)
 static void the_tolerance_grows_as_the_surface_turns_from_the_ray(void **state)
 {
     (void)state;
-    FieldSegment segments[2] = {{.a = {-20, 0, 0}, .b = {0, 0, 0}, .radius_mm = 2.385, .id = 7},
-                                {.a = {0, 0, 0}, .b = {20, 0, 0}, .radius_mm = 0.731, .id = 3}};
-    const Scene scene = {
-        .segments = segments,
-        .n_segments = 2,
-        .camera = {
-            .direction = {0, 0, -1}, .right = {3, 0, 0}, .up = {0, 1, 0}, .width = 3, .height = 1}};
+    FieldSegment segments[2] = {
+        {.a = {-20, 0, 0}, .b = {0, 0, 0}, .radius_mm = 2.385, .segment = 0},
+        {.a = {0, 0, 0}, .b = {20, 0, 0}, .radius_mm = 0.731, .segment = 1}};
+    uint32_t numbers[] = {7, 3};
+    const Geometry geometry = {.segments = segments, .n_segments = 2, .ids = numbers, .n_ids = 2};
+    const Camera camera = {
+        .direction = {0, 0, -1}, .right = {3, 0, 0}, .up = {0, 1, 0}, .width = 3, .height = 1};
     const float square[] = {0, 0, 1, 0, 0, 1, 0, 0, 1}, askew[] = {0, 0, 1, 0, 0.8f, 0.6f, 0, 0, 1};
     const float depth[] = {41.5f, 41.5f, INFINITY};
     const uint32_t ids[] = {7, 3, 0};
     const SurfaceSight seen = {depth, square, ids}, exact = {depth, askew, ids};
     float allowed[3];
-    assert_int_equal(surface_tolerance(&scene, ERF_EXACT, &seen, &exact, allowed, NULL), STATUS_OK);
+    assert_int_equal(surface_tolerance(&geometry, &camera, ERF_EXACT, &seen, &exact, allowed, NULL),
+                     STATUS_OK);
     double rounding = 41.5 * 1.19209290e-7;
     double thick = cell_accuracy(2.385) + cell_displacement(2.385, ERF_EXACT) + rounding;
     double thin = cell_accuracy(0.731) + cell_displacement(0.731, ERF_EXACT) / 0.6 + rounding;
@@ -178,7 +179,8 @@ static void the_tolerance_grows_as_the_surface_turns_from_the_ray(void **state)
 
     const float grazing[] = {0, 0, 1, 0, 0.999f, 0.0447f, 0, 0, 1};
     const SurfaceSight past = {depth, grazing, ids};
-    assert_int_equal(surface_tolerance(&scene, ERF_EXACT, &past, &seen, allowed, NULL), STATUS_OK);
+    assert_int_equal(surface_tolerance(&geometry, &camera, ERF_EXACT, &past, &seen, allowed, NULL),
+                     STATUS_OK);
     assert_true(isinf(allowed[1]) && isfinite(allowed[0]));
 }
 
@@ -191,9 +193,9 @@ static void the_index_sums_the_terms_of_all_segments(void **state)
     FieldSegment segments[N];
     for (int i = 0; i < N; i++)
         segments[i] = random_segment(&random);
-    const Scene scene = {.segments = segments, .n_segments = N};
+    const Geometry geometry = {.segments = segments, .n_segments = N};
     FieldIndex *index;
-    assert_int_equal(fieldindex_build(&scene, &index, NULL), STATUS_OK);
+    assert_int_equal(fieldindex_build(&geometry, &index, NULL), STATUS_OK);
     for (int i = 0; i < 500; i++) {
         Vec3 x = random_place_near(&segments[i % N], &random, 2.7);
         double sum = 0;

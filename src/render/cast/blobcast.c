@@ -44,7 +44,7 @@ typedef struct Course {
 } Course;
 
 struct BlobCast {
-    const Scene *scene;
+    const Geometry *geometry;
     Primitive *hulls; /* a cylinder for each segment: its balls hold all of its field */
     Bvh *bvh;
 };
@@ -59,17 +59,17 @@ struct BlobScratch {
 
 /* ---- building -------------------------------------------------------------------------------- */
 
-Status blobcast_new(const Scene *scene, BlobCast **out, Err *err)
+Status blobcast_new(const Geometry *geometry, BlobCast **out, Err *err)
 {
-    size_t n = scene->n_segments;
+    size_t n = geometry->n_segments;
     BlobCast *cast = NULL;
     Status status;
     TRY_GOTO(mem_calloc(&cast, 1, sizeof *cast, "blobs", err));
-    cast->scene = scene;
+    cast->geometry = geometry;
     TRY_GOTO(mem_calloc(&cast->hulls, n, sizeof *cast->hulls, "segments", err));
     double reach = blob_reach(&blob_shape);
     for (size_t i = 0; i < n; i++) {
-        const FieldSegment *segment = &scene->segments[i];
+        const FieldSegment *segment = &geometry->segments[i];
         cast->hulls[i] = (Primitive){.kind = PRIMITIVE_CYLINDER,
                                      .a = segment->a,
                                      .b = segment->b,
@@ -95,7 +95,7 @@ void blobcast_free(BlobCast *cast)
 Status blobscratch_new(const BlobCast *cast, BlobScratch **out, Err *err)
 {
     BlobScratch *scratch = NULL;
-    size_t n = cast->scene->n_segments;
+    size_t n = cast->geometry->n_segments;
     Status status;
     TRY_GOTO(mem_calloc(&scratch, 1, sizeof *scratch, "workspaces", err));
     TRY_GOTO(mem_calloc(&scratch->candidates, n, sizeof *scratch->candidates, "segments", err));
@@ -368,7 +368,7 @@ static size_t find_spans(const BlobCast *cast, BlobScratch *scratch, Ray ray, do
     for (size_t i = 0; i < count; i++) {
         Span *span = &scratch->spans[n];
         span->number = scratch->candidates[i];
-        n += find_span(&cast->scene->segments[span->number], ray, reach, t_max, span);
+        n += find_span(&cast->geometry->segments[span->number], ray, reach, t_max, span);
     }
     sort_spans(scratch->spans, n);
     return n;
@@ -380,7 +380,7 @@ static bool group_root(const BlobCast *cast, BlobScratch *scratch, Ray ray, size
 {
     Piece *last = scratch->pieces;
     for (size_t i = first; i < end; i++)
-        last = put_segment(last, &cast->scene->segments[scratch->spans[i].number], ray);
+        last = put_segment(last, &cast->geometry->segments[scratch->spans[i].number], ray);
     size_t n = (size_t)(last - scratch->pieces);
     for (size_t i = 0; i < n; i++)
         scratch->order[i] = (Span){scratch->pieces[i].t0, scratch->pieces[i].t1, (uint32_t)i};
@@ -418,7 +418,7 @@ bool blobcast_first_hit(const BlobCast *cast, BlobScratch *scratch, Ray ray, dou
             continue;
         BlobComponent components[BLOB_COMPONENTS];
         Vec3 gradient;
-        blob_components(&blob_shape, &cast->scene->segments[span->number], components);
+        blob_components(&blob_shape, &cast->geometry->segments[span->number], components);
         double term = blob_components_at(components, x, &gradient);
         sum = vec3_add(sum, gradient);
         if (term > largest || (term == largest && span->number < *segment)) {

@@ -13,7 +13,7 @@ typedef struct BlobCast BlobCast;
 /* What one thread needs to cast rays. */
 typedef struct BlobScratch BlobScratch;
 
-MUST_CHECK Status blobcast_new(const Scene *scene, BlobCast **out, Err *err);
+MUST_CHECK Status blobcast_new(const Geometry *geometry, BlobCast **out, Err *err);
 void blobcast_free(BlobCast *cast);
 MUST_CHECK Status blobscratch_new(const BlobCast *cast, BlobScratch **out, Err *err);
 void blobscratch_free(BlobScratch *scratch);

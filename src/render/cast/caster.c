@@ -13,7 +13,7 @@ static const double shadow_slack_mm = 1e-3;
 static const double blob_nearest_mm = 1e-2;
 
 struct Caster {
-    const Scene *scene;
+    const Geometry *geometry;
     Bvh *bvh;                  /* NULL for an implicit model */
     PovrayIsosurface *halving; /* an implicit model as POV-Ray finds it, or NULL */
     FieldIndex *field;         /* an implicit model by proof, or NULL */
@@ -24,26 +24,27 @@ struct Caster {
     double shadow_from_mm;
 };
 
-Status caster_new(const Scene *scene, const CellParams *cells, int workers, Caster **out, Err *err)
+Status caster_new(const Geometry *geometry, const CellParams *cells, int workers, Caster **out,
+                  Err *err)
 {
     Caster *caster = NULL;
     TRY(mem_calloc(&caster, 1, sizeof *caster, "casters", err));
-    caster->scene = scene;
+    caster->geometry = geometry;
     caster->workers = workers;
     caster->shadow_from_mm = shadow_slack_mm;
     Status status = STATUS_OK;
-    if (scene->model == SCENE_BLOB) {
-        TRY_GOTO(blobcast_new(scene, &caster->blob, err));
+    if (geometry->model == SCENE_BLOB) {
+        TRY_GOTO(blobcast_new(geometry, &caster->blob, err));
         TRY_GOTO(mem_calloc(&caster->blob_scratch, (size_t)workers, sizeof *caster->blob_scratch,
                             "workspaces", err));
         for (int i = 0; i < workers; i++)
             TRY_GOTO(blobscratch_new(caster->blob, &caster->blob_scratch[i], err));
-    } else if (scene->model != SCENE_ISOSURFACE) {
-        TRY_GOTO(bvh_build(scene->primitives, scene->n_primitives, &caster->bvh, err));
+    } else if (geometry->model != SCENE_ISOSURFACE) {
+        TRY_GOTO(bvh_build(geometry->primitives, geometry->n_primitives, &caster->bvh, err));
     } else if (cells) {
-        TRY_GOTO(povray_isosurface_new(scene, cells, &caster->halving, err));
+        TRY_GOTO(povray_isosurface_new(geometry, cells, &caster->halving, err));
     } else {
-        TRY_GOTO(fieldindex_build(scene, &caster->field, err));
+        TRY_GOTO(fieldindex_build(geometry, &caster->field, err));
         TRY_GOTO(mem_calloc(&caster->scratch, (size_t)workers, sizeof *caster->scratch,
                             "workspaces", err));
         for (int i = 0; i < workers; i++)
@@ -85,15 +86,13 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
         size_t index;
         if (!bvh_first_hit(caster->bvh, ray, NEAREST_SEEN_MM, &hit, &index))
             return false;
-        const Primitive *primitive = &caster->scene->primitives[index];
-        *surfel = (Surfel){hit.t, hit.normal, primitive->color, primitive->id};
+        *surfel = (Surfel){hit.t, hit.normal, caster->geometry->primitives[index].segment};
     } else if (caster->halving) {
         Hit hit;
         uint32_t index;
         if (!povray_isosurface_first_hit(caster->halving, ray, NEAREST_SEEN_MM, &hit, &index))
             return false;
-        const FieldSegment *segment = &caster->scene->segments[index];
-        *surfel = (Surfel){hit.t, hit.normal, segment->color, segment->id};
+        *surfel = (Surfel){hit.t, hit.normal, caster->geometry->segments[index].segment};
     } else {
         double t;
         Vec3 normal;
@@ -105,19 +104,19 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
                                            NEAREST_SEEN_MM, INFINITY, &t, &normal, &index);
         if (!found)
             return false;
-        const FieldSegment *segment = &caster->scene->segments[index];
-        *surfel = (Surfel){t, normal, segment->color, segment->id};
+        *surfel = (Surfel){t, normal, caster->geometry->segments[index].segment};
     }
     if (vec3_dot(surfel->normal, ray.direction) > 0)
         surfel->normal = vec3_scale(surfel->normal, -1);
     return true;
 }
 
-bool caster_shadow(Caster *caster, int worker, Vec3 point, Vec3 towards, double distance)
+bool caster_shadow(Caster *caster, int worker, const Ground *ground, Vec3 point, Vec3 towards,
+                   double distance)
 {
     Ray ray = {point, towards};
     double near = caster->shadow_from_mm, far = distance - shadow_slack_mm, t;
-    if (ground_hit(&caster->scene->ground, ray, near, far, &t))
+    if (ground_hit(ground, ray, near, far, &t))
         return true;
     if (caster->bvh)
         return bvh_any_hit(caster->bvh, ray, near, far);

@@ -150,7 +150,7 @@ static double march(const FieldScratch *scratch, double t, double t_max, double 
 
 /* What is asked of a ray, and the answer. */
 typedef struct Search {
-    const Scene *scene;
+    const Geometry *geometry;
     FieldScratch *scratch;
     Ray ray;
     double t_min, t_max; /* t_max is finite, so that "none", infinite, is beyond it */
@@ -201,7 +201,7 @@ static void describe_hit(Search *search, double t)
             continue;
         Vec3 gradient;
         uint32_t number = term->segment;
-        double value = potential_term_gradient(&search->scene->segments[number], x, &gradient);
+        double value = potential_term_gradient(&search->geometry->segments[number], x, &gradient);
         sum = vec3_add(sum, gradient);
         if (value > largest || (value == largest && number < search->segment)) {
             largest = value;
@@ -233,7 +233,7 @@ static void pass_all(const Search *search, const uint32_t *list, size_t n)
 {
     rayterms_clear(search->scratch);
     for (size_t i = 0; i < n; i++) {
-        FieldTube tube = fieldtube_of(&search->scene->segments[list[i]], list[i]);
+        FieldTube tube = fieldtube_of(&search->geometry->segments[list[i]], list[i]);
         if (tube.reach2 > 0)
             rayterms_add(search->scratch, &tube, search->ray, search->t_min, search->t_max);
     }
@@ -245,7 +245,7 @@ static void pass_joined(const Search *search, const uint32_t *list, size_t n, si
 {
     size_t joined = 0;
     for (size_t j = 0; j < n; j++)
-        if (blend_joins(&search->scene->blend, list[i], list[j]))
+        if (blend_joins(&search->geometry->blend, list[i], list[j]))
             search->scratch->joined[joined++] = list[j];
     pass_all(search, search->scratch->joined, joined);
 }
@@ -315,12 +315,12 @@ static bool answer(const Search *search, bool hit, double *t, Vec3 *normal, uint
     return hit;
 }
 
-bool field_first_hit_among(const Scene *scene, const uint32_t *list, size_t n,
+bool field_first_hit_among(const Geometry *geometry, const uint32_t *list, size_t n,
                            FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
                            Vec3 *normal, uint32_t *segment)
 {
-    Search search = {scene, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
-    if (scene->blend.first)
+    Search search = {geometry, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
+    if (geometry->blend.first)
         return answer(&search, hit_of_union(&search, list, n), t, normal, segment);
     pass_all(&search, list, n);
     return answer(&search, hit_of_sum(&search), t, normal, segment);
@@ -330,7 +330,7 @@ static bool search_index(const FieldIndex *index, Search *search)
 {
     FieldScratch *scratch = search->scratch;
     rayterms_find(index, scratch, search->ray, search->t_min, search->t_max);
-    if (!index->scene->blend.first)
+    if (!index->geometry->blend.first)
         return hit_of_sum(search);
     size_t n = scratch->n_terms;
     for (size_t i = 0; i < n; i++)
@@ -341,13 +341,15 @@ static bool search_index(const FieldIndex *index, Search *search)
 bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                      double t_max, double *t, Vec3 *normal, uint32_t *segment)
 {
-    Search search = {index->scene, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
+    Search search = {index->geometry,     scratch, ray, t_min, fmin(t_max, DBL_MAX),
+                     .off_surface = false};
     return answer(&search, search_index(index, &search), t, normal, segment);
 }
 
 bool field_is_shadowed(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                        double t_max)
 {
-    Search search = {index->scene, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = true};
+    Search search = {index->geometry,    scratch, ray, t_min, fmin(t_max, DBL_MAX),
+                     .off_surface = true};
     return search_index(index, &search);
 }

@@ -22,7 +22,7 @@ bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, do
 
 /* The same among the `n` segments listed of the scene, without an index. `scratch` has room for
  * n. */
-bool field_first_hit_among(const Scene *scene, const uint32_t *list, size_t n,
+bool field_first_hit_among(const Geometry *geometry, const uint32_t *list, size_t n,
                            FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
                            Vec3 *normal, uint32_t *segment);
 

@@ -154,13 +154,13 @@ static void build_node(PovrayIsosurface *halving, uint32_t number, uint32_t firs
             box_union(node->box, (Box){halving->tree.cells[i].low, halving->tree.cells[i].high});
 }
 
-Status povray_isosurface_new(const Scene *scene, const CellParams *params, PovrayIsosurface **out,
-                             Err *err)
+Status povray_isosurface_new(const Geometry *geometry, const CellParams *params,
+                             PovrayIsosurface **out, Err *err)
 {
     PovrayIsosurface *halving = NULL;
     Status status;
     TRY_GOTO(mem_calloc(&halving, 1, sizeof *halving, "cells", err));
-    TRY_GOTO(celltree_build(scene, params, &halving->tree, err));
+    TRY_GOTO(celltree_build(geometry, params, &halving->tree, err));
     TRY_GOTO(mem_calloc(&halving->nodes, 2 * halving->tree.n_cells + 1, sizeof *halving->nodes,
                         "boxes of cells", err));
     halving->n_nodes = 1;

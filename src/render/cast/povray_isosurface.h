@@ -12,7 +12,7 @@
 /* The cells of a scene under a hierarchy of boxes; constant once built and shared by threads. */
 typedef struct PovrayIsosurface PovrayIsosurface;
 
-MUST_CHECK Status povray_isosurface_new(const Scene *scene, const CellParams *params,
+MUST_CHECK Status povray_isosurface_new(const Geometry *geometry, const CellParams *params,
                                         PovrayIsosurface **out, Err *err);
 void povray_isosurface_free(PovrayIsosurface *halving);
 

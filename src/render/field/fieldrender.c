@@ -20,7 +20,6 @@ typedef struct FieldPicture {
     Canvas canvas;
     FieldTiles *tiles;                 /* of this pass over the whole picture, borrowed */
     SampleGrid grid;                   /* likewise */
-    Caster *caster;                    /* for shadows; NULL without */
     uint8_t (*shadowed)[TILE_SAMPLES]; /* worker by worker, one a light */
     FurtherRows *further;              /* one a worker */
 } FieldPicture;
@@ -33,7 +32,7 @@ static bool is_inside(const SeenTile *seen, int sample)
 /* The ray of a sample. */
 static Ray sample_ray(const FieldPicture *picture, const SeenTile *seen, int sample)
 {
-    return camera_ray(&picture->canvas.scene->camera,
+    return camera_ray(&picture->canvas.drawing->view->camera,
                       picture->grid.columns[seen->column + tile_sample_x(sample)],
                       picture->grid.rows[seen->row + tile_sample_y(sample)]);
 }
@@ -50,20 +49,21 @@ static Vec3 world_normal(const FieldPicture *picture, const SeenTile *seen, int 
 static const uint8_t (*find_shadows(const FieldPicture *picture, int worker,
                                     const SeenTile *seen))[TILE_SAMPLES]
 {
-    const Scene *scene = picture->canvas.scene;
-    uint8_t(*shadowed)[TILE_SAMPLES] = picture->shadowed + (size_t)worker * scene->n_lights;
-    memset(shadowed, 0, scene->n_lights * sizeof *shadowed);
+    const View *view = picture->canvas.drawing->view;
+    Caster *caster = picture->canvas.drawing->caster;
+    uint8_t(*shadowed)[TILE_SAMPLES] = picture->shadowed + (size_t)worker * view->n_lights;
+    memset(shadowed, 0, view->n_lights * sizeof *shadowed);
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (seen->hits->state[sample] != TILE_HIT || !is_inside(seen, sample))
             continue;
         Vec3 point = ray_at(sample_ray(picture, seen, sample), seen_depth(seen, sample));
         Vec3 normal = world_normal(picture, seen, sample);
-        for (size_t i = 0; i < scene->n_lights; i++) {
-            double distance;
-            Vec3 towards = light_direction(&scene->lights[i], point, &distance);
-            shadowed[i][sample] = scene->lights[i].casts_shadows &&
-                                  vec3_dot(normal, towards) >= LEAST_LIT_COSINE &&
-                                  caster_shadow(picture->caster, worker, point, towards, distance);
+        for (size_t i = 0; i < view->n_lights; i++) {
+            LightWay way = light_way(&view->lights[i], point);
+            shadowed[i][sample] =
+                view->lights[i].casts_shadows &&
+                vec3_dot(normal, way.towards) >= LEAST_LIT_COSINE &&
+                caster_shadow(caster, worker, &view->ground, point, way.towards, way.distance);
         }
     }
     return (const uint8_t(*)[TILE_SAMPLES])shadowed;
@@ -73,19 +73,18 @@ static const uint8_t (*find_shadows(const FieldPicture *picture, int worker,
 static void color_samples(const FieldPicture *picture, int worker, const SeenTile *seen,
                           float color[3][TILE_SAMPLES])
 {
-    const Scene *scene = picture->canvas.scene;
+    const Drawing *drawing = picture->canvas.drawing;
     const SampleGrid *grid = &picture->grid;
-    const Sight sight = {scene, picture->canvas.params, picture->caster};
+    const Sight sight = {drawing->view, drawing->appearance, drawing->params, drawing->caster};
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (!is_inside(seen, sample))
             continue;
         int column = seen->column + tile_sample_x(sample), row = seen->row + tile_sample_y(sample);
         Surfel surfel, *hit = NULL;
         if (seen->hits && seen->hits->state[sample] == TILE_HIT) {
-            const FieldSegment *segment = &scene->segments[seen->hits->segment[sample]];
             surfel = (Surfel){seen_depth(seen, sample),
-                              vec3_normalized(world_normal(picture, seen, sample)), segment->color,
-                              segment->id};
+                              vec3_normalized(world_normal(picture, seen, sample)),
+                              drawing->geometry->segments[seen->hits->segment[sample]].segment};
             hit = &surfel;
         }
         Rgb rgb = sight_color(&sight, worker, sample_ray(picture, seen, sample),
@@ -108,7 +107,8 @@ static float (*color_tile(const FieldPicture *picture, int worker,
     if (!seen->hits)
         return NULL;
     return canvas_shade(&picture->canvas, worker, seen,
-                        picture->caster ? find_shadows(picture, worker, seen) : NULL);
+                        picture->canvas.drawing->caster ? find_shadows(picture, worker, seen)
+                                                        : NULL);
 }
 
 static void visit_center(const SeenTile *seen, int worker, void *context)
@@ -151,14 +151,14 @@ static bool wants_more(const FieldPicture *picture, int i, int j)
 /* The first row of pixels below a row of tiles that is not the band's. */
 static int end_row(const FieldPicture *picture, int row)
 {
-    const Band *band = picture->canvas.band;
+    const Band *band = &picture->canvas.drawing->band;
     return row * TILE_SIDE + tile_extent(band->first + band->rows - row * TILE_SIDE);
 }
 
 /* Marks the tiles of one row of tiles of the grid that hold samples of pixels that want more. */
 static bool mark_wanted(const FieldPicture *picture, int tile_row, int end, uint8_t *wanted)
 {
-    int n = picture->canvas.more.side, width = picture->canvas.scene->camera.width;
+    int n = picture->canvas.more.side, width = picture->canvas.drawing->view->camera.width;
     int first = tile_row * TILE_SIDE / n, last = (tile_row * TILE_SIDE + TILE_SIDE - 1) / n;
     bool any = false;
     memset(wanted, 0, fieldtiles_columns(picture->tiles));
@@ -192,7 +192,7 @@ static Status trace_further(void *context, int row, int worker, Err *err)
 {
     FieldPicture *picture = context;
     FurtherRows *own = &picture->further[worker];
-    int n = picture->canvas.more.side, width = picture->canvas.scene->camera.width;
+    int n = picture->canvas.more.side, width = picture->canvas.drawing->view->camera.width;
     int end = end_row(picture, row), first = row * TILE_SIDE;
     FurtherVisit visit = {picture, first * n};
     for (int i = row * n; i < (row + 1) * n && i < (int)fieldtiles_rows(picture->tiles); i++)
@@ -212,7 +212,7 @@ static Status prepare_pass(const FieldPicture *picture, int n, const double *off
                            FieldPass *pass, Err *err)
 {
     const Canvas *canvas = &picture->canvas;
-    const Camera *camera = &canvas->scene->camera;
+    const Camera *camera = &canvas->drawing->view->camera;
     int width = camera->width * n, height = camera->height * n;
     TRY(mem_calloc(&pass->columns, (size_t)width, sizeof *pass->columns, "columns", err));
     TRY(mem_calloc(&pass->rows, (size_t)height, sizeof *pass->rows, "rows", err));
@@ -221,9 +221,10 @@ static Status prepare_pass(const FieldPicture *picture, int n, const double *off
     for (int j = 0; j < height; j++)
         pass->rows[j] = j / n + offsets[j % n];
     pass->grid = (SampleGrid){pass->columns, pass->rows, width, height, 1.0 / n};
-    TRY(fieldtiles_new(canvas->scene, &pass->grid, NEAREST_SEEN_MM, canvas->workers, &pass->tiles,
-                       err));
-    fieldtiles_use_kernel(pass->tiles, fieldkernels[kernels_kind(canvas->params->kernels)]);
+    TRY(fieldtiles_new(canvas->drawing->geometry, camera, &pass->grid, NEAREST_SEEN_MM,
+                       canvas->workers, &pass->tiles, err));
+    fieldtiles_use_kernel(pass->tiles,
+                          fieldkernels[kernels_kind(canvas->drawing->params->kernels)]);
     return STATUS_OK;
 }
 
@@ -289,18 +290,18 @@ static void release(FieldPicture *picture)
     canvas_release(&picture->canvas);
 }
 
-Status fieldrender(const Scene *scene, const RenderParams *params, Caster *caster, const Band *rows,
-                   FieldPrepared *prepared, Frame *frame, RenderStats *stats, Err *err)
+Status fieldrender(const Drawing *drawing, FieldPrepared *prepared, Frame *frame,
+                   RenderStats *stats, Err *err)
 {
     Status status;
-    FieldPicture picture = {.caster = caster};
+    FieldPicture picture = {0};
     Canvas *canvas = &picture.canvas;
     const double center = 0;
-    const Viewpoint eye = viewpoint_of_camera(&scene->camera);
+    const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
     double start_s = clock_seconds();
-    TRY_GOTO(canvas_init(scene, params, rows, frame, &eye, canvas, err));
-    canvas->wholly_colored = sight_is_needed(scene, params);
-    TRY_GOTO(mem_calloc(&picture.shadowed, (size_t)canvas->workers * scene->n_lights,
+    TRY_GOTO(canvas_init(drawing, frame, &eye, canvas, err));
+    canvas->wholly_colored = sight_is_needed(drawing->view, drawing->params);
+    TRY_GOTO(mem_calloc(&picture.shadowed, (size_t)canvas->workers * drawing->view->n_lights,
                         sizeof *picture.shadowed, "lights", err));
     TRY_GOTO(use_pass(&picture, 1, &center, &prepared->center, err));
     double prepared_s = clock_seconds() - start_s;

@@ -19,10 +19,10 @@ typedef struct FieldPrepared {
     FieldPass center, further;
 } FieldPrepared;
 
-/* renderer_rows() for implicit scenes, into planes that are there. `caster` is for shadows; NULL
- * without. Adds the seconds taken to *stats. Makes of *prepared what is not there yet. */
-MUST_CHECK Status fieldrender(const Scene *scene, const RenderParams *params, Caster *caster,
-                              const Band *rows, FieldPrepared *prepared, Frame *frame,
+/* Draws an implicit model into planes that are there, with the drawing's caster for shadows and for
+ * what sight_is_needed() names. Adds the seconds taken to *stats. Makes of *prepared what is not
+ * there yet. */
+MUST_CHECK Status fieldrender(const Drawing *drawing, FieldPrepared *prepared, Frame *frame,
                               RenderStats *stats, Err *err);
 
 /* Leaves *prepared zeroed. */

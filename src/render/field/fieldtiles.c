@@ -34,7 +34,8 @@ typedef struct TilePlaces {
 } TilePlaces;
 
 struct FieldTiles {
-    const Scene *scene;
+    const Geometry *geometry;
+    Camera camera;
     SampleGrid grid;
     Viewpoint eye;
     double width, height; /* of the picture, in the camera's plane */
@@ -106,10 +107,11 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
     FieldTiles *tiles = context;
-    const Scene *scene = tiles->scene;
-    size_t end = (chunk + 1) * CHUNK < scene->n_segments ? (chunk + 1) * CHUNK : scene->n_segments;
+    const Geometry *geometry = tiles->geometry;
+    size_t end =
+        (chunk + 1) * CHUNK < geometry->n_segments ? (chunk + 1) * CHUNK : geometry->n_segments;
     for (size_t i = chunk * CHUNK; i < end; i++) {
-        const FieldSegment *segment = &scene->segments[i];
+        const FieldSegment *segment = &geometry->segments[i];
         Vec3 span = vec3_sub(segment->b, segment->a);
         FrameSegment *out = &tiles->segments[i];
         *out = (FrameSegment){.a = viewpoint_place(&tiles->eye, segment->a),
@@ -133,7 +135,7 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
 /* Counting sort of the segments into rows. */
 static Status sort_into_rows(FieldTiles *tiles, Err *err)
 {
-    size_t n = tiles->scene->n_segments, total = 0;
+    size_t n = tiles->geometry->n_segments, total = 0;
     size_t *offsets = tiles->row_offsets;
     for (size_t i = 0; i < n; i++)
         for (int row = tiles->segments[i].first_row; row <= tiles->segments[i].last_row; row++)
@@ -154,13 +156,13 @@ static Status sort_into_rows(FieldTiles *tiles, Err *err)
 
 static double row_height(const FieldTiles *tiles, double row)
 {
-    return (0.5 - (row + 0.5) / tiles->scene->camera.height) * tiles->height;
+    return (0.5 - (row + 0.5) / tiles->camera.height) * tiles->height;
 }
 
 static void place_grid(FieldTiles *tiles)
 {
     const SampleGrid *grid = &tiles->grid;
-    const Camera *camera = &tiles->scene->camera;
+    const Camera *camera = &tiles->camera;
     for (int i = 0; i < grid->n_columns; i++)
         tiles->x[i] = ((grid->columns[i] + 0.5) / camera->width - 0.5) * tiles->width;
     for (int j = 0; j < grid->n_rows; j++)
@@ -202,14 +204,14 @@ static Status make_workspaces(FieldTiles *tiles, Err *err)
     return STATUS_OK;
 }
 
-Status fieldtiles_new(const Scene *scene, const SampleGrid *grid, double z_min, int workers,
-                      FieldTiles **out, Err *err)
+Status fieldtiles_new(const Geometry *geometry, const Camera *camera, const SampleGrid *grid,
+                      double z_min, int workers, FieldTiles **out, Err *err)
 {
     Status status;
     FieldTiles *tiles = NULL;
-    const Camera *camera = &scene->camera;
     TRY_GOTO(mem_calloc(&tiles, 1, sizeof *tiles, "tiles", err));
-    tiles->scene = scene;
+    tiles->geometry = geometry;
+    tiles->camera = *camera;
     tiles->grid = *grid;
     tiles->z_min = z_min;
     tiles->workers = workers;
@@ -228,11 +230,11 @@ Status fieldtiles_new(const Scene *scene, const SampleGrid *grid, double z_min, 
     place_grid(tiles);
     place_tiles(tiles->x, grid->n_columns, tile_sample_x, tiles->tile_x);
     place_tiles(tiles->y, grid->n_rows, tile_sample_y, tiles->tile_y);
-    TRY_GOTO(
-        mem_calloc(&tiles->segments, scene->n_segments, sizeof *tiles->segments, "segments", err));
+    TRY_GOTO(mem_calloc(&tiles->segments, geometry->n_segments, sizeof *tiles->segments, "segments",
+                        err));
     TRY_GOTO(mem_calloc(&tiles->row_offsets, (size_t)tiles->tile_rows + 1,
                         sizeof *tiles->row_offsets, "rows of tiles", err));
-    threads_for((scene->n_segments + CHUNK - 1) / CHUNK, workers, prepare_chunk, tiles);
+    threads_for((geometry->n_segments + CHUNK - 1) / CHUNK, workers, prepare_chunk, tiles);
     TRY_GOTO(sort_into_rows(tiles, err));
     TRY_GOTO(make_workspaces(tiles, err));
     *out = tiles;
@@ -355,7 +357,7 @@ static Status list_row(const FieldTiles *tiles, size_t row, Workspace *space, Er
 static void place_row(const FieldTiles *tiles, size_t row, FieldTile *tile)
 {
     const TilePlaces *y = &tiles->tile_y[row];
-    *tile = (FieldTile){.blend = &tiles->scene->blend,
+    *tile = (FieldTile){.blend = &tiles->geometry->blend,
                         .perspective = tiles->eye.perspective,
                         .y = y->samples,
                         .middle_y = y->middle,
@@ -407,8 +409,8 @@ static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile 
     Vec3 normal;
     uint32_t segment = 0;
     hits->state[sample] = TILE_MISS;
-    if (!field_first_hit_among(tiles->scene, space->candidates, tile->n_terms, space->scratch, ray,
-                               tiles->z_min, HUGE_VAL, &t, &normal, &segment))
+    if (!field_first_hit_among(tiles->geometry, space->candidates, tile->n_terms, space->scratch,
+                               ray, tiles->z_min, HUGE_VAL, &t, &normal, &segment))
         return STATUS_OK;
     bool within = vec3_dot(normal, ray.direction) > 0;
     normal = viewpoint_to_frame(&tiles->eye, within ? vec3_scale(normal, -1) : normal);
@@ -430,8 +432,8 @@ static Status decide_all(const FieldTiles *tiles, Workspace *space, const FieldT
         int i = tile_sample_x(sample), j = tile_sample_y(sample);
         if (hits->state[sample] != TILE_UNSURE || i >= seen->n_columns || j >= seen->n_rows)
             continue;
-        Ray ray = camera_ray(&tiles->scene->camera, grid->columns[seen->column + i],
-                             grid->rows[seen->row + j]);
+        Ray ray =
+            camera_ray(&tiles->camera, grid->columns[seen->column + i], grid->rows[seen->row + j]);
         TRY(decide(tiles, space, tile, ray, sample, hits, err));
     }
     return STATUS_OK;

@@ -17,10 +17,11 @@ typedef struct SampleGrid {
 /* Constant once built but for the workspaces, one a worker. */
 typedef struct FieldTiles FieldTiles;
 
-/* Prepares the segments of an implicit scene for its camera; scene and grid are borrowed. Nothing
+/* Prepares the segments of an implicit model for a camera; geometry and grid are borrowed. Nothing
  * is seen nearer than z_min mm along a ray. */
-MUST_CHECK Status fieldtiles_new(const Scene *scene, const SampleGrid *grid, double z_min,
-                                 int workers, FieldTiles **out, Err *err);
+MUST_CHECK Status fieldtiles_new(const Geometry *geometry, const Camera *camera,
+                                 const SampleGrid *grid, double z_min, int workers,
+                                 FieldTiles **out, Err *err);
 void fieldtiles_free(FieldTiles *tiles);
 
 /* Rows of tiles. */

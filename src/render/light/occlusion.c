@@ -24,7 +24,8 @@ static Axes axes_about(Vec3 n)
                   {t, sign + n.y * n.y * s, -n.y}};
 }
 
-double occlusion_open(Caster *caster, int worker, Vec3 point, Vec3 normal, int rays, double turn)
+double occlusion_open(Caster *caster, int worker, const Ground *ground, Vec3 point, Vec3 normal,
+                      int rays, double turn)
 {
     Axes axes = axes_about(normal);
     int open = 0;
@@ -35,7 +36,7 @@ double occlusion_open(Caster *caster, int worker, Vec3 point, Vec3 normal, int r
         Vec3 direction = vec3_scale(normal, sqrt(1 - part));
         direction = vec3_add_scaled(direction, axes.a, radius * cos(angle));
         direction = vec3_add_scaled(direction, axes.b, radius * sin(angle));
-        open += !caster_shadow(caster, worker, point, vec3_normalized(direction), HUGE_VAL);
+        open += !caster_shadow(caster, worker, ground, point, vec3_normalized(direction), HUGE_VAL);
     }
     return (double)open / rays;
 }

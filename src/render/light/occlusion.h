@@ -7,7 +7,8 @@
 /* The part, from 0 to 1, of `rays` (at least 1) rays that leave the point without meeting anything.
  * Their directions are distributed as the cosine to `normal` (unit), and turned about it by `turn`,
  * a part of a full turn. METHODS section 3.1. */
-double occlusion_open(Caster *caster, int worker, Vec3 point, Vec3 normal, int rays, double turn);
+double occlusion_open(Caster *caster, int worker, const Ground *ground, Vec3 point, Vec3 normal,
+                      int rays, double turn);
 
 /* The turn of the sample at (i, j) of the picture, from 0 to 1: neighbours differ as much as they
  * can. J. Jimenez: Next generation post processing in Call of Duty: Advanced Warfare, SIGGRAPH

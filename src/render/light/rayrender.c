@@ -9,17 +9,15 @@
 #include "render/planes.h"
 
 typedef struct RayPicture {
-    const Scene *scene;
-    const RenderParams *params;
+    const Drawing *drawing;
     Sight sight;
-    const Band *band;
     Frame *frame;
     Resampling more;
 } RayPicture;
 
 static Rgb sample_color(const RayPicture *picture, int worker, double i, double j)
 {
-    Ray ray = camera_ray(&picture->scene->camera, i, j);
+    Ray ray = camera_ray(&picture->drawing->view->camera, i, j);
     Surfel surfel;
     bool seen = caster_first(picture->sight.caster, worker, ray, &surfel);
     return sight_color(&picture->sight, worker, ray, i, j, seen ? &surfel : NULL);
@@ -46,35 +44,38 @@ static Rgb antialiased(const RayPicture *picture, int worker, int i, int j, Rgb 
 static void report_progress(const RayPicture *picture, bool further, size_t row, int worker)
 {
     if (worker == 0)
-        band_progress(picture->band, picture->params, picture->scene->camera.height, further,
-                      (double)row / picture->band->rows);
+        band_progress(&picture->drawing->band, picture->drawing->params,
+                      picture->drawing->view->camera.height, further,
+                      (double)row / picture->drawing->band.rows);
 }
 
 static void render_row(size_t row, int worker, void *context)
 {
     const RayPicture *picture = context;
-    const Camera *camera = &picture->scene->camera;
+    const Camera *camera = &picture->drawing->view->camera;
     report_progress(picture, false, row, worker);
     for (int i = 0; i < camera->width; i++) {
         size_t pixel = row * (size_t)camera->width + (size_t)i;
-        Ray ray = camera_ray(camera, i, picture->band->first + (int)row);
+        Ray ray = camera_ray(camera, i, picture->drawing->band.first + (int)row);
         Surfel surfel;
         bool seen = caster_first(picture->sight.caster, worker, ray, &surfel);
         if (seen)
-            planes_store(picture->frame, pixel, surfel.t, surfel.normal, surfel.id);
+            planes_store(picture->frame, pixel, surfel.t, surfel.normal,
+                         picture->drawing->geometry->ids[surfel.segment]);
         else
             planes_store_nothing(picture->frame, pixel);
         if (picture->frame->color.values)
             planes_store_color(picture->frame, pixel,
                                sight_color(&picture->sight, worker, ray, i,
-                                           picture->band->first + (int)row, seen ? &surfel : NULL));
+                                           picture->drawing->band.first + (int)row,
+                                           seen ? &surfel : NULL));
     }
 }
 
 static void resample_row(size_t row, int worker, void *context)
 {
     const RayPicture *picture = context;
-    const Camera *camera = &picture->scene->camera;
+    const Camera *camera = &picture->drawing->view->camera;
     report_progress(picture, true, row, worker);
     for (int i = 0; i < camera->width; i++) {
         size_t pixel = row * (size_t)camera->width + (size_t)i;
@@ -82,18 +83,17 @@ static void resample_row(size_t row, int worker, void *context)
             continue;
         const float *center = &picture->frame->color.values[3 * pixel];
         planes_store_color(picture->frame, pixel,
-                           antialiased(picture, worker, i, picture->band->first + (int)row,
+                           antialiased(picture, worker, i, picture->drawing->band.first + (int)row,
                                        (Rgb){center[0], center[1], center[2]}));
     }
 }
 
-Status rayrender(const Scene *scene, const RenderParams *params, Caster *caster, const Band *band,
-                 Frame *frame, RenderStats *stats, Err *err)
+Status rayrender(const Drawing *drawing, Frame *frame, RenderStats *stats, Err *err)
 {
-    RayPicture picture = {.scene = scene,
-                          .params = params,
-                          .sight = {scene, params, caster},
-                          .band = band,
+    const RenderParams *params = drawing->params;
+    const Band *band = &drawing->band;
+    RayPicture picture = {.drawing = drawing,
+                          .sight = {drawing->view, drawing->appearance, params, drawing->caster},
                           .frame = frame};
     int threads = params->threads > 0 ? params->threads : threads_available();
     double start_s = clock_seconds();

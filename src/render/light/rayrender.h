@@ -5,9 +5,8 @@
 #include "render/cast/caster.h"
 #include "render/job.h"
 
-/* Draws the band into planes that are there, one worker a row at a time, with the workspaces of
- * `caster` for as many workers, and adds the seconds taken to *stats. STATUS_MEMORY. */
-MUST_CHECK Status rayrender(const Scene *scene, const RenderParams *params, Caster *caster,
-                            const Band *band, Frame *frame, RenderStats *stats, Err *err);
+/* Draws the band into planes that are there, one worker a row at a time, with the workspaces of the
+ * drawing's caster for as many workers, and adds the seconds taken to *stats. STATUS_MEMORY. */
+MUST_CHECK Status rayrender(const Drawing *drawing, Frame *frame, RenderStats *stats, Err *err);
 
 #endif

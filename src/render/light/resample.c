@@ -46,21 +46,12 @@ void resample_mask(const Plane *color, int above, int below, float threshold, in
     memset(mask + (height - (size_t)below) * width, 0, (size_t)below * width);
 }
 
-void resample_offsets(int n, double *offsets)
-{
-    double step = 1.0 / n, offset = -(0.5 - step * 0.5);
-    for (int i = 0; i < n; i++) {
-        offsets[i] = offset;
-        offset += step;
-    }
-}
-
 Status resampling_init(int antialias, Resampling *more, Err *err)
 {
     *more = (Resampling){.side = antialias > 1 ? antialias : 0};
     TRY(mem_calloc(&more->offsets, (size_t)more->side, sizeof *more->offsets, "samples", err));
     if (more->side > 0)
-        resample_offsets(more->side, more->offsets);
+        camera_sample_offsets(more->side, more->offsets);
     return STATUS_OK;
 }
 

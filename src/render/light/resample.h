@@ -11,14 +11,10 @@
 void resample_mask(const Plane *color, int above, int below, float threshold, int threads,
                    uint8_t *mask);
 
-/* Where a pixel's N x N further samples stand, from its centre, in pixels: offsets[n], the same in
- * both directions; POV-Ray's places [docs/POVRAY.md], summed up as it sums them. */
-void resample_offsets(int n, double *offsets);
-
 /* The further samples of the pixels of a band. */
 typedef struct Resampling {
     int side;        /* N of N x N further samples a pixel; 0: none */
-    double *offsets; /* owned; resample_offsets(side) */
+    double *offsets; /* owned; camera_sample_offsets(side) */
     uint8_t *mask;   /* owned; 1 for pixels that get further samples; NULL: all do */
 } Resampling;
 

@@ -56,59 +56,32 @@ static Rgb lit_by(Rgb light, const Finish *finish, Rgb pigment, Vec3 normal, Vec
     return color;
 }
 
-/* The part of a light's samples that reach the point, from 0 to 1. */
-static double visible_part(const Light *light, Vec3 point, Vec3 towards, double distance,
-                           ShadowTest *shadow, void *context)
+/* The part of a light's points that reach the place, from 0 to 1. */
+static double visible_part(const Light *light, Vec3 place, ShadowTest *shadow, void *context)
 {
-    int n = light->samples, reach = 0;
+    int n = light_points(light), reach = 0;
     if (!shadow || !light->casts_shadows)
         return 1;
-    if (n < 2)
-        return shadow(context, point, towards, distance) ? 0 : 1;
-    for (int v = 0; v < n; v++)
-        for (int u = 0; u < n; u++) {
-            Vec3 sample = vec3_add_scaled(light->location, light->sides[0], u / (n - 1.0) - 0.5);
-            sample = vec3_add_scaled(sample, light->sides[1], v / (n - 1.0) - 0.5);
-            Vec3 to_sample = vec3_sub(sample, point);
-            double far = vec3_length(to_sample);
-            reach += !shadow(context, point, vec3_scale(to_sample, 1 / far), far);
-        }
-    return (double)reach / (n * n);
-}
-
-Vec3 light_direction(const Light *light, Vec3 point, double *distance)
-{
-    Vec3 to_light = vec3_sub(light->location, point);
-    if (light->parallel) {
-        Vec3 towards = vec3_normalized(vec3_sub(light->location, light->target));
-        *distance = vec3_dot(to_light, towards);
-        return towards;
+    for (int k = 0; k < n; k++) {
+        LightWay way = light_way_to_point(light, k, place);
+        reach += !shadow(context, place, way.towards, way.distance);
     }
-    *distance = vec3_length(to_light);
-    return vec3_scale(to_light, 1 / *distance);
+    return (double)reach / n;
 }
 
-Rgb shade_point(const Scene *scene, const ShadePoint *at, ShadowTest *shadow, void *context)
+Rgb shade(const View *view, const ShadePoint *at, ShadowTest *shadow, void *context)
 {
     Rgb color = rgb_scale(at->pigment, (double)at->finish->ambient * at->open);
-    for (size_t i = 0; i < scene->n_lights; i++) {
-        const Light *light = &scene->lights[i];
-        double distance;
-        Vec3 towards = light_direction(light, at->point, &distance);
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
+        Vec3 towards = light_way(light, at->point).towards;
         double cosine = vec3_dot(at->normal, towards);
         if (cosine < LEAST_LIT_COSINE)
             continue;
-        double part = visible_part(light, at->point, towards, distance, shadow, context);
+        double part = visible_part(light, at->point, shadow, context);
         if (part > 0)
             color = rgb_add(color, lit_by(rgb_scale(light->color, part), at->finish, at->pigment,
                                           at->normal, at->direction, towards, cosine));
     }
     return color;
-}
-
-Rgb shade(const Scene *scene, Rgb pigment, Vec3 point, Vec3 normal, Vec3 direction,
-          ShadowTest *shadow, void *context)
-{
-    const ShadePoint at = {&scene->finish, pigment, point, normal, direction, 1};
-    return shade_point(scene, &at, shadow, context);
 }

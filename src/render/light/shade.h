@@ -9,9 +9,6 @@
  * this [docs/METHODS.md section 3]. */
 #define LEAST_LIT_COSINE 1e-10
 
-/* The unit direction from a point to a light, and how far the light is along it, mm. */
-Vec3 light_direction(const Light *light, Vec3 point, double *distance);
-
 /* Tells whether anything stands between `point` and a light in direction `towards` (unit) at
  * `distance` mm. */
 typedef bool ShadowTest(void *context, Vec3 point, Vec3 towards, double distance);
@@ -26,11 +23,7 @@ typedef struct ShadePoint {
     double open;    /* the part of the ambient light that reaches it */
 } ShadePoint;
 
-/* The colour of a point. `shadow` may be NULL: no shadows. */
-Rgb shade_point(const Scene *scene, const ShadePoint *at, ShadowTest *shadow, void *context);
-
-/* That of an open point of the scene's vessels. */
-Rgb shade(const Scene *scene, Rgb pigment, Vec3 point, Vec3 normal, Vec3 direction,
-          ShadowTest *shadow, void *context);
+/* The colour of a point in the lights of the view. `shadow` may be NULL: no shadows. */
+Rgb shade(const View *view, const ShadePoint *at, ShadowTest *shadow, void *context);
 
 #endif

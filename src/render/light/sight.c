@@ -8,34 +8,36 @@
 
 typedef struct ShadowContext {
     Caster *caster;
+    const Ground *ground;
     int worker;
 } ShadowContext;
 
 static bool shadowed(void *context, Vec3 point, Vec3 towards, double distance)
 {
     const ShadowContext *shadow = context;
-    return caster_shadow(shadow->caster, shadow->worker, point, towards, distance);
+    return caster_shadow(shadow->caster, shadow->worker, shadow->ground, point, towards, distance);
 }
 
-bool sight_is_needed(const Scene *scene, const RenderParams *params)
+bool sight_is_needed(const View *view, const RenderParams *params)
 {
     bool soft = false;
-    for (size_t i = 0; i < scene->n_lights; i++)
-        soft |= scene->lights[i].casts_shadows && scene->lights[i].samples > 1;
-    return params->occlusion > 0 || scene->ground.present || (params->shadows && soft);
+    for (size_t i = 0; i < view->n_lights; i++)
+        soft |= view->lights[i].casts_shadows && view->lights[i].samples > 1;
+    return params->occlusion > 0 || view->ground.present || (params->shadows && soft);
 }
 
 Rgb sight_color(const Sight *sight, int worker, Ray ray, double i, double j, const Surfel *surfel)
 {
-    const Scene *scene = sight->scene;
-    const Ground *ground = &scene->ground;
+    const View *view = sight->view;
+    const Ground *ground = &view->ground;
     double t = surfel ? surfel->t : HUGE_VAL;
     bool on_ground = ground_hit(ground, ray, NEAREST_SEEN_MM, t, &t);
     if (!on_ground && !surfel)
-        return scene->background;
-    ShadowContext context = {sight->caster, worker};
-    ShadePoint at = {.finish = on_ground ? &ground->finish : &scene->finish,
-                     .pigment = on_ground ? ground->color : surfel->pigment,
+        return view->background;
+    ShadowContext context = {sight->caster, ground, worker};
+    ShadePoint at = {.finish = on_ground ? &ground->finish : &sight->appearance->finish,
+                     .pigment = on_ground ? ground->color
+                                          : appearance_color(sight->appearance, surfel->segment),
                      .point = ray_at(ray, t),
                      .normal = on_ground ? ground->normal : surfel->normal,
                      .direction = ray.direction,
@@ -43,7 +45,7 @@ Rgb sight_color(const Sight *sight, int worker, Ray ray, double i, double j, con
     if (vec3_dot(at.normal, ray.direction) > 0)
         at.normal = vec3_scale(at.normal, -1);
     if (sight->params->occlusion > 0)
-        at.open = occlusion_open(sight->caster, worker, at.point, at.normal,
+        at.open = occlusion_open(sight->caster, worker, ground, at.point, at.normal,
                                  sight->params->occlusion, occlusion_turn(i, j));
-    return shade_point(scene, &at, sight->params->shadows ? shadowed : NULL, &context);
+    return shade(view, &at, sight->params->shadows ? shadowed : NULL, &context);
 }

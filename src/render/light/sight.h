@@ -5,15 +5,17 @@
 #include "render/cast/caster.h"
 #include "render/job.h"
 
+/* What colours are made of. */
 typedef struct Sight {
-    const Scene *scene;
+    const View *view;
+    const Appearance *appearance;
     const RenderParams *params;
     Caster *caster; /* NULL: nothing is in the way of light */
 } Sight;
 
-/* Whether the sky counts, or a light is more than a point, or there is ground: what the kernels of
- * tiles do not know. */
-bool sight_is_needed(const Scene *scene, const RenderParams *params);
+/* Whether the picture needs what the kernels of tiles do not know: ambient occlusion, area lights
+ * or ground. */
+bool sight_is_needed(const View *view, const RenderParams *params);
 
 /* The colour of what is seen along the ray of the sample (i, j): of `surfel`, what it meets first
  * of the vessels (NULL: none), of the ground where that is nearer, or of the background. */

@@ -92,7 +92,7 @@ static RasterHull make_hull(const RasterView *view, const Primitive *primitive, 
 void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, RasterItem *item)
 {
     const RasterView *view = &bins->view;
-    const Primitive *primitive = &bins->scene->primitives[number];
+    const Primitive *primitive = &bins->geometry->primitives[number];
     Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
     middle = viewpoint_place(&view->eye, middle);
     Vec3 span = viewpoint_to_frame(&view->eye, vec3_sub(primitive->b, primitive->a));
@@ -109,8 +109,8 @@ void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, Ra
     if (primitive->kind == PRIMITIVE_CYLINDER)
         kind = !view->eye.perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
     if (primitive->kind == PRIMITIVE_JOINT) {
-        kind = bins->scene->open_joints || !primitive_joint_is_solid(primitive) ? RASTER_EXACT
-                                                                                : RASTER_JOINT;
+        kind = bins->geometry->open_joints || !primitive_joint_is_solid(primitive) ? RASTER_EXACT
+                                                                                   : RASTER_JOINT;
         radius = max_of(radius, primitive->radius_b_mm);
         if (kind == RASTER_JOINT && bins->hulls)
             bins->hulls[joint] = make_hull(view, primitive, span, length, turn);
@@ -138,13 +138,13 @@ void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, Ra
 void raster_joint(const RasterBins *bins, uint32_t item, RasterJoint *joint)
 {
     const RasterItem *about = &bins->items[item];
-    *joint =
-        make_joint(&bins->view, &bins->scene->primitives[item], vec3(about->x, about->y, about->z));
+    *joint = make_joint(&bins->view, &bins->geometry->primitives[item],
+                        vec3(about->x, about->y, about->z));
 }
 
 double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal)
 {
-    const Primitive *primitive = &bins->scene->primitives[item];
+    const Primitive *primitive = &bins->geometry->primitives[item];
     Ray ray = rasterview_ray(&bins->view, x, y);
     Hit hits[6];
     int n = 0;

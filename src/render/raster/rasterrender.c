@@ -39,7 +39,6 @@ typedef struct RasterPicture {
     RasterGrid center;
     RasterGrid *further;    /* n x n, row by row */
     RasterShadow **shadows; /* one a light, of RasterPrepared; NULL without shadows */
-    Caster *caster;         /* likewise */
     bool chooses;           /* only some pixels get further samples, in a second round */
     bool second_round;
     Batch *batches; /* one a worker */
@@ -88,23 +87,24 @@ static void cast_shadows(const RasterPicture *picture, const Light *light, int w
                          const RasterPlaces *places, uint64_t wanted,
                          uint8_t shadowed[TILE_SAMPLES])
 {
+    const Drawing *drawing = picture->canvas.drawing;
     for (; wanted; wanted &= wanted - 1) {
         int sample = __builtin_ctzll(wanted);
         Vec3 at = {places->x[sample], places->y[sample], places->z[sample]};
         Vec3 point = viewpoint_point(&picture->canvas.eye, at);
-        double distance;
-        Vec3 towards = light_direction(light, point, &distance);
-        shadowed[sample] = caster_shadow(picture->caster, worker, point, towards, distance);
+        LightWay way = light_way(light, point);
+        shadowed[sample] = caster_shadow(drawing->caster, worker, &drawing->view->ground, point,
+                                         way.towards, way.distance);
     }
 }
 
 static void ask_lights(const RasterPicture *picture, const Sheet *sheet, int worker, Batch *batch)
 {
-    const Scene *scene = picture->canvas.scene;
+    const View *view = picture->canvas.drawing->view;
     RasterPlaces places;
     picture->kernels->locate(&sheet->tile, &sheet->hits, &places);
-    for (size_t i = 0; i < scene->n_lights; i++) {
-        const Light *light = &scene->lights[i];
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
         if (!light->casts_shadows)
             continue;
         uint64_t wanted = find_facing(picture, sheet, &picture->canvas.lights[i], &places);
@@ -119,7 +119,7 @@ static void ask_lights(const RasterPicture *picture, const Sheet *sheet, int wor
 
 static void find_shadows(const RasterPicture *picture, int worker, Batch *batch)
 {
-    size_t n_lights = picture->canvas.scene->n_lights;
+    size_t n_lights = picture->canvas.drawing->view->n_lights;
     memset(batch->shadowed, 0, (size_t)batch->n_sheets * n_lights * sizeof *batch->shadowed);
     for (int i = 0; i < batch->n_sheets; i++)
         if (batch->sheets[i].visible)
@@ -255,7 +255,7 @@ static void draw_batch(const RasterPicture *picture, int worker, Batch *batch)
 static void begin_sheet(const RasterPicture *picture, const RasterTile *tile, int column, int row,
                         Sheet *sheet)
 {
-    const Camera *camera = &picture->canvas.scene->camera;
+    const Camera *camera = &picture->canvas.drawing->view->camera;
     sheet->tile = *tile;
     sheet->seen = (SeenTile){.column = column,
                              .row = row,
@@ -292,24 +292,17 @@ static Status draw_row(void *context, int row, int worker, Err *err)
 
 /* ---- the picture ----------------------------------------------------------------------------- */
 
-static Status prepare_shadows(const Scene *scene, const RasterView *view, int workers,
-                              RasterPrepared *prepared, Err *err)
-{
-    bool rays = false;
-    TRY(mem_calloc(&prepared->shadows, scene->n_lights, sizeof *prepared->shadows, "lights", err));
-    prepared->n_lights = scene->n_lights;
-    TRY(rastershadows_new(scene, view, workers, prepared->shadows, err));
-    for (size_t i = 0; i < scene->n_lights; i++)
-        rays |= scene->lights[i].casts_shadows && !prepared->shadows[i];
-    return rays ? caster_new(scene, NULL, workers, &prepared->caster, err) : STATUS_OK;
-}
-
-static Status prepare(const Scene *scene, const RasterView *view, bool shadows, int workers,
+static Status prepare(const Drawing *drawing, const RasterView *view, bool shadows, int workers,
                       RasterPrepared *prepared, Err *err)
 {
-    if (shadows)
-        TRY(prepare_shadows(scene, view, workers, prepared, err));
-    return rasterbins_new(scene, view, workers, &prepared->bins, err);
+    size_t n_lights = drawing->view->n_lights;
+    if (shadows) {
+        TRY(mem_calloc(&prepared->shadows, n_lights, sizeof *prepared->shadows, "lights", err));
+        prepared->n_lights = n_lights;
+        TRY(rastershadows_new(drawing->geometry, drawing->view, view, workers, prepared->shadows,
+                              err));
+    }
+    return rasterbins_new(drawing->geometry, view, workers, &prepared->bins, err);
 }
 
 void rasterprepared_release(RasterPrepared *prepared)
@@ -317,7 +310,6 @@ void rasterprepared_release(RasterPrepared *prepared)
     for (size_t i = 0; i < prepared->n_lights; i++)
         rastershadow_free(prepared->shadows[i]);
     free(prepared->shadows);
-    caster_free(prepared->caster);
     rasterbins_free(prepared->bins);
     *prepared = (RasterPrepared){0};
 }
@@ -336,7 +328,7 @@ static Status prepare_samples(RasterPicture *picture, const RasterView *view, Er
 
 static Status prepare_batch(const RasterPicture *picture, Batch *batch, Err *err)
 {
-    size_t n = (size_t)picture->batch_size, n_lights = picture->canvas.scene->n_lights;
+    size_t n = (size_t)picture->batch_size, n_lights = picture->canvas.drawing->view->n_lights;
     TRY(mem_calloc(&batch->sheets, n, sizeof *batch->sheets, "tiles", err));
     TRY(mem_calloc(&batch->queues, n_lights, sizeof *batch->queues, "lights", err));
     TRY(mem_calloc(&batch->shadowed, n * n_lights, sizeof *batch->shadowed, "lights", err));
@@ -365,7 +357,8 @@ static void release(RasterPicture *picture)
         rasterrow_release(&batch->row);
         free(batch->sheets);
         free(batch->shadowed);
-        for (size_t light = 0; batch->queues && light < picture->canvas.scene->n_lights; light++)
+        for (size_t light = 0; batch->queues && light < picture->canvas.drawing->view->n_lights;
+             light++)
             rasterqueue_free(batch->queues[light]);
         free(batch->queues);
     }
@@ -374,25 +367,27 @@ static void release(RasterPicture *picture)
     canvas_release(&picture->canvas);
 }
 
-Status rasterrender(const Scene *scene, const RenderParams *params, const Band *band,
-                    RasterPrepared *prepared, Frame *frame, RenderStats *stats, Err *err)
+Status rasterrender(const Drawing *drawing, RasterPrepared *prepared, Frame *frame,
+                    RenderStats *stats, Err *err)
 {
     Status status;
+    const RenderParams *params = drawing->params;
+    const Camera *camera = &drawing->view->camera;
     RasterPicture picture = {.kernels = rasterkernels[kernels_kind(params->kernels)],
                              .chooses = params->antialias_threshold > 0};
     Canvas *canvas = &picture.canvas;
-    RasterView view = rasterview_of_camera(scene, 0, scene->camera.height, params->antialias);
+    RasterView view = rasterview_of_camera(camera, drawing->geometry->bounds, 0, camera->height,
+                                           params->antialias);
     double start_s = clock_seconds();
-    TRY_GOTO(canvas_init(scene, params, band, frame, &view.eye, canvas, err));
+    TRY_GOTO(canvas_init(drawing, frame, &view.eye, canvas, err));
     if (!picture.chooses)
         canvas_blank_is_mean(canvas);
     TRY_GOTO(prepare_samples(&picture, &view, err));
     if (!prepared->bins)
-        TRY_GOTO(prepare(scene, &view, params->shadows && canvas->wants_color, canvas->workers,
+        TRY_GOTO(prepare(drawing, &view, params->shadows && canvas->wants_color, canvas->workers,
                          prepared, err));
     picture.bins = prepared->bins;
     picture.shadows = prepared->shadows;
-    picture.caster = prepared->caster;
     TRY_GOTO(prepare_batches(&picture, err));
     double prepared_s = clock_seconds() - start_s;
     TRY_GOTO(canvas_pass(canvas, false, draw_row, &picture, err));

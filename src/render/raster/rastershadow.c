@@ -43,16 +43,16 @@ struct RasterShadow {
     RasterAim aim;
 };
 
-static double scene_radius(const Scene *scene, Vec3 *center)
+static double geometry_radius(const Geometry *geometry, Vec3 *center)
 {
-    *center = box_center(scene->bounds);
-    return vec3_distance(*center, scene->bounds.high);
+    *center = box_center(geometry->bounds);
+    return vec3_distance(*center, geometry->bounds.high);
 }
 
-static bool sees_all(const Scene *scene, const Light *light)
+static bool sees_all(const Geometry *geometry, const Light *light)
 {
     Vec3 center;
-    double radius = scene_radius(scene, &center);
+    double radius = geometry_radius(geometry, &center);
     return light->parallel || vec3_distance(light->location, center) > least_radii * radius;
 }
 
@@ -63,19 +63,19 @@ static Vec3 corner(const Box *box, int number)
 }
 
 /* Tiles on a side: about sixteen primitives a tile. */
-static int tiles_for(const Scene *scene)
+static int tiles_for(const Geometry *geometry)
 {
-    double side = sqrt((double)rasterbins_items(scene)) / 3;
+    double side = sqrt((double)rasterbins_items(geometry)) / 3;
     return side < LEAST_SIDE ? LEAST_SIDE : side > MOST_SIDE ? MOST_SIDE : (int)side;
 }
 
 /* The view of a light, just wide enough for the scene. */
-static RasterView light_view(const Scene *scene, const Light *light)
+static RasterView light_view(const Geometry *geometry, const Light *light)
 {
     RasterView view = {.eye = {.location = light->location, .perspective = !light->parallel},
                        .light = true};
     Vec3 center, towards = vec3_sub(light->target, light->location);
-    scene_radius(scene, &center);
+    geometry_radius(geometry, &center);
     if (!light->parallel)
         towards = vec3_sub(center, light->location);
     view.eye.axes[2] = vec3_normalized(towards);
@@ -84,13 +84,13 @@ static RasterView light_view(const Scene *scene, const Light *light)
     view.eye.axes[1] = vec3_cross(view.eye.axes[0], view.eye.axes[2]);
     Box box = box_empty();
     for (int i = 0; i < 8; i++) {
-        Vec3 at = vec3_sub(corner(&scene->bounds, i), light->location);
+        Vec3 at = vec3_sub(corner(&geometry->bounds, i), light->location);
         at = viewpoint_to_frame(&view.eye, at);
         if (view.eye.perspective)
             at = vec3(at.x / at.z, at.y / at.z, at.z);
         box = box_with_ball(box, at, 0);
     }
-    int tiles = tiles_for(scene);
+    int tiles = tiles_for(geometry);
     view.columns = view.rows = tiles * TILE_SIDE;
     view.stray = 0.5;
     view.step_x = (box.high.x - box.low.x) * 1.0001 / view.columns;
@@ -157,7 +157,7 @@ static Status list_rows(RasterShadow *shadow, Err *err)
     return STATUS_OK;
 }
 
-static RasterAim aim_of(const Scene *scene, const RasterView *view, const RasterView *camera)
+static RasterAim aim_of(const Geometry *geometry, const RasterView *view, const RasterView *camera)
 {
     Vec3 center;
     RasterAim aim = {.perspective = view->eye.perspective,
@@ -169,23 +169,23 @@ static RasterAim aim_of(const Scene *scene, const RasterView *view, const Raster
                      .rows = view->rows / TILE_SIDE,
                      .z_middle = view->z_middle};
     /* Places and depths are rounded to 2^-24 of the scene's size, thrice. */
-    aim.slack = slack_mm + 0x3p-23 * scene_radius(scene, &center);
+    aim.slack = slack_mm + 0x3p-23 * geometry_radius(geometry, &center);
     for (int i = 0; i < 3; i++)
         aim.axes[i] = viewpoint_to_frame(&camera->eye, view->eye.axes[i]);
     aim.offset = viewpoint_place(&view->eye, camera->eye.location);
     return aim;
 }
 
-static Status make_shadow(const Scene *scene, const Light *light, const RasterView *camera,
+static Status make_shadow(const Geometry *geometry, const Light *light, const RasterView *camera,
                           int threads, RasterShadow **out, Err *err)
 {
     RasterShadow *shadow = NULL;
     TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
-    RasterView view = light_view(scene, light);
-    shadow->aim = aim_of(scene, &view, camera);
+    RasterView view = light_view(geometry, light);
+    shadow->aim = aim_of(geometry, &view, camera);
     shadow->grid = rastergrid_make(&view, 0.5, 0.5);
     shadow->workers = threads;
-    Status status = rasterbins_new(scene, &view, threads, &shadow->bins, err);
+    Status status = rasterbins_new(geometry, &view, threads, &shadow->bins, err);
     if (status == STATUS_OK)
         status = list_rows(shadow, err);
     if (status != STATUS_OK) {
@@ -197,7 +197,7 @@ static Status make_shadow(const Scene *scene, const Light *light, const RasterVi
 }
 
 typedef struct Making {
-    const Scene *scene;
+    const Geometry *geometry;
     const RasterView *camera;
     const Light *light;
     RasterShadow **out;
@@ -210,14 +210,14 @@ static void make_alone(size_t index, int worker, void *context)
     (void)worker;
     Making *making = (Making *)context + index;
     making->status =
-        make_shadow(making->scene, making->light, making->camera, 1, making->out, &making->err);
+        make_shadow(making->geometry, making->light, making->camera, 1, making->out, &making->err);
 }
 
 static Status make_shadows(Making *making, size_t n, int threads, Err *err)
 {
     /* A thread for each light, but for those lights that would keep some threads waiting. */
     size_t alone = n;
-    if (!rasterbins_are_small(making->scene))
+    if (!rasterbins_are_small(making->geometry))
         alone -= n % (size_t)threads;
     threads_for(alone, threads, make_alone, making);
     for (size_t i = 0; i < alone; i++)
@@ -227,27 +227,35 @@ static Status make_shadows(Making *making, size_t n, int threads, Err *err)
             return making[i].status;
         }
     for (size_t i = alone; i < n; i++)
-        TRY(make_shadow(making[i].scene, making[i].light, making[i].camera, threads, making[i].out,
-                        err));
+        TRY(make_shadow(making[i].geometry, making[i].light, making[i].camera, threads,
+                        making[i].out, err));
     return STATUS_OK;
 }
 
-Status rastershadows_new(const Scene *scene, const RasterView *camera, int threads,
-                         RasterShadow **shadows, Err *err)
+Status rastershadows_new(const Geometry *geometry, const View *view, const RasterView *camera,
+                         int threads, RasterShadow **shadows, Err *err)
 {
     Making *making = NULL;
     size_t n = 0;
-    TRY(mem_calloc(&making, scene->n_lights, sizeof *making, "lights", err));
-    for (size_t i = 0; i < scene->n_lights; i++) {
-        const Light *light = &scene->lights[i];
+    TRY(mem_calloc(&making, view->n_lights, sizeof *making, "lights", err));
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
         shadows[i] = NULL;
-        if (light->casts_shadows && sees_all(scene, light))
-            making[n++] =
-                (Making){.scene = scene, .camera = camera, .light = light, .out = &shadows[i]};
+        if (light->casts_shadows && sees_all(geometry, light))
+            making[n++] = (Making){
+                .geometry = geometry, .camera = camera, .light = light, .out = &shadows[i]};
     }
     Status status = n > 0 ? make_shadows(making, n, threads, err) : STATUS_OK;
     free(making);
     return status;
+}
+
+bool rastershadows_need_rays(const Geometry *geometry, const View *view)
+{
+    for (size_t i = 0; i < view->n_lights; i++)
+        if (view->lights[i].casts_shadows && !sees_all(geometry, &view->lights[i]))
+            return true;
+    return false;
 }
 
 void rastershadow_free(RasterShadow *shadow)

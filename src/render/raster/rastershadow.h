@@ -5,15 +5,19 @@
 #include "render/raster/rasterkernels.h"
 #include "render/raster/rasterview.h"
 
-/* The scene as one light sees it; constant once built. */
+/* The geometry as one light sees it; constant once built. */
 typedef struct RasterShadow RasterShadow;
 
-/* That of light i in shadows[i], NULL where the light casts none or is too near to see all of the
- * scene in one view, for places in the frame of `camera`. Borrows the scene, which must not change.
- * The shadows are the caller's even when this fails. */
-MUST_CHECK Status rastershadows_new(const Scene *scene, const RasterView *camera, int threads,
-                                    RasterShadow **shadows, Err *err);
+/* That of light i of the view in shadows[i], NULL where the light casts none or is too near to see
+ * all of the geometry in one view, for places in the frame of `camera`. Borrows the geometry. The
+ * shadows are the caller's even when this fails. */
+MUST_CHECK Status rastershadows_new(const Geometry *geometry, const View *view,
+                                    const RasterView *camera, int threads, RasterShadow **shadows,
+                                    Err *err);
 void rastershadow_free(RasterShadow *shadow);
+
+/* Whether a light that casts shadows is too near for a RasterShadow. */
+bool rastershadows_need_rays(const Geometry *geometry, const View *view);
 
 /* Places that a light is asked about, of up to RASTER_BATCH tiles of the picture; a worker needs
  * one of its own for each light. */

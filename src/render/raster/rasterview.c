@@ -14,12 +14,12 @@ enum { LEAST_CHUNK = 1 << 16, MOST_CHUNKS = 64 };
 enum { CACHE_LINE = sizeof(RasterItem) };
 _Static_assert(CACHE_LINE == 64, "an item fills a line");
 
-RasterView rasterview_of_camera(const Scene *scene, int first, int rows, int antialias)
+RasterView rasterview_of_camera(const Camera *camera, Box bounds, int first, int rows,
+                                int antialias)
 {
-    const Camera *camera = &scene->camera;
     double width = vec3_length(camera->right), height = vec3_length(camera->up);
     double near, far;
-    scene_depth_range(scene, &near, &far);
+    camera_depth_range(camera, bounds, &near, &far);
     return (RasterView){.eye = viewpoint_of_camera(camera),
                         .left = (0.5 / camera->width - 0.5) * width,
                         .top = (0.5 - 0.5 / camera->height) * height,
@@ -52,14 +52,14 @@ typedef struct Build {
 
 static size_t chunk_end(const Build *build, size_t chunk)
 {
-    size_t end = (chunk + 1) * build->chunk, n = rasterbins_items(build->bins->scene);
+    size_t end = (chunk + 1) * build->chunk, n = rasterbins_items(build->bins->geometry);
     return end < n ? end : n;
 }
 
 static bool is_joint(const RasterBins *bins, size_t number)
 {
-    return bins->scene->model == SCENE_JOINED &&
-           bins->scene->primitives[number].kind == PRIMITIVE_JOINT;
+    return bins->geometry->model == SCENE_JOINED &&
+           bins->geometry->primitives[number].kind == PRIMITIVE_JOINT;
 }
 
 static void count_joints(size_t chunk, int worker, void *context)
@@ -75,7 +75,7 @@ static Status make_room_for_joints(Build *build, int threads, Err *err)
     RasterBins *bins = build->bins;
     uint32_t n = 0;
     TRY(mem_calloc(&build->joints, build->n_chunks, sizeof *build->joints, "joints", err));
-    if (bins->scene->model == SCENE_JOINED)
+    if (bins->geometry->model == SCENE_JOINED)
         threads_for(build->n_chunks, threads, count_joints, build);
     for (size_t chunk = 0; chunk < build->n_chunks; chunk++) {
         uint32_t count = build->joints[chunk];
@@ -156,16 +156,16 @@ static Status sort_into_rows(Build *build, int threads, Err *err)
     return STATUS_OK;
 }
 
-bool rasterbins_are_small(const Scene *scene)
+bool rasterbins_are_small(const Geometry *geometry)
 {
-    return rasterbins_items(scene) / LEAST_CHUNK < 2;
+    return rasterbins_items(geometry) / LEAST_CHUNK < 2;
 }
 
 /* As many for each thread as for the others. */
-static size_t chunks_for(const Scene *scene, size_t threads)
+static size_t chunks_for(const Geometry *geometry, size_t threads)
 {
-    size_t chunks = rasterbins_items(scene) / LEAST_CHUNK;
-    if (rasterbins_are_small(scene))
+    size_t chunks = rasterbins_items(geometry) / LEAST_CHUNK;
+    if (rasterbins_are_small(geometry))
         return 1;
     chunks = chunks < MOST_CHUNKS ? chunks : MOST_CHUNKS;
     threads = threads < chunks ? threads : chunks;
@@ -174,7 +174,8 @@ static size_t chunks_for(const Scene *scene, size_t threads)
 
 static Status make_bins(RasterBins *bins, int threads, Err *err)
 {
-    size_t n = rasterbins_items(bins->scene), chunks = chunks_for(bins->scene, (size_t)threads);
+    size_t n = rasterbins_items(bins->geometry),
+           chunks = chunks_for(bins->geometry, (size_t)threads);
     if (n > MOST_ITEMS)
         return err_set(err, STATUS_MEMORY, "too many primitives for `method` raster");
     if (bins->tile_columns > UINT16_MAX || bins->tile_rows > UINT16_MAX)
@@ -198,12 +199,12 @@ static Status make_bins(RasterBins *bins, int threads, Err *err)
     return status;
 }
 
-Status rasterbins_new(const Scene *scene, const RasterView *view, int threads, RasterBins **out,
-                      Err *err)
+Status rasterbins_new(const Geometry *geometry, const RasterView *view, int threads,
+                      RasterBins **out, Err *err)
 {
     RasterBins *bins = NULL;
     TRY(mem_calloc(&bins, 1, sizeof *bins, "tiles", err));
-    bins->scene = scene;
+    bins->geometry = geometry;
     bins->view = *view;
     bins->view.per_x = 1 / view->step_x;
     bins->view.per_y = 1 / view->step_y;

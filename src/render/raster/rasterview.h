@@ -20,8 +20,10 @@ typedef struct RasterView {
     bool light; /* bins shall have boxes and, of joints, hulls alone: few are looked at */
 } RasterView;
 
-/* That of a camera, rows from `first` on; `antialias` as in RenderParams. */
-RasterView rasterview_of_camera(const Scene *scene, int first, int rows, int antialias);
+/* That of a camera, rows from `first` on, for what is in `bounds`; `antialias` as in
+ * RenderParams. */
+RasterView rasterview_of_camera(const Camera *camera, Box bounds, int first, int rows,
+                                int antialias);
 
 /* The line of sight at a point of the view's plane, its direction a unit vector. */
 Ray rasterview_ray(const RasterView *view, double x, double y);
@@ -40,9 +42,9 @@ typedef struct RasterBox {
     float near;   /* a depth before which nothing of the item is, less z_middle */
 } RasterBox;
 
-/* The primitives of a scene, sorted into the rows of tiles of a view. Constant once built. */
+/* Primitives, sorted into the rows of tiles of a view. Constant once built. */
 typedef struct RasterBins {
-    const Scene *scene; /* borrowed */
+    const Geometry *geometry; /* borrowed */
     RasterView view;
     void *item_memory;   /* holds the items */
     RasterItem *items;   /* in a line of the cache each */
@@ -56,16 +58,16 @@ typedef struct RasterBins {
 } RasterBins;
 
 /* How many primitives become items: cylinders have their round ends. */
-static inline size_t rasterbins_items(const Scene *scene)
+static inline size_t rasterbins_items(const Geometry *geometry)
 {
-    return scene->n_primitives - scene->n_ends;
+    return geometry->n_primitives - geometry->n_ends;
 }
 
-/* Whether one thread makes the bins of the scene, however many there are. */
-bool rasterbins_are_small(const Scene *scene);
+/* Whether one thread makes the bins of the geometry, however many there are. */
+bool rasterbins_are_small(const Geometry *geometry);
 
-/* Borrows the scene. STATUS_MEMORY when there is no room. */
-MUST_CHECK Status rasterbins_new(const Scene *scene, const RasterView *view, int threads,
+/* Borrows the geometry. STATUS_MEMORY when there is no room. */
+MUST_CHECK Status rasterbins_new(const Geometry *geometry, const RasterView *view, int threads,
                                  RasterBins **out, Err *err);
 void rasterbins_free(RasterBins *bins);
 /* Frees row_items, row_columns and row_boxes, of which nothing may be asked any more. */

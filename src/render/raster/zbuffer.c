@@ -23,9 +23,7 @@ typedef struct Point {
 } Point;
 
 typedef struct Buffers {
-    const Scene *scene;
-    const RenderParams *params;
-    const Band *band;
+    const Drawing *drawing;
     Frame *frame;
     RasterBins *bins;
     Point **points; /* one buffer a worker */
@@ -160,7 +158,7 @@ static void draw_primitive(const Buffers *buffers, const RasterItem *item, uint3
                            Brush *brush)
 {
     const RasterView *view = brush->view;
-    const Primitive *primitive = &buffers->scene->primitives[number];
+    const Primitive *primitive = &buffers->drawing->geometry->primitives[number];
     double pixel = fmin(view->step_x, -view->step_y);
     if (view->eye.perspective) /* a step across a slanting line of sight is foreshortened */
         pixel *= item_nearest(item) / (1 + view->left * view->left + view->top * view->top);
@@ -190,23 +188,32 @@ static void draw_primitive(const Buffers *buffers, const RasterItem *item, uint3
 /* Depth, normal, id and colour of a pixel. */
 static void finish_pixel(const Buffers *buffers, const Point *point, int i, int j)
 {
-    const Scene *scene = buffers->scene;
+    const Drawing *drawing = buffers->drawing;
+    const Geometry *geometry = drawing->geometry;
+    const Camera *camera = &drawing->view->camera;
     const RasterView *view = &buffers->bins->view;
     Frame *frame = buffers->frame;
-    size_t pixel = (size_t)j * (size_t)scene->camera.width + (size_t)i;
+    size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;
     bool seen = point->z < HUGE_VAL;
-    Ray ray = camera_ray(&scene->camera, i, buffers->band->first + j);
+    Ray ray = camera_ray(camera, i, drawing->band.first + j);
     double t = seen ? point->z / vec3_dot(ray.direction, view->eye.axes[2]) : HUGE_VAL;
     Vec3 normal = seen ? viewpoint_to_world(&view->eye, point->normal) : vec3(0, 0, 0);
     if (vec3_dot(normal, ray.direction) > 0)
         normal = vec3_scale(normal, -1);
-    const Primitive *primitive = seen ? &scene->primitives[point->primitive] : NULL;
-    planes_store(frame, pixel, t, normal, seen ? primitive->id : 0);
+    uint32_t segment = seen ? geometry->primitives[point->primitive].segment : 0;
+    planes_store(frame, pixel, t, normal, seen ? geometry->ids[segment] : 0);
     if (!frame->color.values)
         return;
-    Rgb color = scene->background;
-    if (seen)
-        color = shade(scene, primitive->color, ray_at(ray, t), normal, ray.direction, NULL, NULL);
+    Rgb color = drawing->view->background;
+    if (seen) {
+        const ShadePoint at = {&drawing->appearance->finish,
+                               appearance_color(drawing->appearance, segment),
+                               ray_at(ray, t),
+                               normal,
+                               ray.direction,
+                               1};
+        color = shade(drawing->view, &at, NULL, NULL);
+    }
     planes_store_color(frame, pixel, color);
 }
 
@@ -217,8 +224,8 @@ static void draw_row(size_t row, int worker, void *context)
     const RasterView *view = &bins->view;
     Point *points = buffers->points[worker];
     if (worker == 0)
-        band_progress(buffers->band, buffers->params, buffers->scene->camera.height, false,
-                      (double)row / bins->tile_rows);
+        band_progress(&buffers->drawing->band, buffers->drawing->params,
+                      buffers->drawing->view->camera.height, false, (double)row / bins->tile_rows);
     for (int i = 0; i < TILE_SIDE * view->columns; i++)
         points[i].z = HUGE_VAL;
     Brush brush = {.view = view, .points = points, .row = view->first + (int)row * TILE_SIDE};
@@ -231,7 +238,7 @@ static void draw_row(size_t row, int worker, void *context)
 
 static Status check_outside(const RasterBins *bins, Err *err)
 {
-    for (size_t i = 0; i < rasterbins_items(bins->scene); i++) {
+    for (size_t i = 0; i < rasterbins_items(bins->geometry); i++) {
         const RasterItem *item = &bins->items[i];
         double deep = item_depth(item);
         if (item->z + deep > 0 && item->z - deep < (bins->view.eye.perspective ? deep * 0.01 : 0))
@@ -241,17 +248,19 @@ static Status check_outside(const RasterBins *bins, Err *err)
     return STATUS_OK;
 }
 
-Status zbuffer_render(const Scene *scene, const RenderParams *params, const Band *band,
-                      Frame *frame, RenderStats *stats, Err *err)
+Status zbuffer_render(const Drawing *drawing, Frame *frame, RenderStats *stats, Err *err)
 {
     Status status;
-    Buffers buffers = {.scene = scene, .params = params, .band = band, .frame = frame};
+    const RenderParams *params = drawing->params;
+    const Geometry *geometry = drawing->geometry;
+    Buffers buffers = {.drawing = drawing, .frame = frame};
     /* Points up to half a pixel off are caught. */
-    RasterView view = rasterview_of_camera(scene, band->first, band->rows, 2);
+    RasterView view = rasterview_of_camera(&drawing->view->camera, geometry->bounds,
+                                           drawing->band.first, drawing->band.rows, 2);
     int workers = params->threads > 0 ? params->threads : threads_available();
     size_t n = (size_t)TILE_SIDE * (size_t)view.columns;
     double start_s = clock_seconds(), prepared_s = start_s;
-    TRY_GOTO(rasterbins_new(scene, &view, workers, &buffers.bins, err));
+    TRY_GOTO(rasterbins_new(geometry, &view, workers, &buffers.bins, err));
     TRY_GOTO(check_outside(buffers.bins, err));
     TRY_GOTO(mem_calloc(&buffers.points, (size_t)workers, sizeof *buffers.points, "rows", err));
     for (int i = 0; i < workers; i++)

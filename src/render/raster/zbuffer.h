@@ -5,10 +5,9 @@
 
 #include "render/job.h"
 
-/* Draws the band of a scene of primitives into planes that are there, and adds the time it takes
- * to *stats: one sample a pixel, without shadows. STATUS_USAGE when the camera is among the
- * vessels. */
-MUST_CHECK Status zbuffer_render(const Scene *scene, const RenderParams *params, const Band *band,
-                                 Frame *frame, RenderStats *stats, Err *err);
+/* Draws a band of primitives into planes that are there, and adds the time it takes to *stats: one
+ * sample a pixel, without shadows. STATUS_USAGE when the camera is among the vessels. */
+MUST_CHECK Status zbuffer_render(const Drawing *drawing, Frame *frame, RenderStats *stats,
+                                 Err *err);
 
 #endif

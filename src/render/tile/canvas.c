@@ -12,20 +12,20 @@
 /* Fills a row with the mean of so many samples of the background, summed in float. */
 static void fill_row(const Canvas *canvas, int samples, float *row)
 {
-    const Rgb color = canvas->scene->background;
+    const Rgb color = canvas->drawing->view->background;
     const float background[3] = {color.r, color.g, color.b};
     for (int c = 0; c < 3; c++) {
         float sum = background[c];
         for (int i = 1; i < samples; i++)
             sum += background[c];
-        for (int i = 0; i < canvas->scene->camera.width; i++)
+        for (int i = 0; i < canvas->drawing->view->camera.width; i++)
             row[3 * i + c] = (float)((double)sum / samples);
     }
 }
 
 static Status make_background(Canvas *canvas, Err *err)
 {
-    size_t n = 3 * (size_t)canvas->scene->camera.width;
+    size_t n = 3 * (size_t)canvas->drawing->view->camera.width;
     TRY(mem_calloc(&canvas->background, n, sizeof *canvas->background, "background", err));
     TRY(mem_calloc(&canvas->blank, n, sizeof *canvas->blank, "background", err));
     fill_row(canvas, 1, canvas->background);
@@ -39,26 +39,27 @@ static Status make_background(Canvas *canvas, Err *err)
     return STATUS_OK;
 }
 
-Status canvas_init(const Scene *scene, const RenderParams *params, const Band *band, Frame *frame,
-                   const Viewpoint *eye, Canvas *canvas, Err *err)
+Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, Canvas *canvas,
+                   Err *err)
 {
-    *canvas = (Canvas){.scene = scene,
-                       .params = params,
-                       .band = band,
+    const RenderParams *params = drawing->params;
+    const Appearance *appearance = drawing->appearance;
+    *canvas = (Canvas){.drawing = drawing,
                        .frame = frame,
                        .eye = *eye,
                        .kernels = tilekernels[kernels_kind(params->kernels)],
-                       .needs_places = tilelook_needs_places(scene),
+                       .needs_places = tilelook_needs_places(drawing->view),
                        .wants_color = frame->color.values || frame->codes.codes8,
                        .wants_geometry = planes_want_geometry(frame)};
     canvas->workers = params->threads > 0 ? params->threads : threads_available();
     int antialias = frame->color.values ? params->antialias : 1;
     TRY(resampling_init(antialias, &canvas->more, err));
-    TRY(tilelook_make(scene, eye, &canvas->lights, &canvas->look, err));
+    TRY(tilelook_make(drawing->view, &appearance->finish, eye, &canvas->lights, &canvas->look,
+                      err));
     TRY(make_background(canvas, err));
     TRY(mem_calloc(&canvas->each, (size_t)canvas->workers, sizeof *canvas->each, "canvases", err));
     for (int i = 0; i < canvas->workers; i++)
-        tilesurface_init(scene, &canvas->each[i].surface);
+        tilesurface_init(appearance->color, &canvas->each[i].surface);
     return STATUS_OK;
 }
 
@@ -80,22 +81,19 @@ void canvas_blank_is_mean(Canvas *canvas)
 
 Status canvas_choose(Canvas *canvas, Err *err)
 {
-    return resampling_choose(&canvas->more, canvas->params, canvas->band, &canvas->frame->color,
-                             canvas->workers, err);
+    return resampling_choose(&canvas->more, canvas->drawing->params, &canvas->drawing->band,
+                             &canvas->frame->color, canvas->workers, err);
 }
 
 /* ---- colours --------------------------------------------------------------------------------- */
 
-static Rgb pigment_of(const Scene *scene, uint32_t number)
+/* The number of the segment that a hit is on. */
+static uint32_t segment_of(const Canvas *canvas, const TileHits *hits, int sample)
 {
-    return scene->model == SCENE_ISOSURFACE ? scene->segments[number].color
-                                            : scene->primitives[number].color;
-}
-
-static uint32_t id_of(const Scene *scene, uint32_t number)
-{
-    return scene->model == SCENE_ISOSURFACE ? scene->segments[number].id
-                                            : scene->primitives[number].id;
+    const Geometry *geometry = canvas->drawing->geometry;
+    uint32_t index = hits->segment[sample];
+    return geometry->model == SCENE_ISOSURFACE ? geometry->segments[index].segment
+                                               : geometry->primitives[index].segment;
 }
 
 static void store_vec3(float values[3][TILE_SAMPLES], int sample, Vec3 v)
@@ -110,12 +108,13 @@ static Vec3 load_vec3(const float values[3][TILE_SAMPLES], int sample)
     return vec3((double)values[0][sample], (double)values[1][sample], (double)values[2][sample]);
 }
 
-static void set_pigments(const Scene *scene, const TileHits *hits, TileSurface *surface)
+static void set_pigments(const Canvas *canvas, const TileHits *hits, TileSurface *surface)
 {
+    const Rgb *colors = canvas->drawing->appearance->colors;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (hits->state[sample] != TILE_HIT)
             continue;
-        Rgb pigment = pigment_of(scene, hits->segment[sample]);
+        Rgb pigment = colors[segment_of(canvas, hits, sample)];
         surface->pigment[0][sample] = pigment.r;
         surface->pigment[1][sample] = pigment.g;
         surface->pigment[2][sample] = pigment.b;
@@ -138,12 +137,11 @@ static void set_places(const SeenTile *seen, TileSurface *surface)
 float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES]
 {
-    const Scene *scene = canvas->scene;
     CanvasWorker *own = &canvas->each[worker];
     own->surface.hits = seen->hits;
     own->surface.shadowed = shadowed;
-    if (!scene->uniform_color)
-        set_pigments(scene, seen->hits, &own->surface);
+    if (canvas->drawing->appearance->colors)
+        set_pigments(canvas, seen->hits, &own->surface);
     if (canvas->needs_places)
         set_places(seen, &own->surface);
     canvas->kernels->shade(&canvas->look, &own->surface, own->color);
@@ -195,7 +193,7 @@ static void store_geometry(const Canvas *canvas, const SeenTile *seen)
             }
             Vec3 normal = viewpoint_to_world(&canvas->eye, load_vec3(hits->normal, sample));
             planes_store(canvas->frame, pixel, seen_depth(seen, sample), normal,
-                         id_of(canvas->scene, hits->segment[sample]));
+                         canvas->drawing->geometry->ids[segment_of(canvas, hits, sample)]);
         }
 }
 
@@ -218,7 +216,7 @@ static void store_nothing(const Canvas *canvas, const SeenTile *empty, const flo
 /* What the worker has not drawn of a row of tiles up to this column. */
 static void store_blank(const Canvas *canvas, CanvasWorker *own, int end, int row)
 {
-    const Camera *camera = &canvas->scene->camera;
+    const Camera *camera = &canvas->drawing->view->camera;
     const SeenTile empty = {.column = own->column,
                             .row = row,
                             .n_columns = end - own->column,
@@ -232,7 +230,7 @@ void canvas_draw(const Canvas *canvas, int worker, const SeenTile *seen,
 {
     Frame *frame = canvas->frame;
     CanvasWorker *own = &canvas->each[worker];
-    size_t width = 3 * (size_t)canvas->scene->camera.width;
+    size_t width = 3 * (size_t)canvas->drawing->view->camera.width;
     size_t first = 3 * canvas_pixel(canvas, seen->column, seen->row);
     store_blank(canvas, own, seen->column, seen->row);
     own->column = seen->column + seen->n_columns;
@@ -262,12 +260,12 @@ static void draw_row(size_t number, int worker, void *context)
 {
     const Pass *pass = context;
     Canvas *canvas = pass->canvas;
-    const Band *band = canvas->band;
-    const Camera *camera = &canvas->scene->camera;
+    const Band *band = &canvas->drawing->band;
+    const Camera *camera = &canvas->drawing->view->camera;
     CanvasWorker *own = &canvas->each[worker];
     int row = band->first / TILE_SIDE + (int)number;
     if (worker == 0)
-        band_progress(band, canvas->params, camera->height, pass->further,
+        band_progress(band, canvas->drawing->params, camera->height, pass->further,
                       (double)number * TILE_SIDE / band->rows);
     if (own->status != STATUS_OK)
         return;
@@ -280,7 +278,7 @@ static void draw_row(size_t number, int worker, void *context)
 Status canvas_pass(Canvas *canvas, bool further, CanvasRow *draw, void *context, Err *err)
 {
     Pass pass = {canvas, further, draw, context};
-    size_t rows = ((size_t)canvas->band->rows + TILE_SIDE - 1) / TILE_SIDE;
+    size_t rows = ((size_t)canvas->drawing->band.rows + TILE_SIDE - 1) / TILE_SIDE;
     threads_for(rows, canvas->workers, draw_row, &pass);
     for (int i = 0; i < canvas->workers; i++)
         if (canvas->each[i].status != STATUS_OK) {

@@ -19,10 +19,8 @@ typedef struct CanvasWorker {
 
 /* Constant while rows are drawn, but for the workers, each its thread's own. */
 typedef struct Canvas {
-    const Scene *scene; /* borrowed, as the next three */
-    const RenderParams *params;
-    const Band *band;
-    Frame *frame;
+    const Drawing *drawing; /* borrowed */
+    Frame *frame;           /* borrowed */
     Viewpoint eye;
     const TileKernels *kernels;
     bool needs_places; /* light or sight differ from place to place: shading asks for TileHits.z */
@@ -39,10 +37,10 @@ typedef struct Canvas {
     int workers;
 } Canvas;
 
-/* Sets up the canvas (owned by the caller even when this fails) for the band, whose planes the
- * frame has. STATUS_MEMORY. */
-MUST_CHECK Status canvas_init(const Scene *scene, const RenderParams *params, const Band *band,
-                              Frame *frame, const Viewpoint *eye, Canvas *canvas, Err *err);
+/* Sets up the canvas (owned by the caller even when this fails) for the drawing's band, whose
+ * planes the frame has. STATUS_MEMORY. */
+MUST_CHECK Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye,
+                              Canvas *canvas, Err *err);
 void canvas_release(Canvas *canvas);
 
 /* From now on pixels of tiles that are not drawn have the mean of their background's samples,
@@ -64,7 +62,8 @@ MUST_CHECK Status canvas_choose(Canvas *canvas, Err *err);
 /* Index of a pixel of the picture in the frame's planes. */
 static inline size_t canvas_pixel(const Canvas *canvas, int column, int row)
 {
-    return (size_t)(row - canvas->band->first) * (size_t)canvas->scene->camera.width +
+    return (size_t)(row - canvas->drawing->band.first) *
+               (size_t)canvas->drawing->view->camera.width +
            (size_t)column;
 }
 

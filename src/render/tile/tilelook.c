@@ -1,12 +1,12 @@
 #include "render/tile/tilelook.h"
 
-Status tilelook_make(const Scene *scene, const Viewpoint *eye, TileLight **lights, TileLook *look,
-                     Err *err)
+Status tilelook_make(const View *view, const Finish *finish, const Viewpoint *eye,
+                     TileLight **lights, TileLook *look, Err *err)
 {
     TileLight *made;
-    TRY(mem_calloc(&made, scene->n_lights, sizeof *made, "lights", err));
-    for (size_t i = 0; i < scene->n_lights; i++) {
-        const Light *light = &scene->lights[i];
+    TRY(mem_calloc(&made, view->n_lights, sizeof *made, "lights", err));
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
         Vec3 v =
             light->parallel
                 ? viewpoint_to_frame(eye, vec3_normalized(vec3_sub(light->location, light->target)))
@@ -16,24 +16,24 @@ Status tilelook_make(const Scene *scene, const Viewpoint *eye, TileLight **light
                               .parallel = light->parallel};
     }
     *lights = made;
-    *look = (TileLook){scene->finish, made, scene->n_lights};
+    *look = (TileLook){*finish, made, view->n_lights};
     return STATUS_OK;
 }
 
-bool tilelook_needs_places(const Scene *scene)
+bool tilelook_needs_places(const View *view)
 {
-    bool needs = scene->camera.projection == PROJECTION_PERSPECTIVE;
-    for (size_t i = 0; i < scene->n_lights; i++)
-        needs |= !scene->lights[i].parallel;
+    bool needs = view->camera.projection == PROJECTION_PERSPECTIVE;
+    for (size_t i = 0; i < view->n_lights; i++)
+        needs |= !view->lights[i].parallel;
     return needs;
 }
 
-void tilesurface_init(const Scene *scene, TileSurface *surface)
+void tilesurface_init(Rgb color, TileSurface *surface)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         surface->direction[2][sample] = 1;
-        surface->pigment[0][sample] = scene->color.r;
-        surface->pigment[1][sample] = scene->color.g;
-        surface->pigment[2][sample] = scene->color.b;
+        surface->pigment[0][sample] = color.r;
+        surface->pigment[1][sample] = color.g;
+        surface->pigment[2][sample] = color.b;
     }
 }

@@ -5,13 +5,13 @@
 #include "render/tile/tilekernels.h"
 #include "render/tile/viewpoint.h"
 
-/* The scene's finish, and its lights in the frame of a viewpoint; *lights (owned by the caller) are
+/* A finish, and the lights of a view in the frame of a viewpoint; *lights (owned by the caller) are
  * those of *look. STATUS_MEMORY. */
-MUST_CHECK Status tilelook_make(const Scene *scene, const Viewpoint *eye, TileLight **lights,
-                                TileLook *look, Err *err);
+MUST_CHECK Status tilelook_make(const View *view, const Finish *finish, const Viewpoint *eye,
+                                TileLight **lights, TileLook *look, Err *err);
 /* Whether shading needs the places of points, not their normals alone. */
-bool tilelook_needs_places(const Scene *scene);
-/* A surface in the scene's one colour, seen along the third axis. */
-void tilesurface_init(const Scene *scene, TileSurface *surface);
+bool tilelook_needs_places(const View *view);
+/* A surface of one colour, seen along the third axis. */
+void tilesurface_init(Rgb color, TileSurface *surface);
 
 #endif

@@ -1,0 +1,34 @@
+/* What vessels look like, whatever their shape and from wherever they are seen: colours and their
+ * meaning, and finish. Colours are linear RGB. */
+#ifndef CORCAST_SCENE_APPEARANCE_H
+#define CORCAST_SCENE_APPEARANCE_H
+
+#include "image/image.h"
+#include <stdint.h>
+
+typedef struct Rgb {
+    float r, g, b;
+} Rgb;
+
+/* POV-Ray's finish; METHODS section 3. */
+typedef struct Finish {
+    float ambient, diffuse, brilliance, phong, phong_size, specular, roughness;
+} Finish;
+
+/* Constant once made [stage_appearance]; fits every Geometry of the tree that it was made for, as
+ * segments have the same numbers in all of them. */
+typedef struct Appearance {
+    Finish finish;
+    Rgb color;        /* of all segments, if `colors` is NULL */
+    Rgb *colors;      /* owned; one for each segment, by its number; or NULL */
+    ColorScale scale; /* what `colors` mean; its map is owned; zeroed without `colors` */
+} Appearance;
+
+void appearance_release(Appearance *appearance);
+
+static inline Rgb appearance_color(const Appearance *appearance, uint32_t segment)
+{
+    return appearance->colors ? appearance->colors[segment] : appearance->color;
+}
+
+#endif

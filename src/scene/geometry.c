@@ -1,0 +1,75 @@
+/* Geometry is plain data; what is here are its invariants. */
+#include "scene/geometry.h"
+
+#include <stdlib.h>
+
+bool blend_joins(const Blend *blend, uint32_t i, uint32_t other)
+{
+    if (!blend->first)
+        return true;
+    size_t low = blend->first[i], high = blend->first[i + 1];
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (blend->neighbors[middle] < other)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < blend->first[i + 1] && blend->neighbors[low] == other;
+}
+
+JointFrame primitive_joint(const Primitive *primitive)
+{
+    return joint_frame((const Vec3[2]){primitive->a, primitive->b},
+                       (const Vec3[2]){primitive->axis_a, primitive->axis_b},
+                       (const double[2]){primitive->radius_mm, primitive->radius_b_mm});
+}
+
+bool primitive_joint_is_solid(const Primitive *joint)
+{
+    Vec3 span = vec3_sub(joint->b, joint->a);
+    double sine = vec3_length(vec3_cross(joint->axis_a, joint->axis_b));
+    double slack = 1e-9 * (joint->radius_mm + joint->radius_b_mm);
+    return vec3_dot(span, joint->axis_a) >= joint->radius_b_mm * sine - slack &&
+           vec3_dot(span, joint->axis_b) >= joint->radius_mm * sine - slack;
+}
+
+void geometry_release(Geometry *geometry)
+{
+    free(geometry->primitives);
+    free(geometry->segments);
+    free(geometry->blend.first);
+    free(geometry->blend.neighbors);
+    free(geometry->ids);
+    *geometry = (Geometry){0};
+}
+
+static Status check_tube(Vec3 a, Vec3 b, double radius, uint32_t id, Err *err)
+{
+    if (!vec3_finite(a) || !vec3_finite(b) || !(radius > 0) || !isfinite(radius))
+        return err_set(err, STATUS_INPUT,
+                       "the segment of node %u has a place or radius that is not a finite number",
+                       id);
+    if (vec3_length(a) + radius > SCENE_FARTHEST_MM || vec3_length(b) + radius > SCENE_FARTHEST_MM)
+        return err_set(err, STATUS_INPUT,
+                       "the segment of node %u lies farther than %g mm from the origin", id,
+                       SCENE_FARTHEST_MM);
+    return STATUS_OK;
+}
+
+Status geometry_check(const Geometry *geometry, Err *err)
+{
+    for (size_t i = 0; i < geometry->n_primitives; i++) {
+        const Primitive *primitive = &geometry->primitives[i];
+        uint32_t id = geometry->ids[primitive->segment];
+        TRY(check_tube(primitive->a, primitive->b, primitive->radius_mm, id, err));
+        if (primitive->kind == PRIMITIVE_JOINT)
+            TRY(check_tube(primitive->b, primitive->a, primitive->radius_b_mm, id, err));
+    }
+    for (size_t i = 0; i < geometry->n_segments; i++) {
+        const FieldSegment *segment = &geometry->segments[i];
+        TRY(check_tube(segment->a, segment->b, segment->radius_mm, geometry->ids[segment->segment],
+                       err));
+    }
+    return STATUS_OK;
+}

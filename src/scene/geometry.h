@@ -1,0 +1,95 @@
+/* The shape of vessels: primitives or an implicit field, in mm, right-handed.
+ *
+ * Segments are numbered as the fields of the tree number them, by the node at which they end, so
+ * that the same number means the same segment in every model of a tree and in its Appearance. Not
+ * every number is that of a segment: roots have none, and some segments cannot be drawn. */
+#ifndef CORCAST_SCENE_GEOMETRY_H
+#define CORCAST_SCENE_GEOMETRY_H
+
+#include "base/base.h"
+#include "geom/geom.h"
+#include <stdint.h>
+
+/* No coordinate may be larger: POV-Ray ignores what lies farther than this along a ray
+ * (MAX_DISTANCE). */
+#define SCENE_FARTHEST_MM 1e7
+
+typedef enum PrimitiveKind { PRIMITIVE_CYLINDER, PRIMITIVE_SPHERE, PRIMITIVE_JOINT } PrimitiveKind;
+
+/* A closed cylinder from a to b, a sphere about a, or the ruled surface between two circles about a
+ * and b [geom/joint.h]. */
+typedef struct Primitive {
+    PrimitiveKind kind;
+    bool round_a, round_b; /* of a cylinder: whether one of the geometry's ends is about a, b */
+    uint32_t segment;      /* number of the segment that it stands for */
+    Vec3 a, b;
+    double radius_mm; /* > 0; of a joint, at a */
+    /* Of a joint alone: the radius at b, > 0, and the unit axes across which the circles lie, both
+     * leading from a on to b. */
+    double radius_b_mm;
+    Vec3 axis_a, axis_b;
+} Primitive;
+
+/* A primitive that is a joint, prepared for many rays. */
+JointFrame primitive_joint(const Primitive *primitive);
+
+/* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its
+ * two discs bound a solid. Else rulings cross. */
+bool primitive_joint_is_solid(const Primitive *joint);
+
+/* One Gaussian line potential, or what stands in for it in a blob; METHODS section 2. */
+typedef struct FieldSegment {
+    Vec3 a, b;        /* different */
+    double radius_mm; /* > 0 */
+    uint32_t segment; /* number of the segment */
+} FieldSegment;
+
+/* e^-2, the level at which a long segment has its own radius. */
+#define FIELD_LEVEL 0.13533528323661270
+
+/* Which field segments blend: adjacency lists in CSR form, one for each index of
+ * Geometry.segments. The list of i is neighbors[first[i] .. first[i + 1]), ascending, and holds i
+ * itself. The solid is the union over all i of the sets where the sum of the terms of i's
+ * neighbours exceeds FIELD_LEVEL. If `first` is NULL, every segment is a neighbour of every other,
+ * and the solid is the set where the sum of all terms exceeds it. */
+typedef struct Blend {
+    size_t *first;       /* owned; one more than there are segments, or NULL */
+    uint32_t *neighbors; /* owned */
+} Blend;
+
+/* Whether `other` is a neighbour of `i`. O(log of the length of the list). */
+bool blend_joins(const Blend *blend, uint32_t i, uint32_t other);
+
+typedef enum SceneModel {
+    SCENE_CYLINDERS,
+    SCENE_JOINED,
+    SCENE_ROUNDED,
+    SCENE_ISOSURFACE,
+    SCENE_BLOB
+} SceneModel;
+
+/* Constant once made [stage_geometry]. */
+typedef struct Geometry {
+    SceneModel model;
+    Primitive *primitives; /* owned; empty for an implicit model */
+    size_t n_primitives;
+    /* The last so many are spheres about an end of a cylinder, with its radius and segment. */
+    size_t n_ends;
+    FieldSegment *segments; /* owned; empty for a primitive model */
+    size_t n_segments;
+    Blend blend;
+    bool open_joints; /* rays may see the inside of a joint, where its discs are not covered */
+    uint32_t *ids;    /* owned; SWC id of each segment, by its number; > 0 where it is drawn */
+    size_t n_ids;
+    size_t drawn; /* vessel segments that the geometry stands for */
+    Box bounds;   /* of all of it; of a field widened by what the surface reaches beyond */
+    Vec3 origin;  /* where the origin of all of this lies in the coordinates of the tree */
+} Geometry;
+
+void geometry_release(Geometry *geometry);
+
+/* STATUS_INPUT unless every number is finite, radii are positive and everything lies within
+ * SCENE_FARTHEST_MM of the origin, naming the id of the segment. */
+MUST_CHECK Status geometry_check(const Geometry *geometry, Err *err);
+
+#endif

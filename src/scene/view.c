@@ -1,0 +1,133 @@
+/* Camera, lights and ground are POV-Ray's, whose arithmetic camera_ray and ground_hit repeat
+ * operation by operation, so that rays of both programs are the same to the last bit. The inverse
+ * of the camera needs no such thing: it solves point = location + z direction + x right + y up by
+ * cross products, for any three vectors that are not in one plane. */
+#include "scene/view.h"
+
+#include "scene/geometry.h"
+
+/* A pixel in parts of the picture's width and height, from its middle, right and up. */
+static Vec3 across(const Camera *camera, double i, double j)
+{
+    double x0 = (i + 0.5) / camera->width - 0.5;
+    double y0 = ((camera->height - 1) - (j - 0.5)) / camera->height - 0.5;
+    return vec3_add(vec3_scale(camera->right, x0), vec3_scale(camera->up, y0));
+}
+
+Ray camera_ray(const Camera *camera, double i, double j)
+{
+    Vec3 offset = across(camera, i, j);
+    if (camera->projection == PROJECTION_ORTHOGRAPHIC)
+        return (Ray){vec3_add(camera->location, offset), vec3_normalized(camera->direction)};
+    return (Ray){camera->location, vec3_normalized(vec3_add(camera->direction, offset))};
+}
+
+bool camera_project(const Camera *camera, Vec3 point, double *i, double *j, double *depth_mm)
+{
+    bool perspective = camera->projection == PROJECTION_PERSPECTIVE;
+    Vec3 from = vec3_sub(point, camera->location), normal = vec3_cross(camera->right, camera->up);
+    double z = vec3_dot(from, normal) / vec3_dot(camera->direction, normal);
+    if (perspective && !(z > 0))
+        return false;
+    Vec3 offset = vec3_add_scaled(from, camera->direction, -z);
+    double per_area = 1 / (vec3_dot(normal, normal) * (perspective ? z : 1));
+    double x0 = vec3_dot(vec3_cross(offset, camera->up), normal) * per_area;
+    double y0 = vec3_dot(vec3_cross(camera->right, offset), normal) * per_area;
+    *i = (x0 + 0.5) * camera->width - 0.5;
+    *j = (0.5 - y0) * camera->height - 0.5;
+    *depth_mm = perspective ? vec3_length(from) : z * vec3_length(camera->direction);
+    return true;
+}
+
+Camera camera_of_pixel(const Camera *camera, int i, int j)
+{
+    Camera one = *camera;
+    Vec3 offset = across(camera, i, j);
+    one.width = one.height = 1;
+    one.right = vec3_scale(camera->right, 1.0 / camera->width);
+    one.up = vec3_scale(camera->up, 1.0 / camera->height);
+    if (camera->projection == PROJECTION_ORTHOGRAPHIC)
+        one.location = vec3_add(camera->location, offset);
+    else
+        one.direction = vec3_add(camera->direction, offset);
+    return one;
+}
+
+void camera_sample_offsets(int n, double *offsets)
+{
+    double step = 1.0 / n, offset = -(0.5 - step * 0.5);
+    for (int i = 0; i < n; i++) {
+        offsets[i] = offset;
+        offset += step;
+    }
+}
+
+void camera_depth_range(const Camera *camera, Box box, double *near_mm, double *far_mm)
+{
+    Vec3 center = box_center(box);
+    double radius = vec3_distance(center, box.high);
+    Vec3 to_center = vec3_sub(center, camera->location);
+    double distance = camera->projection == PROJECTION_ORTHOGRAPHIC
+                          ? vec3_dot(to_center, camera->direction)
+                          : vec3_length(to_center);
+    *near_mm = fmax(0, distance - radius);
+    *far_mm = distance + radius;
+}
+
+static LightWay way_to(Vec3 location, Vec3 place)
+{
+    Vec3 to_light = vec3_sub(location, place);
+    double distance = vec3_length(to_light);
+    return (LightWay){vec3_scale(to_light, 1 / distance), distance};
+}
+
+LightWay light_way(const Light *light, Vec3 place)
+{
+    if (!light->parallel)
+        return way_to(light->location, place);
+    Vec3 towards = vec3_normalized(vec3_sub(light->location, light->target));
+    return (LightWay){towards, vec3_dot(vec3_sub(light->location, place), towards)};
+}
+
+int light_points(const Light *light)
+{
+    return light->samples > 1 ? light->samples * light->samples : 1;
+}
+
+LightWay light_way_to_point(const Light *light, int k, Vec3 place)
+{
+    int n = light->samples;
+    if (n < 2)
+        return light_way(light, place);
+    Vec3 at = vec3_add_scaled(light->location, light->sides[0], k % n / (n - 1.0) - 0.5);
+    return way_to(vec3_add_scaled(at, light->sides[1], k / n / (n - 1.0) - 0.5), place);
+}
+
+bool ground_hit(const Ground *ground, Ray ray, double near_mm, double far_mm, double *t)
+{
+    if (!ground->present)
+        return false;
+    double along = vec3_dot(ground->normal, ray.direction);
+    if (fabs(along) < 1e-10)
+        return false;
+    double distance = -(vec3_dot(ground->normal, ray.origin) - ground->offset_mm) / along;
+    if (!(distance > near_mm && distance < far_mm && distance <= SCENE_FARTHEST_MM))
+        return false;
+    *t = distance;
+    return true;
+}
+
+Status view_check(const View *view, Err *err)
+{
+    const Camera *camera = &view->camera;
+    if (vec3_length(camera->location) > SCENE_FARTHEST_MM)
+        return err_set(err, STATUS_INPUT, "the camera is farther than %g mm from the origin",
+                       SCENE_FARTHEST_MM);
+    if (!vec3_finite(camera->location) || !vec3_finite(camera->right) || !vec3_finite(camera->up) ||
+        !(vec3_length(camera->direction) > 0) || !(vec3_length(camera->right) > 0) ||
+        !(vec3_length(camera->up) > 0))
+        return err_set(err, STATUS_INPUT, "the camera has no direction or no extent");
+    if (view->ground.present && !isfinite(view->ground.offset_mm))
+        return err_set(err, STATUS_INPUT, "the ground has no place");
+    return STATUS_OK;
+}

@@ -1,0 +1,25 @@
+/* A tree as all three things that a picture is of, in the look's one colour. */
+#ifndef CORCAST_TESTS_TEST_STAGE_H
+#define CORCAST_TESTS_TEST_STAGE_H
+
+#include "stage/stage.h"
+
+/* *scene is owned by the caller, scene_release, unless this fails. `report` and `err` may be
+ * NULL. */
+static inline Status stage_all(const Tree *tree, const Look *look, const StageParams *params,
+                               Scene *scene, StageReport *report, Err *err)
+{
+    Scene made = {0};
+    Status status = stage_appearance(look, NULL, NULL, &made.appearance, err);
+    if (status == STATUS_OK)
+        status = stage_geometry(tree, params, &made.geometry, report, err);
+    if (status == STATUS_OK)
+        status = stage_view(look, params, &made.geometry, &made.view, err);
+    if (status == STATUS_OK)
+        *scene = made;
+    else
+        scene_release(&made);
+    return status;
+}
+
+#endif
