@@ -224,12 +224,12 @@ static Status format_owned(char **out, Err *err, const char *format, ...)
     int length = vsnprintf(NULL, 0, format, arguments);
     va_end(arguments);
     char *text = NULL;
-    Status status = mem_calloc(&text, (size_t)length + 1, 1, "bytes of text", err);
-    if (status == STATUS_OK)
-        vsnprintf(text, (size_t)length + 1, format, again);
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&text, (size_t)length + 1, 1, "bytes of text", err));
+    vsnprintf(text, (size_t)length + 1, format, again);
+    *out = text;
+done:
     va_end(again);
-    if (status == STATUS_OK)
-        *out = text;
     return status;
 }
 
@@ -414,18 +414,16 @@ Status outfile_open(OutFile *file, const char *path, Err *err)
     TRY(file_resolve(path, &opened.path, err));
     Status status = STATUS_OK;
     if (!is_direct(opened.path))
-        status = temporary_file(opened.path, &opened.temporary, err);
-    if (status == STATUS_OK)
-        opened.stream = fopen(opened.temporary ? opened.temporary : opened.path, "wb");
-    if (status == STATUS_OK && !opened.stream)
-        status = err_set(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
-    if (status != STATUS_OK) {
-        file_forget(opened.temporary);
-        free(opened.path);
-        return status;
-    }
+        TRY_GOTO(temporary_file(opened.path, &opened.temporary, err));
+    opened.stream = fopen(opened.temporary ? opened.temporary : opened.path, "wb");
+    if (!opened.stream)
+        TRY_GOTO(err_set(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno)));
     *file = opened;
     return STATUS_OK;
+done:
+    file_forget(opened.temporary);
+    free(opened.path);
+    return status;
 }
 
 /* Ends writing; whether all of it has arrived. */
@@ -451,9 +449,10 @@ static Status take_name(OutFile *file, Err *err)
 
 Status outfile_commit(OutFile *file, Err *err)
 {
-    Status status = close_stream(file, err);
-    if (status == STATUS_OK)
-        status = take_name(file, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(close_stream(file, err));
+    status = take_name(file, err);
+done:
     outfile_discard(file);
     return status;
 }
@@ -510,10 +509,10 @@ static Status take_names(OutFile *files, size_t n, Err *err)
 Status outfiles_commit(OutFile *files, size_t n, Err *err)
 {
     Status status = STATUS_OK;
-    for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        status = close_stream(&files[i], err);
-    if (status == STATUS_OK)
-        status = take_names(files, n, err);
+    for (size_t i = 0; i < n; i++)
+        TRY_GOTO(close_stream(&files[i], err));
+    status = take_names(files, n, err);
+done:
     for (size_t i = 0; i < n; i++)
         outfile_discard(&files[i]);
     return status;
@@ -565,19 +564,18 @@ Status file_make_folder(const char *path, Err *err)
             continue;
         char end = *at;
         *at = '\0';
-        if (mkdir(partial, 0777) != 0 && errno != EEXIST) {
-            status =
-                err_set(err, STATUS_IO, "%s: the folder cannot be made: %s", path, strerror(errno));
-            break;
-        }
+        if (mkdir(partial, 0777) != 0 && errno != EEXIST)
+            TRY_GOTO(err_set(err, STATUS_IO, "%s: the folder cannot be made: %s", path,
+                             strerror(errno)));
         *at = end;
         if (!end)
             break;
     }
     struct stat about;
-    if (status == STATUS_OK && (stat(path, &about) != 0 || !S_ISDIR(about.st_mode)))
+    if (stat(path, &about) != 0 || !S_ISDIR(about.st_mode))
         status =
             err_set(err, STATUS_IO, "%s: the folder cannot be made: a file has that name", path);
+done:
     free(partial);
     return status;
 }

@@ -68,27 +68,31 @@ static Status check_filling(const Domain *domain, Err *err)
                    least_filled);
 }
 
+static Status load(DomainKind kind, const char *values, Domain *out, Err *err)
+{
+    Domain domain = {.kind = kind};
+    Status status = STATUS_OK;
+    TRY_GOTO(kinds[kind]->load(&domain, values, err));
+    TRY_GOTO(check_filling(&domain, err));
+    domain.slack_mm = slack * vec3_distance(domain.bounds.low, domain.bounds.high);
+    *out = domain;
+    return STATUS_OK;
+done:
+    domain_release(&domain);
+    return status;
+}
+
 Status domain_parse(Domain *domain, const char *spec, Err *err)
 {
     size_t length = strcspn(spec, ":");
     const char *values = spec + length + (spec[length] == ':');
     for (int kind = 0; kind < KINDS; kind++) {
-        const DomainOps *ops = kinds[kind];
-        if (strlen(ops->name) != length || memcmp(spec, ops->name, length) != 0)
+        if (strlen(kinds[kind]->name) != length || memcmp(spec, kinds[kind]->name, length) != 0)
             continue;
-        Domain loaded = {.kind = (DomainKind)kind};
-        Status status = ops->load(&loaded, values, err);
-        if (status == STATUS_OK)
-            status = check_filling(&loaded, err);
-        if (status != STATUS_OK) {
-            if (status == STATUS_USAGE)
-                err_prefix(err, "`domain` %s: ", spec);
-            domain_release(&loaded);
-            return status;
-        }
-        loaded.slack_mm = slack * vec3_distance(loaded.bounds.low, loaded.bounds.high);
-        *domain = loaded;
-        return STATUS_OK;
+        Status status = load((DomainKind)kind, values, domain, err);
+        if (status == STATUS_USAGE)
+            err_prefix(err, "`domain` %s: ", spec);
+        return status;
     }
     return refuse_shape(spec, err);
 }

@@ -40,17 +40,17 @@ Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err)
     Picture picture = {0};
     TRY(picture_read_mask(&picture, path, err));
     const int64_t n[3] = {picture.width, picture.height, 1};
-    Status status = mask_init(mask, path, n, err);
-    if (status == STATUS_OK) {
-        size_t channels = (size_t)picture.channels;
-        for (size_t i = 0; i < (size_t)picture.width * (size_t)picture.height; i++)
-            for (size_t c = 0; c < channels; c++)
-                mask->is_tissue[i] |= picture_code(&picture, i * channels + c) != 0;
-        mask->corner = vec3(-mm * picture.width / 2, mm * picture.height / 2, 0);
-        mask->step[0] = vec3(mm, 0, 0);
-        mask->step[1] = vec3(0, -mm, 0);
-        mask->step[2] = vec3(0, 0, 1);
-    }
+    Status status = STATUS_OK;
+    TRY_GOTO(mask_init(mask, path, n, err));
+    size_t channels = (size_t)picture.channels;
+    for (size_t i = 0; i < (size_t)picture.width * (size_t)picture.height; i++)
+        for (size_t c = 0; c < channels; c++)
+            mask->is_tissue[i] |= picture_code(&picture, i * channels + c) != 0;
+    mask->corner = vec3(-mm * picture.width / 2, mm * picture.height / 2, 0);
+    mask->step[0] = vec3(mm, 0, 0);
+    mask->step[1] = vec3(0, -mm, 0);
+    mask->step[2] = vec3(0, 0, 1);
+done:
     picture_release(&picture);
     return status;
 }

@@ -239,9 +239,10 @@ static Status mesh_load(Domain *domain, const char *values, Err *err)
         return err_set(err, STATUS_USAGE, "the name of a mesh must end in .stl or .obj");
     TRY(mem_calloc(&domain->mesh, 1, sizeof *domain->mesh, "meshes", err));
     Soup soup = {0};
-    Status status = soup_read(&soup, domain->file, domain->size[0], err);
-    if (status == STATUS_OK)
-        status = build(domain, &soup, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(soup_read(&soup, domain->file, domain->size[0], err));
+    status = build(domain, &soup, err);
+done:
     free(soup.corners);
     return status;
 }

@@ -198,16 +198,18 @@ Status soup_read(Soup *soup, const char *path, double mm, Err *err)
     const FileForm *form = is_obj ? &obj_file : &stl_file;
     TRY(file_read(path, form, &bytes, &size, err));
     Reader reader = {.soup = soup, .path = path, .mm = mm};
-    Status status;
-    if (!is_obj && is_binary_stl(bytes, size)) {
-        status = read_binary_stl(&reader, bytes, size, err);
+    Status status = STATUS_OK;
+    if (is_obj) {
+        TRY_GOTO(read_lines(&reader, bytes, read_obj_line, err));
+    } else if (is_binary_stl(bytes, size)) {
+        TRY_GOTO(read_binary_stl(&reader, bytes, size, err));
     } else {
-        status = is_obj ? STATUS_OK : check_ascii_stl(path, bytes, &size, err);
-        if (status == STATUS_OK)
-            status = read_lines(&reader, bytes, is_obj ? read_obj_line : read_stl_line, err);
+        TRY_GOTO(check_ascii_stl(path, bytes, &size, err));
+        TRY_GOTO(read_lines(&reader, bytes, read_stl_line, err));
     }
-    if (status == STATUS_OK && soup->n == 0)
+    if (soup->n == 0)
         status = err_set(err, STATUS_INPUT, "%s: has no triangles", path);
+done:
     free(reader.vertices);
     free(bytes);
     return status;

@@ -75,17 +75,17 @@ Status continue_check(const GrowParams *params, const Domain *domain, Err *err)
     int32_t *children = NULL;
     TRY(tree_child_counts(from, &children, err));
     Status status = STATUS_OK;
-    for (size_t i = 0; i < from->n && status == STATUS_OK; i++) {
-        status = check_node(from, i, children[i], domain, err);
+    for (size_t i = 0; i < from->n; i++) {
+        TRY_GOTO(check_node(from, i, children[i], domain, err));
         terminals += children[i] == 0;
     }
-    free(children);
-    if (status == STATUS_OK)
-        status = check_place(from, domain, err);
-    if (status == STATUS_OK && params->terminals <= terminals)
+    TRY_GOTO(check_place(from, domain, err));
+    if (params->terminals <= terminals)
         status = err_set(err, STATUS_USAGE,
                          "`terminals` %zu: must be above the %zu that the tree of `from` has",
                          params->terminals, terminals);
+done:
+    free(children);
     return status;
 }
 
