@@ -119,7 +119,7 @@ bool connection_is_inside(const Network *net, const Domain *domain, const Connec
              domain_holds_segment(domain, fork, net->position[host])));
 }
 
-/* A new segment that is to keep clear of all but its kin. */
+/* A new segment that is to keep clear of all others but its kin, those it shares a node with. */
 typedef struct Newcomer {
     const Network *net;
     GridItem item;
@@ -127,10 +127,11 @@ typedef struct Newcomer {
     double radius;    /* mm */
     double thickness; /* at which all radii count */
     double gap;       /* mm */
-    int32_t kin[4];   /* the first is the segment to split */
+    int32_t kin[4];   /* the first is the segment that is split */
 } Newcomer;
 
-/* Its kin are the segment to split and all that end or begin where the newcomer does. */
+/* The part of a connection as a newcomer: its kin are the segment that is split and all that end or
+ * begin at the newcomer's outer end. */
 static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rules,
                          const Connection *connection, Vec3 terminal, int part)
 {
@@ -152,9 +153,9 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
     return out;
 }
 
-/* Whether the newcomer keeps clear of another segment, with the reserve unless the segment that is
- * split did not either. What begins in a vessel of many pieces overlaps those about its beginning:
- * from them only the centrelines must keep apart. */
+/* Whether the newcomer keeps clear of another segment. It has to keep the reserve as well, unless
+ * the segment that is split was as near to the other. What begins in a given vessel of many pieces
+ * overlaps the pieces next to its beginning: it only has to keep off their centrelines. */
 static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t other)
 {
     const GridItem *item = &grid->item[other];

@@ -15,43 +15,50 @@ enum {
     PARTS = BIFURCATION_ENDS
 };
 
-/* A way to connect a terminal: `segment` is split at `bifurcation`. */
+/* A way to connect a terminal: `segment` is split at `bifurcation`. By connection_estimate, price
+ * and bifurcation are first guesses and the radii are not set; by connection_optimise all are
+ * final. */
 typedef struct Connection {
     int32_t segment;
-    double price; /* growth of S_root, by the segment's sensitivities */
+    double price; /* the increase of S_root [law.h], to first order */
     Vec3 bifurcation;
     double radius[PARTS]; /* mm */
 } Connection;
 
-/* One of the segments that a connection makes, as it enters the grid. */
+/* The item [grid.h] of one of the three segments (PROXIMAL, DISTAL or FRESH) that an optimised
+ * connection makes. */
 GridItem connection_item(const Network *net, const Grid *grid, const Rules *rules,
                          const Connection *connection, Vec3 terminal, int part);
 
-/* Whether a segment is long enough to become two that are longer than wide, or need not be. */
+/* Whether a segment is long enough to be split into two that are longer than wide; a piece of a
+ * given vessel always is. By its radius in the grid. */
 bool connection_may_split(const Network *net, const Grid *grid, const Rules *rules,
                           int32_t segment);
 
-/* A connection of `terminal` to `segment` that is good and, to first order, priced; its radii are
- * not set. False when there is none. */
+/* Finds a good bifurcation for connecting `terminal`, mm, to `segment`, and its price, in *out.
+ * Needs the segment's sums, gauge and sensitivity as of the last refresh. False when a figure is
+ * not finite. O(1). */
 bool connection_estimate(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
                          Connection *out);
 
-/* Finds the best bifurcation, the price and the radii to the end. False when a segment would be too
- * short. */
+/* Finds the best bifurcation for an estimated connection, its price and the three radii. Needs the
+ * same. False when one of the three segments would be shorter than the rules allow. O(1). */
 bool connection_optimise(const Network *net, const Rules *rules, Vec3 terminal,
                          Connection *connection);
 
-/* Whether the three segments are inside the domain, those of a given one wherever that is; in a
- * convex domain they are when the bifurcation is. */
+/* Whether the three segments of an optimised connection lie in the domain. In a convex domain they
+ * do when the bifurcation does; the two parts of a given segment may lie anywhere. */
 bool connection_is_inside(const Network *net, const Domain *domain, const Connection *connection,
                           Vec3 terminal);
 
-/* Whether the segments of a settled connection that are not given keep clear of all others. */
 typedef enum ConnectionClearance {
     CONNECTION_CLEAR,
-    CONNECTION_BLOCKED,
-    CONNECTION_BEYOND, /* they, or the one that they replace, are not all in the zone */
+    CONNECTION_BLOCKED, /* another segment is in the way */
+    CONNECTION_BEYOND,  /* it takes cells outside the zone to tell */
 } ConnectionClearance;
+
+/* Whether the three segments of an optimised connection keep clear of all others in the grid, but
+ * for those of a given segment, which stays where it is. Looks at nothing outside `zone`. */
 ConnectionClearance connection_clearance(const Network *net, const Grid *grid, const Rules *rules,
                                          Box zone, const Connection *connection, Vec3 terminal);
 

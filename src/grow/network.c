@@ -1,8 +1,16 @@
 /* Every segment holds rho_gamma and cost of its daughters, so a change at one place is carried
  * towards the root by recomputing the segments on the way and nothing else: one cache line each,
- * and exact, because nothing is added to or taken from a running sum. A split is carried up a few
- * levels at once, where it is a large part of what hangs there; further up, where it is a small
- * one, sums wait until all are refreshed, as the sensitivities do.
+ * and exact, because nothing is added to or taken from a running sum.
+ *
+ * network_split carries a new terminal to the nearest LEVELS ancestors at once, where it is a large
+ * part of what hangs there. Further up it is a small part, and the sums wait for network_refresh.
+ * That makes a split O(1), and lets threads split in different places without a lock.
+ *
+ * network_refresh sums up all segments in post-order (sum_up) and then hands gauges and derivatives
+ * down in pre-order (refresh_daughters). Subtrees of less than 1 / SUBTREES of the terminals
+ * (find_tops) are done side by side by threads, the few segments above them by one thread in
+ * between; each segment is computed from its daughters or its mother alone, so the result does not
+ * depend on the threads.
  *
  * The sensitivities are the derivatives of the root's cost, carried down by the chain rule. They
  * price a change below a segment in O(1). They age as the tree grows, which only blurs the choice
@@ -12,9 +20,9 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* How far up a split is carried at once. */
+/* The ancestors that a split updates at once. */
 enum { LEVELS = 8 };
-/* Refreshing goes by subtrees of at most one in so many terminals. */
+/* A subtree that one thread refreshes has less than 1 / SUBTREES of the terminals. */
 enum { SUBTREES = 128 };
 
 Status network_init(Network *net, Law law, double radius_scale, size_t capacity, size_t inlets,
@@ -75,13 +83,13 @@ double network_cost(const Network *net)
     return cost;
 }
 
-/* Radii beyond what a float holds are wider than any domain all the same. */
+/* As a float. Radii that a float cannot hold are wider than any domain all the same. */
 static float narrow(double value)
 {
     return (float)fmin(value, (double)FLT_MAX);
 }
 
-/* Tells the parent of `i` what hangs there now. */
+/* Stores in the parent of `i` what hangs on it there. */
 static void tell_parent(Network *net, int32_t i, const Reduced *reduced)
 {
     Segment *parent = &net->segment[net->segment[i].parent];
@@ -102,7 +110,8 @@ static void recompute(Network *net, int32_t i)
     tell_parent(net, i, &reduced);
 }
 
-/* Gives a segment the adjoint it has as a daughter of `parent`. */
+/* Computes gauge, radius and sensitivity of segment i, which sums up to `reduced`, from those of
+ * its mother `parent`, which sums up to `above`. */
 static void set_from_parent(Network *net, int32_t i, const Reduced *reduced, int32_t parent,
                             const Reduced *above)
 {
@@ -163,7 +172,8 @@ static bool holds(Box zone, Vec3 p)
            p.z >= zone.low.z && p.z <= zone.high.z;
 }
 
-/* Tells the segments above `i`, which reduced to this, that one more terminal hangs there. */
+/* Adds a terminal to the sums of the nearest ancestors of `i`, which sums up to `reduced`; see
+ * network_split. */
 static void tell_ancestors(Network *net, int32_t i, const Reduced *reduced, Box zone)
 {
     Reduced here = *reduced;
@@ -275,7 +285,7 @@ int32_t network_next_upward(const Network *net, int32_t i)
     return child[0] == i && child[1] >= 0 ? network_first_upward(net, child[1]) : above;
 }
 
-/* Counts the terminals of node i from those of its daughters. */
+/* Sets the terminals of node i from those of its daughters. */
 static void count_terminals(Network *net, int32_t i)
 {
     Segment *segment = &net->segment[i];
@@ -284,8 +294,8 @@ static void count_terminals(Network *net, int32_t i)
         segment->terminals += net->segment[segment->child[slot]].terminals;
 }
 
-/* Sums up what hangs on node i, no inlet, and tells its parent. Keeps rho where the sensitivity
- * will be. */
+/* Sums up segment i from its daughters and stores the sums in its parent. Keeps rho in the place of
+ * the sensitivity, for summed, until refresh_daughters overwrites it. */
 static void sum_up(Network *net, int32_t i)
 {
     count_terminals(net, i);
@@ -294,14 +304,14 @@ static void sum_up(Network *net, int32_t i)
     net->sensitivity[i].load = reduced.rho;
 }
 
-/* Node i, a daughter that was summed up. */
+/* What sum_up found for a daughter, as far as refresh_daughters needs it. */
 static Reduced summed(const Network *net, const Segment *mother, int slot)
 {
     double rho = net->sensitivity[mother->child[slot]].load, rho2 = rho * rho;
     return (Reduced){.load = rho2 * rho2, .rho_gamma = mother->rho_gamma[slot], .rho = rho};
 }
 
-/* Passes on to its daughters what a node has itself. */
+/* Hands gauge, radius and sensitivity of node i down to its daughters. */
 static void refresh_daughters(Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
@@ -338,9 +348,10 @@ static void refresh_subtree(size_t index, int worker, void *context)
         refresh_daughters(net, i);
 }
 
-/* Lists the nodes with at least so many terminals, all on the way from an inlet, from the
- * workspace's end on, mothers first; and from its beginning on the daughters of theirs that have
- * less. Returns how many there are of these. */
+/* Cuts the trees into subtrees of less than `least` terminals. Lists the nodes above them, which
+ * have at least that many, at the end of the workspace `tops`, in such an order that going down in
+ * memory meets mothers first; their number is *upper. Lists the subtrees' top nodes at its
+ * beginning and returns their number. */
 static size_t find_tops(const Network *net, int32_t least, size_t *upper)
 {
     size_t count = 0;

@@ -1,9 +1,17 @@
-/* The growing tree, or forest: binary trees of segments that know their own hydrodynamics at every
- * moment.
+/* The growing tree, or forest: binary trees of segments, each with the sums over its subtree from
+ * which its radius follows [law.h].
  *
- * Every node but an inlet is the distal end of the segment of its index; what hangs on an inlet are
- * root segments, one where the tree is grown. Segments are split in place: the one that is split
- * keeps its index as the distal part. */
+ * Every node but an inlet is the distal end of the segment of the same index. The children of an
+ * inlet are root segments: one for a tree that is grown, one or two for a tree that is continued. A
+ * segment that is split keeps its index as the distal part.
+ *
+ * Functions change three kinds of values, and say which they need and which they leave:
+ * - the structure (positions, parents, children, tree, origin, given, piece) is always right;
+ * - the sums (length, terminals, rho_gamma, cost) are exact after network_resum, which computes all
+ *   of them, and after network_refresh, which computes all but the lengths. network_append leaves
+ *   them out of date, network_split updates some of them, and so do changes of weights;
+ * - the radii (radius, gauge, sensitivity) are those of the last network_refresh, or of when the
+ *   segment was made. They age while terminals are added, until the next refresh. */
 #ifndef CORCAST_GROW_NETWORK_H
 #define CORCAST_GROW_NETWORK_H
 
@@ -12,61 +20,62 @@
 #include "grow/cco/grid.h"
 #include "grow/cco/law.h"
 
-/* What the walk towards the root needs of one segment, in one cache line. */
+/* What the walk towards the root reads of one segment, in one cache line of 64 bytes. */
 typedef struct Segment {
     double length;       /* mm */
-    double rho_gamma[2]; /* of the daughters; 0 where there is none */
-    double cost[2];
-    int32_t child[2]; /* -1: none */
-    int32_t parent;   /* -1 at the inlet */
+    double rho_gamma[2]; /* of the daughters [law.h]; 0 where there is none */
+    double cost[2];      /* likewise */
+    int32_t child[2];    /* -1: none */
+    int32_t parent;      /* -1 at the inlet */
     int32_t terminals;
-    float radius; /* mm; as of the last refresh, or of the segment's making */
-    float gauge;  /* likewise */
+    float radius; /* mm */
+    float gauge;  /* [law.h] */
 } Segment;
 
-/* What pricing a change needs of one segment; as of the last refresh, or of its making. */
+/* The derivatives that price a change of one segment without a walk to the root. */
 typedef struct Sensitivity {
-    double load;  /* dS_root / d load, the segment's cost held */
-    double extra; /* dS_root for one more terminal on every segment above this one */
+    double load;  /* dS_root / d load of the segment, its own cost held fixed */
+    double extra; /* the increase of S_root if every segment above this one had one more terminal */
 } Sensitivity;
 
-/* What sets segments apart where terminals are unequal, viscosities differ, or several trees
- * grow. */
+/* What segments need in addition where terminals are unequal, viscosities differ, several trees
+ * grow, or a tree is continued. */
 typedef struct Trait {
-    /* The segment's flow over that of as many mean terminals, times its viscosity over that of
-     * radius_scale; as of the last refresh, or of its making. */
+    /* The flow through the segment relative to that of as many mean terminals, times its viscosity
+     * relative to that in radius_scale; of the last weights_update, or of when it was made. */
     double weight;
-    double share;   /* of a terminal: of the flow, relative to the others'; 0 elsewhere */
-    int32_t tree;   /* which of the inlets it hangs on */
-    int32_t origin; /* the node's index in the tree that growth started from; -1: none */
-    bool given;     /* on a segment of that tree, which stays straight */
-    bool piece;     /* on one of several that make up a vessel of that tree; given, too */
+    double share;   /* of a terminal: its flow relative to the other terminals'; 0 elsewhere */
+    int32_t tree;   /* the index of the inlet that it hangs on */
+    int32_t origin; /* the node's index in the tree that is continued; -1: a new node */
+    bool given;     /* a segment of that tree, which stays straight */
+    bool piece;     /* a given one that makes up a vessel together with others */
 } Trait;
 
 typedef struct Network {
     Law law;
-    double radius_scale; /* q N^(1/4), mm^(3/4) */
-    double radius_unit;  /* q, mm^(3/4): r = q * gauge * rho */
-    size_t n, capacity;  /* nodes, spare ones included */
+    double radius_scale; /* q N^(1/4), mm^(3/4), the same for any number N of terminals */
+    double radius_unit;  /* q, mm^(3/4), for the present number: r = q * gauge * rho [law.h] */
+    size_t n, capacity;  /* nodes, spare ones included; and how many there is room for */
     size_t terminals;
     int32_t *inlet; /* nodes */
     size_t inlets;
     Segment *segment;
     Sensitivity *sensitivity;
-    Trait *trait;        /* NULL: all weights are 1, there is one tree, and nothing is given */
-    double fresh_weight; /* of a new terminal's segment */
+    Trait *trait;        /* NULL: all weights are 1, there is one tree, and no segment is given */
+    double fresh_weight; /* the weight that a new terminal's segment gets */
     Vec3 *position;      /* mm */
-    int32_t *spare;      /* nodes that are part of no tree */
+    int32_t *spare;      /* nodes that are part of no tree, to be used by network_split */
     size_t spares;
-    int32_t *tops; /* workspace */
+    int32_t *tops; /* workspace of network_refresh */
 } Network;
 
-/* Room for so many nodes, of them so many inlets; `traits`: whether segments have them. */
+/* Makes an empty network with room for `capacity` nodes, `inlets` of them inlets; `traits`: whether
+ * segments have a Trait. *net is owned by the caller; STATUS_MEMORY. */
 MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, size_t capacity,
                                size_t inlets, bool traits, Err *err);
 void network_release(Network *net);
 
-/* The tree that segment i is of. */
+/* The index of the tree that segment i belongs to. */
 static inline int32_t network_tree(const Network *net, int32_t i)
 {
     return net->trait ? net->trait[i].tree : 0;
@@ -90,13 +99,13 @@ static inline bool network_is_end(const Network *net, int32_t i)
     return net->segment[i].child[0] < 0 && net->segment[i].parent >= 0;
 }
 
-/* What `terminals` more on segment i add to its load, over its length. */
+/* The burden of segment i [law.h] if it carried so many terminals. */
 static inline double network_burden(const Network *net, int32_t i, int32_t terminals)
 {
     return net->trait ? terminals * net->trait[i].weight : terminals;
 }
 
-/* What hangs on segment i. */
+/* What hangs on the distal end of segment i. Needs its sums. */
 static inline Below network_below(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
@@ -104,7 +113,7 @@ static inline Below network_below(const Network *net, int32_t i)
                       segment->cost[0] + segment->cost[1]);
 }
 
-/* Segment i with what hangs on it. */
+/* Segment i together with what hangs on it. Needs its sums. */
 static inline Reduced network_reduce(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
@@ -113,53 +122,67 @@ static inline Reduced network_reduce(const Network *net, int32_t i)
                       &below);
 }
 
+/* Segment i as a solid. Needs its radius. */
 static inline Capsule network_capsule(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
     return (Capsule){net->position[segment->parent], net->position[i], (double)segment->radius};
 }
 
-/* Appends a node that hangs on `parent`, or for -1 an inlet, and returns it. All sums are due. */
+/* Appends a node that hangs on `parent`, or an inlet if that is -1, and returns its index. Sums are
+ * out of date until network_resum. */
 int32_t network_append(Network *net, int32_t parent, Vec3 position);
 
-/* Sees to it that at least so many nodes are spare. */
+/* Adds spare nodes until there are at least `nodes`. */
 void network_spare(Network *net, size_t nodes);
 
-/* Splits `segment` at `bifurcation` and hangs a new segment to `terminal` there. Its proximal part
- * becomes segment made[0] and the new one made[1], which are spare. What is above learns of it for
- * a few levels, while distal ends are in `zone`, all from network_refresh. The caller takes the two
- * off the spare nodes and tells network_grown. Threads may split at a time in zones without common
- * points, segments whose ends are in their own. */
+/* Splits `segment` at `bifurcation` and hangs a new segment to `terminal` there. The proximal part
+ * becomes segment made[0], the new segment made[1]; both are spare nodes, which the caller then has
+ * to take off the list. The caller also has to call network_grown.
+ *
+ * Needs the radii and sensitivities of `segment` as of the last refresh. Leaves the sums of the
+ * three segments right, and adds the new terminal to those of their nearest 8 ancestors (LEVELS),
+ * up to the first whose distal end lies outside `zone`; further up, the sums miss it until
+ * network_refresh. O(1).
+ *
+ * Thread safety: threads may split at the same time if their zones have no point in common and both
+ * ends of each one's segment lie in its own zone. */
 void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal,
                    const int32_t made[2], Box zone);
 
-/* Tells that so many terminals were added: radii from here on are those for as many more. */
+/* Counts so many more terminals, which share the same flow: changes radius_unit. */
 void network_grown(Network *net, size_t terminals);
 
-/* Moves a bifurcation, and brings all sums up to date. */
+/* Moves the bifurcation `node`, and brings the sums of the three segments that meet there and of
+ * all above up to date, exactly. Needs right sums; leaves radii as they are. O(depth). */
 void network_move(Network *net, int32_t node, Vec3 place);
 
-/* S_root, over all trees; not finite, or 0, when radii span more than a double can hold. */
+/* S_root [law.h], the sum over all trees. Not finite, or 0, when radii span more than a double can
+ * hold. Needs right sums, or is of the last refresh. */
 double network_cost(const Network *net);
 
-/* Brings the sums of all segments up to date, and radii, gauges and sensitivities. */
+/* Brings the sums of all segments but lengths up to date, then their radii, gauges and
+ * sensitivities. O(n), on so many threads, which do not change the result. */
 void network_refresh(Network *net, int threads);
 
-/* Frees what only growth needs: no more splits and refreshing from here on. */
+/* Frees what only growth needs: network_split, network_spare and network_refresh must not be called
+ * from here on. */
 void network_retire(Network *net);
 
-/* The node after `i` in the order in which daughters come before their mother, which begins with
- * network_first_upward of the inlet and ends with the inlet. */
+/* The node after `i` in post-order (daughters before their mother), which begins with
+ * network_first_upward of an inlet and ends with that inlet. */
 int32_t network_next_upward(const Network *net, int32_t i);
-/* The first of `i` and all below it in that order. */
+/* The first of `i` and all below it in post-order. O(depth). */
 int32_t network_first_upward(const Network *net, int32_t i);
 
-/* Sums up lengths, terminals, flares and costs anew from positions and weights. */
+/* Computes all sums anew, lengths included, from positions and weights; counts the terminals.
+ * Leaves radii as they are. O(n). */
 void network_resum(Network *net);
 
 /* Renumbers the nodes depth first, tree after tree, so that parents come before children and
- * neighbours in the tree are neighbours in memory, and none is spare. On failure `net` is only fit
- * for network_release. */
+ * neighbours in the tree are neighbours in memory; drops the spare nodes. Keeps sums and radii;
+ * what holds indices of nodes (a grid) must be made anew. O(n). On failure, STATUS_MEMORY, `net` is
+ * only fit for network_release. */
 MUST_CHECK Status network_reorder(Network *net, Err *err);
 
 #endif

@@ -1,10 +1,10 @@
-/* A segment stands in the grid as a capsule wider than the vessel, so that it need not be entered
- * anew whenever radii are refreshed: only what outgrew its capsule is. */
+/* A segment stands in the grid as a capsule wider than the vessel, so that a refresh of the radii
+ * only has to enter those anew that outgrew their capsules. */
 #include "grow/network_grid.h"
 
 #include <string.h>
 
-/* An item of no length is in no cell. */
+/* Whether the item is in the grid's cells: one without length is not. */
 static bool has_length(const GridItem *item)
 {
     return memcmp(item->proximal, item->distal, sizeof item->distal) != 0;

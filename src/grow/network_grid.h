@@ -1,20 +1,20 @@
-/* The segments of a network in the grid of segments, with room to widen. */
+/* A network's segments in the grid that answers what is near [grid.h]. */
 #ifndef CORCAST_GROW_NETWORK_GRID_H
 #define CORCAST_GROW_NETWORK_GRID_H
 
 #include "grow/cco/grid.h"
 #include "grow/network.h"
 
-/* What a new connection must keep to. */
+/* What segments must keep to while a tree grows. */
 typedef struct Rules {
-    double thickness;    /* how much of their radii vessels are taken to have, in [0, 1] */
-    double least_length; /* mm; segments are at least this long and `thickness` diameters */
-    double gap;          /* mm; vessels without a common node are further apart than this */
+    double thickness;    /* vessels count at their radii times this, in [0, 1] */
+    double least_length; /* mm; segments are at least this long, and as long as wide */
+    double gap;          /* mm; the least distance of vessels without a common node */
     double widest;       /* mm; vessels count as no thicker than this */
 } Rules;
 
-/* The radius of the capsule that stands in the grid for a vessel of `radius`: with room to widen
- * until the grid is made anew. */
+/* The radius, mm, of the capsule that stands in the grid for a vessel of `radius` mm: 1.4 times as
+ * wide, so that the vessel may widen for a while before it has to be entered anew. */
 static inline double entry_reach(const Rules *rules, double radius)
 {
     const double reserve = 1.4;
@@ -22,13 +22,16 @@ static inline double entry_reach(const Rules *rules, double radius)
     return (reach < rules->widest ? reach : rules->widest) + rules->gap;
 }
 
-/* Enters a segment of the tree, unless it has no length: others begin and end there. */
+/* Enters a segment, by its radius as of the last refresh, in every cell that its capsule meets. One
+ * without length is in no cell: others begin and end there. Not while threads use the grid.
+ * STATUS_MEMORY. */
 MUST_CHECK Status entry_add(Grid *grid, const Rules *rules, const Network *net, int32_t segment,
                             Err *err);
-/* Enters it anew, after it moved or widened. */
+/* Takes the segment out and enters it anew, after its ends moved or it widened. */
 MUST_CHECK Status entry_renew(Grid *grid, const Rules *rules, const Network *net, int32_t segment,
                               Err *err);
-/* Brings all radii in the grid up to date with the network's. */
+/* To be called after network_refresh: copies all radii into the grid, and enters anew the segments
+ * that outgrew their capsules. O(n). */
 MUST_CHECK Status entries_widen(Grid *grid, const Rules *rules, const Network *net, Err *err);
 
 #endif

@@ -1,4 +1,8 @@
-/* Connections are tested for room cheapest first, so most tests are never made. */
+/* plan_make goes from the cheap to the dear. It asks the grid whether the point is far enough from
+ * the tree; collects the nearest segments (find_near) and what connecting to each would cost, to
+ * first order (collect); and then takes these connections cheapest first (choose): optimises the
+ * bifurcation, and tests whether the domain holds the segments and whether they are clear of
+ * others. The first that passes is taken, so most of the dear tests are never made. */
 #include "grow/plan.h"
 
 #include <stdlib.h>
@@ -26,7 +30,8 @@ static int cheapest(const Connection *connection, int count)
     return best;
 }
 
-/* The nearest segments. Looks first as far as was enough for the last points, and a little more. */
+/* Finds the nearest segments; -1 when it takes more than what is within `within` mm to tell. Looks
+ * first as far as was enough for the last points, and a little more. */
 static int find_near(const Site *site, Planner *planner, double within, Vec3 terminal)
 {
     const Grid *grid = site->grid;
@@ -43,10 +48,11 @@ static int find_near(const Site *site, Planner *planner, double within, Vec3 ter
     return last + 2 * grid->edge < within ? count : -1; /* whichever search it was */
 }
 
-/* What the nearest segments have to offer to a terminal. */
+/* What the nearest segments have to offer to a terminal: their connections are in the planner. */
 typedef struct Offers {
-    int count; /* connections, in the planner */
-    bool ahead, beyond;
+    int count;   /* of connections */
+    bool ahead;  /* whether a tree is among them that may get no more terminals for now */
+    bool beyond; /* whether that cannot be told within the zone */
 } Offers;
 
 static Offers collect(const Site *site, Planner *planner, Box zone, const size_t *left,

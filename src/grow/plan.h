@@ -1,4 +1,4 @@
-/* Plans: where tossed points may be connected, found without changing anything. */
+/* Whether and where a tossed point is connected to the tree: found without changing anything. */
 #ifndef CORCAST_GROW_PLAN_H
 #define CORCAST_GROW_PLAN_H
 
@@ -8,41 +8,43 @@
 #include "grow/network.h"
 
 typedef enum PlanState {
-    PLAN_BEYOND,   /* it takes more than the zone, or more terminals than there are left, to tell */
-    PLAN_TOO_NEAR, /* nearer to the tree than the toss distance */
-    PLAN_IN_VESSEL, /* at the toss distance, but in a thick vessel */
-    PLAN_AHEAD,     /* a tree is in the way that may get no more terminals for now */
-    PLAN_OUTSIDE,   /* every way leads through what is not tissue */
-    PLAN_CROWDED,   /* vessels are in the way */
-    PLAN_READY,
+    PLAN_BEYOND,    /* it takes cells outside the zone, or more terminals than are left, to tell */
+    PLAN_TOO_NEAR,  /* nearer to the tree than the toss distance */
+    PLAN_IN_VESSEL, /* far enough from all centrelines, but inside a thick vessel */
+    PLAN_AHEAD,     /* next to a tree that may get no more terminals for now [forest.h] */
+    PLAN_OUTSIDE,   /* every connection leaves the domain */
+    PLAN_CROWDED,   /* other vessels are in the way of every connection */
+    PLAN_READY,     /* there is a connection */
     PLAN_STATES
 } PlanState;
 
-/* What all points of a round are planned for. */
+/* What all points of a round share. The network is as of the last refresh and the splits since; the
+ * grid holds its segments. */
 typedef struct Site {
     Network *net;
     Grid *grid;
     const Domain *domain;
     const Rules *rules;
-    size_t *limit;        /* by tree: terminals that it may get */
+    size_t *limit;        /* by tree: how many more terminals it may get */
     double toss_distance; /* mm */
-    bool terminals_only;  /* the toss distance is one from terminals, not segments */
-    int candidates;
+    bool terminals_only;  /* the toss distance is kept from terminals' ends, not from segments */
+    int candidates;       /* nearest segments that are tried */
 } Site;
 
 /* One thread's workspace. */
 typedef struct Planner {
-    Near *near; /* candidates of each */
-    Connection *connection;
-    double reach; /* mm; a guess of how far away they are, 0: none; the caller's to begin with */
+    Near *near;             /* the candidates of the point at hand */
+    Connection *connection; /* and their connections */
+    double reach; /* mm; a guess how far away candidates are, 0: none. The caller sets the first */
 } Planner;
 
 MUST_CHECK Status planner_init(Planner *planner, int candidates, Err *err);
 void planner_release(Planner *planner);
 
-/* Plans the connection of `terminal`, which is in the zone, in *out: the cheapest there is room
- * for. Looks at nothing but what is in the zone. left[k], at most limit[k]: terminals that tree k
- * may get from the caller. */
+/* Plans the connection of `terminal`, mm, which lies in the zone: the cheapest of its candidates
+ * for which there is room goes to *out if the result is PLAN_READY. Reads nothing that lies outside
+ * the zone. left[k], at most limit[k], is how many terminals tree k may still get from the caller.
+ */
 PlanState plan_make(const Site *site, Planner *planner, Box zone, const size_t *left, Vec3 terminal,
                     Connection *out);
 

@@ -1,12 +1,18 @@
-/* Tossed points are sorted into square tiles of grid cells, and each tile's are planned and
- * connected one by one. What they need of the tree then stays in the processor's cache, however
- * large the tree is.
+/* Tossed points are sorted into square tiles of grid cells, and the points of a tile are planned
+ * and connected one after the other. What they need of the tree then stays in the processor's
+ * cache, however large the tree is.
  *
- * Tiles are worked on side by side. A tile's points may look at, and change, what lies in its zone,
- * which reaches half a tile further to all sides; tiles are taken in 2 x 2 (x 2) colours, so that
- * zones worked on at a time have nothing in common, and a tree does not depend on how many threads
- * there are. The few points that would need more than the zone are left over, and connected at the
- * end. Seams move from round to round. Small trees are one tile. */
+ * Threads work on tiles side by side. The points of a tile may read and change what lies in its
+ * zone, which reaches half a tile beyond it on all sides. Tiles have 2 x 2 (x 2) colours, like a
+ * chessboard's, and one colour is done after the other: zones of one colour have nothing in common,
+ * so the tree does not depend on the number of threads. The few points that would need more than
+ * the zone are left over, and connected by one thread at the end. The seams between tiles move from
+ * round to round, so that no place is always on one. Small trees are one tile.
+ *
+ * round_run: run_tiles cuts the grid (make_cut), sorts the points (sort), shares out nodes and
+ * limits (endow), and has each tile's points connected (run_tile: run_point, connect); gather adds
+ * up what became of them. What is left over then goes through run_tile as one tile that is
+ * everywhere. */
 #include "grow/round.h"
 
 #include <stdlib.h>
@@ -15,7 +21,7 @@
 enum { EDGE_2D = 34, EDGE_3D = 10 };
 /* The least number of tiles that are worth it, and points in each. */
 enum { LEAST_TILES = 4, LEAST_POINTS = 16 };
-/* Of a tile's points, one in so many may be connected there; a third is to be expected. */
+/* Of a tile's points, at most one in so many may be connected there; one in three is expected. */
 enum { POINTS_PER_CONNECTED = 2 };
 /* How many points ahead memory is asked for. */
 enum { AHEAD = 2 };
@@ -23,13 +29,13 @@ enum { AHEAD = 2 };
 struct Tile {
     size_t first, end; /* points in `order` */
     Box zone;
-    GridBox box; /* a little more than its own cells */
-    bool warm;
+    GridBox box;          /* a little more than its own cells */
+    bool warm;            /* whether to ask for all of its memory before */
     const int32_t *spare; /* nodes that it may use */
     size_t most, made;    /* terminals */
-    size_t over;          /* points left over, which are then the first ones */
-    size_t *left;         /* by tree */
-    double reach;         /* what its planner had come to */
+    size_t over;          /* points left over, which are then the first ones in `order` */
+    size_t *left;         /* by tree: how many terminals it may still get here */
+    double reach;         /* what its planner's came to be */
     Tally tally;
     Status status;
     Err err;
@@ -94,7 +100,7 @@ Status round_start(Round *round, size_t points, Err *err)
     return mem_calloc(&round->order, round->capacity, sizeof *round->order, "points", err);
 }
 
-/* Connects a terminal; `made` are the nodes to be used. */
+/* Connects a terminal with the two spare nodes `made`: in the network, and in the grid. */
 static Status connect(const Site *site, int worker, Box zone, const Connection *connection,
                       Vec3 terminal, const int32_t made[2], Err *err)
 {
@@ -111,7 +117,7 @@ static Status connect(const Site *site, int worker, Box zone, const Connection *
     return STATUS_OK;
 }
 
-/* What is done by one thread at a time. */
+/* What threads are working on. */
 typedef struct Running {
     Round *round;
     const Site *site;
@@ -119,7 +125,7 @@ typedef struct Running {
     const uint32_t *turn; /* the tiles of one colour */
 } Running;
 
-/* Asks for memory that points further on will need. */
+/* Prefetches what the next points will need: the further ahead the point, the earlier the step. */
 static void fetch(const Round *round, const Tile *tile, const Grid *grid, size_t k)
 {
     if (k + 8 * AHEAD < tile->end)
@@ -156,7 +162,8 @@ static PlanState run_point(const Running *running, int worker, Tile *tile, Vec3 
     return state;
 }
 
-/* Asks for all that lies in the cells of a zone, in one go: found one by one it would be late. */
+/* Prefetches all that lies in the cells of a tile at once: looked up one by one, each would be
+ * waited for. */
 static void warm(const Site *site, const GridBox *box)
 {
     const Grid *grid = site->grid;
@@ -287,7 +294,7 @@ static size_t part_of(const Round *round, const Tile *tile, size_t whole)
     return whole * (tile->end - tile->first) / round->n;
 }
 
-/* Gives every tile its zone, nodes, and its part of what may be connected. */
+/* Gives every tile its zone, spare nodes, and its part of what may be connected, by its points. */
 static void endow(Round *round, const Site *site, const Cut *cut, size_t tiles, size_t most)
 {
     size_t nodes = 0;

@@ -1,5 +1,5 @@
-/* A round tosses points all over the domain and connects those that can be, neighbourhood after
- * neighbourhood. */
+/* A round of growth: points tossed all over the domain are connected where there is room,
+ * neighbourhood after neighbourhood, by threads side by side. */
 #ifndef CORCAST_GROW_ROUND_H
 #define CORCAST_GROW_ROUND_H
 
@@ -7,45 +7,50 @@
 
 typedef struct Tile Tile;
 
-/* What became of the points. */
+/* What became of the points of a round. */
 typedef struct Tally {
-    size_t skipped; /* in cells that are full */
-    size_t count[PLAN_STATES];
+    size_t skipped;            /* in cells that count as full */
+    size_t count[PLAN_STATES]; /* of the others */
 } Tally;
 
 typedef struct Round {
-    Vec3 *point;
-    size_t n, capacity; /* points */
-    uint32_t *tile_of;  /* by point */
-    uint32_t *order;    /* points, tile by tile */
+    Vec3 *point;        /* mm; the caller fills them in */
+    size_t n, capacity; /* of points */
+    uint32_t *tile_of;  /* by point: its tile */
+    uint32_t *order;    /* the points' indices, tile by tile */
     Tile *tile;
     int tile_edge;       /* in cells of the grid */
-    size_t tiles;        /* at most */
+    size_t tiles;        /* at most, wherever their seams are */
     bool is_tiled;       /* whether there are enough to work on several at a time */
-    size_t trees, *left; /* by tile and tree: terminals that it may get there */
+    size_t trees, *left; /* by tile and tree: how many terminals it may still get there */
     Planner *planner;    /* by thread */
     int threads;
     uint32_t number; /* of rounds so far */
-    double reach;    /* mm; what planners begin with */
+    double reach;    /* mm; what planners begin with [plan.h] */
     uint8_t *misses; /* by cell: crowded points in it since one was connected, up to ROUND_FULL */
-    Tally tally;
+    Tally tally;     /* of the last round */
 } Round;
 
-/* A cell with so many misses counts as full. */
+/* A cell with so many crowded points counts as full: its points are skipped. */
 enum { ROUND_FULL = 2 };
 
-/* Starts from (Round){0}; `trees` may have limits. */
+/* Initialises *round, whatever it holds, for a forest of `trees`, trying so many candidates for a
+ * point on so many threads. To be released also on failure, STATUS_MEMORY. */
 MUST_CHECK Status round_init(Round *round, int candidates, size_t trees, int threads, Err *err);
 void round_release(Round *round);
 
-/* Forgets what it knew of the cells; to be called for every new grid, and when the rules change. */
+/* To be called for every new grid, and when the rules change: cuts the grid into tiles, and forgets
+ * which cells are full. */
 MUST_CHECK Status round_use_grid(Round *round, const Grid *grid, Err *err);
 
-/* Makes room for so many points, whose places the caller sets. */
+/* Begins a round: makes room for so many points, which the caller then sets. */
 MUST_CHECK Status round_start(Round *round, size_t points, Err *err);
 
-/* Connects points, at most `most` and for each tree at most its limit, which goes down by what it
- * got; returns how many in *made. Points in full cells are skipped if `skip`. Fills the tally. */
+/* Connects points, `most` of them at most and for each tree no more than site->limit allows, which
+ * goes down by what the tree got; their number is *made. Points in full cells are skipped if
+ * `skip`. Fills the tally. The network must be as of a refresh; afterwards, sums miss new terminals
+ * except near them [network_split], and the caller has to call network_grown. The result does not
+ * depend on the number of threads. STATUS_MEMORY. */
 MUST_CHECK Status round_run(Round *round, const Site *site, size_t most, bool skip, size_t *made,
                             Err *err);
 
