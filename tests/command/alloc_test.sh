@@ -49,6 +49,7 @@ test_failed_allocations_in_info() {
 test_failed_allocations_in_convert() {
     inputs
     fail_each 1 one convert ../tree.swc o.swc
+    fail_each 1 one convert "$DATA/columns.csv" o.csv
     fail_each 1 one convert ../a.png o.ppm
     fail_each 1 one convert "$DATA/images/depth.exr" o.pfm
     fail_each 1 one convert ../a.png o.tif
