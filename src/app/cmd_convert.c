@@ -2,15 +2,27 @@
 #include "app/options.h"
 #include "image/image.h"
 #include "treeio/treeio.h"
+#include <stdio.h>
 #include <string.h>
 
+/* Says which columns the file has no place for. */
+static void print_lost(const Tree *tree, const char *to)
+{
+    fprintf(stderr, "corcast convert: %s has no place for the columns", to);
+    for (size_t k = 0; k < tree->n_columns; k++)
+        fprintf(stderr, "%s %.40s", k ? "," : "", tree->column[k].name);
+    fputs("\n", stderr);
+}
+
 /* A tree in its normal form: parents before children, ids 1, 2, ... in that order. */
-static Status convert_tree(const char *from, const char *to, Err *err)
+static Status convert_tree(const char *from, const char *to, bool quiet, Err *err)
 {
     Tree tree;
     TRY(tree_read(&tree, from, err));
     tree_renumber(&tree);
     Status status = tree_write(&tree, to, err);
+    if (status == STATUS_OK && !quiet && tree.n_columns > 0 && !tree_format_has_columns(to))
+        print_lost(&tree, to);
     tree_release(&tree);
     return status;
 }
@@ -52,20 +64,45 @@ static Status convert_plane(const char *from, const char *to, Err *err)
 /* What an output is to hold; an input that is no tree is told by its first bytes. */
 typedef enum FileKind { FILE_TREE, FILE_PICTURE, FILE_PLANE, FILE_INPUT, FILE_UNKNOWN } FileKind;
 
+static const struct {
+    const char *extension;
+    FileKind kind;
+} images[] = {{"png", FILE_PICTURE}, {"ppm", FILE_PICTURE}, {"pgm", FILE_PICTURE},
+              {"tif", FILE_PICTURE}, {"pfm", FILE_PLANE},   {"exr", FILE_INPUT},
+              {"tiff", FILE_PICTURE}};
+
+enum { N_IMAGES = sizeof images / sizeof *images };
+
 static FileKind kind_of(const char *path)
 {
-    static const struct {
-        const char *extension;
-        FileKind kind;
-    } known[] = {{"png", FILE_PICTURE}, {"ppm", FILE_PICTURE},  {"pgm", FILE_PICTURE},
-                 {"tif", FILE_PICTURE}, {"tiff", FILE_PICTURE}, {"pfm", FILE_PLANE},
-                 {"exr", FILE_INPUT}};
-    if (strcmp(path, "-") == 0 || tree_format_known(path))
+    if (tree_format_known(path))
         return FILE_TREE;
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (strcmp(file_extension(path), known[i].extension) == 0)
-            return known[i].kind;
+    for (size_t i = 0; i < N_IMAGES; i++)
+        if (strcmp(file_extension(path), images[i].extension) == 0)
+            return images[i].kind;
     return FILE_UNKNOWN;
+}
+
+static Status unknown_kind(const char *path, Err *err)
+{
+    Text trees = TEXT_INIT;
+    tree_format_list(&trees);
+    Status status = text_check(&trees, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE,
+                         "'%s' has an unknown extension; known are %s for trees, and .png, .ppm, "
+                         ".pgm, .tif and .pfm for images, and .exr for one that is read",
+                         path, text_chars(&trees));
+    text_release(&trees);
+    if (status != STATUS_USAGE)
+        return status;
+    Suggestion suggestion = suggestion_for(file_extension(path), strlen(file_extension(path)));
+    for (size_t i = 0; tree_format_extension(i); i++)
+        suggestion_offer(&suggestion, tree_format_extension(i));
+    for (size_t i = 0; i < N_IMAGES; i++)
+        suggestion_offer(&suggestion, images[i].extension);
+    suggestion_add(&suggestion, ".", err);
+    return status;
 }
 
 static Status run_convert(void *options, Parsed *parsed, Err *err)
@@ -74,10 +111,7 @@ static Status run_convert(void *options, Parsed *parsed, Err *err)
     const char *from = parsed->operands[0], *to = parsed->operands[1];
     FileKind kind = kind_of(to);
     if (kind_of(from) == FILE_UNKNOWN || kind == FILE_UNKNOWN)
-        return err_set(err, STATUS_USAGE,
-                       "'%s' has an unknown extension; known are .swc for trees, and .png, .ppm, "
-                       ".pgm, .tif and .pfm for images, and .exr for one that is read",
-                       kind == FILE_UNKNOWN ? to : from);
+        return unknown_kind(kind == FILE_UNKNOWN ? to : from, err);
     if (kind == FILE_INPUT)
         return err_set(err, STATUS_USAGE,
                        "'%s' cannot be written: OpenEXR is only read; floats become .pfm", to);
@@ -86,7 +120,7 @@ static Status run_convert(void *options, Parsed *parsed, Err *err)
                        "'%s' cannot become '%s': a tree and an image are different things", from,
                        to);
     if (kind == FILE_TREE)
-        return convert_tree(from, to, err);
+        return convert_tree(from, to, parsed->common.quiet, err);
     return kind == FILE_PICTURE ? convert_picture(from, to, err) : convert_plane(from, to, err);
 }
 
@@ -95,6 +129,7 @@ const Command command_convert = {
     .summary = "convert trees and images",
     .operands = "IN OUT",
     .examples = "  corcast convert measured.swc tidy.swc\n"
+                "  corcast convert tree.swc tree.csv\n"
                 "  corcast convert picture.ppm picture.png\n"
                 "  corcast convert render.exr render.pfm\n"
                 "  corcast convert - - < measured.swc > tidy.swc\n",

@@ -150,8 +150,7 @@ static Status run_grow(void *options, Parsed *parsed, Err *err)
     RefineReport refined;
     Err why;
     Status status = STATUS_OK;
-    if (!tree_format_known(own_options->output))
-        return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .swc", own_options->output);
+    TRY(tree_format_check(own_options->output, err));
     TRY_GOTO(check_refining(growing, refining, err));
     TRY_GOTO(refining_check(refining, parsed, err));
     TRY_GOTO(growing_prepare(growing, parsed, err));

@@ -5,6 +5,7 @@
 #include "app/templates.h"
 #include "derive/derive.h"
 #include "domain/domain.h"
+#include "treeio/treeio.h"
 #include <stdio.h>
 
 /* Fills `lines`. */
@@ -41,6 +42,14 @@ static Status list_domains(Text *lines, Err *err)
 {
     for (size_t i = 0; domain_shape_name(i); i++)
         text_printf(lines, "%s:%s\n", domain_shape_name(i), domain_shape_parameters(i));
+    return text_check(lines, err);
+}
+
+static Status list_formats(Text *lines, Err *err)
+{
+    for (size_t i = 0; tree_format_name(i); i++)
+        text_printf(lines, ".%s\t%s\t%s\n", tree_format_extension(i), tree_format_name(i),
+                    tree_format_description(i));
     return text_check(lines, err);
 }
 
@@ -89,6 +98,13 @@ static Status run_domains(void *options, Parsed *parsed, Err *err)
     return list(list_domains, err);
 }
 
+static Status run_formats(void *options, Parsed *parsed, Err *err)
+{
+    (void)options;
+    (void)parsed;
+    return list(list_formats, err);
+}
+
 const Command command_models = {
     .name = "models", .summary = "the values of --model", .operands = "", .run = run_models};
 const Command command_fields = {.name = "fields",
@@ -103,3 +119,5 @@ const Command command_colormaps = {.name = "colormaps",
                                    .run = run_colormaps};
 const Command command_domains = {
     .name = "domains", .summary = "the shapes of --domain", .operands = "", .run = run_domains};
+const Command command_formats = {
+    .name = "formats", .summary = "the formats of tree files", .operands = "", .run = run_formats};

@@ -42,8 +42,7 @@ static Status run_refine(void *options, Parsed *parsed, Err *err)
 {
     const RefineOptions *own_options = options;
     const Refining *refining = &own_options->refining;
-    if (!tree_format_known(own_options->output))
-        return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .swc", own_options->output);
+    TRY(tree_format_check(own_options->output, err));
     TRY(refining_check(refining, parsed, err));
     Tree tree = {0};
     Domain domain = {0};

@@ -41,67 +41,67 @@ static const Option rows[] = {
              "otherwise"},
     {.name = "gamma",
      SETS(NUMBER, Growing, params.gamma),
-     GIVEN(Growing, given.gamma),
+     GIVEN(Growing, given[META_GAMMA]),
      .range = &meta_rows[META_GAMMA].range,
      .group = GROUP_BLOOD,
      .help = "Murray exponent"},
     {.name = "lambda",
      SETS(NUMBER, Growing, params.lambda),
-     GIVEN(Growing, given.lambda),
+     GIVEN(Growing, given[META_LAMBDA]),
      .range = &meta_rows[META_LAMBDA].range,
      .group = GROUP_OPTIMUM,
      .help = "target: sum of length * radius^lambda"},
     {.name = "p-perf",
      SETS(NUMBER, Growing, params.p_perf_mmhg),
-     GIVEN(Growing, given.p_perf),
+     GIVEN(Growing, given[META_P_PERF]),
      .range = &meta_rows[META_P_PERF].range,
      .group = GROUP_BLOOD,
      .unit = "mmHg",
      .help = "pressure at the inlet"},
     {.name = "p-term",
      SETS(NUMBER, Growing, params.p_term_mmhg),
-     GIVEN(Growing, given.p_term),
+     GIVEN(Growing, given[META_P_TERM]),
      .range = &meta_rows[META_P_TERM].range,
      .group = GROUP_BLOOD,
      .unit = "mmHg",
      .help = "pressure at every terminal"},
     {.name = "q-perf",
      SETS(NUMBER, Growing, params.q_perf_ml_min),
-     GIVEN(Growing, given.q_perf),
+     GIVEN(Growing, given[META_Q_PERF]),
      .range = &meta_rows[META_Q_PERF].range,
      .group = GROUP_BLOOD,
      .unit = "ml/min",
      .help = "flow through all inlets"},
     {.name = "viscosity",
      SETS(NUMBER, Growing, params.viscosity_cp),
-     GIVEN(Growing, given.viscosity),
+     GIVEN(Growing, given[META_VISCOSITY]),
      .range = &meta_rows[META_VISCOSITY].range,
      .group = GROUP_BLOOD,
      .unit = "cP",
      .help = "of the blood"},
     {.name = "viscosity-law",
      SETS(CHOICE, Growing, params.viscosity_law),
-     GIVEN(Growing, given.viscosity_law),
+     GIVEN(Growing, given[META_VISCOSITY_LAW]),
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
      .help = "the same in all vessels, or by their diameter, Pries 1994"},
     {.name = "hematocrit",
      SETS(NUMBER, Growing, params.hematocrit),
-     GIVEN(Growing, given.hematocrit),
+     GIVEN(Growing, given[META_HEMATOCRIT]),
      .range = &meta_rows[META_HEMATOCRIT].range,
      .group = GROUP_BLOOD,
      .argument = "H",
      .help = "for pries"},
     {.name = "plasma-viscosity",
      SETS(NUMBER, Growing, params.plasma_viscosity_cp),
-     GIVEN(Growing, given.plasma_viscosity),
+     GIVEN(Growing, given[META_PLASMA_VISCOSITY]),
      .range = &meta_rows[META_PLASMA_VISCOSITY].range,
      .group = GROUP_BLOOD,
      .unit = "cP",
      .help = "for pries"},
     {.name = "terminal-flow",
      SETS(CHOICE, Growing, params.terminal_flow),
-     GIVEN(Growing, given.terminal_flow),
+     GIVEN(Growing, given[META_TERMINAL_FLOW]),
      .choices = terminal_flow_names,
      .group = GROUP_BLOOD,
      .help = "the same through all terminals, or as large as the tissue nearest to each"},
@@ -129,33 +129,13 @@ void growing_set_defaults(Growing *growing)
     growing->params = grow_defaults();
 }
 
-static void take(double *value, bool given, const TreeMeta *meta, MetaKey key)
-{
-    if (!given && meta->known[key])
-        *value = meta->number[key];
-}
-
 /* What is known of the tree and no option says. */
 static Status take_meta(Growing *growing, Err *err)
 {
-    const TreeMeta *meta = &growing->from.meta;
-    GrowParams *params = &growing->params;
-    take(&params->gamma, growing->given.gamma, meta, META_GAMMA);
-    take(&params->lambda, growing->given.lambda, meta, META_LAMBDA);
-    take(&params->p_perf_mmhg, growing->given.p_perf, meta, META_P_PERF);
-    take(&params->p_term_mmhg, growing->given.p_term, meta, META_P_TERM);
-    take(&params->q_perf_ml_min, growing->given.q_perf, meta, META_Q_PERF);
-    take(&params->viscosity_cp, growing->given.viscosity, meta, META_VISCOSITY);
-    take(&params->hematocrit, growing->given.hematocrit, meta, META_HEMATOCRIT);
-    take(&params->plasma_viscosity_cp, growing->given.plasma_viscosity, meta,
-         META_PLASMA_VISCOSITY);
-    if (!growing->given.viscosity_law && !growing->given.viscosity)
-        params->viscosity_law = (ViscosityLaw)meta_number(meta, META_VISCOSITY_LAW);
-    if (growing->given.terminal_flow)
-        return STATUS_OK;
-    if (meta->known[META_TERMINAL_FLOW])
-        params->terminal_flow = (TerminalFlow)meta->number[META_TERMINAL_FLOW];
-    else if (growing->from.flow_share)
+    const Tree *from = &growing->from;
+    grow_take(&growing->params, &from->meta, growing->given);
+    if (from->flow_share && !from->meta.known[META_TERMINAL_FLOW] &&
+        !growing->given[META_TERMINAL_FLOW])
         return err_set(
             err, STATUS_USAGE,
             "--from: the tree has flow shares, and does not say after what new terminals "

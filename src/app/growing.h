@@ -12,10 +12,7 @@ typedef struct Growing {
     const char *domain_spec, *from_path; /* NULL: not given */
     VectorList inlet;
     NumberList inlet_share;
-    struct {
-        bool gamma, lambda, p_perf, p_term, q_perf, viscosity;
-        bool viscosity_law, hematocrit, plasma_viscosity, terminal_flow;
-    } given;
+    bool given[META_KEYS]; /* which options of these keys were */
 } Growing;
 
 /* Of a zeroed Growing: grow_defaults. */

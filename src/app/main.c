@@ -1,7 +1,6 @@
 #include "app/commands.h"
 
 #include "app/help.h"
-#include "app/suggest.h"
 #include <stdio.h>
 #include <string.h>
 

@@ -8,7 +8,6 @@
 #include "app/options.h"
 
 #include "app/commands.h"
-#include "app/suggest.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>

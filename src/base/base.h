@@ -14,6 +14,7 @@
 #include "base/slab.h"      // IWYU pragma: export
 #include "base/sort.h"      // IWYU pragma: export
 #include "base/status.h"    // IWYU pragma: export
+#include "base/suggest.h"   // IWYU pragma: export
 #include "base/text.h"      // IWYU pragma: export
 #include "base/threads.h"   // IWYU pragma: export
 #include "base/units.h"     // IWYU pragma: export

@@ -57,6 +57,16 @@ const char *derive_field_unit(size_t i)
     return i < N_RULES ? rules[i].unit : NULL;
 }
 
+static void suggest_field(const Tree *tree, const char *name, Err *err)
+{
+    Suggestion suggestion = suggestion_for(name, strlen(name));
+    for (size_t i = 0; i < N_RULES; i++)
+        suggestion_offer(&suggestion, rules[i].name);
+    for (size_t k = 0; k < tree->n_columns; k++)
+        suggestion_offer(&suggestion, tree->column[k].name);
+    suggestion_add(&suggestion, "", err);
+}
+
 static Status unknown_field(const Tree *tree, const char *name, Err *err)
 {
     Text known = TEXT_INIT;
@@ -69,6 +79,8 @@ static Status unknown_field(const Tree *tree, const char *name, Err *err)
         status = err_set(err, STATUS_USAGE, "there is no field '%.40s'; known are %s", name,
                          text_chars(&known));
     text_release(&known);
+    if (status == STATUS_USAGE)
+        suggest_field(tree, name, err);
     return status;
 }
 

@@ -75,6 +75,10 @@ typedef struct GrowReport {
 
 /* Sets in *meta what the parameters say of a tree grown by them. */
 void grow_describe(const GrowParams *params, TreeMeta *meta);
+/* The other way round: sets the parameters that the tree knows and that are not given. Where the
+ * tree says no law of viscosity, or of the terminals' flow, it is the constant one, or the equal
+ * one. */
+void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS]);
 
 /* STATUS_USAGE with a sentence that names the option at fault. */
 MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err);

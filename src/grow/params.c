@@ -1,5 +1,6 @@
 #include "grow/continue_tree.h"
 #include "grow/grow.h"
+#include <stddef.h>
 
 GrowParams grow_defaults(void)
 {
@@ -17,23 +18,45 @@ GrowParams grow_defaults(void)
                         .toss = GROW_TOSS_SEGMENT};
 }
 
+/* Where the numbers of a tree are among the parameters. */
+static const struct {
+    MetaKey key;
+    size_t offset;
+} numbers[] = {{META_GAMMA, offsetof(GrowParams, gamma)},
+               {META_LAMBDA, offsetof(GrowParams, lambda)},
+               {META_P_PERF, offsetof(GrowParams, p_perf_mmhg)},
+               {META_P_TERM, offsetof(GrowParams, p_term_mmhg)},
+               {META_Q_PERF, offsetof(GrowParams, q_perf_ml_min)},
+               {META_VISCOSITY, offsetof(GrowParams, viscosity_cp)},
+               {META_HEMATOCRIT, offsetof(GrowParams, hematocrit)},
+               {META_PLASMA_VISCOSITY, offsetof(GrowParams, plasma_viscosity_cp)}};
+
+enum { N_NUMBERS = sizeof numbers / sizeof *numbers };
+
 void grow_describe(const GrowParams *params, TreeMeta *meta)
 {
+    bool constant = params->viscosity_law == VISCOSITY_CONSTANT;
     meta_set_seed(meta, params->seed);
-    meta_set_number(meta, META_GAMMA, params->gamma);
-    meta_set_number(meta, META_LAMBDA, params->lambda);
-    meta_set_number(meta, META_P_PERF, params->p_perf_mmhg);
-    meta_set_number(meta, META_P_TERM, params->p_term_mmhg);
-    meta_set_number(meta, META_Q_PERF, params->q_perf_ml_min);
-    if (params->viscosity_law == VISCOSITY_CONSTANT) {
-        meta_set_number(meta, META_VISCOSITY, params->viscosity_cp);
-    } else {
-        meta_set_number(meta, META_VISCOSITY_LAW, params->viscosity_law);
-        meta_set_number(meta, META_HEMATOCRIT, params->hematocrit);
-        meta_set_number(meta, META_PLASMA_VISCOSITY, params->plasma_viscosity_cp);
-    }
-    if (params->terminal_flow != TERMINAL_FLOW_EQUAL)
-        meta_set_number(meta, META_TERMINAL_FLOW, params->terminal_flow);
+    for (size_t i = 0; i < N_NUMBERS; i++)
+        meta_set_number(meta, numbers[i].key,
+                        *(const double *)((const char *)params + numbers[i].offset));
+    meta_set_number(meta, META_VISCOSITY_LAW, params->viscosity_law);
+    meta_set_number(meta, META_TERMINAL_FLOW, params->terminal_flow);
+    meta->known[META_VISCOSITY] = constant;
+    meta->known[META_VISCOSITY_LAW] = meta->known[META_HEMATOCRIT] =
+        meta->known[META_PLASMA_VISCOSITY] = !constant;
+    meta->known[META_TERMINAL_FLOW] = params->terminal_flow != TERMINAL_FLOW_EQUAL;
+}
+
+void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS])
+{
+    for (size_t i = 0; i < N_NUMBERS; i++)
+        if (meta->known[numbers[i].key] && !given[numbers[i].key])
+            *(double *)((char *)params + numbers[i].offset) = meta->number[numbers[i].key];
+    if (!given[META_VISCOSITY_LAW] && !given[META_VISCOSITY])
+        params->viscosity_law = (ViscosityLaw)meta_number(meta, META_VISCOSITY_LAW);
+    if (!given[META_TERMINAL_FLOW])
+        params->terminal_flow = (TerminalFlow)meta_number(meta, META_TERMINAL_FLOW);
 }
 
 static Status check_physics(const GrowParams *params, Err *err)

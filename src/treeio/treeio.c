@@ -13,6 +13,7 @@ enum { MAX_EXTENSIONS = 3 };
 typedef struct Format {
     const char *name, *description;
     const char *extensions[MAX_EXTENSIONS + 1]; /* without the '.'; ends with NULL */
+    bool no_columns;                            /* there is no place for a tree's columns */
     FileForm form;
     TreeDetect *detect; /* NULL: nothing tells */
     TreeRead *read;
@@ -24,6 +25,7 @@ typedef struct Format {
 
 static const Format formats[] = {
     {.name = "SWC",
+     .no_columns = true,
      .description = "id type x y z radius parent, a node a line, in mm",
      .extensions = {"swc"},
      .form = {.name = "an SWC file", .most_bytes = MOST_BYTES, .is_text = true},
@@ -91,6 +93,13 @@ const char *tree_format_description(size_t i)
     return i < N_FORMATS ? formats[i].description : NULL;
 }
 
+bool tree_format_has_columns(const char *path)
+{
+    size_t count;
+    const Format *format = find_format(path, NULL, &count);
+    return format && !format->no_columns;
+}
+
 bool tree_format_known(const char *path)
 {
     size_t count;
@@ -107,8 +116,20 @@ void tree_format_list(Text *text)
                     formats[i].extensions[0]);
 }
 
-static Status unknown_format(const char *path, Err *err)
+static void suggest_extension(const char *path, Err *err)
 {
+    const char *given = file_extension(path);
+    Suggestion suggestion = suggestion_for(given, strlen(given));
+    for (size_t i = 0; i < N_FORMATS; i++)
+        for (const char *const *extension = formats[i].extensions; *extension; extension++)
+            suggestion_offer(&suggestion, *extension);
+    suggestion_add(&suggestion, ".", err);
+}
+
+Status tree_format_check(const char *path, Err *err)
+{
+    if (tree_format_known(path))
+        return STATUS_OK;
     Text known = TEXT_INIT;
     tree_format_list(&known);
     Status status = text_check(&known, err);
@@ -118,6 +139,8 @@ static Status unknown_format(const char *path, Err *err)
                          "input or output",
                          path, text_chars(&known));
     text_release(&known);
+    if (status == STATUS_USAGE)
+        suggest_extension(path, err);
     return status;
 }
 
@@ -125,9 +148,8 @@ Status tree_read(Tree *tree, const char *path, Err *err)
 {
     size_t count, size = 0;
     char *bytes = NULL;
+    TRY(tree_format_check(path, err));
     const Format *format = find_format(path, NULL, &count);
-    if (!format)
-        return unknown_format(path, err);
     TRY(file_read(path, count == 1 ? &format->form : &any_form, &bytes, &size, err));
     format = find_format(path, bytes, &count);
     TreeBuilder builder = {.name = is_standard(path) ? "standard input" : path};
@@ -142,13 +164,11 @@ Status tree_read(Tree *tree, const char *path, Err *err)
 Status tree_write(const Tree *tree, const char *path, Err *err)
 {
     size_t count;
-    const Format *format = find_format(path, NULL, &count);
     OutFile file;
-    if (!format)
-        return unknown_format(path, err);
+    TRY(tree_format_check(path, err));
     TRY(tree_check(tree, err));
     TRY(outfile_open(&file, path, err));
-    Status status = format->write(tree, file.stream, err);
+    Status status = find_format(path, NULL, &count)->write(tree, file.stream, err);
     if (status == STATUS_OK)
         return outfile_commit(&file, err);
     outfile_discard(&file);

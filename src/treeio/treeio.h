@@ -13,6 +13,10 @@
 
 /* Whether a path has the extension of a tree format, in capitals or not, or is "-". */
 bool tree_format_known(const char *path);
+/* STATUS_USAGE, saying which there are, unless tree_format_known. */
+MUST_CHECK Status tree_format_check(const char *path, Err *err);
+/* Whether the format of such a path has a place for a tree's columns. */
+bool tree_format_has_columns(const char *path);
 /* Name ("SWC"), chief extension ("swc") and description of format `i`, from 0 on; NULL after the
  * last. The first is written to standard output. */
 const char *tree_format_name(size_t i);
@@ -31,8 +35,8 @@ void tree_format_list(Text *text);
 MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
 
 /* Writes what is known of the tree, then its nodes in array order; every number reads back to the
- * same double. SWC has no place for columns. STATUS_USAGE for an unknown extension, STATUS_INPUT
- * for a tree that tree_check refuses. */
+ * same double. Columns are left out where tree_format_has_columns says so. STATUS_USAGE for an
+ * unknown extension, STATUS_INPUT for a tree that tree_check refuses. */
 MUST_CHECK Status tree_write(const Tree *tree, const char *path, Err *err);
 
 #endif

@@ -117,6 +117,25 @@ test_a_column_of_a_csv_colours_its_segments() {
     run corcast render tree.csv --color-by weight --size 40x30 -o weight.ppm
     expect_status 2
     expect_sentence "weight.*branch, age"
+    run corcast render tree.csv --color-by aeg --size 40x30 -o weight.ppm
+    expect_sentence "did you mean age?"
+    run_ok corcast convert tree.csv tree.swc
+    grep -q "^corcast convert: tree.swc has no place for the columns age$" stderr || fail "got $(cat stderr)"
+    run_ok corcast convert tree.csv other.csv
+    [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
+}
+
+test_the_formats_of_trees_are_listed_and_hinted_at() {
+    run_ok corcast formats
+    expect_stdout "^\.swc	SWC	"
+    expect_stdout "^\.csv	CSV	"
+    local command
+    for command in "info tree.scw" "grow --terminals 3 -o tree.scw" "convert tree.scw tree.swc"; do
+        # shellcheck disable=SC2086
+        run corcast $command
+        expect_status 2
+        expect_sentence "tree\.scw.*\.swc or \.csv.*did you mean \.swc?"
+    done
 }
 
 test_an_extension_that_is_no_tree_is_refused() {

@@ -1,8 +1,9 @@
 /* What somebody may have meant by a word that is no name. */
-#ifndef CORCAST_APP_SUGGEST_H
-#define CORCAST_APP_SUGGEST_H
+#ifndef CORCAST_BASE_SUGGEST_H
+#define CORCAST_BASE_SUGGEST_H
 
-#include "base/base.h"
+#include "base/status.h"
+#include <stddef.h>
 
 typedef struct Suggestion {
     const char *word;

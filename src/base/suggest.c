@@ -1,8 +1,9 @@
 /* Optimal string alignment: the edit distance in which two neighbours may change places, by three
  * rows of its table. */
-#include "app/suggest.h"
+#include "base/suggest.h"
 
 #include <ctype.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
