@@ -82,6 +82,32 @@ static void text_grows_over_any_length(void **state)
     text_release(&text);
 }
 
+static void a_text_with_a_stream_holds_only_what_is_not_written_yet(void **state)
+{
+    (void)state;
+    FILE *stream = tmpfile(), *full = fopen("/dev/full", "w");
+    assert_non_null(stream);
+    assert_non_null(full);
+    Text text = TEXT_TO(stream), lost = TEXT_TO(full);
+    size_t length = 0, largest = 0;
+    for (int i = 0; i < 50000; i++) {
+        length += (size_t)snprintf(NULL, 0, "%d,", i);
+        text_printf(&text, "%d,", i);
+        text_printf(&lost, "%d,", i);
+        largest = text.capacity > largest ? text.capacity : largest;
+    }
+    assert_int_equal(text_flush(&text, NULL), STATUS_OK);
+    assert_int_equal(ftell(stream), length);
+    assert_true(largest < 200000 && length > 280000);
+    Err err;
+    assert_int_equal(text_flush(&lost, &err), STATUS_IO);
+    assert_string_equal(err.text, "writing failed: No space left on device");
+    text_release(&text);
+    text_release(&lost);
+    fclose(stream);
+    fclose(full);
+}
+
 static void what_is_made_of_a_text_that_failed_fails_too(void **state)
 {
     (void)state;
@@ -422,6 +448,7 @@ int main(void)
         cmocka_unit_test(a_number_is_as_short_as_it_can_be),
         cmocka_unit_test(text_that_is_no_number_is_refused),
         cmocka_unit_test(text_grows_over_any_length),
+        cmocka_unit_test(a_text_with_a_stream_holds_only_what_is_not_written_yet),
         cmocka_unit_test(what_is_made_of_a_text_that_failed_fails_too),
         cmocka_unit_test(bytes_that_are_not_utf8_become_replacement_characters),
         cmocka_unit_test(json_made_of_nothing_is_nothing),

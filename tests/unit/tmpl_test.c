@@ -80,6 +80,53 @@ static void refuses_a_dollar_that_starts_nothing(void **state)
                 "'$'");
 }
 
+static Status put_count(Text *out, void *context, Err *err)
+{
+    int *count = context;
+    text_printf(out, "part %d", ++*count);
+    return *count < 3 ? STATUS_OK : err_set(err, STATUS_IO, "the third fails");
+}
+
+static Status stream(const char *source, int *count, Text *out, Err *err)
+{
+    const TmplValue values[] = {{"a", "value"}};
+    const TmplPart parts[] = {{"p", put_count, count}};
+    Tmpl template;
+    assert_int_equal(file_write(path, source, strlen(source), err), STATUS_OK);
+    assert_int_equal(tmpl_load(&template, path, err), STATUS_OK);
+    Status status = tmpl_stream(&template, values, 1, parts, 1, out, err);
+    tmpl_release(&template);
+    unlink(path);
+    return status;
+}
+
+static void parts_are_made_when_the_template_comes_to_them(void **state)
+{
+    (void)state;
+    Text out = TEXT_INIT;
+    Err err = {0};
+    int count = 0;
+    assert_int_equal(stream("${p} ${a} ${p}", &count, &out, &err), STATUS_OK);
+    assert_string_equal(out.chars, "part 1 value part 2");
+    assert_int_equal(stream("${a}, ${p}", &count, &out, &err), STATUS_IO);
+    assert_string_equal(err.text, "the third fails");
+    text_release(&out);
+}
+
+/* A fault in the template is found before a part is made. */
+static void of_a_template_with_a_fault_no_part_is_made(void **state)
+{
+    (void)state;
+    Text out = TEXT_INIT;
+    Err err = {0};
+    int count = 0;
+    assert_int_equal(stream("${p} ${a} ${b}", &count, &out, &err), STATUS_INPUT);
+    assert_int_equal(stream("${a}", &count, &out, &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "never uses ${p}"));
+    assert_int_equal(count, 0);
+    assert_null(out.chars);
+}
+
 static void says_when_the_template_is_missing(void **state)
 {
     (void)state;
@@ -98,6 +145,8 @@ int main(void)
         cmocka_unit_test(names_the_line_of_a_name_without_a_value),
         cmocka_unit_test(names_a_value_the_template_never_uses),
         cmocka_unit_test(refuses_a_dollar_that_starts_nothing),
+        cmocka_unit_test(parts_are_made_when_the_template_comes_to_them),
+        cmocka_unit_test(of_a_template_with_a_fault_no_part_is_made),
         cmocka_unit_test(says_when_the_template_is_missing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
