@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# verify with the real POV-Ray, on small pictures. Beside the verdict of verify itself, the 8-bit
-# pictures are decoded by netpbm and counted here, so that an error in our comparison shows.
+# verify with the real POV-Ray, on small pictures; matrix_test.sh has models, projections, shadows and antialiasing.
+# Beside the verdict of verify itself, the 8-bit pictures are decoded by netpbm and counted here, so that an error of our
+# own comparison shows.
 . "$(dirname "$0")/../lib.sh"
 
 command -v "${CORCAST_POVRAY:-povray}" >/dev/null || {
@@ -37,31 +38,6 @@ agrees() {
         expect_json report/report.json '.surface.verdict == "agree" and .surface.common_pixels > 100'
 }
 
-test_cylinders_in_the_plane_agree() {
-    tree_2d
-    agrees cylinders
-}
-
-test_rounded_in_the_plane_agree() {
-    tree_2d
-    agrees rounded
-}
-
-test_joined_in_the_plane_agree() {
-    tree_2d
-    agrees joined
-}
-
-test_joined_in_perspective_with_shadows_agree() {
-    tree_3d
-    agrees joined --projection perspective --view iso --shadows on
-}
-
-test_antialiased_joined_agree() {
-    tree_3d 30
-    agrees joined --antialias 3
-}
-
 test_joined_trees_of_least_length_agree() {
     run_ok corcast grow --terminals 150 --seed 3 --lambda 0 -o tree.swc
     agrees joined --view iso --shadows on
@@ -74,79 +50,9 @@ test_joints_seen_close_up_agree() {
     agrees joined --projection perspective --location 12,25,9 --look-at 1,16,2 --angle 30 --shadows on
 }
 
-test_isosurface_in_the_plane_agrees() {
-    tree_2d
-    agrees isosurface
-}
-
-test_cylinders_in_perspective_agree() {
-    tree_3d
-    agrees cylinders --projection perspective --view iso
-}
-
-test_rounded_in_perspective_agree() {
-    tree_3d
-    agrees rounded --projection perspective --view left
-}
-
-test_isosurface_in_perspective_agrees() {
-    tree_3d 30
-    agrees isosurface --projection perspective --view top
-}
-
-test_cylinders_with_shadows_agree() {
-    tree_3d
-    agrees cylinders --shadows on
-}
-
-test_rounded_with_shadows_in_perspective_agree() {
-    tree_3d
-    agrees rounded --shadows on --projection perspective
-}
-
-test_antialiased_cylinders_agree() {
-    tree_2d
-    agrees cylinders --antialias 3
-}
-
-test_antialiased_rounded_with_shadows_agree() {
-    tree_3d
-    agrees rounded --antialias 3 --shadows on
-}
-
-test_antialiased_isosurface_agrees() {
-    tree_2d 20
-    agrees isosurface --antialias 3
-}
-
-test_isosurface_with_shadows_agrees() {
-    tree_2d 100
-    agrees isosurface --shadows on
-}
-
-test_antialiased_isosurface_with_shadows_in_perspective_agrees() {
-    tree_3d 60
-    agrees isosurface --antialias 3 --shadows on --projection perspective --view iso
-}
-
 test_isosurface_with_an_exact_erf_agrees() {
     tree_3d 30
     agrees isosurface --erf exact --shadows on
-}
-
-test_blobs_in_the_plane_agree() {
-    tree_2d
-    agrees blob
-}
-
-test_blobs_in_perspective_with_shadows_agree() {
-    tree_3d
-    agrees blob --projection perspective --view iso --shadows on
-}
-
-test_antialiased_blobs_agree() {
-    tree_3d 30
-    agrees blob --antialias 3 --shadows on
 }
 
 # More segments than fit into one of the cells that the scene is cut into, and some shorter than their radius.
