@@ -135,7 +135,7 @@ END
 
 test_the_numbers_of_comparing_are_those_of_the_source() {
     agree METHODS.md <<'END'
-one side over 1.5 times as bright @ walk.c @ sum_a > 1.5 * sum_b || sum_b > 1.5 * sum_a
+one side over 1.5 times as bright @ pixel_counts.c @ sum_a > 1.5 * sum_b || sum_b > 1.5 * sum_a
 moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause.c @ REACH = 48
 moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause.c @ after > before / 50
 49 of 50 codes that are off by more than a level @ cause.c @ 50 * light->misfits <= light->beyond

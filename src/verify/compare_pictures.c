@@ -1,11 +1,9 @@
-/* Two pictures: what a walk over them counted becomes measures and a verdict. */
+/* Two pictures: what a counting over them counted becomes measures and a verdict. */
+#include "verify/pixel_counts.h"
 #include "verify/result.h"
-#include "verify/walk.h"
 
 #include <math.h>
 #include <string.h>
-
-static const double px_per_edge = 0.78539816339744831; /* pi / 4 */
 
 static void take_color(const Sums *sums, double code_levels, int channels, CompareResult *result)
 {
@@ -45,7 +43,7 @@ static void take_mask(const Sums *sums, double code_levels, CompareResult *resul
     result->edge_mismatch_fraction =
         sums->band ? (double)sums->band_differs / (double)sums->band : 0;
     double moved = (double)sums->extra - (double)sums->missing;
-    result->silhouette_px = sums->silhouette ? moved / (px_per_edge * (double)sums->silhouette) : 0;
+    result->silhouette_px = sums->silhouette ? moved / (PX_PER_EDGE * (double)sums->silhouette) : 0;
 }
 
 /* b = gain a + offset by least squares: with d = b - a, gain - 1 = cov(a, d) / var(a). */
@@ -72,40 +70,41 @@ static Status check_views(const Rendering *a, const Rendering *b, Err *err)
     return labels_check_ids(in_a->width, in_a->height, a->ids, b->ids, err);
 }
 
-/* What the sums of a walk say. */
-static Status take_walk(const Walk *walk, CompareResult *result, Ledger *ledger, Err *err)
+/* What the sums say. */
+static Status take_counts(const Counting *counting, CompareResult *result, Ledger *ledger, Err *err)
 {
-    double code_levels = walk->a->picture->bits == 8 ? 1 : 1 / 257.0;
-    int channels = walk->a->picture->channels;
-    take_color(walk->sums, code_levels, channels, result);
-    if (walk->labels->source == LABELS_UNKNOWN)
+    double code_levels = counting->a->picture->bits == 8 ? 1 : 1 / 257.0;
+    int channels = counting->a->picture->channels;
+    take_color(counting->sums, code_levels, channels, result);
+    if (counting->labels->source == LABELS_UNKNOWN)
         return STATUS_OK;
-    take_mask(walk->sums, code_levels, result);
-    if (walk->common_only)
+    take_mask(counting->sums, code_levels, result);
+    if (counting->common_only)
         result->judged_pixels = result->common_pixels;
     if (result->missing_pixels + result->extra_pixels > 0)
-        TRY(largest_region(walk->coverage, result->width, result->height, &result->largest_region,
-                           &result->largest_region_at, err));
-    if (!walk->index)
+        TRY(largest_region(counting->coverage, result->width, result->height,
+                           &result->largest_region, &result->largest_region_at, err));
+    if (!counting->index)
         return STATUS_OK;
-    take_regression(walk->sums, code_levels, result);
-    TRY(ledger_from_accounts(ledger, walk->index, walk->accounts, channels, code_levels, err));
+    take_regression(counting->sums, code_levels, result);
+    TRY(ledger_from_sums(ledger, counting->index, counting->segments, channels, code_levels, err));
     ledger_summarise(ledger, result);
     return STATUS_OK;
 }
 
-static Walk start_walk(const Rendering *a, const Rendering *b, const Labels *labels,
-                       const Tolerance *tolerance)
+static Counting start_counting(const Rendering *a, const Rendering *b, const Labels *labels,
+                               const Tolerance *tolerance)
 {
     double code_levels = a->picture->bits == 8 ? 1 : 257;
-    return (Walk){.a = a,
-                  .b = b,
-                  .labels = labels,
-                  .beyond = (int)floor(tolerance->color_levels * code_levels + 1e-9),
-                  .common_only = tolerance->color_common_only && labels->source != LABELS_UNKNOWN,
-                  .settled = tolerance->settled,
-                  .geometry_mm = fmin(tolerance->depth_max_mm, tolerance->depth_p99_mm),
-                  .geometry_deg = fmin(tolerance->normal_max_deg, 1)};
+    return (Counting){.a = a,
+                      .b = b,
+                      .labels = labels,
+                      .beyond = (int)floor(tolerance->color_levels * code_levels + 1e-9),
+                      .common_only =
+                          tolerance->color_common_only && labels->source != LABELS_UNKNOWN,
+                      .settled = tolerance->settled,
+                      .geometry_mm = fmin(tolerance->depth_max_mm, tolerance->depth_p99_mm),
+                      .geometry_deg = fmin(tolerance->normal_max_deg, 1)};
 }
 
 static Labels labels_of(const Rendering *a, const Rendering *b)
@@ -120,12 +119,12 @@ Status class_picture(Picture *out, const Rendering *a, const Rendering *b,
     Picture made;
     TRY(check_views(a, b, err));
     Labels labels = labels_of(a, b);
-    Walk walk = start_walk(a, b, &labels, tolerance);
+    Counting counting = start_counting(a, b, &labels, tolerance);
     TRY(picture_init(&made, labels.width, labels.height, 1, 8, err));
     memset(made.codes8, PIXEL_IDENTICAL, (size_t)labels.width * (size_t)labels.height);
-    walk.classes = made.codes8;
-    Status status = walk_all(&walk, err);
-    walk_release(&walk);
+    counting.classes = made.codes8;
+    Status status = count_pixels(&counting, err);
+    counting_release(&counting);
     if (status == STATUS_OK)
         *out = made;
     else
@@ -144,13 +143,13 @@ Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance 
     Labels labels = labels_of(a, b);
     SegmentIndex index = {0};
     Ledger of_segments = {0};
-    Walk walk = start_walk(a, b, &labels, tolerance);
-    walk.index = a->ids ? &index : NULL;
+    Counting counting = start_counting(a, b, &labels, tolerance);
+    counting.index = a->ids ? &index : NULL;
     Status status = STATUS_OK;
-    if (walk.index)
+    if (counting.index)
         TRY_GOTO(segment_index_init(&index, a->ids, b->ids, err));
-    TRY_GOTO(walk_all(&walk, err));
-    TRY_GOTO(take_walk(&walk, &made, &of_segments, err));
+    TRY_GOTO(count_pixels(&counting, err));
+    TRY_GOTO(take_counts(&counting, &made, &of_segments, err));
     if (!isnan(tolerance->pixelmatch))
         made.pixelmatch_pixels =
             (double)pixelmatch_count(picture, b->picture, tolerance->pixelmatch);
@@ -163,7 +162,7 @@ Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance 
 done:
     ledger_release(&of_segments);
     segment_index_release(&index);
-    walk_release(&walk);
+    counting_release(&counting);
     return status;
 }
 

@@ -67,7 +67,7 @@ static void add_coverage_rules(CompareResult *result)
                              : "shift of the outline of what is not background");
 }
 
-/* What only the account of every segment and the straight line through all colours tell. */
+/* Faults of one segment, and of all colours alike, that limits of single pixels let pass. */
 static void add_segment_rules(CompareResult *result)
 {
     if (!result->has_ids)

@@ -4,6 +4,10 @@
 
 #include "verify/verify.h"
 
+/* The length of an outline, in pixels, for each pixel side on it: pi / 4, right on average over all
+ * directions [Cauchy-Crofton]. */
+#define PX_PER_EDGE 0.78539816339744831
+
 typedef enum LabelSource {
     LABELS_UNKNOWN,
     LABELS_IDS,        /* the ids of id planes */

@@ -1,8 +1,6 @@
-/* Rows are booked by runs of pixels that show one segment in A and one in B; a run that is equal
+/* Rows are added by runs of pixels that show one segment in A and one in B; a run that is equal
  * in both pictures adds to the sum of squares alone.
- *
- * An outline's length is the number of pixel sides on it times pi / 4, which is right on average
- * over directions. */
+ */
 #include "verify/ledger.h"
 
 #include <math.h>
@@ -10,8 +8,6 @@
 #include <string.h>
 
 enum { ID_LIMIT = 1 << 24, LEVELS_MIN_PIXELS = 64, OUTLINE_MIN_PX = 8, MISSING_MIN_PIXELS = 3 };
-
-static const double px_per_edge = 0.78539816339744831;
 
 Status segment_index_init(SegmentIndex *index, const IdPlane *a, const IdPlane *b, Err *err)
 {
@@ -57,63 +53,65 @@ void segment_index_release(SegmentIndex *index)
     *index = (SegmentIndex){0};
 }
 
-void accounts_clear(Account *accounts, size_t n)
+void segment_sums_clear(SegmentSums *segments, size_t n)
 {
     for (size_t i = 0; i < n; i++)
-        accounts[i] =
-            (Account){.left = IMAGE_MAX_SIDE, .top = IMAGE_MAX_SIDE, .right = -1, .bottom = -1};
+        segments[i] =
+            (SegmentSums){.left = IMAGE_MAX_SIDE, .top = IMAGE_MAX_SIDE, .right = -1, .bottom = -1};
 }
 
-static void widen(Account *account, int left, int right, int y)
+static void widen(SegmentSums *segment, int left, int right, int y)
 {
-    account->left = left < account->left ? left : account->left;
-    account->right = right > account->right ? right : account->right;
-    account->top = y < account->top ? y : account->top;
-    account->bottom = y > account->bottom ? y : account->bottom;
+    segment->left = left < segment->left ? left : segment->left;
+    segment->right = right > segment->right ? right : segment->right;
+    segment->top = y < segment->top ? y : segment->top;
+    segment->bottom = y > segment->bottom ? y : segment->bottom;
 }
 
 /* The sides of one image's segments that lie between row y and the next, and along row y. */
-static void book_edges(Account *accounts, const SegmentIndex *index, const uint32_t *row,
-                       const uint32_t *below, int side, int width)
+static void add_edges(SegmentSums *segments, const SegmentIndex *index, const uint32_t *row,
+                      const uint32_t *below, int side, int width)
 {
     for (int x = 0; x < width; x++) {
         if (row[x] != below[x]) {
-            accounts[index->of_id[row[x]]].edges[side]++;
-            accounts[index->of_id[below[x]]].edges[side]++;
+            segments[index->of_id[row[x]]].edges[side]++;
+            segments[index->of_id[below[x]]].edges[side]++;
         }
         if (x > 0 && row[x] != row[x - 1]) {
-            accounts[index->of_id[row[x]]].edges[side]++;
-            accounts[index->of_id[row[x - 1]]].edges[side]++;
+            segments[index->of_id[row[x]]].edges[side]++;
+            segments[index->of_id[row[x - 1]]].edges[side]++;
         }
     }
 }
 
-static void book_squares(Account *account, const uint16_t *a, size_t n)
+static void add_squares(SegmentSums *segment, const uint16_t *a, size_t n)
 {
     uint64_t squares = 0;
     for (size_t i = 0; i < n; i++)
         squares += (uint32_t)a[i] * (uint32_t)a[i];
-    account->squares += squares;
+    segment->squares += squares;
 }
 
 /* The pixels that show one segment in both pictures. */
-static void book_common(Account *account, const uint16_t *a, const uint16_t *b, int n, int channels)
+static void add_common(SegmentSums *segment, const uint16_t *a, const uint16_t *b, int n,
+                       int channels)
 {
     for (int x = 0; x < n; x++, a += channels, b += channels) {
         int largest = 0;
         for (int c = 0; c < channels; c++) {
             int difference = b[c] - a[c];
-            account->signed_codes[c] += difference;
-            account->products += (int64_t)a[c] * difference;
+            segment->signed_codes[c] += difference;
+            segment->products += (int64_t)a[c] * difference;
             largest = abs(difference) > largest ? abs(difference) : largest;
         }
-        account->differing += largest > 0;
-        account->max_code = largest > account->max_code ? largest : account->max_code;
+        segment->differing += largest > 0;
+        segment->max_code = largest > segment->max_code ? largest : segment->max_code;
     }
 }
 
-void accounts_book(Account *accounts, const SegmentIndex *index, const LabelWindow *window,
-                   const uint16_t *a, const uint16_t *b, int channels)
+void segment_sums_add_row(SegmentSums *segments, const SegmentIndex *index,
+                          const LabelWindow *window, const uint16_t *a, const uint16_t *b,
+                          int channels)
 {
     const uint32_t *in_a = window->rows[0][1], *in_b = window->rows[1][1];
     int width = window->labels->width;
@@ -121,7 +119,8 @@ void accounts_book(Account *accounts, const SegmentIndex *index, const LabelWind
         for (end = x + 1; end < width && in_a[end] == in_a[x] && in_b[end] == in_b[x];)
             end++;
         size_t start = (size_t)x * (size_t)channels, n = (size_t)(end - x) * (size_t)channels;
-        Account *of_a = &accounts[index->of_id[in_a[x]]], *of_b = &accounts[index->of_id[in_b[x]]];
+        SegmentSums *of_a = &segments[index->of_id[in_a[x]]],
+                    *of_b = &segments[index->of_id[in_b[x]]];
         of_a->area[0] += (uint64_t)(end - x);
         of_b->area[1] += (uint64_t)(end - x);
         widen(of_a, x, end - 1, window->y);
@@ -132,15 +131,15 @@ void accounts_book(Account *accounts, const SegmentIndex *index, const LabelWind
             continue;
         }
         of_a->common += (uint64_t)(end - x);
-        book_squares(of_a, a + start, n);
+        add_squares(of_a, a + start, n);
         if (a != b)
-            book_common(of_a, a + start, b + start, end - x, channels);
+            add_common(of_a, a + start, b + start, end - x, channels);
     }
-    book_edges(accounts, index, in_a, window->rows[0][2], 0, width);
-    book_edges(accounts, index, in_b, window->rows[1][2], 1, width);
+    add_edges(segments, index, in_a, window->rows[0][2], 0, width);
+    add_edges(segments, index, in_b, window->rows[1][2], 1, width);
 }
 
-void accounts_add(Account *to, const Account *from, size_t n)
+void segment_sums_add(SegmentSums *to, const SegmentSums *from, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         for (int side = 0; side < 2; side++) {
@@ -163,38 +162,39 @@ void accounts_add(Account *to, const Account *from, size_t n)
 
 /* -------------------------------------------------------------------------------------- ledger */
 
-static LedgerEntry make_entry(uint32_t id, const Account *account, int channels, double code_levels)
+static LedgerEntry make_entry(uint32_t id, const SegmentSums *segment, int channels,
+                              double code_levels)
 {
-    uint64_t edges = account->area[0] ? account->edges[0] : account->edges[1];
+    uint64_t edges = segment->area[0] ? segment->edges[0] : segment->edges[1];
     LedgerEntry entry = {.id = id,
-                         .area_a = account->area[0],
-                         .area_b = account->area[1],
-                         .common = account->common,
-                         .differing = account->differing,
-                         .outline_px = px_per_edge * (double)edges,
+                         .area_a = segment->area[0],
+                         .area_b = segment->area[1],
+                         .common = segment->common,
+                         .differing = segment->differing,
+                         .outline_px = PX_PER_EDGE * (double)edges,
                          .gain = (double)NAN,
-                         .max_levels = account->max_code * code_levels,
-                         .left = account->left,
-                         .top = account->top,
-                         .right = account->right,
-                         .bottom = account->bottom};
-    for (int c = 0; c < channels && account->common; c++)
+                         .max_levels = segment->max_code * code_levels,
+                         .left = segment->left,
+                         .top = segment->top,
+                         .right = segment->right,
+                         .bottom = segment->bottom};
+    for (int c = 0; c < channels && segment->common; c++)
         entry.signed_levels[c] =
-            (double)account->signed_codes[c] * code_levels / (double)account->common;
-    if (account->squares)
-        entry.gain = 1 + (double)account->products / (double)account->squares;
+            (double)segment->signed_codes[c] * code_levels / (double)segment->common;
+    if (segment->squares)
+        entry.gain = 1 + (double)segment->products / (double)segment->squares;
     if (edges)
         entry.moved_px = ((double)entry.area_b - (double)entry.area_a) / entry.outline_px;
     return entry;
 }
 
-Status ledger_from_accounts(Ledger *ledger, const SegmentIndex *index, const Account *accounts,
-                            int channels, double code_levels, Err *err)
+Status ledger_from_sums(Ledger *ledger, const SegmentIndex *index, const SegmentSums *segments,
+                        int channels, double code_levels, Err *err)
 {
     Ledger made = {.n = index->n - 1};
     TRY(mem_calloc(&made.entries, made.n, sizeof *made.entries, "entries of the ledger", err));
     for (size_t i = 0; i < made.n; i++)
-        made.entries[i] = make_entry(index->ids[i + 1], &accounts[i + 1], channels, code_levels);
+        made.entries[i] = make_entry(index->ids[i + 1], &segments[i + 1], channels, code_levels);
     *ledger = made;
     return STATUS_OK;
 }

@@ -1,12 +1,13 @@
-/* The account of each segment while two images are walked; private to the room verify. Everything
- * is kept in whole codes, so that accounts of parts of the images add up to the same in any
+/* Sums over the pixels of each segment, from which the ledger is made; private to the room verify.
+ * All are whole numbers of codes, so that the sums of parts of the images add up to the same in any
  * order. */
 #ifndef CORCAST_VERIFY_LEDGER_H
 #define CORCAST_VERIFY_LEDGER_H
 
 #include "verify/labels.h"
 
-typedef struct Account {
+/* Of one segment; A before B. */
+typedef struct SegmentSums {
     uint64_t area[2], edges[2]; /* pixels; sides of pixels that border on something else */
     uint64_t common, differing;
     int64_t signed_codes[3]; /* B - A over common pixels */
@@ -14,12 +15,12 @@ typedef struct Account {
     int64_t products;        /* ... a (b - a), all channels */
     int max_code;
     int left, top, right, bottom; /* right < left: empty */
-} Account;
+} SegmentSums;
 
-/* Which account a segment has. */
+/* Numbers the ids that occur in either plane. */
 typedef struct SegmentIndex {
-    uint32_t *of_id; /* owned; from id to account number */
-    uint32_t *ids;   /* owned; from account number to id, ascending; the first is 0 */
+    uint32_t *of_id; /* owned; from id to number */
+    uint32_t *ids;   /* owned; from number to id, ascending; the first is 0, the background */
     size_t n;
 } SegmentIndex;
 
@@ -27,20 +28,22 @@ MUST_CHECK Status segment_index_init(SegmentIndex *index, const IdPlane *a, cons
                                      Err *err);
 void segment_index_release(SegmentIndex *index);
 
-/* Accounts without pixels. */
-void accounts_clear(Account *accounts, size_t n);
-/* Books row y of a window over id planes; the codes of that row are `a` and `b`, which are the same
+/* Sums over no pixels. */
+void segment_sums_clear(SegmentSums *segments, size_t n);
+/* Adds row y of a window over id planes; the codes of that row are `a` and `b`, which are the same
  * pointer where the rows are equal. */
-void accounts_book(Account *accounts, const SegmentIndex *index, const LabelWindow *window,
-                   const uint16_t *a, const uint16_t *b, int channels);
+void segment_sums_add_row(SegmentSums *segments, const SegmentIndex *index,
+                          const LabelWindow *window, const uint16_t *a, const uint16_t *b,
+                          int channels);
 /* Adds `from` to `to`. */
-void accounts_add(Account *to, const Account *from, size_t n);
+void segment_sums_add(SegmentSums *to, const SegmentSums *from, size_t n);
 
-/* The ledger that the accounts make; a code is `code_levels` 8-bit levels. */
-MUST_CHECK Status ledger_from_accounts(Ledger *ledger, const SegmentIndex *index,
-                                       const Account *accounts, int channels, double code_levels,
-                                       Err *err);
-/* Fills in what the result says of segments. */
+/* Makes the ledger (owned) from the sums; a code is `code_levels` 8-bit levels. */
+MUST_CHECK Status ledger_from_sums(Ledger *ledger, const SegmentIndex *index,
+                                   const SegmentSums *segments, int channels, double code_levels,
+                                   Err *err);
+/* Fills in the measures of segments in the result: how many there are, those that only one image
+ * shows, the ones that differ most. */
 void ledger_summarise(const Ledger *ledger, CompareResult *result);
 
 #endif

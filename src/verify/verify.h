@@ -223,7 +223,7 @@ enum { BEYOND_COLOR = 1, BEYOND_SIGHT = 2 };
 unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
                       const Tolerance *tolerance);
 
-/* Compares two pictures, perception left out. `ledger` takes the account of all segments (owned),
+/* Compares two pictures, perception left out. `ledger` takes a row for each segment (owned),
  * is empty without ids, and may be NULL. STATUS_INPUT when sizes, channels or bits differ. */
 MUST_CHECK Status compare_pictures(const Rendering *a, const Rendering *b,
                                    const Tolerance *tolerance, CompareResult *result,

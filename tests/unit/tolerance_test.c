@@ -1,4 +1,4 @@
-/* Tiers, the account of segments, float colours, and tolerances as files. */
+/* Tiers, the ledger of segments, float colours, and tolerances as files. */
 #include "verify/verify.h"
 #include <math.h>
 #include <setjmp.h>

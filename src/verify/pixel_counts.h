@@ -1,6 +1,7 @@
-/* The one pass over two pictures in which everything is counted; private to the room verify. */
-#ifndef CORCAST_VERIFY_WALK_H
-#define CORCAST_VERIFY_WALK_H
+/* The one pass over two pictures in which all pixels are counted and all sums taken; private to the
+ * room verify. */
+#ifndef CORCAST_VERIFY_PIXEL_COUNTS_H
+#define CORCAST_VERIFY_PIXEL_COUNTS_H
 
 #include "verify/ledger.h"
 
@@ -19,7 +20,8 @@ typedef struct Sums {
     int64_t d, ad;       /* ... d = b - a, a d */
 } Sums;
 
-typedef struct Walk {
+/* What is counted, and where to. */
+typedef struct Counting {
     const Rendering *a, *b;
     const Labels *labels;
     const SegmentIndex *index; /* NULL without ids */
@@ -30,14 +32,15 @@ typedef struct Walk {
     uint8_t *classes;                 /* borrowed; takes the PixelClass of each pixel; or NULL */
     uint8_t *coverage;                /* owned; a Coverage for each pixel */
     Sums *sums;                       /* owned; one for each band */
-    Account *accounts;                /* owned; index->n for each worker */
+    SegmentSums *segments;            /* owned; index->n for each worker */
     uint8_t *scratch;                 /* owned; scratch_size for each worker */
     size_t scratch_size;
-} Walk;
+} Counting;
 
-/* Walks all rows; walk->sums[0] and walk->accounts hold the whole then. The rest of `walk` is
- * filled in by the caller. */
-MUST_CHECK Status walk_all(Walk *walk, Err *err);
-void walk_release(Walk *walk);
+/* Counts the pixels of all rows, by as many threads as there are; sums[0] and `segments` hold the
+ * whole then. The caller has filled in what is not owned, and releases with counting_release, also
+ * on failure. */
+MUST_CHECK Status count_pixels(Counting *counting, Err *err);
+void counting_release(Counting *counting);
 
 #endif

@@ -1,7 +1,7 @@
-/* Bands of rows are walked by threads; each gathers whole numbers into sums of its own, which are
+/* Bands of rows are counted by threads; each gathers whole numbers into sums of its own, which are
  * added in order, so that no result depends on the number of threads. Rows that are equal in both
  * pictures and both labels take a short path, because equal pictures are what is hoped for. */
-#include "verify/walk.h"
+#include "verify/pixel_counts.h"
 
 #include "verify/result.h"
 #include <math.h>
@@ -20,26 +20,26 @@ typedef struct Row {
 
 /* ------------------------------------------------------------------------------------- classes */
 
-static bool geometry_differs(const Walk *walk, size_t pixel)
+static bool geometry_differs(const Counting *counting, size_t pixel)
 {
-    const float *depth_a = walk->a->depth->values, *depth_b = walk->b->depth->values;
-    const float *normal_a = walk->a->normal->values, *normal_b = walk->b->normal->values;
+    const float *depth_a = counting->a->depth->values, *depth_b = counting->b->depth->values;
+    const float *normal_a = counting->a->normal->values, *normal_b = counting->b->normal->values;
     double depth = fabs((double)depth_a[pixel] - (double)depth_b[pixel]);
-    return !(depth <= walk->geometry_mm) ||
-           !(angle_deg(normal_a + 3 * pixel, normal_b + 3 * pixel) <= walk->geometry_deg);
+    return !(depth <= counting->geometry_mm) ||
+           !(angle_deg(normal_a + 3 * pixel, normal_b + 3 * pixel) <= counting->geometry_deg);
 }
 
 /* Of a pixel whose labels agree. */
-static PixelClass class_of_shading(const Walk *walk, const Row *row, int x, bool seen,
+static PixelClass class_of_shading(const Counting *counting, const Row *row, int x, bool seen,
                                    int difference)
 {
-    size_t pixel = (size_t)row->y * (size_t)walk->labels->width + (size_t)x;
-    bool known = walk->a->depth && walk->a->normal;
-    if (known && seen && geometry_differs(walk, pixel))
+    size_t pixel = (size_t)row->y * (size_t)counting->labels->width + (size_t)x;
+    bool known = counting->a->depth && counting->a->normal;
+    if (known && seen && geometry_differs(counting, pixel))
         return PIXEL_GEOMETRY;
     if (known && seen && difference > 1) {
         double sum_a = 0, sum_b = 0;
-        int channels = walk->a->picture->channels;
+        int channels = counting->a->picture->channels;
         for (int c = 0; c < channels; c++) {
             sum_a += row->a[x * channels + c];
             sum_b += row->b[x * channels + c];
@@ -67,25 +67,26 @@ static int pixel_difference(const uint16_t *a, const uint16_t *b, int channels, 
     return largest;
 }
 
-static void count_pixel(const Walk *walk, const Row *row, int x, Sums *sums)
+static void count_pixel(const Counting *counting, const Row *row, int x, Sums *sums)
 {
     const LabelWindow *window = row->window;
-    int channels = walk->a->picture->channels;
+    int channels = counting->a->picture->channels;
     uint32_t in_a = window->rows[0][1][x], in_b = window->rows[1][1][x];
     bool band = window->band[x];
     int difference = pixel_difference(row->a + x * channels, row->b + x * channels, channels, sums);
-    bool common = in_a && in_b, beyond = difference > walk->beyond;
-    size_t pixel = (size_t)row->y * (size_t)walk->labels->width + (size_t)x;
-    bool settled = walk->settled && walk->settled[pixel];
-    PixelClass pixel_class = settled        ? PIXEL_SETTLED
-                             : in_a != in_b ? labels_class(in_a, in_b, band)
-                                            : class_of_shading(walk, row, x, common, difference);
+    bool common = in_a && in_b, beyond = difference > counting->beyond;
+    size_t pixel = (size_t)row->y * (size_t)counting->labels->width + (size_t)x;
+    bool settled = counting->settled && counting->settled[pixel];
+    PixelClass pixel_class = settled ? PIXEL_SETTLED
+                             : in_a != in_b
+                                 ? labels_class(in_a, in_b, band)
+                                 : class_of_shading(counting, row, x, common, difference);
     sums->classes[pixel_class]++;
-    if (walk->classes)
-        walk->classes[pixel] = (uint8_t)pixel_class;
+    if (counting->classes)
+        counting->classes[pixel] = (uint8_t)pixel_class;
     sums->common += common;
     if (!in_a != !in_b && !settled) {
-        walk->coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;
+        counting->coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;
         sums->missing += in_a != 0;
         sums->extra += in_b != 0;
     }
@@ -94,7 +95,7 @@ static void count_pixel(const Walk *walk, const Row *row, int x, Sums *sums)
     sums->differing += difference > 0;
     sums->settled += settled;
     beyond = beyond && !settled;
-    sums->beyond += beyond && (common || !walk->common_only);
+    sums->beyond += beyond && (common || !counting->common_only);
     sums->band_beyond += beyond && band;
     sums->interior_beyond += beyond && !band;
     if (!band && !settled && difference > sums->interior_max)
@@ -130,10 +131,10 @@ static bool block_equal(const Row *row, int from, int to, int channels)
 }
 
 /* Counts a row by blocks, most of which are equal even in rows that are not. */
-static void count_row(const Walk *walk, const Row *row, Sums *sums)
+static void count_blocks(const Counting *counting, const Row *row, Sums *sums)
 {
-    int width = walk->labels->width, channels = walk->a->picture->channels;
-    bool geometry = walk->a->depth && walk->a->normal;
+    int width = counting->labels->width, channels = counting->a->picture->channels;
+    bool geometry = counting->a->depth && counting->a->normal;
     for (int from = 0, to; from < width; from = to) {
         to = from + BLOCK < width ? from + BLOCK : width;
         if (!geometry && block_equal(row, from, to, channels)) {
@@ -141,7 +142,7 @@ static void count_row(const Walk *walk, const Row *row, Sums *sums)
             continue;
         }
         for (int x = from; x < to; x++)
-            count_pixel(walk, row, x, sums);
+            count_pixel(counting, row, x, sums);
     }
 }
 
@@ -175,38 +176,39 @@ static void add_regression(const Row *row, int width, int channels, Sums *sums)
     }
 }
 
-static void walk_row(const Walk *walk, const Row *row, Sums *sums, Account *accounts)
+static void count_row(const Counting *counting, const Row *row, Sums *sums, SegmentSums *segments)
 {
-    int width = walk->labels->width, channels = walk->a->picture->channels;
-    count_row(walk, row, sums);
-    if (walk->labels->source == LABELS_UNKNOWN)
+    int width = counting->labels->width, channels = counting->a->picture->channels;
+    count_blocks(counting, row, sums);
+    if (counting->labels->source == LABELS_UNKNOWN)
         return;
     count_silhouette(row->window->rows[0][1], row->window->rows[0][2], width, sums);
-    if (!walk->index)
+    if (!counting->index)
         return;
     add_regression(row, width, channels, sums);
-    accounts_book(accounts, walk->index, row->window, row->a, row->b, channels);
+    segment_sums_add_row(segments, counting->index, row->window, row->a, row->b, channels);
 }
 
-static void walk_band(size_t index, int worker, void *context)
+static void count_band(size_t index, int worker, void *context)
 {
-    Walk *walk = context;
-    const Picture *a = walk->a->picture, *b = walk->b->picture;
-    uint8_t *scratch = walk->scratch + (size_t)worker * walk->scratch_size;
+    Counting *counting = context;
+    const Picture *a = counting->a->picture, *b = counting->b->picture;
+    uint8_t *scratch = counting->scratch + (size_t)worker * counting->scratch_size;
     uint16_t *codes[2] = {(uint16_t *)(scratch + label_window_size(a->width))};
     codes[1] = codes[0] + picture_stride(a);
-    Account *accounts = walk->index ? walk->accounts + (size_t)worker * walk->index->n : NULL;
+    SegmentSums *segments =
+        counting->index ? counting->segments + (size_t)worker * counting->index->n : NULL;
     int top = (int)index * BAND_ROWS;
     int bottom = top + BAND_ROWS < a->height ? top + BAND_ROWS : a->height;
     LabelWindow window;
-    label_window_open(&window, walk->labels, top, scratch);
+    label_window_open(&window, counting->labels, top, scratch);
     for (int y = top; y < bottom; y++) {
         bool equal = picture_rows_equal(a, b, y, 0, a->width);
-        bool read = !equal || walk->index || walk->a->depth;
+        bool read = !equal || counting->index || counting->a->depth;
         Row row = {.window = &window, .y = y};
         row.a = read ? picture_row(a, y, codes[0]) : codes[0];
         row.b = equal ? row.a : picture_row(b, y, codes[1]);
-        walk_row(walk, &row, &walk->sums[index], accounts);
+        count_row(counting, &row, &counting->sums[index], segments);
         if (y + 1 < bottom)
             label_window_next(&window);
     }
@@ -246,31 +248,34 @@ static void add_sums(Sums *to, const Sums *from)
     }
 }
 
-Status walk_all(Walk *walk, Err *err)
+Status count_pixels(Counting *counting, Err *err)
 {
-    int bands = (walk->labels->height + BAND_ROWS - 1) / BAND_ROWS;
+    int bands = (counting->labels->height + BAND_ROWS - 1) / BAND_ROWS;
     int threads = threads_available();
     threads = threads < bands ? threads : bands;
-    const Picture *a = walk->a->picture;
-    size_t accounts = walk->index ? (size_t)threads * walk->index->n : 0;
-    walk->scratch_size = label_window_size(a->width) + 2 * picture_stride(a) * sizeof(uint16_t);
-    TRY(mem_calloc(&walk->sums, (size_t)bands, sizeof *walk->sums, "sums of rows", err));
-    TRY(mem_calloc(&walk->accounts, accounts, sizeof *walk->accounts, "accounts", err));
-    TRY(mem_calloc(&walk->coverage, (size_t)a->width * (size_t)a->height, 1, "pixel marks", err));
-    TRY(mem_calloc(&walk->scratch, (size_t)threads, walk->scratch_size, "rows", err));
-    accounts_clear(walk->accounts, accounts);
-    threads_for((size_t)bands, threads, walk_band, walk);
+    const Picture *a = counting->a->picture;
+    size_t segments = counting->index ? (size_t)threads * counting->index->n : 0;
+    counting->scratch_size = label_window_size(a->width) + 2 * picture_stride(a) * sizeof(uint16_t);
+    TRY(mem_calloc(&counting->sums, (size_t)bands, sizeof *counting->sums, "sums of rows", err));
+    TRY(mem_calloc(&counting->segments, segments, sizeof *counting->segments, "sums of segments",
+                   err));
+    TRY(mem_calloc(&counting->coverage, (size_t)a->width * (size_t)a->height, 1, "pixel marks",
+                   err));
+    TRY(mem_calloc(&counting->scratch, (size_t)threads, counting->scratch_size, "rows", err));
+    segment_sums_clear(counting->segments, segments);
+    threads_for((size_t)bands, threads, count_band, counting);
     for (int i = 1; i < bands; i++)
-        add_sums(&walk->sums[0], &walk->sums[i]);
-    for (int t = 1; t < threads && walk->index; t++)
-        accounts_add(walk->accounts, walk->accounts + (size_t)t * walk->index->n, walk->index->n);
+        add_sums(&counting->sums[0], &counting->sums[i]);
+    for (int t = 1; t < threads && counting->index; t++)
+        segment_sums_add(counting->segments, counting->segments + (size_t)t * counting->index->n,
+                         counting->index->n);
     return STATUS_OK;
 }
 
-void walk_release(Walk *walk)
+void counting_release(Counting *counting)
 {
-    free(walk->coverage);
-    free(walk->sums);
-    free(walk->accounts);
-    free(walk->scratch);
+    free(counting->coverage);
+    free(counting->sums);
+    free(counting->segments);
+    free(counting->scratch);
 }
