@@ -159,6 +159,8 @@ static Status run_grow(void *options, Parsed *parsed, Err *err)
     TRY_GOTO(refining_apply(refining, &parsed->common, &growing->domain, &tree, &refined, err));
     if (refined.target_before > 0)
         report.root_radius_mm = tree.radius_mm[0];
+    TRY_GOTO(command_describe(parsed, &tree.meta, err));
+    TRY_GOTO(refining_describe(refining, &refined, &tree.meta, err));
     status = finish(own_options, &parsed->common, &tree, &report, &refined, &why, err);
 done:
     growing_release(growing);

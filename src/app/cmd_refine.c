@@ -55,6 +55,8 @@ static Status run_refine(void *options, Parsed *parsed, Err *err)
         TRY_GOTO(files_read(&parsed->files, "--domain", domain.file, err));
     TRY_GOTO(refining_apply(refining, &parsed->common, has_domain ? &domain : NULL, &tree, &report,
                             err));
+    TRY_GOTO(command_describe(parsed, &tree.meta, err));
+    TRY_GOTO(refining_describe(refining, &report, &tree.meta, err));
     TRY_GOTO(tree_write(&tree, own_options->output, err));
     if (!parsed->common.quiet)
         refining_print(&report);

@@ -2,6 +2,7 @@
 #include "app/picture.h"
 #include "app/povfiles.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* How a model for OpenSCAD is made. */
@@ -19,6 +20,7 @@ typedef struct SceneOptions {
 static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, SceneOptions, output),
+     .is_told = true,
      .argument = "S.pov|S.scad",
      .help = "a scene for POV-Ray, its geometry in S.inc beside it, or a model for OpenSCAD"},
     {.name = "ids",
@@ -139,19 +141,25 @@ static Status run_scene(void *options, Parsed *parsed, Err *err)
     const PictureOptions *picture = &own_options->picture;
     const char *tree = parsed->operands[0], *output = own_options->output;
     const Emitter *emitter;
+    char *line = NULL;
     Scene scene = {0};
     EmitReport report = {0};
+    Status status = STATUS_OK;
     TRY(find_emitter(output, &emitter, err));
     TRY(check(own_options, emitter, parsed, err));
     TRY(scene_files_note(emitter, output, &parsed->files, err));
     TRY(picture_scene(picture, tree, parsed->common.quiet, &scene, NULL, err));
+    TRY_GOTO(command_line_text(parsed, &line, err));
     const EmitParams params = {.scene = &scene,
+                               .command = line,
                                .shadows = picture->stage.shadows,
                                .ids = own_options->ids,
                                .cells = picture_cells(picture)};
-    Status status = scene_files_write(emitter, &params, tree, output, &report, err);
-    if (status == STATUS_OK && !parsed->common.quiet)
+    TRY_GOTO(scene_files_write(emitter, &params, tree, output, &report, err));
+    if (!parsed->common.quiet)
         say_limits(&report, &scene);
+done:
+    free(line);
     scene_release(&scene);
     return status;
 }

@@ -265,8 +265,11 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
 static Status write_scene(Verification *v, bool ids, char **scene, Err *err)
 {
     TRY(file_join(v->folder, ids ? "ids.pov" : "scene.pov", scene, err));
-    const EmitParams params = {
-        .scene = &v->scene, .shadows = v->picture->stage.shadows, .ids = ids, .cells = v->cells};
+    const EmitParams params = {.scene = &v->scene,
+                               .command = v->commands[0],
+                               .shadows = v->picture->stage.shadows,
+                               .ids = ids,
+                               .cells = v->cells};
     return scene_files_write(emitter_of_extension("pov"), &params, v->tree, *scene, NULL, err);
 }
 

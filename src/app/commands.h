@@ -4,6 +4,7 @@
 
 #include "app/options.h"
 #include "base/base.h"
+#include "tree/tree.h"
 
 extern const Command command_grow, command_refine, command_info, command_convert, command_scene,
     command_povray, command_render, command_view, command_verify, command_compare, command_report,
@@ -28,9 +29,12 @@ MUST_CHECK Status shown_name(const char *path, char **out, Err *err);
 
 /* The command line for provenance, in *out (owned), one line of UTF-8 that a shell takes: the
  * operands, each option that differs from its default, whether it came from the command line or a
- * recipe, and the output; without what the result does not depend on, and of each path the last
- * component alone, so that no folder of the user's is told. */
+ * recipe, and the output under the name that the help gives it; without what the result does not
+ * depend on, and of each path the last component alone, so that no folder of the user's is told. */
 MUST_CHECK Status command_line_text(const Parsed *parsed, char **out, Err *err);
+
+/* Adds the command line to those that a tree's file says. */
+MUST_CHECK Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err);
 
 /* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets
  * go of it. Numbers that are not finite must have been left out or set to null. */

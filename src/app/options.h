@@ -69,6 +69,7 @@ typedef struct Option {
     size_t given;       /* offset of a bool that is set when the option is present ... */
     bool has_given;     /* ... if there is one */
     bool aside;         /* what a command makes does not depend on it */
+    bool is_told;       /* of the output: what is written tells its own name */
     OptionKind kind;
     OptionGroup group;
     const Range *range;         /* of OPTION_WHOLE, COUNT, NUMBER, SIZE; NULL: any number */

@@ -1,5 +1,6 @@
 #include "app/commands.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 bool is_one_of(const char *word, const char *const *words)
@@ -65,9 +66,8 @@ static void put_shown_value(const Setting *setting, size_t at, Text *text)
 /* Appends the option as often as it has to be given. */
 static void put_shown(const Setting *setting, Text *text)
 {
-    bool output = strcmp(setting->option->name, "output") == 0;
     for (size_t at = 0; at < setting_count(setting); at++) {
-        text_printf(text, output ? " -o" : " --%s", setting->option->name);
+        text_printf(text, " --%s", setting->option->name);
         if (setting->option->kind == OPTION_FLAG)
             continue;
         text_puts(text, " ");
@@ -75,7 +75,24 @@ static void put_shown(const Setting *setting, Text *text)
     }
 }
 
-static bool is_told(const Setting *setting, const Setting *plain)
+/* Appends the output under the name that the help gives it, with the extension that it has: what is
+ * written does not depend on its own name, but where it tells that. */
+static void put_output(const Setting *setting, Text *text)
+{
+    const char *path = *(const char *const *)(setting->base + setting->option->where);
+    const char *name = setting->option->argument, *extension = file_extension(path ? path : "");
+    if (!path)
+        return;
+    text_puts(text, " -o ");
+    if (setting->option->is_told || (strcmp(path, "-") == 0 && !strchr(name, '.')))
+        put_shell_word(text, file_name(path));
+    else if (*extension)
+        text_printf(text, "%.*s.%s", (int)strcspn(name, "."), name, extension);
+    else
+        text_puts(text, name);
+}
+
+static bool tells(const Setting *setting, const Setting *plain)
 {
     const Option *option = setting->option;
     return !option->aside && option->kind != OPTION_OUTPUT && option->kind != OPTION_FOLDER &&
@@ -102,13 +119,22 @@ Status command_line_text(const Parsed *parsed, char **out, Err *err)
     for (int i = 0; i < parsed->n_operands; i++)
         put_operand(parsed->operands[i], &text);
     for (size_t i = 0; i < parsed->n_settings; i++)
-        if (is_told(&parsed->settings[i], &plain.settings[i]))
+        if (tells(&parsed->settings[i], &plain.settings[i]))
             put_shown(&parsed->settings[i], &text);
     const Setting *output = parsed_find(parsed, "output", strlen("output"));
     if (output)
-        put_shown(output, &text);
+        put_output(output, &text);
     parsed_release(&plain);
     return take_line(&text, out, err);
+}
+
+Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err)
+{
+    char *line = NULL;
+    TRY(command_line_text(parsed, &line, err));
+    Status status = meta_add_text(meta, META_COMMAND, line, err);
+    free(line);
+    return status;
 }
 
 Status json_write(json_t *object, const char *path, Err *err)

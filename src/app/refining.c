@@ -73,3 +73,15 @@ void refining_print(const RefineReport *report)
                 report->target_after, 100 * (report->target_after / report->target_before - 1),
                 (unsigned long long)report->moves_kept, (unsigned long long)report->moves_tried);
 }
+
+Status refining_describe(const Refining *refining, const RefineReport *report, TreeMeta *meta,
+                         Err *err)
+{
+    char line[160];
+    if (refining->level == GROW_REFINE_NONE)
+        return STATUS_OK;
+    snprintf(line, sizeof line, "refined: %s, %llu of %llu moves kept%s", levels[refining->level],
+             (unsigned long long)report->moves_kept, (unsigned long long)report->moves_tried,
+             report->stopped ? ", stopped" : "");
+    return meta_add_text(meta, META_KEYS, line, err);
+}

@@ -21,6 +21,12 @@ MUST_CHECK Status refining_check(const Refining *refining, const Parsed *parsed,
 MUST_CHECK Status refining_apply(const Refining *refining, const Common *common,
                                  const Domain *domain, Tree *tree, RefineReport *report, Err *err);
 
+/* Adds to what the tree's file says by how many moves the tree was refined, if at all: where a
+ * clock or the user ended the refinement, the command line alone does not tell one result from
+ * another. */
+MUST_CHECK Status refining_describe(const Refining *refining, const RefineReport *report,
+                                    TreeMeta *meta, Err *err);
+
 /* Says what was gained on standard error, if anything was asked for. */
 void refining_print(const RefineReport *report);
 

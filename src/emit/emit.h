@@ -15,6 +15,7 @@ typedef struct EmitParams {
     const char *second_file; /* NULL: what would go to the second file stands in the first */
     const char *description; /* what the scene shows; what would break its line becomes a blank */
     const char *generator;   /* program and version */
+    const char *command;     /* that makes the scene, one line */
     bool shadows;
     bool ids;         /* isosurface, blob: with the paint that the id plane needs */
     CellParams cells; /* isosurface */

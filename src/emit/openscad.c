@@ -170,6 +170,7 @@ static void add_header(Values *values, const EmitParams *params)
     text_release(&stem);
     text_put_line(add_value(values, "description"), params->description);
     text_puts(add_value(values, "generator"), params->generator);
+    text_puts(add_value(values, "command"), params->command);
     text_printf(add_value(values, "count"), "%zu", scene->geometry.drawn);
     text_printf(add_value(values, "seconds"), "%.2g", openscad_seconds(scene));
     text_printf(add_value(values, "extent"), "%.4g to %.4g, %.4g to %.4g, %.4g to %.4g mm",

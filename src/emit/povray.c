@@ -107,6 +107,7 @@ static Status put_geometry(Text *out, void *context, Err *err)
     text_put_line(add_value(&values, "file"), file);
     text_put_line(add_value(&values, "description"), params->description);
     text_puts(add_value(&values, "generator"), params->generator);
+    text_puts(add_value(&values, "command"), params->command);
     put_extent(add_value(&values, "extent"), scene->geometry.bounds, scene->geometry.origin);
     put_guard(add_value(&values, "guard"), file);
     add_float(&values, "red", scene->appearance.color.r);
@@ -206,6 +207,7 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
                   params->second_file ? params->second_file : "the last part of this file");
     text_put_line(add_value(&values, "description"), params->description);
     text_puts(add_value(&values, "generator"), params->generator);
+    text_puts(add_value(&values, "command"), params->command);
     put_extent(add_value(&values, "extent"), scene->geometry.bounds, scene->geometry.origin);
     add_camera(&values, &scene->view.camera);
     add_flag(&values, "shadows", params->shadows);

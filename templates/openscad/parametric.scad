@@ -1,5 +1,5 @@
 // ${file}: ${description}
-// Auth: ${generator}
+// Auth: ${generator}, by: ${command}
 // ${count} vessels in millimetres. Extent: ${extent}
 //
 // Open it and change what Window > Customizer shows; F5 shows the result at once, F6 makes it a solid. Or without

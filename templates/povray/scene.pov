@@ -2,7 +2,7 @@
 // File: ${file}
 // Vers: 3.7
 // Desc: ${description}
-// Auth: ${generator}
+// Auth: ${generator}, by: ${command}
 //
 // Geometry stands in ${geometry_file}; this file is the stage: camera, lights, background.
 // Units are millimetres. The camera is given by its own vectors, so that the world is right-handed:

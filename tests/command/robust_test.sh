@@ -382,7 +382,7 @@ test_provenance_and_junit_are_text_whatever_the_name() {
     for name in "${NAMES[@]}"; do
         cp tree.swc "./$name"
         run_ok corcast render --size 20x10 -o a.png -- "./$name"
-        LC_ALL=C.UTF-8 grep -qaE 'corcast render .* --size 20x10 -o a.png' a.png || fail "expected the command in the PNG of $name"
+        LC_ALL=C.UTF-8 grep -qaE 'corcast render .* --size 20x10 -o P.png' a.png || fail "expected the command in the PNG of $name"
         cp a.png "./$name.png"
         run_ok corcast compare --junit a.xml -- "./$name.png" a.png
         python3 -c 'import xml.dom.minidom; xml.dom.minidom.parse("a.xml")' 2>lint || fail "expected XML from $name: $(tail -1 lint)"

@@ -73,7 +73,8 @@ static const EmitParams two_files = {.templates = "templates",
                                      .file = "tree.pov",
                                      .second_file = "tree.inc",
                                      .description = "a test",
-                                     .generator = "corcast"};
+                                     .generator = "corcast",
+                                     .command = "corcast scene T.swc -o S.pov"};
 
 typedef struct Emitted {
     Text scene, geometry;
