@@ -59,6 +59,28 @@ static void print_summary(const char *path, const TreeSummary *summary)
            box->high.x, box->low.y, box->high.y, box->low.z, box->high.z);
 }
 
+static json_t *columns_json(const Tree *tree)
+{
+    json_t *rows = json_array();
+    for (size_t k = 0; k < tree->n_columns; k++) {
+        json_t *row = json_with(json_object(), "name", json_text(tree->column[k].name));
+        rows = json_with_item(rows, json_with(row, "unit", json_text(tree->column[k].unit)));
+    }
+    return rows;
+}
+
+static void print_columns(const Tree *tree)
+{
+    for (size_t k = 0; k < tree->n_columns; k++) {
+        const TreeColumn *column = &tree->column[k];
+        printf("%s%.40s", k ? ", " : "  columns       ", column->name);
+        if (*column->unit)
+            printf(" (%.40s)", column->unit);
+    }
+    if (tree->n_columns > 0)
+        printf("\n");
+}
+
 typedef struct InfoOptions {
     bool json, stats;
     TreeMeta flow; /* what the user says of the tree */
@@ -130,16 +152,19 @@ static const Option own[] = {
 
 static const OptionTable own_table = OPTION_TABLE(own);
 
-static Status show(const InfoOptions *options, const char *path, const TreeSummary *summary,
-                   const TreeStatistics *statistics, Err *err)
+static Status show(const InfoOptions *options, const char *path, const Tree *tree,
+                   const TreeSummary *summary, const TreeStatistics *statistics, Err *err)
 {
     if (options->json) {
         json_t *json = summary_json(summary);
+        if (tree->n_columns > 0)
+            json = json_with(json, "columns", columns_json(tree));
         if (options->stats)
             json = json_with(json, "stats", statistics_json(statistics));
         return json_write(json, "-", err);
     }
     print_summary(path, summary);
+    print_columns(tree);
     if (options->stats)
         statistics_print(statistics);
     return STATUS_OK;
@@ -164,7 +189,7 @@ static Status run_info(void *options, Parsed *parsed, Err *err)
     TRY_GOTO(derive_summary(&tree, flow, &summary, err));
     if (own_options->stats)
         TRY_GOTO(derive_statistics(&tree, &statistics, err));
-    status = show(own_options, parsed->operands[0], &summary, &statistics, err);
+    status = show(own_options, parsed->operands[0], &tree, &summary, &statistics, err);
 done:
     statistics_release(&statistics);
     tree_release(&tree);

@@ -179,8 +179,9 @@ typedef struct Reader {
     double *value; /* owned */
 } Reader;
 
-static Status read_line(Reader *reader, size_t number, char *line, Err *err)
+static Status read_line(void *context, size_t number, char *line, Err *err)
 {
+    Reader *reader = context;
     TreeBuilder *builder = reader->builder;
     if (*line == '#')
         return comment_read(&builder->meta, line + 1, err);
@@ -197,14 +198,7 @@ Status csv_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
 {
     (void)size;
     Reader reader = {.builder = builder};
-    Status status = STATUS_OK;
-    size_t number = 1;
-    for (char *at = bytes, *next; at && status == STATUS_OK; at = next, number++) {
-        next = strchr(at, '\n');
-        if (next)
-            *next++ = '\0';
-        status = builder_blame(builder, number, read_line(&reader, number, at, err), err);
-    }
+    Status status = lines_read(builder, bytes, read_line, &reader, err);
     free(reader.columns.column);
     free(reader.value);
     return status;

@@ -17,8 +17,15 @@ TreeDetect csv_detect;
 TreeRead swc_read, csv_read;
 TreeWrite swc_write, csv_write;
 
-/* Parted by which the words of a line stand. */
+/* Between the words of a line. */
 #define TEXT_BLANKS " \t\v\f"
+
+/* Takes in one line (zero-terminated, without its end; may be changed), the file's `number`th.
+ * STATUS_INPUT without file and line. */
+typedef Status ReadLine(void *reader, size_t number, char *line, Err *err);
+/* Hands all lines of a text to `read`, and says of which it was that it refuses. */
+MUST_CHECK Status lines_read(const TreeBuilder *builder, char *text, ReadLine *read, void *reader,
+                             Err *err);
 
 /* Numbers in a file: a finite one, at least `minimum`, and a whole one. STATUS_INPUT, without file
  * and record, calling it `what`. */

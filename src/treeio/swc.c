@@ -1,5 +1,5 @@
-/* SWC: the text is cut in place into lines and fields. Flow shares travel as comments
- * "flow_share: ID SHARE", which every reader of SWC skips. */
+/* SWC: lines are cut in place into fields. Flow shares travel as comments "flow_share: ID SHARE",
+ * which every reader of SWC skips. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 
@@ -65,8 +65,9 @@ static Status read_comment(TreeBuilder *builder, size_t line, const char *commen
     return comment_read(&builder->meta, comment, err);
 }
 
-static Status read_line(TreeBuilder *builder, size_t number, char *line, Err *err)
+static Status read_line(void *reader, size_t number, char *line, Err *err)
 {
+    TreeBuilder *builder = reader;
     line += strspn(line, TEXT_BLANKS);
     if (*line == '#')
         return read_comment(builder, number, line + 1, err);
@@ -94,14 +95,7 @@ static Status read_line(TreeBuilder *builder, size_t number, char *line, Err *er
 Status swc_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
 {
     (void)size;
-    size_t number = 1;
-    for (char *at = bytes, *next; at; at = next, number++) {
-        next = strchr(at, '\n');
-        if (next)
-            *next++ = '\0';
-        TRY(builder_blame(builder, number, read_line(builder, number, at, err), err));
-    }
-    return STATUS_OK;
+    return lines_read(builder, bytes, read_line, builder, err);
 }
 
 /* Appends the decimal digits of the number, and then a blank. */

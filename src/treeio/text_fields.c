@@ -1,9 +1,23 @@
-/* What text formats have in common: numbers as fields of a record. */
+/* What text formats have in common: the text is cut in place into lines, and fields of a line are
+ * numbers. */
 #include "treeio/formats.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { SHOWN = 40 /* characters of a bad value */ };
+
+Status lines_read(const TreeBuilder *builder, char *text, ReadLine *read, void *reader, Err *err)
+{
+    size_t number = 1;
+    for (char *at = text, *next; at; at = next, number++) {
+        next = strchr(at, '\n');
+        if (next)
+            *next++ = '\0';
+        TRY(builder_blame(builder, number, read(reader, number, at, err), err));
+    }
+    return STATUS_OK;
+}
 
 Status field_number(const char *what, const char *text, double minimum, double *out, Err *err)
 {

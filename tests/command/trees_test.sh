@@ -117,6 +117,10 @@ test_a_column_of_a_csv_colours_its_segments() {
     run corcast render tree.csv --color-by weight --size 40x30 -o weight.ppm
     expect_status 2
     expect_sentence "weight.*branch, age"
+    run_ok corcast info tree.csv
+    expect_stdout '^  columns       age \(a\)$'
+    run_ok corcast info tree.csv --json
+    expect_json stdout '.columns == [{name: "age", unit: "a"}]'
     run corcast render tree.csv --color-by aeg --size 40x30 -o weight.ppm
     expect_sentence "did you mean age?"
     run_ok corcast convert tree.csv tree.swc
