@@ -1,6 +1,5 @@
 /* Rows are added by runs of pixels that show one segment in A and one in B; a run that is equal
- * in both pictures adds to the sum of squares alone.
- */
+ * in both pictures adds to the sum of squares alone. */
 #include "verify/ledger.h"
 
 #include <math.h>

@@ -60,11 +60,11 @@ test_the_commands_of_the_walkthrough_run() {
     expect_file forest.swc
 }
 
-test_no_other_document_has_commands_that_are_not_run() {
+test_the_commands_of_every_other_document_run() {
     local document
+    ln -s "$REPO/tests" tests
     for document in $(cd "$REPO" && echo docs/*.md docs/decisions/*.md); do
-        [ "$document" != docs/WALKTHROUGH.md ] || continue
-        [ -z "$(commands "$document" | grep '^run')" ] || fail "expected the commands of $document to be run by a test"
+        [ "$document" = docs/WALKTHROUGH.md ] || run_commands "$document"
     done
 }
 
