@@ -10,7 +10,8 @@ void contacts_add(Contacts *contacts, double t)
     contacts->n += contacts->n <= CONTACTS_MAX;
 }
 
-bool contacts_hold_segment(Contacts *contacts, const Domain *domain, Vec3 a, Vec3 b)
+bool contacts_hold_segment(Contacts *contacts, const Domain *domain, DomainInside *inside, Vec3 a,
+                           Vec3 b)
 {
     if (contacts->n > CONTACTS_MAX)
         return false;
@@ -19,8 +20,7 @@ bool contacts_hold_segment(Contacts *contacts, const Domain *domain, Vec3 a, Vec
     double shortest = domain->slack_mm / vec3_length(along), from = 0;
     for (int i = 0; i <= contacts->n; i++) {
         double to = i < contacts->n ? contacts->t[i] : 1;
-        if (to - from > shortest &&
-            !domain_inside(domain, vec3_add_scaled(a, along, (from + to) / 2), 0))
+        if (to - from > shortest && !inside(domain, vec3_add_scaled(a, along, (from + to) / 2), 0))
             return false;
         from = to;
     }

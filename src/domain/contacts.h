@@ -18,9 +18,12 @@ typedef struct Contacts {
 
 void contacts_add(Contacts *contacts, double t);
 
+/* Whether a point is in the domain, as DomainOps has it. */
+typedef bool DomainInside(const Domain *domain, Vec3 point, double tolerance_mm);
 /* Whether every stretch between contacts, or between contact and end, that is longer than the
  * domain's slack_mm is inside: its middle says so for all of it. Sorts the contacts. False when
  * there are more than CONTACTS_MAX. */
-bool contacts_hold_segment(Contacts *contacts, const Domain *domain, Vec3 a, Vec3 b);
+bool contacts_hold_segment(Contacts *contacts, const Domain *domain, DomainInside *inside, Vec3 a,
+                           Vec3 b);
 
 #endif

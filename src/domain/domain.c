@@ -105,41 +105,6 @@ void domain_release(Domain *domain)
     *domain = (Domain){0};
 }
 
-Status domain_load_file_name(Domain *domain, const char *values, Err *err)
-{
-    const DomainOps *ops = ops_of(domain);
-    const char *comma = strrchr(values, ',');
-    double mm = 1;
-    bool has_mm = comma && number_parse(comma + 1, &mm);
-    size_t length = has_mm ? (size_t)(comma - values) : strlen(values);
-    if (length == 0)
-        return err_set(err, STATUS_USAGE, "the name of a file is missing; use %s:%s", ops->name,
-                       ops->parameters);
-    if (has_mm && !(mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
-        return err_set(err, STATUS_USAGE,
-                       "the unit of the file must be a number of mm from %g to %g", DOMAIN_MIN_MM,
-                       DOMAIN_MAX_MM);
-    TRY(mem_calloc(&domain->file, length + 1, 1, "bytes of text", err));
-    memcpy(domain->file, values, length);
-    domain->size[0] = has_mm ? mm : 1;
-    domain->n_sizes = has_mm;
-    return STATUS_OK;
-}
-
-Status domain_check_point(const char *file, size_t line, Vec3 point, Err *err)
-{
-    /* false for NaN, too */
-    if (fabs(point.x) <= DOMAIN_MAX_MM && fabs(point.y) <= DOMAIN_MAX_MM &&
-        fabs(point.z) <= DOMAIN_MAX_MM)
-        return STATUS_OK;
-    char where[32] = "";
-    if (line > 0)
-        snprintf(where, sizeof where, ":%zu", line);
-    return err_set(err, STATUS_INPUT,
-                   "%s%s: the point %.9g %.9g %.9g (mm) is not finite or lies beyond %.0f mm", file,
-                   where, point.x, point.y, point.z, DOMAIN_MAX_MM);
-}
-
 void domain_text(const Domain *domain, Text *text)
 {
     text_printf(text, "%s:", ops_of(domain)->name);
@@ -179,7 +144,8 @@ bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return ops->holds_segment(domain, a, b);
 }
 
-Vec3 domain_sample_bounds(const Domain *domain, Random *random)
+/* Uniform in the bounds; draws x, y and, in three dimensions, z. */
+static Vec3 sample_bounds(const Domain *domain, Random *random)
 {
     Vec3 center = box_center(domain->bounds);
     Vec3 half = vec3_scale(vec3_sub(domain->bounds.high, domain->bounds.low), 0.5);
@@ -193,8 +159,7 @@ Vec3 domain_sample(const Domain *domain, Random *random)
 {
     const DomainOps *ops = ops_of(domain);
     for (;;) {
-        Vec3 point =
-            ops->sample ? ops->sample(domain, random) : domain_sample_bounds(domain, random);
+        Vec3 point = ops->sample ? ops->sample(domain, random) : sample_bounds(domain, random);
         if (ops->inside(domain, point, 0))
             return point;
     }

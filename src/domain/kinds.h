@@ -24,11 +24,10 @@ typedef struct DomainOps {
 extern const DomainOps disc_ops, ball_ops, rect_ops, box_ops, ellipsoid_ops, shell_ops;
 extern const DomainOps polygon_ops, mask_ops, mesh_ops;
 
-/* Uniform in the bounds of the domain; draws x, y and, in three dimensions, z. */
-Vec3 domain_sample_bounds(const Domain *domain, Random *random);
-
-/* Reads FILE[,MM] into file, size and n_sizes; size[0] is 1 where MM is not given. */
-MUST_CHECK Status domain_load_file_name(Domain *domain, const char *values, Err *err);
+/* Reads FILE[,MM] into file, size and n_sizes; size[0] is 1 where MM is not given. `ops` are the
+ * domain's, for the sentence of STATUS_USAGE. */
+MUST_CHECK Status domain_load_file_name(Domain *domain, const DomainOps *ops, const char *values,
+                                        Err *err);
 
 /* STATUS_INPUT, naming the file and the line (0: there are none), unless the
  * point is finite and within DOMAIN_MAX_MM of the origin on each axis. */

@@ -251,7 +251,7 @@ static Status read_file(Domain *domain, Err *err)
 
 static Status mask_load(Domain *domain, const char *values, Err *err)
 {
-    TRY(domain_load_file_name(domain, values, err));
+    TRY(domain_load_file_name(domain, &mask_ops, values, err));
     TRY(mem_calloc(&domain->mask, 1, sizeof *domain->mask, "masks", err));
     TRY(read_file(domain, err));
     double volume = 0;

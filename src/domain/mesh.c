@@ -142,7 +142,7 @@ static bool mesh_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
         if (find_contact(&mesh->triangles[i], a, d, &t) && t >= -CONTACT_MARGIN &&
             t <= 1 + CONTACT_MARGIN)
             contacts_add(&contacts, t);
-    return contacts_hold_segment(&contacts, domain, a, b);
+    return contacts_hold_segment(&contacts, domain, mesh_inside, a, b);
 }
 
 static Vec3 middle_of(const Triangle *triangle)
@@ -233,7 +233,7 @@ static Status build(Domain *domain, const Soup *soup, Err *err)
 static Status mesh_load(Domain *domain, const char *values, Err *err)
 {
     domain->dimension = 3;
-    TRY(domain_load_file_name(domain, values, err));
+    TRY(domain_load_file_name(domain, &mesh_ops, values, err));
     const char *extension = file_extension(domain->file);
     if (strcasecmp(extension, "stl") != 0 && strcasecmp(extension, "obj") != 0)
         return err_set(err, STATUS_USAGE, "the name of a mesh must end in .stl or .obj");

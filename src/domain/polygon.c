@@ -71,7 +71,7 @@ static bool polygon_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     uint32_t i;
     for (BoxWalk walk = boxwalk_segment(&domain->polygon->tree, a, b); boxwalk_next(&walk, &i);)
         find_contact(&domain->polygon->edges[i], a, b, &contacts);
-    return contacts_hold_segment(&contacts, domain, a, b);
+    return contacts_hold_segment(&contacts, domain, polygon_inside, a, b);
 }
 
 /* The middle of the widest stretch inside, a thousandth of the height below the top. */
@@ -149,7 +149,7 @@ static Status build(Domain *domain, Err *err)
 static Status polygon_load(Domain *domain, const char *values, Err *err)
 {
     domain->dimension = 2;
-    TRY(domain_load_file_name(domain, values, err));
+    TRY(domain_load_file_name(domain, &polygon_ops, values, err));
     TRY(mem_calloc(&domain->polygon, 1, sizeof *domain->polygon, "polygons", err));
     return build(domain, err);
 }
