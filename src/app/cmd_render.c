@@ -102,12 +102,12 @@ static Status read_planes(const char *list, RenderParams *params, Err *err)
 static Status write_report(const char *path, const Scene *scene, const RenderStats *stats,
                            const StageReport *staged, int threads, Err *err)
 {
-    json_t *report =
-        json_pack("{s:s, s:s, s:i, s:i, s:f, s:f, s:f, s:I, s:i}", "generator", GENERATOR, "model",
-                  model_name(scene->geometry.model), "width", scene->view.camera.width, "height",
-                  scene->view.camera.height, "prepare_seconds", stats->prepare_s, "trace_seconds",
-                  stats->trace_s, "cpu_seconds", stats->cpu_s, "rays", (json_int_t)stats->rays,
-                  "threads", threads ? threads : threads_available());
+    json_t *report = json_pack(
+        "{s:s, s:s, s:s, s:i, s:i, s:f, s:f, s:f, s:I, s:i}", "generator", GENERATOR, "model",
+        model_name(scene->geometry.model), "engine", stats->engine, "width",
+        scene->view.camera.width, "height", scene->view.camera.height, "prepare_seconds",
+        stats->prepare_s, "trace_seconds", stats->trace_s, "cpu_seconds", stats->cpu_s, "rays",
+        (json_int_t)stats->rays, "threads", threads ? threads : threads_available());
     if (scene->geometry.model == SCENE_JOINED) {
         const JsonMember of_joints[] = {
             {"joints", json_integer((json_int_t)staged->joints)},

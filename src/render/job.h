@@ -55,9 +55,10 @@ typedef struct RenderParams {
 typedef struct RenderStats {
     double prepare_s; /* building the search structure */
     double trace_s;
-    double cpu_s; /* of all threads, for both: trace_s when nothing else runs is about cpu_s /
-                     threads */
-    size_t rays;  /* primary */
+    double cpu_s;       /* of all threads, for both: trace_s when nothing else runs is about cpu_s /
+                           threads */
+    size_t rays;        /* primary */
+    const char *engine; /* that drew the last rows: "field", "raster", "zbuffer" or "trace" */
     size_t preparations; /* how often camera, lights or antialiasing were not those of the rows
                             before */
 } RenderStats;

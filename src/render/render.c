@@ -1,33 +1,34 @@
 /* What the geometry alone decides, the search structure of rays (Caster), is made once and kept.
- * What a view decides, tiles and their lists, is kept until a camera, lights or an antialiasing
- * come that are not the same to the last bit. An appearance decides nothing but colours.
+ * What a view decides, an engine's lists of tiles, is kept until a camera, lights or an
+ * antialiasing come that are not the same to the last bit, or another engine. An appearance decides
+ * nothing but colours.
  *
- * Implicit models are drawn by field/fieldrender.c, primitives by raster/rasterrender.c or
- * raster/zbuffer.c where that is asked for and enough, all else ray by ray by
- * light/rayrender.c. */
+ * The first engine of the table that can draws: the special ones first, rays, which can draw
+ * anything, last. */
 #include "render/render.h"
 
+#include "render/cast/caster.h"
 #include "render/field/fieldrender.h"
 #include "render/light/rayrender.h"
-#include "render/light/sight.h"
 #include "render/planes.h"
 #include "render/raster/rasterrender.h"
 #include "render/raster/zbuffer.h"
 #include "render/tile/tilekernels.h"
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+static const Engine *const engines[] = {&field_engine, &raster_engine, &zbuffer_engine,
+                                        &ray_engine};
+
 struct Renderer {
     const Geometry *geometry;
-    RenderParams params;
-    int threads;
-    Caster *caster; /* of the geometry; NULL until a view needs it */
+    RenderParams params; /* with the number of threads */
+    Caster *caster;      /* of the geometry; NULL until a view needs it */
     RenderStats stats;
-    /* What is kept while camera, lights and antialiasing are these. */
-    RasterPrepared raster;
-    FieldPrepared field;
+    /* What is kept while engine, camera, lights and antialiasing are these. */
+    const Engine *engine; /* NULL: nothing is */
+    void *prepared;       /* the engine's */
     Camera camera;
     Light lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
@@ -36,38 +37,27 @@ struct Renderer {
 
 /* ---- what is prepared ------------------------------------------------------------------------ */
 
-static bool is_field(const Renderer *renderer)
+static const Engine *engine_for(const Drawing *drawing)
 {
-    return renderer->geometry->model == SCENE_ISOSURFACE && !renderer->params.povray_cells;
+    size_t i = 0;
+    while (!engines[i]->can(drawing))
+        i++;
+    return engines[i];
 }
 
-/* Area lights, occlusion and the ground are for rays to find. */
-static bool is_traced(const Renderer *renderer, const View *view)
-{
-    return renderer->geometry->n_primitives == 0 || renderer->params.method == RENDER_TRACE ||
-           sight_is_needed(view, &renderer->params);
-}
-
-static bool needs_caster(const Renderer *renderer, const View *view)
+/* Makes the caster if the drawing needs it and none before did. */
+static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
 {
     const RenderParams *params = &renderer->params;
-    if (is_traced(renderer, view))
-        return !is_field(renderer) || params->shadows || params->occlusion > 0;
-    return params->method == RENDER_RASTER && params->shadows &&
-           rastershadows_need_rays(renderer->geometry, view);
-}
-
-/* Makes the caster if the view needs it and none before did. */
-static Status prepare_caster(Renderer *renderer, const View *view, Err *err)
-{
-    if (renderer->caster || !needs_caster(renderer, view))
-        return STATUS_OK;
-    double start_s = clock_seconds();
-    TRY(caster_new(renderer->geometry, renderer->params.povray_cells, renderer->threads,
-                   &renderer->caster, err));
-    if (renderer->params.shadow_from_mm > 0)
-        caster_shadow_from(renderer->caster, renderer->params.shadow_from_mm);
-    renderer->stats.prepare_s += clock_seconds() - start_s;
+    if (!renderer->caster && engine_for(drawing)->needs_rays(drawing)) {
+        double start_s = clock_seconds();
+        TRY(caster_new(renderer->geometry, params->povray_cells, params->threads, &renderer->caster,
+                       err));
+        if (params->shadow_from_mm > 0)
+            caster_shadow_from(renderer->caster, params->shadow_from_mm);
+        renderer->stats.prepare_s += clock_seconds() - start_s;
+    }
+    drawing->caster = renderer->caster;
     return STATUS_OK;
 }
 
@@ -89,8 +79,10 @@ Status renderer_new(const Geometry *geometry, const RenderParams *params, Render
     TRY(mem_calloc(&renderer, 1, sizeof *renderer, "renderers", err));
     renderer->geometry = geometry;
     renderer->params = *params;
-    renderer->threads = params->threads > 0 ? params->threads : threads_available();
-    Status status = prepare_caster(renderer, &plain, err);
+    if (params->threads <= 0)
+        renderer->params.threads = threads_available();
+    Drawing any = {.geometry = geometry, .view = &plain, .params = &renderer->params};
+    Status status = prepare_caster(renderer, &any, err);
     if (status != STATUS_OK) {
         renderer_free(renderer);
         return status;
@@ -102,8 +94,10 @@ Status renderer_new(const Geometry *geometry, const RenderParams *params, Render
 
 static void forget_view(Renderer *renderer)
 {
-    rasterprepared_release(&renderer->raster);
-    fieldprepared_release(&renderer->field);
+    if (renderer->prepared)
+        renderer->engine->free(renderer->prepared);
+    renderer->prepared = NULL;
+    renderer->engine = NULL;
 }
 
 void renderer_free(Renderer *renderer)
@@ -115,21 +109,35 @@ void renderer_free(Renderer *renderer)
     free(renderer);
 }
 
-/* Frees what was prepared for another camera, other lights or another antialiasing than the next
- * rows have, and remembers those that they have. */
-static void forget_other_views(Renderer *renderer, const View *view)
+static bool is_prepared(const Renderer *renderer, const Engine *engine, const View *view)
 {
     size_t size = view->n_lights * sizeof *view->lights;
-    if (renderer->n_lights == view->n_lights && renderer->antialias == renderer->params.antialias &&
-        memcmp(&renderer->camera, &view->camera, sizeof view->camera) == 0 &&
-        memcmp(renderer->lights, view->lights, size) == 0)
-        return;
+    return renderer->engine == engine && renderer->n_lights == view->n_lights &&
+           renderer->antialias == renderer->params.antialias &&
+           memcmp(&renderer->camera, &view->camera, sizeof view->camera) == 0 &&
+           memcmp(renderer->lights, view->lights, size) == 0;
+}
+
+/* Frees what was prepared for another view, and prepares this. */
+static Status prepare_view(Renderer *renderer, const Drawing *drawing, Err *err)
+{
+    const View *view = drawing->view;
+    const Engine *engine = engine_for(drawing);
+    double start_s = clock_seconds();
+    if (is_prepared(renderer, engine, view))
+        return STATUS_OK;
     forget_view(renderer);
+    if (engine->prepare)
+        TRY(engine->prepare(drawing, &renderer->prepared, err));
+    renderer->engine = engine;
+    renderer->stats.engine = engine->name;
     memcpy(&renderer->camera, &view->camera, sizeof view->camera);
-    memcpy(renderer->lights, view->lights, size);
+    memcpy(renderer->lights, view->lights, view->n_lights * sizeof *view->lights);
     renderer->n_lights = view->n_lights;
     renderer->antialias = renderer->params.antialias;
     renderer->stats.preparations++;
+    renderer->stats.prepare_s += clock_seconds() - start_s;
+    return STATUS_OK;
 }
 
 void renderer_antialias(Renderer *renderer, int antialias)
@@ -145,19 +153,13 @@ RenderStats renderer_stats(const Renderer *renderer)
 static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
 {
     const RenderParams *params = drawing->params;
-    RenderStats *stats = &renderer->stats;
-    bool traced = is_traced(renderer, drawing->view);
-    bool tiles = traced ? is_field(renderer) : params->method == RENDER_RASTER;
-    bool codes = params->codes_suffice && params->antialias == 1 && tiles;
+    TRY(prepare_view(renderer, drawing, err));
+    double start_s = clock_seconds();
+    bool codes = params->codes_suffice && params->antialias == 1 && renderer->engine->makes_codes;
     TRY(planes_make(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
-    forget_other_views(renderer, drawing->view);
-    if (!traced && params->method == RENDER_RASTER)
-        return rasterrender(drawing, &renderer->raster, frame, stats, err);
-    if (!traced)
-        return zbuffer_render(drawing, frame, stats, err);
-    if (is_field(renderer))
-        return fieldrender(drawing, &renderer->field, frame, stats, err);
-    return rayrender(drawing, frame, stats, err);
+    TRY(renderer->engine->rows(drawing, renderer->prepared, frame, err));
+    renderer->stats.trace_s += clock_seconds() - start_s;
+    return STATUS_OK;
 }
 
 /* The band with the neighbours that adaptive antialiasing looks at. */
@@ -181,14 +183,14 @@ Status renderer_rows(Renderer *renderer, const View *view, const Appearance *app
     assert(first >= 0 && rows > 0 && first + rows <= height && first % RENDER_BAND_STEP == 0);
     Frame made = {0};
     double start_cpu_s = clock_cpu_seconds();
-    TRY(prepare_caster(renderer, view, err));
-    const Drawing drawing = {.geometry = renderer->geometry,
-                             .view = view,
-                             .appearance = appearance,
-                             .params = &renderer->params,
-                             .caster = renderer->caster,
-                             .band = band_of(&renderer->params, height, first, rows)};
-    Status status = draw(renderer, &drawing, &made, err);
+    Drawing drawing = {.geometry = renderer->geometry,
+                       .view = view,
+                       .appearance = appearance,
+                       .params = &renderer->params,
+                       .band = band_of(&renderer->params, height, first, rows)};
+    Status status = prepare_caster(renderer, &drawing, err);
+    if (status == STATUS_OK)
+        status = draw(renderer, &drawing, &made, err);
     renderer->stats.cpu_s += clock_cpu_seconds() - start_cpu_s;
     renderer->stats.rays += (size_t)view->camera.width * (size_t)drawing.band.rows;
     if (status != STATUS_OK) {

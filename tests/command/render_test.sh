@@ -204,6 +204,23 @@ test_the_background_is_the_colour_asked_for() {
         fail "expected a black corner, got $(tail -c 3 black.ppm | od -A n -t u1)"
 }
 
+test_the_report_says_what_drew_the_picture() {
+    grow_tree 7
+    local engine options
+    while read -r engine options; do
+        run_ok corcast render tree.swc $options --size 21x17 --json report.json -o picture.ppm
+        expect_json report.json ".engine == \"$engine\""
+    done <<'END'
+trace --model rounded --shadows on
+raster --model rounded --method raster --shadows on
+trace --model rounded --method raster --ao 2
+zbuffer --model rounded --method zbuffer
+trace --model blob
+field --model isosurface
+trace --model isosurface --hits povray
+END
+}
+
 test_places_without_joints_are_counted_and_said() {
     run_ok corcast grow --terminals 600 --seed 3 --lambda 0 -o tree.swc
     run_ok corcast render tree.swc --model joined --size 60x60 --json report.json -o picture.png

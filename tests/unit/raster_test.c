@@ -621,8 +621,8 @@ static void boxes_hold_the_axes_of_vessels(void **state)
     for (int projection = 0; projection < 2; projection++) {
         Staged staged;
         stage(&staged, (Projection)projection);
-        RasterView view = rasterview_of_camera(&staged.scene.view.camera,
-                                               staged.scene.geometry.bounds, 0, HEIGHT, 2);
+        RasterView view =
+            rasterview_of_camera(&staged.scene.view.camera, staged.scene.geometry.bounds, 2);
         view.light = true;
         RasterBins *bins;
         assert_int_equal(rasterbins_new(&staged.scene.geometry, &view, 2, &bins, NULL), STATUS_OK);

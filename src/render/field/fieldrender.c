@@ -4,11 +4,25 @@
  * memory in proportion to its width only. */
 #include "render/field/fieldrender.h"
 
+#include "render/cast/caster.h"
+#include "render/field/fieldtiles.h"
 #include "render/light/shade.h"
 #include "render/light/sight.h"
 #include "render/tile/canvas.h"
 #include <stdlib.h>
 #include <string.h>
+
+/* The samples of a pass over the whole picture, and the vessels that they see. */
+typedef struct FieldPass {
+    double *columns, *rows; /* owned; of the grid */
+    SampleGrid grid;
+    FieldTiles *tiles; /* owned */
+} FieldPass;
+
+/* The centres of all pixels, and the further samples. */
+typedef struct FieldPrepared {
+    FieldPass center, further;
+} FieldPrepared;
 
 /* What a worker's further samples are kept in until a band is added up. */
 typedef struct FurtherRows {
@@ -18,8 +32,7 @@ typedef struct FurtherRows {
 
 typedef struct FieldPicture {
     Canvas canvas;
-    FieldTiles *tiles;                 /* of this pass over the whole picture, borrowed */
-    SampleGrid grid;                   /* likewise */
+    const FieldPass *pass;             /* borrowed */
     uint8_t (*shadowed)[TILE_SAMPLES]; /* worker by worker, one a light */
     FurtherRows *further;              /* one a worker */
 } FieldPicture;
@@ -33,8 +46,8 @@ static bool is_inside(const SeenTile *seen, int sample)
 static Ray sample_ray(const FieldPicture *picture, const SeenTile *seen, int sample)
 {
     return camera_ray(&picture->canvas.drawing->view->camera,
-                      picture->grid.columns[seen->column + tile_sample_x(sample)],
-                      picture->grid.rows[seen->row + tile_sample_y(sample)]);
+                      picture->pass->grid.columns[seen->column + tile_sample_x(sample)],
+                      picture->pass->grid.rows[seen->row + tile_sample_y(sample)]);
 }
 
 static Vec3 world_normal(const FieldPicture *picture, const SeenTile *seen, int sample)
@@ -74,7 +87,7 @@ static void color_samples(const FieldPicture *picture, int worker, const SeenTil
                           float color[3][TILE_SAMPLES])
 {
     const Drawing *drawing = picture->canvas.drawing;
-    const SampleGrid *grid = &picture->grid;
+    const SampleGrid *grid = &picture->pass->grid;
     const Sight sight = {drawing->view, drawing->appearance, drawing->params, drawing->caster};
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (!is_inside(seen, sample))
@@ -123,7 +136,8 @@ static void visit_center(const SeenTile *seen, int worker, void *context)
 static Status trace_centers(void *context, int row, int worker, Err *err)
 {
     FieldPicture *picture = context;
-    return fieldtiles_trace(picture->tiles, (size_t)row, worker, NULL, visit_center, picture, err);
+    return fieldtiles_trace(picture->pass->tiles, (size_t)row, worker, NULL, visit_center, picture,
+                            err);
 }
 
 /* Where the colours of a row of pixel tiles' further samples go. */
@@ -136,7 +150,7 @@ static void visit_further(const SeenTile *seen, int worker, void *context)
 {
     const FurtherVisit *visit = context;
     const FieldPicture *picture = visit->picture;
-    size_t width = (size_t)picture->grid.n_columns;
+    size_t width = (size_t)picture->pass->grid.n_columns;
     canvas_store(&picture->canvas, seen->n_columns, seen->n_rows, color_tile(picture, worker, seen),
                  picture->further[worker].colors +
                      3 * ((size_t)(seen->row - visit->first_row) * width + (size_t)seen->column),
@@ -161,7 +175,7 @@ static bool mark_wanted(const FieldPicture *picture, int tile_row, int end, uint
     int n = picture->canvas.more.side, width = picture->canvas.drawing->view->camera.width;
     int first = tile_row * TILE_SIDE / n, last = (tile_row * TILE_SIDE + TILE_SIDE - 1) / n;
     bool any = false;
-    memset(wanted, 0, fieldtiles_columns(picture->tiles));
+    memset(wanted, 0, fieldtiles_columns(picture->pass->tiles));
     for (int j = first; j <= last && j < end; j++)
         for (int i = 0; i < width; i++)
             if (wants_more(picture, i, j)) {
@@ -177,7 +191,7 @@ static bool mark_wanted(const FieldPicture *picture, int tile_row, int end, uint
 static void add_up(const FieldPicture *picture, const float *samples, int i, int j)
 {
     const Resampling *more = &picture->canvas.more;
-    size_t n = (size_t)more->side, width = (size_t)picture->grid.n_columns;
+    size_t n = (size_t)more->side, width = (size_t)picture->pass->grid.n_columns;
     float *value = &picture->canvas.frame->color.values[3 * canvas_pixel(&picture->canvas, i, j)];
     for (size_t c = 0; c < 3; c++) {
         float sum = value[c];
@@ -195,11 +209,11 @@ static Status trace_further(void *context, int row, int worker, Err *err)
     int n = picture->canvas.more.side, width = picture->canvas.drawing->view->camera.width;
     int end = end_row(picture, row), first = row * TILE_SIDE;
     FurtherVisit visit = {picture, first * n};
-    for (int i = row * n; i < (row + 1) * n && i < (int)fieldtiles_rows(picture->tiles); i++)
+    for (int i = row * n; i < (row + 1) * n && i < (int)fieldtiles_rows(picture->pass->tiles); i++)
         if (mark_wanted(picture, i, end, own->wanted))
-            TRY(fieldtiles_trace(picture->tiles, (size_t)i, worker, own->wanted, visit_further,
-                                 &visit, err));
-    size_t pixels = 3 * (size_t)picture->grid.n_columns * (size_t)n; /* of a row of pixels */
+            TRY(fieldtiles_trace(picture->pass->tiles, (size_t)i, worker, own->wanted,
+                                 visit_further, &visit, err));
+    size_t pixels = 3 * (size_t)picture->pass->grid.n_columns * (size_t)n; /* of a row of pixels */
     for (int j = first; j < end; j++)
         for (int i = 0; i < width; i++)
             if (wants_more(picture, i, j))
@@ -207,12 +221,14 @@ static Status trace_further(void *context, int row, int worker, Err *err)
     return STATUS_OK;
 }
 
+/* ---- the picture ----------------------------------------------------------------------------- */
+
 /* Makes a pass of `n` x `n` samples a pixel at the offsets given. */
-static Status prepare_pass(const FieldPicture *picture, int n, const double *offsets,
-                           FieldPass *pass, Err *err)
+static Status prepare_pass(const Drawing *drawing, int n, const double *offsets, FieldPass *pass,
+                           Err *err)
 {
-    const Canvas *canvas = &picture->canvas;
-    const Camera *camera = &canvas->drawing->view->camera;
+    const RenderParams *params = drawing->params;
+    const Camera *camera = &drawing->view->camera;
     int width = camera->width * n, height = camera->height * n;
     TRY(mem_calloc(&pass->columns, (size_t)width, sizeof *pass->columns, "columns", err));
     TRY(mem_calloc(&pass->rows, (size_t)height, sizeof *pass->rows, "rows", err));
@@ -221,10 +237,9 @@ static Status prepare_pass(const FieldPicture *picture, int n, const double *off
     for (int j = 0; j < height; j++)
         pass->rows[j] = j / n + offsets[j % n];
     pass->grid = (SampleGrid){pass->columns, pass->rows, width, height, 1.0 / n};
-    TRY(fieldtiles_new(canvas->drawing->geometry, camera, &pass->grid, NEAREST_SEEN_MM,
-                       canvas->workers, &pass->tiles, err));
-    fieldtiles_use_kernel(pass->tiles,
-                          fieldkernels[kernels_kind(canvas->drawing->params->kernels)]);
+    TRY(fieldtiles_new(drawing->geometry, camera, &pass->grid, NEAREST_SEEN_MM, params->threads,
+                       &pass->tiles, err));
+    fieldtiles_use_kernel(pass->tiles, fieldkernels[kernels_kind(params->kernels)]);
     return STATUS_OK;
 }
 
@@ -233,24 +248,33 @@ static void release_pass(FieldPass *pass)
     fieldtiles_free(pass->tiles);
     free(pass->columns);
     free(pass->rows);
-    *pass = (FieldPass){0};
 }
 
-void fieldprepared_release(FieldPrepared *prepared)
+static void release_prepared(void *prepared)
 {
-    release_pass(&prepared->center);
-    release_pass(&prepared->further);
+    FieldPrepared *field = prepared;
+    release_pass(&field->center);
+    release_pass(&field->further);
+    free(field);
 }
 
-/* Makes the pass its picture's, and itself unless that is done. */
-static Status use_pass(FieldPicture *picture, int n, const double *offsets, FieldPass *pass,
-                       Err *err)
+static Status prepare(const Drawing *drawing, void **prepared, Err *err)
 {
-    Status status = pass->tiles ? STATUS_OK : prepare_pass(picture, n, offsets, pass, err);
+    Status status;
+    const double center = 0;
+    Resampling more = {0};
+    FieldPrepared *field;
+    TRY(mem_calloc(&field, 1, sizeof *field, "tiles", err));
+    TRY_GOTO(prepare_pass(drawing, 1, &center, &field->center, err));
+    if (drawing->params->want_color)
+        TRY_GOTO(resampling_init(drawing->params->antialias, &more, err));
+    if (more.side > 0)
+        TRY_GOTO(prepare_pass(drawing, more.side, more.offsets, &field->further, err));
+    *prepared = field;
+done:
+    resampling_release(&more);
     if (status != STATUS_OK)
-        release_pass(pass);
-    picture->tiles = pass->tiles;
-    picture->grid = pass->grid;
+        release_prepared(field);
     return status;
 }
 
@@ -260,23 +284,19 @@ static Status make_further_rows(FieldPicture *picture, Err *err)
     TRY(mem_calloc(&picture->further, workers, sizeof *picture->further, "bands", err));
     for (size_t i = 0; i < workers; i++) {
         FurtherRows *own = &picture->further[i];
-        TRY(mem_calloc(&own->colors, (size_t)picture->grid.n_columns * TILE_SIDE * n,
+        TRY(mem_calloc(&own->colors, (size_t)picture->pass->grid.n_columns * TILE_SIDE * n,
                        3 * sizeof *own->colors, "bands", err));
-        TRY(mem_calloc(&own->wanted, fieldtiles_columns(picture->tiles), 1, "bands", err));
+        TRY(mem_calloc(&own->wanted, fieldtiles_columns(picture->pass->tiles), 1, "bands", err));
     }
     return STATUS_OK;
 }
 
 /* The second pass, over all pixels or those that differ from their neighbours. */
-static Status antialias(FieldPicture *picture, FieldPass *pass, double *prepared_s, Err *err)
+static Status antialias(FieldPicture *picture, Err *err)
 {
-    Canvas *canvas = &picture->canvas;
-    TRY(canvas_choose(canvas, err));
-    double start_s = clock_seconds();
-    TRY(use_pass(picture, canvas->more.side, canvas->more.offsets, pass, err));
+    TRY(canvas_choose(&picture->canvas, err));
     TRY(make_further_rows(picture, err));
-    *prepared_s += clock_seconds() - start_s;
-    return canvas_pass(canvas, true, trace_further, picture, err);
+    return canvas_pass(&picture->canvas, true, trace_further, picture, err);
 }
 
 static void release(FieldPicture *picture)
@@ -290,27 +310,40 @@ static void release(FieldPicture *picture)
     canvas_release(&picture->canvas);
 }
 
-Status fieldrender(const Drawing *drawing, FieldPrepared *prepared, Frame *frame,
-                   RenderStats *stats, Err *err)
+static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Err *err)
 {
     Status status;
-    FieldPicture picture = {0};
+    const FieldPrepared *field = prepared;
+    FieldPicture picture = {.pass = &field->center};
     Canvas *canvas = &picture.canvas;
-    const double center = 0;
     const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
-    double start_s = clock_seconds();
     TRY_GOTO(canvas_init(drawing, frame, &eye, canvas, err));
     canvas->wholly_colored = sight_is_needed(drawing->view, drawing->params);
     TRY_GOTO(mem_calloc(&picture.shadowed, (size_t)canvas->workers * drawing->view->n_lights,
                         sizeof *picture.shadowed, "lights", err));
-    TRY_GOTO(use_pass(&picture, 1, &center, &prepared->center, err));
-    double prepared_s = clock_seconds() - start_s;
     TRY_GOTO(canvas_pass(canvas, false, trace_centers, &picture, err));
+    picture.pass = &field->further;
     if (canvas->more.side > 0)
-        TRY_GOTO(antialias(&picture, &prepared->further, &prepared_s, err));
-    stats->prepare_s += prepared_s;
-    stats->trace_s += clock_seconds() - start_s - prepared_s;
+        TRY_GOTO(antialias(&picture, err));
 done:
     release(&picture);
     return status;
 }
+
+static bool can_draw(const Drawing *drawing)
+{
+    return drawing->geometry->model == SCENE_ISOSURFACE && !drawing->params->povray_cells;
+}
+
+static bool needs_rays(const Drawing *drawing)
+{
+    return drawing->params->shadows || drawing->params->occlusion > 0;
+}
+
+const Engine field_engine = {.name = "field",
+                             .makes_codes = true,
+                             .can = can_draw,
+                             .needs_rays = needs_rays,
+                             .prepare = prepare,
+                             .rows = draw_rows,
+                             .free = release_prepared};

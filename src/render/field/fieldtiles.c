@@ -40,8 +40,8 @@ struct FieldTiles {
     Viewpoint eye;
     double width, height; /* of the picture, in the camera's plane */
     double z_min;
-    double *x, *y; /* of the grid's columns and rows, in the camera's plane */
-    double step_x, step_y;
+    double *x, *y;       /* of the grid's columns and rows, in the camera's plane */
+    double per_x, per_y; /* samples in a unit there, per_y below 0 */
     TilePlaces *tile_x, *tile_y;
     int tile_columns, tile_rows;
     FrameSegment *segments;
@@ -52,17 +52,6 @@ struct FieldTiles {
     int workers;
 };
 
-/* What a segment's ends, where they are at these coordinates in one direction of the camera's plane
- * and at these depths, and all between them cover there. In perspective it must be in front of the
- * camera. */
-static Interval capsule_shadow(const FieldTiles *tiles, double a, double a_z, double b, double b_z,
-                               double reach)
-{
-    if (!tiles->eye.perspective)
-        return interval_union((Interval){a - reach, a + reach}, (Interval){b - reach, b + reach});
-    return interval_union(ball_shadow(a, a_z, reach), ball_shadow(b, b_z, reach));
-}
-
 /* 1: all in front of the camera, or orthographic; -1: all behind; 0: beside it. */
 static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
 {
@@ -72,33 +61,16 @@ static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
     return near > segment->reach * (1 + 1e-9) ? 1 : far < -segment->reach ? -1 : 0;
 }
 
-/* The samples, and then the tiles, within a range of the camera's plane, one of whose directions
- * has `count` samples from `first` on in steps of `step`. A thousandth of a step covers
- * rounding. */
-static TileSpan tiles_within(Interval range, double first, double step, int count)
-{
-    double from = (range.low - first) / step, to = (range.high - first) / step;
-    double low = max_of(min_of(from, to) - 1e-3, 0);
-    double high = max_of(from, to) + 1e-3;
-    if (!(low <= count - 1) || !(high >= low))
-        return (TileSpan){1, 0};
-    int begin = (int)low, end = (int)min_of(high, count - 1);
-    begin += begin < low; /* rounds up */
-    if (begin > end)
-        return (TileSpan){1, 0};
-    return (TileSpan){begin / TILE_SIDE, end / TILE_SIDE};
-}
-
 static TileSpan rows_of(const FieldTiles *tiles, const FrameSegment *segment)
 {
     int side = side_of_camera(tiles, segment);
     if (side < 0)
-        return (TileSpan){1, 0};
+        return NOWHERE;
     Interval range = {-HUGE_VAL, HUGE_VAL};
     if (side > 0)
-        range = capsule_shadow(tiles, segment->a.y, segment->a.z, segment->b.y, segment->b.z,
-                               segment->reach);
-    return tiles_within(range, tiles->y[0], tiles->step_y, tiles->grid.n_rows);
+        range = capsule_shadow(tiles->eye.perspective, segment->a.y, segment->a.z, segment->b.y,
+                               segment->b.z, segment->reach);
+    return tiles_within(samples_within(range, tiles->y[0], tiles->per_y), 0, tiles->grid.n_rows);
 }
 
 enum { CHUNK = 2048 };
@@ -167,8 +139,8 @@ static void place_grid(FieldTiles *tiles)
         tiles->x[i] = ((grid->columns[i] + 0.5) / camera->width - 0.5) * tiles->width;
     for (int j = 0; j < grid->n_rows; j++)
         tiles->y[j] = row_height(tiles, grid->rows[j]);
-    tiles->step_x = grid->spacing / camera->width * tiles->width;
-    tiles->step_y = -grid->spacing / camera->height * tiles->height;
+    tiles->per_x = camera->width / (grid->spacing * tiles->width);
+    tiles->per_y = -camera->height / (grid->spacing * tiles->height);
 }
 
 static void place_tiles(const double *places, int count, int (*place_of)(int sample),
@@ -304,12 +276,13 @@ static TileSpan columns_of(const FieldTiles *tiles, const FrameSegment *segment,
         clip_part(heights[plane][0] + segment->reach, heights[plane][1] + segment->reach, &from,
                   &to);
     if (from > to)
-        return (TileSpan){1, 0};
+        return NOWHERE;
     Vec3 span = vec3_sub(segment->b, segment->a);
     Vec3 first = vec3_add_scaled(segment->a, span, from);
     Vec3 last = vec3_add_scaled(segment->a, span, to);
-    Interval range = capsule_shadow(tiles, first.x, first.z, last.x, last.z, segment->reach);
-    return tiles_within(range, tiles->x[0], tiles->step_x, tiles->grid.n_columns);
+    Interval range =
+        capsule_shadow(tiles->eye.perspective, first.x, first.z, last.x, last.z, segment->reach);
+    return tiles_within(samples_within(range, tiles->x[0], tiles->per_x), 0, tiles->grid.n_columns);
 }
 
 /* Fills offsets and lists of the row, and makes room for the terms of its longest. */

@@ -88,24 +88,31 @@ static void resample_row(size_t row, int worker, void *context)
     }
 }
 
-Status rayrender(const Drawing *drawing, Frame *frame, RenderStats *stats, Err *err)
+static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Err *err)
 {
+    (void)prepared;
     const RenderParams *params = drawing->params;
     const Band *band = &drawing->band;
     RayPicture picture = {.drawing = drawing,
                           .sight = {drawing->view, drawing->appearance, params, drawing->caster},
                           .frame = frame};
-    int threads = params->threads > 0 ? params->threads : threads_available();
-    double start_s = clock_seconds();
     Status status =
         resampling_init(frame->color.values ? params->antialias : 1, &picture.more, err);
     if (status == STATUS_OK)
-        threads_for((size_t)band->rows, threads, render_row, &picture);
+        threads_for((size_t)band->rows, params->threads, render_row, &picture);
     if (status == STATUS_OK && picture.more.side > 0)
-        status = resampling_choose(&picture.more, params, band, &frame->color, threads, err);
+        status =
+            resampling_choose(&picture.more, params, band, &frame->color, params->threads, err);
     if (status == STATUS_OK && picture.more.side > 0)
-        threads_for((size_t)band->rows, threads, resample_row, &picture);
+        threads_for((size_t)band->rows, params->threads, resample_row, &picture);
     resampling_release(&picture.more);
-    stats->trace_s += clock_seconds() - start_s;
     return status;
 }
+
+static bool always(const Drawing *drawing)
+{
+    (void)drawing;
+    return true;
+}
+
+const Engine ray_engine = {.name = "trace", .can = always, .needs_rays = always, .rows = draw_rows};

@@ -1,12 +1,9 @@
-/* Pictures ray by ray. */
+/* Pictures ray by ray: of any model, with all that a view may have. */
 #ifndef CORCAST_RENDER_RAYRENDER_H
 #define CORCAST_RENDER_RAYRENDER_H
 
-#include "render/cast/caster.h"
-#include "render/job.h"
+#include "render/engine.h"
 
-/* Draws the band into planes that are there, one worker a row at a time, with the workspaces of the
- * drawing's caster for as many workers, and adds the seconds taken to *stats. STATUS_MEMORY. */
-MUST_CHECK Status rayrender(const Drawing *drawing, Frame *frame, RenderStats *stats, Err *err);
+extern const Engine ray_engine;
 
 #endif

@@ -2,31 +2,7 @@
  * slab is seen within a range of columns; in few tiles, the whole of it serves all rows. */
 #include "render/raster/rasterreach.h"
 
-static const double slack_pixels = 1e-3; /* covers rounding where tiles are told apart */
-
-static const TileSpan nowhere = {1, 0};
 static const Interval everywhere = {-HUGE_VAL, HUGE_VAL}, nothing = {HUGE_VAL, -HUGE_VAL};
-
-/* A range as pixels, whose middles are whole numbers; pixel 0 is at `first`, and `per` pixels
- * follow in a unit. */
-static Interval pixels_within(Interval range, double first, double per)
-{
-    double from = (range.low - first) * per, to = (range.high - first) * per;
-    return (Interval){min_of(from, to) - slack_pixels, max_of(from, to) + slack_pixels};
-}
-
-/* The tiles of `count` pixels from pixel `least` on that samples in a range of pixels lie in. */
-static TileSpan tiles_within(Interval pixels, double stray, int least, int count)
-{
-    double low = max_of(pixels.low - stray, least);
-    double high = min_of(pixels.high + stray, least + count - 1);
-    if (!(low <= high))
-        return nowhere;
-    int first_pixel = (int)low - least, last_pixel = (int)high - least;
-    first_pixel += first_pixel + least < low;
-    return first_pixel <= last_pixel ? (TileSpan){first_pixel / TILE_SIDE, last_pixel / TILE_SIDE}
-                                     : nowhere;
-}
 
 static Vec3 item_axis(const RasterItem *item)
 {
@@ -39,17 +15,12 @@ static Vec3 item_point(const RasterItem *item, double along)
     return vec3_add_scaled(vec3(item->x, item->y, item->z), item_axis(item), along);
 }
 
-static Interval capsule_shadow(double c0, double z0, double c1, double z1, double radius)
-{
-    return interval_union(ball_shadow(c0, z0, radius), ball_shadow(c1, z1, radius));
-}
-
 RasterSlab rasterslab_of(const RasterView *view, size_t row)
 {
-    int first = view->first + (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
+    int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
     RasterSlab slab;
-    slab.y[0] = view->top + (last + view->stray + slack_pixels) * view->step_y;
-    slab.y[1] = view->top + (first - view->stray - slack_pixels) * view->step_y;
+    slab.y[0] = view->top + (last + view->stray + SLACK_PIXELS) * view->step_y;
+    slab.y[1] = view->top + (first - view->stray - SLACK_PIXELS) * view->step_y;
     for (int i = 0; i < 2; i++)
         slab.per_length[i] = 1 / sqrt(1 + slab.y[i] * slab.y[i]);
     return slab;
@@ -86,12 +57,12 @@ static Interval perspective_range(const RasterItem *item, const RasterSlab *slab
     if (from > to)
         return nothing;
     Vec3 first = vec3_add_scaled(a, span, from), last = vec3_add_scaled(a, span, to);
-    return capsule_shadow(first.x, first.z, last.x, last.z, radius);
+    return capsule_shadow(true, first.x, first.z, last.x, last.z, radius);
 }
 
 static TileSpan columns_of(const RasterView *view, Interval across)
 {
-    return tiles_within(across, view->stray, 0, view->columns);
+    return tiles_within(across, view->stray, view->columns);
 }
 
 /* ---- boxes ----------------------------------------------------------------------------------- */
@@ -123,10 +94,10 @@ static inline Interval whole_pixels(const RasterView *view, const RasterItem *it
         if (item_is_close(item))
             return everywhere;
         Vec3 a = item_point(item, -half), b = item_point(item, half);
-        range = capsule_shadow(across ? a.x : a.y, a.z, across ? b.x : b.y, b.z, radius);
+        range = capsule_shadow(true, across ? a.x : a.y, a.z, across ? b.x : b.y, b.z, radius);
     }
-    return across ? pixels_within(range, view->left, view->per_x)
-                  : pixels_within(range, view->top, view->per_y);
+    return across ? samples_within(range, view->left, view->per_x)
+                  : samples_within(range, view->top, view->per_y);
 }
 
 static bool is_behind(const RasterItem *item)
@@ -136,15 +107,13 @@ static bool is_behind(const RasterItem *item)
 
 void rasterreach_set(const RasterView *view, RasterItem *item)
 {
-    TileSpan rows = nowhere, columns = nowhere;
+    TileSpan rows = NOWHERE, columns = NOWHERE;
     if (!is_behind(item)) {
         Interval across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
-        rows = tiles_within(down, view->stray, view->first, view->rows);
+        rows = tiles_within(down, view->stray, view->rows);
         columns = columns_of(view, across);
-        Interval from_first = {down.low - view->first, down.high - view->first};
         if (view->light)
-            item->box =
-                RASTERBOX_GUARDS | parts_of(across, columns) | parts_of(from_first, rows) << 16;
+            item->box = RASTERBOX_GUARDS | parts_of(across, columns) | parts_of(down, rows) << 16;
     }
     item->rows = rastertiles_of(rows);
     item->columns = rastertiles_of(columns);
@@ -169,8 +138,8 @@ TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int 
     Interval range =
         view->eye.perspective ? perspective_range(item, slab) : parallel_range(item, slab);
     if (range.low > range.high)
-        return nowhere;
-    range = pixels_within(range, view->left, view->per_x);
+        return NOWHERE;
+    range = samples_within(range, view->left, view->per_x);
     columns = columns_of(view, range);
     if (view->light)
         *box = (*box & ~(RASTERBOX_HIGH_X | RASTERBOX_LOW_X)) | parts_of(range, columns);

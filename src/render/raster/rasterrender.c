@@ -6,11 +6,25 @@
  * colours of neighbours, and so a second round. */
 #include "render/raster/rasterrender.h"
 
+#include "render/cast/caster.h"
 #include "render/light/shade.h"
+#include "render/light/sight.h"
 #include "render/raster/rasterkernels.h"
+#include "render/raster/rastershadow.h"
+#include "render/raster/rasterview.h"
 #include "render/tile/canvas.h"
 #include <stdlib.h>
 #include <string.h>
+
+/* What the camera and the lights of a view see. */
+typedef struct RasterPrepared {
+    RasterBins *bins;       /* owned */
+    RasterShadow **shadows; /* owned; one a light, NULL where it casts none, or rays do; NULL: no
+                             * shadows */
+    size_t n_lights;
+    RasterGrid center;
+    RasterGrid *further; /* owned; n x n, row by row */
+} RasterPrepared;
 
 /* A tile and what it sees. */
 typedef struct Sheet {
@@ -34,12 +48,9 @@ typedef struct Batch {
 
 typedef struct RasterPicture {
     Canvas canvas;
-    const RasterBins *bins; /* of the whole picture */
+    const RasterPrepared *prepared; /* borrowed */
     const RasterKernels *kernels;
-    RasterGrid center;
-    RasterGrid *further;    /* n x n, row by row */
-    RasterShadow **shadows; /* one a light, of RasterPrepared; NULL without shadows */
-    bool chooses;           /* only some pixels get further samples, in a second round */
+    bool chooses; /* only some pixels get further samples, in a second round */
     bool second_round;
     Batch *batches; /* one a worker */
     int batch_size; /* tiles */
@@ -146,7 +157,7 @@ static void see_batch(const RasterPicture *picture, const RasterGrid *grid, int 
         if (sheet->visible && (picture->canvas.needs_places || picture->canvas.wants_geometry))
             measure_depths(sheet);
     }
-    if (picture->shadows)
+    if (picture->prepared->shadows)
         find_shadows(picture, worker, batch);
 }
 
@@ -155,7 +166,8 @@ static float (*color_sheet(const RasterPicture *picture, int worker,
                            const Sheet *sheet))[TILE_SAMPLES]
 {
     const uint8_t(*shadowed)[TILE_SAMPLES] = (const uint8_t(*)[TILE_SAMPLES])sheet->shadowed;
-    return canvas_shade(&picture->canvas, worker, &sheet->seen, picture->shadows ? shadowed : NULL);
+    return canvas_shade(&picture->canvas, worker, &sheet->seen,
+                        picture->prepared->shadows ? shadowed : NULL);
 }
 
 static void draw_sheet(const RasterPicture *picture, int worker, Sheet *sheet)
@@ -230,7 +242,7 @@ static void resample_batch(const RasterPicture *picture, int worker, Batch *batc
     for (int i = 0; i < batch->n_sheets; i++)
         begin_sum(canvas, &batch->sheets[i]);
     for (int pass = 0; pass < canvas->more.side * canvas->more.side; pass++) {
-        see_batch(picture, &picture->further[pass], worker, batch);
+        see_batch(picture, &picture->prepared->further[pass], worker, batch);
         for (int i = 0; i < batch->n_sheets; i++)
             add_to_sum(picture, worker, &batch->sheets[i]);
     }
@@ -243,7 +255,7 @@ static void resample_batch(const RasterPicture *picture, int worker, Batch *batc
 static void draw_batch(const RasterPicture *picture, int worker, Batch *batch)
 {
     if (!picture->second_round) {
-        see_batch(picture, &picture->center, worker, batch);
+        see_batch(picture, &picture->prepared->center, worker, batch);
         for (int i = 0; i < batch->n_sheets; i++)
             draw_sheet(picture, worker, &batch->sheets[i]);
     }
@@ -269,7 +281,7 @@ static void begin_sheet(const RasterPicture *picture, const RasterTile *tile, in
 static Status draw_row(void *context, int row, int worker, Err *err)
 {
     const RasterPicture *picture = context;
-    const RasterBins *bins = picture->bins;
+    const RasterBins *bins = picture->prepared->bins;
     Batch *batch = &picture->batches[worker];
     TRY(rasterbins_list(bins, (size_t)row, &batch->row, err));
     const uint32_t *offsets = batch->row.offsets;
@@ -279,7 +291,7 @@ static Status draw_row(void *context, int row, int worker, Err *err)
             continue;
         Sheet *sheet = &batch->sheets[batch->n_sheets];
         RasterTile tile = rasterbins_tile(bins, column, row, batch->row.lists + offsets[column], n,
-                                          &picture->center);
+                                          &picture->prepared->center);
         begin_sheet(picture, &tile, column * TILE_SIDE, row * TILE_SIDE, sheet);
         if (picture->second_round && !any_wants_more(&picture->canvas, &sheet->seen))
             continue;
@@ -292,61 +304,83 @@ static Status draw_row(void *context, int row, int worker, Err *err)
 
 /* ---- the picture ----------------------------------------------------------------------------- */
 
-static Status prepare(const Drawing *drawing, const RasterView *view, bool shadows, int workers,
-                      RasterPrepared *prepared, Err *err)
+static void release_prepared(void *prepared)
 {
-    size_t n_lights = drawing->view->n_lights;
-    if (shadows) {
-        TRY(mem_calloc(&prepared->shadows, n_lights, sizeof *prepared->shadows, "lights", err));
-        prepared->n_lights = n_lights;
-        TRY(rastershadows_new(drawing->geometry, drawing->view, view, workers, prepared->shadows,
-                              err));
-    }
-    return rasterbins_new(drawing->geometry, view, workers, &prepared->bins, err);
+    RasterPrepared *raster = prepared;
+    for (size_t i = 0; raster->shadows && i < raster->n_lights; i++)
+        rastershadow_free(raster->shadows[i]);
+    free(raster->shadows);
+    rasterbins_free(raster->bins);
+    free(raster->further);
+    free(raster);
 }
 
-void rasterprepared_release(RasterPrepared *prepared)
+static Status prepare_samples(const RenderParams *params, const RasterView *view,
+                              RasterPrepared *raster, Err *err)
 {
-    for (size_t i = 0; i < prepared->n_lights; i++)
-        rastershadow_free(prepared->shadows[i]);
-    free(prepared->shadows);
-    rasterbins_free(prepared->bins);
-    *prepared = (RasterPrepared){0};
+    Resampling more;
+    Status status = resampling_init(params->antialias, &more, err);
+    int n = more.side;
+    raster->center = rastergrid_make(view, 0, 0);
+    if (status == STATUS_OK)
+        status = mem_calloc(&raster->further, (size_t)n * (size_t)n, sizeof *raster->further,
+                            "samples", err);
+    for (int i = 0; status == STATUS_OK && i < n * n; i++)
+        raster->further[i] = rastergrid_make(view, more.offsets[i % n], more.offsets[i / n]);
+    resampling_release(&more);
+    return status;
 }
 
-static Status prepare_samples(RasterPicture *picture, const RasterView *view, Err *err)
+static Status prepare_shadows(const Drawing *drawing, const RasterView *view,
+                              RasterPrepared *raster, Err *err)
 {
-    const Resampling *more = &picture->canvas.more;
-    int n = more->side;
-    picture->center = rastergrid_make(view, 0, 0);
-    TRY(mem_calloc(&picture->further, (size_t)n * (size_t)n, sizeof *picture->further, "samples",
-                   err));
-    for (int i = 0; i < n * n; i++)
-        picture->further[i] = rastergrid_make(view, more->offsets[i % n], more->offsets[i / n]);
-    return STATUS_OK;
+    size_t n = raster->n_lights = drawing->view->n_lights;
+    TRY(mem_calloc(&raster->shadows, n, sizeof *raster->shadows, "lights", err));
+    return rastershadows_new(drawing->geometry, drawing->view, view, drawing->params->threads,
+                             raster->shadows, err);
 }
 
-static Status prepare_batch(const RasterPicture *picture, Batch *batch, Err *err)
+static Status prepare(const Drawing *drawing, void **prepared, Err *err)
 {
+    Status status;
+    const RenderParams *params = drawing->params;
+    RasterPrepared *raster;
+    RasterView view =
+        rasterview_of_camera(&drawing->view->camera, drawing->geometry->bounds, params->antialias);
+    TRY(mem_calloc(&raster, 1, sizeof *raster, "tiles", err));
+    TRY_GOTO(prepare_samples(params, &view, raster, err));
+    if (params->shadows && params->want_color)
+        TRY_GOTO(prepare_shadows(drawing, &view, raster, err));
+    TRY_GOTO(rasterbins_new(drawing->geometry, &view, params->threads, &raster->bins, err));
+    *prepared = raster;
+done:
+    if (status != STATUS_OK)
+        release_prepared(raster);
+    return status;
+}
+
+static Status make_batch(const RasterPicture *picture, Batch *batch, Err *err)
+{
+    RasterShadow *const *shadows = picture->prepared->shadows;
     size_t n = (size_t)picture->batch_size, n_lights = picture->canvas.drawing->view->n_lights;
     TRY(mem_calloc(&batch->sheets, n, sizeof *batch->sheets, "tiles", err));
     TRY(mem_calloc(&batch->queues, n_lights, sizeof *batch->queues, "lights", err));
     TRY(mem_calloc(&batch->shadowed, n * n_lights, sizeof *batch->shadowed, "lights", err));
     for (size_t i = 0; i < n; i++)
         batch->sheets[i].shadowed = batch->shadowed + i * n_lights;
-    for (size_t i = 0; picture->shadows && i < n_lights; i++)
-        if (picture->shadows[i])
-            TRY(rasterqueue_new(picture->shadows[i], &batch->queues[i], err));
+    for (size_t i = 0; shadows && i < n_lights; i++)
+        if (shadows[i])
+            TRY(rasterqueue_new(shadows[i], &batch->queues[i], err));
     return STATUS_OK;
 }
 
-static Status prepare_batches(RasterPicture *picture, Err *err)
+static Status make_batches(RasterPicture *picture, Err *err)
 {
     int workers = picture->canvas.workers;
-    picture->batch_size = picture->shadows ? RASTER_BATCH : 1;
+    picture->batch_size = picture->prepared->shadows ? RASTER_BATCH : 1;
     TRY(mem_calloc(&picture->batches, (size_t)workers, sizeof *picture->batches, "canvases", err));
     for (int i = 0; i < workers; i++)
-        TRY(prepare_batch(picture, &picture->batches[i], err));
+        TRY(make_batch(picture, &picture->batches[i], err));
     return STATUS_OK;
 }
 
@@ -363,44 +397,47 @@ static void release(RasterPicture *picture)
         free(batch->queues);
     }
     free(picture->batches);
-    free(picture->further);
     canvas_release(&picture->canvas);
 }
 
-Status rasterrender(const Drawing *drawing, RasterPrepared *prepared, Frame *frame,
-                    RenderStats *stats, Err *err)
+static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Err *err)
 {
     Status status;
     const RenderParams *params = drawing->params;
-    const Camera *camera = &drawing->view->camera;
-    RasterPicture picture = {.kernels = rasterkernels[kernels_kind(params->kernels)],
+    RasterPicture picture = {.prepared = prepared,
+                             .kernels = rasterkernels[kernels_kind(params->kernels)],
                              .chooses = params->antialias_threshold > 0};
     Canvas *canvas = &picture.canvas;
-    RasterView view = rasterview_of_camera(camera, drawing->geometry->bounds, 0, camera->height,
-                                           params->antialias);
-    double start_s = clock_seconds();
-    TRY_GOTO(canvas_init(drawing, frame, &view.eye, canvas, err));
+    TRY_GOTO(canvas_init(drawing, frame, &picture.prepared->bins->view.eye, canvas, err));
     if (!picture.chooses)
         canvas_blank_is_mean(canvas);
-    TRY_GOTO(prepare_samples(&picture, &view, err));
-    if (!prepared->bins)
-        TRY_GOTO(prepare(drawing, &view, params->shadows && canvas->wants_color, canvas->workers,
-                         prepared, err));
-    picture.bins = prepared->bins;
-    picture.shadows = prepared->shadows;
-    TRY_GOTO(prepare_batches(&picture, err));
-    double prepared_s = clock_seconds() - start_s;
+    TRY_GOTO(make_batches(&picture, err));
     TRY_GOTO(canvas_pass(canvas, false, draw_row, &picture, err));
     if (canvas->more.side > 0 && picture.chooses) {
         TRY_GOTO(canvas_choose(canvas, err));
         picture.second_round = true;
         TRY_GOTO(canvas_pass(canvas, true, draw_row, &picture, err));
     }
-    stats->prepare_s += prepared_s;
-    stats->trace_s += clock_seconds() - start_s - prepared_s;
 done:
     release(&picture);
-    if (status != STATUS_OK)
-        rasterprepared_release(prepared);
     return status;
 }
+
+static bool can_draw(const Drawing *drawing)
+{
+    return drawing->geometry->n_primitives > 0 && drawing->params->method == RENDER_RASTER &&
+           !sight_is_needed(drawing->view, drawing->params);
+}
+
+static bool needs_rays(const Drawing *drawing)
+{
+    return drawing->params->shadows && rastershadows_need_rays(drawing->geometry, drawing->view);
+}
+
+const Engine raster_engine = {.name = "raster",
+                              .makes_codes = true,
+                              .can = can_draw,
+                              .needs_rays = needs_rays,
+                              .prepare = prepare,
+                              .rows = draw_rows,
+                              .free = release_prepared};

@@ -14,8 +14,7 @@ enum { LEAST_CHUNK = 1 << 16, MOST_CHUNKS = 64 };
 enum { CACHE_LINE = sizeof(RasterItem) };
 _Static_assert(CACHE_LINE == 64, "an item fills a line");
 
-RasterView rasterview_of_camera(const Camera *camera, Box bounds, int first, int rows,
-                                int antialias)
+RasterView rasterview_of_camera(const Camera *camera, Box bounds, int antialias)
 {
     double width = vec3_length(camera->right), height = vec3_length(camera->up);
     double near, far;
@@ -26,8 +25,7 @@ RasterView rasterview_of_camera(const Camera *camera, Box bounds, int first, int
                         .step_x = width / camera->width,
                         .step_y = -height / camera->height,
                         .columns = camera->width,
-                        .rows = rows,
-                        .first = first,
+                        .rows = camera->height,
                         .stray = antialias > 1 ? 0.5 : 0,
                         .z_middle = (near + far) / 2};
 }
@@ -300,7 +298,7 @@ RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const ui
                         .grid = grid,
                         .perspective = view->eye.perspective,
                         .x = view->left + (column * TILE_SIDE + middle) * view->step_x,
-                        .y = view->top + (view->first + row * TILE_SIDE + middle) * view->step_y,
+                        .y = view->top + (row * TILE_SIDE + middle) * view->step_y,
                         .z_middle = view->z_middle};
 }
 

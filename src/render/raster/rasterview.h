@@ -14,16 +14,13 @@ typedef struct RasterView {
     double step_x, step_y; /* from pixel to pixel, to the right and down: above and below 0 */
     double per_x, per_y;   /* 1 / step, set by rasterbins_new */
     int columns, rows;     /* pixels */
-    int first;             /* pixels above the first row, a multiple of TILE_SIDE */
     double stray;          /* how far samples lie off the middles of their pixels, in pixels */
     double z_middle;       /* depths in single precision are relative to it, mm */
     bool light; /* bins shall have boxes and, of joints, hulls alone: few are looked at */
 } RasterView;
 
-/* That of a camera, rows from `first` on, for what is in `bounds`; `antialias` as in
- * RenderParams. */
-RasterView rasterview_of_camera(const Camera *camera, Box bounds, int first, int rows,
-                                int antialias);
+/* That of a camera, for what is in `bounds`; `antialias` as in RenderParams. */
+RasterView rasterview_of_camera(const Camera *camera, Box bounds, int antialias);
 
 /* The line of sight at a point of the view's plane, its direction a unit vector. */
 Ray rasterview_ray(const RasterView *view, double x, double y);

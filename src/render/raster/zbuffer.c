@@ -9,6 +9,7 @@
 #include "render/raster/zbuffer.h"
 
 #include "render/light/shade.h"
+#include "render/light/sight.h"
 #include "render/planes.h"
 #include "render/raster/rasterview.h"
 #include <stdlib.h>
@@ -25,7 +26,7 @@ typedef struct Point {
 typedef struct Buffers {
     const Drawing *drawing;
     Frame *frame;
-    RasterBins *bins;
+    const RasterBins *bins;
     Point **points; /* one buffer a worker */
 } Buffers;
 
@@ -217,23 +218,27 @@ static void finish_pixel(const Buffers *buffers, const Point *point, int i, int 
     planes_store_color(frame, pixel, color);
 }
 
-static void draw_row(size_t row, int worker, void *context)
+static void draw_row(size_t number, int worker, void *context)
 {
     const Buffers *buffers = context;
+    const Drawing *drawing = buffers->drawing;
     const RasterBins *bins = buffers->bins;
     const RasterView *view = &bins->view;
     Point *points = buffers->points[worker];
+    int first = drawing->band.first + (int)number * TILE_SIDE;
+    size_t row = (size_t)first / TILE_SIDE;
     if (worker == 0)
-        band_progress(&buffers->drawing->band, buffers->drawing->params,
-                      buffers->drawing->view->camera.height, false, (double)row / bins->tile_rows);
+        band_progress(&drawing->band, drawing->params, view->rows, false,
+                      (double)number * TILE_SIDE / drawing->band.rows);
     for (int i = 0; i < TILE_SIDE * view->columns; i++)
         points[i].z = HUGE_VAL;
-    Brush brush = {.view = view, .points = points, .row = view->first + (int)row * TILE_SIDE};
+    Brush brush = {.view = view, .points = points, .row = first};
     for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++)
         draw_primitive(buffers, &bins->items[bins->row_items[i]], bins->row_items[i], &brush);
-    for (int j = 0; j < TILE_SIDE && (int)row * TILE_SIDE + j < view->rows; j++)
+    for (int j = 0; j < tile_extent(view->rows - first); j++)
         for (int i = 0; i < view->columns; i++)
-            finish_pixel(buffers, &points[j * view->columns + i], i, (int)row * TILE_SIDE + j);
+            finish_pixel(buffers, &points[j * view->columns + i], i,
+                         first - drawing->band.first + j);
 }
 
 static Status check_outside(const RasterBins *bins, Err *err)
@@ -248,31 +253,58 @@ static Status check_outside(const RasterBins *bins, Err *err)
     return STATUS_OK;
 }
 
-Status zbuffer_render(const Drawing *drawing, Frame *frame, RenderStats *stats, Err *err)
+static void release_bins(void *prepared)
+{
+    rasterbins_free(prepared);
+}
+
+static Status prepare(const Drawing *drawing, void **prepared, Err *err)
+{
+    RasterBins *bins;
+    /* Points up to half a pixel off are caught. */
+    RasterView view = rasterview_of_camera(&drawing->view->camera, drawing->geometry->bounds, 2);
+    TRY(rasterbins_new(drawing->geometry, &view, drawing->params->threads, &bins, err));
+    Status status = check_outside(bins, err);
+    if (status == STATUS_OK)
+        *prepared = bins;
+    else
+        rasterbins_free(bins);
+    return status;
+}
+
+static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Err *err)
 {
     Status status;
-    const RenderParams *params = drawing->params;
-    const Geometry *geometry = drawing->geometry;
-    Buffers buffers = {.drawing = drawing, .frame = frame};
-    /* Points up to half a pixel off are caught. */
-    RasterView view = rasterview_of_camera(&drawing->view->camera, geometry->bounds,
-                                           drawing->band.first, drawing->band.rows, 2);
-    int workers = params->threads > 0 ? params->threads : threads_available();
-    size_t n = (size_t)TILE_SIDE * (size_t)view.columns;
-    double start_s = clock_seconds(), prepared_s = start_s;
-    TRY_GOTO(rasterbins_new(geometry, &view, workers, &buffers.bins, err));
-    TRY_GOTO(check_outside(buffers.bins, err));
+    Buffers buffers = {.drawing = drawing, .frame = frame, .bins = prepared};
+    int workers = drawing->params->threads;
+    size_t n = (size_t)TILE_SIDE * (size_t)drawing->view->camera.width;
     TRY_GOTO(mem_calloc(&buffers.points, (size_t)workers, sizeof *buffers.points, "rows", err));
     for (int i = 0; i < workers; i++)
         TRY_GOTO(mem_calloc(&buffers.points[i], n, sizeof *buffers.points[i], "depths", err));
-    prepared_s = clock_seconds();
-    threads_for((size_t)buffers.bins->tile_rows, workers, draw_row, &buffers);
-    stats->prepare_s += prepared_s - start_s;
-    stats->trace_s += clock_seconds() - prepared_s;
+    threads_for(((size_t)drawing->band.rows + TILE_SIDE - 1) / TILE_SIDE, workers, draw_row,
+                &buffers);
 done:
     for (int i = 0; buffers.points && i < workers; i++)
         free(buffers.points[i]);
     free(buffers.points);
-    rasterbins_free(buffers.bins);
     return status;
 }
+
+static bool can_draw(const Drawing *drawing)
+{
+    return drawing->geometry->n_primitives > 0 && drawing->params->method == RENDER_ZBUFFER &&
+           !sight_is_needed(drawing->view, drawing->params);
+}
+
+static bool never(const Drawing *drawing)
+{
+    (void)drawing;
+    return false;
+}
+
+const Engine zbuffer_engine = {.name = "zbuffer",
+                               .can = can_draw,
+                               .needs_rays = never,
+                               .prepare = prepare,
+                               .rows = draw_rows,
+                               .free = release_bins};

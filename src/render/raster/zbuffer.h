@@ -3,11 +3,10 @@
 #ifndef CORCAST_RENDER_ZBUFFER_H
 #define CORCAST_RENDER_ZBUFFER_H
 
-#include "render/job.h"
+#include "render/engine.h"
 
-/* Draws a band of primitives into planes that are there, and adds the time it takes to *stats: one
- * sample a pixel, without shadows. STATUS_USAGE when the camera is among the vessels. */
-MUST_CHECK Status zbuffer_render(const Drawing *drawing, Frame *frame, RenderStats *stats,
-                                 Err *err);
+/* Draws what RENDER_ZBUFFER asks for: one sample a pixel, without shadows. Cannot prepare a view
+ * from among the vessels. */
+extern const Engine zbuffer_engine;
 
 #endif

@@ -46,12 +46,12 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
     const Appearance *appearance = drawing->appearance;
     *canvas = (Canvas){.drawing = drawing,
                        .frame = frame,
+                       .workers = params->threads,
                        .eye = *eye,
                        .kernels = tilekernels[kernels_kind(params->kernels)],
                        .needs_places = tilelook_needs_places(drawing->view),
                        .wants_color = frame->color.values || frame->codes.codes8,
                        .wants_geometry = planes_want_geometry(frame)};
-    canvas->workers = params->threads > 0 ? params->threads : threads_available();
     int antialias = frame->color.values ? params->antialias : 1;
     TRY(resampling_init(antialias, &canvas->more, err));
     TRY(tilelook_make(drawing->view, &appearance->finish, eye, &canvas->lights, &canvas->look,

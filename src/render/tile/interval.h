@@ -2,7 +2,9 @@
 #ifndef CORCAST_RENDER_INTERVAL_H
 #define CORCAST_RENDER_INTERVAL_H
 
+#include "render/tile/tile.h"
 #include <math.h>
+#include <stdbool.h>
 
 /* Empty if low > high. */
 typedef struct Interval {
@@ -13,6 +15,11 @@ typedef struct Interval {
 typedef struct TileSpan {
     int first, last;
 } TileSpan;
+
+static const TileSpan NOWHERE = {1, 0};
+
+/* Covers rounding where pixels and tiles are told apart, in pixels. */
+#define SLACK_PIXELS 1e-3
 
 static inline double min_of(double a, double b)
 {
@@ -36,6 +43,36 @@ static inline Interval ball_shadow(double c, double z, double radius)
     double half = radius * sqrt(max_of(c * c + z * z - radius * radius, 0));
     double per = 1 / ((z - radius) * (z + radius));
     return (Interval){(c * z - half) * per, (c * z + half) * per};
+}
+
+/* What a capsule covers there, or in a view of parallel lines, whose ends are at c0 and c1; in
+ * perspective at depths z0, z1 > radius. */
+static inline Interval capsule_shadow(bool perspective, double c0, double z0, double c1, double z1,
+                                      double radius)
+{
+    if (!perspective)
+        return (Interval){min_of(c0, c1) - radius, max_of(c0, c1) + radius};
+    return interval_union(ball_shadow(c0, z0, radius), ball_shadow(c1, z1, radius));
+}
+
+/* An interval of a view's plane in samples, the middle of one a whole number; sample 0 is at
+ * `first`, and `per` samples follow in a unit, below 0 where they run against it. */
+static inline Interval samples_within(Interval range, double first, double per)
+{
+    double from = (range.low - first) * per, to = (range.high - first) * per;
+    return (Interval){min_of(from, to) - SLACK_PIXELS, max_of(from, to) + SLACK_PIXELS};
+}
+
+/* The tiles that those of `count` samples lie in which are, up to `stray` off their middles, within
+ * an interval of samples. */
+static inline TileSpan tiles_within(Interval samples, double stray, int count)
+{
+    double low = max_of(samples.low - stray, 0), high = min_of(samples.high + stray, count - 1);
+    if (!(low <= high))
+        return NOWHERE;
+    int first = (int)low, last = (int)high;
+    first += first < low; /* rounds up */
+    return first <= last ? (TileSpan){first / TILE_SIDE, last / TILE_SIDE} : NOWHERE;
 }
 
 /* The part [*from, *to] of the way where something that is at_a at its beginning and at_b at its

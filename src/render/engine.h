@@ -1,0 +1,25 @@
+/* A way of drawing pictures. */
+#ifndef CORCAST_RENDER_ENGINE_H
+#define CORCAST_RENDER_ENGINE_H
+
+#include "render/job.h"
+
+typedef struct Engine {
+    const char *name; /* that of the method, where there is one */
+    bool makes_codes; /* may make 8-bit codes instead of colours [RenderParams.codes_suffice] */
+    /* Whether the engine can draw this, and is asked to; band, caster and appearance do not matter.
+     */
+    bool (*can)(const Drawing *drawing);
+    /* Likewise whether it asks for rays: then the drawing is to have a caster. */
+    bool (*needs_rays)(const Drawing *drawing);
+    /* Makes in *prepared (owned) what all bands of a view have in common, whatever the appearance;
+     * NULL: nothing. *prepared is unchanged on failure. STATUS_MEMORY; STATUS_USAGE when the engine
+     * cannot draw this view after all. */
+    Status (*prepare)(const Drawing *drawing, void **prepared, Err *err);
+    /* Draws the band into planes that are there. STATUS_MEMORY. */
+    Status (*rows)(const Drawing *drawing, void *prepared, Frame *frame, Err *err);
+    /* Frees what was prepared; NULL where nothing is. */
+    void (*free)(void *prepared);
+} Engine;
+
+#endif
