@@ -1,6 +1,7 @@
-/* Nodes of the tree become nodes of the network one by one, in order, and remember where they come
- * from. A vessel that the tree makes up of several segments is told by its nodes of one child; its
- * pieces may be much shorter than wide, so growth does not hold them to its own rules. */
+/* Nodes of the tree become nodes of the network one by one, in order, and keep their index in the
+ * tree (origin), because network_reorder renumbers them. A vessel that the tree makes up of several
+ * segments shows by its nodes of one child; its pieces may be much shorter than wide, as in
+ * measured trees, so growth does not hold them to its own rules. */
 #include "grow/continue_tree.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Growing on from a tree that there is. */
+/* Growing on from a given tree. */
 #ifndef CORCAST_GROW_CONTINUE_TREE_H
 #define CORCAST_GROW_CONTINUE_TREE_H
 
@@ -12,16 +12,17 @@ size_t continue_inlets(const Tree *from);
  * as grow_tree says. */
 MUST_CHECK Status continue_check(const GrowParams *params, const Domain *domain, Err *err);
 
-/* Makes the tree, which continue_check accepts, part of `net`, which is empty and has traits. */
+/* Copies the tree, which continue_check accepts, into `net`, which is empty and has traits; node i
+ * becomes node i. Leaves right sums, and no radii. O(n). */
 void continue_from(const Tree *from, Network *net);
 
-/* Gives the nodes of `out`, which are those of `net`, that were in `from` their ids, types and
+/* `out` has the nodes of `net`, in its order. Gives those that were in `from` their ids, types and
  * columns back, and the others the smallest ids that are free; and appends the remarks and command
- * lines of `from`. */
+ * lines of `from`. STATUS_MEMORY. */
 MUST_CHECK Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *err);
 
-/* What the radii of the segments of `from` were multiplied by in `out`, whose ids are restored:
- * median, least and greatest in *report, 0 when none had a radius. */
+/* Compares the radii of the segments of `from` with those of the same ids in `out`: sets in *report
+ * the median, least and greatest factor by which they changed, 0 when none had a radius. */
 MUST_CHECK Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err);
 
 /* How many nodes of the tree are outside the domain. */

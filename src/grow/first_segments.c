@@ -1,17 +1,18 @@
-/* A tree takes a far point for its first, and asks for less with every few points that will not do.
- * Root segments stay in the Voronoi cells of their inlets, so they cannot cross; only their
- * thickness is left to look after. */
+/* The first terminal of a tree should be far from its inlet, so the distance asked for begins at
+ * the size of the domain and is lowered with every few points that will not do. Root segments stay
+ * in the Voronoi cells of their inlets, so their centrelines cannot cross; only their thickness is
+ * left to test. */
 #include "grow/first_segments.h"
 
 #include "grow/connection.h"
 
-/* Points after which less distance is asked for, by how much; and after which all is in vain. */
+/* Points after which less distance is asked for, by which share; and after which there is none. */
 enum { TRIES_PER_NOTCH = 3, MAX_TRIES = 20000 };
 static const double notch = 0.1;
-/* Roots widen as trees grow. */
+/* Root segments keep clear of each other at so many times their radii: they widen as trees grow. */
 static const double reserve = 1.3;
 
-/* A root segment that has yet to prove itself. */
+/* A root segment, perhaps to be. */
 typedef struct FirstSegment {
     Vec3 from, to;
     double radius; /* mm; at least what it will have while it is alone */
@@ -31,7 +32,7 @@ static bool is_nearest(const Network *net, size_t tree, Vec3 point)
     return true;
 }
 
-/* Whether the fresh keeps clear of the root segments of the trees before `tree`. */
+/* Whether the fresh segment keeps clear of the root segments of the trees before `tree`. */
 static bool is_clear(const Network *net, size_t tree, const FirstSegment *fresh)
 {
     for (size_t k = 0; k < tree; k++) {

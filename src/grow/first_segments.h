@@ -5,11 +5,12 @@
 #include "domain/domain.h"
 #include "grow/network.h"
 
-/* Gives each inlet of `net` its root segment, which leads within the domain to a random point that
- * is nearer to it than to any other inlet and about as far from it as points are; the segments keep
- * clear of each other. *distance, mm, is how far points have to be at first, and becomes how far
- * those of the nearest had to be; *tosses counts the points drawn. STATUS_INFEASIBLE when there is
- * no such point. */
+/* Gives each inlet of `net`, which holds nothing but inlets, its root segment. It leads within the
+ * domain to a random point that is nearer to this inlet than to any other, and about as far from it
+ * as points of the domain are; root segments keep clear of each other. *distance, mm: how far
+ * points have to be from their inlet at first; becomes the least distance that was asked for in the
+ * end. *tosses is increased by the points drawn. Leaves right sums, and no radii. STATUS_INFEASIBLE
+ * when there is no such point. */
 MUST_CHECK Status first_segments_add(Network *net, const Domain *domain, Random *random,
                                      double *distance, uint64_t *tosses, Err *err);
 

@@ -6,11 +6,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A tree may be ahead by as much as fits this part of the terminals there are, and some. */
+/* A tree may be ahead of its share of the terminals there are by this part of it, and some more. */
 static const double lead = 1.0 / 16;
 enum { LEAD_AT_LEAST = 2 };
 
-/* The tree that is owed the most: of its share, above its quota; or the least. */
+/* The tree whose share exceeds its quota the most (sign 1); or the least (sign -1), of those that
+ * can spare a terminal. */
 static size_t most_owed(const Forest *forest, const double *share, double sum, double sign)
 {
     size_t best = 0;

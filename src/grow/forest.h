@@ -8,8 +8,9 @@ typedef struct Forest {
     size_t trees, terminals;
     size_t *quota; /* terminals of each tree in the end */
     size_t *has;   /* and so far */
-    size_t *limit; /* how many more each may get in the round at hand */
-    size_t *grant; /* the limit that it began with */
+    size_t *limit; /* how many more each may get in the round at hand; the round takes off what it
+                      got */
+    size_t *grant; /* the limit that the round began with */
 } Forest;
 
 /* `terminals`, not fewer than trees, go to the trees in proportion to `share`, rounded by largest
@@ -22,7 +23,7 @@ void forest_release(Forest *forest);
  * the terminals there are. Some tree that lacks terminals is always allowed more. */
 void forest_limit(Forest *forest, size_t terminals);
 
-/* Counts what was taken off the limits. */
+/* To be called after a round: adds what was taken off the limits to `has`. */
 void forest_count(Forest *forest);
 
 #endif

@@ -1,14 +1,21 @@
-/* Terminals are added in rounds [METHODS 1.2]: random points are tossed; each that is far enough
- * from the tree is connected to that of the nearest segments where it is cheapest, at the
- * bifurcation that is best there, if there is room [plan.c]. Points of a round are taken one by
- * one, not in the order of tossing but neighbourhood after neighbourhood when the tree is large
- * [round.c]. The domain has its final size throughout: scaling all lengths scales all costs alike,
- * so this chooses as a domain that grows with the tree does.
+/* Terminals are added in rounds [METHODS 1.2] until there are enough (add_terminals). A round calls
  *
- * The toss distance is controlled so that a fixed share of the points is far enough. It follows the
- * filling of the domain by itself, and falls, too, when points have no way to the tree within the
- * tissue, because nearer ones may. When no point finds room at the vessels' real thickness, they
- * are taken to be thinner, in the end bare centrelines. */
+ * - check_range, which ends growth when radii span more than a double can hold;
+ * - keep_up, which refreshes sums, radii and weights after every fifth of growth, and makes a new
+ * grid whenever the number of terminals doubled;
+ * - run_round, which tosses points and connects those that can be [round.c], each to that of the
+ * nearest segments where it is cheapest, if there is room [plan.c];
+ * - adapt_toss_distance, which steers the toss distance so that one point in three is far enough
+ * from the tree: it falls as the tree fills the domain, and falls, too, when points have no way to
+ * the tree within the tissue, because nearer ones may;
+ * - be_patient: when hardly a point finds room at the vessels' real thickness, it takes them to be
+ * half as thick, in the end for centrelines, and at last gives up.
+ *
+ * At the end radii are computed anew, the few segments that widened too much are repaired
+ * [repair.c], and the network becomes a Tree [finish.c].
+ *
+ * The domain has its final size throughout: scaling all lengths scales all costs alike, so this
+ * makes the same choices as a domain that grows with the tree. */
 #include "grow/grow.h"
 
 #include "grow/continue_tree.h"
@@ -20,9 +27,10 @@
 #include "grow/segment_weights.h"
 #include <stdlib.h>
 
-/* Cells of the grid a terminal, when the grid is made; it serves until the terminals doubled. */
+/* Cells of the grid for each terminal, when the grid is made; it serves until the terminals
+ * doubled. */
 static const double cells_per_terminal = 1;
-/* The sensitivities serve until there are this many times the terminals. */
+/* Radii and sensitivities serve until there are so many times the terminals. */
 static const double refresh_growth = 1.2;
 /* A round adds about one terminal for every so many there are; in tiles, more. */
 enum { TERMINALS_PER_ADDED = 64, TERMINALS_PER_ADDED_IN_TILES = 12 };
@@ -34,8 +42,8 @@ static const double toss_notch = 0.1, toss_notch_in_tiles = 0.5;
 static const double least_length_share = 0.1;
 /* Trees with fewer terminals than this have cells too large to be full after a few misses. */
 enum { LEAST_WITH_FULL_CELLS = 1000 };
-/* Points without a connection for one that has: then vessels count as half as thick, below the
- * least thickness as lines, and at last the domain is full. */
+/* After so many points in crowded places without a connection vessels count as half as thick, below
+ * the least thickness as lines; after LAST_PATIENCE points without one the domain is full. */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
 static const double least_thickness = 1.0 / 64;
 
@@ -47,16 +55,16 @@ typedef struct Growth {
     Forest forest;
     Grid grid;
     Random random;
-    size_t grid_until, refresh_until; /* terminals */
+    size_t grid_until, refresh_until; /* the terminals for which the grid and the radii serve */
     double toss_distance;             /* mm */
     Rules rules;
     Round round;
-    double skipped; /* the share of points that was, in the last round */
+    double skipped; /* the share of the last round's points that lay in full cells */
     uint64_t tosses, rejected;
     size_t crowded, outside; /* points far enough from the tree since one was connected */
 } Growth;
 
-/* Terminals that a round connects at most, where it is to connect so many. */
+/* The most terminals that one round adds to so many. */
 static size_t most_added(size_t terminals)
 {
     return 2 * (terminals / TERMINALS_PER_ADDED_IN_TILES + 1);
@@ -120,7 +128,7 @@ static size_t to_be_added(const Growth *growth, bool tiled)
     return added < left ? added : left;
 }
 
-/* Tosses points and connects those that can be. */
+/* Tosses points for about `added` terminals and connects those that can be; *made: how many. */
 static Status run_round(Growth *growth, size_t added, size_t *made, Err *err)
 {
     size_t left = growth->params->terminals - growth->net.terminals;
@@ -145,7 +153,7 @@ static Status run_round(Growth *growth, size_t added, size_t *made, Err *err)
     return STATUS_OK;
 }
 
-/* Holds the share of points that are far enough from the tree at one in TOSSES_PER_ADDED. */
+/* Steers the share of points that are far enough from the tree to one in TOSSES_PER_ADDED. */
 static void adapt_toss_distance(Growth *growth, bool tiled)
 {
     const size_t *count = growth->round.tally.count;
@@ -158,7 +166,8 @@ static void adapt_toss_distance(Growth *growth, bool tiled)
     }
 }
 
-/* Gives thick vessels up, and at last the search, when next to nothing finds room. */
+/* Counts the points without room. When there are too many, takes vessels for thinner, and at last
+ * ends the search with STATUS_INFEASIBLE. */
 static Status be_patient(Growth *growth, size_t made, Err *err)
 {
     Rules *rules = &growth->rules;
@@ -261,7 +270,7 @@ static Status start(Growth *growth, Err *err)
     growth->rules = (Rules){.thickness = 1, .gap = 1e-7 * growth->size, .widest = growth->size};
     set_toss_distance(growth, growth->size);
     growth->refresh_until = growth->grid_until = 1;
-    /* Not the points again that made a tree by the same seed. */
+    /* Other points than those that made the tree, if that was by the same seed. */
     uint64_t turn = params->from ? 0x9e3779b97f4a7c15 * (uint64_t)params->from->n : 0;
     random_seed(&growth->random, params->seed ^ turn);
     int threads = params->threads > 0 ? params->threads : threads_available();

@@ -1,9 +1,12 @@
 /* Radii change all over the tree as it grows, so rules that held when a segment was made may be
- * broken, by a little and for few segments, at the end. Each of these has its two bifurcations
- * moved to the best of a few places around, the nearest ones first, where the three segments that
- * meet there break the rules least. Moves change the radii by much less than what they leave to
- * spare, so that it is enough to look at all segments once and afterwards at those that were within
- * that. */
+ * broken, by a little and for few segments, at the end. Each such segment (find_broken, by its
+ * fault) has the bifurcations at its two ends moved (repair_segment, move) to the best of a few
+ * places around (best_place, nearest first), where the three segments that meet there break the
+ * rules least.
+ *
+ * A move changes the radii by much less than the `spare` that moved segments keep. So all segments
+ * are tested once (look_at_chunk), and in later rounds only those that were within `spare` of
+ * breaking a rule. */
 #include "grow/repair.h"
 
 #include <float.h>
@@ -11,7 +14,7 @@
 #include <stdlib.h>
 
 enum { ROUNDS = 6, CHUNK = 512 };
-/* Where more than one segment in so many is broken, the domain is too full for small moves. */
+/* Where more than one segment in so many breaks a rule, the domain is too full for small moves. */
 enum { FEW = 20 };
 /* Moved segments keep to the rules with this to spare, over the radii. */
 static const double spare = 2e-3;
@@ -58,8 +61,8 @@ static double needed(const Repair *repair, int32_t i, int32_t j, double thicknes
            (network_is_piece(net, i) || network_is_piece(net, j) ? 0 : thickness);
 }
 
-/* By how many mm segment i is too near to another, radii widened by `scale`. Centrelines that touch
- * are the worst fault there is. */
+/* By how many mm segment i, as `item` of `radius`, is too near to another, radii multiplied by
+ * `scale`. Centrelines that touch count as the worst fault there is. */
 static double overlap(const Repair *repair, int32_t i, const GridItem *item, double radius,
                       double scale, int32_t other)
 {

@@ -1,4 +1,4 @@
-/* The few vessels that widened more than the rules' reserves allow for are put right. */
+/* Repairs the few vessels that came to touch others, or wider than long, while the tree grew. */
 #ifndef CORCAST_GROW_REPAIR_H
 #define CORCAST_GROW_REPAIR_H
 
@@ -7,10 +7,11 @@
 #include "grow/connection.h"
 #include "grow/network.h"
 
-/* Moves bifurcations until, at all radii as of the last refresh times rules->thickness,
- * every segment is longer than wide and clear of those it shares no node with, as far as small
- * moves can bring that about. *left: the number of segments for which it is still not so. `grid`
- * holds the segments of `net`. `threads` do not change the result. */
+/* Moves bifurcations until every segment is longer than wide and clear of those it shares no node
+ * with, vessels counting at rules->thickness times their radii, as far as small moves can bring
+ * that about. *left: the number of segments for which it is still not so. Needs a network just
+ * refreshed, and its segments in `grid`; leaves right sums, and radii as of the last round of
+ * moves. `threads` do not change the result. STATUS_MEMORY. */
 MUST_CHECK Status repair_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules,
                                  int threads, size_t *left, Err *err);
 

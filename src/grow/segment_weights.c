@@ -1,13 +1,17 @@
-/* A weight is flow over terminals times viscosity over its reference, so that terminals times
- * weight is the burden of the law. Growth takes weights for the radii of the last refresh, each of
- * which moves them towards agreement; finish.c iterates until they agree. */
+/* The weight of a segment is its flow over that of as many mean terminals, times its viscosity over
+ * the reference, so that terminals times weight is the burden of the law [law.h].
+ *
+ * Viscosity depends on the radius, and the radius on the viscosity. While a tree grows, weights are
+ * computed from the radii of the last refresh: weights_refresh (set_shares, weights_flows, then
+ * follow_radii) brings both nearer to agreement every time. At the end finish.c iterates until they
+ * agree. */
 #include "grow/segment_weights.h"
 
 #include "grow/territory.h"
 #include <stdlib.h>
 
-/* Lattice points a terminal: rough; fine, at least and at most; and fine ones in all, if that is
- * between the two. */
+/* Lattice points for each terminal: rough; fine, at least and at most; and fine ones in all, if
+ * that is between the two. */
 static const double rough_points = 8;
 static const double least_points = 256, most_points = 4096, all_points = 2e6;
 
@@ -38,7 +42,7 @@ static int threads_of(const GrowParams *params)
     return params->threads > 0 ? params->threads : threads_available();
 }
 
-/* Gives all terminals their shares; `share` has room for one a node. */
+/* Gives all terminals their shares of the flow; `share` has room for one number for each node. */
 static Status set_shares(Network *net, const GrowParams *params, const Domain *domain,
                          WeightsPrecision precision, double *share, Err *err)
 {
@@ -95,7 +99,8 @@ Status weights_update(Network *net, const GrowParams *params, const double *flow
     return STATUS_OK;
 }
 
-/* Weights for the radii there are, and the radii for these. `radius` has room for one a node. */
+/* Computes weights from the present radii, and then radii from these weights. `radius` has room for
+ * one number for each node. */
 static Status follow_radii(Network *net, const GrowParams *params, const double *flow,
                            double *radius, Err *err)
 {

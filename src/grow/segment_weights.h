@@ -1,5 +1,5 @@
-/* How flow and viscosity weigh the length of segments, where terminals are unequal or the viscosity
- * depends on the radius [law.h]. */
+/* Unequal terminals, and viscosity that depends on the radius: both enter the law of radii [law.h]
+ * as a weight of each segment, its relative flow times its relative viscosity. */
 #ifndef CORCAST_GROW_SEGMENT_WEIGHTS_H
 #define CORCAST_GROW_SEGMENT_WEIGHTS_H
 
@@ -7,28 +7,32 @@
 #include "grow/grow.h"
 #include "grow/network.h"
 
-/* Whether weights may differ from 1. */
+/* Whether weights may differ from 1: the network then needs traits. */
 bool weights_are_needed(const GrowParams *params);
 
-/* The viscosity that weights are relative to, Pa s: the blood's, by Pries's law the plasma's. */
+/* The viscosity that weights are relative to, Pa s: the blood's, or by Pries's law the plasma's. */
 double weights_reference_pa_s(const GrowParams *params);
 
-/* How fine territories are measured. */
+/* How finely territories are measured. */
 typedef enum WeightsPrecision {
     WEIGHTS_ROUGH, /* growth: to about a fifth */
     WEIGHTS_FINE, /* the result: to one in a hundred, for up to 1,000 terminals two in a thousand */
 } WeightsPrecision;
 
-/* Fills `flow` with the flow through every segment, over the terminals' mean, from their shares. */
+/* Fills flow[i], one for each node, with the flow through segment i relative to the terminals'
+ * mean, from the terminals' shares. Needs no sums. O(n). */
 void weights_flows(const Network *net, double *flow);
 
-/* Sets the weights of all segments to what their flows and radii (mm) ask for, or moves them `part`
- * of the way, in (0, 1]; *change is the largest share by which one was off. What follows from
- * weights is not yet summed up. STATUS_INFEASIBLE when a vessel is too thin for blood to pass. */
+/* Sets the weights of all segments to those of their flows (weights_flows) and radii, mm, one for
+ * each node; or moves them `part` of the way, in (0, 1], of their logarithms. *change is the
+ * largest relative change that was called for. Needs right terminals; leaves all other sums out of
+ * date. STATUS_INFEASIBLE when a vessel is too thin for blood to pass. O(n). */
 MUST_CHECK Status weights_update(Network *net, const GrowParams *params, const double *flow,
                                  const double *radius, double part, double *change, Err *err);
 
-/* Brings shares and weights, and all that follows from them, up to date. */
+/* Brings shares, weights, sums and radii up to date: network_refresh where weights are needed. The
+ * fine precision measures territories finely, and computes radii and weights in turn three times.
+ * STATUS_INFEASIBLE as weights_update, STATUS_MEMORY. */
 MUST_CHECK Status weights_refresh(Network *net, const GrowParams *params, const Domain *domain,
                                   WeightsPrecision precision, Err *err);
 

@@ -1,6 +1,6 @@
 /* The terminals stand in a grid of their own, as capsules without length or radius, and every
- * lattice point goes to the nearest. Of a lattice only the points in cells that a border runs
- * through are left to chance, so that the count of a territory with p points is off by about
+ * lattice point goes to the nearest. A lattice counts all but the cells that a border runs
+ * through exactly, so that the count of a territory with p points is off by about
  * p^(1/4), where random points would be off by p^(1/2). Threads take rows of the lattice and count
  * for themselves; whole numbers add up to the same sums in any order. */
 #include "grow/territory.h"

@@ -5,9 +5,10 @@
 #include "domain/domain.h"
 #include "grow/network.h"
 
-/* Sets share[i] of every terminal i to the number of points of a square or cubic lattice over the
- * domain, `points` of them a terminal, that are nearer to it than to any other; 1/2 where there are
- * none, and 0 at all other nodes. The same for any number of threads. */
+/* Sets share[i], one for each node, to the number of points of a square or cubic lattice over the
+ * domain that are nearer to the terminal i than to any other, 1/2 where there are none; and to 0
+ * for nodes that are no terminals. The lattice has `points` points for each terminal. Needs no
+ * sums. The result is the same for any number of threads. STATUS_MEMORY. */
 MUST_CHECK Status territory_count(const Network *net, const Domain *domain, double points,
                                   int threads, double *share, Err *err);
 

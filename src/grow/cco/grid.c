@@ -8,12 +8,12 @@
  * bounds each piece by itself. It reads the item alone, so that the same cells come out again when
  * the segment is taken out.
  *
- * Coordinates are in single precision from the grid's low corner, where rounding moves them by less
- * than 3e-8 of the grid's size. That is of no account for distances; who wants segments not to
- * cross keeps them further apart than that.
+ * Coordinates are floats relative to the grid's low corner, so rounding moves them by less than
+ * 3e-8 of the grid's size. Distances do not suffer from that; whoever must keep segments from
+ * crossing keeps them further apart than that.
  *
  * Threads that touch different cells need no locks: each worker has an arena of blocks. Which block
- * holds a cell, and in what order, has no influence on any answer. */
+ * holds the tags of a cell, and in what order, has no influence on any answer. */
 #include "grow/cco/grid.h"
 
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* A uniform grid of cells over the domain that answers which segments are near. */
+/* A uniform grid of cells over the domain that answers which segments are near a point or a
+ * segment. It knows nothing of trees: segments are numbers that the caller gives. */
 #ifndef CORCAST_GROW_GRID_H
 #define CORCAST_GROW_GRID_H
 
@@ -14,14 +15,14 @@ typedef struct Capsule {
     double radius;
 } Capsule;
 
-/* A segment as the grid knows it, in half a cache line. */
+/* A segment as the grid knows it, in half a cache line of 64 bytes. */
 typedef struct GridItem {
     float proximal[3], distal[3]; /* mm, from the grid's low corner */
     float radius;                 /* of the vessel, mm; the caller may bring it up to date */
-    float reach;                  /* it is entered where the capsule of this radius may be, mm */
+    float reach;                  /* mm; it is entered where the capsule of this radius may be */
 } GridItem;
 
-/* The segments in one cell: 2 * segment + (1 at a terminal) of each. */
+/* The segments entered in one cell, each as a tag: 2 * segment, + 1 for a terminal. */
 typedef struct GridCell {
     int32_t *tag;
     uint32_t count, size; /* `size`: of the block that holds them, 0: none */
@@ -31,13 +32,13 @@ typedef struct GridArena GridArena;
 
 typedef struct Grid {
     Vec3 low;
-    double edge;     /* of a cell, mm */
-    double inverse;  /* 1 / edge */
-    double rounding; /* mm; more than the rounding of coordinates */
-    int count[3];
-    GridCell *cell; /* x fastest */
-    GridItem *item; /* by segment */
-    GridArena *arena;
+    double edge;      /* of a cell, mm */
+    double inverse;   /* 1 / edge */
+    double rounding;  /* mm; more than the rounding of coordinates to floats */
+    int count[3];     /* cells along each axis */
+    GridCell *cell;   /* x fastest */
+    GridItem *item;   /* by segment */
+    GridArena *arena; /* by worker: memory for tags */
     int workers;
 } Grid;
 
@@ -46,21 +47,23 @@ typedef struct GridBox {
     int low[3], high[3];
 } GridBox;
 
+/* A segment that was found near a point. */
 typedef struct Near {
-    float distance2; /* mm^2 */
+    float distance2; /* mm^2, of its centreline from the point */
     int32_t segment;
 } Near;
 
-/* Where a point is. */
+/* What is around a point. */
 typedef enum GridVicinity {
     GRID_FREE,
     GRID_IN_VESSEL,
     GRID_TOO_NEAR, /* to the tree */
 } GridVicinity;
 
-/* An empty grid over `box` with about `cells` cells for segments below `segments`; a flat box gives
- * one layer. Releases what `grid` held before, so start from (Grid){0}. Up to `workers` threads may
- * enter and take out segments at a time, as long as no two of them touch the same cell. */
+/* Makes an empty grid over `box` with about `cells` cells, for segments numbered below `segments`;
+ * a flat box gives one layer. Releases what `grid` held before, so start from (Grid){0}; ends with
+ * grid_release. Up to `workers` threads may enter and take out segments at the same time, as long
+ * as no two of them touch the same cell. STATUS_MEMORY. */
 MUST_CHECK Status grid_reset(Grid *grid, Box box, double cells, size_t segments, int workers,
                              Err *err);
 void grid_release(Grid *grid);
@@ -68,11 +71,11 @@ void grid_release(Grid *grid);
 /* The number of cells. */
 size_t grid_cells(const Grid *grid);
 
-/* The cell that holds `point`. */
+/* The index of the cell that holds `point`, or is nearest to it. */
 size_t grid_cell_at(const Grid *grid, Vec3 point);
 
-/* Ask for memory ahead of a query at `point`: for its cell, then for what the cell lists, then for
- * those items. Far apart points of a large tree are otherwise found one cache miss after
+/* Prefetch memory for a query at `point`, step after step: its cell, the cell's tags, the items of
+ * these. Without, queries at points far apart in a large tree wait for one cache miss after
  * another. */
 static inline void grid_fetch_cell(const Grid *grid, Vec3 point)
 {
@@ -91,37 +94,39 @@ static inline void grid_fetch_items(const Grid *grid, Vec3 point)
         __builtin_prefetch(&grid->item[cell->tag[i] >> 1]);
 }
 
-/* What lies inside these cells, by more than rounding; without bounds where they are the grid's
- * first or last. */
+/* The zone of a box of cells: the part of space, mm, whose points are in these cells in spite of
+ * rounding. Without bound where the cells are the grid's first or last. */
 Box grid_zone(const Grid *grid, GridBox box);
-/* How far `point`, in the zone, is from its bounds, along the axes, mm. */
+/* The distance, mm, of `point`, which lies in the zone, from the nearest of its bounds. */
 double grid_clearance(Box zone, Vec3 point);
-/* Whether all cells that an item's capsule may meet are in the zone. */
+/* Whether all cells that the item's capsule may meet lie in the zone. */
 bool grid_zone_holds(const Grid *grid, Box zone, const GridItem *item);
 
-/* The item of a vessel of `radius` from capsule.a (proximal) to capsule.b that reaches as far as
- * the capsule. */
+/* The item of a vessel of `radius` mm from capsule.a (proximal) to capsule.b, which is entered
+ * wherever the capsule may be: capsule.radius is its reach. */
 GridItem grid_item(const Grid *grid, Capsule capsule, double radius);
 
-/* Enters a segment in every cell that may meet its item's capsule. `worker` is below the number of
- * workers, and each thread has its own. */
+/* Enters a segment, which is not in the grid, in every cell that may meet its item's capsule.
+ * `worker` is below the number of workers; threads that do this at the same time have different
+ * ones. STATUS_MEMORY. */
 MUST_CHECK Status grid_add(Grid *grid, int worker, int32_t segment, bool terminal, GridItem item,
                            Err *err);
-/* Takes a segment out. */
+/* Takes a segment, which is in the grid, out. */
 void grid_remove(Grid *grid, int32_t segment);
 
-/* Whether some segment's centreline, or with `terminals_only` some terminal's end point, is nearer
- * to `point` than `distance`; if not, whether a vessel of `thickness` times its radius holds it. */
+/* GRID_TOO_NEAR if some segment's centreline, or with `terminals_only` some terminal's distal end,
+ * is nearer to `point` than `distance`, both in mm. Else GRID_IN_VESSEL if the point is nearer to
+ * some centreline than that vessel's radius times `thickness`. */
 GridVicinity grid_vicinity(const Grid *grid, Vec3 point, double distance, bool terminals_only,
                            double thickness);
 
-/* The up to `limit` segments whose centrelines are nearest to `point`, nearest first; returns how
- * many. Equal distances are ordered by segment. -1 when it takes cells that are not wholly within
- * `within` mm, along each axis, to tell. */
+/* Finds the segments whose centrelines are nearest to `point`, nearest first, equal distances by
+ * number; `limit` of them, or all if there are fewer. Returns how many; -1 when it would have to
+ * look at cells that reach beyond `within` mm from the point along some axis. */
 int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *out);
 
-/* The same if there are `limit` within `reach` mm, and not very many more; else false, with *out
- * undefined. */
+/* The same, faster, if there are at least `limit` segments within `reach` mm, and not very many
+ * more; else false, with *out undefined. */
 bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, Near *out);
 
 /* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
@@ -132,16 +137,17 @@ double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
 double grid_distance2(const GridItem *a, const GridItem *b);
 double grid_length2(const GridItem *item);
 
-/* What is to be met: the box around an item's centreline, and how near to it, mm: `apart` and
- * `per_radius` of the other's radius. */
+/* A query for segments near a box. Near means: their bounding boxes are no further apart, along
+ * each axis, than `apart` mm plus `per_radius` times the radius of the segment found. */
 typedef struct GridBoxQuery {
     float low[3], high[3], apart, per_radius;
 } GridBoxQuery;
 
+/* The query about the bounding box of an item's centreline. */
 GridBoxQuery grid_box_query(const GridItem *item, double apart, double per_radius);
 
-/* Which of the next GRID_LANES segments of a cell, from its k-th on, have boxes that near, as bits;
- * a little more is allowed for rounding. */
+/* Which of the segments k to k + GRID_LANES - 1 of a cell are near by the query, as bits from the
+ * lowest on; with a little more than asked for, for rounding. */
 enum { GRID_LANES = 4 };
 unsigned grid_boxes_near(const Grid *grid, const GridCell *cell, uint32_t k,
                          const GridBoxQuery *probe);
@@ -149,7 +155,7 @@ unsigned grid_boxes_near(const Grid *grid, const GridCell *cell, uint32_t k,
 /* The cells that meet the cube of twice `distance` about `point`. */
 GridBox grid_box(const Grid *grid, Vec3 point, double distance);
 
-/* A place as items have it. */
+/* The coordinates of a point as items have them. */
 static inline void grid_store(const Grid *grid, Vec3 v, float out[3])
 {
     out[0] = (float)(v.x - grid->low.x);
@@ -162,8 +168,9 @@ static inline size_t grid_index(const Grid *grid, int x, int y, int z)
     return ((size_t)z * grid->count[1] + y) * grid->count[0] + x;
 }
 
-/* Iterates over the cells that may meet an item's capsule, each once. Two capsules that meet have a
- * cell in common. */
+/* A walk over the cells that may meet an item's capsule, each once:
+ *     for (GridWalk walk = grid_walk(grid, item); grid_walk_next(&walk, &cell);)
+ * Two capsules that meet have a cell in common. */
 typedef struct GridWalk {
     const Grid *grid;
     double from[3], span[3], radius;

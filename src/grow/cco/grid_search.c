@@ -1,10 +1,12 @@
-/* What is near. The cells about a place list more segments than are near it, so most of the work is
- * to tell that one is not: that is done for four at a time, and without branches, which would go
- * either way as often as not.
+/* The grid's queries. The cells about a point list more segments than are near it, so most of the
+ * work is to find that a segment is not near. That is done for four segments at a time, and without
+ * branches, which no processor could predict.
  *
- * The nearest are looked for within a guessed distance first. A segment counts in the one cell that
- * holds its point next to the place, so each is found once, and ranks come from counting. Where the
- * guess was short, rings of cells are searched one after the other. */
+ * The nearest segments are looked for within a guessed distance first (grid_nearest_quick). A
+ * segment counts only in the one cell that holds its point nearest to the query, so each is found
+ * once; they are ranked by counting how many are nearer (sort_catch). Where the guess was too
+ * short, rings of cells around the point are searched one after the other (grid_nearest), keeping a
+ * sorted list. */
 #include "grow/cco/grid.h"
 
 #include <assert.h>

@@ -1,15 +1,24 @@
 /* How a segment and the subtree below it add up: Murray's law, Poiseuille's law and the target, in
- * the reduced quantities that make one step up the tree a few multiplications.
+ * reduced quantities that make one step up the tree a few multiplications.
  *
- * With N the flow through a segment over a terminal's mean, m its viscosity over a reference mu,
- * and R*, V* its reduced resistance and target [METHODS 1], R* in units of 8 mu / pi: load  W = N
- * R*             rho = W^(1/4) rho_gamma X = rho^gamma        Murray's law is addition: the subtree
- * below a segment has the rho_gamma G = sum of X over the daughters, and P = G^(1/gamma) cost  S =
- * rho^lambda V*    so that S = rho^lambda l + (rho / P)^lambda sum of S over them W = N m l + P^4
- * with N m the segment's burden A radius is r = q g rho, q = (8 mu / pi Q_term / (p_perf -
- * p_term))^(1/4) and g the gauge: 1 at the root and greater by rho / P from each segment to its
- * daughters. The target is T = q^lambda S_root, so for one number of terminals the least S_root is
- * the least T. */
+ * Of a segment, l is the length, N the flow over a terminal's mean, m the viscosity over a
+ * reference mu; N m is its burden. R* (in units of 8 mu / pi) and V* are the reduced resistance and
+ * target of METHODS 1.1. The reduced quantities are
+ *
+ * - load W = N R*, and rho = W^(1/4), which is the radius but for the factors q and g below;
+ *
+ * - rho_gamma X = rho^gamma, what Murray's law adds up: for the subtrees on the distal end of a
+ * segment, G is the sum of X over the daughters and P = G^(1/gamma);
+ *
+ * - cost S = rho^lambda V*, the target but for q^lambda g^lambda.
+ *
+ * They follow from the daughters' by W = N m l + P^4 and S = rho^lambda l + (rho / P)^lambda times
+ * the sum of the daughters' S.
+ *
+ * The radius is r = q g rho. Here q = (8 mu / pi Q_term / (p_perf - p_term))^(1/4) is the radius
+ * unit of the tree, and g is the gauge of the segment: 1 at the root, and from a segment to its
+ * daughters multiplied by its rho / P (widening). The target is T = q^lambda S_root, so for one
+ * number of terminals the least S_root is the least T. */
 #ifndef CORCAST_GROW_LAW_H
 #define CORCAST_GROW_LAW_H
 
@@ -23,9 +32,9 @@ typedef struct Law {
     double lambda; /* >= 0 */
 } Law;
 
-/* What hangs on the distal end of a segment; all 0 at a terminal. */
+/* What hangs on the distal end of a segment, all daughters together; all 0 at a terminal. */
 typedef struct Below {
-    double rho_gamma, cost; /* sums over the daughters */
+    double rho_gamma, cost; /* G, and the sum of S */
     double inverse;         /* 1 / P */
     double load;            /* P^4 */
 } Below;
@@ -42,7 +51,7 @@ typedef struct Reduced {
     Below below;
 } Reduced;
 
-/* Derivatives of S_root with respect to a segment's load, its cost held, and to its cost. */
+/* Derivatives of S_root with respect to a segment's load, its cost held fixed, and to its cost. */
 typedef struct Adjoint {
     double load;
     double cost;
@@ -78,7 +87,7 @@ static inline double law_lambda_power(const Law *law, double x)
     return pow(x, law->lambda);
 }
 
-/* What daughters make whose flares and costs sum up to `rho_gamma` and `cost`, both 0 at a
+/* What hangs on the distal end if the daughters' rho_gamma and cost add up to these, both 0 at a
  * terminal. */
 static inline Below law_gather(const Law *law, double rho_gamma, double cost)
 {
@@ -95,7 +104,7 @@ static inline Below law_gather(const Law *law, double rho_gamma, double cost)
     return out;
 }
 
-/* The segment of `length` mm that carries `burden` on top of what hangs there. */
+/* The segment of `length` mm with this `burden`, together with what hangs on its distal end. */
 static inline Reduced law_extend(const Law *law, double burden, double length, const Below *below)
 {
     Reduced out = {.below = *below};
@@ -112,7 +121,7 @@ static inline Reduced law_extend(const Law *law, double burden, double length, c
     return out;
 }
 
-/* dS_root / d load of `at`, now with the part that goes through its own cost. */
+/* dS_root / d load of `at`, its own cost changing with the load. */
 static inline double law_total(const Law *law, const Reduced *at, Adjoint adjoint)
 {
     return adjoint.load + adjoint.cost * law->lambda / 4 * at->cost / at->load;

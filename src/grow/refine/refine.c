@@ -1,21 +1,24 @@
-/* Refinement is local search with two moves [refine_move.h]. A round moves all subtrees in random
- * order, and then sweeps over all bifurcations. The geometry level has the sweeps alone.
+/* Refinement is local search with two moves [refine_move.h]: a bifurcation moves to a better place,
+ * or a subtree is cut off and connected elsewhere. A round (one turn of the loop in descend, detour
+ * or anneal) tries all subtrees in random order (shuffle) and then all bifurcations (sweep); the
+ * geometry level has the sweeps alone.
  *
- * Within the rules of room the search soon comes to a tree where vessels are in each other's way:
- * what would be better lies behind trees that cross. The topology level therefore makes a detour:
- * rules may be broken at a price [refine_penalty.h], low at first and rising until no vessel breaks
- * one. When little more is to be gained, only what is near a broken rule is moved, until all are
- * mended. A detour that fails, or gains nothing, ends where it began, and the next begins dearer,
- * closer to the rules. This is what brings a tree of little length (lambda 0) near the shortest
- * that there is.
+ * Within the rules of clearance the search soon gets stuck where vessels are in each other's way:
+ * better trees lie behind trees that cross. The topology level (improve_topology) therefore
+ * descends, makes a detour and descends again. On a detour, breaking a rule is allowed for a
+ * penalty [refine_penalty.h], low at first and rising until no segment breaks one. When little more
+ * is to be gained, only segments that break a rule and their neighbours are moved (repair). A
+ * detour that does not end in a better tree ends where it began (recall); the next begins with
+ * higher penalties, closer to the rules. Detours bring a tree of little length (lambda 0) near the
+ * shortest there is.
  *
  * Annealing lets the temperature fall geometrically over most of its budget, takes the best tree
  * and goes on as topology does.
  *
- * Whenever refinement stops, it has a tree that keeps all promises: the present one, or on a detour
- * or when annealing the best before. Viscosities that follow the radii stay as they are within a
- * round and are computed anew after it; should vessels then have come into each other, the tree
- * stays as it was. */
+ * Refinement may be stopped after any move, and then has a tree that keeps the rules: the present
+ * one in descend; in a detour or while annealing, the best one before, which recall restores.
+ * Viscosities that follow the radii are held fixed within a round and computed anew after it
+ * (settle). If vessels meet because of that at the end, the tree that came in is kept. */
 #include "grow/grow.h"
 
 #include "grow/refine/refine_arbor.h"
@@ -34,12 +37,13 @@ static const double last_part = 0.1;
  * after it. */
 static const double least_sweep_gain = 1e-4;
 static const double least_gain_before = 2e-3, least_gain_across = 2e-4, least_gain_after = 5e-5;
-/* The price of the first detour, over S_root a mm of vessels, and how it rises to the next. */
-static const double first_price = 0.25, price_rise = 4;
+/* The penalty for a mm on the first detour, relative to S_root for each mm of vessels, and by how
+ * much it rises to the next. */
+static const double first_rate = 0.25, rate_rise = 4;
 enum { DETOURS = 3, ROUNDS_PER_DETOUR = 40 };
 /* Segments that are moved around either end of one that breaks a rule. */
 enum { NEIGHBOURS = 8 };
-/* Rounds after which vessels get their room anew. */
+/* Rounds after which reserved radii are computed anew. */
 enum { ROUNDS_PER_RESERVATION = 4 };
 /* Moves after which the clock is read. */
 enum { MOVES_PER_LOOK = 16 };
@@ -145,14 +149,14 @@ static Status settle(LocalSearch *search, Err *err)
     return clearance_reserve(&search->clearance, &search->arbor, err);
 }
 
-/* Bookings may age for some rounds, viscosities for one. */
+/* Reserved radii may age for some rounds, viscosities for one. */
 static Status settle_for_round(LocalSearch *search, int round, Err *err)
 {
     bool is_due = round % ROUNDS_PER_RESERVATION == 0 || search->arbor.viscosity;
     return is_due ? settle(search, err) : STATUS_OK;
 }
 
-/* How many segments lack the room that they should have, as of the last clearance_reserve. */
+/* How many segments break a rule, as of the last clearance_reserve. */
 static size_t count_unclear(const LocalSearch *search)
 {
     size_t count = 0;
@@ -216,16 +220,16 @@ static Status repair(Refinement *refinement, bool *over, Err *err)
     return STATUS_OK;
 }
 
-/* Rounds across the rules. *done tells whether that led to a better tree; if not, all is as it
- * was. */
-static Status detour(Refinement *refinement, double price, bool *done, bool *over, Err *err)
+/* Rounds in which rules may be broken, at first for a penalty of `rate`. *done tells whether they
+ * led to a better tree that breaks none; if not, all is as it was. */
+static Status detour(Refinement *refinement, double rate, bool *done, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
     Arbor *arbor = &search->arbor;
     Penalties *penalties = &search->penalties;
     bool gains = true, clear = false;
     remember(refinement);
-    penalties_begin(penalties, arbor, price);
+    penalties_begin(penalties, arbor, rate);
     for (int round = 0; round < ROUNDS_PER_DETOUR && !clear && !*over; round++) {
         double before = arbor_cost(arbor);
         TRY(penalties_reserve(&search->clearance, arbor, err));
@@ -247,11 +251,11 @@ static Status detour(Refinement *refinement, double price, bool *done, bool *ove
 
 static Status improve_topology(Refinement *refinement, bool *over, Err *err)
 {
-    double price = first_price;
-    bool done = refinement->search.clearance.level == 0; /* vessels of no width pay nothing */
+    double rate = first_rate;
+    bool done = refinement->search.clearance.level == 0; /* centrelines alone have no rules */
     TRY(descend(refinement, least_gain_before, over, err));
-    for (int k = 0; k < DETOURS && !done && !*over; k++, price *= price_rise)
-        TRY(detour(refinement, price, &done, over, err));
+    for (int k = 0; k < DETOURS && !done && !*over; k++, rate *= rate_rise)
+        TRY(detour(refinement, rate, &done, over, err));
     return descend(refinement, least_gain_after, over, err);
 }
 

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
-/* The greatest relative change of a viscosity that is none, and rounds until there is none
- * greater. */
+/* A relative change of a viscosity that counts as none, and the most rounds until there is no
+ * greater one. */
 static const double settled = 1e-13;
 enum { MOST_ROUNDS = 100 };
 

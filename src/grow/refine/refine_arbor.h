@@ -1,5 +1,12 @@
-/* A tree under refinement: segments that know what hangs on them, changed one move at a time, each
- * of which can be undone.
+/* The arbor: a tree under refinement. Its segments know what hangs on them; it is changed one move
+ * at a time, and a move can be undone.
+ *
+ * An arbor is no Network [network.h], though both sum up the same law. A Network grows: it adds
+ * terminals in O(1) and lets sums far up go out of date, for a forest, with a Segment that holds
+ * the sums of its daughters. An arbor keeps its segments and has exact sums after every move, all
+ * the way to the root, with a Branch that holds its own sums and the clearance of its subtree. Each
+ * fills the one cache line that a step of its walk to the root may cost; a common struct would take
+ * two.
  *
  * Node i > 0 is the distal end of segment i; node 0 is the inlet, its only child the root segment.
  * Indices are those of the Tree it was made from and stay: a bifurcation that moves, or that moves
@@ -12,39 +19,45 @@
 #include "grow/cco/law.h"
 #include "tree/tree.h"
 
-/* What the walk to the root needs of one segment, in one cache line. */
+/* What the walk to the root reads of one segment, in one cache line of 64 bytes.
+ *
+ * Clearance: a segment keeps to its room if radius times `inverse_limit` is at most 1, which is 1 /
+ * (the largest radius, mm, that it may have), 0 for any radius. `utilisation` is the greatest
+ * radius times inverse_limit of the segment and all below it, with radii in units of the segment's
+ * own q times gauge [law.h]. So one comparison at the root, utilisation times q with 1, tests all
+ * segments. */
 typedef struct Branch {
     double length;          /* mm */
-    double flow;            /* in units of the terminals' mean */
+    double flow;            /* relative to the terminals' mean */
     double rho_gamma, cost; /* [law.h] */
-    /* Radii must not outgrow the room they were given [refine_clearance.h]. The segment's radius
-     * times `inverse_limit` must be at most 1, and so must `utilisation` times q and the gauge: it
-     * is the greatest such product of the segment and all below it. */
-    double inverse_limit, utilisation; /* 1/mm; pure times mm^(1/4) */
-    int32_t parent;                    /* -1 at the inlet */
-    int32_t child[2];                  /* -1: none */
-    uint32_t saved;                    /* the move that has saved it */
+    double inverse_limit;   /* 1/mm */
+    double utilisation;     /* mm^(-3/4) */
+    int32_t parent;         /* -1 at the inlet */
+    int32_t child[2];       /* -1: none */
+    uint32_t saved;         /* the number of the last move that saved it */
 } Branch;
 
-/* A segment as a body, in one cache line. */
+/* A segment as a solid, in one cache line. */
 typedef struct Shape {
     Vec3 from, to;          /* mm */
-    double reserved_radius; /* mm; the radius that no other vessel comes in the way of */
-    uint32_t saved;
+    double reserved_radius; /* mm; to which it may widen without meeting another
+                               [refine_clearance.h] */
+    uint32_t saved;         /* the number of the last move that saved it */
 } Shape;
 
-/* How S_root, to first order, depends on the segment at one place in the tree. */
+/* How S_root depends, to first order, on a segment: prices a change without a walk to the root. */
 typedef struct Marginal {
     Adjoint adjoint;
     double gauge; /* [law.h] */
-    double extra; /* dS_root for one more unit of flow through all segments above */
+    double extra; /* the increase of S_root if all segments above carried one more unit of flow */
 } Marginal;
 
+/* The most segments that one move may place or reserve anew. */
 enum { ARBOR_MOVE_SHAPES = 24 };
 
 typedef struct Arbor {
     Law law;
-    size_t n;
+    size_t n;           /* nodes */
     double radius_unit; /* q, mm^(3/4) */
     Branch *branch;
     Shape *shape;
@@ -54,7 +67,7 @@ typedef struct Arbor {
     double *viscosity;
     double hematocrit;
     int32_t pruned; /* the segment that arbor_prune has cut off; 0: none */
-    /* What the present move has changed, as it was before: */
+    /* What the present move, the number `move`, has changed, as it was before: */
     uint32_t move;
     struct SavedBranch {
         Branch was;
@@ -70,18 +83,21 @@ typedef struct Arbor {
     double saved_viscosity;
 } Arbor;
 
-/* Makes *arbor (owned; arbor_release) from a tree that refine_check accepts. */
+/* Makes *arbor (owned; arbor_release) from a tree that refine_check accepts, with right sums and,
+ * by Pries's law, viscosities that agree with the radii. STATUS_INFEASIBLE as
+ * arbor_update_viscosity, STATUS_MEMORY. */
 MUST_CHECK Status arbor_init(Arbor *arbor, const Tree *tree, Err *err);
 void arbor_release(Arbor *arbor);
 
-/* Connects and places all nodes anew; reservations are the caller's. place[0] is the inlet. */
+/* Connects and places all nodes anew, parent[i] and place[i] (mm) of each, and sums up;
+ * reservations stay and have to be made anew. place[0] is the inlet. O(n). */
 void arbor_arrange(Arbor *arbor, const int32_t *parent, const Vec3 *place);
-/* Sums up all segments anew. */
+/* Computes the sums of all segments anew, lengths included. O(n). */
 void arbor_sum(Arbor *arbor);
 /* Where viscosity follows the radius, computes both in turn until they agree to 1e-13, and sums up
  * anew. STATUS_INFEASIBLE where vessels are too narrow for that. */
 MUST_CHECK Status arbor_update_viscosity(Arbor *arbor, Err *err);
-/* Brings the marginal of all segments up to date. */
+/* Brings the marginals of all segments up to date. Needs right sums. O(n). */
 void arbor_refresh(Arbor *arbor);
 
 static inline int32_t arbor_root(const Arbor *arbor)
@@ -89,7 +105,7 @@ static inline int32_t arbor_root(const Arbor *arbor)
     return arbor->branch[0].child[0];
 }
 
-/* How viscous the blood in segment i is, over the reference. */
+/* The viscosity in segment i relative to the reference. */
 static inline double arbor_viscosity(const Arbor *arbor, int32_t i)
 {
     return arbor->viscosity ? arbor->viscosity[i] : 1;
@@ -115,16 +131,16 @@ static inline Below arbor_below(const Arbor *arbor, int32_t i)
     return law_gather(&arbor->law, left->rho_gamma + right->rho_gamma, left->cost + right->cost);
 }
 
-/* Segment i with what hangs on it. */
+/* Segment i together with what hangs on it. */
 Reduced arbor_reduce(const Arbor *arbor, int32_t i);
-/* The marginal of segment i from what its parent is now and that one's marginal. */
+/* The marginal of segment i, from its parent's present sums and stored marginal. O(1). */
 Marginal arbor_marginal(const Arbor *arbor, int32_t i);
 
-/* The radius of segment i, mm, as of the last arbor_refresh. */
+/* The radius of segment i, mm, with its gauge of the last arbor_refresh. O(1). */
 double arbor_radius_seen(const Arbor *arbor, int32_t i);
-/* The same as of now. O(depth). */
+/* The present radius of segment i, mm. O(depth). */
 double arbor_radius(const Arbor *arbor, int32_t i);
-/* A segment whose radius times its inverse_limit is above 1, and that radius in *radius; 0 when
+/* Finds a segment that is wider than it may be, and its present radius, mm, in *radius; 0 when
  * there is none. O(depth). */
 int32_t arbor_find_overuse(const Arbor *arbor, double *radius);
 
@@ -136,7 +152,8 @@ static inline int32_t arbor_sibling(const Arbor *arbor, int32_t i)
 
 /* Whether segment i is `top` or below it. */
 bool arbor_is_below(const Arbor *arbor, int32_t i, int32_t top);
-/* False for a segment that is pruned and for the bifurcation that it came from. */
+/* Whether the segment is part of the tree: not one that is pruned, nor the bifurcation that it came
+ * from. */
 static inline bool arbor_has(const Arbor *arbor, int32_t i)
 {
     return arbor->pruned == 0 || (i != arbor->pruned && i != arbor->branch[arbor->pruned].parent);
@@ -145,23 +162,25 @@ static inline bool arbor_has(const Arbor *arbor, int32_t i)
 /* Whether two different segments have a node in common. */
 bool arbor_are_joined(const Arbor *arbor, int32_t i, int32_t j);
 
-/* A move begins, and is over when the next one begins. */
+/* Begins a move; whatever the next functions change can be undone until the next one begins. */
 void arbor_begin(Arbor *arbor);
+/* Restores the arbor, bit by bit, as it was at arbor_begin. */
 void arbor_undo(Arbor *arbor);
 
-/* Moves the bifurcation at the end of segment i. */
+/* Moves the bifurcation at the end of segment i to `place`, mm, and sums up to the root. O(depth).
+ */
 void arbor_shift(Arbor *arbor, int32_t i, Vec3 place);
-/* Cuts the segment and all below it off, together with the bifurcation it comes from: its sibling
- * now begins where the parent did. Neither that bifurcation nor the segment is part of the tree
- * until arbor_graft. */
+/* Cuts segment i off with all below it, together with the bifurcation it comes from: its sibling
+ * then begins where the parent did. Neither that bifurcation nor the segment is part of the tree
+ * until arbor_graft. O(depth). */
 void arbor_prune(Arbor *arbor, int32_t i);
-/* Splits `host` at `place` and hangs what was pruned there. */
+/* Splits segment `host` at `place`, mm, and hangs segment i, which was pruned, there. O(depth). */
 void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place);
 
 /* Gives segment i `reserved_radius` and `inverse_limit` [refine_clearance.h]. The caller resums
  * from there. */
 void arbor_reserve(Arbor *arbor, int32_t i, double reserved_radius, double inverse_limit);
-/* Sums up anew from segment i to the inlet. */
+/* Computes the sums of segment i and of all above it anew. O(depth). */
 void arbor_sum_from(Arbor *arbor, int32_t i);
 
 #endif

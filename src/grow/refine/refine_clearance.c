@@ -1,17 +1,22 @@
-/* Radii change all over the tree with every move, so that no test of the moved segments alone can
- * keep vessels clear. Every segment therefore books a radius a little above its own, to which no
- * other vessel's reservation comes near, and which is at most half its length. While all radii stay
- * within their reservations the rules hold for the whole tree, and one number at the root tells
- * whether they do [Branch.utilisation]. A move that makes some radius exceed its reservation must
- * find it more clearance, or is undone. */
+/* Radii change all over the tree with every move, so testing the moved segments alone cannot keep
+ * vessels clear. Therefore every segment has a reserved radius a little above its own, to which no
+ * other vessel's reserved radius comes near, and which is at most half its length. While every
+ * radius stays within its reservation the rules hold for the whole tree, and one number at the root
+ * tells whether it does [Branch.utilisation]. A move that makes some radius exceed its reservation
+ * must find more room for it, or is undone (clearance_allows: reserve_moved, then
+ * arbor_find_overuse until there is none).
+ *
+ * clearance_reserve shares out the room between segments: first every segment wants its radius and
+ * the reserve; then each is given the greatest share of that wish that it and all segments it meets
+ * can have together (fair_share, of common_share). */
 #include "grow/refine/refine_clearance.h"
 
 #include <stdlib.h>
 
 /* Cells of the grid a terminal. */
 static const double cells_per_terminal = 4;
-/* Bookings over the radii: as a rule, and at least when a segment moves. Vessels that touch would
- * make every other move impossible that widens them ever so little. */
+/* Reserved radii over the radii: as a rule, and at least for a segment that moves. Vessels that
+ * touch would make every other move impossible that widens them ever so little. */
 static const double reserve = 1.1, least_reserve = 1.04;
 /* The share of segments that must be clear at the level, and the least level but 0. */
 static const double clear_share = 0.9;
@@ -54,8 +59,8 @@ static double distance_of(const Shape *a, const Shape *b)
     return sqrt(segment_distance2(a->from, a->to, b->from, b->to));
 }
 
-/* What a segment of `radius` books when it has this share of room: at 0 the radius, at 1 the
- * reserve as well, at -1 nothing. Never more than its length allows. */
+/* What a segment of `radius` reserves when it is given this share of its wish: at 0 the radius, at
+ * 1 the reserve as well, at -1 nothing. Never more than its length allows. */
 static double reservation(const Clearance *clearance, const Branch *branch, double radius,
                           double share)
 {
@@ -65,7 +70,7 @@ static double reservation(const Clearance *clearance, const Branch *branch, doub
     return least + (fmin(reserve * clearance->level * radius, longest) - least) * share;
 }
 
-/* The greatest share of room at which two segments so far apart leave it to each other. */
+/* The greatest share that two segments so far apart can both be given. */
 static double common_share(const Clearance *clearance, const Branch *a, double radius_a,
                            const Branch *b, double radius_b, double apart)
 {
@@ -111,8 +116,9 @@ static Status measure(Clearance *clearance, Arbor *arbor, Err *err)
     return STATUS_OK;
 }
 
-/* Books at the room's level; *clear is the share of segments that have the room they should. */
-static Status book(Clearance *clearance, Arbor *arbor, double *clear, Err *err)
+/* Reserves radii for all segments at the level; *clear: the share of segments that keep the rules.
+ */
+static Status reserve_all(Clearance *clearance, Arbor *arbor, double *clear, Err *err)
 {
     TRY(measure(clearance, arbor, err));
     for (size_t i = 1; i < arbor->n; i++) {
@@ -150,10 +156,10 @@ Status clearance_init(Clearance *clearance, const Domain *domain, Arbor *arbor, 
                              .gap = 1e-7 * vec3_distance(box.low, box.high)};
     TRY(mem_calloc(&clearance->radius, arbor->n, sizeof *clearance->radius, "radii", err));
     TRY(mem_calloc(&clearance->share, arbor->n, sizeof *clearance->share, "reservations", err));
-    TRY(book(clearance, arbor, &clear, err));
+    TRY(reserve_all(clearance, arbor, &clear, err));
     while (clear < clear_share && clearance->level > 0) {
         clearance->level = clearance->level > least_level ? clearance->level / 2 : 0;
-        TRY(book(clearance, arbor, &clear, err));
+        TRY(reserve_all(clearance, arbor, &clear, err));
     }
     return STATUS_OK;
 }
@@ -169,7 +175,7 @@ void clearance_release(Clearance *clearance)
 Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err)
 {
     double clear;
-    return book(clearance, arbor, &clear, err);
+    return reserve_all(clearance, arbor, &clear, err);
 }
 
 Status clearance_waive(Clearance *clearance, Arbor *arbor, double reserved, Err *err)
@@ -184,7 +190,7 @@ Status clearance_waive(Clearance *clearance, Arbor *arbor, double reserved, Err 
     return STATUS_OK;
 }
 
-/* The most that segment i can book, up to `wish`, as the others' reservations are. */
+/* The most that segment i can reserve, up to `wish`, beside the others' reservations. */
 static double most_room(const Clearance *clearance, const Arbor *arbor, int32_t i, double wish)
 {
     const Shape *shape = &arbor->shape[i];
@@ -230,7 +236,7 @@ bool clearance_is_inside(const Clearance *clearance, const Arbor *arbor)
     return true;
 }
 
-/* Books for the segments that the move has moved. */
+/* Reserves radii for the segments that the present move has placed; false when one lacks room. */
 static bool reserve_moved(const Clearance *clearance, Arbor *arbor)
 {
     int moved = arbor->n_saved_shapes;

@@ -1,8 +1,11 @@
-/* Room: that vessels stay inside the domain, clear of each other and long enough, whatever moves.
+/* Clearance: vessels stay inside the domain, longer than wide, and clear of each other, whatever
+ * moves.
  *
- * Vessels count at their radius times the `level`, in [0, 1]. A segment is longer than wide, and
- * two segments without a common node are apart by more than their radii. Where the tree that came
- * in broke this, it may stay so, but no vessel gets deeper into another than it was. */
+ * Vessels count at their radius times the `level`, in [0, 1]. A segment has to be longer than wide,
+ * and two segments without a common node further apart than their radii. Where the tree that came
+ * in broke these rules it may stay so, but no vessel gets deeper into another than it was.
+ *
+ * Every segment has a reserved radius [refine_arbor.h] that no other's reserved radius meets. */
 #ifndef CORCAST_GROW_REFINE_CLEARANCE_H
 #define CORCAST_GROW_REFINE_CLEARANCE_H
 
@@ -13,40 +16,45 @@
 typedef struct Clearance {
     const Domain *domain; /* NULL: all of space */
     Box box;
-    double level;
+    double level;        /* vessels count at their radii times this */
     double least_length; /* mm; no segment is made shorter */
     double gap;          /* mm; least distance beyond the radii */
     Grid grid;
-    double *radius, *share; /* for clearance_reserve */
+    double *radius; /* of each segment, mm, as of the last clearance_reserve or clearance_waive */
+    double *share;  /* workspace of clearance_reserve */
 } Clearance;
 
-/* Finds the level at which nearly all vessels of the tree are clear, and books their clearance.
- * Start from (Clearance){0}; ends with clearance_release. */
+/* Finds the greatest level (1, 1/2, ... 1/64, 0) at which nine in ten segments of the tree keep the
+ * rules, and reserves radii at it. `domain` is borrowed; NULL: anywhere. Start from (Clearance){0};
+ * ends with clearance_release, also on failure, STATUS_MEMORY. */
 MUST_CHECK Status clearance_init(Clearance *clearance, const Domain *domain, Arbor *arbor,
                                  Err *err);
 void clearance_release(Clearance *clearance);
 
-/* Books room anew for all vessels at their present radii and a little more. */
+/* Reserves radii for all segments anew, a tenth above the present ones where there is room, and
+ * sums up the arbor. O(n). STATUS_MEMORY. */
 MUST_CHECK Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err);
 
-/* Whether segment i has the room that it should, as of the last clearance_reserve. */
+/* Whether segment i keeps the rules, as of the last clearance_reserve. */
 static inline bool clearance_is_kept(const Clearance *clearance, const Arbor *arbor, int32_t i)
 {
     return arbor->shape[i].reserved_radius >= clearance->level * clearance->radius[i];
 }
 
-/* Books for all vessels `reserved` times their radius, whether there is room for it or not; no
- * radius is too great then. */
+/* Suspends the rules: reserves `reserved` times its radius for every segment, whether there is room
+ * or not, and sets no limit to radii. O(n). STATUS_MEMORY. */
 MUST_CHECK Status clearance_waive(Clearance *clearance, Arbor *arbor, double reserved, Err *err);
 
-/* Whether all that the present move has moved is inside the domain and not too short to be. */
+/* Whether the segments that the present move has placed are inside the domain and no shorter than
+ * least_length. */
 bool clearance_is_inside(const Clearance *clearance, const Arbor *arbor);
 
-/* Whether there is room for the present move; if so, it is reserved_radius in `arbor`. The shapes
- * that moved are given room for `reserve` of their radius, and so much for those that widen. */
+/* Whether the present move keeps the rules. If so, radii are reserved in the arbor: for the
+ * segments that moved, 1.04 to 1.1 times their radius, and as much for those that have outgrown
+ * their reservation because of the move. If not, the move has to be undone. */
 bool clearance_allows(const Clearance *clearance, Arbor *arbor);
 
-/* Brings the grid up to date with the present move, which is kept. */
+/* To be called for a move that is kept: enters what it changed in the grid. STATUS_MEMORY. */
 MUST_CHECK Status clearance_follow(Clearance *clearance, const Arbor *arbor, Err *err);
 
 #endif

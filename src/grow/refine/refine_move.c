@@ -1,14 +1,20 @@
-/* A move is made in the arbor, where it costs O(depth); then S_root is exact, and only a move that
- * is wanted is tested for clearance. Candidates are priced in O(1) by marginals that age a little:
- * this blurs the choice between them, never the decision to keep a move.
+/* A move is made in the arbor, which costs O(depth); then S_root is exact, and only a move that
+ * gains is tested for clearance (shift and connect, which call surcharge). A move that is not
+ * wanted is undone.
  *
- * Connections are chosen from Boltzmann's distribution of their prices, so one draw stands for many
- * proposals of which all but one would be rejected; the error of the price is made up for by
- * Metropolis's rule.
+ * move_bifurcation optimises the place [bifurcation.h], and tries shorter and shorter steps towards
+ * it; while rules may be broken, also random ones.
  *
- * Penalties are counted exactly, but for radii that are as of the last reservation: before and
- * after, of the segments that a move changes. A subtree changes places in two steps, and what it
- * pays in a place is what penalties rise by when it is put there from nowhere. */
+ * move_subtree prunes the subtree, prices its connection to the nearest segments in O(1) by their
+ * marginals (find_candidates, propose, price), chooses one (choose) and grafts it there (connect).
+ * Marginals age a little: that blurs the choice between candidates, never the decision to keep a
+ * move. At a temperature, connections are chosen from Boltzmann's distribution of their prices, so
+ * that one draw stands for many proposals of which all but one would be rejected; Metropolis's rule
+ * (tolerance) makes up for the error of the price.
+ *
+ * Penalties are counted exactly, by reserved radii: those that the changed segments paid before,
+ * and those they pay after. A subtree changes places in two steps; what it pays in a place is by
+ * how much the penalties rise when it is put there from nowhere. */
 #include "grow/refine/refine_move.h"
 
 #include "grow/cco/bifurcation.h"

@@ -6,10 +6,11 @@
 #include "grow/refine/refine_clearance.h"
 #include "grow/refine/refine_penalty.h"
 
+/* The state of the local search. */
 typedef struct LocalSearch {
     Arbor arbor;
     Clearance clearance;
-    Penalties penalties; /* while they are closed, no move breaks a rule of room */
+    Penalties penalties; /* while they are not active, no move breaks a rule of clearance */
     Random random;
     uint64_t tried, kept; /* moves */
 } LocalSearch;

@@ -1,20 +1,21 @@
-/* An exterior penalty in the l1 norm: at a finite price, the best tree keeps the rules exactly
- * wherever a mm gained by breaking them is worth less than that. As not even the shape of the tree
- * is known at which the rules hold, prices are not one number that rises, but one for each segment,
- * which rises most while the segment breaks a rule ([METHODS M], the breakout method): where rules
- * hold they stay low, and the tree can go on giving way to those places where they do not. */
+/* An exterior penalty in the l1 norm: at a high enough but finite rate, the best tree keeps the
+ * rules exactly, wherever breaking one by a mm gains less than the rate. The tree's topology is
+ * free, too, so one rising rate for all would freeze it before the rules hold. Each segment has a
+ * rate of its own instead, which rises most while the segment breaks a rule ([METHODS M], the
+ * breakout method): rates stay low where the rules hold, and there the tree can go on giving way to
+ * where they do not. */
 #include "grow/refine/refine_penalty.h"
 
 #include <stdlib.h>
 
-/* How prices rise: all, and those of segments that break the rules. */
+/* How rates rise after a round: all, and those of segments that break a rule. */
 static const double rise = 1.1, steep_rise = 2.2;
-/* Bookings over the radii: radii grow a little before they are reserved_radius for anew. */
+/* Reserved radii over the radii, which grow a little until they are reserved for anew. */
 static const double reserve = 1.05;
 
 Status penalties_init(Penalties *penalties, size_t segments, Err *err)
 {
-    TRY(mem_calloc(&penalties->rate, segments, sizeof *penalties->rate, "prices", err));
+    TRY(mem_calloc(&penalties->rate, segments, sizeof *penalties->rate, "penalty rates", err));
     TRY(mem_calloc(&penalties->broken, segments, sizeof *penalties->broken, "segments", err));
     return mem_calloc(&penalties->seen, segments, sizeof *penalties->seen, "segments", err);
 }
@@ -27,13 +28,13 @@ void penalties_release(Penalties *penalties)
     *penalties = (Penalties){0};
 }
 
-void penalties_begin(Penalties *penalties, const Arbor *arbor, double price)
+void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate)
 {
     double length = 0;
     for (size_t i = 1; i < arbor->n; i++)
         length += arbor->branch[i].length;
     for (size_t i = 1; i < arbor->n; i++)
-        penalties->rate[i] = price * arbor_cost(arbor) / length;
+        penalties->rate[i] = rate * arbor_cost(arbor) / length;
     penalties->active = true;
 }
 
