@@ -1,3 +1,4 @@
+/* A domain is kept with the tree as the text that domain_parse reads. */
 #include "app/tree_domain.h"
 
 Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err)

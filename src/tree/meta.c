@@ -138,7 +138,8 @@ bool meta_allows(MetaKey key, double value)
     return range_has(row->range, value) && (row->kind != META_WHOLE || value == floor(value));
 }
 
-void meta_allowed(MetaKey key, Text *text)
+/* What a key's values may be, as what goes on from "it must be ". */
+static void put_allowed(MetaKey key, Text *text)
 {
     const MetaRow *row = &meta_rows[key];
     char range[RANGE_TEXT_SIZE];
@@ -197,7 +198,7 @@ Status meta_add_text(TreeMeta *meta, MetaKey key, const char *text, Err *err)
 static Status refuse_value(MetaKey key, const char *value, Err *err)
 {
     Text allowed = TEXT_INIT;
-    meta_allowed(key, &allowed);
+    put_allowed(key, &allowed);
     Status status = text_check(&allowed, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be %s", meta_rows[key].name,

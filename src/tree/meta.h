@@ -91,8 +91,6 @@ MetaKey meta_find(const char *name, size_t length);
 
 /* Whether a number may stand for a key of kind META_NUMBER, META_WHOLE or META_WORD. */
 bool meta_allows(MetaKey key, double value);
-/* What a key's values may be, as what goes on from "it must be ". */
-void meta_allowed(MetaKey key, Text *text);
 
 /* A number or a word's value; 0 when it is not known. */
 static inline double meta_number(const TreeMeta *meta, MetaKey key)

@@ -2,28 +2,27 @@
  * it was read but for that blank, so that what corcast has written once it writes again. */
 #include "treeio/comments.h"
 
+#include "treeio/formats.h"
 #include <string.h>
-
-static const char blanks[] = " \t\v\f";
 
 const char *comment_value(const char *comment, const char *name)
 {
-    comment += strspn(comment, blanks);
+    comment += strspn(comment, TEXT_BLANKS);
     size_t length = strlen(name);
     if (strncmp(comment, name, length) != 0)
         return NULL;
     comment += length;
-    comment += strspn(comment, blanks);
-    return *comment == ':' ? comment + 1 + strspn(comment + 1, blanks) : NULL;
+    comment += strspn(comment, TEXT_BLANKS);
+    return *comment == ':' ? comment + 1 + strspn(comment + 1, TEXT_BLANKS) : NULL;
 }
 
 Status comment_read(TreeMeta *meta, const char *comment, Err *err)
 {
-    for (int key = 0; key < META_KEYS; key++) {
-        const char *value = comment_value(comment, meta_rows[key].name);
-        if (value)
-            return meta_parse(meta, (MetaKey)key, value, err);
-    }
+    const char *name = comment + strspn(comment, TEXT_BLANKS);
+    MetaKey key = meta_find(name, strcspn(name, ":" TEXT_BLANKS));
+    const char *value = key == META_KEYS ? NULL : comment_value(name, meta_rows[key].name);
+    if (value)
+        return meta_parse(meta, key, value, err);
     return meta_add_text(meta, META_KEYS, comment + (*comment == ' '), err);
 }
 

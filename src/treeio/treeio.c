@@ -60,20 +60,26 @@ static bool may_be(const Format *format, const char *path)
     return false;
 }
 
+static size_t count_formats(const char *path)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < N_FORMATS; i++)
+        count += may_be(&formats[i], path);
+    return count;
+}
+
 /* Of the formats that a file of this name may be, the one that its first bytes tell, or else the
- * first; NULL when there is none. Without `start` the number of them in *count. */
-static const Format *find_format(const char *path, const char *start, size_t *count)
+ * first; NULL when there is none. Without bytes, the first. */
+static const Format *find_format(const char *path, const char *start)
 {
     const Format *first = NULL;
-    *count = 0;
     for (size_t i = 0; i < N_FORMATS; i++) {
         if (!may_be(&formats[i], path))
             continue;
-        ++*count;
-        if (!first)
-            first = &formats[i];
         if (start && formats[i].detect && formats[i].detect(start))
             return &formats[i];
+        if (!first)
+            first = &formats[i];
     }
     return first;
 }
@@ -95,15 +101,13 @@ const char *tree_format_description(size_t i)
 
 bool tree_format_has_columns(const char *path)
 {
-    size_t count;
-    const Format *format = find_format(path, NULL, &count);
+    const Format *format = find_format(path, NULL);
     return format && !format->no_columns;
 }
 
 bool tree_format_known(const char *path)
 {
-    size_t count;
-    return find_format(path, NULL, &count) != NULL;
+    return find_format(path, NULL) != NULL;
 }
 
 void tree_format_list(Text *text)
@@ -146,12 +150,12 @@ Status tree_format_check(const char *path, Err *err)
 
 Status tree_read(Tree *tree, const char *path, Err *err)
 {
-    size_t count, size = 0;
+    size_t size = 0;
     char *bytes = NULL;
     TRY(tree_format_check(path, err));
-    const Format *format = find_format(path, NULL, &count);
-    TRY(file_read(path, count == 1 ? &format->form : &any_form, &bytes, &size, err));
-    format = find_format(path, bytes, &count);
+    bool one = count_formats(path) == 1;
+    TRY(file_read(path, one ? &find_format(path, NULL)->form : &any_form, &bytes, &size, err));
+    const Format *format = find_format(path, bytes);
     TreeBuilder builder = {.name = is_standard(path) ? "standard input" : path};
     Status status = format->read(&builder, bytes, size, err);
     if (status == STATUS_OK)
@@ -163,12 +167,11 @@ Status tree_read(Tree *tree, const char *path, Err *err)
 
 Status tree_write(const Tree *tree, const char *path, Err *err)
 {
-    size_t count;
     OutFile file;
     TRY(tree_format_check(path, err));
     TRY(tree_check(tree, err));
     TRY(outfile_open(&file, path, err));
-    Status status = find_format(path, NULL, &count)->write(tree, file.stream, err);
+    Status status = find_format(path, NULL)->write(tree, file.stream, err);
     if (status == STATUS_OK)
         return outfile_commit(&file, err);
     outfile_discard(&file);

@@ -282,23 +282,25 @@ static void a_key_says_what_its_values_may_be(void **state)
     (void)state;
     static const struct {
         MetaKey key;
-        double in, out;
-        const char *allowed;
-    } expected[] = {{META_GAMMA, 10, 10.5, "a number above 0 and at most 10"},
-                    {META_GAMMA, 5e-324, 0, "a number above 0 and at most 10"},
-                    {META_LAMBDA, 0, -0.125, "a number of at least 0"},
-                    {META_P_TERM, -3.25, HUGE_VAL, "a finite number"},
-                    {META_HEMATOCRIT, 0.95, 0.951, "a number from 0 to 0.95"},
-                    {META_DIMENSION, 3, 2.5, "a whole number from 2 to 3"},
-                    {META_VISCOSITY_LAW, VISCOSITY_PRIES, 2, "constant or pries"}};
+        double in;
+        const char *out, *sentence;
+    } expected[] = {
+        {META_GAMMA, 10, "10.5", "gamma is '10.5'; it must be a number above 0 and at most 10"},
+        {META_GAMMA, 5e-324, "0", "gamma is '0'; it must be a number above 0 and at most 10"},
+        {META_LAMBDA, 0, "-0.125", "lambda is '-0.125'; it must be a number of at least 0"},
+        {META_P_TERM, -3.25, "inf", "p_term_mmHg is 'inf'; it must be a finite number"},
+        {META_HEMATOCRIT, 0.95, "nan", "hematocrit is 'nan'; it must be a number from 0 to 0.95"},
+        {META_DIMENSION, 3, "2.5", "dimension is '2.5'; it must be a whole number from 2 to 3"},
+        {META_VISCOSITY_LAW, VISCOSITY_PRIES, "2",
+         "viscosity_law is '2'; it must be constant or pries"}};
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
-        Text allowed = TEXT_INIT;
-        meta_allowed(expected[i].key, &allowed);
-        assert_string_equal(text_chars(&allowed), expected[i].allowed);
+        TreeMeta meta = {0};
+        Err err;
         assert_true(meta_allows(expected[i].key, expected[i].in));
-        assert_false(meta_allows(expected[i].key, expected[i].out));
         assert_false(meta_allows(expected[i].key, (double)NAN));
-        text_release(&allowed);
+        assert_int_equal(meta_parse(&meta, expected[i].key, expected[i].out, &err), STATUS_INPUT);
+        assert_string_equal(err.text, expected[i].sentence);
+        assert_false(meta.known[expected[i].key]);
     }
 }
 
