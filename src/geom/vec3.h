@@ -67,6 +67,14 @@ static inline Vec3 vec3_normalized(Vec3 a)
     return vec3_scale(a, 1 / vec3_length(a));
 }
 
+/* Two unit vectors across the unit vector `axis`, right-handed with it: u x v = axis. */
+static inline void vec3_across(Vec3 axis, Vec3 *u, Vec3 *v)
+{
+    Vec3 other = fabs(axis.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    *u = vec3_normalized(vec3_cross(other, axis));
+    *v = vec3_cross(axis, *u);
+}
+
 /* 1 / each component; infinite where that is 0. */
 static inline Vec3 vec3_inverse(Vec3 a)
 {

@@ -1,0 +1,234 @@
+/* A tube is a strip of triangles between two rims: both are walked by rising angle, and the one
+ * whose next point comes first goes on. All its points lie on one cylinder, so that it is off the
+ * wall by no more than the longest chord of its rims.
+ *
+ * Coordinates are rounded to whole multiples of the spacing of floats at the largest of them, which
+ * makes every test of the finished mesh exact in whole numbers. */
+#include "surface/mesh/assemble.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double full_turn = 6.283185307179586;
+
+typedef struct RimPlace {
+    uint32_t first, n; /* in rim_points of the assembly */
+} RimPlace;
+
+typedef struct Assembly {
+    const VesselTree *tree;
+    const Zones *zones;
+    VesselMesh *mesh;
+    double grid_mm;
+    RimPlace (*rims)[2]; /* one a segment and end */
+    uint32_t *rim_points;
+    size_t n_rim_points;
+    double *angles; /* of the rims of one tube */
+    size_t angle_capacity;
+    uint32_t sides;
+} Assembly;
+
+void vesselmesh_release(VesselMesh *mesh)
+{
+    free(mesh->points);
+    free(mesh->normals);
+    free(mesh->triangles);
+    free(mesh->labels);
+    *mesh = (VesselMesh){0};
+}
+
+static uint32_t add_point(const Assembly *assembly, Vec3 x, Vec3 normal)
+{
+    VesselMesh *mesh = assembly->mesh;
+    double grid = assembly->grid_mm;
+    float *point = mesh->points[mesh->n_points], *own = mesh->normals[mesh->n_points];
+    for (int axis = 0; axis < 3; axis++) {
+        point[axis] = (float)(round(vec3_component(x, axis) / grid) * grid);
+        own[axis] = (float)vec3_component(normal, axis);
+    }
+    return (uint32_t)mesh->n_points++;
+}
+
+static void add_triangle(const Assembly *assembly, uint32_t a, uint32_t b, uint32_t c,
+                         uint32_t label)
+{
+    VesselMesh *mesh = assembly->mesh;
+    uint32_t *triangle = mesh->triangles[mesh->n_triangles];
+    triangle[0] = a;
+    triangle[1] = b;
+    triangle[2] = c;
+    mesh->labels[mesh->n_triangles++] = label;
+}
+
+/* The segment that two of the corners are nearest to, or the first one's. */
+static uint32_t label_of(const Patch *patch, Triangle triangle)
+{
+    uint32_t a = patch->points[triangle.at[0]].segment, b = patch->points[triangle.at[1]].segment;
+    uint32_t c = patch->points[triangle.at[2]].segment;
+    return b == c ? b : a;
+}
+
+static void add_piece(Assembly *assembly, ZonePiece *piece)
+{
+    const Patch *patch = &piece->patch;
+    uint32_t offset = (uint32_t)assembly->mesh->n_points;
+    for (size_t i = 0; i < patch->n_points; i++)
+        (void)add_point(assembly, patch->points[i].x, patch->points[i].normal);
+    for (size_t i = 0; i < patch->n_triangles; i++) {
+        const uint32_t *at = patch->triangles[i].at;
+        add_triangle(assembly, offset + at[0], offset + at[1], offset + at[2],
+                     label_of(patch, patch->triangles[i]));
+    }
+    for (size_t i = 0; i < piece->n_rims; i++) {
+        const Rim *rim = &piece->rims[i];
+        assembly->rims[rim->segment][rim->end] =
+            (RimPlace){(uint32_t)assembly->n_rim_points, rim->n};
+        for (uint32_t k = 0; k < rim->n; k++)
+            assembly->rim_points[assembly->n_rim_points++] =
+                offset + piece->rim_points[rim->first + k];
+    }
+}
+
+/* A flat end: a regular rim, and a disc about its middle. */
+static void add_cap(Assembly *assembly, uint32_t segment, int end)
+{
+    const FieldSegment *self = &assembly->tree->segments[segment];
+    Vec3 u, v, at = end ? self->b : self->a;
+    Vec3 axis = vec3_normalized(vec3_sub(self->b, self->a));
+    vec3_across(axis, &u, &v);
+    RimPlace *rim = &assembly->rims[segment][end];
+    *rim = (RimPlace){(uint32_t)assembly->n_rim_points, assembly->sides};
+    for (uint32_t i = 0; i < rim->n; i++) {
+        double angle = full_turn * ((i + 0.5) / rim->n - 0.5);
+        Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));
+        assembly->rim_points[assembly->n_rim_points++] =
+            add_point(assembly, vec3_add_scaled(at, way, self->radius_mm), way);
+    }
+    uint32_t middle = add_point(assembly, at, vec3_scale(axis, end ? 1 : -1));
+    const uint32_t *points = &assembly->rim_points[rim->first];
+    for (uint32_t i = 0; i < rim->n; i++) {
+        uint32_t one = points[i], next = points[(i + 1) % rim->n];
+        add_triangle(assembly, middle, end ? one : next, end ? next : one, segment | MESH_CAP);
+    }
+}
+
+/* Angles of a rim's points about the axis, from -pi to pi. */
+static void find_angles(const Assembly *assembly, const FieldSegment *segment, RimPlace rim,
+                        double *angles)
+{
+    Vec3 u, v;
+    vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
+    for (uint32_t i = 0; i < rim.n; i++) {
+        const float *x = assembly->mesh->points[assembly->rim_points[rim.first + i]];
+        Vec3 from = vec3_sub(vec3((double)x[0], (double)x[1], (double)x[2]), segment->a);
+        angles[i] = atan2(vec3_dot(from, v), vec3_dot(from, u));
+    }
+}
+
+/* The angle of the i-th point, counted on beyond a full turn. */
+static double turned_angle(const double *angles, uint32_t n, uint32_t i)
+{
+    return angles[i % n] + full_turn * (i / n);
+}
+
+static Status add_strip(Assembly *assembly, uint32_t segment, Err *err)
+{
+    RimPlace a = assembly->rims[segment][0], b = assembly->rims[segment][1];
+    const FieldSegment *self = &assembly->tree->segments[segment];
+    TRY(mem_reserve(&assembly->angles, &assembly->angle_capacity, (size_t)a.n + b.n,
+                    sizeof *assembly->angles, "rims", err));
+    double *angle_a = assembly->angles, *angle_b = &assembly->angles[a.n];
+    find_angles(assembly, self, a, angle_a);
+    find_angles(assembly, self, b, angle_b);
+    const uint32_t *points_a = &assembly->rim_points[a.first];
+    const uint32_t *points_b = &assembly->rim_points[b.first];
+    for (uint32_t i = 0, j = 0; i < a.n || j < b.n;) {
+        uint32_t at_a = points_a[i % a.n], at_b = points_b[j % b.n];
+        bool along_a = j == b.n || (i < a.n && turned_angle(angle_a, a.n, i + 1) <=
+                                                   turned_angle(angle_b, b.n, j + 1));
+        if (along_a)
+            add_triangle(assembly, at_a, points_a[++i % a.n], at_b, segment);
+        else {
+            uint32_t next = points_b[++j % b.n];
+            add_triangle(assembly, at_a, next, at_b, segment);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The spacing of floats at the coordinate farthest from the origin. */
+static double grid_of(const VesselTree *tree)
+{
+    double farthest = 0;
+    for (size_t i = 0; i < tree->n_segments; i++) {
+        const FieldSegment *segment = &tree->segments[i];
+        for (int axis = 0; axis < 3; axis++)
+            farthest = fmax(farthest,
+                            2 * segment->radius_mm + fmax(fabs(vec3_component(segment->a, axis)),
+                                                          fabs(vec3_component(segment->b, axis))));
+    }
+    int exponent;
+    frexp(farthest, &exponent);
+    return ldexp(1, exponent - 24);
+}
+
+static uint32_t count_caps(const Assembly *assembly)
+{
+    uint32_t caps = 0;
+    for (uint32_t i = 0; i < assembly->tree->n_segments; i++)
+        for (int end = 0; end < 2 && assembly->zones->is_tube[i]; end++)
+            caps += assembly->zones->zone[assembly->tree->nodes[i][end]] == NO_ZONE;
+    return caps;
+}
+
+static Status reserve(Assembly *assembly, const ZonePiece *pieces, Err *err)
+{
+    size_t caps = count_caps(assembly), rims = caps * assembly->sides;
+    size_t points = caps * (assembly->sides + 1), triangles = rims;
+    for (uint32_t z = 0; z < assembly->zones->n_zones; z++) {
+        points += pieces[z].patch.n_points;
+        triangles += pieces[z].patch.n_triangles;
+        for (size_t i = 0; i < pieces[z].n_rims; i++)
+            rims += pieces[z].rims[i].n;
+    }
+    VesselMesh *mesh = assembly->mesh;
+    triangles += rims;
+    TRY(mem_calloc(&mesh->points, points, sizeof *mesh->points, "points", err));
+    TRY(mem_calloc(&mesh->normals, points, sizeof *mesh->normals, "points", err));
+    TRY(mem_calloc(&mesh->triangles, triangles, sizeof *mesh->triangles, "triangles", err));
+    TRY(mem_calloc(&mesh->labels, triangles, sizeof *mesh->labels, "triangles", err));
+    TRY(mem_calloc(&assembly->rim_points, rims, sizeof *assembly->rim_points, "rims", err));
+    return mem_calloc(&assembly->rims, assembly->tree->n_segments, sizeof *assembly->rims, "rims",
+                      err);
+}
+
+Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *pieces, uint32_t sides,
+                     VesselMesh *mesh, double *grid_mm, Err *err)
+{
+    VesselMesh made = {0};
+    Assembly assembly = {
+        .tree = tree, .zones = zones, .mesh = &made, .grid_mm = grid_of(tree), .sides = sides};
+    Status status;
+    TRY_GOTO(reserve(&assembly, pieces, err));
+    for (uint32_t z = 0; z < zones->n_zones; z++) {
+        add_piece(&assembly, &pieces[z]);
+        zonepiece_release(&pieces[z]);
+    }
+    for (uint32_t i = 0; i < tree->n_segments; i++) {
+        if (!zones->is_tube[i])
+            continue;
+        for (int end = 0; end < 2; end++)
+            if (zones->zone[tree->nodes[i][end]] == NO_ZONE)
+                add_cap(&assembly, i, end);
+        TRY_GOTO(add_strip(&assembly, i, err));
+    }
+    *mesh = made;
+    *grid_mm = assembly.grid_mm;
+    made = (VesselMesh){0};
+done:
+    vesselmesh_release(&made);
+    free(assembly.rims);
+    free(assembly.rim_points);
+    free(assembly.angles);
+    return status;
+}

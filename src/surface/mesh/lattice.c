@@ -1,0 +1,394 @@
+/* About each smallest edge of the octree stand three or four leaves; two of them that share a face
+ * make, with the edge, a tetrahedron between their centres and the ends of the edge. In a graded
+ * octree these tetrahedra fill space and none is inverted; in one of equal cells they are the
+ * body-centred cubic lattice, whose tetrahedra are the best known for such cuts [F. Labelle, J.
+ * Shewchuk: Isosurface stuffing, SIGGRAPH 2007]. Whatever the signs at its points, what separates
+ * them is a closed manifold.
+ *
+ * Cells, faces and edges are walked by the three recursions of T. Ju et al.: Dual contouring of
+ * Hermite data, SIGGRAPH 2002.
+ *
+ * Points of the lattice that lie almost on the wall are moved off it, on their own side, so that no
+ * triangle becomes a sliver. */
+#include "surface/mesh/lattice.h"
+
+#include <stdlib.h>
+
+/* How close to the wall points may lie, over the side of a cell. */
+static const double clearance = 0.1;
+/* Nearer than this, by height, it is looked at how near a point is. */
+static const double nearly = 0.3;
+/* Of the height: where the search along an edge ends, before one step of Newton's method. */
+static const double found_height = 2e-3;
+
+typedef struct Cutter {
+    Lattice *lattice;
+    const ZoneTree *tree;
+    const ZonePlan *plan;
+    Patch *patch;
+    Err *err;
+} Cutter;
+
+void lattice_release(Lattice *lattice)
+{
+    free(lattice->points);
+    free(lattice->centers);
+    pairtable_release(&lattice->corners);
+    pairtable_release(&lattice->crossings);
+    *lattice = (Lattice){0};
+}
+
+/* Moves a point off the wall. */
+static void clear_wall(const Cutter *cutter, const FieldPart *part, double side,
+                       LatticePoint *point)
+{
+    const ZoneField *field = &cutter->plan->field;
+    const PartPool *pool = &cutter->tree->kept;
+    Vec3 gradient;
+    FieldValue value = fieldpart_gradient(field, pool, part, point->x, &gradient);
+    double steepness = vec3_length(gradient), least = clearance * side;
+    double inside = (value.phi - FIELD_LEVEL) / steepness; /* mm, about */
+    if (!(fabs(inside) < least))
+        return;
+    double by = (inside >= 0 ? least : -least) - inside;
+    Vec3 moved = vec3_add_scaled(point->x, gradient, by / steepness);
+    double height = field_height(fieldpart_value(field, pool, part, moved).phi);
+    if ((height < 0) == (inside >= 0) && height != 0)
+        *point = (LatticePoint){moved, height};
+}
+
+/* A point whose field is that of the active cell `from`. */
+static Status add_point(Cutter *cutter, const ZoneCell *from, Vec3 x, uint32_t *number)
+{
+    Lattice *lattice = cutter->lattice;
+    TRY(mem_reserve(&lattice->points, &lattice->capacity, lattice->n_points + 1,
+                    sizeof *lattice->points, "points of a junction", cutter->err));
+    FieldValue value = fieldpart_value(&cutter->plan->field, &cutter->tree->kept, &from->part, x);
+    LatticePoint point = {x, field_height(value.phi)};
+    if (fabs(point.height) < nearly)
+        clear_wall(cutter, &from->part, zonetree_side(cutter->tree, from->level), &point);
+    *number = (uint32_t)lattice->n_points;
+    lattice->points[lattice->n_points++] = point;
+    return STATUS_OK;
+}
+
+static Status center_of(Cutter *cutter, const ZoneCell *from, uint32_t cell, uint32_t *number)
+{
+    uint32_t *center = &cutter->lattice->centers[cell];
+    if (*center == 0)
+        TRY(add_point(cutter, from, zonetree_center(cutter->tree, &cutter->tree->cells[cell]),
+                      center));
+    *number = *center;
+    return STATUS_OK;
+}
+
+/* `at` in units of the smallest cells. */
+static Status corner_at(Cutter *cutter, const ZoneCell *from, const uint32_t at[3],
+                        uint32_t *number)
+{
+    const ZoneTree *tree = cutter->tree;
+    uint64_t key = (uint64_t)at[0] << 42 | (uint64_t)at[1] << 21 | at[2];
+    uint32_t *place;
+    bool is_new;
+    TRY(pairtable_place(&cutter->lattice->corners, key, &place, &is_new, cutter->err));
+    if (is_new) {
+        double unit = zonetree_side(tree, ZONETREE_LEVELS);
+        Vec3 x = vec3(tree->corner.x + unit * at[0], tree->corner.y + unit * at[1],
+                      tree->corner.z + unit * at[2]);
+        TRY(add_point(cutter, from, x, place));
+    }
+    *number = *place;
+    return STATUS_OK;
+}
+
+/* Where the wall crosses the way from a point inside to one outside: regula falsi, halving the
+ * value of an end that stays (Illinois). */
+static Vec3 find_crossing(const Cutter *cutter, const FieldPart *part, const LatticePoint *inside,
+                          const LatticePoint *outside)
+{
+    double low = 0, high = 1, at_low = inside->height, at_high = outside->height, t = 0;
+    int last = 0;
+    for (int i = 0; i < 30; i++) {
+        t = low + (high - low) * (at_low / (at_low - at_high));
+        Vec3 x = vec3_add_scaled(inside->x, vec3_sub(outside->x, inside->x), t);
+        double height =
+            field_height(fieldpart_value(&cutter->plan->field, &cutter->tree->kept, part, x).phi);
+        if (fabs(height) < found_height)
+            break;
+        int side = height < 0 ? -1 : 1;
+        if (side < 0) {
+            low = t;
+            at_low = height;
+            at_high *= side == last ? 0.5 : 1;
+        } else {
+            high = t;
+            at_high = height;
+            at_low *= side == last ? 0.5 : 1;
+        }
+        last = side;
+    }
+    return vec3_add_scaled(inside->x, vec3_sub(outside->x, inside->x), t);
+}
+
+static PatchPoint wall_point(const Cutter *cutter, const FieldPart *part, Vec3 x)
+{
+    const ZoneField *field = &cutter->plan->field;
+    Vec3 gradient;
+    FieldValue value = fieldpart_gradient(field, &cutter->tree->kept, part, x, &gradient);
+    double steepness = vec3_length(gradient);
+    x = vec3_add_scaled(x, gradient, (FIELD_LEVEL - value.phi) / (steepness * steepness));
+    value = fieldpart_gradient(field, &cutter->tree->kept, part, x, &gradient);
+    const ZoneTerm *term = &field->terms[value.largest];
+    return (PatchPoint){.x = x,
+                        .normal = vec3_scale(gradient, -1 / vec3_length(gradient)),
+                        .radius_mm = term->radius_mm,
+                        .segment = term->segment,
+                        .arm = NO_ARM};
+}
+
+/* The point of the wall between two points of the lattice, of which `a` is inside. */
+static Status crossing_of(Cutter *cutter, const ZoneCell *from, uint32_t a, uint32_t b,
+                          uint32_t *number)
+{
+    uint32_t *place;
+    bool is_new;
+    TRY(pairtable_place(&cutter->lattice->crossings, pair_key(a, b), &place, &is_new, cutter->err));
+    if (is_new) {
+        const LatticePoint *points = cutter->lattice->points;
+        Vec3 x = find_crossing(cutter, &from->part, &points[a], &points[b]);
+        TRY(patch_add_point(cutter->patch, wall_point(cutter, &from->part, x), place, cutter->err));
+    }
+    *number = *place;
+    return STATUS_OK;
+}
+
+static bool is_inside(const Cutter *cutter, uint32_t point)
+{
+    return cutter->lattice->points[point].height < 0;
+}
+
+/* Adds a triangle so turned that it faces away from a point of the lattice that is inside, or
+ * towards one that is outside. */
+static Status add_triangle(Cutter *cutter, uint32_t a, uint32_t b, uint32_t c, uint32_t point)
+{
+    const PatchPoint *points = cutter->patch->points;
+    Vec3 from = points[a].x;
+    Vec3 normal = vec3_cross(vec3_sub(points[b].x, from), vec3_sub(points[c].x, from));
+    Vec3 towards = vec3_sub(cutter->lattice->points[point].x, from);
+    bool faces = vec3_dot(normal, towards) > 0, turn = faces == is_inside(cutter, point);
+    return patch_add_triangle(cutter->patch, (Triangle){{a, turn ? c : b, turn ? b : c}},
+                              cutter->err);
+}
+
+/* One corner is on its own side, the other three on the other. */
+static Status cut_corner(Cutter *cutter, const ZoneCell *from, uint32_t lone,
+                         const uint32_t others[3])
+{
+    bool inside = is_inside(cutter, lone);
+    uint32_t at[3];
+    for (int i = 0; i < 3; i++)
+        TRY(crossing_of(cutter, from, inside ? lone : others[i], inside ? others[i] : lone,
+                        &at[i]));
+    return add_triangle(cutter, at[0], at[1], at[2], lone);
+}
+
+/* Points a and b are inside, c and d outside: a quadrilateral, cut along its shorter diagonal. */
+static Status cut_middle(Cutter *cutter, const ZoneCell *from, uint32_t a, uint32_t b, uint32_t c,
+                         uint32_t d)
+{
+    uint32_t ac, ad, bc, bd;
+    TRY(crossing_of(cutter, from, a, c, &ac));
+    TRY(crossing_of(cutter, from, a, d, &ad));
+    TRY(crossing_of(cutter, from, b, d, &bd));
+    TRY(crossing_of(cutter, from, b, c, &bc));
+    const PatchPoint *points = cutter->patch->points;
+    if (vec3_distance(points[ac].x, points[bd].x) <= vec3_distance(points[ad].x, points[bc].x)) {
+        TRY(add_triangle(cutter, ac, ad, bd, a));
+        return add_triangle(cutter, ac, bd, bc, b);
+    }
+    TRY(add_triangle(cutter, ac, ad, bc, a));
+    return add_triangle(cutter, ad, bd, bc, b);
+}
+
+static Status cut_tetrahedron(Cutter *cutter, const ZoneCell *from, const uint32_t at[4])
+{
+    uint32_t in[4], out[4];
+    int n_in = 0, n_out = 0;
+    for (int i = 0; i < 4; i++)
+        if (is_inside(cutter, at[i]))
+            in[n_in++] = at[i];
+        else
+            out[n_out++] = at[i];
+    if (n_in == 1)
+        return cut_corner(cutter, from, in[0], out);
+    if (n_in == 3)
+        return cut_corner(cutter, from, out[0], in);
+    if (n_in == 2)
+        return cut_middle(cutter, from, in[0], in[1], out[0], out[1]);
+    return STATUS_OK;
+}
+
+/* The ends of the smallest edge among four leaves about it, along `axis`. */
+static Status edge_ends(Cutter *cutter, const uint32_t around[4], int axis, const ZoneCell *from,
+                        uint32_t ends[2])
+{
+    const ZoneCell *cells = cutter->tree->cells;
+    int smallest = 0;
+    for (int i = 1; i < 4; i++)
+        if (cells[around[i]].level > cells[around[smallest]].level)
+            smallest = i;
+    const ZoneCell *cell = &cells[around[smallest]];
+    int u = (axis + 1) % 3, v = (axis + 2) % 3, shift = ZONETREE_LEVELS - cell->level;
+    for (int end = 0; end < 2; end++) {
+        uint32_t at[3];
+        at[axis] = (uint32_t)(cell->at[axis] + end) << shift;
+        at[u] = (uint32_t)(cell->at[u] + 1 - (smallest & 1)) << shift;
+        at[v] = (uint32_t)(cell->at[v] + 1 - (smallest >> 1)) << shift;
+        TRY(corner_at(cutter, from, at, &ends[end]));
+    }
+    return STATUS_OK;
+}
+
+/* Four leaves about a smallest edge; the second and third from the first one across. */
+static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
+{
+    static const int turn[5] = {0, 1, 3, 2, 0};
+    const ZoneCell *cells = cutter->tree->cells, *active = NULL;
+    for (int i = 0; i < 4; i++) {
+        if (cells[around[i]].state == CELL_BEHIND)
+            return STATUS_OK;
+        if (cells[around[i]].state == CELL_ACTIVE)
+            active = &cells[around[i]];
+    }
+    if (!active)
+        return STATUS_OK;
+    uint32_t at[4];
+    TRY(edge_ends(cutter, around, axis, active, at));
+    for (int i = 0; i < 4; i++) {
+        uint32_t a = around[turn[i]], b = around[turn[i + 1]];
+        const ZoneCell *from = cells[a].state == CELL_ACTIVE ? &cells[a] : &cells[b];
+        if (a == b || from->state != CELL_ACTIVE)
+            continue;
+        TRY(center_of(cutter, from, a, &at[2]));
+        TRY(center_of(cutter, from, b, &at[3]));
+        TRY(cut_tetrahedron(cutter, from, at));
+    }
+    return STATUS_OK;
+}
+
+/* The child of a cell at these halves along the axes, the cell itself when it is a leaf. */
+static uint32_t child_of(const Cutter *cutter, uint32_t cell, const int half[3])
+{
+    uint32_t children = cutter->tree->cells[cell].children;
+    return children ? children + (uint32_t)(half[0] | half[1] << 1 | half[2] << 2) : cell;
+}
+
+static bool is_leaf(const Cutter *cutter, uint32_t cell)
+{
+    return cutter->tree->cells[cell].children == 0;
+}
+
+/* around[i + 2 j] stands at the lower or upper side along the next axis but one (i, j). */
+static Status walk_edge(Cutter *cutter, const uint32_t around[4], int axis)
+{
+    if (is_leaf(cutter, around[0]) && is_leaf(cutter, around[1]) && is_leaf(cutter, around[2]) &&
+        is_leaf(cutter, around[3]))
+        return cut_about_edge(cutter, around, axis);
+    for (int along = 0; along < 2; along++) {
+        uint32_t parts[4];
+        for (int i = 0; i < 4; i++) {
+            int half[3];
+            half[axis] = along;
+            half[(axis + 1) % 3] = 1 - (i & 1);
+            half[(axis + 2) % 3] = 1 - (i >> 1);
+            parts[i] = child_of(cutter, around[i], half);
+        }
+        TRY(walk_edge(cutter, parts, axis));
+    }
+    return STATUS_OK;
+}
+
+/* The edges along `axis` in the face between two cells, whose normal is another axis. */
+static Status walk_face_edges(Cutter *cutter, const uint32_t sides[2], int normal, int axis)
+{
+    for (int along = 0; along < 2; along++) {
+        uint32_t around[4];
+        for (int i = 0; i < 4; i++) {
+            int upper[3] = {0}, half[3];
+            upper[(axis + 1) % 3] = i & 1;
+            upper[(axis + 2) % 3] = i >> 1;
+            for (int k = 0; k < 3; k++)
+                half[k] = k == axis ? along : k == normal ? 1 - upper[k] : upper[k];
+            around[i] = child_of(cutter, sides[upper[normal]], half);
+        }
+        TRY(walk_edge(cutter, around, axis));
+    }
+    return STATUS_OK;
+}
+
+static Status walk_face(Cutter *cutter, const uint32_t sides[2], int normal)
+{
+    if (is_leaf(cutter, sides[0]) && is_leaf(cutter, sides[1]))
+        return STATUS_OK;
+    for (int i = 0; i < 4; i++) {
+        uint32_t parts[2];
+        for (int side = 0; side < 2; side++) {
+            int half[3];
+            half[normal] = 1 - side;
+            half[(normal + 1) % 3] = i & 1;
+            half[(normal + 2) % 3] = i >> 1;
+            parts[side] = child_of(cutter, sides[side], half);
+        }
+        TRY(walk_face(cutter, parts, normal));
+    }
+    for (int k = 1; k < 3; k++)
+        TRY(walk_face_edges(cutter, sides, normal, (normal + k) % 3));
+    return STATUS_OK;
+}
+
+static Status walk_inner_edges(Cutter *cutter, uint32_t children, int axis)
+{
+    for (uint32_t along = 0; along < 2; along++) {
+        uint32_t around[4];
+        for (uint32_t i = 0; i < 4; i++)
+            around[i] = children + (along << axis) + ((i & 1) << (axis + 1) % 3) +
+                        ((i >> 1) << (axis + 2) % 3);
+        TRY(walk_edge(cutter, around, axis));
+    }
+    return STATUS_OK;
+}
+
+static Status walk_cell(Cutter *cutter, uint32_t cell)
+{
+    if (is_leaf(cutter, cell))
+        return STATUS_OK;
+    uint32_t children = cutter->tree->cells[cell].children;
+    for (uint32_t i = 0; i < 8; i++)
+        TRY(walk_cell(cutter, children + i));
+    for (int axis = 0; axis < 3; axis++) {
+        for (uint32_t i = 0; i < 4; i++) {
+            uint32_t lower = children + ((i & 1) << (axis + 1) % 3) + ((i >> 1) << (axis + 2) % 3);
+            const uint32_t sides[2] = {lower, lower + (1u << axis)};
+            TRY(walk_face(cutter, sides, axis));
+        }
+        TRY(walk_inner_edges(cutter, children, axis));
+    }
+    return STATUS_OK;
+}
+
+Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan, Patch *patch,
+                    Err *err)
+{
+    Cutter cutter = {lattice, tree, plan, patch, err};
+    patch->n_points = patch->n_triangles = 0;
+    pairtable_clear(&lattice->corners);
+    pairtable_clear(&lattice->crossings);
+    TRY(mem_reserve(&lattice->centers, &lattice->center_capacity, tree->n_cells,
+                    sizeof *lattice->centers, "points of a junction", err));
+    for (size_t i = 0; i < tree->n_cells; i++)
+        lattice->centers[i] = 0;
+    TRY(mem_reserve(&lattice->points, &lattice->capacity, 1, sizeof *lattice->points,
+                    "points of a junction", err));
+    lattice->n_points = 1; /* the first is none, so that 0 says "not yet" */
+    return walk_cell(&cutter, 0);
+}

@@ -1,0 +1,31 @@
+/* The wall of a junction zone, from the tetrahedra of an octree. */
+#ifndef CORCAST_SURFACE_LATTICE_H
+#define CORCAST_SURFACE_LATTICE_H
+
+#include "surface/mesh/pairtable.h"
+#include "surface/mesh/patch.h"
+#include "surface/mesh/zonetree.h"
+
+/* A point where the field is known. */
+typedef struct LatticePoint {
+    Vec3 x;
+    double height; /* field_height there: below 0 inside */
+} LatticePoint;
+
+/* What one thread needs; zeroed before the first use, and kept for the next zone. */
+typedef struct Lattice {
+    LatticePoint *points; /* owned, as all of it */
+    size_t n_points, capacity;
+    uint32_t *centers; /* points, one a cell; 0: not yet */
+    size_t center_capacity;
+    PairTable corners;   /* place in the lattice -> point */
+    PairTable crossings; /* two points -> point of the patch */
+} Lattice;
+
+void lattice_release(Lattice *lattice);
+
+/* Puts the wall into *patch, which is emptied first. It is open only behind planes. */
+MUST_CHECK Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan,
+                               Patch *patch, Err *err);
+
+#endif

@@ -1,0 +1,17 @@
+/* What is true of finished triangles. */
+#ifndef CORCAST_SURFACE_MESHCHECK_H
+#define CORCAST_SURFACE_MESHCHECK_H
+
+#include "surface/mesh/vesselmesh.h"
+
+/* Fills components, genus, euler, open_edges and volume_mm3 of the report, and bridges: trees[i] is
+ * the tree that segment i is of. O(triangles). */
+MUST_CHECK Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *trees,
+                                     MeshReport *report, Err *err);
+
+/* Fills crossings: the pairs of triangles that have a point in common beyond a corner or an edge
+ * that they share. Exact: coordinates are whole multiples of `grid_mm`, below 2^25 of it. */
+MUST_CHECK Status meshcheck_crossings(const VesselMesh *mesh, double grid_mm, int threads,
+                                      size_t *crossings, Err *err);
+
+#endif

@@ -1,0 +1,136 @@
+/* The edges of a mesh are sorted into lists, one a point, that hold for its edges to points of a
+ * higher number that other point and the way the triangle goes along it; an edge is closed when its
+ * list has the other point once each way. What is a component is found by union-find; in a closed
+ * one triangles make two thirds as many as edges, and genus is (2 - points + edges - triangles)
+ * / 2. */
+#include "surface/mesh/meshcheck.h"
+
+#include <stdlib.h>
+
+static const uint32_t no_tree = UINT32_MAX;
+
+typedef struct EdgeLists {
+    uint32_t *first; /* one a point, and one more */
+    uint32_t *ends;  /* twice the other point, and 1 when the triangle goes from it */
+} EdgeLists;
+
+static int compare_numbers(const void *a, const void *b)
+{
+    uint32_t one = *(const uint32_t *)a, other = *(const uint32_t *)b;
+    return (one > other) - (one < other);
+}
+
+static Status list_edges(const VesselMesh *mesh, EdgeLists *lists, Err *err)
+{
+    TRY(mem_calloc(&lists->first, mesh->n_points + 2, sizeof *lists->first, "edges", err));
+    TRY(mem_calloc(&lists->ends, 3 * mesh->n_triangles, sizeof *lists->ends, "edges", err));
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < 3 * mesh->n_triangles; i++) {
+            uint32_t a = mesh->triangles[i / 3][i % 3], b = mesh->triangles[i / 3][(i + 1) % 3];
+            uint32_t low = a < b ? a : b, high = a < b ? b : a;
+            if (pass == 0)
+                lists->first[low + 2]++;
+            else
+                lists->ends[lists->first[low + 1]++] = 2 * high + (a > b);
+        }
+        for (size_t i = 2; i <= mesh->n_points && pass == 0; i++)
+            lists->first[i] += lists->first[i - 1];
+    }
+    return STATUS_OK;
+}
+
+/* Edges that do not have two triangles, one each way. */
+static size_t count_open(const VesselMesh *mesh, const EdgeLists *lists)
+{
+    size_t open = 0;
+    for (size_t i = 0; i < mesh->n_points; i++) {
+        uint32_t *ends = &lists->ends[lists->first[i]];
+        size_t n = lists->first[i + 1] - lists->first[i];
+        qsort(ends, n, sizeof *ends, compare_numbers);
+        for (size_t k = 0; k < n;) {
+            size_t same = k;
+            while (same < n && ends[same] / 2 == ends[k] / 2)
+                same++;
+            open += !(same == k + 2 && ends[k] % 2 == 0 && ends[k + 1] % 2 == 1);
+            k = same;
+        }
+    }
+    return open;
+}
+
+static uint32_t root_of(uint32_t *root, uint32_t point)
+{
+    while (root[point] != point)
+        point = root[point] = root[root[point]];
+    return point;
+}
+
+/* The lowest point of a component is its root. */
+static void join_points(const VesselMesh *mesh, uint32_t *root)
+{
+    for (uint32_t i = 0; i < mesh->n_points; i++)
+        root[i] = i;
+    for (size_t i = 0; i < mesh->n_triangles; i++)
+        for (int k = 1; k < 3; k++) {
+            uint32_t a = root_of(root, mesh->triangles[i][0]);
+            uint32_t b = root_of(root, mesh->triangles[i][k]);
+            root[a > b ? a : b] = a < b ? a : b;
+        }
+}
+
+static size_t count_bridges(const VesselMesh *mesh, uint32_t *root, uint32_t *tree,
+                            const uint32_t *trees)
+{
+    size_t bridges = 0;
+    for (size_t i = 0; i < mesh->n_points; i++)
+        tree[i] = no_tree;
+    for (size_t i = 0; i < mesh->n_triangles; i++) {
+        uint32_t component = root_of(root, mesh->triangles[i][0]);
+        uint32_t own = trees[mesh->labels[i] & ~MESH_CAP];
+        if (tree[component] == no_tree)
+            tree[component] = own;
+        bridges += tree[component] != own;
+    }
+    return bridges;
+}
+
+double vesselmesh_volume(const VesselMesh *mesh)
+{
+    double six = 0;
+    for (size_t i = 0; i < mesh->n_triangles; i++) {
+        Vec3 at[3];
+        for (int k = 0; k < 3; k++) {
+            const float *x = mesh->points[mesh->triangles[i][k]], *o = mesh->points[0];
+            at[k] = vec3((double)x[0] - (double)o[0], (double)x[1] - (double)o[1],
+                         (double)x[2] - (double)o[2]);
+        }
+        six += vec3_dot(at[0], vec3_cross(at[1], at[2]));
+    }
+    return six / 6;
+}
+
+Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *trees, MeshReport *report,
+                          Err *err)
+{
+    EdgeLists lists = {0};
+    uint32_t *root = NULL;
+    Status status;
+    TRY_GOTO(list_edges(mesh, &lists, err));
+    report->open_edges = count_open(mesh, &lists);
+    free(lists.ends);
+    lists.ends = NULL;
+    TRY_GOTO(mem_calloc(&root, mesh->n_points, sizeof *root, "points", err));
+    join_points(mesh, root);
+    report->components = 0;
+    for (uint32_t i = 0; i < mesh->n_points; i++)
+        report->components += root_of(root, i) == i;
+    report->bridges = count_bridges(mesh, root, lists.first, trees);
+    report->euler = (long long)mesh->n_points - (long long)(mesh->n_triangles / 2);
+    report->genus = (size_t)llabs((2 * (long long)report->components - report->euler) / 2);
+    report->volume_mm3 = vesselmesh_volume(mesh);
+done:
+    free(lists.first);
+    free(lists.ends);
+    free(root);
+    return status;
+}

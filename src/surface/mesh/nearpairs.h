@@ -1,0 +1,15 @@
+/* Vessels without a common node whose walls come near. */
+#ifndef CORCAST_SURFACE_NEARPAIRS_H
+#define CORCAST_SURFACE_NEARPAIRS_H
+
+#include "surface/mesh/vesselmesh.h"
+
+/* Pairs of segments without a common node and with a gap below NEAR_GAP of the thinner radius, in
+ * *pairs (owned), by rising indices. */
+MUST_CHECK Status nearpairs_find(const VesselTree *tree, int threads, NearPair **pairs, size_t *n,
+                                 Err *err);
+
+/* The distance between two segments, mm. */
+double segments_distance(const FieldSegment *a, const FieldSegment *b);
+
+#endif

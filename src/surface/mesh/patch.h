@@ -1,0 +1,38 @@
+/* A piece of the vessel surface in the making. */
+#ifndef CORCAST_SURFACE_PATCH_H
+#define CORCAST_SURFACE_PATCH_H
+
+#include "base/base.h"
+#include "geom/geom.h"
+#include <stdint.h>
+
+#define NO_ARM UINT16_MAX
+
+typedef struct PatchPoint {
+    Vec3 x;           /* mm */
+    Vec3 normal;      /* unit, outward */
+    double radius_mm; /* of the vessel whose term is largest there */
+    uint32_t segment; /* that vessel */
+    uint16_t arm;     /* the arm on the rim of whose plane it lies, or NO_ARM */
+} PatchPoint;
+
+typedef struct Triangle {
+    uint32_t at[3]; /* points, counterclockwise from outside */
+} Triangle;
+
+typedef struct Patch {
+    PatchPoint *points; /* owned, as all of it */
+    size_t n_points, point_capacity;
+    Triangle *triangles;
+    size_t n_triangles, triangle_capacity;
+} Patch;
+
+void patch_release(Patch *patch);
+MUST_CHECK Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *number, Err *err);
+MUST_CHECK Status patch_add_triangle(Patch *patch, Triangle triangle, Err *err);
+
+/* Leaves out the triangles whose first point is UINT32_MAX, and the points that no triangle has;
+ * the order of the others stays. `renamed` has room for the points. */
+void patch_compact(Patch *patch, uint32_t *renamed);
+
+#endif

@@ -1,0 +1,26 @@
+/* Cutting a zone's wall off at the planes of its arms. */
+#ifndef CORCAST_SURFACE_PLANECUT_H
+#define CORCAST_SURFACE_PLANECUT_H
+
+#include "surface/mesh/pairtable.h"
+#include "surface/mesh/patch.h"
+#include "surface/mesh/zones.h"
+
+/* Workspace of a thread; zeroed before the first use. */
+typedef struct PlaneCutter {
+    PairTable crossings; /* edge -> point on the rim */
+    uint16_t *behind;    /* one a point: the arm whose plane it lies behind, or NO_ARM */
+    uint32_t *renamed;
+    double *along;
+    size_t behind_capacity, renamed_capacity, along_capacity;
+} PlaneCutter;
+
+void planecutter_release(PlaneCutter *cutter);
+
+/* Moves the planes by at most a quarter of `ratio` radii to where few points lie, and cuts the wall
+ * there; points on the rims lie on the circle about the axis, and name the arm. *sound is false
+ * when a triangle reaches behind two planes. */
+MUST_CHECK Status planecut_make(PlaneCutter *cutter, const ZonePlan *plan, double ratio,
+                                Patch *patch, bool *sound, Err *err);
+
+#endif

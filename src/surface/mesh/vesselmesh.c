@@ -1,0 +1,258 @@
+/* The tree is cut into junction zones and tubes (zones.c); each zone's wall is made by a lattice
+ * of its own (zonetree.c, lattice.c), cut at the planes of its arms (planecut.c), thinned out
+ * (collapse.c) and proved to be a sphere with holes (zonepiece.c); strips and caps join them
+ * (assemble.c). Over a tree that gives a sphere for each: zones are spheres with k holes, strips
+ * rings, caps discs. What can go wrong beyond that, vessels that meet though they do not blend, and
+ * roundings, is found on the finished triangles (meshtopology.c, crossings.c).
+ *
+ * One octree for all was tried, and was not sound: cells join vessels whose gap is below a cell.
+ * Swept rings alone cannot be: two junctions of five lie in zones of several nodes. */
+#include "surface/mesh/assemble.h"
+#include "surface/mesh/meshcheck.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+
+/* What the tolerance means for cells and edges, measured so that the mean distance to the surface
+ * stays below 0.15 of it, and one sample of a thousand is beyond it. */
+static const double cells_at = 0.02, cell_ratio = 0.5, bending_ratio = 0.32, sagitta_part = 0.3;
+
+typedef struct Build {
+    const VesselTree *tree;
+    const MeshParams *params;
+    NodeLists incident, blending;
+    Zones zones;
+    ZoneFineness fineness;
+    ZonePiece *pieces;
+    ZoneWorker *workers;
+    uint8_t *fates; /* one a segment: SegmentFate */
+    Status *statuses;
+    Err *errors; /* the first failure of each thread */
+    atomic_size_t done;
+} Build;
+
+void meshreport_release(MeshReport *report)
+{
+    free(report->missing);
+    free(report->swallowed);
+    free(report->round);
+    free(report->near);
+    *report = (MeshReport){0};
+}
+
+bool meshreport_is_sound(const MeshReport *report)
+{
+    return report->open_edges == 0 && report->components == report->trees && report->genus == 0 &&
+           report->crossings == 0 && report->bridges == 0 && report->n_missing == 0;
+}
+
+static ZoneFineness fineness_of(double tolerance)
+{
+    double ratio = fmin(cell_ratio * sqrt(tolerance / cells_at), 0.7);
+    return (ZoneFineness){{ratio, bending_ratio * tolerance / cells_at}, sagitta_part * tolerance};
+}
+
+/* A regular polygon of so many sides is within the sagitta of its circle. */
+static uint32_t sides_of(double sagitta)
+{
+    return (uint32_t)fmax(8, ceil(3.141592653589793 / acos(1 - sagitta)));
+}
+
+void vesselmesh_estimate(const VesselTree *tree, const MeshParams *params, double *triangles,
+                         double *bytes)
+{
+    *triangles = 700.0 * (double)tree->n_segments * 0.02 / params->tolerance;
+    *bytes = *triangles * 80;
+}
+
+static void release_build(Build *build, int n_workers)
+{
+    nodelists_release(&build->incident);
+    nodelists_release(&build->blending);
+    for (uint32_t z = 0; z < build->zones.n_zones && build->pieces; z++)
+        zonepiece_release(&build->pieces[z]);
+    for (int i = 0; i < n_workers && build->workers; i++)
+        zoneworker_release(&build->workers[i]);
+    zones_release(&build->zones);
+    free(build->pieces);
+    free(build->workers);
+    free(build->fates);
+    free(build->statuses);
+    free(build->errors);
+}
+
+static void make_zone(size_t index, int worker, void *context)
+{
+    Build *build = context;
+    Err *err = &build->errors[worker];
+    ZonePlan plan;
+    if (build->statuses[worker] != STATUS_OK)
+        return;
+    Status status = zoneplan_make(build->tree, &build->incident, &build->blending, &build->zones,
+                                  (uint32_t)index, &plan, err);
+    if (status == STATUS_OK) {
+        status = zonepiece_make(&build->workers[worker], build->tree, &plan, &build->fineness,
+                                &build->pieces[index], build->fates, err);
+        zoneplan_release(&plan);
+    }
+    build->statuses[worker] = status;
+    size_t done = atomic_fetch_add(&build->done, 1) + 1;
+    if (build->params->progress && worker == 0)
+        build->params->progress((double)done / (double)build->zones.n_zones,
+                                build->params->context);
+}
+
+static Status make_zones(Build *build, int n_workers, Err *err)
+{
+    size_t n_zones = build->zones.n_zones, n = (size_t)n_workers;
+    TRY(mem_calloc(&build->pieces, n_zones, sizeof *build->pieces, "zones", err));
+    TRY(mem_calloc(&build->workers, n, sizeof *build->workers, "threads", err));
+    TRY(mem_calloc(&build->fates, build->tree->n_segments, sizeof *build->fates, "segments", err));
+    TRY(mem_calloc(&build->statuses, n, sizeof *build->statuses, "threads", err));
+    TRY(mem_calloc(&build->errors, n, sizeof *build->errors, "threads", err));
+    for (size_t i = 0; i < build->tree->n_segments; i++)
+        build->fates[i] = build->zones.is_tube[i] ? SEGMENT_PRESENT : SEGMENT_MISSING;
+    threads_for(n_zones, n_workers, make_zone, build);
+    for (int i = 0; i < n_workers; i++)
+        if (build->statuses[i] != STATUS_OK)
+            return err_set(err, build->statuses[i], "%s", build->errors[i].text);
+    return STATUS_OK;
+}
+
+/* The trees that segments are of, numbered from 0, in *trees (owned). */
+static Status find_trees(const VesselTree *tree, uint32_t **trees, size_t *n_trees, Err *err)
+{
+    uint32_t *root, *of_segment, count = 0;
+    TRY(mem_calloc(&root, tree->n_nodes, sizeof *root, "nodes", err));
+    Status status = mem_calloc(&of_segment, tree->n_segments, sizeof *of_segment, "segments", err);
+    if (status != STATUS_OK) {
+        free(root);
+        return status;
+    }
+    for (uint32_t i = 0; i < tree->n_nodes; i++)
+        root[i] = i;
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t i = 0; i < tree->n_segments; i++) {
+            uint32_t ends[2];
+            for (int end = 0; end < 2; end++) {
+                uint32_t node = tree->nodes[i][end];
+                while (root[node] != node)
+                    node = root[node] = root[root[node]];
+                ends[end] = node;
+            }
+            count += pass == 0 && ends[0] != ends[1];
+            root[ends[0] > ends[1] ? ends[0] : ends[1]] = ends[0] < ends[1] ? ends[0] : ends[1];
+            of_segment[i] = ends[0] < ends[1] ? ends[0] : ends[1];
+        }
+    uint8_t *used = (uint8_t *)root; /* one node is as many bytes as needed, and more */
+    size_t n = 0;
+    for (size_t i = 0; i < tree->n_nodes; i++)
+        used[i] = 0;
+    for (size_t i = 0; i < tree->n_segments; i++) {
+        n += !used[of_segment[i]];
+        used[of_segment[i]] = 1;
+    }
+    free(root);
+    *trees = of_segment;
+    *n_trees = n;
+    return STATUS_OK;
+}
+
+/* The segments of one fate, in *list (owned). */
+static Status list_fate(const Build *build, SegmentFate fate, uint32_t **list, size_t *n, Err *err)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < build->tree->n_segments; i++)
+        count += build->fates[i] == fate;
+    TRY(mem_calloc(list, count, sizeof **list, "segments", err));
+    for (uint32_t i = 0; i < build->tree->n_segments; i++)
+        if (build->fates[i] == fate)
+            (*list)[(*n)++] = i;
+    return STATUS_OK;
+}
+
+/* The segments with an end that nothing else meets, but that is not cut off flat. */
+static Status list_round(const Build *build, MeshReport *report, Err *err)
+{
+    const VesselTree *tree = build->tree;
+    size_t capacity = 0;
+    for (uint32_t i = 0; i < tree->n_segments; i++)
+        for (int end = 0; end < 2; end++) {
+            uint32_t node = tree->nodes[i][end];
+            const uint32_t *first = &build->incident.first[node];
+            if (first[1] - first[0] != 1 || build->zones.zone[node] == NO_ZONE)
+                continue;
+            TRY(mem_reserve(&report->round, &capacity, report->n_round + 1, sizeof *report->round,
+                            "segments", err));
+            report->round[report->n_round++] = i;
+        }
+    return STATUS_OK;
+}
+
+static Status refuse_overlap(const Build *build, Err *err)
+{
+    const NearPair *pair = build->zones.strangers;
+    const FieldSegment *segments = build->tree->segments;
+    return err_set(
+        err, STATUS_INPUT,
+        "the vessels of segments %u and %u, which do not belong together, overlap by %.3g "
+        "mm (%zu such pairs); their walls cannot both be kept",
+        segments[pair->segments[0]].id, segments[pair->segments[1]].id, -pair->gap_mm,
+        build->zones.n_overlapping);
+}
+
+static Status fill_report(Build *build, const VesselMesh *mesh, double grid_mm, MeshReport *report,
+                          Err *err)
+{
+    uint32_t *trees;
+    TRY(find_trees(build->tree, &trees, &report->trees, err));
+    Status status = meshcheck_topology(mesh, trees, report, err);
+    free(trees);
+    TRY(status);
+    TRY(meshcheck_crossings(mesh, grid_mm, build->params->threads, &report->crossings, err));
+    TRY(list_fate(build, SEGMENT_MISSING, &report->missing, &report->n_missing, err));
+    TRY(list_fate(build, SEGMENT_SWALLOWED, &report->swallowed, &report->n_swallowed, err));
+    TRY(list_round(build, report, err));
+    report->near = build->zones.strangers;
+    report->n_near = build->zones.n_strangers;
+    report->n_overlapping = build->zones.n_overlapping;
+    build->zones.strangers = NULL;
+    return STATUS_OK;
+}
+
+static Status cut_tree(Build *build, Err *err)
+{
+    TRY(nodelists_incident(build->tree, &build->incident, err));
+    TRY(nodelists_blending(build->tree, &build->incident, &build->blending, err));
+    TRY(zones_find(build->tree, &build->incident, &build->blending, build->params->threads,
+                   &build->zones, err));
+    return build->zones.n_overlapping ? refuse_overlap(build, err) : STATUS_OK;
+}
+
+Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, VesselMesh *mesh,
+                        MeshReport *report, Err *err)
+{
+    int n_workers = params->threads > 0 ? params->threads : threads_available();
+    Build build = {.tree = tree, .params = params, .fineness = fineness_of(params->tolerance)};
+    VesselMesh made = {0};
+    MeshReport found = {0};
+    double grid_mm;
+    Status status;
+    TRY_GOTO(cut_tree(&build, err));
+    TRY_GOTO(make_zones(&build, n_workers, err));
+    found.zones = build.zones.n_zones;
+    for (uint32_t z = 0; z < build.zones.n_zones; z++)
+        found.repeated += build.pieces[z].repeats > 0;
+    TRY_GOTO(assemble_mesh(tree, &build.zones, build.pieces, sides_of(build.fineness.sagitta),
+                           &made, &grid_mm, err));
+    TRY_GOTO(fill_report(&build, &made, grid_mm, &found, err));
+    *mesh = made;
+    *report = found;
+    made = (VesselMesh){0};
+    found = (MeshReport){0};
+done:
+    vesselmesh_release(&made);
+    meshreport_release(&found);
+    release_build(&build, n_workers);
+    return status;
+}

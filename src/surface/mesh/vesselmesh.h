@@ -1,0 +1,92 @@
+/* The implicit vessel surface as triangles. Exported by the door of the room surface.
+ *
+ * The surface is that of the union, over the nodes of a tree, of the bodies in which the sum of
+ * the terms of the segments that blend at the node exceeds FIELD_LEVEL; a segment blends at the
+ * nodes that a way of at most BLEND_REACH of its radii leads to from one of its ends. Vessels that
+ * only pass each other do not blend. A vessel is cut off flat at a node where nothing else meets
+ * it. */
+#ifndef CORCAST_SURFACE_VESSELMESH_H
+#define CORCAST_SURFACE_VESSELMESH_H
+
+#include "base/base.h"
+#include "scene/scene.h"
+
+#define BLEND_REACH 2
+
+/* What is made into triangles: segments, and the nodes at their ends a and b. Any number of trees;
+ * a segment joins two different nodes, and segments make no loops. */
+typedef struct VesselTree {
+    const FieldSegment *segments;
+    const uint32_t (*nodes)[2]; /* below n_nodes */
+    size_t n_segments, n_nodes;
+} VesselTree;
+
+/* Set in the label of a triangle that closes an end. */
+#define MESH_CAP 0x80000000u
+
+/* Triangles, counterclockwise seen from outside. Points are single precision, as most formats hold
+ * them, so that what is checked is what is written. */
+typedef struct VesselMesh {
+    float (*points)[3];  /* mm; owned, as all of it */
+    float (*normals)[3]; /* unit, outward, of the exact surface; on the rim of a cap, of the wall */
+    size_t n_points;
+    uint32_t (*triangles)[3];
+    uint32_t *labels; /* one a triangle: index of its segment, and MESH_CAP */
+    size_t n_triangles;
+} VesselMesh;
+
+void vesselmesh_release(VesselMesh *mesh);
+
+/* What the triangles enclose, mm^3. */
+double vesselmesh_volume(const VesselMesh *mesh);
+
+typedef struct MeshParams {
+    double tolerance; /* of the local radius, in [0.001, 0.2]: what few places exceed */
+    int threads;      /* 0: all processors */
+    void (*progress)(double fraction, void *context); /* NULL: none */
+    void *context;
+} MeshParams;
+
+/* Two segments of different parts of a tree, or of different trees, that come near. */
+typedef struct NearPair {
+    uint32_t segments[2]; /* by rising index */
+    double gap_mm;        /* between their walls; below 0: they overlap */
+} NearPair;
+
+/* What is true of a mesh, established on its final points. */
+typedef struct MeshReport {
+    size_t trees;       /* of the input */
+    size_t components;  /* of the mesh */
+    size_t genus;       /* all components together */
+    long long euler;    /* points - edges + triangles, of all */
+    size_t open_edges;  /* that not two triangles share, one each way; 0: closed and oriented */
+    size_t crossings;   /* pairs of triangles that meet elsewhere than in what they share */
+    size_t bridges;     /* components that hold segments of several trees */
+    size_t n_missing;   /* segments with a wall that has no triangle */
+    size_t n_swallowed; /* segments that lie within others, so that they have no wall */
+    size_t n_round;     /* ends that could not be cut flat, because other vessels are in the way */
+    uint32_t *missing, *swallowed, *round; /* their segments; owned */
+    NearPair *near; /* owned; gaps below NEAR_GAP of the thinner radius, overlaps first */
+    size_t n_near, n_overlapping;
+    double volume_mm3;
+    size_t zones, repeated; /* junction zones, and those that needed finer cells */
+} MeshReport;
+
+#define NEAR_GAP 0.4
+
+void meshreport_release(MeshReport *report);
+
+/* Whether the report is that of a mesh to be handed out. */
+bool meshreport_is_sound(const MeshReport *report);
+
+/* How many triangles, and bytes of memory, a tree takes about. O(n). */
+void vesselmesh_estimate(const VesselTree *tree, const MeshParams *params, double *triangles,
+                         double *bytes);
+
+/* Triangulates the surface. The same bytes for any number of threads. *report is filled also where
+ * the mesh is not sound. STATUS_INPUT naming a pair of ids when vessels that do not blend overlap,
+ * STATUS_INFEASIBLE when a junction resists the finest cells. */
+MUST_CHECK Status vesselmesh_build(const VesselTree *tree, const MeshParams *params,
+                                   VesselMesh *mesh, MeshReport *report, Err *err);
+
+#endif

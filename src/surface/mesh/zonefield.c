@@ -1,0 +1,324 @@
+/* The bounds of a term in a ball of radius rho about x, in units of 1 / k. Its radial factor lies
+ * between those at E + rho and max(0, E - rho). Its axial factor, the same from either side of the
+ * middle, where it is largest, falls away from it: it is smallest at one of the ends of the
+ * interval of width 2 rho, and largest at the point of that nearest to the middle. */
+#include "surface/mesh/zonefield.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+static const double significant = 0.1 * FIELD_LEVEL;
+/* exp(-x^2) is below 10^-5 beyond this. */
+static const double out_of_reach = 3.4;
+/* From here on 1 - erf(x) is below 2e-9. */
+static const double saturated = 4.25;
+static const double inv_sqrt_pi = 0.56418958354775628695;
+
+ZoneTerm zoneterm_of(Vec3 a, Vec3 b, double radius_mm, uint32_t segment)
+{
+    double length = vec3_distance(a, b), k = sqrt(2) / radius_mm;
+    return (ZoneTerm){a, vec3_scale(vec3_sub(b, a), 1 / length), k, k * length, radius_mm, segment};
+}
+
+/* A place in the coordinates of a term: how far inside either end, how far from the axis. */
+typedef struct TermPlace {
+    double u, v, e2;
+    Vec3 across; /* mm */
+} TermPlace;
+
+static TermPlace place_in(const ZoneTerm *term, Vec3 x)
+{
+    Vec3 from_a = vec3_sub(x, term->a);
+    double along = vec3_dot(from_a, term->axis);
+    Vec3 across = vec3_add_scaled(from_a, term->axis, -along);
+    return (TermPlace){term->k * along, term->length_k - term->k * along,
+                       term->k * term->k * vec3_dot(across, across), across};
+}
+
+static double clamped_erf(double x)
+{
+    return x > saturated ? 1 : x < -saturated ? -1 : erf(x);
+}
+
+static double axial(double u, double v)
+{
+    return 0.5 * (clamped_erf(u) + clamped_erf(v));
+}
+
+/* The squared distance to the segment itself, in units of 1 / k. */
+static double distance2(const TermPlace *place)
+{
+    double beyond = fmax(0, -fmin(place->u, place->v));
+    return place->e2 + beyond * beyond;
+}
+
+double zoneterm_value(const ZoneTerm *term, Vec3 x)
+{
+    TermPlace place = place_in(term, x);
+    if (distance2(&place) > out_of_reach * out_of_reach)
+        return 0;
+    return exp(-place.e2) * axial(place.u, place.v);
+}
+
+static double term_gradient(const ZoneTerm *term, Vec3 x, Vec3 *gradient)
+{
+    TermPlace place = place_in(term, x);
+    double radial = exp(-place.e2), value = radial * axial(place.u, place.v);
+    double slope = exp(-place.u * place.u) - exp(-place.v * place.v);
+    *gradient = vec3_add_scaled(vec3_scale(place.across, -2 * term->k * term->k * value),
+                                term->axis, term->k * inv_sqrt_pi * radial * slope);
+    return value;
+}
+
+static double upper_bound(const TermPlace *place, double rho)
+{
+    double across = fmax(0, sqrt(place->e2) - rho), off = 0.5 * (place->v - place->u);
+    double towards = fmin(rho, fabs(off)) * (off > 0 ? 1 : -1);
+    return exp(-across * across) * axial(place->u + towards, place->v - towards);
+}
+
+static double lower_bound(const TermPlace *place, double rho)
+{
+    double across = sqrt(place->e2) + rho;
+    double one = axial(place->u + rho, place->v - rho),
+           other = axial(place->u - rho, place->v + rho);
+    return exp(-across * across) * fmax(0, fmin(one, other));
+}
+
+void partpool_release(PartPool *pool)
+{
+    free(pool->terms);
+    free(pool->groups);
+    free(pool->work);
+    *pool = (PartPool){0};
+}
+
+static Status reserve_part(PartPool *pool, size_t terms, size_t words, Err *err)
+{
+    TRY(mem_reserve(&pool->terms, &pool->term_capacity, pool->n_terms + terms, sizeof *pool->terms,
+                    "terms of a junction", err));
+    return mem_reserve(&pool->groups, &pool->group_capacity, pool->n_groups + words,
+                       sizeof *pool->groups, "terms of a junction", err);
+}
+
+/* An empty part on top of the pool; its groups come after. */
+static FieldPart begin_part(const PartPool *pool, uint32_t n_terms)
+{
+    return (FieldPart){(uint32_t)pool->n_terms, n_terms, (uint32_t)pool->n_groups, 0,
+                       (n_terms + 63) / 64};
+}
+
+Status fieldpart_all(const ZoneField *field, PartPool *pool, FieldPart *out, Err *err)
+{
+    FieldPart part = begin_part(pool, field->n_terms);
+    size_t words = (size_t)part.words * field->n_groups;
+    TRY(reserve_part(pool, field->n_terms, words, err));
+    for (uint32_t i = 0; i < field->n_terms; i++)
+        pool->terms[pool->n_terms++] = i;
+    uint64_t *groups = &pool->groups[pool->n_groups];
+    for (size_t i = 0; i < words; i++)
+        groups[i] = 0;
+    for (uint32_t g = 0; g < field->n_groups; g++)
+        for (uint32_t i = field->first[g]; i < field->first[g + 1]; i++)
+            groups[g * part.words + field->members[i] / 64] |= (uint64_t)1
+                                                               << field->members[i] % 64;
+    pool->n_groups += words;
+    part.n_groups = field->n_groups;
+    *out = part;
+    return STATUS_OK;
+}
+
+Status fieldpart_copy(const PartPool *from, const FieldPart *part, PartPool *to, FieldPart *out,
+                      Err *err)
+{
+    size_t words = (size_t)part->words * part->n_groups;
+    TRY(reserve_part(to, part->n_terms, words, err));
+    FieldPart copy = begin_part(to, part->n_terms);
+    copy.n_groups = part->n_groups;
+    for (uint32_t i = 0; i < part->n_terms; i++)
+        to->terms[to->n_terms++] = from->terms[part->first_term + i];
+    for (size_t i = 0; i < words; i++)
+        to->groups[to->n_groups++] = from->groups[part->first_group + i];
+    *out = copy;
+    return STATUS_OK;
+}
+
+/* Groups beyond so many are not compared with each other. */
+enum { MOST_COMPARED = 256 };
+
+static bool is_subset(const uint64_t *a, const uint64_t *b, uint32_t words)
+{
+    for (uint32_t i = 0; i < words; i++)
+        if (a[i] & ~b[i])
+            return false;
+    return true;
+}
+
+/* Adds the group on top of the pool to the part, unless it is a subset of one there, and takes out
+ * those that are subsets of it. */
+static void add_group(PartPool *pool, FieldPart *part)
+{
+    uint64_t *groups = &pool->groups[part->first_group];
+    uint32_t words = part->words, kept = 0;
+    uint64_t *added = &groups[(size_t)part->n_groups * words];
+    if (part->n_groups >= MOST_COMPARED) {
+        pool->n_groups += words;
+        part->n_groups++;
+        return;
+    }
+    for (uint32_t g = 0; g < part->n_groups; g++)
+        if (is_subset(added, &groups[(size_t)g * words], words))
+            return;
+    for (uint32_t g = 0; g <= part->n_groups; g++) {
+        if (g < part->n_groups && is_subset(&groups[(size_t)g * words], added, words))
+            continue;
+        for (uint32_t i = 0; i < words; i++)
+            groups[(size_t)kept * words + i] = groups[(size_t)g * words + i];
+        kept++;
+    }
+    part->n_groups = kept;
+    pool->n_groups = part->first_group + (size_t)kept * words;
+}
+
+/* The groups of `part`, cut down to the terms at the places of the pool's work. */
+static Status narrow_groups(PartPool *pool, const FieldPart *part, FieldPart *out, Err *err)
+{
+    for (uint32_t g = 0; g < part->n_groups; g++) {
+        TRY(reserve_part(pool, 0, out->words, err));
+        const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
+        uint64_t *narrow = &pool->groups[pool->n_groups];
+        for (uint32_t i = 0; i < out->words; i++)
+            narrow[i] = 0;
+        for (uint32_t i = 0; i < out->n_terms; i++)
+            narrow[i / 64] |= (group[pool->work[i].place / 64] >> pool->work[i].place % 64 & 1)
+                              << i % 64;
+        add_group(pool, out);
+    }
+    return STATUS_OK;
+}
+
+/* The sum over a group of numbers `stride` doubles apart. */
+static double group_sum(const uint64_t *group, uint32_t words, const double *values, size_t stride)
+{
+    double sum = 0;
+    for (uint32_t w = 0; w < words; w++)
+        for (uint64_t bits = group[w]; bits; bits &= bits - 1)
+            sum += values[(w * 64 + (uint32_t)__builtin_ctzll(bits)) * stride];
+    return sum;
+}
+
+/* Whether two terms that may matter are in no group together. */
+static bool has_parted(const PartPool *pool, const FieldPart *part)
+{
+    if (part->n_terms > MOST_PART_TERMS)
+        return false;
+    uint64_t matters[MOST_PART_TERMS / 64] = {0};
+    for (uint32_t i = 0; i < part->n_terms; i++)
+        if (pool->work[i].upper > significant)
+            matters[i / 64] |= (uint64_t)1 << i % 64;
+    for (uint32_t g = 0; g < part->n_groups; g++)
+        if (is_subset(matters, &pool->groups[part->first_group + (size_t)g * part->words],
+                      part->words))
+            return false;
+    return true;
+}
+
+static void sum_bounds(const ZoneField *field, const PartPool *pool, const FieldPart *part,
+                       PartBounds *bounds)
+{
+    *bounds = (PartBounds){.thinnest = HUGE_VAL};
+    for (uint32_t i = 0; i < part->n_terms; i++) {
+        uint32_t number = pool->terms[part->first_term + i];
+        double radius = field->terms[number].radius_mm, upper = pool->work[i].upper;
+        bounds->all += upper;
+        if (upper > bounds->largest) {
+            bounds->largest = upper;
+            bounds->largest_term = number;
+        }
+        if (upper > significant) {
+            bounds->thinnest = fmin(bounds->thinnest, radius);
+            bounds->widest = fmax(bounds->widest, radius);
+        }
+    }
+    for (uint32_t g = 0; g < part->n_groups; g++) {
+        const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
+        const TermWork *work = pool->work;
+        const size_t stride = sizeof *work / sizeof work->upper;
+        double upper = group_sum(group, part->words, &work->upper, stride);
+        double lower = group_sum(group, part->words, &work->lower, stride);
+        bounds->upper = fmax(bounds->upper, upper);
+        bounds->lower = fmax(bounds->lower, lower);
+    }
+    bounds->parted = part->n_groups > 1 && has_parted(pool, part);
+}
+
+Status fieldpart_narrow(const ZoneField *field, PartPool *pool, const FieldPart *part, Vec3 center,
+                        double radius_mm, double inner_mm, FieldPart *out, PartBounds *bounds,
+                        Err *err)
+{
+    TRY(reserve_part(pool, part->n_terms, 0, err));
+    TRY(mem_reserve(&pool->work, &pool->work_capacity, part->n_terms, sizeof *pool->work, "terms",
+                    err));
+    TermWork *work = pool->work;
+    FieldPart narrow = begin_part(pool, 0);
+    for (uint32_t i = 0; i < part->n_terms; i++) {
+        uint32_t number = pool->terms[part->first_term + i];
+        const ZoneTerm *term = &field->terms[number];
+        TermPlace place = place_in(term, center);
+        double reach = out_of_reach + term->k * radius_mm, inner = term->k * inner_mm;
+        if (distance2(&place) > reach * reach)
+            continue;
+        work[narrow.n_terms++] =
+            (TermWork){i, upper_bound(&place, inner), lower_bound(&place, inner)};
+        pool->terms[pool->n_terms++] = number;
+    }
+    narrow.words = (narrow.n_terms + 63) / 64;
+    TRY(narrow_groups(pool, part, &narrow, err));
+    sum_bounds(field, pool, &narrow, bounds);
+    *out = narrow;
+    return STATUS_OK;
+}
+
+FieldValue fieldpart_value(const ZoneField *field, const PartPool *pool, const FieldPart *part,
+                           Vec3 x)
+{
+    double values[MOST_PART_TERMS];
+    const uint32_t *terms = &pool->terms[part->first_term];
+    FieldValue best = {.phi = 0};
+    for (uint32_t i = 0; i < part->n_terms; i++)
+        values[i] = zoneterm_value(&field->terms[terms[i]], x);
+    for (uint32_t g = 0; g < part->n_groups; g++) {
+        const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
+        double sum = group_sum(group, part->words, values, 1);
+        if (sum > best.phi)
+            best = (FieldValue){.phi = sum, .group = g};
+    }
+    return best;
+}
+
+FieldValue fieldpart_gradient(const ZoneField *field, const PartPool *pool, const FieldPart *part,
+                              Vec3 x, Vec3 *gradient)
+{
+    FieldValue best = fieldpart_value(field, pool, part, x);
+    double largest = -1;
+    *gradient = vec3(0, 0, 0);
+    const uint64_t *group = &pool->groups[part->first_group + (size_t)best.group * part->words];
+    for (uint32_t i = 0; i < part->n_terms && part->n_groups; i++) {
+        uint32_t number = pool->terms[part->first_term + i];
+        Vec3 slope;
+        if (!(group[i / 64] >> i % 64 & 1))
+            continue;
+        double value = term_gradient(&field->terms[number], x, &slope);
+        *gradient = vec3_add(*gradient, slope);
+        if (value > largest) {
+            largest = value;
+            best.largest = number;
+        }
+    }
+    return best;
+}
+
+double field_height(double phi)
+{
+    return sqrt(-2 * log(fmin(fmax(phi, 1e-12), 0.9))) - 2;
+}

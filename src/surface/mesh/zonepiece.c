@@ -1,0 +1,303 @@
+/* Lattice, cut, collapse, and then the proof: every edge has two triangles, one each way, or lies
+ * on a rim; the rims are one closed way for each arm, which goes about its axis once; the piece is
+ * connected; and points - edges + triangles = 2 - arms, that of a sphere with so many holes. */
+#include "surface/mesh/zonepiece.h"
+
+#include <stdlib.h>
+
+#define NONE UINT32_MAX
+
+enum { MOST_REPEATS = 5 };
+static const double finer = 0.62;
+
+typedef struct Maker {
+    ZoneWorker *worker;
+    const VesselTree *tree;
+    const ZonePlan *plan;
+    ZonePiece *piece;
+    Err *err;
+} Maker;
+
+void zonepiece_release(ZonePiece *piece)
+{
+    patch_release(&piece->patch);
+    free(piece->rims);
+    free(piece->rim_points);
+    *piece = (ZonePiece){0};
+}
+
+void zoneworker_release(ZoneWorker *worker)
+{
+    zonetree_release(&worker->tree);
+    lattice_release(&worker->lattice);
+    planecutter_release(&worker->cutter);
+    collapser_release(&worker->collapser);
+    pairtable_release(&worker->edges);
+    patch_release(&worker->patch);
+    free(worker->next);
+    *worker = (ZoneWorker){0};
+}
+
+/* Fills next[] with the next point along a rim, NONE off the rims. False when an edge has two
+ * triangles on one side, or is open off the rims. */
+static Status follow_edges(const Maker *maker, size_t *n_edges, bool *sound)
+{
+    ZoneWorker *worker = maker->worker;
+    const Patch *patch = &worker->patch;
+    TRY(mem_reserve(&worker->next, &worker->next_capacity, patch->n_points, sizeof *worker->next,
+                    "points of a junction", maker->err));
+    pairtable_clear(&worker->edges);
+    size_t corners = 3 * patch->n_triangles, open = 0;
+    *sound = true;
+    for (size_t i = 0; i < corners; i++) {
+        const uint32_t *at = patch->triangles[i / 3].at;
+        uint32_t *place;
+        bool is_new;
+        uint64_t key = (uint64_t)at[i % 3] << 32 | at[(i + 1) % 3];
+        TRY(pairtable_place(&worker->edges, key, &place, &is_new, maker->err));
+        *sound = *sound && is_new;
+    }
+    for (size_t i = 0; i < patch->n_points; i++)
+        worker->next[i] = NONE;
+    for (size_t i = 0; i < corners; i++) {
+        const uint32_t *at = patch->triangles[i / 3].at;
+        uint32_t a = at[i % 3], b = at[(i + 1) % 3];
+        if (pairtable_find(&worker->edges, (uint64_t)b << 32 | a))
+            continue;
+        open++;
+        *sound = *sound && patch->points[a].arm != NO_ARM &&
+                 patch->points[a].arm == patch->points[b].arm && worker->next[a] == NONE;
+        worker->next[a] = b;
+    }
+    *n_edges = (corners + open) / 2;
+    return STATUS_OK;
+}
+
+static double angle_of(const FieldSegment *segment, Vec3 x)
+{
+    Vec3 u, v, from = vec3_sub(x, segment->a);
+    vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
+    return atan2(vec3_dot(from, v), vec3_dot(from, u));
+}
+
+/* Puts the rim of an arm into the piece. The wall's own edges go about the axis one way at one end
+ * of the segment, the other way at the other. False when the rim does not go about it once. */
+static bool add_rim(const Maker *maker, size_t arm_number, uint32_t *n_points)
+{
+    const Arm *arm = &maker->plan->arms[arm_number];
+    const Patch *patch = &maker->worker->patch;
+    const FieldSegment *segment = &maker->tree->segments[arm->segment];
+    uint32_t start = NONE, total = 0, n = 0;
+    double lowest = HUGE_VAL;
+    for (uint32_t i = 0; i < patch->n_points; i++) {
+        if (patch->points[i].arm != arm_number)
+            continue;
+        double angle = angle_of(segment, patch->points[i].x);
+        total++;
+        if (angle < lowest) {
+            lowest = angle;
+            start = i;
+        }
+    }
+    uint32_t *rim = &maker->piece->rim_points[*n_points], at = start;
+    for (; at != NONE && n < total; n++, at = maker->worker->next[at])
+        rim[n == 0 || arm->end == 1 ? n : total - n] = at;
+    for (uint32_t i = 1; i < n; i++)
+        if (!(angle_of(segment, patch->points[rim[i]].x) >
+              angle_of(segment, patch->points[rim[i - 1]].x)))
+            return false;
+    maker->piece->rims[arm_number] = (Rim){arm->segment, arm->end, *n_points, total};
+    *n_points += total;
+    return total >= 3 && n == total && at == start;
+}
+
+static uint32_t root_of(uint32_t *root, uint32_t point)
+{
+    while (root[point] != point)
+        point = root[point] = root[root[point]];
+    return point;
+}
+
+/* Uses next[] up. */
+static bool is_connected(const Maker *maker)
+{
+    const Patch *patch = &maker->worker->patch;
+    uint32_t *root = maker->worker->next;
+    size_t parts = patch->n_points;
+    for (uint32_t i = 0; i < patch->n_points; i++)
+        root[i] = i;
+    for (size_t i = 0; i < patch->n_triangles; i++)
+        for (int k = 1; k < 3; k++) {
+            uint32_t a = root_of(root, patch->triangles[i].at[0]);
+            uint32_t b = root_of(root, patch->triangles[i].at[k]);
+            root[a] = b;
+            parts -= a != b;
+        }
+    return parts == 1;
+}
+
+/* Proves the worker's patch, and finds the piece's rims. */
+static Status prove(const Maker *maker, bool *sound)
+{
+    const Patch *patch = &maker->worker->patch;
+    ZonePiece *piece = maker->piece;
+    size_t n_edges, n_arms = maker->plan->n_arms, n_on_rims = 0;
+    uint32_t n_points = 0;
+    TRY(follow_edges(maker, &n_edges, sound));
+    long long euler =
+        (long long)patch->n_points - (long long)n_edges + (long long)patch->n_triangles;
+    *sound = *sound && patch->n_triangles > 0 && euler == 2 - (long long)n_arms;
+    if (!*sound)
+        return STATUS_OK;
+    for (size_t i = 0; i < patch->n_points; i++)
+        n_on_rims += patch->points[i].arm != NO_ARM;
+    TRY(mem_calloc(&piece->rims, n_arms, sizeof *piece->rims, "rims", maker->err));
+    TRY(mem_calloc(&piece->rim_points, n_on_rims + 1, sizeof *piece->rim_points, "rims",
+                   maker->err));
+    piece->n_rims = n_arms;
+    for (size_t k = 0; k < n_arms && *sound; k++)
+        *sound = add_rim(maker, k, &n_points);
+    *sound = *sound && is_connected(maker);
+    return STATUS_OK;
+}
+
+/* Whether the wall about a segment, where its own term is the largest, has a point at all; then
+ * *at is one. */
+static bool find_own_wall(const ZonePlan *plan, const ZoneTree *tree, const FieldPart *all,
+                          const FieldSegment *segment, uint32_t number, Vec3 *at)
+{
+    enum { PLACES = 5, ANGLES = 8 };
+    Vec3 u, v, axis = vec3_sub(segment->b, segment->a);
+    vec3_across(vec3_normalized(axis), &u, &v);
+    for (int i = 0; i < PLACES * ANGLES; i++) {
+        double angle = 6.283185307179586 / ANGLES * (i % ANGLES);
+        Vec3 from = vec3_add_scaled(segment->a, axis, (0.5 + i / ANGLES) / PLACES);
+        Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle))), gradient;
+        double low = 0, high = 2.5 * segment->radius_mm;
+        if (fieldpart_value(&plan->field, &tree->stack, all, from).phi < FIELD_LEVEL)
+            continue;
+        for (int k = 0; k < 40; k++) {
+            double middle = 0.5 * (low + high);
+            Vec3 x = vec3_add_scaled(from, way, middle);
+            bool inside = fieldpart_value(&plan->field, &tree->stack, all, x).phi >= FIELD_LEVEL;
+            *(inside ? &low : &high) = middle;
+        }
+        *at = vec3_add_scaled(from, way, low);
+        FieldValue value = fieldpart_gradient(&plan->field, &tree->stack, all, *at, &gradient);
+        if (plan->field.terms[value.largest].segment == number)
+            return true;
+    }
+    return false;
+}
+
+/* The fate of a segment that lies wholly in the zone and that no point of the patch is nearest
+ * to. */
+static Status look_for(const Maker *maker, uint32_t number, double ratio, uint8_t *fate)
+{
+    const Patch *patch = &maker->worker->patch;
+    const FieldSegment *segment = &maker->tree->segments[number];
+    ZoneTree *tree = &maker->worker->tree;
+    FieldPart all, near;
+    PartBounds bounds;
+    Vec3 at, middle = vec3_scale(vec3_add(segment->a, segment->b), 0.5);
+    double reach = vec3_distance(segment->a, middle) + 3 * segment->radius_mm;
+    TRY(fieldpart_all(&maker->plan->field, &tree->stack, &all, maker->err));
+    TRY(fieldpart_narrow(&maker->plan->field, &tree->stack, &all, middle, reach, 0, &near, &bounds,
+                         maker->err));
+    *fate = SEGMENT_SWALLOWED;
+    if (near.n_terms <= MOST_PART_TERMS &&
+        find_own_wall(maker->plan, tree, &near, segment, number, &at)) {
+        double nearest = HUGE_VAL;
+        for (size_t i = 0; i < patch->n_points; i++)
+            nearest = fmin(nearest, vec3_distance(patch->points[i].x, at));
+        *fate = nearest <= ratio * segment->radius_mm ? SEGMENT_PRESENT : SEGMENT_MISSING;
+    }
+    tree->stack.n_terms = tree->stack.n_groups = 0;
+    return STATUS_OK;
+}
+
+static bool is_arm(const ZonePlan *plan, uint32_t segment)
+{
+    for (size_t k = 0; k < plan->n_arms; k++)
+        if (plan->arms[k].segment == segment)
+            return true;
+    return false;
+}
+
+/* Arms are present when their tubes are. */
+static Status find_fates(const Maker *maker, double ratio, uint8_t *fates)
+{
+    const Patch *patch = &maker->worker->patch;
+    const ZoneField *field = &maker->plan->field;
+    for (uint32_t i = 0; i < field->n_terms; i++)
+        if (!is_arm(maker->plan, field->terms[i].segment))
+            fates[field->terms[i].segment] = SEGMENT_MISSING;
+    for (size_t i = 0; i < patch->n_points; i++)
+        if (fates[patch->points[i].segment] == SEGMENT_MISSING &&
+            !is_arm(maker->plan, patch->points[i].segment))
+            fates[patch->points[i].segment] = SEGMENT_PRESENT;
+    for (uint32_t i = 0; i < field->n_terms; i++) {
+        uint32_t segment = field->terms[i].segment;
+        if (!is_arm(maker->plan, segment) && fates[segment] == SEGMENT_MISSING)
+            TRY(look_for(maker, segment, ratio, &fates[segment]));
+    }
+    return STATUS_OK;
+}
+
+/* One attempt. */
+static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates, bool *sound)
+{
+    ZoneWorker *worker = maker->worker;
+    TRY(zonetree_build(&worker->tree, maker->plan, &fineness->cells, maker->err));
+    TRY(lattice_make(&worker->lattice, &worker->tree, maker->plan, &worker->patch, maker->err));
+    TRY(planecut_make(&worker->cutter, maker->plan, fineness->cells.ratio, &worker->patch, sound,
+                      maker->err));
+    if (!*sound)
+        return STATUS_OK;
+    TRY(find_fates(maker, fineness->cells.ratio, fates));
+    TRY(collapse_make(&worker->collapser, &worker->patch, fineness->sagitta, maker->err));
+    return prove(maker, sound);
+}
+
+/* A copy of just the size, for the workspace is large. */
+static Status keep_patch(const Patch *from, Patch *to, Err *err)
+{
+    TRY(mem_calloc(&to->points, from->n_points, sizeof *to->points, "points", err));
+    TRY(mem_calloc(&to->triangles, from->n_triangles, sizeof *to->triangles, "triangles", err));
+    for (size_t i = 0; i < from->n_points; i++)
+        to->points[to->n_points++] = from->points[i];
+    for (size_t i = 0; i < from->n_triangles; i++)
+        to->triangles[to->n_triangles++] = from->triangles[i];
+    return STATUS_OK;
+}
+
+Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
+                      const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates, Err *err)
+{
+    ZonePiece made = {0};
+    const Maker maker = {worker, tree, plan, &made, err};
+    ZoneFineness used = *fineness;
+    bool sound = false;
+    Status status = STATUS_OK;
+    for (int repeats = 0; repeats <= MOST_REPEATS && !sound; repeats++) {
+        zonepiece_release(&made);
+        TRY_GOTO(attempt(&maker, &used, fates, &sound));
+        made.repeats = repeats;
+        used.cells.ratio *= finer;
+        used.cells.bending *= finer * finer;
+    }
+    if (sound)
+        status = keep_patch(&worker->patch, &made.patch, err);
+    else
+        status = err_set(err, STATUS_INFEASIBLE,
+                         "the vessels about segment %u run into each other so that their wall is "
+                         "no tube; they overlap, or make a loop",
+                         tree->segments[plan->field.terms[0].segment].id);
+    if (status == STATUS_OK) {
+        *piece = made;
+        made = (ZonePiece){0};
+    }
+done:
+    zonepiece_release(&made);
+    return status;
+}

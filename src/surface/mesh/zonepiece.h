@@ -1,0 +1,60 @@
+/* The finished wall of one zone. */
+#ifndef CORCAST_SURFACE_ZONEPIECE_H
+#define CORCAST_SURFACE_ZONEPIECE_H
+
+#include "surface/mesh/collapse.h"
+#include "surface/mesh/lattice.h"
+#include "surface/mesh/planecut.h"
+
+/* The points on the rim of an arm: rim_points[first .. first + n), by rising angle about the axis
+ * of the segment, from its first to its second end. */
+typedef struct Rim {
+    uint32_t segment;
+    int end;
+    uint32_t first, n;
+} Rim;
+
+typedef struct ZonePiece {
+    Patch patch; /* owned, as all of it */
+    Rim *rims;
+    size_t n_rims;
+    uint32_t *rim_points;
+    int repeats; /* with finer cells */
+} ZonePiece;
+
+void zonepiece_release(ZonePiece *piece);
+
+/* What has become of a segment. */
+typedef enum SegmentFate {
+    SEGMENT_MISSING, /* it has a wall, which is not in the mesh */
+    SEGMENT_PRESENT,
+    SEGMENT_SWALLOWED /* it lies within others */
+} SegmentFate;
+
+typedef struct ZoneFineness {
+    CellSize cells;
+    double sagitta; /* of the local radius, for edges */
+} ZoneFineness;
+
+/* Workspace of a thread; zeroed before the first use. */
+typedef struct ZoneWorker {
+    ZoneTree tree;
+    Lattice lattice;
+    PlaneCutter cutter;
+    Collapser collapser;
+    PairTable edges;
+    Patch patch;
+    uint32_t *next;
+    size_t next_capacity;
+} ZoneWorker;
+
+void zoneworker_release(ZoneWorker *worker);
+
+/* Makes the wall of a zone; of the segments that lie wholly in it, fates[segment] is set. Repeats
+ * with finer cells what is not a sphere with one hole for each arm. STATUS_INFEASIBLE, naming the
+ * id of a segment, when that does not help. */
+MUST_CHECK Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
+                                 const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates,
+                                 Err *err);
+
+#endif

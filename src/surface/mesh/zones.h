@@ -1,0 +1,51 @@
+/* Where a tree is cut: junction zones, whose walls a lattice makes, and the straight tubes between
+ * them. */
+#ifndef CORCAST_SURFACE_ZONES_H
+#define CORCAST_SURFACE_ZONES_H
+
+#include "surface/mesh/blendgroups.h"
+#include "surface/mesh/vesselmesh.h"
+#include "surface/mesh/zonefield.h"
+
+#define NO_ZONE UINT32_MAX
+
+typedef struct Zones {
+    uint32_t *zone; /* one a node; NO_ZONE: the vessel is cut off flat there */
+    uint32_t n_zones;
+    NodeLists nodes;     /* of each zone, in place of segments of nodes */
+    double (*plane)[2];  /* one a segment: where its tube begins, from either end, mm; where the end
+                          * is flat, 0 */
+    bool *is_tube;       /* one a segment; else it lies in one zone, whole */
+    NearPair *strangers; /* near pairs without a common zone; those that overlap first */
+    size_t n_strangers, n_overlapping;
+} Zones;
+
+/* Cuts the tree. */
+MUST_CHECK Status zones_find(const VesselTree *tree, const NodeLists *incident,
+                             const NodeLists *blending, int threads, Zones *out, Err *err);
+void zones_release(Zones *zones);
+
+/* A tube that leaves a zone: cut across at `at`, where `outward` (unit) leads out of the zone along
+ * the axis. */
+typedef struct Arm {
+    uint32_t segment;
+    int end; /* of the segment, that lies in the zone */
+    Vec3 at, outward;
+    double radius_mm;
+} Arm;
+
+/* What a lattice needs to know of one zone. Arms run on behind their planes by ARM_TAIL radii. */
+typedef struct ZonePlan {
+    ZoneField field;
+    Arm *arms; /* owned */
+    size_t n_arms;
+} ZonePlan;
+
+#define ARM_TAIL 1.6
+
+MUST_CHECK Status zoneplan_make(const VesselTree *tree, const NodeLists *incident,
+                                const NodeLists *blending, const Zones *zones, uint32_t zone,
+                                ZonePlan *out, Err *err);
+void zoneplan_release(ZonePlan *plan);
+
+#endif
