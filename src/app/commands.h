@@ -7,9 +7,9 @@
 #include "tree/tree.h"
 
 extern const Command command_grow, command_refine, command_info, command_convert, command_scene,
-    command_povray, command_render, command_view, command_verify, command_compare, command_report,
-    command_models, command_fields, command_looks, command_colormaps, command_domains,
-    command_formats;
+    command_export, command_povray, command_render, command_view, command_verify, command_compare,
+    command_report, command_models, command_fields, command_looks, command_colormaps,
+    command_domains, command_formats;
 
 /* In the order of the help; NULL ends them. */
 extern const Command *const all_commands[];

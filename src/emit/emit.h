@@ -4,6 +4,7 @@
 #define CORCAST_EMIT_EMIT_H
 
 #include "base/base.h"
+#include "emit/meshes.h" // IWYU pragma: export
 #include "scene/scene.h"
 #include "surface/surface.h"
 

@@ -1,5 +1,6 @@
 /* Geometry is plain data; what is here are its invariants. */
 #include "scene/geometry.h"
+#include "scene/vesseltree.h"
 
 #include <stdlib.h>
 
@@ -32,6 +33,14 @@ bool primitive_joint_is_solid(const Primitive *joint)
     double slack = 1e-9 * (joint->radius_mm + joint->radius_b_mm);
     return vec3_dot(span, joint->axis_a) >= joint->radius_b_mm * sine - slack &&
            vec3_dot(span, joint->axis_b) >= joint->radius_mm * sine - slack;
+}
+
+void vesseltree_release(VesselTree *tree)
+{
+    free(tree->segments);
+    free(tree->nodes);
+    free(tree->ids);
+    *tree = (VesselTree){0};
 }
 
 void geometry_release(Geometry *geometry)

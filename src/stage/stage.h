@@ -91,6 +91,11 @@ typedef struct StageReport {
 MUST_CHECK Status stage_geometry(const Tree *tree, const StageParams *params, Geometry *geometry,
                                  StageReport *report, Err *err);
 
+/* The vessels of a tree for the triangulation of their surface, in *vessels (owned): its segments
+ * that can be drawn, nodes at one place being one. Coordinates are the tree's. *dropped counts the
+ * others. STATUS_INPUT when none can be drawn. */
+MUST_CHECK Status stage_vessels(const Tree *tree, VesselTree *vessels, size_t *dropped, Err *err);
+
 /* The finish of the look, and a colour for each segment: that of its value on the scale, whose map
  * *appearance owns from then on (appearance_release); or, if `field` is NULL, the look's one
  * colour, and `scale` is not read. STATUS_MEMORY, and the map stays the caller's. */

@@ -192,13 +192,12 @@ static Status list_round(const Build *build, MeshReport *report, Err *err)
 static Status refuse_overlap(const Build *build, Err *err)
 {
     const NearPair *pair = build->zones.strangers;
-    const FieldSegment *segments = build->tree->segments;
+    const uint32_t *ids = build->tree->ids;
     return err_set(
         err, STATUS_INPUT,
         "the vessels of segments %u and %u, which do not belong together, overlap by %.3g "
         "mm (%zu such pairs); their walls cannot both be kept",
-        segments[pair->segments[0]].id, segments[pair->segments[1]].id, -pair->gap_mm,
-        build->zones.n_overlapping);
+        ids[pair->segments[0]], ids[pair->segments[1]], -pair->gap_mm, build->zones.n_overlapping);
 }
 
 static Status fill_report(Build *build, const VesselMesh *mesh, double grid_mm, MeshReport *report,

@@ -13,14 +13,6 @@
 
 #define BLEND_REACH 2
 
-/* What is made into triangles: segments, and the nodes at their ends a and b. Any number of trees;
- * a segment joins two different nodes, and segments make no loops. */
-typedef struct VesselTree {
-    const FieldSegment *segments;
-    const uint32_t (*nodes)[2]; /* below n_nodes */
-    size_t n_segments, n_nodes;
-} VesselTree;
-
 /* Set in the label of a triangle that closes an end. */
 #define MESH_CAP 0x80000000u
 

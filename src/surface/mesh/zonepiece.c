@@ -292,7 +292,7 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
         status = err_set(err, STATUS_INFEASIBLE,
                          "the vessels about segment %u run into each other so that their wall is "
                          "no tube; they overlap, or make a loop",
-                         tree->segments[plan->field.terms[0].segment].id);
+                         tree->ids[plan->field.terms[0].segment]);
     if (status == STATUS_OK) {
         *piece = made;
         made = (ZonePiece){0};

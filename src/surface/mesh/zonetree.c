@@ -89,7 +89,7 @@ static bool must_split(const Builder *builder, const FieldPart *part, const Part
                        Vec3 center, double side)
 {
     double usual = builder->size->ratio * bounds->thinnest;
-    if (side > usual || part->n_terms > MOST_PART_TERMS)
+    if (side > usual)
         return true;
     if (bounds->parted)
         return side > parted_part * usual;
@@ -122,13 +122,14 @@ static Status settle(Builder *builder, uint32_t number, const FieldPart *part, E
     else if (is_behind(builder, &bounds, center, ball))
         state = CELL_BEHIND;
     tree->cells[number].state = (uint8_t)state;
-    if (state == CELL_ACTIVE && cell.level < ZONETREE_LEVELS &&
-        must_split(builder, &own, &bounds, center, side))
-        TRY(split(builder, number, &own, err));
-    else if (state == CELL_ACTIVE && own.n_terms > MOST_PART_TERMS)
+    if (state == CELL_ACTIVE && side <= builder->size->ratio * bounds.thinnest &&
+        own.n_terms > MOST_PART_TERMS)
         return err_set(err, STATUS_INFEASIBLE,
                        "more than %d segments come together at one place; leave some out",
                        MOST_PART_TERMS);
+    if (state == CELL_ACTIVE && cell.level < ZONETREE_LEVELS &&
+        must_split(builder, &own, &bounds, center, side))
+        TRY(split(builder, number, &own, err));
     else if (state == CELL_ACTIVE)
         TRY(fieldpart_copy(stack, &own, &tree->kept, &tree->cells[number].part, err));
     stack->n_terms = n_terms;
