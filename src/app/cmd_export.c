@@ -1,6 +1,7 @@
 /* The surface is proved before anything is written: what the manifest says is of the very triangles
  * that go into the file, and a mesh that is not sound becomes no file. */
 #include "app/commands.h"
+#include "app/progress.h"
 #include "emit/emit.h"
 #include "stage/stage.h"
 #include "surface/surface.h"
