@@ -3,8 +3,8 @@
  * where single precision is not. */
 #include "render/render.h"
 
+#include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
-#include "render/raster/rasterview.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -6,8 +6,8 @@
 #endif
 
 #include "render/raster/kernel_raster.h"
+#include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
-#include "render/raster/rasterview.h"
 
 /* ---- aiming ---------------------------------------------------------------------------------- */
 

@@ -9,6 +9,7 @@
 #endif
 
 #include "render/raster/kernel_joint.h"
+#include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 
 /* What an item may touch is told by parts of 8 samples or 4, as many as make the most of lanes. */

@@ -6,8 +6,6 @@
  * or looked at along its axis, and joints that need not be the wall of a solid. */
 #include "render/raster/rasteritem.h"
 
-#include "render/cast/caster.h"
-
 static const double most_pixels = 16384; /* 2^-24 of it are a thousandth of a pixel */
 static const double least_sine =
     0.02; /* of the angle at which a wall is looked at along its axis */
@@ -40,7 +38,7 @@ static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
     out[5] = vec3_add_scaled(vec3_scale(db, cosine), da, -sine);
 }
 
-static RasterJoint make_joint(const RasterView *view, const Primitive *primitive, Vec3 middle)
+RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive, Vec3 middle)
 {
     RasterJoint made;
     JointFrame joint = primitive_joint(primitive);
@@ -89,10 +87,10 @@ static RasterHull make_hull(const RasterView *view, const Primitive *primitive, 
     return hull;
 }
 
-void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, RasterItem *item)
+void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t number,
+                     uint32_t joint, RasterItem *item, RasterJoint *made, RasterHull *hull)
 {
-    const RasterView *view = &bins->view;
-    const Primitive *primitive = &bins->geometry->primitives[number];
+    const Primitive *primitive = &geometry->primitives[number];
     Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
     middle = viewpoint_place(&view->eye, middle);
     Vec3 span = viewpoint_to_frame(&view->eye, vec3_sub(primitive->b, primitive->a));
@@ -109,13 +107,13 @@ void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, Ra
     if (primitive->kind == PRIMITIVE_CYLINDER)
         kind = !view->eye.perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
     if (primitive->kind == PRIMITIVE_JOINT) {
-        kind = bins->geometry->open_joints || !primitive_joint_is_solid(primitive) ? RASTER_EXACT
-                                                                                   : RASTER_JOINT;
+        bool solid = !geometry->open_joints && primitive_joint_is_solid(primitive);
+        kind = solid ? RASTER_JOINT : RASTER_EXACT;
         radius = max_of(radius, primitive->radius_b_mm);
-        if (kind == RASTER_JOINT && bins->hulls)
-            bins->hulls[joint] = make_hull(view, primitive, span, length, turn);
-        else if (kind == RASTER_JOINT)
-            bins->joints[joint] = make_joint(view, primitive, middle);
+        if (solid && view->light)
+            *hull = make_hull(view, primitive, span, length, turn);
+        else if (solid)
+            *made = rasterjoint_make(view, primitive, middle);
     }
     item->x = middle.x;
     item->y = middle.y;
@@ -133,40 +131,4 @@ void rasteritem_make(const RasterBins *bins, uint32_t number, uint32_t joint, Ra
     double pixel = min_of(view->step_x, -view->step_y) * (view->eye.perspective ? near : 1);
     bool odd = item_is_close(item) || length / 2 + radius > most_pixels * pixel;
     item->kind = (unsigned)(odd ? RASTER_EXACT : kind) & 3;
-}
-
-void raster_joint(const RasterBins *bins, uint32_t item, RasterJoint *joint)
-{
-    const RasterItem *about = &bins->items[item];
-    *joint = make_joint(&bins->view, &bins->geometry->primitives[item],
-                        vec3(about->x, about->y, about->z));
-}
-
-double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal)
-{
-    const Primitive *primitive = &bins->geometry->primitives[item];
-    Ray ray = rasterview_ray(&bins->view, x, y);
-    Hit hits[6];
-    int n = 0;
-    double nearest = HUGE_VAL;
-    if (primitive->kind == PRIMITIVE_SPHERE) {
-        n = hit_sphere(ray, primitive->a, primitive->radius_mm, hits);
-    } else if (primitive->kind == PRIMITIVE_CYLINDER) {
-        CylinderFrame cylinder = cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
-        n = hit_cylinder(ray, &cylinder, hits);
-        if (primitive->round_a)
-            n += hit_sphere(ray, primitive->a, primitive->radius_mm, &hits[n]);
-        if (primitive->round_b)
-            n += hit_sphere(ray, primitive->b, primitive->radius_mm, &hits[n]);
-    } else {
-        JointFrame joint = primitive_joint(primitive);
-        n = hit_joint(ray, &joint, hits);
-    }
-    for (int i = 0; i < n; i++)
-        if (hits[i].t >= NEAREST_SEEN_MM && hits[i].t < nearest) {
-            nearest = hits[i].t;
-            if (normal)
-                *normal = viewpoint_to_frame(&bins->view.eye, hits[i].normal);
-        }
-    return nearest * vec3_dot(ray.direction, bins->view.eye.axes[2]);
 }

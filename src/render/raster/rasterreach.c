@@ -1,6 +1,6 @@
 /* A capsule about an item is seen within a range of rows. Of each row, what is within reach of its
  * slab is seen within a range of columns; in few tiles, the whole of it serves all rows. */
-#include "render/raster/rasterreach.h"
+#include "render/raster/rasteritem.h"
 
 static const Interval everywhere = {-HUGE_VAL, HUGE_VAL}, nothing = {HUGE_VAL, -HUGE_VAL};
 

@@ -9,9 +9,9 @@
 #include "render/cast/caster.h"
 #include "render/light/shade.h"
 #include "render/light/sight.h"
+#include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 #include "render/raster/rastershadow.h"
-#include "render/raster/rasterview.h"
 #include "render/tile/canvas.h"
 #include <stdlib.h>
 #include <string.h>

@@ -2,8 +2,8 @@
 #ifndef CORCAST_RENDER_RASTERSHADOW_H
 #define CORCAST_RENDER_RASTERSHADOW_H
 
+#include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
-#include "render/raster/rasterview.h"
 
 /* The geometry as one light sees it; constant once built. */
 typedef struct RasterShadow RasterShadow;

@@ -121,13 +121,4 @@ typedef struct RasterHits {
     float ruling[TILE_SAMPLES];  /* of a joint: tan(q / 2) */
 } RasterHits;
 
-/* Makes the joint that item number `item` is. */
-void raster_joint(const struct RasterBins *bins, uint32_t item, RasterJoint *joint);
-
-/* Meets an item in double precision with the line of sight at (x, y) of the view's plane: its
- * depth z along the view, INFINITY when it is not met, and if `normal` is not NULL the surface's
- * normal in the view's frame. */
-double raster_decide(const struct RasterBins *bins, uint32_t item, double x, double y,
-                     Vec3 *normal);
-
 #endif

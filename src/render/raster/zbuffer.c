@@ -11,7 +11,7 @@
 #include "render/light/shade.h"
 #include "render/light/sight.h"
 #include "render/planes.h"
-#include "render/raster/rasterview.h"
+#include "render/raster/rasterbins.h"
 #include <stdlib.h>
 
 static const double pixels_apart = 0.25;

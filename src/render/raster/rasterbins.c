@@ -1,0 +1,319 @@
+/* Items are counted into the rows of tiles that they may touch; chunks of items have counters of
+ * their own, so that threads fill the rows without waiting and in the order of the items, each
+ * with the columns that it may touch there. The list of a row's tiles is made when the row is
+ * drawn. */
+#include "render/raster/rasterbins.h"
+
+#include "render/cast/caster.h"
+#include <stdlib.h>
+
+/* Fewer primitives than LEAST_CHUNK are in the cache of one processor, from where others would
+ * fetch them more slowly than it takes to work on them. */
+enum { LEAST_CHUNK = 1 << 16, MOST_CHUNKS = 64 };
+enum { CACHE_LINE = sizeof(RasterItem) };
+_Static_assert(CACHE_LINE == 64, "an item fills a line");
+
+/* ---- rows ------------------------------------------------------------------------------------ */
+
+typedef struct Build {
+    RasterBins *bins;
+    RasterSlab *slabs;      /* one a row */
+    size_t *counts;         /* chunk by chunk, of each row; then where the chunk's items go */
+    uint32_t *joints;       /* chunk by chunk: their number; then that of the first */
+    size_t chunk, n_chunks; /* items in a chunk; chunks */
+} Build;
+
+static size_t chunk_end(const Build *build, size_t chunk)
+{
+    size_t end = (chunk + 1) * build->chunk, n = rasterbins_items(build->bins->geometry);
+    return end < n ? end : n;
+}
+
+static bool is_joint(const RasterBins *bins, size_t number)
+{
+    return bins->geometry->model == SCENE_JOINED &&
+           bins->geometry->primitives[number].kind == PRIMITIVE_JOINT;
+}
+
+static void count_joints(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Build *build = context;
+    for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++)
+        build->joints[chunk] += is_joint(build->bins, i);
+}
+
+static Status make_room_for_joints(Build *build, int threads, Err *err)
+{
+    RasterBins *bins = build->bins;
+    uint32_t n = 0;
+    TRY(mem_calloc(&build->joints, build->n_chunks, sizeof *build->joints, "joints", err));
+    if (bins->geometry->model == SCENE_JOINED)
+        threads_for(build->n_chunks, threads, count_joints, build);
+    for (size_t chunk = 0; chunk < build->n_chunks; chunk++) {
+        uint32_t count = build->joints[chunk];
+        build->joints[chunk] = n;
+        n += count;
+    }
+    if (bins->view.light)
+        return mem_calloc(&bins->hulls, (size_t)n + 1, sizeof *bins->hulls, "joints", err);
+    return mem_calloc(&bins->joints, (size_t)n + 1, sizeof *bins->joints, "joints", err);
+}
+
+static void make_chunk(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Build *build = context;
+    RasterBins *bins = build->bins;
+    size_t *counts = build->counts + chunk * (size_t)bins->tile_rows;
+    uint32_t joint = build->joints[chunk];
+    for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++) {
+        RasterItem *item = &bins->items[i];
+        rasteritem_make(bins->geometry, &bins->view, (uint32_t)i, joint, item,
+                        bins->joints ? &bins->joints[joint] : NULL,
+                        bins->hulls ? &bins->hulls[joint] : NULL);
+        rasterreach_set(&bins->view, item);
+        joint += is_joint(bins, i);
+        for (int row = item->rows.first; row <= item->rows.last; row++)
+            counts[row]++;
+    }
+}
+
+/* Puts an item into its rows, at the next of their places. */
+static void fill_item(const Build *build, size_t *places, size_t number)
+{
+    RasterBins *bins = build->bins;
+    const RasterItem *item = &bins->items[number];
+    for (int row = item->rows.first; row <= item->rows.last; row++) {
+        size_t place = places[row]++;
+        uint32_t box;
+        bins->row_items[place] = (uint32_t)number;
+        bins->row_columns[place] =
+            rastertiles_of(rasterreach_in_row(&bins->view, item, row, &build->slabs[row], &box));
+        if (bins->row_boxes)
+            bins->row_boxes[place] = (RasterBox){box, rasterreach_near(&bins->view, item)};
+    }
+}
+
+static void fill_chunk(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Build *build = context;
+    size_t *places = build->counts + chunk * (size_t)build->bins->tile_rows;
+    for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++)
+        fill_item(build, places, i);
+}
+
+static Status sort_into_rows(Build *build, int threads, Err *err)
+{
+    RasterBins *bins = build->bins;
+    size_t rows = (size_t)bins->tile_rows, total = 0;
+    size_t chunks = build->n_chunks;
+    TRY(mem_calloc(&build->counts, chunks * rows, sizeof *build->counts, "rows of tiles", err));
+    threads_for(chunks, threads, make_chunk, build);
+    for (size_t row = 0; row < rows; row++) {
+        bins->row_offsets[row] = total;
+        for (size_t chunk = 0; chunk < chunks; chunk++) {
+            size_t count = build->counts[chunk * rows + row];
+            build->counts[chunk * rows + row] = total;
+            total += count;
+        }
+    }
+    bins->row_offsets[rows] = total;
+    TRY(mem_calloc(&bins->row_items, total, sizeof *bins->row_items, "rows of tiles", err));
+    TRY(mem_calloc(&bins->row_columns, total, sizeof *bins->row_columns, "rows of tiles", err));
+    if (bins->view.light)
+        TRY(mem_calloc(&bins->row_boxes, total, sizeof *bins->row_boxes, "rows of tiles", err));
+    TRY(mem_calloc(&build->slabs, rows, sizeof *build->slabs, "rows of tiles", err));
+    for (size_t row = 0; row < rows; row++)
+        build->slabs[row] = rasterslab_of(&bins->view, row);
+    threads_for(chunks, threads, fill_chunk, build);
+    return STATUS_OK;
+}
+
+bool rasterbins_are_small(const Geometry *geometry)
+{
+    return rasterbins_items(geometry) / LEAST_CHUNK < 2;
+}
+
+/* As many for each thread as for the others. */
+static size_t chunks_for(const Geometry *geometry, size_t threads)
+{
+    size_t chunks = rasterbins_items(geometry) / LEAST_CHUNK;
+    if (rasterbins_are_small(geometry))
+        return 1;
+    chunks = chunks < MOST_CHUNKS ? chunks : MOST_CHUNKS;
+    threads = threads < chunks ? threads : chunks;
+    return (chunks + threads - 1) / threads * threads;
+}
+
+static Status make_bins(RasterBins *bins, int threads, Err *err)
+{
+    size_t n = rasterbins_items(bins->geometry),
+           chunks = chunks_for(bins->geometry, (size_t)threads);
+    if (n > MOST_ITEMS)
+        return err_set(err, STATUS_MEMORY, "too many primitives for `method` raster");
+    if (bins->tile_columns > UINT16_MAX || bins->tile_rows > UINT16_MAX)
+        return err_set(err, STATUS_USAGE,
+                       "`method` raster draws pictures of up to %d pixels a side, `method` trace "
+                       "larger ones",
+                       UINT16_MAX * TILE_SIDE);
+    TRY(mem_calloc(&bins->item_memory, n + 1, sizeof *bins->items, "items", err));
+    bins->items =
+        (RasterItem *)(((uintptr_t)bins->item_memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
+    TRY(mem_calloc(&bins->row_offsets, (size_t)bins->tile_rows + 1, sizeof *bins->row_offsets,
+                   "rows of tiles", err));
+    size_t chunk = n / chunks + 1;
+    Build build = {.bins = bins, .chunk = chunk, .n_chunks = (n + chunk - 1) / chunk};
+    Status status = make_room_for_joints(&build, threads, err);
+    if (status == STATUS_OK)
+        status = sort_into_rows(&build, threads, err);
+    free(build.slabs);
+    free(build.joints);
+    free(build.counts);
+    return status;
+}
+
+Status rasterbins_new(const Geometry *geometry, const RasterView *view, int threads,
+                      RasterBins **out, Err *err)
+{
+    RasterBins *bins = NULL;
+    TRY(mem_calloc(&bins, 1, sizeof *bins, "tiles", err));
+    bins->geometry = geometry;
+    bins->view = *view;
+    bins->view.per_x = 1 / view->step_x;
+    bins->view.per_y = 1 / view->step_y;
+    bins->tile_columns = (view->columns + TILE_SIDE - 1) / TILE_SIDE;
+    bins->tile_rows = (view->rows + TILE_SIDE - 1) / TILE_SIDE;
+    Status status = make_bins(bins, threads, err);
+    if (status != STATUS_OK) {
+        rasterbins_free(bins);
+        return status;
+    }
+    *out = bins;
+    return STATUS_OK;
+}
+
+void rasterbins_free(RasterBins *bins)
+{
+    if (!bins)
+        return;
+    free(bins->item_memory);
+    free(bins->joints);
+    free(bins->hulls);
+    free(bins->row_offsets);
+    rasterbins_forget_rows(bins);
+    free(bins);
+}
+
+void rasterbins_forget_rows(RasterBins *bins)
+{
+    free(bins->row_items);
+    free(bins->row_columns);
+    free(bins->row_boxes);
+    bins->row_items = NULL;
+    bins->row_columns = NULL;
+    bins->row_boxes = NULL;
+}
+
+/* ---- tiles ----------------------------------------------------------------------------------- */
+
+Status rasterbins_count(const RasterBins *bins, size_t number, uint32_t *offsets, Err *err)
+{
+    size_t columns = (size_t)bins->tile_columns, total = 0;
+    for (size_t i = 0; i <= columns; i++)
+        offsets[i] = 0;
+    for (size_t i = bins->row_offsets[number]; i < bins->row_offsets[number + 1]; i++)
+        for (int column = bins->row_columns[i].first; column <= bins->row_columns[i].last; column++)
+            offsets[column]++;
+    for (size_t i = 0; i <= columns; i++) {
+        size_t count = offsets[i];
+        offsets[i] = (uint32_t)total;
+        total += count;
+        if (total > UINT32_MAX)
+            return err_set(err, STATUS_MEMORY, "too many primitives in one row of the picture");
+    }
+    return STATUS_OK;
+}
+
+Status rasterbins_list(const RasterBins *bins, size_t number, RasterRow *row, Err *err)
+{
+    size_t columns = (size_t)bins->tile_columns;
+    if (!row->offsets)
+        TRY(mem_calloc(&row->offsets, columns + 1, sizeof *row->offsets, "tiles", err));
+    uint32_t *offsets = row->offsets;
+    TRY(rasterbins_count(bins, number, offsets, err));
+    TRY(mem_reserve(&row->lists, &row->lists_capacity, offsets[columns], sizeof *row->lists,
+                    "tiles", err));
+    for (size_t i = bins->row_offsets[number]; i < bins->row_offsets[number + 1]; i++)
+        for (int column = bins->row_columns[i].first; column <= bins->row_columns[i].last; column++)
+            row->lists[offsets[column]++] = bins->row_items[i];
+    /* Each has become that of the next column. */
+    for (size_t i = columns; i > 0; i--)
+        offsets[i] = offsets[i - 1];
+    offsets[0] = 0;
+    return STATUS_OK;
+}
+
+void rasterrow_release(RasterRow *row)
+{
+    free(row->offsets);
+    free(row->lists);
+    *row = (RasterRow){0};
+}
+
+RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const uint32_t *list,
+                           size_t n, const RasterGrid *grid)
+{
+    const RasterView *view = &bins->view;
+    const double middle = (TILE_SIDE - 1) / 2.0;
+    return (RasterTile){.bins = bins,
+                        .items = bins->items,
+                        .joints = bins->joints,
+                        .list = list,
+                        .n = n,
+                        .grid = grid,
+                        .perspective = view->eye.perspective,
+                        .x = view->left + (column * TILE_SIDE + middle) * view->step_x,
+                        .y = view->top + (row * TILE_SIDE + middle) * view->step_y,
+                        .z_middle = view->z_middle};
+}
+
+/* ---- items in double precision ------------------------------------------------------------------
+ */
+
+void raster_joint(const RasterBins *bins, uint32_t item, RasterJoint *joint)
+{
+    const RasterItem *about = &bins->items[item];
+    *joint = rasterjoint_make(&bins->view, &bins->geometry->primitives[item],
+                              vec3(about->x, about->y, about->z));
+}
+
+double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal)
+{
+    const Primitive *primitive = &bins->geometry->primitives[item];
+    Ray ray = rasterview_ray(&bins->view, x, y);
+    Hit hits[6];
+    int n = 0;
+    double nearest = HUGE_VAL;
+    if (primitive->kind == PRIMITIVE_SPHERE) {
+        n = hit_sphere(ray, primitive->a, primitive->radius_mm, hits);
+    } else if (primitive->kind == PRIMITIVE_CYLINDER) {
+        CylinderFrame cylinder = cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
+        n = hit_cylinder(ray, &cylinder, hits);
+        if (primitive->round_a)
+            n += hit_sphere(ray, primitive->a, primitive->radius_mm, &hits[n]);
+        if (primitive->round_b)
+            n += hit_sphere(ray, primitive->b, primitive->radius_mm, &hits[n]);
+    } else {
+        JointFrame joint = primitive_joint(primitive);
+        n = hit_joint(ray, &joint, hits);
+    }
+    for (int i = 0; i < n; i++)
+        if (hits[i].t >= NEAREST_SEEN_MM && hits[i].t < nearest) {
+            nearest = hits[i].t;
+            if (normal)
+                *normal = viewpoint_to_frame(&bins->view.eye, hits[i].normal);
+        }
+    return nearest * vec3_dot(ray.direction, bins->view.eye.axes[2]);
+}
