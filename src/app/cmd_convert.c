@@ -5,15 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Says which columns the file has no place for. */
-static void print_lost(const Tree *tree, const char *to)
-{
-    fprintf(stderr, "corcast convert: %s has no place for the columns", to);
-    for (size_t k = 0; k < tree->n_columns; k++)
-        fprintf(stderr, "%s %.40s", k ? "," : "", tree->column[k].name);
-    fputs("\n", stderr);
-}
-
 /* A tree in its normal form: parents before children, ids 1, 2, ... in that order. */
 static Status convert_tree(const char *from, const char *to, bool quiet, Err *err)
 {
@@ -21,8 +12,8 @@ static Status convert_tree(const char *from, const char *to, bool quiet, Err *er
     TRY(tree_read(&tree, from, err));
     tree_renumber(&tree);
     Status status = tree_write(&tree, to, err);
-    if (status == STATUS_OK && !quiet && tree.n_columns > 0 && !tree_format_has_columns(to))
-        print_lost(&tree, to);
+    if (status == STATUS_OK && !quiet && !tree_format_has_columns(to))
+        print_columns_left_out("convert", &tree, "the format has no place for them");
     tree_release(&tree);
     return status;
 }

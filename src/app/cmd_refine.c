@@ -53,6 +53,8 @@ static Status run_refine(void *options, Parsed *parsed, Err *err)
     TRY_GOTO(find_domain(own_options->domain, &tree, &domain, &has_domain, err));
     if (domain.file)
         TRY_GOTO(files_read(&parsed->files, "--domain", domain.file, err));
+    if (!parsed->common.quiet)
+        print_columns_left_out("refine", &tree, "their segments move");
     TRY_GOTO(refining_apply(refining, &parsed->common, has_domain ? &domain : NULL, &tree, &report,
                             err));
     TRY_GOTO(command_describe(parsed, &tree.meta, err));

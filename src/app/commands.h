@@ -36,6 +36,10 @@ MUST_CHECK Status command_line_text(const Parsed *parsed, char **out, Err *err);
 /* Adds the command line to those that a tree's file says. */
 MUST_CHECK Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err);
 
+/* Says on standard error that the tree's columns, if there are any, are not in what a command
+ * writes, and why. */
+void print_columns_left_out(const char *command, const Tree *tree, const char *why);
+
 /* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets
  * go of it. Numbers that are not finite must have been left out or set to null. */
 MUST_CHECK Status json_write(json_t *object, const char *path, Err *err);

@@ -1,5 +1,6 @@
 #include "app/commands.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -135,6 +136,16 @@ Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err)
     Status status = meta_add_text(meta, META_COMMAND, line, err);
     free(line);
     return status;
+}
+
+void print_columns_left_out(const char *command, const Tree *tree, const char *why)
+{
+    if (tree->n_columns == 0)
+        return;
+    fprintf(stderr, "corcast %s: the columns ", command);
+    for (size_t k = 0; k < tree->n_columns; k++)
+        fprintf(stderr, "%s%.40s", k ? ", " : "", tree->column[k].name);
+    fprintf(stderr, " are left out: %s\n", why);
 }
 
 Status json_write(json_t *object, const char *path, Err *err)

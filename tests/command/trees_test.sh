@@ -124,9 +124,23 @@ test_a_column_of_a_csv_colours_its_segments() {
     run corcast render tree.csv --color-by aeg --size 40x30 -o weight.ppm
     expect_sentence "did you mean age?"
     run_ok corcast convert tree.csv tree.swc
-    grep -q "^corcast convert: tree.swc has no place for the columns age$" stderr || fail "got $(cat stderr)"
+    grep -q "^corcast convert: the columns age are left out: the format has no place" stderr || fail "got $(cat stderr)"
     run_ok corcast convert tree.csv other.csv
     [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
+}
+
+test_growing_on_keeps_columns_and_refining_says_that_they_go() {
+    printf '%s\n' '# domain: disc:50' id,parent,x_mm,y_mm,z_mm,radius_mm,age 11,,0,50,0,1, 12,11,0,20,0,1,41 \
+        13,12,-15,5,0,0.5,37.5 14,12,15,5,0,0.5, >tree.csv
+    run_ok corcast grow --from tree.csv --terminals 6 --q-perf 3 -o grown.csv
+    [ "$(cut -d, -f1,8 grown.csv | grep -E '^1[1-4],' | sort | tr '\n' ';')" = "11,;12,41;13,37.5;14,;" ] ||
+        fail "expected the given ages to stay: $(cat grown.csv)"
+    [ "$(grep -c ',age$\|,"age"$' grown.csv)" = 1 ] || fail "expected the column: $(head -20 grown.csv)"
+    run_ok corcast grow --from tree.csv --terminals 6 --q-perf 3 -o grown.swc
+    grep -q "^corcast grow: the columns age are left out" stderr || fail "got $(cat stderr)"
+    run_ok corcast refine grown.csv -o refined.csv
+    grep -q "^corcast refine: the columns age are left out: their segments move$" stderr || fail "got $(cat stderr)"
+    ! grep -q age refined.csv || fail "expected no ages"
 }
 
 test_the_formats_of_trees_are_listed_and_hinted_at() {
