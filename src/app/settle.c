@@ -488,11 +488,11 @@ static Status ask_samples(Asker *asker, Sample *samples, size_t pixel, unsigned 
         found->root_mm = samples[0].roots.t[0];
     if (!native_is_right(asker, samples, pixel))
         return STATUS_OK;
-    if (beyond & BEYOND_SIGHT)
+    if (beyond & BEYOND_GEOMETRY)
         find_missed(asker, &samples[0], pixel, found);
     if (found->cause == SETTLED_NOT)
         TRY(ask_inexact(asker, &samples[0], pixel, found, err));
-    if (beyond & BEYOND_SIGHT)
+    if (beyond & BEYOND_GEOMETRY)
         return STATUS_OK;
     for (int s = 0; s < n && found->cause == SETTLED_NOT; s++)
         TRY(ask_shadows(asker, samples, s, pixel, found, err));
@@ -531,7 +531,7 @@ static Status ask_pixel(Asker *asker, size_t pixel, unsigned beyond, Settled *se
                           .cosine = (double)NAN};
     if (asked->scene->geometry.model == SCENE_BLOB)
         TRY(ask_blob(asker, pixel, beyond, &found, err));
-    else if (!(beyond & BEYOND_SIGHT))
+    else if (!(beyond & BEYOND_GEOMETRY))
         TRY(ask_cache(asker, pixel, &found, err));
     settled_note(settled, pixel, &found);
     return STATUS_OK;

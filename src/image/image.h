@@ -196,8 +196,8 @@ void image_release(Image *image);
 MUST_CHECK Status image_read(Image *image, const char *path, Err *err);
 /* Likewise, and STATUS_INPUT when the file does not hold codes, or floats. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, Err *err);
-/* As picture_read; but a PNG that is transparent anywhere is read as what it covers: no code is 0
- * where it is at least half opaque, and all are elsewhere. */
+/* As picture_read; but of a PNG that is transparent anywhere only the opacity counts: the codes of
+ * a pixel are not 0 where it is at least half opaque, and 0 elsewhere. */
 MUST_CHECK Status picture_read_mask(Picture *picture, const char *path, Err *err);
 MUST_CHECK Status plane_read(Plane *plane, const char *path, Err *err);
 

@@ -1,4 +1,4 @@
-/* Two pictures: what a counting over them counted becomes measures and a verdict. */
+/* Two pictures: the sums over all pixels (pixel_counts.c) become measures and a verdict. */
 #include "verify/pixel_counts.h"
 #include "verify/result.h"
 

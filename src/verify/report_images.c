@@ -1,4 +1,5 @@
-/* Pictures as parts of a page. */
+/* Pictures as parts of a page: PNG files in base64 (RFC 4648), and thumbnails, each of whose pixels
+ * is the mean of a square of the picture's, so that thin vessels stay visible. */
 #include "verify/report.h"
 
 enum { THUMBNAIL_WIDTH = 96 };

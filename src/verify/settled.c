@@ -115,8 +115,8 @@ static bool color_beyond(const Rendering *a, const Rendering *b, size_t pixel, i
     return false;
 }
 
-static bool sight_beyond(const Rendering *a, const Rendering *b, size_t pixel,
-                         const Tolerance *tolerance)
+static bool geometry_beyond(const Rendering *a, const Rendering *b, size_t pixel,
+                            const Tolerance *tolerance)
 {
     double depth_a = (double)a->depth->values[pixel], depth_b = (double)b->depth->values[pixel];
     if (a->ids->ids[pixel] != b->ids->ids[pixel] || isfinite(depth_a) != isfinite(depth_b))
@@ -132,7 +132,7 @@ unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
 {
     int codes = (int)floor(tolerance->color_levels * (a->picture->bits == 8 ? 1 : 257) + 1e-9);
     return (color_beyond(a, b, pixel, codes) ? BEYOND_COLOR : 0u) |
-           (sight_beyond(a, b, pixel, tolerance) ? BEYOND_SIGHT : 0u);
+           (geometry_beyond(a, b, pixel, tolerance) ? BEYOND_GEOMETRY : 0u);
 }
 
 /* ---- JSON ------------------------------------------------------------------------------------ */

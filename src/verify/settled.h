@@ -1,6 +1,6 @@
-/* Pixels at which the two sides differ although B is right: something besides either, asked by the
- * caller, says so, and what A shows is explained. No limit of a tolerance counts them; limits of
- * their own do. Part of the room's door. */
+/* Pixels at which the two sides differ although B is right: a computation that shares nothing with
+ * either, made by the caller, agrees with B and explains what A shows. No limit of a tolerance
+ * counts these pixels; each cause has a limit of its own. Part of the room's door. */
 #ifndef CORCAST_VERIFY_SETTLED_H
 #define CORCAST_VERIFY_SETTLED_H
 
@@ -38,11 +38,11 @@ typedef struct SettledPixel {
 enum { SETTLED_LISTED = 12 };
 
 typedef struct Settled {
-    uint8_t *marks;        /* owned; a SettledCause for each pixel, row by row */
-    size_t pixels;         /* of the picture */
-    SettledCause from, to; /* the causes that were looked for, the last one included */
-    size_t asked;          /* pixels that differ and were looked into */
-    size_t unasked; /* pixels that differ beyond the first `asked`, when there are too many */
+    uint8_t *marks;               /* owned; a SettledCause for each pixel, row by row */
+    size_t pixels;                /* of the picture */
+    SettledCause from, to;        /* the causes that were looked for, the last one included */
+    size_t asked;                 /* pixels that differ and were examined */
+    size_t unasked;               /* pixels that differ and were not, because there are too many */
     size_t count[SETTLED_CAUSES]; /* of those asked, by cause; SETTLED_NOT: not explained, or B is
                                      wrong */
     SettledPixel first[SETTLED_LISTED]; /* the first of those that are settled */

@@ -216,10 +216,11 @@ typedef struct Rendering {
     const Plane *depth, *normal; /* NULL, then in both views: geometry is not told from shading */
 } Rendering;
 
-/* What a limit of one pixel finds at a pixel: in its colour, in what is seen and where. */
-enum { BEYOND_COLOR = 1, BEYOND_SIGHT = 2 };
-/* Which of these differ at a pixel by more than the tolerance lets one pixel be off: ids at all,
- * colour, depth, normals. Both have all planes, of one shape. */
+/* What differs at a pixel by more than the tolerance allows for one pixel: its colour; its id,
+ * depth or normal. */
+enum { BEYOND_COLOR = 1, BEYOND_GEOMETRY = 2 };
+/* These as bits, 0 where the pixel is within the tolerance. Both renderings have all planes, of one
+ * shape. */
 unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
                       const Tolerance *tolerance);
 

@@ -611,9 +611,9 @@ static void tells_what_is_beyond_at_a_pixel(void **state)
     Tolerance identity = tolerance_identity(1e-3);
     Rendering of_a = rendering(&a), of_b = rendering(&b);
     assert_int_equal(pixel_beyond(&of_a, &of_b, colored, &identity), BEYOND_COLOR);
-    assert_int_equal(pixel_beyond(&of_a, &of_b, deeper, &identity), BEYOND_SIGHT);
-    assert_int_equal(pixel_beyond(&of_a, &of_b, turned, &identity), BEYOND_SIGHT);
-    assert_int_equal(pixel_beyond(&of_a, &of_b, gone, &identity), BEYOND_SIGHT);
+    assert_int_equal(pixel_beyond(&of_a, &of_b, deeper, &identity), BEYOND_GEOMETRY);
+    assert_int_equal(pixel_beyond(&of_a, &of_b, turned, &identity), BEYOND_GEOMETRY);
+    assert_int_equal(pixel_beyond(&of_a, &of_b, gone, &identity), BEYOND_GEOMETRY);
     assert_int_equal(pixel_beyond(&of_a, &of_b, 0, &identity), 0);
     side_release(&a);
     side_release(&b);
