@@ -41,6 +41,21 @@ test_texts_and_json_are_made_by_the_functions_that_carry_a_failure_on() {
     [ -z "$found" ] || fail "expected text_chars, json_with, json_text and text_json in place of: $found"
 }
 
+# So that `make power`, which takes long and is run rarely, still plants what it says.
+test_every_fault_of_make_power_changes_its_file() {
+    local file edit
+    {
+        sed -n "/cat <<'FAULTS'/,/^FAULTS/p" "$REPO/tests/power/run-shared" | awk -F '|' 'NF == 3 { print $2 "|" $3 }'
+        sed -z 's/\\\n */ /g' "$REPO/tests/power/run" | sed -nE "s/^ *(mutant|faulty) \"[^\"]*\" (src[^ ]*) '([^']*)'.*/\2|\3/p
+            s/^ *mutant [a-z]+ (src[^ ]*) '([^']*)'.*/\1|\2/p"
+    } >faults
+    [ "$(wc -l <faults)" -ge 50 ] || fail "expected at least 50 faults, got $(wc -l <faults)"
+    while IFS='|' read -r file edit; do
+        [ -f "$REPO/$file" ] || fail "a fault is to be planted in $file, which does not exist"
+        ! sed "$edit" "$REPO/$file" | cmp -s - "$REPO/$file" || fail "the edit '$edit' changes nothing in $file"
+    done <faults
+}
+
 test_make_help_names_every_public_target() {
     local target
     run_ok make -C "$REPO" --no-print-directory help
