@@ -175,23 +175,6 @@ static bool left(void *context, Vec3 at, Vec3 towards, double distance)
     return at.x + towards.x * distance < -0.1;
 }
 
-static void a_soft_shadow_weighs_the_points_of_the_light_alike(void **state)
-{
-    (void)state;
-    Light light = {.location = {0, 0, 5},
-                   .color = {1, 1, 1},
-                   .casts_shadows = true,
-                   .samples = 4,
-                   .sides = {{3, 0, 0}, {0, 3, 0}}};
-    Finish finish = {.diffuse = 0.5f, .brilliance = 1};
-    Rgb white = {1, 1, 1};
-    Rgb seen = seen_under(&light, &finish, white, vec3(0, 0, -1), left, NULL);
-    assert_true(seen.r == 0.25f); /* columns at -1.5, -0.5, 0.5, 1.5: two of four */
-    light.sides[0].x = 0.15;
-    seen = seen_under(&light, &finish, white, vec3(0, 0, -1), left, NULL);
-    assert_true(seen.r == 0.5f);
-}
-
 /* Hides what lies far to the right. */
 static bool far_right(void *context, Vec3 at, Vec3 towards, double distance)
 {
@@ -199,22 +182,33 @@ static bool far_right(void *context, Vec3 at, Vec3 towards, double distance)
     return at.x + towards.x * distance > 1.49;
 }
 
-/* From edge to edge: the last column of four stands on the edge, 1.5 mm from the middle. */
-static void the_points_of_a_soft_light_reach_its_edges(void **state)
+/* The light on a surface below an area light of 4 x 4 points, `width` mm along x; 0.5 unshadowed.
+ */
+static float soft_light(double width, ShadowTest *blocked)
 {
-    (void)state;
     Light light = {.location = {0, 0, 5},
                    .color = {1, 1, 1},
                    .casts_shadows = true,
                    .samples = 4,
-                   .sides = {{3, 0, 0}, {0, 3, 0}}};
+                   .sides = {{width, 0, 0}, {0, 3, 0}}};
     Finish finish = {.diffuse = 0.5f, .brilliance = 1};
     Rgb white = {1, 1, 1};
-    Rgb seen = seen_under(&light, &finish, white, vec3(0, 0, -1), far_right, NULL);
-    assert_true(seen.r == 0.375f);
-    light.sides[0].x = 2.9;
-    seen = seen_under(&light, &finish, white, vec3(0, 0, -1), far_right, NULL);
-    assert_true(seen.r == 0.5f);
+    return seen_under(&light, &finish, white, vec3(0, 0, -1), blocked, NULL).r;
+}
+
+static void a_soft_shadow_weighs_the_points_of_the_light_alike(void **state)
+{
+    (void)state;
+    assert_true(soft_light(3, left) == 0.25f); /* columns at -1.5, -0.5, 0.5, 1.5: two of four */
+    assert_true(soft_light(0.15, left) == 0.5f);
+}
+
+/* The last column of four stands on the edge, 1.5 mm from the middle. */
+static void the_points_of_a_soft_light_reach_its_edges(void **state)
+{
+    (void)state;
+    assert_true(soft_light(3, far_right) == 0.375f);
+    assert_true(soft_light(2.9, far_right) == 0.5f);
 }
 
 static void the_back_of_a_surface_gets_no_light(void **state)
