@@ -32,6 +32,7 @@ FAILING := $(BUILD)/tests/failing.so
 POWER_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/power/*.c))
 POWER := $(BUILD)/tests/power/power
 EMBREE := $(BUILD)/tests/bench/embree
+FRAMES := $(BUILD)/tests/bench/frames
 FIT := $(BUILD)/tests/fit/fit_blob
 FUZZ_SOURCES := $(wildcard tests/fuzz/*.c)
 HARNESSES := $(filter-out fuzz replay,$(FUZZ_SOURCES:tests/fuzz/%.c=%))
@@ -98,7 +99,7 @@ bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
 
 bench-render: ## how fast pictures are drawn, beside POV-Ray and others; BENCH=full|quick
 	$(Q).ci/deps build run bench
-	$(Q)$(AGAIN) all $(EMBREE)
+	$(Q)$(AGAIN) all $(EMBREE) $(FRAMES)
 	$(Q)tests/bench/render
 
 bench-compare: ## time `compare` on large pictures, beside idiff and odiff
@@ -167,6 +168,10 @@ $(FIT): $(BUILD)/tests/fit/fit_blob.o $(BUILD)/rooms.a
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
+$(FRAMES): $(BUILD)/tests/bench/frames.o $(BUILD)/rooms.a
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
 # Replayed from files, or driven by libFuzzer.
 $(FUZZ_PROGRAMS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/fuzz/fuzz.o \
 	$(if $(filter fuzz,$(MODE)),,$(BUILD)/tests/fuzz/replay.o) $(BUILD)/app.a $(BUILD)/rooms.a
@@ -203,7 +208,7 @@ $(FAILING): tests/alloc/failing.c Makefile
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
 $(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
 
--include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
+-include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 
 packages:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
