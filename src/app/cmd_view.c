@@ -16,7 +16,7 @@ typedef struct Viewer {
     const Common *common;
     const char *tree, *recipe;
     PictureSource source;
-    StageParams home; /* the camera that the options asked for */
+    ViewParams home; /* the camera that the options asked for */
     Scene scene;
     Display *display;
     Window *window;
@@ -226,7 +226,7 @@ static Status write_recipe(const Viewer *viewer, Err *err)
 
 static Status use_projection(Viewer *viewer, Err *err)
 {
-    StageParams stage = picture_stage(viewer->options);
+    ViewParams stage = picture_view_params(viewer->options);
     Projection other = stage.projection == PROJECTION_PERSPECTIVE ? PROJECTION_ORTHOGRAPHIC
                                                                   : PROJECTION_PERSPECTIVE;
     orbit_project(&stage, other, &viewer->scene.geometry);
@@ -237,7 +237,7 @@ static Status use_projection(Viewer *viewer, Err *err)
 
 static Status go_home(Viewer *viewer, Err *err)
 {
-    const StageParams *now = &viewer->options->stage;
+    const ViewParams *now = &viewer->options->stage;
     bool shadows = now->shadows;
     viewer->options->stage = viewer->home;
     viewer->options->stage.shadows = shadows;
@@ -288,7 +288,7 @@ static Status on_key(Viewer *viewer, int key, Err *err)
 
 static Status on_drag(Viewer *viewer, const WindowEvent *event, Err *err)
 {
-    StageParams stage = picture_stage(viewer->options);
+    ViewParams stage = picture_view_params(viewer->options);
     int side = stage.width < stage.height ? stage.width : stage.height;
     const double half_turn = 3.14159265358979323846;
     if (event->button == WINDOW_LEFT)
@@ -301,7 +301,7 @@ static Status on_drag(Viewer *viewer, const WindowEvent *event, Err *err)
 
 static Status on_wheel(Viewer *viewer, const WindowEvent *event, Err *err)
 {
-    StageParams stage = picture_stage(viewer->options);
+    ViewParams stage = picture_view_params(viewer->options);
     orbit_zoom(&stage, pow(1.15, event->y));
     viewer->options->stage = stage;
     return aim(viewer, err);
@@ -374,7 +374,7 @@ static Status turn_around(Viewer *viewer, int pictures, Err *err)
         WindowEvent event = window_event(viewer->window, false);
         if (event.kind == WINDOW_QUIT)
             viewer->quit = true;
-        StageParams stage = picture_stage(viewer->options);
+        ViewParams stage = picture_view_params(viewer->options);
         orbit_turn(&stage, full_turn / pictures, 0);
         viewer->options->stage = stage;
         TRY(aim(viewer, err));
@@ -396,7 +396,7 @@ static Status open_viewer(Viewer *viewer, Err *err)
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", viewer->tree);
     TRY(status);
-    StageParams stage = picture_stage(options);
+    ViewParams stage = picture_view_params(options);
     orbit_begin(&stage, &viewer->scene.view.camera, &viewer->scene.geometry);
     viewer->home = options->stage = stage;
     TRY(window_open(&viewer->window, file_name(viewer->tree), options->size[0], options->size[1],

@@ -146,7 +146,7 @@ const OptionTable picture_table = OPTION_TABLE(rows);
 
 void picture_set_defaults(PictureOptions *picture)
 {
-    *picture = (PictureOptions){.stage = stage_defaults(),
+    *picture = (PictureOptions){.stage = view_defaults(),
                                 .model = SCENE_ROUNDED,
                                 .size = {1000, 1000},
                                 .antialias = 1,
@@ -162,7 +162,7 @@ CellParams picture_cells(const PictureOptions *options)
 /* Options that fight each other are refused rather than silently ignored. */
 static Status check_camera(const PictureOptions *options, Err *err)
 {
-    const StageParams *stage = &options->stage;
+    const ViewParams *stage = &options->stage;
     bool perspective = options->projection == PROJECTION_PERSPECTIVE;
     if (options->has_height && perspective)
         return err_set(err, STATUS_USAGE,
@@ -318,24 +318,24 @@ void picture_source_release(PictureSource *source)
     tree_release(&source->tree);
 }
 
-StageParams picture_stage(const PictureOptions *options)
+ViewParams picture_view_params(const PictureOptions *options)
 {
-    StageParams stage = options->stage;
-    stage.model = (SceneModel)options->model;
-    stage.graph = options->potential != 0 && options->model == SCENE_ISOSURFACE;
-    stage.joints = (JointForm)options->joints;
-    stage.projection = (Projection)options->projection;
-    stage.view = (NamedView)options->view;
-    stage.width = options->size[0];
-    stage.height = options->size[1];
-    return stage;
+    ViewParams params = options->stage;
+    params.projection = (Projection)options->projection;
+    params.view = (NamedView)options->view;
+    params.width = options->size[0];
+    params.height = options->size[1];
+    return params;
 }
 
 Status picture_geometry(const PictureOptions *options, const PictureSource *source,
                         Geometry *geometry, StageReport *report, Err *err)
 {
-    const StageParams stage = picture_stage(options);
-    return stage_geometry(&source->tree, &stage, geometry, report, err);
+    const GeometryParams params = {.model = (SceneModel)options->model,
+                                   .joints = (JointForm)options->joints,
+                                   .graph = options->potential != 0 &&
+                                            options->model == SCENE_ISOSURFACE};
+    return stage_geometry(&source->tree, &params, geometry, report, err);
 }
 
 Status picture_appearance(const PictureOptions *options, const PictureSource *source,
@@ -347,8 +347,8 @@ Status picture_appearance(const PictureOptions *options, const PictureSource *so
 Status picture_view(const PictureOptions *options, const PictureSource *source,
                     const Geometry *geometry, View *view, Err *err)
 {
-    const StageParams stage = picture_stage(options);
-    return stage_view(&source->look, &stage, geometry, view, err);
+    const ViewParams params = picture_view_params(options);
+    return stage_view(&source->look, &params, geometry, view, err);
 }
 
 static Status make_scene(const PictureOptions *options, const PictureSource *source, Scene *scene,

@@ -11,7 +11,7 @@
 #include "tree/tree.h"
 
 typedef struct PictureOptions {
-    StageParams stage;
+    ViewParams stage; /* but projection, view and size, which are below */
     int model, potential, joints, projection, view; /* choices */
     int size[2];
     int antialias;
@@ -55,8 +55,8 @@ typedef struct PictureSource {
 MUST_CHECK Status picture_read_source(const PictureOptions *options, const char *tree_path,
                                       PictureSource *source, Err *err);
 void picture_source_release(PictureSource *source);
-/* The parameters of the stage that the options ask for. */
-StageParams picture_stage(const PictureOptions *options);
+/* The view that the options ask for. */
+ViewParams picture_view_params(const PictureOptions *options);
 /* Each of the three things that a picture is of, as the options ask for it. `report` may be NULL.
  */
 MUST_CHECK Status picture_geometry(const PictureOptions *options, const PictureSource *source,

@@ -20,7 +20,7 @@ void view_axes(NamedView view, Vec3 *direction, Vec3 *up)
 }
 
 /* Right and up of unit length, square to the direction. */
-static Status camera_axes(const StageParams *params, Vec3 center, Vec3 *direction, Vec3 *right,
+static Status camera_axes(const ViewParams *params, Vec3 center, Vec3 *direction, Vec3 *right,
                           Vec3 *up, Err *err)
 {
     Vec3 sky;
@@ -110,7 +110,7 @@ static double framing_distance(const Ball *balls, size_t n, Vec3 center, Vec3 di
     return distance;
 }
 
-Status framing_camera(const Ball *balls, size_t n, Box bounds, const StageParams *params,
+Status framing_camera(const Ball *balls, size_t n, Box bounds, const ViewParams *params,
                       Camera *camera, Err *err)
 {
     Vec3 center = box_center(bounds), direction = {0}, right = {0}, up = {0};

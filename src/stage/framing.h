@@ -16,7 +16,7 @@ MUST_CHECK Status framing_balls(const Geometry *geometry, Ball **balls, size_t *
 
 /* The camera that params asks for, framing the balls where it leaves that open. `bounds` holds
  * them. STATUS_USAGE when the vectors given make no camera. */
-MUST_CHECK Status framing_camera(const Ball *balls, size_t n, Box bounds, const StageParams *params,
+MUST_CHECK Status framing_camera(const Ball *balls, size_t n, Box bounds, const ViewParams *params,
                                  Camera *camera, Err *err);
 
 #endif

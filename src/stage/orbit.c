@@ -11,7 +11,7 @@ typedef struct Axes {
     double distance;
 } Axes;
 
-static Axes axes_of(const StageParams *params)
+static Axes axes_of(const ViewParams *params)
 {
     Vec3 back = vec3_sub(params->location, params->look_at);
     Axes axes = {.distance = vec3_length(back)};
@@ -21,27 +21,27 @@ static Axes axes_of(const StageParams *params)
     return axes;
 }
 
-static void set_axes(StageParams *params, Axes axes)
+static void set_axes(ViewParams *params, Axes axes)
 {
     params->location = vec3_add_scaled(params->look_at, axes.back, axes.distance);
     params->up = axes.up;
 }
 
 /* Of a perspective picture: its width, over the distance of what has it. */
-static double width_per_distance(const StageParams *params)
+static double width_per_distance(const ViewParams *params)
 {
     return 2 * tan(params->angle_deg * degrees_pi / 2);
 }
 
 /* Height of the picture where it is looked at. */
-static double height_mm(const StageParams *params, double distance)
+static double height_mm(const ViewParams *params, double distance)
 {
     if (params->projection == PROJECTION_ORTHOGRAPHIC)
         return params->height_mm;
     return width_per_distance(params) * distance * params->height / params->width;
 }
 
-void orbit_begin(StageParams *params, const Camera *camera, const Geometry *geometry)
+void orbit_begin(ViewParams *params, const Camera *camera, const Geometry *geometry)
 {
     Vec3 center = box_center(geometry->bounds);
     double along = vec3_dot(vec3_sub(center, camera->location), camera->direction);
@@ -64,7 +64,7 @@ static Vec3 turned(Vec3 v, Vec3 axis, double angle)
     return vec3_add_scaled(result, axis, vec3_dot(axis, v) * (1 - cos(angle)));
 }
 
-void orbit_turn(StageParams *params, double right, double up)
+void orbit_turn(ViewParams *params, double right, double up)
 {
     Axes axes = axes_of(params);
     axes.back = turned(axes.back, axes.up, -right);
@@ -74,7 +74,7 @@ void orbit_turn(StageParams *params, double right, double up)
     set_axes(params, axes);
 }
 
-void orbit_zoom(StageParams *params, double factor)
+void orbit_zoom(ViewParams *params, double factor)
 {
     if (params->projection == PROJECTION_ORTHOGRAPHIC) {
         params->height_mm =
@@ -86,7 +86,7 @@ void orbit_zoom(StageParams *params, double factor)
     set_axes(params, axes);
 }
 
-void orbit_pan(StageParams *params, double right, double up)
+void orbit_pan(ViewParams *params, double right, double up)
 {
     Axes axes = axes_of(params);
     double height = height_mm(params, axes.distance);
@@ -96,7 +96,7 @@ void orbit_pan(StageParams *params, double right, double up)
     params->look_at = vec3_add(params->look_at, move);
 }
 
-void orbit_project(StageParams *params, Projection projection, const Geometry *geometry)
+void orbit_project(ViewParams *params, Projection projection, const Geometry *geometry)
 {
     if (params->projection == projection)
         return;

@@ -12,17 +12,6 @@
 #include "stage/places.h"
 #include <stdlib.h>
 
-StageParams stage_defaults(void)
-{
-    return (StageParams){.model = SCENE_ROUNDED,
-                         .width = 1000,
-                         .height = 1000,
-                         .projection = PROJECTION_ORTHOGRAPHIC,
-                         .view = VIEW_FRONT,
-                         .angle_deg = 30,
-                         .margin = 0.05};
-}
-
 /* number[i] becomes that of the cylinder of the segment that ends at node i, or -1. */
 static void add_cylinders(const Tree *tree, const Places *places, Geometry *geometry,
                           int32_t *number)
@@ -136,7 +125,7 @@ static Status add_potential(const Tree *tree, bool graph, Geometry *geometry, Er
     return status;
 }
 
-static Status add_model(const Tree *tree, const StageParams *params, Geometry *geometry,
+static Status add_model(const Tree *tree, const GeometryParams *params, Geometry *geometry,
                         StageReport *report, Err *err)
 {
     if (geometry->model == SCENE_ISOSURFACE || geometry->model == SCENE_BLOB)
@@ -207,7 +196,7 @@ static void move_to_origin(Geometry *geometry)
     geometry->origin = vec3_sub(geometry->origin, move);
 }
 
-Status stage_geometry(const Tree *tree, const StageParams *params, Geometry *geometry,
+Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *geometry,
                       StageReport *report, Err *err)
 {
     Geometry built = {.model = params->model, .open_joints = params->joints == JOINTS_PAPER};

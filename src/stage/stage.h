@@ -57,9 +57,15 @@ typedef enum JointForm {
     JOINTS_PAPER   /* follows the construction of [N] to the letter */
 } JointForm;
 
-typedef struct StageParams {
+/* What a geometry is made by. */
+typedef struct GeometryParams {
     SceneModel model;
-    JointForm joints;
+    JointForm joints; /* of a joined model */
+    bool graph;       /* isosurface: only neighbours in the tree blend [stage/blend.h] */
+} GeometryParams;
+
+/* What a view is made by. Vectors are in the coordinates of the tree. */
+typedef struct ViewParams {
     int width, height; /* pixels, >= 1 */
     Projection projection;
     NamedView view; /* used when has_location is false */
@@ -68,12 +74,11 @@ typedef struct StageParams {
     double angle_deg; /* full horizontal angle of a perspective camera, in (0, 180) */
     double height_mm; /* of an orthographic picture; 0: frames the tree */
     double margin;    /* free part of the picture on each side when framing, in [0, 0.45] */
-    bool shadows;
-    bool graph; /* isosurface: only neighbours in the tree blend [stage/blend.h] */
-} StageParams;
+    bool shadows;     /* whether lights cast them */
+} ViewParams;
 
 /* front, orthographic, 1000 x 1000, 30 degrees, margin 0.05. */
-StageParams stage_defaults(void);
+ViewParams view_defaults(void);
 
 typedef struct StageReport {
     size_t drawn;   /* segments in the scene */
@@ -84,11 +89,11 @@ typedef struct StageReport {
     size_t joints, places_short, places_sharp, places_crowded;
 } StageReport;
 
-/* The shape of a tree by model, joints and graph of `params`, in *geometry (owned;
- * geometry_release). If the tree lies farther from the origin than 16 times its size, the geometry
- * is moved next to it by whole millimetres, geometry->origin, and nothing seen changes. `report`
- * may be NULL. STATUS_INPUT when nothing can be drawn or a number is out of range. */
-MUST_CHECK Status stage_geometry(const Tree *tree, const StageParams *params, Geometry *geometry,
+/* The shape of a tree in *geometry (owned; geometry_release). If the tree lies farther from the
+ * origin than 16 times its size, the geometry is moved next to it by whole millimetres,
+ * geometry->origin, and nothing seen changes. `report` may be NULL. STATUS_INPUT when nothing can
+ * be drawn or a number is out of range. */
+MUST_CHECK Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *geometry,
                                  StageReport *report, Err *err);
 
 /* The vessels of a tree for the triangulation of their surface, in *vessels (owned): its segments
@@ -102,11 +107,10 @@ MUST_CHECK Status stage_vessels(const Tree *tree, VesselTree *vessels, size_t *d
 MUST_CHECK Status stage_appearance(const Look *look, const Field *field, const ColorScale *scale,
                                    Appearance *appearance, Err *err);
 
-/* The camera that `params` asks for, all of it but model, joints and graph, with lights, ground and
- * background of the look about the geometry. Vectors are in the coordinates of the tree.
- * STATUS_USAGE when the vectors given make no camera, STATUS_INPUT when it is too far away. O(size
- * of the geometry). */
-MUST_CHECK Status stage_view(const Look *look, const StageParams *params, const Geometry *geometry,
+/* The camera that `params` asks for, with lights, ground and background of the look about the
+ * geometry. STATUS_USAGE when the vectors given make no camera, STATUS_INPUT when it is too far
+ * away. O(size of the geometry). */
+MUST_CHECK Status stage_view(const Look *look, const ViewParams *params, const Geometry *geometry,
                              View *view, Err *err);
 
 /* Unit direction and up vector of a named view: front looks along -z with y up, top along -y with
@@ -118,15 +122,15 @@ void view_axes(NamedView view, Vec3 *direction, Vec3 *up);
 
 /* Sets these from a camera; it looks at the point of its axis nearest to the middle of the
  * geometry. */
-void orbit_begin(StageParams *params, const Camera *camera, const Geometry *geometry);
+void orbit_begin(ViewParams *params, const Camera *camera, const Geometry *geometry);
 
 /* Turns what is seen to the right and up, in radians. */
-void orbit_turn(StageParams *params, double right, double up);
+void orbit_turn(ViewParams *params, double right, double up);
 /* Makes what is seen larger by the factor, > 0: a picture of less height, or a nearer camera. */
-void orbit_zoom(StageParams *params, double factor);
+void orbit_zoom(ViewParams *params, double factor);
 /* Moves what is seen to the right and up, in heights of the picture. */
-void orbit_pan(StageParams *params, double right, double up);
+void orbit_pan(ViewParams *params, double right, double up);
 /* Changes the projection; what is looked at keeps its size. */
-void orbit_project(StageParams *params, Projection projection, const Geometry *geometry);
+void orbit_project(ViewParams *params, Projection projection, const Geometry *geometry);
 
 #endif

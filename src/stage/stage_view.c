@@ -5,6 +5,16 @@
 #include "stage/framing.h"
 #include <stdlib.h>
 
+ViewParams view_defaults(void)
+{
+    return (ViewParams){.width = 1000,
+                        .height = 1000,
+                        .projection = PROJECTION_ORTHOGRAPHIC,
+                        .view = VIEW_FRONT,
+                        .angle_deg = 30,
+                        .margin = 0.05};
+}
+
 /* A vector of right, up and towards the viewer, in the world. */
 static Vec3 from_camera(const Camera *camera, Vec3 v)
 {
@@ -63,11 +73,11 @@ static Light place_light(const LookLight *light, const Camera *camera, Box bound
     return placed;
 }
 
-Status stage_view(const Look *look, const StageParams *params, const Geometry *geometry, View *view,
+Status stage_view(const Look *look, const ViewParams *params, const Geometry *geometry, View *view,
                   Err *err)
 {
     View made = {.background = look->background, .n_lights = (size_t)look->n_lights};
-    StageParams near = *params; /* to the origin, as the geometry is */
+    ViewParams near = *params; /* to the origin, as the geometry is */
     near.location = vec3_sub(params->location, geometry->origin);
     near.look_at = vec3_sub(params->look_at, geometry->origin);
     Ball *balls;

@@ -181,13 +181,13 @@ int main(int argc, char **argv)
     int threads = atoi(argv[3]), runs = atoi(argv[4]) < MOST_RUNS ? atoi(argv[4]) : MOST_RUNS;
     char options[32];
     snprintf(options, sizeof options, "threads=%d", threads);
-    StageParams params = stage_defaults();
-    params.model = SCENE_ROUNDED;
+    const GeometryParams shape = {.model = SCENE_ROUNDED};
+    ViewParams params = view_defaults();
     params.width = params.height = atoi(argv[2]);
     if (tree_read(&tree, argv[1], &err) != STATUS_OK ||
         look_read(&look, argv[5], &err) != STATUS_OK ||
         stage_appearance(&look, NULL, NULL, &scene.appearance, &err) != STATUS_OK ||
-        stage_geometry(&tree, &params, &scene.geometry, NULL, &err) != STATUS_OK ||
+        stage_geometry(&tree, &shape, &scene.geometry, NULL, &err) != STATUS_OK ||
         stage_view(&look, &params, &scene.geometry, &scene.view, &err) != STATUS_OK)
         fail(&err);
     double wall_ms[MOST_RUNS], cpu_ms[MOST_RUNS];

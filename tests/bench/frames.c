@@ -108,9 +108,9 @@ int main(int argc, char **argv)
         return 2;
     }
     int runs = atoi(argv[5]) < MOST_RUNS ? atoi(argv[5]) : MOST_RUNS;
-    StageParams stage = stage_defaults();
-    stage.model = model_called(argv[2]);
-    stage.width = stage.height = atoi(argv[3]);
+    const GeometryParams shape = {.model = model_called(argv[2])};
+    ViewParams from = view_defaults();
+    from.width = from.height = atoi(argv[3]);
     film.params = (RenderParams){.method = RENDER_RASTER,
                                  .threads = atoi(argv[4]),
                                  .antialias = 1,
@@ -118,10 +118,10 @@ int main(int argc, char **argv)
                                  .want_color = true};
     must(tree_read(&tree, argv[1], &err), &err);
     must(look_read(&look, argv[6], &err), &err);
-    must(stage_geometry(&tree, &stage, &film.geometry, NULL, &err), &err);
-    must(stage_view(&look, &stage, &film.geometry, &film.views[0], &err), &err);
-    stage.view = VIEW_ISO;
-    must(stage_view(&look, &stage, &film.geometry, &film.views[1], &err), &err);
+    must(stage_geometry(&tree, &shape, &film.geometry, NULL, &err), &err);
+    must(stage_view(&look, &from, &film.geometry, &film.views[0], &err), &err);
+    from.view = VIEW_ISO;
+    must(stage_view(&look, &from, &film.geometry, &film.views[1], &err), &err);
     must(stage_appearance(&look, NULL, NULL, &film.appearances[0], &err), &err);
     film.appearances[1] = colored(&tree, &look, argv[7], &err);
     for (int run = 0; run < runs; run++)

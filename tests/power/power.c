@@ -108,9 +108,9 @@ static bool rule_differs(Lab *lab, JudgeRule rule, const Subject *a, const Subje
 static void stage_subject(Lab *lab, SceneModel model, Projection projection, NamedView view,
                           bool shadows, int antialias, Subject *subject)
 {
-    StageParams params = stage_defaults();
+    const GeometryParams shape = {.model = model};
+    ViewParams params = view_defaults();
     StageReport report;
-    params.model = model;
     params.width = WIDTH;
     params.height = HEIGHT;
     params.projection = projection;
@@ -125,7 +125,7 @@ static void stage_subject(Lab *lab, SceneModel model, Projection projection, Nam
                                     .want_id = true}};
     Scene *scene = &subject->scene;
     must(lab, stage_appearance(&lab->look, NULL, NULL, &scene->appearance, &lab->err));
-    must(lab, stage_geometry(&lab->tree, &params, &scene->geometry, &report, &lab->err));
+    must(lab, stage_geometry(&lab->tree, &shape, &scene->geometry, &report, &lab->err));
     must(lab, stage_view(&lab->look, &params, &scene->geometry, &scene->view, &lab->err));
 }
 

@@ -38,12 +38,12 @@ static Scene staged(SceneModel model, Projection projection)
     Tree tree;
     Scene scene;
     StageParams params = stage_defaults();
-    params.model = model;
-    params.projection = projection;
-    params.view = VIEW_ISO;
-    params.shadows = true;
-    params.width = WIDTH;
-    params.height = HEIGHT;
+    params.geometry.model = model;
+    params.view.projection = projection;
+    params.view.view = VIEW_ISO;
+    params.view.shadows = true;
+    params.view.width = WIDTH;
+    params.view.height = HEIGHT;
     assert_int_equal(tree_read(&tree, "tests/golden/ball60.swc", &err), STATUS_OK);
     assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, &err), STATUS_OK);
     tree_release(&tree);

@@ -37,8 +37,8 @@ static Tree tree_of(size_t n, const int32_t *parents, const Vec3 *places, const 
 static Scene stage(const Tree *tree, JointForm joints, StageReport *report)
 {
     StageParams params = stage_defaults();
-    params.model = SCENE_JOINED;
-    params.joints = joints;
+    params.geometry.model = SCENE_JOINED;
+    params.geometry.joints = joints;
     Scene scene;
     Err err = {{0}};
     if (stage_all(tree, &look, &params, &scene, report, &err) != STATUS_OK)

@@ -157,10 +157,10 @@ static Scene staged_hairpin(bool graph)
     Scene scene;
     Look look = {0};
     StageParams params = stage_defaults();
-    params.model = SCENE_ISOSURFACE;
-    params.width = 200;
-    params.height = 120;
-    params.graph = graph;
+    params.geometry.model = SCENE_ISOSURFACE;
+    params.view.width = 200;
+    params.view.height = 120;
+    params.geometry.graph = graph;
     make_hairpin(&tree);
     assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, NULL), STATUS_OK);
     tree_release(&tree);
@@ -214,10 +214,10 @@ static void the_graph_joins_up_to_three_radii_away(void **state)
             tree.radius_mm[i] = radii[i];
         }
         StageParams params = stage_defaults();
-        params.model = SCENE_ISOSURFACE;
-        params.graph = true;
+        params.geometry.model = SCENE_ISOSURFACE;
+        params.geometry.graph = true;
         Geometry geometry;
-        assert_int_equal(stage_geometry(&tree, &params, &geometry, NULL, NULL), STATUS_OK);
+        assert_int_equal(stage_geometry(&tree, &params.geometry, &geometry, NULL, NULL), STATUS_OK);
         assert_int_equal(blend_joins(&geometry.blend, 0, 2), within);
         assert_false(blend_joins(&geometry.blend, 2, 0));
         geometry_release(&geometry);

@@ -60,7 +60,7 @@ static void segments_without_length_or_radius_are_counted_not_drawn(void **state
 {
     (void)state;
     StageParams params = stage_defaults();
-    params.model = SCENE_CYLINDERS;
+    params.geometry.model = SCENE_CYLINDERS;
     StageReport report;
     Scene scene = stage(&params, &report);
     assert_int_equal(report.drawn, 3);
@@ -90,7 +90,7 @@ static void a_sphere_has_the_largest_radius_that_meets(void **state)
 {
     (void)state;
     StageParams params = stage_defaults();
-    params.model = SCENE_ROUNDED;
+    params.geometry.model = SCENE_ROUNDED;
     Scene scene = stage(&params, NULL);
     /* Spheres at the inlet, the bifurcation and the two ends; one only where the step has no
      * length. */
@@ -120,7 +120,7 @@ static void every_model_has_the_segments_at_their_radii(void **state)
     static const double radii[] = {2.385, 1.9, 1.2};
     StageParams params = stage_defaults();
     for (int model = SCENE_CYLINDERS; model <= SCENE_BLOB; model++) {
-        params.model = (SceneModel)model;
+        params.geometry.model = (SceneModel)model;
         Scene scene = stage(&params, NULL);
         for (size_t i = 0; i < 3; i++) {
             bool field = scene.geometry.n_segments > 0;
@@ -168,10 +168,10 @@ static void every_view_frames_the_whole_tree(void **state)
     for (int view = VIEW_FRONT; view <= VIEW_ISO; view++)
         for (int projection = 0; projection < 2; projection++) {
             StageParams params = stage_defaults();
-            params.view = (NamedView)view;
-            params.projection = (Projection)projection;
-            params.width = 300;
-            params.height = 170;
+            params.view.view = (NamedView)view;
+            params.view.projection = (Projection)projection;
+            params.view.width = 300;
+            params.view.height = 170;
             Scene scene = stage(&params, NULL);
             const Camera *camera = &scene.view.camera;
             double widest = 0, highest = 0;
@@ -208,7 +208,7 @@ static void a_framed_picture_has_its_margin_on_each_side(void **state)
 {
     (void)state;
     StageParams params = stage_defaults();
-    params.margin = 0.12;
+    params.view.margin = 0.12;
     Scene scene = stage(&params, NULL);
     assert_true(fabs(scene.view.camera.up.y - 20.585 / 0.76) < 1e-12);
     assert_true(fabs(scene.view.camera.location.x - 0.15) < 1e-12);
@@ -231,10 +231,10 @@ static void a_perspective_camera_stands_where_the_nearest_ball_just_fits(void **
         tree.position[i] = vec3(3.5, -2, i ? 5.5 : -5.5);
     }
     StageParams params = stage_defaults();
-    params.projection = PROJECTION_PERSPECTIVE;
+    params.view.projection = PROJECTION_PERSPECTIVE;
     for (int lying = 0; lying < 2; lying++) {
-        params.width = lying ? 1000 : 400;
-        params.height = lying ? 400 : 1000;
+        params.view.width = lying ? 1000 : 400;
+        params.view.height = lying ? 400 : 1000;
         Scene scene;
         assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, NULL), STATUS_OK);
         Vec3 expected = vec3(3.5, -2, lying ? 30.33960084026736 : 15.67344740904526);
@@ -260,14 +260,14 @@ static void a_given_camera_is_taken_as_it_is(void **state)
 {
     (void)state;
     StageParams params = stage_defaults();
-    params.projection = PROJECTION_PERSPECTIVE;
-    params.angle_deg = 90;
-    params.width = 200;
-    params.height = 100;
-    params.has_location = params.has_look_at = params.has_up = true;
-    params.location = vec3(0, 0, 40);
-    params.look_at = vec3(0, 0, 0);
-    params.up = vec3(1, 0, 0);
+    params.view.projection = PROJECTION_PERSPECTIVE;
+    params.view.angle_deg = 90;
+    params.view.width = 200;
+    params.view.height = 100;
+    params.view.has_location = params.view.has_look_at = params.view.has_up = true;
+    params.view.location = vec3(0, 0, 40);
+    params.view.look_at = vec3(0, 0, 0);
+    params.view.up = vec3(1, 0, 0);
     Scene scene = stage(&params, NULL);
     const Camera *camera = &scene.view.camera;
     assert_true(fabs(vec3_length(camera->right) - 2) < 1e-12);
@@ -284,13 +284,13 @@ static void cameras_that_cannot_be_are_refused(void **state)
     Scene scene;
     Err err;
     StageParams params = stage_defaults();
-    params.has_location = params.has_look_at = true;
-    params.location = params.look_at = vec3(1, 2, 3);
+    params.view.has_location = params.view.has_look_at = true;
+    params.view.location = params.view.look_at = vec3(1, 2, 3);
     assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, &err), STATUS_USAGE);
     assert_non_null(strstr(err.text, "`look_at`"));
-    params.look_at = vec3(1, 2, 9);
-    params.has_up = true;
-    params.up = vec3(0, 0, -2);
+    params.view.look_at = vec3(1, 2, 9);
+    params.view.has_up = true;
+    params.view.up = vec3(0, 0, -2);
     assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, &err), STATUS_USAGE);
     assert_non_null(strstr(err.text, "`up`"));
     tree_release(&tree);
@@ -315,7 +315,7 @@ static void lights_turn_with_the_camera(void **state)
     (void)state;
     for (int view = VIEW_FRONT; view <= VIEW_ISO; view++) {
         StageParams params = stage_defaults();
-        params.view = (NamedView)view;
+        params.view.view = (NamedView)view;
         Scene scene = stage(&params, NULL);
         Vec3 towards = vec3_sub(scene.view.lights[0].location, scene.view.lights[0].target);
         towards = vec3_normalized(towards);
@@ -386,7 +386,7 @@ static void the_ground_lies_just_beyond_the_tree(void **state)
                                            .ambient = 0.375,
                                            .diffuse = 0.5};
             StageParams params = stage_defaults();
-            params.view = (NamedView)view;
+            params.view.view = (NamedView)view;
             Scene scene;
             assert_int_equal(stage_all(&tree, &grounded, &params, &scene, NULL, NULL), STATUS_OK);
             const Ground *ground = &scene.view.ground;
@@ -419,7 +419,7 @@ static void a_tree_far_from_the_origin_is_staged_next_to_it(void **state)
         StageParams params = stage_defaults();
         Scene near, far;
         Tree moved = make_tree();
-        params.model = model;
+        params.geometry.model = model;
         for (size_t i = 0; i < moved.n; i++)
             moved.position[i] = vec3_add(tree.position[i], vec3(1048576, -2097152, 3145728));
         assert_int_equal(stage_all(&tree, &grounded, &params, &near, NULL, NULL), STATUS_OK);
@@ -452,8 +452,8 @@ static void every_model_numbers_its_segments_alike(void **state)
     for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_BLOB; model++) {
         StageParams params = stage_defaults();
         Geometry geometry;
-        params.model = model;
-        assert_int_equal(stage_geometry(&tree, &params, &geometry, NULL, NULL), STATUS_OK);
+        params.geometry.model = model;
+        assert_int_equal(stage_geometry(&tree, &params.geometry, &geometry, NULL, NULL), STATUS_OK);
         assert_int_equal(geometry.n_ids, tree.n);
         for (size_t i = 0; i < tree.n; i++)
             assert_int_equal(geometry.ids[i], tree.id[i]);
@@ -504,7 +504,7 @@ static Scene orbit_about(Tree *tree, StageParams *params)
     Scene scene;
     *tree = make_tree();
     assert_int_equal(stage_all(tree, &look, params, &scene, NULL, NULL), STATUS_OK);
-    orbit_begin(params, &scene.view.camera, &scene.geometry);
+    orbit_begin(&params->view, &scene.view.camera, &scene.geometry);
     return scene;
 }
 
@@ -515,13 +515,13 @@ static void a_camera_that_has_not_moved_is_what_it_was(void **state)
         for (int view = VIEW_FRONT; view <= VIEW_ISO; view++) {
             Tree tree;
             StageParams params = stage_defaults();
-            params.projection = (Projection)projection;
-            params.view = (NamedView)view;
-            params.width = 700;
+            params.view.projection = (Projection)projection;
+            params.view.view = (NamedView)view;
+            params.view.width = 700;
             Scene scene = orbit_about(&tree, &params);
             const Camera before = scene.view.camera;
             const Light light = scene.view.lights[0];
-            assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL),
+            assert_int_equal(stage_view(&look, &params.view, &scene.geometry, &scene.view, NULL),
                              STATUS_OK);
             assert_near(scene.view.camera.location, before.location, 1e-9);
             assert_near(scene.view.camera.right, before.right, 1e-9);
@@ -540,26 +540,28 @@ static void what_is_turned_moves_with_the_hand(void **state)
     StageParams params = stage_defaults();
     Scene scene = orbit_about(&tree, &params);
     const Camera before = scene.view.camera;
-    const Vec3 target = params.look_at, in_front = vec3_add_scaled(target, before.direction, -3);
+    const Vec3 target = params.view.look_at,
+               in_front = vec3_add_scaled(target, before.direction, -3);
     const struct {
         double right, up;
     } cases[] = {{0.2, 0}, {0, 0.2}, {-0.3, 0.1}};
     for (size_t i = 0; i < 3; i++) {
         StageParams moved = params;
-        orbit_turn(&moved, cases[i].right, cases[i].up);
-        assert_true(fabs(vec3_distance(moved.location, target) -
-                         vec3_distance(params.location, target)) < 1e-9);
-        assert_int_equal(stage_view(&look, &moved, &scene.geometry, &scene.view, NULL), STATUS_OK);
+        orbit_turn(&moved.view, cases[i].right, cases[i].up);
+        assert_true(fabs(vec3_distance(moved.view.location, target) -
+                         vec3_distance(params.view.location, target)) < 1e-9);
+        assert_int_equal(stage_view(&look, &moved.view, &scene.geometry, &scene.view, NULL),
+                         STATUS_OK);
         Vec3 v = vec3_sub(in_front, scene.view.camera.location);
         double right = vec3_dot(v, vec3_normalized(scene.view.camera.right));
         double up = vec3_dot(v, vec3_normalized(scene.view.camera.up));
         assert_true(right * cases[i].right >= 0 && up * cases[i].up >= 0);
         assert_true(fabs(right) + fabs(up) > 0.1);
-        assert_true(fabs(vec3_dot(moved.up, scene.view.camera.direction)) < 1e-9);
+        assert_true(fabs(vec3_dot(moved.view.up, scene.view.camera.direction)) < 1e-9);
     }
     for (int step = 0; step < 1000; step++)
-        orbit_turn(&params, 0.013, -0.007);
-    assert_true(fabs(vec3_length(params.up) - 1) < 1e-12);
+        orbit_turn(&params.view, 0.013, -0.007);
+    assert_true(fabs(vec3_length(params.view.up) - 1) < 1e-12);
     scene_release(&scene);
     tree_release(&tree);
 }
@@ -581,15 +583,17 @@ static void zooming_and_panning_are_by_what_is_looked_at(void **state)
     for (int projection = 0; projection < 2; projection++) {
         Tree tree;
         StageParams params = stage_defaults();
-        params.projection = (Projection)projection;
+        params.view.projection = (Projection)projection;
         Scene scene = orbit_about(&tree, &params);
-        const Vec3 beside = vec3_add_scaled(params.look_at, params.up, 0.5);
+        const Vec3 beside = vec3_add_scaled(params.view.look_at, params.view.up, 0.5);
         double before = seen_height(&scene, beside);
-        orbit_zoom(&params, 1.5);
-        assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL), STATUS_OK);
+        orbit_zoom(&params.view, 1.5);
+        assert_int_equal(stage_view(&look, &params.view, &scene.geometry, &scene.view, NULL),
+                         STATUS_OK);
         assert_true(fabs(seen_height(&scene, beside) / before - 1.5) < 1e-9);
-        orbit_pan(&params, 0, 0.125);
-        assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL), STATUS_OK);
+        orbit_pan(&params.view, 0, 0.125);
+        assert_int_equal(stage_view(&look, &params.view, &scene.geometry, &scene.view, NULL),
+                         STATUS_OK);
         assert_true(fabs(seen_height(&scene, beside) - 1.5 * before - 0.125) < 1e-9);
         scene_release(&scene);
         tree_release(&tree);
@@ -601,14 +605,15 @@ static void another_projection_keeps_the_size_of_what_is_looked_at(void **state)
     (void)state;
     Tree tree;
     StageParams params = stage_defaults();
-    params.width = 1500;
+    params.view.width = 1500;
     Scene scene = orbit_about(&tree, &params);
-    const Vec3 beside = vec3_add_scaled(params.look_at, params.up, 0.5);
+    const Vec3 beside = vec3_add_scaled(params.view.look_at, params.view.up, 0.5);
     double before = seen_height(&scene, beside);
     for (int i = 0; i < 2; i++) {
-        orbit_project(&params, i ? PROJECTION_ORTHOGRAPHIC : PROJECTION_PERSPECTIVE,
+        orbit_project(&params.view, i ? PROJECTION_ORTHOGRAPHIC : PROJECTION_PERSPECTIVE,
                       &scene.geometry);
-        assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL), STATUS_OK);
+        assert_int_equal(stage_view(&look, &params.view, &scene.geometry, &scene.view, NULL),
+                         STATUS_OK);
         assert_true(fabs(seen_height(&scene, beside) / before - 1) < 1e-9);
     }
     scene_release(&scene);
@@ -625,10 +630,11 @@ static void a_view_is_of_where_the_tree_was_moved_to(void **state)
     Scene scene;
     assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, NULL), STATUS_OK);
     assert_true(scene.geometry.origin.x > 4e5);
-    orbit_begin(&params, &scene.view.camera, &scene.geometry);
-    assert_true(params.location.x > 4e5 && params.look_at.x > 4e5);
+    orbit_begin(&params.view, &scene.view.camera, &scene.geometry);
+    assert_true(params.view.location.x > 4e5 && params.view.look_at.x > 4e5);
     const Camera before = scene.view.camera;
-    assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL), STATUS_OK);
+    assert_int_equal(stage_view(&look, &params.view, &scene.geometry, &scene.view, NULL),
+                     STATUS_OK);
     assert_near(scene.view.camera.location, before.location, 1e-6);
     scene_release(&scene);
     tree_release(&tree);
@@ -641,8 +647,9 @@ static void a_camera_without_direction_leaves_the_view_as_it_is(void **state)
     StageParams params = stage_defaults();
     Scene scene = orbit_about(&tree, &params);
     const Vec3 before = scene.view.camera.location;
-    params.location = params.look_at;
-    assert_int_equal(stage_view(&look, &params, &scene.geometry, &scene.view, NULL), STATUS_USAGE);
+    params.view.location = params.view.look_at;
+    assert_int_equal(stage_view(&look, &params.view, &scene.geometry, &scene.view, NULL),
+                     STATUS_USAGE);
     assert_near(scene.view.camera.location, before, 0);
     assert_int_equal(scene.view.n_lights, look.n_lights);
     scene_release(&scene);

@@ -4,6 +4,16 @@
 
 #include "stage/stage.h"
 
+typedef struct StageParams {
+    GeometryParams geometry;
+    ViewParams view;
+} StageParams;
+
+static inline StageParams stage_defaults(void)
+{
+    return (StageParams){{.model = SCENE_ROUNDED}, view_defaults()};
+}
+
 /* *scene is owned by the caller, scene_release, unless this fails. `report` and `err` may be
  * NULL. */
 static inline Status stage_all(const Tree *tree, const Look *look, const StageParams *params,
@@ -12,9 +22,9 @@ static inline Status stage_all(const Tree *tree, const Look *look, const StagePa
     Scene made = {0};
     Status status = stage_appearance(look, NULL, NULL, &made.appearance, err);
     if (status == STATUS_OK)
-        status = stage_geometry(tree, params, &made.geometry, report, err);
+        status = stage_geometry(tree, &params->geometry, &made.geometry, report, err);
     if (status == STATUS_OK)
-        status = stage_view(look, params, &made.geometry, &made.view, err);
+        status = stage_view(look, &params->view, &made.geometry, &made.view, err);
     if (status == STATUS_OK)
         *scene = made;
     else
