@@ -51,7 +51,7 @@ whenever the tree has grown by a fifth @ grow.c @ refresh_growth = 1.2;
 ahead of its share by more than a sixteenth @ forest.c @ lead = 1.0 / 16;
 all rise by 1.1, and those of segments that break a rule by 2.2 @ refine_penalty.c @ rise = 1.1, steep_rise = 2.2;
 up to two more follow @ refine.c @ DETOURS = 3,
-each at four times the price @ refine.c @ rate_rise = 4;
+each at four times the penalty @ refine.c @ rate_rise = 4;
 over nine tenths of the budget @ refine.c @ last_part = 0.1;
 until they agree to 10⁻¹³ @ finish.c @ agreement = 1e-13;
 256 points a terminal, up to 4,096 where that makes less than two million in all @ segment_weights.c @ least_points = 256, most_points = 4096, all_points = 2e6;
