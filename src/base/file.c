@@ -1,4 +1,7 @@
-/* Temporary names stand in a fixed table because the signal handler may call nothing but
+/* A file is written under a temporary name beside its final one and renamed when it is whole, so
+ * that a run that fails or is killed leaves the old file alone.
+ *
+ * Temporary names stand in a fixed table because a signal handler may call nothing but
  * async-signal-safe functions: it walks the table and unlinks. A slot is claimed by storing the
  * pointer and given up by storing NULL, each one atomic store. */
 #include "base/file.h"

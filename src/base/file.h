@@ -28,7 +28,7 @@ MUST_CHECK Status file_read(const char *path, const FileForm *form, char **bytes
 MUST_CHECK Status file_to_text(const char *path, const FileForm *form, char *bytes, size_t *size,
                                Err *err);
 
-/* STATUS_INPUT unless `path` is a regular file: opening a pipe or a device can wait for ever. */
+/* STATUS_INPUT unless `path` is a regular file: opening a pipe or a device may block for ever. */
 MUST_CHECK Status file_check_regular(const char *path, Err *err);
 
 /* A file being written. What is written to `stream` goes to a temporary neighbour and takes the
@@ -46,8 +46,9 @@ typedef struct OutFile {
  * link that leads to itself. Writes nothing. */
 MUST_CHECK Status outfile_check(const char *path, Err *err);
 
-/* STATUS_IO where outfile_check says so. Follow with exactly one of outfile_commit
- * and outfile_discard, each of which releases `file`, also on failure. */
+/* Opens *file for writing to `path`. STATUS_IO as outfile_check. Every opened file ends with
+ * exactly one of outfile_commit, which gives it its final name, and outfile_discard, which removes
+ * it; both release `file`, also on failure. */
 MUST_CHECK Status outfile_open(OutFile *file, const char *path, Err *err);
 MUST_CHECK Status outfile_commit(OutFile *file, Err *err);
 void outfile_discard(OutFile *file);
@@ -72,7 +73,9 @@ MUST_CHECK Status file_resolve(const char *path, char **out, Err *err);
 /* A new empty folder beside `path`, for another program to write to, in *folder (owned). It is
  * removed, when it is empty, by file_forget or by a signal. */
 MUST_CHECK Status file_temporary_folder(const char *path, char **folder, Err *err);
-/* Has `name` (allocated) removed by file_forget or by a signal, too, if it exists by then. */
+/* Registers `name` for clean-up: file_forget, or a signal that ends the program, removes the file
+ * if it exists. Takes ownership of `name`, which is freed with free(), unless it fails: STATUS_IO
+ * when too many are registered. */
 MUST_CHECK Status file_remove_on_signal(char *name, Err *err);
 /* Gives the temporary file its final name, as an OutFile does, and frees `temporary`, also on
  * failure. */

@@ -4,8 +4,9 @@
 
 #include "base/status.h"
 
-/* What is done with a line: a pair, or, when `name` and `value` are NULL, the head of a section.
- * `section` is "" above the first one. The sentence of a failure lacks file and line. */
+/* Called for each line: a pair in `section` ("" above the first one), or the head of a section,
+ * with `name` and `value` NULL. Its error sentence need not name file and line: ini_read adds them.
+ */
 typedef Status IniTake(void *user, const char *section, const char *name, const char *value,
                        Err *err);
 

@@ -1,3 +1,5 @@
+/* The handler only sets a flag, and puts the old action back, so that a second SIGINT ends a
+ * program that does not come to ask for the flag. */
 #include "base/interrupt.h"
 
 #include <signal.h>

@@ -7,7 +7,7 @@
 /* From here on the first SIGINT only makes interrupt_asked() true; a second one ends the program as
  * usual. A SIGINT that the caller ignores stays ignored. */
 void interrupt_catch(void);
-/* SIGINT ends the program as it did before. */
+/* Ends what interrupt_catch began: SIGINT does again what it did before. */
 void interrupt_release(void);
 
 /* Whether SIGINT came since interrupt_catch. `context` is unused: the form of a stop callback. */

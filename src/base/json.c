@@ -1,3 +1,6 @@
+/* On top of jansson, whose functions give NULL when memory runs out and take NULL for what failed
+ * before. Values made here keep to that, so that a document is built without a test at each step
+ * and tested once at the end. */
 #include "base/json.h"
 
 #include <math.h>

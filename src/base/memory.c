@@ -1,3 +1,5 @@
+/* Memory is always zeroed: calloc gets it zeroed from the system for nothing when it is large, and
+ * structs are released alike whether they were filled or not. Arrays double when they grow. */
 #include "base/memory.h"
 
 #include "base/number.h"

@@ -9,10 +9,10 @@
  * zero gives a pointer that may be freed. Fails with STATUS_MEMORY, `what` naming the thing. */
 MUST_CHECK Status mem_calloc(void *out, size_t count, size_t size, const char *what, Err *err);
 
-/* How much the machine has, infinity when it does not say. */
+/* The bytes of memory that the machine has; infinity when it does not say. */
 double mem_of_machine(void);
-/* STATUS_MEMORY, naming what needs them, when the machine has not so many bytes. What is granted
- * page by page would otherwise end the program in the middle of a run. */
+/* STATUS_MEMORY, saying that `name` needs them, when the machine has fewer bytes. Linux grants more
+ * memory than there is, and would end the program in the middle of a run. */
 MUST_CHECK Status mem_check(double bytes, const char *name, Err *err);
 
 /* Makes room for at least `needed` items of `size` bytes in the array *items, whose capacity is

@@ -9,7 +9,9 @@ typedef struct Random {
     uint64_t state[4];
 } Random;
 
+/* Sets the state; any seed will do, 0 as well. */
 void random_seed(Random *random, uint64_t seed);
+/* 64 random bits. */
 uint64_t random_bits(Random *random);
 /* Uniform in [0, 1), a multiple of 2^-53. */
 double random_uniform(Random *random);

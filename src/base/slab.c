@@ -1,3 +1,5 @@
+/* The slabs are a linked list, newest first; pieces are cut off the newest one, front to back. What
+ * is left of a slab when the next is taken is not used any more. */
 #include "base/slab.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* A sentence that is too long for Err is cut at its end; a prefix is written in front of a copy. */
 #include "base/status.h"
 
 #include <stdio.h>

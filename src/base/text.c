@@ -1,3 +1,6 @@
+/* The characters stand in one block that doubles when it grows. With a stream, the block is written
+ * and emptied whenever it holds PIECE bytes. The first failure is kept in `failed` and makes all
+ * further appends do nothing. */
 #include "base/text.h"
 
 #include "base/memory.h"

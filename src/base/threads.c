@@ -1,5 +1,9 @@
-/* A new thread begins on a processor of its own: some kernels leave it to that of the thread that
- * started it, where it waits, for milliseconds, until that thread has had its turn. */
+/* Threads are started for each loop and take indices off a shared counter, so that a slow index
+ * delays no others. The calling thread is worker 0.
+ *
+ * Each thread is started on a processor of its own and then allowed on all: some kernels put a new
+ * thread on the processor of the one that started it, where it would wait for milliseconds until
+ * that one is preempted, longer than many loops take. */
 #include "base/threads.h"
 
 #include <pthread.h>
@@ -28,7 +32,8 @@ typedef struct Loop {
     size_t count;
     void (*body)(size_t index, int worker, void *context);
     void *context;
-    bool spread; /* whether threads begin where they are told to, and may run on all of `allowed` */
+    bool spread; /* whether threads start on processors of their own; then they may run on `allowed`
+                  */
     cpu_set_t allowed;
 } Loop;
 
@@ -54,7 +59,7 @@ static void *run_thread(void *argument)
     return NULL;
 }
 
-/* The allowed processor that comes `number` after this one. */
+/* The allowed processor that is `number` allowed ones after the present one, cyclically. */
 static int another_processor(const cpu_set_t *allowed, int number)
 {
     int processor = sched_getcpu();

@@ -1,5 +1,5 @@
-/* Data-parallel loops. Results never depend on the number of threads: an index writes only what is
- * its own. */
+/* Data-parallel loops. Results must not depend on the number of threads: the call for an index may
+ * write only what no other call reads or writes, or what belongs to its worker. */
 #ifndef CORCAST_BASE_THREADS_H
 #define CORCAST_BASE_THREADS_H
 
@@ -8,9 +8,10 @@
 /* The number of processors this process may run on, at least 1. */
 int threads_available(void);
 
-/* Calls body(index, worker, context) for every index below `count`, on at most `threads` threads
- * (0: all processors). `worker` is in [0, threads), for workspaces. Falls back to fewer threads
- * when the system refuses to start one. Returns when all calls have. */
+/* Calls body(index, worker, context) for every index below `count`, in any order, on at most
+ * `threads` threads (0: all processors), the calling one among them. `worker` in [0, threads) tells
+ * the threads apart, for workspaces. Uses fewer threads when the system refuses to start one;
+ * cannot fail. Returns when all calls have returned. */
 void threads_for(size_t count, int threads, void (*body)(size_t index, int worker, void *context),
                  void *context);
 

@@ -1,5 +1,6 @@
-/* A segment stays in a closed set exactly when each open stretch between its contacts with the
- * boundary is inside, and a stretch without contacts is inside or outside as a whole. A segment
+/* The contacts of a segment with the boundary cut it into stretches. A stretch without contacts is
+ * inside or outside as a whole, so its middle tells which; and the segment stays in a closed set
+ * exactly when all stretches are inside. A segment
  * that only touches the boundary, or ends on it, needs no case of its own. */
 #include "domain/contacts.h"
 

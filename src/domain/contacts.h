@@ -1,28 +1,29 @@
-/* Where a segment meets a boundary, to decide whether it stays inside; private to the room
- * domain. */
+/* The contacts of a segment with the boundary of a domain, from which follows whether the segment
+ * stays inside; private to the room domain. */
 #ifndef CORCAST_DOMAIN_CONTACTS_H
 #define CORCAST_DOMAIN_CONTACTS_H
 
 #include "domain/domain.h"
 
-/* Fractions of the segment's length. Contacts that are none do no harm, missed ones do, so
- * whoever looks for them errs on the side of finding. */
+/* Contacts as fractions of the segment's length. One too many does no harm, a missed one does, so
+ * tests for contacts allow for a margin. */
 enum { CONTACTS_MAX = 64 };
 typedef struct Contacts {
-    int n; /* more than CONTACTS_MAX: there were so many */
+    int n; /* above CONTACTS_MAX: there were too many to keep */
     double t[CONTACTS_MAX];
 } Contacts;
 
 /* How far beyond its ends an edge counts as met, as a fraction of its length. */
 #define CONTACT_MARGIN 1e-9
 
+/* Adds a contact at `t`, moved into [0, 1]. */
 void contacts_add(Contacts *contacts, double t);
 
 /* Whether a point is in the domain, as DomainOps has it. */
 typedef bool DomainInside(const Domain *domain, Vec3 point, double tolerance_mm);
-/* Whether every stretch between contacts, or between contact and end, that is longer than the
- * domain's slack_mm is inside: its middle says so for all of it. Sorts the contacts. False when
- * there are more than CONTACTS_MAX. */
+/* Whether the segment from `a` to `b`, mm, stays inside: that is, the middle of every stretch
+ * between neighbouring contacts or ends is inside, unless the stretch is shorter than the domain's
+ * slack_mm. Sorts the contacts. False when there were more than CONTACTS_MAX. */
 bool contacts_hold_segment(Contacts *contacts, const Domain *domain, DomainInside *inside, Vec3 a,
                            Vec3 b);
 

@@ -1,7 +1,7 @@
-/* One row of `kinds` a shape, in the order of DomainKind; each family of shapes has its own file
- * and keeps to DomainOps. Points are sampled by rejection from the bounding box (acceptance pi/4 in
- * the disc, pi/6 in the ball) unless a kind knows better: exactly uniform, and without functions
- * whose last bit differs between machines. */
+/* Every kind of domain is a row of `kinds`, a DomainOps, defined in the file of its family:
+ * shapes.c, polygon.c, mask.c, mesh.c. What is here is the same for all. Points are sampled by
+ * rejection from the bounding box (acceptance pi/4 in the disc, pi/6 in the ball) unless a kind
+ * knows better: exactly uniform, and without functions whose last bit differs between machines. */
 #include "domain/domain.h"
 
 #include "domain/kinds.h"
@@ -19,7 +19,7 @@ static const DomainOps *const kinds[] = {
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static const double slack = 1e-6; /* of the diagonal of the bounds */
-/* Of the bounds; points of a domain that fills less of them are not found in a reasonable time. */
+/* The least part of its bounds that a domain must fill, or rejection would take too long. */
 static const double least_filled = 1e-3;
 
 static const DomainOps *ops_of(const Domain *domain)

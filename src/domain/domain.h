@@ -1,7 +1,7 @@
 /* The door of the room domain: the piece of tissue that a tree perfuses.
  *
- * Domains of dimension 2 lie in the plane z = 0. What a text says of a shape stands in the table of
- * domain.c and, for users, in docs/FORMATS.md. */
+ * Domains of dimension 2 lie in the plane z = 0. The texts that name a domain, `disc:R` and so on,
+ * are described in docs/FORMATS.md. */
 #ifndef CORCAST_DOMAIN_DOMAIN_H
 #define CORCAST_DOMAIN_DOMAIN_H
 
@@ -36,25 +36,25 @@ typedef struct Mesh Mesh;
 typedef struct Domain {
     DomainKind kind;
     int dimension;                 /* 2 or 3 */
-    int n_sizes;                   /* of the text's numbers */
-    double size[DOMAIN_MAX_SIZES]; /* they, in the text's order, mm; of a file: mm for its unit */
+    int n_sizes;                   /* how many numbers the text has */
+    double size[DOMAIN_MAX_SIZES]; /* its numbers in order, mm; of a file: the mm of its unit */
     char *file;                    /* owned; NULL for the kinds that read none */
-    union {                        /* owned; what the file held */
+    union {                        /* what the file held; owned */
         Polygon *polygon;
         Mask *mask;
         Mesh *mesh;
     };
-    Box bounds;
-    double volume;
-    Vec3 inlet;
-    double slack_mm; /* 1e-6 of the diagonal of the bounds */
+    Box bounds;      /* mm */
+    double volume;   /* mm^3, or mm^2 in two dimensions */
+    Vec3 inlet;      /* the default one, mm */
+    double slack_mm; /* 1e-6 of the diagonal of the bounds: a length that does not matter */
 } Domain;
 
-/* Reads a text as listed at DomainKind, and the file it names. STATUS_USAGE, naming `domain`, the
- * text and what is allowed, for a wrong text; STATUS_INPUT, naming the file, for a file that is
- * missing, malformed or no domain (an empty mask, a mesh that is open or inside out, a polygon that
- * crosses itself). Both also for a domain that fills less than 1e-3 of its bounds, masks excepted.
- * Release with domain_release. */
+/* Makes *domain from a text as listed at DomainKind, reading the file it names. STATUS_USAGE,
+ * naming `domain`, the text and what is allowed, for a wrong text; STATUS_INPUT, naming the file,
+ * for a file that is missing, malformed or no domain (an empty mask, a mesh that is open or inside
+ * out, a polygon that crosses itself). Both also for a domain that fills less than 1e-3 of its
+ * bounds, masks excepted. Release with domain_release. */
 MUST_CHECK Status domain_parse(Domain *domain, const char *spec, Err *err);
 
 /* Frees what the domain owns. A zeroed or released domain is allowed. */
@@ -66,28 +66,29 @@ void domain_text(const Domain *domain, Text *text);
 /* 2 or 3. */
 int domain_dimension(const Domain *domain);
 
-/* Whether a segment whose ends are inside is inside, for all of them. */
+/* Whether the domain is convex: a segment is inside if its ends are. */
 bool domain_is_convex(const Domain *domain);
 
-/* Whether `point` is in the domain, or outside by at most `tolerance_mm`, which is not negative;
- * where a shape is curved some of those outside may be refused. The boundary belongs to the shapes
- * that formulas describe; a point on that of a file's may go either way. In two dimensions also
- * whether the point lies in the plane. */
+/* Whether `point`, mm, is in the domain or at most `tolerance_mm` >= 0 outside; where the boundary
+ * is curved, points outside may be refused although they are within the tolerance. A point on the
+ * boundary is inside, for the shapes that formulas describe; for a domain read from a file it may
+ * be either. In two dimensions a point off the plane z = 0 is outside. O(1); for polygons and
+ * meshes O(log n + m) in the n edges or triangles, of which a ray from the point passes by m. */
 bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm);
 
-/* Whether the segment from `a` to `b` stays in the domain; it may leave it for stretches of up to
- * slack_mm, so that it can begin at an inlet on the boundary. O(log n) in the n edges or triangles
- * of a boundary, O(m) in the m voxels on the way through a mask. */
+/* Whether the segment from `a` to `b`, mm, stays in the domain. It may leave it for stretches of up
+ * to slack_mm, so that it can begin at an inlet on the boundary. O(log n) in the n edges or
+ * triangles of a boundary, O(m) in the m voxels on the way through a mask. */
 bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b);
 
-/* A point uniformly distributed in the domain, and inside at tolerance 0. */
+/* A random point, mm, uniformly distributed in the domain; domain_inside at tolerance 0. */
 Vec3 domain_sample(const Domain *domain, Random *random);
 
 /* mm^3, or mm^2 in two dimensions. */
 double domain_volume(const Domain *domain);
 
-/* Where the tree enters when nothing else is asked for: a point of the domain at its top, where y
- * is largest. */
+/* The inlet when no other is asked for, mm: a point of the domain at its top, where y is largest.
+ */
 Vec3 domain_default_inlet(const Domain *domain);
 
 /* The smallest box that holds the domain, mm; flat in two dimensions. */

@@ -8,9 +8,9 @@ typedef struct DomainOps {
     const char *name;       /* "disc" */
     const char *parameters; /* "R" */
     bool is_convex;
-    /* Reads what stands behind the colon into a zeroed domain that knows its kind: sizes, file,
-     * dimension, bounds, volume, inlet. Of STATUS_USAGE the sentence lacks "`domain` TEXT: ". On
-     * failure the caller releases what there is. */
+    /* Reads the text behind the colon into a domain that is zeroed but for its kind: fills sizes,
+     * file, dimension, bounds, volume and inlet. Of STATUS_USAGE the sentence lacks "`domain` TEXT:
+     * ". On failure the caller releases what there is. */
     Status (*load)(Domain *domain, const char *values, Err *err);
     bool (*inside)(const Domain *domain, Vec3 point, double tolerance_mm);
     /* For segments longer than slack_mm; NULL for convex kinds. */

@@ -1,7 +1,8 @@
-/* Points go to index coordinates by the inverse of the voxels' affine map; a voxel is the whole
- * part. Sampling picks a voxel of tissue, then a point in it. A segment is followed from voxel to
- * voxel (Amanatides & Woo, Eurographics 1987): it takes as many steps along each axis as its ends
- * are voxels apart, whatever rounding does to the places where it leaves them. */
+/* A point's index coordinates come from the inverse of the voxels' affine map; their whole parts
+ * are its voxel. Sampling picks a random voxel of tissue, then a random point in it. A segment is
+ * followed from voxel to voxel (Amanatides & Woo, Eurographics 1987): it takes as many steps along
+ * each axis as its ends are voxels apart, whatever rounding does to the places where it leaves
+ * them. */
 #include "domain/mask.h"
 
 #include "domain/kinds.h"

@@ -1,7 +1,7 @@
-/* NIfTI files are read by the library of the format's authors. Its errors go to standard error in
- * its own words, so it is told to be quiet, and has to find the header good before it is to make
- * an image of it; the sizes are looked at before the voxels are read. It would look for the voxels
- * of a.nii.gz in a.nii if there is one, so the file is opened here. */
+/* NIfTI files are read by niftilib, of the format's authors. It prints errors to standard error, so
+ * it is told to be quiet, and headers are checked here before it makes an image of one; sizes are
+ * checked before voxels are read. It would take the voxels of a.nii.gz from a.nii if there is one,
+ * so the file is opened here. */
 #include "domain/mask.h"
 
 #include "image/image.h"

@@ -1,6 +1,7 @@
-/* Corners are sorted by place, which gives equal ones the same number; then the edges are sorted by
- * the numbers of their two ends, each with the way its triangle runs along it. In a run of equal
- * edges as many must go up as down. */
+/* A surface is closed, and its sides agree, if every edge is run along by as many triangles in one
+ * direction as in the other. Sorting the corners by place gives equal ones the same number; sorting
+ * the edges by the numbers of their two ends brings equal edges together, and then as many must run
+ * up as down. Sorting needs less memory than a hash table, and no care for its order. */
 #include "domain/mesh.h"
 
 #include <stdlib.h>

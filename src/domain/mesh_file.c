@@ -1,6 +1,6 @@
-/* A binary STL file is told by its size, 84 + 50 n bytes with the n it states; its 80-byte title
- * may begin with "solid" as an ASCII file does. Normals, colours, textures and groups are not read:
- * a triangle's outside is where its corners run counter-clockwise. */
+/* A binary STL file is recognised by its size, 84 + 50 n bytes with the n it states, because its
+ * 80-byte title may begin with "solid" as an ASCII file does. Normals, colours, textures and groups
+ * are not read: the outside of a triangle is where its corners run counter-clockwise. */
 #include "domain/mesh.h"
 
 #include "domain/kinds.h"

@@ -1,6 +1,7 @@
-/* Rings are runs of points between blank lines. A polygon is good when no two edges have a point in
- * common but neighbours the corner between them: then the even-odd rule makes rings within rings
- * holes, islands in them, and so on. The tree of edges finds the few pairs worth a look. */
+/* A ring is a run of points between blank lines. In a valid polygon two edges have no point in
+ * common, except neighbours the corner between them: then the even-odd rule makes rings within
+ * rings holes, rings within holes islands, and so on. The tree of edges finds the few pairs that
+ * have to be tested. */
 #include "domain/polygon.h"
 
 #include "domain/kinds.h"

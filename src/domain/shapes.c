@@ -1,5 +1,5 @@
-/* The shapes that formulas describe, about the origin, y up: disc and ball, rectangle and box,
- * ellipsoid, and the wall of a left ventricle as an ellipsoid hollowed out by a smaller one and cut
+/* The shapes that formulas describe, centred at the origin, y up: disc, ball, rectangle, box,
+ * ellipsoid; and the wall of a left ventricle, an ellipsoid hollowed out by a smaller one and cut
  * off at the base. All but the last are convex.
  *
  * A tolerance widens the semi-axes: the ellipsoid of semi-axes a + t lies within t of that of

@@ -31,7 +31,7 @@ static inline bool box_is_empty(Box box)
     return !(box.low.x <= box.high.x);
 }
 
-/* The smallest box that holds `box` and the ball of `radius` about `center`. */
+/* The smallest box that holds `box` and the ball of `radius` >= 0 about `center`. */
 static inline Box box_with_ball(Box box, Vec3 center, double radius)
 {
     box.low.x = box_least(box.low.x, center.x - radius);
@@ -58,7 +58,7 @@ static inline Box box_padded(Box box, double by)
     return (Box){vec3_sub(box.low, pad), vec3_add(box.high, pad)};
 }
 
-/* Whether they have a point in common. */
+/* Whether they have a point in common, their faces included. */
 static inline bool box_meets(Box a, Box b)
 {
     return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y &&
