@@ -7,7 +7,7 @@
  * ms: curves, hierarchy, rays and colours, up to the frame in memory. */
 #include "base/base.h"
 #include "image/image.h"
-#include "render/tile/tilekernels.h"
+#include "render/tile/canvas.h"
 #include "scene/scene.h"
 #include "stage/stage.h"
 #include "treeio/treeio.h"
@@ -23,7 +23,6 @@ typedef struct Packets {
     RTCScene rtc;
     Plane color;
     TileLook look;
-    TileLight lights[VIEW_MAX_LIGHTS];
     const TileKernels *kernels;
 } Packets;
 
@@ -151,14 +150,8 @@ static void draw_row(size_t number, int worker, void *context)
 static void set_lights(Packets *picture)
 {
     const Scene *scene = picture->scene;
-    for (size_t i = 0; i < scene->view.n_lights; i++) {
-        const Light *light = &scene->view.lights[i];
-        Vec3 v = vec3_normalized(vec3_sub(light->location, light->target));
-        picture->lights[i] = (TileLight){.towards = {(float)v.x, (float)v.y, (float)v.z},
-                                         .color = {light->color.r, light->color.g, light->color.b},
-                                         .parallel = true};
-    }
-    picture->look = (TileLook){scene->appearance.finish, picture->lights, scene->view.n_lights};
+    const Viewpoint world = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    picture->look = tilelook_of(&scene->view, &scene->appearance.finish, &world);
     picture->kernels = tilekernels[kernels_kind(KERNELS_FASTEST)];
 }
 

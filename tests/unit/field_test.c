@@ -1,4 +1,4 @@
-#include "render/cast/field.h"
+#include "render/cast/fieldcast.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

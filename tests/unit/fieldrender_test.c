@@ -6,7 +6,7 @@
 #include "render/field/fieldtiles.h"
 #include "render/light/resample.h"
 #include "render/light/shade.h"
-#include "render/tile/tilelook.h"
+#include "render/tile/canvas.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -289,7 +289,7 @@ static void all_kernels_agree(void **state)
         .towards = {0.48f, 0.6f, -0.64f}, .color = {1, 1, 1}, .parallel = true};
     Staged staged;
     stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
-    const TileLook look = {staged.scene.appearance.finish, &light, 1};
+    const TileLook look = {staged.scene.appearance.finish, {light}, 1};
     double places[64];
     for (int i = 0; i < 64; i++)
         places[i] = i;
@@ -366,8 +366,6 @@ static void kernels_shade_as_single_rays_are_shaded(void **state)
     Scene scene = {0};
     light_test_scene(&scene);
     const Viewpoint eye = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    TileLight *tile_lights;
-    TileLook look;
     Random random;
     random_seed(&random, 77);
     double worst = 0;
@@ -375,9 +373,7 @@ static void kernels_shade_as_single_rays_are_shaded(void **state)
     for (int n = 0; n < 30; n++) {
         scene.appearance.finish.phong_size = sizes[n % 3];
         scene.appearance.finish.brilliance = n % 2 ? 1 : 1.3f;
-        assert_int_equal(
-            tilelook_make(&scene.view, &scene.appearance.finish, &eye, &tile_lights, &look, NULL),
-            STATUS_OK);
+        const TileLook look = tilelook_of(&scene.view, &scene.appearance.finish, &eye);
         TileHits hits;
         TileSurface surface = {0};
         make_surface(&random, &hits, &surface);
@@ -389,7 +385,6 @@ static void kernels_shade_as_single_rays_are_shaded(void **state)
                 worst = fmax(worst, color_distance(shaded(&scene, &surface, sample), got));
             }
         }
-        free(tile_lights);
     }
     print_message("off by %g\n", worst);
     assert_true(worst > 0 && worst <= 2e-5);

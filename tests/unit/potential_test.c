@@ -1,6 +1,6 @@
 /* What the potential does to vessels, in numbers (docs/METHODS.md), and what --potential graph
  * changes about it. */
-#include "render/cast/field.h"
+#include "render/cast/fieldcast.h"
 #include "render/render.h"
 #include "stage/stage.h"
 

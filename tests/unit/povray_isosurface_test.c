@@ -1,6 +1,6 @@
 #include "render/render.h"
 
-#include "render/cast/field.h"
+#include "render/cast/fieldcast.h"
 #include "render/cast/povray_isosurface.h"
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,7 +2,7 @@
 
 #include "render/cast/blobcast.h"
 #include "render/cast/bvh.h"
-#include "render/cast/field.h"
+#include "render/cast/fieldcast.h"
 #include "render/cast/povray_isosurface.h"
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* The terms of the potential along one ray, and the groups in which their stretches overlap;
- * field.c says why. */
+ * fieldcast.c says why. */
 #ifndef CORCAST_RENDER_RAYTERMS_H
 #define CORCAST_RENDER_RAYTERMS_H
 

@@ -6,8 +6,8 @@
 
 #include "render/cast/caster.h"
 #include "render/field/fieldtiles.h"
+#include "render/light/raycolor.h"
 #include "render/light/shade.h"
-#include "render/light/sight.h"
 #include "render/tile/canvas.h"
 #include <stdlib.h>
 #include <string.h>
@@ -32,9 +32,8 @@ typedef struct FurtherRows {
 
 typedef struct FieldPicture {
     Canvas canvas;
-    const FieldPass *pass;             /* borrowed */
-    uint8_t (*shadowed)[TILE_SAMPLES]; /* worker by worker, one a light */
-    FurtherRows *further;              /* one a worker */
+    const FieldPass *pass; /* borrowed */
+    FurtherRows *further;  /* one a worker */
 } FieldPicture;
 
 static bool is_inside(const SeenTile *seen, int sample)
@@ -64,7 +63,7 @@ static const uint8_t (*find_shadows(const FieldPicture *picture, int worker,
 {
     const View *view = picture->canvas.drawing->view;
     Caster *caster = picture->canvas.drawing->caster;
-    uint8_t(*shadowed)[TILE_SAMPLES] = picture->shadowed + (size_t)worker * view->n_lights;
+    uint8_t(*shadowed)[TILE_SAMPLES] = picture->canvas.each[worker].shadowed;
     memset(shadowed, 0, view->n_lights * sizeof *shadowed);
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (seen->hits->state[sample] != TILE_HIT || !is_inside(seen, sample))
@@ -88,7 +87,7 @@ static void color_samples(const FieldPicture *picture, int worker, const SeenTil
 {
     const Drawing *drawing = picture->canvas.drawing;
     const SampleGrid *grid = &picture->pass->grid;
-    const Sight sight = {drawing->view, drawing->appearance, drawing->params, drawing->caster};
+    const RayColoring with = {drawing->view, drawing->appearance, drawing->params, drawing->caster};
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (!is_inside(seen, sample))
             continue;
@@ -100,8 +99,8 @@ static void color_samples(const FieldPicture *picture, int worker, const SeenTil
                               drawing->geometry->segments[seen->hits->segment[sample]].segment};
             hit = &surfel;
         }
-        Rgb rgb = sight_color(&sight, worker, sample_ray(picture, seen, sample),
-                              grid->columns[column], grid->rows[row], hit);
+        Rgb rgb = ray_color(&with, worker, sample_ray(picture, seen, sample), grid->columns[column],
+                            grid->rows[row], hit);
         color[0][sample] = rgb.r;
         color[1][sample] = rgb.g;
         color[2][sample] = rgb.b;
@@ -306,7 +305,6 @@ static void release(FieldPicture *picture)
         free(picture->further[i].wanted);
     }
     free(picture->further);
-    free(picture->shadowed);
     canvas_release(&picture->canvas);
 }
 
@@ -318,9 +316,7 @@ static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Er
     Canvas *canvas = &picture.canvas;
     const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
     TRY_GOTO(canvas_init(drawing, frame, &eye, canvas, err));
-    canvas->wholly_colored = sight_is_needed(drawing->view, drawing->params);
-    TRY_GOTO(mem_calloc(&picture.shadowed, (size_t)canvas->workers * drawing->view->n_lights,
-                        sizeof *picture.shadowed, "lights", err));
+    canvas->wholly_colored = raycolor_is_needed(drawing->view, drawing->params);
     TRY_GOTO(canvas_pass(canvas, false, trace_centers, &picture, err));
     picture.pass = &field->further;
     if (canvas->more.side > 0)

@@ -5,7 +5,7 @@
 #include "render/engine.h"
 
 /* Draws implicit models where they are, by proof; rays are asked for shadows, and for the colours
- * of all samples where sight_is_needed(). */
+ * of all samples where raycolor_is_needed(). */
 extern const Engine field_engine;
 
 #endif

@@ -6,7 +6,7 @@
  * undecided is cast ray by ray in double precision among the terms of the tile. */
 #include "render/field/fieldtiles.h"
 
-#include "render/cast/field.h"
+#include "render/cast/fieldcast.h"
 #include "render/field/fieldterms.h"
 #include "surface/surface.h"
 #include <limits.h>

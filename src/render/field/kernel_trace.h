@@ -1,7 +1,7 @@
 /* The first hits of a tile, several rays at once: included by each source that compiles it for its
  * lanes, and told by FIELD_KERNEL how to call it.
  *
- * What field.c proves for one ray in double precision is proven here in single, for a packet of
+ * What fieldcast.c proves for one ray in double precision is proven here in single, for a packet of
  * neighbouring rays; lanes whose proof would need more than that are handed back as TILE_UNSURE.
  * In units of 1 / k and with E the distance of ray and axis line, a term on a ray is
  * exp(-E^2 - w^2) (erf u + erf v) / 2, where w, u and v are affine in z. Its segment lies in the
@@ -19,9 +19,9 @@
  *   Where that can be is a stretch of the ray within a distance of the segment, found from
  *   exp(-E^2 - w^2) beside it and exp(-E^2 - w^2 - x^2) / 2 at x beyond an end. The march goes from
  *   the first of them to the last. For a lone straight vessel the first begins at its surface.
- * - Steps and acceptance as in field.c, with a margin about T for what single precision, erf and
- *   the terms left out amount to: nothing is stepped over that could reach T - margin, and a hit is
- *   one that rises through T + margin. */
+ * - Steps and acceptance as in fieldcast.c, with a margin about T for what single precision, erf
+ * and the terms left out amount to: nothing is stepped over that could reach T - margin, and a hit
+ * is one that rises through T + margin. */
 #ifndef FIELD_KERNEL
 #error "define FIELD_KERNEL, the name of the function"
 #endif

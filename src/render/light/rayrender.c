@@ -1,16 +1,17 @@
-/* One ray a sample, its colour as light/sight.c finds it; a row of pixels is the unit of work, so
- * that the picture does not depend on the number of threads. Samples stand where POV-Ray puts them:
- * the centre of the pixel, and with antialiasing an N x N grid more; their mean weighs all N * N +
- * 1 alike (tracetask.cpp of 3.7.0.10: every pixel is supersampled when the threshold is 0). */
+/* One ray a sample, its colour as light/raycolor.c finds it; a row of pixels is the unit of work,
+ * so that the picture does not depend on the number of threads. Samples stand where POV-Ray puts
+ * them: the centre of the pixel, and with antialiasing an N x N grid more; their mean weighs all N
+ * * N + 1 alike (tracetask.cpp of 3.7.0.10: every pixel is supersampled when the threshold is 0).
+ */
 #include "render/light/rayrender.h"
 
+#include "render/light/raycolor.h"
 #include "render/light/resample.h"
-#include "render/light/sight.h"
 #include "render/planes.h"
 
 typedef struct RayPicture {
     const Drawing *drawing;
-    Sight sight;
+    RayColoring coloring;
     Frame *frame;
     Resampling more;
 } RayPicture;
@@ -19,8 +20,8 @@ static Rgb sample_color(const RayPicture *picture, int worker, double i, double 
 {
     Ray ray = camera_ray(&picture->drawing->view->camera, i, j);
     Surfel surfel;
-    bool seen = caster_first(picture->sight.caster, worker, ray, &surfel);
-    return sight_color(&picture->sight, worker, ray, i, j, seen ? &surfel : NULL);
+    bool seen = caster_first(picture->coloring.caster, worker, ray, &surfel);
+    return ray_color(&picture->coloring, worker, ray, i, j, seen ? &surfel : NULL);
 }
 
 /* The mean of the centre sample and the grid around it, summed row by row in float. */
@@ -58,7 +59,7 @@ static void render_row(size_t row, int worker, void *context)
         size_t pixel = row * (size_t)camera->width + (size_t)i;
         Ray ray = camera_ray(camera, i, picture->drawing->band.first + (int)row);
         Surfel surfel;
-        bool seen = caster_first(picture->sight.caster, worker, ray, &surfel);
+        bool seen = caster_first(picture->coloring.caster, worker, ray, &surfel);
         if (seen)
             planes_store(picture->frame, pixel, surfel.t, surfel.normal,
                          picture->drawing->geometry->ids[surfel.segment]);
@@ -66,9 +67,9 @@ static void render_row(size_t row, int worker, void *context)
             planes_store_nothing(picture->frame, pixel);
         if (picture->frame->color.values)
             planes_store_color(picture->frame, pixel,
-                               sight_color(&picture->sight, worker, ray, i,
-                                           picture->drawing->band.first + (int)row,
-                                           seen ? &surfel : NULL));
+                               ray_color(&picture->coloring, worker, ray, i,
+                                         picture->drawing->band.first + (int)row,
+                                         seen ? &surfel : NULL));
     }
 }
 
@@ -94,7 +95,7 @@ static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Er
     const RenderParams *params = drawing->params;
     const Band *band = &drawing->band;
     RayPicture picture = {.drawing = drawing,
-                          .sight = {drawing->view, drawing->appearance, params, drawing->caster},
+                          .coloring = {drawing->view, drawing->appearance, params, drawing->caster},
                           .frame = frame};
     Status status =
         resampling_init(frame->color.values ? params->antialias : 1, &picture.more, err);

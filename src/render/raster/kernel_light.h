@@ -66,7 +66,7 @@ RASTER_FN int32_t tile_at(double place, double count)
 }
 
 LANE_TARGET static void RASTER_KERNEL(aim)(const RasterAim *aim, const RasterPlaces *places,
-                                           RasterSpots *restrict spots)
+                                           AimedPlaces *restrict aimed)
 {
     const RasterAim a = *aim;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
@@ -78,23 +78,23 @@ LANE_TARGET static void RASTER_KERNEL(aim)(const RasterAim *aim, const RasterPla
         x /= depth;
         y /= depth;
         double slope2 = a.perspective ? x * x + y * y : 0;
-        spots->x[sample] = x;
-        spots->y[sample] = y;
-        spots->z[sample] = (float)(z - a.slack / sqrt(1 + slope2) - a.z_middle);
+        aimed->x[sample] = x;
+        aimed->y[sample] = y;
+        aimed->z[sample] = (float)(z - a.slack / sqrt(1 + slope2) - a.z_middle);
     }
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        int32_t row = tile_at((spots->y[sample] - a.top) * a.per_y, a.rows);
-        int32_t column = tile_at((spots->x[sample] - a.left) * a.per_x, a.columns);
-        spots->tile[sample] = row * (int32_t)a.columns + column;
+        int32_t row = tile_at((aimed->y[sample] - a.top) * a.per_y, a.rows);
+        int32_t column = tile_at((aimed->x[sample] - a.left) * a.per_x, a.columns);
+        aimed->tile[sample] = row * (int32_t)a.columns + column;
     }
 }
 
-LANE_TARGET static uint64_t RASTER_KERNEL(within)(const RasterSpots *spots, int32_t tile)
+LANE_TARGET static uint64_t RASTER_KERNEL(within)(const AimedPlaces *aimed, int32_t tile)
 {
     uint64_t bits = 0;
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
         LaneMask tiles;
-        __builtin_memcpy(&tiles, &spots->tile[first], sizeof tiles);
+        __builtin_memcpy(&tiles, &aimed->tile[first], sizeof tiles);
         bits |= (uint64_t)lanes_bits(tiles == tile) << first;
     }
     return bits;
@@ -105,22 +105,22 @@ LANE_TARGET static uint64_t RASTER_KERNEL(within)(const RasterSpots *spots, int3
 /* See may_enter_joint. */
 static const float most_per_sine = 50;
 
-/* LANES probes as floats about the tile's middle. */
-typedef struct ProbeBlock {
+/* LANES queries as floats about the tile's middle. */
+typedef struct QueryBlock {
     Lanes x, y, z;
     LaneMask item;
     float deepest;
     uint32_t box; /* compared with those of items [RasterBox] */
-} ProbeBlock;
+} QueryBlock;
 
-/* As item_covers() of one probe, in double precision. */
-LANE_TARGET static bool decide_probe(const NearItem *near, const RasterTile *tile,
-                                     const RasterProbes *probes, int probe)
+/* As item_covers() of one query, in double precision. */
+LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *tile,
+                                     const ShadowQueries *queries, int query)
 {
-    uint32_t place = probes->place[probe], sample = place % TILE_SAMPLES;
-    const RasterSpots *spots = &probes->spots[place / TILE_SAMPLES];
-    double z = raster_decide(tile->bins, near->number, spots->x[sample], spots->y[sample], NULL);
-    return z - tile->z_middle < (double)probes->z[probe];
+    uint32_t place = queries->place[query], sample = place % TILE_SAMPLES;
+    const AimedPlaces *aimed = &queries->aimed[place / TILE_SAMPLES];
+    double z = raster_decide(tile->bins, near->number, aimed->x[sample], aimed->y[sample], NULL);
+    return z - tile->z_middle < (double)queries->z[query];
 }
 
 /* Lines that may enter the item before depths z from its middle, by its capsule and without a root.
@@ -206,9 +206,9 @@ RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const NearItem *near,
     return in_cone(hull, &passage, from, to);
 }
 
-/* Whether the item is seen before the probes' depths. */
+/* Whether the item is seen before the queries' depths. */
 RASTER_FN LaneMask item_covers(const NearItem *near, const RasterTile *tile,
-                               const RasterProbes *probes, int first, const ProbeBlock *block,
+                               const ShadowQueries *queries, int first, const QueryBlock *block,
                                LaneMask among)
 {
     const Lanes z = block->z;
@@ -241,7 +241,7 @@ RASTER_FN LaneMask item_covers(const NearItem *near, const RasterTile *tile,
     unsure &= ~covered;
     for (uint32_t left = lanes_bits(unsure); left; left &= left - 1) {
         int lane = __builtin_ctz(left);
-        covered[lane] = -decide_probe(near, tile, probes, first + lane);
+        covered[lane] = -decide_query(near, tile, queries, first + lane);
     }
     return covered;
 }
@@ -255,21 +255,21 @@ RASTER_FN uint32_t parts_of(Lanes at, double per)
     return (uint32_t)lanes_least(part) | (RASTERBOX_PARTS - 1 - (uint32_t)lanes_largest(part)) << 8;
 }
 
-RASTER_FN ProbeBlock load_probes(const RasterTile *tile, const RasterProbes *probes, int first)
+RASTER_FN QueryBlock load_queries(const RasterTile *tile, const ShadowQueries *queries, int first)
 {
     const RasterView *view = &tile->bins->view;
-    ProbeBlock block = {.x = lanes_load(&probes->x[first]),
-                        .y = lanes_load(&probes->y[first]),
-                        .z = lanes_load(&probes->z[first]),
-                        .item = load_items(&probes->item[first])};
+    QueryBlock block = {.x = lanes_load(&queries->x[first]),
+                        .y = lanes_load(&queries->y[first]),
+                        .z = lanes_load(&queries->z[first]),
+                        .item = load_items(&queries->item[first])};
     block.deepest = lanes_largest(block.z);
     block.box = parts_of(block.x, view->per_x) | parts_of(block.y, view->per_y) << 16;
     return block;
 }
 
-/* Of LANES items from `first` of the list on, as bits, those that may be before a probe. Reads
+/* Of LANES items from `first` of the list on, as bits, those that may be before a query. Reads
  * LANES boxes and depths, of which those behind the end of the list are masked away. */
-RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const ProbeBlock *block)
+RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const QueryBlock *block)
 {
     typedef uint32_t LaneWords __attribute__((vector_size(4 * LANES)));
     LaneWords boxes;
@@ -280,11 +280,11 @@ RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const Prob
     return left < LANES ? bits & ((1u << left) - 1) : bits;
 }
 
-RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int first,
+RASTER_FN void cover_block(const RasterTile *tile, ShadowQueries *queries, int first,
                            bool perspective)
 {
-    const ProbeBlock block = load_probes(tile, probes, first);
-    LaneMask open = lanes_of_bytes(&probes->covered[first]);
+    const QueryBlock block = load_queries(tile, queries, first);
+    LaneMask open = lanes_of_bytes(&queries->covered[first]);
     for (size_t i = 0; i < tile->n && lanes_any(open); i += LANES) {
         uint32_t bits = items_before(tile, i, &block);
         for (uint32_t left = bits; left; left &= left - 1)
@@ -294,29 +294,29 @@ RASTER_FN void cover_block(const RasterTile *tile, RasterProbes *probes, int fir
                 approach(tile, tile->list[i + (size_t)__builtin_ctz(bits)], perspective);
             LaneMask among = open & (block.z > near.z_near) & (block.item != (int32_t)near.number);
             if (lanes_any(among))
-                open &= ~item_covers(&near, tile, probes, first, &block, among);
+                open &= ~item_covers(&near, tile, queries, first, &block, among);
         }
     }
     for (int lane = 0; lane < LANES; lane++)
-        probes->covered[first + lane] = !open[lane];
+        queries->covered[first + lane] = !open[lane];
 }
 
-LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, RasterProbes *probes)
+LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, ShadowQueries *queries)
 {
-    __builtin_memset(probes->covered, 1, (size_t)probes->n);
-    /* The last block is filled up with probes that are like the first and not asked for. */
-    for (int i = probes->n; i % LANES; i++) {
-        probes->x[i] = probes->x[0];
-        probes->y[i] = probes->y[0];
-        probes->z[i] = probes->z[0];
-        probes->item[i] = probes->item[0];
-        probes->covered[i] = 0;
+    __builtin_memset(queries->covered, 1, (size_t)queries->n);
+    /* The last block is filled up with queries that are like the first and not asked for. */
+    for (int i = queries->n; i % LANES; i++) {
+        queries->x[i] = queries->x[0];
+        queries->y[i] = queries->y[0];
+        queries->z[i] = queries->z[0];
+        queries->item[i] = queries->item[0];
+        queries->covered[i] = 0;
     }
-    for (int first = 0; first < probes->n; first += LANES)
+    for (int first = 0; first < queries->n; first += LANES)
         if (tile->perspective)
-            cover_block(tile, probes, first, true);
+            cover_block(tile, queries, first, true);
         else
-            cover_block(tile, probes, first, false);
+            cover_block(tile, queries, first, false);
 }
 
 const RasterKernels RASTER_KERNEL(rasterkernels) = {.trace = RASTER_KERNEL(trace),

@@ -23,28 +23,28 @@ typedef struct RasterAim {
 } RasterAim;
 
 /* Places as the light sees them. */
-typedef struct RasterSpots {
+typedef struct AimedPlaces {
     double x[TILE_SAMPLES], y[TILE_SAMPLES];
     float z[TILE_SAMPLES];      /* before which a blocker must stand, less z_middle */
     int32_t tile[TILE_SAMPLES]; /* row by row */
-} RasterSpots;
+} AimedPlaces;
 
 /* Tiles of the picture whose places a light is asked about together. */
-enum { RASTER_BATCH = 64, MOST_PROBES = RASTER_BATCH * TILE_SAMPLES };
+enum { RASTER_BATCH = 64, MOST_QUERIES = RASTER_BATCH * TILE_SAMPLES };
 
 /* Lines of sight of a light through places, all in one tile of its view, and depths on them. */
-typedef struct RasterProbes {
+typedef struct ShadowQueries {
     int n;
-    const RasterSpots *spots;
-    uint32_t place[MOST_PROBES]; /* TILE_SAMPLES times the number in `spots`, and the sample's */
-    float x[MOST_PROBES], y[MOST_PROBES]; /* in the plane of the view, less the tile's middle */
-    float z[MOST_PROBES];                 /* less z_middle */
+    const AimedPlaces *aimed;
+    uint32_t place[MOST_QUERIES]; /* TILE_SAMPLES times the number in `aimed`, and the sample's */
+    float x[MOST_QUERIES], y[MOST_QUERIES]; /* in the plane of the view, less the tile's middle */
+    float z[MOST_QUERIES];                  /* less z_middle */
     /* Index of the item whose surface the place lies on, as in RasterHits. If that is a sphere or a
      * cylinder whose hit was found in single precision, it is not tested as a blocker of this
      * place: rounding would let it shadow itself. */
-    uint32_t item[MOST_PROBES];
-    uint8_t covered[MOST_PROBES]; /* 1 where an item is seen before that depth, else 0 */
-} RasterProbes;
+    uint32_t item[MOST_QUERIES];
+    uint8_t covered[MOST_QUERIES]; /* 1 where an item is seen before that depth, else 0 */
+} ShadowQueries;
 
 typedef struct RasterKernels {
     /* Finds the first item at each sample, in *hits, and where that is a sphere or a cylinder the
@@ -64,14 +64,14 @@ typedef struct RasterKernels {
                  uint8_t facing[TILE_SAMPLES]);
     /* Sets the places as the light sees them; where a sample sees nothing, to a tile of the light
      * all the same. */
-    void (*aim)(const RasterAim *aim, const RasterPlaces *places, RasterSpots *spots);
+    void (*aim)(const RasterAim *aim, const RasterPlaces *places, AimedPlaces *aimed);
     /* Of the samples, as bits, those that lie in a tile. */
-    uint64_t (*within)(const RasterSpots *spots, int32_t tile);
-    /* Sets `covered` of the probes, all of which lie in this tile of a light, and overwrites what
+    uint64_t (*within)(const AimedPlaces *aimed, int32_t tile);
+    /* Sets `covered` of the queries, all of which lie in this tile of a light, and overwrites what
      * follows the last of them up to a multiple of the lanes. tile->list holds, behind its n items,
      * their n boxes [RasterBox], and `nears` their depths: of both, up to 15 words behind the end
      * are read and ignored. */
-    void (*cover)(const RasterTile *tile, RasterProbes *probes);
+    void (*cover)(const RasterTile *tile, ShadowQueries *queries);
 } RasterKernels;
 
 extern const RasterKernels rasterkernels_portable;

@@ -7,8 +7,8 @@
 #include "render/raster/rasterrender.h"
 
 #include "render/cast/caster.h"
+#include "render/light/raycolor.h"
 #include "render/light/shade.h"
-#include "render/light/sight.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 #include "render/raster/rastershadow.h"
@@ -18,32 +18,32 @@
 
 /* What the camera and the lights of a view see. */
 typedef struct RasterPrepared {
-    RasterBins *bins;       /* owned */
-    RasterShadow **shadows; /* owned; one a light, NULL where it casts none, or rays do; NULL: no
-                             * shadows */
-    size_t n_lights;
+    RasterBins *bins; /* owned */
+    bool has_shadows;
+    RasterShadow *shadows[VIEW_MAX_LIGHTS]; /* owned; one a light, NULL where it casts none, or rays
+                                             * do */
     RasterGrid center;
     RasterGrid *further; /* owned; n x n, row by row */
 } RasterPrepared;
 
 /* A tile and what it sees. */
-typedef struct Sheet {
+typedef struct BatchTile {
     SeenTile seen; /* its hits are the surfels, or NULL */
-    RasterTile tile;
+    RasterTile raster;
     RasterHits hits;
     TileHits surfels;
     uint64_t visible;                  /* bit i: sample i sees something */
     uint8_t (*shadowed)[TILE_SAMPLES]; /* one a light; of the batch */
     float sum[3][TILE_SAMPLES];        /* of all samples of a pixel */
-} Sheet;
+} BatchTile;
 
 /* The tiles that a worker draws together. */
 typedef struct Batch {
     RasterRow row;
-    Sheet *sheets;
-    int n_sheets;
-    uint8_t (*shadowed)[TILE_SAMPLES]; /* sheet by sheet, one a light */
-    RasterQueue **queues;              /* one a light; NULL where the light has no RasterShadow */
+    BatchTile *tiles;
+    int n_tiles;
+    uint8_t (*shadowed)[TILE_SAMPLES];    /* tile by tile, one a light */
+    RasterQueue *queues[VIEW_MAX_LIGHTS]; /* NULL where the light has no RasterShadow */
 } Batch;
 
 typedef struct RasterPicture {
@@ -59,20 +59,20 @@ typedef struct RasterPicture {
 /* ---- one sample a pixel ---------------------------------------------------------------------- */
 
 /* Sets the depths of what is seen in double precision. */
-static void measure_depths(Sheet *sheet)
+static void measure_depths(BatchTile *tile)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++)
-        sheet->surfels.z[sample] = sheet->tile.z_middle + (double)sheet->hits.z[sample];
+        tile->surfels.z[sample] = tile->raster.z_middle + (double)tile->hits.z[sample];
 }
 
 /* Turns the normals of what is seen towards the viewer. */
-static void face_viewer(Sheet *sheet)
+static void face_viewer(BatchTile *tile)
 {
-    float(*normal)[TILE_SAMPLES] = sheet->surfels.normal;
-    for (uint64_t left = sheet->visible; left; left &= left - 1) {
+    float(*normal)[TILE_SAMPLES] = tile->surfels.normal;
+    for (uint64_t left = tile->visible; left; left &= left - 1) {
         int sample = __builtin_ctzll(left);
         Vec3 v = {(double)normal[0][sample], (double)normal[1][sample], (double)normal[2][sample]};
-        Vec3 line = sheet->seen.perspective ? seen_line(&sheet->seen, sample) : vec3(0, 0, 1);
+        Vec3 line = tile->seen.perspective ? seen_line(&tile->seen, sample) : vec3(0, 0, 1);
         if (vec3_dot(v, line) > 0)
             for (int c = 0; c < 3; c++)
                 normal[c][sample] = -normal[c][sample];
@@ -80,13 +80,13 @@ static void face_viewer(Sheet *sheet)
 }
 
 /* Of the samples that see something, as bits, those whose surface faces the light. */
-static uint64_t find_facing(const RasterPicture *picture, const Sheet *sheet,
+static uint64_t find_facing(const RasterPicture *picture, const BatchTile *tile,
                             const TileLight *light, const RasterPlaces *places)
 {
     uint8_t facing[TILE_SAMPLES];
     uint64_t wanted = 0;
-    picture->kernels->face(&sheet->tile, places, sheet->surfels.normal, light, facing);
-    for (uint64_t left = sheet->visible; left; left &= left - 1) {
+    picture->kernels->face(&tile->raster, places, tile->surfels.normal, light, facing);
+    for (uint64_t left = tile->visible; left; left &= left - 1) {
         int sample = __builtin_ctzll(left);
         wanted |= (uint64_t)facing[sample] << sample;
     }
@@ -109,32 +109,33 @@ static void cast_shadows(const RasterPicture *picture, const Light *light, int w
     }
 }
 
-static void ask_lights(const RasterPicture *picture, const Sheet *sheet, int worker, Batch *batch)
+static void ask_lights(const RasterPicture *picture, const BatchTile *tile, int worker,
+                       Batch *batch)
 {
     const View *view = picture->canvas.drawing->view;
     RasterPlaces places;
-    picture->kernels->locate(&sheet->tile, &sheet->hits, &places);
+    picture->kernels->locate(&tile->raster, &tile->hits, &places);
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
         if (!light->casts_shadows)
             continue;
-        uint64_t wanted = find_facing(picture, sheet, &picture->canvas.lights[i], &places);
-        size_t answer = (size_t)(sheet->shadowed + i - batch->shadowed) * TILE_SAMPLES;
+        uint64_t wanted = find_facing(picture, tile, &picture->canvas.look.lights[i], &places);
+        size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
-            rasterqueue_ask(batch->queues[i], picture->kernels, &places, sheet->hits.item, wanted,
+            rasterqueue_ask(batch->queues[i], picture->kernels, &places, tile->hits.item, wanted,
                             (uint32_t)answer);
         else
-            cast_shadows(picture, light, worker, &places, wanted, sheet->shadowed[i]);
+            cast_shadows(picture, light, worker, &places, wanted, tile->shadowed[i]);
     }
 }
 
 static void find_shadows(const RasterPicture *picture, int worker, Batch *batch)
 {
     size_t n_lights = picture->canvas.drawing->view->n_lights;
-    memset(batch->shadowed, 0, (size_t)batch->n_sheets * n_lights * sizeof *batch->shadowed);
-    for (int i = 0; i < batch->n_sheets; i++)
-        if (batch->sheets[i].visible)
-            ask_lights(picture, &batch->sheets[i], worker, batch);
+    memset(batch->shadowed, 0, (size_t)batch->n_tiles * n_lights * sizeof *batch->shadowed);
+    for (int i = 0; i < batch->n_tiles; i++)
+        if (batch->tiles[i].visible)
+            ask_lights(picture, &batch->tiles[i], worker, batch);
     for (size_t i = 0; i < n_lights; i++)
         if (batch->queues[i])
             rasterqueue_answer(batch->queues[i], picture->kernels, batch->shadowed[0]);
@@ -145,40 +146,40 @@ static void see_batch(const RasterPicture *picture, const RasterGrid *grid, int 
                       Batch *batch)
 {
     const RasterKernels *kernels = picture->kernels;
-    for (int i = 0; i < batch->n_sheets; i++) {
-        Sheet *sheet = &batch->sheets[i];
-        sheet->tile.grid = grid;
-        sheet->seen.x = grid->x;
-        sheet->seen.y = grid->y;
-        sheet->visible = kernels->trace(&sheet->tile, &sheet->hits, &sheet->surfels);
-        sheet->seen.hits = sheet->visible ? &sheet->surfels : NULL;
-        if (sheet->visible)
-            kernels->resolve(&sheet->tile, &sheet->hits, &sheet->surfels);
-        if (sheet->visible && (picture->canvas.needs_places || picture->canvas.wants_geometry))
-            measure_depths(sheet);
+    for (int i = 0; i < batch->n_tiles; i++) {
+        BatchTile *tile = &batch->tiles[i];
+        tile->raster.grid = grid;
+        tile->seen.x = grid->x;
+        tile->seen.y = grid->y;
+        tile->visible = kernels->trace(&tile->raster, &tile->hits, &tile->surfels);
+        tile->seen.hits = tile->visible ? &tile->surfels : NULL;
+        if (tile->visible)
+            kernels->resolve(&tile->raster, &tile->hits, &tile->surfels);
+        if (tile->visible && (picture->canvas.needs_places || picture->canvas.wants_geometry))
+            measure_depths(tile);
     }
-    if (picture->prepared->shadows)
+    if (picture->prepared->has_shadows)
         find_shadows(picture, worker, batch);
 }
 
 /* The colours that the samples of a tile see, which sees something. */
-static float (*color_sheet(const RasterPicture *picture, int worker,
-                           const Sheet *sheet))[TILE_SAMPLES]
+static float (*color_tile(const RasterPicture *picture, int worker,
+                          const BatchTile *tile))[TILE_SAMPLES]
 {
-    const uint8_t(*shadowed)[TILE_SAMPLES] = (const uint8_t(*)[TILE_SAMPLES])sheet->shadowed;
-    return canvas_shade(&picture->canvas, worker, &sheet->seen,
-                        picture->prepared->shadows ? shadowed : NULL);
+    const uint8_t(*shadowed)[TILE_SAMPLES] = (const uint8_t(*)[TILE_SAMPLES])tile->shadowed;
+    return canvas_shade(&picture->canvas, worker, &tile->seen,
+                        picture->prepared->has_shadows ? shadowed : NULL);
 }
 
-static void draw_sheet(const RasterPicture *picture, int worker, Sheet *sheet)
+static void draw_tile(const RasterPicture *picture, int worker, BatchTile *tile)
 {
     const Canvas *canvas = &picture->canvas;
     float(*color)[TILE_SAMPLES] = NULL;
-    if (sheet->visible && canvas->wants_color)
-        color = color_sheet(picture, worker, sheet);
-    if (sheet->visible && canvas->wants_geometry)
-        face_viewer(sheet);
-    canvas_draw(canvas, worker, &sheet->seen, color);
+    if (tile->visible && canvas->wants_color)
+        color = color_tile(picture, worker, tile);
+    if (tile->visible && canvas->wants_geometry)
+        face_viewer(tile);
+    canvas_draw(canvas, worker, &tile->seen, color);
 }
 
 /* ---- further samples ------------------------------------------------------------------------- */
@@ -197,40 +198,40 @@ static bool any_wants_more(const Canvas *canvas, const SeenTile *seen)
     return false;
 }
 
-static void begin_sum(const Canvas *canvas, Sheet *sheet)
+static void begin_sum(const Canvas *canvas, BatchTile *tile)
 {
-    const SeenTile *seen = &sheet->seen;
+    const SeenTile *seen = &tile->seen;
     for (int j = 0; j < seen->n_rows; j++)
         for (int i = 0; i < seen->n_columns; i++) {
             size_t pixel = canvas_pixel(canvas, seen->column + i, seen->row + j);
             for (size_t c = 0; c < 3; c++)
-                sheet->sum[c][tile_sample_at(i, j)] = canvas->frame->color.values[3 * pixel + c];
+                tile->sum[c][tile_sample_at(i, j)] = canvas->frame->color.values[3 * pixel + c];
         }
 }
 
-static void add_to_sum(const RasterPicture *picture, int worker, Sheet *sheet)
+static void add_to_sum(const RasterPicture *picture, int worker, BatchTile *tile)
 {
-    if (!sheet->visible) {
+    if (!tile->visible) {
         for (int c = 0; c < 3; c++)
             for (int sample = 0; sample < TILE_SAMPLES; sample++)
-                sheet->sum[c][sample] += picture->canvas.background[c];
+                tile->sum[c][sample] += picture->canvas.background[c];
         return;
     }
-    float(*color)[TILE_SAMPLES] = color_sheet(picture, worker, sheet);
+    float(*color)[TILE_SAMPLES] = color_tile(picture, worker, tile);
     for (int c = 0; c < 3; c++)
         for (int sample = 0; sample < TILE_SAMPLES; sample++)
-            sheet->sum[c][sample] += color[c][sample];
+            tile->sum[c][sample] += color[c][sample];
 }
 
-static void write_mean(const Canvas *canvas, const Sheet *sheet)
+static void write_mean(const Canvas *canvas, const BatchTile *tile)
 {
-    const SeenTile *seen = &sheet->seen;
+    const SeenTile *seen = &tile->seen;
     for (int j = 0; j < seen->n_rows; j++)
         for (int i = 0; i < seen->n_columns; i++) {
             size_t pixel = canvas_pixel(canvas, seen->column + i, seen->row + j);
             for (size_t c = 0; c < 3 && wants_more(canvas, seen, i, j); c++)
                 canvas->frame->color.values[3 * pixel + c] =
-                    resampling_mean(&canvas->more, sheet->sum[c][tile_sample_at(i, j)]);
+                    resampling_mean(&canvas->more, tile->sum[c][tile_sample_at(i, j)]);
         }
 }
 
@@ -239,15 +240,15 @@ static void write_mean(const Canvas *canvas, const Sheet *sheet)
 static void resample_batch(const RasterPicture *picture, int worker, Batch *batch)
 {
     const Canvas *canvas = &picture->canvas;
-    for (int i = 0; i < batch->n_sheets; i++)
-        begin_sum(canvas, &batch->sheets[i]);
+    for (int i = 0; i < batch->n_tiles; i++)
+        begin_sum(canvas, &batch->tiles[i]);
     for (int pass = 0; pass < canvas->more.side * canvas->more.side; pass++) {
         see_batch(picture, &picture->prepared->further[pass], worker, batch);
-        for (int i = 0; i < batch->n_sheets; i++)
-            add_to_sum(picture, worker, &batch->sheets[i]);
+        for (int i = 0; i < batch->n_tiles; i++)
+            add_to_sum(picture, worker, &batch->tiles[i]);
     }
-    for (int i = 0; i < batch->n_sheets; i++)
-        write_mean(canvas, &batch->sheets[i]);
+    for (int i = 0; i < batch->n_tiles; i++)
+        write_mean(canvas, &batch->tiles[i]);
 }
 
 /* ---- rows ------------------------------------------------------------------------------------ */
@@ -256,26 +257,26 @@ static void draw_batch(const RasterPicture *picture, int worker, Batch *batch)
 {
     if (!picture->second_round) {
         see_batch(picture, &picture->prepared->center, worker, batch);
-        for (int i = 0; i < batch->n_sheets; i++)
-            draw_sheet(picture, worker, &batch->sheets[i]);
+        for (int i = 0; i < batch->n_tiles; i++)
+            draw_tile(picture, worker, &batch->tiles[i]);
     }
     if (picture->second_round || (picture->canvas.more.side > 0 && !picture->chooses))
         resample_batch(picture, worker, batch);
-    batch->n_sheets = 0;
+    batch->n_tiles = 0;
 }
 
-static void begin_sheet(const RasterPicture *picture, const RasterTile *tile, int column, int row,
-                        Sheet *sheet)
+static void begin_tile(const RasterPicture *picture, const RasterTile *raster, int column, int row,
+                       BatchTile *tile)
 {
     const Camera *camera = &picture->canvas.drawing->view->camera;
-    sheet->tile = *tile;
-    sheet->seen = (SeenTile){.column = column,
-                             .row = row,
-                             .n_columns = tile_extent(camera->width - column),
-                             .n_rows = tile_extent(camera->height - row),
-                             .perspective = tile->perspective,
-                             .middle_x = tile->x,
-                             .middle_y = tile->y};
+    tile->raster = *raster;
+    tile->seen = (SeenTile){.column = column,
+                            .row = row,
+                            .n_columns = tile_extent(camera->width - column),
+                            .n_rows = tile_extent(camera->height - row),
+                            .perspective = raster->perspective,
+                            .middle_x = raster->x,
+                            .middle_y = raster->y};
 }
 
 static Status draw_row(void *context, int row, int worker, Err *err)
@@ -289,13 +290,13 @@ static Status draw_row(void *context, int row, int worker, Err *err)
         uint32_t n = offsets[column + 1] - offsets[column];
         if (n == 0)
             continue;
-        Sheet *sheet = &batch->sheets[batch->n_sheets];
-        RasterTile tile = rasterbins_tile(bins, column, row, batch->row.lists + offsets[column], n,
-                                          &picture->prepared->center);
-        begin_sheet(picture, &tile, column * TILE_SIDE, row * TILE_SIDE, sheet);
-        if (picture->second_round && !any_wants_more(&picture->canvas, &sheet->seen))
+        BatchTile *tile = &batch->tiles[batch->n_tiles];
+        RasterTile raster = rasterbins_tile(bins, column, row, batch->row.lists + offsets[column],
+                                            n, &picture->prepared->center);
+        begin_tile(picture, &raster, column * TILE_SIDE, row * TILE_SIDE, tile);
+        if (picture->second_round && !any_wants_more(&picture->canvas, &tile->seen))
             continue;
-        if (++batch->n_sheets == picture->batch_size)
+        if (++batch->n_tiles == picture->batch_size)
             draw_batch(picture, worker, batch);
     }
     draw_batch(picture, worker, batch);
@@ -307,9 +308,8 @@ static Status draw_row(void *context, int row, int worker, Err *err)
 static void release_prepared(void *prepared)
 {
     RasterPrepared *raster = prepared;
-    for (size_t i = 0; raster->shadows && i < raster->n_lights; i++)
+    for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
         rastershadow_free(raster->shadows[i]);
-    free(raster->shadows);
     rasterbins_free(raster->bins);
     free(raster->further);
     free(raster);
@@ -331,15 +331,6 @@ static Status prepare_samples(const RenderParams *params, const RasterView *view
     return status;
 }
 
-static Status prepare_shadows(const Drawing *drawing, const RasterView *view,
-                              RasterPrepared *raster, Err *err)
-{
-    size_t n = raster->n_lights = drawing->view->n_lights;
-    TRY(mem_calloc(&raster->shadows, n, sizeof *raster->shadows, "lights", err));
-    return rastershadows_new(drawing->geometry, drawing->view, view, drawing->params->threads,
-                             raster->shadows, err);
-}
-
 static Status prepare(const Drawing *drawing, void **prepared, Err *err)
 {
     Status status;
@@ -349,8 +340,10 @@ static Status prepare(const Drawing *drawing, void **prepared, Err *err)
         rasterview_of_camera(&drawing->view->camera, drawing->geometry->bounds, params->antialias);
     TRY(mem_calloc(&raster, 1, sizeof *raster, "tiles", err));
     TRY_GOTO(prepare_samples(params, &view, raster, err));
-    if (params->shadows && params->want_color)
-        TRY_GOTO(prepare_shadows(drawing, &view, raster, err));
+    raster->has_shadows = params->shadows && params->want_color;
+    if (raster->has_shadows)
+        TRY_GOTO(rastershadows_new(drawing->geometry, drawing->view, &view, params->threads,
+                                   raster->shadows, err));
     TRY_GOTO(rasterbins_new(drawing->geometry, &view, params->threads, &raster->bins, err));
     *prepared = raster;
 done:
@@ -363,12 +356,11 @@ static Status make_batch(const RasterPicture *picture, Batch *batch, Err *err)
 {
     RasterShadow *const *shadows = picture->prepared->shadows;
     size_t n = (size_t)picture->batch_size, n_lights = picture->canvas.drawing->view->n_lights;
-    TRY(mem_calloc(&batch->sheets, n, sizeof *batch->sheets, "tiles", err));
-    TRY(mem_calloc(&batch->queues, n_lights, sizeof *batch->queues, "lights", err));
+    TRY(mem_calloc(&batch->tiles, n, sizeof *batch->tiles, "tiles", err));
     TRY(mem_calloc(&batch->shadowed, n * n_lights, sizeof *batch->shadowed, "lights", err));
     for (size_t i = 0; i < n; i++)
-        batch->sheets[i].shadowed = batch->shadowed + i * n_lights;
-    for (size_t i = 0; shadows && i < n_lights; i++)
+        batch->tiles[i].shadowed = batch->shadowed + i * n_lights;
+    for (size_t i = 0; i < n_lights; i++)
         if (shadows[i])
             TRY(rasterqueue_new(shadows[i], &batch->queues[i], err));
     return STATUS_OK;
@@ -377,7 +369,7 @@ static Status make_batch(const RasterPicture *picture, Batch *batch, Err *err)
 static Status make_batches(RasterPicture *picture, Err *err)
 {
     int workers = picture->canvas.workers;
-    picture->batch_size = picture->prepared->shadows ? RASTER_BATCH : 1;
+    picture->batch_size = picture->prepared->has_shadows ? RASTER_BATCH : 1;
     TRY(mem_calloc(&picture->batches, (size_t)workers, sizeof *picture->batches, "canvases", err));
     for (int i = 0; i < workers; i++)
         TRY(make_batch(picture, &picture->batches[i], err));
@@ -389,12 +381,10 @@ static void release(RasterPicture *picture)
     for (int i = 0; picture->batches && i < picture->canvas.workers; i++) {
         Batch *batch = &picture->batches[i];
         rasterrow_release(&batch->row);
-        free(batch->sheets);
+        free(batch->tiles);
         free(batch->shadowed);
-        for (size_t light = 0; batch->queues && light < picture->canvas.drawing->view->n_lights;
-             light++)
+        for (size_t light = 0; light < VIEW_MAX_LIGHTS; light++)
             rasterqueue_free(batch->queues[light]);
-        free(batch->queues);
     }
     free(picture->batches);
     canvas_release(&picture->canvas);
@@ -426,7 +416,7 @@ done:
 static bool can_draw(const Drawing *drawing)
 {
     return drawing->geometry->n_primitives > 0 && drawing->params->method == RENDER_RASTER &&
-           !sight_is_needed(drawing->view, drawing->params);
+           !raycolor_is_needed(drawing->view, drawing->params);
 }
 
 static bool needs_rays(const Drawing *drawing)

@@ -284,14 +284,14 @@ typedef struct Request {
 struct RasterQueue {
     const RasterShadow *shadow;
     int n; /* tiles of the picture */
-    RasterSpots spots[RASTER_BATCH];
+    AimedPlaces aimed[RASTER_BATCH];
     const uint32_t *items[RASTER_BATCH];
     uint32_t answer[RASTER_BATCH];
-    Request requests[MOST_PROBES];
+    Request requests[MOST_QUERIES];
     int n_requests, n_tiles;
-    int tiles[MOST_PROBES]; /* of the light, that are asked, in the order of their first request */
-    int *last;              /* of each tile of the light, the last request there, or -1 */
-    RasterProbes probes;
+    int tiles[MOST_QUERIES]; /* of the light, that are asked, in the order of their first request */
+    int *last;               /* of each tile of the light, the last request there, or -1 */
+    ShadowQueries queries;
 };
 
 Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out, Err *err)
@@ -301,7 +301,7 @@ Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out, Err *err)
     TRY(mem_calloc(&queue, 1, sizeof *queue, "shadows", err));
     *out = queue;
     queue->shadow = shadow;
-    queue->probes.spots = queue->spots;
+    queue->queries.aimed = queue->aimed;
     TRY(mem_calloc(&queue->last, n, sizeof *queue->last, "shadows", err));
     memset(queue->last, -1, n * sizeof *queue->last);
     return STATUS_OK;
@@ -321,13 +321,13 @@ void rasterqueue_ask(RasterQueue *queue, const RasterKernels *kernels, const Ras
     if (!wanted)
         return;
     int number = queue->n++;
-    RasterSpots *spots = &queue->spots[number];
-    kernels->aim(&queue->shadow->aim, places, spots);
+    AimedPlaces *aimed = &queue->aimed[number];
+    kernels->aim(&queue->shadow->aim, places, aimed);
     queue->items[number] = items;
     queue->answer[number] = answer;
     while (wanted) {
-        int tile = spots->tile[__builtin_ctzll(wanted)], n = queue->n_requests++;
-        uint64_t within = wanted & kernels->within(spots, tile);
+        int tile = aimed->tile[__builtin_ctzll(wanted)], n = queue->n_requests++;
+        uint64_t within = wanted & kernels->within(aimed, tile);
         if (queue->last[tile] < 0)
             queue->tiles[queue->n_tiles++] = tile;
         queue->requests[n] = (Request){within, number, queue->last[tile]};
@@ -351,32 +351,32 @@ static RasterTile tile_of(const RasterShadow *shadow, int number)
     return tile;
 }
 
-static void add_probes(RasterQueue *queue, const RasterTile *tile, const Request *request)
+static void add_queries(RasterQueue *queue, const RasterTile *tile, const Request *request)
 {
-    RasterProbes *probes = &queue->probes;
-    const RasterSpots *spots = &queue->spots[request->tile];
+    ShadowQueries *queries = &queue->queries;
+    const AimedPlaces *aimed = &queue->aimed[request->tile];
     const uint32_t *items = queue->items[request->tile];
     for (uint64_t places = request->places; places; places &= places - 1) {
-        int place = __builtin_ctzll(places), n = probes->n++;
-        probes->place[n] = (uint32_t)(request->tile * TILE_SAMPLES + place);
-        probes->x[n] = (float)(spots->x[place] - tile->x);
-        probes->y[n] = (float)(spots->y[place] - tile->y);
-        probes->z[n] = spots->z[place];
-        probes->item[n] = items[place];
+        int place = __builtin_ctzll(places), n = queries->n++;
+        queries->place[n] = (uint32_t)(request->tile * TILE_SAMPLES + place);
+        queries->x[n] = (float)(aimed->x[place] - tile->x);
+        queries->y[n] = (float)(aimed->y[place] - tile->y);
+        queries->z[n] = aimed->z[place];
+        queries->item[n] = items[place];
     }
 }
 
 static void test_tile(RasterQueue *queue, const RasterKernels *kernels, const RasterTile *tile,
                       int last, uint8_t *shadowed)
 {
-    RasterProbes *probes = &queue->probes;
-    probes->n = 0;
+    ShadowQueries *queries = &queue->queries;
+    queries->n = 0;
     for (int i = last; i >= 0; i = queue->requests[i].before)
-        add_probes(queue, tile, &queue->requests[i]);
-    kernels->cover(tile, probes);
-    for (int i = 0; i < probes->n; i++) {
-        uint32_t place = probes->place[i];
-        shadowed[queue->answer[place / TILE_SAMPLES] + place % TILE_SAMPLES] = probes->covered[i];
+        add_queries(queue, tile, &queue->requests[i]);
+    kernels->cover(tile, queries);
+    for (int i = 0; i < queries->n; i++) {
+        uint32_t place = queries->place[i];
+        shadowed[queue->answer[place / TILE_SAMPLES] + place % TILE_SAMPLES] = queries->covered[i];
     }
 }
 

@@ -8,8 +8,8 @@
  * A row of tiles is the unit of work, with a depth buffer of its own. */
 #include "render/raster/zbuffer.h"
 
+#include "render/light/raycolor.h"
 #include "render/light/shade.h"
-#include "render/light/sight.h"
 #include "render/planes.h"
 #include "render/raster/rasterbins.h"
 #include <stdlib.h>
@@ -293,7 +293,7 @@ done:
 static bool can_draw(const Drawing *drawing)
 {
     return drawing->geometry->n_primitives > 0 && drawing->params->method == RENDER_ZBUFFER &&
-           !sight_is_needed(drawing->view, drawing->params);
+           !raycolor_is_needed(drawing->view, drawing->params);
 }
 
 static bool never(const Drawing *drawing)

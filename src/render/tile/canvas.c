@@ -3,11 +3,46 @@
  * fails draws nothing any more, and its error is returned when all others are done. */
 #include "render/tile/canvas.h"
 
-#include "render/tile/tilelook.h"
 #include <stdlib.h>
 #include <string.h>
 
 /* ---- setting up ------------------------------------------------------------------------------ */
+
+TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *eye)
+{
+    TileLook look = {.finish = *finish, .n_lights = view->n_lights};
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
+        Vec3 v =
+            light->parallel
+                ? viewpoint_to_frame(eye, vec3_normalized(vec3_sub(light->location, light->target)))
+                : viewpoint_place(eye, light->location);
+        look.lights[i] = (TileLight){.towards = {(float)v.x, (float)v.y, (float)v.z},
+                                     .color = {light->color.r, light->color.g, light->color.b},
+                                     .parallel = light->parallel};
+    }
+    return look;
+}
+
+/* Whether shading needs the places of points, not their normals alone. */
+static bool needs_places(const View *view)
+{
+    bool needs = view->camera.projection == PROJECTION_PERSPECTIVE;
+    for (size_t i = 0; i < view->n_lights; i++)
+        needs |= !view->lights[i].parallel;
+    return needs;
+}
+
+/* A surface of one colour, seen along the view. */
+static void begin_surface(Rgb color, TileSurface *surface)
+{
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        surface->direction[2][sample] = 1;
+        surface->pigment[0][sample] = color.r;
+        surface->pigment[1][sample] = color.g;
+        surface->pigment[2][sample] = color.b;
+    }
+}
 
 /* Fills a row with the mean of so many samples of the background, summed in float. */
 static void fill_row(const Canvas *canvas, int samples, float *row)
@@ -49,24 +84,22 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
                        .workers = params->threads,
                        .eye = *eye,
                        .kernels = tilekernels[kernels_kind(params->kernels)],
-                       .needs_places = tilelook_needs_places(drawing->view),
+                       .look = tilelook_of(drawing->view, &appearance->finish, eye),
+                       .needs_places = needs_places(drawing->view),
                        .wants_color = frame->color.values || frame->codes.codes8,
                        .wants_geometry = planes_want_geometry(frame)};
     int antialias = frame->color.values ? params->antialias : 1;
     TRY(resampling_init(antialias, &canvas->more, err));
-    TRY(tilelook_make(drawing->view, &appearance->finish, eye, &canvas->lights, &canvas->look,
-                      err));
     TRY(make_background(canvas, err));
     TRY(mem_calloc(&canvas->each, (size_t)canvas->workers, sizeof *canvas->each, "canvases", err));
     for (int i = 0; i < canvas->workers; i++)
-        tilesurface_init(appearance->color, &canvas->each[i].surface);
+        begin_surface(appearance->color, &canvas->each[i].surface);
     return STATUS_OK;
 }
 
 void canvas_release(Canvas *canvas)
 {
     resampling_release(&canvas->more);
-    free(canvas->lights);
     free(canvas->background);
     free(canvas->blank);
     free(canvas->background_codes);

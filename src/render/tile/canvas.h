@@ -8,10 +8,14 @@
 #include "render/tile/tilekernels.h"
 #include "render/tile/viewpoint.h"
 
+/* A finish, and the lights of a view in the frame of a viewpoint. */
+TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *eye);
+
 /* What one thread works with. */
 typedef struct CanvasWorker {
     TileSurface surface;
-    float color[3][TILE_SAMPLES]; /* of the tile at hand */
+    float color[3][TILE_SAMPLES];                    /* of the tile at hand */
+    uint8_t shadowed[VIEW_MAX_LIGHTS][TILE_SAMPLES]; /* likewise, for engines to fill */
     int column; /* the first of the row of tiles that is not drawn yet, in pixels */
     Status status;
     Err err;
@@ -26,9 +30,8 @@ typedef struct Canvas {
     bool needs_places; /* light or sight differ from place to place: shading asks for TileHits.z */
     bool wants_color, wants_geometry;
     bool wholly_colored; /* the engine sets colours where nothing is seen, too; at first false */
-    Resampling more;     /* owned, as all that follows */
     TileLook look;
-    TileLight *lights;
+    Resampling more;   /* owned, as all that follows */
     SrgbCodes codes;   /* if the frame has codes */
     float *background; /* a row of the picture */
     float *blank;      /* what pixels of tiles that are not drawn become: a row of the picture */

@@ -18,7 +18,7 @@ typedef struct TileLight {
 
 typedef struct TileLook {
     Finish finish;
-    const TileLight *lights;
+    TileLight lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
 } TileLook;
 

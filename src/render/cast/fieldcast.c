@@ -21,7 +21,7 @@
  * The way out of a vessel in which a ray starts is the same with the sign of Phi - T turned, and
  * needs no windows. Of a union of bodies it is found by leaving one after the other until none is
  * left. */
-#include "render/cast/field.h"
+#include "render/cast/fieldcast.h"
 
 #include "render/cast/rayterms.h"
 #include "surface/surface.h"

@@ -1,6 +1,6 @@
 /* Where rays first meet the implicit surface Phi = FIELD_LEVEL, by proof and not by sampling. */
-#ifndef CORCAST_RENDER_FIELD_H
-#define CORCAST_RENDER_FIELD_H
+#ifndef CORCAST_RENDER_FIELDCAST_H
+#define CORCAST_RENDER_FIELDCAST_H
 
 #include "base/base.h"
 #include "geom/geom.h"
