@@ -176,6 +176,7 @@ meshes above 8 GB @ mesh_file.c @ .name = "an STL file", .most_bytes = 8e9
 meshes above 8 GB @ mesh_file.c @ .name = "an OBJ file", .most_bytes = 8e9
 pictures above 16 GB @ image_file.c @ .most_bytes = 16e9
 INI files above 1 MB @ ini.c @ .most_bytes = 1e6
+at most 10000 other columns @ builder.h @ BUILDER_MAX_COLUMNS = 10000
 is a whole number from 1 to 16777215 @ tree.h @ TREE_MAX_ID = 0xffffff
 for `pries`, in [0, 0.95] @ viscosity.h @ MAX_HEMATOCRIT 0.95
 less than a thousandth of the box around it @ domain.c @ least_filled = 1e-3;

@@ -112,6 +112,8 @@ Status builder_column(TreeBuilder *builder, const char *name, const char *unit, 
 {
     if (!*name)
         return err_set(err, STATUS_INPUT, "a column has no name");
+    if (builder->n_columns == BUILDER_MAX_COLUMNS)
+        return err_set(err, STATUS_INPUT, "there are more than %d columns", BUILDER_MAX_COLUMNS);
     for (size_t k = 0; k < builder->n_columns; k++)
         if (strcmp(builder->column[k].name, name) == 0)
             return err_set(err, STATUS_INPUT, "two columns are called '%.40s'", name);

@@ -14,6 +14,8 @@
 
 typedef struct Tree Tree;
 
+enum { BUILDER_MAX_COLUMNS = 10000 };
+
 /* A node as a file has it. */
 typedef struct BuilderNode {
     int64_t id;     /* different in every node */
@@ -50,7 +52,8 @@ Status builder_blame(const TreeBuilder *builder, size_t record, Status status, E
 MUST_CHECK Status builder_node(TreeBuilder *builder, const BuilderNode *node, Err *err);
 
 /* Adds a column of values of nodes (name and unit copied), numbered in *column from 0 on.
- * STATUS_INPUT when the name is empty or that of another. */
+ * STATUS_INPUT when the name is empty or that of another, or there are too many: each name is held
+ * against all others. */
 MUST_CHECK Status builder_column(TreeBuilder *builder, const char *name, const char *unit,
                                  size_t *column, Err *err);
 /* Sets the column's value of the node added last. What is not set is NAN. */

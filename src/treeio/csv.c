@@ -210,14 +210,19 @@ bool csv_detect(const char *start)
     while (*start == '#' || *start == '\n')
         start += strcspn(start, "\n") + (start[strcspn(start, "\n")] != '\0');
     size_t length = strcspn(start, "\n");
-    const char *comma = memchr(start, ',', length), *parent = strstr(start, "parent");
-    return comma && parent && parent < start + length;
+    if (!memchr(start, ',', length))
+        return false;
+    const char *parent = strstr(start, "parent");
+    return parent && parent < start + length;
 }
 
 static void write_quoted(const char *text, FILE *stream)
 {
-    for (; *text; text++)
-        fprintf(stream, *text == '"' ? "\"\"" : "%c", *text);
+    for (; *text; text++) {
+        if (*text == '"')
+            putc('"', stream);
+        putc(*text, stream);
+    }
 }
 
 static void write_title(const TreeColumn *column, FILE *stream)

@@ -112,12 +112,10 @@ bool tree_format_known(const char *path)
 
 void tree_format_list(Text *text)
 {
-    for (size_t i = 0; i < N_FORMATS; i++)
-        text_printf(text, "%s.%s",
-                    i == 0              ? ""
-                    : i + 1 < N_FORMATS ? ", "
-                                        : " or ",
-                    formats[i].extensions[0]);
+    for (size_t i = 0; i < N_FORMATS; i++) {
+        const char *between = i + 1 < N_FORMATS ? ", " : " or ";
+        text_printf(text, "%s.%s", i ? between : "", formats[i].extensions[0]);
+    }
 }
 
 static void suggest_extension(const char *path, Err *err)

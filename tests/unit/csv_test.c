@@ -146,6 +146,17 @@ static void rejects_titles_that_make_no_table(void **state)
                    ": the file has no nodes; a tree has at least one");
 }
 
+static void rejects_columns_beyond_number(void **state)
+{
+    (void)state;
+    Text text = TEXT_INIT;
+    text_puts(&text, "id,parent,x_mm,y_mm,z_mm,radius_mm");
+    for (int k = 0; k <= BUILDER_MAX_COLUMNS; k++)
+        text_printf(&text, ",c%d", k);
+    assert_refused(text_chars(&text), ":1: there are more than 10000 columns");
+    text_release(&text);
+}
+
 static void rejects_rows_naming_line_and_column(void **state)
 {
     (void)state;
@@ -187,6 +198,7 @@ int main(void)
         cmocka_unit_test(reads_columns_and_rows_in_any_order),
         cmocka_unit_test(a_column_is_a_field_and_pruning_keeps_it),
         cmocka_unit_test(rejects_titles_that_make_no_table),
+        cmocka_unit_test(rejects_columns_beyond_number),
         cmocka_unit_test(rejects_rows_naming_line_and_column),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
