@@ -104,11 +104,11 @@ static Status write_report(const char *path, const Scene *scene, const RenderSta
 {
     json_t *report = json_pack(
         "{s:s, s:s, s:s, s:i, s:i, s:f, s:f, s:f, s:I, s:i}", "generator", GENERATOR, "model",
-        model_name(scene->geometry.model), "engine", stats->engine, "width",
+        models[scene->geometry.model].name, "engine", stats->engine, "width",
         scene->view.camera.width, "height", scene->view.camera.height, "prepare_seconds",
         stats->prepare_s, "trace_seconds", stats->trace_s, "cpu_seconds", stats->cpu_s, "rays",
         (json_int_t)stats->rays, "threads", threads ? threads : threads_available());
-    if (scene->geometry.model == SCENE_JOINED) {
+    if (model_has(scene->geometry.model, MODEL_JOINTS)) {
         const JsonMember of_joints[] = {
             {"joints", json_integer((json_int_t)staged->joints)},
             {"places_short", json_integer((json_int_t)staged->places_short)},
@@ -166,6 +166,20 @@ static Status draw(const Scene *scene, const RenderParams *params, const FramesF
     return status;
 }
 
+/* Only primitives are drawn but by rays. */
+static Status check_method(const RenderOptions *options, Err *err)
+{
+    SceneModel model = (SceneModel)options->picture.model;
+    if (model_is_of(model, MODEL_PRIMITIVES))
+        return STATUS_OK;
+    Text able = TEXT_INIT;
+    models_of(MODEL_PRIMITIVES, &able);
+    Status status = err_set(err, STATUS_USAGE, "--method %s is for %s, not for %s",
+                            methods[options->method], text_chars(&able), models[model].name);
+    text_release(&able);
+    return status;
+}
+
 /* Options that fight each other, or that the method does not know. */
 static Status check(const RenderOptions *options, const Parsed *parsed, Err *err)
 {
@@ -179,11 +193,8 @@ static Status check(const RenderOptions *options, const Parsed *parsed, Err *err
     if (options->threshold > 0 && picture->antialias == 1)
         return err_set(err, STATUS_USAGE,
                        "--antialias-threshold needs --antialias N, with N from 2 to 9");
-    if (options->method != RENDER_TRACE &&
-        (picture->model == SCENE_ISOSURFACE || picture->model == SCENE_BLOB))
-        return err_set(err, STATUS_USAGE,
-                       "--method %s is for cylinders, joined and rounded, not for %s",
-                       methods[options->method], model_name((SceneModel)picture->model));
+    if (options->method != RENDER_TRACE)
+        TRY(check_method(options, err));
     if (options->method == RENDER_ZBUFFER &&
         (picture->stage.shadows || picture->antialias > 1 || picture->occlusion > 0))
         return err_set(err, STATUS_USAGE,

@@ -92,28 +92,14 @@ static Status check_model(const Emitter *emitter, SceneModel model, ScadForm for
         return err_set(err, STATUS_USAGE,
                        "--scad polyhedron needs a closed mesh of the tree, which corcast does not "
                        "make; use --scad parametric");
-    if (emitter->models & emit_model(model))
-        return STATUS_OK;
-    Text able = TEXT_INIT;
-    for (int i = 0; model_names[i]; i++)
-        if (emitter->models & emit_model((SceneModel)i))
-            text_printf(&able, "%s%s", *text_chars(&able) ? " or " : "", model_names[i]);
-    Status status = err_set(err, STATUS_USAGE, "--model %s: %s takes --model %s",
-                            model_names[model], emitter->description, text_chars(&able));
-    text_release(&able);
-    return status;
+    return emit_check_model(emitter, model, err);
 }
 
 static Status check(const SceneOptions *options, const Emitter *emitter, const Parsed *parsed,
                     Err *err)
 {
     const PictureOptions *picture = &options->picture;
-    const OptionNeed needs[] = {
-        {"ids", picture->model == SCENE_ISOSURFACE || picture->model == SCENE_BLOB,
-         "is for --model isosurface and blob; other scenes have ids anyway"},
-        {0}};
     TRY(check_format(emitter, parsed, err));
-    TRY(options_check_needs(parsed, needs, err));
     TRY(picture_check_needs(picture, parsed, err));
     TRY(picture_check_povray(picture, err));
     return check_model(emitter, (SceneModel)picture->model, options->scad, err);

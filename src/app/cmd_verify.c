@@ -122,15 +122,15 @@ static Status claim_folder(Verification *v, Files *files, Err *err)
 
 /* ---- the two sides --------------------------------------------------------------------------- */
 
-static bool is_isosurface(const Verification *v)
+static bool takes_two_steps(const Verification *v)
 {
-    return v->scene.geometry.model == SCENE_ISOSURFACE;
+    return models[v->scene.geometry.model].proof == PROOF_STEPS;
 }
 
 /* Whether POV-Ray needs a scene of its own to paint ids. */
 static bool has_id_scene(const Verification *v)
 {
-    return is_isosurface(v) || v->scene.geometry.model == SCENE_BLOB;
+    return model_has(v->scene.geometry.model, MODEL_FIELD);
 }
 
 static RenderParams render_params(const Verification *v, const CellParams *povray_cells)
@@ -176,7 +176,7 @@ static Status write_frame(const Verification *v, const Frame *frame, const char 
 /* Of an isosurface, where POV-Ray's root finder sees it. */
 static const CellParams *cells_of(const Verification *v)
 {
-    return is_isosurface(v) ? &v->cells : NULL;
+    return takes_two_steps(v) ? &v->cells : NULL;
 }
 
 static Status render_native(Verification *v, const char *provenance, Err *err)
@@ -184,7 +184,7 @@ static Status render_native(Verification *v, const char *provenance, Err *err)
     TRY(render_frame(v, cells_of(v), &v->native, err));
     TRY(picture_from_plane(&v->native_picture, &v->native.color, encoding_of(v), v->bits, err));
     TRY(write_frame(v, &v->native, "native.png", encoding_of(v), provenance, err));
-    if (!is_isosurface(v))
+    if (!takes_two_steps(v))
         return STATUS_OK;
     TRY(render_frame(v, NULL, &v->exact, err));
     return write_frame(v, &v->exact, "exact.png", ENCODING_SRGB, provenance, err);
@@ -398,7 +398,7 @@ static Status compare_sides(Verification *v, Err *err)
     TRY(compare_planes(PLANE_NORMAL, &v->povray.normal, &v->native.normal, a, b, &tolerance,
                        &v->results[PLANE_NORMAL], err));
     TRY(compare_ids(a, b, &tolerance, &v->results[PLANE_ID], err));
-    if (!is_isosurface(v))
+    if (!takes_two_steps(v))
         return STATUS_OK;
     TRY(compare_exact(v, &view_a, err));
     return check_surface(v, err);
@@ -407,7 +407,7 @@ static Status compare_sides(Verification *v, Err *err)
 static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err)
 {
     ReportCase report = {.name = v->name,
-                         .model = model_name(v->scene.geometry.model),
+                         .model = models[v->scene.geometry.model].name,
                          .a = {.name = "POV-Ray",
                                .key = "povray",
                                .version = v->run.version,
@@ -428,8 +428,8 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
                          .n_commands = v->n_commands};
     for (int kind = 0; kind < PLANE_KINDS; kind++)
         report.planes[kind] = &v->results[kind];
-    report.surface = is_isosurface(v) ? &v->surface : NULL;
-    report.exact = is_isosurface(v) ? &v->exact_color : NULL;
+    report.surface = takes_two_steps(v) ? &v->surface : NULL;
+    report.exact = takes_two_steps(v) ? &v->exact_color : NULL;
     report.settled = v->asked ? &v->settled : NULL;
     *agrees = report_agrees(&report);
     char *templates = NULL, *page = NULL;
@@ -507,9 +507,9 @@ static Status print_verdict(const Verification *v, bool agrees, Err *err)
     }
     if (v->asked)
         TRY(print_settled(&v->settled, err));
-    if (is_isosurface(v))
+    if (takes_two_steps(v))
         print_surface(&v->surface);
-    if (is_isosurface(v))
+    if (takes_two_steps(v))
         print_exact(&v->exact_color);
     printf("%s: POV-Ray %s in %.2f s, corcast in %.2f s; %s/report.html\n",
            agrees ? "agree" : "differ", v->run.version, v->run.seconds,

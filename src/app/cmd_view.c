@@ -79,7 +79,7 @@ static void set_title(const Viewer *viewer)
     Text title = TEXT_INIT;
     const char *field = viewer->options->coloring.field;
     text_printf(&title, "%s: %zu segments, %s%s%s", file_name(viewer->tree),
-                viewer->scene.geometry.drawn, model_name(viewer->scene.geometry.model),
+                viewer->scene.geometry.drawn, models[viewer->scene.geometry.model].name,
                 field ? ", " : "", field ? field : "");
     if (text_chars(&title))
         window_title(viewer->window, text_chars(&title));
@@ -250,17 +250,13 @@ static Status on_key(Viewer *viewer, int key, Err *err)
     PictureOptions *options = viewer->options;
     Status status;
     Err sentence = {{0}};
+    if (key >= '1' && key < '1' + SCENE_MODELS)
+        return use_model(viewer, (SceneModel)(key - '1'), err);
     switch (key) {
     case 'q':
     case WINDOW_KEY_ESCAPE:
         viewer->quit = true;
         return STATUS_OK;
-    case '1':
-    case '2':
-    case '3':
-    case '4':
-    case '5':
-        return use_model(viewer, (SceneModel)(SCENE_CYLINDERS + key - '1'), err);
     case 'c':
         return use_next_field(viewer, err);
     case 'p':

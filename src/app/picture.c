@@ -8,9 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const model_names[] = {
-    [SCENE_CYLINDERS] = "cylinders",   [SCENE_JOINED] = "joined", [SCENE_ROUNDED] = "rounded",
-    [SCENE_ISOSURFACE] = "isosurface", [SCENE_BLOB] = "blob",     NULL};
 static const char *const potentials[] = {"paper", "graph", NULL};
 static const char *const joint_forms[] = {
     [JOINTS_ROBUST] = "robust", [JOINTS_PAPER] = "paper", NULL};
@@ -20,11 +17,6 @@ static const char *const views[] = {
     [VIEW_FRONT] = "front", [VIEW_TOP] = "top", [VIEW_LEFT] = "left", [VIEW_ISO] = "iso", NULL};
 
 static const char *const erf_names[] = {[ERF_FAST] = "fast", [ERF_EXACT] = "exact", NULL};
-
-const char *model_name(SceneModel model)
-{
-    return model_names[model];
-}
 
 static const Option rows[] = {
     {.name = "model",
@@ -180,20 +172,44 @@ static Status check_camera(const PictureOptions *options, Err *err)
     return STATUS_OK;
 }
 
-enum { PICTURE_NEEDS = 12 };
+/* Options that have an effect on models of these elements alone. */
+static const struct {
+    const char *name;
+    unsigned elements;
+    const char *rest; /* of the sentence that refuses it */
+} of_models[] = {
+    {"potential", MODEL_POTENTIAL, ""}, {"erf", MODEL_POTENTIAL, ""},
+    {"cell-beta", MODEL_POTENTIAL, ""}, {"hits", MODEL_POTENTIAL, ""},
+    {"joints", MODEL_JOINTS, ""},       {"ids", MODEL_FIELD, "; other scenes have ids anyway"},
+};
+
+enum { MODEL_OPTIONS = sizeof of_models / sizeof *of_models };
+
+static Status check_model(const PictureOptions *options, const Parsed *parsed, Err *err)
+{
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < MODEL_OPTIONS && status == STATUS_OK; i++) {
+        Text sentence = TEXT_INIT;
+        text_puts(&sentence, "is for --model ");
+        models_with(of_models[i].elements, &sentence);
+        text_puts(&sentence, of_models[i].rest);
+        const OptionNeed needs[] = {{of_models[i].name,
+                                     model_has((SceneModel)options->model, of_models[i].elements),
+                                     text_chars(&sentence)},
+                                    {0}};
+        status = options_check_needs(parsed, needs, err);
+        text_release(&sentence);
+    }
+    return status;
+}
+
+enum { PICTURE_NEEDS = 7 };
 
 static void find_needs(const PictureOptions *options, OptionNeed needs[PICTURE_NEEDS])
 {
-    static const char of_isosurfaces[] = "is for --model isosurface";
     static const char of_colors[] = "needs --color-by";
-    bool isosurface = options->model == SCENE_ISOSURFACE;
     bool colored = options->coloring.field != NULL;
     const OptionNeed list[] = {
-        {"potential", isosurface, of_isosurfaces},
-        {"erf", isosurface, of_isosurfaces},
-        {"cell-beta", isosurface, of_isosurfaces},
-        {"hits", isosurface, of_isosurfaces},
-        {"joints", options->model == SCENE_JOINED, "is for --model joined"},
         {"colormap", colored, of_colors},
         {"range", colored, of_colors},
         {"log", colored, of_colors},
@@ -210,6 +226,7 @@ Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, 
 {
     OptionNeed needs[PICTURE_NEEDS];
     find_needs(options, needs);
+    TRY(check_model(options, parsed, err));
     return options_check_needs(parsed, needs, err);
 }
 
@@ -217,6 +234,9 @@ bool picture_takes(const PictureOptions *options, const char *name)
 {
     OptionNeed needs[PICTURE_NEEDS];
     find_needs(options, needs);
+    for (size_t i = 0; i < MODEL_OPTIONS; i++)
+        if (strcmp(of_models[i].name, name) == 0)
+            return model_has((SceneModel)options->model, of_models[i].elements);
     for (const OptionNeed *need = needs; need->name; need++)
         if (strcmp(need->name, name) == 0)
             return need->met;
@@ -331,10 +351,11 @@ ViewParams picture_view_params(const PictureOptions *options)
 Status picture_geometry(const PictureOptions *options, const PictureSource *source,
                         Geometry *geometry, StageReport *report, Err *err)
 {
-    const GeometryParams params = {.model = (SceneModel)options->model,
+    const SceneModel model = (SceneModel)options->model;
+    const GeometryParams params = {.model = model,
                                    .joints = (JointForm)options->joints,
                                    .graph = options->potential != 0 &&
-                                            options->model == SCENE_ISOSURFACE};
+                                            model_has(model, MODEL_POTENTIAL)};
     return stage_geometry(&source->tree, &params, geometry, report, err);
 }
 
@@ -398,5 +419,5 @@ void picture_description(const Geometry *geometry, const char *tree_path, Text *
 {
     text_puts(out, "arterial tree ");
     text_put_line(out, file_name(tree_path));
-    text_printf(out, ", %zu segments as %s", geometry->drawn, model_names[geometry->model]);
+    text_printf(out, ", %zu segments as %s", geometry->drawn, models[geometry->model].name);
 }

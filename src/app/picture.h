@@ -76,11 +76,6 @@ MUST_CHECK Status picture_scene(const PictureOptions *options, const char *tree_
  * machine. */
 MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);
 
-/* Name of a model as --model takes it. */
-const char *model_name(SceneModel model);
-/* All of them; NULL ends them. */
-extern const char *const model_names[];
-
 /* One line that says what a geometry shows. */
 void picture_description(const Geometry *geometry, const char *tree_path, Text *out);
 

@@ -41,6 +41,11 @@ typedef struct Asker {
     Blockage blockages[VIEW_MAX_LIGHTS]; /* of each light, to the place last asked about */
 } Asker;
 
+static ModelProof proof_of(const SettleCase *asked)
+{
+    return models[asked->scene->geometry.model].proof;
+}
+
 static void asker_release(Asker *asker)
 {
     renderer_free(asker->first);
@@ -59,7 +64,7 @@ static Status asker_init(Asker *asker, const SettleCase *asked, Err *err)
 {
     asker->asked = asked;
     asker->one = asked->scene->view;
-    if (asked->scene->geometry.model == SCENE_BLOB)
+    if (proof_of(asked) == PROOF_FIELD)
         return STATUS_OK;
     TRY(new_renderer(asker, first_slack_mm, &asker->first, err));
     return new_renderer(asker, cached_slack_mm, &asker->cached, err);
@@ -514,7 +519,7 @@ static Status ask_blob(Asker *asker, size_t pixel, unsigned beyond, SettledPixel
 
 bool settle_applies(const SettleCase *asked)
 {
-    return asked->scene->geometry.model == SCENE_BLOB || asked->params->shadows;
+    return proof_of(asked) == PROOF_FIELD || asked->params->shadows;
 }
 
 static Status ask_pixel(Asker *asker, size_t pixel, unsigned beyond, Settled *settled, Err *err)
@@ -529,7 +534,7 @@ static Status ask_pixel(Asker *asker, size_t pixel, unsigned beyond, Settled *se
                           .root_mm = (double)NAN,
                           .distance_mm = (double)NAN,
                           .cosine = (double)NAN};
-    if (asked->scene->geometry.model == SCENE_BLOB)
+    if (proof_of(asked) == PROOF_FIELD)
         TRY(ask_blob(asker, pixel, beyond, &found, err));
     else if (!(beyond & BEYOND_GEOMETRY))
         TRY(ask_cache(asker, pixel, &found, err));
@@ -544,7 +549,7 @@ Status settle_pixels(const SettleCase *asked, Settled *settled, Err *err)
     Asker asker = {0};
     Settled made = {0};
     Status status;
-    bool blob = asked->scene->geometry.model == SCENE_BLOB;
+    bool blob = proof_of(asked) == PROOF_FIELD;
     TRY_GOTO(settled_init(&made, pixels, blob ? SETTLED_ROOT : SETTLED_SHADOW_CACHE,
                           blob ? SETTLED_SHADOW_ROOT : SETTLED_SHADOW_CACHE, err));
     for (size_t i = 0; i < pixels; i++) {

@@ -5,23 +5,19 @@
 
 #include <string.h>
 
-#define ALL_MODELS                                                                                 \
-    (1U << SCENE_CYLINDERS | 1U << SCENE_JOINED | 1U << SCENE_ROUNDED | 1U << SCENE_ISOSURFACE |   \
-     1U << SCENE_BLOB)
-
 const Emitter emitters[] = {
     {.name = "povray",
      .extension = "pov",
      .second_extension = "inc",
      .description = "a scene for POV-Ray 3.7",
      .has_view = true,
-     .models = ALL_MODELS,
+     .elements = MODEL_PRIMITIVES | MODEL_FIELD,
      .check_name = povray_check_name,
      .write = povray_write},
     {.name = "openscad",
      .extension = "scad",
      .description = "a parametric model for OpenSCAD",
-     .models = 1U << SCENE_CYLINDERS | 1U << SCENE_ROUNDED,
+     .elements = MODEL_CYLINDERS | MODEL_BALLS,
      .write = openscad_write},
     {0},
 };
@@ -32,6 +28,18 @@ const Emitter *emitter_of_extension(const char *extension)
         if (strcmp(emitter->extension, extension) == 0)
             return emitter;
     return NULL;
+}
+
+Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err)
+{
+    if (model_is_of(model, emitter->elements))
+        return STATUS_OK;
+    Text able = TEXT_INIT;
+    models_of(emitter->elements, &able);
+    Status status = err_set(err, STATUS_USAGE, "`model` %s: %s holds %s", models[model].name,
+                            emitter->description, text_chars(&able));
+    text_release(&able);
+    return status;
 }
 
 /* Fills the files, of which there are one or two. */
@@ -58,6 +66,7 @@ Status emit_files(const Emitter *emitter, const EmitParams *params, const char *
     EmitReport written = {0};
     Status status;
     size_t n = second_path ? 2 : 1;
+    TRY(emit_check_model(emitter, params->scene->geometry.model, err));
     if (second_path && emitter->check_name)
         TRY(emitter->check_name(params->second_file, err));
     TRY_GOTO(outfile_open(&files[0], path, err));

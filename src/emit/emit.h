@@ -35,8 +35,8 @@ typedef struct Emitter {
     const char *second_extension; /* of the file beside it: "inc"; NULL: it writes one file */
     const char *description;      /* "a scene for POV-Ray 3.7" */
     bool binary;
-    bool has_view;   /* it holds camera, lights and background, and not the vessels alone */
-    unsigned models; /* those it can write: bits emit_model(SceneModel) */
+    bool has_view;     /* it holds camera, lights and background, and not the vessels alone */
+    unsigned elements; /* it can write what is made of these: bits ModelElement */
     /* STATUS_USAGE when the format cannot name a second file so. NULL: it takes any name. */
     Status (*check_name)(const char *second_file, Err *err);
     /* Appends the file to *out and, where params->second_file is given, the second one to *second,
@@ -48,19 +48,17 @@ typedef struct Emitter {
                     Err *err);
 } Emitter;
 
-static inline unsigned emit_model(SceneModel model)
-{
-    return 1U << model;
-}
-
 /* A row without a name ends them. */
 extern const Emitter emitters[];
 /* The emitter of files with this extension ("pov"), or NULL. */
 const Emitter *emitter_of_extension(const char *extension);
 
+/* STATUS_USAGE when the format cannot hold a model, with the names of those that it can. */
+MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err);
+
 /* Writes `path`, "-" being standard output, and `second_path`, which is NULL when and only when
  * params->second_file is: both take their final names, or neither does. `report` may be NULL.
- * STATUS_USAGE when the emitter cannot write the scene's model, and all that `write` returns. */
+ * As emit_check_model, and all that `write` returns. */
 MUST_CHECK Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
                              const char *second_path, EmitReport *report, Err *err);
 

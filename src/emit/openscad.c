@@ -18,12 +18,12 @@ typedef struct CylinderEnd {
     Vec3 at, outwards;
 } CylinderEnd;
 
-typedef struct Model {
+typedef struct Parametric {
     const EmitParams *params;
     const Scene *scene;
     CylinderEnd *ends; /* in order of place; owned */
     size_t n_ends;
-} Model;
+} Parametric;
 
 static int by_place(const void *a, const void *b)
 {
@@ -36,32 +36,31 @@ static int by_place(const void *a, const void *b)
     return 0;
 }
 
-static Status find_ends(Model *model, Err *err)
+static Status find_ends(Parametric *made, Err *err)
 {
-    const Scene *scene = model->scene;
-    TRY(mem_calloc(&model->ends, 2 * scene->geometry.n_primitives, sizeof *model->ends, "ends",
-                   err));
+    const Scene *scene = made->scene;
+    TRY(mem_calloc(&made->ends, 2 * scene->geometry.n_primitives, sizeof *made->ends, "ends", err));
     for (size_t i = 0; i < scene->geometry.n_primitives; i++) {
         const Primitive *primitive = &scene->geometry.primitives[i];
         if (primitive->kind != PRIMITIVE_CYLINDER)
             continue;
         Vec3 along = vec3_normalized(vec3_sub(primitive->b, primitive->a));
-        model->ends[model->n_ends++] = (CylinderEnd){primitive->b, along};
-        model->ends[model->n_ends++] = (CylinderEnd){primitive->a, vec3_scale(along, -1)};
+        made->ends[made->n_ends++] = (CylinderEnd){primitive->b, along};
+        made->ends[made->n_ends++] = (CylinderEnd){primitive->a, vec3_scale(along, -1)};
     }
-    qsort(model->ends, model->n_ends, sizeof *model->ends, by_place);
+    qsort(made->ends, made->n_ends, sizeof *made->ends, by_place);
     return STATUS_OK;
 }
 
 /* How many cylinders end at a point, and the first of these ends. */
-static size_t ends_at(const Model *model, Vec3 point, const CylinderEnd **first)
+static size_t ends_at(const Parametric *made, Vec3 point, const CylinderEnd **first)
 {
     const CylinderEnd key = {.at = point};
-    const CylinderEnd *last = model->ends + model->n_ends;
-    *first = bsearch(&key, model->ends, model->n_ends, sizeof key, by_place);
+    const CylinderEnd *last = made->ends + made->n_ends;
+    *first = bsearch(&key, made->ends, made->n_ends, sizeof key, by_place);
     if (!*first)
         return 0;
-    while (*first > model->ends && by_place(*first - 1, &key) == 0)
+    while (*first > made->ends && by_place(*first - 1, &key) == 0)
         (*first)--;
     size_t n = 0;
     while (*first + n < last && by_place(*first + n, &key) == 0)
@@ -120,24 +119,24 @@ static void put_vessel(Text *text, const Scene *scene, const Primitive *cylinder
     put_rest(text, scene, cylinder, NULL);
 }
 
-static void put_ball(Text *text, const Model *model, const Primitive *ball)
+static void put_ball(Text *text, const Parametric *made, const Primitive *ball)
 {
     const CylinderEnd *first;
-    size_t n = ends_at(model, ball->a, &first);
+    size_t n = ends_at(made, ball->a, &first);
     text_puts(text, n == 1 ? "  end(" : n == 2 ? "  bend(" : "  bifurcation(");
     put_point(text, ball->a);
-    put_rest(text, model->scene, ball, n == 1 ? &first->outwards : NULL);
+    put_rest(text, made->scene, ball, n == 1 ? &first->outwards : NULL);
 }
 
 static Status put_calls(Text *out, void *context, Err *err)
 {
-    const Model *model = context;
-    for (size_t i = 0; i < model->scene->geometry.n_primitives; i++) {
-        const Primitive *primitive = &model->scene->geometry.primitives[i];
+    const Parametric *made = context;
+    for (size_t i = 0; i < made->scene->geometry.n_primitives; i++) {
+        const Primitive *primitive = &made->scene->geometry.primitives[i];
         if (primitive->kind == PRIMITIVE_CYLINDER)
-            put_vessel(out, model->scene, primitive);
+            put_vessel(out, made->scene, primitive);
         else
-            put_ball(out, model, primitive);
+            put_ball(out, made, primitive);
     }
     return text_check(out, err);
 }
@@ -184,18 +183,18 @@ Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitRep
 {
     (void)second;
     const Scene *scene = params->scene;
-    Model model = {.params = params, .scene = scene};
+    Parametric made = {.params = params, .scene = scene};
     Values values = {0};
-    TRY(find_ends(&model, err));
+    TRY(find_ends(&made, err));
     add_header(&values, params);
     text_printf(add_value(&values, "max_radius"), "%.2g", largest_radius(scene));
     put_rgb(add_value(&values, "color"), scene->appearance.color);
     put_point(add_value(&values, "origin"), scene->geometry.origin);
     put_point(add_value(&values, "low"), scene->geometry.bounds.low);
     put_point(add_value(&values, "high"), scene->geometry.bounds.high);
-    add_part(&values, "calls", put_calls, &model);
+    add_part(&values, "calls", put_calls, &made);
     report->openscad_s = openscad_seconds(scene);
     Status status = values_expand(&values, params, "openscad/parametric.scad", out, err);
-    free(model.ends);
+    free(made.ends);
     return status;
 }

@@ -1,7 +1,7 @@
 /* Two files: the scene (camera, lights) and the geometry, one declaration of Tree
  * [docs/POVRAY.md]; or the one within the other. Both are made from their templates, of which the
  * long parts, the macros and members of the geometry, are written when the template comes to them.
- * What may differ from model to model stands in the rows of `geometries`. */
+ * What the geometry is made of chooses its row of `geometries`. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/rows.h"
@@ -10,17 +10,25 @@
 #include <ctype.h>
 #include <string.h>
 
-/* The geometry of a model. */
+/* What makes the geometry of models that have the element; the first row that is met holds. */
 static const struct {
+    ModelElement element;
     Status (*put_macros)(Text *out, void *geometry, Err *err);
     Status (*put_body)(Text *out, void *geometry, Err *err);
 } geometries[] = {
-    [SCENE_CYLINDERS] = {put_primitive_macros, put_primitives},
-    [SCENE_JOINED] = {put_joint_macros, put_primitives},
-    [SCENE_ROUNDED] = {put_primitive_macros, put_primitives},
-    [SCENE_ISOSURFACE] = {put_cell_macros, put_cells},
-    [SCENE_BLOB] = {put_blob_macros, put_blob},
+    {MODEL_POTENTIAL, put_cell_macros, put_cells},
+    {MODEL_BLOB, put_blob_macros, put_blob},
+    {MODEL_JOINTS, put_joint_macros, put_primitives},
+    {MODEL_CYLINDERS, put_primitive_macros, put_primitives},
 };
+
+static size_t row_of(const Scene *scene)
+{
+    size_t row = 0;
+    while (!model_has(scene->geometry.model, geometries[row].element))
+        row++;
+    return row;
+}
 
 Status povray_check_name(const char *geometry_file, Err *err)
 {
@@ -65,20 +73,20 @@ static void put_extent(Text *text, Box box, Vec3 origin)
 static Status put_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    return geometries[geometry->scene->geometry.model].put_macros(out, context, err);
+    return geometries[row_of(geometry->scene)].put_macros(out, context, err);
 }
 
 static Status put_body(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    return geometries[geometry->scene->geometry.model].put_body(out, context, err);
+    return geometries[row_of(geometry->scene)].put_body(out, context, err);
 }
 
 static Status put_tree(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     bool one_blob = false;
-    if (geometry->scene->geometry.model == SCENE_BLOB)
+    if (model_has(geometry->scene->geometry.model, MODEL_BLOB))
         TRY(blob_is_whole(geometry->scene, &one_blob, err));
     Values values = {0};
     add_part(&values, "body", put_body, context);
@@ -225,7 +233,7 @@ Status povray_write(const EmitParams *params, Text *out, Text *second, EmitRepor
 {
     PovrayGeometry geometry = {.params = params, .scene = params->scene, .report = report};
     Status status = STATUS_OK;
-    if (params->scene->geometry.model == SCENE_ISOSURFACE)
+    if (model_has(params->scene->geometry.model, MODEL_POTENTIAL))
         TRY(celltree_build(&params->scene->geometry, &params->cells, &geometry.cells, err));
     report->cells = geometry.cells.n_cells;
     if (params->second_file)

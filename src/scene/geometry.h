@@ -8,6 +8,7 @@
 
 #include "base/base.h"
 #include "geom/geom.h"
+#include "scene/models.h"
 #include <stdint.h>
 
 /* No coordinate may be larger: POV-Ray ignores what lies farther than this along a ray
@@ -59,14 +60,6 @@ typedef struct Blend {
 
 /* Whether `other` is a neighbour of `i`. O(log of the length of the list). */
 bool blend_joins(const Blend *blend, uint32_t i, uint32_t other);
-
-typedef enum SceneModel {
-    SCENE_CYLINDERS,
-    SCENE_JOINED,
-    SCENE_ROUNDED,
-    SCENE_ISOSURFACE,
-    SCENE_BLOB
-} SceneModel;
 
 /* Constant once made [stage_geometry]. */
 typedef struct Geometry {

@@ -88,7 +88,7 @@ static Status add_solids(const Tree *tree, const Places *places, Geometry *geome
     TRY_GOTO(mem_calloc(&cylinder, tree->n, sizeof *cylinder, "nodes", err));
     TRY_GOTO(mem_calloc(&thickest, tree->n, sizeof *thickest, "nodes", err));
     add_cylinders(tree, places, geometry, cylinder);
-    if (geometry->model == SCENE_ROUNDED) {
+    if (model_has(geometry->model, MODEL_BALLS)) {
         find_thickest(tree, places, thickest);
         add_spheres(tree, thickest, cylinder, geometry);
     }
@@ -128,14 +128,14 @@ static Status add_potential(const Tree *tree, bool graph, Geometry *geometry, Er
 static Status add_model(const Tree *tree, const GeometryParams *params, Geometry *geometry,
                         StageReport *report, Err *err)
 {
-    if (geometry->model == SCENE_ISOSURFACE || geometry->model == SCENE_BLOB)
+    if (model_has(geometry->model, MODEL_FIELD))
         return add_potential(tree, params->graph, geometry, err);
     TRY(mem_calloc(&geometry->primitives, 2 * tree->n, sizeof *geometry->primitives, "primitives",
                    err));
     Places places = {0};
     TRY(places_find(tree, &places, err));
     Status status = STATUS_OK;
-    if (geometry->model == SCENE_JOINED)
+    if (model_has(geometry->model, MODEL_JOINTS))
         status = joints_add(tree, &places, params->joints, geometry, report, err);
     else
         status = add_solids(tree, &places, geometry, err);

@@ -185,7 +185,7 @@ test_what_a_solid_cannot_have_is_refused() {
     expect_sentence '--size is for scenes with a camera'
     run corcast scene fork.swc --model blob -o x.scad
     expect_status 2
-    expect_sentence '--model blob: .*takes --model cylinders or rounded'
+    expect_sentence '--model blob: .*holds cylinders and rounded'
     run corcast scene fork.swc --scad polyhedron -o x.scad
     expect_status 2
     expect_sentence '--scad polyhedron needs a closed mesh'

@@ -14,13 +14,6 @@
 
 enum { WIDTH = 320, HEIGHT = 240, STEPS = 16 };
 
-static const char *const model_names[] = {[SCENE_CYLINDERS] = "cylinders",
-                                          [SCENE_JOINED] = "joined",
-                                          [SCENE_ROUNDED] = "rounded",
-                                          [SCENE_ISOSURFACE] = "isosurface",
-                                          [SCENE_BLOB] = "blob"};
-enum { MODELS = sizeof model_names / sizeof *model_names };
-
 /* The rules asked: the two tiers, and what others do [their published defaults]. */
 typedef enum JudgeRule {
     RULE_TIER_A,
@@ -153,7 +146,7 @@ static json_t *plant_faults(Lab *lab, SceneModel model, const Subject *clean, co
         const Subject *reference = fault->antialias > 1 ? smooth : clean;
         Subject faulty;
         draw_faulty(lab, reference, fault->before, fault->after, fault->amount, &faulty);
-        json_t *row = json_pack("{s:s, s:s}", "fault", fault->name, "model", model_names[model]);
+        json_t *row = json_pack("{s:s, s:s}", "fault", fault->name, "model", models[model].name);
         for (JudgeRule rule = 0; rule < RULES; rule++)
             json_object_set_new(row, rule_names[rule],
                                 json_boolean(rule_differs(lab, rule, reference, &faulty)));
@@ -173,7 +166,7 @@ static json_t *find_limits(Lab *lab, SceneModel model, const Subject *clean)
     for (size_t i = 0; i < n_sweeps; i++) {
         const Sweep *sweep = &sweeps[i];
         json_t *row = json_pack("{s:s, s:s, s:s}", "parameter", sweep->name, "unit", sweep->unit,
-                                "model", model_names[model]);
+                                "model", models[model].name);
         double limits[ASKED] = {NAN, NAN, NAN, NAN};
         bool found[ASKED] = {true, true, true, true};
         for (int step = 0; step < STEPS && (found[0] || found[1]); step++) {
@@ -217,7 +210,7 @@ static json_t *count_alarms(Lab *lab, SceneModel model, int *scenes)
                     if (rule_differs(lab, tier, &clean, &other))
                         json_array_append_new(
                             alarms, json_sprintf("%s, view %d, projection %d, %s, tier %s",
-                                                 model_names[model], view, projection,
+                                                 models[model].name, view, projection,
                                                  way ? "order" : "threads", rule_names[tier]));
                 subject_release(&other);
             }
@@ -244,7 +237,7 @@ int main(int argc, char **argv)
     must(&lab, look_read(&lab.look, argv[2], &lab.err));
     json_t *rows = json_array(), *limits = json_array(), *alarms = json_array();
     int scenes = 0;
-    for (int m = 0; m < MODELS; m++) {
+    for (int m = 0; m < SCENE_MODELS; m++) {
         SceneModel model = (SceneModel)m;
         Subject clean, smooth;
         stage_subject(&lab, model, PROJECTION_PERSPECTIVE, VIEW_ISO, true, 1, &clean);

@@ -131,6 +131,28 @@ static void a_ground_is_not_seen_along_itself_nor_beyond_all_bounds(void **state
     assert_false(ground_hit(&ground, (Ray){{0, 1.001e7, 0}, down}, 0, HUGE_VAL, &t));
 }
 
+static void expect_models(void (*list)(unsigned, Text *), unsigned elements, const char *expected)
+{
+    Text names = TEXT_INIT;
+    list(elements, &names);
+    assert_string_equal(text_chars(&names), expected);
+    text_release(&names);
+}
+
+static void models_are_listed_by_what_they_are_made_of(void **state)
+{
+    (void)state;
+    expect_models(models_of, MODEL_PRIMITIVES, "cylinders, joined and rounded");
+    expect_models(models_of, MODEL_CYLINDERS | MODEL_BALLS, "cylinders and rounded");
+    expect_models(models_with, MODEL_FIELD, "isosurface and blob");
+    expect_models(models_with, MODEL_JOINTS, "joined");
+    for (int i = 0; i < SCENE_MODELS; i++) {
+        assert_string_equal(models[i].name, model_names[i]);
+        assert_true(models[i].elements != 0 && *models[i].description);
+    }
+    assert_null(model_names[SCENE_MODELS]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -140,6 +162,7 @@ int main(void)
         cmocka_unit_test(the_depth_range_holds_the_box),
         cmocka_unit_test(the_way_to_a_light_is_straight),
         cmocka_unit_test(the_points_of_an_area_light_span_its_sides),
+        cmocka_unit_test(models_are_listed_by_what_they_are_made_of),
         cmocka_unit_test(a_ground_is_not_seen_along_itself_nor_beyond_all_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -33,13 +33,13 @@ Status caster_new(const Geometry *geometry, const CellParams *cells, int workers
     caster->workers = workers;
     caster->shadow_from_mm = shadow_slack_mm;
     Status status = STATUS_OK;
-    if (geometry->model == SCENE_BLOB) {
+    if (model_has(geometry->model, MODEL_BLOB)) {
         TRY_GOTO(blobcast_new(geometry, &caster->blob, err));
         TRY_GOTO(mem_calloc(&caster->blob_scratch, (size_t)workers, sizeof *caster->blob_scratch,
                             "workspaces", err));
         for (int i = 0; i < workers; i++)
             TRY_GOTO(blobscratch_new(caster->blob, &caster->blob_scratch[i], err));
-    } else if (geometry->model != SCENE_ISOSURFACE) {
+    } else if (model_has(geometry->model, MODEL_PRIMITIVES)) {
         TRY_GOTO(bvh_build(geometry->primitives, geometry->n_primitives, &caster->bvh, err));
     } else if (cells) {
         TRY_GOTO(povray_isosurface_new(geometry, cells, &caster->halving, err));

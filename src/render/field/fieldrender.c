@@ -328,7 +328,7 @@ done:
 
 static bool can_draw(const Drawing *drawing)
 {
-    return drawing->geometry->model == SCENE_ISOSURFACE && !drawing->params->povray_cells;
+    return model_has(drawing->geometry->model, MODEL_POTENTIAL) && !drawing->params->povray_cells;
 }
 
 static bool needs_rays(const Drawing *drawing)

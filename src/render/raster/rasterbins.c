@@ -31,7 +31,7 @@ static size_t chunk_end(const Build *build, size_t chunk)
 
 static bool is_joint(const RasterBins *bins, size_t number)
 {
-    return bins->geometry->model == SCENE_JOINED &&
+    return model_has(bins->geometry->model, MODEL_JOINTS) &&
            bins->geometry->primitives[number].kind == PRIMITIVE_JOINT;
 }
 
@@ -48,7 +48,7 @@ static Status make_room_for_joints(Build *build, int threads, Err *err)
     RasterBins *bins = build->bins;
     uint32_t n = 0;
     TRY(mem_calloc(&build->joints, build->n_chunks, sizeof *build->joints, "joints", err));
-    if (bins->geometry->model == SCENE_JOINED)
+    if (model_has(bins->geometry->model, MODEL_JOINTS))
         threads_for(build->n_chunks, threads, count_joints, build);
     for (size_t chunk = 0; chunk < build->n_chunks; chunk++) {
         uint32_t count = build->joints[chunk];

@@ -125,8 +125,8 @@ static uint32_t segment_of(const Canvas *canvas, const TileHits *hits, int sampl
 {
     const Geometry *geometry = canvas->drawing->geometry;
     uint32_t index = hits->segment[sample];
-    return geometry->model == SCENE_ISOSURFACE ? geometry->segments[index].segment
-                                               : geometry->primitives[index].segment;
+    return model_has(geometry->model, MODEL_FIELD) ? geometry->segments[index].segment
+                                                   : geometry->primitives[index].segment;
 }
 
 static void store_vec3(float values[3][TILE_SAMPLES], int sample, Vec3 v)
