@@ -23,13 +23,6 @@ static Status list(ListNames *names, Err *err)
     return status;
 }
 
-static Status list_models(Text *lines, Err *err)
-{
-    for (size_t i = 0; model_names[i]; i++)
-        text_printf(lines, "%s\n", model_names[i]);
-    return text_check(lines, err);
-}
-
 static Status list_fields(Text *lines, Err *err)
 {
     for (size_t i = 0; derive_field_name(i); i++)
@@ -63,11 +56,33 @@ static Status list_colormaps(Text *lines, Err *err)
     return template_names("colormaps", ".txt", lines, err);
 }
 
+/* What models may be made of. */
+typedef enum ModelKind { MODELS_OF_ANYTHING, MODELS_OF_PRIMITIVES, MODELS_OF_A_FIELD } ModelKind;
+static const char *const model_kinds[] = {"anything", "primitives", "field", NULL};
+static const unsigned kind_elements[] = {~0U, MODEL_PRIMITIVES, MODEL_FIELD};
+
+typedef struct ModelsOptions {
+    ModelKind of;
+} ModelsOptions;
+
+static const Option models_own[] = {
+    {.name = "of",
+     SETS(CHOICE, ModelsOptions, of),
+     .choices = model_kinds,
+     .help = "models made of nothing else"},
+};
+
+static const OptionTable models_table = OPTION_TABLE(models_own);
+
 static Status run_models(void *options, Parsed *parsed, Err *err)
 {
-    (void)options;
     (void)parsed;
-    return list(list_models, err);
+    (void)err;
+    const ModelsOptions *own = options;
+    for (int i = 0; i < SCENE_MODELS; i++)
+        if (model_is_of((SceneModel)i, kind_elements[own->of]))
+            puts(models[i].name);
+    return STATUS_OK;
 }
 
 static Status run_fields(void *options, Parsed *parsed, Err *err)
@@ -105,8 +120,12 @@ static Status run_formats(void *options, Parsed *parsed, Err *err)
     return list(list_formats, err);
 }
 
-const Command command_models = {
-    .name = "models", .summary = "the values of --model", .operands = "", .run = run_models};
+const Command command_models = {.name = "models",
+                                .summary = "the values of --model",
+                                .operands = "",
+                                .size = sizeof(ModelsOptions),
+                                .tables = {{&models_table, 0}},
+                                .run = run_models};
 const Command command_fields = {.name = "fields",
                                 .summary = "the values of --color-by, with their units",
                                 .operands = "",

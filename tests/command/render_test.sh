@@ -374,7 +374,7 @@ test_adaptive_antialiasing_needs_antialiasing() {
 test_tiles_agree_with_rays_to_tier_b_and_to_the_measured_floor() {
     local model projection tree method
     for tree in disc200 disc200-lambda0 ball60; do
-        for model in cylinders rounded joined; do
+        for model in $(corcast models --of primitives); do
             for projection in orthographic perspective; do
                 for method in trace raster; do
                     run_ok corcast render "$REPO/tests/golden/$tree.swc" --model $model --projection $projection \
@@ -476,7 +476,7 @@ test_implicit_surfaces_of_odd_trees_are_drawn_or_refused() {
         expect_status 2
     done
     rows '1 3 0 0 0 1 -1' '2 3 5 0 0 1 1' '3 3 8 3 0 .5 2' '4 3 8 -3 0 .5 2'
-    for how in isosurface blob; do
+    for how in $(corcast models --of field); do
         survives --model $how --projection perspective --location 2.5,0,0 --look-at 8,0,0
         expect_status 0
     done

@@ -16,7 +16,7 @@ test_a_scene_is_drawn_in_the_size_asked_for() {
 
 test_the_scene_needs_no_switch_but_the_size() {
     local model
-    for model in isosurface blob; do
+    for model in $(corcast models --of field); do
         scene --model $model
         run povray +Iscene.pov +Oplain.png +W80 +H60 -D
         expect_status 0

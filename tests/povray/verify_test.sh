@@ -150,7 +150,7 @@ test_odd_trees_agree() {
     local tree model
     for tree in star collinear stout; do
         cp "$DATA/$tree.swc" tree.swc
-        for model in cylinders rounded joined; do
+        for model in $(corcast models --of primitives); do
             agrees $model --shadows on
             rm -r report
         done
