@@ -157,27 +157,6 @@ static double largest_radius(const Scene *scene)
     return largest;
 }
 
-static void add_header(Values *values, const EmitParams *params)
-{
-    const Scene *scene = params->scene;
-    Text stem = TEXT_INIT;
-    size_t extension = strlen(file_extension(params->file));
-    text_append(&stem, params->file,
-                strlen(params->file) - (extension ? extension + 1 : extension));
-    text_put_line(add_value(values, "file"), params->file);
-    text_put_line(add_value(values, "stem"), text_chars(&stem));
-    text_release(&stem);
-    text_put_line(add_value(values, "description"), params->description);
-    text_puts(add_value(values, "generator"), params->generator);
-    text_puts(add_value(values, "command"), params->command);
-    text_printf(add_value(values, "count"), "%zu", scene->geometry.drawn);
-    text_printf(add_value(values, "seconds"), "%.2g", openscad_seconds(scene));
-    text_printf(add_value(values, "extent"), "%.4g to %.4g, %.4g to %.4g, %.4g to %.4g mm",
-                scene->geometry.bounds.low.x, scene->geometry.bounds.high.x,
-                scene->geometry.bounds.low.y, scene->geometry.bounds.high.y,
-                scene->geometry.bounds.low.z, scene->geometry.bounds.high.z);
-}
-
 Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
                       Err *err)
 {
@@ -186,7 +165,13 @@ Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitRep
     Parametric made = {.params = params, .scene = scene};
     Values values = {0};
     TRY(find_ends(&made, err));
-    add_header(&values, params);
+    const Geometry *shape = &scene->geometry;
+    const Box bounds = {vec3_add(shape->bounds.low, shape->origin),
+                        vec3_add(shape->bounds.high, shape->origin)};
+    add_file(&values, params->file);
+    add_about(&values, params, bounds, vec3(0, 0, 0));
+    text_printf(add_value(&values, "count"), "%zu", shape->drawn);
+    text_printf(add_value(&values, "seconds"), "%.2g", openscad_seconds(scene));
     text_printf(add_value(&values, "max_radius"), "%.2g", largest_radius(scene));
     put_rgb(add_value(&values, "color"), scene->appearance.color);
     put_point(add_value(&values, "origin"), scene->geometry.origin);

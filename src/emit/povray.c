@@ -59,15 +59,6 @@ static void put_guard(Text *text, const char *name)
         text_printf(text, "_%08x", hash);
 }
 
-/* The box, and where its origin lies in the tree when that was moved. */
-static void put_extent(Text *text, Box box, Vec3 origin)
-{
-    text_printf(text, "%.4g to %.4g, %.4g to %.4g, %.4g to %.4g mm", box.low.x, box.high.x,
-                box.low.y, box.high.y, box.low.z, box.high.z);
-    if (origin.x != 0 || origin.y != 0 || origin.z != 0)
-        text_printf(text, ", about <%.15g,%.15g,%.15g> of the tree", origin.x, origin.y, origin.z);
-}
-
 /* ---- geometry -------------------------------------------------------------------------------- */
 
 static Status put_macros(Text *out, void *context, Err *err)
@@ -113,10 +104,7 @@ static Status put_geometry(Text *out, void *context, Err *err)
     const char *file = params->second_file ? params->second_file : params->file;
     Values values = {0};
     text_put_line(add_value(&values, "file"), file);
-    text_put_line(add_value(&values, "description"), params->description);
-    text_puts(add_value(&values, "generator"), params->generator);
-    text_puts(add_value(&values, "command"), params->command);
-    put_extent(add_value(&values, "extent"), scene->geometry.bounds, scene->geometry.origin);
+    add_about(&values, params, scene->geometry.bounds, scene->geometry.origin);
     put_guard(add_value(&values, "guard"), file);
     add_float(&values, "red", scene->appearance.color.r);
     add_float(&values, "green", scene->appearance.color.g);
@@ -171,15 +159,6 @@ static Status put_lights(Text *out, void *context, Err *err)
     return put_ground(out, &scene->view.ground, geometry->params, err);
 }
 
-static void put_stem(Text *text, const char *name)
-{
-    const char *dot = strrchr(name, '.');
-    Text stem = TEXT_INIT;
-    text_append(&stem, name, dot ? (size_t)(dot - name) : strlen(name));
-    text_put_line(text, text_chars(&stem));
-    text_release(&stem);
-}
-
 /* The geometry itself, or the line that includes it. */
 static Status put_vessels(Text *out, void *context, Err *err)
 {
@@ -209,14 +188,10 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     const Scene *scene = geometry->scene;
     double near_mm, far_mm;
     camera_depth_range(&scene->view.camera, scene->geometry.bounds, &near_mm, &far_mm);
-    text_put_line(add_value(&values, "file"), params->file);
-    put_stem(add_value(&values, "stem"), params->file);
+    add_file(&values, params->file);
     text_put_line(add_value(&values, "geometry_file"),
                   params->second_file ? params->second_file : "the last part of this file");
-    text_put_line(add_value(&values, "description"), params->description);
-    text_puts(add_value(&values, "generator"), params->generator);
-    text_puts(add_value(&values, "command"), params->command);
-    put_extent(add_value(&values, "extent"), scene->geometry.bounds, scene->geometry.origin);
+    add_about(&values, params, scene->geometry.bounds, scene->geometry.origin);
     add_camera(&values, &scene->view.camera);
     add_flag(&values, "shadows", params->shadows);
     add_float(&values, "background_red", scene->view.background.r);

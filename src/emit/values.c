@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 Text *add_value(Values *values, const char *name)
 {
@@ -27,6 +28,29 @@ void add_float(Values *values, const char *name, float value)
 void add_flag(Values *values, const char *name, bool value)
 {
     text_puts(add_value(values, name), value ? "1" : "0");
+}
+
+void add_file(Values *values, const char *file)
+{
+    const char *dot = strrchr(file, '.');
+    Text stem = TEXT_INIT;
+    text_append(&stem, file, dot ? (size_t)(dot - file) : strlen(file));
+    text_put_line(add_value(values, "file"), file);
+    text_put_line(add_value(values, "stem"), text_chars(&stem));
+    text_release(&stem);
+}
+
+void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin)
+{
+    text_put_line(add_value(values, "description"), params->description);
+    text_puts(add_value(values, "generator"), params->generator);
+    text_puts(add_value(values, "command"), params->command);
+    Text *extent = add_value(values, "extent");
+    text_printf(extent, "%.4g to %.4g, %.4g to %.4g, %.4g to %.4g mm", box.low.x, box.high.x,
+                box.low.y, box.high.y, box.low.z, box.high.z);
+    if (origin.x != 0 || origin.y != 0 || origin.z != 0)
+        text_printf(extent, ", about <%.15g,%.15g,%.15g> of the tree", origin.x, origin.y,
+                    origin.z);
 }
 
 void add_part(Values *values, const char *name, Status (*put)(Text *, void *, Err *), void *context)

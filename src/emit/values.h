@@ -22,6 +22,11 @@ void add_number(Values *values, const char *name, double value);
 void add_float(Values *values, const char *name, float value);
 /* "1" or "0" */
 void add_flag(Values *values, const char *name, bool value);
+/* `file`, and `stem`, the same without its extension. */
+void add_file(Values *values, const char *file);
+/* `description`, `generator`, `command` and `extent`: the box in mm, and where its origin lies in
+ * the tree when that was moved. */
+void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin);
 /* What `put` appends when the template comes to it. */
 void add_part(Values *values, const char *name, Status (*put)(Text *, void *, Err *),
               void *context);
