@@ -162,10 +162,10 @@ static void assert_rows_of_today(const Scene *scene, const RenderParams *params,
 static void bands_prepare_again_for_another_view_alone_not_for_other_colours(void **state)
 {
     (void)state;
-    static const SceneModel models[] = {SCENE_JOINED, SCENE_ISOSURFACE};
+    static const SceneModel either[] = {SCENE_JOINED, SCENE_ISOSURFACE};
     look.ground.present = false;
     for (size_t i = 0; i < 2; i++) {
-        Scene scene = staged(models[i], PROJECTION_ORTHOGRAPHIC);
+        Scene scene = staged(either[i], PROJECTION_ORTHOGRAPHIC);
         RenderParams params = all_planes(1, 0);
         Renderer *renderer;
         Frame rows;

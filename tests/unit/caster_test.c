@@ -64,22 +64,22 @@ static bool casts_shadow(SceneModel model, double at, double light)
 static void nothing_nearer_than_a_ten_thousandth_is_seen(void **state)
 {
     (void)state;
-    const SceneModel models[] = {SCENE_CYLINDERS, SCENE_ISOSURFACE};
+    const SceneModel either[] = {SCENE_CYLINDERS, SCENE_ISOSURFACE};
     for (int i = 0; i < 2; i++) {
-        assert_false(is_seen(models[i], 1e-4 - 1.01 * thickness));
-        assert_true(is_seen(models[i], 1e-4 + 1.01 * thickness));
+        assert_false(is_seen(either[i], 1e-4 - 1.01 * thickness));
+        assert_true(is_seen(either[i], 1e-4 + 1.01 * thickness));
     }
 }
 
 static void nothing_within_a_thousandth_of_point_or_light_casts_a_shadow(void **state)
 {
     (void)state;
-    const SceneModel models[] = {SCENE_CYLINDERS, SCENE_ISOSURFACE};
+    const SceneModel either[] = {SCENE_CYLINDERS, SCENE_ISOSURFACE};
     for (int i = 0; i < 2; i++) {
-        assert_false(casts_shadow(models[i], 1e-3 - 1.01 * thickness, 3));
-        assert_true(casts_shadow(models[i], 1e-3 + 1.01 * thickness, 3));
-        assert_true(casts_shadow(models[i], 3 - 1e-3 - 1.01 * thickness, 3));
-        assert_false(casts_shadow(models[i], 3 - 1e-3 + 1.01 * thickness, 3));
+        assert_false(casts_shadow(either[i], 1e-3 - 1.01 * thickness, 3));
+        assert_true(casts_shadow(either[i], 1e-3 + 1.01 * thickness, 3));
+        assert_true(casts_shadow(either[i], 3 - 1e-3 - 1.01 * thickness, 3));
+        assert_false(casts_shadow(either[i], 3 - 1e-3 + 1.01 * thickness, 3));
     }
 }
 
