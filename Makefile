@@ -65,7 +65,7 @@ LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
 .PHONY: all deps demo validate bench bench-grow bench-render bench-compare verify-all power power-program fit-blob check check-quick program unit \
 	unit-programs layers format format-check asan tsan \
-	fuzz fuzz-programs golden-update install uninstall dist clean help packages
+	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -245,18 +245,36 @@ tsan: ## build and run the unit tests with the thread sanitizer
 golden-update: build/corcast ## rewrite a golden: CASE=name REASON="why"; without, record today's scenes of all
 	$(Q)tests/golden-update "$(CASE)" "$(REASON)"
 
+# Manual pages and completions, made of the program's own descriptions.
+PAGES := build/share/man/man1
+build/share: build/corcast
+	$(call say,MADE,$@)
+	$(Q)rm -rf $@ && mkdir -p $(PAGES) $@/bash-completion/completions $@/zsh/site-functions $@/fish/vendor_completions.d
+	$(Q)build/corcast help --as man > $(PAGES)/corcast.1
+	$(Q)for name in $$(build/corcast help --as names); do \
+		build/corcast help $$name --as man > $(PAGES)/corcast-$$name.1 || exit; done
+	$(Q)build/corcast help --as bash > $@/bash-completion/completions/corcast
+	$(Q)build/corcast help --as zsh > $@/zsh/site-functions/_corcast
+	$(Q)build/corcast help --as fish > $@/fish/vendor_completions.d/corcast.fish
+
+reference: build/corcast ## write docs/REFERENCE.md anew
+	$(Q)build/corcast help --as markdown > build/REFERENCE.md && mv build/REFERENCE.md docs/
+
 SHARE = $(DESTDIR)$(PREFIX)/share
-install: build/corcast ## install under $(DESTDIR)$(PREFIX)
+install: build/corcast build/share ## install under $(DESTDIR)$(PREFIX), with manual pages and completions
 	install -Dm755 build/corcast $(DESTDIR)$(PREFIX)/bin/corcast
 	install -d $(SHARE)/corcast
 	cp -R templates $(SHARE)/corcast
-	install -Dm644 -t $(SHARE)/doc/corcast README.md CHANGELOG.md LICENSE
+	cd build/share && find . -type f -exec install -Dm644 {} $(abspath $(SHARE))/{} \;
+	install -Dm644 -t $(SHARE)/doc/corcast README.md CHANGELOG.md LICENSE CITATION.cff
 	install -Dm644 -t $(SHARE)/doc/corcast/docs docs/*.md
 	install -Dm644 -t $(SHARE)/doc/corcast/docs/decisions docs/decisions/*.md
 	install -Dm644 -t $(SHARE)/doc/corcast/docs/images docs/images/*.png
 
 uninstall: ## remove what `make install` put there
-	rm -f $(DESTDIR)$(PREFIX)/bin/corcast
+	rm -f $(DESTDIR)$(PREFIX)/bin/corcast $(SHARE)/man/man1/corcast.1 $(SHARE)/man/man1/corcast-*.1
+	rm -f $(SHARE)/bash-completion/completions/corcast $(SHARE)/zsh/site-functions/_corcast
+	rm -f $(SHARE)/fish/vendor_completions.d/corcast.fish
 	rm -rf $(SHARE)/corcast $(SHARE)/doc/corcast
 
 VERSION := $(shell sed -n 's/^.define CORCAST_VERSION "\(.*\)"/\1/p' src/base/version.h)

@@ -9,12 +9,14 @@
 extern const Command command_grow, command_refine, command_info, command_convert, command_scene,
     command_export, command_povray, command_render, command_view, command_verify, command_compare,
     command_report, command_models, command_fields, command_looks, command_colormaps,
-    command_domains, command_formats;
+    command_domains, command_formats, command_help, command_version;
 
 /* In the order of the help; NULL ends them. */
 extern const Command *const all_commands[];
 /* NULL when no command has this name. */
 const Command *command_find(const char *name);
+/* STATUS_USAGE for a name that no command has, with one that may have been meant. */
+Status command_unknown(const char *name, Err *err);
 
 #define GENERATOR "corcast " CORCAST_VERSION
 

@@ -2,6 +2,7 @@
  * headings, each with what it takes and what holds without it. */
 #include "app/help.h"
 
+#include "app/commands.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -34,7 +35,8 @@ void help_put_meaning(const Setting *plain, Text *text)
     option_put_allowed(option, &allowed);
     if (allowed.length)
         text_puts(text, option->choices ? ": " : "; ");
-    text_add(text, &allowed);
+    if (allowed.length)
+        text_puts(text, text_chars(&allowed) + (strncmp(text_chars(&allowed), "of ", 3) ? 0 : 3));
     if (option->otherwise)
         text_puts(&value, option->otherwise);
     else if (option->kind != OPTION_FLAG && setting_count(plain) > 0)
@@ -43,6 +45,17 @@ void help_put_meaning(const Setting *plain, Text *text)
         text_printf(text, " (%s)", text_chars(&value));
     text_release(&allowed);
     text_release(&value);
+}
+
+void help_put_escaped(const char *chars, const char *special, Text *text)
+{
+    for (; *chars; chars++)
+        text_printf(text, strchr(special, *chars) ? "\\%c" : "%c", *chars);
+}
+
+bool help_is_common(const Parsed *parsed, const Setting *setting)
+{
+    return setting->base == (const char *)&parsed->common;
 }
 
 static void put_option(const Setting *plain, Text *text)
@@ -89,16 +102,47 @@ static void put_help(const Parsed *plain, Text *text)
         put_group(plain, (OptionGroup)group, text);
 }
 
-Status help_print(const Command *command, Err *err)
+Status help_put(HelpPut *put, const Command *command, Text *text, Err *err)
 {
     Parsed plain;
-    Text text = TEXT_INIT;
     TRY(parsed_init(&plain, command, err));
-    put_help(&plain, &text);
-    Status status = text_check(&text, err);
-    if (status == STATUS_OK)
-        fputs(text_chars(&text), stdout);
-    text_release(&text);
+    put(&plain, text);
     parsed_release(&plain);
+    return text_check(text, err);
+}
+
+Status help_put_all(HelpPut *put, Text *text, Err *err)
+{
+    for (const Command *const *command = all_commands; *command; command++)
+        TRY(help_put(put, *command, text, err));
+    return STATUS_OK;
+}
+
+const char help_exit_status[] =
+    "0 done, 1 a comparison found a difference, 2 wrong usage or input, 3 a file, program or the "
+    "memory failed.";
+
+static void put_usage(Text *text)
+{
+    text_puts(text, GENERATOR ": grow, draw and verify arterial trees\n\n"
+                              "usage: corcast COMMAND [options] [files]\n\n");
+    for (const Command *const *command = all_commands; *command; command++)
+        text_printf(text, "  %-9s %s\n", (*command)->name, (*command)->summary);
+    text_printf(text,
+                "\ncorcast COMMAND --help tells the options of a command; '-' stands for standard "
+                "input\nor output wherever a file may stand.\n\nexit status: %s\n",
+                help_exit_status);
+}
+
+Status help_print(const Command *command, Err *err)
+{
+    Text text = TEXT_INIT;
+    Status status;
+    if (!command)
+        put_usage(&text);
+    TRY_GOTO(command ? help_put(put_help, command, &text, err) : text_check(&text, err));
+    fputs(text_chars(&text), stdout);
+done:
+    text_release(&text);
     return status;
 }

@@ -23,7 +23,6 @@ static const Option rows[] = {
      SETS(CHOICE, PictureOptions, model),
      .choices = model_names,
      .group = GROUP_VESSELS,
-     .list = "models",
      .help = "how vessels are drawn"},
     {.name = "potential",
      SETS(CHOICE, PictureOptions, potential),

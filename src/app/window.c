@@ -9,6 +9,7 @@
 #include <string.h>
 
 #define SDL_FUNCTIONS(X)                                                                           \
+    X(GetVersion)                                                                                  \
     X(SetMainReady)                                                                                \
     X(SetHint)                                                                                     \
     X(Init)                                                                                        \
@@ -215,4 +216,19 @@ Status window_show(Window *window, const uint8_t *rgb, int width, int height, Er
 void window_title(Window *window, const char *title)
 {
     window->sdl.SetWindowTitle(window->window, title);
+}
+
+void window_put_library(Text *text)
+{
+    Window window = {0};
+    Err err = {{0}};
+    SDL_version version;
+    if (load(&window, &err) == STATUS_OK) {
+        window.sdl.GetVersion(&version);
+        text_printf(text, "%d.%d.%d", version.major, version.minor, version.patch);
+    } else {
+        text_put_line(text, err.text);
+    }
+    if (window.library)
+        dlclose(window.library);
 }

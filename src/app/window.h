@@ -38,4 +38,7 @@ WindowEvent window_event(Window *window, bool wait);
 MUST_CHECK Status window_show(Window *window, const uint8_t *rgb, int width, int height, Err *err);
 void window_title(Window *window, const char *title);
 
+/* Appends the version of SDL that a window would use, or why there is none. */
+void window_put_library(Text *text);
+
 #endif

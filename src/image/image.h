@@ -215,4 +215,7 @@ typedef struct Frame {
 
 void frame_release(Frame *frame);
 
+/* Appends the names and versions of the libraries that read and write images. */
+void image_put_libraries(Text *text);
+
 #endif

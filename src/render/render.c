@@ -61,6 +61,11 @@ static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
     return STATUS_OK;
 }
 
+RenderKernels render_fastest_kernels(void)
+{
+    return (RenderKernels)kernels_usable();
+}
+
 static Status check_kernels(RenderKernels kernels, Err *err)
 {
     int usable = kernels_usable();

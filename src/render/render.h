@@ -47,4 +47,7 @@ RenderStats renderer_stats(const Renderer *renderer);
 MUST_CHECK Status render(const Scene *scene, const RenderParams *params, Frame *frame,
                          RenderStats *stats, Err *err);
 
+/* The fastest instructions that this processor has; never KERNELS_FASTEST. */
+RenderKernels render_fastest_kernels(void);
+
 #endif

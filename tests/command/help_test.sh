@@ -1,0 +1,167 @@
+#!/usr/bin/env bash
+# What is made of the options' descriptions: help, manual pages, docs/REFERENCE.md, completions of three shells.
+. "$(dirname "$0")/../lib.sh"
+
+# options_of COMMAND: the options that its help names.
+options_of() {
+    corcast "$1" --help | grep -oE '^  (-o, )?--[a-z-]+' | grep -oE -- '--[a-z-]+$'
+}
+
+test_help_prints_headings_ranges_and_defaults() {
+    run_ok corcast grow --help
+    expect_stdout '^blood:$'
+    expect_stdout '--gamma NUMBER +Murray exponent; above 0 and at most 10 \(3\)$'
+    run_ok corcast render --help
+    expect_stdout '^camera:$'
+    expect_stdout '--size WxH +pixels \(1000x1000\)$'
+    [ "$(awk 'length > 92' stdout | grep -vc '^  corcast')" -eq 0 ] || fail "expected no line of options over 92 columns"
+    run_ok corcast refine --help
+    tr -s ' \n' ' ' <stdout | grep -q 'geometry, topology, anneal (topology)' || fail "expected the default of refine"
+}
+
+test_every_command_and_option_is_in_the_reference() {
+    local command option
+    corcast help --as markdown >reference
+    cmp -s reference "$REPO/docs/REFERENCE.md" ||
+        fail "expected docs/REFERENCE.md to be what 'make reference' writes: $(diff reference "$REPO/docs/REFERENCE.md" | head -4)"
+    for command in $(corcast help --as names); do
+        for option in $(options_of "$command"); do
+            grep -qe "\`\(-o, \)\?$option[ \`]" reference || fail "expected $option of $command in the reference"
+        done
+    done
+}
+
+test_every_command_has_a_page_for_man() {
+    local command option
+    command -v mandoc >/dev/null || skip "mandoc is not installed"
+    for command in $(corcast help --as names); do
+        corcast help "$command" --as man >page
+        mandoc -Tlint -Wwarning page | grep -v 'missing date' >lint
+        [ ! -s lint ] || fail "expected a page for $command that mandoc likes, it said: $(head -3 lint)"
+        mandoc -Tutf8 page | col -b | tr -s ' ' >shown
+        for option in $(options_of "$command"); do
+            grep -qe "$option" shown || fail "expected $option in the page of $command"
+        done
+        grep -q "^ corcast-$command - " shown || fail "expected the name of $command"
+    done
+    corcast help --as man | mandoc -Tutf8 | col -b >shown
+    grep -q 'corcast-verify(1)' shown || fail "expected the pages of commands to be named"
+}
+
+test_a_page_shows_backslashes_quotes_and_dashes_as_they_are() {
+    command -v mandoc >/dev/null || skip "mandoc is not installed"
+    corcast help info --as man | mandoc -Tascii | col -b >shown
+    grep -q "corcast info tree.swc --stats --json | jq .stats.by_strahler" shown || fail "expected an example as it is typed"
+    corcast help report --as man | mandoc -Tascii | col -b | grep -q '`make power`' || fail "expected backquotes as they are"
+}
+
+# completes WORD...: what bash offers for the last word, in the file offered.
+completes() {
+    bash -c 'PATH=$1:$PATH; shift; . ./completion; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _corcast; printf "%s\n" "${COMPREPLY[@]}"' \
+        bash "$(dirname "$CORCAST")" "$@" >offered 2>errors
+    [ ! -s errors ] || fail "expected no error of completion, got $(cat errors)"
+}
+
+offers() {
+    grep -qxF -e "$1" offered || fail "expected $1 among $(tr '\n' ' ' <offered)"
+}
+
+test_bash_completes_commands_options_and_values() {
+    local command
+    corcast help --as bash >completion
+    completes corcast ''
+    for command in $(corcast help --as names); do
+        offers "$command"
+    done
+    completes corcast re
+    [ "$(tr '\n' ' ' <offered)" = "refine render report " ] || fail "expected commands with re, got $(cat offered)"
+    for command in $(corcast help --as names); do
+        completes corcast "$command" tree.swc --
+        options_of "$command" | sort >known
+        sort offered >sorted
+        expect_same known sorted
+    done
+    completes corcast render tree.swc --model iso
+    [ "$(cat offered)" = isosurface ] || fail "expected a model, got $(cat offered)"
+    completes corcast render tree.swc --color-by w
+    [ "$(cat offered)" = wss ] || fail "expected a field, got $(cat offered)"
+    completes corcast render tree.swc --look ''
+    corcast looks >known
+    expect_same known offered
+    completes corcast render --shadows ''
+    offers on
+    touch tree.swc
+    completes corcast render tr
+    [ -z "$(cat offered)" ] || fail "expected files to be left to bash, got $(cat offered)"
+}
+
+test_fish_completes_commands_options_and_values() {
+    command -v fish >/dev/null || skip "fish is not installed"
+    corcast help --as fish >completion
+    in_fish() {
+        env PATH="$(dirname "$CORCAST"):$PATH" HOME="$PWD" fish --no-config -c "source completion; complete -C '$1'" 2>errors | cut -f 1 >offered
+        [ ! -s errors ] || fail "expected no error of fish, got $(head -3 errors)"
+    }
+    in_fish 'corcast re'
+    [ "$(sort offered | tr '\n' ' ')" = "refine render report " ] || fail "expected commands with re, got $(cat offered)"
+    in_fish 'corcast render tree.swc --model iso'
+    offers isosurface
+    in_fish 'corcast render tree.swc --color-by w'
+    offers wss
+    in_fish 'corcast grow --lam'
+    offers --lambda
+}
+
+test_zsh_completes_options_and_values() {
+    command -v zsh >/dev/null || skip "zsh is not installed"
+    corcast help --as zsh >_corcast
+    run_ok zsh -n _corcast
+    # What zsh's own functions of completion are told, a word a line.
+    cat >driver <<'END'
+compdef() { }
+_describe() { print -rl -- "${(@P)2}" }
+_arguments() { print -rl -- "$@" }
+. ./_corcast
+words=("$@") CURRENT=$#
+_corcast
+END
+    told() {
+        run_ok zsh -f driver "$@"
+        [ ! -s stderr ] || fail "expected no error of zsh$(said)"
+    }
+    told corcast ''
+    expect_stdout '^info:count, measure and check a tree$'
+    told corcast render ''
+    expect_stdout '^--model\[how vessels are drawn\]:NAME:\(cylinders joined .*\)$'
+    expect_stdout '^--shadows\[.*\]::\\\[on\|off\\\]:\(on off\)$'
+    told corcast grow --p
+    for option in $(options_of grow); do
+        grep -qe "^$option\[" stdout || [ "$option" = --output ] || fail "expected $option, got $(cat stdout)"
+    done
+    expect_stdout '^\(-o --output\)-o\[the tree\]:T\.swc:_files$'
+}
+
+test_forms_that_are_not_of_one_command_are_refused() {
+    run corcast help grow --as bash
+    expect_status 2
+    expect_sentence "--as bash is of all commands; leave out grow"
+    run corcast help --as html
+    expect_status 2
+    expect_sentence "--as: 'html' is not one of text, man, markdown, bash, zsh, fish, names"
+}
+
+test_version_tells_what_a_report_of_a_fault_needs() {
+    run_ok corcast version
+    expect_stdout '^corcast [0-9.]+$'
+    expect_stdout '^compiler +(gcc|clang) [0-9]'
+    expect_stdout '^kernels +(portable|avx2|avx512)'
+    expect_stdout 'libpng [0-9.]+, libdeflate [0-9.]+, libtiff [0-9.]+, OpenEXR [0-9.]+, jansson [0-9.]+$'
+    printf '#!/bin/sh\necho "POV-Ray 3.7.99.of-mine" >&2\n' >mine
+    chmod +x mine
+    CORCAST_POVRAY=$PWD/mine run_ok corcast version
+    expect_stdout '^POV-Ray +POV-Ray 3\.7\.99\.of-mine$'
+    CORCAST_POVRAY=./none run_ok corcast version
+    expect_stdout '^POV-Ray +not found: there is no \./none'
+}
+
+run_tests "$@"
