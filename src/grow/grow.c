@@ -264,7 +264,6 @@ static Status start_forest(Growth *growth, Err *err)
 static Status start(Growth *growth, Err *err)
 {
     const GrowParams *params = growth->params;
-    const double pi = 3.14159265358979323846;
     Box box = domain_bounds(growth->domain);
     growth->size = vec3_distance(box.low, box.high);
     growth->rules = (Rules){.thickness = 1, .gap = 1e-7 * growth->size, .widest = growth->size};
@@ -279,8 +278,8 @@ static Status start(Growth *growth, Err *err)
     TRY(round_init(&growth->round, params->candidates, inlets, threads, err));
 
     double drop = pa_from_mmhg(params->p_perf_mmhg) - pa_from_mmhg(params->p_term_mmhg);
-    double resistance = 8 * weights_reference_pa_s(params) / pi;
-    double scale = sqrt(sqrt(resistance * mm3_s_from_ml_min(params->q_perf_ml_min) / drop));
+    double scale = law_radius_unit(weights_reference_pa_s(params),
+                                   mm3_s_from_ml_min(params->q_perf_ml_min), drop);
     bool traits = params->from || params->inlets > 1 || weights_are_needed(params);
     size_t given = params->from ? params->from->n : 0;
     TRY(network_init(&growth->net, (Law){params->gamma, params->lambda}, scale,

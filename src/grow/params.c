@@ -1,3 +1,5 @@
+/* The parameters of growth: their defaults, and whether a set of them makes sense. What a tree's
+ * file says of itself is checked by the table of keys [tree/meta.h], the rest here. */
 #include "grow/continue_tree.h"
 #include "grow/grow.h"
 #include <stddef.h>

@@ -6,7 +6,6 @@
 
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
 /* A relative change of a viscosity that counts as none, and the most rounds until there is no
  * greater one. */
 static const double settled = 1e-13;
@@ -45,12 +44,11 @@ Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
     double drop = pa_from_mmhg(number[META_P_PERF]) - pa_from_mmhg(number[META_P_TERM]);
     bool pries = meta_number(&tree->meta, META_VISCOSITY_LAW) == VISCOSITY_PRIES;
     double reference_cp = number[pries ? META_PLASMA_VISCOSITY : META_VISCOSITY];
-    double resistance = 8 * pa_s_from_cp(reference_cp) / pi;
     double flow = mm3_s_from_ml_min(number[META_Q_PERF]) / (double)(tree->n / 2);
     Arbor made = {.law = {number[META_GAMMA], number[META_LAMBDA]},
                   .n = tree->n,
                   .hematocrit = number[META_HEMATOCRIT],
-                  .radius_unit = sqrt(sqrt(resistance * flow / drop))};
+                  .radius_unit = law_radius_unit(pa_s_from_cp(reference_cp), flow, drop)};
     double *share = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&made.branch, made.n, sizeof *made.branch, "segments", err));

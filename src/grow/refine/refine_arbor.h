@@ -177,8 +177,8 @@ void arbor_prune(Arbor *arbor, int32_t i);
 /* Splits segment `host` at `place`, mm, and hangs segment i, which was pruned, there. O(depth). */
 void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place);
 
-/* Gives segment i `reserved_radius` and `inverse_limit` [refine_clearance.h]. The caller resums
- * from there. */
+/* Gives segment i `reserved_radius` and `inverse_limit` [refine_clearance.h]. The caller
+ * then has to call arbor_sum_from for it. */
 void arbor_reserve(Arbor *arbor, int32_t i, double reserved_radius, double inverse_limit);
 /* Computes the sums of segment i and of all above it anew. O(depth). */
 void arbor_sum_from(Arbor *arbor, int32_t i);

@@ -1,3 +1,7 @@
+/* Refinement assumes more of a tree than a file has to promise: one root with one child, two
+ * children or none elsewhere, segments with a length, flow out of terminals alone, all numbers of
+ * the law, and a place inside the domain. All of it is tested before anything is allocated for the
+ * tree. */
 #include "grow/refine/refine_check.h"
 
 #include <stdlib.h>
