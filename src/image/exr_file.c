@@ -23,7 +23,7 @@ typedef struct Exr {
     char complaint[200]; /* the library's, "" when there is none */
 } Exr;
 
-bool exr_is(const ImageBytes *file)
+static bool exr_is(const ImageBytes *file)
 {
     return file->size >= 4 && memcmp(file->bytes, "\x76\x2f\x31\x01", 4) == 0;
 }
@@ -314,15 +314,17 @@ static Status decode(Exr *self, Err *err)
     return self->has_alpha ? plane_drop_alpha(&self->plane, self->file.name, err) : STATUS_OK;
 }
 
-Status exr_decode(const ImageBytes *file, Plane *plane, Err *err)
+static Status exr_decode(const ImageBytes *file, Image *image, Err *err)
 {
     Exr self = {.file = *file};
     errno = 0;
     Status status = decode(&self, err);
     exr_finish(&self.context);
     if (status == STATUS_OK)
-        *plane = self.plane;
+        image->plane = self.plane;
     else
         plane_release(&self.plane);
     return status;
 }
+
+const ImageDecoder exr_decoder = {exr_is, exr_decode};

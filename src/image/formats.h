@@ -64,26 +64,21 @@ typedef struct RowEncoder {
 
 extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, pfm_encoder;
 
-bool pnm_is(const ImageBytes *file);
-MUST_CHECK Status pnm_decode(const ImageBytes *file, Picture *picture, Err *err);
+/* How a format is read. */
+typedef struct ImageDecoder {
+    bool (*is)(const ImageBytes *file); /* by the first bytes, all that may be there */
+    /* Fills in the picture or the plane of a zeroed image; it is untouched on failure. */
+    Status (*decode)(const ImageBytes *file, Image *image, Err *err);
+} ImageDecoder;
+
+extern const ImageDecoder png_decoder, pnm_decoder, pfm_decoder, exr_decoder, tiff_decoder;
 
 /* Deflate shrinks at most 1032-fold, which bounds what a PNG's header may claim. */
 enum { DEFLATE_MAX_RATIO = 1032 };
 
-bool png_is(const ImageBytes *file);
 /* Decodes a PNG of the common form; false, leaving *picture as it is, on any other, broken ones
  * included. */
 bool png_decode_plain(const ImageBytes *file, Picture *picture);
-MUST_CHECK Status png_decode(const ImageBytes *file, Picture *picture, Err *err);
-
-bool pfm_is(const ImageBytes *file);
-MUST_CHECK Status pfm_decode(const ImageBytes *file, Plane *plane, Err *err);
-
-bool exr_is(const ImageBytes *file);
-MUST_CHECK Status exr_decode(const ImageBytes *file, Plane *plane, Err *err);
-
-bool tiff_is(const ImageBytes *file);
-MUST_CHECK Status tiff_decode(const ImageBytes *file, Image *image, Err *err);
 
 /* Removes the last channel of a plane of 2 or 4. STATUS_INPUT, naming the file, unless it is 1
  * throughout. */

@@ -6,23 +6,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const ImageDecoder *const decoders[] = {&png_decoder, &pnm_decoder, &pfm_decoder,
+                                               &exr_decoder, &tiff_decoder};
+
+/* NULL when the file is of no known format. */
+static const ImageDecoder *decoder_of(const ImageBytes *file)
+{
+    for (size_t i = 0; i < sizeof decoders / sizeof *decoders; i++)
+        if (decoders[i]->is(file))
+            return decoders[i];
+    return NULL;
+}
+
 static bool is_known(const char *start, size_t count)
 {
     const ImageBytes file = {.bytes = (const uint8_t *)start, .size = count};
-    return png_is(&file) || pnm_is(&file) || pfm_is(&file) || exr_is(&file) || tiff_is(&file);
-}
-
-static Status decode(const ImageBytes *file, Image *image, Err *err)
-{
-    if (png_is(file))
-        return png_decode(file, &image->picture, err);
-    if (pnm_is(file))
-        return pnm_decode(file, &image->picture, err);
-    if (pfm_is(file))
-        return pfm_decode(file, &image->plane, err);
-    if (exr_is(file))
-        return exr_decode(file, &image->plane, err);
-    return tiff_decode(file, image, err);
+    return decoder_of(&file) != NULL;
 }
 
 static const char *name_of(const char *path)
@@ -40,7 +39,7 @@ static Status read_image(Image *image, const char *path, bool for_mask, Err *err
     TRY(file_read(path, &form, &bytes, &size, err));
     ImageBytes file = {name_of(path), (const uint8_t *)bytes, size, for_mask};
     Image made = {0};
-    Status status = decode(&file, &made, err);
+    Status status = decoder_of(&file)->decode(&file, &made, err);
     free(bytes);
     if (status == STATUS_OK)
         *image = made;

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/types.h>
 
-bool pfm_is(const ImageBytes *file)
+static bool pfm_is(const ImageBytes *file)
 {
     return file->size >= 2 && file->bytes[0] == 'P' &&
            (file->bytes[1] == 'F' || file->bytes[1] == 'f');
@@ -31,7 +31,7 @@ static void write_float(uint8_t *bytes, float value)
         bytes[i] = (uint8_t)(bits >> 8 * i & 255);
 }
 
-Status pfm_decode(const ImageBytes *file, Plane *plane, Err *err)
+static Status pfm_decode(const ImageBytes *file, Image *image, Err *err)
 {
     HeaderCursor cursor = {.file = *file, .at = 2};
     long long width, height;
@@ -58,9 +58,11 @@ Status pfm_decode(const ImageBytes *file, Plane *plane, Err *err)
         for (size_t i = 0; i < row_values; i++)
             to[i] = read_float(from + 4 * i, scale < 0);
     }
-    *plane = made;
+    image->plane = made;
     return STATUS_OK;
 }
+
+const ImageDecoder pfm_decoder = {pfm_is, pfm_decode};
 
 /* ------------------------------------------------------------------------------------ writing */
 

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool png_is(const ImageBytes *file)
+static bool png_is(const ImageBytes *file)
 {
     return file->size >= 8 && png_sig_cmp(file->bytes, 0, 8) == 0;
 }
@@ -214,9 +214,9 @@ static Status read_guarded(Reader *self)
     return errno == ENOMEM ? mem_out_of("to read", self->file.name, self->err) : STATUS_OK;
 }
 
-Status png_decode(const ImageBytes *file, Picture *picture, Err *err)
+static Status png_decode(const ImageBytes *file, Image *image, Err *err)
 {
-    if (png_decode_plain(file, picture))
+    if (png_decode_plain(file, &image->picture))
         return STATUS_OK;
     Reader self = {.file = *file, .err = err};
     errno = 0;
@@ -228,11 +228,13 @@ Status png_decode(const ImageBytes *file, Picture *picture, Err *err)
     free(self.rows);
     free(self.bytes);
     if (status == STATUS_OK)
-        *picture = self.picture;
+        image->picture = self.picture;
     else
         picture_release(&self.picture);
     return status;
 }
+
+const ImageDecoder png_decoder = {png_is, png_decode};
 
 /* ------------------------------------------------------------------------------------ writing */
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool pnm_is(const ImageBytes *file)
+static bool pnm_is(const ImageBytes *file)
 {
     return file->size >= 2 && file->bytes[0] == 'P' && memchr("2356", file->bytes[1], 4);
 }
@@ -84,7 +84,7 @@ static void rescale(Picture *picture, unsigned maximum)
                     (uint16_t)((picture_code(picture, i) * wanted + maximum / 2) / maximum));
 }
 
-Status pnm_decode(const ImageBytes *file, Picture *picture, Err *err)
+static Status pnm_decode(const ImageBytes *file, Image *image, Err *err)
 {
     HeaderCursor cursor = {.file = *file};
     PnmHeader header;
@@ -106,9 +106,11 @@ Status pnm_decode(const ImageBytes *file, Picture *picture, Err *err)
         return status;
     }
     rescale(&made, header.maximum);
-    *picture = made;
+    image->picture = made;
     return STATUS_OK;
 }
+
+const ImageDecoder pnm_decoder = {pnm_is, pnm_decode};
 
 /* ------------------------------------------------------------------------------------ writing */
 

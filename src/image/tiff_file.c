@@ -25,7 +25,7 @@ typedef struct Tiff {
     char complaint[200];
 } Tiff;
 
-bool tiff_is(const ImageBytes *file)
+static bool tiff_is(const ImageBytes *file)
 {
     return file->size >= 4 &&
            (memcmp(file->bytes, "II*\0", 4) == 0 || memcmp(file->bytes, "MM\0*", 4) == 0 ||
@@ -342,7 +342,7 @@ static Status decode(void *work, Err *err)
     return check_single(self, err);
 }
 
-Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
+static Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
 {
     Tiff self = {.file = *file};
     errno = 0;
@@ -356,3 +356,5 @@ Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
         image_release(&self.image);
     return status;
 }
+
+const ImageDecoder tiff_decoder = {tiff_is, tiff_decode};
