@@ -9,9 +9,8 @@
 typedef struct FrameSegment {
     Vec3 a, b, axis;
     double length, k;
-    double sine, per_sine;   /* orthographic: of the angle between axis and rays; 0 when parallel */
-    double reach;            /* mm from the axis, beyond which the term is below the cut-off */
-    int first_row, last_row; /* of tiles; first > last: nowhere */
+    double sine, per_sine; /* orthographic: of the angle between axis and rays; 0 when parallel */
+    double reach;          /* mm from the axis, beyond which the term is below the cut-off */
 } FrameSegment;
 
 /* A term of the potential as the tile sees it. `o` is where the middle ray passes at z = z_near:

@@ -1,23 +1,15 @@
-/* Segments are moved to the camera's frame once, in double precision, and counted into the rows of
- * tiles that their support touches (a capsule: the segment, widened by its reach). A row of tiles
- * is the unit of work. For it every segment is clipped to the slab of space that the row's rays
- * fill, which gives the columns that it touches there, and with them the list of every tile; a list
- * holds its segments by rising index, whatever the number of threads. What the kernel leaves
- * undecided is cast ray by ray in double precision among the terms of the tile. */
+/* A row of tiles is the unit of work: the lists of its tiles are made, and each tile's terms are
+ * set out and traced by the kernel. What the kernel leaves undecided is cast ray by ray in double
+ * precision among the terms of the tile. */
 #include "render/field/fieldtiles.h"
 
 #include "render/cast/fieldcast.h"
-#include "render/field/fieldterms.h"
 #include "surface/surface.h"
-#include <limits.h>
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct Workspace {
     TileSpan *columns; /* of the row's segments; as long as the longest row */
-    uint32_t *offsets; /* of the row's tiles into `lists`; one more than there are tiles */
-    uint32_t *lists;
-    size_t lists_capacity;
+    BinLists lists;    /* of the row's tiles */
     TileTerm *terms;
     size_t terms_capacity;
     uint32_t *candidates; /* segments of the terms; as long as `terms` */
@@ -36,112 +28,13 @@ typedef struct TilePlaces {
 struct FieldTiles {
     const Geometry *geometry;
     Camera camera;
-    SampleGrid grid;
-    Viewpoint eye;
-    double width, height; /* of the picture, in the camera's plane */
+    VesselLists lists;
     double z_min;
-    double *x, *y;       /* of the grid's columns and rows, in the camera's plane */
-    double per_x, per_y; /* samples in a unit there, per_y below 0 */
     TilePlaces *tile_x, *tile_y;
-    int tile_columns, tile_rows;
-    FrameSegment *segments;
-    size_t *row_offsets; /* into row_segments; one more than there are rows */
-    uint32_t *row_segments;
     FieldKernel *trace;
     Workspace *workspaces;
     int workers;
 };
-
-/* 1: all in front of the camera, or orthographic; -1: all behind; 0: beside it. */
-static int side_of_camera(const FieldTiles *tiles, const FrameSegment *segment)
-{
-    if (!tiles->eye.perspective)
-        return 1;
-    double near = min_of(segment->a.z, segment->b.z), far = max_of(segment->a.z, segment->b.z);
-    return near > segment->reach * (1 + 1e-9) ? 1 : far < -segment->reach ? -1 : 0;
-}
-
-static TileSpan rows_of(const FieldTiles *tiles, const FrameSegment *segment)
-{
-    int side = side_of_camera(tiles, segment);
-    if (side < 0)
-        return NOWHERE;
-    Interval range = {-HUGE_VAL, HUGE_VAL};
-    if (side > 0)
-        range = capsule_shadow(tiles->eye.perspective, segment->a.y, segment->a.z, segment->b.y,
-                               segment->b.z, segment->reach);
-    return tiles_within(samples_within(range, tiles->y[0], tiles->per_y), 0, tiles->grid.n_rows);
-}
-
-enum { CHUNK = 2048 };
-
-static void prepare_chunk(size_t chunk, int worker, void *context)
-{
-    (void)worker;
-    FieldTiles *tiles = context;
-    const Geometry *geometry = tiles->geometry;
-    size_t end =
-        (chunk + 1) * CHUNK < geometry->n_segments ? (chunk + 1) * CHUNK : geometry->n_segments;
-    for (size_t i = chunk * CHUNK; i < end; i++) {
-        const FieldSegment *segment = &geometry->segments[i];
-        Vec3 span = vec3_sub(segment->b, segment->a);
-        FrameSegment *out = &tiles->segments[i];
-        *out = (FrameSegment){.a = viewpoint_place(&tiles->eye, segment->a),
-                              .b = viewpoint_place(&tiles->eye, segment->b),
-                              .length = vec3_length(span),
-                              .k = potential_k(segment->radius_mm)};
-        out->axis = vec3_scale(viewpoint_to_frame(&tiles->eye, span), 1 / out->length);
-        out->sine = sqrt(out->axis.x * out->axis.x + out->axis.y * out->axis.y);
-        out->per_sine = out->sine > 0 ? 1 / out->sine : 0;
-        double reach2 = log(potential_term_peak(segment) / TILE_TERM_CUTOFF);
-        TileSpan rows = {1, 0};
-        if (reach2 > 0) {
-            out->reach = sqrt(reach2) / out->k;
-            rows = rows_of(tiles, out);
-        }
-        out->first_row = rows.first;
-        out->last_row = rows.last;
-    }
-}
-
-/* Counting sort of the segments into rows. */
-static Status sort_into_rows(FieldTiles *tiles, Err *err)
-{
-    size_t n = tiles->geometry->n_segments, total = 0;
-    size_t *offsets = tiles->row_offsets;
-    for (size_t i = 0; i < n; i++)
-        for (int row = tiles->segments[i].first_row; row <= tiles->segments[i].last_row; row++)
-            offsets[row + 1]++;
-    for (int row = 0; row < tiles->tile_rows; row++) {
-        total += offsets[row + 1];
-        offsets[row + 1] = total;
-    }
-    TRY(mem_calloc(&tiles->row_segments, total, sizeof *tiles->row_segments, "rows of tiles", err));
-    for (size_t i = n; i-- > 0;)
-        for (int row = tiles->segments[i].first_row; row <= tiles->segments[i].last_row; row++)
-            tiles->row_segments[--offsets[row + 1]] = (uint32_t)i;
-    for (int row = 0; row < tiles->tile_rows; row++)
-        offsets[row] = offsets[row + 1];
-    offsets[tiles->tile_rows] = total;
-    return STATUS_OK;
-}
-
-static double row_height(const FieldTiles *tiles, double row)
-{
-    return (0.5 - (row + 0.5) / tiles->camera.height) * tiles->height;
-}
-
-static void place_grid(FieldTiles *tiles)
-{
-    const SampleGrid *grid = &tiles->grid;
-    const Camera *camera = &tiles->camera;
-    for (int i = 0; i < grid->n_columns; i++)
-        tiles->x[i] = ((grid->columns[i] + 0.5) / camera->width - 0.5) * tiles->width;
-    for (int j = 0; j < grid->n_rows; j++)
-        tiles->y[j] = row_height(tiles, grid->rows[j]);
-    tiles->per_x = camera->width / (grid->spacing * tiles->width);
-    tiles->per_y = -camera->height / (grid->spacing * tiles->height);
-}
 
 static void place_tiles(const double *places, int count, int (*place_of)(int sample),
                         TilePlaces *tiles)
@@ -160,18 +53,12 @@ static void place_tiles(const double *places, int count, int (*place_of)(int sam
 
 static Status make_workspaces(FieldTiles *tiles, Err *err)
 {
-    size_t longest = 0;
-    for (int row = 0; row < tiles->tile_rows; row++) {
-        size_t n = tiles->row_offsets[row + 1] - tiles->row_offsets[row];
-        longest = n > longest ? n : longest;
-    }
     TRY(mem_calloc(&tiles->workspaces, (size_t)tiles->workers, sizeof *tiles->workspaces,
                    "workspaces", err));
     for (int i = 0; i < tiles->workers; i++) {
         Workspace *space = &tiles->workspaces[i];
-        TRY(mem_calloc(&space->columns, longest, sizeof *space->columns, "rows of tiles", err));
-        TRY(mem_calloc(&space->offsets, (size_t)tiles->tile_columns + 1, sizeof *space->offsets,
-                       "tiles", err));
+        TRY(mem_calloc(&space->columns, tiles->lists.longest, sizeof *space->columns,
+                       "rows of tiles", err));
     }
     return STATUS_OK;
 }
@@ -184,30 +71,17 @@ Status fieldtiles_new(const Geometry *geometry, const Camera *camera, const Samp
     TRY_GOTO(mem_calloc(&tiles, 1, sizeof *tiles, "tiles", err));
     tiles->geometry = geometry;
     tiles->camera = *camera;
-    tiles->grid = *grid;
     tiles->z_min = z_min;
     tiles->workers = workers;
     tiles->trace = fieldkernels[kernels_kind(KERNELS_FASTEST)];
-    tiles->eye = viewpoint_of_camera(camera);
-    tiles->width = vec3_length(camera->right);
-    tiles->height = vec3_length(camera->up);
-    tiles->tile_columns = (grid->n_columns + TILE_SIDE - 1) / TILE_SIDE;
-    tiles->tile_rows = (grid->n_rows + TILE_SIDE - 1) / TILE_SIDE;
-    TRY_GOTO(mem_calloc(&tiles->x, (size_t)grid->n_columns, sizeof *tiles->x, "columns", err));
-    TRY_GOTO(mem_calloc(&tiles->y, (size_t)grid->n_rows, sizeof *tiles->y, "rows", err));
-    TRY_GOTO(mem_calloc(&tiles->tile_x, (size_t)tiles->tile_columns, sizeof *tiles->tile_x,
+    TRY_GOTO(vessellists_make(geometry, camera, grid, workers, &tiles->lists, err));
+    const VesselLists *lists = &tiles->lists;
+    TRY_GOTO(mem_calloc(&tiles->tile_x, (size_t)lists->tile_columns, sizeof *tiles->tile_x,
                         "columns", err));
     TRY_GOTO(
-        mem_calloc(&tiles->tile_y, (size_t)tiles->tile_rows, sizeof *tiles->tile_y, "rows", err));
-    place_grid(tiles);
-    place_tiles(tiles->x, grid->n_columns, tile_sample_x, tiles->tile_x);
-    place_tiles(tiles->y, grid->n_rows, tile_sample_y, tiles->tile_y);
-    TRY_GOTO(mem_calloc(&tiles->segments, geometry->n_segments, sizeof *tiles->segments, "segments",
-                        err));
-    TRY_GOTO(mem_calloc(&tiles->row_offsets, (size_t)tiles->tile_rows + 1,
-                        sizeof *tiles->row_offsets, "rows of tiles", err));
-    threads_for((geometry->n_segments + CHUNK - 1) / CHUNK, workers, prepare_chunk, tiles);
-    TRY_GOTO(sort_into_rows(tiles, err));
+        mem_calloc(&tiles->tile_y, (size_t)lists->tile_rows, sizeof *tiles->tile_y, "rows", err));
+    place_tiles(lists->x, grid->n_columns, tile_sample_x, tiles->tile_x);
+    place_tiles(lists->y, grid->n_rows, tile_sample_y, tiles->tile_y);
     TRY_GOTO(make_workspaces(tiles, err));
     *out = tiles;
     return STATUS_OK;
@@ -223,27 +97,22 @@ void fieldtiles_free(FieldTiles *tiles)
     for (int i = 0; tiles->workspaces && i < tiles->workers; i++) {
         Workspace *space = &tiles->workspaces[i];
         free(space->columns);
-        free(space->offsets);
-        free(space->lists);
+        binlists_release(&space->lists);
         free(space->terms);
         free(space->candidates);
         tilework_release(&space->work);
         fieldscratch_free(space->scratch);
     }
     free(tiles->workspaces);
-    free(tiles->x);
-    free(tiles->y);
+    vessellists_release(&tiles->lists);
     free(tiles->tile_x);
     free(tiles->tile_y);
-    free(tiles->segments);
-    free(tiles->row_offsets);
-    free(tiles->row_segments);
     free(tiles);
 }
 
 size_t fieldtiles_rows(const FieldTiles *tiles)
 {
-    return (size_t)tiles->tile_rows;
+    return (size_t)tiles->lists.tile_rows;
 }
 
 void fieldtiles_use_kernel(FieldTiles *tiles, FieldKernel *trace)
@@ -253,77 +122,23 @@ void fieldtiles_use_kernel(FieldTiles *tiles, FieldKernel *trace)
 
 size_t fieldtiles_columns(const FieldTiles *tiles)
 {
-    return (size_t)tiles->tile_columns;
+    return (size_t)tiles->lists.tile_columns;
 }
 
-static double above(const FieldTiles *tiles, Vec3 p, double y)
-{
-    return tiles->eye.perspective ? (p.y - y * p.z) / sqrt(1 + y * y) : p.y - y;
-}
-
-/* The tiles of a row, whose rays are between y_low and y_high, that the support of the segment may
- * touch: those of the part of the segment that is within reach of the slab. */
-static TileSpan columns_of(const FieldTiles *tiles, const FrameSegment *segment, double y_low,
-                           double y_high)
-{
-    if (side_of_camera(tiles, segment) == 0)
-        return (TileSpan){0, tiles->tile_columns - 1};
-    double from = 0, to = 1;
-    const double heights[2][2] = {
-        {above(tiles, segment->a, y_low), above(tiles, segment->b, y_low)},
-        {-above(tiles, segment->a, y_high), -above(tiles, segment->b, y_high)}};
-    for (int plane = 0; plane < 2; plane++)
-        clip_part(heights[plane][0] + segment->reach, heights[plane][1] + segment->reach, &from,
-                  &to);
-    if (from > to)
-        return NOWHERE;
-    Vec3 span = vec3_sub(segment->b, segment->a);
-    Vec3 first = vec3_add_scaled(segment->a, span, from);
-    Vec3 last = vec3_add_scaled(segment->a, span, to);
-    Interval range =
-        capsule_shadow(tiles->eye.perspective, first.x, first.z, last.x, last.z, segment->reach);
-    return tiles_within(samples_within(range, tiles->x[0], tiles->per_x), 0, tiles->grid.n_columns);
-}
-
-/* Fills offsets and lists of the row, and makes room for the terms of its longest. */
+/* Makes the lists of the row's tiles, and room for the terms of the longest. */
 static Status list_row(const FieldTiles *tiles, size_t row, Workspace *space, Err *err)
 {
-    const uint32_t *segments = tiles->row_segments + tiles->row_offsets[row];
-    size_t n = tiles->row_offsets[row + 1] - tiles->row_offsets[row];
-    int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
-    last = last < tiles->grid.n_rows ? last : tiles->grid.n_rows - 1;
-    uint32_t *offsets = space->offsets;
-    for (int i = 0; i <= tiles->tile_columns; i++)
-        offsets[i] = 0;
-    for (size_t i = 0; i < n; i++) {
-        TileSpan span =
-            columns_of(tiles, &tiles->segments[segments[i]], tiles->y[last], tiles->y[first]);
-        space->columns[i] = span;
-        for (int column = span.first; column <= span.last; column++)
-            offsets[column + 1]++;
+    size_t longest = 0;
+    TRY(vessellists_row(&tiles->lists, row, space->columns, &space->lists, err));
+    for (int i = 0; i < tiles->lists.tile_columns; i++) {
+        size_t length = space->lists.offsets[i + 1] - space->lists.offsets[i];
+        longest = length > longest ? length : longest;
     }
-    size_t total = 0, longest = 0;
-    for (int i = 1; i <= tiles->tile_columns; i++) {
-        longest = offsets[i] > longest ? offsets[i] : longest;
-        total += offsets[i];
-        if (total > UINT32_MAX)
-            return err_set(err, STATUS_MEMORY, "too many segments in one row of the picture");
-        offsets[i] = (uint32_t)total;
-    }
-    TRY(mem_reserve(&space->lists, &space->lists_capacity, total, sizeof *space->lists, "tiles",
-                    err));
     TRY(mem_reserve(&space->terms, &space->terms_capacity, longest, sizeof *space->terms, "terms",
                     err));
     TRY(mem_reserve(&space->candidates, &space->candidates_capacity, longest,
                     sizeof *space->candidates, "terms", err));
-    TRY(tilework_reserve(&space->work, longest, err));
-    for (size_t i = n; i-- > 0;)
-        for (int column = space->columns[i].first; column <= space->columns[i].last; column++)
-            space->lists[--offsets[column + 1]] = segments[i];
-    for (int i = 0; i < tiles->tile_columns; i++)
-        offsets[i] = offsets[i + 1];
-    offsets[tiles->tile_columns] = (uint32_t)total;
-    return STATUS_OK;
+    return tilework_reserve(&space->work, longest, err);
 }
 
 /* Sets what all tiles of a row share. */
@@ -331,7 +146,7 @@ static void place_row(const FieldTiles *tiles, size_t row, FieldTile *tile)
 {
     const TilePlaces *y = &tiles->tile_y[row];
     *tile = (FieldTile){.blend = &tiles->geometry->blend,
-                        .perspective = tiles->eye.perspective,
+                        .perspective = tiles->lists.eye.perspective,
                         .y = y->samples,
                         .middle_y = y->middle,
                         .z_min = tiles->z_min};
@@ -351,9 +166,9 @@ static SeenTile place_samples(const FieldTiles *tiles, int column, size_t row)
     const TilePlaces *x = &tiles->tile_x[column], *y = &tiles->tile_y[row];
     return (SeenTile){.column = column * TILE_SIDE,
                       .row = (int)row * TILE_SIDE,
-                      .n_columns = tile_extent(tiles->grid.n_columns - column * TILE_SIDE),
-                      .n_rows = tile_extent(tiles->grid.n_rows - (int)row * TILE_SIDE),
-                      .perspective = tiles->eye.perspective,
+                      .n_columns = tile_extent(tiles->lists.grid.n_columns - column * TILE_SIDE),
+                      .n_rows = tile_extent(tiles->lists.grid.n_rows - (int)row * TILE_SIDE),
+                      .perspective = tiles->lists.eye.perspective,
                       .x = x->samples,
                       .y = y->samples,
                       .middle_x = x->middle,
@@ -386,10 +201,10 @@ static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile 
                                ray, tiles->z_min, HUGE_VAL, &t, &normal, &segment))
         return STATUS_OK;
     bool within = vec3_dot(normal, ray.direction) > 0;
-    normal = viewpoint_to_frame(&tiles->eye, within ? vec3_scale(normal, -1) : normal);
+    normal = viewpoint_to_frame(&tiles->lists.eye, within ? vec3_scale(normal, -1) : normal);
     hits->any_hit = true;
     hits->state[sample] = TILE_HIT;
-    hits->z[sample] = t * vec3_dot(ray.direction, tiles->eye.axes[2]);
+    hits->z[sample] = t * vec3_dot(ray.direction, tiles->lists.eye.axes[2]);
     hits->normal[0][sample] = (float)normal.x;
     hits->normal[1][sample] = (float)normal.y;
     hits->normal[2][sample] = (float)normal.z;
@@ -400,7 +215,7 @@ static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile 
 static Status decide_all(const FieldTiles *tiles, Workspace *space, const FieldTile *tile,
                          const SeenTile *seen, TileHits *hits, Err *err)
 {
-    const SampleGrid *grid = &tiles->grid;
+    const SampleGrid *grid = &tiles->lists.grid;
     for (int sample = 0; hits->any_unsure && sample < TILE_SAMPLES; sample++) {
         int i = tile_sample_x(sample), j = tile_sample_y(sample);
         if (hits->state[sample] != TILE_UNSURE || i >= seen->n_columns || j >= seen->n_rows)
@@ -419,15 +234,15 @@ Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t
     FieldTile tile;
     TRY(list_row(tiles, row, space, err));
     place_row(tiles, row, &tile);
-    for (int column = 0; column < tiles->tile_columns; column++) {
+    for (int column = 0; column < tiles->lists.tile_columns; column++) {
         if (wanted && !wanted[column])
             continue;
         TileHits hits;
         SeenTile seen = place_samples(tiles, column, row);
-        if (space->offsets[column] < space->offsets[column + 1]) {
+        const size_t *list = &space->lists.offsets[column];
+        if (list[0] < list[1]) {
             place_column(tiles, (size_t)column, row, &tile);
-            uint32_t list = space->offsets[column];
-            fieldterms_make(tiles->segments, space->lists + list, space->offsets[column + 1] - list,
+            fieldterms_make(tiles->lists.segments, space->lists.items + list[0], list[1] - list[0],
                             &tile, space->terms, space->candidates);
             if (tile.n_terms) {
                 tiles->trace(&tile, &space->work, &hits);

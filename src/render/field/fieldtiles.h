@@ -1,18 +1,10 @@
-/* The potential as a camera sees it: which vessels matter in which tile of the picture, and the
- * first hit of every sample of a tile. */
+/* The first hit of every sample of a tile of the potential. */
 #ifndef CORCAST_RENDER_FIELDTILES_H
 #define CORCAST_RENDER_FIELDTILES_H
 
 #include "render/field/fieldkernels.h"
+#include "render/field/vessellists.h"
 #include "render/tile/viewpoint.h"
-
-/* Where rays go through the picture: every pair of a column and a row, in pixels as camera_ray
- * takes them. Both ascend in steps of `spacing`. */
-typedef struct SampleGrid {
-    const double *columns, *rows; /* borrowed */
-    int n_columns, n_rows;
-    double spacing;
-} SampleGrid;
 
 /* Constant once built but for the workspaces, one a worker. */
 typedef struct FieldTiles FieldTiles;

@@ -1,0 +1,186 @@
+/* Segments are moved to the camera's frame once, in double precision, and sorted into the rows of
+ * tiles that their support touches (a capsule: the segment, widened by its reach). Of a row every
+ * segment is clipped to the slab of space that the row's rays fill, which gives the columns that it
+ * touches there, and with them the list of every tile. Lists hold their segments by rising index,
+ * whatever the number of threads. */
+#include "render/field/vessellists.h"
+
+#include "surface/surface.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- bins ------------------------------------------------------------------------------------ */
+
+/* Counting sort of n numbers, those of `numbers` or 0 .. n - 1, into the bins of their spans. */
+static Status sort_into_bins(const TileSpan *spans, const uint32_t *numbers, size_t n, int bins,
+                             BinLists *lists, Err *err)
+{
+    size_t total = 0;
+    if (!lists->offsets)
+        TRY(mem_calloc(&lists->offsets, (size_t)bins + 1, sizeof *lists->offsets, "tiles", err));
+    size_t *offsets = lists->offsets;
+    memset(offsets, 0, ((size_t)bins + 1) * sizeof *offsets);
+    for (size_t i = 0; i < n; i++)
+        for (int bin = spans[i].first; bin <= spans[i].last; bin++)
+            offsets[bin + 1]++;
+    for (int bin = 1; bin <= bins; bin++)
+        offsets[bin] = total += offsets[bin];
+    TRY(mem_reserve(&lists->items, &lists->capacity, total, sizeof *lists->items, "tiles", err));
+    for (size_t i = n; i-- > 0;)
+        for (int bin = spans[i].first; bin <= spans[i].last; bin++)
+            lists->items[--offsets[bin + 1]] = numbers ? numbers[i] : (uint32_t)i;
+    for (int bin = 0; bin < bins; bin++)
+        offsets[bin] = offsets[bin + 1];
+    offsets[bins] = total;
+    return STATUS_OK;
+}
+
+void binlists_release(BinLists *lists)
+{
+    free(lists->offsets);
+    free(lists->items);
+    *lists = (BinLists){0};
+}
+
+/* ---- rows ------------------------------------------------------------------------------------ */
+
+/* 1: all in front of the camera, or orthographic; -1: all behind; 0: beside it. */
+static int side_of_camera(const VesselLists *lists, const FrameSegment *segment)
+{
+    if (!lists->eye.perspective)
+        return 1;
+    double near = min_of(segment->a.z, segment->b.z), far = max_of(segment->a.z, segment->b.z);
+    return near > segment->reach * (1 + 1e-9) ? 1 : far < -segment->reach ? -1 : 0;
+}
+
+static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
+{
+    int side = side_of_camera(lists, segment);
+    if (side < 0)
+        return NOWHERE;
+    Interval range = {-HUGE_VAL, HUGE_VAL};
+    if (side > 0)
+        range = capsule_shadow(lists->eye.perspective, segment->a.y, segment->a.z, segment->b.y,
+                               segment->b.z, segment->reach);
+    return tiles_within(samples_within(range, lists->y[0], lists->per_y), 0, lists->grid.n_rows);
+}
+
+enum { CHUNK = 2048 };
+
+typedef struct Making {
+    const Geometry *geometry;
+    VesselLists *lists;
+} Making;
+
+static void prepare_chunk(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Making *making = context;
+    VesselLists *lists = making->lists;
+    size_t end = (chunk + 1) * CHUNK < lists->n_segments ? (chunk + 1) * CHUNK : lists->n_segments;
+    for (size_t i = chunk * CHUNK; i < end; i++) {
+        const FieldSegment *segment = &making->geometry->segments[i];
+        Vec3 span = vec3_sub(segment->b, segment->a);
+        FrameSegment *out = &lists->segments[i];
+        *out = (FrameSegment){.a = viewpoint_place(&lists->eye, segment->a),
+                              .b = viewpoint_place(&lists->eye, segment->b),
+                              .length = vec3_length(span),
+                              .k = potential_k(segment->radius_mm)};
+        out->axis = vec3_scale(viewpoint_to_frame(&lists->eye, span), 1 / out->length);
+        out->sine = sqrt(out->axis.x * out->axis.x + out->axis.y * out->axis.y);
+        out->per_sine = out->sine > 0 ? 1 / out->sine : 0;
+        double reach2 = log(potential_term_peak(segment) / TILE_TERM_CUTOFF);
+        if (reach2 > 0)
+            out->reach = sqrt(reach2) / out->k;
+        lists->segment_rows[i] = reach2 > 0 ? rows_of(lists, out) : NOWHERE;
+    }
+}
+
+static void place_grid(const Camera *camera, VesselLists *lists)
+{
+    const SampleGrid *grid = &lists->grid;
+    double width = vec3_length(camera->right), height = vec3_length(camera->up);
+    for (int i = 0; i < grid->n_columns; i++)
+        lists->x[i] = ((grid->columns[i] + 0.5) / camera->width - 0.5) * width;
+    for (int j = 0; j < grid->n_rows; j++)
+        lists->y[j] = (0.5 - (grid->rows[j] + 0.5) / camera->height) * height;
+    lists->per_x = camera->width / (grid->spacing * width);
+    lists->per_y = -camera->height / (grid->spacing * height);
+}
+
+Status vessellists_make(const Geometry *geometry, const Camera *camera, const SampleGrid *grid,
+                        int threads, VesselLists *lists, Err *err)
+{
+    size_t n = lists->n_segments = geometry->n_segments;
+    Making making = {geometry, lists};
+    lists->eye = viewpoint_of_camera(camera);
+    lists->grid = *grid;
+    lists->tile_columns = (grid->n_columns + TILE_SIDE - 1) / TILE_SIDE;
+    lists->tile_rows = (grid->n_rows + TILE_SIDE - 1) / TILE_SIDE;
+    TRY(mem_calloc(&lists->x, (size_t)grid->n_columns, sizeof *lists->x, "columns", err));
+    TRY(mem_calloc(&lists->y, (size_t)grid->n_rows, sizeof *lists->y, "rows", err));
+    TRY(mem_calloc(&lists->segments, n, sizeof *lists->segments, "segments", err));
+    TRY(mem_calloc(&lists->segment_rows, n, sizeof *lists->segment_rows, "segments", err));
+    place_grid(camera, lists);
+    threads_for((n + CHUNK - 1) / CHUNK, threads, prepare_chunk, &making);
+    TRY(sort_into_bins(lists->segment_rows, NULL, n, lists->tile_rows, &lists->rows, err));
+    for (int row = 0; row < lists->tile_rows; row++) {
+        size_t length = lists->rows.offsets[row + 1] - lists->rows.offsets[row];
+        lists->longest = length > lists->longest ? length : lists->longest;
+    }
+    return STATUS_OK;
+}
+
+void vessellists_release(VesselLists *lists)
+{
+    free(lists->x);
+    free(lists->y);
+    free(lists->segments);
+    free(lists->segment_rows);
+    binlists_release(&lists->rows);
+    *lists = (VesselLists){0};
+}
+
+/* ---- tiles of a row -------------------------------------------------------------------------- */
+
+static double above(const VesselLists *lists, Vec3 p, double y)
+{
+    return lists->eye.perspective ? (p.y - y * p.z) / sqrt(1 + y * y) : p.y - y;
+}
+
+/* The tiles of a row, whose rays are between y_low and y_high, that the support of the segment may
+ * touch: those of the part of the segment that is within reach of the slab. */
+static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment, double y_low,
+                           double y_high)
+{
+    if (side_of_camera(lists, segment) == 0)
+        return (TileSpan){0, lists->tile_columns - 1};
+    double from = 0, to = 1;
+    const double heights[2][2] = {
+        {above(lists, segment->a, y_low), above(lists, segment->b, y_low)},
+        {-above(lists, segment->a, y_high), -above(lists, segment->b, y_high)}};
+    for (int plane = 0; plane < 2; plane++)
+        clip_part(heights[plane][0] + segment->reach, heights[plane][1] + segment->reach, &from,
+                  &to);
+    if (from > to)
+        return NOWHERE;
+    Vec3 span = vec3_sub(segment->b, segment->a);
+    Vec3 first = vec3_add_scaled(segment->a, span, from);
+    Vec3 last = vec3_add_scaled(segment->a, span, to);
+    Interval range =
+        capsule_shadow(lists->eye.perspective, first.x, first.z, last.x, last.z, segment->reach);
+    return tiles_within(samples_within(range, lists->x[0], lists->per_x), 0, lists->grid.n_columns);
+}
+
+Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns, BinLists *tiles,
+                       Err *err)
+{
+    const uint32_t *segments = lists->rows.items + lists->rows.offsets[row];
+    size_t n = lists->rows.offsets[row + 1] - lists->rows.offsets[row];
+    int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
+    last = last < lists->grid.n_rows ? last : lists->grid.n_rows - 1;
+    for (size_t i = 0; i < n; i++)
+        columns[i] =
+            columns_of(lists, &lists->segments[segments[i]], lists->y[last], lists->y[first]);
+    return sort_into_bins(columns, segments, n, lists->tile_columns, tiles, err);
+}

@@ -1,0 +1,52 @@
+/* Which segments of an implicit model may matter in which tile of a picture. */
+#ifndef CORCAST_RENDER_VESSELLISTS_H
+#define CORCAST_RENDER_VESSELLISTS_H
+
+#include "render/field/fieldterms.h"
+#include "render/tile/interval.h"
+#include "render/tile/viewpoint.h"
+
+/* Where rays go through the picture: every pair of a column and a row, in pixels as camera_ray
+ * takes them. Both ascend in steps of `spacing`. */
+typedef struct SampleGrid {
+    const double *columns, *rows; /* borrowed */
+    int n_columns, n_rows;
+    double spacing;
+} SampleGrid;
+
+/* Numbers sorted into bins, ascending in each: those of bin i are
+ * items[offsets[i] .. offsets[i + 1]). */
+typedef struct BinLists {
+    size_t *offsets;
+    uint32_t *items;
+    size_t capacity; /* of items */
+} BinLists;
+
+/* Constant once built. */
+typedef struct VesselLists {
+    Viewpoint eye;
+    SampleGrid grid;
+    double *x, *y;       /* of the grid's columns and rows, in the camera's plane */
+    double per_x, per_y; /* samples in a unit there, per_y below 0 */
+    int tile_columns, tile_rows;
+    FrameSegment *segments;
+    size_t n_segments;
+    TileSpan *segment_rows; /* of tiles */
+    BinLists rows;          /* segments of each row of tiles */
+    size_t longest;         /* of those */
+} VesselLists;
+
+/* Moves the segments to the frame of the camera and sorts them into the rows of tiles of the grid.
+ * *lists is zeroed before, and the caller's even when this fails. STATUS_MEMORY. */
+MUST_CHECK Status vessellists_make(const Geometry *geometry, const Camera *camera,
+                                   const SampleGrid *grid, int threads, VesselLists *lists,
+                                   Err *err);
+void vessellists_release(VesselLists *lists);
+
+/* Sets the lists of the tiles of one row: *tiles, zeroed before or used for these lists; `columns`
+ * has room for the longest row. STATUS_MEMORY. */
+MUST_CHECK Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns,
+                                  BinLists *tiles, Err *err);
+void binlists_release(BinLists *lists);
+
+#endif
