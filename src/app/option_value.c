@@ -48,8 +48,8 @@ static Status wrong(const Option *option, const char *value, const char *allowed
 static Status wrong_number(const Option *option, const char *value, const char *what, Err *err)
 {
     char range[RANGE_TEXT_SIZE] = "", allowed[RANGE_TEXT_SIZE + 32];
-    if (option->range)
-        range_text(*option->range, range);
+    if (option_range(option))
+        range_text(*option_range(option), range);
     snprintf(allowed, sizeof allowed, "%s%s%s", what, *range ? " " : "", range);
     return wrong(option, value, allowed, err);
 }
@@ -97,7 +97,8 @@ static Status read_choice(const Option *option, const char *value, void *where, 
 
 static Status parse_whole(const Option *option, const char *value, long long *out, Err *err)
 {
-    if (integer_parse(value, (long long)option->range->low, (long long)option->range->high, out))
+    if (integer_parse(value, (long long)option_range(option)->low,
+                      (long long)option_range(option)->high, out))
         return STATUS_OK;
     return wrong_number(option, value, "a whole number", err);
 }
@@ -132,7 +133,7 @@ static Status read_number(const Option *option, const char *value, void *where, 
 {
     double number;
     if (!number_parse(value, &number) || !isfinite(number) ||
-        (option->range && !range_has(*option->range, number)))
+        (option_range(option) && !range_has(*option_range(option), number)))
         return wrong_number(option, value, "a number", err);
     *(double *)where = number;
     return STATUS_OK;
@@ -143,7 +144,7 @@ static Status read_size(const Option *option, const char *value, void *where, Er
     double size[2] = {0, 0};
     bool read = read_numbers(value, 'x', 2, 2, size);
     for (int i = 0; i < 2; i++)
-        read = read && range_has(*option->range, size[i]) && size[i] == floor(size[i]);
+        read = read && range_has(*option_range(option), size[i]) && size[i] == floor(size[i]);
     if (!read)
         return wrong_number(option, value, "WIDTHxHEIGHT in pixels, each a whole number", err);
     ((int *)where)[0] = (int)size[0];
@@ -411,19 +412,19 @@ bool setting_differs(const Setting *setting, const Setting *plain)
 
 void option_put_argument(const Option *option, Text *text)
 {
-    if (option->argument || !option->unit) {
+    if (option->argument || !option_unit(option)) {
         text_puts(text, option->argument ? option->argument : kinds[option->kind].argument);
         return;
     }
-    for (const char *c = option->unit; *c; c++)
+    for (const char *c = option_unit(option); *c; c++)
         text_printf(text, "%c", *c >= 'a' && *c <= 'z' ? *c - 'a' + 'A' : *c);
 }
 
 void option_put_allowed(const Option *option, Text *text)
 {
     char range[RANGE_TEXT_SIZE];
-    if (option->range && option->kind != OPTION_SIZE)
-        text_puts(text, range_text(*option->range, range));
+    if (option_range(option) && option->kind != OPTION_SIZE)
+        text_puts(text, range_text(*option_range(option), range));
     for (int i = 0; option->choices && option->choices[i]; i++)
         text_printf(text, "%s%s", i ? ", " : "", option->choices[i]);
 }

@@ -322,14 +322,14 @@ Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *
 static bool is_called(const Option *option, const char *field, size_t length)
 {
     Text name = TEXT_INIT;
-    text_printf(&name, "%s-%s", option->name, option->unit ? option->unit : "");
+    text_printf(&name, "%s-%s", option->name, option_unit(option) ? option_unit(option) : "");
     const char *chars = text_chars(&name);
     size_t bare = strlen(option->name), i = 0;
     while (chars && chars[i] && i < length &&
            (tolower((unsigned char)chars[i]) == tolower((unsigned char)field[i]) ||
             (field[i] == '_' && strchr("-/", chars[i]))))
         i++;
-    bool same = chars && i == length && (i == bare || (option->unit && !chars[i]));
+    bool same = chars && i == length && (i == bare || (option_unit(option) && !chars[i]));
     text_release(&name);
     return same;
 }

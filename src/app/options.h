@@ -8,6 +8,7 @@
 #include "app/files.h"
 #include "base/base.h"
 #include "geom/geom.h"
+#include "tree/tree.h"
 #include <stddef.h>
 
 typedef enum OptionKind {
@@ -72,7 +73,8 @@ typedef struct Option {
     bool is_told;       /* of the output: what is written tells its own name */
     OptionKind kind;
     OptionGroup group;
-    const Range *range;         /* of OPTION_WHOLE, COUNT, NUMBER, SIZE; NULL: any number */
+    const MetaRow *meta; /* the key of a tree that it says: range and unit are its; NULL: none */
+    const Range *range;  /* of OPTION_WHOLE, COUNT, NUMBER, SIZE; NULL: any number */
     const char *const *choices; /* of OPTION_CHOICE; ends with NULL */
     const char *unit;           /* "mm"; NULL: none */
     const char *argument;       /* "T.swc"; NULL: named after unit or kind */
@@ -81,6 +83,16 @@ typedef struct Option {
     const char *list;      /* the command that lists the values; NULL: none */
     const char *help;
 } Option;
+
+/* Range and unit, the option's own or those of the key; NULL: any number, or none. */
+static inline const Range *option_range(const Option *option)
+{
+    return option->meta ? &option->meta->range : option->range;
+}
+static inline const char *option_unit(const Option *option)
+{
+    return option->meta ? option->meta->unit : option->unit;
+}
 
 /* What an option sets, checked by the compiler: SETS(NUMBER, Growing, params.gamma) is an
  * OPTION_NUMBER and sets that member, which must be a double. */
