@@ -1,15 +1,7 @@
-/* The surface is proved before anything is written: what the manifest says is of the very triangles
- * that go into the file, and a mesh that is not sound becomes no file. */
+/* What the manifest says is of the very triangles that go into the file. */
 #include "app/commands.h"
-#include "app/progress.h"
+#include "app/meshing.h"
 #include "emit/emit.h"
-#include "stage/stage.h"
-#include "surface/surface.h"
-#include "tree/tree.h"
-#include "treeio/treeio.h"
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct ExportOptions {
     const char *output;
@@ -40,7 +32,7 @@ static const OptionTable own_table = OPTION_TABLE(own);
 
 static void set_defaults(void *options)
 {
-    ((ExportOptions *)options)->tolerance = 0.02;
+    ((ExportOptions *)options)->tolerance = MESHING_TOLERANCE;
 }
 
 static Status find_format(const char *output, const MeshFormat **format, Err *err)
@@ -58,27 +50,6 @@ static Status find_format(const char *output, const MeshFormat **format, Err *er
     Status status =
         err_set(err, STATUS_USAGE, "-o: '%s' does not end in %s", output, text_chars(&known));
     text_release(&known);
-    return status;
-}
-
-static Status read_vessels(const ExportOptions *options, const char *path, VesselTree *vessels,
-                           Err *err)
-{
-    Tree tree, pruned;
-    size_t dropped;
-    TRY(tree_read(&tree, path, err));
-    Status status = STATUS_OK;
-    if (options->prune_radius_mm > 0) {
-        TRY_GOTO(tree_pruned(&tree, options->prune_radius_mm, &pruned, err));
-        tree_release(&tree);
-        tree = pruned;
-    }
-    TRY_GOTO(stage_vessels(&tree, vessels, &dropped, err));
-    if (dropped)
-        fprintf(stderr, "corcast: %zu segments have no length or no radius and are left out\n",
-                dropped);
-done:
-    tree_release(&tree);
     return status;
 }
 
@@ -135,23 +106,6 @@ static json_t *manifest(const VesselTree *vessels, const VesselMesh *mesh, const
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-/* STATUS_DIFFERS, saying what is wrong with a mesh that is not sound. */
-static Status check_sound(const VesselTree *vessels, const MeshReport *report, Err *err)
-{
-    if (meshreport_is_sound(report))
-        return STATUS_OK;
-    if (report->n_missing)
-        return err_set(err, STATUS_DIFFERS,
-                       "%zu segments have no triangles, segment %u among them; nothing is written",
-                       report->n_missing, vessels->ids[report->missing[0]]);
-    return err_set(err, STATUS_DIFFERS,
-                   "the surface is not sound: %zu parts for %zu trees, genus %zu, %zu open edges, "
-                   "%zu crossing pairs of triangles, %zu bridges; nothing is written (a smaller "
-                   "--tolerance may help)",
-                   report->components, report->trees, report->genus, report->open_edges,
-                   report->crossings, report->bridges);
-}
-
 /* The mesh and its manifest take their names together. */
 static Status write_files(const MeshFormat *format, const MeshFile *file, const char *paths[2],
                           json_t *json, Err *err)
@@ -186,58 +140,11 @@ done:
     return status;
 }
 
-/* Says before the work how much of it there is. */
-static Status say_estimate(const VesselTree *vessels, const MeshParams *params, bool quiet,
-                           Err *err)
-{
-    double triangles, bytes;
-    char text[BYTES_TEXT_SIZE];
-    vesselmesh_estimate(vessels, params, &triangles, &bytes);
-    if (!quiet)
-        fprintf(stderr, "corcast: about %.2g triangles, which take %s of memory\n", triangles,
-                bytes_text(bytes, text));
-    return mem_check(bytes, "the mesh", err);
-}
-
-static void say_result(const MeshReport *report, const VesselMesh *mesh, bool quiet)
-{
-    if (report->n_swallowed)
-        fprintf(stderr, "corcast: %zu segments lie wholly within others and have no wall\n",
-                report->n_swallowed);
-    if (report->n_round && !quiet)
-        fprintf(stderr,
-                "corcast: %zu ends are round, because other vessels are in the way of a flat one\n",
-                report->n_round);
-    if (report->n_near && !quiet)
-        fprintf(stderr, "corcast: %zu pairs of vessels that do not belong together come near\n",
-                report->n_near);
-    if (!quiet)
-        fprintf(stderr, "corcast: %zu triangles, %.6g mm^3\n", mesh->n_triangles,
-                report->volume_mm3);
-}
-
-static Status make_mesh(const ExportOptions *options, const Common *common,
-                        const VesselTree *vessels, VesselMesh *mesh, MeshReport *report, Err *err)
-{
-    Progress progress;
-    MeshParams params = {.tolerance = options->tolerance,
-                         .threads = common->threads,
-                         .progress = progress_report,
-                         .context = &progress};
-    TRY(say_estimate(vessels, &params, common->quiet, err));
-    progress_start(&progress, "triangulating", common->quiet);
-    Status status = vesselmesh_build(vessels, &params, mesh, report, err);
-    progress_end(&progress);
-    return status;
-}
-
 static Status run_export(void *options, Parsed *parsed, Err *err)
 {
     const ExportOptions *own_options = options;
     const MeshFormat *format;
-    VesselTree vessels = {0};
-    VesselMesh mesh = {0};
-    MeshReport report = {0};
+    Meshing made = {0};
     Text beside = TEXT_INIT;
     Status status;
     TRY(find_format(own_options->output, &format, err));
@@ -245,17 +152,14 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
     TRY_GOTO(text_check(&beside, err));
     const char *paths[2] = {own_options->output, text_chars(&beside)};
     TRY_GOTO(files_write(&parsed->files, "the manifest", paths[1], err));
-    TRY_GOTO(read_vessels(own_options, parsed->operands[0], &vessels, err));
-    TRY_GOTO(make_mesh(own_options, &parsed->common, &vessels, &mesh, &report, err));
-    TRY_GOTO(check_sound(&vessels, &report, err));
-    say_result(&report, &mesh, parsed->common.quiet);
-    const MeshFile file = {&mesh, &vessels, GENERATOR};
-    TRY_GOTO(write_files(format, &file, paths, manifest(&vessels, &mesh, &report), err));
+    TRY_GOTO(meshing_make(parsed->operands[0], own_options->prune_radius_mm, own_options->tolerance,
+                          &parsed->common, &made, err));
+    const MeshFile file = {&made.mesh, &made.vessels, GENERATOR};
+    TRY_GOTO(
+        write_files(format, &file, paths, manifest(&made.vessels, &made.mesh, &made.report), err));
 done:
     text_release(&beside);
-    vesseltree_release(&vessels);
-    vesselmesh_release(&mesh);
-    meshreport_release(&report);
+    meshing_release(&made);
     return status;
 }
 

@@ -1,4 +1,5 @@
 #include "app/commands.h"
+#include "app/meshing.h"
 #include "app/picture.h"
 #include "app/povfiles.h"
 #include <stdio.h>
@@ -9,6 +10,8 @@
 typedef enum ScadForm { SCAD_PARAMETRIC, SCAD_POLYHEDRON } ScadForm;
 static const char *const scad_forms[] = {
     [SCAD_PARAMETRIC] = "parametric", [SCAD_POLYHEDRON] = "polyhedron", NULL};
+static const char *const scad_emitters[] = {
+    [SCAD_PARAMETRIC] = "openscad", [SCAD_POLYHEDRON] = "polyhedron"};
 
 typedef struct SceneOptions {
     const char *output;
@@ -50,11 +53,8 @@ static Status find_emitter(const char *output, const Emitter **emitter, Err *err
         return STATUS_OK;
     Text extensions = TEXT_INIT;
     for (const Emitter *row = emitters; row->name; row++)
-        text_printf(&extensions, "%s.%s",
-                    row == emitters ? ""
-                    : row[1].name   ? ", "
-                                    : " or ",
-                    row->extension);
+        if (emitter_of_extension(row->extension) == row)
+            text_printf(&extensions, "%s.%s", row == emitters ? "" : " or ", row->extension);
     Status status =
         err_set(err, STATUS_USAGE, "-o: '%s' does not end in %s", output, text_chars(&extensions));
     text_release(&extensions);
@@ -66,7 +66,9 @@ static Status check_format(const Emitter *emitter, const Parsed *parsed, Err *er
 {
     static const char of_view[] = "is for scenes with a camera (.pov); a solid has none";
     static const char of_povray[] = "is for scenes of POV-Ray (.pov)";
-    const bool view = emitter->has_view, povray = strcmp(emitter->name, "povray") == 0;
+    static const char of_vessels[] = "is for vessels; a polyhedron is the surface of all";
+    const bool view = emitter->has_view, povray = strcmp(emitter->extension, "pov") == 0;
+    const bool vessels = !emitter->of_meshes;
     const OptionNeed needs[] = {{"size", view, of_view},
                                 {"projection", view, of_view},
                                 {"view", view, of_view},
@@ -80,19 +82,12 @@ static Status check_format(const Emitter *emitter, const Parsed *parsed, Err *er
                                 {"shadows", view, of_view},
                                 {"background", view, of_view},
                                 {"ids", povray, of_povray},
+                                {"model", vessels, of_vessels},
+                                {"look", vessels, of_vessels},
+                                {"color-by", vessels, of_vessels},
                                 {"scad", !povray, "is for models of OpenSCAD (.scad)"},
                                 {0}};
     return options_check_needs(parsed, needs, err);
-}
-
-/* STATUS_USAGE when the format cannot hold the model, in the form that is asked for. */
-static Status check_model(const Emitter *emitter, SceneModel model, ScadForm form, Err *err)
-{
-    if (form == SCAD_POLYHEDRON)
-        return err_set(err, STATUS_USAGE,
-                       "--scad polyhedron needs a closed mesh of the tree, which corcast does not "
-                       "make; use --scad parametric");
-    return emit_check_model(emitter, model, err);
 }
 
 static Status check(const SceneOptions *options, const Emitter *emitter, const Parsed *parsed,
@@ -102,7 +97,7 @@ static Status check(const SceneOptions *options, const Emitter *emitter, const P
     TRY(check_format(emitter, parsed, err));
     TRY(picture_check_needs(picture, parsed, err));
     TRY(picture_check_povray(picture, err));
-    return check_model(emitter, (SceneModel)picture->model, options->scad, err);
+    return emit_check_model(emitter, (SceneModel)picture->model, err);
 }
 
 /* What the user should know of the file besides. */
@@ -117,36 +112,57 @@ static void say_limits(const EmitReport *report, const Scene *scene)
     if (report->openscad_s > 0 && scene->geometry.drawn > QUICK)
         fprintf(stderr,
                 "corcast: OpenSCAD takes about %.2g s to make a solid of %zu vessels, and its "
-                "preview a moment\n",
+                "preview a moment; --scad polyhedron is a solid at once\n",
                 report->openscad_s, scene->geometry.drawn);
+}
+
+static Status write_scene(const SceneOptions *options, const Emitter *emitter, const char *line,
+                          const Parsed *parsed, Err *err)
+{
+    const PictureOptions *picture = &options->picture;
+    const char *tree = parsed->operands[0];
+    Scene scene = {0};
+    EmitReport report = {0};
+    TRY(picture_scene(picture, tree, parsed->common.quiet, &scene, NULL, err));
+    const EmitParams params = {.scene = &scene,
+                               .command = line,
+                               .shadows = picture->stage.shadows,
+                               .ids = options->ids,
+                               .cells = picture_cells(picture)};
+    Status status = scene_files_write(emitter, &params, tree, options->output, &report, err);
+    if (status == STATUS_OK && !parsed->common.quiet)
+        say_limits(&report, &scene);
+    scene_release(&scene);
+    return status;
+}
+
+static Status write_surface(const SceneOptions *options, const Emitter *emitter, const char *line,
+                            const Parsed *parsed, Err *err)
+{
+    const char *tree = parsed->operands[0];
+    Meshing made;
+    TRY(meshing_make(tree, options->picture.prune_radius_mm, MESHING_TOLERANCE, &parsed->common,
+                     &made, err));
+    const EmitParams params = {.mesh = &made.mesh, .command = line};
+    Status status = scene_files_write(emitter, &params, tree, options->output, NULL, err);
+    meshing_release(&made);
+    return status;
 }
 
 static Status run_scene(void *options, Parsed *parsed, Err *err)
 {
     const SceneOptions *own_options = options;
-    const PictureOptions *picture = &own_options->picture;
-    const char *tree = parsed->operands[0], *output = own_options->output;
     const Emitter *emitter;
     char *line = NULL;
-    Scene scene = {0};
-    EmitReport report = {0};
-    Status status = STATUS_OK;
-    TRY(find_emitter(output, &emitter, err));
+    TRY(find_emitter(own_options->output, &emitter, err));
+    if (strcmp(emitter->extension, "scad") == 0)
+        emitter = emitter_named(scad_emitters[own_options->scad]);
     TRY(check(own_options, emitter, parsed, err));
-    TRY(scene_files_note(emitter, output, &parsed->files, err));
-    TRY(picture_scene(picture, tree, parsed->common.quiet, &scene, NULL, err));
-    TRY_GOTO(command_line_text(parsed, &line, err));
-    const EmitParams params = {.scene = &scene,
-                               .command = line,
-                               .shadows = picture->stage.shadows,
-                               .ids = own_options->ids,
-                               .cells = picture_cells(picture)};
-    TRY_GOTO(scene_files_write(emitter, &params, tree, output, &report, err));
-    if (!parsed->common.quiet)
-        say_limits(&report, &scene);
-done:
+    TRY(scene_files_note(emitter, own_options->output, &parsed->files, err));
+    TRY(command_line_text(parsed, &line, err));
+    Status status =
+        (emitter->of_meshes ? write_surface : write_scene)(own_options, emitter, line, parsed, err);
     free(line);
-    scene_release(&scene);
     return status;
 }
 

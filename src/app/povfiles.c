@@ -31,10 +31,17 @@ Status scene_files_note(const Emitter *emitter, const char *path, Files *files, 
     return status;
 }
 
+static void surface_description(const char *tree_path, Text *out)
+{
+    text_puts(out, "arterial tree ");
+    text_put_line(out, file_name(tree_path));
+    text_puts(out, ", its surface");
+}
+
 Status scene_files_write(const Emitter *emitter, const EmitParams *params, const char *tree_path,
                          const char *path, EmitReport *report, Err *err)
 {
-    if (params->scene->geometry.blend.first)
+    if (params->scene && params->scene->geometry.blend.first)
         return err_set(
             err, STATUS_USAGE,
             "--potential graph is corcast's own and has no POV-Ray scene; use --potential "
@@ -44,7 +51,10 @@ Status scene_files_write(const Emitter *emitter, const EmitParams *params, const
     Status status;
     TRY_GOTO(templates_folder(&templates, err));
     TRY_GOTO(second_path(emitter, path, &second, err));
-    picture_description(&params->scene->geometry, tree_path, &description);
+    if (params->scene)
+        picture_description(&params->scene->geometry, tree_path, &description);
+    else
+        surface_description(tree_path, &description);
     EmitParams all = *params;
     all.templates = templates;
     all.file = strcmp(path, "-") == 0 ? "scene.pov" : file_name(path);

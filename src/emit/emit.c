@@ -19,6 +19,11 @@ const Emitter emitters[] = {
      .description = "a parametric model for OpenSCAD",
      .elements = MODEL_CYLINDERS | MODEL_BALLS,
      .write = openscad_write},
+    {.name = "polyhedron",
+     .extension = "scad",
+     .description = "one closed surface for OpenSCAD",
+     .of_meshes = true,
+     .write = openscad_write_mesh},
     {0},
 };
 
@@ -30,9 +35,17 @@ const Emitter *emitter_of_extension(const char *extension)
     return NULL;
 }
 
+const Emitter *emitter_named(const char *name)
+{
+    const Emitter *emitter = emitters;
+    while (strcmp(emitter->name, name) != 0)
+        emitter++;
+    return emitter;
+}
+
 Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err)
 {
-    if (model_is_of(model, emitter->elements))
+    if (emitter->of_meshes || model_is_of(model, emitter->elements))
         return STATUS_OK;
     Text able = TEXT_INIT;
     models_of(emitter->elements, &able);
@@ -66,7 +79,8 @@ Status emit_files(const Emitter *emitter, const EmitParams *params, const char *
     EmitReport written = {0};
     Status status;
     size_t n = second_path ? 2 : 1;
-    TRY(emit_check_model(emitter, params->scene->geometry.model, err));
+    if (!emitter->of_meshes)
+        TRY(emit_check_model(emitter, params->scene->geometry.model, err));
     if (second_path && emitter->check_name)
         TRY(emitter->check_name(params->second_file, err));
     TRY_GOTO(outfile_open(&files[0], path, err));

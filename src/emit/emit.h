@@ -10,7 +10,8 @@
 
 /* What is written, and how it is called. All is borrowed. */
 typedef struct EmitParams {
-    const Scene *scene;
+    const Scene *scene;      /* NULL for an emitter of meshes */
+    const VesselMesh *mesh;  /* NULL for all others */
     const char *templates;   /* the folder of templates, one folder for each language */
     const char *file;        /* names of the files as they stand in them, without folders; */
     const char *second_file; /* NULL: what would go to the second file stands in the first */
@@ -36,6 +37,7 @@ typedef struct Emitter {
     const char *description;      /* "a scene for POV-Ray 3.7" */
     bool binary;
     bool has_view;     /* it holds camera, lights and background, and not the vessels alone */
+    bool of_meshes;    /* it writes params->mesh, not the scene */
     unsigned elements; /* it can write what is made of these: bits ModelElement */
     /* STATUS_USAGE when the format cannot name a second file so. NULL: it takes any name. */
     Status (*check_name)(const char *second_file, Err *err);
@@ -50,8 +52,10 @@ typedef struct Emitter {
 
 /* A row without a name ends them. */
 extern const Emitter emitters[];
-/* The emitter of files with this extension ("pov"), or NULL. */
+/* The first emitter of files with this extension ("pov"), or NULL. */
 const Emitter *emitter_of_extension(const char *extension);
+/* The emitter of this name, which there is. */
+const Emitter *emitter_named(const char *name);
 
 /* STATUS_USAGE when the format cannot hold a model, with the names of those that it can. */
 MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err);

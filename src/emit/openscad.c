@@ -70,20 +70,15 @@ static size_t ends_at(const Parametric *made, Vec3 point, const CylinderEnd **fi
 
 /* ---- calls ----------------------------------------------------------------------------------- */
 
-static void put_numbers(Text *text, double x, double y, double z)
+void put_point(Text *text, Vec3 v)
 {
     text_puts(text, "[");
-    text_number(text, x + 0); /* adding 0 turns -0 into 0 */
+    text_number(text, v.x + 0); /* adding 0 turns -0 into 0 */
     text_puts(text, ",");
-    text_number(text, y + 0);
+    text_number(text, v.y + 0);
     text_puts(text, ",");
-    text_number(text, z + 0);
+    text_number(text, v.z + 0);
     text_puts(text, "]");
-}
-
-static void put_point(Text *text, Vec3 v)
-{
-    put_numbers(text, v.x, v.y, v.z);
 }
 
 static void put_rgb(Text *text, Rgb color)

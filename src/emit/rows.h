@@ -10,5 +10,10 @@ Status povray_write(const EmitParams *params, Text *out, Text *second, EmitRepor
 
 Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
                       Err *err);
+Status openscad_write_mesh(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                           Err *err);
+
+/* [x,y,z], as OpenSCAD reads a point. */
+void put_point(Text *text, Vec3 v);
 
 #endif
