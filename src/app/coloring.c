@@ -82,8 +82,19 @@ static Status read_map(const Coloring *coloring, Colormap *map, Err *err)
     return status;
 }
 
-Status coloring_appearance(const Coloring *coloring, const Tree *tree, const Look *look,
-                           Appearance *appearance, Err *err)
+/* The field, and its scale; the sentences do not name the tree. */
+static Status read_field(const Coloring *coloring, const Tree *tree, Field *field,
+                         ColorScale *scale, Err *err)
+{
+    TRY(derive_field(tree, &coloring->flow, coloring->field, field, err));
+    TRY(set_range(coloring, field, scale, err));
+    scale->name = field->name;
+    scale->unit = field->unit;
+    return STATUS_OK;
+}
+
+Status coloring_appearance(const Coloring *coloring, const Tree *tree, const char *tree_path,
+                           const Look *look, Appearance *appearance, Err *err)
 {
     if (!coloring->field)
         return stage_appearance(look, NULL, NULL, appearance, err);
@@ -91,10 +102,10 @@ Status coloring_appearance(const Coloring *coloring, const Tree *tree, const Loo
     ColorScale scale = {.log = coloring->log};
     Status status;
     TRY_GOTO(read_map(coloring, &scale.map, err));
-    TRY_GOTO(derive_field(tree, &coloring->flow, coloring->field, &field, err));
-    TRY_GOTO(set_range(coloring, &field, &scale, err));
-    scale.name = field.name;
-    scale.unit = field.unit;
+    status = read_field(coloring, tree, &field, &scale, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", tree_path);
+    TRY_GOTO(status);
     TRY_GOTO(stage_appearance(look, &field, &scale, appearance, err));
 done:
     if (status != STATUS_OK)

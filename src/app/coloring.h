@@ -24,9 +24,10 @@ extern const OptionTable coloring_table; /* sets a Coloring */
 /* What a look's vessels are to be coloured by, in *appearance (owned; appearance_release): without
  * --color-by the look's one colour; else the values of a field of the tree on a scale of the map,
  * from the least to the greatest finite value unless --range gives its ends. STATUS_USAGE when
- * templates/ lacks the map or the range cannot be logarithmic; else as derive_field; STATUS_INPUT
- * when the field has no value to show. */
-MUST_CHECK Status coloring_appearance(const Coloring *coloring, const Tree *tree, const Look *look,
+ * templates/ lacks the map or the range cannot be logarithmic; else as derive_field; STATUS_INPUT,
+ * naming `tree_path`, when the field has no value to show, and naming the map's file otherwise. */
+MUST_CHECK Status coloring_appearance(const Coloring *coloring, const Tree *tree,
+                                      const char *tree_path, const Look *look,
                                       Appearance *appearance, Err *err);
 
 #endif

@@ -306,7 +306,7 @@ static bool has_segments(const Tree *tree)
 Status picture_read_source(const PictureOptions *options, const char *tree_path,
                            PictureSource *source, Err *err)
 {
-    PictureSource made = {0};
+    PictureSource made = {.path = tree_path};
     Status status = STATUS_OK;
     TRY(check_camera(options, err));
     TRY(read_look(options, &made.look, err));
@@ -361,7 +361,8 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
 Status picture_appearance(const PictureOptions *options, const PictureSource *source,
                           Appearance *appearance, Err *err)
 {
-    return coloring_appearance(&options->coloring, &source->tree, &source->look, appearance, err);
+    return coloring_appearance(&options->coloring, &source->tree, source->path, &source->look,
+                               appearance, err);
 }
 
 Status picture_view(const PictureOptions *options, const PictureSource *source,
@@ -375,8 +376,12 @@ static Status make_scene(const PictureOptions *options, const PictureSource *sou
                          StageReport *report, Err *err)
 {
     TRY(picture_appearance(options, source, &scene->appearance, err));
-    TRY(picture_geometry(options, source, &scene->geometry, report, err));
-    return picture_view(options, source, &scene->geometry, &scene->view, err);
+    Status status = picture_geometry(options, source, &scene->geometry, report, err);
+    if (status == STATUS_OK)
+        status = picture_view(options, source, &scene->geometry, &scene->view, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", source->path);
+    return status;
 }
 
 Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet, Scene *scene,
@@ -387,8 +392,6 @@ Status picture_scene(const PictureOptions *options, const char *tree_path, bool 
     Scene made = {0};
     TRY(picture_read_source(options, tree_path, &source, err));
     Status status = make_scene(options, &source, &made, &staged, err);
-    if (status == STATUS_INPUT)
-        err_prefix(err, "%s: ", tree_path);
     if (status == STATUS_OK && !quiet)
         status =
             warn_of_losses(&made.geometry, &staged, (JointForm)options->joints, source.pruned, err);

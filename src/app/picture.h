@@ -46,6 +46,7 @@ MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 
 /* What a picture is made from. */
 typedef struct PictureSource {
+    const char *path; /* of the tree, for sentences; borrowed */
     Look look;
     Tree tree;
     size_t pruned; /* segments that were cut off */
