@@ -441,6 +441,53 @@ static void a_selected_number_is_that_of_its_rank_in_the_sorted_ones(void **stat
     }
 }
 
+static void a_closed_range_says_what_is_in_it(void **state)
+{
+    (void)state;
+    static const struct {
+        Range range;
+        double in, out;
+        const char *text;
+    } expected[] = {
+        {{RANGE_ABOVE_0, 10}, 5e-324, 0, "above 0 and at most 10"},
+        {{RANGE_ABOVE_0, RANGE_NO_END}, 2.385, -2.385, "above 0"},
+        {{0, 0.95}, 0.95, 0.9500000000000001, "from 0 to 0.95"},
+        {{0, RANGE_NO_END}, 0, HUGE_VAL, "of at least 0"},
+        {{-RANGE_NO_END, 7.25}, 7.25, 7.5, "of at most 7.25"},
+        {{-RANGE_NO_END, RANGE_NO_END}, -1e308, -HUGE_VAL, ""},
+    };
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        char text[RANGE_TEXT_SIZE];
+        assert_string_equal(range_text(expected[i].range, text), expected[i].text);
+        assert_true(range_has(expected[i].range, expected[i].in));
+        assert_false(range_has(expected[i].range, expected[i].out));
+        assert_false(range_has(expected[i].range, (double)NAN));
+    }
+}
+
+static void the_likeliest_name_is_suggested(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *word, *sentence;
+    } expected[] = {
+        {"presure", "no; did you mean pressure?"},      /* one left out */
+        {"raidus", "no; did you mean radius?"},         /* two exchanged */
+        {"Flow_share", "no; did you mean flow-share?"}, /* as good as the same */
+        {"volume", "no"},                               /* like none */
+    };
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        Err err;
+        Suggestion suggestion = suggestion_for(expected[i].word, strlen(expected[i].word));
+        suggestion_offer(&suggestion, "radius");
+        suggestion_offer(&suggestion, "pressure");
+        suggestion_offer(&suggestion, "flow-share");
+        err_set(&err, STATUS_USAGE, "no");
+        suggestion_add(&suggestion, "", &err);
+        assert_string_equal(err.text, expected[i].sentence);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -465,6 +512,8 @@ int main(void)
         cmocka_unit_test(suffixes_replace_extensions_only),
         cmocka_unit_test(a_parallel_loop_visits_every_index_once),
         cmocka_unit_test(the_random_stream_is_the_published_one),
+        cmocka_unit_test(a_closed_range_says_what_is_in_it),
+        cmocka_unit_test(the_likeliest_name_is_suggested),
         cmocka_unit_test(a_selected_number_is_that_of_its_rank_in_the_sorted_ones),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
