@@ -32,10 +32,11 @@ typedef struct GrowParams {
      * looked at. */
     const Tree *from;
     size_t inlets; /* at most GROW_MAX_INLETS; 0: one, the domain's default, or those of `from` */
-    const Vec3 *inlet;   /* mm (borrowed); one tree grows from each */
-    size_t inlet_shares; /* 0: all get as many terminals, or as those of `from` have; else as many
-                            as inlets */
-    const double *inlet_share;  /* > 0 (borrowed): the trees' terminals, relative to each other */
+    const Vec3 *inlet; /* mm (borrowed); one tree grows from each */
+    size_t
+        inlet_shares; /* the number of shares: that of inlets, or 0: all trees get as many terminals
+                         as each other, or in the proportions that the trees of `from` have */
+    const double *inlet_share;  /* > 0 (borrowed): each tree's terminals relative to the others' */
     double p_perf_mmhg;         /* at the inlet */
     double p_term_mmhg;         /* at every terminal, below p_perf_mmhg */
     double q_perf_ml_min;       /* through the inlet */
@@ -46,8 +47,8 @@ typedef struct GrowParams {
     double plasma_viscosity_cp; /* by Pries's law */
     int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
     GrowToss toss;
-    int threads;  /* 0: all processors. They do not change the tree */
-    bool partial; /* when no more terminals find room, deliver the tree so far */
+    int threads;  /* 0: all processors. The tree does not depend on it */
+    bool partial; /* whether the tree so far is a result when no more terminals find room */
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *progress_context;
 } GrowParams;
@@ -62,13 +63,13 @@ typedef struct GrowReport {
     double target;         /* sum of l r^lambda, mm^(1 + lambda) */
     double root_radius_mm; /* the largest */
     uint64_t tosses;       /* random points drawn */
-    uint64_t rejected; /* points in vessels, in full cells, or to which no connection had room */
-    /* Growth makes segments at least as long as wide, and keeps those without a common node clear
-     * of each other, at this share of their radii: 1 unless the domain was too full for vessels so
-     * thick, down to 0 for centrelines that do not cross. */
+    uint64_t rejected;     /* points in vessels, in full cells, or without room for a connection */
+    /* Segments are at least as long as wide, and apart from those they share no node with, if
+     * vessels count at this share of their radii: 1, or less (down to 0, for centrelines that do
+     * not cross) if the domain was too full for vessels as thick as they are. */
     double thickness;
-    size_t broken; /* segments that widened so much that this does not hold for them */
-    /* What the radii of the segments grown on from were multiplied by; 0 where there are none. */
+    size_t broken; /* segments for which that does not hold, because they widened later on */
+    /* The factors by which the radii of the segments of `from` changed; 0 where there are none. */
     double median_change, least_change, greatest_change;
     bool complete; /* false: a partial tree; err holds the sentence that says why */
 } GrowReport;
@@ -80,7 +81,8 @@ void grow_describe(const GrowParams *params, TreeMeta *meta);
  * one. */
 void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS]);
 
-/* STATUS_USAGE with a sentence that names the option at fault. */
+/* Whether growth can begin with these parameters in this domain: STATUS_USAGE, and STATUS_INPUT for
+ * `from`, with a sentence that names the parameter at fault in backquotes. */
 MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err);
 
 /* Grows a tree, or a forest whose trees share all flow, into *out (release with tree_release). Node
@@ -91,10 +93,10 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  * over the domain that are nearer to it than to any other. Centrelines do not cross. The same
  * parameters give the same tree, bit for bit. `report` may be NULL.
  *
- * Grown on from another tree, all nodes of that one are in *out with their ids, types and columns,
- * and so are its remarks; new nodes take the smallest ids that are free. New segments are in the
- * domain and keep clear of each other and of the given ones, but for those of a vessel of several
- * segments, of which they only keep off the centrelines; given segments may be anywhere.
+ * If a tree is continued (`from`), all its nodes are in *out with their ids, types and columns, and
+ * so are its remarks; new nodes take the smallest ids that are free. New segments are in the domain
+ * and keep clear of each other and of the given segments; of a given vessel of several segments
+ * they only keep off the centrelines. Given segments may be anywhere.
  *
  * Fails with STATUS_USAGE as grow_params_check does, STATUS_INPUT when `from` is not as above or
  * leaves the plane of a domain of two dimensions, STATUS_INFEASIBLE when there is no room for all
@@ -130,21 +132,22 @@ typedef struct RefineReport {
     bool stopped;     /* by the callback */
 } RefineReport;
 
-/* The moves that a level is given for a tree of so many terminals when nothing else is asked for.
- * Geometry and topology end before when little is left to gain. */
+/* The most moves that a level tries on a tree of so many terminals if neither moves nor seconds are
+ * given. Geometry and topology end earlier when there is little left to gain. */
 uint64_t refine_moves(GrowRefine level, size_t terminals);
 
 /* Lowers the target of a tree, grown or read, by moving bifurcations and by connecting subtrees
  * elsewhere. The tree is binary with one root, which has one child, and its meta has all that
- * meta_check_cco asks for; flows may be unequal. `domain` holds all of it;
- * NULL: it may be anywhere.
+ * meta_check_cco asks for; flows may be unequal. `domain` holds all of it; NULL: it may be
+ * anywhere.
  *
- * Inlet, terminals, node types, flow shares and meta stay, columns go. Nodes are in depth-first
- * order with ids 1 .. n, and radii follow from the places by Murray's law and the pressures, which
- * hold to rounding. All that moves stays in the domain; segments that are longer than wide and
- * clear of those they share no node with stay so, and where they were not it does not get worse;
- * the levels above geometry also try to make all of them so. If more than one in ten were not, all
- * vessels count at a smaller part of their radii [report].
+ * Inlet, terminals, node types, flow shares and meta stay, columns go. Afterwards nodes are in
+ * depth-first order with ids 1 .. n, and radii follow from the nodes' places by Murray's law and
+ * the pressures, which hold to rounding. All segments that change stay in the domain. A segment
+ * that was longer than wide and clear of those it shares no node with stays so; one that was not
+ * does not get worse, and the levels above geometry try to mend it. If more than one in ten
+ * segments were not, these rules are kept with vessels counted at a smaller part of their radii,
+ * report->thickness.
  *
  * With a budget of moves alone, the same tree and parameters give the same bits. `report` may be
  * NULL. Fails, *tree unchanged, with STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree
