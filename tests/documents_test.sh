@@ -15,7 +15,7 @@ test_documents_link_only_to_what_exists() {
 test_documents_are_wrapped_at_100_columns() {
     local document
     for document in README.md $(cd "$REPO" && echo docs/*.md docs/decisions/*.md); do
-        sed '/^<!-- .*: begin -->/,/^<!-- .*: end -->/d; /^|/d; /^    /d; /^!\[/d' "$REPO/$document" >prose
+        sed '/^<!-- .*: begin -->/,/^<!-- .*: end -->/d; /^```/,/^```/d; /^|/d; /^    /d; /^!\[/d' "$REPO/$document" >prose
         ! LC_ALL=C.UTF-8 grep -E '^.{101}' prose >long || fail "$document has a line of more than 100 columns: $(head -1 long)"
     done
 }
