@@ -10,6 +10,13 @@
 #include <ctype.h>
 #include <string.h>
 
+/* Those of primitives, and those of joints. */
+static Status put_joined_macros(Text *out, void *geometry, Err *err)
+{
+    TRY(put_primitive_macros(out, geometry, err));
+    return put_joint_macros(out, geometry, err);
+}
+
 /* What makes the geometry of models that have the element; the first row that is met holds. */
 static const struct {
     ModelElement element;
@@ -18,7 +25,7 @@ static const struct {
 } geometries[] = {
     {MODEL_POTENTIAL, put_cell_macros, put_cells},
     {MODEL_BLOB, put_blob_macros, put_blob},
-    {MODEL_JOINTS, put_joint_macros, put_primitives},
+    {MODEL_JOINTS, put_joined_macros, put_primitives},
     {MODEL_CYLINDERS, put_primitive_macros, put_primitives},
 };
 

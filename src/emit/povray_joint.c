@@ -86,7 +86,6 @@ Status put_joint_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     Values values = {0};
-    TRY(put_primitive_macros(out, context, err));
     geometry->report->joint_sides = joint_sides(geometry->scene);
     text_printf(add_value(&values, "sides"), "%d", geometry->report->joint_sides);
     return values_expand(&values, geometry->params, "povray/joints.inc", out, err);

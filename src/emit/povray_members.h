@@ -17,7 +17,7 @@ typedef struct PovrayGeometry {
  * of a template. */
 Status put_primitive_macros(Text *out, void *geometry, Err *err);
 Status put_primitives(Text *out, void *geometry, Err *err);
-Status put_joint_macros(Text *out, void *geometry, Err *err); /* and those of primitives */
+Status put_joint_macros(Text *out, void *geometry, Err *err);
 /* The numbers and functions of an isosurface, and an isosurface for each cell. */
 Status put_cell_macros(Text *out, void *geometry, Err *err);
 Status put_cells(Text *out, void *geometry, Err *err);
