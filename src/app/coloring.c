@@ -28,6 +28,11 @@ static const Option rows[] = {
      .otherwise = "the field's",
      .help = "values at the ends of the colour map"},
     {.name = "log", SETS(FLAG, Coloring, log), .group = GROUP_COLOR, .help = "logarithmic colours"},
+    {.name = "classes",
+     SETS(WHOLE, Coloring, classes),
+     FROM_TO(1, 256),
+     .group = GROUP_COLOR,
+     .help = "equal steps of the range, each of one colour; 1: colours run on"},
     {.name = "q-perf",
      SETS(NUMBER, Coloring, flow.number[META_Q_PERF]),
      GIVEN(Coloring, flow.known[META_Q_PERF]),
@@ -56,6 +61,7 @@ const OptionTable coloring_table = OPTION_TABLE(rows);
 void coloring_set_defaults(Coloring *coloring)
 {
     coloring->colormap = "viridis";
+    coloring->classes = 1;
 }
 
 /* The ends of the scale: given, or the field's. */
@@ -99,7 +105,7 @@ Status coloring_appearance(const Coloring *coloring, const Tree *tree, const cha
     if (!coloring->field)
         return stage_appearance(look, NULL, NULL, appearance, err);
     Field field = {0};
-    ColorScale scale = {.log = coloring->log};
+    ColorScale scale = {.log = coloring->log, .classes = coloring->classes};
     Status status;
     TRY_GOTO(read_map(coloring, &scale.map, err));
     status = read_field(coloring, tree, &field, &scale, err);

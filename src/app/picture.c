@@ -202,7 +202,7 @@ static Status check_model(const PictureOptions *options, const Parsed *parsed, E
     return status;
 }
 
-enum { PICTURE_NEEDS = 7 };
+enum { PICTURE_NEEDS = 8 };
 
 static void find_needs(const PictureOptions *options, OptionNeed needs[PICTURE_NEEDS])
 {
@@ -212,6 +212,7 @@ static void find_needs(const PictureOptions *options, OptionNeed needs[PICTURE_N
         {"colormap", colored, of_colors},
         {"range", colored, of_colors},
         {"log", colored, of_colors},
+        {"classes", colored, of_colors},
         {"q-perf", colored, of_colors},
         {"p-perf", colored, of_colors},
         {"viscosity", colored, of_colors},

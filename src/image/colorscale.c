@@ -26,9 +26,19 @@ bool colorscale_fit(ColorScale *scale, const double *values, size_t n)
     return true;
 }
 
+/* The place on the map of the class that a fraction of the range lies in. */
+static double place_of_class(double fraction, int classes)
+{
+    double number = floor(fraction * classes);
+    return fmin(number, classes - 1) / (classes - 1);
+}
+
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3])
 {
     double low = scaled(scale, scale->range[0]), high = scaled(scale, scale->range[1]);
     double width = high - low, above = scaled(scale, value) - low;
-    colormap_linear(&scale->map, width > 0 ? above / width : above + 0.5, rgb);
+    double fraction = width > 0 ? above / width : above + 0.5;
+    if (scale->classes >= 2 && !isnan(fraction))
+        fraction = place_of_class(fraction, scale->classes);
+    colormap_linear(&scale->map, fraction, rgb);
 }

@@ -111,6 +111,12 @@ test_log_takes_equal_factors_to_equal_steps_of_every_map() {
         "2 13 8 135" "4 126 3 168" "6 203 71 120" "8 248 148 65" "10 240 249 33"
 }
 
+test_classes_are_steps_of_one_colour_that_use_the_whole_map() {
+    make_vessels
+    expect_codes --color-by radius --log --classes 3 -- \
+        "2 68 1 84" "4 68 1 84" "6 33 144 140" "8 253 231 37" "10 253 231 37"
+}
+
 # 5.48 of 2.74 to 10.96 is at 1/3, entry 85, and by logarithm at 1/2; what lies outside has the colour of the end.
 test_range_sets_the_ends_of_the_map() {
     make_vessels

@@ -310,6 +310,7 @@ test_options_without_effect_are_refused() {
     done <<'END'
 --range needs --color-by|render tree.swc -o x.png --range 1,2
 --log needs --color-by|scene tree.swc -o x.pov --log
+--classes needs --color-by|render tree.swc -o x.png --classes 5
 --colormap needs --color-by|verify tree.swc -o x --colormap magma
 --hits is for --model isosurface|render tree.swc -o x.png --hits povray
 --erf is for --model isosurface|scene tree.swc -o x.pov --model blob --erf exact

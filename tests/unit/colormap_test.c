@@ -130,6 +130,65 @@ static void stays_at_the_ends_and_takes_what_is_no_number_for_middle_grey(void *
     colormap_release(&map);
 }
 
+/* From black to white in codes, so that the code is the place on the map. */
+static ColorScale ramp(bool log, int classes, double low, double high)
+{
+    ColorScale scale = {.range = {low, high}, .log = log, .classes = classes};
+    read_text(&scale.map, "0 0 0\n1 1 1\n");
+    return scale;
+}
+
+static void assert_place(const ColorScale *scale, double value, double place)
+{
+    float rgb[3];
+    colorscale_linear(scale, value, rgb);
+    double linear = (double)srgb_decode((float)place);
+    assert_rgb(rgb, linear, linear, linear);
+}
+
+static void a_scale_is_linear_in_values_or_in_their_logarithms(void **state)
+{
+    (void)state;
+    ColorScale scale = ramp(false, 0, -2.5, 7.5), log = ramp(true, 0, 0.25, 64);
+    assert_place(&scale, 0, 0.25);
+    assert_place(&scale, 7.5, 1);
+    assert_place(&scale, -99, 0);
+    assert_place(&log, 0.25, 0);
+    assert_place(&log, 4, 0.5);
+    assert_place(&log, 16, 0.75);
+    assert_place(&log, 0, 0.5); /* cannot be shown: grey */
+    assert_place(&log, NAN, 0.5);
+    colormap_release(&scale.map);
+    colormap_release(&log.map);
+}
+
+static void classes_are_equal_steps_that_use_the_whole_map(void **state)
+{
+    (void)state;
+    ColorScale scale = ramp(false, 5, 0, 10);
+    const struct {
+        double value, place;
+    } cases[] = {{-1, 0}, {0, 0}, {1.99, 0}, {2, 0.25}, {5, 0.5}, {7.99, 0.75}, {8, 1}, {99, 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        assert_place(&scale, cases[i].value, cases[i].place);
+    assert_place(&scale, NAN, 0.5);
+    colormap_release(&scale.map);
+}
+
+static void a_scale_is_fitted_to_what_it_can_show(void **state)
+{
+    (void)state;
+    const double values[] = {(double)NAN, -3, 0, 2.385, (double)INFINITY, 0.5};
+    ColorScale scale = {.range = {7, 8}};
+    assert_true(colorscale_fit(&scale, values, 6));
+    assert_true(scale.range[0] == -3 && scale.range[1] == 2.385);
+    scale.log = true;
+    assert_true(colorscale_fit(&scale, values, 6));
+    assert_true(scale.range[0] == 0.5 && scale.range[1] == 2.385);
+    assert_false(colorscale_fit(&scale, values, 3));
+    assert_true(scale.range[0] == 0.5 && scale.range[1] == 2.385);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -138,6 +197,9 @@ int main(void)
         cmocka_unit_test(takes_a_fraction_to_its_place_in_the_table),
         cmocka_unit_test(mixes_neighbours_as_they_are_encoded),
         cmocka_unit_test(stays_at_the_ends_and_takes_what_is_no_number_for_middle_grey),
+        cmocka_unit_test(a_scale_is_linear_in_values_or_in_their_logarithms),
+        cmocka_unit_test(classes_are_equal_steps_that_use_the_whole_map),
+        cmocka_unit_test(a_scale_is_fitted_to_what_it_can_show),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
