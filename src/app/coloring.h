@@ -14,7 +14,7 @@ typedef struct Coloring {
     const char *colormap;
     double range[2];
     bool has_range, log;
-    int classes; /* 1: a colour for each value */
+    int classes;   /* 1: a colour for each value */
     TreeMeta flow; /* what the user says of the tree */
 } Coloring;
 

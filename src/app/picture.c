@@ -1,3 +1,6 @@
+/* Options in, and out of them the three things that a picture is of: the look and the tree are read
+ * once, and geometry, appearance and view made of them, each by itself. An option that has no
+ * effect on the picture asked for is refused. */
 #include "app/picture.h"
 
 #include "app/templates.h"
@@ -209,14 +212,10 @@ static void find_needs(const PictureOptions *options, OptionNeed needs[PICTURE_N
     static const char of_colors[] = "needs --color-by";
     bool colored = options->coloring.field != NULL;
     const OptionNeed list[] = {
-        {"colormap", colored, of_colors},
-        {"range", colored, of_colors},
-        {"log", colored, of_colors},
-        {"classes", colored, of_colors},
-        {"q-perf", colored, of_colors},
-        {"p-perf", colored, of_colors},
-        {"viscosity", colored, of_colors},
-        {0},
+        {"colormap", colored, of_colors},  {"range", colored, of_colors},
+        {"log", colored, of_colors},       {"classes", colored, of_colors},
+        {"q-perf", colored, of_colors},    {"p-perf", colored, of_colors},
+        {"viscosity", colored, of_colors}, {0},
     };
     static_assert(sizeof list == PICTURE_NEEDS * sizeof *list, "PICTURE_NEEDS counts the list");
     memcpy(needs, list, sizeof list);

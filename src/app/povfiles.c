@@ -1,3 +1,4 @@
+/* Where the files of a scene go, and which POV-Ray draws them. */
 #include "app/povfiles.h"
 
 #include "app/commands.h"

@@ -28,8 +28,8 @@ typedef enum RenderKernels {
 extern const char *const render_kernel_names[];
 
 typedef struct RenderParams {
-    /* An implicit model has tiles of its own and takes none of these. What needs rays, soft
-     * shadows, occlusion and ground, is traced whatever the method. */
+    /* Of primitives alone; implicit models have engines of their own. Soft shadows, occlusion and
+     * ground need rays: pictures with one of them are traced whatever the method. */
     RenderMethod method;
     RenderKernels kernels;
     int threads;   /* 0: all processors */
@@ -39,11 +39,11 @@ typedef struct RenderParams {
                                  * (0, 1], those only that differ from a neighbour by so much in
                                  * the square root of a channel, which no POV-Ray picture repeats */
     bool shadows;
-    double shadow_from_mm; /* what is nearer to a lit place is not in its light; 0: POV-Ray's 0.001
-                              mm */
+    double shadow_from_mm; /* what is nearer to a lit place casts no shadow on it; 0: POV-Ray's
+                            * limit, 0.001 mm */
     int occlusion; /* 0: ambient light is the same everywhere; N: the part of it that reaches a
                     * point is found by N rays, which no POV-Ray picture repeats */
-    const CellParams *povray_cells; /* of an implicit model: where POV-Ray's root finder sees it in
+    const CellParams *povray_cells; /* an isosurface is drawn where POV-Ray's root finder sees it in
                                      * these cells; NULL: where it is, by proof */
     bool
         codes_suffice; /* the frame may have 8-bit codes instead of colours, where that is faster */
@@ -53,8 +53,8 @@ typedef struct RenderParams {
 } RenderParams;
 
 typedef struct RenderStats {
-    double prepare_s; /* building the search structure */
-    double trace_s;
+    double prepare_s;   /* search structures: of the geometry, and what views need besides */
+    double trace_s;     /* pixels */
     double cpu_s;       /* of all threads, for both: trace_s when nothing else runs is about cpu_s /
                            threads */
     size_t rays;        /* primary */
@@ -63,9 +63,9 @@ typedef struct RenderStats {
                             before */
 } RenderStats;
 
-/* Rows first .. first + rows of the picture. The outermost `above` and `below` of them are there
- * only for their neighbours to be told apart from: they get no further samples and are cut off at
- * the end. */
+/* Rows first .. first + rows of the picture. The first `above` and the last `below` of them are
+ * drawn only because adaptive antialiasing compares pixels with their neighbours: they get no
+ * further samples and are cut off at the end. */
 typedef struct Band {
     int first, rows;
     int above, below;
@@ -81,8 +81,9 @@ typedef struct Drawing {
     Band band;
 } Drawing;
 
-/* Says how far the whole picture is; `part` is of this pass over the band, whose further samples
- * are a pass of their own. */
+/* Reports progress of the whole picture by params->progress, if there is one. `part`, from 0 to 1,
+ * is of the present pass over the band: that of the centre samples, or, if `further`, of the
+ * further samples of antialiasing. */
 void band_progress(const Band *band, const RenderParams *params, int height, bool further,
                    double part);
 

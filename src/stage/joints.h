@@ -5,7 +5,8 @@
 #include "stage/places.h"
 #include "stage/stage.h"
 
-/* Appends to geometry->primitives, which has room for two a node, and counts joints and breakdowns.
+/* Appends cylinders, joints and, where no joint can be, spheres to geometry->primitives, which has
+ * room for two primitives a node, and counts joints and places without in *report. STATUS_MEMORY.
  */
 MUST_CHECK Status joints_add(const Tree *tree, const Places *places, JointForm form,
                              Geometry *geometry, StageReport *report, Err *err);

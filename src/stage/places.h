@@ -9,15 +9,17 @@
 #define SHORTEST_MM 1e-9
 
 typedef struct Places {
-    int32_t
-        *cover; /* one a node: the sister within whose segment its own lies, or TREE_NO_PARENT */
-    int32_t *place; /* one a node: the node that stands for all at its place */
+    /* For each node: the sister of its segment, a segment from the same place, that the segment
+     * lies within and is not drawn for, or TREE_NO_PARENT. Owned, as the next. */
+    int32_t *cover;
+    int32_t *place; /* for each node: the node that stands for all nodes at the same place */
 } Places;
 
 /* Whether segment i has a radius and a length that POV-Ray takes; false for a root. */
 bool segment_can_be_drawn(const Tree *tree, size_t i);
 
-/* Finds them in *places (owned; places_release). */
+/* Fills *places (owned; places_release). O(n) of n nodes, unless many lie close to
+ * each other. STATUS_MEMORY. */
 MUST_CHECK Status places_find(const Tree *tree, Places *places, Err *err);
 void places_release(Places *places);
 

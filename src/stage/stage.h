@@ -8,8 +8,9 @@
 #include "scene/scene.h"
 #include "tree/tree.h"
 
-/* What a picture looks like whatever it shows: a file of templates/looks. Colours are linear RGB.
- */
+/* A look is what pictures of any tree have in common: finish, colours, lights and ground, in sizes
+ * of the tree and mostly in the camera's axes. Colours are linear RGB. */
+
 typedef struct LookLight {
     bool is_point;
     /* x right, y up, z towards the viewer. Of a parallel light: towards it, of any length. Of a
@@ -81,18 +82,20 @@ typedef struct ViewParams {
 ViewParams view_defaults(void);
 
 typedef struct StageReport {
-    size_t drawn;   /* segments in the scene */
+    size_t drawn;   /* segments that the geometry stands for */
     size_t dropped; /* segments without length or radius, which cannot be drawn */
-    /* Of a joined model: joints drawn; places where the construction breaks down because a vessel
-     * is too short, of the others, because it turns back too sharply, and those where so many
-     * vessels meet that how they run into each other is not worked out. */
-    size_t joints, places_short, places_sharp, places_crowded;
+    /* Of a joined model. The construction of joints breaks down at a place if a vessel is too short
+     * for its joints; else if a vessel turns back too sharply; or it is not tried, because too many
+     * vessels meet. */
+    size_t joints; /* drawn */
+    size_t places_short, places_sharp, places_crowded;
 } StageReport;
 
-/* The shape of a tree in *geometry (owned; geometry_release). If the tree lies farther from the
- * origin than 16 times its size, the geometry is moved next to it by whole millimetres,
- * geometry->origin, and nothing seen changes. `report` may be NULL. STATUS_INPUT when nothing can
- * be drawn or a number is out of range. */
+/* The shape of a tree in *geometry (owned; geometry_release), of which nothing is borrowed. If the
+ * tree lies farther from the origin than 16 times its size, the geometry is moved next to it by
+ * whole millimetres, geometry->origin, and nothing seen changes. `report` may be NULL. STATUS_INPUT
+ * when nothing can be drawn or a number is out of range, STATUS_MEMORY. O(n) of n nodes, but for
+ * joints [cuts.h] and the graph. */
 MUST_CHECK Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *geometry,
                                  StageReport *report, Err *err);
 

@@ -1,13 +1,14 @@
-/* A bounding volume hierarchy over primitives. */
+/* First hits of primitives, by a bounding volume hierarchy. */
 #ifndef CORCAST_RENDER_BVH_H
 #define CORCAST_RENDER_BVH_H
 
 #include "base/base.h"
 #include "scene/scene.h"
 
+/* Constant once built, shared by threads. */
 typedef struct Bvh Bvh;
 
-/* `primitives` is borrowed and must outlive the hierarchy; n >= 1. */
+/* `primitives` is borrowed and must outlive the hierarchy; n >= 1. O(n log n). STATUS_MEMORY. */
 MUST_CHECK Status bvh_build(const Primitive *primitives, size_t n, Bvh **out, Err *err);
 void bvh_free(Bvh *bvh);
 

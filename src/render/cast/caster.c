@@ -1,3 +1,8 @@
+/* One of four searches, by what the geometry is: primitives by a bounding volume hierarchy, a blob
+ * piece by piece, an isosurface by proof, or as POV-Ray's own root finder finds it. What all have
+ * in common is here: POV-Ray's limits of what is too near to be seen or to cast a shadow, and
+ * normals that face the viewer. Searches that need room while they run have a workspace for each
+ * thread. */
 #include "render/cast/caster.h"
 
 #include "render/cast/blobcast.h"
@@ -14,11 +19,11 @@ static const double blob_nearest_mm = 1e-2;
 
 struct Caster {
     const Geometry *geometry;
-    Bvh *bvh;                  /* NULL for an implicit model */
-    PovrayIsosurface *halving; /* an implicit model as POV-Ray finds it, or NULL */
-    FieldIndex *field;         /* an implicit model by proof, or NULL */
-    FieldScratch **scratch;    /* one a worker */
-    BlobCast *blob;            /* or NULL */
+    Bvh *bvh;                     /* NULL for an implicit model */
+    PovrayIsosurface *isosurface; /* an implicit model as POV-Ray finds it, or NULL */
+    FieldIndex *field;            /* an implicit model by proof, or NULL */
+    FieldScratch **scratch;       /* one a worker */
+    BlobCast *blob;               /* or NULL */
     BlobScratch **blob_scratch;
     int workers;
     double shadow_from_mm;
@@ -42,7 +47,7 @@ Status caster_new(const Geometry *geometry, const CellParams *cells, int workers
     } else if (model_has(geometry->model, MODEL_PRIMITIVES)) {
         TRY_GOTO(bvh_build(geometry->primitives, geometry->n_primitives, &caster->bvh, err));
     } else if (cells) {
-        TRY_GOTO(povray_isosurface_new(geometry, cells, &caster->halving, err));
+        TRY_GOTO(povray_isosurface_new(geometry, cells, &caster->isosurface, err));
     } else {
         TRY_GOTO(fieldindex_build(geometry, &caster->field, err));
         TRY_GOTO(mem_calloc(&caster->scratch, (size_t)workers, sizeof *caster->scratch,
@@ -74,7 +79,7 @@ void caster_free(Caster *caster)
     free(caster->blob_scratch);
     blobcast_free(caster->blob);
     fieldindex_free(caster->field);
-    povray_isosurface_free(caster->halving);
+    povray_isosurface_free(caster->isosurface);
     bvh_free(caster->bvh);
     free(caster);
 }
@@ -87,10 +92,10 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
         if (!bvh_first_hit(caster->bvh, ray, NEAREST_SEEN_MM, &hit, &index))
             return false;
         *surfel = (Surfel){hit.t, hit.normal, caster->geometry->primitives[index].segment};
-    } else if (caster->halving) {
+    } else if (caster->isosurface) {
         Hit hit;
         uint32_t index;
-        if (!povray_isosurface_first_hit(caster->halving, ray, NEAREST_SEEN_MM, &hit, &index))
+        if (!povray_isosurface_first_hit(caster->isosurface, ray, NEAREST_SEEN_MM, &hit, &index))
             return false;
         *surfel = (Surfel){hit.t, hit.normal, caster->geometry->segments[index].segment};
     } else {
@@ -120,8 +125,8 @@ bool caster_shadow(Caster *caster, int worker, const Ground *ground, Vec3 point,
         return true;
     if (caster->bvh)
         return bvh_any_hit(caster->bvh, ray, near, far);
-    if (caster->halving)
-        return povray_isosurface_any_hit(caster->halving, ray, near, far);
+    if (caster->isosurface)
+        return povray_isosurface_any_hit(caster->isosurface, ray, near, far);
     if (caster->blob)
         return blobcast_any_hit(caster->blob, caster->blob_scratch[worker], ray, blob_nearest_mm,
                                 far);

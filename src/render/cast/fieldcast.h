@@ -20,8 +20,8 @@
 bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                      double t_max, double *t, Vec3 *normal, uint32_t *segment);
 
-/* The same among the `n` segments listed of the scene, without an index. `scratch` has room for
- * n. */
+/* The same among `n` segments, listed by their indices in Geometry.segments, without a search
+ * structure: O(n). `scratch` has room for n. */
 bool field_first_hit_among(const Geometry *geometry, const uint32_t *list, size_t n,
                            FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
                            Vec3 *normal, uint32_t *segment);

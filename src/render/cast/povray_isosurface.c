@@ -137,53 +137,55 @@ static Vec3 cell_normal(const CellTree *tree, const Cell *cell, Vec3 x)
 
 /* ---- all cells ------------------------------------------------------------------------------- */
 
-static void build_node(PovrayIsosurface *halving, uint32_t number, uint32_t first, uint32_t count)
+static void build_node(PovrayIsosurface *isosurface, uint32_t number, uint32_t first,
+                       uint32_t count)
 {
-    Node *node = &halving->nodes[number];
+    Node *node = &isosurface->nodes[number];
     *node = (Node){box_empty(), first, count, 0};
     if (count > LEAF_CELLS) {
-        node->left = halving->n_nodes;
-        halving->n_nodes += 2;
-        build_node(halving, node->left, first, count / 2);
-        build_node(halving, node->left + 1, first + count / 2, count - count / 2);
-        node->box = box_union(halving->nodes[node->left].box, halving->nodes[node->left + 1].box);
+        node->left = isosurface->n_nodes;
+        isosurface->n_nodes += 2;
+        build_node(isosurface, node->left, first, count / 2);
+        build_node(isosurface, node->left + 1, first + count / 2, count - count / 2);
+        node->box =
+            box_union(isosurface->nodes[node->left].box, isosurface->nodes[node->left + 1].box);
         return;
     }
     for (uint32_t i = first; i < first + count; i++)
-        node->box =
-            box_union(node->box, (Box){halving->tree.cells[i].low, halving->tree.cells[i].high});
+        node->box = box_union(node->box,
+                              (Box){isosurface->tree.cells[i].low, isosurface->tree.cells[i].high});
 }
 
 Status povray_isosurface_new(const Geometry *geometry, const CellParams *params,
                              PovrayIsosurface **out, Err *err)
 {
-    PovrayIsosurface *halving = NULL;
+    PovrayIsosurface *isosurface = NULL;
     Status status;
-    TRY_GOTO(mem_calloc(&halving, 1, sizeof *halving, "cells", err));
-    TRY_GOTO(celltree_build(geometry, params, &halving->tree, err));
-    TRY_GOTO(mem_calloc(&halving->nodes, 2 * halving->tree.n_cells + 1, sizeof *halving->nodes,
-                        "boxes of cells", err));
-    halving->n_nodes = 1;
-    build_node(halving, 0, 0, (uint32_t)halving->tree.n_cells);
-    *out = halving;
+    TRY_GOTO(mem_calloc(&isosurface, 1, sizeof *isosurface, "cells", err));
+    TRY_GOTO(celltree_build(geometry, params, &isosurface->tree, err));
+    TRY_GOTO(mem_calloc(&isosurface->nodes, 2 * isosurface->tree.n_cells + 1,
+                        sizeof *isosurface->nodes, "boxes of cells", err));
+    isosurface->n_nodes = 1;
+    build_node(isosurface, 0, 0, (uint32_t)isosurface->tree.n_cells);
+    *out = isosurface;
     return STATUS_OK;
 done:
-    povray_isosurface_free(halving);
+    povray_isosurface_free(isosurface);
     return status;
 }
 
-void povray_isosurface_free(PovrayIsosurface *halving)
+void povray_isosurface_free(PovrayIsosurface *isosurface)
 {
-    if (!halving)
+    if (!isosurface)
         return;
-    celltree_release(&halving->tree);
-    free(halving->nodes);
-    free(halving);
+    celltree_release(&isosurface->tree);
+    free(isosurface->nodes);
+    free(isosurface);
 }
 
 /* The nearest hit in [t_min, t_max], or any with `any`, as *cell and *t. */
-static bool find_hit(const PovrayIsosurface *halving, Ray ray, double t_min, double t_max, bool any,
-                     uint32_t *cell, double *t)
+static bool find_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min, double t_max,
+                     bool any, uint32_t *cell, double *t)
 {
     Vec3 inverse = vec3_inverse(ray.direction);
     uint32_t stack[STACK_SIZE];
@@ -191,7 +193,7 @@ static bool find_hit(const PovrayIsosurface *halving, Ray ray, double t_min, dou
     bool found = false;
     stack[top++] = 0;
     while (top > 0 && !(any && found)) {
-        const Node *node = &halving->nodes[stack[--top]];
+        const Node *node = &isosurface->nodes[stack[--top]];
         double low = 0, high = t_max;
         if (!hit_box(ray.origin, inverse, &node->box, &low, &high))
             continue;
@@ -202,7 +204,7 @@ static bool find_hit(const PovrayIsosurface *halving, Ray ray, double t_min, dou
         }
         for (uint32_t i = node->first; i < node->first + node->count; i++) {
             double at;
-            if (hit_cell(&halving->tree, &halving->tree.cells[i], ray, &at) && at >= t_min &&
+            if (hit_cell(&isosurface->tree, &isosurface->tree.cells[i], ray, &at) && at >= t_min &&
                 at < t_max) {
                 found = true;
                 t_max = at;
@@ -214,22 +216,23 @@ static bool find_hit(const PovrayIsosurface *halving, Ray ray, double t_min, dou
     return found;
 }
 
-bool povray_isosurface_first_hit(const PovrayIsosurface *halving, Ray ray, double t_min, Hit *hit,
-                                 uint32_t *segment)
+bool povray_isosurface_first_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min,
+                                 Hit *hit, uint32_t *segment)
 {
     uint32_t number;
-    if (!find_hit(halving, ray, t_min, HUGE_VAL, false, &number, &hit->t))
+    if (!find_hit(isosurface, ray, t_min, HUGE_VAL, false, &number, &hit->t))
         return false;
-    const Cell *cell = &halving->tree.cells[number];
+    const Cell *cell = &isosurface->tree.cells[number];
     Vec3 x = ray_at(ray, hit->t);
-    hit->normal = cell_normal(&halving->tree, cell, x);
-    *segment = cell_largest_term(&halving->tree, cell, x);
+    hit->normal = cell_normal(&isosurface->tree, cell, x);
+    *segment = cell_largest_term(&isosurface->tree, cell, x);
     return true;
 }
 
-bool povray_isosurface_any_hit(const PovrayIsosurface *halving, Ray ray, double t_min, double t_max)
+bool povray_isosurface_any_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min,
+                               double t_max)
 {
     uint32_t cell;
     double t;
-    return find_hit(halving, ray, nextafter(t_min, HUGE_VAL), t_max, true, &cell, &t);
+    return find_hit(isosurface, ray, nextafter(t_min, HUGE_VAL), t_max, true, &cell, &t);
 }

@@ -87,7 +87,6 @@ static void color_samples(const FieldPicture *picture, int worker, const SeenTil
 {
     const Drawing *drawing = picture->canvas.drawing;
     const SampleGrid *grid = &picture->pass->grid;
-    const RayColoring with = {drawing->view, drawing->appearance, drawing->params, drawing->caster};
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (!is_inside(seen, sample))
             continue;
@@ -99,8 +98,8 @@ static void color_samples(const FieldPicture *picture, int worker, const SeenTil
                               drawing->geometry->segments[seen->hits->segment[sample]].segment};
             hit = &surfel;
         }
-        Rgb rgb = ray_color(&with, worker, sample_ray(picture, seen, sample), grid->columns[column],
-                            grid->rows[row], hit);
+        Rgb rgb = ray_color(drawing, worker, sample_ray(picture, seen, sample),
+                            grid->columns[column], grid->rows[row], hit);
         color[0][sample] = rgb.r;
         color[1][sample] = rgb.g;
         color[2][sample] = rgb.b;

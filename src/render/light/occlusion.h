@@ -1,12 +1,12 @@
-/* How much of the sky a point sees. */
+/* Ambient occlusion: how much of the sky a point sees. */
 #ifndef CORCAST_RENDER_OCCLUSION_H
 #define CORCAST_RENDER_OCCLUSION_H
 
 #include "render/cast/caster.h"
 
-/* The part, from 0 to 1, of `rays` (at least 1) rays that leave the point without meeting anything.
- * Their directions are distributed as the cosine to `normal` (unit), and turned about it by `turn`,
- * a part of a full turn. METHODS section 3.1. */
+/* The part, from 0 to 1, of `rays` (at least 1) rays from the point that meet neither a vessel nor
+ * the ground. Their directions are distributed as the cosine to `normal` (unit), and turned about
+ * it by `turn`, a part of a full turn. O(rays) questions to the caster. METHODS section 3.1. */
 double occlusion_open(Caster *caster, int worker, const Ground *ground, Vec3 point, Vec3 normal,
                       int rays, double turn);
 

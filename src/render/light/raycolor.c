@@ -1,5 +1,6 @@
-/* One place for all that happens to a ray after it has met a vessel or none, whichever way that was
- * found, so that every model is lit alike. */
+/* Ground, occlusion, shadows and shading of one ray, whichever engine has found what it meets, so
+ * that every model is lit alike. The ground is tested here and not by the casters: it belongs to
+ * the view, and no plane but that of colours shows it. */
 #include "render/light/raycolor.h"
 
 #include "render/light/occlusion.h"
@@ -26,27 +27,28 @@ bool raycolor_is_needed(const View *view, const RenderParams *params)
     return params->occlusion > 0 || view->ground.present || (params->shadows && soft);
 }
 
-Rgb ray_color(const RayColoring *with, int worker, Ray ray, double i, double j,
-              const Surfel *surfel)
+Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, const Surfel *surfel)
 {
-    const View *view = with->view;
+    const View *view = drawing->view;
+    const Appearance *appearance = drawing->appearance;
+    const RenderParams *params = drawing->params;
     const Ground *ground = &view->ground;
     double t = surfel ? surfel->t : HUGE_VAL;
     bool on_ground = ground_hit(ground, ray, NEAREST_SEEN_MM, t, &t);
     if (!on_ground && !surfel)
         return view->background;
-    ShadowContext context = {with->caster, ground, worker};
-    ShadePoint at = {.finish = on_ground ? &ground->finish : &with->appearance->finish,
-                     .pigment = on_ground ? ground->color
-                                          : appearance_color(with->appearance, surfel->segment),
+    ShadowContext context = {drawing->caster, ground, worker};
+    ShadePoint at = {.finish = on_ground ? &ground->finish : &appearance->finish,
+                     .pigment =
+                         on_ground ? ground->color : appearance_color(appearance, surfel->segment),
                      .point = ray_at(ray, t),
                      .normal = on_ground ? ground->normal : surfel->normal,
                      .direction = ray.direction,
                      .open = 1};
     if (vec3_dot(at.normal, ray.direction) > 0)
         at.normal = vec3_scale(at.normal, -1);
-    if (with->params->occlusion > 0)
-        at.open = occlusion_open(with->caster, worker, ground, at.point, at.normal,
-                                 with->params->occlusion, occlusion_turn(i, j));
-    return shade(view, &at, with->params->shadows ? shadowed : NULL, &context);
+    if (params->occlusion > 0)
+        at.open = occlusion_open(drawing->caster, worker, ground, at.point, at.normal,
+                                 params->occlusion, occlusion_turn(i, j));
+    return shade(view, &at, params->shadows ? shadowed : NULL, &context);
 }

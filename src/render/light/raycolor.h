@@ -5,21 +5,15 @@
 #include "render/cast/caster.h"
 #include "render/job.h"
 
-/* What colours are made of. */
-typedef struct RayColoring {
-    const View *view;
-    const Appearance *appearance;
-    const RenderParams *params;
-    Caster *caster; /* NULL: nothing is in the way of light */
-} RayColoring;
-
-/* Whether the picture needs what the kernels of tiles do not know: ambient occlusion, area lights
- * or ground. */
+/* Whether a picture needs ray_color: it has ambient occlusion, area lights with shadows, or ground,
+ * of which the kernels of tiles know nothing. */
 bool raycolor_is_needed(const View *view, const RenderParams *params);
 
-/* The colour of what is seen along the ray of the sample (i, j): of `surfel`, what it meets first
- * of the vessels (NULL: none), of the ground where that is nearer, or of the background. */
-Rgb ray_color(const RayColoring *with, int worker, Ray ray, double i, double j,
+/* The linear colour seen along the ray of the sample (i, j) of the drawing: of a vessel if
+ * `surfel`, the first point of a vessel that the ray meets (NULL: none), is nearer than the ground;
+ * else of the ground, or of the background. The drawing's caster may be NULL if neither shadows nor
+ * occlusion are wanted; `worker` is the calling thread's number [caster.h]. */
+Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j,
               const Surfel *surfel);
 
 #endif

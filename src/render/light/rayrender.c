@@ -11,7 +11,6 @@
 
 typedef struct RayPicture {
     const Drawing *drawing;
-    RayColoring coloring;
     Frame *frame;
     Resampling more;
 } RayPicture;
@@ -20,8 +19,8 @@ static Rgb sample_color(const RayPicture *picture, int worker, double i, double 
 {
     Ray ray = camera_ray(&picture->drawing->view->camera, i, j);
     Surfel surfel;
-    bool seen = caster_first(picture->coloring.caster, worker, ray, &surfel);
-    return ray_color(&picture->coloring, worker, ray, i, j, seen ? &surfel : NULL);
+    bool seen = caster_first(picture->drawing->caster, worker, ray, &surfel);
+    return ray_color(picture->drawing, worker, ray, i, j, seen ? &surfel : NULL);
 }
 
 /* The mean of the centre sample and the grid around it, summed row by row in float. */
@@ -59,7 +58,7 @@ static void render_row(size_t row, int worker, void *context)
         size_t pixel = row * (size_t)camera->width + (size_t)i;
         Ray ray = camera_ray(camera, i, picture->drawing->band.first + (int)row);
         Surfel surfel;
-        bool seen = caster_first(picture->coloring.caster, worker, ray, &surfel);
+        bool seen = caster_first(picture->drawing->caster, worker, ray, &surfel);
         if (seen)
             planes_store(picture->frame, pixel, surfel.t, surfel.normal,
                          picture->drawing->geometry->ids[surfel.segment]);
@@ -67,7 +66,7 @@ static void render_row(size_t row, int worker, void *context)
             planes_store_nothing(picture->frame, pixel);
         if (picture->frame->color.values)
             planes_store_color(picture->frame, pixel,
-                               ray_color(&picture->coloring, worker, ray, i,
+                               ray_color(picture->drawing, worker, ray, i,
                                          picture->drawing->band.first + (int)row,
                                          seen ? &surfel : NULL));
     }
@@ -94,9 +93,7 @@ static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Er
     (void)prepared;
     const RenderParams *params = drawing->params;
     const Band *band = &drawing->band;
-    RayPicture picture = {.drawing = drawing,
-                          .coloring = {drawing->view, drawing->appearance, params, drawing->caster},
-                          .frame = frame};
+    RayPicture picture = {.drawing = drawing, .frame = frame};
     Status status =
         resampling_init(frame->color.values ? params->antialias : 1, &picture.more, err);
     if (status == STATUS_OK)

@@ -1,3 +1,6 @@
+/* Adaptive antialiasing compares pixels as an eye would, by square roots of linear channels: about
+ * equal steps of them look about equal. POV-Ray compares other numbers, so that no picture with a
+ * threshold is held against its. */
 #include "render/light/resample.h"
 
 #include <math.h>

@@ -6,8 +6,9 @@
 #include "render/job.h"
 
 /* Sets mask[pixel] to 1 where the square root of a channel, clipped to [0, 1], differs by
- * `threshold` or more from that of a pixel to the left, right, above or below, else to 0, and to 0
- * in the rows `above` the others and `below` them. `color` has 3 channels. */
+ * `threshold` or more from that of the pixel to the left, right, above or below, and to 0
+ * elsewhere. In the first `above` and the last `below` rows it is 0 throughout: they are there only
+ * as neighbours. `color` has 3 channels; `mask` as many bytes as it has pixels. */
 void resample_mask(const Plane *color, int above, int below, float threshold, int threads,
                    uint8_t *mask);
 

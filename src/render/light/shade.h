@@ -9,8 +9,8 @@
  * this [docs/METHODS.md section 3]. */
 #define LEAST_LIT_COSINE 1e-10
 
-/* Tells whether anything stands between `point` and a light in direction `towards` (unit) at
- * `distance` mm. */
+/* Tells whether anything stands between `point` and one of a light's points, in direction `towards`
+ * (unit) at `distance` mm. */
 typedef bool ShadowTest(void *context, Vec3 point, Vec3 towards, double distance);
 
 /* What is seen at a point. */
@@ -23,7 +23,10 @@ typedef struct ShadePoint {
     double open;    /* the part of the ambient light that reaches it */
 } ShadePoint;
 
-/* The colour of a point in the lights of the view. `shadow` may be NULL: no shadows. */
+/* The linear colour of a point: ambient light, and for each light of the view that the surface
+ * faces the diffuse and specular light of its finish, times the part of the light's points for
+ * which `shadow` is false. `shadow` is asked only for lights that cast shadows; NULL: nothing does.
+ */
 Rgb shade(const View *view, const ShadePoint *at, ShadowTest *shadow, void *context);
 
 #endif
