@@ -31,8 +31,8 @@ static const FloatBox nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -IN
 static void widen(FloatBox *box, const FloatBox *by)
 {
     for (int axis = 0; axis < 3; axis++) {
-        box->low[axis] = fminf(box->low[axis], by->low[axis]);
-        box->high[axis] = fmaxf(box->high[axis], by->high[axis]);
+        box->low[axis] = box->low[axis] < by->low[axis] ? box->low[axis] : by->low[axis];
+        box->high[axis] = box->high[axis] > by->high[axis] ? box->high[axis] : by->high[axis];
     }
 }
 

@@ -11,7 +11,7 @@
 enum { MOST_NEIGHBORS = 48 };
 #define NONE UINT32_MAX
 
-static const double rounds[] = {0.1, 0.4, 1};
+static const double rounds[] = {0.3, 1};
 /* Cosine of the most that a triangle may lean from the normals at its corners. */
 static const double least_cosine = 0.72;
 /* Least height of a new triangle over its longest side, unless it was worse before. */
@@ -143,14 +143,14 @@ static bool may_collapse(const Work *work, uint32_t point, const Ring *ring, uin
     bool on_rim = points[point].arm != NO_ARM;
     if (on_rim && (shared != 1 || points[target].arm != points[point].arm))
         return false;
-    for (int i = 0; i < ring->n; i++) {
-        uint32_t b = ring->from[i], c = ring->to[i];
-        if (b == target || c == target)
-            continue;
-        if (!edge_is_near(work, target, b) || !edge_is_near(work, target, c) ||
-            !triangle_is_fit(work, target, b, c, point))
+    for (int i = 0; i < ring->n; i++)
+        if (ring->from[i] != target && ring->to[i] != target &&
+            !(edge_is_near(work, target, ring->from[i]) && edge_is_near(work, target, ring->to[i])))
             return false;
-    }
+    for (int i = 0; i < ring->n; i++)
+        if (ring->from[i] != target && ring->to[i] != target &&
+            !triangle_is_fit(work, target, ring->from[i], ring->to[i], point))
+            return false;
     Ring target_ring;
     return find_ring(work, target, &target_ring) &&
            ring->n + target_ring.n - 2 * shared <= MOST_NEIGHBORS &&

@@ -1,11 +1,13 @@
 /* Two triangles cross when an edge of one meets the other. All is decided by the sign of the volume
  * of four points. Coordinates are whole multiples of a grid, so that their differences have 26 bits
  * and the volume fits into 128; in double precision its error is below 2^-49 of the sum of the
- * magnitudes of its products, and only closer to zero the whole numbers are asked. */
+ * magnitudes of its products, and only closer to zero the whole numbers are asked. Most pairs are
+ * settled by the plane of one of them, which the other does not reach through. */
 #include "surface/mesh/meshcheck.h"
 
 #include "surface/mesh/boxpairs.h"
 #include <math.h>
+#include <stdlib.h>
 
 __extension__ typedef __int128 Wide;
 
@@ -25,8 +27,10 @@ static FloatBox box_of(uint32_t item, const void *context)
     const float *c = mesh->points[mesh->triangles[item][2]];
     FloatBox box;
     for (int axis = 0; axis < 3; axis++) {
-        box.low[axis] = fminf(a[axis], fminf(b[axis], c[axis]));
-        box.high[axis] = fmaxf(a[axis], fmaxf(b[axis], c[axis]));
+        float low = a[axis] < b[axis] ? a[axis] : b[axis];
+        float high = a[axis] < b[axis] ? b[axis] : a[axis];
+        box.low[axis] = low < c[axis] ? low : c[axis];
+        box.high[axis] = high > c[axis] ? high : c[axis];
     }
     return box;
 }
@@ -67,77 +71,129 @@ static int side_of(const Search *search, const float *a, const float *b, const f
     return exact_side(search, p);
 }
 
-/* Whether the edge from p to q, whose ends lie on sides p_side and q_side of the triangle's plane,
- * meets the triangle. */
-static bool edge_meets(const Search *search, const float *p, const float *q, int p_side, int q_side,
-                       const float *const t[3])
+/* A triangle, and the plane through it in double precision. */
+typedef struct Face {
+    const float *at[3];
+    double normal[3], size; /* not unit; the magnitude of its products */
+} Face;
+
+static Face face_of(const VesselMesh *mesh, uint32_t triangle)
 {
-    if (p_side * q_side > 0)
-        return false;
-    int one = side_of(search, p, q, t[0], t[1]), other = side_of(search, p, q, t[1], t[2]);
-    int third = side_of(search, p, q, t[2], t[0]);
+    Face face;
+    double e[2][3], sum[2] = {0};
+    for (int i = 0; i < 3; i++)
+        face.at[i] = mesh->points[mesh->triangles[triangle][i]];
+    for (int i = 0; i < 2; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            e[i][axis] = (double)face.at[i + 1][axis] - (double)face.at[0][axis];
+            sum[i] += fabs(e[i][axis]);
+        }
+    for (int axis = 0; axis < 3; axis++) {
+        int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        face.normal[axis] = e[0][u] * e[1][v] - e[0][v] * e[1][u];
+    }
+    face.size = sum[0] * sum[1];
+    return face;
+}
+
+/* On which side of the face's plane a point lies: 1 where the normal points, 0 on it. */
+static int side_of_face(const Search *search, const Face *face, const float *p)
+{
+    double height = 0, far = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double off = (double)p[axis] - (double)face->at[0][axis];
+        height += face->normal[axis] * off;
+        far += fabs(off);
+    }
+    if (fabs(height) > 0x1p-49 * face->size * far)
+        return height > 0 ? 1 : -1;
+    return -side_of(search, face->at[0], face->at[1], face->at[2], p);
+}
+
+/* Whether the edge from p to q, whose ends do not lie on one side of the face's plane, meets the
+ * face. */
+static bool edge_meets(const Search *search, const float *p, const float *q, const Face *face)
+{
+    int one = side_of(search, p, q, face->at[0], face->at[1]);
+    int other = side_of(search, p, q, face->at[1], face->at[2]);
+    int third = side_of(search, p, q, face->at[2], face->at[0]);
     return (one >= 0 && other >= 0 && third >= 0) || (one <= 0 && other <= 0 && third <= 0);
 }
 
-/* Whether an edge of `a` meets `b`; `shared` is their common corner, `a` first, or -1. */
-static bool an_edge_meets(const Search *search, const float *const a[3], const float *const b[3],
-                          int shared)
+/* The turn from p over q to r, seen along `axis`; exact, because the products have 52 bits. */
+static int turn_of(const float *p, const float *q, const float *r, int axis)
+{
+    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    double turn = ((double)q[u] - (double)p[u]) * ((double)r[v] - (double)p[v]) -
+                  ((double)q[v] - (double)p[v]) * ((double)r[u] - (double)p[u]);
+    return (turn > 0) - (turn < 0);
+}
+
+/* Whether an edge in the face's plane meets the face: no side of the face has all of the edge
+ * beyond it, nor the edge all of the face beside it. */
+static bool flat_edge_meets(const float *p, const float *q, const Face *face)
+{
+    int axis = 0, beside = 0;
+    for (int i = 1; i < 3; i++)
+        if (fabs(face->normal[i]) > fabs(face->normal[axis]))
+            axis = i;
+    int around = turn_of(face->at[0], face->at[1], face->at[2], axis);
+    for (int i = 0; i < 3; i++) {
+        const float *from = face->at[i], *to = face->at[(i + 1) % 3];
+        if (turn_of(from, to, p, axis) * around < 0 && turn_of(from, to, q, axis) * around < 0)
+            return false;
+        beside += turn_of(p, q, from, axis);
+    }
+    return abs(beside) < 3;
+}
+
+/* Whether an edge of `a` meets `b`; `shared` is the corner of `a` that both have, or -1. */
+static bool an_edge_meets(const Search *search, const Face *a, const Face *b, int shared)
 {
     int side[3];
     for (int i = 0; i < 3; i++)
-        side[i] = i == shared ? 0 : side_of(search, b[0], b[1], b[2], a[i]);
+        side[i] = i == shared ? 0 : side_of_face(search, b, a->at[i]);
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
-        if (i == shared || j == shared)
+        if (i == shared || j == shared || side[i] * side[j] > 0)
             continue;
-        if (edge_meets(search, a[i], a[j], side[i], side[j], b))
+        if (side[i] == 0 && side[j] == 0 ? flat_edge_meets(a->at[i], a->at[j], b)
+                                         : edge_meets(search, a->at[i], a->at[j], b))
             return true;
     }
     return false;
 }
 
-/* Triangles with a common edge cross when they lie in one plane on the same side of it. */
-static bool folds(const Search *search, const float *const a[3], const float *const b[3],
-                  const int places[2][2])
+/* Triangles with a common edge cross when they lie in one plane on the same side of it: then their
+ * normals are opposite. `lone` is the corner of `b` that is not on the edge. */
+static bool folds(const Search *search, const Face *a, const Face *b, int lone)
 {
-    const float *one = a[3 - places[0][0] - places[1][0]],
-                *other = b[3 - places[0][1] - places[1][1]];
-    const float *p = a[places[0][0]], *q = a[places[1][0]];
-    if (side_of(search, p, q, one, other) != 0)
-        return false;
-    double dot = 0;
-    Vec3 u =
-        vec3((double)q[0] - (double)p[0], (double)q[1] - (double)p[1], (double)q[2] - (double)p[2]);
-    Vec3 v = vec3((double)one[0] - (double)p[0], (double)one[1] - (double)p[1],
-                  (double)one[2] - (double)p[2]);
-    Vec3 w = vec3((double)other[0] - (double)p[0], (double)other[1] - (double)p[1],
-                  (double)other[2] - (double)p[2]);
-    dot = vec3_dot(vec3_cross(u, v), vec3_cross(u, w));
-    return dot >= 0;
+    double cosine = 0;
+    for (int axis = 0; axis < 3; axis++)
+        cosine += a->normal[axis] * b->normal[axis];
+    return cosine <= 0 && side_of_face(search, a, b->at[lone]) == 0;
 }
 
 static void test_pair(uint32_t first, uint32_t second, int worker, void *context)
 {
     Search *search = context;
-    const VesselMesh *mesh = search->mesh;
-    const uint32_t *one = mesh->triangles[first], *other = mesh->triangles[second];
-    const float *a[3], *b[3];
-    int places[3][2], n_shared = 0;
-    for (int i = 0; i < 3; i++) {
-        a[i] = mesh->points[one[i]];
-        b[i] = mesh->points[other[i]];
+    const uint32_t *one = search->mesh->triangles[first], *other = search->mesh->triangles[second];
+    int shared[2] = {-1, -1}, n_shared = 0, lone = 3;
+    for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            if (one[i] == other[j] && n_shared < 3) {
-                places[n_shared][0] = i;
-                places[n_shared++][1] = j;
+            if (one[i] == other[j]) {
+                shared[0] = i;
+                shared[1] = j;
+                lone -= j;
+                n_shared++;
             }
+    bool cross = n_shared == 3;
+    if (!cross) {
+        Face a = face_of(search->mesh, first), b = face_of(search->mesh, second);
+        cross = n_shared == 2 ? folds(search, &a, &b, lone)
+                              : an_edge_meets(search, &a, &b, shared[0]) ||
+                                    an_edge_meets(search, &b, &a, shared[1]);
     }
-    bool cross;
-    if (n_shared >= 2)
-        cross = n_shared == 3 || folds(search, a, b, (const int(*)[2])places);
-    else
-        cross = an_edge_meets(search, a, b, n_shared ? places[0][0] : -1) ||
-                an_edge_meets(search, b, a, n_shared ? places[0][1] : -1);
     search->counts[worker] += cross;
 }
 

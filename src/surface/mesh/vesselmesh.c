@@ -15,7 +15,8 @@
 
 /* What the tolerance means for cells and edges, measured so that the mean distance to the surface
  * stays below 0.15 of it, and one sample of a thousand is beyond it. */
-static const double cells_at = 0.02, cell_ratio = 0.5, bending_ratio = 0.32, sagitta_part = 0.3;
+static const double cells_at = 0.02, cell_ratio = 0.5, bending_ratio = 0.32, sagitta_part = 0.28,
+                    cap_part = 0.2;
 
 typedef struct Build {
     const VesselTree *tree;
@@ -242,7 +243,7 @@ Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, Vessel
     found.zones = build.zones.n_zones;
     for (uint32_t z = 0; z < build.zones.n_zones; z++)
         found.repeated += build.pieces[z].repeats > 0;
-    TRY_GOTO(assemble_mesh(tree, &build.zones, build.pieces, sides_of(build.fineness.sagitta),
+    TRY_GOTO(assemble_mesh(tree, &build.zones, build.pieces, sides_of(cap_part * params->tolerance),
                            &made, &grid_mm, err));
     TRY_GOTO(fill_report(&build, &made, grid_mm, &found, err));
     *mesh = made;

@@ -52,22 +52,27 @@ static double distance2(const TermPlace *place)
     return place->e2 + beyond * beyond;
 }
 
+static double value_at(const TermPlace *place)
+{
+    if (distance2(place) > out_of_reach * out_of_reach)
+        return 0;
+    return exp(-place->e2) * axial(place->u, place->v);
+}
+
 double zoneterm_value(const ZoneTerm *term, Vec3 x)
 {
     TermPlace place = place_in(term, x);
-    if (distance2(&place) > out_of_reach * out_of_reach)
-        return 0;
-    return exp(-place.e2) * axial(place.u, place.v);
+    return value_at(&place);
 }
 
-static double term_gradient(const ZoneTerm *term, Vec3 x, Vec3 *gradient)
+/* Of a term at a place, given its value there. */
+static Vec3 term_gradient(const ZoneTerm *term, const TermPlace *place, double value)
 {
-    TermPlace place = place_in(term, x);
-    double radial = exp(-place.e2), value = radial * axial(place.u, place.v);
-    double slope = exp(-place.u * place.u) - exp(-place.v * place.v);
-    *gradient = vec3_add_scaled(vec3_scale(place.across, -2 * term->k * term->k * value),
-                                term->axis, term->k * inv_sqrt_pi * radial * slope);
-    return value;
+    double slope = 0;
+    if (fabs(place->u) < saturated || fabs(place->v) < saturated)
+        slope = exp(-place->e2 - place->u * place->u) - exp(-place->e2 - place->v * place->v);
+    return vec3_add_scaled(vec3_scale(place->across, -2 * term->k * term->k * value), term->axis,
+                           term->k * inv_sqrt_pi * slope);
 }
 
 static double upper_bound(const TermPlace *place, double rho)
@@ -80,6 +85,8 @@ static double upper_bound(const TermPlace *place, double rho)
 static double lower_bound(const TermPlace *place, double rho)
 {
     double across = sqrt(place->e2) + rho;
+    if (across > 2)
+        return 0; /* less than 0.02, which no sum needs */
     double one = axial(place->u + rho, place->v - rho),
            other = axial(place->u - rho, place->v + rho);
     return exp(-across * across) * fmax(0, fmin(one, other));
@@ -279,14 +286,10 @@ Status fieldpart_narrow(const ZoneField *field, PartPool *pool, const FieldPart 
     return STATUS_OK;
 }
 
-FieldValue fieldpart_value(const ZoneField *field, const PartPool *pool, const FieldPart *part,
-                           Vec3 x)
+/* Where the sum over a group is largest; values[] are those of the part's terms. */
+static FieldValue largest_group(const PartPool *pool, const FieldPart *part, const double *values)
 {
-    double values[MOST_PART_TERMS];
-    const uint32_t *terms = &pool->terms[part->first_term];
     FieldValue best = {.phi = 0};
-    for (uint32_t i = 0; i < part->n_terms; i++)
-        values[i] = zoneterm_value(&field->terms[terms[i]], x);
     for (uint32_t g = 0; g < part->n_groups; g++) {
         const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
         double sum = group_sum(group, part->words, values, 1);
@@ -296,23 +299,41 @@ FieldValue fieldpart_value(const ZoneField *field, const PartPool *pool, const F
     return best;
 }
 
+FieldValue fieldpart_value(const ZoneField *field, const PartPool *pool, const FieldPart *part,
+                           Vec3 x)
+{
+    double values[MOST_PART_TERMS];
+    const uint32_t *terms = &pool->terms[part->first_term];
+    values[0] = 0; /* where there is no term */
+    for (uint32_t i = 0; i < part->n_terms; i++)
+        values[i] = zoneterm_value(&field->terms[terms[i]], x);
+    return largest_group(pool, part, values);
+}
+
 FieldValue fieldpart_gradient(const ZoneField *field, const PartPool *pool, const FieldPart *part,
                               Vec3 x, Vec3 *gradient)
 {
-    FieldValue best = fieldpart_value(field, pool, part, x);
-    double largest = -1;
-    *gradient = vec3(0, 0, 0);
+    double values[MOST_PART_TERMS], largest = -1;
+    TermPlace places[MOST_PART_TERMS];
+    const uint32_t *terms = &pool->terms[part->first_term];
+    values[0] = 0; /* where there is no term */
+    for (uint32_t i = 0; i < part->n_terms; i++) {
+        places[i] = place_in(&field->terms[terms[i]], x);
+        values[i] = value_at(&places[i]);
+    }
+    FieldValue best = largest_group(pool, part, values);
     const uint64_t *group = &pool->groups[part->first_group + (size_t)best.group * part->words];
-    for (uint32_t i = 0; i < part->n_terms && part->n_groups; i++) {
-        uint32_t number = pool->terms[part->first_term + i];
-        Vec3 slope;
-        if (!(group[i / 64] >> i % 64 & 1))
+    *gradient = vec3(0, 0, 0);
+    if (part->n_groups == 0)
+        return best;
+    for (uint32_t i = 0; i < part->n_terms; i++) {
+        if (!(group[i / 64] >> i % 64 & 1) || values[i] == 0)
             continue;
-        double value = term_gradient(&field->terms[number], x, &slope);
-        *gradient = vec3_add(*gradient, slope);
-        if (value > largest) {
-            largest = value;
-            best.largest = number;
+        Vec3 own = term_gradient(&field->terms[terms[i]], &places[i], values[i]);
+        *gradient = vec3_add(*gradient, own);
+        if (values[i] > largest) {
+            largest = values[i];
+            best.largest = terms[i];
         }
     }
     return best;

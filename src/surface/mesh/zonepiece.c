@@ -38,6 +38,56 @@ void zoneworker_release(ZoneWorker *worker)
     *worker = (ZoneWorker){0};
 }
 
+static uint32_t root_of(uint32_t *root, uint32_t point)
+{
+    while (root[point] != point)
+        point = root[point] = root[root[point]];
+    return point;
+}
+
+/* How many connected parts the patch has; next[] becomes a forest of their points. */
+static size_t find_parts(const ZoneWorker *worker)
+{
+    const Patch *patch = &worker->patch;
+    size_t parts = patch->n_points;
+    for (uint32_t i = 0; i < patch->n_points; i++)
+        worker->next[i] = i;
+    for (size_t i = 0; i < patch->n_triangles; i++)
+        for (int k = 1; k < 3; k++) {
+            uint32_t a = root_of(worker->next, patch->triangles[i].at[0]);
+            uint32_t b = root_of(worker->next, patch->triangles[i].at[k]);
+            worker->next[a] = b;
+            parts -= a != b;
+        }
+    return parts;
+}
+
+/* Leaves the part with the most points alone: the others are tails of arms that another vessel
+ * hid from the cut. What else is lost with them is found missing. */
+static Status keep_largest(ZoneWorker *worker, Err *err)
+{
+    Patch *patch = &worker->patch;
+    PlaneCutter *cutter = &worker->cutter; /* for its room, one number a point */
+    uint32_t best = 0;
+    TRY(mem_reserve(&worker->next, &worker->next_capacity, patch->n_points, sizeof *worker->next,
+                    "points of a junction", err));
+    if (find_parts(worker) < 2)
+        return STATUS_OK;
+    for (size_t i = 0; i < patch->n_points; i++)
+        cutter->renamed[i] = 0;
+    for (uint32_t i = 0; i < patch->n_points; i++) {
+        uint32_t root = root_of(worker->next, i);
+        cutter->renamed[root]++;
+        if (cutter->renamed[root] > cutter->renamed[best])
+            best = root;
+    }
+    for (size_t i = 0; i < patch->n_triangles; i++)
+        if (root_of(worker->next, patch->triangles[i].at[0]) != best)
+            patch->triangles[i].at[0] = NONE;
+    patch_compact(patch, cutter->renamed);
+    return STATUS_OK;
+}
+
 /* Fills next[] with the next point along a rim, NONE off the rims. False when an edge has two
  * triangles on one side, or is open off the rims. */
 static Status follow_edges(const Maker *maker, size_t *n_edges, bool *sound)
@@ -111,31 +161,6 @@ static bool add_rim(const Maker *maker, size_t arm_number, uint32_t *n_points)
     return total >= 3 && n == total && at == start;
 }
 
-static uint32_t root_of(uint32_t *root, uint32_t point)
-{
-    while (root[point] != point)
-        point = root[point] = root[root[point]];
-    return point;
-}
-
-/* Uses next[] up. */
-static bool is_connected(const Maker *maker)
-{
-    const Patch *patch = &maker->worker->patch;
-    uint32_t *root = maker->worker->next;
-    size_t parts = patch->n_points;
-    for (uint32_t i = 0; i < patch->n_points; i++)
-        root[i] = i;
-    for (size_t i = 0; i < patch->n_triangles; i++)
-        for (int k = 1; k < 3; k++) {
-            uint32_t a = root_of(root, patch->triangles[i].at[0]);
-            uint32_t b = root_of(root, patch->triangles[i].at[k]);
-            root[a] = b;
-            parts -= a != b;
-        }
-    return parts == 1;
-}
-
 /* Proves the worker's patch, and finds the piece's rims. */
 static Status prove(const Maker *maker, bool *sound)
 {
@@ -157,7 +182,7 @@ static Status prove(const Maker *maker, bool *sound)
     piece->n_rims = n_arms;
     for (size_t k = 0; k < n_arms && *sound; k++)
         *sound = add_rim(maker, k, &n_points);
-    *sound = *sound && is_connected(maker);
+    *sound = *sound && find_parts(maker->worker) == 1;
     return STATUS_OK;
 }
 
@@ -254,6 +279,7 @@ static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t 
                       maker->err));
     if (!*sound)
         return STATUS_OK;
+    TRY(keep_largest(worker, maker->err));
     TRY(find_fates(maker, fineness->cells.ratio, fates));
     TRY(collapse_make(&worker->collapser, &worker->patch, fineness->sagitta, maker->err));
     return prove(maker, sound);

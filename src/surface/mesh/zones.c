@@ -12,7 +12,7 @@
 #include "surface/mesh/nearpairs.h"
 #include <stdlib.h>
 
-static const double disturbance = 1.5e-3 * FIELD_LEVEL;
+static const double disturbance = 5e-3 * FIELD_LEVEL;
 /* Of the radius: the step of the search, what planes at either end need to move in. */
 static const double search_step = 0.15, plane_room = 0.375;
 enum { CIRCLE_POINTS = 12 };

@@ -61,8 +61,15 @@ static Vec3 normal_at(const Builder *builder, const FieldPart *part, Vec3 x)
     return vec3_scale(gradient, steepness > 0 ? -1 / steepness : 0);
 }
 
-/* How far the normal turns across a cell, measured on the tangent plane of the wall's point nearest
- * to its centre; 0 when the wall does not come near. */
+static Vec3 turn_along(const Builder *builder, const FieldPart *part, Vec3 x, Vec3 by)
+{
+    return vec3_sub(normal_at(builder, part, vec3_add(x, by)),
+                    normal_at(builder, part, vec3_sub(x, by)));
+}
+
+/* The most that the normal turns across a cell in any direction, the larger singular value of how
+ * it turns along two; measured on the tangent plane of the wall's point nearest to the centre. 0
+ * when the wall does not come near. */
 static double turn_across(const Builder *builder, const FieldPart *part, Vec3 center, double side)
 {
     Vec3 gradient, u, v, x = center;
@@ -74,15 +81,11 @@ static double turn_across(const Builder *builder, const FieldPart *part, Vec3 ce
         return 0;
     x = vec3_add_scaled(x, gradient, off / fmax(steepness, 1e-300));
     vec3_across(vec3_scale(gradient, 1 / fmax(steepness, 1e-300)), &u, &v);
-    double turn = 0;
-    for (int i = 0; i < 4; i++) {
-        double angle = 0.7853981633974483 * i;
-        Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));
-        Vec3 one = normal_at(builder, part, vec3_add_scaled(x, way, side / 2));
-        Vec3 other = normal_at(builder, part, vec3_add_scaled(x, way, -side / 2));
-        turn = fmax(turn, vec3_distance(one, other));
-    }
-    return turn;
+    Vec3 along_u = turn_along(builder, part, x, vec3_scale(u, side / 2));
+    Vec3 along_v = turn_along(builder, part, x, vec3_scale(v, side / 2));
+    double uu = vec3_dot(along_u, along_u), vv = vec3_dot(along_v, along_v);
+    double uv = vec3_dot(along_u, along_v), half = 0.5 * (uu - vv);
+    return sqrt(0.5 * (uu + vv) + sqrt(half * half + uv * uv));
 }
 
 static bool must_split(const Builder *builder, const FieldPart *part, const PartBounds *bounds,
@@ -187,37 +190,35 @@ static Status split_leaf(Builder *builder, uint32_t number, Err *err)
     return STATUS_OK;
 }
 
-/* Splits the neighbours of a leaf, over faces and edges, that are more than twice as large. */
+/* Splits the leaves next to a cell that has children, over faces and edges, that are larger than
+ * it. */
 static Status grade_about(Builder *builder, uint32_t number, Err *err)
 {
     ZoneTree *tree = builder->tree;
     const ZoneCell cell = tree->cells[number];
     for (int i = 0; i < 27; i++) {
         const int by[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
-        if (abs(by[0]) + abs(by[1]) + abs(by[2]) > 2)
+        if (i == 13 || abs(by[0]) + abs(by[1]) + abs(by[2]) > 2)
             continue;
         const int64_t at[3] = {cell.at[0] + by[0], cell.at[1] + by[1], cell.at[2] + by[2]};
         uint32_t other = leaf_at(tree, at, cell.level);
-        while (other != UINT32_MAX && tree->cells[other].level + 1 < cell.level) {
+        while (other != UINT32_MAX && tree->cells[other].level < cell.level) {
             TRY(split_leaf(builder, other, err));
+            TRY(grade_about(builder, other, err));
             other = leaf_at(tree, at, cell.level);
         }
     }
     return STATUS_OK;
 }
 
-/* Children stand behind their parents, so that cells made by grading are graded in their turn; a
- * round in which none is made is the last. */
+/* Cells made by grading stand behind the others, and are looked at in their turn; leaves that it
+ * splits are looked at at once. */
 static Status grade(Builder *builder, Err *err)
 {
     ZoneTree *tree = builder->tree;
-    size_t before;
-    do {
-        before = tree->n_cells;
-        for (uint32_t i = 0; i < tree->n_cells; i++)
-            if (!tree->cells[i].children)
-                TRY(grade_about(builder, i, err));
-    } while (tree->n_cells > before);
+    for (uint32_t i = 0; i < tree->n_cells; i++)
+        if (tree->cells[i].children)
+            TRY(grade_about(builder, i, err));
     return STATUS_OK;
 }
 

@@ -1,0 +1,331 @@
+/* The triangulation of vessels, stage by stage and whole; distances by the guaranteed search. */
+#include "base/random.h"
+#include "surface/mesh/boxpairs.h"
+#include "surface/mesh/meshcheck.h"
+#include "surface/mesh/zones.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "mesh_distance.h"
+#include <cmocka.h>
+
+enum { MOST = 128 };
+
+/* A tree that is made segment by segment. */
+typedef struct Sketch {
+    FieldSegment segments[MOST];
+    uint32_t nodes[MOST][2], ids[MOST];
+    Vec3 places[MOST];
+    VesselTree tree;
+} Sketch;
+
+static void sketch_begin(Sketch *sketch, Vec3 root)
+{
+    *sketch = (Sketch){.tree = {.n_nodes = 1}};
+    sketch->places[0] = root;
+}
+
+/* Adds a vessel from a node to a new one, whose number it returns. */
+static uint32_t sketch_to(Sketch *sketch, uint32_t from, Vec3 to, double radius)
+{
+    size_t n = sketch->tree.n_segments++;
+    uint32_t node = (uint32_t)sketch->tree.n_nodes++;
+    sketch->places[node] = to;
+    sketch->segments[n] = (FieldSegment){
+        .a = sketch->places[from], .b = to, .radius_mm = radius, .segment = (uint32_t)n};
+    sketch->nodes[n][0] = from;
+    sketch->nodes[n][1] = node;
+    sketch->ids[n] = (uint32_t)n + 2;
+    sketch->tree.segments = sketch->segments;
+    sketch->tree.nodes = sketch->nodes;
+    sketch->tree.ids = sketch->ids;
+    return node;
+}
+
+typedef struct Made {
+    VesselMesh mesh;
+    MeshReport report;
+} Made;
+
+static void make(const VesselTree *tree, Made *made)
+{
+    const MeshParams params = {.tolerance = 0.02, .threads = 1};
+    Err err = {""};
+    Status status = vesselmesh_build(tree, &params, &made->mesh, &made->report, &err);
+    if (status != STATUS_OK)
+        fail_msg("%s", err.text);
+}
+
+static void release(Made *made)
+{
+    vesselmesh_release(&made->mesh);
+    meshreport_release(&made->report);
+}
+
+static void expect_sound(const Made *made, size_t trees)
+{
+    assert_true(meshreport_is_sound(&made->report));
+    assert_int_equal(made->report.components, trees);
+    assert_int_equal(made->report.euler, 2 * trees);
+}
+
+/* Mean and worst distance, in local radii, both ways. */
+static void expect_near(const VesselTree *tree, const Made *made, double mean, double worst)
+{
+    Ruler ruler;
+    Random random;
+    random_seed(&random, 2385);
+    assert_int_equal(ruler_make(&ruler, tree, &made->mesh, &made->report), STATUS_OK);
+    for (int way = 0; way < 2; way++) {
+        Distances found =
+            way ? surface_to_mesh(&ruler, &random, 3000) : mesh_to_surface(&ruler, &random, 3000);
+        assert_true(found.n > 1500);
+        if (found.mean > mean || found.worst > worst || found.beyond > found.n / 1000)
+            fail_msg("%s: mean %g, worst %g, %zu of %zu beyond 0.02",
+                     way ? "surface to mesh" : "mesh to surface", found.mean, found.worst,
+                     found.beyond, found.n);
+    }
+    ruler_release(&ruler);
+}
+
+static void a_straight_vessel_is_a_polygonal_cylinder(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    sketch_begin(&sketch, vec3(1.3, -2.1, 0.7));
+    sketch_to(&sketch, 0, vec3(4.9, 3.3, -6.1), 0.83);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    double length = vec3_distance(sketch.segments[0].a, sketch.segments[0].b);
+    size_t sides = made.mesh.n_triangles / 4;
+    assert_int_equal(made.mesh.n_triangles, 4 * sides);
+    double area = 0.5 * (double)sides * sin(6.283185307179586 / (double)sides) * 0.83 * 0.83;
+    assert_true(fabs(made.report.volume_mm3 / (area * length) - 1) < 1e-5);
+    expect_near(&sketch.tree, &made, 0.003, 0.02);
+    release(&made);
+}
+
+static void a_bifurcation_is_one_sphere_near_its_surface(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    sketch_begin(&sketch, vec3(0, 0, 0));
+    uint32_t fork = sketch_to(&sketch, 0, vec3(11.3, 0.4, -0.7), 1.31);
+    sketch_to(&sketch, fork, vec3(17.9, 5.2, 1.1), 1.07);
+    sketch_to(&sketch, fork, vec3(18.4, -4.1, -1.9), 0.94);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    assert_int_equal(made.report.n_round, 0);
+    expect_near(&sketch.tree, &made, 0.003, 0.05);
+    release(&made);
+}
+
+static void a_trifurcation_of_unlike_radii_is_one_sphere(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    sketch_begin(&sketch, vec3(0, 0, 0));
+    uint32_t fork = sketch_to(&sketch, 0, vec3(13, 0, 0), 1.7);
+    sketch_to(&sketch, fork, vec3(21, 6, 1), 1.3);
+    sketch_to(&sketch, fork, vec3(20, -5, 3), 0.6);
+    sketch_to(&sketch, fork, vec3(14, 2, -9), 0.11);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    expect_near(&sketch.tree, &made, 0.003, 0.05);
+    release(&made);
+}
+
+/* A bent vessel of 1 mm in steps of `step`, about 16 mm long. */
+static void sketch_chain(Sketch *sketch, double step)
+{
+    uint32_t at = 0;
+    sketch_begin(sketch, vec3(0, 0, 0));
+    for (int i = 1; i * step < 16; i++)
+        at = sketch_to(sketch, at,
+                       vec3(i * step, 1.5 * sin(0.3 * i * step), 0.8 * cos(0.2 * i * step)), 1);
+}
+
+static void fine_steps_keep_the_radius(void **state)
+{
+    (void)state;
+    double volumes[2];
+    for (int i = 0; i < 2; i++) {
+        Sketch sketch;
+        Made made;
+        sketch_chain(&sketch, i ? 0.2 : 1.1);
+        make(&sketch.tree, &made);
+        expect_sound(&made, 1);
+        assert_int_equal(made.report.n_missing, 0);
+        const FieldSegment *last = &sketch.segments[sketch.tree.n_segments - 1];
+        volumes[i] = made.report.volume_mm3 / last->b.x;
+        release(&made);
+    }
+    assert_true(fabs(volumes[1] / volumes[0] - 1) < 0.03);
+}
+
+/* Two long vessels side by side. */
+static void sketch_strangers(Sketch *sketch, double gap)
+{
+    sketch_begin(sketch, vec3(0, 0, 0));
+    sketch_to(sketch, 0, vec3(9.1, 0, 0), 0.7);
+    sketch->places[sketch->tree.n_nodes] = vec3(0, 1.2 + gap, 0.3);
+    uint32_t other = (uint32_t)sketch->tree.n_nodes++;
+    sketch_to(sketch, other, vec3(9.3, 1.2 + gap, -0.3), 0.5);
+}
+
+static void near_strangers_stay_apart_and_are_listed(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    sketch_strangers(&sketch, 0.025);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 2);
+    assert_int_equal(made.report.n_near, 1);
+    assert_true(fabs(made.report.near[0].gap_mm - 0.025) < 1e-9);
+    release(&made);
+}
+
+static void overlapping_strangers_are_refused_by_name(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    Err err;
+    const MeshParams params = {.tolerance = 0.02, .threads = 1};
+    sketch_strangers(&sketch, -0.14);
+    assert_int_equal(vesselmesh_build(&sketch.tree, &params, &made.mesh, &made.report, &err),
+                     STATUS_INPUT);
+    assert_non_null(strstr(err.text, "segments 2 and 3"));
+}
+
+static void vessels_at_both_ends_of_a_short_one_do_not_blend(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    NodeLists incident, blending;
+    sketch_begin(&sketch, vec3(0, 0, 0));
+    uint32_t one = sketch_to(&sketch, 0, vec3(5, 0, 0), 0.5);
+    uint32_t two = sketch_to(&sketch, one, vec3(6.4, 0, 0), 0.5);
+    sketch_to(&sketch, two, vec3(6.4, 4, 0), 0.5);
+    assert_int_equal(nodelists_incident(&sketch.tree, &incident, NULL), STATUS_OK);
+    assert_int_equal(nodelists_blending(&sketch.tree, &incident, &blending, NULL), STATUS_OK);
+    assert_true(nodelists_hold(&blending, one, 0) && nodelists_hold(&blending, one, 1));
+    assert_false(nodelists_hold(&blending, one, 2));
+    assert_false(nodelists_hold(&blending, two, 0));
+    nodelists_release(&incident);
+    nodelists_release(&blending);
+}
+
+static void a_twig_within_a_trunk_is_swallowed_not_missing(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    sketch_begin(&sketch, vec3(0, 0, 0));
+    uint32_t fork = sketch_to(&sketch, 0, vec3(10, 0, 0), 2);
+    sketch_to(&sketch, fork, vec3(20, 1, 0), 2);
+    sketch_to(&sketch, fork, vec3(10.2, 1.1, 0), 0.1);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    assert_int_equal(made.report.n_swallowed, 1);
+    assert_int_equal(made.report.swallowed[0], 2);
+    release(&made);
+}
+
+/* A mesh of loose triangles. */
+static size_t crossings_of(float (*points)[3], uint32_t (*triangles)[3], size_t n)
+{
+    uint32_t labels[4] = {0};
+    const VesselMesh mesh = {.points = points,
+                             .n_points = 3 * n,
+                             .triangles = triangles,
+                             .labels = labels,
+                             .n_triangles = n};
+    size_t found = 99;
+    assert_int_equal(meshcheck_crossings(&mesh, 0x1p-10, 1, &found, NULL), STATUS_OK);
+    return found;
+}
+
+static void triangles_that_pierce_touch_or_fold_are_found(void **state)
+{
+    (void)state;
+    float points[6][3] = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {5, 5, 0.5f}};
+    uint32_t apart[2][3] = {{0, 1, 2}, {3, 4, 5}};
+    assert_int_equal(crossings_of(points, apart, 2), 1); /* pierced */
+    points[3][2] = 0x1p-10f;
+    assert_int_equal(crossings_of(points, apart, 2), 0); /* one step of the grid above */
+    points[3][2] = 0;
+    assert_int_equal(crossings_of(points, apart, 2), 1); /* touched */
+    uint32_t at_corner[2][3] = {{0, 1, 2}, {0, 4, 5}};
+    assert_int_equal(crossings_of(points, at_corner, 2), 0);
+    float flat[4][3] = {{0, 0, 0}, {4, 0, 0}, {1, 3, 0}, {2, 2, 0}};
+    uint32_t folded[2][3] = {{0, 1, 2}, {1, 0, 3}};
+    assert_int_equal(crossings_of(flat, folded, 2), 1);
+    flat[3][1] = -2;
+    assert_int_equal(crossings_of(flat, folded, 2), 0);
+}
+
+typedef struct Boxes {
+    FloatBox at[300];
+    size_t found;
+} Boxes;
+
+static FloatBox box_at(uint32_t item, const void *context)
+{
+    return ((const Boxes *)context)->at[item];
+}
+
+static void count_pair(uint32_t a, uint32_t b, int worker, void *context)
+{
+    (void)worker;
+    Boxes *boxes = context;
+    assert_true(a < b);
+    assert_true(floatbox_meets(&boxes->at[a], &boxes->at[b]));
+    boxes->found++;
+}
+
+static void all_pairs_of_boxes_that_meet_are_found_once(void **state)
+{
+    (void)state;
+    static Boxes boxes;
+    Random random;
+    size_t expected = 0;
+    random_seed(&random, 71);
+    for (int i = 0; i < 300; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            float low = (float)(10 * random_uniform(&random));
+            boxes.at[i].low[axis] = low;
+            boxes.at[i].high[axis] = low + (float)(2 * random_uniform(&random));
+        }
+    for (int i = 0; i < 300; i++)
+        for (int j = i + 1; j < 300; j++)
+            expected += floatbox_meets(&boxes.at[i], &boxes.at[j]);
+    const BoxPairs pairs = {300, box_at, count_pair, &boxes, 1};
+    assert_int_equal(boxpairs_find(&pairs, NULL), STATUS_OK);
+    assert_true(expected > 100);
+    assert_int_equal(boxes.found, expected);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_straight_vessel_is_a_polygonal_cylinder),
+        cmocka_unit_test(a_bifurcation_is_one_sphere_near_its_surface),
+        cmocka_unit_test(a_trifurcation_of_unlike_radii_is_one_sphere),
+        cmocka_unit_test(fine_steps_keep_the_radius),
+        cmocka_unit_test(near_strangers_stay_apart_and_are_listed),
+        cmocka_unit_test(overlapping_strangers_are_refused_by_name),
+        cmocka_unit_test(vessels_at_both_ends_of_a_short_one_do_not_blend),
+        cmocka_unit_test(a_twig_within_a_trunk_is_swallowed_not_missing),
+        cmocka_unit_test(triangles_that_pierce_touch_or_fold_are_found),
+        cmocka_unit_test(all_pairs_of_boxes_that_meet_are_found_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
