@@ -29,7 +29,7 @@ static void put_kernels(Text *text)
 static bool ask_version(const char *program, char *line, int size)
 {
     Text command = TEXT_INIT;
-    put_shell_word(&command, program);
+    text_put_shell_word(&command, program);
     text_puts(&command, " --version 2>&1 </dev/null");
     FILE *answer = text_chars(&command) ? popen(text_chars(&command), "r") : NULL;
     text_release(&command);

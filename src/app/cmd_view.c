@@ -132,7 +132,7 @@ static Status put_argument(Text *text, const Option *option, const char *value, 
     if (option->kind == OPTION_FLAG)
         return STATUS_OK;
     text_puts(text, " ");
-    put_shell_word(text, value);
+    text_put_shell_word(text, value);
     return STATUS_OK;
 }
 
@@ -197,7 +197,7 @@ static Status print_options(const Viewer *viewer, Err *err)
 {
     Text text = TEXT_INIT;
     text_puts(&text, "corcast render ");
-    put_shell_word(&text, viewer->tree);
+    put_shell_operand(&text, viewer->tree);
     Status status = put_settings(viewer, put_argument, &text, err);
     if (status == STATUS_OK) {
         printf("%s -o P.png\n", text_chars(&text));

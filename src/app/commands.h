@@ -23,8 +23,9 @@ Status command_unknown(const char *name, Err *err);
 /* Whether a word is one of a list that ends in NULL. */
 bool is_one_of(const char *word, const char *const *words);
 
-/* Appends a word as a shell reads it: in quotes where the shell would take it apart. */
-void put_shell_word(Text *text, const char *word);
+/* Appends a file's name as a word for a shell that a command takes for an operand: one that looks
+ * like an option gets "./" before it. */
+void put_shell_operand(Text *text, const char *path);
 
 /* The last component of a path as one line of UTF-8 for people and reports, in *out (owned). */
 MUST_CHECK Status shown_name(const char *path, char **out, Err *err);

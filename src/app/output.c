@@ -11,19 +11,6 @@ bool is_one_of(const char *word, const char *const *words)
     return *words;
 }
 
-void put_shell_word(Text *text, const char *word)
-{
-    const char *plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789@%+=:,./_-";
-    if (!word || (*word && word[strspn(word, plain)] == '\0')) {
-        text_puts(text, word);
-        return;
-    }
-    text_puts(text, "'");
-    for (; *word; word++)
-        text_printf(text, *word == '\'' ? "'\\%c'" : "%c", *word);
-    text_puts(text, "'");
-}
-
 /* *line, cleaned for one line, in *out. */
 static Status take_line(Text *line, char **out, Err *err)
 {
@@ -59,7 +46,7 @@ static void put_shown_value(const Setting *setting, size_t at, Text *text)
     text_append(&shown, whole, whole ? kept : 0);
     text_puts(&shown, kind == OPTION_LOOKUP && name != whole ? "./" : "");
     text_puts(&shown, name);
-    put_shell_word(text, text_chars(&shown));
+    text_put_shell_word(text, text_chars(&shown));
     text_release(&shown);
     text_release(&value);
 }
@@ -86,7 +73,7 @@ static void put_output(const Setting *setting, Text *text)
         return;
     text_puts(text, " -o ");
     if (setting->option->is_told || (strcmp(path, "-") == 0 && !strchr(name, '.')))
-        put_shell_word(text, file_name(path));
+        text_put_shell_word(text, file_name(path));
     else if (*extension)
         text_printf(text, "%.*s.%s", (int)strcspn(name, "."), name, extension);
     else
@@ -100,14 +87,11 @@ static bool tells(const Setting *setting, const Setting *plain)
            setting_differs(setting, plain);
 }
 
-/* A name that looks like an option is no longer one behind "./". */
-static void put_operand(const char *path, Text *text)
+void put_shell_operand(Text *text, const char *path)
 {
-    const char *name = file_name(path);
     Text word = TEXT_INIT;
-    text_printf(&word, "%s%s", name[0] == '-' && name[1] ? "./" : "", name);
-    text_puts(text, " ");
-    put_shell_word(text, text_chars(&word));
+    text_printf(&word, "%s%s", path[0] == '-' && path[1] ? "./" : "", path);
+    text_put_shell_word(text, text_chars(&word));
     text_release(&word);
 }
 
@@ -117,8 +101,10 @@ Status command_line_text(const Parsed *parsed, char **out, Err *err)
     TRY(parsed_init(&plain, parsed->command, err));
     Text text = TEXT_INIT;
     text_printf(&text, "corcast %s", parsed->command->name);
-    for (int i = 0; i < parsed->n_operands; i++)
-        put_operand(parsed->operands[i], &text);
+    for (int i = 0; i < parsed->n_operands; i++) {
+        text_puts(&text, " ");
+        put_shell_operand(&text, file_name(parsed->operands[i]));
+    }
     for (size_t i = 0; i < parsed->n_settings; i++)
         if (tells(&parsed->settings[i], &plain.settings[i]))
             put_shown(&parsed->settings[i], &text);

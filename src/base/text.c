@@ -189,3 +189,16 @@ void text_number(Text *text, double value)
     char number[NUMBER_TEXT_SIZE];
     text_puts(text, number_text(value, number));
 }
+
+void text_put_shell_word(Text *text, const char *word)
+{
+    const char *plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789@%+=:,./_-";
+    if (!word || (*word && word[strspn(word, plain)] == '\0')) {
+        text_puts(text, word);
+        return;
+    }
+    text_puts(text, "'");
+    for (; *word; word++)
+        text_printf(text, *word == '\'' ? "'\\%c'" : "%c", *word);
+    text_puts(text, "'");
+}

@@ -35,6 +35,8 @@ void text_printf(Text *text, const char *format, ...) PRINTF_LIKE(2, 3);
 /* Appends text from outside, say a file's name, as part of one line of UTF-8: a control character
  * becomes a blank, and a byte that is no UTF-8 becomes U+FFFD. */
 void text_put_line(Text *text, const char *chars);
+/* Appends a word as a shell reads it: in quotes where the shell would take it apart. */
+void text_put_shell_word(Text *text, const char *word);
 /* STATUS_MEMORY when an append has failed, STATUS_IO when the stream took no more, else
  * STATUS_OK. */
 MUST_CHECK Status text_check(const Text *text, Err *err);

@@ -163,7 +163,7 @@ Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitRep
     const Geometry *shape = &scene->geometry;
     const Box bounds = {vec3_add(shape->bounds.low, shape->origin),
                         vec3_add(shape->bounds.high, shape->origin)};
-    add_file(&values, params->file);
+    add_file(&values, params->file, ".stl", "");
     add_about(&values, params, bounds, vec3(0, 0, 0));
     text_printf(add_value(&values, "count"), "%zu", shape->drawn);
     text_printf(add_value(&values, "seconds"), "%.2g", openscad_seconds(scene));

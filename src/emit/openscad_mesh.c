@@ -47,7 +47,7 @@ Status openscad_write_mesh(const EmitParams *params, Text *out, Text *second, Em
     VesselMesh mesh = *params->mesh;
     Box box = box_of(&mesh);
     Values values = {0};
-    add_file(&values, params->file);
+    add_file(&values, params->file, ".stl", "");
     add_about(&values, params, box, vec3(0, 0, 0));
     text_printf(add_value(&values, "triangles"), "%zu", mesh.n_triangles);
     text_printf(add_value(&values, "seconds"), "%.2g",

@@ -195,7 +195,7 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     const Scene *scene = geometry->scene;
     double near_mm, far_mm;
     camera_depth_range(&scene->view.camera, scene->geometry.bounds, &near_mm, &far_mm);
-    add_file(&values, params->file);
+    add_file(&values, params->file, ".png", "\"");
     text_put_line(add_value(&values, "geometry_file"),
                   params->second_file ? params->second_file : "the last part of this file");
     add_about(&values, params, scene->geometry.bounds, scene->geometry.origin);

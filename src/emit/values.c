@@ -30,14 +30,29 @@ void add_flag(Values *values, const char *name, bool value)
     text_puts(add_value(values, name), value ? "1" : "0");
 }
 
-void add_file(Values *values, const char *file)
+/* `name` in `quotes`, which another program reads, as a word of a shell; one line. */
+static void put_word(Text *text, const char *name, const char *quotes)
+{
+    Text clean = TEXT_INIT, quoted = TEXT_INIT;
+    text_put_line(&clean, name);
+    const char *chars = text_chars(&clean);
+    bool plain = chars && !strchr(chars, ' ');
+    text_printf(&quoted, "%s%s%s", plain ? "" : quotes, chars ? chars : "", plain ? "" : quotes);
+    text_put_shell_word(text, text_chars(&quoted));
+    text_release(&clean);
+    text_release(&quoted);
+}
+
+void add_file(Values *values, const char *file, const char *result, const char *quotes)
 {
     const char *dot = strrchr(file, '.');
-    Text stem = TEXT_INIT;
-    text_append(&stem, file, dot ? (size_t)(dot - file) : strlen(file));
+    Text made = TEXT_INIT;
+    text_append(&made, file, dot ? (size_t)(dot - file) : strlen(file));
+    text_puts(&made, result);
     text_put_line(add_value(values, "file"), file);
-    text_put_line(add_value(values, "stem"), text_chars(&stem));
-    text_release(&stem);
+    put_word(add_value(values, "input"), file, quotes);
+    put_word(add_value(values, "output"), text_chars(&made) ? text_chars(&made) : "", quotes);
+    text_release(&made);
 }
 
 void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin)

@@ -104,8 +104,10 @@ Status oracle_command(const OracleParams *params, char **out, Err *err)
     Text line = TEXT_INIT;
     Status status = make_arguments(params, file_name(params->scene), file_name(params->output),
                                    &arguments, err);
-    for (int i = 0; i < arguments.n; i++)
-        text_printf(&line, "%s%s", i ? " " : "", arguments.list[i]);
+    for (int i = 0; i < arguments.n; i++) {
+        text_puts(&line, i ? " " : "");
+        text_put_shell_word(&line, arguments.list[i]);
+    }
     release_arguments(&arguments);
     if (status == STATUS_OK)
         status = text_take(&line, out, err);

@@ -4,8 +4,8 @@
 //
 // Open it and change what Window > Customizer shows; F5 shows the result at once, F6 makes it a solid. Or without
 // a window:
-//   openscad -o ${stem}.stl ${file}
-//   openscad -o ${stem}.stl -D 'part="wall"' -D wall=0.8 ${file}
+//   openscad -o ${output} ${input}
+//   openscad -o ${output} -D 'part="wall"' -D wall=0.8 ${input}
 // CGAL, which unites the vessels, takes about ${seconds} s for all of them with $$fn = 12, and more with the square of $$fn.
 
 /* [Part] */

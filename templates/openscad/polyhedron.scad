@@ -3,7 +3,7 @@
 // One closed surface of ${triangles} triangles, in millimetres. Extent: ${extent}
 //
 // F6 makes a solid of it at once, and so does, without a window:
-//   openscad -o ${stem}.stl ${file}
+//   openscad -o ${output} ${input}
 // Cutting it, or uniting it with other things, takes CGAL about ${seconds} s.
 
 /* [Part] */

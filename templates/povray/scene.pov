@@ -9,7 +9,7 @@
 // seen from the front, x runs to the right, y up, and z towards the viewer.
 // Extent: ${extent}
 //
-// Render: povray +I${file} +O${stem}.png +W${width} +H${height} -D
+// Render: povray +I${input} +O${output} +W${width} +H${height} -D
 // Size: ${width}x${height}
 //
 // Whatever stands in #ifndef can be set from outside: numbers on the command line, as

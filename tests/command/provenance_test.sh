@@ -108,6 +108,15 @@ test_the_comment_of_a_scene_makes_it_again() {
     done
 }
 
+test_a_scene_says_how_it_is_drawn_in_words_of_a_shell() {
+    run_ok corcast grow --quiet --terminals 3 -o tree.swc
+    run_ok corcast scene tree.swc --quiet --size 40x30 -o "a b's.pov"
+    grep -qxF "// Render: povray +I'\"a b'\\''s.pov\"' +O'\"a b'\\''s.png\"' +W40 +H30 -D" "a b's.pov" ||
+        fail "expected quotes for the shell about those for POV-Ray, got $(grep -a Render: "a b's.pov")"
+    run_ok corcast scene tree.swc --quiet -o "a b's.scad"
+    grep -qF "openscad -o 'a b'\\''s.stl' 'a b'\\''s.scad'" "a b's.scad" || fail "expected names in quotes"
+}
+
 test_the_text_of_a_picture_makes_it_again() {
     run_ok corcast grow --quiet --terminals 9 -o tree.swc
     sed 's/^0 /0.04 /' "$REPO/templates/colormaps/magma.txt" >mine.txt

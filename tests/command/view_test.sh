@@ -200,6 +200,42 @@ test_the_printed_command_draws_what_is_shown_whatever_the_options() {
     expect_same recipe.ppm asked.ppm
 }
 
+# One view for each line of options; the command that it prints is pasted.
+test_each_option_is_printed_so_that_it_draws_the_same() {
+    local options n=0
+    grow_tree 14
+    mv tree.swc "./-o'dd \"b\" tree.swc"
+    sed 's/^0 /0.04 /' "$REPO/templates/colormaps/magma.txt" >"my map.txt"
+    open_display
+    while read -r options; do
+        n=$((n + 1))
+        eval "$CORCAST view $options --save $n.ini -- \"-o'dd \\\"b\\\" tree.swc\"" >view.out 2>view.err &
+        view_pid=$!
+        wait_for 30 find_window || fail "expected a window: $(cat view.err)"
+        press o 1
+        press w
+        wait_for 20 test -s $n.ini || fail "expected a recipe: $(cat view.err)"
+        close_view
+        sed 's/P\.png$/printed.ppm/; s/^corcast render/run_ok corcast render --quiet/' view.out >pasted
+        . ./pasted
+        eval "run_ok corcast render $options --quiet -o asked.ppm -- \"./-o'dd \\\"b\\\" tree.swc\""
+        cmp -s printed.ppm asked.ppm || fail "expected the picture of $options from: $(cat view.out)"
+        run_ok corcast render --recipe $n.ini --quiet -o recipe.ppm -- "-o'dd \"b\" tree.swc"
+        cmp -s recipe.ppm asked.ppm || fail "expected the picture of $options from: $(cat $n.ini)"
+    done <<'END'
+--size 120x90 --model isosurface --potential graph --shadows
+--size 120x90 --model isosurface --erf exact --cell-beta 3.5 --antialias 2
+--size 120x90 --model joined --joints paper --view left
+--size 110x90 --projection perspective --angle 41.5 --view iso
+--size 110x90 --location 12.5,30,88 --look-at 1,-2,3 --up 0.25,1,0.125 --height 77.25
+--size 110x90 --location 12.5,30,88 --projection perspective --angle 60.5
+--size 110x90 --look print --ao 5 --background 0.125,0.25,0.5
+--size 110x90 --color-by pressure --colormap "./my map.txt" --range 61.5,99.25
+--size 110x90 --color-by level --log --colormap inferno
+END
+    [ $n = 9 ] || fail "expected 9 views"
+}
+
 test_key_c_goes_through_all_fields() {
     local field fields="radius length flow velocity pressure wss reynolds level strahler diameter-strahler branch"
     local n=0

@@ -444,7 +444,7 @@ static void names_stay_in_their_comments(void **state)
     const char *file = "// File: a #error \"b\" #error.pov\n";
     assert_non_null(strstr(out.scene.chars, file));
     assert_non_null(strstr(out.scene.chars, "// Desc: tree \xef\xbf\xbd #error \"c\"\n"));
-    assert_non_null(strstr(out.scene.chars, "+Oa #error \"b\" #error.png"));
+    assert_non_null(strstr(out.scene.chars, "+O'\"a #error \"b\" #error.png\"' "));
     assert_int_equal(count(out.scene.chars, "\n#error"), 0);
     assert_null(strchr(out.scene.chars, '\r'));
     release(&out);
