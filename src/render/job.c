@@ -1,3 +1,5 @@
+/* Progress counts samples: a picture with N x N further samples a pixel is 1 + N N passes over its
+ * rows, of which the first is that of the centres. */
 #include "render/job.h"
 
 const char *const render_kernel_names[] = {[KERNELS_FASTEST] = "fastest",

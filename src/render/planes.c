@@ -1,3 +1,5 @@
+/* A band's first rows are first in memory: cutting off rows moves the others to the front and
+ * leaves the room of those cut off unused. */
 #include "render/planes.h"
 
 #include <string.h>

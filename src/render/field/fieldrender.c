@@ -1,7 +1,8 @@
-/* Two passes over bands of one row of pixel tiles: the centre of every pixel, with geometry; then,
- * when the picture is antialiased, the N x N further samples of the pixels that want them, whose
- * colours wait in a band's buffer until each pixel adds up its own in POV-Ray's order. A band needs
- * memory in proportion to its width only. */
+/* Two passes over rows of tiles: the centres of all pixels, with geometry; then, when the picture
+ * is antialiased, the N x N further samples of the pixels that want them. Those are a grid of
+ * samples, and so of tiles, N times as fine in either direction, whose tiles have shorter lists of
+ * vessels: N rows of them are traced into a buffer for each row of pixel tiles, from where each
+ * pixel adds up its own in POV-Ray's order. The buffer grows with the picture's width alone. */
 #include "render/field/fieldrender.h"
 
 #include "render/cast/caster.h"

@@ -25,18 +25,21 @@ static inline size_t rasterbins_items(const Geometry *geometry)
     return geometry->n_primitives - geometry->n_ends;
 }
 
-/* Whether one thread makes the bins of the geometry, however many there are. */
+/* Whether rasterbins_new uses one thread for this geometry, however many it may use. */
 bool rasterbins_are_small(const Geometry *geometry);
 
-/* Borrows the geometry. STATUS_MEMORY when there is no room. */
+/* Builds the bins (owned by the caller) of a geometry that is borrowed; `view` is copied.
+ * O(primitives and the rows that they touch). STATUS_MEMORY; STATUS_USAGE when a side of the
+ * picture has more than 65535 tiles. */
 MUST_CHECK Status rasterbins_new(const Geometry *geometry, const RasterView *view, int threads,
                                  RasterBins **out, Err *err);
 void rasterbins_free(RasterBins *bins);
-/* Frees row_items, row_columns and row_boxes, of which nothing may be asked any more. */
+/* Frees row_items, row_columns and row_boxes: rasterbins_count and rasterbins_list must not be
+ * called any more. */
 void rasterbins_forget_rows(RasterBins *bins);
 
-/* Counts the items of each tile of one row: those of column i are to be
- * [offsets[i], offsets[i + 1]) of as many as the last offset says. */
+/* Sets offsets[tile_columns + 1] of the lists of one row's tiles: the list of column i takes up
+ * [offsets[i], offsets[i + 1]). STATUS_MEMORY when 32 bits do not hold them. */
 MUST_CHECK Status rasterbins_count(const RasterBins *bins, size_t number, uint32_t *offsets,
                                    Err *err);
 
@@ -48,20 +51,21 @@ typedef struct RasterRow {
     size_t lists_capacity;
 } RasterRow;
 
-/* Fills *row, which is zeroed or has been used for these bins before. */
+/* Fills *row, which is zeroed or has been used for these bins before, with the lists of row
+ * `number`. STATUS_MEMORY. */
 MUST_CHECK Status rasterbins_list(const RasterBins *bins, size_t number, RasterRow *row, Err *err);
 void rasterrow_release(RasterRow *row);
 
-/* Sets up a tile of the view for its list. */
+/* The tile at (column, row) with its list of n items, borrowed, and its samples. */
 RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const uint32_t *list,
                            size_t n, const RasterGrid *grid);
 
-/* Makes the joint that item number `item` is. */
+/* Makes the joint of an item that is a RASTER_JOINT, anew from its primitive. */
 void raster_joint(const RasterBins *bins, uint32_t item, RasterJoint *joint);
 
-/* Meets an item in double precision with the line of sight at (x, y) of the view's plane: its
- * depth z along the view, INFINITY when it is not met, and if `normal` is not NULL the surface's
- * normal in the view's frame. */
+/* Intersects the line of sight at (x, y) of the view's plane with an item, in double precision.
+ * Returns the depth of the hit along the view, mm, or INFINITY; if there is a hit and `normal` is
+ * not NULL, sets *normal to the surface's unit normal in the view's frame. */
 double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal);
 
 #endif

@@ -1,9 +1,12 @@
-/* A row of tiles is the unit of work: its lists are made, and tile by tile primitives are found,
- * shaded and written, so that a pixel is written once and what is empty is filled row by row. With
- * shadows that is done for batches of tiles, whose places are many enough in each tile of a light.
- * Further samples of a tile's pixels use its list: pass after pass, each with all samples of the
- * tile moved by the same part of a pixel, in POV-Ray's order. With a threshold that takes the
- * colours of neighbours, and so a second round. */
+/* A row of tiles is the unit of work: the lists of its tiles are made, and for each tile the
+ * kernels find the first primitive at each sample, and the canvas shades and stores it. With
+ * shadows, tiles are drawn in batches: the shadow queries of a batch are answered together, as many
+ * of them fall into one tile of a light and share its list.
+ *
+ * Further samples of a tile's pixels use the tile's list, in N x N passes, each with all samples of
+ * the tile moved by the same part of a pixel, in POV-Ray's order. Where a threshold chooses the
+ * pixels, colours of neighbours are needed first, so the further samples are a second round over
+ * the rows. */
 #include "render/raster/rasterrender.h"
 
 #include "render/cast/caster.h"

@@ -14,7 +14,7 @@ static const double slack_mm = 1e-3;
 /* A point light must be as far from the middle of the scene, in radii of the scene: it sees less
  * than 60 degrees to each side then. */
 static const double least_radii = 1.16;
-/* Kernels load as many words from a list's end on, whatever they are. */
+/* RasterKernels.cover reads up to as many words from a list's end on. */
 enum { MOST_LANES = 16 };
 /* What is asked of memory ahead of its use: the beginning of the next list. */
 enum { LINE_WORDS = 16, MOST_FETCHED = 8 * LINE_WORDS };

@@ -1,4 +1,4 @@
-/* What stands between a light and the places that it may light. */
+/* Shadows of primitives: whether something stands between a light and a place. */
 #ifndef CORCAST_RENDER_RASTERSHADOW_H
 #define CORCAST_RENDER_RASTERSHADOW_H
 
@@ -19,21 +19,24 @@ void rastershadow_free(RasterShadow *shadow);
 /* Whether a light that casts shadows is too near for a RasterShadow. */
 bool rastershadows_need_rays(const Geometry *geometry, const View *view);
 
-/* Places that a light is asked about, of up to RASTER_BATCH tiles of the picture; a worker needs
- * one of its own for each light. */
+/* Shadow queries to one light, for the places of up to RASTER_BATCH tiles of the picture. They are
+ * answered together because places that lie in one tile of the light share its list. Not
+ * thread-safe: each worker has a queue of its own for each light. */
 typedef struct RasterQueue RasterQueue;
 
-/* Borrows the shadow. The queue is the caller's even when this fails. */
+/* Makes an empty queue for a shadow that is borrowed. *out is the caller's even when this fails.
+ * STATUS_MEMORY. */
 MUST_CHECK Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out, Err *err);
 void rasterqueue_free(RasterQueue *queue);
 
-/* Asks about the places with a bit set in `wanted`, bit i for place i, which are on these items, as
- * in RasterHits and borrowed until the answer; that to place i is to be the one numbered answer +
- * i. */
+/* Adds a query for each place i whose bit is set in `wanted`; place i lies on items[i], as in
+ * RasterHits. `items` is borrowed until rasterqueue_answer, which writes the answer for place i to
+ * shadowed[answer + i]. At most RASTER_BATCH calls between two answers. */
 void rasterqueue_ask(RasterQueue *queue, const RasterKernels *kernels, const RasterPlaces *places,
                      const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer);
-/* Answers what was asked, and empties the queue: 1 where a primitive stands farther than POV-Ray's
- * 0.001 mm, or the rounding of the light's view, before the place, else 0. */
+/* Answers all queries and empties the queue. An answer is 1 if a primitive stands between the light
+ * and the place, by more than POV-Ray's 0.001 mm or the rounding of the light's view, else 0.
+ * Answers that were not asked for are left alone. */
 void rasterqueue_answer(RasterQueue *queue, const RasterKernels *kernels, uint8_t *shadowed);
 
 #endif

@@ -9,13 +9,14 @@
 /* Parallel lines of sight through a plane, or lines through one point, on a grid of pixels. */
 typedef struct RasterView {
     Viewpoint eye;
-    double left, top; /* the middle of the first pixel: mm from the location, or per mm of depth */
-    double step_x, step_y; /* from pixel to pixel, to the right and down: above and below 0 */
+    /* In the view's plane: mm in a parallel view, mm per mm of depth in perspective. */
+    double left, top;      /* the middle of the first pixel */
+    double step_x, step_y; /* from one pixel to the next to the right (> 0) and below (< 0) */
     double per_x, per_y;   /* 1 / step, set by rasterbins_new */
     int columns, rows;     /* pixels */
     double stray;          /* how far samples lie off the middles of their pixels, in pixels */
     double z_middle;       /* depths in single precision are relative to it, mm */
-    bool light; /* bins shall have boxes and, of joints, hulls alone: few are looked at */
+    bool light;            /* of a light: its bins have boxes, and hulls instead of joints */
 } RasterView;
 
 /* That of a camera, for what is in `bounds`; `antialias` as in RenderParams. */
@@ -24,7 +25,7 @@ RasterView rasterview_of_camera(const Camera *camera, Box bounds, int antialias)
 /* The line of sight at a point of the view's plane, its direction a unit vector. */
 Ray rasterview_ray(const RasterView *view, double x, double y);
 
-/* The places of a tile's samples when all lie (x, y) pixels off the middles of their pixels. */
+/* Where the samples of a tile are if each lies (x, y) pixels off the middle of its pixel. */
 RasterGrid rastergrid_make(const RasterView *view, double x, double y);
 
 #endif
