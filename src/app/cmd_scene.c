@@ -10,8 +10,6 @@
 typedef enum ScadForm { SCAD_PARAMETRIC, SCAD_POLYHEDRON } ScadForm;
 static const char *const scad_forms[] = {
     [SCAD_PARAMETRIC] = "parametric", [SCAD_POLYHEDRON] = "polyhedron", NULL};
-static const char *const scad_emitters[] = {
-    [SCAD_PARAMETRIC] = "openscad", [SCAD_POLYHEDRON] = "polyhedron"};
 
 typedef struct SceneOptions {
     const char *output;
@@ -43,22 +41,6 @@ static void set_defaults(void *options)
 {
     SceneOptions *own_options = options;
     picture_set_defaults(&own_options->picture);
-}
-
-/* The emitter for a file of this name; standard output gets POV-Ray's. */
-static Status find_emitter(const char *output, const Emitter **emitter, Err *err)
-{
-    *emitter = emitter_of_extension(strcmp(output, "-") ? file_extension(output) : "pov");
-    if (*emitter)
-        return STATUS_OK;
-    Text extensions = TEXT_INIT;
-    for (const Emitter *row = emitters; row->name; row++)
-        if (emitter_of_extension(row->extension) == row)
-            text_printf(&extensions, "%s.%s", row == emitters ? "" : " or ", row->extension);
-    Status status =
-        err_set(err, STATUS_USAGE, "-o: '%s' does not end in %s", output, text_chars(&extensions));
-    text_release(&extensions);
-    return status;
 }
 
 /* STATUS_USAGE for an option that has no effect on a file of this format. */
@@ -136,17 +118,12 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter, c
     return status;
 }
 
-static Status write_surface(const SceneOptions *options, const Emitter *emitter, const char *line,
-                            const Parsed *parsed, Err *err)
+/* The emitter that is asked for; standard output gets POV-Ray's. */
+static Status find_emitter(const SceneOptions *options, const Emitter **emitter, Err *err)
 {
-    const char *tree = parsed->operands[0];
-    Meshing made;
-    TRY(meshing_make(tree, options->picture.prune_radius_mm, MESHING_TOLERANCE, &parsed->common,
-                     &made, err));
-    const EmitParams params = {.mesh = &made.mesh, .command = line};
-    Status status = scene_files_write(emitter, &params, tree, options->output, NULL, err);
-    meshing_release(&made);
-    return status;
+    const char *output = strcmp(options->output, "-") ? options->output : "scene.pov";
+    bool scad = strcmp(file_extension(output), "scad") == 0;
+    return scene_files_find(output, scad && options->scad == SCAD_POLYHEDRON, emitter, err);
 }
 
 static Status run_scene(void *options, Parsed *parsed, Err *err)
@@ -154,14 +131,14 @@ static Status run_scene(void *options, Parsed *parsed, Err *err)
     const SceneOptions *own_options = options;
     const Emitter *emitter;
     char *line = NULL;
-    TRY(find_emitter(own_options->output, &emitter, err));
-    if (strcmp(emitter->extension, "scad") == 0)
-        emitter = emitter_named(scad_emitters[own_options->scad]);
+    TRY(find_emitter(own_options, &emitter, err));
     TRY(check(own_options, emitter, parsed, err));
     TRY(scene_files_note(emitter, own_options->output, &parsed->files, err));
+    if (emitter->of_meshes)
+        return meshing_write(emitter, own_options->picture.prune_radius_mm, MESHING_TOLERANCE,
+                             own_options->output, parsed, err);
     TRY(command_line_text(parsed, &line, err));
-    Status status =
-        (emitter->of_meshes ? write_surface : write_scene)(own_options, emitter, line, parsed, err);
+    Status status = write_scene(own_options, emitter, line, parsed, err);
     free(line);
     return status;
 }

@@ -1,11 +1,21 @@
-/* The surface is proved before anything is written: a mesh that is not sound becomes no file. */
+/* The surface is proved before anything is written: what the manifest says is of the very triangles
+ * that go into the file, and a mesh that is not sound becomes no file. */
 #include "app/meshing.h"
 
+#include "app/commands.h"
+#include "app/povfiles.h"
 #include "app/progress.h"
 #include "stage/stage.h"
 #include "tree/tree.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
+#include <stdlib.h>
+
+typedef struct Meshing {
+    VesselTree vessels;
+    VesselMesh mesh;
+    MeshReport report;
+} Meshing;
 
 static Status read_vessels(const char *path, double prune_radius_mm, VesselTree *vessels, Err *err)
 {
@@ -88,25 +98,97 @@ static Status triangulate(Meshing *made, double tolerance, const Common *common,
     return status;
 }
 
-Status meshing_make(const char *tree_path, double prune_radius_mm, double tolerance,
-                    const Common *common, Meshing *made, Err *err)
+static Status make(const char *tree_path, double prune_radius_mm, double tolerance,
+                   const Common *common, Meshing *made, Err *err)
 {
-    Meshing built = {0};
-    Status status;
-    TRY_GOTO(read_vessels(tree_path, prune_radius_mm, &built.vessels, err));
-    TRY_GOTO(triangulate(&built, tolerance, common, err));
-    TRY_GOTO(check_sound(&built.vessels, &built.report, err));
-    say_result(&built.report, &built.mesh, common->quiet);
-    *made = built;
+    TRY(read_vessels(tree_path, prune_radius_mm, &made->vessels, err));
+    TRY(triangulate(made, tolerance, common, err));
+    TRY(check_sound(&made->vessels, &made->report, err));
+    say_result(&made->report, &made->mesh, common->quiet);
     return STATUS_OK;
-done:
-    meshing_release(&built);
-    return status;
 }
 
-void meshing_release(Meshing *made)
+/* ---- the manifest ---------------------------------------------------------------------------- */
+
+static json_t *id_list(const VesselTree *vessels, const uint32_t *list, size_t n)
 {
-    vesseltree_release(&made->vessels);
-    vesselmesh_release(&made->mesh);
-    meshreport_release(&made->report);
+    json_t *ids = json_array();
+    for (size_t i = 0; i < n; i++)
+        ids = json_with_item(ids, json_integer(vessels->ids[list[i]]));
+    return ids;
+}
+
+static json_t *pair_list(const VesselTree *vessels, const MeshReport *report)
+{
+    json_t *pairs = json_array();
+    for (size_t i = 0; i < report->n_near; i++) {
+        const NearPair *pair = &report->near[i];
+        const JsonMember members[] = {
+            {"segments", json_pack("[i,i]", (int)vessels->ids[pair->segments[0]],
+                                   (int)vessels->ids[pair->segments[1]])},
+            {"gap_mm", json_number(pair->gap_mm)},
+        };
+        pairs = json_with_item(pairs, json_with_members(json_object(), members, 2));
+    }
+    return pairs;
+}
+
+static json_t *count(size_t n)
+{
+    return json_integer((json_int_t)n);
+}
+
+static json_t *manifest(const Meshing *made)
+{
+    const VesselTree *vessels = &made->vessels;
+    const VesselMesh *mesh = &made->mesh;
+    const MeshReport *report = &made->report;
+    const JsonMember members[] = {
+        {"generator", json_text(GENERATOR)},
+        {"unit", json_text("mm")},
+        {"trees", count(report->trees)},
+        {"components", count(report->components)},
+        {"genus", count(report->genus)},
+        {"euler", json_integer(report->euler)},
+        {"watertight", json_boolean(report->open_edges == 0)},
+        {"self_intersections", count(report->crossings)},
+        {"bridges", count(report->bridges)},
+        {"segments", count(vessels->n_segments)},
+        {"segments_present", count(vessels->n_segments - report->n_missing - report->n_swallowed)},
+        {"segments_missing", id_list(vessels, report->missing, report->n_missing)},
+        {"segments_swallowed", id_list(vessels, report->swallowed, report->n_swallowed)},
+        {"round_ends", id_list(vessels, report->round, report->n_round)},
+        {"near_pairs", pair_list(vessels, report)},
+        {"triangles", count(mesh->n_triangles)},
+        {"points", count(mesh->n_points)},
+        {"volume_mm3", json_number(report->volume_mm3)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+Status meshing_write(const Emitter *emitter, double prune_radius_mm, double tolerance,
+                     const char *output, const Parsed *parsed, Err *err)
+{
+    const char *tree = parsed->operands[0];
+    Meshing made = {0};
+    Text said = TEXT_INIT;
+    char *line = NULL;
+    Status status;
+    TRY_GOTO(make(tree, prune_radius_mm, tolerance, &parsed->common, &made, err));
+    text_json(&said, manifest(&made), 2);
+    text_puts(&said, "\n");
+    TRY_GOTO(text_check(&said, err));
+    TRY_GOTO(command_line_text(parsed, &line, err));
+    const EmitParams params = {.mesh = &made.mesh,
+                               .vessels = &made.vessels,
+                               .manifest = text_chars(&said),
+                               .command = line};
+    TRY_GOTO(scene_files_write(emitter, &params, tree, output, NULL, err));
+done:
+    free(line);
+    text_release(&said);
+    vesseltree_release(&made.vessels);
+    vesselmesh_release(&made.mesh);
+    meshreport_release(&made.report);
+    return status;
 }

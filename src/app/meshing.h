@@ -4,24 +4,16 @@
 
 #include "app/options.h"
 #include "base/base.h"
-#include "scene/scene.h"
-#include "surface/surface.h"
-
-typedef struct Meshing {
-    VesselTree vessels;
-    VesselMesh mesh;
-    MeshReport report;
-} Meshing;
+#include "emit/emit.h"
 
 /* How far triangles may be off the surface, over the local radius, where nothing else is said. */
 #define MESHING_TOLERANCE 0.02
 
-/* Reads the tree, leaves out segments thinner than prune_radius_mm (0: none) and triangulates the
- * others. Says on standard error, unless quiet, how much work it is, and what is to be known of the
- * mesh. STATUS_DIFFERS when the mesh is not sound; errors as tree_read and vesselmesh_build have
- * them. Release with meshing_release. */
-MUST_CHECK Status meshing_make(const char *tree_path, double prune_radius_mm, double tolerance,
-                               const Common *common, Meshing *made, Err *err);
-void meshing_release(Meshing *made);
+/* Reads the tree that the command names, leaves out segments thinner than prune_radius_mm (0:
+ * none), triangulates the others and writes `output` and its manifest. Says on standard error,
+ * unless quiet, how much work it is, and what is to be known of the mesh. STATUS_DIFFERS when the
+ * mesh is not sound; errors as tree_read, vesselmesh_build and emit_files have them. */
+MUST_CHECK Status meshing_write(const Emitter *emitter, double prune_radius_mm, double tolerance,
+                                const char *output, const Parsed *parsed, Err *err);
 
 #endif

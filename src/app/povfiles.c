@@ -9,13 +9,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The path of the emitter's second file in *second (owned); NULL when it writes one. */
+Status scene_files_find(const char *output, bool of_meshes, const Emitter **emitter, Err *err)
+{
+    *emitter = emitter_find(file_extension(output), of_meshes);
+    if (*emitter)
+        return STATUS_OK;
+    Text extensions = TEXT_INIT;
+    emitter_extensions(of_meshes, &extensions);
+    Status status =
+        err_set(err, STATUS_USAGE, "-o: '%s' does not end in %s", output, text_chars(&extensions));
+    text_release(&extensions);
+    return status;
+}
+
+/* The path of the second file in *second (owned); NULL when there is none. */
 static Status second_path(const Emitter *emitter, const char *path, char **second, Err *err)
 {
-    char suffix[16];
-    if (!emitter->second_extension || strcmp(path, "-") == 0)
+    char suffix[24];
+    if (emitter->of_meshes)
+        snprintf(suffix, sizeof suffix, ".%s.json", emitter->extension);
+    else if (emitter->second_extension && strcmp(path, "-") != 0)
+        snprintf(suffix, sizeof suffix, ".%s", emitter->second_extension);
+    else
         return STATUS_OK;
-    snprintf(suffix, sizeof suffix, ".%s", emitter->second_extension);
     return file_with_suffix(path, suffix, second, err);
 }
 
@@ -27,7 +43,8 @@ Status scene_files_note(const Emitter *emitter, const char *path, Files *files, 
     if (second && emitter->check_name)
         status = emitter->check_name(file_name(second), err);
     if (second && status == STATUS_OK)
-        status = files_write(files, "the geometry", second, err);
+        status =
+            files_write(files, emitter->of_meshes ? "the manifest" : "the geometry", second, err);
     free(second);
     return status;
 }

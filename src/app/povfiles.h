@@ -8,14 +8,19 @@
 #include "scene/scene.h"
 #include "verify/verify.h"
 
+/* The emitter of scenes, or of meshes, for a file of this name. STATUS_USAGE, naming the extensions
+ * that there are. */
+MUST_CHECK Status scene_files_find(const char *output, bool of_meshes, const Emitter **emitter,
+                                   Err *err);
+
 /* Takes note of the file that scene_files_write writes beside the scene `path`. STATUS_USAGE when
  * the format cannot name it so. */
 MUST_CHECK Status scene_files_note(const Emitter *emitter, const char *path, Files *files,
                                    Err *err);
 
-/* Writes `path` and, beside it, the emitter's second file; "-" is one file on standard output.
- * `params` lacks what follows from the paths, the templates, and who writes. The rest as
- * emit_files. */
+/* Writes `path` and, beside it, the emitter's second file, or the manifest as `path`.json; "-" is
+ * one file on standard output. `params` lacks what follows from the paths, the templates, and who
+ * writes. The rest as emit_files. */
 MUST_CHECK Status scene_files_write(const Emitter *emitter, const EmitParams *params,
                                     const char *tree_path, const char *path, EmitReport *report,
                                     Err *err);

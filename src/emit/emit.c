@@ -24,23 +24,40 @@ const Emitter emitters[] = {
      .description = "one closed surface for OpenSCAD",
      .of_meshes = true,
      .write = openscad_write_mesh},
+    {.name = "stl",
+     .extension = "stl",
+     .description = "triangles for printers and CAD",
+     .binary = true,
+     .of_meshes = true,
+     .write = stl_write},
+    {.name = "ply",
+     .extension = "ply",
+     .description = "triangles with normals and the segment of each",
+     .binary = true,
+     .of_meshes = true,
+     .write = ply_write},
     {0},
 };
 
-const Emitter *emitter_of_extension(const char *extension)
+const Emitter *emitter_find(const char *extension, bool of_meshes)
 {
     for (const Emitter *emitter = emitters; emitter->name; emitter++)
-        if (strcmp(emitter->extension, extension) == 0)
+        if (emitter->of_meshes == of_meshes && strcmp(emitter->extension, extension) == 0)
             return emitter;
     return NULL;
 }
 
-const Emitter *emitter_named(const char *name)
+void emitter_extensions(bool of_meshes, Text *out)
 {
-    const Emitter *emitter = emitters;
-    while (strcmp(emitter->name, name) != 0)
-        emitter++;
-    return emitter;
+    size_t n = 0, at = 0;
+    for (const Emitter *emitter = emitters; emitter->name; emitter++)
+        n += emitter->of_meshes == of_meshes;
+    for (const Emitter *emitter = emitters; emitter->name; emitter++)
+        if (emitter->of_meshes == of_meshes) {
+            text_puts(out, at == 0 ? "." : at + 1 == n ? " or ." : ", .");
+            text_puts(out, emitter->extension);
+            at++;
+        }
 }
 
 Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err)
@@ -61,6 +78,8 @@ static Status write_streams(const Emitter *emitter, const EmitParams *params, co
 {
     Text out = TEXT_TO(files[0].stream), second = TEXT_TO(files[1].stream);
     Status status = emitter->write(params, &out, &second, report, err);
+    if (params->manifest)
+        text_puts(&second, params->manifest);
     if (status == STATUS_OK)
         status = text_flush(&out, err);
     if (status == STATUS_OK)

@@ -4,20 +4,21 @@
 #define CORCAST_EMIT_EMIT_H
 
 #include "base/base.h"
-#include "emit/meshes.h" // IWYU pragma: export
 #include "scene/scene.h"
 #include "surface/surface.h"
 
 /* What is written, and how it is called. All is borrowed. */
 typedef struct EmitParams {
-    const Scene *scene;      /* NULL for an emitter of meshes */
-    const VesselMesh *mesh;  /* NULL for all others */
-    const char *templates;   /* the folder of templates, one folder for each language */
-    const char *file;        /* names of the files as they stand in them, without folders; */
-    const char *second_file; /* NULL: what would go to the second file stands in the first */
-    const char *description; /* what the scene shows; what would break its line becomes a blank */
-    const char *generator;   /* program and version */
-    const char *command;     /* that makes the scene, one line */
+    const Scene *scene;        /* NULL for an emitter of meshes */
+    const VesselMesh *mesh;    /* NULL for all others, and so are the two that follow: */
+    const VesselTree *vessels; /* whose segments the mesh's labels name */
+    const char *manifest;      /* what the second file says of the mesh, or NULL */
+    const char *templates;     /* the folder of templates, one folder for each language */
+    const char *file;          /* names of the files as they stand in them, without folders; */
+    const char *second_file;   /* NULL: what would go to the second file stands in the first */
+    const char *description;   /* what the scene shows; what would break its line becomes a blank */
+    const char *generator;     /* program and version */
+    const char *command;       /* that makes the scene, one line */
     bool shadows;
     bool ids;         /* isosurface, blob: with the paint that the id plane needs */
     CellParams cells; /* isosurface */
@@ -52,10 +53,10 @@ typedef struct Emitter {
 
 /* A row without a name ends them. */
 extern const Emitter emitters[];
-/* The first emitter of files with this extension ("pov"), or NULL. */
-const Emitter *emitter_of_extension(const char *extension);
-/* The emitter of this name, which there is. */
-const Emitter *emitter_named(const char *name);
+/* The emitter of scenes, or of meshes, whose files have this extension ("pov"), or NULL. */
+const Emitter *emitter_find(const char *extension, bool of_meshes);
+/* Appends the extensions of one or the other: ".pov or .scad". */
+void emitter_extensions(bool of_meshes, Text *out);
 
 /* STATUS_USAGE when the format cannot hold a model, with the names of those that it can. */
 MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err);

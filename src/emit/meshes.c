@@ -1,6 +1,7 @@
-/* Binary numbers are little-endian, put byte by byte, so that the machine's order does not matter;
- * a buffer of one record at a time goes to the text. */
-#include "emit/meshes.h"
+/* Triangles for printers and CAD: STL and PLY. Binary numbers are little-endian, put byte by byte,
+ * so that the machine's order does not matter; a buffer of one record at a time goes to the text.
+ */
+#include "emit/rows.h"
 
 #include <string.h>
 
@@ -50,12 +51,13 @@ static void flat_normal(const VesselMesh *mesh, const uint32_t triangle[3], floa
 }
 
 /* 80 bytes of text that do not begin as the text form does, then triangles of 50 bytes. */
-static Status write_stl(const MeshFile *file, Text *out, Err *err)
+Status stl_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
 {
-    (void)err;
-    const VesselMesh *mesh = file->mesh;
+    (void)second;
+    (void)report;
+    const VesselMesh *mesh = params->mesh;
     char header[81] = {0};
-    snprintf(header, sizeof header, "%s, binary STL, units=mm", file->generator);
+    snprintf(header, sizeof header, "%s, binary STL, units=mm", params->generator);
     text_append(out, header, 80);
     Record record = {.length = 0};
     put_word(&record, (uint32_t)mesh->n_triangles, 4);
@@ -68,22 +70,23 @@ static Status write_stl(const MeshFile *file, Text *out, Err *err)
         put_word(&record, 0, 2);
         flush_record(&record, out);
     }
-    return STATUS_OK;
+    return text_check(out, err);
 }
 
 /* Points with normals, and for each triangle the SWC id of its segment and whether it closes an
  * end. */
-static Status write_ply(const MeshFile *file, Text *out, Err *err)
+Status ply_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
 {
-    (void)err;
-    const VesselMesh *mesh = file->mesh;
+    (void)second;
+    (void)report;
+    const VesselMesh *mesh = params->mesh;
     text_printf(out,
                 "ply\nformat binary_little_endian 1.0\ncomment %s, units=mm\n"
                 "element vertex %zu\nproperty float x\nproperty float y\nproperty float z\n"
                 "property float nx\nproperty float ny\nproperty float nz\n"
                 "element face %zu\nproperty list uchar int vertex_indices\n"
                 "property int segment\nproperty uchar cap\nend_header\n",
-                file->generator, mesh->n_points, mesh->n_triangles);
+                params->generator, mesh->n_points, mesh->n_triangles);
     Record record = {.length = 0};
     for (size_t i = 0; i < mesh->n_points; i++) {
         put_floats(&record, mesh->points[i]);
@@ -94,23 +97,9 @@ static Status write_ply(const MeshFile *file, Text *out, Err *err)
         put_word(&record, 3, 1);
         for (int k = 0; k < 3; k++)
             put_word(&record, mesh->triangles[i][k], 4);
-        put_word(&record, file->vessels->ids[mesh->labels[i] & ~MESH_CAP], 4);
+        put_word(&record, params->vessels->ids[mesh->labels[i] & ~MESH_CAP], 4);
         put_word(&record, (mesh->labels[i] & MESH_CAP) != 0, 1);
         flush_record(&record, out);
     }
-    return STATUS_OK;
-}
-
-const MeshFormat mesh_formats[] = {
-    {"STL", "stl", "triangles for printers and CAD", true, write_stl},
-    {"PLY", "ply", "triangles with normals and the segment of each", true, write_ply},
-    {0},
-};
-
-const MeshFormat *mesh_format_of_extension(const char *extension)
-{
-    for (const MeshFormat *format = mesh_formats; format->name; format++)
-        if (strcmp(format->extension, extension) == 0)
-            return format;
-    return NULL;
+    return text_check(out, err);
 }

@@ -41,7 +41,7 @@ test_refuses_vessels_that_overlap_by_name() {
 test_refuses_an_unknown_extension() {
     run corcast export "$DATA/bifurcation.swc" -o m.xyz
     expect_status 2
-    expect_sentence "'m.xyz' does not end in \.stl or \.ply"
+    expect_sentence "'m.xyz' does not end in .scad, .stl or .ply"
 }
 
 run_tests

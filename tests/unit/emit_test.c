@@ -85,7 +85,7 @@ static Status write_povray(const Scene *scene, const EmitParams *params, Emitted
 {
     EmitParams all = *params;
     all.scene = scene;
-    return emitter_of_extension("pov")->write(&all, &out->scene, &out->geometry, &out->report, err);
+    return emitter_find("pov", false)->write(&all, &out->scene, &out->geometry, &out->report, err);
 }
 
 static Emitted emit(const Scene *scene, const EmitParams *params)
@@ -455,7 +455,7 @@ static void a_geometry_that_cannot_be_included_is_refused(void **state)
     (void)state;
     static const char *const names[] = {"a\"b.inc", "a\nb.inc", "\xc3\xa9.inc", "\xff.inc",
                                         "a\x7f.inc"};
-    const Emitter *povray = emitter_of_extension("pov");
+    const Emitter *povray = emitter_find("pov", false);
     Err err;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         assert_int_equal(povray->check_name(names[i], &err), STATUS_USAGE);
@@ -469,7 +469,7 @@ static Status write_files(SceneModel model, const char *path, const char *second
     const Scene scene = make_scene(model);
     EmitParams params = two_files;
     params.scene = &scene;
-    return emit_files(emitter_of_extension("pov"), &params, path, second, NULL, err);
+    return emit_files(emitter_find("pov", false), &params, path, second, NULL, err);
 }
 
 static void expect_file(const char *path, const char *expected)
