@@ -48,13 +48,13 @@ static double next_window(const FieldScratch *scratch, double t)
 }
 
 /* The potential of the group along the ray. */
-typedef struct Sample {
+typedef struct RaySample {
     double phi, slope;
     double convex, concave; /* bounds of phi'' and -phi'' until `next` */
     double next;            /* where the next term's stretch begins */
-} Sample;
+} RaySample;
 
-static void add_term(const RayTerm *term, double t, Sample *sample)
+static void add_term(const RayTerm *term, double t, RaySample *sample)
 {
     double x = t - term->t_mid;
     double w = term->w0 + term->w1 * x;
@@ -69,9 +69,9 @@ static void add_term(const RayTerm *term, double t, Sample *sample)
     sample->concave += term->concave;
 }
 
-static Sample sample_at(const FieldScratch *scratch, double t)
+static RaySample sample_at(const FieldScratch *scratch, double t)
 {
-    Sample sample = {.next = HUGE_VAL};
+    RaySample sample = {.next = HUGE_VAL};
     for (size_t i = 0; i < scratch->n_group; i++) {
         const RayTerm *term = scratch->group[i];
         if (term->t0 > t) {
@@ -90,7 +90,7 @@ typedef struct Approach {
     double convex, concave; /* of side * Phi */
 } Approach;
 
-static Approach approach_of(const Sample *sample, double side)
+static Approach approach_of(const RaySample *sample, double side)
 {
     return (Approach){side * (FIELD_LEVEL - sample->phi), side * sample->slope,
                       side > 0 ? sample->convex : sample->concave,
@@ -109,7 +109,7 @@ static double close_bracket(const FieldScratch *scratch, double low, double high
         t = next;
         if (moved <= 2 * DBL_EPSILON * fabs(t))
             break;
-        Sample sample = sample_at(scratch, t);
+        RaySample sample = sample_at(scratch, t);
         at = approach_of(&sample, side);
         if (fabs(at.lack) <= 1e-14 * FIELD_LEVEL)
             break;
@@ -130,7 +130,7 @@ static double march(const FieldScratch *scratch, double t, double t_max, double 
             t = next_window(scratch, t);
         if (!(t <= t_max))
             return HUGE_VAL;
-        Sample sample = sample_at(scratch, t);
+        RaySample sample = sample_at(scratch, t);
         Approach at = approach_of(&sample, side);
         if (at.lack <= touch && at.slope >= 0)
             return t;
@@ -149,7 +149,7 @@ static double march(const FieldScratch *scratch, double t, double t_max, double 
 }
 
 /* What is asked of a ray, and the answer. */
-typedef struct Search {
+typedef struct RaySearch {
     const Geometry *geometry;
     FieldScratch *scratch;
     Ray ray;
@@ -158,27 +158,27 @@ typedef struct Search {
     double t;
     Vec3 normal;
     uint32_t segment;
-} Search;
+} RaySearch;
 
-static bool is_inside(const Sample *sample)
+static bool is_inside(const RaySample *sample)
 {
     return sample->phi > FIELD_LEVEL + touch;
 }
 
 /* Whether a ray that starts on a surface is inside only because that place is not exact: hits are
  * within 10^-3 r, so that Phi is within 0.4 % of the level, and the ray is on its way out. */
-static bool is_skin(const Search *search, const Sample *sample)
+static bool is_skin(const RaySearch *search, const RaySample *sample)
 {
     return search->off_surface && sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0;
 }
 
 /* The first crossing of the group in the search's limits; infinite when there is none. */
-static double first_crossing(const Search *search)
+static double first_crossing(const RaySearch *search)
 {
     const FieldScratch *scratch = search->scratch;
     double t = fmax(search->t_min, scratch->group[0]->t0);
     if (t == search->t_min) {
-        Sample start = sample_at(scratch, t);
+        RaySample start = sample_at(scratch, t);
         if (is_inside(&start)) {
             t = march(scratch, t, search->t_max, -1);
             if (!is_skin(search, &start))
@@ -189,7 +189,7 @@ static double first_crossing(const Search *search)
 }
 
 /* Sets the answer to the place t of the group. */
-static void describe_hit(Search *search, double t)
+static void describe_hit(RaySearch *search, double t)
 {
     const FieldScratch *scratch = search->scratch;
     Vec3 x = ray_at(search->ray, t), sum = vec3(0, 0, 0);
@@ -214,7 +214,7 @@ static void describe_hit(Search *search, double t)
 }
 
 /* The first hit of the sum of the terms that the scratch holds. */
-static bool hit_of_sum(Search *search)
+static bool hit_of_sum(RaySearch *search)
 {
     while (rayterms_next_group(search->scratch)) {
         if (!rayterms_find_windows(search->scratch))
@@ -229,7 +229,7 @@ static bool hit_of_sum(Search *search)
 }
 
 /* Makes the scratch hold the terms of the segments listed. */
-static void pass_all(const Search *search, const uint32_t *list, size_t n)
+static void pass_all(const RaySearch *search, const uint32_t *list, size_t n)
 {
     rayterms_clear(search->scratch);
     for (size_t i = 0; i < n; i++) {
@@ -241,7 +241,7 @@ static void pass_all(const Search *search, const uint32_t *list, size_t n)
 }
 
 /* The same for those of the segments that blend with the one numbered i. */
-static void pass_joined(const Search *search, const uint32_t *list, size_t n, size_t i)
+static void pass_joined(const RaySearch *search, const uint32_t *list, size_t n, size_t i)
 {
     size_t joined = 0;
     for (size_t j = 0; j < n; j++)
@@ -253,13 +253,13 @@ static void pass_joined(const Search *search, const uint32_t *list, size_t n, si
 /* If the ray is at t_min inside the body that the scratch's terms make, moves t_min to where it
  * leaves, infinite if that is beyond t_max, describes that place and returns true. *deep tells
  * whether it was more than skin there, and is left alone if not. */
-static bool leave_body(Search *search, bool *deep)
+static bool leave_body(RaySearch *search, bool *deep)
 {
     const FieldScratch *scratch = search->scratch;
     while (rayterms_next_group(search->scratch) && scratch->group[0]->t0 <= search->t_min) {
         if (!rayterms_find_windows(search->scratch))
             continue;
-        Sample start = sample_at(scratch, search->t_min);
+        RaySample start = sample_at(scratch, search->t_min);
         if (!is_inside(&start))
             continue;
         double t = march(scratch, search->t_min, search->t_max, -1);
@@ -276,7 +276,7 @@ static bool leave_body(Search *search, bool *deep)
 
 /* Moves t_min out of the union of the bodies about each term listed. True if it was inside, and not
  * just for being on the surface. */
-static bool leave_union(Search *search, const uint32_t *list, size_t n)
+static bool leave_union(RaySearch *search, const uint32_t *list, size_t n)
 {
     bool deep = false, moved = true;
     while (moved && search->t_min <= search->t_max) {
@@ -290,7 +290,7 @@ static bool leave_union(Search *search, const uint32_t *list, size_t n)
 }
 
 /* The first hit of the union of the bodies about each term listed. */
-static bool hit_of_union(Search *search, const uint32_t *list, size_t n)
+static bool hit_of_union(RaySearch *search, const uint32_t *list, size_t n)
 {
     if (leave_union(search, list, n))
         return search->t_min <= search->t_max;
@@ -305,7 +305,7 @@ static bool hit_of_union(Search *search, const uint32_t *list, size_t n)
     return hit;
 }
 
-static bool answer(const Search *search, bool hit, double *t, Vec3 *normal, uint32_t *segment)
+static bool answer(const RaySearch *search, bool hit, double *t, Vec3 *normal, uint32_t *segment)
 {
     if (hit) {
         *t = search->t;
@@ -319,14 +319,14 @@ bool field_first_hit_among(const Geometry *geometry, const uint32_t *list, size_
                            FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
                            Vec3 *normal, uint32_t *segment)
 {
-    Search search = {geometry, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
+    RaySearch search = {geometry, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
     if (geometry->blend.first)
         return answer(&search, hit_of_union(&search, list, n), t, normal, segment);
     pass_all(&search, list, n);
     return answer(&search, hit_of_sum(&search), t, normal, segment);
 }
 
-static bool search_index(const FieldIndex *index, Search *search)
+static bool search_index(const FieldIndex *index, RaySearch *search)
 {
     FieldScratch *scratch = search->scratch;
     rayterms_find(index, scratch, search->ray, search->t_min, search->t_max);
@@ -341,15 +341,15 @@ static bool search_index(const FieldIndex *index, Search *search)
 bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                      double t_max, double *t, Vec3 *normal, uint32_t *segment)
 {
-    Search search = {index->geometry,     scratch, ray, t_min, fmin(t_max, DBL_MAX),
-                     .off_surface = false};
+    RaySearch search = {index->geometry,     scratch, ray, t_min, fmin(t_max, DBL_MAX),
+                        .off_surface = false};
     return answer(&search, search_index(index, &search), t, normal, segment);
 }
 
 bool field_is_shadowed(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                        double t_max)
 {
-    Search search = {index->geometry,    scratch, ray, t_min, fmin(t_max, DBL_MAX),
-                     .off_surface = true};
+    RaySearch search = {index->geometry,    scratch, ray, t_min, fmin(t_max, DBL_MAX),
+                        .off_surface = true};
     return search_index(index, &search);
 }

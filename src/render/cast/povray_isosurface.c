@@ -24,17 +24,17 @@
 /* What POV-Ray calls EPSILON, CLOSE_TOLERANCE, DEPTH_TOLERANCE and BOUND_HUGE (shape/boxes.cpp). */
 static const double flat = 1e-10, close_by = 1e-6, behind = 1e-6, endless = 2e10;
 
-typedef struct Node {
+typedef struct CellNode {
     Box box;
     uint32_t first, count; /* of cells; the halves are nodes[left] and nodes[left + 1] */
     uint32_t left;         /* 0 in a leaf */
-} Node;
+} CellNode;
 
 enum { LEAF_CELLS = 2, STACK_SIZE = 64 };
 
 struct PovrayIsosurface {
     CellTree tree;
-    Node *nodes;
+    CellNode *nodes;
     uint32_t n_nodes;
 };
 
@@ -72,14 +72,14 @@ static bool cut_box(Ray ray, const Cell *cell, double *t0, double *t1)
 }
 
 /* A search along a ray in a cell. */
-typedef struct Search {
+typedef struct CellSearch {
     const CellTree *tree;
     const Cell *cell;
     Ray ray;
     double sign;
-} Search;
+} CellSearch;
 
-static double value_at(const Search *search, double t)
+static double value_at(const CellSearch *search, double t)
 {
     return search->sign * cell_function(search->tree, search->cell, ray_at(search->ray, t));
 }
@@ -89,7 +89,8 @@ typedef struct Place {
 } Place;
 
 /* R of above; `rise` is max_gradient times the width. */
-static bool find_root(const Search *search, Place a, Place b, double rise, double width, double *t)
+static bool find_root(const CellSearch *search, Place a, Place b, double rise, double width,
+                      double *t)
 {
     if (width < search->cell->accuracy) {
         *t = b.t;
@@ -107,7 +108,7 @@ static bool find_root(const Search *search, Place a, Place b, double rise, doubl
 
 static bool hit_cell(const CellTree *tree, const Cell *cell, Ray ray, double *t)
 {
-    Search search = {tree, cell, ray, 1};
+    CellSearch search = {tree, cell, ray, 1};
     double t0, t1, accuracy = cell->accuracy;
     if (!cut_box(ray, cell, &t0, &t1) || t1 - t0 < accuracy)
         return false;
@@ -140,8 +141,8 @@ static Vec3 cell_normal(const CellTree *tree, const Cell *cell, Vec3 x)
 static void build_node(PovrayIsosurface *isosurface, uint32_t number, uint32_t first,
                        uint32_t count)
 {
-    Node *node = &isosurface->nodes[number];
-    *node = (Node){box_empty(), first, count, 0};
+    CellNode *node = &isosurface->nodes[number];
+    *node = (CellNode){box_empty(), first, count, 0};
     if (count > LEAF_CELLS) {
         node->left = isosurface->n_nodes;
         isosurface->n_nodes += 2;
@@ -193,7 +194,7 @@ static bool find_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min, 
     bool found = false;
     stack[top++] = 0;
     while (top > 0 && !(any && found)) {
-        const Node *node = &isosurface->nodes[stack[--top]];
+        const CellNode *node = &isosurface->nodes[stack[--top]];
         double low = 0, high = t_max;
         if (!hit_box(ray.origin, inverse, &node->box, &low, &high))
             continue;

@@ -67,19 +67,19 @@ static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
 
 enum { CHUNK = 2048 };
 
-typedef struct Making {
+typedef struct SegmentsJob {
     const Geometry *geometry;
     VesselLists *lists;
-} Making;
+} SegmentsJob;
 
 static void prepare_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
-    const Making *making = context;
-    VesselLists *lists = making->lists;
+    const SegmentsJob *job = context;
+    VesselLists *lists = job->lists;
     size_t end = (chunk + 1) * CHUNK < lists->n_segments ? (chunk + 1) * CHUNK : lists->n_segments;
     for (size_t i = chunk * CHUNK; i < end; i++) {
-        const FieldSegment *segment = &making->geometry->segments[i];
+        const FieldSegment *segment = &job->geometry->segments[i];
         Vec3 span = vec3_sub(segment->b, segment->a);
         FrameSegment *out = &lists->segments[i];
         *out = (FrameSegment){.a = viewpoint_place(&lists->eye, segment->a),
@@ -112,7 +112,7 @@ Status vessellists_make(const Geometry *geometry, const Camera *camera, const Sa
                         int threads, VesselLists *lists, Err *err)
 {
     size_t n = lists->n_segments = geometry->n_segments;
-    Making making = {geometry, lists};
+    SegmentsJob job = {geometry, lists};
     lists->eye = viewpoint_of_camera(camera);
     lists->grid = *grid;
     lists->tile_columns = (grid->n_columns + TILE_SIDE - 1) / TILE_SIDE;
@@ -122,7 +122,7 @@ Status vessellists_make(const Geometry *geometry, const Camera *camera, const Sa
     TRY(mem_calloc(&lists->segments, n, sizeof *lists->segments, "segments", err));
     TRY(mem_calloc(&lists->segment_rows, n, sizeof *lists->segment_rows, "segments", err));
     place_grid(camera, lists);
-    threads_for((n + CHUNK - 1) / CHUNK, threads, prepare_chunk, &making);
+    threads_for((n + CHUNK - 1) / CHUNK, threads, prepare_chunk, &job);
     TRY(sort_into_bins(lists->segment_rows, NULL, n, lists->tile_rows, &lists->rows, err));
     for (int row = 0; row < lists->tile_rows; row++) {
         size_t length = lists->rows.offsets[row + 1] - lists->rows.offsets[row];

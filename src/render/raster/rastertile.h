@@ -1,9 +1,9 @@
-/* What a kernel is given to find the first primitive at each sample of a tile, and what it
- * finds.
+/* The input of the kernels that find the first primitive at each sample of a tile, and their
+ * output.
  *
- * Places are in the frame of the view: x to the right, y up, z along it. A line of sight is told
- * by the point (x, y) of the view's plane: parallel views look along (0, 0, 1) from (x, y, 0),
- * others along (x, y, 1) from the origin. */
+ * Points are in the frame of the view [viewpoint.h], mm. A line of sight is given by a point (x, y)
+ * of the view's plane: in a parallel view it leads from (x, y, 0) along (0, 0, 1), in perspective
+ * from the origin along (x, y, 1). */
 #ifndef CORCAST_RENDER_RASTERTILE_H
 #define CORCAST_RENDER_RASTERTILE_H
 
@@ -11,10 +11,11 @@
 #include "render/tile/tile.h"
 
 typedef enum RasterKind {
-    RASTER_CYLINDER, /* closed, or with round ends */
+    RASTER_CYLINDER, /* its ends flat discs or balls */
     RASTER_SPHERE,
-    RASTER_JOINT, /* of a solid: no line of sight sees it from inside */
-    RASTER_EXACT  /* too near, too large or too odd for single precision */
+    RASTER_JOINT, /* the wall of a solid: no line of sight sees it from inside */
+    RASTER_EXACT  /* a primitive that single precision cannot draw [rasteritem.c]: each sample is
+                   * decided in double precision */
 } RasterKind;
 
 /* Rows or columns of tiles, as in TileSpan. */
@@ -27,25 +28,27 @@ static inline RasterTiles rastertiles_of(TileSpan span)
     return (RasterTiles){(uint16_t)span.first, (uint16_t)span.last};
 }
 
-/* A primitive, numbered as in the scene, or a capsule about it; a cylinder with its round ends. Its
- * axis is (sine ex, sine ey, cosine). */
+/* One primitive of the geometry, as a capsule that contains it: all points within `radius` of a
+ * segment of length 2 half about the middle, along the unit axis (sine ex, sine ey, cosine) with
+ * cosine >= 0. Items have the numbers of their primitives; a cylinder's round ends are its own. */
 typedef struct RasterItem {
-    double x, y, z; /* its middle */
-    float ex, ey;   /* unit */
+    double x, y, z; /* the middle */
+    float ex, ey;   /* a unit vector, where the axis points to across the view */
     float sine, cosine;
-    float radius, half;        /* mm; half its length, 0 of a sphere */
-    uint32_t kind : 2;         /* RasterKind */
-    uint32_t round_low : 1;    /* of a cylinder: whether the end against its axis is a ball, */
-    uint32_t round_high : 1;   /* and that along it */
-    uint32_t joint : 28;       /* index of its RasterJoint */
-    RasterTiles rows, columns; /* that it may touch */
-    uint32_t box; /* where in them: RasterBox.box, its y too from the first to the last */
+    float radius, half;      /* mm; `half` is 0 of a sphere */
+    uint32_t kind : 2;       /* RasterKind */
+    uint32_t round_low : 1;  /* of a cylinder: whether its end at -half along the axis is a ball */
+    uint32_t round_high : 1; /* and that at +half */
+    uint32_t joint : 28;     /* index of its RasterJoint or RasterHull */
+    RasterTiles rows, columns; /* of tiles that it may touch */
+    uint32_t box; /* in the view of a light: the item's box [rasteritem.h] in those tiles,
+                   * its minima in the first, its maxima in the last */
 } RasterItem;
 
-/* A scene may have no more primitives. */
+/* No geometry with more primitives can be drawn. */
 enum { MOST_ITEMS = 1 << 28 };
 
-/* How far it reaches before and behind its middle, and the depth before which nothing of it is. */
+/* How far the capsule extends along the view from its middle, and the smallest depth of it. */
 static inline double item_depth(const RasterItem *item)
 {
     return (double)item->cosine * (double)item->half + (double)item->radius;
@@ -56,7 +59,8 @@ static inline double item_nearest(const RasterItem *item)
     return item->z - (double)item->cosine * (double)item->half - (double)item->radius;
 }
 
-/* Whether an item is about the eye's plane, or so close that its outline tells nothing. */
+/* Whether an item reaches the plane of the eye, or is so close to it that its outline in the view's
+ * plane has no bound. */
 static inline bool item_is_close(const RasterItem *item)
 {
     return item_nearest(item) < 1e-3 * (1 + (double)item->radius);
