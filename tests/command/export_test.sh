@@ -31,6 +31,17 @@ test_same_bytes_for_any_number_of_threads() {
     expect_same one.ply.json three.ply.json
 }
 
+test_openscad_takes_it_through_cgal_with_the_same_volume() {
+    corcast grow --terminals 5 --seed 5 --domain ball:30 -o t.swc --quiet
+    run_ok corcast export t.swc -o m.stl --quiet
+    echo 'difference() { import("m.stl"); translate([0, 0, -500]) cube(1); }' >cut.scad
+    openscad -o cut.stl cut.scad >said 2>&1 || fail "openscad fails: $(tail -1 said)"
+    grep -q 'Simple: *yes' said || fail "CGAL finds no solid: $(cat said)"
+    ours=$(jq .volume_mm3 m.stl.json) theirs=$(admesh_says cut.stl Volume)
+    awk -v a="$ours" -v b="$theirs" 'BEGIN { exit !(a > 100 && (a / b - 1) ^ 2 < 0.005 ^ 2) }' ||
+        fail "volume $ours mm^3, OpenSCAD's $theirs"
+}
+
 test_refuses_vessels_that_overlap_by_name() {
     run corcast export "$REPO/tests/golden/strangers.swc" -o m.stl --quiet
     expect_status 2

@@ -3,7 +3,7 @@
 #ifndef CORCAST_TESTS_MESH_DISTANCE_H
 #define CORCAST_TESTS_MESH_DISTANCE_H
 
-#include "render/cast/field.h"
+#include "render/cast/fieldcast.h"
 #include "surface/mesh/blendgroups.h"
 #include "surface/surface.h"
 #include <stdlib.h>

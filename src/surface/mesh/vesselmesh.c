@@ -123,7 +123,7 @@ static Status make_zones(Build *build, int n_workers, Err *err)
 /* The trees that segments are of, numbered from 0, in *trees (owned). */
 static Status find_trees(const VesselTree *tree, uint32_t **trees, size_t *n_trees, Err *err)
 {
-    uint32_t *root, *of_segment, count = 0;
+    uint32_t *root, *of_segment;
     TRY(mem_calloc(&root, tree->n_nodes, sizeof *root, "nodes", err));
     Status status = mem_calloc(&of_segment, tree->n_segments, sizeof *of_segment, "segments", err);
     if (status != STATUS_OK) {
@@ -141,7 +141,6 @@ static Status find_trees(const VesselTree *tree, uint32_t **trees, size_t *n_tre
                     node = root[node] = root[root[node]];
                 ends[end] = node;
             }
-            count += pass == 0 && ends[0] != ends[1];
             root[ends[0] > ends[1] ? ends[0] : ends[1]] = ends[0] < ends[1] ? ends[0] : ends[1];
             of_segment[i] = ends[0] < ends[1] ? ends[0] : ends[1];
         }
