@@ -246,4 +246,17 @@ test_the_numbers_of_the_blob_are_those_that_fit_blob_prints() {
     says METHODS.md 'Where segments are only 2 r long, the largest distance is 3.50 %, where they are 1 r long 5.14 %'
 }
 
+test_the_citation_is_of_this_version() {
+    python3 -c 'import yaml' 2>/dev/null || skip "python3-yaml is not installed"
+    python3 - "$REPO/CITATION.cff" "$(corcast --version | cut -d " " -f 2)" 2>stderr <<'END' || fail "expected a citation$(said)"
+import sys, yaml
+citation = yaml.safe_load(open(sys.argv[1]))
+missing = {"cff-version", "message", "title", "authors", "version", "license", "type"} - citation.keys()
+assert not missing, f"it lacks {missing}"
+assert citation["cff-version"] == "1.2.0" and citation["license"] == "MIT" and citation["title"] == "corcast"
+assert str(citation["version"]) == sys.argv[2], f"it is of {citation['version']}"
+assert all(author.get("name") for author in citation["authors"])
+END
+}
+
 run_tests "$@"

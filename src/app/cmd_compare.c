@@ -1,3 +1,6 @@
+/* Two images or planes, whole numbers or floats: what they hold decides which of the comparisons of
+ * verify they go to, and the tolerance is made of a tier, a file and single limits, each over the
+ * one before. The exit status is the verdict. */
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/templates.h"

@@ -1,3 +1,5 @@
+/* What a file holds is told by its extension, and what is read becomes what is to be written: a
+ * tree a tree, a picture a picture of sRGB, a plane of floats a plane. */
 #include "app/commands.h"
 #include "app/options.h"
 #include "image/image.h"

@@ -1,3 +1,5 @@
+/* Grows, refines if asked, writes, and only then speaks: what a user has to know of a tree that is
+ * not as it should be is said with --quiet, too. */
 #include "app/commands.h"
 #include "app/growing.h"
 #include "app/progress.h"

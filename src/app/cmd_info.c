@@ -1,3 +1,5 @@
+/* One summary, and the statistics on request, as text or as JSON of the same numbers. What options
+ * say of the blood is laid over what the tree's file says. */
 #include "app/commands.h"
 #include "app/info_statistics.h"
 #include "app/options.h"

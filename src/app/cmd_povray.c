@@ -1,3 +1,5 @@
+/* POV-Ray with the switches that `verify` gives it, on any scene; the size is what a scene of ours
+ * asks for in its header. */
 #include "app/commands.h"
 #include "app/frames.h"
 #include "app/options.h"

@@ -1,3 +1,4 @@
+/* A tree from a file, refined within its domain: that of the option, or that of its header. */
 #include "app/commands.h"
 #include "app/refining.h"
 #include "app/tree_domain.h"

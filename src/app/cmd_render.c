@@ -1,3 +1,5 @@
+/* Draws band by band, each as many rows as --memory holds, and writes each before the next, so that
+ * a picture of any size needs the memory of one band. */
 #include "app/commands.h"
 #include "app/frames.h"
 #include "app/picture.h"

@@ -1,3 +1,4 @@
+/* Merges the reports that `verify` left in folders; the exit status is the worst of theirs. */
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/templates.h"

@@ -1,3 +1,5 @@
+/* The extension of the output chooses the emitter, whose row says what it can hold; options that a
+ * format has no use for are refused. */
 #include "app/commands.h"
 #include "app/meshing.h"
 #include "app/picture.h"

@@ -1,3 +1,6 @@
+/* A list of all files that a command line names, searched for each that is added: there are few. A
+ * file that exists is known by device and inode; one that does not yet, by those of its folder and
+ * its name. */
 #include "app/files.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* The tables of --stats: one function writes them as text, one as JSON. */
 #include "app/info_statistics.h"
 
 #include "app/commands.h"

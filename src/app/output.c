@@ -1,3 +1,6 @@
+/* What commands have in common when they write: the command line that a file tells of itself, made
+ * of the options' values rather than of what was typed, so that a recipe, the order of the options
+ * and what does not matter leave no trace; names for people; JSON. */
 #include "app/commands.h"
 
 #include <stdio.h>

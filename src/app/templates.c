@@ -1,3 +1,5 @@
+/* The folder of templates is looked for where the program is: beside the build folder, or where
+ * `make install` puts it. */
 #include "app/templates.h"
 
 #include <dirent.h>
