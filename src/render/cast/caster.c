@@ -84,35 +84,35 @@ void caster_free(Caster *caster)
     free(caster);
 }
 
-bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
+/* The hit, and the index of the primitive or field segment that is hit. */
+static bool find_first(const Caster *caster, int worker, Ray ray, Hit *hit, uint32_t *index)
 {
     if (caster->bvh) {
-        Hit hit;
-        size_t index;
-        if (!bvh_first_hit(caster->bvh, ray, NEAREST_SEEN_MM, &hit, &index))
-            return false;
-        *surfel = (Surfel){hit.t, hit.normal, caster->geometry->primitives[index].segment};
-    } else if (caster->isosurface) {
-        Hit hit;
-        uint32_t index;
-        if (!povray_isosurface_first_hit(caster->isosurface, ray, NEAREST_SEEN_MM, &hit, &index))
-            return false;
-        *surfel = (Surfel){hit.t, hit.normal, caster->geometry->segments[index].segment};
-    } else {
-        double t;
-        Vec3 normal;
-        uint32_t index;
-        bool found = caster->blob
-                         ? blobcast_first_hit(caster->blob, caster->blob_scratch[worker], ray,
-                                              blob_nearest_mm, INFINITY, &t, &normal, &index)
-                         : field_first_hit(caster->field, caster->scratch[worker], ray,
-                                           NEAREST_SEEN_MM, INFINITY, &t, &normal, &index);
-        if (!found)
-            return false;
-        *surfel = (Surfel){t, normal, caster->geometry->segments[index].segment};
+        size_t primitive = 0;
+        bool found = bvh_first_hit(caster->bvh, ray, NEAREST_SEEN_MM, hit, &primitive);
+        *index = (uint32_t)primitive;
+        return found;
     }
-    if (vec3_dot(surfel->normal, ray.direction) > 0)
-        surfel->normal = vec3_scale(surfel->normal, -1);
+    if (caster->isosurface)
+        return povray_isosurface_first_hit(caster->isosurface, ray, NEAREST_SEEN_MM, hit, index);
+    if (caster->blob)
+        return blobcast_first_hit(caster->blob, caster->blob_scratch[worker], ray, blob_nearest_mm,
+                                  INFINITY, &hit->t, &hit->normal, index);
+    return field_first_hit(caster->field, caster->scratch[worker], ray, NEAREST_SEEN_MM, INFINITY,
+                           &hit->t, &hit->normal, index);
+}
+
+bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
+{
+    const Geometry *geometry = caster->geometry;
+    Hit hit;
+    uint32_t index;
+    if (!find_first(caster, worker, ray, &hit, &index))
+        return false;
+    bool inwards = vec3_dot(hit.normal, ray.direction) > 0;
+    *surfel = (Surfel){hit.t, inwards ? vec3_scale(hit.normal, -1) : hit.normal,
+                       caster->bvh ? geometry->primitives[index].segment
+                                   : geometry->segments[index].segment};
     return true;
 }
 
