@@ -163,8 +163,10 @@ static Status put_setting(const Setting *setting, PutSetting *put, Text *text, E
     return status;
 }
 
-/* Whether the option makes the picture what it is; `plain` has its default. */
-static bool is_shown(const PictureOptions *options, const Setting *setting, const Setting *plain)
+/* Whether the option makes the picture what it is; `plain` has its default. `text` as
+ * setting_differs has it. */
+static bool is_shown(const PictureOptions *options, const Setting *setting, const Setting *plain,
+                     Text *text)
 {
     static const char *const always[] = {"model", "size", "projection", NULL};
     static const char *const framing[] = {"view", "margin", "angle", "height", NULL};
@@ -173,7 +175,7 @@ static bool is_shown(const PictureOptions *options, const Setting *setting, cons
     if (is_one_of(name, always) || strcmp(name, perspective ? "angle" : "height") == 0)
         return true;
     return picture_takes(options, name) && !is_one_of(name, framing) &&
-           setting_differs(setting, plain);
+           setting_differs(setting, plain, text);
 }
 
 /* Model, size, projection, where the camera is, and all that is not by default; the first settings
@@ -185,7 +187,7 @@ static Status put_settings(const Viewer *viewer, PutSetting *put, Text *text, Er
     Status status = STATUS_OK;
     for (size_t i = 0; i < plain.n_settings && status == STATUS_OK; i++) {
         const Setting *setting = &viewer->parsed->settings[i];
-        if (!setting->option->aside && is_shown(viewer->options, setting, &plain.settings[i]))
+        if (!setting->option->aside && is_shown(viewer->options, setting, &plain.settings[i], text))
             status = put_setting(setting, put, text, err);
     }
     parsed_release(&plain);

@@ -396,7 +396,7 @@ static void put_all(const Setting *setting, Text *text)
     }
 }
 
-bool setting_differs(const Setting *setting, const Setting *plain)
+bool setting_differs(const Setting *setting, const Setting *plain, Text *text)
 {
     if (setting->option->has_given)
         return *given_of(setting);
@@ -404,7 +404,9 @@ bool setting_differs(const Setting *setting, const Setting *plain)
     put_all(setting, &texts[0]);
     put_all(plain, &texts[1]);
     const char *chars = text_chars(&texts[0]), *others = text_chars(&texts[1]);
-    bool differs = !chars || !others || strcmp(chars, others) != 0;
+    bool differs = chars && others && strcmp(chars, others) != 0;
+    if (!chars || !others)
+        text_puts(text, NULL);
     text_release(&texts[0]);
     text_release(&texts[1]);
     return differs;

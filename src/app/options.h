@@ -228,8 +228,9 @@ size_t setting_count(const Setting *setting);
 /* Appends value number `at` as setting_read takes it; a flag's is that of recipes. */
 void setting_put(const Setting *setting, size_t at, Text *text);
 /* Whether the option says something else than `plain`, the same option of other variables. One that
- * has a `given` does where it was given. */
-bool setting_differs(const Setting *setting, const Setting *plain);
+ * has a `given` does where it was given. `text`, which is made of the answer, fails when memory
+ * runs out. */
+bool setting_differs(const Setting *setting, const Setting *plain, Text *text);
 
 /* "N", "X,Y,Z", "MM": what stands for the value. */
 void option_put_argument(const Option *option, Text *text);

@@ -83,11 +83,11 @@ static void put_output(const Setting *setting, Text *text)
         text_puts(text, name);
 }
 
-static bool tells(const Setting *setting, const Setting *plain)
+static bool tells(const Setting *setting, const Setting *plain, Text *text)
 {
     const Option *option = setting->option;
     return !option->aside && option->kind != OPTION_OUTPUT && option->kind != OPTION_FOLDER &&
-           setting_differs(setting, plain);
+           setting_differs(setting, plain, text);
 }
 
 void put_shell_operand(Text *text, const char *path)
@@ -109,7 +109,7 @@ Status command_line_text(const Parsed *parsed, char **out, Err *err)
         put_shell_operand(&text, file_name(parsed->operands[i]));
     }
     for (size_t i = 0; i < parsed->n_settings; i++)
-        if (tells(&parsed->settings[i], &plain.settings[i]))
+        if (tells(&parsed->settings[i], &plain.settings[i], &text))
             put_shown(&parsed->settings[i], &text);
     const Setting *output = parsed_find(parsed, "output", strlen("output"));
     if (output)
