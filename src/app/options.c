@@ -321,17 +321,15 @@ Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *
 /* Whether an option's name, and then its unit, read like the field. */
 static bool is_called(const Option *option, const char *field, size_t length)
 {
-    Text name = TEXT_INIT;
-    text_printf(&name, "%s-%s", option->name, option_unit(option) ? option_unit(option) : "");
-    const char *chars = text_chars(&name);
+    const char *unit = option_unit(option);
+    char name[128];
     size_t bare = strlen(option->name), i = 0;
-    while (chars && chars[i] && i < length &&
-           (tolower((unsigned char)chars[i]) == tolower((unsigned char)field[i]) ||
-            (field[i] == '_' && strchr("-/", chars[i]))))
+    snprintf(name, sizeof name, "%s-%s", option->name, unit ? unit : "");
+    while (name[i] && i < length &&
+           (tolower((unsigned char)name[i]) == tolower((unsigned char)field[i]) ||
+            (field[i] == '_' && strchr("-/", name[i]))))
         i++;
-    bool same = chars && i == length && (i == bare || (option_unit(option) && !chars[i]));
-    text_release(&name);
-    return same;
+    return i == length && (i == bare || (unit && !name[i]));
 }
 
 static bool sets(const Option *option, const char *field, size_t length)
@@ -341,26 +339,29 @@ static bool sets(const Option *option, const char *field, size_t length)
            is_called(option, field, length);
 }
 
+/* Appends as many of `n` characters as there is room for. */
+static void append(Err *sentence, const char *chars, size_t n)
+{
+    size_t length = strlen(sentence->text), room = sizeof sentence->text - 1 - length;
+    memcpy(sentence->text + length, chars, n < room ? n : room);
+}
+
+/* Memory may have run out, so that a sentence of its own size has to do. */
 void options_name_fields(const Parsed *parsed, Err *err)
 {
-    Text named = TEXT_INIT;
+    Err named = {{0}};
     const char *rest = err->text;
     for (const char *open; (open = strchr(rest, '`')); rest = open + 1) {
-        const char *field = open + 1;
-        size_t length = strspn(field, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"),
-               i = 0;
-        while (i < parsed->n_settings && !sets(parsed->settings[i].option, field, length))
-            i++;
-        text_append(&named, rest, (size_t)(open - rest));
-        if (field[length] != '`' || i == parsed->n_settings) {
-            text_puts(&named, "`");
-            continue;
-        }
-        text_printf(&named, "--%s", parsed->settings[i].option->name);
-        open = field + length;
+        const char *field = open + 1, *option = NULL;
+        size_t length = strspn(field, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_");
+        for (size_t i = 0; i < parsed->n_settings && field[length] == '`' && !option; i++)
+            if (sets(parsed->settings[i].option, field, length))
+                option = parsed->settings[i].option->name;
+        append(&named, rest, (size_t)(open - rest));
+        append(&named, option ? "--" : "`", option ? 2 : 1);
+        append(&named, option ? option : "", option ? strlen(option) : 0);
+        open = option ? field + length : open;
     }
-    text_puts(&named, rest);
-    if (text_chars(&named))
-        snprintf(err->text, sizeof err->text, "%s", text_chars(&named));
-    text_release(&named);
+    append(&named, rest, strlen(rest));
+    *err = named;
 }
