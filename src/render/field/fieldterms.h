@@ -6,11 +6,15 @@
 #include "render/tile/interval.h"
 #include "render/tile/tile.h"
 
+/* A segment in the frame of the camera, mm. */
 typedef struct FrameSegment {
-    Vec3 a, b, axis;
-    double length, k;
-    double sine, per_sine; /* orthographic: of the angle between axis and rays; 0 when parallel */
-    double reach;          /* mm from the axis, beyond which the term is below the cut-off */
+    Vec3 a, b, axis; /* the ends, and the unit vector from a to b */
+    double length;
+    double k; /* potential_k, 1 / mm */
+    /* Of the angle between the axis and parallel rays, and 1 / sine; 0 where the axis is parallel
+     * to the rays. */
+    double sine, per_sine;
+    double reach; /* mm from the axis, beyond which the term is below the cut-off */
 } FrameSegment;
 
 /* A term of the potential as the tile sees it. `o` is where the middle ray passes at z = z_near:
