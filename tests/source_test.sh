@@ -41,6 +41,13 @@ test_texts_and_json_are_made_by_the_functions_that_carry_a_failure_on() {
     [ -z "$found" ] || fail "expected text_chars, json_with, json_text and text_json in place of: $found"
 }
 
+test_every_source_opens_with_its_design() {
+    local file
+    for file in $(cd "$REPO" && find src -name '*.c'); do
+        head -1 "$REPO/$file" | grep -q '^/\*' || fail "expected $file to open with a comment that says how it works"
+    done
+}
+
 # So that `make power`, which takes long and is run rarely, still plants what it says.
 test_every_fault_of_make_power_changes_its_file() {
     local file edit

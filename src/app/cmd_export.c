@@ -1,3 +1,5 @@
+/* The extension of the output chooses the emitter, as in cmd_scene.c; meshing.c makes the closed
+ * surface that it writes. */
 #include "app/commands.h"
 #include "app/meshing.h"
 #include "app/povfiles.h"
