@@ -61,23 +61,23 @@ static void add_triangle(const Assembly *assembly, uint32_t a, uint32_t b, uint3
 }
 
 /* The segment that two of the corners are nearest to, or the first one's. */
-static uint32_t label_of(const Patch *patch, Triangle triangle)
+static uint32_t label_of(const ZonePiece *piece, const uint32_t at[3])
 {
-    uint32_t a = patch->points[triangle.at[0]].segment, b = patch->points[triangle.at[1]].segment;
-    uint32_t c = patch->points[triangle.at[2]].segment;
-    return b == c ? b : a;
+    uint32_t a = piece->points[at[0]].segment, b = piece->points[at[1]].segment;
+    return b == piece->points[at[2]].segment ? b : a;
 }
 
 static void add_piece(Assembly *assembly, ZonePiece *piece)
 {
-    const Patch *patch = &piece->patch;
-    uint32_t offset = (uint32_t)assembly->mesh->n_points;
-    for (size_t i = 0; i < patch->n_points; i++)
-        (void)add_point(assembly, patch->points[i].x, patch->points[i].normal);
-    for (size_t i = 0; i < patch->n_triangles; i++) {
-        const uint32_t *at = patch->triangles[i].at;
-        add_triangle(assembly, offset + at[0], offset + at[1], offset + at[2],
-                     label_of(patch, patch->triangles[i]));
+    VesselMesh *mesh = assembly->mesh;
+    uint32_t offset = (uint32_t)mesh->n_points;
+    for (size_t i = 0; i < piece->n_points; i++, mesh->n_points++) {
+        memcpy(mesh->points[mesh->n_points], piece->points[i].x, sizeof *mesh->points);
+        memcpy(mesh->normals[mesh->n_points], piece->points[i].normal, sizeof *mesh->normals);
+    }
+    for (size_t i = 0; i < piece->n_triangles; i++) {
+        const uint32_t *at = piece->triangles[i].at;
+        add_triangle(assembly, offset + at[0], offset + at[1], offset + at[2], label_of(piece, at));
     }
     for (size_t i = 0; i < piece->n_rims; i++) {
         const Rim *rim = &piece->rims[i];
@@ -156,8 +156,7 @@ static Status add_strip(Assembly *assembly, uint32_t segment, Err *err)
     return STATUS_OK;
 }
 
-/* The spacing of floats at the coordinate farthest from the origin. */
-static double grid_of(const VesselTree *tree)
+double mesh_grid(const VesselTree *tree)
 {
     double farthest = 0;
     for (size_t i = 0; i < tree->n_segments; i++) {
@@ -186,8 +185,8 @@ static Status reserve(Assembly *assembly, const ZonePiece *pieces, Err *err)
     size_t caps = count_caps(assembly), rims = caps * assembly->sides;
     size_t points = caps * (assembly->sides + 1), triangles = rims;
     for (uint32_t z = 0; z < assembly->zones->n_zones; z++) {
-        points += pieces[z].patch.n_points;
-        triangles += pieces[z].patch.n_triangles;
+        points += pieces[z].n_points;
+        triangles += pieces[z].n_triangles;
         for (size_t i = 0; i < pieces[z].n_rims; i++)
             rims += pieces[z].rims[i].n;
     }
@@ -203,11 +202,11 @@ static Status reserve(Assembly *assembly, const ZonePiece *pieces, Err *err)
 }
 
 Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *pieces, uint32_t sides,
-                     VesselMesh *mesh, double *grid_mm, Err *err)
+                     double grid_mm, VesselMesh *mesh, Err *err)
 {
     VesselMesh made = {0};
     Assembly assembly = {
-        .tree = tree, .zones = zones, .mesh = &made, .grid_mm = grid_of(tree), .sides = sides};
+        .tree = tree, .zones = zones, .mesh = &made, .grid_mm = grid_mm, .sides = sides};
     Status status;
     TRY_GOTO(reserve(&assembly, pieces, err));
     for (uint32_t z = 0; z < zones->n_zones; z++) {
@@ -223,7 +222,6 @@ Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *piec
         TRY_GOTO(add_strip(&assembly, i, err));
     }
     *mesh = made;
-    *grid_mm = assembly.grid_mm;
     made = (VesselMesh){0};
 done:
     vesselmesh_release(&made);

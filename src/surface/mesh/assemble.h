@@ -4,10 +4,14 @@
 
 #include "surface/mesh/zonepiece.h"
 
-/* Joins all into *mesh (owned by the caller), its points on a grid, whose step goes to *grid_mm; a
- * cap has at least `sides` sides. The pieces are released on the way. Every segment that is a tube
- * has triangles then. */
+/* The step of the grid that the points of a mesh of the tree lie on: the spacing of floats at the
+ * coordinate farthest from the origin, so that each coordinate is a whole number of less than 26
+ * bits of it, and a float. */
+double mesh_grid(const VesselTree *tree);
+
+/* Joins all into *mesh (owned by the caller), its points on the grid; a cap has `sides` sides. The
+ * pieces are released on the way. Every segment that is a tube has triangles then. */
 MUST_CHECK Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *pieces,
-                                uint32_t sides, VesselMesh *mesh, double *grid_mm, Err *err);
+                                uint32_t sides, double grid_mm, VesselMesh *mesh, Err *err);
 
 #endif

@@ -102,25 +102,35 @@ static void order_leaves(Forest *forest)
     }
 }
 
+/* The boxes of those of a run that meet `other`, and their numbers. */
+static uint32_t boxes_near(const Forest *forest, uint32_t run, const FloatBox *other,
+                           FloatBox boxes[RUN], uint32_t items[RUN])
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < run_length(forest, run); i++) {
+        boxes[n] = forest->pairs->box(run * RUN + i, forest->pairs->context);
+        items[n] = run * RUN + i;
+        n += floatbox_meets(&boxes[n], other);
+    }
+    return n;
+}
+
 static void tell_pairs(const Forest *forest, uint32_t node_a, uint32_t node_b, int worker)
 {
     const BoxPairs *pairs = forest->pairs;
-    uint32_t a = forest->leaves[node_a - forest->size].number;
-    uint32_t b = forest->leaves[node_b - forest->size].number;
-    FloatBox boxes[RUN];
-    for (uint32_t j = 0; j < run_length(forest, b); j++)
-        boxes[j] = pairs->box(b * RUN + j, pairs->context);
-    for (uint32_t i = 0; i < run_length(forest, a); i++) {
-        FloatBox box = pairs->box(a * RUN + i, pairs->context);
-        if (!floatbox_meets(&box, &forest->boxes[node_b]))
-            continue;
-        for (uint32_t j = a == b ? i + 1 : 0; j < run_length(forest, b); j++) {
-            uint32_t one = a * RUN + i, other = b * RUN + j;
-            if (floatbox_meets(&box, &boxes[j]))
-                pairs->found(one < other ? one : other, one < other ? other : one, worker,
-                             pairs->context);
+    uint32_t items[2][RUN], n[2] = {0};
+    FloatBox boxes[2][RUN];
+    n[0] = boxes_near(forest, forest->leaves[node_a - forest->size].number, &forest->boxes[node_b],
+                      boxes[0], items[0]);
+    if (n[0] > 0)
+        n[1] = boxes_near(forest, forest->leaves[node_b - forest->size].number,
+                          &forest->boxes[node_a], boxes[1], items[1]);
+    for (uint32_t i = 0; i < n[0]; i++)
+        for (uint32_t j = node_a == node_b ? i + 1 : 0; j < n[1]; j++) {
+            uint32_t a = items[0][i], b = items[1][j];
+            if (floatbox_meets(&boxes[0][i], &boxes[1][j]))
+                pairs->found(a < b ? a : b, a < b ? b : a, worker, pairs->context);
         }
-    }
 }
 
 /* Both nodes are of one level, a <= b. */

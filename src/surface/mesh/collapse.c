@@ -1,17 +1,16 @@
-/* Half-edge collapses in rounds of rising tolerance, so that the shortest edges go first. An edge e
- * between points with normals n1 and n2 is |e . (n2 - n1)| / 8 off the surface half way, if that
- * is an arc. The link condition [T. Dey et al.: Topology preserving edge contraction, 1999] keeps
- * the topology: the two points have no other common neighbours than those of their common
- * triangles. The corners of a point are a list through `next`; the corners of triangles that are
- * gone are taken out of it when it is walked. */
+/* Half-edge collapses, of each point into the nearest neighbour that takes it. An edge e between
+ * points with normals n1 and n2 is |e . (n2 - n1)| / 8 off the surface half way, if that is an arc.
+ * The link condition [T. Dey et al.: Topology preserving edge contraction, 1999] keeps the
+ * topology: the two points have no other common neighbours than those of their common triangles.
+ * The corners of a point are a list through `next`; the corners of triangles that are gone are
+ * taken out of it when it is walked. */
 #include "surface/mesh/collapse.h"
 
 #include <stdlib.h>
 
-enum { MOST_NEIGHBORS = 48 };
+enum { MOST_NEIGHBORS = 48, MOST_SWEEPS = 4 };
 #define NONE UINT32_MAX
 
-static const double rounds[] = {0.3, 1};
 /* Cosine of the most that a triangle may lean from the normals at its corners. */
 static const double least_cosine = 0.72;
 /* Least height of a new triangle over its longest side, unless it was worse before. */
@@ -20,7 +19,7 @@ static const double least_shape = 0.04;
 typedef struct Work {
     Collapser *collapser;
     Patch *patch;
-    double sagitta; /* of the local radius, of this round */
+    double sagitta; /* of the local radius */
 } Work;
 
 /* The ring of a point: its triangles are (point, from[i], to[i]). */
@@ -144,8 +143,10 @@ static bool may_collapse(const Work *work, uint32_t point, const Ring *ring, uin
     if (on_rim && (shared != 1 || points[target].arm != points[point].arm))
         return false;
     for (int i = 0; i < ring->n; i++)
-        if (ring->from[i] != target && ring->to[i] != target &&
-            !(edge_is_near(work, target, ring->from[i]) && edge_is_near(work, target, ring->to[i])))
+        if (ring->to[i] != target && !edge_is_near(work, target, ring->to[i]))
+            return false;
+    for (int i = 0; i < ring->n && on_rim; i++)
+        if (ring->from[i] != target && !edge_is_near(work, target, ring->from[i]))
             return false;
     for (int i = 0; i < ring->n; i++)
         if (ring->from[i] != target && ring->to[i] != target &&
@@ -229,21 +230,18 @@ static Status prepare(Collapser *collapser, const Patch *patch, Err *err)
 
 Status collapse_make(Collapser *collapser, Patch *patch, double sagitta, Err *err)
 {
-    Work work = {collapser, patch, 0};
+    const Work work = {collapser, patch, sagitta};
     TRY(prepare(collapser, patch, err));
-    for (size_t round = 0; round < sizeof rounds / sizeof *rounds; round++) {
-        work.sagitta = rounds[round] * sagitta;
-        for (size_t i = 0; i < patch->n_points; i++)
-            collapser->settled[i] = false;
-        bool changed = true;
-        for (int sweep = 0; sweep < 3 && changed; sweep++) {
-            changed = false;
-            for (uint32_t i = 0; i < patch->n_points; i++) {
-                if (collapser->settled[i])
-                    continue;
-                collapser->settled[i] = true;
-                changed |= try_point(&work, i);
-            }
+    for (size_t i = 0; i < patch->n_points; i++)
+        collapser->settled[i] = false;
+    bool changed = true;
+    for (int sweep = 0; sweep < MOST_SWEEPS && changed; sweep++) {
+        changed = false;
+        for (uint32_t i = 0; i < patch->n_points; i++) {
+            if (collapser->settled[i])
+                continue;
+            collapser->settled[i] = true;
+            changed |= try_point(&work, i);
         }
     }
     patch_compact(patch, collapser->renamed);

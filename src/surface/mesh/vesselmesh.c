@@ -47,10 +47,11 @@ bool meshreport_is_sound(const MeshReport *report)
            report->crossings == 0 && report->bridges == 0 && report->n_missing == 0;
 }
 
-static ZoneFineness fineness_of(double tolerance)
+static ZoneFineness fineness_of(double tolerance, double grid_mm)
 {
     double ratio = fmin(cell_ratio * sqrt(tolerance / cells_at), 0.7);
-    return (ZoneFineness){{ratio, bending_ratio * tolerance / cells_at}, sagitta_part * tolerance};
+    return (ZoneFineness){
+        {ratio, bending_ratio * tolerance / cells_at}, sagitta_part * tolerance, grid_mm};
 }
 
 /* A regular polygon of so many sides is within the sagitta of its circle. */
@@ -200,15 +201,15 @@ static Status refuse_overlap(const Build *build, Err *err)
         ids[pair->segments[0]], ids[pair->segments[1]], -pair->gap_mm, build->zones.n_overlapping);
 }
 
-static Status fill_report(Build *build, const VesselMesh *mesh, double grid_mm, MeshReport *report,
-                          Err *err)
+static Status fill_report(Build *build, const VesselMesh *mesh, MeshReport *report, Err *err)
 {
     uint32_t *trees;
     TRY(find_trees(build->tree, &trees, &report->trees, err));
     Status status = meshcheck_topology(mesh, trees, report, err);
     free(trees);
     TRY(status);
-    TRY(meshcheck_crossings(mesh, grid_mm, build->params->threads, &report->crossings, err));
+    TRY(meshcheck_crossings(mesh, build->fineness.grid_mm, build->params->threads,
+                            &report->crossings, err));
     TRY(list_fate(build, SEGMENT_MISSING, &report->missing, &report->n_missing, err));
     TRY(list_fate(build, SEGMENT_SWALLOWED, &report->swallowed, &report->n_swallowed, err));
     TRY(list_round(build, report, err));
@@ -232,10 +233,11 @@ Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, Vessel
                         MeshReport *report, Err *err)
 {
     int n_workers = params->threads > 0 ? params->threads : threads_available();
-    Build build = {.tree = tree, .params = params, .fineness = fineness_of(params->tolerance)};
+    Build build = {.tree = tree,
+                   .params = params,
+                   .fineness = fineness_of(params->tolerance, mesh_grid(tree))};
     VesselMesh made = {0};
     MeshReport found = {0};
-    double grid_mm;
     Status status;
     TRY_GOTO(cut_tree(&build, err));
     TRY_GOTO(make_zones(&build, n_workers, err));
@@ -243,8 +245,8 @@ Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, Vessel
     for (uint32_t z = 0; z < build.zones.n_zones; z++)
         found.repeated += build.pieces[z].repeats > 0;
     TRY_GOTO(assemble_mesh(tree, &build.zones, build.pieces, sides_of(cap_part * params->tolerance),
-                           &made, &grid_mm, err));
-    TRY_GOTO(fill_report(&build, &made, grid_mm, &found, err));
+                           build.fineness.grid_mm, &made, err));
+    TRY_GOTO(fill_report(&build, &made, &found, err));
     *mesh = made;
     *report = found;
     made = (VesselMesh){0};

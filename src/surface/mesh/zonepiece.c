@@ -20,7 +20,8 @@ typedef struct Maker {
 
 void zonepiece_release(ZonePiece *piece)
 {
-    patch_release(&piece->patch);
+    free(piece->points);
+    free(piece->triangles);
     free(piece->rims);
     free(piece->rim_points);
     *piece = (ZonePiece){0};
@@ -35,6 +36,7 @@ void zoneworker_release(ZoneWorker *worker)
     pairtable_release(&worker->edges);
     patch_release(&worker->patch);
     free(worker->next);
+    free(worker->order);
     *worker = (ZoneWorker){0};
 }
 
@@ -285,15 +287,66 @@ static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t 
     return prove(maker, sound);
 }
 
-/* A copy of just the size, for the workspace is large. */
-static Status keep_patch(const Patch *from, Patch *to, Err *err)
+/* Two zero bits after each of the lowest ten. */
+static uint32_t spread(uint32_t x)
 {
-    TRY(mem_calloc(&to->points, from->n_points, sizeof *to->points, "points", err));
-    TRY(mem_calloc(&to->triangles, from->n_triangles, sizeof *to->triangles, "triangles", err));
-    for (size_t i = 0; i < from->n_points; i++)
-        to->points[to->n_points++] = from->points[i];
-    for (size_t i = 0; i < from->n_triangles; i++)
-        to->triangles[to->n_triangles++] = from->triangles[i];
+    x = (x | x << 16) & 0x30000ff;
+    x = (x | x << 8) & 0x300f00f;
+    x = (x | x << 4) & 0x30c30c3;
+    return (x | x << 2) & 0x9249249;
+}
+
+static int compare_placed(const void *a, const void *b)
+{
+    const PlacedTriangle *one = a, *other = b;
+    uint32_t x = one->code, y = other->code;
+    return x != y ? (x > y) - (x < y)
+                  : (one->number > other->number) - (one->number < other->number);
+}
+
+/* The triangles by the Morton codes of their first points, so that those next to each other in
+ * memory are so in space. */
+static Status order_triangles(ZoneWorker *worker, Err *err)
+{
+    const Patch *patch = &worker->patch;
+    const ZoneTree *tree = &worker->tree;
+    TRY(mem_reserve(&worker->order, &worker->order_capacity, patch->n_triangles,
+                    sizeof *worker->order, "triangles of a junction", err));
+    for (uint32_t i = 0; i < patch->n_triangles; i++) {
+        Vec3 from = vec3_sub(patch->points[patch->triangles[i].at[0]].x, tree->corner);
+        uint32_t code = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            double part = vec3_component(from, axis) / tree->side;
+            code |= spread((uint32_t)(1023 * fmin(fmax(part, 0), 1))) << axis;
+        }
+        worker->order[i] = (PlacedTriangle){code, i};
+    }
+    qsort(worker->order, patch->n_triangles, sizeof *worker->order, compare_placed);
+    return STATUS_OK;
+}
+
+static PiecePoint rounded_point(const PatchPoint *point, double grid)
+{
+    PiecePoint kept = {.segment = point->segment};
+    for (int axis = 0; axis < 3; axis++) {
+        kept.x[axis] = (float)(round(vec3_component(point->x, axis) / grid) * grid);
+        kept.normal[axis] = (float)vec3_component(point->normal, axis);
+    }
+    return kept;
+}
+
+/* The worker's patch, in as little room as it takes. */
+static Status keep_patch(ZoneWorker *worker, double grid, ZonePiece *piece, Err *err)
+{
+    const Patch *patch = &worker->patch;
+    TRY(order_triangles(worker, err));
+    TRY(mem_calloc(&piece->points, patch->n_points, sizeof *piece->points, "points", err));
+    TRY(mem_calloc(&piece->triangles, patch->n_triangles, sizeof *piece->triangles, "triangles",
+                   err));
+    for (size_t i = 0; i < patch->n_points; i++)
+        piece->points[piece->n_points++] = rounded_point(&patch->points[i], grid);
+    for (size_t i = 0; i < patch->n_triangles; i++)
+        piece->triangles[piece->n_triangles++] = patch->triangles[worker->order[i].number];
     return STATUS_OK;
 }
 
@@ -313,7 +366,7 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
         used.cells.bending *= finer * finer;
     }
     if (sound)
-        status = keep_patch(&worker->patch, &made.patch, err);
+        status = keep_patch(worker, fineness->grid_mm, &made, err);
     else
         status = err_set(err, STATUS_INFEASIBLE,
                          "the vessels about segment %u run into each other so that their wall is "

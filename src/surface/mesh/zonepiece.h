@@ -14,8 +14,16 @@ typedef struct Rim {
     uint32_t first, n;
 } Rim;
 
+/* A point of a finished wall, in as few bytes as it takes. */
+typedef struct PiecePoint {
+    float x[3], normal[3]; /* on the grid of the mesh; unit */
+    uint32_t segment;      /* whose term is largest there */
+} PiecePoint;
+
 typedef struct ZonePiece {
-    Patch patch; /* owned, as all of it */
+    PiecePoint *points; /* owned, as all of it */
+    Triangle *triangles;
+    size_t n_points, n_triangles;
     Rim *rims;
     size_t n_rims;
     uint32_t *rim_points;
@@ -34,7 +42,13 @@ typedef enum SegmentFate {
 typedef struct ZoneFineness {
     CellSize cells;
     double sagitta; /* of the local radius, for edges */
+    double grid_mm; /* coordinates are rounded to its multiples */
 } ZoneFineness;
+
+/* A triangle and where it stands among others that are near in space. */
+typedef struct PlacedTriangle {
+    uint32_t code, number;
+} PlacedTriangle;
 
 /* Workspace of a thread; zeroed before the first use. */
 typedef struct ZoneWorker {
@@ -45,7 +59,8 @@ typedef struct ZoneWorker {
     PairTable edges;
     Patch patch;
     uint32_t *next;
-    size_t next_capacity;
+    PlacedTriangle *order;
+    size_t next_capacity, order_capacity;
 } ZoneWorker;
 
 void zoneworker_release(ZoneWorker *worker);

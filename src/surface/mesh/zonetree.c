@@ -20,6 +20,8 @@ static const double parted_part = 1.0 / 6, least_part = 1.0 / 8;
 /* Behind a plane walls go on for so many usual cells, in which the plane may be moved. */
 static const double margin_behind = 0.75;
 static const double surely = 1e-3;
+/* Where others add less than this, the wall is that of one tube. */
+static const double lone = 0.03;
 
 typedef struct Builder {
     ZoneTree *tree;
@@ -96,7 +98,7 @@ static bool must_split(const Builder *builder, const FieldPart *part, const Part
         return true;
     if (bounds->parted)
         return side > parted_part * usual;
-    if (side < 2 * least_part * usual)
+    if (side < 2 * least_part * usual || bounds->all - bounds->largest < lone * FIELD_LEVEL)
         return false;
     return side * turn_across(builder, part, center, side) >
            builder->size->bending * bounds->thinnest;
