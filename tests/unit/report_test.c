@@ -266,7 +266,7 @@ static void merges_cases_worst_first_under_numbers_of_their_own(void **state)
         scene.report.name = i ? "second" : "first";
         assert_int_equal(file_make_folder(folders[i], &err), STATUS_OK);
         assert_int_equal(report_write(&scene.report, templates, folders[i], &err), STATUS_OK);
-        assert_float_equal(report_severity(&scene.report), i ? 4629.62963F : 0, 1e-3F);
+        assert_float_equal(report_severity(&scene.report), (i ? 4629.62963F : 0), 1e-3F);
         scene_release(&scene);
     }
     write_output("power.json",
