@@ -37,7 +37,9 @@ static void put_word(Text *text, const char *name, const char *quotes)
     text_put_line(&clean, name);
     const char *chars = text_chars(&clean);
     bool plain = chars && !strchr(chars, ' ');
-    text_printf(&quoted, "%s%s%s", plain ? "" : quotes, chars ? chars : "", plain ? "" : quotes);
+    text_puts(&quoted, plain ? "" : quotes);
+    text_puts(&quoted, chars);
+    text_puts(&quoted, plain ? "" : quotes);
     text_put_shell_word(text, text_chars(&quoted));
     text_release(&clean);
     text_release(&quoted);
@@ -51,7 +53,7 @@ void add_file(Values *values, const char *file, const char *result, const char *
     text_puts(&made, result);
     text_put_line(add_value(values, "file"), file);
     put_word(add_value(values, "input"), file, quotes);
-    put_word(add_value(values, "output"), text_chars(&made) ? text_chars(&made) : "", quotes);
+    put_word(add_value(values, "output"), text_chars(&made), quotes);
     text_release(&made);
 }
 
