@@ -43,7 +43,9 @@ static void put_commands(const Parsed *plain, Text *text)
 /* In single quotes, for a shell that takes \' there only outside of them. */
 static void put_quoted(const char *chars, Text *text)
 {
-    for (; *chars; chars++)
+    if (!chars)
+        text_puts(text, chars);
+    for (; chars && *chars; chars++)
         text_puts(text, *chars == '\'' ? "'\\''" : (const char[]){*chars, '\0'});
 }
 
@@ -110,7 +112,7 @@ static void put_zsh_text(const char *chars, Text *text)
 {
     Text escaped = TEXT_INIT;
     help_put_escaped(chars, "[]:\\", &escaped);
-    put_quoted(text_chars(&escaped) ? text_chars(&escaped) : "", text);
+    put_quoted(text_chars(&escaped), text);
     text_release(&escaped);
 }
 
@@ -125,7 +127,7 @@ static void put_zsh_option(const Option *option, Text *text)
         text_puts(text, option->kind == OPTION_SWITCH ? "::" : ":");
         Text argument = TEXT_INIT;
         option_put_argument(option, &argument);
-        put_zsh_text(text_chars(&argument) ? text_chars(&argument) : "", text);
+        put_zsh_text(text_chars(&argument), text);
         text_release(&argument);
         text_puts(text, ":");
         if (option->list)

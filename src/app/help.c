@@ -11,7 +11,7 @@ enum { HELP_INDENT = 27, HELP_WIDTH = 90 };
 /* Appends words, wrapped, from column `column` on. */
 static void put_wrapped(const char *words, size_t column, Text *text)
 {
-    while (words && *words) {
+    while (*words) {
         size_t length = strcspn(words, " ");
         if (column > HELP_INDENT && column + 1 + length > HELP_WIDTH) {
             text_printf(text, "\n%*s", HELP_INDENT, "");
@@ -33,23 +33,28 @@ void help_put_meaning(const Setting *plain, Text *text)
     Text allowed = TEXT_INIT, value = TEXT_INIT;
     text_puts(text, option->help);
     option_put_allowed(option, &allowed);
-    if (allowed.length)
+    const char *chars = text_chars(&allowed);
+    if (!chars || *chars)
         text_puts(text, option->choices ? ": " : "; ");
-    if (allowed.length)
-        text_puts(text, text_chars(&allowed) + (strncmp(text_chars(&allowed), "of ", 3) ? 0 : 3));
+    text_puts(text, chars && strncmp(chars, "of ", 3) == 0 ? chars + 3 : chars);
     if (option->otherwise)
         text_puts(&value, option->otherwise);
     else if (option->kind != OPTION_FLAG && setting_count(plain) > 0)
         setting_put(plain, 0, &value);
-    if (value.length)
-        text_printf(text, " (%s)", text_chars(&value));
+    if (value.length || !text_chars(&value)) {
+        text_puts(text, " (");
+        text_add(text, &value);
+        text_puts(text, ")");
+    }
     text_release(&allowed);
     text_release(&value);
 }
 
 void help_put_escaped(const char *chars, const char *special, Text *text)
 {
-    for (; *chars; chars++)
+    if (!chars)
+        text_puts(text, chars);
+    for (; chars && *chars; chars++)
         text_printf(text, strchr(special, *chars) ? "\\%c" : "%c", *chars);
 }
 
@@ -73,7 +78,10 @@ static void put_option(const Setting *plain, Text *text)
         column = 0;
     }
     text_printf(text, "%*s", (int)(HELP_INDENT - column), "");
-    put_wrapped(text_chars(&meaning), HELP_INDENT, text);
+    if (text_chars(&meaning))
+        put_wrapped(text_chars(&meaning), HELP_INDENT, text);
+    else
+        text_add(text, &meaning);
     text_release(&left);
     text_release(&meaning);
 }

@@ -14,7 +14,8 @@ extern const char help_exit_status[];
 /* Appends the option's meaning, which values it takes, and what holds without it; `plain` has its
  * default. */
 void help_put_meaning(const Setting *plain, Text *text);
-/* Appends the chars, after a backslash those that are among `special`. */
+/* Appends the chars, after a backslash those that are among `special`; NULL, from a text that
+ * failed, makes `text` fail. */
 void help_put_escaped(const char *chars, const char *special, Text *text);
 /* Whether the option is one that every command has. */
 bool help_is_common(const Parsed *parsed, const Setting *setting);

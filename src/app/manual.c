@@ -27,7 +27,9 @@ static void for_groups(const Parsed *plain, bool common, void (*head)(const char
 /* Appends text that troff is to print as it is; it begins no line. */
 static void put_troff(const char *chars, Text *text)
 {
-    for (; *chars; chars++)
+    if (!chars)
+        text_puts(text, chars);
+    for (; chars && *chars; chars++)
         text_puts(text, *chars == '\\'   ? "\\e"
                         : *chars == '-'  ? "\\-"
                         : *chars == '\'' ? "\\(aq"
@@ -46,7 +48,7 @@ static void put_lines(const char *lines, Text *text)
         Text line = TEXT_INIT;
         text_append(&line, lines, length);
         text_puts(text, "\\&");
-        put_troff(text_chars(&line) ? text_chars(&line) : "", text);
+        put_troff(text_chars(&line), text);
         text_puts(text, "\n");
         text_release(&line);
         lines += length + (lines[length] == '\n');
@@ -71,9 +73,9 @@ static void put_man_option(const Setting *plain, Text *text)
     option_put_argument(option, &argument);
     help_put_meaning(plain, &meaning);
     text_puts(text, argument.length ? "\\fR \\fI" : "");
-    put_troff(text_chars(&argument) ? text_chars(&argument) : "", text);
+    put_troff(text_chars(&argument), text);
     text_puts(text, "\\fR\n\\&");
-    put_troff(text_chars(&meaning) ? text_chars(&meaning) : "", text);
+    put_troff(text_chars(&meaning), text);
     text_puts(text, "\n");
     text_release(&argument);
     text_release(&meaning);
@@ -82,7 +84,7 @@ static void put_man_option(const Setting *plain, Text *text)
 static void put_title(const char *name, Text *text)
 {
     text_puts(text, ".TH ");
-    for (const char *c = name; *c; c++)
+    for (const char *c = name; c && *c; c++)
         text_printf(text, "%c", *c >= 'a' && *c <= 'z' ? *c - 'a' + 'A' : *c);
     text_puts(text, " 1 \"\" \"" GENERATOR "\" \"corcast manual\"\n.SH NAME\n");
     put_troff(name, text);
@@ -101,7 +103,7 @@ void manual_put(const Parsed *plain, Text *text)
     const Command *command = plain->command;
     Text name = TEXT_INIT;
     text_printf(&name, "corcast-%s", command->name);
-    put_title(text_chars(&name) ? text_chars(&name) : "", text);
+    put_title(text_chars(&name), text);
     text_release(&name);
     put_troff(command->summary, text);
     text_printf(text, "\n.SH SYNOPSIS\n\\fBcorcast %s\\fR ", command->name);
@@ -150,9 +152,9 @@ static void put_markdown_option(const Setting *plain, Text *text)
     help_put_meaning(plain, &meaning);
     text_printf(text, "| `%s--%s%s", output ? "-o, " : "", option->name,
                 argument.length ? " " : "");
-    help_put_escaped(text_chars(&argument) ? text_chars(&argument) : "", "|", text);
+    help_put_escaped(text_chars(&argument), "|", text);
     text_puts(text, "` | ");
-    help_put_escaped(text_chars(&meaning) ? text_chars(&meaning) : "", "|*<", text);
+    help_put_escaped(text_chars(&meaning), "|*<", text);
     text_puts(text, " |\n");
     text_release(&argument);
     text_release(&meaning);

@@ -46,6 +46,16 @@ test_failed_allocations_in_info() {
     fail_each 5 one info ../tree.swc --stats --json
 }
 
+test_failed_allocations_in_help() {
+    inputs
+    fail_each 9 one help grow
+    fail_each 9 one help grow --as man
+    fail_each 400 one help --as markdown
+    fail_each 400 one help --as bash
+    fail_each 400 one help --as zsh
+    fail_each 400 one help --as fish
+}
+
 test_failed_allocations_in_convert() {
     inputs
     fail_each 1 one convert ../tree.swc o.swc
