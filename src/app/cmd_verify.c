@@ -529,6 +529,7 @@ static const Option own[] = {
     {.name = "output",
      SETS(FOLDER, VerifyOptions, folder),
      .argument = "DIR",
+     .is_told = true,
      .help = "folder for the report, the scene and all planes"},
     {.name = "bits",
      SETS(WHOLE, VerifyOptions, bits),
