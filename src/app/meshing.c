@@ -162,6 +162,8 @@ static json_t *manifest(const Meshing *made)
         {"triangles", count(mesh->n_triangles)},
         {"points", count(mesh->n_points)},
         {"volume_mm3", json_number(report->volume_mm3)},
+        {"max_distance_mm", json_number(report->off.mm)},
+        {"max_distance_over_radius", json_number(report->off.ratio)},
     };
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }

@@ -20,6 +20,7 @@ test_manifest_proves_the_mesh() {
     run_ok corcast export "$DATA/bifurcation.swc" -o m.stl --quiet
     expect_json m.stl.json '.components == 1 and .genus == 0 and .euler == 2 and .watertight'
     expect_json m.stl.json '.self_intersections == 0 and .bridges == 0'
+    expect_json m.stl.json '.max_distance_over_radius > 0.003 and .max_distance_over_radius < 0.05'
     expect_json m.stl.json '.segments_present == 3 and .segments_missing == []'
 }
 

@@ -26,6 +26,7 @@ typedef struct Assembly {
     double *angles; /* of the rims of one tube */
     size_t angle_capacity;
     uint32_t sides;
+    MeshOff *off;
 } Assembly;
 
 void vesselmesh_release(VesselMesh *mesh)
@@ -131,6 +132,15 @@ static double turned_angle(const double *angles, uint32_t n, uint32_t i)
     return angles[i % n] + full_turn * (i / n);
 }
 
+/* A chord is farthest off its circle half way. */
+static void measure_rim(const Assembly *assembly, const double *angles, uint32_t n, double radius)
+{
+    double widest = 0;
+    for (uint32_t i = 0; i < n; i++)
+        widest = fmax(widest, turned_angle(angles, n, i + 1) - angles[i]);
+    meshoff_add(assembly->off, radius * (1 - cos(widest / 2)), radius);
+}
+
 static Status add_strip(Assembly *assembly, uint32_t segment, Err *err)
 {
     RimPlace a = assembly->rims[segment][0], b = assembly->rims[segment][1];
@@ -140,6 +150,8 @@ static Status add_strip(Assembly *assembly, uint32_t segment, Err *err)
     double *angle_a = assembly->angles, *angle_b = &assembly->angles[a.n];
     find_angles(assembly, self, a, angle_a);
     find_angles(assembly, self, b, angle_b);
+    measure_rim(assembly, angle_a, a.n, self->radius_mm);
+    measure_rim(assembly, angle_b, b.n, self->radius_mm);
     const uint32_t *points_a = &assembly->rim_points[a.first];
     const uint32_t *points_b = &assembly->rim_points[b.first];
     for (uint32_t i = 0, j = 0; i < a.n || j < b.n;) {
@@ -202,11 +214,15 @@ static Status reserve(Assembly *assembly, const ZonePiece *pieces, Err *err)
 }
 
 Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *pieces, uint32_t sides,
-                     double grid_mm, VesselMesh *mesh, Err *err)
+                     double grid_mm, VesselMesh *mesh, MeshOff *off, Err *err)
 {
     VesselMesh made = {0};
-    Assembly assembly = {
-        .tree = tree, .zones = zones, .mesh = &made, .grid_mm = grid_mm, .sides = sides};
+    Assembly assembly = {.tree = tree,
+                         .zones = zones,
+                         .mesh = &made,
+                         .grid_mm = grid_mm,
+                         .sides = sides,
+                         .off = off};
     Status status;
     TRY_GOTO(reserve(&assembly, pieces, err));
     for (uint32_t z = 0; z < zones->n_zones; z++) {

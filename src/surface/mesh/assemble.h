@@ -10,8 +10,10 @@
 double mesh_grid(const VesselTree *tree);
 
 /* Joins all into *mesh (owned by the caller), its points on the grid; a cap has `sides` sides. The
- * pieces are released on the way. Every segment that is a tube has triangles then. */
+ * pieces are released on the way. Every segment that is a tube has triangles then. *off is widened
+ * by what tubes are off their walls. */
 MUST_CHECK Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *pieces,
-                                uint32_t sides, double grid_mm, VesselMesh *mesh, Err *err);
+                                uint32_t sides, double grid_mm, VesselMesh *mesh, MeshOff *off,
+                                Err *err);
 
 #endif

@@ -15,8 +15,8 @@
 
 /* What the tolerance means for cells and edges, measured so that the mean distance to the surface
  * stays below 0.15 of it, and one sample of a thousand is beyond it. */
-static const double cells_at = 0.02, cell_ratio = 0.5, bending_ratio = 0.32, sagitta_part = 0.28,
-                    cap_part = 0.2;
+static const double cells_at = 0.02, cell_ratio = 0.5, bending_ratio = 0.32, sagitta_part = 0.26,
+                    cap_part = 0.2, farthest_part = 1.75;
 
 typedef struct Build {
     const VesselTree *tree;
@@ -50,8 +50,10 @@ bool meshreport_is_sound(const MeshReport *report)
 static ZoneFineness fineness_of(double tolerance, double grid_mm)
 {
     double ratio = fmin(cell_ratio * sqrt(tolerance / cells_at), 0.7);
-    return (ZoneFineness){
-        {ratio, bending_ratio * tolerance / cells_at}, sagitta_part * tolerance, grid_mm};
+    return (ZoneFineness){{ratio, bending_ratio * tolerance / cells_at},
+                          sagitta_part * tolerance,
+                          farthest_part * tolerance,
+                          grid_mm};
 }
 
 /* A regular polygon of so many sides is within the sagitta of its circle. */
@@ -242,10 +244,13 @@ Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, Vessel
     TRY_GOTO(cut_tree(&build, err));
     TRY_GOTO(make_zones(&build, n_workers, err));
     found.zones = build.zones.n_zones;
-    for (uint32_t z = 0; z < build.zones.n_zones; z++)
+    for (uint32_t z = 0; z < build.zones.n_zones; z++) {
         found.repeated += build.pieces[z].repeats > 0;
+        found.off.mm = fmax(found.off.mm, build.pieces[z].off.mm);
+        found.off.ratio = fmax(found.off.ratio, build.pieces[z].off.ratio);
+    }
     TRY_GOTO(assemble_mesh(tree, &build.zones, build.pieces, sides_of(cap_part * params->tolerance),
-                           build.fineness.grid_mm, &made, err));
+                           build.fineness.grid_mm, &made, &found.off, err));
     TRY_GOTO(fill_report(&build, &made, &found, err));
     *mesh = made;
     *report = found;

@@ -45,6 +45,17 @@ typedef struct NearPair {
     double gap_mm;        /* between their walls; below 0: they overlap */
 } NearPair;
 
+/* How far triangles are off the surface at most. */
+typedef struct MeshOff {
+    double mm, ratio; /* ratio: over the local radius, not at the same place */
+} MeshOff;
+
+static inline void meshoff_add(MeshOff *off, double mm, double radius_mm)
+{
+    off->mm = mm > off->mm ? mm : off->mm;
+    off->ratio = mm / radius_mm > off->ratio ? mm / radius_mm : off->ratio;
+}
+
 /* What is true of a mesh, established on its final points. */
 typedef struct MeshReport {
     size_t trees;       /* of the input */
@@ -61,6 +72,7 @@ typedef struct MeshReport {
     NearPair *near; /* owned; gaps below NEAR_GAP of the thinner radius, overlaps first */
     size_t n_near, n_overlapping;
     double volume_mm3;
+    MeshOff off; /* of tubes all, of junctions a quarter of the triangles, by the field's slope */
     size_t zones, repeated; /* junction zones, and those that needed finer cells */
 } MeshReport;
 

@@ -7,7 +7,7 @@
 
 #define NONE UINT32_MAX
 
-enum { MOST_REPEATS = 5 };
+enum { MOST_REPEATS = 5, MOST_REFINEMENTS = 2 };
 static const double finer = 0.62;
 
 typedef struct Maker {
@@ -271,6 +271,45 @@ static Status find_fates(const Maker *maker, double ratio, uint8_t *fates)
     return STATUS_OK;
 }
 
+/* How far a point is off the wall, by the field's value and slope there. */
+static void measure_at(const Maker *maker, Vec3 x, double radius_mm)
+{
+    const ZoneTree *tree = &maker->worker->tree;
+    const ZoneCell *cell = zonetree_active(tree, x);
+    Vec3 gradient;
+    if (!cell)
+        return;
+    FieldValue value =
+        fieldpart_gradient(&maker->plan->field, &tree->kept, &cell->part, x, &gradient);
+    double steepness = vec3_length(gradient);
+    if (steepness > 0)
+        meshoff_add(&maker->piece->off, fabs(value.phi - FIELD_LEVEL) / steepness, radius_mm);
+}
+
+/* Measures the middle and the middle of the longest edge of some triangles. */
+static void measure_off(const Maker *maker)
+{
+    enum { EVERY = 4 };
+    const Patch *patch = &maker->worker->patch;
+    for (size_t i = 0; i < patch->n_triangles; i += EVERY) {
+        const PatchPoint *at[3];
+        Vec3 middle = vec3(0, 0, 0), of_longest = middle;
+        double longest = 0;
+        for (int k = 0; k < 3; k++)
+            at[k] = &patch->points[patch->triangles[i].at[k]];
+        for (int k = 0; k < 3; k++) {
+            Vec3 a = at[k]->x, b = at[(k + 1) % 3]->x;
+            middle = vec3_add_scaled(middle, a, 1.0 / 3);
+            if (vec3_distance(a, b) > longest) {
+                longest = vec3_distance(a, b);
+                of_longest = vec3_scale(vec3_add(a, b), 0.5);
+            }
+        }
+        measure_at(maker, middle, at[0]->radius_mm);
+        measure_at(maker, of_longest, at[0]->radius_mm);
+    }
+}
+
 /* One attempt. */
 static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates, bool *sound)
 {
@@ -356,16 +395,19 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
     ZonePiece made = {0};
     const Maker maker = {worker, tree, plan, &made, err};
     ZoneFineness used = *fineness;
-    bool sound = false;
+    bool sound = false, near = false;
     Status status = STATUS_OK;
-    for (int repeats = 0; repeats <= MOST_REPEATS && !sound; repeats++) {
+    for (int repeats = 0; repeats <= MOST_REPEATS && !near; repeats++) {
         zonepiece_release(&made);
         TRY_GOTO(attempt(&maker, &used, fates, &sound));
         made.repeats = repeats;
-        used.cells.ratio *= finer;
-        used.cells.bending *= finer * finer;
+        if (sound)
+            measure_off(&maker);
+        near = sound && (made.off.ratio <= fineness->farthest || repeats >= MOST_REFINEMENTS);
+        used.cells.ratio *= sound ? 1 : finer;
+        used.cells.bending *= sound ? finer : finer * finer;
     }
-    if (sound)
+    if (near)
         status = keep_patch(worker, fineness->grid_mm, &made, err);
     else
         status = err_set(err, STATUS_INFEASIBLE,

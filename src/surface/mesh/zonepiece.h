@@ -28,6 +28,7 @@ typedef struct ZonePiece {
     size_t n_rims;
     uint32_t *rim_points;
     int repeats; /* with finer cells */
+    MeshOff off; /* of a sample of the triangles' middles and longest edges */
 } ZonePiece;
 
 void zonepiece_release(ZonePiece *piece);
@@ -41,8 +42,9 @@ typedef enum SegmentFate {
 
 typedef struct ZoneFineness {
     CellSize cells;
-    double sagitta; /* of the local radius, for edges */
-    double grid_mm; /* coordinates are rounded to its multiples */
+    double sagitta;  /* of the local radius, for edges */
+    double farthest; /* likewise, that triangles should be off the wall */
+    double grid_mm;  /* coordinates are rounded to its multiples */
 } ZoneFineness;
 
 /* A triangle and where it stands among others that are near in space. */
@@ -66,7 +68,8 @@ typedef struct ZoneWorker {
 void zoneworker_release(ZoneWorker *worker);
 
 /* Makes the wall of a zone; of the segments that lie wholly in it, fates[segment] is set. Repeats
- * with finer cells what is not a sphere with one hole for each arm. STATUS_INFEASIBLE, naming the
+ * with finer cells what is not a sphere with one hole for each arm, and a time or two what is too
+ * far off. STATUS_INFEASIBLE, naming the
  * id of a segment, when that does not help. */
 MUST_CHECK Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
                                  const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates,
