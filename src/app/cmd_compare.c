@@ -446,6 +446,7 @@ static const Option own[] = {
      .help = "the account of every segment"},
     {.name = "html",
      SETS(OUTPUT, CompareOptions, page),
+     .is_told = true,
      .argument = "PAGE.html",
      .help = "one page about two pictures: swipe, blink, zoom, differences, numbers"},
 };

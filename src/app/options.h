@@ -70,7 +70,7 @@ typedef struct Option {
     size_t given;       /* offset of a bool that is set when the option is present ... */
     bool has_given;     /* ... if there is one */
     bool aside;         /* what a command makes does not depend on it */
-    bool is_told;       /* of the output: what is written tells its own name */
+    bool is_told;       /* of a file that is written: the command that it tells has its own name */
     OptionKind kind;
     OptionGroup group;
     const MetaRow *meta; /* the key of a tree that it says: range and unit are its; NULL: none */

@@ -83,11 +83,13 @@ static void put_output(const Setting *setting, Text *text)
         text_puts(text, name);
 }
 
+/* The output itself stands last; others are told where what is written shows them. */
 static bool tells(const Setting *setting, const Setting *plain, Text *text)
 {
     const Option *option = setting->option;
-    return !option->aside && option->kind != OPTION_OUTPUT && option->kind != OPTION_FOLDER &&
-           setting_differs(setting, plain, text);
+    bool output = strcmp(option->name, "output") == 0;
+    bool hidden = option->kind == OPTION_OUTPUT && !option->is_told;
+    return !option->aside && !output && !hidden && setting_differs(setting, plain, text);
 }
 
 void put_shell_operand(Text *text, const char *path)

@@ -127,4 +127,16 @@ test_the_text_of_a_picture_makes_it_again() {
     ! grep -aq 'memory\|recipe' picture.png || fail "expected only what the picture depends on"
 }
 
+test_a_page_of_two_pictures_tells_the_command_that_makes_it() {
+    run_ok corcast grow --quiet --terminals 9 -o tree.swc
+    run_ok corcast render tree.swc --quiet --size 60x44 -o a.png
+    run_ok corcast render tree.swc --quiet --size 60x44 --antialias 3 -o b.png
+    run corcast compare a.png b.png --quiet --levels 3.5 --metrics off --html page.html
+    expect_status 1
+    mkdir pasted
+    cp ./*.png pasted
+    (cd pasted && eval "$(grep -o 'corcast compare [^<]*' ../page.html | head -1)" >said)
+    cmp -s page.html pasted/page.html || fail "expected the same page from: $(grep -o 'corcast compare [^<]*' page.html | head -1)"
+}
+
 run_tests "$@"
