@@ -7,8 +7,7 @@
 
 typedef struct ExportOptions {
     const char *output;
-    double tolerance;
-    double prune_radius_mm;
+    MeshingOptions meshing;
 } ExportOptions;
 
 static const Option own[] = {
@@ -17,24 +16,28 @@ static const Option own[] = {
      .argument = "M.stl",
      .help = "the mesh; its extension chooses the format"},
     {.name = "tolerance",
-     SETS(NUMBER, ExportOptions, tolerance),
+     SETS(NUMBER, ExportOptions, meshing.tolerance),
      .group = GROUP_VESSELS,
      FROM_TO(0.002, 0.2),
      .help = "how far triangles may be off the surface, over the local radius"},
     {.name = "prune-radius",
-     SETS(NUMBER, ExportOptions, prune_radius_mm),
+     SETS(NUMBER, ExportOptions, meshing.prune_radius_mm),
      .group = GROUP_VESSELS,
      FROM_TO(0, 1e7),
      .unit = "mm",
      .otherwise = "",
      .help = "drop segments thinner than this"},
+    {.name = "part-overlaps",
+     SETS(FLAG, ExportOptions, meshing.part_overlaps),
+     .group = GROUP_VESSELS,
+     .help = "thin vessels that overlap others that they do not belong with"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
 
 static void set_defaults(void *options)
 {
-    ((ExportOptions *)options)->tolerance = MESHING_TOLERANCE;
+    ((ExportOptions *)options)->meshing.tolerance = MESHING_TOLERANCE;
 }
 
 static Status run_export(void *options, Parsed *parsed, Err *err)
@@ -43,8 +46,7 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
     const Emitter *emitter;
     TRY(scene_files_find(own_options->output, true, &emitter, err));
     TRY(scene_files_note(emitter, own_options->output, &parsed->files, err));
-    return meshing_write(emitter, own_options->prune_radius_mm, own_options->tolerance,
-                         own_options->output, parsed, err);
+    return meshing_write(emitter, &own_options->meshing, own_options->output, parsed, err);
 }
 
 const Command command_export = {

@@ -131,14 +131,15 @@ static Status find_emitter(const SceneOptions *options, const Emitter **emitter,
 static Status run_scene(void *options, Parsed *parsed, Err *err)
 {
     const SceneOptions *own_options = options;
+    const MeshingOptions meshing = {.tolerance = MESHING_TOLERANCE,
+                                    .prune_radius_mm = own_options->picture.prune_radius_mm};
     const Emitter *emitter;
     char *line = NULL;
     TRY(find_emitter(own_options, &emitter, err));
     TRY(check(own_options, emitter, parsed, err));
     TRY(scene_files_note(emitter, own_options->output, &parsed->files, err));
     if (emitter->of_meshes)
-        return meshing_write(emitter, own_options->picture.prune_radius_mm, MESHING_TOLERANCE,
-                             own_options->output, parsed, err);
+        return meshing_write(emitter, &meshing, own_options->output, parsed, err);
     TRY(command_line_text(parsed, &line, err));
     Status status = write_scene(own_options, emitter, line, parsed, err);
     free(line);

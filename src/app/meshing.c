@@ -15,6 +15,8 @@ typedef struct Meshing {
     VesselTree vessels;
     VesselMesh mesh;
     MeshReport report;
+    uint32_t *thinned; /* indices of segments, by --part-overlaps */
+    size_t n_thinned;
 } Meshing;
 
 static Status read_vessels(const char *path, double prune_radius_mm, VesselTree *vessels, Err *err)
@@ -98,11 +100,24 @@ static Status triangulate(Meshing *made, double tolerance, const Common *common,
     return status;
 }
 
-static Status make(const char *tree_path, double prune_radius_mm, double tolerance,
-                   const Common *common, Meshing *made, Err *err)
+static Status part(Meshing *made, int threads, Err *err)
 {
-    TRY(read_vessels(tree_path, prune_radius_mm, &made->vessels, err));
-    TRY(triangulate(made, tolerance, common, err));
+    TRY(vesseltree_part(&made->vessels, threads, &made->thinned, &made->n_thinned, err));
+    if (made->n_thinned)
+        fprintf(stderr,
+                "corcast: %zu segments are thinned, because they overlap others that they do not "
+                "belong with, or blend with such\n",
+                made->n_thinned);
+    return STATUS_OK;
+}
+
+static Status make(const char *tree_path, const MeshingOptions *options, const Common *common,
+                   Meshing *made, Err *err)
+{
+    TRY(read_vessels(tree_path, options->prune_radius_mm, &made->vessels, err));
+    if (options->part_overlaps)
+        TRY(part(made, common->threads, err));
+    TRY(triangulate(made, options->tolerance, common, err));
     TRY(check_sound(&made->vessels, &made->report, err));
     say_result(&made->report, &made->mesh, common->quiet);
     return STATUS_OK;
@@ -157,6 +172,7 @@ static json_t *manifest(const Meshing *made)
         {"segments_present", count(vessels->n_segments - report->n_missing - report->n_swallowed)},
         {"segments_missing", id_list(vessels, report->missing, report->n_missing)},
         {"segments_swallowed", id_list(vessels, report->swallowed, report->n_swallowed)},
+        {"segments_thinned", id_list(vessels, made->thinned, made->n_thinned)},
         {"round_ends", id_list(vessels, report->round, report->n_round)},
         {"near_pairs", pair_list(vessels, report)},
         {"triangles", count(mesh->n_triangles)},
@@ -168,15 +184,15 @@ static json_t *manifest(const Meshing *made)
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-Status meshing_write(const Emitter *emitter, double prune_radius_mm, double tolerance,
-                     const char *output, const Parsed *parsed, Err *err)
+Status meshing_write(const Emitter *emitter, const MeshingOptions *options, const char *output,
+                     const Parsed *parsed, Err *err)
 {
     const char *tree = parsed->operands[0];
     Meshing made = {0};
     Text said = TEXT_INIT;
     char *line = NULL;
     Status status;
-    TRY_GOTO(make(tree, prune_radius_mm, tolerance, &parsed->common, &made, err));
+    TRY_GOTO(make(tree, options, &parsed->common, &made, err));
     text_json(&said, manifest(&made), 2);
     text_puts(&said, "\n");
     TRY_GOTO(text_check(&said, err));
@@ -192,5 +208,6 @@ done:
     vesseltree_release(&made.vessels);
     vesselmesh_release(&made.mesh);
     meshreport_release(&made.report);
+    free(made.thinned);
     return status;
 }

@@ -9,11 +9,17 @@
 /* How far triangles may be off the surface, over the local radius, where nothing else is said. */
 #define MESHING_TOLERANCE 0.02
 
-/* Reads the tree that the command names, leaves out segments thinner than prune_radius_mm (0:
- * none), triangulates the others and writes `output` and its manifest. Says on standard error,
+typedef struct MeshingOptions {
+    double tolerance;       /* over the local radius */
+    double prune_radius_mm; /* 0: none */
+    bool part_overlaps;     /* thin vessels that overlap others that they do not belong with */
+} MeshingOptions;
+
+/* Reads the tree that the command names, leaves out segments thinner than prune_radius_mm,
+ * triangulates the others and writes `output` and its manifest. Says on standard error,
  * unless quiet, how much work it is, and what is to be known of the mesh. STATUS_DIFFERS when the
  * mesh is not sound; errors as tree_read, vesselmesh_build and emit_files have them. */
-MUST_CHECK Status meshing_write(const Emitter *emitter, double prune_radius_mm, double tolerance,
+MUST_CHECK Status meshing_write(const Emitter *emitter, const MeshingOptions *options,
                                 const char *output, const Parsed *parsed, Err *err);
 
 #endif

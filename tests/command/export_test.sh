@@ -50,6 +50,14 @@ test_refuses_vessels_that_overlap_by_name() {
     expect_only
 }
 
+test_part_overlaps_thins_them_and_says_so() {
+    run_ok corcast export "$REPO/tests/golden/strangers.swc" --part-overlaps -o m.stl
+    grep -q 'segments are thinned' stderr || fail "it does not say so: $(cat stderr)"
+    expect_json m.stl.json '.components == .trees and .self_intersections == 0'
+    expect_json m.stl.json '.segments_thinned | index(5) != null and index(6) != null'
+    expect_json m.stl.json '[.near_pairs[].gap_mm] | min > 0'
+}
+
 test_refuses_an_unknown_extension() {
     run corcast export "$DATA/bifurcation.swc" -o m.xyz
     expect_status 2

@@ -83,6 +83,12 @@ void meshreport_release(MeshReport *report);
 /* Whether the report is that of a mesh to be handed out. */
 bool meshreport_is_sound(const MeshReport *report);
 
+/* Thins vessels that do not belong together and overlap, and what blends with them, until they are
+ * apart; *thinned (owned) lists their indices, rising. STATUS_INPUT when that would leave less than
+ * a twentieth of a radius. */
+MUST_CHECK Status vesseltree_part(VesselTree *tree, int threads, uint32_t **thinned, size_t *n,
+                                  Err *err);
+
 /* How many triangles, and bytes of memory, a tree takes about. O(n). */
 void vesselmesh_estimate(const VesselTree *tree, const MeshParams *params, double *triangles,
                          double *bytes);
