@@ -2,6 +2,7 @@
  * surface that it writes. */
 #include "app/commands.h"
 #include "app/meshing.h"
+#include "app/picture.h"
 #include "app/povfiles.h"
 #include "emit/emit.h"
 
@@ -23,7 +24,7 @@ static const Option own[] = {
     {.name = "prune-radius",
      SETS(NUMBER, ExportOptions, meshing.prune_radius_mm),
      .group = GROUP_VESSELS,
-     FROM_TO(0, 1e7),
+     .range = &prune_range,
      .unit = "mm",
      .otherwise = "",
      .help = "drop segments thinner than this"},

@@ -3,6 +3,7 @@
 #include "app/commands.h"
 #include "app/frames.h"
 #include "app/options.h"
+#include "app/picture.h"
 #include "app/povfiles.h"
 #include "app/progress.h"
 #include <stdio.h>
@@ -49,12 +50,12 @@ static const Option own[] = {
      .help = "pixels"},
     {.name = "antialias",
      SETS(WHOLE, PovrayOptions, antialias),
-     FROM_TO(1, 9),
+     .range = &antialias_range,
      .group = GROUP_LIGHT,
      .help = "N x N samples a pixel"},
     {.name = "bits",
      SETS(WHOLE, PovrayOptions, bits),
-     FROM_TO(8, 16),
+     .range = &bits_range,
      .argument = "8|16",
      .help = "of the colours: 8, sRGB, or 16, linear"},
     {.name = "plane",

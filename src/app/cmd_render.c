@@ -34,7 +34,7 @@ static const Option own[] = {
      .help = "planes beside it: color,depth,normal,id"},
     {.name = "bits",
      SETS(WHOLE, RenderOptions, bits),
-     FROM_TO(8, 16),
+     .range = &bits_range,
      .argument = "8|16",
      .help = "of a PNG or PPM"},
     {.name = "method",

@@ -533,7 +533,7 @@ static const Option own[] = {
      .help = "folder for the report, the scene and all planes"},
     {.name = "bits",
      SETS(WHOLE, VerifyOptions, bits),
-     FROM_TO(8, 16),
+     .range = &bits_range,
      .group = GROUP_JUDGE,
      .argument = "8|16",
      .help = "of the colours compared: 8, sRGB, or 16, linear"},

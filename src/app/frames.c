@@ -20,6 +20,8 @@ Status frames_check_output(const char *path, bool planes, Err *err)
     return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png, .ppm, .tif or .pfm", path);
 }
 
+const Range bits_range = {8, 16};
+
 Status bits_check(int bits, Err *err)
 {
     if (bits == 8 || bits == 16)

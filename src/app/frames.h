@@ -9,6 +9,8 @@
 /* STATUS_USAGE when `path` is no image file, or is standard output although planes are wanted. */
 MUST_CHECK Status frames_check_output(const char *path, bool planes, Err *err);
 
+/* Of the bits of a picture, of which only the ends are taken. */
+extern const Range bits_range;
 /* STATUS_USAGE unless 8 or 16. */
 MUST_CHECK Status bits_check(int bits, Err *err);
 

@@ -21,6 +21,8 @@ static const char *const views[] = {
 
 static const char *const erf_names[] = {[ERF_FAST] = "fast", [ERF_EXACT] = "exact", NULL};
 
+const Range antialias_range = {1, 9}, prune_range = {0, 1e7};
+
 static const Option rows[] = {
     {.name = "model",
      SETS(CHOICE, PictureOptions, model),
@@ -40,7 +42,7 @@ static const Option rows[] = {
      .help = "joined: what is done where vessels are too short or turn too sharply"},
     {.name = "prune-radius",
      SETS(NUMBER, PictureOptions, prune_radius_mm),
-     FROM_TO(0, 1e7),
+     .range = &prune_range,
      .group = GROUP_VESSELS,
      .unit = "mm",
      .help = "drop segments thinner than this"},
@@ -100,7 +102,7 @@ static const Option rows[] = {
      .help = "free part on each side when the tree is framed"},
     {.name = "antialias",
      SETS(WHOLE, PictureOptions, antialias),
-     FROM_TO(1, 9),
+     .range = &antialias_range,
      .group = GROUP_LIGHT,
      .help = "N x N samples a pixel"},
     {.name = "ao",

@@ -28,6 +28,8 @@ typedef struct PictureOptions {
 
 /* Of zeroed options. */
 void picture_set_defaults(PictureOptions *options);
+/* Of --antialias and --prune-radius (mm), wherever they are options. */
+extern const Range antialias_range, prune_range;
 extern const OptionTable picture_table; /* sets a PictureOptions */
 
 /* How POV-Ray's isosurface is cut into cells. */
