@@ -74,7 +74,7 @@ to within 4 · 10⁻⁶ of ln C @ kernel_trace_flat.h @ #define PLANE_CLOSE 3e-6
 20 terms being allowed to be left out @ kernel_trace_common.h @ #define MARGIN_DROPPED 2e-5f
 6 · 10⁻⁷ for each term @ kernel_trace_common.h @ #define MARGIN_TERM 6e-7f
 1.2 · 10⁻⁷ e k B for each term @ kernel_trace_common.h @ #define MARGIN_PLACE 1.2e-7f
-have a node within 3 of its radii of one of its ends @ blend.h @ #define BLEND_RADII 3
+of at most 2 of its own radii @ vesseltree.h @ #define BLEND_REACH 2
 1 % of the one weighing as much as 4.3° of the other @ fit_blob.c @ #define DISTANCE 0.03
 1 % of the one weighing as much as 4.3° of the other @ fit_blob.c @ #define ANGLE 13.0
 p from 24 to 96 @ fit_blob.c @ for (double power = 24; power <= 96; power *= 2)

@@ -1,23 +1,7 @@
 /* Geometry is plain data; what is here are its invariants. */
 #include "scene/geometry.h"
-#include "scene/vesseltree.h"
 
 #include <stdlib.h>
-
-bool blend_joins(const Blend *blend, uint32_t i, uint32_t other)
-{
-    if (!blend->first)
-        return true;
-    size_t low = blend->first[i], high = blend->first[i + 1];
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (blend->neighbors[middle] < other)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < blend->first[i + 1] && blend->neighbors[low] == other;
-}
 
 JointFrame primitive_joint(const Primitive *primitive)
 {
@@ -35,20 +19,32 @@ bool primitive_joint_is_solid(const Primitive *joint)
            vec3_dot(span, joint->axis_b) >= joint->radius_mm * sine - slack;
 }
 
-void vesseltree_release(VesselTree *tree)
+void numberlists_release(NumberLists *lists)
 {
-    free(tree->segments);
-    free(tree->nodes);
-    free(tree->ids);
-    *tree = (VesselTree){0};
+    free(lists->first);
+    free(lists->items);
+    *lists = (NumberLists){0};
+}
+
+bool numberlists_hold(const NumberLists *lists, size_t i, uint32_t number)
+{
+    uint32_t low = lists->first[i], high = lists->first[i + 1];
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (lists->items[middle] < number)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < lists->first[i + 1] && lists->items[low] == number;
 }
 
 void geometry_release(Geometry *geometry)
 {
     free(geometry->primitives);
     free(geometry->segments);
-    free(geometry->blend.first);
-    free(geometry->blend.neighbors);
+    numberlists_release(&geometry->blend.members);
+    numberlists_release(&geometry->blend.groups);
     free(geometry->ids);
     *geometry = (Geometry){0};
 }

@@ -48,18 +48,25 @@ typedef struct FieldSegment {
 /* e^-2, the level at which a long segment has its own radius. */
 #define FIELD_LEVEL 0.13533528323661270
 
-/* Which field segments blend: adjacency lists in CSR form, one for each index of
- * Geometry.segments. The list of i is neighbors[first[i] .. first[i + 1]), ascending, and holds i
- * itself. The solid is the union over all i of the sets where the sum of the terms of i's
- * neighbours exceeds FIELD_LEVEL. If `first` is NULL, every segment is a neighbour of every other,
- * and the solid is the set where the sum of all terms exceeds it. */
-typedef struct Blend {
-    size_t *first;       /* owned; one more than there are segments, or NULL */
-    uint32_t *neighbors; /* owned */
-} Blend;
+/* Lists of numbers, one for each of so many things: items[first[i] .. first[i + 1]), rising. */
+typedef struct NumberLists {
+    uint32_t *first, *items; /* owned */
+} NumberLists;
 
-/* Whether `other` is a neighbour of `i`. O(log of the length of the list). */
-bool blend_joins(const Blend *blend, uint32_t i, uint32_t other);
+void numberlists_release(NumberLists *lists);
+
+/* Whether the list of i holds the number. O(log of the length of the list). */
+bool numberlists_hold(const NumberLists *lists, size_t i, uint32_t number);
+
+/* Which field segments blend. The solid is the union, over groups of them, of the sets where the
+ * sum of the group's terms exceeds FIELD_LEVEL; no group holds all of another [scene/blend.h].
+ * Where there is no group, all segments are one: the solid is the set where the sum of all terms
+ * exceeds it. */
+typedef struct Blend {
+    size_t n_groups;
+    NumberLists members; /* of each group: indices of Geometry.segments */
+    NumberLists groups;  /* of each segment: the groups that it is a member of, one at least */
+} Blend;
 
 /* Constant once made [stage_geometry]. */
 typedef struct Geometry {

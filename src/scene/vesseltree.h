@@ -17,4 +17,26 @@ typedef struct VesselTree {
 /* Frees the arrays and zeroes *tree. */
 void vesseltree_release(VesselTree *tree);
 
+/* The end, 0 or 1, of a segment that lies at a node, which must be one of its two. */
+static inline int segment_end_at(const VesselTree *tree, uint32_t segment, uint32_t node)
+{
+    return tree->nodes[segment][1] == node;
+}
+
+/* A segment blends at both its nodes and at those that a way through other segments of at most so
+ * many of its own radii leads to. */
+#define BLEND_REACH 2
+
+/* The segments with an end at each node. */
+MUST_CHECK Status vesseltree_incident(const VesselTree *tree, NumberLists *out, Err *err);
+/* The segments that blend at each node. O(size of the result). */
+MUST_CHECK Status vesseltree_blending(const VesselTree *tree, const NumberLists *incident,
+                                      NumberLists *out, Err *err);
+
+/* The blend of the tree's segments: the solid is the union over the nodes of where the sum of the
+ * terms of those that blend there exceeds FIELD_LEVEL. A group stands for each node whose segments
+ * are not all among those of another. O(n) where few segments blend. *out is owned; it is released
+ * with the geometry that holds it. STATUS_MEMORY. */
+MUST_CHECK Status vesseltree_blend(const VesselTree *tree, Blend *out, Err *err);
+
 #endif

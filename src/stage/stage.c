@@ -6,7 +6,6 @@
  * that meets there. */
 #include "stage/stage.h"
 
-#include "stage/blend.h"
 #include "stage/framing.h"
 #include "stage/joints.h"
 #include "stage/places.h"
@@ -98,30 +97,30 @@ done:
     return status;
 }
 
-/* number[i] becomes the index of the segment that ends at node i, or -1. */
-static void add_field(const Tree *tree, Geometry *geometry, int32_t *number)
+static Status add_field(const Tree *tree, Geometry *geometry, Err *err)
 {
-    for (size_t i = 0; i < tree->n; i++) {
-        number[i] = -1;
-        if (!segment_can_be_drawn(tree, i))
-            continue;
-        number[i] = (int32_t)geometry->n_segments;
-        geometry->segments[geometry->n_segments++] =
-            (FieldSegment){.a = tree->position[tree->parent[i]],
-                           .b = tree->position[i],
-                           .radius_mm = tree->radius_mm[i],
-                           .segment = (uint32_t)i};
-    }
+    TRY(mem_calloc(&geometry->segments, tree->n, sizeof *geometry->segments, "segments", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (segment_can_be_drawn(tree, i))
+            geometry->segments[geometry->n_segments++] =
+                (FieldSegment){.a = tree->position[tree->parent[i]],
+                               .b = tree->position[i],
+                               .radius_mm = tree->radius_mm[i],
+                               .segment = (uint32_t)i};
+    return STATUS_OK;
 }
 
-static Status add_potential(const Tree *tree, bool graph, Geometry *geometry, Err *err)
+/* The field whose segments blend where they meet: that of stage_vessels. */
+static Status add_graph(const Tree *tree, Geometry *geometry, Err *err)
 {
-    int32_t *number = NULL;
-    TRY(mem_calloc(&geometry->segments, tree->n, sizeof *geometry->segments, "segments", err));
-    TRY(mem_calloc(&number, tree->n, sizeof *number, "segments", err));
-    add_field(tree, geometry, number);
-    Status status = graph ? blend_find(tree, number, geometry, err) : STATUS_OK;
-    free(number);
+    VesselTree vessels;
+    size_t dropped;
+    TRY(stage_vessels(tree, &vessels, &dropped, err));
+    Status status = vesseltree_blend(&vessels, &geometry->blend, err);
+    geometry->segments = vessels.segments;
+    geometry->n_segments = vessels.n_segments;
+    vessels.segments = NULL;
+    vesseltree_release(&vessels);
     return status;
 }
 
@@ -129,7 +128,7 @@ static Status add_model(const Tree *tree, const GeometryParams *params, Geometry
                         StageReport *report, Err *err)
 {
     if (model_has(geometry->model, MODEL_FIELD))
-        return add_potential(tree, params->graph, geometry, err);
+        return params->graph ? add_graph(tree, geometry, err) : add_field(tree, geometry, err);
     TRY(mem_calloc(&geometry->primitives, 2 * tree->n, sizeof *geometry->primitives, "primitives",
                    err));
     Places places = {0};

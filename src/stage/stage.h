@@ -62,7 +62,7 @@ typedef enum JointForm {
 typedef struct GeometryParams {
     SceneModel model;
     JointForm joints; /* of a joined model */
-    bool graph;       /* isosurface: only neighbours in the tree blend [stage/blend.h] */
+    bool graph; /* isosurface: segments blend only where they meet [docs/METHODS.md section 2.5] */
 } GeometryParams;
 
 /* What a view is made by. Vectors are in the coordinates of the tree. */

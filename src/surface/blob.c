@@ -1,5 +1,5 @@
 /* The numbers of blob_shape are a least maximum of two errors, in the place of the surface and in
- * its normal, over 30 bifurcations and a free end [docs/METHODS.md section 2.5, which derives what
+ * its normal, over 30 bifurcations and a free end [docs/METHODS.md section 2.6, which derives what
  * is fitted; tests/fit/fit_blob.c, which finds them]. The distance from the potential's surface is
  * at most 0.028 of the radius there. */
 #include "surface/blob.h"

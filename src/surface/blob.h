@@ -4,7 +4,7 @@
  * At x, a component of radius R and strength S adds S (1 - d^2 / R^2)^2, d < R being the distance
  * of x from its segment, a sphere's from its centre; the surface is where the sum is 1
  * [shape/blob.cpp of POV-Ray 3.7.0.10; docs/POVRAY.md section 9]. A vessel segment is a few
- * components [docs/METHODS.md section 2.5]: tubes along it; at each end, for each tube, a sphere of
+ * components [docs/METHODS.md section 2.6]: tubes along it; at each end, for each tube, a sphere of
  * minus half its strength; and pairs of beads on the axis, as far within the end as beyond it, of
  * opposite strengths. In a chain of one radius what stands at the end of one segment is cancelled
  * by the next, whatever the numbers. */

@@ -13,6 +13,7 @@
 #include "surface/blobroots.h"       // IWYU pragma: export
 #include "surface/cells.h"           // IWYU pragma: export
 #include "surface/fieldindex.h"      // IWYU pragma: export
+#include "surface/localgroups.h"     // IWYU pragma: export
 #include "surface/mesh/vesselmesh.h" // IWYU pragma: export
 
 /* 1 / (sqrt2 s), 1/mm: with lengths in units of 1 / k a term is exp(-E^2) (erf u + erf v) / 2, E
@@ -51,8 +52,8 @@ double potential_term_bound(const FieldSegment *segment, Box box);
 #define LOG_FORM_CEILING 0.2
 double potential_log_form(double phi);
 
-/* How many segments have no surface about them: the sum of all terms half way along the segment is
- * below the level. STATUS_MEMORY. */
+/* How many segments have no surface about them: half way along the segment the sum of all terms, or
+ * of those of each of its groups, is below the level. STATUS_MEMORY. */
 MUST_CHECK Status surface_count_hidden(const Geometry *geometry, size_t *count, Err *err);
 
 /* What a picture knows of each pixel, rows from the top; borrowed. */

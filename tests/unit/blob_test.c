@@ -1,4 +1,4 @@
-/* The blob: its numbers (docs/METHODS.md section 2.5), and its first hits against a walk in small
+/* The blob: its numbers (docs/METHODS.md section 2.6), and its first hits against a walk in small
  * steps over a field written down once more, from POV-Ray's definition. */
 #include "render/cast/blobcast.h"
 #include "stage/stage.h"

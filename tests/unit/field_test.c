@@ -20,7 +20,9 @@ typedef struct Setup {
 static void start(Setup *setup)
 {
     assert_int_equal(fieldindex_build(&setup->test.geometry, &setup->index, NULL), STATUS_OK);
-    assert_int_equal(fieldscratch_new(setup->index->n_tubes, &setup->scratch, NULL), STATUS_OK);
+    assert_int_equal(
+        fieldscratch_new(setup->index->geometry, setup->index->n_tubes, &setup->scratch, NULL),
+        STATUS_OK);
 }
 
 static void finish(Setup *setup)

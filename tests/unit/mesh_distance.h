@@ -4,7 +4,6 @@
 #define CORCAST_TESTS_MESH_DISTANCE_H
 
 #include "render/cast/fieldcast.h"
-#include "surface/mesh/blendgroups.h"
 #include "surface/surface.h"
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +21,7 @@ typedef struct Ruler {
     const VesselTree *tree;
     const VesselMesh *mesh;
     FieldSegment *segments;
-    NodeLists incident, blending, nodes; /* the last: the nodes at which each segment blends */
+    NumberLists incident, blending, nodes; /* the last: the nodes at which each segment blends */
     BoxTree segment_tree, triangle_tree;
     FieldScratch *scratch;
     uint32_t *near, *stamp, stamps;
@@ -63,7 +62,7 @@ static inline void ruler_nodes(Ruler *ruler)
 {
     size_t n = ruler->tree->n_segments, nodes = ruler->tree->n_nodes;
     uint32_t *first = calloc(n + 2, sizeof *first);
-    const NodeLists *from = &ruler->blending;
+    const NumberLists *from = &ruler->blending;
     uint32_t *items = calloc(from->first[nodes], sizeof *items);
     for (uint32_t i = 0; i < from->first[nodes]; i++)
         first[from->items[i] + 2]++;
@@ -72,15 +71,15 @@ static inline void ruler_nodes(Ruler *ruler)
     for (uint32_t node = 0; node < nodes; node++)
         for (uint32_t i = from->first[node]; i < from->first[node + 1]; i++)
             items[first[from->items[i] + 1]++] = node;
-    ruler->nodes = (NodeLists){first, items};
+    ruler->nodes = (NumberLists){first, items};
 }
 
 static inline Status ruler_make(Ruler *ruler, const VesselTree *tree, const VesselMesh *mesh,
                                 const MeshReport *report)
 {
     *ruler = (Ruler){.tree = tree, .mesh = mesh};
-    TRY(nodelists_incident(tree, &ruler->incident, NULL));
-    TRY(nodelists_blending(tree, &ruler->incident, &ruler->blending, NULL));
+    TRY(vesseltree_incident(tree, &ruler->incident, NULL));
+    TRY(vesseltree_blending(tree, &ruler->incident, &ruler->blending, NULL));
     ruler_segments(ruler, report);
     ruler_nodes(ruler);
     Box *boxes = calloc(tree->n_segments + mesh->n_triangles, sizeof *boxes);
@@ -99,14 +98,14 @@ static inline Status ruler_make(Ruler *ruler, const VesselTree *tree, const Vess
     free(boxes);
     ruler->near = calloc(tree->n_nodes, sizeof *ruler->near);
     ruler->stamp = calloc(tree->n_nodes, sizeof *ruler->stamp);
-    return fieldscratch_new(tree->n_segments, &ruler->scratch, NULL);
+    return fieldscratch_new(&(Geometry){0}, tree->n_segments, &ruler->scratch, NULL);
 }
 
 static inline void ruler_release(Ruler *ruler)
 {
-    nodelists_release(&ruler->incident);
-    nodelists_release(&ruler->blending);
-    nodelists_release(&ruler->nodes);
+    numberlists_release(&ruler->incident);
+    numberlists_release(&ruler->blending);
+    numberlists_release(&ruler->nodes);
     boxtree_release(&ruler->segment_tree);
     boxtree_release(&ruler->triangle_tree);
     fieldscratch_free(ruler->scratch);

@@ -26,11 +26,12 @@ static TestScene empty_scene(void)
  * or -1 without a hit. */
 static double radius_towards(const Geometry *geometry, Vec3 center, Vec3 outwards)
 {
-    uint32_t all[MAX_SEGMENTS], segment;
+    uint32_t all[2 * MAX_SEGMENTS], segment;
     FieldScratch *scratch;
     double t;
     Vec3 normal;
-    assert_int_equal(fieldscratch_new(MAX_SEGMENTS, &scratch, NULL), STATUS_OK);
+    assert_true(geometry->n_segments <= sizeof all / sizeof *all);
+    assert_int_equal(fieldscratch_new(geometry, geometry->n_segments, &scratch, NULL), STATUS_OK);
     for (uint32_t i = 0; i < geometry->n_segments; i++)
         all[i] = i;
     Vec3 d = vec3_normalized(outwards);
@@ -182,46 +183,113 @@ static void the_graph_keeps_strangers_apart(void **state)
     scene_release(&graph);
 }
 
-/* Neighbours along the tree within three radii, and those alone. */
-static void the_graph_joins_what_is_near_along_the_tree(void **state)
+/* Whether two segments are in one group. */
+static bool blend_somewhere(const Geometry *geometry, uint32_t one, uint32_t other)
+{
+    const Blend *blend = &geometry->blend;
+    for (size_t group = 0; group < blend->n_groups; group++)
+        if (numberlists_hold(&blend->members, group, one) &&
+            numberlists_hold(&blend->members, group, other))
+            return true;
+    return false;
+}
+
+/* The ends of the hairpin are part of other groups. */
+static void the_graph_has_a_group_for_each_node_that_no_other_holds(void **state)
 {
     (void)state;
     Scene scene = staged_hairpin(true);
+    assert_int_equal(scene.geometry.blend.n_groups, 3);
     for (uint32_t i = 0; i < 5; i++)
-        for (uint32_t j = 0; j < 5; j++) {
-            bool strangers = (i == 0 && (j == 2 || j == 4)) || (i == 2 && j != 1 && j != 2) ||
-                             (i == 4 && j != 3 && j != 4) || (i == 1 && j == 4) ||
-                             (i == 3 && j == 2);
-            assert_int_equal(blend_joins(&scene.geometry.blend, i, j), !strangers);
+        for (uint32_t j = 0; j < i; j++) {
+            bool strangers = (j == 0 && (i == 2 || i == 4)) || (j == 1 && i == 4) || (j == 2);
+            assert_int_equal(blend_somewhere(&scene.geometry, i, j), !strangers);
         }
     scene_release(&scene);
 }
 
-/* By the radius of the one that blends: a vessel of 1.3 mm with what begins 3.9 mm on, not the
- * other way. */
-static void the_graph_joins_up_to_three_radii_away(void **state)
+/* Stages a tree whose nodes follow each other but for those whose parents are given. */
+static Geometry staged_graph(const Vec3 *places, const double *radii, const int32_t *parents, int n)
+{
+    Tree tree;
+    Geometry geometry;
+    GeometryParams params = stage_defaults().geometry;
+    params.model = SCENE_ISOSURFACE;
+    params.graph = true;
+    assert_int_equal(tree_init(&tree, (size_t)n, NULL), STATUS_OK);
+    for (int i = 0; i < n; i++) {
+        tree.id[i] = i + 1;
+        tree.parent[i] = parents ? parents[i] : i - 1;
+        tree.position[i] = places[i];
+        tree.radius_mm[i] = radii[i];
+    }
+    assert_int_equal(stage_geometry(&tree, &params, &geometry, NULL, NULL), STATUS_OK);
+    tree_release(&tree);
+    return geometry;
+}
+
+/* A vessel of 1.3 mm blends with what begins 2.6 mm on. */
+static void the_graph_joins_up_to_two_radii_away(void **state)
 {
     (void)state;
     for (int within = 0; within < 2; within++) {
-        Tree tree;
-        const double x[] = {-5, 0, within ? 3.89 : 3.91, 9};
+        const Vec3 places[] = {{-5, 0, 0}, {0, 0, 0}, {within ? 2.59 : 2.61, 0, 0}, {9, 0, 0}};
         const double radii[] = {1.3, 1.3, 0.7, 0.2};
-        assert_int_equal(tree_init(&tree, 4, NULL), STATUS_OK);
-        for (int i = 0; i < 4; i++) {
-            tree.id[i] = i + 1;
-            tree.parent[i] = i - 1;
-            tree.position[i] = vec3(x[i], 0, 0);
-            tree.radius_mm[i] = radii[i];
-        }
-        StageParams params = stage_defaults();
-        params.geometry.model = SCENE_ISOSURFACE;
-        params.geometry.graph = true;
-        Geometry geometry;
-        assert_int_equal(stage_geometry(&tree, &params.geometry, &geometry, NULL, NULL), STATUS_OK);
-        assert_int_equal(blend_joins(&geometry.blend, 0, 2), within);
-        assert_false(blend_joins(&geometry.blend, 2, 0));
+        Geometry geometry = staged_graph(places, radii, NULL, 4);
+        assert_int_equal(blend_somewhere(&geometry, 0, 2), within);
+        assert_int_equal(geometry.blend.n_groups, within ? 1 : 2);
         geometry_release(&geometry);
-        tree_release(&tree);
+    }
+}
+
+/* Two vessels, 0.2 of their radius apart, at both ends of a segment that joins them: far from it,
+ * where the potential of both together would fill the gap, they are two. */
+static void the_graph_does_not_bridge_what_a_short_segment_joins(void **state)
+{
+    (void)state;
+    const double r = 1.3, far = 24;
+    const Vec3 places[] = {{-far, 0, 0},    {0, 0, 0},         {far, 0, 0},
+                           {0, 2.2 * r, 0}, {far, 2.2 * r, 0}, {-far, 2.2 * r, 0}};
+    const double radii[] = {r, r, r, r, r, r};
+    const int32_t parents[] = {-1, 0, 1, 1, 3, 3};
+    Geometry graph = staged_graph(places, radii, parents, 6), paper = graph;
+    paper.blend = (Blend){0};
+    Vec3 gap = vec3(5.7, 1.1 * r, 0), beside = vec3(5.7, 0, 0), up = vec3(0, 0, 1);
+    assert_true(radius_towards(&paper, gap, up) > 0.3 * r);
+    assert_true(radius_towards(&graph, gap, up) < 0);
+    assert_true(fabs(radius_towards(&graph, beside, up) - r) < 1e-6);
+    geometry_release(&graph);
+}
+
+/* Steps of a tenth, a fifth and half of a radius leave the wall of a tube where it is. */
+static void the_graph_does_not_starve_finely_sampled_chains(void **state)
+{
+    (void)state;
+    const double r = 1.7, steps[] = {0.1, 0.2, 0.5};
+    for (int k = 0; k < 3; k++) {
+        int n = (int)lround(10 / steps[k]) + 1;
+        Vec3 places[2 * MAX_SEGMENTS];
+        double radii[2 * MAX_SEGMENTS], volume = 0, straight = 0;
+        for (int i = 0; i < n; i++) {
+            places[i] = vec3(i * steps[k] * r, 0, 0);
+            radii[i] = r;
+        }
+        Geometry chain = staged_graph(places, radii, NULL, n);
+        size_t vanished;
+        assert_int_equal(surface_count_hidden(&chain, &vanished, NULL), STATUS_OK);
+        assert_int_equal(vanished, 0);
+        Geometry tube = staged_graph((Vec3[]){places[0], places[n - 1]}, radii, NULL, 2);
+        for (double x = -0.5; x < 10.5; x += 0.037) {
+            Vec3 at = vec3(x * r, 0, 0), up = vec3(0, 0.6, 0.8);
+            double is = radius_towards(&chain, at, up), should = radius_towards(&tube, at, up);
+            assert_true(is <= should + 1e-9 && is >= should * (1 - 2e-3));
+            assert_true(is >= should * (1 - 1e-4) || x < 0.2 || x > 9.8);
+            volume += is * is;
+            straight += should * should;
+        }
+        assert_true(volume / straight > 1 - 2e-4);
+        geometry_release(&chain);
+        geometry_release(&tube);
     }
 }
 
@@ -234,7 +302,7 @@ static void the_picture_of_the_graph_is_that_of_single_rays(void **state)
     assert_int_equal(render(&scene, &params, &frame, NULL, NULL), STATUS_OK);
     uint32_t all[] = {0, 1, 2, 3, 4}, segment;
     FieldScratch *scratch;
-    assert_int_equal(fieldscratch_new(5, &scratch, NULL), STATUS_OK);
+    assert_int_equal(fieldscratch_new(&scene.geometry, 5, &scratch, NULL), STATUS_OK);
     int hits = 0;
     for (int pixel = 0; pixel < 200 * 120; pixel++) {
         Ray ray = camera_ray(&scene.view.camera, pixel % 200, pixel / 200);
@@ -252,15 +320,35 @@ static void the_picture_of_the_graph_is_that_of_single_rays(void **state)
     scene_release(&scene);
 }
 
-/* Whether any of the sums about one segment reaches the level, from the definition. */
-static bool is_in_graph(const Geometry *geometry, Vec3 x)
+static double way_to_root(const Tree *tree, int32_t node)
 {
-    for (uint32_t i = 0; i < geometry->n_segments; i++) {
+    return tree->parent[node] < 0
+               ? 0
+               : tree_segment_length(tree, (size_t)node) + way_to_root(tree, tree->parent[node]);
+}
+
+/* Along the tree. */
+static double way_between(const Tree *tree, int32_t a, int32_t b)
+{
+    for (int32_t up = a; up >= 0; up = tree->parent[up])
+        for (int32_t other = b; other >= 0; other = tree->parent[other])
+            if (up == other)
+                return way_to_root(tree, a) + way_to_root(tree, b) - 2 * way_to_root(tree, up);
+    return HUGE_VAL;
+}
+
+/* Whether the sum at any of the nodes reaches the level, from the definition. */
+static bool is_in_graph(const Tree *tree, const Geometry *geometry, Vec3 x)
+{
+    for (int32_t node = 0; node < (int32_t)tree->n; node++) {
         double sum = 0;
-        for (uint32_t j = 0; j < geometry->n_segments; j++) {
-            Vec3 gradient;
-            if (blend_joins(&geometry->blend, i, j))
-                sum += potential_term_gradient(&geometry->segments[j], x, &gradient);
+        for (uint32_t i = 0; i < geometry->n_segments; i++) {
+            const FieldSegment *segment = &geometry->segments[i];
+            int32_t end = (int32_t)segment->segment;
+            double way =
+                fmin(way_between(tree, node, end), way_between(tree, node, tree->parent[end]));
+            if (way <= 2 * segment->radius_mm)
+                sum += potential_term(segment, x);
         }
         if (sum >= FIELD_LEVEL)
             return true;
@@ -272,10 +360,12 @@ static bool is_in_graph(const Geometry *geometry, Vec3 x)
 static void the_graph_is_left_where_all_its_bodies_are_left(void **state)
 {
     (void)state;
+    Tree tree;
+    make_hairpin(&tree);
     Scene scene = staged_hairpin(true);
     uint32_t all[] = {0, 1, 2, 3, 4}, segment;
     FieldScratch *scratch;
-    assert_int_equal(fieldscratch_new(5, &scratch, NULL), STATUS_OK);
+    assert_int_equal(fieldscratch_new(&scene.geometry, 5, &scratch, NULL), STATUS_OK);
     Random random;
     random_seed(&random, 74);
     for (int i = 0; i < 2000; i++) {
@@ -287,11 +377,12 @@ static void the_graph_is_left_where_all_its_bodies_are_left(void **state)
         assert_true(field_first_hit_among(&scene.geometry, all, 5, scratch, ray, 0, HUGE_VAL, &t,
                                           &normal, &segment));
         for (double at = 0; at < t - 1e-6; at += step)
-            assert_true(is_in_graph(&scene.geometry, ray_at(ray, at)));
-        assert_true(is_in_graph(&scene.geometry, ray_at(ray, t - 1e-6)));
-        assert_false(is_in_graph(&scene.geometry, ray_at(ray, t + 1e-6)));
+            assert_true(is_in_graph(&tree, &scene.geometry, ray_at(ray, at)));
+        assert_true(is_in_graph(&tree, &scene.geometry, ray_at(ray, t - 1e-6)));
+        assert_false(is_in_graph(&tree, &scene.geometry, ray_at(ray, t + 1e-6)));
     }
     fieldscratch_free(scratch);
+    tree_release(&tree);
     scene_release(&scene);
 }
 
@@ -305,8 +396,10 @@ int main(void)
         cmocka_unit_test(joints_bulge_and_neck),
         cmocka_unit_test(parallel_vessels_merge_below_a_third_of_a_radius),
         cmocka_unit_test(the_graph_keeps_strangers_apart),
-        cmocka_unit_test(the_graph_joins_what_is_near_along_the_tree),
-        cmocka_unit_test(the_graph_joins_up_to_three_radii_away),
+        cmocka_unit_test(the_graph_has_a_group_for_each_node_that_no_other_holds),
+        cmocka_unit_test(the_graph_joins_up_to_two_radii_away),
+        cmocka_unit_test(the_graph_does_not_bridge_what_a_short_segment_joins),
+        cmocka_unit_test(the_graph_does_not_starve_finely_sampled_chains),
         cmocka_unit_test(the_picture_of_the_graph_is_that_of_single_rays),
         cmocka_unit_test(the_graph_is_left_where_all_its_bodies_are_left),
     };

@@ -45,7 +45,9 @@ static void views_init(Views *views, SceneKind kind, Random *random)
     make_test_scene(kind, random, &views->test);
     views->halving = halving_of(&views->test.geometry);
     assert_int_equal(fieldindex_build(&views->test.geometry, &views->index, NULL), STATUS_OK);
-    assert_int_equal(fieldscratch_new(views->index->n_tubes, &views->scratch, NULL), STATUS_OK);
+    assert_int_equal(
+        fieldscratch_new(views->index->geometry, views->index->n_tubes, &views->scratch, NULL),
+        STATUS_OK);
 }
 
 static void views_release(Views *views)

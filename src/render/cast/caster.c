@@ -53,7 +53,8 @@ Status caster_new(const Geometry *geometry, const CellParams *cells, int workers
         TRY_GOTO(mem_calloc(&caster->scratch, (size_t)workers, sizeof *caster->scratch,
                             "workspaces", err));
         for (int i = 0; i < workers; i++)
-            TRY_GOTO(fieldscratch_new(caster->field->n_tubes, &caster->scratch[i], err));
+            TRY_GOTO(fieldscratch_new(caster->geometry, caster->field->n_tubes, &caster->scratch[i],
+                                      err));
     }
     *out = caster;
     return STATUS_OK;

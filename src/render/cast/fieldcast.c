@@ -213,7 +213,7 @@ static void describe_hit(RaySearch *search, double t)
                                 steepness > 0 ? -1 / steepness : -1);
 }
 
-/* The first hit of the sum of the terms that the scratch holds. */
+/* The first hit of the sum of the terms chosen. */
 static bool hit_of_sum(RaySearch *search)
 {
     while (rayterms_next_group(search->scratch)) {
@@ -228,31 +228,17 @@ static bool hit_of_sum(RaySearch *search)
     return false;
 }
 
-/* Makes the scratch hold the terms of the segments listed. */
-static void pass_all(const RaySearch *search, const uint32_t *list, size_t n)
+/* Chooses the terms of one of the groups that the scratch has found. */
+static void choose_group(const RaySearch *search, size_t number)
 {
-    rayterms_clear(search->scratch);
-    for (size_t i = 0; i < n; i++) {
-        FieldTube tube = fieldtube_of(&search->geometry->segments[list[i]], list[i]);
-        if (tube.reach2 > 0)
-            rayterms_add(search->scratch, &tube, search->ray, search->t_min, search->t_max);
-    }
-    rayterms_order(search->scratch);
+    size_t n;
+    const uint32_t *members = localgroups_members(search->scratch->groups, number, &n);
+    rayterms_choose(search->scratch, members, n);
 }
 
-/* The same for those of the segments that blend with the one numbered i. */
-static void pass_joined(const RaySearch *search, const uint32_t *list, size_t n, size_t i)
-{
-    size_t joined = 0;
-    for (size_t j = 0; j < n; j++)
-        if (blend_joins(&search->geometry->blend, list[i], list[j]))
-            search->scratch->joined[joined++] = list[j];
-    pass_all(search, search->scratch->joined, joined);
-}
-
-/* If the ray is at t_min inside the body that the scratch's terms make, moves t_min to where it
- * leaves, infinite if that is beyond t_max, describes that place and returns true. *deep tells
- * whether it was more than skin there, and is left alone if not. */
+/* If the ray is at t_min inside the body of the terms chosen, moves t_min to where it leaves,
+ * infinite if that is beyond t_max, describes that place and returns true. *deep tells whether it
+ * was more than skin there, and is left alone if not. */
 static bool leave_body(RaySearch *search, bool *deep)
 {
     const FieldScratch *scratch = search->scratch;
@@ -274,35 +260,58 @@ static bool leave_body(RaySearch *search, bool *deep)
     return false;
 }
 
-/* Moves t_min out of the union of the bodies about each term listed. True if it was inside, and not
- * just for being on the surface. */
-static bool leave_union(RaySearch *search, const uint32_t *list, size_t n)
+/* Whether a ray may be inside a vessel at t_min. */
+static bool starts_in_term(const RaySearch *search)
 {
-    bool deep = false, moved = true;
+    const FieldScratch *scratch = search->scratch;
+    for (size_t i = 0; i < scratch->n_terms; i++)
+        if (scratch->terms[i].t0 <= search->t_min && scratch->terms[i].t1 >= search->t_min)
+            return true;
+    return false;
+}
+
+/* Moves t_min out of the union of the bodies of the groups. True if it was inside, and not just for
+ * being on the surface. */
+static bool leave_union(RaySearch *search, size_t n_groups)
+{
+    bool deep = false, moved = starts_in_term(search);
     while (moved && search->t_min <= search->t_max) {
         moved = false;
-        for (size_t i = 0; i < n && search->t_min <= search->t_max; i++) {
-            pass_joined(search, list, n, i);
+        for (size_t i = 0; i < n_groups && search->t_min <= search->t_max; i++) {
+            choose_group(search, i);
             moved |= leave_body(search, &deep);
         }
     }
     return deep;
 }
 
-/* The first hit of the union of the bodies about each term listed. */
-static bool hit_of_union(RaySearch *search, const uint32_t *list, size_t n)
+/* The first hit of the union of the bodies of the groups. */
+static bool hit_of_union(RaySearch *search)
 {
-    if (leave_union(search, list, n))
+    FieldScratch *scratch = search->scratch;
+    for (size_t i = 0; i < scratch->n_terms; i++)
+        scratch->near[i] = scratch->terms[i].segment;
+    size_t n_groups = localgroups_find(scratch->groups, scratch->near, scratch->n_terms);
+    if (leave_union(search, n_groups))
         return search->t_min <= search->t_max;
     bool hit = false;
-    for (size_t i = 0; i < n; i++) {
-        pass_joined(search, list, n, i);
+    for (size_t i = 0; i < n_groups; i++) {
+        choose_group(search, i);
         if (hit_of_sum(search)) {
             hit = true;
             search->t_max = search->t;
         }
     }
     return hit;
+}
+
+/* The first hit of the terms that the scratch holds. */
+static bool first_hit(RaySearch *search)
+{
+    if (search->scratch->groups)
+        return hit_of_union(search);
+    rayterms_choose_all(search->scratch);
+    return hit_of_sum(search);
 }
 
 static bool answer(const RaySearch *search, bool hit, double *t, Vec3 *normal, uint32_t *segment)
@@ -320,22 +329,19 @@ bool field_first_hit_among(const Geometry *geometry, const uint32_t *list, size_
                            Vec3 *normal, uint32_t *segment)
 {
     RaySearch search = {geometry, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
-    if (geometry->blend.first)
-        return answer(&search, hit_of_union(&search, list, n), t, normal, segment);
-    pass_all(&search, list, n);
-    return answer(&search, hit_of_sum(&search), t, normal, segment);
+    rayterms_clear(scratch);
+    for (size_t i = 0; i < n; i++) {
+        FieldTube tube = fieldtube_of(&geometry->segments[list[i]], list[i]);
+        if (tube.reach2 > 0)
+            rayterms_add(scratch, &tube, ray, search.t_min, search.t_max);
+    }
+    return answer(&search, first_hit(&search), t, normal, segment);
 }
 
 static bool search_index(const FieldIndex *index, RaySearch *search)
 {
-    FieldScratch *scratch = search->scratch;
-    rayterms_find(index, scratch, search->ray, search->t_min, search->t_max);
-    if (!index->geometry->blend.first)
-        return hit_of_sum(search);
-    size_t n = scratch->n_terms;
-    for (size_t i = 0; i < n; i++)
-        scratch->near[i] = scratch->terms[i].segment;
-    return hit_of_union(search, scratch->near, n);
+    rayterms_find(index, search->scratch, search->ray, search->t_min, search->t_max);
+    return first_hit(search);
 }
 
 bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,

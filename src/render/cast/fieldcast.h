@@ -16,12 +16,14 @@
  * *normal is unit and outward, -grad Phi / |grad Phi|; *segment the index of the segment whose term
  * is largest there, the lowest of equals. Terms are left out where they are below RAY_TERM_CUTOFF,
  * so the surface of a lone vessel is off by at most 1.9e-9 r each; a ray that grazes within that of
- * the level may go either way. Where only neighbours blend, the union of their bodies is met. */
+ * the level may go either way. Where segments blend in groups, the union of the groups' bodies is
+ * met, and the segment is the largest of the group that is met. */
 bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                      double t_max, double *t, Vec3 *normal, uint32_t *segment);
 
 /* The same among `n` segments, listed by their indices in Geometry.segments, without a search
- * structure: O(n). `scratch` has room for n. */
+ * structure: O(n). `scratch` is the geometry's, with
+ * room for n. */
 bool field_first_hit_among(const Geometry *geometry, const uint32_t *list, size_t n,
                            FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
                            Vec3 *normal, uint32_t *segment);

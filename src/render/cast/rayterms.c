@@ -9,7 +9,7 @@
 
 static const double ln2 = 0.69314718055994530942;
 
-Status fieldscratch_new(size_t n, FieldScratch **out, Err *err)
+Status fieldscratch_new(const Geometry *geometry, size_t n, FieldScratch **out, Err *err)
 {
     Status status;
     FieldScratch *scratch = NULL;
@@ -18,7 +18,8 @@ Status fieldscratch_new(size_t n, FieldScratch **out, Err *err)
     TRY_GOTO(mem_calloc(&scratch->heap, n, sizeof *scratch->heap, "terms of a ray", err));
     TRY_GOTO(mem_calloc(&scratch->group, n, sizeof *scratch->group, "terms of a ray", err));
     TRY_GOTO(mem_calloc(&scratch->near, n, sizeof *scratch->near, "terms of a ray", err));
-    TRY_GOTO(mem_calloc(&scratch->joined, n, sizeof *scratch->joined, "terms of a ray", err));
+    if (geometry->blend.n_groups)
+        TRY_GOTO(localgroups_new(geometry, &scratch->groups, err));
     *out = scratch;
     return STATUS_OK;
 done:
@@ -34,7 +35,7 @@ void fieldscratch_free(FieldScratch *scratch)
     free(scratch->heap);
     free(scratch->group);
     free(scratch->near);
-    free(scratch->joined);
+    localgroups_free(scratch->groups);
     free(scratch);
 }
 
@@ -151,13 +152,25 @@ void rayterms_add(FieldScratch *scratch, const FieldTube *tube, Ray ray, double 
         scratch->n_terms++;
 }
 
-void rayterms_order(FieldScratch *scratch)
+static void order_heap(FieldScratch *scratch, size_t n)
 {
-    scratch->n_heap = scratch->n_terms;
-    for (size_t i = 0; i < scratch->n_heap; i++)
+    scratch->n_heap = n;
+    for (size_t i = n / 2; i-- > 0;)
+        sift_down(scratch->heap, n, i);
+}
+
+void rayterms_choose_all(FieldScratch *scratch)
+{
+    for (size_t i = 0; i < scratch->n_terms; i++)
         scratch->heap[i] = &scratch->terms[i];
-    for (size_t i = scratch->n_heap / 2; i-- > 0;)
-        sift_down(scratch->heap, scratch->n_heap, i);
+    order_heap(scratch, scratch->n_terms);
+}
+
+void rayterms_choose(FieldScratch *scratch, const uint32_t *numbers, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        scratch->heap[i] = &scratch->terms[numbers[i]];
+    order_heap(scratch, n);
 }
 
 void rayterms_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
@@ -182,7 +195,6 @@ void rayterms_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, doub
         for (uint32_t i = node->first; i < node->first + node->n_tubes; i++)
             rayterms_add(scratch, &index->tubes[i], ray, t_min, t_max);
     }
-    rayterms_order(scratch);
 }
 
 bool rayterms_next_group(FieldScratch *scratch)

@@ -26,21 +26,26 @@ typedef struct FieldScratch {
     RayTerm **heap;  /* by t0, then segment */
     RayTerm **group; /* by t0 */
     size_t n_terms, n_heap, n_group;
-    uint32_t *near, *joined; /* segments on a ray, and those of them that blend */
+    uint32_t *near;      /* segments of the terms */
+    LocalGroups *groups; /* of the terms; NULL where all segments blend */
 } FieldScratch;
 
-/* Room for `n` segments. STATUS_MEMORY. */
-MUST_CHECK Status fieldscratch_new(size_t n, FieldScratch **out, Err *err);
+/* Room for `n` segments of a geometry, which is borrowed. STATUS_MEMORY. */
+MUST_CHECK Status fieldscratch_new(const Geometry *geometry, size_t n, FieldScratch **out,
+                                   Err *err);
 void fieldscratch_free(FieldScratch *scratch);
 
 /* Empties the scratch. Follow with rayterms_add for every segment that may matter in [t_min,
- * t_max], t_max finite, and then rayterms_order; rayterms_find does all three. */
+ * t_max], t_max finite; rayterms_find does both. */
 void rayterms_clear(FieldScratch *scratch);
 void rayterms_add(FieldScratch *scratch, const FieldTube *tube, Ray ray, double t_min,
                   double t_max);
-void rayterms_order(FieldScratch *scratch);
 void rayterms_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                    double t_max);
+
+/* Chooses the terms that groups are made of: all, or the `n` numbered. */
+void rayterms_choose_all(FieldScratch *scratch);
+void rayterms_choose(FieldScratch *scratch, const uint32_t *numbers, size_t n);
 
 /* Makes the next run of terms whose stretches overlap the group. False when none is left. */
 bool rayterms_next_group(FieldScratch *scratch);

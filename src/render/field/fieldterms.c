@@ -141,7 +141,7 @@ void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t 
 {
     tile->terms = terms;
     tile->n_terms = 0;
-    tile->plane = !tile->perspective && !tile->blend->first;
+    tile->plane = !tile->perspective && !tile->groups;
     for (size_t i = 0; i < n; i++) {
         TileTerm *term = &terms[tile->n_terms];
         if (!make_term(tile, &segments[list[i]], list[i], term))

@@ -5,6 +5,7 @@
 
 #include "render/tile/interval.h"
 #include "render/tile/tile.h"
+#include "surface/surface.h"
 
 /* A segment in the frame of the camera, mm. */
 typedef struct FrameSegment {
@@ -36,7 +37,7 @@ typedef struct TileTerm {
 typedef struct FieldTile {
     const TileTerm *terms; /* by rising `on`, unless in a plane */
     size_t n_terms;
-    const Blend *blend;
+    LocalGroups *groups; /* a workspace; NULL where all segments blend */
     bool perspective;
     bool plane;         /* all blend, and lie in one plane, square to all rays */
     const float *x, *y; /* of the samples, relative to the middle ray */

@@ -15,6 +15,7 @@ typedef struct Workspace {
     uint32_t *candidates; /* segments of the terms; as long as `terms` */
     size_t candidates_capacity;
     TileWork work;
+    LocalGroups *groups;   /* NULL where all segments blend */
     FieldScratch *scratch; /* made when first needed */
     size_t scratch_capacity;
 } Workspace;
@@ -59,6 +60,8 @@ static Status make_workspaces(FieldTiles *tiles, Err *err)
         Workspace *space = &tiles->workspaces[i];
         TRY(mem_calloc(&space->columns, tiles->lists.longest, sizeof *space->columns,
                        "rows of tiles", err));
+        if (tiles->geometry->blend.n_groups)
+            TRY(localgroups_new(tiles->geometry, &space->groups, err));
     }
     return STATUS_OK;
 }
@@ -101,6 +104,7 @@ void fieldtiles_free(FieldTiles *tiles)
         free(space->terms);
         free(space->candidates);
         tilework_release(&space->work);
+        localgroups_free(space->groups);
         fieldscratch_free(space->scratch);
     }
     free(tiles->workspaces);
@@ -142,10 +146,10 @@ static Status list_row(const FieldTiles *tiles, size_t row, Workspace *space, Er
 }
 
 /* Sets what all tiles of a row share. */
-static void place_row(const FieldTiles *tiles, size_t row, FieldTile *tile)
+static void place_row(const FieldTiles *tiles, size_t row, const Workspace *space, FieldTile *tile)
 {
     const TilePlaces *y = &tiles->tile_y[row];
-    *tile = (FieldTile){.blend = &tiles->geometry->blend,
+    *tile = (FieldTile){.groups = space->groups,
                         .perspective = tiles->lists.eye.perspective,
                         .y = y->samples,
                         .middle_y = y->middle,
@@ -175,13 +179,13 @@ static SeenTile place_samples(const FieldTiles *tiles, int column, size_t row)
                       .middle_y = y->middle};
 }
 
-static Status grow_scratch(Workspace *space, size_t n, Err *err)
+static Status grow_scratch(const FieldTiles *tiles, Workspace *space, size_t n, Err *err)
 {
     if (n <= space->scratch_capacity)
         return STATUS_OK;
     FieldScratch *larger;
     size_t capacity = n > 2 * space->scratch_capacity ? n : 2 * space->scratch_capacity;
-    TRY(fieldscratch_new(capacity, &larger, err));
+    TRY(fieldscratch_new(tiles->geometry, capacity, &larger, err));
     fieldscratch_free(space->scratch);
     space->scratch = larger;
     space->scratch_capacity = capacity;
@@ -192,7 +196,7 @@ static Status grow_scratch(Workspace *space, size_t n, Err *err)
 static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile *tile, Ray ray,
                      int sample, TileHits *hits, Err *err)
 {
-    TRY(grow_scratch(space, tile->n_terms, err));
+    TRY(grow_scratch(tiles, space, tile->n_terms, err));
     double t;
     Vec3 normal;
     uint32_t segment = 0;
@@ -233,7 +237,7 @@ Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t
     Workspace *space = &tiles->workspaces[worker];
     FieldTile tile;
     TRY(list_row(tiles, row, space, err));
-    place_row(tiles, row, &tile);
+    place_row(tiles, row, space, &tile);
     for (int column = 0; column < tiles->lists.tile_columns; column++) {
         if (wanted && !wanted[column])
             continue;

@@ -52,13 +52,15 @@ typedef struct PacketTerm {
     bool flat;     /* u and v are the same all along, and their factor is in half_gauss */
 } PacketTerm;
 
-_Static_assert(sizeof(PacketTerm) + sizeof(PacketTerm *) <= TILE_WORK_BYTES, "TILE_WORK_BYTES");
+_Static_assert(sizeof(PacketTerm) + sizeof(PacketTerm *) + sizeof(uint32_t) <= TILE_WORK_BYTES,
+               "TILE_WORK_BYTES");
 
 typedef struct Packet {
     const FieldTile *tile;
-    Lanes x, y;        /* of the samples */
-    PacketTerm *terms; /* those of the tile's that matter, in their order */
-    PacketTerm **sum;  /* those of them that are added up */
+    Lanes x, y;         /* of the samples */
+    PacketTerm *terms;  /* those of the tile's that matter, in their order */
+    PacketTerm **sum;   /* those of them that are added up */
+    uint32_t *segments; /* of the terms, where groups are looked for */
     size_t n, n_sum;
 } Packet;
 
@@ -438,38 +440,17 @@ LANE_FN void trace_sum(const Packet *packet, int first, TileHits *hits)
     }
 }
 
-/* Whether all that blends with the term numbered `part` blends with the one numbered `whole`. */
-LANE_FN bool is_part_of(const Packet *packet, size_t part, size_t whole)
-{
-    const Blend *blend = packet->tile->blend;
-    uint32_t a = packet->terms[part].term->segment, b = packet->terms[whole].term->segment;
-    bool equal = true;
-    for (size_t i = 0; i < packet->n; i++) {
-        uint32_t other = packet->terms[i].term->segment;
-        bool in_a = blend_joins(blend, a, other), in_b = blend_joins(blend, b, other);
-        if (in_a && !in_b)
-            return false;
-        equal &= in_a == in_b;
-    }
-    return !equal || whole < part;
-}
-
-/* Traces, where only neighbours blend, the sum about each term, but for sums that another holds, as
- * far as looking for them is cheap. */
+/* Traces the sums of the groups of the packet's terms, one after the other. */
 LANE_FN void trace_union(Packet *packet, int first, TileHits *hits)
 {
-    const Blend *blend = packet->tile->blend;
-    for (size_t center = 0; center < packet->n; center++) {
-        bool held = false;
-        for (size_t i = 0; packet->n <= 32 && i < packet->n && !held; i++)
-            held = i != center && is_part_of(packet, center, i);
-        if (held)
-            continue;
-        packet->n_sum = 0;
-        for (size_t i = 0; i < packet->n; i++)
-            if (blend_joins(blend, packet->terms[center].term->segment,
-                            packet->terms[i].term->segment))
-                packet->sum[packet->n_sum++] = &packet->terms[i];
+    LocalGroups *groups = packet->tile->groups;
+    for (size_t i = 0; i < packet->n; i++)
+        packet->segments[i] = packet->terms[i].term->segment;
+    size_t n_groups = localgroups_find(groups, packet->segments, packet->n);
+    for (size_t group = 0; group < n_groups; group++) {
+        const uint32_t *members = localgroups_members(groups, group, &packet->n_sum);
+        for (size_t i = 0; i < packet->n_sum; i++)
+            packet->sum[i] = &packet->terms[members[i]];
         trace_sum(packet, first, hits);
     }
 }
@@ -482,7 +463,7 @@ LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
     packet->n = 0;
     for (size_t i = 0; i < tile->n_terms; i++)
         add_to_packet(packet, &tile->terms[i]);
-    if (tile->blend->first) {
+    if (tile->groups) {
         trace_union(packet, first, hits);
         return;
     }
@@ -502,6 +483,7 @@ LANE_TARGET void FIELD_KERNEL(const FieldTile *tile, TileWork *work, TileHits *h
     }
     Packet packet = {.tile = tile, .terms = work->memory};
     packet.sum = (PacketTerm **)(packet.terms + tile->n_terms);
+    packet.segments = (uint32_t *)(packet.sum + tile->n_terms);
     for (int first = 0; first < TILE_SAMPLES; first += LANES)
         trace_packet(&packet, first, hits);
 }

@@ -109,7 +109,7 @@ LANE_FN void store_hits(const FieldTile *tile, int first, LaneMask hit, double b
 {
     double *depth = &hits->z[first];
     uint8_t *state = &hits->state[first];
-    for (int lane = 0; tile->blend->first && lane < LANES; lane++)
+    for (int lane = 0; tile->groups && lane < LANES; lane++)
         if (state[lane] == TILE_UNSURE ||
             (state[lane] == TILE_HIT && depth[lane] <= base + (double)z[lane]))
             hit[lane] = 0; /* another sum's hit is nearer */

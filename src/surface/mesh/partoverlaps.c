@@ -13,7 +13,7 @@ enum { MOST_ROUNDS = 12 };
 
 typedef struct Parting {
     VesselTree *tree;
-    NodeLists incident, blending;
+    NumberLists incident, blending;
     Zones zones;
     double *kept;  /* one a segment: of its radius in this round */
     double *radii; /* as they were at first */
@@ -59,16 +59,16 @@ static Status thin_pairs(Parting *parting, Err *err)
 
 static void release_round(Parting *parting)
 {
-    nodelists_release(&parting->incident);
-    nodelists_release(&parting->blending);
+    numberlists_release(&parting->incident);
+    numberlists_release(&parting->blending);
     zones_release(&parting->zones);
 }
 
 static Status find_overlaps(Parting *parting, int threads, Err *err)
 {
     release_round(parting);
-    TRY(nodelists_incident(parting->tree, &parting->incident, err));
-    TRY(nodelists_blending(parting->tree, &parting->incident, &parting->blending, err));
+    TRY(vesseltree_incident(parting->tree, &parting->incident, err));
+    TRY(vesseltree_blending(parting->tree, &parting->incident, &parting->blending, err));
     return zones_find(parting->tree, &parting->incident, &parting->blending, threads,
                       &parting->zones, err);
 }

@@ -21,7 +21,7 @@ static const double cells_at = 0.02, cell_ratio = 0.5, bending_ratio = 0.32, sag
 typedef struct Build {
     const VesselTree *tree;
     const MeshParams *params;
-    NodeLists incident, blending;
+    NumberLists incident, blending;
     Zones zones;
     ZoneFineness fineness;
     ZonePiece *pieces;
@@ -71,8 +71,8 @@ void vesselmesh_estimate(const VesselTree *tree, const MeshParams *params, doubl
 
 static void release_build(Build *build, int n_workers)
 {
-    nodelists_release(&build->incident);
-    nodelists_release(&build->blending);
+    numberlists_release(&build->incident);
+    numberlists_release(&build->blending);
     for (uint32_t z = 0; z < build->zones.n_zones && build->pieces; z++)
         zonepiece_release(&build->pieces[z]);
     for (int i = 0; i < n_workers && build->workers; i++)
@@ -224,8 +224,8 @@ static Status fill_report(Build *build, const VesselMesh *mesh, MeshReport *repo
 
 static Status cut_tree(Build *build, Err *err)
 {
-    TRY(nodelists_incident(build->tree, &build->incident, err));
-    TRY(nodelists_blending(build->tree, &build->incident, &build->blending, err));
+    TRY(vesseltree_incident(build->tree, &build->incident, err));
+    TRY(vesseltree_blending(build->tree, &build->incident, &build->blending, err));
     TRY(zones_find(build->tree, &build->incident, &build->blending, build->params->threads,
                    &build->zones, err));
     return build->zones.n_overlapping ? refuse_overlap(build, err) : STATUS_OK;

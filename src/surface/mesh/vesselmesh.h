@@ -11,8 +11,6 @@
 #include "base/base.h"
 #include "scene/scene.h"
 
-#define BLEND_REACH 2
-
 /* Set in the label of a triangle that closes an end. */
 #define MESH_CAP 0x80000000u
 

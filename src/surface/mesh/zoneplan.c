@@ -7,7 +7,7 @@
 
 typedef struct Planner {
     const VesselTree *tree;
-    const NodeLists *incident, *blending;
+    const NumberLists *incident, *blending;
     const Zones *zones;
     uint32_t zone;
     ZonePlan plan;
@@ -96,8 +96,9 @@ static Status add_group(Planner *planner, uint32_t node, Err *err)
     return STATUS_OK;
 }
 
-Status zoneplan_make(const VesselTree *tree, const NodeLists *incident, const NodeLists *blending,
-                     const Zones *zones, uint32_t zone, ZonePlan *out, Err *err)
+Status zoneplan_make(const VesselTree *tree, const NumberLists *incident,
+                     const NumberLists *blending, const Zones *zones, uint32_t zone, ZonePlan *out,
+                     Err *err)
 {
     Planner planner = {tree, incident, blending, zones, .zone = zone};
     ZonePlan *plan = &planner.plan;

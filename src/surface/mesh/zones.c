@@ -19,7 +19,7 @@ enum { CIRCLE_POINTS = 12 };
 
 typedef struct Divider {
     const VesselTree *tree;
-    const NodeLists *incident, *blending;
+    const NumberLists *incident, *blending;
     uint32_t *root; /* union-find over nodes */
     bool *joined;   /* whether a node is in a zone with others */
     double (*plane)[2];
@@ -29,7 +29,7 @@ typedef struct Divider {
 void zones_release(Zones *zones)
 {
     free(zones->zone);
-    nodelists_release(&zones->nodes);
+    numberlists_release(&zones->nodes);
     free(zones->plane);
     free(zones->is_tube);
     free(zones->strangers);
@@ -64,7 +64,7 @@ static bool is_disturbed(const ZoneTerm *others, size_t n, Vec3 center, Vec3 axi
     return false;
 }
 
-static bool is_flat_end(const NodeLists *incident, uint32_t node)
+static bool is_flat_end(const NumberLists *incident, uint32_t node)
 {
     return incident->first[node + 1] - incident->first[node] == 1;
 }
@@ -220,8 +220,8 @@ static bool push_plane(Divider *divider, uint32_t a, uint32_t b)
 static bool blend_somewhere(const Divider *divider, uint32_t a, uint32_t b)
 {
     for (int end = 0; end < 2; end++)
-        if (nodelists_hold(divider->blending, divider->tree->nodes[a][end], b) ||
-            nodelists_hold(divider->blending, divider->tree->nodes[b][end], a))
+        if (numberlists_hold(divider->blending, divider->tree->nodes[a][end], b) ||
+            numberlists_hold(divider->blending, divider->tree->nodes[b][end], a))
             return true;
     return false;
 }
@@ -261,7 +261,7 @@ static bool part_near(Divider *divider, const NearPair *pairs, size_t n)
 static Status number_zones(const Divider *divider, Zones *zones, Err *err)
 {
     const VesselTree *tree = divider->tree;
-    NodeLists *lists = &zones->nodes;
+    NumberLists *lists = &zones->nodes;
     TRY(mem_calloc(&zones->zone, tree->n_nodes, sizeof *zones->zone, "nodes", err));
     for (uint32_t i = 0; i < tree->n_nodes; i++) {
         uint32_t first = divider->incident->first[i], root = root_of(divider, i);
@@ -303,7 +303,7 @@ static void keep_strangers(const Divider *divider, NearPair *pairs, size_t n, Zo
     qsort(pairs, zones->n_strangers, sizeof *pairs, compare_gaps);
 }
 
-Status zones_find(const VesselTree *tree, const NodeLists *incident, const NodeLists *blending,
+Status zones_find(const VesselTree *tree, const NumberLists *incident, const NumberLists *blending,
                   int threads, Zones *out, Err *err)
 {
     Zones zones = {0};

@@ -3,7 +3,6 @@
 #ifndef CORCAST_SURFACE_ZONES_H
 #define CORCAST_SURFACE_ZONES_H
 
-#include "surface/mesh/blendgroups.h"
 #include "surface/mesh/vesselmesh.h"
 #include "surface/mesh/zonefield.h"
 
@@ -12,7 +11,7 @@
 typedef struct Zones {
     uint32_t *zone; /* one a node; NO_ZONE: the vessel is cut off flat there */
     uint32_t n_zones;
-    NodeLists nodes;     /* of each zone, in place of segments of nodes */
+    NumberLists nodes;   /* of each zone, in place of segments of nodes */
     double (*plane)[2];  /* one a segment: where its tube begins, from either end, mm; where the end
                           * is flat, 0 */
     bool *is_tube;       /* one a segment; else it lies in one zone, whole */
@@ -21,8 +20,8 @@ typedef struct Zones {
 } Zones;
 
 /* Cuts the tree. */
-MUST_CHECK Status zones_find(const VesselTree *tree, const NodeLists *incident,
-                             const NodeLists *blending, int threads, Zones *out, Err *err);
+MUST_CHECK Status zones_find(const VesselTree *tree, const NumberLists *incident,
+                             const NumberLists *blending, int threads, Zones *out, Err *err);
 void zones_release(Zones *zones);
 
 /* A tube that leaves a zone: cut across at `at`, where `outward` (unit) leads out of the zone along
@@ -43,8 +42,8 @@ typedef struct ZonePlan {
 
 #define ARM_TAIL 1.6
 
-MUST_CHECK Status zoneplan_make(const VesselTree *tree, const NodeLists *incident,
-                                const NodeLists *blending, const Zones *zones, uint32_t zone,
+MUST_CHECK Status zoneplan_make(const VesselTree *tree, const NumberLists *incident,
+                                const NumberLists *blending, const Zones *zones, uint32_t zone,
                                 ZonePlan *out, Err *err);
 void zoneplan_release(ZonePlan *plan);
 

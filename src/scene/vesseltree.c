@@ -2,7 +2,7 @@
  * that it reaches. In a tree each node is reached by one way only, so nothing needs to be
  * remembered but where the walk came from. Pairs of node and segment come out by rising segment; a
  * counting sort by node keeps that order. */
-#include "surface/mesh/blendgroups.h"
+#include "scene/vesseltree.h"
 
 #include <stdlib.h>
 
@@ -17,31 +17,24 @@ typedef struct Step {
 
 typedef struct Walker {
     const VesselTree *tree;
-    const NodeLists *incident;
+    const NumberLists *incident;
     NodePair *pairs;
     Step *stack;
     size_t n_pairs, pair_capacity, stack_capacity;
 } Walker;
 
-void nodelists_release(NodeLists *lists)
+void vesseltree_release(VesselTree *tree)
 {
-    free(lists->first);
-    free(lists->items);
-    *lists = (NodeLists){0};
+    free(tree->segments);
+    free(tree->nodes);
+    free(tree->ids);
+    *tree = (VesselTree){0};
 }
 
-bool nodelists_hold(const NodeLists *lists, uint32_t node, uint32_t segment)
-{
-    for (uint32_t i = lists->first[node]; i < lists->first[node + 1]; i++)
-        if (lists->items[i] == segment)
-            return true;
-    return false;
-}
-
-static Status sort_by_node(const NodePair *pairs, size_t n_pairs, size_t n_nodes, NodeLists *out,
+static Status sort_by_node(const NodePair *pairs, size_t n_pairs, size_t n_nodes, NumberLists *out,
                            Err *err)
 {
-    NodeLists lists = {0};
+    NumberLists lists = {0};
     Status status;
     TRY_GOTO(mem_calloc(&lists.first, n_nodes + 2, sizeof *lists.first, "nodes", err));
     TRY_GOTO(mem_calloc(&lists.items, n_pairs, sizeof *lists.items, "nodes", err));
@@ -54,11 +47,11 @@ static Status sort_by_node(const NodePair *pairs, size_t n_pairs, size_t n_nodes
     *out = lists;
     return STATUS_OK;
 done:
-    nodelists_release(&lists);
+    numberlists_release(&lists);
     return status;
 }
 
-Status nodelists_incident(const VesselTree *tree, NodeLists *out, Err *err)
+Status vesseltree_incident(const VesselTree *tree, NumberLists *out, Err *err)
 {
     NodePair *pairs;
     TRY(mem_calloc(&pairs, 2 * tree->n_segments, sizeof *pairs, "segments", err));
@@ -102,8 +95,8 @@ static Status walk_out(Walker *walker, uint32_t segment, int end, Err *err)
     return STATUS_OK;
 }
 
-Status nodelists_blending(const VesselTree *tree, const NodeLists *incident, NodeLists *out,
-                          Err *err)
+Status vesseltree_blending(const VesselTree *tree, const NumberLists *incident, NumberLists *out,
+                           Err *err)
 {
     Walker walker = {.tree = tree, .incident = incident};
     Status status = STATUS_OK;

@@ -1,0 +1,120 @@
+/* The groups of a tree's potential. Neighbouring nodes often have the same segments, and what
+ * blends at the end of a twig blends where the twig leaves, too, having passed there. A group that
+ * is part of another adds nothing to their union, so only those are kept that no other holds. A
+ * holder has every member, so it is looked for among the nodes of the member that has the fewest.
+ */
+#include "scene/vesseltree.h"
+
+#include <stdlib.h>
+
+/* The lists of the numbers below n_items: in which of the n lists each is. */
+static Status turn_over(const NumberLists *lists, size_t n, size_t n_items, NumberLists *out,
+                        Err *err)
+{
+    NumberLists turned = {0};
+    Status status;
+    TRY_GOTO(mem_calloc(&turned.first, n_items + 2, sizeof *turned.first, "groups", err));
+    TRY_GOTO(mem_calloc(&turned.items, lists->first[n], sizeof *turned.items, "groups", err));
+    for (uint32_t i = 0; i < lists->first[n]; i++)
+        turned.first[lists->items[i] + 2]++;
+    for (size_t i = 2; i <= n_items; i++)
+        turned.first[i] += turned.first[i - 1];
+    for (uint32_t list = 0; list < n; list++)
+        for (uint32_t i = lists->first[list]; i < lists->first[list + 1]; i++)
+            turned.items[turned.first[lists->items[i] + 1]++] = list;
+    *out = turned;
+    return STATUS_OK;
+done:
+    numberlists_release(&turned);
+    return status;
+}
+
+static uint32_t length_of(const NumberLists *lists, uint32_t i)
+{
+    return lists->first[i + 1] - lists->first[i];
+}
+
+/* Whether list b holds all of list a, which is not empty. */
+static bool is_part(const NumberLists *lists, uint32_t a, uint32_t b)
+{
+    const uint32_t *of_a = lists->items + lists->first[a],
+                   *end_a = lists->items + lists->first[a + 1];
+    const uint32_t *of_b = lists->items + lists->first[b],
+                   *end_b = lists->items + lists->first[b + 1];
+    if (end_a - of_a > end_b - of_b || *of_a < *of_b || end_a[-1] > end_b[-1])
+        return false;
+    for (; of_a < end_a; of_a++) {
+        while (*of_b < *of_a)
+            of_b++;
+        if (*of_b != *of_a)
+            return false;
+    }
+    return true;
+}
+
+/* Whether the list is empty, part of another, or the same as an earlier one; `holders` are the
+ * lists that hold each number. */
+static bool is_idle(const NumberLists *lists, const NumberLists *holders, uint32_t self)
+{
+    uint32_t rarest = 0, fewest = UINT32_MAX;
+    for (uint32_t i = lists->first[self]; i < lists->first[self + 1]; i++) {
+        uint32_t count = length_of(holders, lists->items[i]);
+        rarest = count < fewest ? lists->items[i] : rarest;
+        fewest = count < fewest ? count : fewest;
+    }
+    if (fewest == UINT32_MAX)
+        return true;
+    for (uint32_t i = holders->first[rarest]; i < holders->first[rarest + 1]; i++) {
+        uint32_t other = holders->items[i];
+        bool larger = length_of(lists, other) > length_of(lists, self);
+        if ((larger || other < self) && is_part(lists, self, other))
+            return true;
+    }
+    return false;
+}
+
+/* The lists that are not idle, in *out, and how many. */
+static Status keep_busy(const NumberLists *lists, const NumberLists *holders, size_t n,
+                        NumberLists *out, size_t *n_out, Err *err)
+{
+    NumberLists kept = {0};
+    size_t count = 0;
+    Status status;
+    TRY_GOTO(mem_calloc(&kept.first, n + 1, sizeof *kept.first, "groups", err));
+    TRY_GOTO(mem_calloc(&kept.items, lists->first[n], sizeof *kept.items, "groups", err));
+    for (uint32_t i = 0; i < n; i++) {
+        if (is_idle(lists, holders, i))
+            continue;
+        kept.first[count + 1] = kept.first[count];
+        count++;
+        for (uint32_t k = lists->first[i]; k < lists->first[i + 1]; k++)
+            kept.items[kept.first[count]++] = lists->items[k];
+    }
+    *out = kept;
+    *n_out = count;
+    return STATUS_OK;
+done:
+    numberlists_release(&kept);
+    return status;
+}
+
+Status vesseltree_blend(const VesselTree *tree, Blend *out, Err *err)
+{
+    NumberLists incident = {0}, blending = {0}, nodes = {0};
+    Blend blend = {0};
+    Status status;
+    TRY_GOTO(vesseltree_incident(tree, &incident, err));
+    TRY_GOTO(vesseltree_blending(tree, &incident, &blending, err));
+    TRY_GOTO(turn_over(&blending, tree->n_nodes, tree->n_segments, &nodes, err));
+    TRY_GOTO(keep_busy(&blending, &nodes, tree->n_nodes, &blend.members, &blend.n_groups, err));
+    TRY_GOTO(turn_over(&blend.members, blend.n_groups, tree->n_segments, &blend.groups, err));
+    *out = blend;
+    blend = (Blend){0};
+done:
+    numberlists_release(&incident);
+    numberlists_release(&blending);
+    numberlists_release(&nodes);
+    numberlists_release(&blend.members);
+    numberlists_release(&blend.groups);
+    return status;
+}
