@@ -15,7 +15,7 @@
 
 /* What the tolerance means for cells and edges, measured so that the mean distance to the surface
  * stays below 0.15 of it, and one sample of a thousand is beyond it. */
-static const double cells_at = 0.02, cell_ratio = 0.5, bending_ratio = 0.32, sagitta_part = 0.26,
+static const double cells_at = 0.02, cell_ratio = 0.45, bending_ratio = 0.25, sagitta_part = 0.31,
                     cap_part = 0.2, farthest_part = 1.75;
 
 typedef struct Build {
@@ -65,7 +65,7 @@ static uint32_t sides_of(double sagitta)
 void vesselmesh_estimate(const VesselTree *tree, const MeshParams *params, double *triangles,
                          double *bytes)
 {
-    *triangles = 700.0 * (double)tree->n_segments * 0.02 / params->tolerance;
+    *triangles = 560.0 * (double)tree->n_segments * 0.02 / params->tolerance;
     *bytes = *triangles * 80;
 }
 
