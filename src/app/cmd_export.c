@@ -1,5 +1,5 @@
 /* The extension of the output chooses the emitter, as in cmd_scene.c; meshing.c makes the closed
- * surface that it writes. */
+ * surface that it writes. Options about colours are refused for a format that has none. */
 #include "app/commands.h"
 #include "app/meshing.h"
 #include "app/picture.h"
@@ -32,13 +32,35 @@ static const Option own[] = {
      SETS(FLAG, ExportOptions, meshing.part_overlaps),
      .group = GROUP_VESSELS,
      .help = "thin vessels that overlap others that they do not belong with"},
+    {.name = "look",
+     SETS(LOOKUP, ExportOptions, meshing.look),
+     .group = GROUP_COLOR,
+     .list = "looks",
+     .help = "colour and finish: a file of templates/looks, or a path"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
 
 static void set_defaults(void *options)
 {
-    ((ExportOptions *)options)->meshing.tolerance = MESHING_TOLERANCE;
+    ExportOptions *own_options = options;
+    own_options->meshing.tolerance = MESHING_TOLERANCE;
+    own_options->meshing.look = "cast";
+    coloring_set_defaults(&own_options->meshing.coloring);
+}
+
+/* STATUS_USAGE for an option about colours that has no effect. */
+static Status check_colors(const ExportOptions *options, const Emitter *emitter,
+                           const Parsed *parsed, Err *err)
+{
+    static const char of_colors[] = "is for formats with colours";
+    const OptionNeed format[] = {{"look", emitter->has_colors, of_colors},
+                                 {"color-by", emitter->has_colors, of_colors},
+                                 {0}};
+    OptionNeed needs[COLORING_NEEDS];
+    coloring_needs(&options->meshing.coloring, needs);
+    TRY(options_check_needs(parsed, format, err));
+    return options_check_needs(parsed, needs, err);
 }
 
 static Status run_export(void *options, Parsed *parsed, Err *err)
@@ -46,6 +68,7 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
     const ExportOptions *own_options = options;
     const Emitter *emitter;
     TRY(scene_files_find(own_options->output, true, &emitter, err));
+    TRY(check_colors(own_options, emitter, parsed, err));
     TRY(scene_files_note(emitter, own_options->output, &parsed->files, err));
     return meshing_write(emitter, &own_options->meshing, own_options->output, parsed, err);
 }
@@ -55,12 +78,13 @@ const Command command_export = {
     .summary = "write the vessels' surface as a closed mesh",
     .operands = "T.swc -o M.stl",
     .examples = "  corcast export tree.swc -o tree.stl\n"
+                "  corcast export tree.swc --color-by strahler -o tree.glb\n"
                 "  corcast export tree.swc --tolerance 0.05 -o tree.ply\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
     .size = sizeof(ExportOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0}},
+    .tables = {{&own_table, 0}, {&coloring_table, offsetof(ExportOptions, meshing.coloring)}},
     .run = run_export,
 };

@@ -64,6 +64,19 @@ void coloring_set_defaults(Coloring *coloring)
     coloring->classes = 1;
 }
 
+void coloring_needs(const Coloring *coloring, OptionNeed needs[COLORING_NEEDS])
+{
+    static const char of_colors[] = "needs --color-by";
+    bool colored = coloring->field != NULL;
+    const OptionNeed list[COLORING_NEEDS] = {
+        {"colormap", colored, of_colors},  {"range", colored, of_colors},
+        {"log", colored, of_colors},       {"classes", colored, of_colors},
+        {"q-perf", colored, of_colors},    {"p-perf", colored, of_colors},
+        {"viscosity", colored, of_colors}, {0},
+    };
+    memcpy(needs, list, sizeof list);
+}
+
 /* The ends of the scale: given, or the field's. */
 static Status set_range(const Coloring *coloring, const Field *field, ColorScale *scale, Err *err)
 {

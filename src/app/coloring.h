@@ -22,6 +22,10 @@ typedef struct Coloring {
 void coloring_set_defaults(Coloring *coloring);
 extern const OptionTable coloring_table; /* sets a Coloring */
 
+/* What the options of the table need, and the end of the list. */
+enum { COLORING_NEEDS = 8 };
+void coloring_needs(const Coloring *coloring, OptionNeed needs[COLORING_NEEDS]);
+
 /* What a look's vessels are to be coloured by, in *appearance (owned; appearance_release): without
  * --color-by the look's one colour; else the values of a field of the tree on a scale of the map,
  * from the least to the greatest finite value unless --range gives its ends. STATUS_USAGE when

@@ -5,6 +5,8 @@
 #include "app/commands.h"
 #include "app/povfiles.h"
 #include "app/progress.h"
+#include "app/templates.h"
+#include "derive/derive.h"
 #include "stage/stage.h"
 #include "tree/tree.h"
 #include "treeio/treeio.h"
@@ -12,6 +14,9 @@
 #include <stdlib.h>
 
 typedef struct Meshing {
+    Tree tree;
+    Appearance appearance; /* with the orders: for an emitter with colours */
+    Field orders;
     VesselTree vessels;
     VesselMesh mesh;
     MeshReport report;
@@ -19,23 +24,37 @@ typedef struct Meshing {
     size_t n_thinned;
 } Meshing;
 
-static Status read_vessels(const char *path, double prune_radius_mm, VesselTree *vessels, Err *err)
+static Status read_vessels(const char *path, double prune_radius_mm, Meshing *made, Err *err)
 {
-    Tree tree, pruned;
     size_t dropped;
-    TRY(tree_read(&tree, path, err));
-    Status status = STATUS_OK;
+    TRY(tree_read(&made->tree, path, err));
     if (prune_radius_mm > 0) {
-        TRY_GOTO(tree_pruned(&tree, prune_radius_mm, &pruned, err));
-        tree_release(&tree);
-        tree = pruned;
+        Tree pruned;
+        TRY(tree_pruned(&made->tree, prune_radius_mm, &pruned, err));
+        tree_release(&made->tree);
+        made->tree = pruned;
     }
-    TRY_GOTO(stage_vessels(&tree, vessels, &dropped, err));
+    TRY(stage_vessels(&made->tree, &made->vessels, &dropped, err));
     if (dropped)
         fprintf(stderr, "corcast: %zu segments have no length or no radius and are left out\n",
                 dropped);
+    return STATUS_OK;
+}
+
+/* What the segments look like, and by which orders they are grouped. */
+static Status color_vessels(const MeshingOptions *options, const char *tree_path, Meshing *made,
+                            Err *err)
+{
+    Look look;
+    char *path = NULL;
+    Status status;
+    TRY_GOTO(template_file("look", "looks", options->look, ".ini", &path, err));
+    TRY_GOTO(look_read(&look, path, err));
+    TRY_GOTO(coloring_appearance(&options->coloring, &made->tree, tree_path, &look,
+                                 &made->appearance, err));
+    TRY_GOTO(derive_field(&made->tree, &options->coloring.flow, "strahler", &made->orders, err));
 done:
-    tree_release(&tree);
+    free(path);
     return status;
 }
 
@@ -111,10 +130,12 @@ static Status part(Meshing *made, int threads, Err *err)
     return STATUS_OK;
 }
 
-static Status make(const char *tree_path, const MeshingOptions *options, const Common *common,
-                   Meshing *made, Err *err)
+static Status make(const char *tree_path, const MeshingOptions *options, bool colored,
+                   const Common *common, Meshing *made, Err *err)
 {
-    TRY(read_vessels(tree_path, options->prune_radius_mm, &made->vessels, err));
+    TRY(read_vessels(tree_path, options->prune_radius_mm, made, err));
+    if (colored)
+        TRY(color_vessels(options, tree_path, made, err));
     if (options->part_overlaps)
         TRY(part(made, common->threads, err));
     TRY(triangulate(made, options->tolerance, common, err));
@@ -192,19 +213,24 @@ Status meshing_write(const Emitter *emitter, const MeshingOptions *options, cons
     Text said = TEXT_INIT;
     char *line = NULL;
     Status status;
-    TRY_GOTO(make(tree, options, &parsed->common, &made, err));
+    TRY_GOTO(make(tree, options, emitter->has_colors, &parsed->common, &made, err));
     text_json(&said, manifest(&made), 2);
     text_puts(&said, "\n");
     TRY_GOTO(text_check(&said, err));
     TRY_GOTO(command_line_text(parsed, &line, err));
     const EmitParams params = {.mesh = &made.mesh,
                                .vessels = &made.vessels,
+                               .appearance = &made.appearance,
+                               .orders = made.orders.value,
                                .manifest = text_chars(&said),
                                .command = line};
     TRY_GOTO(scene_files_write(emitter, &params, tree, output, NULL, err));
 done:
     free(line);
     text_release(&said);
+    tree_release(&made.tree);
+    appearance_release(&made.appearance);
+    field_release(&made.orders);
     vesseltree_release(&made.vessels);
     vesselmesh_release(&made.mesh);
     meshreport_release(&made.report);

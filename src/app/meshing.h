@@ -2,6 +2,7 @@
 #ifndef CORCAST_APP_MESHING_H
 #define CORCAST_APP_MESHING_H
 
+#include "app/coloring.h"
 #include "app/options.h"
 #include "base/base.h"
 #include "emit/emit.h"
@@ -13,12 +14,15 @@ typedef struct MeshingOptions {
     double tolerance;       /* over the local radius */
     double prune_radius_mm; /* 0: none */
     bool part_overlaps;     /* thin vessels that overlap others that they do not belong with */
+    const char *look;       /* for an emitter with colours, as the coloring */
+    Coloring coloring;
 } MeshingOptions;
 
 /* Reads the tree that the command names, leaves out segments thinner than prune_radius_mm,
- * triangulates the others and writes `output` and its manifest. Says on standard error,
- * unless quiet, how much work it is, and what is to be known of the mesh. STATUS_DIFFERS when the
- * mesh is not sound; errors as tree_read, vesselmesh_build and emit_files have them. */
+ * triangulates the others and writes `output` and its manifest. Says on standard error, unless
+ * quiet, how much work it is, and what is to be known of the mesh. STATUS_DIFFERS when the mesh is
+ * not sound; errors as tree_read, coloring_appearance, vesselmesh_build and emit_files have them.
+ */
 MUST_CHECK Status meshing_write(const Emitter *emitter, const MeshingOptions *options,
                                 const char *output, const Parsed *parsed, Err *err);
 

@@ -7,7 +7,6 @@
 #include "image/image.h"
 #include "render/render.h"
 #include "treeio/treeio.h"
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -207,34 +206,18 @@ static Status check_model(const PictureOptions *options, const Parsed *parsed, E
     return status;
 }
 
-enum { PICTURE_NEEDS = 8 };
-
-static void find_needs(const PictureOptions *options, OptionNeed needs[PICTURE_NEEDS])
-{
-    static const char of_colors[] = "needs --color-by";
-    bool colored = options->coloring.field != NULL;
-    const OptionNeed list[] = {
-        {"colormap", colored, of_colors},  {"range", colored, of_colors},
-        {"log", colored, of_colors},       {"classes", colored, of_colors},
-        {"q-perf", colored, of_colors},    {"p-perf", colored, of_colors},
-        {"viscosity", colored, of_colors}, {0},
-    };
-    static_assert(sizeof list == PICTURE_NEEDS * sizeof *list, "PICTURE_NEEDS counts the list");
-    memcpy(needs, list, sizeof list);
-}
-
 Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, Err *err)
 {
-    OptionNeed needs[PICTURE_NEEDS];
-    find_needs(options, needs);
+    OptionNeed needs[COLORING_NEEDS];
+    coloring_needs(&options->coloring, needs);
     TRY(check_model(options, parsed, err));
     return options_check_needs(parsed, needs, err);
 }
 
 bool picture_takes(const PictureOptions *options, const char *name)
 {
-    OptionNeed needs[PICTURE_NEEDS];
-    find_needs(options, needs);
+    OptionNeed needs[COLORING_NEEDS];
+    coloring_needs(&options->coloring, needs);
     for (size_t i = 0; i < MODEL_OPTIONS; i++)
         if (strcmp(of_models[i].name, name) == 0)
             return model_has((SceneModel)options->model, of_models[i].elements);

@@ -22,30 +22,44 @@ Status scene_files_find(const char *output, bool of_meshes, const Emitter **emit
     return status;
 }
 
-/* The path of the second file in *second (owned); NULL when there is none. */
-static Status second_path(const Emitter *emitter, const char *path, char **second, Err *err)
+/* The files beside a scene or mesh; NULL where there is none. */
+typedef struct Beside {
+    char *second, *manifest; /* owned */
+} Beside;
+
+static void beside_release(Beside *beside)
+{
+    free(beside->second);
+    free(beside->manifest);
+}
+
+static Status find_beside(const Emitter *emitter, const char *path, Beside *beside, Err *err)
 {
     char suffix[24];
-    if (emitter->of_meshes)
-        snprintf(suffix, sizeof suffix, ".%s.json", emitter->extension);
-    else if (emitter->second_extension && strcmp(path, "-") != 0)
-        snprintf(suffix, sizeof suffix, ".%s", emitter->second_extension);
-    else
+    if (strcmp(path, "-") == 0)
         return STATUS_OK;
-    return file_with_suffix(path, suffix, second, err);
+    snprintf(suffix, sizeof suffix, ".%s.json", emitter->extension);
+    if (emitter->of_meshes)
+        TRY(file_with_suffix(path, suffix, &beside->manifest, err));
+    if (!emitter->second_extension)
+        return STATUS_OK;
+    snprintf(suffix, sizeof suffix, ".%s", emitter->second_extension);
+    return file_with_suffix(path, suffix, &beside->second, err);
 }
 
 Status scene_files_note(const Emitter *emitter, const char *path, Files *files, Err *err)
 {
-    char *second = NULL;
-    TRY(second_path(emitter, path, &second, err));
-    Status status = STATUS_OK;
-    if (second && emitter->check_name)
-        status = emitter->check_name(file_name(second), err);
-    if (second && status == STATUS_OK)
-        status =
-            files_write(files, emitter->of_meshes ? "the manifest" : "the geometry", second, err);
-    free(second);
+    Beside beside = {0};
+    Status status;
+    TRY_GOTO(find_beside(emitter, path, &beside, err));
+    if (beside.second && emitter->check_name)
+        TRY_GOTO(emitter->check_name(file_name(beside.second), err));
+    if (beside.second)
+        TRY_GOTO(files_write(files, emitter->second_holds, beside.second, err));
+    if (beside.manifest)
+        TRY_GOTO(files_write(files, "the manifest", beside.manifest, err));
+done:
+    beside_release(&beside);
     return status;
 }
 
@@ -65,10 +79,11 @@ Status scene_files_write(const Emitter *emitter, const EmitParams *params, const
             "--potential graph is corcast's own and has no POV-Ray scene; use --potential "
             "paper, or render");
     Text description = TEXT_INIT;
-    char *templates = NULL, *second = NULL;
+    char *templates = NULL;
+    Beside beside = {0};
     Status status;
     TRY_GOTO(templates_folder(&templates, err));
-    TRY_GOTO(second_path(emitter, path, &second, err));
+    TRY_GOTO(find_beside(emitter, path, &beside, err));
     if (params->scene)
         picture_description(&params->scene->geometry, tree_path, &description);
     else
@@ -76,14 +91,15 @@ Status scene_files_write(const Emitter *emitter, const EmitParams *params, const
     EmitParams all = *params;
     all.templates = templates;
     all.file = strcmp(path, "-") == 0 ? "scene.pov" : file_name(path);
-    all.second_file = second ? file_name(second) : NULL;
+    all.second_file = beside.second ? file_name(beside.second) : NULL;
+    all.manifest_path = beside.manifest;
     all.description = text_chars(&description);
     all.generator = GENERATOR;
-    status = emit_files(emitter, &all, path, second, report, err);
+    status = emit_files(emitter, &all, path, beside.second, report, err);
 done:
     text_release(&description);
     free(templates);
-    free(second);
+    beside_release(&beside);
     return status;
 }
 

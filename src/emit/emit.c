@@ -9,6 +9,7 @@ const Emitter emitters[] = {
     {.name = "povray",
      .extension = "pov",
      .second_extension = "inc",
+     .second_holds = "the geometry",
      .description = "a scene for POV-Ray 3.7",
      .has_view = true,
      .elements = MODEL_PRIMITIVES | MODEL_FIELD,
@@ -35,7 +36,15 @@ const Emitter emitters[] = {
      .description = "triangles with normals and the segment of each",
      .binary = true,
      .of_meshes = true,
+     .has_colors = true,
      .write = ply_write},
+    {.name = "glb",
+     .extension = "glb",
+     .description = "binary glTF 2.0",
+     .binary = true,
+     .of_meshes = true,
+     .has_colors = true,
+     .write = glb_write},
     {0},
 };
 
@@ -72,46 +81,73 @@ Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err)
     return status;
 }
 
-/* Fills the files, of which there are one or two. */
-static Status write_streams(const Emitter *emitter, const EmitParams *params, const OutFile *files,
-                            EmitReport *report, Err *err)
+/* What is written: the file, the second one, and the manifest. Those that there are stand in
+ * `files` one after another. */
+enum { OUTPUTS = 3 };
+
+typedef struct Outputs {
+    Text text[OUTPUTS];
+    const char *path[OUTPUTS]; /* NULL: there is none */
+    OutFile files[OUTPUTS];
+    size_t n;
+} Outputs;
+
+static Status open_outputs(Outputs *outputs, Err *err)
 {
-    Text out = TEXT_TO(files[0].stream), second = TEXT_TO(files[1].stream);
-    Status status = emitter->write(params, &out, &second, report, err);
+    for (size_t i = 0; i < OUTPUTS; i++) {
+        OutFile *file = &outputs->files[outputs->n];
+        if (!outputs->path[i])
+            continue;
+        TRY(outfile_open(file, outputs->path[i], err));
+        outputs->text[i] = TEXT_TO(file->stream);
+        outputs->n++;
+    }
+    return STATUS_OK;
+}
+
+/* The path of the file that took no more. */
+static const char *failed_path(const Outputs *outputs)
+{
+    size_t i = 0;
+    while (i + 1 < outputs->n && !ferror(outputs->files[i].stream))
+        i++;
+    return outputs->files[i].path;
+}
+
+static Status fill_outputs(const Emitter *emitter, const EmitParams *params, Outputs *outputs,
+                           EmitReport *report, Err *err)
+{
+    Text *text = outputs->text;
+    Status status = emitter->write(params, &text[0], &text[1], report, err);
     if (params->manifest)
-        text_puts(&second, params->manifest);
-    if (status == STATUS_OK)
-        status = text_flush(&out, err);
-    if (status == STATUS_OK)
-        status = text_flush(&second, err);
+        text_puts(&text[2], params->manifest);
+    for (size_t i = 0; i < OUTPUTS && status == STATUS_OK; i++)
+        if (outputs->path[i])
+            status = text_flush(&text[i], err);
     if (status == STATUS_IO)
-        err_prefix(err, "%s: ", (ferror(files[0].stream) ? files[0] : files[1]).path);
-    text_release(&out);
-    text_release(&second);
+        err_prefix(err, "%s: ", failed_path(outputs));
     return status;
 }
 
 Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
                   const char *second_path, EmitReport *report, Err *err)
 {
-    OutFile files[2] = {0};
+    Outputs outputs = {.path = {path, second_path, params->manifest_path}};
     EmitReport written = {0};
     Status status;
-    size_t n = second_path ? 2 : 1;
     if (!emitter->of_meshes)
         TRY(emit_check_model(emitter, params->scene->geometry.model, err));
     if (second_path && emitter->check_name)
         TRY(emitter->check_name(params->second_file, err));
-    TRY_GOTO(outfile_open(&files[0], path, err));
-    if (second_path)
-        TRY_GOTO(outfile_open(&files[1], second_path, err));
-    TRY_GOTO(write_streams(emitter, params, files, &written, err));
-    TRY(outfiles_commit(files, n, err));
+    TRY_GOTO(open_outputs(&outputs, err));
+    TRY_GOTO(fill_outputs(emitter, params, &outputs, &written, err));
+    TRY_GOTO(outfiles_commit(outputs.files, outputs.n, err));
     if (report)
         *report = written;
-    return STATUS_OK;
 done:
-    outfile_discard(&files[0]);
-    outfile_discard(&files[1]);
+    for (size_t i = 0; i < OUTPUTS; i++) {
+        text_release(&outputs.text[i]);
+        outfile_discard(&outputs.files[i]);
+    }
     return status;
 }

@@ -9,16 +9,19 @@
 
 /* What is written, and how it is called. All is borrowed. */
 typedef struct EmitParams {
-    const Scene *scene;        /* NULL for an emitter of meshes */
-    const VesselMesh *mesh;    /* NULL for all others, and so are the two that follow: */
-    const VesselTree *vessels; /* whose segments the mesh's labels name */
-    const char *manifest;      /* what the second file says of the mesh, or NULL */
-    const char *templates;     /* the folder of templates, one folder for each language */
-    const char *file;          /* names of the files as they stand in them, without folders; */
-    const char *second_file;   /* NULL: what would go to the second file stands in the first */
-    const char *description;   /* what the scene shows; what would break its line becomes a blank */
-    const char *generator;     /* program and version */
-    const char *command;       /* that makes the scene, one line */
+    const Scene *scene;           /* NULL for an emitter of meshes */
+    const VesselMesh *mesh;       /* NULL for all others, and so are those that follow: */
+    const VesselTree *vessels;    /* whose segments the mesh's labels name */
+    const Appearance *appearance; /* for an emitter with colours */
+    const double *orders;         /* Strahler order of each segment, by its number; likewise */
+    const char *manifest;         /* what stands beside the mesh, */
+    const char *manifest_path;    /* in this file; both or neither */
+    const char *templates;        /* the folder of templates, one folder for each language */
+    const char *file;             /* names of the files as they stand in them, without folders; */
+    const char *second_file;      /* NULL: what would go to the second file stands in the first */
+    const char *description; /* what the scene shows; what would break its line becomes a blank */
+    const char *generator;   /* program and version */
+    const char *command;     /* that makes the scene, one line */
     bool shadows;
     bool ids;         /* isosurface, blob: with the paint that the id plane needs */
     CellParams cells; /* isosurface */
@@ -35,10 +38,12 @@ typedef struct Emitter {
     const char *name;             /* "povray" */
     const char *extension;        /* of its file: "pov" */
     const char *second_extension; /* of the file beside it: "inc"; NULL: it writes one file */
+    const char *second_holds;     /* "the geometry" */
     const char *description;      /* "a scene for POV-Ray 3.7" */
     bool binary;
     bool has_view;     /* it holds camera, lights and background, and not the vessels alone */
     bool of_meshes;    /* it writes params->mesh, not the scene */
+    bool has_colors;   /* of meshes: it writes params->appearance and groups by params->orders */
     unsigned elements; /* it can write what is made of these: bits ModelElement */
     /* STATUS_USAGE when the format cannot name a second file so. NULL: it takes any name. */
     Status (*check_name)(const char *second_file, Err *err);
@@ -61,8 +66,9 @@ void emitter_extensions(bool of_meshes, Text *out);
 /* STATUS_USAGE when the format cannot hold a model, with the names of those that it can. */
 MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err);
 
-/* Writes `path`, "-" being standard output, and `second_path`, which is NULL when and only when
- * params->second_file is: both take their final names, or neither does. `report` may be NULL.
+/* Writes `path`, "-" being standard output, `second_path`, which is NULL when and only when
+ * params->second_file is, and the manifest: all take their final names, or none does. `report` may
+ * be NULL.
  * As emit_check_model, and all that `write` returns. */
 MUST_CHECK Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
                              const char *second_path, EmitReport *report, Err *err);

@@ -1,54 +1,9 @@
-/* Triangles for printers and CAD: STL and PLY. Binary numbers are little-endian, put byte by byte,
- * so that the machine's order does not matter; a buffer of one record at a time goes to the text.
- */
+/* Triangles for printers and CAD: STL and PLY, a record of binary numbers at a time. */
+#include "emit/meshparts.h"
+#include "emit/record.h"
 #include "emit/rows.h"
 
-#include <string.h>
-
-/* A record of a binary file. */
-typedef struct Record {
-    char bytes[64];
-    size_t length;
-} Record;
-
-static void put_word(Record *record, uint32_t word, int bytes)
-{
-    for (int i = 0; i < bytes; i++)
-        record->bytes[record->length++] = (char)(word >> 8 * i & 0xff);
-}
-
-static void put_float(Record *record, float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put_word(record, bits, 4);
-}
-
-static void put_floats(Record *record, const float values[3])
-{
-    for (int axis = 0; axis < 3; axis++)
-        put_float(record, values[axis]);
-}
-
-static void flush_record(Record *record, Text *out)
-{
-    text_append(out, record->bytes, record->length);
-    record->length = 0;
-}
-
-/* The unit normal of a triangle, by the right hand. */
-static void flat_normal(const VesselMesh *mesh, const uint32_t triangle[3], float normal[3])
-{
-    Vec3 at[3];
-    for (int i = 0; i < 3; i++) {
-        const float *x = mesh->points[triangle[i]];
-        at[i] = vec3((double)x[0], (double)x[1], (double)x[2]);
-    }
-    Vec3 across = vec3_cross(vec3_sub(at[1], at[0]), vec3_sub(at[2], at[0]));
-    double length = vec3_length(across);
-    for (int axis = 0; axis < 3; axis++)
-        normal[axis] = length > 0 ? (float)(vec3_component(across, axis) / length) : 0;
-}
+#include <stdlib.h>
 
 /* 80 bytes of text that do not begin as the text form does, then triangles of 50 bytes. */
 Status stl_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
@@ -63,7 +18,7 @@ Status stl_write(const EmitParams *params, Text *out, Text *second, EmitReport *
     put_word(&record, (uint32_t)mesh->n_triangles, 4);
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         float normal[3];
-        flat_normal(mesh, mesh->triangles[i], normal);
+        mesh_flat_normal(mesh, i, normal);
         put_floats(&record, normal);
         for (int k = 0; k < 3; k++)
             put_floats(&record, mesh->points[mesh->triangles[i][k]]);
@@ -73,33 +28,53 @@ Status stl_write(const EmitParams *params, Text *out, Text *second, EmitReport *
     return text_check(out, err);
 }
 
-/* Points with normals, and for each triangle the SWC id of its segment and whether it closes an
- * end. */
-Status ply_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
+static void put_ply_points(const EmitParams *params, const uint32_t *segments, Text *out)
 {
-    (void)second;
-    (void)report;
     const VesselMesh *mesh = params->mesh;
-    text_printf(out,
-                "ply\nformat binary_little_endian 1.0\ncomment %s, units=mm\n"
-                "element vertex %zu\nproperty float x\nproperty float y\nproperty float z\n"
-                "property float nx\nproperty float ny\nproperty float nz\n"
-                "element face %zu\nproperty list uchar int vertex_indices\n"
-                "property int segment\nproperty uchar cap\nend_header\n",
-                params->generator, mesh->n_points, mesh->n_triangles);
     Record record = {.length = 0};
     for (size_t i = 0; i < mesh->n_points; i++) {
+        uint8_t codes[3];
+        vessel_color_codes(params, segments[i], codes);
         put_floats(&record, mesh->points[i]);
         put_floats(&record, mesh->normals[i]);
+        for (int k = 0; k < 3; k++)
+            put_word(&record, codes[k], 1);
         flush_record(&record, out);
     }
+}
+
+static void put_ply_faces(const EmitParams *params, Text *out)
+{
+    const VesselMesh *mesh = params->mesh;
+    Record record = {.length = 0};
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         put_word(&record, 3, 1);
         for (int k = 0; k < 3; k++)
             put_word(&record, mesh->triangles[i][k], 4);
-        put_word(&record, params->vessels->ids[mesh->labels[i] & ~MESH_CAP], 4);
-        put_word(&record, (mesh->labels[i] & MESH_CAP) != 0, 1);
+        put_word(&record, params->vessels->ids[mesh_segment(mesh, i)], 4);
+        put_word(&record, mesh_is_cap(mesh, i), 1);
         flush_record(&record, out);
     }
+}
+
+/* Points with normals and colours, and for each triangle the SWC id of its segment and whether it
+ * closes an end. */
+Status ply_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
+{
+    (void)second;
+    (void)report;
+    uint32_t *segments = NULL;
+    TRY(mesh_point_segments(params->mesh, &segments, err));
+    text_printf(out,
+                "ply\nformat binary_little_endian 1.0\ncomment %s, units=mm\n"
+                "element vertex %zu\nproperty float x\nproperty float y\nproperty float z\n"
+                "property float nx\nproperty float ny\nproperty float nz\n"
+                "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                "element face %zu\nproperty list uchar int vertex_indices\n"
+                "property int segment\nproperty uchar cap\nend_header\n",
+                params->generator, params->mesh->n_points, params->mesh->n_triangles);
+    put_ply_points(params, segments, out);
+    put_ply_faces(params, out);
+    free(segments);
     return text_check(out, err);
 }

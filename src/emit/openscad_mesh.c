@@ -1,5 +1,6 @@
 /* One polyhedron() of a mesh: nothing to unite, so that OpenSCAD takes it as it is. OpenSCAD turns
  * the faces of a solid the other way round: clockwise, seen from outside. */
+#include "emit/meshparts.h"
 #include "emit/rows.h"
 #include "emit/values.h"
 
@@ -10,12 +11,8 @@ static const double seconds_a_triangle = 3e-4;
 static Status put_points(Text *out, void *context, Err *err)
 {
     const VesselMesh *mesh = context;
-    for (size_t i = 0; i < mesh->n_points; i++) {
-        const float *x = mesh->points[i];
-        char text[3][NUMBER_TEXT_SIZE];
-        text_printf(out, "[%s,%s,%s],\n", number_text_float(x[0] + 0, text[0]),
-                    number_text_float(x[1] + 0, text[1]), number_text_float(x[2] + 0, text[2]));
-    }
+    for (size_t i = 0; i < mesh->n_points; i++)
+        put_mesh_floats(out, "[", mesh->points[i], ",", "],\n");
     return text_check(out, err);
 }
 

@@ -15,6 +15,7 @@ Status openscad_write_mesh(const EmitParams *params, Text *out, Text *second, Em
 
 Status stl_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
 Status ply_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
+Status glb_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
 
 /* [x,y,z], as OpenSCAD reads a point. */
 void put_point(Text *text, Vec3 v);

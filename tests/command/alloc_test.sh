@@ -75,6 +75,14 @@ test_failed_allocations_in_scene() {
     fail_each 3 many scene "$DATA/bifurcation.swc" --size 21x15 --model isosurface --ids on -o o.pov
 }
 
+test_failed_allocations_in_export() {
+    local extension
+    for extension in stl ply glb; do
+        fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o "o.$extension"
+    done
+    fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 --color-by flow -o o.glb
+}
+
 test_failed_allocations_in_render() {
     local model
     inputs

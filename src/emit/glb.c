@@ -1,0 +1,332 @@
+/* Binary glTF 2.0 [Khronos, glTF 2.0 specification, sections 3.7, 3.9 and 4.4]: a node for each
+ * Strahler order, with a mesh of its own vertices, under one that scales millimetres to metres, so
+ * that the coordinates are the very ones that were proved. y is up in both.
+ *
+ * A point is a vertex once for the wall and once for a cap, whose normal is flat, in each order
+ * that has it. All vertices stand in one buffer, order by order: positions, then normals, colours
+ * and corners. */
+#include "emit/meshparts.h"
+#include "emit/record.h"
+#include "emit/rows.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { COMPONENT_UINT = 5125, COMPONENT_FLOAT = 5126, ARRAY_BUFFER = 34962, INDEX_BUFFER = 34963 };
+enum { VIEW_POSITIONS, VIEW_NORMALS, VIEW_COLORS, VIEW_CORNERS, VIEWS };
+
+/* A point and the first triangle of its order that it is a corner of. */
+typedef struct Vertex {
+    uint32_t point, triangle;
+} Vertex;
+
+typedef struct Glb {
+    const EmitParams *params;
+    MeshParts parts;
+    Vertex *vertices; /* owned; order by order */
+    size_t n_vertices, capacity;
+    size_t first[MOST_ORDERS + 2]; /* vertex of each order, as in parts */
+    uint32_t (*corners)[3];        /* owned; of parts.triangles: numbers within the order */
+    uint32_t *slots; /* owned; of each point, of the wall and of a cap: 1 + its last vertex */
+} Glb;
+
+static void release(Glb *glb)
+{
+    meshparts_release(&glb->parts);
+    free(glb->vertices);
+    free(glb->corners);
+    free(glb->slots);
+}
+
+/* The vertex of a corner, which is new when the slot's is of an earlier order. */
+static Status find_vertex(Glb *glb, uint32_t triangle, uint32_t point, size_t first, uint32_t *out,
+                          Err *err)
+{
+    uint32_t *slot = &glb->slots[2 * (size_t)point + mesh_is_cap(glb->params->mesh, triangle)];
+    if (*slot <= first) {
+        TRY(mem_reserve(&glb->vertices, &glb->capacity, glb->n_vertices + 1, sizeof *glb->vertices,
+                        "vertices", err));
+        glb->vertices[glb->n_vertices++] = (Vertex){point, triangle};
+        *slot = (uint32_t)glb->n_vertices;
+    }
+    *out = *slot - 1 - (uint32_t)first;
+    return STATUS_OK;
+}
+
+static Status find_vertices(Glb *glb, Err *err)
+{
+    const VesselMesh *mesh = glb->params->mesh;
+    for (size_t order = 0; order <= MOST_ORDERS; order++) {
+        glb->first[order] = glb->n_vertices;
+        for (size_t i = glb->parts.first[order]; i < glb->parts.first[order + 1]; i++)
+            for (int k = 0; k < 3; k++) {
+                uint32_t triangle = glb->parts.triangles[i];
+                TRY(find_vertex(glb, triangle, mesh->triangles[triangle][k], glb->first[order],
+                                &glb->corners[i][k], err));
+            }
+    }
+    glb->first[MOST_ORDERS + 1] = glb->n_vertices;
+    return STATUS_OK;
+}
+
+static Status prepare(Glb *glb, Err *err)
+{
+    const VesselMesh *mesh = glb->params->mesh;
+    TRY(meshparts_find(glb->params, &glb->parts, err));
+    TRY(mem_calloc(&glb->corners, mesh->n_triangles, sizeof *glb->corners, "triangles", err));
+    TRY(mem_calloc(&glb->slots, 2 * mesh->n_points, sizeof *glb->slots, "points", err));
+    return find_vertices(glb, err);
+}
+
+/* ---- what the JSON says ---------------------------------------------------------------------- */
+
+static json_t *count(size_t n)
+{
+    return json_integer((json_int_t)n);
+}
+
+/* How many bytes of the buffer each view takes; all vertices take the same in the first three. */
+static size_t view_bytes(const Glb *glb, int view)
+{
+    return 12 * (view == VIEW_CORNERS ? glb->params->mesh->n_triangles : glb->n_vertices);
+}
+
+static json_t *buffer_views(const Glb *glb)
+{
+    json_t *views = json_array();
+    size_t offset = 0;
+    for (int view = 0; view < VIEWS; view++) {
+        bool corners = view == VIEW_CORNERS;
+        json_t *object = json_pack(
+            "{s:i, s:I, s:I, s:i}", "buffer", 0, "byteOffset", (json_int_t)offset, "byteLength",
+            (json_int_t)view_bytes(glb, view), "target", corners ? INDEX_BUFFER : ARRAY_BUFFER);
+        if (!corners)
+            object = json_with(object, "byteStride", json_integer(12));
+        views = json_with_item(views, object);
+        offset += view_bytes(glb, view);
+    }
+    return views;
+}
+
+static json_t *accessor(int view, size_t first, size_t n)
+{
+    bool corners = view == VIEW_CORNERS;
+    return json_pack("{s:i, s:I, s:i, s:I, s:s}", "bufferView", view, "byteOffset",
+                     (json_int_t)(12 * first), "componentType",
+                     corners ? COMPONENT_UINT : COMPONENT_FLOAT, "count",
+                     (json_int_t)(corners ? 3 * n : n), "type", corners ? "SCALAR" : "VEC3");
+}
+
+static json_t *position_accessor(const Glb *glb, size_t first, size_t n)
+{
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = first; i < first + n; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            float x = glb->params->mesh->points[glb->vertices[i].point][axis];
+            low[axis] = fminf(low[axis], x);
+            high[axis] = fmaxf(high[axis], x);
+        }
+    const JsonMember members[] = {
+        {"min", json_pack("[f,f,f]", (double)low[0], (double)low[1], (double)low[2])},
+        {"max", json_pack("[f,f,f]", (double)high[0], (double)high[1], (double)high[2])},
+    };
+    return json_with_members(accessor(VIEW_POSITIONS, first, n), members, 2);
+}
+
+/* The four accessors of each order that there is, and its mesh and node. */
+typedef struct Lists {
+    json_t *accessors, *meshes, *nodes;
+    size_t n;
+} Lists;
+
+static void add_order(const Glb *glb, size_t order, Lists *lists)
+{
+    size_t first = glb->first[order], n = glb->first[order + 1] - first;
+    size_t triangle = glb->parts.first[order], triangles = glb->parts.first[order + 1] - triangle;
+    int at = 4 * (int)lists->n;
+    lists->accessors = json_with_item(lists->accessors, position_accessor(glb, first, n));
+    lists->accessors = json_with_item(lists->accessors, accessor(VIEW_NORMALS, first, n));
+    lists->accessors = json_with_item(lists->accessors, accessor(VIEW_COLORS, first, n));
+    lists->accessors =
+        json_with_item(lists->accessors, accessor(VIEW_CORNERS, triangle, triangles));
+    char name[32];
+    snprintf(name, sizeof name, "order_%zu", order);
+    lists->meshes = json_with_item(
+        lists->meshes, json_pack("{s:s, s:[{s:{s:i, s:i, s:i}, s:i, s:i}]}", "name", name,
+                                 "primitives", "attributes", "POSITION", at, "NORMAL", at + 1,
+                                 "COLOR_0", at + 2, "indices", at + 3, "material", 0));
+    lists->nodes = json_with_item(lists->nodes,
+                                  json_pack("{s:s, s:I, s:{s:I, s:I}}", "name", name, "mesh",
+                                            (json_int_t)lists->n, "extras", "strahler_order",
+                                            (json_int_t)order, "triangles", (json_int_t)triangles));
+    lists->n++;
+}
+
+/* What is known of the tree, and what its colours mean; flat, because assimp 5.2 aborts on objects
+ * within. */
+static json_t *root_extras(const EmitParams *params)
+{
+    const ColorScale *scale = &params->appearance->scale;
+    const JsonMember about[] = {
+        {"description", json_text(params->description)},
+        {"coordinates", json_text("mm, y up; the scale of this node makes metres of them")},
+    };
+    json_t *extras = json_with_members(json_object(), about, 2);
+    if (!params->appearance->colors)
+        return extras;
+    const JsonMember colors[] = {
+        {"color_by", json_text(scale->name)},        {"color_unit", json_text(scale->unit)},
+        {"color_low", json_number(scale->range[0])}, {"color_high", json_number(scale->range[1])},
+        {"color_log", json_boolean(scale->log)},
+    };
+    return json_with_members(extras, colors, sizeof colors / sizeof *colors);
+}
+
+/* The node above the orders, which are nodes 1 to n. */
+static json_t *root_node(const Glb *glb, size_t n)
+{
+    json_t *children = json_array();
+    for (size_t i = 1; i <= n; i++)
+        children = json_with_item(children, count(i));
+    const JsonMember members[] = {
+        {"name", json_text("tree")},
+        {"scale", json_pack("[f,f,f]", 0.001, 0.001, 0.001)},
+        {"children", children},
+        {"extras", root_extras(glb->params)},
+    };
+    return json_with_members(json_object(), members, 4);
+}
+
+/* A material whose highlights are as wide as Phong's of the look: a GGX lobe of alpha^2 =
+ * 2 / (m + 2) is as wide as Blinn's of exponent m [Karis, Real Shading in Unreal Engine 4, 2013],
+ * and Blinn's of 4 n as Phong's of n; glTF's roughness is the root of alpha. */
+static json_t *material(const Finish *finish)
+{
+    double roughness = pow(2 / (4 * (double)finish->phong_size + 2), 0.25);
+    return json_pack("{s:s, s:{s:[f,f,f,f], s:f, s:f}}", "name", "vessel", "pbrMetallicRoughness",
+                     "baseColorFactor", 1.0, 1.0, 1.0, 1.0, "metallicFactor", 0.0,
+                     "roughnessFactor", roughness);
+}
+
+static json_t *asset(const EmitParams *params)
+{
+    const JsonMember extras[] = {
+        {"command", json_text(params->command)},
+    };
+    const JsonMember members[] = {
+        {"version", json_text("2.0")},
+        {"generator", json_text(params->generator)},
+        {"extras", json_with_members(json_object(), extras, 1)},
+    };
+    return json_with_members(json_object(), members, 3);
+}
+
+static json_t *document(const Glb *glb, size_t buffer_bytes)
+{
+    size_t orders = 0;
+    for (size_t order = 0; order <= MOST_ORDERS; order++)
+        orders += glb->first[order] < glb->first[order + 1];
+    Lists lists = {json_array(), json_array(), json_pack("[o]", root_node(glb, orders)), 0};
+    for (size_t order = 0; order <= MOST_ORDERS; order++)
+        if (glb->first[order] < glb->first[order + 1])
+            add_order(glb, order, &lists);
+    const JsonMember members[] = {
+        {"asset", asset(glb->params)},
+        {"scene", json_integer(0)},
+        {"scenes", json_pack("[{s:[i]}]", "nodes", 0)},
+        {"nodes", lists.nodes},
+        {"meshes", lists.meshes},
+        {"materials", json_pack("[o]", material(&glb->params->appearance->finish))},
+        {"accessors", lists.accessors},
+        {"bufferViews", buffer_views(glb)},
+        {"buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)buffer_bytes)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+/* ---- the file -------------------------------------------------------------------------------- */
+
+static void vertex_value(const Glb *glb, const Vertex *vertex, int view, float value[3])
+{
+    const VesselMesh *mesh = glb->params->mesh;
+    const float *from =
+        view == VIEW_POSITIONS ? mesh->points[vertex->point] : mesh->normals[vertex->point];
+    if (view == VIEW_COLORS) {
+        Rgb color = vessel_color(glb->params, mesh_segment(mesh, vertex->triangle));
+        memcpy(value, (float[3]){color.r, color.g, color.b}, 3 * sizeof *value);
+    } else if (view == VIEW_NORMALS && mesh_is_cap(mesh, vertex->triangle))
+        mesh_flat_normal(mesh, vertex->triangle, value);
+    else
+        memcpy(value, from, 3 * sizeof *value);
+}
+
+static void put_buffer(const Glb *glb, Text *out)
+{
+    Record record = {.length = 0};
+    for (int view = 0; view < VIEW_CORNERS; view++)
+        for (size_t i = 0; i < glb->n_vertices; i++) {
+            float value[3];
+            vertex_value(glb, &glb->vertices[i], view, value);
+            put_floats(&record, value);
+            flush_record(&record, out);
+        }
+    for (size_t i = 0; i < glb->params->mesh->n_triangles; i++) {
+        for (int k = 0; k < 3; k++)
+            put_word(&record, glb->corners[i][k], 4);
+        flush_record(&record, out);
+    }
+}
+
+static void put_chunk_head(size_t bytes, const char *kind, Text *out)
+{
+    Record record = {.length = 0};
+    put_word(&record, (uint32_t)bytes, 4);
+    flush_record(&record, out);
+    text_append(out, kind, 4);
+}
+
+/* The header, and the chunks of the JSON, filled up with blanks, and of the buffer. */
+static Status put_file(const Glb *glb, Text *out, Err *err)
+{
+    enum { HEADER_BYTES = 12, CHUNK_HEAD_BYTES = 8 };
+    Text json = TEXT_INIT;
+    size_t buffer = 0;
+    for (int view = 0; view < VIEWS; view++)
+        buffer += view_bytes(glb, view);
+    text_json(&json, document(glb, buffer), 0);
+    const char *chars = text_chars(&json);
+    size_t length = chars ? strlen(chars) : 0, blanks = (4 - length % 4) % 4;
+    size_t all = HEADER_BYTES + 2 * CHUNK_HEAD_BYTES + length + blanks + buffer;
+    Status status = STATUS_OK;
+    if (all > UINT32_MAX)
+        status = err_set(err, STATUS_INFEASIBLE, "a GLB holds 4 GB; this one would have %.1f",
+                         (double)all * 1e-9);
+    else {
+        Record record = {.length = 0};
+        text_append(out, "glTF", 4);
+        put_word(&record, 2, 4);
+        put_word(&record, (uint32_t)all, 4);
+        flush_record(&record, out);
+        put_chunk_head(length + blanks, "JSON", out);
+        text_add(out, &json);
+        text_append(out, "   ", blanks);
+        put_chunk_head(buffer, "BIN\0", out);
+        put_buffer(glb, out);
+    }
+    text_release(&json);
+    return status;
+}
+
+Status glb_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
+{
+    (void)second;
+    (void)report;
+    Glb glb = {.params = params};
+    Status status;
+    TRY_GOTO(prepare(&glb, err));
+    TRY_GOTO(put_file(&glb, out, err));
+    TRY_GOTO(text_check(out, err));
+done:
+    release(&glb);
+    return status;
+}

@@ -1,0 +1,88 @@
+/* Triangles are put in their order by counting, so that they keep their places among those of one
+ * Strahler order, and neighbours stay together. */
+#include "emit/meshparts.h"
+
+#include "image/image.h"
+#include <stdlib.h>
+
+static size_t order_of(const EmitParams *params, size_t triangle)
+{
+    uint32_t segment = params->vessels->segments[mesh_segment(params->mesh, triangle)].segment;
+    return (size_t)params->orders[segment];
+}
+
+Status meshparts_find(const EmitParams *params, MeshParts *out, Err *err)
+{
+    const size_t n = params->mesh->n_triangles;
+    MeshParts made = {0};
+    size_t next[MOST_ORDERS + 2];
+    TRY(mem_calloc(&made.triangles, n, sizeof *made.triangles, "triangles", err));
+    for (size_t i = 0; i < n; i++)
+        made.first[order_of(params, i) + 1]++;
+    for (size_t order = 0; order <= MOST_ORDERS; order++)
+        made.first[order + 1] += made.first[order];
+    memcpy(next, made.first, sizeof next);
+    for (size_t i = 0; i < n; i++)
+        made.triangles[next[order_of(params, i)]++] = (uint32_t)i;
+    *out = made;
+    return STATUS_OK;
+}
+
+void meshparts_release(MeshParts *parts)
+{
+    free(parts->triangles);
+    *parts = (MeshParts){0};
+}
+
+Rgb vessel_color(const EmitParams *params, uint32_t segment)
+{
+    return appearance_color(params->appearance, params->vessels->segments[segment].segment);
+}
+
+void vessel_color_codes(const EmitParams *params, uint32_t segment, uint8_t codes[3])
+{
+    Rgb color = vessel_color(params, segment);
+    const float linear[3] = {color.r, color.g, color.b};
+    for (int i = 0; i < 3; i++)
+        codes[i] = (uint8_t)image_code(linear[i], ENCODING_SRGB, 8);
+}
+
+void put_color_code(Text *out, const EmitParams *params, uint32_t segment)
+{
+    uint8_t codes[3];
+    vessel_color_codes(params, segment, codes);
+    text_printf(out, "%02X%02X%02X", codes[0], codes[1], codes[2]);
+}
+
+void mesh_flat_normal(const VesselMesh *mesh, size_t triangle, float normal[3])
+{
+    Vec3 at[3];
+    for (int i = 0; i < 3; i++) {
+        const float *x = mesh->points[mesh->triangles[triangle][i]];
+        at[i] = vec3((double)x[0], (double)x[1], (double)x[2]);
+    }
+    Vec3 across = vec3_cross(vec3_sub(at[1], at[0]), vec3_sub(at[2], at[0]));
+    double length = vec3_length(across);
+    for (int axis = 0; axis < 3; axis++)
+        normal[axis] = length > 0 ? (float)(vec3_component(across, axis) / length) : 0;
+}
+
+Status mesh_point_segments(const VesselMesh *mesh, uint32_t **segments, Err *err)
+{
+    uint32_t *made;
+    TRY(mem_calloc(&made, mesh->n_points, sizeof *made, "points", err));
+    for (size_t i = mesh->n_triangles; i-- > 0;)
+        for (int k = 0; k < 3; k++)
+            made[mesh->triangles[i][k]] = mesh_segment(mesh, i);
+    *segments = made;
+    return STATUS_OK;
+}
+
+void put_mesh_floats(Text *out, const char *before, const float values[3], const char *between,
+                     const char *after)
+{
+    char text[3][NUMBER_TEXT_SIZE];
+    text_printf(out, "%s%s%s%s%s%s%s", before, number_text_float(values[0] + 0, text[0]), between,
+                number_text_float(values[1] + 0, text[1]), between,
+                number_text_float(values[2] + 0, text[2]), after);
+}

@@ -1,0 +1,40 @@
+/* Little-endian numbers of binary files, whatever the machine's order: put byte by byte into a
+ * record that goes to a text at once; private to the room emit. */
+#ifndef CORCAST_EMIT_RECORD_H
+#define CORCAST_EMIT_RECORD_H
+
+#include "base/base.h"
+#include <string.h>
+
+typedef struct Record {
+    char bytes[64];
+    size_t length;
+} Record;
+
+/* The lowest so many `bytes` of `word`. */
+static inline void put_word(Record *record, uint32_t word, int bytes)
+{
+    for (int i = 0; i < bytes; i++)
+        record->bytes[record->length++] = (char)(word >> 8 * i & 0xff);
+}
+
+static inline void put_float(Record *record, float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put_word(record, bits, 4);
+}
+
+static inline void put_floats(Record *record, const float values[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        put_float(record, values[axis]);
+}
+
+static inline void flush_record(Record *record, Text *out)
+{
+    text_append(out, record->bytes, record->length);
+    record->length = 0;
+}
+
+#endif
