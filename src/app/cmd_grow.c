@@ -40,10 +40,10 @@ static void print_report(const GrowReport *report)
 /* The domain's size, and what may be wrong with it. */
 static void print_size(const Domain *domain)
 {
-    Box box = domain_bounds(domain);
+    Box box = domain->bounds;
     Vec3 size = vec3_sub(box.high, box.low);
     fprintf(stderr, "the domain, %.4g x %.4g", size.x, size.y);
-    if (domain_dimension(domain) == 3)
+    if (domain->dimension == 3)
         fprintf(stderr, " x %.4g", size.z);
     fprintf(stderr, " mm%s, ",
             (domain->kind == DOMAIN_MESH || domain->kind == DOMAIN_POLYGON) && domain->n_sizes == 0
@@ -54,7 +54,7 @@ static void print_size(const Domain *domain)
 /* What a user has to know of a tree that is not as it should be. */
 static void print_warnings(const GrowReport *report, const Domain *domain, bool refined)
 {
-    Box box = domain_bounds(domain);
+    Box box = domain->bounds;
     if (report->root_radius_mm > vec3_distance(box.low, box.high)) {
         fprintf(stderr, "corcast: ");
         print_size(domain);

@@ -7,23 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char blanks[] = " \t\v\f";
-
-/* Cuts the blanks at both ends off, in place. */
-static char *trim(char *text)
-{
-    text += strspn(text, blanks);
-    size_t length = strlen(text);
-    while (length && strchr(blanks, text[length - 1]))
-        length--;
-    text[length] = '\0';
-    return text;
-}
-
 static void cut_comment(char *line)
 {
     for (char *at = line; (at = strchr(at, ';')); at++)
-        if (at == line || at[-1] == '=' || strchr(blanks, at[-1])) {
+        if (at == line || at[-1] == '=' || strchr(TEXT_BLANKS, at[-1])) {
             *at = '\0';
             return;
         }
@@ -31,22 +18,22 @@ static void cut_comment(char *line)
 
 static Status read_line(char *line, const char **section, IniTake *take, void *user, Err *err)
 {
-    line = trim(line);
+    line = text_trim(line);
     cut_comment(line);
-    line = trim(line);
+    line = text_trim(line);
     if (*line == '\0' || *line == '#')
         return STATUS_OK;
     size_t length = strlen(line);
     if (*line == '[' && line[length - 1] == ']') {
         line[length - 1] = '\0';
-        *section = trim(line + 1);
+        *section = text_trim(line + 1);
         return take(user, *section, NULL, NULL, err);
     }
     char *equals = strchr(line, '=');
     if (!equals || equals == line)
         return err_set(err, STATUS_INPUT, "'%.40s' is not a line name = value or [section]", line);
     *equals = '\0';
-    return take(user, *section, trim(line), trim(equals + 1), err);
+    return take(user, *section, text_trim(line), text_trim(equals + 1), err);
 }
 
 Status ini_read(const char *path, const char *what, IniTake *take, void *user, char **text,
@@ -58,13 +45,8 @@ Status ini_read(const char *path, const char *what, IniTake *take, void *user, c
     size_t size, number = 0;
     TRY(file_read(path, &form, &bytes, &size, err));
     Status status = STATUS_OK;
-    for (char *at = bytes, *next; at && status == STATUS_OK; at = next) {
-        number++;
-        next = strchr(at, '\n');
-        if (next)
-            *next++ = '\0';
-        status = read_line(at, &section, take, user, err);
-    }
+    for (char *rest = bytes, *line; status == STATUS_OK && (line = text_line(&rest)); number++)
+        status = read_line(line, &section, take, user, err);
     if (status != STATUS_OK)
         err_prefix(err, "%s:%zu: ", strcmp(path, "-") ? path : "standard input", number);
     if (status == STATUS_OK && text)

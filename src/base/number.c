@@ -6,6 +6,7 @@
  * program never calls setlocale, so that printf and strtod use '.'. */
 #include "base/number.h"
 
+#include "base/text.h"
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -22,42 +23,21 @@ typedef struct Decimal {
     int exponent;    /* of ten, of the first */
 } Decimal;
 
-/* 5^0 to 5^27, all that 64 bits hold. */
-static const uint64_t powers_of_5[] = {1u,
-                                       5u,
-                                       25u,
-                                       125u,
-                                       625u,
-                                       3125u,
-                                       15625u,
-                                       78125u,
-                                       390625u,
-                                       1953125u,
-                                       9765625u,
-                                       48828125u,
-                                       244140625u,
-                                       1220703125u,
-                                       6103515625u,
-                                       30517578125u,
-                                       152587890625u,
-                                       762939453125u,
-                                       3814697265625u,
-                                       19073486328125u,
-                                       95367431640625u,
-                                       476837158203125u,
-                                       2384185791015625u,
-                                       11920928955078125u,
-                                       59604644775390625u,
-                                       298023223876953125u,
-                                       1490116119384765625u,
-                                       7450580596923828125u};
+/* 5^k for k from 0 to 27, of all that 64 bits hold. */
+static uint64_t power_of_5(int k)
+{
+    static const uint32_t low[] = {1,       5,        25,        125,       625,
+                                   3125,    15625,    78125,     390625,    1953125,
+                                   9765625, 48828125, 244140625, 1220703125};
+    return (uint64_t)low[k / 2] * low[k - k / 2];
+}
 
 /* Rounds m 2^e to `count` digits, the first of which stands for 10^exponent; whether they read
  * back. */
 static bool round_decimal(uint64_t m, int e, int count, int exponent, Decimal *out)
 {
     int k = count - 1 - exponent, shift = -(e + k);
-    uint64_t spacing = powers_of_5[k];
+    uint64_t spacing = power_of_5(k);
     Wide exact = (Wide)m * spacing, unit = (Wide)1 << shift;
     uint64_t digits = (uint64_t)(exact >> shift);
     Wide rest = exact & (unit - 1);
@@ -68,9 +48,10 @@ static bool round_decimal(uint64_t m, int e, int count, int exponent, Decimal *o
     Wide room = m == (uint64_t)1 << 52 && !up ? 4 * error : 2 * error;
     return room < spacing || (room == spacing && m % 2 == 0);
 }
+
 static void print_decimal(Decimal d, bool negative, char *out)
 {
-    if (d.digits == powers_of_5[d.count] << d.count) { /* 10^count: rounded up to one digit more */
+    if (d.digits == power_of_5(d.count) << d.count) { /* 10^count: rounded up to one digit more */
         d.digits /= 10;
         d.exponent++;
     }
@@ -134,6 +115,7 @@ const char *number_text(double value, char out[NUMBER_TEXT_SIZE])
     }
     return out;
 }
+
 const char *number_text_float(float value, char out[NUMBER_TEXT_SIZE])
 {
     for (int digits = 6; digits <= 9; digits++) {
@@ -175,11 +157,10 @@ bool number_parse(const char *chars, double *out)
 
 bool numbers_parse(const char *chars, size_t count, double *out)
 {
-    static const char blanks[] = " \t\v\f";
     for (size_t i = 0; i < count; i++) {
         char number[400];
-        chars += strspn(chars, blanks);
-        size_t length = strcspn(chars, blanks);
+        chars += strspn(chars, TEXT_BLANKS);
+        size_t length = strcspn(chars, TEXT_BLANKS);
         if (length >= sizeof number)
             return false;
         memcpy(number, chars, length);
@@ -188,7 +169,7 @@ bool numbers_parse(const char *chars, size_t count, double *out)
             return false;
         chars += length;
     }
-    return chars[strspn(chars, blanks)] == '\0';
+    return chars[strspn(chars, TEXT_BLANKS)] == '\0';
 }
 
 bool integer_parse(const char *chars, long long minimum, long long maximum, long long *out)

@@ -82,6 +82,25 @@ void text_printf(Text *text, const char *format, ...)
     va_end(again);
 }
 
+char *text_trim(char *text)
+{
+    text += strspn(text, TEXT_BLANKS);
+    size_t length = strlen(text);
+    while (length && strchr(TEXT_BLANKS, text[length - 1]))
+        length--;
+    text[length] = '\0';
+    return text;
+}
+
+char *text_line(char **rest)
+{
+    char *line = *rest;
+    *rest = line ? strchr(line, '\n') : NULL;
+    if (*rest)
+        *(*rest)++ = '\0';
+    return line;
+}
+
 size_t utf8_length(const char *bytes)
 {
     const unsigned char *chars = (const unsigned char *)bytes;
@@ -105,7 +124,8 @@ size_t utf8_length(const char *bytes)
     return 0;
 }
 
-void text_put_line(Text *text, const char *chars)
+/* Appends `chars` as UTF-8, with `as_line` control characters as blanks. */
+static void put_utf8(Text *text, const char *chars, bool as_line)
 {
     if (!chars)
         text->failed = ENOMEM;
@@ -114,7 +134,7 @@ void text_put_line(Text *text, const char *chars)
         bool control = (unsigned char)*chars < ' ' || *chars == '\x7f' ||
                        (length == 2 && (unsigned char)chars[0] == 0xc2 &&
                         (unsigned char)chars[1] < 0xa0); /* U+0080 to U+009F */
-        if (control)
+        if (as_line && control)
             text_puts(text, " ");
         else if (length == 0)
             text_puts(text, UTF8_REPLACEMENT);
@@ -122,6 +142,16 @@ void text_put_line(Text *text, const char *chars)
             text_append(text, chars, length);
         chars += length ? length : 1;
     }
+}
+
+void text_put_line(Text *text, const char *chars)
+{
+    put_utf8(text, chars, true);
+}
+
+void text_utf8(Text *text, const char *chars)
+{
+    put_utf8(text, chars, false);
 }
 
 Status text_check(const Text *text, Err *err)
@@ -168,20 +198,6 @@ void text_clear(Text *text)
     text->length = 0;
     if (text->chars)
         text->chars[0] = '\0';
-}
-
-void text_utf8(Text *text, const char *chars)
-{
-    if (!chars)
-        text->failed = ENOMEM;
-    while (chars && *chars) {
-        size_t length = utf8_length(chars);
-        if (length)
-            text_append(text, chars, length);
-        else
-            text_puts(text, UTF8_REPLACEMENT);
-        chars += length ? length : 1;
-    }
 }
 
 void text_number(Text *text, double value)

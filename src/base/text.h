@@ -53,6 +53,15 @@ void text_cut(Text *text, size_t at, size_t count);
 /* Empties the text but keeps its room, and its failure. */
 void text_clear(Text *text);
 
+/* Blanks between the words of a line. */
+#define TEXT_BLANKS " \t\v\f"
+/* `text` without the blanks at both ends, cut off in place. */
+char *text_trim(char *text);
+/* Cuts the next line off the text at *rest, in place, and moves *rest behind it; NULL behind the
+ * last, whose end is that of the text: for (char *rest = text, *line; (line = text_line(&rest));).
+ */
+char *text_line(char **rest);
+
 /* U+FFFD, which stands for what is not UTF-8. */
 #define UTF8_REPLACEMENT "\xEF\xBF\xBD"
 /* How many bytes the UTF-8 character at the start of `bytes` (zero-terminated) has, 1 to 4; 0 where

@@ -19,12 +19,9 @@ typedef struct Contacts {
 /* Adds a contact at `t`, moved into [0, 1]. */
 void contacts_add(Contacts *contacts, double t);
 
-/* Whether a point is in the domain, as DomainOps has it. */
-typedef bool DomainInside(const Domain *domain, Vec3 point, double tolerance_mm);
 /* Whether the segment from `a` to `b`, mm, stays inside: that is, the middle of every stretch
  * between neighbouring contacts or ends is inside, unless the stretch is shorter than the domain's
  * slack_mm. Sorts the contacts. False when there were more than CONTACTS_MAX. */
-bool contacts_hold_segment(Contacts *contacts, const Domain *domain, DomainInside *inside, Vec3 a,
-                           Vec3 b);
+bool contacts_hold_segment(Contacts *contacts, const Domain *domain, Vec3 a, Vec3 b);
 
 #endif

@@ -117,11 +117,6 @@ void domain_text(const Domain *domain, Text *text)
     }
 }
 
-int domain_dimension(const Domain *domain)
-{
-    return domain->dimension;
-}
-
 bool domain_is_convex(const Domain *domain)
 {
     return ops_of(domain)->is_convex;
@@ -163,19 +158,4 @@ Vec3 domain_sample(const Domain *domain, Random *random)
         if (ops->inside(domain, point, 0))
             return point;
     }
-}
-
-double domain_volume(const Domain *domain)
-{
-    return domain->volume;
-}
-
-Vec3 domain_default_inlet(const Domain *domain)
-{
-    return domain->inlet;
-}
-
-Box domain_bounds(const Domain *domain)
-{
-    return domain->bounds;
 }

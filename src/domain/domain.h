@@ -44,9 +44,9 @@ typedef struct Domain {
         Mask *mask;
         Mesh *mesh;
     };
-    Box bounds;      /* mm */
+    Box bounds;      /* the smallest box that holds it, mm; flat in two dimensions */
     double volume;   /* mm^3, or mm^2 in two dimensions */
-    Vec3 inlet;      /* the default one, mm */
+    Vec3 inlet;      /* where no other is asked for, mm: at its top, where y is largest */
     double slack_mm; /* 1e-6 of the diagonal of the bounds: a length that does not matter */
 } Domain;
 
@@ -62,9 +62,6 @@ void domain_release(Domain *domain);
 
 /* Appends the text that domain_parse reads back to the same domain. */
 void domain_text(const Domain *domain, Text *text);
-
-/* 2 or 3. */
-int domain_dimension(const Domain *domain);
 
 /* Whether the domain is convex: a segment is inside if its ends are. */
 bool domain_is_convex(const Domain *domain);
@@ -83,16 +80,6 @@ bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b);
 
 /* A random point, mm, uniformly distributed in the domain; domain_inside at tolerance 0. */
 Vec3 domain_sample(const Domain *domain, Random *random);
-
-/* mm^3, or mm^2 in two dimensions. */
-double domain_volume(const Domain *domain);
-
-/* The inlet when no other is asked for, mm: a point of the domain at its top, where y is largest.
- */
-Vec3 domain_default_inlet(const Domain *domain);
-
-/* The smallest box that holds the domain, mm; flat in two dimensions. */
-Box domain_bounds(const Domain *domain);
 
 /* Name of shape `i`, from 0 on, "disc", and what stands behind its colon, "R"; NULL after the last.
  */

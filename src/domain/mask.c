@@ -75,16 +75,9 @@ static bool is_near(const Mask *mask, Vec3 point, const double index[3], double 
     return false;
 }
 
-static bool is_within(const Box *box, Vec3 point, double reach)
-{
-    return box->low.x - reach <= point.x && point.x <= box->high.x + reach &&
-           box->low.y - reach <= point.y && point.y <= box->high.y + reach &&
-           box->low.z - reach <= point.z && point.z <= box->high.z + reach;
-}
-
 static bool mask_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    if (!is_within(&domain->bounds, point, tolerance_mm))
+    if (!box_holds(domain->bounds, point, tolerance_mm))
         return false;
     double index[3];
     index_of(domain->mask, point, index);
@@ -120,8 +113,8 @@ static double leave(const VoxelWalk *walk, int *axis)
 
 static bool mask_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
-    if (!is_within(&domain->bounds, a, domain->slack_mm) ||
-        !is_within(&domain->bounds, b, domain->slack_mm))
+    if (!box_holds(domain->bounds, a, domain->slack_mm) ||
+        !box_holds(domain->bounds, b, domain->slack_mm))
         return false;
     VoxelWalk walk;
     double to[3], overlooked = domain->slack_mm / vec3_distance(a, b), entered = 0;

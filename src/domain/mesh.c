@@ -61,19 +61,13 @@ static bool count_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *count)
     return safe;
 }
 
-static bool is_within(const Box *box, Vec3 point)
-{
-    return box->low.x <= point.x && point.x <= box->high.x && box->low.y <= point.y &&
-           point.y <= box->high.y && box->low.z <= point.z && point.z <= box->high.z;
-}
-
 static bool is_odd(const Mesh *mesh, const Box *bounds, Vec3 point)
 {
     static const Vec3 directions[] = {
         {1, 0.0013713, 0.0007179},   {-1, 0.0031415, -0.0019321}, {0.0017711, 1, 0.0009173},
         {-0.0023131, -1, 0.0037191}, {0.0041381, 0.0011933, 1},   {-0.0017393, 0.0029173, -1},
     };
-    if (!is_within(bounds, point))
+    if (!box_holds(*bounds, point, 0))
         return false;
     double reach = 1.01 * vec3_distance(bounds->low, bounds->high);
     int count = 0;
@@ -83,26 +77,17 @@ static bool is_odd(const Mesh *mesh, const Box *bounds, Vec3 point)
     return count % 2 == 1;
 }
 
-/* Squared distance of a point, as seen from corner a, to the segment from corner a + from along. */
-static double edge_distance2(Vec3 to, Vec3 from, Vec3 along)
-{
-    Vec3 apart = vec3_sub(to, from);
-    double length2 = vec3_dot(along, along);
-    double t = length2 > 0 ? fmin(fmax(vec3_dot(apart, along) / length2, 0), 1) : 0;
-    apart = vec3_add_scaled(apart, along, -t);
-    return vec3_dot(apart, apart);
-}
-
 static double distance2(const Triangle *triangle, Vec3 point)
 {
-    Vec3 to = vec3_sub(point, triangle->a), zero = {0, 0, 0};
+    Vec3 to = vec3_sub(point, triangle->a);
     Vec3 normal = vec3_cross(triangle->ab, triangle->ac);
     Crossing foot;
     if (cross_plane(triangle, point, normal, &foot) && depth(&foot) >= 0)
         return foot.t * foot.t * vec3_dot(normal, normal);
-    double nearest = edge_distance2(to, zero, triangle->ab);
-    nearest = fmin(nearest, edge_distance2(to, zero, triangle->ac));
-    return fmin(nearest, edge_distance2(to, triangle->ab, vec3_sub(triangle->ac, triangle->ab)));
+    double nearest =
+        fmin(vec3_distance2_along(to, triangle->ab), vec3_distance2_along(to, triangle->ac));
+    return fmin(nearest, vec3_distance2_along(vec3_sub(to, triangle->ab),
+                                              vec3_sub(triangle->ac, triangle->ab)));
 }
 
 static bool is_near(const Mesh *mesh, Vec3 point, double reach)
@@ -142,7 +127,7 @@ static bool mesh_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
         if (find_contact(&mesh->triangles[i], a, d, &t) && t >= -CONTACT_MARGIN &&
             t <= 1 + CONTACT_MARGIN)
             contacts_add(&contacts, t);
-    return contacts_hold_segment(&contacts, domain, mesh_inside, a, b);
+    return contacts_hold_segment(&contacts, domain, a, b);
 }
 
 static Vec3 middle_of(const Triangle *triangle)

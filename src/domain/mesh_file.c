@@ -11,8 +11,6 @@
 enum { STL_TITLE = 80, STL_HEADER = 84, STL_FACET = 50, STL_CORNERS = 12, SHOWN = 40 };
 enum { MAX_TRIANGLES = INT32_MAX };
 
-static const char blanks[] = " \t\v\f";
-
 static const FileForm obj_file = {.name = "an OBJ file", .most_bytes = 8e9, .is_text = true};
 static const FileForm stl_file = {.name = "an STL file", .most_bytes = 8e9};
 
@@ -102,7 +100,7 @@ static Status add_vertex(Reader *reader, char **rest, Err *err)
 {
     double value[3];
     for (int i = 0; i < 3; i++) {
-        const char *word = strtok_r(NULL, blanks, rest);
+        const char *word = strtok_r(NULL, TEXT_BLANKS, rest);
         if (!word || !number_parse(word, &value[i]))
             return refuse_line(reader, "is not a number; a vertex has three, x y z",
                                word ? word : "", err);
@@ -118,7 +116,7 @@ static Status add_vertex(Reader *reader, char **rest, Err *err)
 static Status read_stl_line(Reader *reader, char *line, Err *err)
 {
     char *rest = NULL;
-    const char *word = strtok_r(line, blanks, &rest);
+    const char *word = strtok_r(line, TEXT_BLANKS, &rest);
     if (!word)
         return STATUS_OK;
     if (strcmp(word, "vertex") == 0)
@@ -155,7 +153,7 @@ static Status find_corner(const Reader *reader, char *word, Vec3 *corner, Err *e
 static Status read_obj_line(Reader *reader, char *line, Err *err)
 {
     line[strcspn(line, "#")] = '\0';
-    char *rest = NULL, *word = strtok_r(line, blanks, &rest);
+    char *rest = NULL, *word = strtok_r(line, TEXT_BLANKS, &rest);
     if (!word)
         return STATUS_OK;
     if (strcmp(word, "v") == 0)
@@ -164,7 +162,7 @@ static Status read_obj_line(Reader *reader, char *line, Err *err)
         return STATUS_OK;
     Vec3 first = {0}, last = {0}, corner;
     int n = 0;
-    for (; (word = strtok_r(NULL, blanks, &rest)); n++) {
+    for (; (word = strtok_r(NULL, TEXT_BLANKS, &rest)); n++) {
         TRY(find_corner(reader, word, &corner, err));
         if (n >= 2)
             TRY(add_triangle(reader, first, last, corner, err));
@@ -180,12 +178,9 @@ static Status read_obj_line(Reader *reader, char *line, Err *err)
 static Status read_lines(Reader *reader, char *bytes, Status (*read_line)(Reader *, char *, Err *),
                          Err *err)
 {
-    for (char *at = bytes, *next = NULL; at; at = next) {
+    for (char *line; (line = text_line(&bytes));) {
         reader->line++;
-        next = strchr(at, '\n');
-        if (next)
-            *next++ = '\0';
-        TRY(read_line(reader, at, err));
+        TRY(read_line(reader, line, err));
     }
     return STATUS_OK;
 }

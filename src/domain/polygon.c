@@ -27,21 +27,16 @@ static bool is_odd(const Polygon *polygon, const Box *bounds, Vec3 point, uint32
     return odd;
 }
 
-static double distance2(const Edge *edge, Vec3 point)
-{
-    Vec3 along = vec3_sub(edge->b, edge->a), to = vec3_sub(point, edge->a);
-    double t = fmin(fmax(vec3_dot(to, along) / vec3_dot(along, along), 0), 1);
-    Vec3 apart = vec3_add_scaled(to, along, -t);
-    return vec3_dot(apart, apart);
-}
-
 static bool is_near(const Polygon *polygon, Vec3 point, double reach)
 {
     uint32_t i;
     Box around = box_with_ball(box_empty(), point, reach);
-    for (BoxWalk walk = boxwalk_box(&polygon->tree, around); boxwalk_next(&walk, &i);)
-        if (distance2(&polygon->edges[i], point) <= reach * reach)
+    for (BoxWalk walk = boxwalk_box(&polygon->tree, around); boxwalk_next(&walk, &i);) {
+        const Edge *edge = &polygon->edges[i];
+        Vec3 to = vec3_sub(point, edge->a);
+        if (vec3_distance2_along(to, vec3_sub(edge->b, edge->a)) <= reach * reach)
             return true;
+    }
     return false;
 }
 
@@ -71,7 +66,7 @@ static bool polygon_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     uint32_t i;
     for (BoxWalk walk = boxwalk_segment(&domain->polygon->tree, a, b); boxwalk_next(&walk, &i);)
         find_contact(&domain->polygon->edges[i], a, b, &contacts);
-    return contacts_hold_segment(&contacts, domain, polygon_inside, a, b);
+    return contacts_hold_segment(&contacts, domain, a, b);
 }
 
 /* The middle of the widest stretch inside, a thousandth of the height below the top. */

@@ -10,8 +10,6 @@
 
 enum { SHOWN = 40 /* characters of a bad line */ };
 
-static const char blanks[] = " \t\v\f";
-
 typedef struct Reader {
     Polygon *polygon;
     const char *path;
@@ -67,7 +65,7 @@ static Status end_ring(Reader *reader, Err *err)
 
 static Status read_line(Reader *reader, char *line, Err *err)
 {
-    line += strspn(line, blanks);
+    line += strspn(line, TEXT_BLANKS);
     if (*line == '\0')
         return end_ring(reader, err);
     line[strcspn(line, "#")] = '\0';
@@ -86,12 +84,9 @@ static Status read_line(Reader *reader, char *line, Err *err)
 
 static Status read_lines(Reader *reader, char *bytes, Err *err)
 {
-    for (char *at = bytes, *next = NULL; at; at = next) {
+    for (char *line; (line = text_line(&bytes));) {
         reader->line++;
-        next = strchr(at, '\n');
-        if (next)
-            *next++ = '\0';
-        TRY(read_line(reader, at, err));
+        TRY(read_line(reader, line, err));
     }
     TRY(end_ring(reader, err));
     if (reader->polygon->n == 0)

@@ -218,16 +218,6 @@ static Status shell_load(Domain *domain, const char *values, Err *err)
     return STATUS_OK;
 }
 
-/* Whether all of the segment from `a` to `b` is outside the open unit ball. */
-static bool misses_unit_ball(Vec3 a, Vec3 b)
-{
-    Vec3 along = vec3_sub(b, a);
-    double length2 = vec3_dot(along, along);
-    double t = length2 > 0 ? fmin(fmax(-vec3_dot(a, along) / length2, 0), 1) : 0;
-    Vec3 nearest = vec3_add_scaled(a, along, t);
-    return vec3_dot(nearest, nearest) >= 1;
-}
-
 /* The outer ellipsoid below the base is convex, so only the cavity is to be kept clear of. */
 static bool shell_holds(const Domain *domain, Vec3 a, Vec3 b, double tolerance_mm)
 {
@@ -239,8 +229,9 @@ static bool shell_holds(const Domain *domain, Vec3 a, Vec3 b, double tolerance_m
         return false;
     if (fmin(cavity.x, fmin(cavity.y, cavity.z)) <= tolerance_mm)
         return true;
-    return misses_unit_ball(in_unit_ball(a, cavity, -tolerance_mm),
-                            in_unit_ball(b, cavity, -tolerance_mm));
+    Vec3 cavity_a = in_unit_ball(a, cavity, -tolerance_mm);
+    Vec3 cavity_b = in_unit_ball(b, cavity, -tolerance_mm);
+    return vec3_distance2_along(vec3_scale(cavity_a, -1), vec3_sub(cavity_b, cavity_a)) >= 1;
 }
 
 static bool shell_inside(const Domain *domain, Vec3 point, double tolerance_mm)

@@ -65,6 +65,14 @@ static inline bool box_meets(Box a, Box b)
            b.low.y <= a.high.y && a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
 
+/* Whether the point is in the box or at most `margin` outside it along each axis. */
+static inline bool box_holds(Box box, Vec3 point, double margin)
+{
+    return box.low.x - margin <= point.x && point.x <= box.high.x + margin &&
+           box.low.y - margin <= point.y && point.y <= box.high.y + margin &&
+           box.low.z - margin <= point.z && point.z <= box.high.z + margin;
+}
+
 /* The axis along which it is longest, the first of equals. */
 static inline int box_longest_axis(Box box)
 {

@@ -61,6 +61,15 @@ static inline double vec3_distance(Vec3 a, Vec3 b)
     return vec3_length(vec3_sub(a, b));
 }
 
+/* The squared distance of the point `a` from the segment from the origin to `along`, which may have
+ * no length. */
+static inline double vec3_distance2_along(Vec3 a, Vec3 along)
+{
+    double length2 = vec3_dot(along, along), t = vec3_dot(a, along) / length2;
+    Vec3 apart = vec3_add_scaled(a, along, length2 > 0 ? -fmin(fmax(t, 0), 1) : 0);
+    return vec3_dot(apart, apart);
+}
+
 /* a / |a|; the length of `a` must not be zero. */
 static inline Vec3 vec3_normalized(Vec3 a)
 {

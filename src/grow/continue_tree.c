@@ -33,7 +33,7 @@ static Status check_node(const Tree *from, size_t i, int32_t children, const Dom
                        "`from`: node %d, a terminal, is where its parent is; its segment needs a "
                        "length",
                        id);
-    if (domain_dimension(domain) == 2 && from->position[i].z != 0)
+    if (domain->dimension == 2 && from->position[i].z != 0)
         return err_set(err, STATUS_INPUT,
                        "`from`: node %d is at z = %g; with a `domain` of two dimensions the tree "
                        "must lie in the plane z = 0",
@@ -54,7 +54,7 @@ static Status check_place(const Tree *from, const Domain *domain, Err *err)
 {
     if (continue_outside(from, domain) < from->n)
         return STATUS_OK;
-    Box tree = tree_bounds(from), box = domain_bounds(domain);
+    Box tree = tree_bounds(from), box = domain->bounds;
     return err_set(err, STATUS_INPUT,
                    "`from`: the domain does not hold the tree: it is at x %.4g to %.4g, y %.4g to "
                    "%.4g, z %.4g to %.4g mm, and the domain at x %.4g to %.4g, y %.4g to %.4g, "

@@ -122,7 +122,7 @@ static Status describe_domain(const Domain *domain, TreeMeta *meta, Err *err)
 static Status describe(const GrowParams *params, const Domain *domain, TreeMeta *meta, Err *err)
 {
     grow_describe(params, meta);
-    meta_set_number(meta, META_DIMENSION, domain_dimension(domain));
+    meta_set_number(meta, META_DIMENSION, domain->dimension);
     TRY(meta_set_text(meta, META_GENERATOR, "corcast " CORCAST_VERSION, err));
     TRY(describe_domain(domain, meta, err));
     return meta_add_lines(meta, err);

@@ -80,9 +80,8 @@ static Status make_grid(Growth *growth, Err *err)
     size_t most = growth->grid_until + most_added(growth->grid_until);
     if (most > growth->params->terminals)
         most = growth->params->terminals;
-    TRY(grid_reset(&growth->grid, domain_bounds(growth->domain),
-                   cells_per_terminal * (double)terminals, net->n + 2 * (most - terminals),
-                   growth->round.threads, err));
+    TRY(grid_reset(&growth->grid, growth->domain->bounds, cells_per_terminal * (double)terminals,
+                   net->n + 2 * (most - terminals), growth->round.threads, err));
     TRY(round_use_grid(&growth->round, &growth->grid, err));
     for (size_t i = 0; i < net->n; i++)
         if (net->segment[i].parent >= 0)
@@ -229,7 +228,7 @@ static Status start_trees(Growth *growth, Err *err)
     Network *net = &growth->net;
     double distance = growth->toss_distance;
     if (params->inlets == 0)
-        network_append(net, -1, domain_default_inlet(growth->domain));
+        network_append(net, -1, growth->domain->inlet);
     for (size_t k = 0; k < params->inlets; k++)
         network_append(net, -1, params->inlet[k]);
     TRY(first_segments_add(net, growth->domain, &growth->random, &distance, &growth->tosses, err));
@@ -264,7 +263,7 @@ static Status start_forest(Growth *growth, Err *err)
 static Status start(Growth *growth, Err *err)
 {
     const GrowParams *params = growth->params;
-    Box box = domain_bounds(growth->domain);
+    Box box = growth->domain->bounds;
     growth->size = vec3_distance(box.low, box.high);
     growth->rules = (Rules){.thickness = 1, .gap = 1e-7 * growth->size, .widest = growth->size};
     set_toss_distance(growth, growth->size);

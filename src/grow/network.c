@@ -166,12 +166,6 @@ void network_grown(Network *net, size_t terminals)
     set_terminals(net, net->terminals + terminals);
 }
 
-static bool holds(Box zone, Vec3 p)
-{
-    return p.x >= zone.low.x && p.x <= zone.high.x && p.y >= zone.low.y && p.y <= zone.high.y &&
-           p.z >= zone.low.z && p.z <= zone.high.z;
-}
-
 /* Adds a terminal to the sums of the nearest ancestors of `i`, which sums up to `reduced`; see
  * network_split. */
 static void tell_ancestors(Network *net, int32_t i, const Reduced *reduced, Box zone)
@@ -179,7 +173,7 @@ static void tell_ancestors(Network *net, int32_t i, const Reduced *reduced, Box 
     Reduced here = *reduced;
     for (int level = 0; level < LEVELS; level++) {
         int32_t above = net->segment[i].parent;
-        if (!holds(zone, net->position[above]))
+        if (!box_holds(zone, net->position[above], 0))
             return;
         tell_parent(net, i, &here);
         net->segment[above].terminals++;

@@ -133,7 +133,7 @@ static void try_step(const Repair *repair, int32_t node, Vec3 from, double step,
                      double *least)
 {
     Network *net = repair->net;
-    int depth = domain_dimension(repair->domain) == 3;
+    int depth = repair->domain->dimension == 3;
     for (int z = -depth; z <= depth; z++)
         for (int y = -1; y <= 1; y++)
             for (int x = -1; x <= 1; x++) {

@@ -31,10 +31,10 @@ static size_t lattice_count(double size, double spacing)
 /* Spreads the lattice evenly over the domain's box. */
 static void lay_lattice(Survey *survey, double points)
 {
-    Box box = domain_bounds(survey->domain);
+    Box box = survey->domain->bounds;
     Vec3 size = vec3_sub(box.high, box.low);
-    double share = domain_volume(survey->domain) / points; /* of a point */
-    bool flat = domain_dimension(survey->domain) == 2;
+    double share = survey->domain->volume / points; /* of a point */
+    bool flat = survey->domain->dimension == 2;
     double spacing = flat ? sqrt(share) : cbrt(share);
     double most = LEAST_POINTS + POINTS_PER_ASKED * size.x * size.y * (flat ? 1 : size.z) / share;
     while ((size.x / spacing + 1) * (size.y / spacing + 1) * (size.z / spacing + 1) > most)
@@ -49,7 +49,7 @@ static void lay_lattice(Survey *survey, double points)
 
 static Status enter_terminals(Survey *survey, const Network *net, Err *err)
 {
-    TRY(grid_reset(&survey->grid, domain_bounds(survey->domain),
+    TRY(grid_reset(&survey->grid, survey->domain->bounds,
                    cells_per_terminal * (double)net->terminals, net->n, 1, err));
     for (size_t i = 0; i < net->n; i++) {
         if (!network_is_end(net, (int32_t)i))

@@ -35,10 +35,7 @@ Status colormap_read(Colormap *map, const char *path, Err *err)
     Colormap read = {0};
     Status status = STATUS_OK;
     int number = 1;
-    for (char *line = text, *next; line && status == STATUS_OK; line = next, number++) {
-        next = strchr(line, '\n');
-        if (next)
-            *next++ = '\0';
+    for (char *rest = text, *line; status == STATUS_OK && (line = text_line(&rest)); number++) {
         status = take_line(&read, &capacity, line, err);
         if (status == STATUS_INPUT)
             err_prefix(err, "%s:%d: ", path, number);

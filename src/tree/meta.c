@@ -266,17 +266,15 @@ static Status set_text(TreeMeta *meta, MetaKey key, const char *value, Err *err)
 
 Status meta_parse(TreeMeta *meta, MetaKey key, const char *value, Err *err)
 {
-    static const char blanks[] = " \t\v\f";
     MetaKind kind = meta_rows[key].kind;
-    char *bare = NULL;
-    TRY(mem_strdup(&bare, value + strspn(value, blanks), err));
-    for (size_t length = strlen(bare); length && strchr(blanks, bare[length - 1]); length--)
-        bare[length - 1] = '\0';
+    char *copy = NULL;
+    TRY(mem_strdup(&copy, value, err));
+    const char *bare = text_trim(copy);
     Status status = kind == META_LINES  ? meta_add_text(meta, key, bare, err)
                     : kind == META_TEXT ? set_text(meta, key, bare, err)
                     : kind == META_BITS ? set_bits(meta, key, bare, err)
                                         : set_number(meta, key, bare, err);
-    free(bare);
+    free(copy);
     if (status == STATUS_OK && kind != META_LINES)
         status = add_line(meta, (MetaLine){.key = key}, err);
     return status;

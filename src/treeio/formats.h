@@ -17,9 +17,6 @@ TreeDetect csv_detect;
 TreeRead swc_read, csv_read;
 TreeWrite swc_write, csv_write;
 
-/* Between the words of a line. */
-#define TEXT_BLANKS " \t\v\f"
-
 /* Takes in one line (zero-terminated, without its end; may be changed), the file's `number`th.
  * STATUS_INPUT without file and line. */
 typedef Status ReadLine(void *reader, size_t number, char *line, Err *err);

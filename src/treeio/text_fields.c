@@ -3,19 +3,14 @@
 #include "treeio/formats.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { SHOWN = 40 /* characters of a bad value */ };
 
 Status lines_read(const TreeBuilder *builder, char *text, ReadLine *read, void *reader, Err *err)
 {
     size_t number = 1;
-    for (char *at = text, *next; at; at = next, number++) {
-        next = strchr(at, '\n');
-        if (next)
-            *next++ = '\0';
-        TRY(builder_blame(builder, number, read(reader, number, at, err), err));
-    }
+    for (char *line; (line = text_line(&text)); number++)
+        TRY(builder_blame(builder, number, read(reader, number, line, err), err));
     return STATUS_OK;
 }
 

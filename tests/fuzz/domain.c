@@ -21,7 +21,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
         (void)status;
         domain_text(&second, &again);
         assert(strcmp(text.chars, again.chars) == 0);
-        assert(domain_inside(&domain, domain_default_inlet(&domain), domain.slack_mm));
+        assert(domain_inside(&domain, domain.inlet, domain.slack_mm));
         text_release(&text);
         text_release(&again);
         domain_release(&domain);

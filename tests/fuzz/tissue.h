@@ -19,8 +19,8 @@ static inline void fuzz_tissue(const char *kind, const char *name, const char *u
     fuzz_check_refusal(status, &err, path);
     if (status != STATUS_OK)
         return;
-    assert(domain_volume(&domain) > 0);
-    Box bounds = domain_bounds(&domain);
+    assert(domain.volume > 0);
+    Box bounds = domain.bounds;
     domain_inside(&domain, bounds.low, 0);
     domain_holds_segment(&domain, bounds.low, bounds.high);
     domain_release(&domain);

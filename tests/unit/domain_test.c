@@ -187,9 +187,9 @@ static void volumes_dimensions_and_convexity_are_known(void **state)
         double volume = known[i].volume;
         if (domain.kind == DOMAIN_SHELL)
             volume = shell_volume(-50, domain.size[4]);
-        assert_int_equal(domain_dimension(&domain), known[i].dimension);
+        assert_int_equal(domain.dimension, known[i].dimension);
         assert_int_equal(domain_is_convex(&domain), known[i].convex);
-        assert_true(fabs(domain_volume(&domain) / volume - 1) < 1e-6);
+        assert_true(fabs(domain.volume / volume - 1) < 1e-6);
         domain_release(&domain);
     }
 }
@@ -204,7 +204,7 @@ static void the_text_of_a_domain_reads_back_to_the_same_domain(void **state)
         assert_string_equal(text.chars, known[i].text ? known[i].text : known[i].spec);
         Domain again = parse(text.chars);
         assert_int_equal(again.kind, domain.kind);
-        assert_true(domain_volume(&again) == domain_volume(&domain));
+        assert_true(again.volume == domain.volume);
         assert_memory_equal(again.size, domain.size, sizeof again.size);
         text_release(&text);
         domain_release(&again);
@@ -217,8 +217,8 @@ static void the_default_inlet_is_inside_at_the_top(void **state)
     (void)state;
     for (int i = 0; i < KNOWN; i++) {
         Domain domain = parse(known[i].spec);
-        Vec3 inlet = domain_default_inlet(&domain);
-        Box bounds = domain_bounds(&domain);
+        Vec3 inlet = domain.inlet;
+        Box bounds = domain.bounds;
         double voxel = domain.kind == DOMAIN_MASK ? 0.2 : 0.002;
         assert_true(domain_inside(&domain, inlet, 0));
         assert_true(inlet.y <= bounds.high.y);
@@ -226,7 +226,7 @@ static void the_default_inlet_is_inside_at_the_top(void **state)
         domain_release(&domain);
     }
     Domain disc = parse("disc:31.7");
-    Vec3 top = domain_default_inlet(&disc);
+    Vec3 top = disc.inlet;
     assert_true(top.x == 0 && top.y == 31.7 && top.z == 0);
 }
 
@@ -235,7 +235,7 @@ static void bounds_are_the_smallest_that_hold_all_samples(void **state)
     (void)state;
     for (int i = 0; i < KNOWN; i++) {
         Domain domain = parse(known[i].spec);
-        Box bounds = domain_bounds(&domain), seen = box_empty();
+        Box bounds = domain.bounds, seen = box_empty();
         Vec3 size = vec3_sub(bounds.high, bounds.low);
         Random random;
         random_seed(&random, 5);
@@ -537,8 +537,8 @@ static void a_tolerance_reaches_as_far_as_it_says(void **state)
     (void)state;
     for (int i = 0; i < KNOWN; i++) {
         Domain domain = parse(known[i].spec);
-        Vec3 top = domain_default_inlet(&domain);
-        double above = domain_bounds(&domain).high.y - top.y;
+        Vec3 top = domain.inlet;
+        double above = domain.bounds.high.y - top.y;
         top.y += above + 0.125;
         assert_false(domain_inside(&domain, top, 0));
         assert_false(domain_inside(&domain, top, 0.12));
@@ -563,7 +563,7 @@ static void a_heart_is_a_domain(void **state)
     (void)state;
     skip_without_heart();
     Domain heart = parse("mesh:heart.stl,10");
-    Box bounds = domain_bounds(&heart);
+    Box bounds = heart.bounds;
     Vec3 size = vec3_sub(bounds.high, bounds.low);
     enum { N = 40 };
     int inside = 0;
@@ -573,8 +573,8 @@ static void a_heart_is_a_domain(void **state)
         inside += domain_inside(&heart, vec3_add(bounds.low, offset), 0);
     }
     double counted = size.x * size.y * size.z * inside / (N * N * N);
-    assert_true(fabs(counted / domain_volume(&heart) - 1) < 0.01);
-    assert_true(domain_inside(&heart, domain_default_inlet(&heart), 0));
+    assert_true(fabs(counted / heart.volume - 1) < 0.01);
+    assert_true(domain_inside(&heart, heart.inlet, 0));
     domain_release(&heart);
     expect_whole_segments("mesh:heart.stl");
 }

@@ -35,7 +35,7 @@ static void expect_whole_segments_inside(const char *spec, size_t terminals)
     GrowReport report;
     Tree tree = grow_in(&domain, terminals, &report);
     assert_int_equal(report.terminals, terminals);
-    Box box = domain_bounds(&domain);
+    Box box = domain.bounds;
     double tolerance = 2e-6 * vec3_distance(box.low, box.high);
     for (size_t i = 1; i < tree.n; i++) {
         Vec3 a = tree.position[tree.parent[i]], b = tree.position[i];

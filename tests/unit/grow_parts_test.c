@@ -164,7 +164,7 @@ static void expect_nearest(const char *spec, size_t segments, double longest)
     Random random;
     Grid grid = {0};
     assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
-    Box box = domain_bounds(&domain);
+    Box box = domain.bounds;
     assert_int_equal(grid_reset(&grid, box, (double)segments, segments, 1, NULL), STATUS_OK);
     random_seed(&random, 2385);
     for (size_t i = 0; i < segments; i++) {

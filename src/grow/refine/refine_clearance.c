@@ -27,7 +27,7 @@ static const double slack = 1e-9;
 static Box box_of(const Domain *domain, const Arbor *arbor)
 {
     if (domain)
-        return domain_bounds(domain);
+        return domain->bounds;
     Box box = box_empty();
     for (size_t i = 1; i < arbor->n; i++)
         box = box_with_ball(box_with_ball(box, arbor->shape[i].from, 0), arbor->shape[i].to, 0);
