@@ -49,6 +49,24 @@ void geometry_release(Geometry *geometry)
     *geometry = (Geometry){0};
 }
 
+size_t geometry_balls(const Geometry *geometry)
+{
+    return 2 * (geometry->n_primitives + geometry->n_segments);
+}
+
+Ball geometry_ball(const Geometry *geometry, size_t number)
+{
+    size_t i = number / 2;
+    bool is_b = number % 2;
+    if (i < geometry->n_primitives) {
+        const Primitive *primitive = &geometry->primitives[i];
+        return is_b ? (Ball){primitive->b, primitive_radius_b(primitive)}
+                    : (Ball){primitive->a, primitive->radius_mm};
+    }
+    const FieldSegment *segment = &geometry->segments[i - geometry->n_primitives];
+    return (Ball){is_b ? segment->b : segment->a, 2 * segment->radius_mm};
+}
+
 static Status check_tube(Vec3 a, Vec3 b, double radius, uint32_t id, Err *err)
 {
     if (!vec3_finite(a) || !vec3_finite(b) || !(radius > 0) || !isfinite(radius))

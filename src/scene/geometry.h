@@ -34,6 +34,12 @@ typedef struct Primitive {
 /* A primitive that is a joint, prepared for many rays. */
 JointFrame primitive_joint(const Primitive *primitive);
 
+/* The radius at b of any primitive. */
+static inline double primitive_radius_b(const Primitive *primitive)
+{
+    return primitive->kind == PRIMITIVE_JOINT ? primitive->radius_b_mm : primitive->radius_mm;
+}
+
 /* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its
  * two discs bound a solid. Else rulings cross. */
 bool primitive_joint_is_solid(const Primitive *joint);
@@ -87,6 +93,18 @@ typedef struct Geometry {
 } Geometry;
 
 void geometry_release(Geometry *geometry);
+
+typedef struct Ball {
+    Vec3 center;
+    double radius;
+} Ball;
+
+/* The balls about the two ends of every primitive and segment: numbers 0 to geometry_balls - 1.
+ * Nothing lies outside all the convex hulls of a pair. The implicit surface reaches beyond its
+ * segments by 0.551 r at free ends and by less than r where vessels meet, so that its balls have
+ * twice the radius. */
+size_t geometry_balls(const Geometry *geometry);
+Ball geometry_ball(const Geometry *geometry, size_t number);
 
 /* STATUS_INPUT unless every number is finite, radii are positive and everything lies within
  * SCENE_FARTHEST_MM of the origin, naming the id of the segment. */

@@ -6,7 +6,6 @@
  * that meets there. */
 #include "stage/stage.h"
 
-#include "stage/framing.h"
 #include "stage/joints.h"
 #include "stage/places.h"
 #include <stdlib.h>
@@ -153,16 +152,13 @@ static Status copy_ids(const Tree *tree, Geometry *geometry, Err *err)
     return STATUS_OK;
 }
 
-static Status find_bounds(Geometry *geometry, Err *err)
+static void find_bounds(Geometry *geometry)
 {
-    Ball *balls;
-    size_t n;
-    TRY(framing_balls(geometry, &balls, &n, err));
     geometry->bounds = box_empty();
-    for (size_t i = 0; i < n; i++)
-        geometry->bounds = box_with_ball(geometry->bounds, balls[i].center, balls[i].radius);
-    free(balls);
-    return STATUS_OK;
+    for (size_t i = 0; i < geometry_balls(geometry); i++) {
+        Ball ball = geometry_ball(geometry, i);
+        geometry->bounds = box_with_ball(geometry->bounds, ball.center, ball.radius);
+    }
 }
 
 /* A tree is far from the origin beyond this many times its size. */
@@ -216,7 +212,7 @@ Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *
     TRY_GOTO(copy_ids(tree, &built, err));
     TRY_GOTO(add_model(tree, params, &built, &counted, err));
     TRY_GOTO(geometry_check(&built, err));
-    TRY_GOTO(find_bounds(&built, err));
+    find_bounds(&built);
     move_to_origin(&built);
     *geometry = built;
     if (report)

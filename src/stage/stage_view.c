@@ -1,9 +1,8 @@
-/* The camera frames the geometry; ground and lights of the look, which are given in the camera's
- * axes and in sizes of the tree, are placed about it. */
+/* A camera that frames the geometry shows the balls about the ends of its vessels exactly; the
+ * distance of an orthographic camera changes nothing but the depths it reports, so it stands one
+ * diagonal of the geometry's box in front of its centre. Ground and lights of the look, which are
+ * given in the camera's axes and in sizes of the tree, are placed about it. */
 #include "stage/stage.h"
-
-#include "stage/framing.h"
-#include <stdlib.h>
 
 ViewParams view_defaults(void)
 {
@@ -15,6 +14,136 @@ ViewParams view_defaults(void)
                         .margin = 0.05};
 }
 
+/* ---- the camera ------------------------------------------------------------------------------ */
+
+static const double degrees_pi = 3.14159265358979323846 / 180;
+
+void view_axes(NamedView view, Vec3 *direction, Vec3 *up)
+{
+    static const struct {
+        Vec3 direction, up;
+    } axes[] = {
+        [VIEW_FRONT] = {{0, 0, -1}, {0, 1, 0}},
+        [VIEW_TOP] = {{0, -1, 0}, {0, 0, -1}},
+        [VIEW_LEFT] = {{1, 0, 0}, {0, 1, 0}},
+        [VIEW_ISO] = {{-1, -1, -1}, {0, 1, 0}},
+    };
+    *direction = vec3_normalized(axes[view].direction);
+    *up = axes[view].up;
+}
+
+/* Right and up of unit length, square to the direction. */
+static Status camera_axes(const ViewParams *params, Vec3 center, Vec3 *direction, Vec3 *right,
+                          Vec3 *up, Err *err)
+{
+    Vec3 sky;
+    view_axes(params->view, direction, &sky);
+    if (params->has_location) {
+        Vec3 target = params->has_look_at ? params->look_at : center;
+        Vec3 span = vec3_sub(target, params->location);
+        if (!isfinite(vec3_length(span)))
+            return err_set(err, STATUS_USAGE,
+                           "`location` and `look_at` (%s) are farther apart than 1e150 mm",
+                           params->has_look_at ? "given" : "the middle of the tree");
+        if (!(vec3_length(span) > 0))
+            return err_set(err, STATUS_USAGE,
+                           "`location` and `look_at` are the same point, so the camera has no "
+                           "direction; give two different points");
+        *direction = vec3_normalized(span);
+        sky = vec3(0, 1, 0);
+    }
+    if (params->has_up)
+        sky = params->up;
+    Vec3 across = vec3_cross(*direction, sky);
+    if (!(vec3_length(across) > 1e-9 * vec3_length(sky)) && !params->has_up) {
+        sky = vec3(0, 0, -1); /* looking along the y axis */
+        across = vec3_cross(*direction, sky);
+    }
+    if (!(vec3_length(across) > 1e-9 * vec3_length(sky)))
+        return err_set(err, STATUS_USAGE,
+                       "`up` points along the camera's direction; give a vector that does not");
+    *right = vec3_normalized(across);
+    *up = vec3_cross(*right, *direction);
+    return STATUS_OK;
+}
+
+typedef struct Extent {
+    double low_x, high_x, low_y, high_y;
+} Extent;
+
+static Extent extent_along(const Geometry *geometry, Vec3 right, Vec3 up)
+{
+    Extent extent = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+    for (size_t i = 0; i < geometry_balls(geometry); i++) {
+        Ball ball = geometry_ball(geometry, i);
+        double x = vec3_dot(ball.center, right), y = vec3_dot(ball.center, up);
+        extent.low_x = fmin(extent.low_x, x - ball.radius);
+        extent.high_x = fmax(extent.high_x, x + ball.radius);
+        extent.low_y = fmin(extent.low_y, y - ball.radius);
+        extent.high_y = fmax(extent.high_y, y + ball.radius);
+    }
+    return extent;
+}
+
+/* The least distance from the middle, against the direction, at which a pinhole whose half-width
+ * and half-height at unit distance are tan_x and tan_y sees every ball whole. */
+static double framing_distance(const Geometry *geometry, Vec3 direction, Vec3 right, Vec3 up,
+                               double tan_x, double tan_y)
+{
+    Vec3 center = box_center(geometry->bounds);
+    double slant_x = sqrt(1 + tan_x * tan_x), slant_y = sqrt(1 + tan_y * tan_y);
+    double distance = 0;
+    for (size_t i = 0; i < geometry_balls(geometry); i++) {
+        Ball ball = geometry_ball(geometry, i);
+        Vec3 from = vec3_sub(ball.center, center);
+        double towards = -vec3_dot(from, direction), r = ball.radius;
+        double wide = (fabs(vec3_dot(from, right)) + r * slant_x) / tan_x;
+        double high = (fabs(vec3_dot(from, up)) + r * slant_y) / tan_y;
+        distance = fmax(distance, towards + fmax(wide, high));
+    }
+    return distance;
+}
+
+/* The camera that `params` asks for. Where they leave open where it stands or how much it shows, it
+ * shows all of the balls with the margin. STATUS_USAGE when the vectors given make no camera. */
+static Status place_camera(const Geometry *geometry, const ViewParams *params, Camera *camera,
+                           Err *err)
+{
+    const Box bounds = geometry->bounds;
+    Vec3 center = box_center(bounds), direction = {0}, right = {0}, up = {0};
+    TRY(camera_axes(params, center, &direction, &right, &up, err));
+    double diagonal = vec3_distance(bounds.low, bounds.high);
+    double aspect = (double)params->width / params->height;
+    double used = 1 - 2 * params->margin; /* part of the picture that the tree may fill */
+    *camera = (Camera){.projection = params->projection,
+                       .direction = direction,
+                       .width = params->width,
+                       .height = params->height};
+    if (params->projection == PROJECTION_ORTHOGRAPHIC) {
+        Extent extent = extent_along(geometry, right, up);
+        double wide = extent.high_x - extent.low_x, high = extent.high_y - extent.low_y;
+        double height =
+            params->height_mm > 0 ? params->height_mm : fmax(high, wide / aspect) / used;
+        Vec3 middle = vec3_scale(right, (extent.low_x + extent.high_x) / 2);
+        middle = vec3_add_scaled(middle, up, (extent.low_y + extent.high_y) / 2);
+        middle = vec3_add_scaled(middle, direction, vec3_dot(center, direction) - diagonal);
+        camera->location = params->has_location ? params->location : middle;
+        camera->right = vec3_scale(right, height * aspect);
+        camera->up = vec3_scale(up, height);
+        return STATUS_OK;
+    }
+    double tan_x = tan(params->angle_deg * degrees_pi / 2), tan_y = tan_x / aspect;
+    double distance = framing_distance(geometry, direction, right, up, tan_x * used, tan_y * used);
+    camera->location =
+        params->has_location ? params->location : vec3_add_scaled(center, direction, -distance);
+    camera->right = vec3_scale(right, 2 * tan_x);
+    camera->up = vec3_scale(up, 2 * tan_y);
+    return STATUS_OK;
+}
+
+/* ---- ground and lights ------------------------------------------------------------------------
+ */
+
 /* A vector of right, up and towards the viewer, in the world. */
 static Vec3 from_camera(const Camera *camera, Vec3 v)
 {
@@ -24,8 +153,7 @@ static Vec3 from_camera(const Camera *camera, Vec3 v)
 }
 
 /* The ground lies just beyond the last ball along its normal, and farther by the gap. */
-static Ground place_ground(const LookGround *look, const Ball *balls, size_t n,
-                           const Camera *camera, Box bounds)
+static Ground place_ground(const LookGround *look, const Camera *camera, const Geometry *geometry)
 {
     if (!look->present)
         return (Ground){0};
@@ -39,10 +167,12 @@ static Ground place_ground(const LookGround *look, const Ball *balls, size_t n,
                                 .brilliance = 1,
                                 .phong_size = 40,
                                 .roughness = 0.05f}};
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < geometry_balls(geometry); i++) {
+        Ball ball = geometry_ball(geometry, i);
         ground.offset_mm =
-            fmin(ground.offset_mm, vec3_dot(ground.normal, balls[i].center) - balls[i].radius);
-    ground.offset_mm -= look->gap * vec3_distance(bounds.low, bounds.high) / 2;
+            fmin(ground.offset_mm, vec3_dot(ground.normal, ball.center) - ball.radius);
+    }
+    ground.offset_mm -= look->gap * vec3_distance(geometry->bounds.low, geometry->bounds.high) / 2;
     return ground;
 }
 
@@ -80,14 +210,8 @@ Status stage_view(const Look *look, const ViewParams *params, const Geometry *ge
     ViewParams near = *params; /* to the origin, as the geometry is */
     near.location = vec3_sub(params->location, geometry->origin);
     near.look_at = vec3_sub(params->look_at, geometry->origin);
-    Ball *balls;
-    size_t n;
-    TRY(framing_balls(geometry, &balls, &n, err));
-    Status status = framing_camera(balls, n, geometry->bounds, &near, &made.camera, err);
-    if (status == STATUS_OK)
-        made.ground = place_ground(&look->ground, balls, n, &made.camera, geometry->bounds);
-    free(balls);
-    TRY(status);
+    TRY(place_camera(geometry, &near, &made.camera, err));
+    made.ground = place_ground(&look->ground, &made.camera, geometry);
     for (size_t i = 0; i < made.n_lights; i++)
         made.lights[i] =
             place_light(&look->lights[i], &made.camera, geometry->bounds, params->shadows);

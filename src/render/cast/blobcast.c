@@ -13,7 +13,6 @@
  * about the sign at their common end, by rounding, that end is the root. */
 #include "render/cast/blobcast.h"
 
-#include "render/cast/bvh.h"
 #include "surface/surface.h"
 #include <stdlib.h>
 
@@ -45,12 +44,10 @@ typedef struct Course {
 
 struct BlobCast {
     const Geometry *geometry;
-    Primitive *hulls; /* a cylinder for each segment: its balls hold all of its field */
-    Bvh *bvh;
+    BoxTree boxes; /* a box for each segment, which holds all of its field */
 };
 
 struct BlobScratch {
-    uint32_t *candidates;
     Span *spans;   /* of segments */
     Piece *pieces; /* of a group */
     Span *order;   /* of pieces */
@@ -63,22 +60,22 @@ Status blobcast_new(const Geometry *geometry, BlobCast **out, Err *err)
 {
     size_t n = geometry->n_segments;
     BlobCast *cast = NULL;
+    Box *boxes = NULL;
     Status status;
     TRY_GOTO(mem_calloc(&cast, 1, sizeof *cast, "blobs", err));
+    TRY_GOTO(mem_calloc(&boxes, n, sizeof *boxes, "boxes", err));
     cast->geometry = geometry;
-    TRY_GOTO(mem_calloc(&cast->hulls, n, sizeof *cast->hulls, "segments", err));
-    double reach = blob_reach(&blob_shape);
     for (size_t i = 0; i < n; i++) {
         const FieldSegment *segment = &geometry->segments[i];
-        cast->hulls[i] = (Primitive){.kind = PRIMITIVE_CYLINDER,
-                                     .a = segment->a,
-                                     .b = segment->b,
-                                     .radius_mm = segment->radius_mm * reach};
+        double reach = segment->radius_mm * blob_reach(&blob_shape);
+        boxes[i] = box_with_ball(box_empty(), segment->a, reach);
+        boxes[i] = box_with_ball(boxes[i], segment->b, reach);
     }
-    TRY_GOTO(bvh_build(cast->hulls, n, &cast->bvh, err));
+    TRY_GOTO(boxtree_build(boxes, n, &cast->boxes, err));
     *out = cast;
-    return STATUS_OK;
+    cast = NULL;
 done:
+    free(boxes);
     blobcast_free(cast);
     return status;
 }
@@ -87,8 +84,7 @@ void blobcast_free(BlobCast *cast)
 {
     if (!cast)
         return;
-    bvh_free(cast->bvh);
-    free(cast->hulls);
+    boxtree_release(&cast->boxes);
     free(cast);
 }
 
@@ -98,7 +94,6 @@ Status blobscratch_new(const BlobCast *cast, BlobScratch **out, Err *err)
     size_t n = cast->geometry->n_segments;
     Status status;
     TRY_GOTO(mem_calloc(&scratch, 1, sizeof *scratch, "workspaces", err));
-    TRY_GOTO(mem_calloc(&scratch->candidates, n, sizeof *scratch->candidates, "segments", err));
     TRY_GOTO(mem_calloc(&scratch->spans, n, sizeof *scratch->spans, "segments", err));
     /* Touched only as far as a ray ever needs. */
     TRY_GOTO(mem_calloc(&scratch->pieces, n, MAX_PIECES * sizeof *scratch->pieces, "pieces", err));
@@ -115,7 +110,6 @@ void blobscratch_free(BlobScratch *scratch)
 {
     if (!scratch)
         return;
-    free(scratch->candidates);
     free(scratch->spans);
     free(scratch->pieces);
     free(scratch->order);
@@ -363,13 +357,16 @@ static bool first_root(BlobScratch *scratch, size_t n, double t_min, double t_ma
 
 static size_t find_spans(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_max)
 {
-    size_t count = bvh_candidates(cast->bvh, ray, 0, t_max, scratch->candidates), n = 0;
+    BoxWalk walk;
+    size_t n = 0;
     double reach = blob_reach(&blob_shape);
-    for (size_t i = 0; i < count; i++) {
-        Span *span = &scratch->spans[n];
-        span->number = scratch->candidates[i];
-        n += find_span(&cast->geometry->segments[span->number], ray, reach, t_max, span);
-    }
+    boxwalk_start(&walk, &cast->boxes, ray.origin, ray.direction, 0, false);
+    for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, t_max));)
+        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
+            Span *span = &scratch->spans[n];
+            span->number = cast->boxes.items[i];
+            n += find_span(&cast->geometry->segments[span->number], ray, reach, t_max, span);
+        }
     sort_spans(scratch->spans, n);
     return n;
 }

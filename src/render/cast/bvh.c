@@ -19,8 +19,7 @@ struct Bvh {
 static Box primitive_box(const Primitive *primitive)
 {
     Box box = box_with_ball(box_empty(), primitive->a, primitive->radius_mm);
-    bool joint = primitive->kind == PRIMITIVE_JOINT;
-    box = box_with_ball(box, primitive->b, joint ? primitive->radius_b_mm : primitive->radius_mm);
+    box = box_with_ball(box, primitive->b, primitive_radius_b(primitive));
     /* Rounding of a hit at the rim of the box must not lose it. */
     return box_padded(box, 1e-9 * (1 + vec3_length(box.low) + vec3_length(box.high)));
 }
@@ -117,15 +116,4 @@ bool bvh_any_hit(const Bvh *bvh, Ray ray, double t_min, double t_max)
                     return true;
         }
     return false;
-}
-
-size_t bvh_candidates(const Bvh *bvh, Ray ray, double t_min, double t_max, uint32_t *found)
-{
-    BoxWalk walk;
-    size_t n = 0;
-    boxwalk_start(&walk, &bvh->tree, ray.origin, ray.direction, t_min, false);
-    for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, t_max));)
-        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++)
-            found[n++] = bvh->tree.items[i];
-    return n;
 }

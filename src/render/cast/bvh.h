@@ -19,8 +19,4 @@ bool bvh_first_hit(const Bvh *bvh, Ray ray, double t_min, Hit *hit, size_t *prim
 /* Whether there is a crossing with t in (t_min, t_max). */
 bool bvh_any_hit(const Bvh *bvh, Ray ray, double t_min, double t_max);
 
-/* The primitives, in no order, whose leaf's box the ray meets in [t_min, t_max]: how many. `found`
- * has room for all. */
-size_t bvh_candidates(const Bvh *bvh, Ray ray, double t_min, double t_max, uint32_t *found);
-
 #endif

@@ -13,9 +13,7 @@
  * POV-Ray also remembers the last cell that a ray missed, and takes a near ray for a miss of the
  * same cell if the least f it saw exceeds max_gradient times the distance of the two. Scenes of
  * ours do not let it: the last cell missed is always Cell_Guard of templates/povray/isosurface.inc.
- *
- * The cells come in Morton order, so halving their array again and again makes a hierarchy of
- * boxes. */
+ */
 #include "render/cast/povray_isosurface.h"
 
 #include <float.h>
@@ -24,18 +22,9 @@
 /* What POV-Ray calls EPSILON, CLOSE_TOLERANCE, DEPTH_TOLERANCE and BOUND_HUGE (shape/boxes.cpp). */
 static const double flat = 1e-10, close_by = 1e-6, behind = 1e-6, endless = 2e10;
 
-typedef struct CellNode {
-    Box box;
-    uint32_t first, count; /* of cells; the halves are nodes[left] and nodes[left + 1] */
-    uint32_t left;         /* 0 in a leaf */
-} CellNode;
-
-enum { LEAF_CELLS = 2, STACK_SIZE = 64 };
-
 struct PovrayIsosurface {
     CellTree tree;
-    CellNode *nodes;
-    uint32_t n_nodes;
+    BoxTree boxes; /* of its cells */
 };
 
 /* ---- one cell -------------------------------------------------------------------------------- */
@@ -138,40 +127,23 @@ static Vec3 cell_normal(const CellTree *tree, const Cell *cell, Vec3 x)
 
 /* ---- all cells ------------------------------------------------------------------------------- */
 
-static void build_node(PovrayIsosurface *isosurface, uint32_t number, uint32_t first,
-                       uint32_t count)
-{
-    CellNode *node = &isosurface->nodes[number];
-    *node = (CellNode){box_empty(), first, count, 0};
-    if (count > LEAF_CELLS) {
-        node->left = isosurface->n_nodes;
-        isosurface->n_nodes += 2;
-        build_node(isosurface, node->left, first, count / 2);
-        build_node(isosurface, node->left + 1, first + count / 2, count - count / 2);
-        node->box =
-            box_union(isosurface->nodes[node->left].box, isosurface->nodes[node->left + 1].box);
-        return;
-    }
-    for (uint32_t i = first; i < first + count; i++)
-        node->box = box_union(node->box,
-                              (Box){isosurface->tree.cells[i].low, isosurface->tree.cells[i].high});
-}
-
 Status povray_isosurface_new(const Geometry *geometry, const CellParams *params,
                              PovrayIsosurface **out, Err *err)
 {
-    PovrayIsosurface *isosurface = NULL;
+    PovrayIsosurface *made = NULL;
+    Box *boxes = NULL;
     Status status;
-    TRY_GOTO(mem_calloc(&isosurface, 1, sizeof *isosurface, "cells", err));
-    TRY_GOTO(celltree_build(geometry, params, &isosurface->tree, err));
-    TRY_GOTO(mem_calloc(&isosurface->nodes, 2 * isosurface->tree.n_cells + 1,
-                        sizeof *isosurface->nodes, "boxes of cells", err));
-    isosurface->n_nodes = 1;
-    build_node(isosurface, 0, 0, (uint32_t)isosurface->tree.n_cells);
-    *out = isosurface;
-    return STATUS_OK;
+    TRY_GOTO(mem_calloc(&made, 1, sizeof *made, "cells", err));
+    TRY_GOTO(celltree_build(geometry, params, &made->tree, err));
+    TRY_GOTO(mem_calloc(&boxes, made->tree.n_cells, sizeof *boxes, "boxes of cells", err));
+    for (size_t i = 0; i < made->tree.n_cells; i++)
+        boxes[i] = (Box){made->tree.cells[i].low, made->tree.cells[i].high};
+    TRY_GOTO(boxtree_build(boxes, made->tree.n_cells, &made->boxes, err));
+    *out = made;
+    made = NULL;
 done:
-    povray_isosurface_free(isosurface);
+    free(boxes);
+    povray_isosurface_free(made);
     return status;
 }
 
@@ -180,40 +152,30 @@ void povray_isosurface_free(PovrayIsosurface *isosurface)
     if (!isosurface)
         return;
     celltree_release(&isosurface->tree);
-    free(isosurface->nodes);
+    boxtree_release(&isosurface->boxes);
     free(isosurface);
 }
 
-/* The nearest hit in [t_min, t_max], or any with `any`, as *cell and *t. */
+/* The nearest hit in [t_min, t_max), of equals that in the first cell, or any with `any`, as *cell
+ * and *t. */
 static bool find_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min, double t_max,
                      bool any, uint32_t *cell, double *t)
 {
-    Vec3 inverse = vec3_inverse(ray.direction);
-    uint32_t stack[STACK_SIZE];
-    int top = 0;
+    BoxWalk walk;
     bool found = false;
-    stack[top++] = 0;
-    while (top > 0 && !(any && found)) {
-        const CellNode *node = &isosurface->nodes[stack[--top]];
-        double low = 0, high = t_max;
-        if (!hit_box(ray.origin, inverse, &node->box, &low, &high))
-            continue;
-        if (node->left) {
-            stack[top++] = node->left + 1;
-            stack[top++] = node->left;
-            continue;
-        }
-        for (uint32_t i = node->first; i < node->first + node->count; i++) {
+    *t = t_max;
+    boxwalk_start(&walk, &isosurface->boxes, ray.origin, ray.direction, 0, !any);
+    for (const BoxNode *leaf; !(any && found) && (leaf = boxwalk_leaf(&walk, *t));)
+        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
+            uint32_t number = isosurface->boxes.items[i];
             double at;
-            if (hit_cell(&isosurface->tree, &isosurface->tree.cells[i], ray, &at) && at >= t_min &&
-                at < t_max) {
+            if (hit_cell(&isosurface->tree, &isosurface->tree.cells[number], ray, &at) &&
+                at >= t_min && (at < *t || (found && at == *t && number < *cell))) {
                 found = true;
-                t_max = at;
-                *cell = i;
+                *t = at;
+                *cell = number;
             }
         }
-    }
-    *t = t_max;
     return found;
 }
 
