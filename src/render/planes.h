@@ -6,14 +6,6 @@
 #include "render/job.h"
 #include <math.h>
 
-/* Makes the planes that are wanted, zeroed, in *frame (owned by the caller even when this fails):
- * of colour 8-bit codes if `codes`, else floats. STATUS_MEMORY. */
-MUST_CHECK Status planes_make(int width, int height, const RenderParams *params, bool codes,
-                              Frame *frame, Err *err);
-
-/* Cuts off the rows of the band that are there for their neighbours alone. */
-void planes_cut(Frame *frame, const Band *band);
-
 static inline bool planes_want_geometry(const Frame *frame)
 {
     return frame->depth.values || frame->normal.values || frame->id.ids;

@@ -10,7 +10,6 @@
 #include "render/cast/caster.h"
 #include "render/field/fieldrender.h"
 #include "render/light/rayrender.h"
-#include "render/planes.h"
 #include "render/raster/rasterrender.h"
 #include "render/raster/zbuffer.h"
 #include "render/tile/tilekernels.h"
@@ -34,6 +33,52 @@ struct Renderer {
     size_t n_lights;
     int antialias;
 };
+
+/* ---- planes ------------------------------------------------------------------------------------
+ */
+
+/* Makes the planes that are wanted, zeroed, in *frame (owned by the caller even when this fails):
+ * of colour 8-bit codes if `codes`, else floats. */
+static Status make_planes(int width, int height, const RenderParams *params, bool codes,
+                          Frame *frame, Err *err)
+{
+    if (params->want_color && codes)
+        TRY(picture_init(&frame->codes, width, height, 3, 8, err));
+    else if (params->want_color)
+        TRY(plane_init(&frame->color, width, height, 3, err));
+    if (params->want_depth)
+        TRY(plane_init(&frame->depth, width, height, 1, err));
+    if (params->want_normal)
+        TRY(plane_init(&frame->normal, width, height, 3, err));
+    if (params->want_id)
+        TRY(idplane_init(&frame->id, width, height, err));
+    return STATUS_OK;
+}
+
+static void cut_plane(Plane *plane, const Band *band)
+{
+    if (!plane->values)
+        return;
+    size_t row = (size_t)plane->width * (size_t)plane->channels;
+    plane->height = band->rows - band->above - band->below;
+    memmove(plane->values, plane->values + (size_t)band->above * row,
+            (size_t)plane->height * row * sizeof *plane->values);
+}
+
+/* Cuts off the rows of the band that are there for their neighbours alone; those of codes have
+ * none. */
+static void cut_planes(Frame *frame, const Band *band)
+{
+    cut_plane(&frame->color, band);
+    cut_plane(&frame->depth, band);
+    cut_plane(&frame->normal, band);
+    if (!frame->id.ids)
+        return;
+    size_t width = (size_t)frame->id.width;
+    frame->id.height = band->rows - band->above - band->below;
+    memmove(frame->id.ids, frame->id.ids + (size_t)band->above * width,
+            (size_t)frame->id.height * width * sizeof *frame->id.ids);
+}
 
 /* ---- what is prepared ------------------------------------------------------------------------ */
 
@@ -161,7 +206,7 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
     TRY(prepare_view(renderer, drawing, err));
     double start_s = clock_seconds();
     bool codes = params->codes_suffice && params->antialias == 1 && renderer->engine->makes_codes;
-    TRY(planes_make(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
+    TRY(make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
     TRY(renderer->engine->rows(drawing, renderer->prepared, frame, err));
     renderer->stats.trace_s += clock_seconds() - start_s;
     return STATUS_OK;
@@ -203,7 +248,7 @@ Status renderer_rows(Renderer *renderer, const View *view, const Appearance *app
         return status;
     }
     if (drawing.band.above + drawing.band.below)
-        planes_cut(&made, &drawing.band);
+        cut_planes(&made, &drawing.band);
     *frame = made;
     return STATUS_OK;
 }

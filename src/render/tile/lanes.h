@@ -15,10 +15,14 @@
 #if defined LANES_AVX512
 #include <immintrin.h>
 #define LANES 16
+#define WIDE(operation) _mm512_##operation
+typedef __m512 WideFloats;
 #define LANE_TARGET __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,fma")))
 #elif defined LANES_AVX2
 #include <immintrin.h>
 #define LANES 8
+#define WIDE(operation) _mm256_##operation
+typedef __m256 WideFloats;
 #define LANE_TARGET __attribute__((target("avx2,fma")))
 #else
 #define LANES 4
@@ -46,28 +50,32 @@ LANE_FN void lanes_store(float *values, Lanes lanes)
     __builtin_memcpy(values, &lanes, sizeof lanes);
 }
 
-#if defined LANES_AVX512
+#if LANES > 4
 
 /* a b + c */
 LANE_FN Lanes lanes_fma(Lanes a, Lanes b, Lanes c)
 {
-    return (Lanes)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+    return (Lanes)WIDE(fmadd_ps)((WideFloats)a, (WideFloats)b, (WideFloats)c);
 }
 
 LANE_FN Lanes lanes_sqrt(Lanes a)
 {
-    return (Lanes)_mm512_sqrt_ps((__m512)a);
+    return (Lanes)WIDE(sqrt_ps)((WideFloats)a);
 }
 
 LANE_FN Lanes lanes_min(Lanes a, Lanes b)
 {
-    return (Lanes)_mm512_min_ps((__m512)a, (__m512)b);
+    return (Lanes)WIDE(min_ps)((WideFloats)a, (WideFloats)b);
 }
 
 LANE_FN Lanes lanes_max(Lanes a, Lanes b)
 {
-    return (Lanes)_mm512_max_ps((__m512)a, (__m512)b);
+    return (Lanes)WIDE(max_ps)((WideFloats)a, (WideFloats)b);
 }
+
+#endif
+
+#if defined LANES_AVX512
 
 /* Bit i: lane i. */
 LANE_FN uint32_t lanes_bits(LaneMask mask)
@@ -98,27 +106,6 @@ LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
 }
 
 #elif defined LANES_AVX2
-
-/* a b + c */
-LANE_FN Lanes lanes_fma(Lanes a, Lanes b, Lanes c)
-{
-    return (Lanes)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
-}
-
-LANE_FN Lanes lanes_sqrt(Lanes a)
-{
-    return (Lanes)_mm256_sqrt_ps((__m256)a);
-}
-
-LANE_FN Lanes lanes_min(Lanes a, Lanes b)
-{
-    return (Lanes)_mm256_min_ps((__m256)a, (__m256)b);
-}
-
-LANE_FN Lanes lanes_max(Lanes a, Lanes b)
-{
-    return (Lanes)_mm256_max_ps((__m256)a, (__m256)b);
-}
 
 LANE_FN Lanes lanes_select(LaneMask mask, Lanes a, Lanes b)
 {
