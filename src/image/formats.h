@@ -33,6 +33,12 @@ Status image_other_colors(const char *name, const char *where, Err *err);
 MUST_CHECK Status image_check_profile(const char *name, const uint8_t *profile, size_t size,
                                       Err *err);
 
+/* Four bytes, the most significant first. */
+static inline uint32_t image_u32(const uint8_t *at)
+{
+    return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
+}
+
 /* A library's words as part of a sentence: what is no printable ASCII becomes a blank. */
 void image_plain_text(char *text);
 
@@ -57,7 +63,7 @@ typedef struct RowEncoder {
     /* Writes what comes first; *self is owned by the caller, who releases it, also on failure. */
     Status (*begin)(FILE *stream, const ImageForm *form, void **self, Err *err);
     Status (*rows)(void *self, const void *values, int first, int n, Err *err);
-    Status (*end)(void *self, Err *err); /* writes what comes last */
+    Status (*end)(void *self, Err *err); /* writes what comes last; may be NULL */
     void (*release)(void *self);         /* NULL is allowed */
     bool plain;                          /* the file has the size of its values, and a header */
 } RowEncoder;

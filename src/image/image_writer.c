@@ -113,8 +113,9 @@ Status imagewriter_floats(ImageWriter *writer, const Plane *rows, Err *err)
 Status imagewriter_commit(ImageWriter *writer, Err *err)
 {
     assert(writer->next == writer->form.height);
-    Status status = writer->encoder->end(writer->state, err);
-    writer->encoder->release(writer->state);
+    const RowEncoder *encoder = writer->encoder;
+    Status status = encoder->end ? encoder->end(writer->state, err) : STATUS_OK;
+    encoder->release(writer->state);
     if (status == STATUS_OK) {
         status = outfile_commit(&writer->file, err);
     } else {

@@ -115,11 +115,4 @@ static Status write_rows(void *self, const void *values, int first, int n, Err *
     return STATUS_OK;
 }
 
-static Status end(void *self, Err *err)
-{
-    (void)self;
-    (void)err;
-    return STATUS_OK;
-}
-
-const RowEncoder pfm_encoder = {begin, write_rows, end, release_writer, true};
+const RowEncoder pfm_encoder = {begin, write_rows, NULL, release_writer, true};

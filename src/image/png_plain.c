@@ -21,11 +21,6 @@ typedef struct Plain {
     size_t size;         /* of compressed */
 } Plain;
 
-static uint32_t read_u32(const uint8_t *at)
-{
-    return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
-}
-
 static bool read_header(Plain *plain, const uint8_t *data, size_t file_size)
 {
     static const int samples_of_type[] = {1, 0, 3, 0, 2, 0, 4};
@@ -34,8 +29,8 @@ static bool read_header(Plain *plain, const uint8_t *data, size_t file_size)
         return false;
     if (data[10] != 0 || data[11] != 0 || data[12] != 0) /* compression, filter, interlace */
         return false;
-    *plain = (Plain){.width = read_u32(data),
-                     .height = read_u32(data + 4),
+    *plain = (Plain){.width = image_u32(data),
+                     .height = image_u32(data + 4),
                      .bits = bits,
                      .samples = samples_of_type[type],
                      .compressed = plain->compressed};
@@ -64,9 +59,9 @@ static bool read_chunks(Plain *plain, const ImageBytes *file)
         if (file->size - at < CHUNK_FRAME)
             return false;
         const uint8_t *chunk = file->bytes + at, *type = chunk + 4, *data = chunk + 8;
-        size_t length = read_u32(chunk);
+        size_t length = image_u32(chunk);
         if (length > file->size - at - CHUNK_FRAME ||
-            libdeflate_crc32(0, type, length + 4) != read_u32(data + length))
+            libdeflate_crc32(0, type, length + 4) != image_u32(data + length))
             return false;
         bool header = memcmp(type, "IHDR", 4) == 0;
         if (header != first ||

@@ -182,12 +182,5 @@ static Status write_rows(void *self, const void *values, int first, int n, Err *
     return STATUS_OK;
 }
 
-static Status end(void *self, Err *err)
-{
-    (void)self;
-    (void)err;
-    return STATUS_OK;
-}
-
-const RowEncoder ppm_encoder = {begin_ppm, write_rows, end, release_writer, true};
-const RowEncoder pgm_encoder = {begin_pgm, write_rows, end, release_writer, true};
+const RowEncoder ppm_encoder = {begin_ppm, write_rows, NULL, release_writer, true};
+const RowEncoder pgm_encoder = {begin_pgm, write_rows, NULL, release_writer, true};

@@ -24,11 +24,6 @@ Status image_other_colors(const char *name, const char *where, Err *err)
 
 enum { TAGS = 128, TAG = 12, DESCRIPTION = 80 };
 
-static size_t read_u32(const uint8_t *at)
-{
-    return (size_t)at[0] << 24 | (size_t)at[1] << 16 | (size_t)at[2] << 8 | at[3];
-}
-
 /* Where the text of a tag begins and ends: ASCII in a "desc", the first translation, of 16-bit
  * letters, in a "mluc". */
 static void find_text(const uint8_t *tag, size_t size, size_t *begin, size_t *end)
@@ -36,10 +31,10 @@ static void find_text(const uint8_t *tag, size_t size, size_t *begin, size_t *en
     *begin = *end = 0;
     if (size >= 12 && memcmp(tag, "desc", 4) == 0) {
         *begin = 12;
-        *end = *begin + read_u32(tag + 8);
+        *end = *begin + image_u32(tag + 8);
     } else if (size >= 28 && memcmp(tag, "mluc", 4) == 0) {
-        *begin = read_u32(tag + 24);
-        *end = *begin + read_u32(tag + 20);
+        *begin = image_u32(tag + 24);
+        *end = *begin + image_u32(tag + 20);
     }
     if (*end > size)
         *end = size;
@@ -49,10 +44,10 @@ static void find_text(const uint8_t *tag, size_t size, size_t *begin, size_t *en
 static void describe(const uint8_t *profile, size_t size, char text[DESCRIPTION])
 {
     size_t length = 0;
-    size_t tags = size >= TAGS + 4 ? read_u32(profile + TAGS) : 0;
+    size_t tags = size >= TAGS + 4 ? image_u32(profile + TAGS) : 0;
     for (size_t i = 0; i < tags && size - TAGS - 4 >= (i + 1) * TAG; i++) {
         const uint8_t *entry = profile + TAGS + 4 + i * TAG;
-        size_t offset = read_u32(entry + 4), tag_size = read_u32(entry + 8), at, end;
+        size_t offset = image_u32(entry + 4), tag_size = image_u32(entry + 8), at, end;
         if (memcmp(entry, "desc", 4) != 0 || offset > size || tag_size > size - offset)
             continue;
         for (find_text(profile + offset, tag_size, &at, &end); at < end && length < DESCRIPTION - 1;

@@ -1,9 +1,8 @@
 /* TIFF through libtiff, from the file in memory: a single page in strips or tiles, grey or RGB, 8
  * or 16 bits or 32-bit floats, however it is compressed. Its Orientation is undone on the way: the
  * place of a pixel is a linear function of its column and row in the file. */
-#include "image/formats.h"
+#include "image/tiff_stream.h"
 
-#include "image/tiff_memory.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,8 +10,7 @@
 
 typedef struct Tiff {
     ImageBytes file;
-    size_t at;
-    void *handle;           /* a TIFF */
+    TiffStream tiff;
     uint32_t width, height; /* in the file */
     int samples, bits;
     bool floats;
@@ -22,7 +20,6 @@ typedef struct Tiff {
     size_t part_bytes;
     void *part;  /* owned */
     Image image; /* made; owned */
-    char complaint[200];
 } Tiff;
 
 static bool tiff_is(const ImageBytes *file)
@@ -32,97 +29,14 @@ static bool tiff_is(const ImageBytes *file)
             memcmp(file->bytes, "II+\0", 4) == 0 || memcmp(file->bytes, "MM\0+", 4) == 0);
 }
 
-/* -------------------------------------------------------------------------------- what libtiff
- * calls */
-
-static tmsize_t on_read(thandle_t user, void *out, tmsize_t size)
-{
-    Tiff *self = user;
-    size_t left = self->file.size - self->at;
-    size_t count = (size_t)size < left ? (size_t)size : left;
-    memcpy(out, self->file.bytes + self->at, count);
-    self->at += count;
-    return (tmsize_t)count;
-}
-
-static tmsize_t on_write(thandle_t user, void *bytes, tmsize_t size)
-{
-    (void)user;
-    (void)bytes;
-    (void)size;
-    return -1;
-}
-
-static toff_t on_seek(thandle_t user, toff_t offset, int whence)
-{
-    Tiff *self = user;
-    toff_t start = whence == SEEK_CUR ? self->at : whence == SEEK_END ? self->file.size : 0;
-    toff_t target = start + offset;
-    self->at = target < self->file.size ? (size_t)target : self->file.size;
-    return self->at;
-}
-
-static int on_close(thandle_t user)
-{
-    (void)user;
-    return 0;
-}
-
-static toff_t on_size(thandle_t user)
-{
-    const Tiff *self = user;
-    return self->file.size;
-}
-
-static int on_error(TIFF *handle, void *user, const char *module, const char *format,
-                    va_list values) PRINTF_LIKE(4, 0);
-static int on_error(TIFF *handle, void *user, const char *module, const char *format,
-                    va_list values)
-{
-    (void)handle;
-    (void)module;
-    Tiff *self = user;
-    if (!*self->complaint)
-        vsnprintf(self->complaint, sizeof self->complaint, format, values);
-    return 1;
-}
-
-static int on_warning(TIFF *handle, void *user, const char *module, const char *format,
-                      va_list values) PRINTF_LIKE(4, 0);
-static int on_warning(TIFF *handle, void *user, const char *module, const char *format,
-                      va_list values)
-{
-    (void)handle;
-    (void)user;
-    (void)module;
-    (void)format;
-    (void)values;
-    return 1;
-}
-
-static TIFF *open_handle(Tiff *self)
-{
-    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
-    if (!options)
-        return NULL;
-    TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, self);
-    TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, self);
-    TIFF *handle = TIFFClientOpenExt(self->file.name, "rm", self, on_read, on_write, on_seek,
-                                     on_close, on_size, NULL, NULL, options);
-    TIFFOpenOptionsFree(options);
-    return handle;
-}
-
-/* ----------------------------------------------------------------------------------------
- * reading */
-
 static Status unsound(Tiff *self, Err *err)
 {
     if (errno == ENOMEM)
         return mem_out_of("to read", self->file.name, err);
-    image_plain_text(self->complaint);
+    image_plain_text(self->tiff.complaint);
     return err_set(err, STATUS_INPUT, "%s: is not a sound TIFF file: %s", self->file.name,
-                   *self->complaint ? self->complaint : "its directory does not fit its data");
+                   *self->tiff.complaint ? self->tiff.complaint
+                                         : "its directory does not fit its data");
 }
 
 /* Where pixels go. The orientations are counted as TIFF does: from 5 on rows are columns. */
@@ -149,11 +63,11 @@ static void set_places(Tiff *self, int orientation)
 static Status check_form(Tiff *self, Err *err)
 {
     uint16_t samples, bits, format, planar, photometric = PHOTOMETRIC_MINISBLACK;
-    TIFFGetField(self->handle, TIFFTAG_PHOTOMETRIC, &photometric);
-    TIFFGetFieldDefaulted(self->handle, TIFFTAG_SAMPLESPERPIXEL, &samples);
-    TIFFGetFieldDefaulted(self->handle, TIFFTAG_BITSPERSAMPLE, &bits);
-    TIFFGetFieldDefaulted(self->handle, TIFFTAG_SAMPLEFORMAT, &format);
-    TIFFGetFieldDefaulted(self->handle, TIFFTAG_PLANARCONFIG, &planar);
+    TIFFGetField(self->tiff.handle, TIFFTAG_PHOTOMETRIC, &photometric);
+    TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_SAMPLESPERPIXEL, &samples);
+    TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_BITSPERSAMPLE, &bits);
+    TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_SAMPLEFORMAT, &format);
+    TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_PLANARCONFIG, &planar);
     self->samples = samples;
     self->bits = bits;
     self->floats = format == SAMPLEFORMAT_IEEEFP;
@@ -178,7 +92,7 @@ static size_t most_bytes(const Tiff *self)
 {
     enum { COMMON_RATIO = 10000, RATIO = 100000, BLANK_STRIP = 64 << 20 };
     uint16_t compression;
-    TIFFGetFieldDefaulted(self->handle, TIFFTAG_COMPRESSION, &compression);
+    TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_COMPRESSION, &compression);
     bool common = compression == COMPRESSION_NONE || compression == COMPRESSION_LZW ||
                   compression == COMPRESSION_PACKBITS || compression == COMPRESSION_DEFLATE ||
                   compression == COMPRESSION_ADOBE_DEFLATE;
@@ -199,16 +113,16 @@ static Status set_parts(Tiff *self, Err *err)
 {
     self->part_width = self->width;
     self->part_height = 1;
-    bool tiled = TIFFIsTiled(self->handle);
+    bool tiled = TIFFIsTiled(self->tiff.handle);
     if (tiled) {
-        TIFFGetField(self->handle, TIFFTAG_TILEWIDTH, &self->part_width);
-        TIFFGetField(self->handle, TIFFTAG_TILELENGTH, &self->part_height);
+        TIFFGetField(self->tiff.handle, TIFFTAG_TILEWIDTH, &self->part_width);
+        TIFFGetField(self->tiff.handle, TIFFTAG_TILELENGTH, &self->part_height);
         TRY(check_claim(self, self->part_width, self->part_height, err));
     }
     self->part_bytes = (size_t)self->part_width * self->part_height * (size_t)self->samples *
                        (size_t)(self->bits / 8);
     TRY(image_check_memory((int)self->part_width, (int)self->part_height, self->part_bytes, err));
-    if ((size_t)(tiled ? TIFFTileSize(self->handle) : TIFFScanlineSize(self->handle)) !=
+    if ((size_t)(tiled ? TIFFTileSize(self->tiff.handle) : TIFFScanlineSize(self->tiff.handle)) !=
         self->part_bytes)
         return unsound(self, err);
     return mem_calloc(&self->part, self->part_bytes, 1, "bytes of a part of a TIFF", err);
@@ -221,15 +135,15 @@ static Status check_colors(Tiff *self, Err *err)
     const float *primaries, *white;
     uint32_t size;
     const void *profile;
-    if (TIFFGetField(self->handle, TIFFTAG_PRIMARYCHROMATICITIES, &primaries))
+    if (TIFFGetField(self->tiff.handle, TIFFTAG_PRIMARYCHROMATICITIES, &primaries))
         for (int i = 0; i < 6; i++)
             xy[i] = (double)primaries[i];
-    if (TIFFGetField(self->handle, TIFFTAG_WHITEPOINT, &white))
+    if (TIFFGetField(self->tiff.handle, TIFFTAG_WHITEPOINT, &white))
         for (int i = 0; i < 2; i++)
             xy[6 + i] = (double)white[i];
     if (self->samples >= 3 && !image_is_srgb(xy))
         return image_other_colors(self->file.name, "PrimaryChromaticities or WhitePoint", err);
-    if (!self->floats && TIFFGetField(self->handle, TIFFTAG_ICCPROFILE, &size, &profile))
+    if (!self->floats && TIFFGetField(self->tiff.handle, TIFFTAG_ICCPROFILE, &size, &profile))
         return image_check_profile(self->file.name, profile, size, err);
     return STATUS_OK;
 }
@@ -238,10 +152,10 @@ static Status read_header(Tiff *self, Err *err)
 {
     uint16_t orientation;
     TRY(check_form(self, err));
-    TIFFGetField(self->handle, TIFFTAG_IMAGEWIDTH, &self->width);
-    TIFFGetField(self->handle, TIFFTAG_IMAGELENGTH, &self->height);
+    TIFFGetField(self->tiff.handle, TIFFTAG_IMAGEWIDTH, &self->width);
+    TIFFGetField(self->tiff.handle, TIFFTAG_IMAGELENGTH, &self->height);
     TRY(check_claim(self, self->width, self->height, err));
-    TIFFGetFieldDefaulted(self->handle, TIFFTAG_ORIENTATION, &orientation);
+    TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_ORIENTATION, &orientation);
     set_places(self, orientation);
     TRY(check_colors(self, err));
     return set_parts(self, err);
@@ -282,8 +196,9 @@ static void take_floats(const Tiff *self, const uint8_t *values, uint32_t x, uin
 /* The part of the file that begins at column `x`, row `y`. */
 static Status read_part(Tiff *self, uint32_t x, uint32_t y, Image *image, Err *err)
 {
-    bool read = TIFFIsTiled(self->handle) ? TIFFReadTile(self->handle, self->part, x, y, 0, 0) >= 0
-                                          : TIFFReadScanline(self->handle, self->part, y, 0) == 1;
+    bool read = TIFFIsTiled(self->tiff.handle)
+                    ? TIFFReadTile(self->tiff.handle, self->part, x, y, 0, 0) >= 0
+                    : TIFFReadScanline(self->tiff.handle, self->part, y, 0) == 1;
     if (!read)
         return unsound(self, err);
     uint32_t n = self->part_width < self->width - x ? self->part_width : self->width - x;
@@ -310,11 +225,11 @@ static Status read_parts(Tiff *self, Image *image, Err *err)
 /* Smaller versions of the page and masks are no pages. */
 static Status check_single(Tiff *self, Err *err)
 {
-    while (!TIFFLastDirectory(self->handle)) {
+    while (!TIFFLastDirectory(self->tiff.handle)) {
         uint32_t kind = 0;
-        if (!TIFFReadDirectory(self->handle))
+        if (!TIFFReadDirectory(self->tiff.handle))
             return unsound(self, err);
-        TIFFGetField(self->handle, TIFFTAG_SUBFILETYPE, &kind);
+        TIFFGetField(self->tiff.handle, TIFFTAG_SUBFILETYPE, &kind);
         if (!(kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)))
             return err_set(err, STATUS_INPUT,
                            "%s: has several pages; only a single picture can be read",
@@ -327,8 +242,7 @@ static Status decode(void *work, Err *err)
 {
     Tiff *self = work;
     Image *image = &self->image;
-    self->handle = open_handle(self);
-    if (!self->handle)
+    if (!tiff_open(&self->tiff, self->file.name, "rm"))
         return unsound(self, err);
     TRY(read_header(self, err));
     int width = (int)(self->swapped ? self->height : self->width);
@@ -346,9 +260,16 @@ static Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
 {
     Tiff self = {.file = *file};
     errno = 0;
-    Status status = tiff_guard(decode, &self, &self.handle, file->name, err);
-    if (self.handle)
-        TIFFClose(self.handle);
+    /* It is only read, whatever fmemopen's declaration says. */
+    void *bytes = (void *)(uintptr_t)file->bytes;
+    self.tiff.stream = fmemopen(bytes, file->size, "rb");
+    if (!self.tiff.stream)
+        return mem_out_of("to read", file->name, err);
+    setvbuf(self.tiff.stream, NULL, _IONBF, 0);
+    Status status = tiff_guard(decode, &self, &self.tiff, file->name, err);
+    if (self.tiff.handle)
+        TIFFClose(self.tiff.handle);
+    fclose(self.tiff.stream);
     free(self.part);
     if (status == STATUS_OK)
         *image = self.image;

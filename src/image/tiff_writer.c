@@ -2,112 +2,38 @@
  * horizontal predictor, no date, so that equal pictures are equal files. BigTIFF where offsets
  * could need more than 32 bits. libtiff goes back to the header at the end, so it needs a file with
  * places. */
-#include "image/formats.h"
+#include "image/tiff_stream.h"
 
-#include "image/tiff_memory.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/types.h>
 #include <tiffio.h>
 
 enum { STRIP_BYTES = 1 << 18 };
 static const double classic_bytes = 4.0e9; /* deflate may add a little to 4 GB less that */
 
 typedef struct Writer {
-    FILE *stream;
-    void *handle;          /* a TIFF */
+    TiffStream tiff;
     const ImageForm *form; /* while it is begun */
     size_t row_bytes;
     int rows_per_strip, height;
     uint8_t *strip; /* owned */
     int filled;     /* rows of it */
     uint32_t next;  /* strip */
-    char complaint[200];
 } Writer;
-
-/* -------------------------------------------------------------------------------- what libtiff
- * calls */
-
-static tmsize_t on_read(thandle_t user, void *out, tmsize_t size)
-{
-    (void)user;
-    (void)out;
-    (void)size;
-    return -1;
-}
-
-static tmsize_t on_write(thandle_t user, void *bytes, tmsize_t size)
-{
-    Writer *self = user;
-    return (tmsize_t)fwrite(bytes, 1, (size_t)size, self->stream);
-}
-
-static toff_t on_seek(thandle_t user, toff_t offset, int whence)
-{
-    Writer *self = user;
-    if (fseeko(self->stream, (off_t)offset, whence) != 0)
-        return (toff_t)-1;
-    return (toff_t)ftello(self->stream);
-}
-
-static int on_close(thandle_t user)
-{
-    (void)user;
-    return 0;
-}
-
-static toff_t on_size(thandle_t user)
-{
-    Writer *self = user;
-    off_t here = ftello(self->stream);
-    fseeko(self->stream, 0, SEEK_END);
-    off_t size = ftello(self->stream);
-    fseeko(self->stream, here, SEEK_SET);
-    return (toff_t)size;
-}
-
-static int on_complaint(TIFF *handle, void *user, const char *module, const char *format,
-                        va_list values) PRINTF_LIKE(4, 0);
-static int on_complaint(TIFF *handle, void *user, const char *module, const char *format,
-                        va_list values)
-{
-    (void)handle;
-    (void)module;
-    Writer *self = user;
-    if (!*self->complaint)
-        vsnprintf(self->complaint, sizeof self->complaint, format, values);
-    return 1;
-}
-
-static TIFF *open_handle(Writer *self, bool big)
-{
-    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
-    if (!options)
-        return NULL;
-    TIFFOpenOptionsSetErrorHandlerExtR(options, on_complaint, self);
-    TIFFOpenOptionsSetWarningHandlerExtR(options, on_complaint, self);
-    TIFF *handle = TIFFClientOpenExt("picture", big ? "wl8" : "wl", self, on_read, on_write,
-                                     on_seek, on_close, on_size, NULL, NULL, options);
-    TIFFOpenOptionsFree(options);
-    return handle;
-}
-
-/* ----------------------------------------------------------------------------------------
- * writing */
 
 static Status failed(Writer *self, Err *err)
 {
-    image_plain_text(self->complaint);
+    image_plain_text(self->tiff.complaint);
     if (errno == ENOMEM)
         return mem_out_of("for the TIFF", "that is written", err);
     return err_set(err, STATUS_IO, "writing the TIFF failed: %s",
-                   *self->complaint ? self->complaint : strerror(errno));
+                   *self->tiff.complaint ? self->tiff.complaint : strerror(errno));
 }
 
 static Status guarded(TiffWork *work, Writer *self, Err *err)
 {
-    return tiff_guard(work, self, &self->handle, "that is written", err);
+    return tiff_guard(work, self, &self->tiff, "that is written", err);
 }
 
 static bool set_fields(TIFF *handle, const ImageForm *form, int rows_per_strip)
@@ -137,8 +63,9 @@ static Status begin_handle(void *self, Err *err)
 {
     Writer *writer = self;
     const ImageForm *form = writer->form;
-    writer->handle = open_handle(writer, (double)writer->row_bytes * form->height > classic_bytes);
-    if (!writer->handle || !set_fields(writer->handle, form, writer->rows_per_strip))
+    bool big = (double)writer->row_bytes * form->height > classic_bytes;
+    if (!tiff_open(&writer->tiff, "picture", big ? "wl8" : "wl") ||
+        !set_fields(writer->tiff.handle, form, writer->rows_per_strip))
         return failed(writer, err);
     return STATUS_OK;
 }
@@ -148,7 +75,7 @@ static Status begin(FILE *stream, const ImageForm *form, void **self, Err *err)
     Writer *writer;
     TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
     *self = writer;
-    writer->stream = stream;
+    writer->tiff.stream = stream;
     writer->height = form->height;
     writer->row_bytes = (size_t)form->width * (size_t)form->channels * (size_t)(form->bits / 8);
     writer->rows_per_strip = (int)(STRIP_BYTES / writer->row_bytes);
@@ -171,7 +98,7 @@ static Status write_strip(void *self, Err *err)
     tmsize_t size = (tmsize_t)((size_t)writer->filled * writer->row_bytes);
     writer->filled = 0;
     errno = 0; /* without room for libdeflate, libtiff takes zlib, which makes other bytes */
-    if (TIFFWriteEncodedStrip(writer->handle, writer->next++, writer->strip, size) != size ||
+    if (TIFFWriteEncodedStrip(writer->tiff.handle, writer->next++, writer->strip, size) != size ||
         errno == ENOMEM)
         return failed(writer, err);
     return STATUS_OK;
@@ -193,7 +120,7 @@ static Status write_rows(void *self, const void *values, int first, int n, Err *
 static Status write_directory(void *self, Err *err)
 {
     Writer *writer = self;
-    return TIFFWriteDirectory(writer->handle) == 1 ? STATUS_OK : failed(writer, err);
+    return TIFFWriteDirectory(writer->tiff.handle) == 1 ? STATUS_OK : failed(writer, err);
 }
 
 static Status end(void *self, Err *err)
@@ -206,7 +133,7 @@ static Status clean_up(void *self, Err *err)
 {
     (void)err;
     Writer *writer = self;
-    TIFFCleanup(writer->handle);
+    TIFFCleanup(writer->tiff.handle);
     return STATUS_OK;
 }
 
@@ -215,7 +142,7 @@ static void release_writer(void *self)
     Writer *writer = self;
     if (!writer)
         return;
-    if (writer->handle)
+    if (writer->tiff.handle)
         (void)!guarded(clean_up, writer, NULL);
     free(writer->strip);
     free(writer);
