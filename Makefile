@@ -33,6 +33,7 @@ POWER_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/power/*.c))
 POWER := $(BUILD)/tests/power/power
 EMBREE := $(BUILD)/tests/bench/embree
 FRAMES := $(BUILD)/tests/bench/frames
+MESHES := $(BUILD)/tests/bench/meshes
 FIT := $(BUILD)/tests/fit/fit_blob
 FUZZ_SOURCES := $(wildcard tests/fuzz/*.c)
 HARNESSES := $(filter-out fuzz replay,$(FUZZ_SOURCES:tests/fuzz/%.c=%))
@@ -63,7 +64,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate bench bench-grow bench-render bench-compare verify-all power power-program fit-blob check check-quick program unit \
+.PHONY: all deps demo validate bench bench-grow bench-render bench-compare bench-mesh verify-all power power-program fit-blob check check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
@@ -90,7 +91,7 @@ validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
 	$(Q)tests/validate
 
 bench: ## the benchmarks, one after another
-	$(Q)for part in grow render compare; do $(MAKE) --no-print-directory bench-$$part || exit; done
+	$(Q)for part in grow render compare mesh; do $(MAKE) --no-print-directory bench-$$part || exit; done
 
 bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
 	$(Q).ci/deps build bench
@@ -106,6 +107,11 @@ bench-compare: ## time `compare` on large pictures, beside idiff and odiff
 	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tests/bench/compare
+
+bench-mesh: ## time the triangulation, and measure how far it is off the surface; BENCH=quick
+	$(Q).ci/deps build
+	$(Q)$(AGAIN) all $(MESHES)
+	$(Q)tests/bench/mesh
 
 verify-all: ## verify models x trees x projections x shadows x antialiasing; report in out/verify/
 	$(Q).ci/deps build run
@@ -178,6 +184,10 @@ $(FUZZ_PROGRAMS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(subst fuzzer-no-link,fuzzer,$(LDFLAGS)) -o $@ $^ $(LDLIBS)
 
+$(MESHES): $(BUILD)/tests/bench/meshes.o $(BUILD)/rooms.a
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
 # A peer to measure against; libembree-dev is a package of `make deps FOR=bench`.
 $(EMBREE): $(BUILD)/tests/bench/embree.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
@@ -208,7 +218,7 @@ $(FAILING): tests/alloc/failing.c Makefile
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
 $(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/surface/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
 
--include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
+-include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 
 packages:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)

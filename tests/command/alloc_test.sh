@@ -56,6 +56,12 @@ test_failed_allocations_in_help() {
     fail_each 400 one help --as fish
 }
 
+test_failed_allocations_in_export() {
+    inputs
+    fail_each 1 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o o.ply
+    fail_each 3 many export "$REPO/tests/golden/strangers.swc" --part-overlaps --tolerance 0.2 -o o.stl
+}
+
 test_failed_allocations_in_convert() {
     inputs
     fail_each 1 one convert ../tree.swc o.swc
