@@ -10,7 +10,7 @@ for tool in Xvfb xdotool xwd; do
 done
 
 open_display() {
-    Xvfb -displayfd 3 -screen 0 1000x800x24 -nolisten tcp 3>display >/dev/null 2>&1 &
+    Xvfb -displayfd 3 -noreset -screen 0 1000x800x24 -nolisten tcp 3>display >/dev/null 2>&1 &
     display_pid=$!
     trap 'kill ${view_pid:-} $display_pid 2>/dev/null; wait' EXIT
     wait_for 30 test -s display || fail "expected a display"
