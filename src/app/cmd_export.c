@@ -57,10 +57,8 @@ static Status check_colors(const ExportOptions *options, const Emitter *emitter,
     const OptionNeed format[] = {{"look", emitter->has_colors, of_colors},
                                  {"color-by", emitter->has_colors, of_colors},
                                  {0}};
-    OptionNeed needs[COLORING_NEEDS];
-    coloring_needs(&options->meshing.coloring, needs);
     TRY(options_check_needs(parsed, format, err));
-    return options_check_needs(parsed, needs, err);
+    return coloring_check_needs(&options->meshing.coloring, parsed, err);
 }
 
 static Status run_export(void *options, Parsed *parsed, Err *err)
@@ -85,6 +83,8 @@ const Command command_export = {
     .needs_output = true,
     .size = sizeof(ExportOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0}, {&coloring_table, offsetof(ExportOptions, meshing.coloring)}},
+    .tables = {{&own_table, 0},
+               {&coloring_table, offsetof(ExportOptions, meshing.coloring)},
+               {&blood_table, offsetof(ExportOptions, meshing.coloring.blood)}},
     .run = run_export,
 };

@@ -1,5 +1,6 @@
 /* One summary, and the statistics on request, as text or as JSON of the same numbers. What options
  * say of the blood is laid over what the tree's file says. */
+#include "app/blood.h"
 #include "app/commands.h"
 #include "app/info_statistics.h"
 #include "app/options.h"
@@ -85,11 +86,8 @@ static void print_columns(const Tree *tree)
 
 typedef struct InfoOptions {
     bool json, stats;
-    TreeMeta flow; /* what the user says of the tree */
-    ViscosityLaw law;
+    BloodOptions blood;
 } InfoOptions;
-
-static const char of_tree[] = "the tree's";
 
 static const Option own[] = {
     {.name = "json", SETS(FLAG, InfoOptions, json), .help = "as JSON"},
@@ -97,55 +95,10 @@ static const Option own[] = {
      SETS(FLAG, InfoOptions, stats),
      .help = "radius and length by level and order, branching ratios"},
     {.name = "lambda",
-     SETS(NUMBER, InfoOptions, flow.number[META_LAMBDA]),
-     GIVEN(InfoOptions, flow.known[META_LAMBDA]),
-     .meta = &meta_rows[META_LAMBDA],
+     SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,
-     .otherwise = of_tree,
+     .otherwise = "the tree's",
      .help = "exponent of the target"},
-    {.name = "q-perf",
-     SETS(NUMBER, InfoOptions, flow.number[META_Q_PERF]),
-     GIVEN(InfoOptions, flow.known[META_Q_PERF]),
-     .meta = &meta_rows[META_Q_PERF],
-     .group = GROUP_BLOOD,
-     .otherwise = of_tree,
-     .help = "flow through the inlet"},
-    {.name = "p-perf",
-     SETS(NUMBER, InfoOptions, flow.number[META_P_PERF]),
-     GIVEN(InfoOptions, flow.known[META_P_PERF]),
-     .meta = &meta_rows[META_P_PERF],
-     .group = GROUP_BLOOD,
-     .otherwise = of_tree,
-     .help = "pressure at the inlet"},
-    {.name = "viscosity",
-     SETS(NUMBER, InfoOptions, flow.number[META_VISCOSITY]),
-     GIVEN(InfoOptions, flow.known[META_VISCOSITY]),
-     .meta = &meta_rows[META_VISCOSITY],
-     .group = GROUP_BLOOD,
-     .otherwise = of_tree,
-     .help = "of the blood"},
-    {.name = "viscosity-law",
-     SETS(CHOICE, InfoOptions, law),
-     GIVEN(InfoOptions, flow.known[META_VISCOSITY_LAW]),
-     .choices = viscosity_law_names,
-     .group = GROUP_BLOOD,
-     .otherwise = of_tree,
-     .help = "the same in all vessels, or by their diameter"},
-    {.name = "hematocrit",
-     SETS(NUMBER, InfoOptions, flow.number[META_HEMATOCRIT]),
-     GIVEN(InfoOptions, flow.known[META_HEMATOCRIT]),
-     .meta = &meta_rows[META_HEMATOCRIT],
-     .group = GROUP_BLOOD,
-     .argument = "H",
-     .otherwise = of_tree,
-     .help = "of the blood, for pries"},
-    {.name = "plasma-viscosity",
-     SETS(NUMBER, InfoOptions, flow.number[META_PLASMA_VISCOSITY]),
-     GIVEN(InfoOptions, flow.known[META_PLASMA_VISCOSITY]),
-     .meta = &meta_rows[META_PLASMA_VISCOSITY],
-     .group = GROUP_BLOOD,
-     .otherwise = of_tree,
-     .help = "of the plasma, for pries"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -170,21 +123,15 @@ static Status show(const InfoOptions *options, const char *path, const Tree *tre
 
 static Status run_info(void *options, Parsed *parsed, Err *err)
 {
-    InfoOptions *own_options = options;
-    TreeMeta *flow = &own_options->flow;
-    flow->number[META_VISCOSITY_LAW] = own_options->law;
+    const InfoOptions *own_options = options;
+    const TreeMeta said = blood_said(&own_options->blood);
     Status status = STATUS_OK;
     Tree tree = {0};
     TreeSummary summary;
     TreeStatistics statistics = {0};
     TRY(tree_read(&tree, parsed->operands[0], err));
-    bool pries = derive_viscosity_law(&tree, flow) == VISCOSITY_PRIES;
-    const OptionNeed needs[] = {{"viscosity", !pries, "is for --viscosity-law constant"},
-                                {"hematocrit", pries, "is for --viscosity-law pries"},
-                                {"plasma-viscosity", pries, "is for --viscosity-law pries"},
-                                {0}};
-    TRY_GOTO(options_check_needs(parsed, needs, err));
-    TRY_GOTO(derive_summary(&tree, flow, &summary, err));
+    TRY_GOTO(blood_check(&own_options->blood, &tree, parsed, err));
+    TRY_GOTO(derive_summary(&tree, &said, &summary, err));
     if (own_options->stats)
         TRY_GOTO(derive_statistics(&tree, &statistics, err));
     status = show(own_options, parsed->operands[0], &tree, &summary, &statistics, err);
@@ -204,6 +151,6 @@ const Command command_info = {
     .min_operands = 1,
     .max_operands = 1,
     .size = sizeof(InfoOptions),
-    .tables = {{&own_table, 0}},
+    .tables = {{&own_table, 0}, {&blood_table, offsetof(InfoOptions, blood)}},
     .run = run_info,
 };

@@ -238,7 +238,7 @@ static Status draw_picture(const RenderOptions *options, Parsed *parsed, RenderP
     char *line = NULL;
     Progress progress;
     Status status = STATUS_OK;
-    TRY(picture_scene(picture, parsed->operands[0], quiet, &scene, &staged, err));
+    TRY(picture_scene(picture, parsed, &scene, &staged, err));
     params->povray_cells = options->hits == HITS_POVRAY ? &cells : NULL;
     params->progress = progress_report;
     params->progress_context = &progress;
@@ -287,6 +287,7 @@ const Command command_render = {
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},
                {&picture_table, offsetof(RenderOptions, picture)},
-               {&coloring_table, offsetof(RenderOptions, picture.coloring)}},
+               {&coloring_table, offsetof(RenderOptions, picture.coloring)},
+               {&blood_table, offsetof(RenderOptions, picture.coloring.blood)}},
     .run = run_render,
 };

@@ -107,7 +107,7 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter, c
     const char *tree = parsed->operands[0];
     Scene scene = {0};
     EmitReport report = {0};
-    TRY(picture_scene(picture, tree, parsed->common.quiet, &scene, NULL, err));
+    TRY(picture_scene(picture, parsed, &scene, NULL, err));
     const EmitParams params = {.scene = &scene,
                                .command = line,
                                .shadows = picture->stage.shadows,
@@ -160,6 +160,7 @@ const Command command_scene = {
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},
                {&picture_table, offsetof(SceneOptions, picture)},
-               {&coloring_table, offsetof(SceneOptions, picture.coloring)}},
+               {&coloring_table, offsetof(SceneOptions, picture.coloring)},
+               {&blood_table, offsetof(SceneOptions, picture.coloring.blood)}},
     .run = run_scene,
 };

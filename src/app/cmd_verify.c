@@ -571,7 +571,7 @@ static Status verify(Verification *v, Parsed *parsed, Err *err)
 {
     char *line = NULL;
     TRY(claim_folder(v, &parsed->files, err));
-    TRY(picture_scene(v->picture, v->tree, parsed->common.quiet, &v->scene, NULL, err));
+    TRY(picture_scene(v->picture, parsed, &v->scene, NULL, err));
     v->cells = picture_cells(v->picture);
     TRY(file_make_folder(v->folder, err));
     TRY(claim_folder(v, &parsed->files, err));
@@ -620,6 +620,7 @@ const Command command_verify = {
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},
                {&picture_table, offsetof(VerifyOptions, picture)},
-               {&coloring_table, offsetof(VerifyOptions, picture.coloring)}},
+               {&coloring_table, offsetof(VerifyOptions, picture.coloring)},
+               {&blood_table, offsetof(VerifyOptions, picture.coloring.blood)}},
     .run = run_verify,
 };

@@ -174,7 +174,7 @@ static bool is_shown(const PictureOptions *options, const Setting *setting, cons
     bool perspective = options->projection == PROJECTION_PERSPECTIVE;
     if (is_one_of(name, always) || strcmp(name, perspective ? "angle" : "height") == 0)
         return true;
-    return picture_takes(options, name) && !is_one_of(name, framing) &&
+    return picture_takes(options, setting->option) && !is_one_of(name, framing) &&
            setting_differs(setting, plain, text);
 }
 
@@ -387,7 +387,7 @@ static Status turn_around(Viewer *viewer, int pictures, Err *err)
 static Status open_viewer(Viewer *viewer, Err *err)
 {
     PictureOptions *options = viewer->options;
-    TRY(picture_read_source(options, viewer->tree, &viewer->source, err));
+    TRY(picture_read_source(options, viewer->parsed, &viewer->source, err));
     Status status = make_appearance(viewer, err);
     if (status == STATUS_OK)
         status = make_geometry(viewer, err);
@@ -472,6 +472,7 @@ const Command command_view = {
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},
                {&picture_table, offsetof(ViewOptions, picture)},
-               {&coloring_table, offsetof(ViewOptions, picture.coloring)}},
+               {&coloring_table, offsetof(ViewOptions, picture.coloring)},
+               {&blood_table, offsetof(ViewOptions, picture.coloring.blood)}},
     .run = run_view,
 };

@@ -1,12 +1,11 @@
 /* A field of the tree, and a scale for its values: of the options, or fitted to them. */
 #include "app/coloring.h"
 
+#include "app/commands.h"
 #include "app/templates.h"
 #include "image/image.h"
 #include <stdlib.h>
 #include <string.h>
-
-static const char of_tree[] = "the tree's";
 
 static const Option rows[] = {
     {.name = "color-by",
@@ -14,8 +13,7 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .argument = "FIELD",
      .list = "fields",
-     .help = "radius or length (mm), flow (ml/min), velocity (mm/s), pressure (mmHg), wss (wall "
-             "shear stress, Pa), reynolds, level, strahler, diameter-strahler or branch"},
+     .help = "a field of the tree, such as radius, flow or wss, or a column of its file"},
     {.name = "colormap",
      SETS(LOOKUP, Coloring, colormap),
      .group = GROUP_COLOR,
@@ -33,27 +31,6 @@ static const Option rows[] = {
      FROM_TO(1, 256),
      .group = GROUP_COLOR,
      .help = "equal steps of the range, each of one colour; 1: colours run on"},
-    {.name = "q-perf",
-     SETS(NUMBER, Coloring, flow.number[META_Q_PERF]),
-     GIVEN(Coloring, flow.known[META_Q_PERF]),
-     .meta = &meta_rows[META_Q_PERF],
-     .group = GROUP_BLOOD,
-     .otherwise = of_tree,
-     .help = "flow through the inlet"},
-    {.name = "p-perf",
-     SETS(NUMBER, Coloring, flow.number[META_P_PERF]),
-     GIVEN(Coloring, flow.known[META_P_PERF]),
-     .meta = &meta_rows[META_P_PERF],
-     .group = GROUP_BLOOD,
-     .otherwise = of_tree,
-     .help = "pressure at the inlet"},
-    {.name = "viscosity",
-     SETS(NUMBER, Coloring, flow.number[META_VISCOSITY]),
-     GIVEN(Coloring, flow.known[META_VISCOSITY]),
-     .meta = &meta_rows[META_VISCOSITY],
-     .group = GROUP_BLOOD,
-     .otherwise = of_tree,
-     .help = "of the blood"},
 };
 
 const OptionTable coloring_table = OPTION_TABLE(rows);
@@ -64,17 +41,21 @@ void coloring_set_defaults(Coloring *coloring)
     coloring->classes = 1;
 }
 
-void coloring_needs(const Coloring *coloring, OptionNeed needs[COLORING_NEEDS])
+bool coloring_takes(const Coloring *coloring, const Option *option)
 {
-    static const char of_colors[] = "needs --color-by";
-    bool colored = coloring->field != NULL;
-    const OptionNeed list[COLORING_NEEDS] = {
-        {"colormap", colored, of_colors},  {"range", colored, of_colors},
-        {"log", colored, of_colors},       {"classes", colored, of_colors},
-        {"q-perf", colored, of_colors},    {"p-perf", colored, of_colors},
-        {"viscosity", colored, of_colors}, {0},
-    };
-    memcpy(needs, list, sizeof list);
+    static const char *const without_field[] = {"color-by", "look", NULL};
+    return coloring->field || (option->group != GROUP_COLOR && option->group != GROUP_BLOOD) ||
+           is_one_of(option->name, without_field);
+}
+
+Status coloring_check_needs(const Coloring *coloring, const Parsed *parsed, Err *err)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        if (setting->typed && !coloring_takes(coloring, setting->option))
+            return err_set(err, STATUS_USAGE, "--%s needs --color-by", setting->option->name);
+    }
+    return STATUS_OK;
 }
 
 /* The ends of the scale: given, or the field's. */
@@ -105,7 +86,8 @@ static Status read_map(const Coloring *coloring, Colormap *map, Err *err)
 static Status read_field(const Coloring *coloring, const Tree *tree, Field *field,
                          ColorScale *scale, Err *err)
 {
-    TRY(derive_field(tree, &coloring->flow, coloring->field, field, err));
+    const TreeMeta said = blood_said(&coloring->blood);
+    TRY(derive_field(tree, &said, coloring->field, field, err));
     TRY(set_range(coloring, field, scale, err));
     scale->name = field->name;
     scale->unit = field->unit;

@@ -2,6 +2,7 @@
 #ifndef CORCAST_APP_COLORING_H
 #define CORCAST_APP_COLORING_H
 
+#include "app/blood.h"
 #include "app/options.h"
 #include "derive/derive.h"
 #include "image/image.h"
@@ -14,17 +15,18 @@ typedef struct Coloring {
     const char *colormap;
     double range[2];
     bool has_range, log;
-    int classes;   /* 1: a colour for each value */
-    TreeMeta flow; /* what the user says of the tree */
+    int classes; /* 1: a colour for each value */
+    BloodOptions blood;
 } Coloring;
 
 /* Of a zeroed Coloring. */
 void coloring_set_defaults(Coloring *coloring);
 extern const OptionTable coloring_table; /* sets a Coloring */
 
-/* What the options of the table need, and the end of the list. */
-enum { COLORING_NEEDS = 8 };
-void coloring_needs(const Coloring *coloring, OptionNeed needs[COLORING_NEEDS]);
+/* Whether the option has an effect; those on blood and colours have one with a field alone. */
+bool coloring_takes(const Coloring *coloring, const Option *option);
+/* STATUS_USAGE when an option of the command line has none. */
+MUST_CHECK Status coloring_check_needs(const Coloring *coloring, const Parsed *parsed, Err *err);
 
 /* What a look's vessels are to be coloured by, in *appearance (owned; appearance_release): without
  * --color-by the look's one colour; else the values of a field of the tree on a scale of the map,

@@ -2,6 +2,7 @@
  * of a tree to grow on from, and what the user gave, each over the one before. */
 #include "app/growing.h"
 
+#include "app/blood.h"
 #include "app/tree_domain.h"
 #include "treeio/treeio.h"
 
@@ -40,39 +41,27 @@ static const Option rows[] = {
              "straight; all radii follow anew. What its header says holds unless options say "
              "otherwise"},
     {.name = "gamma",
-     SETS(NUMBER, Growing, params.gamma),
-     GIVEN(Growing, given[META_GAMMA]),
-     .meta = &meta_rows[META_GAMMA],
+     SETS_KEY(Growing, params.gamma, given, GAMMA),
      .group = GROUP_BLOOD,
      .help = "Murray exponent"},
     {.name = "lambda",
-     SETS(NUMBER, Growing, params.lambda),
-     GIVEN(Growing, given[META_LAMBDA]),
-     .meta = &meta_rows[META_LAMBDA],
+     SETS_KEY(Growing, params.lambda, given, LAMBDA),
      .group = GROUP_OPTIMUM,
      .help = "target: sum of length * radius^lambda"},
     {.name = "p-perf",
-     SETS(NUMBER, Growing, params.p_perf_mmhg),
-     GIVEN(Growing, given[META_P_PERF]),
-     .meta = &meta_rows[META_P_PERF],
+     SETS_KEY(Growing, params.p_perf_mmhg, given, P_PERF),
      .group = GROUP_BLOOD,
      .help = "pressure at the inlet"},
     {.name = "p-term",
-     SETS(NUMBER, Growing, params.p_term_mmhg),
-     GIVEN(Growing, given[META_P_TERM]),
-     .meta = &meta_rows[META_P_TERM],
+     SETS_KEY(Growing, params.p_term_mmhg, given, P_TERM),
      .group = GROUP_BLOOD,
      .help = "pressure at every terminal"},
     {.name = "q-perf",
-     SETS(NUMBER, Growing, params.q_perf_ml_min),
-     GIVEN(Growing, given[META_Q_PERF]),
-     .meta = &meta_rows[META_Q_PERF],
+     SETS_KEY(Growing, params.q_perf_ml_min, given, Q_PERF),
      .group = GROUP_BLOOD,
      .help = "flow through all inlets"},
     {.name = "viscosity",
-     SETS(NUMBER, Growing, params.viscosity_cp),
-     GIVEN(Growing, given[META_VISCOSITY]),
-     .meta = &meta_rows[META_VISCOSITY],
+     SETS_KEY(Growing, params.viscosity_cp, given, VISCOSITY),
      .group = GROUP_BLOOD,
      .help = "of the blood"},
     {.name = "viscosity-law",
@@ -82,16 +71,12 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .help = "the same in all vessels, or by their diameter, Pries 1994"},
     {.name = "hematocrit",
-     SETS(NUMBER, Growing, params.hematocrit),
-     GIVEN(Growing, given[META_HEMATOCRIT]),
-     .meta = &meta_rows[META_HEMATOCRIT],
+     SETS_KEY(Growing, params.hematocrit, given, HEMATOCRIT),
      .group = GROUP_BLOOD,
      .argument = "H",
      .help = "for pries"},
     {.name = "plasma-viscosity",
-     SETS(NUMBER, Growing, params.plasma_viscosity_cp),
-     GIVEN(Growing, given[META_PLASMA_VISCOSITY]),
-     .meta = &meta_rows[META_PLASMA_VISCOSITY],
+     SETS_KEY(Growing, params.plasma_viscosity_cp, given, PLASMA_VISCOSITY),
      .group = GROUP_BLOOD,
      .help = "for pries"},
     {.name = "terminal-flow",
@@ -156,12 +141,7 @@ static Status read_from(Growing *growing, bool *has_domain, Err *err)
  * take. */
 static Status check(const Growing *growing, Parsed *parsed, Err *err)
 {
-    bool pries = growing->params.viscosity_law == VISCOSITY_PRIES;
-    const OptionNeed needs[] = {{"viscosity", !pries, "is for --viscosity-law constant"},
-                                {"hematocrit", pries, "is for --viscosity-law pries"},
-                                {"plasma-viscosity", pries, "is for --viscosity-law pries"},
-                                {0}};
-    TRY(options_check_needs(parsed, needs, err));
+    TRY(blood_check_law(growing->params.viscosity_law, parsed, err));
     if (!growing->domain.file)
         return STATUS_OK;
     return files_read(&parsed->files, "--domain", growing->domain.file, err);

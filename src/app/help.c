@@ -37,6 +37,8 @@ void help_put_meaning(const Setting *plain, Text *text)
     if (!chars || *chars)
         text_puts(text, option->choices ? ": " : "; ");
     text_puts(text, chars && strncmp(chars, "of ", 3) == 0 ? chars + 3 : chars);
+    if (option->list)
+        text_printf(text, "; corcast %s lists them", option->list);
     if (option->otherwise)
         text_puts(&value, option->otherwise);
     else if (option->kind != OPTION_FLAG && setting_count(plain) > 0)

@@ -3,6 +3,7 @@
 #include "app/meshing.h"
 
 #include "app/commands.h"
+#include "app/picture.h"
 #include "app/povfiles.h"
 #include "app/progress.h"
 #include "app/templates.h"
@@ -26,14 +27,8 @@ typedef struct Meshing {
 
 static Status read_vessels(const char *path, double prune_radius_mm, Meshing *made, Err *err)
 {
-    size_t dropped;
-    TRY(tree_read(&made->tree, path, err));
-    if (prune_radius_mm > 0) {
-        Tree pruned;
-        TRY(tree_pruned(&made->tree, prune_radius_mm, &pruned, err));
-        tree_release(&made->tree);
-        made->tree = pruned;
-    }
+    size_t dropped, pruned;
+    TRY(picture_read_tree(path, prune_radius_mm, &made->tree, &pruned, err));
     TRY(stage_vessels(&made->tree, &made->vessels, &dropped, err));
     if (dropped)
         fprintf(stderr, "corcast: %zu segments have no length or no radius and are left out\n",
@@ -52,7 +47,7 @@ static Status color_vessels(const MeshingOptions *options, const char *tree_path
     TRY_GOTO(look_read(&look, path, err));
     TRY_GOTO(coloring_appearance(&options->coloring, &made->tree, tree_path, &look,
                                  &made->appearance, err));
-    TRY_GOTO(derive_field(&made->tree, &options->coloring.flow, "strahler", &made->orders, err));
+    TRY_GOTO(derive_field(&made->tree, &(TreeMeta){0}, "strahler", &made->orders, err));
 done:
     free(path);
     return status;
@@ -130,10 +125,13 @@ static Status part(Meshing *made, int threads, Err *err)
     return STATUS_OK;
 }
 
-static Status make(const char *tree_path, const MeshingOptions *options, bool colored,
-                   const Common *common, Meshing *made, Err *err)
+static Status make(const Parsed *parsed, const MeshingOptions *options, bool colored, Meshing *made,
+                   Err *err)
 {
+    const char *tree_path = parsed->operands[0];
+    const Common *common = &parsed->common;
     TRY(read_vessels(tree_path, options->prune_radius_mm, made, err));
+    TRY(blood_check(&options->coloring.blood, &made->tree, parsed, err));
     if (colored)
         TRY(color_vessels(options, tree_path, made, err));
     if (options->part_overlaps)
@@ -213,7 +211,7 @@ Status meshing_write(const Emitter *emitter, const MeshingOptions *options, cons
     Text said = TEXT_INIT;
     char *line = NULL;
     Status status;
-    TRY_GOTO(make(tree, options, emitter->has_colors, &parsed->common, &made, err));
+    TRY_GOTO(make(parsed, options, emitter->has_colors, &made, err));
     text_json(&said, manifest(&made), 2);
     text_puts(&said, "\n");
     TRY_GOTO(text_check(&said, err));

@@ -103,6 +103,10 @@ static inline const char *option_unit(const Option *option)
 #define GIVEN(Type, path)                                                                          \
     .has_given = true, .given = offsetof(Type, path) + 0 * sizeof(_Generic(((Type *)0)->path, bool \
                                                                            : (char)0))
+/* Likewise of an OPTION_NUMBER that says the key of a tree; `known` is an array of bools, by key.
+ */
+#define SETS_KEY(Type, path, known, KEY)                                                           \
+    SETS(NUMBER, Type, path), GIVEN(Type, known[META_##KEY]), .meta = &meta_rows[META_##KEY]
 #define FROM_TO(least, most)                                                                       \
     .range = &(const Range)                                                                        \
     {                                                                                              \

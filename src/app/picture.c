@@ -176,55 +176,55 @@ static Status check_camera(const PictureOptions *options, Err *err)
 }
 
 /* Options that have an effect on models of these elements alone. */
-static const struct {
+typedef struct ModelOption {
     const char *name;
     unsigned elements;
     const char *rest; /* of the sentence that refuses it */
-} of_models[] = {
+} ModelOption;
+
+static const ModelOption of_models[] = {
     {"potential", MODEL_POTENTIAL, ""}, {"erf", MODEL_POTENTIAL, ""},
     {"cell-beta", MODEL_POTENTIAL, ""}, {"hits", MODEL_POTENTIAL, ""},
     {"joints", MODEL_JOINTS, ""},       {"ids", MODEL_FIELD, "; other scenes have ids anyway"},
 };
 
-enum { MODEL_OPTIONS = sizeof of_models / sizeof *of_models };
-
-static Status check_model(const PictureOptions *options, const Parsed *parsed, Err *err)
+/* The row of an option; NULL when it has an effect on all models. */
+static const ModelOption *model_option(const Option *option)
 {
-    Status status = STATUS_OK;
-    for (size_t i = 0; i < MODEL_OPTIONS && status == STATUS_OK; i++) {
-        Text sentence = TEXT_INIT;
-        text_puts(&sentence, "is for --model ");
-        models_with(of_models[i].elements, &sentence);
-        text_puts(&sentence, of_models[i].rest);
-        const OptionNeed needs[] = {{of_models[i].name,
-                                     model_has((SceneModel)options->model, of_models[i].elements),
-                                     text_chars(&sentence)},
-                                    {0}};
-        status = options_check_needs(parsed, needs, err);
-        text_release(&sentence);
-    }
+    for (size_t i = 0; i < sizeof of_models / sizeof *of_models; i++)
+        if (strcmp(of_models[i].name, option->name) == 0)
+            return &of_models[i];
+    return NULL;
+}
+
+bool picture_takes(const PictureOptions *options, const Option *option)
+{
+    const ModelOption *of = model_option(option);
+    return of ? model_has((SceneModel)options->model, of->elements)
+              : coloring_takes(&options->coloring, option);
+}
+
+static Status refuse(const Option *option, const ModelOption *of, Err *err)
+{
+    Text able = TEXT_INIT;
+    models_with(of->elements, &able);
+    Status status = text_check(&able, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE, "--%s is for --model %s%s", option->name,
+                         text_chars(&able), of->rest);
+    text_release(&able);
     return status;
 }
 
 Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, Err *err)
 {
-    OptionNeed needs[COLORING_NEEDS];
-    coloring_needs(&options->coloring, needs);
-    TRY(check_model(options, parsed, err));
-    return options_check_needs(parsed, needs, err);
-}
-
-bool picture_takes(const PictureOptions *options, const char *name)
-{
-    OptionNeed needs[COLORING_NEEDS];
-    coloring_needs(&options->coloring, needs);
-    for (size_t i = 0; i < MODEL_OPTIONS; i++)
-        if (strcmp(of_models[i].name, name) == 0)
-            return model_has((SceneModel)options->model, of_models[i].elements);
-    for (const OptionNeed *need = needs; need->name; need++)
-        if (strcmp(need->name, name) == 0)
-            return need->met;
-    return true;
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        const ModelOption *of = model_option(setting->option);
+        if (setting->typed && of && !picture_takes(options, setting->option))
+            return refuse(setting->option, of, err);
+    }
+    return coloring_check_needs(&options->coloring, parsed, err);
 }
 
 Status picture_check_povray(const PictureOptions *options, Err *err)
@@ -288,27 +288,37 @@ static bool has_segments(const Tree *tree)
     return false;
 }
 
-Status picture_read_source(const PictureOptions *options, const char *tree_path,
+Status picture_read_tree(const char *path, double prune_radius_mm, Tree *tree, size_t *pruned,
+                         Err *err)
+{
+    Tree whole, rest;
+    *pruned = 0;
+    if (!(prune_radius_mm > 0))
+        return tree_read(tree, path, err);
+    TRY(tree_read(&whole, path, err));
+    Status status = tree_pruned(&whole, prune_radius_mm, &rest, err);
+    size_t n = whole.n;
+    tree_release(&whole);
+    TRY(status);
+    *pruned = n - rest.n;
+    if (*pruned > 0 && !has_segments(&rest)) {
+        tree_release(&rest);
+        return err_set(err, STATUS_INPUT, "%s: all %zu segments are thinner than --prune-radius %g",
+                       path, *pruned, prune_radius_mm);
+    }
+    *tree = rest;
+    return STATUS_OK;
+}
+
+Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                            PictureSource *source, Err *err)
 {
-    PictureSource made = {.path = tree_path};
+    PictureSource made = {.path = parsed->operands[0]};
     Status status = STATUS_OK;
     TRY(check_camera(options, err));
     TRY(read_look(options, &made.look, err));
-    TRY_GOTO(tree_read(&made.tree, tree_path, err));
-    if (options->prune_radius_mm > 0) {
-        Tree pruned;
-        TRY_GOTO(tree_pruned(&made.tree, options->prune_radius_mm, &pruned, err));
-        made.pruned = made.tree.n - pruned.n;
-        tree_release(&made.tree);
-        made.tree = pruned;
-        if (made.pruned > 0 && !has_segments(&made.tree)) {
-            tree_release(&made.tree);
-            return err_set(err, STATUS_INPUT,
-                           "%s: all %zu segments are thinner than --prune-radius %g", tree_path,
-                           made.pruned, options->prune_radius_mm);
-        }
-    }
+    TRY_GOTO(picture_read_tree(made.path, options->prune_radius_mm, &made.tree, &made.pruned, err));
+    TRY_GOTO(blood_check(&options->coloring.blood, &made.tree, parsed, err));
 done:
     if (status == STATUS_OK)
         *source = made;
@@ -369,15 +379,15 @@ static Status make_scene(const PictureOptions *options, const PictureSource *sou
     return status;
 }
 
-Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet, Scene *scene,
+Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
                      StageReport *report, Err *err)
 {
     PictureSource source;
     StageReport staged;
     Scene made = {0};
-    TRY(picture_read_source(options, tree_path, &source, err));
+    TRY(picture_read_source(options, parsed, &source, err));
     Status status = make_scene(options, &source, &made, &staged, err);
-    if (status == STATUS_OK && !quiet)
+    if (status == STATUS_OK && !parsed->common.quiet)
         status =
             warn_of_losses(&made.geometry, &staged, (JointForm)options->joints, source.pruned, err);
     picture_source_release(&source);

@@ -40,11 +40,16 @@ CellParams picture_cells(const PictureOptions *options);
 MUST_CHECK Status picture_check_needs(const PictureOptions *options, const Parsed *parsed,
                                       Err *err);
 
-/* Whether the option of this name has an effect on this picture, if it is given. */
-bool picture_takes(const PictureOptions *options, const char *name);
+/* Whether the option has an effect on this picture, if it is given. */
+bool picture_takes(const PictureOptions *options, const Option *option);
 
 /* STATUS_USAGE when an option is given that only the native renderer knows. */
 MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
+
+/* Reads a tree, in *tree (owned), without the segments thinner than `prune_radius_mm`, 0 for none,
+ * and says how many those were. STATUS_INPUT when no other is left. */
+MUST_CHECK Status picture_read_tree(const char *path, double prune_radius_mm, Tree *tree,
+                                    size_t *pruned, Err *err);
 
 /* What a picture is made from. */
 typedef struct PictureSource {
@@ -54,8 +59,9 @@ typedef struct PictureSource {
     size_t pruned; /* segments that were cut off */
 } PictureSource;
 
-/* Reads look and tree. STATUS_USAGE when options fight each other. */
-MUST_CHECK Status picture_read_source(const PictureOptions *options, const char *tree_path,
+/* Reads look and tree, which is the first operand. STATUS_USAGE when options fight each other, or
+ * say of the blood what the law of its viscosity does not take. */
+MUST_CHECK Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                                       PictureSource *source, Err *err);
 void picture_source_release(PictureSource *source);
 /* The view that the options ask for. */
@@ -72,8 +78,8 @@ MUST_CHECK Status picture_view(const PictureOptions *options, const PictureSourc
 /* Reads the tree and the look and makes all three. Says on standard error, unless quiet, how many
  * segments are pruned, cannot be drawn, or have no surface, and how many places are not joined.
  * `report` may be NULL. */
-MUST_CHECK Status picture_scene(const PictureOptions *options, const char *tree_path, bool quiet,
-                                Scene *scene, StageReport *report, Err *err);
+MUST_CHECK Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
+                                StageReport *report, Err *err);
 
 /* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the
  * machine. */

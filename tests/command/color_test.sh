@@ -154,4 +154,19 @@ test_a_picture_of_16_bits_has_the_same_colours_more_finely() {
         fail "expected a pixel of the codes 18524 6566 27666"
 }
 
+# A tree of constant viscosity, shown as by diameter: as the same tree that says so itself.
+test_a_field_of_flow_follows_what_options_say_of_the_blood() {
+    local law='--viscosity-law pries --hematocrit 0.31 --plasma-viscosity 1.05'
+    run_ok corcast grow --terminals 23 --quiet -o constant.swc
+    sed 's/^# viscosity_cP.*/# viscosity_law: pries\n# hematocrit: 0.31\n# plasma_viscosity_cP: 1.05/' constant.swc >pries.swc
+    run_ok corcast render --quiet constant.swc --size 60x80 --color-by pressure $law -o said.ppm
+    run_ok corcast render --quiet pries.swc --size 60x80 --color-by pressure -o written.ppm
+    run_ok corcast render --quiet constant.swc --size 60x80 --color-by pressure -o constant.ppm
+    expect_same said.ppm written.ppm
+    ! cmp -s said.ppm constant.ppm || fail "expected the law to change the picture"
+    run corcast render constant.swc --color-by pressure --hematocrit 0.31 -o no.ppm
+    expect_status 2
+    expect_sentence '--hematocrit is for --viscosity-law pries'
+}
+
 run_tests "$@"
