@@ -200,6 +200,31 @@ void text_clear(Text *text)
         text->chars[0] = '\0';
 }
 
+/* NULL for a character that stands for itself. */
+static const char *entity_of(char plain)
+{
+    static const char *const entities[256] = {
+        ['&'] = "&amp;", ['<'] = "&lt;", ['>'] = "&gt;", ['"'] = "&quot;", ['\''] = "&#39;"};
+    return entities[(unsigned char)plain];
+}
+
+void text_escaped(Text *text, const char *chars)
+{
+    if (!chars)
+        text_puts(text, NULL);
+    while (chars && *chars) {
+        size_t length = utf8_length(chars);
+        const char *entity = entity_of(*chars);
+        if (entity)
+            text_puts(text, entity);
+        else if (length == 0)
+            text_puts(text, UTF8_REPLACEMENT);
+        else if ((unsigned char)*chars >= ' ' || *chars == '\n' || *chars == '\t')
+            text_append(text, chars, length);
+        chars += length ? length : 1;
+    }
+}
+
 void text_number(Text *text, double value)
 {
     char number[NUMBER_TEXT_SIZE];

@@ -70,6 +70,9 @@ size_t utf8_length(const char *bytes);
 /* Appends `chars` as UTF-8: each byte that is of no well-formed character becomes U+FFFD. For names
  * of files, which may be any bytes, where UTF-8 is promised. */
 void text_utf8(Text *text, const char *chars);
+/* Appends `chars` with & < > " and ' as entities, without control characters, and with U+FFFD for
+ * what is not UTF-8: for HTML and XML, in elements and attributes. */
+void text_escaped(Text *text, const char *chars);
 
 /* Appends it as number_text [base/number.h] writes it. */
 void text_number(Text *text, double value);

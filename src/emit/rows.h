@@ -15,6 +15,10 @@ Status openscad_write_mesh(const EmitParams *params, Text *out, Text *second, Em
 
 Status stl_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
 Status ply_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
+Status obj_check_name(const char *second_file, Err *err);
+Status obj_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
+Status threemf_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                     Err *err);
 Status glb_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
 
 /* [x,y,z], as OpenSCAD reads a point. */

@@ -8,31 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* NULL for a character that stands for itself. */
-static const char *entity_of(char plain)
-{
-    static const char *const entities[256] = {
-        ['&'] = "&amp;", ['<'] = "&lt;", ['>'] = "&gt;", ['"'] = "&quot;", ['\''] = "&#39;"};
-    return entities[(unsigned char)plain];
-}
-
-void text_escaped(Text *out, const char *text)
-{
-    if (!text)
-        text_puts(out, NULL);
-    while (text && *text) {
-        size_t length = utf8_length(text);
-        const char *entity = entity_of(*text);
-        if (entity)
-            text_puts(out, entity);
-        else if (length == 0)
-            text_puts(out, UTF8_REPLACEMENT);
-        else if ((unsigned char)*text >= ' ' || *text == '\n' || *text == '\t')
-            text_append(out, text, length);
-        text += length ? length : 1;
-    }
-}
-
 void text_rounded(Text *out, double value, const char *unit)
 {
     bool whole = (value == floor(value) && fabs(value) < 1e15) || fabs(value) >= 1000;

@@ -1,14 +1,10 @@
-/* HTML and XML from text: escaping, numbers for people, and the templates of a page; private to the
+/* Pages from text: numbers for people, and the templates of a page; private to the
  * room verify. */
 #ifndef CORCAST_VERIFY_HTML_H
 #define CORCAST_VERIFY_HTML_H
 
 #include "base/base.h"
 #include <stdbool.h>
-
-/* Appends `text` with & < > " and ' as entities, without control characters, and with U+FFFD for
- * what is not UTF-8: for HTML and XML, in elements and attributes. */
-void text_escaped(Text *out, const char *text);
 
 /* Appends a number for people, to three digits but for counts, and its unit, "level" of 1. */
 void text_rounded(Text *out, double value, const char *unit);

@@ -83,10 +83,11 @@ test_failed_allocations_in_scene() {
 
 test_failed_allocations_in_export() {
     local extension
-    for extension in stl ply glb; do
+    for extension in stl obj 3mf; do
         fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o "o.$extension"
     done
     fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 --color-by flow -o o.glb
+    fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 --color-by flow -o o.3mf
 }
 
 test_failed_allocations_in_render() {

@@ -82,10 +82,89 @@ test_openscad_takes_it_through_cgal_with_the_same_volume() {
         fail "volume $ours mm^3, OpenSCAD's $theirs"
 }
 
-test_assimp_reads_ply_with_the_same_triangles() {
+test_assimp_reads_every_format_with_the_same_triangles() {
+    local extension
     grown
-    run_ok corcast export t.swc -o t.ply --quiet
-    is_the_stl t.ply 1
+    for extension in ply obj 3mf; do
+        run_ok corcast export t.swc --color-by radius -o "t.$extension" --quiet
+        is_the_stl "t.$extension" 1
+    done
+}
+
+test_obj_has_groups_by_order_and_a_material_for_each_colour() {
+    grown
+    run_ok corcast export t.swc --color-by strahler -o t.obj --quiet
+    [ "$(grep '^g ' t.obj | tr '\n' ' ')" = "g order_1 g order_2 g order_3 g order_4 " ] ||
+        fail "expected four groups: $(grep '^g ' t.obj)"
+    [ "$(grep -c newmtl t.mtl) $(grep -c usemtl t.obj)" = "4 4" ] || fail "expected four materials, each used once"
+    diff <(sed -n 's/newmtl //p' t.mtl) <(sed -n 's/usemtl //p' t.obj | sort) || fail "expected the materials that are used"
+    # Normals of caps are flat: each is that of its triangle.
+    awk '$1 == "v" { for (i = 2; i < 5; i++) v[++nv, i] = $i; nv -= 2 }
+        $1 == "vn" { for (i = 2; i < 5; i++) n[++nn, i] = $i; nn -= 2 }
+        $1 == "f" {
+            for (k = 2; k < 5; k++) { split($k, at, "//"); p[k] = at[1]; q[k] = at[2] }
+            if (q[2] != p[2] && (q[2] != q[3] || q[3] != q[4] || q[2] <= nv || q[2] > nn)) exit 1
+            flat += q[2] != p[2]
+        }
+        END { exit !(flat > 20 && nn == nv + flat) }' t.obj || fail "expected one flat normal for each triangle of a cap"
+}
+
+test_3mf_is_one_painted_mesh_that_openscad_imports() {
+    grown
+    run_ok corcast export t.swc --color-by strahler -o t.3mf --quiet
+    echo 'import("t.3mf");' >import.scad
+    run_ok timeout 60 openscad -q -o import.stl import.scad
+    [ "$(admesh_says import.stl 'Number of facets')" = "$(jq .triangles t.stl.json)" ] || fail "OpenSCAD loses triangles"
+    awk -v a="$(admesh_says t.stl Volume)" -v b="$(admesh_says import.stl Volume)" \
+        'BEGIN { exit !((a / b - 1) ^ 2 < 1e-5 ^ 2) }' || fail "OpenSCAD reads another volume"
+    /usr/bin/python3 - >model.xml <<'END' || fail "Python reads no ZIP archive: $(cat model.xml)"
+import zipfile
+archive = zipfile.ZipFile("t.3mf")
+assert archive.testzip() is None
+assert all(entry.date_time == (1980, 1, 1, 0, 0, 0) for entry in archive.infolist())
+print(archive.read("3D/3dmodel.model").decode(), end="")
+END
+    run_ok xmllint --noout model.xml
+    grep -q '<model unit="millimeter"' model.xml || fail "expected millimetres"
+    [ "$(grep -c '<object ' model.xml)" = 1 ] || fail "expected one object"
+    [ "$(grep -c '<triangle .*pid="1" p1="[0-9]*"/>' model.xml)" = "$(jq .triangles t.stl.json)" ] ||
+        fail "expected every triangle to be painted"
+}
+
+test_names_stay_in_their_place_in_every_format() {
+    local extension
+    cp "$DATA/bifurcation.swc" $'a<b>&"c\n.swc'
+    for extension in ply glb 3mf obj; do
+        run_ok corcast export $'a<b>&"c\n.swc' -o "x.$extension" --quiet
+    done
+    glb_json x.glb >x.json
+    expect_json x.json '.nodes[0].extras.description == "arterial tree a<b>&\"c .swc, its surface"'
+    /usr/bin/python3 -c 'import zipfile; print(zipfile.ZipFile("x.3mf").read("3D/3dmodel.model").decode())' >model.xml
+    run_ok xmllint --noout model.xml
+    [ "$(grep -c '^[^#a-z]' x.obj)" = 0 ] || fail "expected no line that OBJ does not know"
+    run corcast export "$DATA/bifurcation.swc" -o 'my tree.obj' --quiet
+    expect_status 2
+    expect_sentence "cannot name 'my tree.mtl'"
+}
+
+# The limit is on the size of files, so that writing fails half way.
+test_a_disk_that_is_full_leaves_no_file() {
+    local extension
+    for extension in stl ply glb obj 3mf; do
+        run bash -c 'trap "" XFSZ; ulimit -f 8; exec "$@"' sh "$CORCAST" export "$DATA/bifurcation.swc" \
+            -o "m.$extension" --quiet
+        expect_status 3
+        expect_sentence "m.$extension: "
+        expect_only
+    done
+}
+
+test_obj_and_its_materials_are_both_written_or_neither() {
+    mkdir m.mtl
+    run corcast export "$DATA/bifurcation.swc" -o m.obj --quiet
+    expect_status 3
+    expect_sentence 'm\.mtl'
+    expect_only m.mtl
 }
 
 test_glb_has_no_error_and_no_warning_of_the_validator() {
@@ -169,7 +248,7 @@ test_part_overlaps_thins_them_and_says_so() {
 test_refuses_an_unknown_extension() {
     run corcast export "$DATA/bifurcation.swc" -o m.xyz
     expect_status 2
-    expect_sentence "'m.xyz' does not end in .scad, .stl, .ply or .glb"
+    expect_sentence "'m.xyz' does not end in .scad, .stl, .ply, .glb, .obj or .3mf"
 }
 
 run_tests

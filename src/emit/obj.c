@@ -1,0 +1,114 @@
+/* Wavefront OBJ with a library of materials: groups by Strahler order, a material for each colour.
+ * Points are shared by all triangles about them; the flat normals of caps follow those of points,
+ * one for each triangle of a cap, in the order in which these are written. */
+#include "emit/meshparts.h"
+#include "emit/rows.h"
+
+#include <stdlib.h>
+
+static void put_normals(const VesselMesh *mesh, const MeshParts *parts, Text *out)
+{
+    for (size_t i = 0; i < mesh->n_points; i++)
+        put_mesh_floats(out, "vn ", mesh->normals[i], " ", "\n");
+    for (size_t i = 0; i < mesh->n_triangles; i++) {
+        float normal[3];
+        if (!mesh_is_cap(mesh, parts->triangles[i]))
+            continue;
+        mesh_flat_normal(mesh, parts->triangles[i], normal);
+        put_mesh_floats(out, "vn ", normal, " ", "\n");
+    }
+}
+
+/* A face, with points and normals counted from 1; *flat is the last flat normal that was used. */
+static void put_face(const VesselMesh *mesh, uint32_t triangle, size_t *flat, Text *out)
+{
+    bool cap = mesh_is_cap(mesh, triangle);
+    *flat += cap;
+    text_puts(out, "f");
+    for (int k = 0; k < 3; k++) {
+        size_t point = (size_t)mesh->triangles[triangle][k] + 1;
+        text_printf(out, " %zu//%zu", point, cap ? mesh->n_points + *flat : point);
+    }
+    text_puts(out, "\n");
+}
+
+/* A new material where the colour is not that of the triangle before. */
+static void put_material(const EmitParams *params, uint32_t triangle, uint32_t *last, Text *out)
+{
+    uint8_t codes[3];
+    vessel_color_codes(params, mesh_segment(params->mesh, triangle), codes);
+    uint32_t code = (uint32_t)codes[0] << 16 | (uint32_t)codes[1] << 8 | codes[2];
+    if (code != *last)
+        text_printf(out, "usemtl vessel_%06X\n", code);
+    *last = code;
+}
+
+static void put_groups(const EmitParams *params, const MeshParts *parts, Text *out)
+{
+    uint32_t material = UINT32_MAX;
+    size_t flat = 0;
+    for (size_t order = 0; order <= MOST_ORDERS; order++) {
+        if (parts->first[order] < parts->first[order + 1])
+            text_printf(out, "g order_%zu\n", order);
+        for (size_t i = parts->first[order]; i < parts->first[order + 1]; i++) {
+            put_material(params, parts->triangles[i], &material, out);
+            put_face(params->mesh, parts->triangles[i], &flat, out);
+        }
+    }
+}
+
+static int compare_colors(const void *a, const void *b)
+{
+    return memcmp(a, b, 3);
+}
+
+/* One for each colour, which stands as sRGB has it, divided by 255. */
+static Status put_materials(const EmitParams *params, Text *out, Err *err)
+{
+    const size_t n = params->vessels->n_segments;
+    uint8_t(*codes)[3];
+    TRY(mem_calloc(&codes, n, sizeof *codes, "colours", err));
+    for (size_t i = 0; i < n; i++)
+        vessel_color_codes(params, (uint32_t)i, codes[i]);
+    qsort(codes, n, sizeof *codes, compare_colors);
+    text_printf(out, "# %s\n", params->generator);
+    for (size_t i = 0; i < n; i++)
+        if (i == 0 || compare_colors(codes[i - 1], codes[i]) != 0)
+            text_printf(out, "newmtl vessel_%02X%02X%02X\nKd %.6f %.6f %.6f\nillum 2\n",
+                        codes[i][0], codes[i][1], codes[i][2], codes[i][0] / 255.0,
+                        codes[i][1] / 255.0, codes[i][2] / 255.0);
+    free(codes);
+    return STATUS_OK;
+}
+
+/* The names of the files stand in it in one line of printable ASCII: blanks end a name for some
+ * readers, and so may any other byte. */
+Status obj_check_name(const char *second_file, Err *err)
+{
+    const char *at = second_file;
+    while (*at > ' ' && *at <= '~')
+        at++;
+    if (*at == '\0')
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "an OBJ cannot name '%s' as the file of its materials: it takes only printable "
+                   "ASCII, without blanks",
+                   second_file);
+}
+
+Status obj_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
+{
+    (void)report;
+    const VesselMesh *mesh = params->mesh;
+    MeshParts parts;
+    TRY(meshparts_find(params, &parts, err));
+    text_printf(out, "# %s, by: %s\n# millimetres, y up\nmtllib %s\no tree\n", params->generator,
+                params->command, params->second_file);
+    for (size_t i = 0; i < mesh->n_points; i++)
+        put_mesh_floats(out, "v ", mesh->points[i], " ", "\n");
+    put_normals(mesh, &parts, out);
+    put_groups(params, &parts, out);
+    meshparts_release(&parts);
+    TRY(put_materials(params, second, err));
+    return text_check(out, err);
+}

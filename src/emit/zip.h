@@ -1,0 +1,18 @@
+/* ZIP archives, which 3MF is; private to the room emit. */
+#ifndef CORCAST_EMIT_ZIP_H
+#define CORCAST_EMIT_ZIP_H
+
+#include "base/base.h"
+
+typedef struct ZipEntry {
+    const char *name;
+    const Text *text; /* borrowed; one that failed makes the archive fail */
+} ZipEntry;
+
+enum { ZIP_MOST_ENTRIES = 8 };
+
+/* Appends an archive of them, deflated, dated 1 January 1980 so that the same entries give the same
+ * bytes. STATUS_INFEASIBLE when an entry has 4 GB, STATUS_MEMORY. */
+MUST_CHECK Status zip_put(const ZipEntry *entries, size_t n, Text *out, Err *err);
+
+#endif
