@@ -147,7 +147,7 @@ so far before and behind | 40 ppm, or 6 pixels | @ settled.c @ "pixels at which 
 as many rays as graze | 200 ppm, or 12 pixels | @ settled.c @ "pixels at which POV-Ray missed a root on the way to a light", 200, 12},
 | 1000 ppm, or 20 pixels | @ settled.c @ "pixels on their own horizon, left to POV-Ray's shadow cache", 1000, 20},
 it may be off by the accuracy of its cell, r / 300 @ celltree.c @ accuracy_ratio = 1.0 / 300,
-not judged but the mean difference is, to 1.5 levels @ cmd_verify.c @ bias_levels = 1.5;
+not judged but the mean difference is, to 1.5 levels @ verification.c @ bias_levels = 1.5;
 at 67.02 pixels a degree @ flip_kernels.c @ pixels_per_degree = 67.0206451f;
 Gaussian window of 11 x 11 @ ssim.c @ RADIUS = 5, TAPS = 2 * RADIUS + 1
 K1 = 0.01, K2 = 0.03 @ ssim.c @ c1 = 0.01 * 255 * 0.01 * 255, c2 = 0.03 * 255 * 0.03 * 255

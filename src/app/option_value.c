@@ -209,7 +209,7 @@ static Status read_range(const Option *option, const char *value, void *where, E
 /* ---- writing --------------------------------------------------------------------------------- */
 
 typedef size_t CountValues(const void *where);
-typedef void PutValue(const Option *option, const void *where, size_t at, Text *text);
+typedef void PutValue(const void *where, Text *text);
 
 static size_t count_one(const void *where)
 {
@@ -245,86 +245,56 @@ static void put_numbers(Text *text, const double *numbers, size_t n)
     }
 }
 
-static void put_switch(const Option *option, const void *where, size_t at, Text *text)
+static void put_switch(const void *where, Text *text)
 {
-    (void)option;
-    (void)at;
     text_puts(text, *(const bool *)where ? "on" : "off");
 }
 
-static void put_text(const Option *option, const void *where, size_t at, Text *text)
+static void put_text(const void *where, Text *text)
 {
-    (void)option;
-    (void)at;
     text_puts(text, *(const char *const *)where);
 }
 
-static void put_whole(const Option *option, const void *where, size_t at, Text *text)
+static void put_whole(const void *where, Text *text)
 {
-    (void)option;
-    (void)at;
     text_printf(text, "%d", *(const int *)where);
 }
 
-static void put_seed(const Option *option, const void *where, size_t at, Text *text)
+static void put_seed(const void *where, Text *text)
 {
-    (void)option;
-    (void)at;
     text_printf(text, "%llu", (unsigned long long)*(const uint64_t *)where);
 }
 
-static void put_count(const Option *option, const void *where, size_t at, Text *text)
+static void put_count(const void *where, Text *text)
 {
-    (void)option;
-    (void)at;
     text_printf(text, "%zu", *(const size_t *)where);
 }
 
-static void put_number(const Option *option, const void *where, size_t at, Text *text)
+static void put_number(const void *where, Text *text)
 {
-    (void)option;
-    (void)at;
     put_numbers(text, where, 1);
 }
 
-static void put_vector(const Option *option, const void *where, size_t at, Text *text)
+static void put_vector(const void *where, Text *text)
 {
-    (void)option;
-    const Vec3 *v = (const Vec3 *)where + at;
+    const Vec3 *v = where;
     const double numbers[] = {v->x, v->y, v->z};
     put_numbers(text, numbers, 3);
 }
 
-static void put_vectors(const Option *option, const void *where, size_t at, Text *text)
+static void put_list(const void *where, Text *text)
 {
-    put_vector(option, ((const VectorList *)where)->at, at, text);
-}
-
-static void put_list(const Option *option, const void *where, size_t at, Text *text)
-{
-    (void)option;
-    (void)at;
     put_numbers(text, ((const NumberList *)where)->at, ((const NumberList *)where)->n);
 }
 
-static void put_size(const Option *option, const void *where, size_t at, Text *text)
+static void put_size(const void *where, Text *text)
 {
-    (void)option;
-    (void)at;
     text_printf(text, "%dx%d", ((const int *)where)[0], ((const int *)where)[1]);
 }
 
-static void put_range(const Option *option, const void *where, size_t at, Text *text)
+static void put_range(const void *where, Text *text)
 {
-    (void)option;
-    (void)at;
     put_numbers(text, where, 2);
-}
-
-static void put_choice(const Option *option, const void *where, size_t at, Text *text)
-{
-    (void)at;
-    text_puts(text, option->choices[*(const int *)where]);
 }
 
 /* ---- kinds ----------------------------------------------------------------------------------- */
@@ -333,7 +303,7 @@ typedef struct Kind {
     const char *argument; /* what stands for a value */
     ReadValue *read;
     CountValues *count;
-    PutValue *put;
+    PutValue *put; /* NULL: one of the choices */
     bool is_path;
 } Kind;
 
@@ -350,12 +320,12 @@ static const Kind kinds[] = {
     [OPTION_COUNT] = {"N", read_count, count_one, put_count, false},
     [OPTION_NUMBER] = {"NUMBER", read_number, count_one, put_number, false},
     [OPTION_VECTOR] = {"X,Y,Z", read_vector, count_one, put_vector, false},
-    [OPTION_VECTORS] = {"X,Y,Z", read_vectors, count_vectors, put_vectors, false},
+    [OPTION_VECTORS] = {"X,Y,Z", read_vectors, count_vectors, put_vector, false},
     [OPTION_NUMBERS] = {"A,B,...", read_list, count_list, put_list, false},
     [OPTION_COLOR] = {"R,G,B", read_color, count_one, put_vector, false},
     [OPTION_SIZE] = {"WxH", read_size, count_one, put_size, false},
     [OPTION_RANGE] = {"A,B", read_range, count_one, put_range, false},
-    [OPTION_CHOICE] = {"NAME", read_choice, count_one, put_choice, false},
+    [OPTION_CHOICE] = {"NAME", read_choice, count_one, NULL, false},
 };
 
 static void *where_of(const Setting *setting)
@@ -385,7 +355,14 @@ size_t setting_count(const Setting *setting)
 
 void setting_put(const Setting *setting, size_t at, Text *text)
 {
-    kinds[setting->option->kind].put(setting->option, where_of(setting), at, text);
+    const Option *option = setting->option;
+    const void *where = where_of(setting);
+    if (option->kind == OPTION_CHOICE)
+        text_puts(text, option->choices[*(const int *)where]);
+    else if (option->kind == OPTION_VECTORS)
+        put_vector(&((const VectorList *)where)->at[at], text);
+    else
+        kinds[option->kind].put(where, text);
 }
 
 static void put_all(const Setting *setting, Text *text)
