@@ -73,11 +73,6 @@ static void surface_description(const char *tree_path, Text *out)
 Status scene_files_write(const Emitter *emitter, const EmitParams *params, const char *tree_path,
                          const char *path, EmitReport *report, Err *err)
 {
-    if (params->scene && params->scene->geometry.blend.n_groups)
-        return err_set(
-            err, STATUS_USAGE,
-            "--potential graph is corcast's own and has no POV-Ray scene; use --potential "
-            "paper, or render");
     Text description = TEXT_INIT;
     char *templates = NULL;
     Beside beside = {0};

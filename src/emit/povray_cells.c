@@ -144,16 +144,34 @@ Status put_cell_macros(Text *out, void *context, Err *err)
 
 /* A cell's values, with room that every cell uses again. */
 typedef struct CellText {
-    Text low, high, function, paint, largest, pick, paints;
+    Text low, high, function, paint, sum, largest, pick, paints;
     char max_gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE], count[NUMBER_TEXT_SIZE];
 } CellText;
 
 static void release_cell_text(CellText *part)
 {
     Text *const texts[] = {&part->low,  &part->high,    &part->function, &part->paint,
-                           &part->pick, &part->largest, &part->paints};
+                           &part->pick, &part->largest, &part->paints,   &part->sum};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         text_release(texts[i]);
+}
+
+typedef struct CellTemplates {
+    Tmpl cell, paints, group_paints;
+} CellTemplates;
+
+static Status load_cell_templates(const EmitParams *params, CellTemplates *templates, Err *err)
+{
+    TRY(load_template(&templates->cell, params, "povray/cell.inc", err));
+    TRY(load_template(&templates->paints, params, "povray/cell_paints.inc", err));
+    return load_template(&templates->group_paints, params, "povray/cell_group_paints.inc", err);
+}
+
+static void release_cell_templates(CellTemplates *templates)
+{
+    tmpl_release(&templates->cell);
+    tmpl_release(&templates->paints);
+    tmpl_release(&templates->group_paints);
 }
 
 static Text *cleared(Text *text)
@@ -167,47 +185,113 @@ static void put_term(Text *text, const CellTerm *term)
     text_printf(text, "%s%u(x,y,z)", function_names[term->part], term->segment);
 }
 
+/* Terms of a cell: those at `n` places, or, without any given, the first n. */
+typedef struct TermChoice {
+    const CellTerm *terms;
+    const uint32_t *places;
+    uint32_t n;
+} TermChoice;
+
+static TermChoice all_terms(const CellTree *cells, const Cell *cell)
+{
+    return (TermChoice){.terms = cells->terms + cell->first, .n = cell->count};
+}
+
+static TermChoice terms_of_group(const CellTree *cells, const Cell *cell, uint32_t group)
+{
+    TermChoice choice = {.terms = cells->terms + cell->first};
+    choice.places = cell_group(cells, cell, group, &choice.n);
+    return choice;
+}
+
+static const CellTerm *chosen_term(const TermChoice *choice, uint32_t k)
+{
+    return &choice->terms[choice->places ? choice->places[k] : k];
+}
+
+static void put_sum(Text *text, TermChoice choice)
+{
+    for (uint32_t k = 0; k < choice.n; k++) {
+        text_puts(text, k ? "+" : "");
+        put_term(text, chosen_term(&choice, k));
+    }
+}
+
+static void close_calls(Text *text, uint32_t n)
+{
+    for (uint32_t i = 0; i < n; i++)
+        text_puts(text, ")");
+}
+
+/* The sum of the terms, or Fn_Max(S1,Fn_Max(S2,...)): the largest of the sums of groups. */
+static void put_potential(Text *text, const CellTree *cells, const Cell *cell)
+{
+    if (cell->n_groups == 0) {
+        put_sum(text, all_terms(cells, cell));
+        return;
+    }
+    for (uint32_t group = 0; group < cell->n_groups; group++) {
+        bool last = group + 1 == cell->n_groups;
+        text_puts(text, last ? "" : "Fn_Max(");
+        put_sum(text, terms_of_group(cells, cell, group));
+        text_puts(text, last ? "" : ",");
+    }
+    close_calls(text, cell->n_groups - 1);
+}
+
 static void put_cell_function(Text *text, const CellTree *cells, const Cell *cell)
 {
-    const CellTerm *terms = cells->terms + cell->first;
     if (cell_is_tube(cells, cell)) {
         text_printf(text, "Fk%d(%s%u(x,y,z))", scale_number(cell), function_names[TUBE],
-                    terms->segment);
+                    cells->terms[cell->first].segment);
         return;
     }
     text_printf(text, "Fl%d(", scale_number(cell));
-    for (uint32_t k = 0; k < cell->count; k++) {
-        text_puts(text, k ? "+" : "");
-        put_term(text, &terms[k]);
-    }
+    put_potential(text, cells, cell);
     text_puts(text, ")");
 }
 
 /* Fn_Max(T1,Fn_Max(T2,...)): the largest term. */
-static void put_largest(Text *text, const CellTerm *terms, uint32_t count)
+static void put_largest(Text *text, TermChoice choice)
 {
-    for (uint32_t k = 0; k + 1 < count; k++) {
+    for (uint32_t k = 0; k + 1 < choice.n; k++) {
         text_puts(text, "Fn_Max(");
-        put_term(text, &terms[k]);
+        put_term(text, chosen_term(&choice, k));
         text_puts(text, ",");
     }
-    put_term(text, &terms[count - 1]);
-    for (uint32_t k = 0; k + 1 < count; k++)
-        text_puts(text, ")");
+    put_term(text, chosen_term(&choice, choice.n - 1));
+    close_calls(text, choice.n - 1);
+}
+
+/* The same of the group whose sum is largest, Fn_Sum: the largest of
+ * Fn_Choose(S1-Fn_Sum,largest term of group 1,0), ... */
+static void put_largest_of_groups(Text *text, const CellTree *cells, const Cell *cell)
+{
+    for (uint32_t group = 0; group < cell->n_groups; group++) {
+        bool last = group + 1 == cell->n_groups;
+        TermChoice choice = terms_of_group(cells, cell, group);
+        text_puts(text, last ? "Fn_Choose(" : "Fn_Max(Fn_Choose(");
+        put_sum(text, choice);
+        text_puts(text, "-Fn_Sum(x,y,z),");
+        put_largest(text, choice);
+        text_puts(text, last ? ",0)" : ",0),");
+    }
+    close_calls(text, cell->n_groups - 1);
 }
 
 /* Fn_Choose(T1-Fn_Top,0,Fn_Choose(T2-Fn_Top,1,...)): the number of the first term that equals the
- * largest, Fn_Top. */
-static void put_pick(Text *text, const CellTerm *terms, uint32_t count)
+ * largest, Fn_Top. In a cell of groups other terms may be larger: -abs(T1-Fn_Top), ... */
+static void put_pick(Text *text, const CellTree *cells, const Cell *cell)
 {
-    for (uint32_t k = 0; k + 1 < count; k++) {
-        text_puts(text, "Fn_Choose(");
+    const CellTerm *terms = cells->terms + cell->first;
+    bool grouped = cell->n_groups > 0;
+    for (uint32_t k = 0; k + 1 < cell->count; k++) {
+        text_puts(text, grouped ? "Fn_Choose(-abs(" : "Fn_Choose(");
         put_term(text, &terms[k]);
-        text_printf(text, "-Fn_Top(x,y,z),%u,", k);
+        text_printf(text, grouped ? "-Fn_Top(x,y,z)),%u," : "-Fn_Top(x,y,z),%u,", k);
     }
-    text_printf(text, "%u", count - 1);
-    for (uint32_t k = 0; k + 1 < count; k++)
-        text_puts(text, ")");
+    text_printf(text, "%u", cell->count - 1);
+    close_calls(text, cell->count - 1);
 }
 
 static void put_segment_paint(Text *text, const Scene *scene, uint32_t segment)
@@ -216,18 +300,24 @@ static void put_segment_paint(Text *text, const Scene *scene, uint32_t segment)
 }
 
 /* Appends the paint of a cell: that of the term that is largest all over it, or of each. */
-static Status put_cell_paint(Text *text, const Tmpl *many_paints, const Scene *scene,
+static Status put_cell_paint(Text *text, const CellTemplates *templates, const Scene *scene,
                              const CellTree *cells, const Cell *cell, CellText *part, Err *err)
 {
     const CellTerm *terms = cells->terms + cell->first;
+    bool grouped = cell->n_groups > 0;
     if (cell->largest != CELL_MIXED) {
         text_puts(text, " Cell_One_Paint(");
         put_segment_paint(text, scene, cell->largest);
         text_puts(text, ")");
         return STATUS_OK;
     }
-    put_largest(cleared(&part->largest), terms, cell->count);
-    put_pick(cleared(&part->pick), terms, cell->count);
+    if (grouped) {
+        put_potential(cleared(&part->sum), cells, cell);
+        put_largest_of_groups(cleared(&part->largest), cells, cell);
+    } else {
+        put_largest(cleared(&part->largest), all_terms(cells, cell));
+    }
+    put_pick(cleared(&part->pick), cells, cell);
     snprintf(part->count, sizeof part->count, "%u", cell->count);
     cleared(&part->paints);
     for (uint32_t k = 0; k < cell->count; k++) {
@@ -238,8 +328,10 @@ static Status put_cell_paint(Text *text, const Tmpl *many_paints, const Scene *s
     const TmplValue values[] = {{"largest", text_chars(&part->largest)},
                                 {"pick", text_chars(&part->pick)},
                                 {"paints", text_chars(&part->paints)},
-                                {"count", part->count}};
-    return tmpl_apply(many_paints, values, sizeof values / sizeof *values, text, err);
+                                {"count", part->count},
+                                {"sum", text_chars(&part->sum)}};
+    return tmpl_apply(grouped ? &templates->group_paints : &templates->paints, values,
+                      grouped ? 5 : 4, text, err);
 }
 
 static Status put_cell(Text *text, const Tmpl *template, const CellTree *cells, const Cell *cell,
@@ -265,24 +357,22 @@ Status put_cells(Text *out, void *context, Err *err)
     const Scene *scene = geometry->scene;
     const CellTree *cells = &geometry->cells;
     bool painted = geometry->params->ids || scene->appearance.colors;
-    Tmpl plain = {0}, many_paints = {0};
+    CellTemplates templates = {0};
     CellText part = {0};
     Status status;
-    TRY_GOTO(load_template(&plain, geometry->params, "povray/cell.inc", err));
-    TRY_GOTO(load_template(&many_paints, geometry->params, "povray/cell_paints.inc", err));
+    TRY_GOTO(load_cell_templates(geometry->params, &templates, err));
     text_puts(out, "Cell_Guard()\n");
     for (size_t i = 0; i < cells->n_cells; i++) {
         const Cell *cell = &cells->cells[i];
         cleared(&part.paint);
         if (painted)
-            TRY_GOTO(put_cell_paint(&part.paint, &many_paints, scene, cells, cell, &part, err));
-        TRY_GOTO(put_cell(out, &plain, cells, cell, &part, err));
+            TRY_GOTO(put_cell_paint(&part.paint, &templates, scene, cells, cell, &part, err));
+        TRY_GOTO(put_cell(out, &templates.cell, cells, cell, &part, err));
     }
     text_puts(out, "Vessel_Texture(0,Vessel_Color)\n");
     status = text_check(out, err);
 done:
     release_cell_text(&part);
-    tmpl_release(&plain);
-    tmpl_release(&many_paints);
+    release_cell_templates(&templates);
     return status;
 }

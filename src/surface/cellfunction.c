@@ -87,33 +87,69 @@ double term_form_value(const TermForm *term, TermPart part, ErfForm form, Vec3 x
     return gauss;
 }
 
-double cell_function(const CellTree *cells, const Cell *cell, Vec3 x)
+const uint32_t *cell_group(const CellTree *cells, const Cell *cell, uint32_t group, uint32_t *n)
+{
+    size_t number = cell->first_group + group;
+    size_t first = number > 0 ? cells->group_ends[number - 1] : 0;
+    *n = (uint32_t)(cells->group_ends[number] - first);
+    return cells->members + first;
+}
+
+static double term_at(const CellTree *cells, const CellTerm *term, Vec3 x)
+{
+    return term_form_value(&cells->forms[term->segment], (TermPart)term->part, cells->erf, x);
+}
+
+/* A sum of terms of a cell, and the largest of them. */
+typedef struct TermSum {
+    double phi, largest;
+    uint32_t segment;
+} TermSum;
+
+/* Of the `n` terms at the places given, or of the first n. */
+static TermSum sum_terms(const CellTree *cells, const CellTerm *terms, const uint32_t *places,
+                         uint32_t n, Vec3 x)
+{
+    TermSum sum = {.largest = -1};
+    for (uint32_t i = 0; i < n; i++) {
+        const CellTerm *term = &terms[places ? places[i] : i];
+        double value = term_at(cells, term, x);
+        sum.phi += value;
+        if (value > sum.largest) {
+            sum.largest = value;
+            sum.segment = term->segment;
+        }
+    }
+    return sum;
+}
+
+/* The largest of the sums of the groups. */
+static TermSum largest_sum(const CellTree *cells, const Cell *cell, Vec3 x)
 {
     const CellTerm *terms = cells->terms + cell->first;
+    if (cell->n_groups == 0)
+        return sum_terms(cells, terms, NULL, cell->count, x);
+    TermSum best = {.phi = -1};
+    for (uint32_t group = 0; group < cell->n_groups; group++) {
+        uint32_t n;
+        const uint32_t *places = cell_group(cells, cell, group, &n);
+        TermSum sum = sum_terms(cells, terms, places, n, x);
+        best = sum.phi > best.phi ? sum : best;
+    }
+    return best;
+}
+
+double cell_function(const CellTree *cells, const Cell *cell, Vec3 x)
+{
     if (cell_is_tube(cells, cell)) {
-        const TermForm *form = &cells->forms[terms->segment];
+        const TermForm *form = &cells->forms[cells->terms[cell->first].segment];
         double v = linear_at(&form->v, x), w = linear_at(&form->w, x);
         return (sqrt(v * v + w * w) * TUBE_SLOPE - 2) * cell->scale;
     }
-    double phi = 0;
-    for (uint32_t i = 0; i < cell->count; i++)
-        phi += term_form_value(&cells->forms[terms[i].segment], (TermPart)terms[i].part, cells->erf,
-                               x);
-    return potential_log_form(phi) * cell->scale;
+    return potential_log_form(largest_sum(cells, cell, x).phi) * cell->scale;
 }
 
 uint32_t cell_largest_term(const CellTree *cells, const Cell *cell, Vec3 x)
 {
-    const CellTerm *terms = cells->terms + cell->first;
-    uint32_t best = 0;
-    double largest = -1;
-    for (uint32_t i = 0; i < cell->count; i++) {
-        double value = term_form_value(&cells->forms[terms[i].segment], (TermPart)terms[i].part,
-                                       cells->erf, x);
-        if (value > largest) {
-            largest = value;
-            best = terms[i].segment;
-        }
-    }
-    return best;
+    return largest_sum(cells, cell, x).segment;
 }

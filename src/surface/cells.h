@@ -48,16 +48,18 @@ typedef struct CellTerm {
     uint32_t part;    /* TermPart */
 } CellTerm;
 
-/* A box and its function, scale * log form of the sum of the terms, below 0 within the vessel. The
- * box of one cell reaches into its neighbours', so that no ray slips between them. */
+/* A box and its function, scale * log form of the sum of the terms, or of the largest of the sums
+ * of its groups of them; below 0 within the vessel. The box of one cell reaches into its
+ * neighbours', so that no ray slips between them. */
 typedef struct Cell {
     Vec3 low, high;
-    uint32_t first, count; /* its terms: terms[first .. first + count), by rising index */
-    double scale;          /* a power of 2, at most a quarter of the smallest s of its terms, mm */
-    double max_gradient;   /* proven bound of the function's gradient in the box */
-    double accuracy;       /* mm; see celltree_build */
-    uint32_t largest; /* the segment whose term is largest wherever the surface is in the box, or
-                       * CELL_MIXED when that is not the same one for sure */
+    uint32_t first, count;          /* its terms: terms[first .. first + count), by rising index */
+    uint32_t first_group, n_groups; /* its groups; none: all terms are one */
+    double scale;        /* a power of 2, at most a quarter of the smallest s of its terms, mm */
+    double max_gradient; /* proven bound of the function's gradient in the box */
+    double accuracy;     /* mm; see celltree_build */
+    uint32_t largest;    /* the segment whose term is largest wherever the surface is in the box, or
+                          * CELL_MIXED when that is not the same one for sure */
 } Cell;
 
 #define CELL_MIXED UINT32_MAX
@@ -67,6 +69,10 @@ typedef struct CellTree {
     size_t n_cells;
     CellTerm *terms;
     size_t n_terms;
+    uint32_t *members; /* of all groups: the places of terms in their cell, rising */
+    size_t n_members;
+    size_t *group_ends; /* one a group: where its members end, and the next one's begin */
+    size_t n_groups;
     TermForm *forms; /* one a segment */
     ErfForm erf;
 } CellTree;
@@ -107,9 +113,13 @@ static inline bool cell_is_tube(const CellTree *cells, const Cell *cell)
 }
 #define TUBE_SLOPE 1.4142135623730951
 
+/* The members of a group of the cell, numbered from 0. */
+const uint32_t *cell_group(const CellTree *cells, const Cell *cell, uint32_t group, uint32_t *n);
+
 /* The function of the cell at x, bit for bit as POV-Ray evaluates it. */
 double cell_function(const CellTree *cells, const Cell *cell, Vec3 x);
-/* The index in geometry->segments of its largest term at x, the first of equals. */
+/* The index in geometry->segments of its largest term at x, of those of the group whose sum is
+ * largest; the first of equals. */
 uint32_t cell_largest_term(const CellTree *cells, const Cell *cell, Vec3 x);
 
 #endif

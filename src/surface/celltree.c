@@ -15,7 +15,8 @@
  *                              <= 2 (sum p_i q_i L^2 / 2 - sum p_i ln p_i)
  *                              <= 2 ln sum exp(q_i L^2 / 2),
  * and grad (log form) = -grad Phi / (Phi L): s_min |grad| <= sqrt(2 ln(sum exp(q_i L^2 / 2))) / L,
- * which grows with Phi. Equality for one term, and for n that coincide. */
+ * which grows with Phi. Equality for one term, and for n that coincide. For the largest of sums of
+ * some of the terms it holds as it does for each. */
 #include "surface/potential.h"
 
 #include <float.h>
@@ -60,9 +61,10 @@ typedef struct Builder {
     double rounding; /* mm: what single precision may take from a box */
     uint32_t *stack; /* the lists of the cubes from the first down to the current one */
     size_t depth, stack_capacity;
-    uint64_t looks; /* at terms, in all cubes so far */
+    uint64_t looks;      /* at terms, in all cubes so far */
+    LocalGroups *groups; /* NULL where all segments blend */
     CellTree tree;
-    size_t cell_capacity, term_capacity;
+    size_t cell_capacity, term_capacity, member_capacity, group_capacity;
 } Builder;
 
 /* Part of the stack, and what its terms have in common. */
@@ -142,25 +144,57 @@ static Status filter_terms(Builder *builder, const TermList *from, Box box, Term
     return STATUS_OK;
 }
 
+/* A sum of terms at the centre of a cube, and what it is at least all over the cube: each term
+ * loses at most the largest phi sqrt(-2 ln phi) / s, exp(-1/2) / s, a mm. */
+typedef struct CubeSum {
+    double phi, at_least;
+} CubeSum;
+
+/* Of the `n` terms at the places given of the list, or of the first n. */
+static CubeSum sum_in(const Builder *builder, const uint32_t *list, const uint32_t *places,
+                      size_t n, Vec3 center, double half_diagonal)
+{
+    CubeSum sum = {0};
+    for (size_t i = 0; i < n; i++) {
+        const FieldSegment *segment = &builder->segments[list[places ? places[i] : i]];
+        double term = potential_term(segment, center);
+        sum.phi += term;
+        sum.at_least += fmax(0, term - half_diagonal * exp(-0.5) * 2 / segment->radius_mm);
+    }
+    return sum;
+}
+
+/* The largest of the sums of the groups. */
+static CubeSum largest_sum(const Builder *builder, const TermList *terms, Vec3 center,
+                           double half_diagonal)
+{
+    const uint32_t *list = builder->stack + terms->first;
+    if (!builder->groups)
+        return sum_in(builder, list, NULL, terms->count, center, half_diagonal);
+    CubeSum largest = {0};
+    size_t n_groups = localgroups_find(builder->groups, list, terms->count);
+    for (size_t group = 0; group < n_groups; group++) {
+        size_t n;
+        const uint32_t *places = localgroups_members(builder->groups, group, &n);
+        CubeSum sum = sum_in(builder, list, places, n, center, half_diagonal);
+        largest.phi = fmax(largest.phi, sum.phi);
+        largest.at_least = fmax(largest.at_least, sum.at_least);
+    }
+    return largest;
+}
+
 /* Whether the potential at the centre proves that the level is not met in the cube widened by
  * `margin`: it is too small to reach the level by the bound of the log form's gradient, or so large
- * that it stays above, each term losing at most the largest phi sqrt(-2 ln phi) / s, exp(-1/2) / s,
- * a mm. */
+ * that it stays above. */
 static bool misses_surface(const Builder *builder, const TermList *terms, const Cube *cube,
                            double margin)
 {
     Vec3 center = box_center(cube_box(cube, 0));
     double half_diagonal = sqrt(3) * (cube->side / 2 + margin);
-    double phi = 0, at_least = 0;
-    for (size_t i = terms->first; i < terms->first + terms->count; i++) {
-        const FieldSegment *segment = &builder->segments[builder->stack[i]];
-        double term = potential_term(segment, center);
-        phi += term;
-        at_least += fmax(0, term - half_diagonal * exp(-0.5) * 2 / segment->radius_mm);
-    }
-    if (phi >= empty_below)
-        return at_least > full_above;
-    double rise = sqrt(-2 * log(fmax(phi, DBL_MIN))) - sqrt(-2 * log(empty_below));
+    CubeSum sum = largest_sum(builder, terms, center, half_diagonal);
+    if (sum.phi >= empty_below)
+        return sum.at_least > full_above;
+    double rise = sqrt(-2 * log(fmax(sum.phi, DBL_MIN))) - sqrt(-2 * log(empty_below));
     return rise * terms->smallest_radius / 2 > terms->steepness * half_diagonal;
 }
 
@@ -217,6 +251,31 @@ static Status push_terms(Builder *builder, const TermList *terms, Box box, Err *
     for (size_t i = 0; i < terms->count; i++) {
         uint32_t segment = builder->stack[terms->first + i];
         tree->terms[tree->n_terms++] = (CellTerm){segment, part_in(&tree->forms[segment], box)};
+    }
+    return STATUS_OK;
+}
+
+/* Adds the groups of the cell, unless its terms are all one. */
+static Status push_groups(Builder *builder, const TermList *terms, Cell *cell, Err *err)
+{
+    CellTree *tree = &builder->tree;
+    size_t n_groups = 0;
+    if (builder->groups)
+        n_groups = localgroups_find(builder->groups, builder->stack + terms->first, terms->count);
+    if (n_groups < 2)
+        return STATUS_OK;
+    cell->first_group = (uint32_t)tree->n_groups;
+    cell->n_groups = (uint32_t)n_groups;
+    TRY(mem_reserve(&tree->group_ends, &builder->group_capacity, tree->n_groups + n_groups,
+                    sizeof *tree->group_ends, "groups of cells", err));
+    for (size_t group = 0; group < n_groups; group++) {
+        size_t n;
+        const uint32_t *places = localgroups_members(builder->groups, group, &n);
+        TRY(mem_reserve(&tree->members, &builder->member_capacity, tree->n_members + n,
+                        sizeof *tree->members, "groups of cells", err));
+        for (size_t i = 0; i < n; i++)
+            tree->members[tree->n_members++] = places[i];
+        tree->group_ends[tree->n_groups++] = tree->n_members;
     }
     return STATUS_OK;
 }
@@ -282,6 +341,7 @@ static Status add_cell(Builder *builder, const TermList *candidates, const Cube 
                  .accuracy = accuracy,
                  .largest = largest_in(builder, &terms, box)};
     TRY(push_terms(builder, &terms, box, err));
+    TRY(push_groups(builder, &terms, &cell, err));
     cell.max_gradient = max_gradient(builder, &terms, &cell);
     tree->cells[tree->n_cells++] = cell;
     return STATUS_OK;
@@ -384,7 +444,12 @@ Status celltree_build(const Geometry *geometry, const CellParams *params, CellTr
     Builder builder = {.segments = geometry->segments,
                        .beta = params->beta > 0 ? params->beta : chosen_beta(geometry->n_segments),
                        .tree = {.erf = params->erf}};
-    Status status = build(&builder, geometry->n_segments, err);
+    Status status = STATUS_OK;
+    if (geometry->blend.n_groups)
+        status = localgroups_new(geometry, &builder.groups, err);
+    if (status == STATUS_OK)
+        status = build(&builder, geometry->n_segments, err);
+    localgroups_free(builder.groups);
     free(builder.supports);
     free(builder.stack);
     if (status == STATUS_OK)
@@ -398,6 +463,8 @@ void celltree_release(CellTree *cells)
 {
     free(cells->cells);
     free(cells->terms);
+    free(cells->members);
+    free(cells->group_ends);
     free(cells->forms);
     *cells = (CellTree){0};
 }

@@ -416,14 +416,13 @@ test_methods_say_what_they_do_not_draw() {
     [ "$(colours picture.ppm)" -gt 20 ] || fail "expected a shaded picture"
 }
 
-test_the_potential_of_the_graph_is_drawn_and_not_written_for_povray() {
+test_the_potential_of_the_graph_keeps_strangers_apart() {
     rows '1 3 -9 1.1 0 1 -1' '2 3 9 1.1 0 1 1' '3 3 -9 -1.1 0 1 -1' '4 3 9 -1.1 0 1 3'
     run_ok corcast render tree.swc --model isosurface --size 90x60 -o paper.ppm
     run_ok corcast render tree.swc --model isosurface --size 90x60 --potential graph -o graph.ppm
     expect_differing 380 400 paper.ppm graph.ppm
-    run corcast scene tree.swc --model isosurface --potential graph -o tree.pov
-    expect_status 2
-    expect_sentence 'potential graph is corcast.s own and has no POV-Ray scene'
+    run_ok corcast scene tree.swc --model isosurface --potential graph --color-by radius --ids on -o tree.pov
+    grep -q 'Fn_Max(Fm0(x,y,z),Fm1(x,y,z))' tree.inc || fail "expected the larger of two potentials in a cell"
     run corcast render tree.swc --model rounded --potential graph -o picture.ppm
     expect_status 2
     expect_sentence 'potential is for --model isosurface'

@@ -50,6 +50,15 @@ test_joints_seen_close_up_agree() {
     agrees joined --projection perspective --location 12,25,9 --look-at 1,16,2 --angle 30 --shadows on
 }
 
+# Two vessels at both ends of a short segment, so near that the potential of the paper merges them.
+test_the_potential_of_the_graph_agrees() {
+    printf '%s\n' '1 3 -9 1.1 0 1 -1' '2 3 0 1.1 0 1 1' '3 3 9 1.1 0 1 2' '4 3 0 -1.1 0 0.6 2' '5 3 9 -1.1 0 1 4' \
+        '6 3 -9 -1.1 0 1 4' >tree.swc
+    agrees isosurface --potential graph --color-by radius --shadows on
+    tree_3d
+    agrees isosurface --potential graph --view iso --projection perspective
+}
+
 test_isosurface_with_an_exact_erf_agrees() {
     tree_3d 30
     agrees isosurface --erf exact --shadows on

@@ -119,10 +119,38 @@ static void a_term_in_its_form_is_the_term(void **state)
 
 static double potential(const TestScene *test, Vec3 x)
 {
-    double sum = 0;
+    const Blend *blend = &test->geometry.blend;
+    const NumberLists *members = &blend->members;
+    double sum = 0, largest = 0;
     for (size_t i = 0; i < test->geometry.n_segments; i++)
         sum += potential_term(&test->segments[i], x);
-    return sum;
+    for (size_t group = 0; group < blend->n_groups; group++) {
+        sum = 0;
+        for (uint32_t i = members->first[group]; i < members->first[group + 1]; i++)
+            sum += potential_term(&test->segments[members->items[i]], x);
+        largest = fmax(largest, sum);
+    }
+    return blend->n_groups ? largest : sum;
+}
+
+/* A chain whose segments blend where they meet, and a stranger that runs through its middle. */
+static void make_graph_scene(Random *random, TestScene *test)
+{
+    uint32_t nodes[MAX_SEGMENTS][2];
+    make_test_scene(KIND_CHAIN, random, test);
+    const FieldSegment *middle = &test->segments[7];
+    Vec3 beside = vec3_scale(random_normal_to(random, vec3_sub(middle->b, middle->a)), 0.4);
+    put_segment(test, vec3_add(middle->a, beside), vec3_add(middle->b, beside), 0.31);
+    uint32_t n = (uint32_t)test->geometry.n_segments;
+    for (uint32_t i = 0; i < n; i++) {
+        nodes[i][0] = i + 1 == n ? n : i;
+        nodes[i][1] = i + 1;
+    }
+    nodes[n - 1][0] = n;
+    nodes[n - 1][1] = n + 1;
+    const VesselTree tree = {test->segments, nodes, NULL, n, n + 2};
+    assert_int_equal(vesseltree_blend(&tree, &test->geometry.blend, NULL), STATUS_OK);
+    assert_true(test->geometry.blend.n_groups > 3);
 }
 
 /* A point of the surface on the line from x, or false. */
@@ -154,6 +182,40 @@ static bool holds(const Cell *cell, Vec3 x)
 
 static const double betas[] = {1.9, 4, 6.5};
 
+/* Finds places of the surface and holds the cells there to it. */
+static void hold_cells_to_surface(const TestScene *test, double beta, ErfForm erf, Random *random,
+                                  double *worst)
+{
+    CellTree cells = cells_of(test, beta, erf);
+    int found = 0;
+    for (int i = 0; i < 1500; i++) {
+        const FieldSegment *segment =
+            &test->segments[random_bits(random) % test->geometry.n_segments];
+        Vec3 x, from = vec3_add_scaled(segment->a, vec3_sub(segment->b, segment->a),
+                                       random_uniform(random));
+        if (!find_surface(test, from, random_direction(random), 0.1 * segment->radius_mm, &x))
+            continue;
+        int cells_there = 0;
+        for (size_t k = 0; k < cells.n_cells; k++) {
+            const Cell *cell = &cells.cells[k];
+            if (!holds(cell, x))
+                continue;
+            cells_there++;
+            uint32_t largest = cell_largest_term(&cells, cell, x);
+            assert_true(cell->largest == CELL_MIXED || cell->largest == largest);
+            double allowed =
+                cell->max_gradient * cell_displacement(test->segments[largest].radius_mm, erf);
+            double off = fabs(cell_function(&cells, cell, x)) / allowed;
+            *worst = fmax(*worst, off);
+            assert_true(off <= 1);
+        }
+        assert_true(cells_there > 0);
+        found++;
+    }
+    assert_true(found > 50);
+    celltree_release(&cells);
+}
+
 static void the_surface_lies_in_cells_whose_functions_are_zero_there(void **state)
 {
     (void)state;
@@ -164,37 +226,25 @@ static void the_surface_lies_in_cells_whose_functions_are_zero_there(void **stat
         TestScene test;
         make_test_scene((SceneKind)(run % N_TAME_KINDS), &random, &test);
         ErfForm erf = (ErfForm)(run / N_TAME_KINDS);
-        CellTree cells = cells_of(&test, betas[run % 3], erf);
-        int found = 0;
-        for (int i = 0; i < 1500; i++) {
-            const FieldSegment *segment =
-                &test.segments[random_bits(&random) % test.geometry.n_segments];
-            Vec3 x;
-            Vec3 from = vec3_add_scaled(segment->a, vec3_sub(segment->b, segment->a),
-                                        random_uniform(&random));
-            if (!find_surface(&test, from, random_direction(&random), 0.1 * segment->radius_mm, &x))
-                continue;
-            int cells_there = 0;
-            for (size_t k = 0; k < cells.n_cells; k++) {
-                const Cell *cell = &cells.cells[k];
-                if (!holds(cell, x))
-                    continue;
-                cells_there++;
-                uint32_t largest = cell_largest_term(&cells, cell, x);
-                assert_true(cell->largest == CELL_MIXED || cell->largest == largest);
-                double allowed =
-                    cell->max_gradient * cell_displacement(test.segments[largest].radius_mm, erf);
-                double off = fabs(cell_function(&cells, cell, x)) / allowed;
-                worst[erf] = fmax(worst[erf], off);
-                assert_true(off <= 1);
-            }
-            assert_true(cells_there > 0);
-            found++;
-        }
-        assert_true(found > 50);
-        celltree_release(&cells);
+        hold_cells_to_surface(&test, betas[run % 3], erf, &random, &worst[erf]);
     }
     printf("  displacement over its bound: fast %.3f, exact %.3f\n", worst[0], worst[1]);
+}
+
+static void the_surface_of_the_graph_lies_in_cells_too(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 45);
+    double worst = 0;
+    for (int run = 0; run < 4; run++) {
+        TestScene test;
+        make_graph_scene(&random, &test);
+        hold_cells_to_surface(&test, betas[run % 3], (ErfForm)(run % 2), &random, &worst);
+        numberlists_release(&test.geometry.blend.members);
+        numberlists_release(&test.geometry.blend.groups);
+    }
+    printf("  displacement over its bound: %.3f\n", worst);
 }
 
 static Vec3 random_place_in(const Cell *cell, Random *random)
@@ -402,6 +452,7 @@ int main(void)
         cmocka_unit_test(the_tail_of_erf_is_no_steeper_than_cells_allow_for),
         cmocka_unit_test(a_term_in_its_form_is_the_term),
         cmocka_unit_test(the_surface_lies_in_cells_whose_functions_are_zero_there),
+        cmocka_unit_test(the_surface_of_the_graph_lies_in_cells_too),
         cmocka_unit_test(gradient_in_a_cell_never_exceeds_its_bound),
         cmocka_unit_test(coincident_segments_reach_the_bound),
         cmocka_unit_test(a_long_vessel_is_made_of_tubes),
