@@ -7,8 +7,8 @@
 
 #define NONE UINT32_MAX
 
-enum { MOST_REPEATS = 5, MOST_REFINEMENTS = 2 };
-static const double finer = 0.62;
+enum { MOST_REPEATS = 7, MOST_REFINEMENTS = 2 };
+static const double finer = 0.85;
 
 typedef struct Maker {
     ZoneWorker *worker;
