@@ -275,9 +275,8 @@ static Status check_surface(Verification *v, Err *err)
     TRY(plane_init(&allowed, seen->depth.width, seen->depth.height, 1, err));
     Status status = surface_tolerance(&v->scene.geometry, &v->scene.view.camera, v->cells.erf,
                                       &sight, &exact_sight, allowed.values, err);
-    const SurfacePlanes planes = {&seen->depth, &exact->depth, &allowed};
     if (status == STATUS_OK)
-        status = surface_check(&planes, &v->surface, err);
+        status = surface_check(&seen->depth, &exact->depth, &allowed, &v->surface, err);
     plane_release(&allowed);
     return status;
 }

@@ -1,6 +1,5 @@
-/* Each kind of check lists its rules and measures once, here; text, JUnit XML and page
- * only print the lists. A measure that is NAN has no meaning for the images compared, and is left
- * out. */
+/* Each kind of check lists its rules and measures once, here; text, JUnit XML and page only print
+ * the lists. A measure that is NAN has no meaning for the images compared, and is left out. */
 #include "verify/check.h"
 
 #include "verify/result.h"

@@ -95,11 +95,10 @@ static Status take_counts(const Counting *counting, CompareResult *result, Ledge
 static Counting start_counting(const Rendering *a, const Rendering *b, const Labels *labels,
                                const Tolerance *tolerance)
 {
-    double code_levels = a->picture->bits == 8 ? 1 : 257;
     return (Counting){.a = a,
                       .b = b,
                       .labels = labels,
-                      .beyond = (int)floor(tolerance->color_levels * code_levels + 1e-9),
+                      .beyond = allowed_codes(tolerance, a->picture),
                       .common_only =
                           tolerance->color_common_only && labels->source != LABELS_UNKNOWN,
                       .settled = tolerance->settled,

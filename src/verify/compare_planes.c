@@ -1,18 +1,10 @@
-/* Depth, normal and id planes. What a pixel shows is told by its values; percentiles come from a
- * partial selection. */
+/* Depth, normal and id planes. What a pixel shows is told by its values. */
 #include "verify/labels.h"
 #include "verify/result.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* Nearest rank: the smallest value that at least `fraction` of all do not exceed. */
-static double percentile(double *values, size_t n, double fraction)
-{
-    size_t rank = (size_t)ceil(fraction * (double)n);
-    return select_number(values, n, rank ? rank - 1 : 0);
-}
 
 static bool is_settled(const Tolerance *tolerance, size_t pixel)
 {

@@ -1,7 +1,5 @@
 /* Pictures of a difference: Magma's colours at six fixed steps, and a signed one. */
-#include "verify/verify.h"
-
-#include <stdlib.h>
+#include "verify/result.h"
 
 enum { SIGNED_GAIN = 8, SIGNED_MIDDLE = 128 };
 
@@ -21,15 +19,10 @@ Status heat_picture(Picture *out, const Picture *a, const Picture *b, Err *err)
 {
     Picture made;
     TRY(picture_init(&made, a->width, a->height, 3, 8, err));
-    size_t n = (size_t)a->width * (size_t)a->height, channels = (size_t)a->channels;
+    size_t n = (size_t)a->width * (size_t)a->height;
     double code_levels = a->bits == 8 ? 1 : 1 / 257.0;
     for (size_t i = 0; i < n; i++) {
-        int largest = 0;
-        for (size_t c = i * channels; c < (i + 1) * channels; c++) {
-            int difference = abs(picture_code(a, c) - picture_code(b, c));
-            largest = difference > largest ? difference : largest;
-        }
-        const HeatStep *heat = heat_of(largest * code_levels);
+        const HeatStep *heat = heat_of(largest_difference(a, b, i) * code_levels);
         made.codes8[3 * i] = heat->red;
         made.codes8[3 * i + 1] = heat->green;
         made.codes8[3 * i + 2] = heat->blue;

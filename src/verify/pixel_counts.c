@@ -20,22 +20,15 @@ typedef struct Row {
 
 /* ------------------------------------------------------------------------------------- classes */
 
-static bool geometry_differs(const Counting *counting, size_t pixel)
-{
-    const float *depth_a = counting->a->depth->values, *depth_b = counting->b->depth->values;
-    const float *normal_a = counting->a->normal->values, *normal_b = counting->b->normal->values;
-    double depth = fabs((double)depth_a[pixel] - (double)depth_b[pixel]);
-    return !(depth <= counting->geometry_mm) ||
-           !(angle_deg(normal_a + 3 * pixel, normal_b + 3 * pixel) <= counting->geometry_deg);
-}
-
 /* Of a pixel whose labels agree. */
 static PixelClass class_of_shading(const Counting *counting, const Row *row, int x, bool seen,
                                    int difference)
 {
     size_t pixel = (size_t)row->y * (size_t)counting->labels->width + (size_t)x;
     bool known = counting->a->depth && counting->a->normal;
-    if (known && seen && geometry_differs(counting, pixel))
+    if (known && seen &&
+        geometry_differs(counting->a, counting->b, pixel, counting->geometry_mm,
+                         counting->geometry_deg))
         return PIXEL_GEOMETRY;
     if (known && seen && difference > 1) {
         double sum_a = 0, sum_b = 0;

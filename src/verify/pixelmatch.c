@@ -5,11 +5,6 @@
 
 #include <math.h>
 
-typedef struct Match {
-    const Picture *a, *b;
-    int width, height;
-} Match;
-
 static void read_pixel(const Picture *picture, int x, int y, int rgb[3])
 {
     size_t first = ((size_t)y * (size_t)picture->width + (size_t)x) * (size_t)picture->channels;
@@ -45,34 +40,31 @@ static int upper(int at, int side)
     return at + 1 < side ? at + 1 : side - 1;
 }
 
-static bool on_border(const Match *match, int x, int y)
+static bool on_border(const Picture *picture, int x, int y)
 {
-    return x == 0 || x == match->width - 1 || y == 0 || y == match->height - 1;
+    return x == 0 || x == picture->width - 1 || y == 0 || y == picture->height - 1;
 }
 
 /* Whether at least three of the neighbours have the pixel's colour; the border counts as one. */
-static bool has_siblings(const Match *match, const Picture *picture, int x, int y)
+static bool has_siblings(const Picture *picture, int x, int y)
 {
-    int equal = on_border(match, x, y), center[3];
+    int equal = on_border(picture, x, y), center[3];
     read_pixel(picture, x, y, center);
-    for (int column = lower(x); column <= upper(x, match->width); column++)
-        for (int row = lower(y); row <= upper(y, match->height); row++)
+    for (int column = lower(x); column <= upper(x, picture->width); column++)
+        for (int row = lower(y); row <= upper(y, picture->height); row++)
             equal += (column != x || row != y) && same_pixel(picture, column, row, center);
     return equal > 2;
 }
 
-static bool has_siblings_in_both(const Match *match, int x, int y)
+/* Whether the pixel of `picture` lies on an edge that antialiasing has smoothed: its darkest or its
+ * brightest neighbour has siblings in both pictures. */
+static bool is_antialiased(const Picture *picture, const Picture *partner, int x, int y)
 {
-    return has_siblings(match, match->a, x, y) && has_siblings(match, match->b, x, y);
-}
-
-static bool is_antialiased(const Match *match, const Picture *picture, int x, int y)
-{
-    int equal = on_border(match, x, y), center[3], darkest[2] = {0}, brightest[2] = {0};
+    int equal = on_border(picture, x, y), center[3], extreme[2][2] = {{0}};
     double min = 0, max = 0;
     read_pixel(picture, x, y, center);
-    for (int column = lower(x); column <= upper(x, match->width); column++)
-        for (int row = lower(y); row <= upper(y, match->height); row++) {
+    for (int column = lower(x); column <= upper(x, picture->width); column++)
+        for (int row = lower(y); row <= upper(y, picture->height); row++) {
             if (column == x && row == y)
                 continue;
             int other[3];
@@ -85,23 +77,23 @@ static bool is_antialiased(const Match *match, const Picture *picture, int x, in
                     return false;
             } else if (delta < min) {
                 min = delta;
-                darkest[0] = column;
-                darkest[1] = row;
+                extreme[0][0] = column;
+                extreme[0][1] = row;
             } else if (delta > max) {
                 max = delta;
-                brightest[0] = column;
-                brightest[1] = row;
+                extreme[1][0] = column;
+                extreme[1][1] = row;
             }
         }
-    if (min == 0 || max == 0)
-        return false;
-    return has_siblings_in_both(match, darkest[0], darkest[1]) ||
-           has_siblings_in_both(match, brightest[0], brightest[1]);
+    bool smoothed = false;
+    for (int i = 0; i < 2 && min != 0 && max != 0; i++)
+        smoothed = smoothed || (has_siblings(picture, extreme[i][0], extreme[i][1]) &&
+                                has_siblings(partner, extreme[i][0], extreme[i][1]));
+    return smoothed;
 }
 
 size_t pixelmatch_count(const Picture *a, const Picture *b, double threshold)
 {
-    const Match match = {a, b, a->width, a->height};
     const double limit = 35215 * threshold * threshold;
     size_t count = 0;
     for (int y = 0; y < a->height; y++) {
@@ -111,8 +103,8 @@ size_t pixelmatch_count(const Picture *a, const Picture *b, double threshold)
             int in_a[3], in_b[3];
             read_pixel(a, x, y, in_a);
             read_pixel(b, x, y, in_b);
-            if (difference(in_a, in_b) > limit && !is_antialiased(&match, a, x, y) &&
-                !is_antialiased(&match, b, x, y))
+            if (difference(in_a, in_b) > limit && !is_antialiased(a, b, x, y) &&
+                !is_antialiased(b, a, x, y))
                 count++;
         }
     }

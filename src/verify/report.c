@@ -40,38 +40,13 @@ json_t *report_json(const ReportCase *report)
     return report->settled ? json_with(json, "settled", settled_json(report->settled)) : json;
 }
 
-/* Writes `text` to folder/name and releases it. */
-static Status write_named(const char *folder, const char *name, Text *text, Err *err)
+/* Writes `text` to folder/name. */
+static Status write_named(const char *folder, const char *name, const Text *text, Err *err)
 {
     char *path = NULL;
     Status status = file_join(folder, name, &path, err);
     if (status == STATUS_OK)
         status = file_write_text(path, text, err);
-    free(path);
-    text_release(text);
-    return status;
-}
-
-static Status write_json(const ReportCase *report, const char *folder, Err *err)
-{
-    Text text = TEXT_INIT;
-    text_json(&text, report_json(report), 2);
-    text_puts(&text, "\n");
-    return write_named(folder, "report.json", &text, err);
-}
-
-static Status write_junit(const ReportCase *report, const char *folder, Err *err)
-{
-    Text xml = TEXT_INIT;
-    report_junit(report, &xml);
-    return write_named(folder, "junit.xml", &xml, err);
-}
-
-static Status write_heat(const Picture *heat, const char *folder, Err *err)
-{
-    char *path;
-    TRY(file_join(folder, "diff.png", &path, err));
-    Status status = picture_write(heat, path, ENCODING_SRGB, NULL, err);
     free(path);
     return status;
 }
@@ -89,16 +64,24 @@ Status report_write_page(const ReportCase *report, const char *templates, const 
 Status report_write(const ReportCase *report, const char *templates, const char *folder, Err *err)
 {
     Picture heat = {0};
-    char *path = NULL;
+    Text json = TEXT_INIT, xml = TEXT_INIT;
+    char *diff = NULL, *page = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(heat_picture(&heat, report->a.picture, report->b.picture, err));
-    TRY_GOTO(write_heat(&heat, folder, err));
-    TRY_GOTO(write_json(report, folder, err));
-    TRY_GOTO(write_junit(report, folder, err));
-    TRY_GOTO(file_join(folder, "report.html", &path, err));
-    TRY_GOTO(report_page(report, &heat, templates, path, err));
+    TRY_GOTO(file_join(folder, "diff.png", &diff, err));
+    TRY_GOTO(picture_write(&heat, diff, ENCODING_SRGB, NULL, err));
+    text_json(&json, report_json(report), 2);
+    text_puts(&json, "\n");
+    TRY_GOTO(write_named(folder, "report.json", &json, err));
+    report_junit(report, &xml);
+    TRY_GOTO(write_named(folder, "junit.xml", &xml, err));
+    TRY_GOTO(file_join(folder, "report.html", &page, err));
+    status = report_page(report, &heat, templates, page, err);
 done:
-    free(path);
+    free(diff);
+    free(page);
+    text_release(&json);
+    text_release(&xml);
     picture_release(&heat);
     return status;
 }

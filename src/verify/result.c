@@ -3,6 +3,7 @@
 #include "verify/result.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 const char *plane_kind_name(PlaneKind kind)
 {
@@ -88,6 +89,35 @@ Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *er
                    "the images differ in size: %d x %d and %d x %d pixels; only images of one size "
                    "can be compared",
                    width_a, height_a, width_b, height_b);
+}
+
+double percentile(double *values, size_t n, double fraction)
+{
+    size_t rank = (size_t)ceil(fraction * (double)n);
+    return select_number(values, n, rank ? rank - 1 : 0);
+}
+
+int largest_difference(const Picture *a, const Picture *b, size_t pixel)
+{
+    size_t channels = (size_t)a->channels;
+    int largest = 0;
+    for (size_t c = pixel * channels; c < (pixel + 1) * channels; c++) {
+        int difference = abs(picture_code(a, c) - picture_code(b, c));
+        largest = difference > largest ? difference : largest;
+    }
+    return largest;
+}
+
+int allowed_codes(const Tolerance *tolerance, const Picture *picture)
+{
+    return (int)floor(tolerance->color_levels * (picture->bits == 8 ? 1 : 257) + 1e-9);
+}
+
+bool geometry_differs(const Rendering *a, const Rendering *b, size_t pixel, double mm, double deg)
+{
+    double depth = fabs((double)a->depth->values[pixel] - (double)b->depth->values[pixel]);
+    return !(depth <= mm) ||
+           !(angle_deg(&a->normal->values[3 * pixel], &b->normal->values[3 * pixel]) <= deg);
 }
 
 double angle_deg(const float *a, const float *b)

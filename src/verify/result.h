@@ -22,6 +22,17 @@ PixelPlace place_of(size_t pixel, int width);
 /* A sentence about a rule that is broken, or would be. */
 void rule_sentence(const CompareResult *result, const Rule *rule, char *out, size_t size);
 
+/* The largest difference over the channels of a pixel, codes. */
+int largest_difference(const Picture *a, const Picture *b, size_t pixel);
+/* How many codes of such a picture the tolerance lets a pixel be off. */
+int allowed_codes(const Tolerance *tolerance, const Picture *picture);
+/* Whether depths or normals differ by more than so much at a pixel that both show. */
+bool geometry_differs(const Rendering *a, const Rendering *b, size_t pixel, double mm, double deg);
+
+/* The smallest of n >= 1 values, which are reordered, that at least `fraction` of all do not
+ * exceed: the percentile by nearest rank. O(n). */
+double percentile(double *values, size_t n, double fraction);
+
 /* The angle between two vectors in degrees, exact also where it is small. */
 double angle_deg(const float *a, const float *b);
 

@@ -106,15 +106,6 @@ void settled_describe(const SettledPixel *pixel, const char *name_a, const char 
 
 /* ---- which pixels ask for it ----------------------------------------------------------------- */
 
-static bool color_beyond(const Rendering *a, const Rendering *b, size_t pixel, int codes)
-{
-    size_t channels = (size_t)a->picture->channels;
-    for (size_t c = pixel * channels; c < (pixel + 1) * channels; c++)
-        if (abs(picture_code(a->picture, c) - picture_code(b->picture, c)) > codes)
-            return true;
-    return false;
-}
-
 static bool geometry_beyond(const Rendering *a, const Rendering *b, size_t pixel,
                             const Tolerance *tolerance)
 {
@@ -122,16 +113,14 @@ static bool geometry_beyond(const Rendering *a, const Rendering *b, size_t pixel
     if (a->ids->ids[pixel] != b->ids->ids[pixel] || isfinite(depth_a) != isfinite(depth_b))
         return true;
     return isfinite(depth_a) &&
-           (!(fabs(depth_a - depth_b) <= tolerance->depth_max_mm) ||
-            !(angle_deg(&a->normal->values[3 * pixel], &b->normal->values[3 * pixel]) <=
-              tolerance->normal_max_deg));
+           geometry_differs(a, b, pixel, tolerance->depth_max_mm, tolerance->normal_max_deg);
 }
 
 unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
                       const Tolerance *tolerance)
 {
-    int codes = (int)floor(tolerance->color_levels * (a->picture->bits == 8 ? 1 : 257) + 1e-9);
-    return (color_beyond(a, b, pixel, codes) ? BEYOND_COLOR : 0u) |
+    int off = largest_difference(a->picture, b->picture, pixel);
+    return (off > allowed_codes(tolerance, a->picture) ? BEYOND_COLOR : 0u) |
            (geometry_beyond(a, b, pixel, tolerance) ? BEYOND_GEOMETRY : 0u);
 }
 

@@ -1,16 +1,16 @@
 /* One pass over the pixels: which side sees a surface, and by how much of what is allowed the two
- * depths differ. Percentiles are by nearest rank in the sorted errors. */
+ * depths differ. */
 #include "verify/surface_check.h"
 
+#include "verify/result.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 /* Classes one pixel; its error is appended to `errors` when it is common. */
-static void count_pixel(const SurfacePlanes *planes, size_t i, SurfaceCheck *check, double *errors)
+static void count_pixel(double a, double b, double allowed, size_t i, int width,
+                        SurfaceCheck *check, double *errors)
 {
-    double a = (double)planes->a->values[i], b = (double)planes->b->values[i];
-    double allowed = (double)planes->allowed->values[i];
     bool in_a = isfinite(a), in_b = isfinite(b);
     if (!in_a && !in_b)
         return;
@@ -27,8 +27,8 @@ static void count_pixel(const SurfacePlanes *planes, size_t i, SurfaceCheck *che
     check->beyond += !(error <= allowed);
     if (!(error / allowed <= check->max_ratio)) {
         check->max_ratio = error / allowed;
-        check->worst_x = (int)(i % (size_t)planes->a->width);
-        check->worst_y = (int)(i / (size_t)planes->a->width);
+        check->worst_x = (int)(i % (size_t)width);
+        check->worst_y = (int)(i / (size_t)width);
     }
 }
 
@@ -50,9 +50,9 @@ static void judge(SurfaceCheck *check)
             check->beyond, check->max_ratio, check->worst_x, check->worst_y);
 }
 
-Status surface_check(const SurfacePlanes *planes, SurfaceCheck *out, Err *err)
+Status surface_check(const Plane *a, const Plane *b, const Plane *allowed, SurfaceCheck *out,
+                     Err *err)
 {
-    const Plane *a = planes->a, *b = planes->b, *allowed = planes->allowed;
     if (a->width != b->width || a->height != b->height || a->width != allowed->width ||
         a->height != allowed->height)
         return err_set(err, STATUS_INPUT,
@@ -67,12 +67,12 @@ Status surface_check(const SurfacePlanes *planes, SurfaceCheck *out, Err *err)
     double *errors;
     TRY(mem_calloc(&errors, check.pixels, sizeof *errors, "errors of pixels", err));
     for (size_t i = 0; i < check.pixels; i++)
-        count_pixel(planes, i, &check, errors);
+        count_pixel((double)a->values[i], (double)b->values[i], (double)allowed->values[i], i,
+                    a->width, &check, errors);
     if (check.common) {
-        sort_numbers(errors, check.common);
-        check.median_mm = errors[(check.common - 1) / 2];
-        check.p99_mm = errors[(size_t)ceil(0.99 * (double)check.common) - 1];
-        check.max_mm = errors[check.common - 1];
+        check.median_mm = percentile(errors, check.common, 0.5);
+        check.p99_mm = percentile(errors, check.common, 0.99);
+        check.max_mm = percentile(errors, check.common, 1);
     }
     free(errors);
     judge(&check);

@@ -7,15 +7,6 @@
 #include "base/base.h"
 #include "image/image.h"
 
-/* One depth plane of either side, A the repetition and B the surface: 1 channel, mm along the ray,
- * INFINITY where nothing is seen. */
-typedef struct SurfacePlanes {
-    const Plane *a, *b;
-    /* How far A may be from B, mm; INFINITY where the ray grazes a surface in either and may go
-     * either way. 1 channel. */
-    const Plane *allowed;
-} SurfacePlanes;
-
 typedef struct SurfaceCheck {
     bool agrees;      /* missing, extra and beyond are 0 */
     char reason[200]; /* a sentence; "" when it agrees */
@@ -29,8 +20,12 @@ typedef struct SurfaceCheck {
     int worst_x, worst_y;             /* where that is, from the top left; -1 when nowhere */
 } SurfaceCheck;
 
-/* STATUS_INPUT when sizes differ. */
-MUST_CHECK Status surface_check(const SurfacePlanes *planes, SurfaceCheck *check, Err *err);
+/* Holds A, the repetition, against B, the surface: depth planes of 1 channel, mm along the ray,
+ * INFINITY where nothing is seen. `allowed`, 1 channel, is how far A may be from B, mm; INFINITY
+ * where the ray grazes a surface in either and may go either way. STATUS_INPUT when sizes
+ * differ. */
+MUST_CHECK Status surface_check(const Plane *a, const Plane *b, const Plane *allowed,
+                                SurfaceCheck *check, Err *err);
 
 /* New reference, NULL when memory runs out. */
 json_t *surface_check_json(const SurfaceCheck *check);

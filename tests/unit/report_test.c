@@ -323,8 +323,7 @@ static void check_surface_of(Surface *surface)
     const Plane a = {.width = 7, .height = 1, .channels = 1, .values = surface->a};
     const Plane b = {.width = 7, .height = 1, .channels = 1, .values = surface->b};
     const Plane allowed = {.width = 7, .height = 1, .channels = 1, .values = surface->allowed};
-    const SurfacePlanes planes = {.a = &a, .b = &b, .allowed = &allowed};
-    assert_int_equal(surface_check(&planes, &surface->found, &err), STATUS_OK);
+    assert_int_equal(surface_check(&a, &b, &allowed, &surface->found, &err), STATUS_OK);
 }
 
 #define OUT INFINITY
