@@ -46,9 +46,7 @@ static void print_size(const Domain *domain)
     if (domain->dimension == 3)
         fprintf(stderr, " x %.4g", size.z);
     fprintf(stderr, " mm%s, ",
-            (domain->kind == DOMAIN_MESH || domain->kind == DOMAIN_POLYGON) && domain->n_sizes == 0
-                ? " if the file's unit is that (FILE,10 is a file in cm)"
-                : "");
+            domain->unit_is_guessed ? " if the file's unit is that (FILE,10 is a file in cm)" : "");
 }
 
 /* What a user has to know of a tree that is not as it should be. */

@@ -221,19 +221,15 @@ const char *file_extension(const char *path)
 static Status format_owned(char **out, Err *err, const char *format, ...) PRINTF_LIKE(3, 4);
 static Status format_owned(char **out, Err *err, const char *format, ...)
 {
-    va_list arguments, again;
+    va_list arguments;
     va_start(arguments, format);
-    va_copy(again, arguments);
-    int length = vsnprintf(NULL, 0, format, arguments);
-    va_end(arguments);
     char *text = NULL;
-    Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&text, (size_t)length + 1, 1, "bytes of text", err));
-    vsnprintf(text, (size_t)length + 1, format, again);
+    int length = vasprintf(&text, format, arguments);
+    va_end(arguments);
+    if (length < 0)
+        return mem_out_of("for", "a file's name", err);
     *out = text;
-done:
-    va_end(again);
-    return status;
+    return STATUS_OK;
 }
 
 Status file_with_suffix(const char *path, const char *suffix, char **out, Err *err)

@@ -21,14 +21,3 @@ const char *range_text(Range range, char out[RANGE_TEXT_SIZE])
         snprintf(out, RANGE_TEXT_SIZE, "of at least %s", low);
     return out;
 }
-
-Status range_check(const char *field, Range range, double value, Err *err)
-{
-    if (range_has(range, value))
-        return STATUS_OK;
-    char number[NUMBER_TEXT_SIZE], allowed[RANGE_TEXT_SIZE];
-    range_text(range, allowed);
-    return err_set(err, STATUS_USAGE, "`%s`: %s is not a %snumber%s%s", field,
-                   number_text(value, number), *allowed ? "" : "finite ", *allowed ? " " : "",
-                   allowed);
-}

@@ -1,8 +1,7 @@
-/* Closed ranges of numbers, and the one sentence that refuses what is outside. */
+/* Closed ranges of numbers, and what is in them in words. */
 #ifndef CORCAST_BASE_RANGE_H
 #define CORCAST_BASE_RANGE_H
 
-#include "base/status.h"
 #include <float.h>
 #include <stdbool.h>
 
@@ -27,9 +26,5 @@ enum { RANGE_TEXT_SIZE = 96 };
 /* What a number in the range is: "from 0 to 0.95", "above 0 and at most 10", "of at least 3"; ""
  * where any finite number is. Writes to `out` and returns it. */
 const char *range_text(Range range, char out[RANGE_TEXT_SIZE]);
-
-/* STATUS_USAGE for a value that is not in the range, saying "`FIELD`: VALUE is not a number ...";
- * the field in backquotes, so that a caller can put its own name for it there. */
-MUST_CHECK Status range_check(const char *field, Range range, double value, Err *err);
 
 #endif

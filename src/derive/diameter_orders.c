@@ -13,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MAX_ROUNDS = 100 };
+
 /* Of one order. */
 typedef struct Bin {
     size_t count;
@@ -82,7 +84,7 @@ Status vessels_diameter_orders(const Vessels *vessels, int32_t **order, Diameter
     for (size_t v = 0; v < vessels->n; v++)
         made[v] = vessels->vessel[v].strahler;
     *result = (DiameterOrders){0};
-    while (!result->converged && result->rounds < MAX_ORDER_ROUNDS) {
+    while (!result->converged && result->rounds < MAX_ROUNDS) {
         measure_bins(vessels, made, bin, n_bins);
         result->converged = assign(vessels, bin, largest, made) * 100 <= vessels->n;
         result->rounds++;

@@ -35,10 +35,8 @@ MUST_CHECK Status vessels_heirs(const Vessels *vessels, const int32_t *order, in
 /* How the assignment of orders by diameter ended. */
 typedef struct DiameterOrders {
     int rounds;     /* of assignment, the one that changed too little to go on included */
-    bool converged; /* false: given up after MAX_ORDER_ROUNDS */
+    bool converged; /* false: given up after 100 rounds */
 } DiameterOrders;
-
-enum { MAX_ORDER_ROUNDS = 100 };
 
 /* The diameter-defined Strahler order of each vessel, from 1 without gaps, in *order (owned, n
  * entries); derive.h says what it is. */

@@ -8,24 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const DomainOps *const kinds[] = {
-    [DOMAIN_DISC] = &disc_ops,           [DOMAIN_BALL] = &ball_ops,
-    [DOMAIN_RECT] = &rect_ops,           [DOMAIN_BOX] = &box_ops,
-    [DOMAIN_ELLIPSOID] = &ellipsoid_ops, [DOMAIN_SHELL] = &shell_ops,
-    [DOMAIN_POLYGON] = &polygon_ops,     [DOMAIN_MASK] = &mask_ops,
-    [DOMAIN_MESH] = &mesh_ops,
-};
+static const DomainOps *const kinds[] = {&disc_ops,    &ball_ops,      &rect_ops,
+                                         &box_ops,     &ellipsoid_ops, &shell_ops,
+                                         &polygon_ops, &mask_ops,      &mesh_ops};
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static const double slack = 1e-6; /* of the diagonal of the bounds */
 /* The least part of its bounds that a domain must fill, or rejection would take too long. */
 static const double least_filled = 1e-3;
-
-static const DomainOps *ops_of(const Domain *domain)
-{
-    return kinds[domain->kind];
-}
 
 const char *domain_shape_name(size_t i)
 {
@@ -59,7 +50,7 @@ static Status check_filling(const Domain *domain, Err *err)
 {
     Vec3 size = vec3_sub(domain->bounds.high, domain->bounds.low);
     double box = size.x * size.y * (domain->dimension == 3 ? size.z : 1);
-    if (ops_of(domain)->sample || domain->volume >= least_filled * box)
+    if (domain->ops->sample || domain->volume >= least_filled * box)
         return STATUS_OK;
     return err_set(err, domain->file ? STATUS_INPUT : STATUS_USAGE,
                    "%s%sthe domain is too thin to find points in: it fills %.2g of the box around "
@@ -68,11 +59,11 @@ static Status check_filling(const Domain *domain, Err *err)
                    least_filled);
 }
 
-static Status load(DomainKind kind, const char *values, Domain *out, Err *err)
+static Status load(const DomainOps *ops, const char *values, Domain *out, Err *err)
 {
-    Domain domain = {.kind = kind};
+    Domain domain = {.ops = ops};
     Status status = STATUS_OK;
-    TRY_GOTO(kinds[kind]->load(&domain, values, err));
+    TRY_GOTO(ops->load(&domain, values, err));
     TRY_GOTO(check_filling(&domain, err));
     domain.slack_mm = slack * vec3_distance(domain.bounds.low, domain.bounds.high);
     *out = domain;
@@ -89,7 +80,7 @@ Status domain_parse(Domain *domain, const char *spec, Err *err)
     for (int kind = 0; kind < KINDS; kind++) {
         if (strlen(kinds[kind]->name) != length || memcmp(spec, kinds[kind]->name, length) != 0)
             continue;
-        Status status = load((DomainKind)kind, values, domain, err);
+        Status status = load(kinds[kind], values, domain, err);
         if (status == STATUS_USAGE)
             err_prefix(err, "`domain` %s: ", spec);
         return status;
@@ -99,15 +90,15 @@ Status domain_parse(Domain *domain, const char *spec, Err *err)
 
 void domain_release(Domain *domain)
 {
-    if (ops_of(domain)->release)
-        ops_of(domain)->release(domain);
+    if (domain->ops && domain->ops->release)
+        domain->ops->release(domain);
     free(domain->file);
     *domain = (Domain){0};
 }
 
 void domain_text(const Domain *domain, Text *text)
 {
-    text_printf(text, "%s:", ops_of(domain)->name);
+    text_printf(text, "%s:", domain->ops->name);
     if (domain->file)
         text_puts(text, domain->file);
     for (int i = 0; i < domain->n_sizes; i++) {
@@ -119,21 +110,21 @@ void domain_text(const Domain *domain, Text *text)
 
 bool domain_is_convex(const Domain *domain)
 {
-    return ops_of(domain)->is_convex;
+    return domain->ops->is_convex;
 }
 
 bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     if (domain->dimension == 2 && point.z != 0)
         return false;
-    return ops_of(domain)->inside(domain, point, tolerance_mm);
+    return domain->ops->inside(domain, point, tolerance_mm);
 }
 
 bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
     if (domain->dimension == 2 && (a.z != 0 || b.z != 0))
         return false;
-    const DomainOps *ops = ops_of(domain);
+    const DomainOps *ops = domain->ops;
     if (ops->is_convex || vec3_distance(a, b) <= domain->slack_mm)
         return ops->inside(domain, a, domain->slack_mm) && ops->inside(domain, b, domain->slack_mm);
     return ops->holds_segment(domain, a, b);
@@ -152,7 +143,7 @@ static Vec3 sample_bounds(const Domain *domain, Random *random)
 
 Vec3 domain_sample(const Domain *domain, Random *random)
 {
-    const DomainOps *ops = ops_of(domain);
+    const DomainOps *ops = domain->ops;
     for (;;) {
         Vec3 point = ops->sample ? ops->sample(domain, random) : sample_bounds(domain, random);
         if (ops->inside(domain, point, 0))

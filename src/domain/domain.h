@@ -9,18 +9,6 @@
 #include "geom/geom.h"
 #include <stdbool.h>
 
-typedef enum DomainKind {
-    DOMAIN_DISC,      /* disc:R */
-    DOMAIN_BALL,      /* ball:R */
-    DOMAIN_RECT,      /* rect:W,H */
-    DOMAIN_BOX,       /* box:A,B,C */
-    DOMAIN_ELLIPSOID, /* ellipsoid:A,B,C */
-    DOMAIN_SHELL,     /* shell:A,B,C,THICKNESS[,BASE] */
-    DOMAIN_POLYGON,   /* polygon:FILE[,MM] */
-    DOMAIN_MASK,      /* mask:FILE[,MM] */
-    DOMAIN_MESH,      /* mesh:FILE[,MM] */
-} DomainKind;
-
 enum { DOMAIN_MAX_SIZES = 5 };
 
 /* A nanometre and a kilometre: the range of the lengths in a text, and how far from the origin a
@@ -34,11 +22,12 @@ typedef struct Mesh Mesh;
 
 /* Constant once parsed, so that threads may share it. A copy shares what the original owns. */
 typedef struct Domain {
-    DomainKind kind;
+    const struct DomainOps *ops;   /* what its kind supplies [domain/kinds.h]; borrowed */
     int dimension;                 /* 2 or 3 */
     int n_sizes;                   /* how many numbers the text has */
     double size[DOMAIN_MAX_SIZES]; /* its numbers in order, mm; of a file: the mm of its unit */
     char *file;                    /* owned; NULL for the kinds that read none */
+    bool unit_is_guessed;          /* neither the text nor the file says the file's unit */
     union {                        /* what the file held; owned */
         Polygon *polygon;
         Mask *mask;
@@ -50,7 +39,7 @@ typedef struct Domain {
     double slack_mm; /* 1e-6 of the diagonal of the bounds: a length that does not matter */
 } Domain;
 
-/* Makes *domain from a text as listed at DomainKind, reading the file it names. STATUS_USAGE,
+/* Makes *domain from a text, reading the file it names. STATUS_USAGE,
  * naming `domain`, the text and what is allowed, for a wrong text; STATUS_INPUT, naming the file,
  * for a file that is missing, malformed or no domain (an empty mask, a mesh that is open or inside
  * out, a polygon that crosses itself). Both also for a domain that fills less than 1e-3 of its

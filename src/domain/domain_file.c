@@ -5,15 +5,15 @@
 #include <stdio.h>
 #include <string.h>
 
-Status domain_load_file_name(Domain *domain, const DomainOps *ops, const char *values, Err *err)
+Status domain_load_file_name(Domain *domain, const char *values, Err *err)
 {
     const char *comma = strrchr(values, ',');
     double mm = 1;
     bool has_mm = comma && number_parse(comma + 1, &mm);
     size_t length = has_mm ? (size_t)(comma - values) : strlen(values);
     if (length == 0)
-        return err_set(err, STATUS_USAGE, "the name of a file is missing; use %s:%s", ops->name,
-                       ops->parameters);
+        return err_set(err, STATUS_USAGE, "the name of a file is missing; use %s:%s",
+                       domain->ops->name, domain->ops->parameters);
     if (has_mm && !(mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
         return err_set(err, STATUS_USAGE,
                        "the unit of the file must be a number of mm from %g to %g", DOMAIN_MIN_MM,
@@ -22,6 +22,7 @@ Status domain_load_file_name(Domain *domain, const DomainOps *ops, const char *v
     memcpy(domain->file, values, length);
     domain->size[0] = has_mm ? mm : 1;
     domain->n_sizes = has_mm;
+    domain->unit_is_guessed = !has_mm;
     return STATUS_OK;
 }
 

@@ -8,7 +8,7 @@ typedef struct DomainOps {
     const char *name;       /* "disc" */
     const char *parameters; /* "R" */
     bool is_convex;
-    /* Reads the text behind the colon into a domain that is zeroed but for its kind: fills sizes,
+    /* Reads the text behind the colon into a domain that is zeroed but for its ops: fills sizes,
      * file, dimension, bounds, volume and inlet. Of STATUS_USAGE the sentence lacks "`domain` TEXT:
      * ". On failure the caller releases what there is. */
     Status (*load)(Domain *domain, const char *values, Err *err);
@@ -24,13 +24,11 @@ typedef struct DomainOps {
 extern const DomainOps disc_ops, ball_ops, rect_ops, box_ops, ellipsoid_ops, shell_ops;
 extern const DomainOps polygon_ops, mask_ops, mesh_ops;
 
-/* Reads FILE[,MM] into file, size and n_sizes; size[0] is 1 where MM is not given. `ops` are the
- * domain's, for the sentence of STATUS_USAGE. */
-MUST_CHECK Status domain_load_file_name(Domain *domain, const DomainOps *ops, const char *values,
-                                        Err *err);
+/* Reads FILE[,MM] into file, size and n_sizes; size[0] is 1 where MM is not given. */
+MUST_CHECK Status domain_load_file_name(Domain *domain, const char *values, Err *err);
 
-/* STATUS_INPUT, naming the file and the line (0: there are none), unless the
- * point is finite and within DOMAIN_MAX_MM of the origin on each axis. */
+/* STATUS_INPUT, naming the file and the line (0: there are none), unless the point is finite and
+ * within DOMAIN_MAX_MM of the origin on each axis. */
 MUST_CHECK Status domain_check_point(const char *file, size_t line, Vec3 point, Err *err);
 
 #endif

@@ -238,6 +238,7 @@ static Status read_file(Domain *domain, Err *err)
                        "mask:%s,0.5",
                        domain->file);
     domain->dimension = is_nifti ? 3 : 2;
+    domain->unit_is_guessed = false;
     if (is_nifti)
         return mask_read_nifti(domain->mask, domain->file, err);
     return mask_read_picture(domain->mask, domain->file, domain->size[0], err);
@@ -245,7 +246,7 @@ static Status read_file(Domain *domain, Err *err)
 
 static Status mask_load(Domain *domain, const char *values, Err *err)
 {
-    TRY(domain_load_file_name(domain, &mask_ops, values, err));
+    TRY(domain_load_file_name(domain, values, err));
     TRY(mem_calloc(&domain->mask, 1, sizeof *domain->mask, "masks", err));
     TRY(read_file(domain, err));
     double volume = 0;

@@ -218,7 +218,7 @@ static Status build(Domain *domain, const Soup *soup, Err *err)
 static Status mesh_load(Domain *domain, const char *values, Err *err)
 {
     domain->dimension = 3;
-    TRY(domain_load_file_name(domain, &mesh_ops, values, err));
+    TRY(domain_load_file_name(domain, values, err));
     const char *extension = file_extension(domain->file);
     if (strcasecmp(extension, "stl") != 0 && strcasecmp(extension, "obj") != 0)
         return err_set(err, STATUS_USAGE, "the name of a mesh must end in .stl or .obj");

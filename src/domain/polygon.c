@@ -144,7 +144,7 @@ static Status build(Domain *domain, Err *err)
 static Status polygon_load(Domain *domain, const char *values, Err *err)
 {
     domain->dimension = 2;
-    TRY(domain_load_file_name(domain, &polygon_ops, values, err));
+    TRY(domain_load_file_name(domain, values, err));
     TRY(mem_calloc(&domain->polygon, 1, sizeof *domain->polygon, "polygons", err));
     return build(domain, err);
 }

@@ -16,36 +16,32 @@ static double square(double x)
     return x * x;
 }
 
-/* The numbers of one shape's text. */
-typedef struct Form {
-    int n_positive; /* that must be there, each at least DOMAIN_MIN_MM */
-    int n_optional; /* of either sign */
-    const char *example;
-} Form;
-
-static Status load_sizes(Domain *domain, const DomainOps *ops, const Form *form, const char *values,
-                         Err *err)
+/* Reads the numbers of a shape: so many that must be there, each at least DOMAIN_MIN_MM, and so
+ * many more of either sign. */
+static Status load_sizes(Domain *domain, int n_positive, int n_optional, const char *example,
+                         const char *values, Err *err)
 {
-    int most = form->n_positive + form->n_optional, n = 0;
+    const DomainOps *ops = domain->ops;
+    int most = n_positive + n_optional, n = 0;
     for (const char *at = values; at; n++) {
         char number[64] = "";
         size_t length = strcspn(at, ",");
         if (length < sizeof number)
             memcpy(number, at, length);
         double value = 0;
-        double least = n < form->n_positive ? DOMAIN_MIN_MM : -DOMAIN_MAX_MM;
+        double least = n < n_positive ? DOMAIN_MIN_MM : -DOMAIN_MAX_MM;
         if (!number_parse(number, &value) || !(value >= least && value <= DOMAIN_MAX_MM))
             return err_set(err, STATUS_USAGE,
                            "'%.*s' is not a number of mm from %g to %g; %s:%s, as in %s:%s",
                            (int)length, at, least, DOMAIN_MAX_MM, ops->name, ops->parameters,
-                           ops->name, form->example);
+                           ops->name, example);
         if (n < most)
             domain->size[n] = value;
         at = at[length] ? at + length + 1 : NULL;
     }
-    if (n < form->n_positive || n > most)
+    if (n < n_positive || n > most)
         return err_set(err, STATUS_USAGE, "%d number%s, but the shape is %s:%s, as in %s:%s", n,
-                       n == 1 ? "" : "s", ops->name, ops->parameters, ops->name, form->example);
+                       n == 1 ? "" : "s", ops->name, ops->parameters, ops->name, example);
     domain->n_sizes = n;
     return STATUS_OK;
 }
@@ -71,7 +67,7 @@ static bool round_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 
 static Status disc_load(Domain *domain, const char *values, Err *err)
 {
-    TRY(load_sizes(domain, &disc_ops, &(Form){1, 0, "50"}, values, err));
+    TRY(load_sizes(domain, 1, 0, "50", values, err));
     double r = domain->size[0];
     set_centered(domain, 2, vec3(r, r, 0), pi * r * r);
     return STATUS_OK;
@@ -87,7 +83,7 @@ const DomainOps disc_ops = {
 
 static Status ball_load(Domain *domain, const char *values, Err *err)
 {
-    TRY(load_sizes(domain, &ball_ops, &(Form){1, 0, "30"}, values, err));
+    TRY(load_sizes(domain, 1, 0, "30", values, err));
     double r = domain->size[0];
     set_centered(domain, 3, vec3(r, r, r), 4.0 / 3 * pi * r * r * r);
     return STATUS_OK;
@@ -110,7 +106,7 @@ static bool box_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 
 static Status rect_load(Domain *domain, const char *values, Err *err)
 {
-    TRY(load_sizes(domain, &rect_ops, &(Form){2, 0, "60,40"}, values, err));
+    TRY(load_sizes(domain, 2, 0, "60,40", values, err));
     Vec3 size = size_vector(domain);
     set_centered(domain, 2, vec3_scale(size, 0.5), size.x * size.y);
     return STATUS_OK;
@@ -126,7 +122,7 @@ const DomainOps rect_ops = {
 
 static Status box_load(Domain *domain, const char *values, Err *err)
 {
-    TRY(load_sizes(domain, &box_ops, &(Form){3, 0, "40,30,20"}, values, err));
+    TRY(load_sizes(domain, 3, 0, "40,30,20", values, err));
     Vec3 size = size_vector(domain);
     set_centered(domain, 3, vec3_scale(size, 0.5), size.x * size.y * size.z);
     return STATUS_OK;
@@ -155,7 +151,7 @@ static bool ellipsoid_inside(const Domain *domain, Vec3 point, double tolerance_
 
 static Status ellipsoid_load(Domain *domain, const char *values, Err *err)
 {
-    TRY(load_sizes(domain, &ellipsoid_ops, &(Form){3, 0, "40,50,30"}, values, err));
+    TRY(load_sizes(domain, 3, 0, "40,50,30", values, err));
     Vec3 axes = size_vector(domain);
     set_centered(domain, 3, axes, 4.0 / 3 * pi * axes.x * axes.y * axes.z);
     return STATUS_OK;
@@ -194,7 +190,7 @@ static double radius_at(Vec3 axes, double y)
 
 static Status shell_load(Domain *domain, const char *values, Err *err)
 {
-    TRY(load_sizes(domain, &shell_ops, &(Form){4, 1, "30,50,30,10,20"}, values, err));
+    TRY(load_sizes(domain, 4, 1, "30,50,30,10,20", values, err));
     Vec3 outer = size_vector(domain), cavity = cavity_axes(domain);
     if (domain->n_sizes == SHELL_BASE)
         domain->size[SHELL_BASE] = cavity.y / 2;

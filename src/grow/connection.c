@@ -57,7 +57,7 @@ bool connection_estimate(const Network *net, const Rules *rules, int32_t segment
     if (!bifurcation_next(&problem, &state, &place))
         return false;
     *out = (Connection){.segment = segment, .price = state.price, .bifurcation = place};
-    for (int i = 0; i < PARTS; i++)
+    for (int i = 0; i < ENDS; i++)
         out->price += state.weight[i] * (vec3_distance(problem.end[i], place) - state.length[i]);
     return true;
 }
@@ -195,7 +195,7 @@ static bool is_clear_all_along(const Grid *grid, const Newcomer *newcomer)
 ConnectionClearance connection_clearance(const Network *net, const Grid *grid, const Rules *rules,
                                          Box zone, const Connection *connection, Vec3 terminal)
 {
-    for (int part = 0; part < PARTS; part++) {
+    for (int part = 0; part < ENDS; part++) {
         Newcomer part_of = newcomer(net, grid, rules, connection, terminal, part);
         if (!grid_zone_holds(grid, zone, &part_of.item))
             return CONNECTION_BEYOND;

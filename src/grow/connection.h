@@ -7,13 +7,8 @@
 #include "grow/network.h"
 #include "grow/network_grid.h"
 
-/* The three segments that a connection makes. */
-enum {
-    PROXIMAL = BIFURCATION_PROXIMAL,
-    DISTAL = BIFURCATION_LEFT,
-    FRESH = BIFURCATION_RIGHT,
-    PARTS = BIFURCATION_ENDS
-};
+/* The segments that a connection makes beside the PROXIMAL one [bifurcation.h]. */
+enum { DISTAL = LEFT, FRESH = RIGHT };
 
 /* A way to connect a terminal: `segment` is split at `bifurcation`. By connection_estimate, price
  * and bifurcation are first guesses and the radii are not set; by connection_optimise all are
@@ -22,7 +17,7 @@ typedef struct Connection {
     int32_t segment;
     double price; /* the increase of S_root [law.h], to first order */
     Vec3 bifurcation;
-    double radius[PARTS]; /* mm */
+    double radius[ENDS]; /* mm */
 } Connection;
 
 /* The item [grid.h] of one of the three segments (PROXIMAL, DISTAL or FRESH) that an optimised

@@ -89,16 +89,22 @@ static Status make_grid(Growth *growth, Err *err)
     return STATUS_OK;
 }
 
+/* Brings sums and radii up to date, and weights where they are needed. */
+static Status refresh(Growth *growth, WeightsPrecision precision, Err *err)
+{
+    if (weights_are_needed(growth->params))
+        return weights_refresh(&growth->net, growth->params, growth->domain, precision, err);
+    network_refresh(&growth->net, growth->round.threads);
+    return STATUS_OK;
+}
+
 /* Brings what ages with growth up to date when it is due. */
 static Status keep_up(Growth *growth, Err *err)
 {
     Network *net = &growth->net;
     size_t terminals = net->terminals;
     if (terminals >= growth->refresh_until) {
-        if (weights_are_needed(growth->params))
-            TRY(weights_refresh(net, growth->params, growth->domain, WEIGHTS_ROUGH, err));
-        else
-            network_refresh(net, growth->round.threads);
+        TRY(refresh(growth, WEIGHTS_ROUGH, err));
         if (growth->grid.item)
             TRY(entries_widen(&growth->grid, &growth->rules, net, err));
         growth->refresh_until = (size_t)(refresh_growth * (double)terminals) + 1;
@@ -334,10 +340,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     }
     bool complete = status == STATUS_OK;
     size_t broken = 0;
-    if (weights_are_needed(params))
-        TRY_GOTO(weights_refresh(&growth.net, params, domain, WEIGHTS_FINE, err));
-    else
-        network_refresh(&growth.net, growth.round.threads);
+    TRY_GOTO(refresh(&growth, WEIGHTS_FINE, err));
     TRY_GOTO(check_range(&growth, err));
     if (growth.grid.item)
         TRY_GOTO(repair_network(&growth.net, &growth.grid, domain, &growth.rules,

@@ -116,7 +116,7 @@ typedef enum GrowRefine {
 typedef struct RefineParams {
     GrowRefine level;
     double seconds; /* at most; 0: any. What a time allows differs from run to run */
-    uint64_t moves; /* tried at most; 0: any if `seconds` is given, else refine_moves */
+    uint64_t moves; /* tried at most; 0: any if `seconds` is given, else what the level allows */
     uint64_t seed;  /* of the order of moves */
     bool (*stop)(void *context); /* asked after every move; NULL: never */
     void *stop_context;
@@ -131,10 +131,6 @@ typedef struct RefineReport {
     double thickness; /* the share of their radii at which vessels that moved were kept clear */
     bool stopped;     /* by the callback */
 } RefineReport;
-
-/* The most moves that a level tries on a tree of so many terminals if neither moves nor seconds are
- * given. Geometry and topology end earlier when there is little left to gain. */
-uint64_t refine_moves(GrowRefine level, size_t terminals);
 
 /* Lowers the target of a tree, grown or read, by moving bifurcations and by connecting subtrees
  * elsewhere. The tree is binary with one root, which has one child, and its meta has all that

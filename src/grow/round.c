@@ -29,8 +29,7 @@ enum { AHEAD = 2 };
 struct Tile {
     size_t first, end; /* points in `order` */
     Box zone;
-    GridBox box;          /* a little more than its own cells */
-    bool warm;            /* whether to ask for all of its memory before */
+    GridBox box;          /* a little more than its own cells, for warm */
     const int32_t *spare; /* nodes that it may use */
     size_t most, made;    /* terminals */
     size_t over;          /* points left over, which are then the first ones in `order` */
@@ -104,13 +103,13 @@ Status round_start(Round *round, size_t points, Err *err)
 static Status connect(const Site *site, int worker, Box zone, const Connection *connection,
                       Vec3 terminal, const int32_t made[2], Err *err)
 {
-    const int32_t segment[PARTS] = {made[0], connection->segment, made[1]};
-    GridItem item[PARTS];
-    for (int i = 0; i < PARTS; i++)
+    const int32_t segment[ENDS] = {made[0], connection->segment, made[1]};
+    GridItem item[ENDS];
+    for (int i = 0; i < ENDS; i++)
         item[i] = connection_item(site->net, site->grid, site->rules, connection, terminal, i);
     grid_remove(site->grid, connection->segment);
     network_split(site->net, connection->segment, connection->bifurcation, terminal, made, zone);
-    for (int i = 0; i < PARTS; i++) {
+    for (int i = 0; i < ENDS; i++) {
         bool is_end = site->net->segment[segment[i]].child[0] < 0;
         TRY(grid_add(site->grid, worker, segment[i], is_end, item[i], err));
     }
@@ -122,7 +121,7 @@ typedef struct Running {
     Round *round;
     const Site *site;
     bool skip;
-    const uint32_t *turn; /* the tiles of one colour */
+    const uint32_t *turn; /* the tiles of one colour; NULL: one tile that is everywhere */
 } Running;
 
 /* Prefetches what the next points will need: the further ahead the point, the earlier the step. */
@@ -162,15 +161,21 @@ static PlanState run_point(const Running *running, int worker, Tile *tile, Vec3 
     return state;
 }
 
-/* Prefetches all that lies in the cells of a tile at once: looked up one by one, each would be
- * waited for. */
+/* Prefetches all that lies in those cells of a box that there are at once: looked up one by one,
+ * each would be waited for. */
 static void warm(const Site *site, const GridBox *box)
 {
     const Grid *grid = site->grid;
+    int low[3], high[3];
+    for (int axis = 0; axis < 3; axis++) {
+        int last = grid->count[axis] - 1;
+        low[axis] = box->low[axis] > 0 ? box->low[axis] : 0;
+        high[axis] = box->high[axis] < last ? box->high[axis] : last;
+    }
     for (int step = 0; step < 2; step++)
-        for (int z = box->low[2]; z <= box->high[2]; z++)
-            for (int y = box->low[1]; y <= box->high[1]; y++)
-                for (int x = box->low[0]; x <= box->high[0]; x++) {
+        for (int z = low[2]; z <= high[2]; z++)
+            for (int y = low[1]; y <= high[1]; y++)
+                for (int x = low[0]; x <= high[0]; x++) {
                     const GridCell *cell = &grid->cell[grid_index(grid, x, y, z)];
                     if (step == 0)
                         __builtin_prefetch(cell->tag);
@@ -187,7 +192,7 @@ static void run_tile(const Running *running, int worker, Tile *tile)
     Round *round = running->round;
     Planner *planner = &round->planner[worker];
     planner->reach = round->reach;
-    if (tile->warm)
+    if (running->turn)
         warm(running->site, &tile->box);
     for (size_t k = tile->first; k < tile->end && tile->status == STATUS_OK; k++) {
         fetch(round, tile, running->site->grid, k);
@@ -234,29 +239,15 @@ static size_t tile_at(const Cut *cut, const Grid *grid, Vec3 point)
     return index;
 }
 
-static Box zone_of(const Cut *cut, const Grid *grid, size_t index)
+/* A tile's cells and so many around them, also where the grid has none. */
+static GridBox box_of(const Cut *cut, size_t index, int margin)
 {
     GridBox box;
     for (int axis = 0; axis < 3; axis++) {
         int at = (int)(index % cut->count[axis]) * cut->edge - cut->shift[axis];
         index /= cut->count[axis];
-        box.low[axis] = at - cut->edge / 2;
-        box.high[axis] = at + cut->edge + cut->edge / 2 - 1;
-    }
-    return grid_zone(grid, box);
-}
-
-/* A tile's cells and those next to them, as far as there are any. */
-static GridBox box_of(const Cut *cut, const Grid *grid, size_t index)
-{
-    enum { MARGIN = 1 };
-    GridBox box;
-    for (int axis = 0; axis < 3; axis++) {
-        int at = (int)(index % cut->count[axis]) * cut->edge - cut->shift[axis];
-        int low = at - MARGIN, high = at + cut->edge - 1 + MARGIN, last = grid->count[axis] - 1;
-        index /= cut->count[axis];
-        box.low[axis] = low > 0 ? low : 0;
-        box.high[axis] = high < last ? high : last;
+        box.low[axis] = at - margin;
+        box.high[axis] = at + cut->edge - 1 + margin;
     }
     return box;
 }
@@ -301,9 +292,8 @@ static void endow(Round *round, const Site *site, const Cut *cut, size_t tiles, 
     for (size_t t = 0; t < tiles; t++) {
         Tile *tile = &round->tile[t];
         size_t points = tile->end - tile->first, part = part_of(round, tile, most);
-        tile->zone = zone_of(cut, site->grid, t);
-        tile->box = box_of(cut, site->grid, t);
-        tile->warm = true;
+        tile->zone = grid_zone(site->grid, box_of(cut, t, cut->edge / 2));
+        tile->box = box_of(cut, t, 1);
         tile->most = points / POINTS_PER_CONNECTED < part ? points / POINTS_PER_CONNECTED : part;
         tile->left = round->left + t * round->trees;
         for (size_t k = 0; k < round->trees; k++)

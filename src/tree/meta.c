@@ -320,7 +320,7 @@ Status meta_add_lines(TreeMeta *meta, Err *err)
     return STATUS_OK;
 }
 
-/* What stands about the name of a value: options are named as range_check does. */
+/* What stands about the name of a value: options are named in backquotes. */
 static const char *quote_of(MetaSource source)
 {
     return source == META_OF_OPTIONS ? "`" : "";

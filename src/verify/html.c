@@ -26,22 +26,19 @@ void text_rounded(Text *out, double value, const char *unit)
     text_append(out, unit, length);
 }
 
-static Text *add_part(HtmlParts *self, const char *name, bool markup)
+Text *html_text(HtmlParts *self, const char *name)
 {
     assert(self->n < sizeof self->parts / sizeof *self->parts);
     self->parts[self->n].name = name;
-    self->parts[self->n].markup = markup;
+    self->parts[self->n].markup = false;
     return &self->parts[self->n++].text;
-}
-
-Text *html_text(HtmlParts *self, const char *name)
-{
-    return add_part(self, name, false);
 }
 
 Text *html_markup(HtmlParts *self, const char *name)
 {
-    return add_part(self, name, true);
+    Text *text = html_text(self, name);
+    self->parts[self->n - 1].markup = true;
+    return text;
 }
 
 void html_release(HtmlParts *self)

@@ -88,13 +88,9 @@ static Status make_arguments(const OracleParams *params, const char *scene, cons
     }
     if (params->threads > 0)
         TRY(add_argument(arguments, err, "+WT%d", params->threads));
-    TRY(add_argument(arguments, err, "+Q9"));
-    TRY(add_argument(arguments, err, "-UA"));
-    TRY(add_argument(arguments, err, "-TH"));
-    TRY(add_argument(arguments, err, "-C"));
-    TRY(add_argument(arguments, err, "-D"));
-    TRY(add_argument(arguments, err, "+GW"));
-    TRY(add_argument(arguments, err, "+V"));
+    static const char *const always[] = {"+Q9", "-UA", "-TH", "-C", "-D", "+GW", "+V"};
+    for (size_t i = 0; i < sizeof always / sizeof *always; i++)
+        TRY(add_argument(arguments, err, "%s", always[i]));
     return STATUS_OK;
 }
 
@@ -280,18 +276,15 @@ static Status attend(const OracleParams *params, pid_t child, int handle, Log *l
     return text_check(&log->text, err);
 }
 
-/* What POV-Ray said of a failure: from its first line with "Error", "rror:" or "Fatal" on, as one
+/* What POV-Ray said of a failure: from its first line with one of the marks on, as one
  * sentence, with `scene` in the place of the name that POV-Ray was given for it. */
 static void reason_of_failure(const Text *log, const char *scene, char *reason, size_t size)
 {
     static const char given[] = PRIVATE_FOLDER PRIVATE_SCENE;
-    const char *said = text_chars(log), *start = strstr(said, "Error");
-    if (!start)
-        start = strstr(said, "rror:");
-    if (!start)
-        start = strstr(said, "Fatal error");
-    if (!start)
-        start = strstr(said, "cannot");
+    static const char *const marks[] = {"Error", "rror:", "Fatal error", "cannot"};
+    const char *said = text_chars(log), *start = NULL;
+    for (size_t i = 0; !start && i < sizeof marks / sizeof *marks; i++)
+        start = strstr(said, marks[i]);
     while (start && start > said && start[-1] != '\n')
         start--;
     size_t length = 0;

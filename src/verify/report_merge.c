@@ -104,8 +104,7 @@ static void append_numbered(Text *out, const char *part, size_t size, size_t num
     }
 }
 
-/* ------------------------------------------------------------------------------------------
- * power */
+/* --------------------------------------------------------------------------------------- power */
 
 /* A string of an object, "" where there is none. Borrowed. */
 static const char *text_of(json_t *row, const char *key)
@@ -183,8 +182,7 @@ static Status put_power(const char *path, const char *templates, Text *out, Err 
     return status;
 }
 
-/* -------------------------------------------------------------------------------------------
- * page */
+/* ---------------------------------------------------------------------------------------- page */
 
 static Status write_page(const MergedCase *cases, size_t n, const Text *power,
                          const char *templates, const char *path, Err *err)

@@ -266,8 +266,7 @@ static Status put_row(const ReportCase *report, const char *templates, Text *row
     return status;
 }
 
-/* -------------------------------------------------------------------------------------------
- * page */
+/* ---------------------------------------------------------------------------------------- page */
 
 Status report_write_frame(const ReportFrame *frame, const char *templates, const char *path,
                           Err *err)

@@ -51,7 +51,7 @@ static Domain parse(const char *spec)
  * text itself or the file. */
 static void expect_refused(const char *spec, Status status, const char *fragment)
 {
-    Domain domain = {.kind = DOMAIN_BOX, .n_sizes = 77};
+    Domain domain = {.dimension = 5, .n_sizes = 77};
     Err err = {""};
     Status got = domain_parse(&domain, spec, &err);
     char name[200];
@@ -62,7 +62,7 @@ static void expect_refused(const char *spec, Status status, const char *fragment
     if (got != status || strncmp(err.text, name, strlen(name)) != 0 || !strstr(err.text, fragment))
         fail_msg("%s: status %d, '%s', not %d, '%s...%s'", spec, got, err.text, status, name,
                  fragment);
-    assert_true(domain.kind == DOMAIN_BOX && domain.n_sizes == 77);
+    assert_true(domain.dimension == 5 && domain.n_sizes == 77);
 }
 
 /* Likewise for a file of these bytes. */

@@ -185,7 +185,7 @@ static void volumes_dimensions_and_convexity_are_known(void **state)
     for (int i = 0; i < KNOWN; i++) {
         Domain domain = parse(known[i].spec);
         double volume = known[i].volume;
-        if (domain.kind == DOMAIN_SHELL)
+        if (strncmp(known[i].spec, "shell", 5) == 0)
             volume = shell_volume(-50, domain.size[4]);
         assert_int_equal(domain.dimension, known[i].dimension);
         assert_int_equal(domain_is_convex(&domain), known[i].convex);
@@ -203,7 +203,7 @@ static void the_text_of_a_domain_reads_back_to_the_same_domain(void **state)
         domain_text(&domain, &text);
         assert_string_equal(text.chars, known[i].text ? known[i].text : known[i].spec);
         Domain again = parse(text.chars);
-        assert_int_equal(again.kind, domain.kind);
+        assert_ptr_equal(again.ops, domain.ops);
         assert_true(again.volume == domain.volume);
         assert_memory_equal(again.size, domain.size, sizeof again.size);
         text_release(&text);
@@ -219,7 +219,7 @@ static void the_default_inlet_is_inside_at_the_top(void **state)
         Domain domain = parse(known[i].spec);
         Vec3 inlet = domain.inlet;
         Box bounds = domain.bounds;
-        double voxel = domain.kind == DOMAIN_MASK ? 0.2 : 0.002;
+        double voxel = strncmp(known[i].spec, "mask", 4) == 0 ? 0.2 : 0.002;
         assert_true(domain_inside(&domain, inlet, 0));
         assert_true(inlet.y <= bounds.high.y);
         assert_true(inlet.y >= bounds.high.y - voxel * (bounds.high.y - bounds.low.y));

@@ -11,13 +11,6 @@
 
 #include "grow/cco/fermat.h"
 
-enum {
-    PROXIMAL = BIFURCATION_PROXIMAL,
-    LEFT = BIFURCATION_LEFT,
-    RIGHT = BIFURCATION_RIGHT,
-    ENDS = BIFURCATION_ENDS
-};
-
 /* fmax, without a call */
 static double greater(double a, double b)
 {

@@ -8,15 +8,15 @@
 #include <stdbool.h>
 
 /* The segment that comes, and the two that leave. */
-enum { BIFURCATION_PROXIMAL, BIFURCATION_LEFT, BIFURCATION_RIGHT, BIFURCATION_ENDS };
+enum { PROXIMAL, LEFT, RIGHT, ENDS };
 
 /* The problem: everything that stays the same while the bifurcation moves. */
 typedef struct Bifurcation {
-    Vec3 end[BIFURCATION_ENDS];      /* mm; the far ends of the three segments, which differ */
-    double burden[BIFURCATION_ENDS]; /* flow times viscosity of each segment [law.h] */
-    Below below[2];                  /* what hangs on the far ends of the two that leave */
-    Adjoint adjoint;                 /* of the proximal segment */
-    double radius_unit;              /* mm^(3/4); q times the proximal segment's gauge [law.h] */
+    Vec3 end[ENDS];      /* mm; the far ends of the three segments, which differ */
+    double burden[ENDS]; /* flow times viscosity of each segment [law.h] */
+    Below below[2];      /* what hangs on the far ends of the two that leave */
+    Adjoint adjoint;     /* of the proximal segment */
+    double radius_unit;  /* mm^(3/4); q times the proximal segment's gauge [law.h] */
     /* The price is S_root, to first order, less what it was with `before` in place of the
      * bifurcation, plus `extra`; with both 0 it is S_root but for a constant. */
     double load_before, cost_before, extra;
@@ -31,9 +31,9 @@ typedef struct Bifurcation {
 typedef struct BifurcationState {
     Vec3 place; /* mm */
     double price;
-    double length[BIFURCATION_ENDS]; /* mm */
-    double radius[BIFURCATION_ENDS]; /* mm */
-    double weight[BIFURCATION_ENDS]; /* d price / d length */
+    double length[ENDS]; /* mm */
+    double radius[ENDS]; /* mm */
+    double weight[ENDS]; /* d price / d length */
 } BifurcationState;
 
 /* Computes the state with the bifurcation at `place`, mm; not finite when a figure is beyond what a

@@ -63,7 +63,9 @@ typedef struct Refinement {
     Vec3 *best_place;
 } Refinement;
 
-uint64_t refine_moves(GrowRefine level, size_t terminals)
+/* The most moves that a level tries on a tree of so many terminals if neither moves nor seconds are
+ * given. Geometry and topology end earlier when there is little left to gain. */
+static uint64_t most_moves(GrowRefine level, size_t terminals)
 {
     const uint64_t moves_per_terminal[] = {[GROW_REFINE_NONE] = 0,
                                            [GROW_REFINE_GEOMETRY] = 100,
@@ -296,7 +298,7 @@ static Status start(Refinement *refinement, const Domain *domain, const Tree *tr
     LocalSearch *search = &refinement->search;
     refinement->moves = params->moves         ? params->moves
                         : params->seconds > 0 ? UINT64_MAX
-                                              : refine_moves(params->level, tree->n / 2);
+                                              : most_moves(params->level, tree->n / 2);
     random_seed(&search->random, params->seed);
     TRY(arbor_init(&search->arbor, tree, err));
     double cost = refinement->first_cost = arbor_cost(&search->arbor);
