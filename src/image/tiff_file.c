@@ -242,7 +242,7 @@ static Status decode(void *work, Err *err)
 {
     Tiff *self = work;
     Image *image = &self->image;
-    if (!tiff_open(&self->tiff, self->file.name, "rm"))
+    if (!tiff_open(&self->tiff, self->file.name, "r"))
         return unsound(self, err);
     TRY(read_header(self, err));
     int width = (int)(self->swapped ? self->height : self->width);
@@ -261,11 +261,11 @@ static Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
     Tiff self = {.file = *file};
     errno = 0;
     /* It is only read, whatever fmemopen's declaration says. */
-    void *bytes = (void *)(uintptr_t)file->bytes;
-    self.tiff.stream = fmemopen(bytes, file->size, "rb");
+    self.tiff.bytes = (void *)(uintptr_t)file->bytes;
+    self.tiff.size = file->size;
+    self.tiff.stream = fmemopen(self.tiff.bytes, file->size, "rb");
     if (!self.tiff.stream)
         return mem_out_of("to read", file->name, err);
-    setvbuf(self.tiff.stream, NULL, _IONBF, 0);
     Status status = tiff_guard(decode, &self, &self.tiff, file->name, err);
     if (self.tiff.handle)
         TIFFClose(self.tiff.handle);

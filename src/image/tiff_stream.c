@@ -84,6 +84,22 @@ static toff_t on_size(thandle_t user)
     return (toff_t)size;
 }
 
+/* libtiff then reads where the bytes are, and goes to the stream for little but the header. */
+static int on_map(thandle_t user, void **bytes, toff_t *size)
+{
+    const TiffStream *tiff = user;
+    *bytes = tiff->bytes;
+    *size = tiff->size;
+    return tiff->bytes != NULL;
+}
+
+static void on_unmap(thandle_t user, void *bytes, toff_t size)
+{
+    (void)user;
+    (void)bytes;
+    (void)size;
+}
+
 static int on_complaint(TIFF *handle, void *user, const char *module, const char *format,
                         va_list values) PRINTF_LIKE(4, 0);
 static int on_complaint(TIFF *handle, void *user, const char *module, const char *format,
@@ -105,7 +121,7 @@ bool tiff_open(TiffStream *tiff, const char *name, const char *mode)
     TIFFOpenOptionsSetErrorHandlerExtR(options, on_complaint, tiff);
     TIFFOpenOptionsSetWarningHandlerExtR(options, on_complaint, *mode == 'w' ? tiff : NULL);
     tiff->handle = TIFFClientOpenExt(name, mode, tiff, on_read, on_write, on_seek, on_close,
-                                     on_size, NULL, NULL, options);
+                                     on_size, on_map, on_unmap, options);
     TIFFOpenOptionsFree(options);
     return tiff->handle;
 }

@@ -5,7 +5,9 @@
 #include "image/formats.h"
 
 typedef struct TiffStream {
-    FILE *stream;        /* borrowed; with places */
+    FILE *stream; /* borrowed; with places */
+    void *bytes;  /* borrowed; of a file that is read, all of it, or NULL */
+    size_t size;
     void *handle;        /* a TIFF, or NULL; owned */
     char complaint[200]; /* libtiff's first, "" when there is none */
 } TiffStream;
