@@ -248,6 +248,14 @@ typedef struct Writer {
     Complaint complaint;
 } Writer;
 
+static bool is_ascii(const char *text)
+{
+    while (*text && (unsigned char)*text < 0x80)
+        text++;
+    return !*text;
+}
+
+/* A tEXt chunk would be Latin-1: what is not ASCII goes into an iTXt chunk, which is UTF-8. */
 static void set_provenance(Writer *self, const ImageNotes *notes)
 {
     for (int i = 0; i < notes->count; i++) {
@@ -256,12 +264,8 @@ static void set_provenance(Writer *self, const ImageNotes *notes)
         png_text *chunk = &self->chunks[i];
         memcpy(&chunk->key, &note->key, sizeof chunk->key);
         memcpy(&chunk->text, &note->text, sizeof chunk->text);
-        bool ascii = true; /* a tEXt chunk is Latin-1 */
-        for (const char *at = note->text; *at; at++)
-            ascii = ascii && (unsigned char)*at < 0x80;
-        if (!ascii)
-            chunk->compression = PNG_ITXT_COMPRESSION_NONE;
-        chunk->compression = PNG_TEXT_COMPRESSION_NONE;
+        chunk->compression =
+            is_ascii(note->text) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
     }
     png_set_text(self->png, self->info, self->chunks, notes->count);
     if (notes->dpi > 0) {

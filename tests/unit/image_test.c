@@ -102,13 +102,14 @@ static void tags_a_png_with_encoding_resolution_and_provenance_but_no_date(void 
     (void)state;
     Picture picture;
     make(&picture, 3, 2, 3, 8);
-    const ImageNote note = {"Software", "corcast 0.1"};
-    const ImageNotes notes = {&note, 1, 300};
+    static const ImageNote note[] = {{"Software", "corcast 0.1"}, {"Comment", "jos\xC3\xA9.swc"}};
+    const ImageNotes notes = {note, 2, 300};
     Text srgb = TEXT_INIT, linear = TEXT_INIT;
     assert_int_equal(picture_to_png(&picture, ENCODING_SRGB, &notes, &srgb, &err), STATUS_OK);
     assert_int_equal(picture_to_png(&picture, ENCODING_LINEAR, NULL, &linear, &err), STATUS_OK);
     assert_true(holds(&srgb, "sRGB\0", 5));
     assert_true(holds(&srgb, "tEXtSoftware\0corcast 0.1", 24));
+    assert_true(holds(&srgb, "iTXtComment\0\0\0\0\0jos\xC3\xA9.swc", 25));
     assert_true(holds(&srgb, "pHYs\0\0\x2e\x23\0\0\x2e\x23\1", 13));
     assert_false(holds(&srgb, "tIME", 4));
     assert_true(holds(&linear, "gAMA\0\1\x86\xa0", 8));
