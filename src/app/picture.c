@@ -20,7 +20,7 @@ static const char *const views[] = {
 
 static const char *const erf_names[] = {[ERF_FAST] = "fast", [ERF_EXACT] = "exact", NULL};
 
-const Range antialias_range = {1, 9}, prune_range = {0, 1e7};
+const Range antialias_range = {1, RENDER_MOST_ANTIALIAS}, prune_range = {0, 1e7};
 
 static const Option rows[] = {
     {.name = "model",

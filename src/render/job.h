@@ -27,14 +27,17 @@ typedef enum RenderKernels {
 /* Their names, in order; NULL ends them. */
 extern const char *const render_kernel_names[];
 
+enum { RENDER_MOST_ANTIALIAS = 9 };
+
 typedef struct RenderParams {
     /* Of primitives alone; implicit models have engines of their own. Soft shadows, occlusion and
      * ground need rays: pictures with one of them are traced whatever the method. */
     RenderMethod method;
     RenderKernels kernels;
-    int threads;   /* 0: all processors */
-    int antialias; /* 1: one ray through each pixel's centre; N > 1: that ray and N x N more, the
-                    * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
+    int threads;                /* 0: all processors */
+    int antialias;              /* 1: one ray through each pixel's centre; N > 1, at most
+                                 * RENDER_MOST_ANTIALIAS: that ray and N x N more, the
+                                 * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
     double antialias_threshold; /* 0: every pixel gets the N x N more, as in POV-Ray; else, in
                                  * (0, 1], those only that differ from a neighbour by so much in
                                  * the square root of a channel, which no POV-Ray picture repeats */

@@ -10,6 +10,16 @@ JointFrame primitive_joint(const Primitive *primitive)
                        (const double[2]){primitive->radius_mm, primitive->radius_b_mm});
 }
 
+PrimitiveFrame primitive_frame(const Primitive *primitive)
+{
+    PrimitiveFrame frame = {0};
+    if (primitive->kind == PRIMITIVE_CYLINDER)
+        frame.cylinder = cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
+    else if (primitive->kind == PRIMITIVE_JOINT)
+        frame.joint = primitive_joint(primitive);
+    return frame;
+}
+
 bool primitive_joint_is_solid(const Primitive *joint)
 {
     Vec3 span = vec3_sub(joint->b, joint->a);

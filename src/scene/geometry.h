@@ -40,6 +40,29 @@ static inline double primitive_radius_b(const Primitive *primitive)
     return primitive->kind == PRIMITIVE_JOINT ? primitive->radius_b_mm : primitive->radius_mm;
 }
 
+/* What rays are tested against for a primitive, made once for many; of a sphere nothing. */
+typedef union PrimitiveFrame {
+    CylinderFrame cylinder;
+    JointFrame joint;
+} PrimitiveFrame;
+
+PrimitiveFrame primitive_frame(const Primitive *primitive);
+
+/* All crossings of the line with the primitive, round ends left aside, in no order: how many. */
+static inline int primitive_hits(const Primitive *primitive, const PrimitiveFrame *frame, Ray ray,
+                                 Hit hits[4])
+{
+    switch (primitive->kind) {
+    case PRIMITIVE_CYLINDER:
+        return hit_cylinder(ray, &frame->cylinder, hits);
+    case PRIMITIVE_SPHERE:
+        return hit_sphere(ray, primitive->a, primitive->radius_mm, hits);
+    case PRIMITIVE_JOINT:
+        return hit_joint(ray, &frame->joint, hits);
+    }
+    return 0;
+}
+
 /* Whether each circle of a joint lies on one side of the other's plane, so that its wall and its
  * two discs bound a solid. Else rulings cross. */
 bool primitive_joint_is_solid(const Primitive *joint);

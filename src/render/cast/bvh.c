@@ -4,12 +4,6 @@
 
 #include <stdlib.h>
 
-/* What a primitive's rays are tested against; a sphere needs none. */
-typedef union PrimitiveFrame {
-    CylinderFrame cylinder;
-    JointFrame joint;
-} PrimitiveFrame;
-
 struct Bvh {
     const Primitive *primitives;
     PrimitiveFrame *frames; /* one a primitive */
@@ -24,17 +18,6 @@ static Box primitive_box(const Primitive *primitive)
     return box_padded(box, 1e-9 * (1 + vec3_length(box.low) + vec3_length(box.high)));
 }
 
-/* What the rays of a primitive are tested against. */
-static PrimitiveFrame frame_of(const Primitive *primitive)
-{
-    PrimitiveFrame frame = {0};
-    if (primitive->kind == PRIMITIVE_CYLINDER)
-        frame.cylinder = cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
-    else if (primitive->kind == PRIMITIVE_JOINT)
-        frame.joint = primitive_joint(primitive);
-    return frame;
-}
-
 Status bvh_build(const Primitive *primitives, size_t n, Bvh **out, Err *err)
 {
     Bvh *bvh = NULL;
@@ -45,7 +28,7 @@ Status bvh_build(const Primitive *primitives, size_t n, Bvh **out, Err *err)
     TRY_GOTO(mem_calloc(&boxes, n, sizeof *boxes, "boxes", err));
     bvh->primitives = primitives;
     for (size_t i = 0; i < n; i++) {
-        bvh->frames[i] = frame_of(&primitives[i]);
+        bvh->frames[i] = primitive_frame(&primitives[i]);
         boxes[i] = primitive_box(&primitives[i]);
     }
     TRY_GOTO(boxtree_build(boxes, n, &bvh->tree, err));
@@ -66,20 +49,6 @@ void bvh_free(Bvh *bvh)
     free(bvh);
 }
 
-static int primitive_hits(const Bvh *bvh, uint32_t index, Ray ray, Hit hits[4])
-{
-    const Primitive *primitive = &bvh->primitives[index];
-    switch (primitive->kind) {
-    case PRIMITIVE_CYLINDER:
-        return hit_cylinder(ray, &bvh->frames[index].cylinder, hits);
-    case PRIMITIVE_SPHERE:
-        return hit_sphere(ray, primitive->a, primitive->radius_mm, hits);
-    case PRIMITIVE_JOINT:
-        return hit_joint(ray, &bvh->frames[index].joint, hits);
-    }
-    return 0;
-}
-
 bool bvh_first_hit(const Bvh *bvh, Ray ray, double t_min, Hit *hit, size_t *primitive)
 {
     BoxWalk walk;
@@ -90,7 +59,7 @@ bool bvh_first_hit(const Bvh *bvh, Ray ray, double t_min, Hit *hit, size_t *prim
         for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
             uint32_t candidate = bvh->tree.items[i];
             Hit hits[4];
-            int n = primitive_hits(bvh, candidate, ray, hits);
+            int n = primitive_hits(&bvh->primitives[candidate], &bvh->frames[candidate], ray, hits);
             for (int k = 0; k < n; k++) {
                 bool nearer = hits[k].t < hit->t || (hits[k].t == hit->t && candidate < best);
                 if (hits[k].t >= t_min && nearer) {
@@ -110,7 +79,8 @@ bool bvh_any_hit(const Bvh *bvh, Ray ray, double t_min, double t_max)
     for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, t_max));)
         for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
             Hit hits[4];
-            int n = primitive_hits(bvh, bvh->tree.items[i], ray, hits);
+            uint32_t candidate = bvh->tree.items[i];
+            int n = primitive_hits(&bvh->primitives[candidate], &bvh->frames[candidate], ray, hits);
             for (int k = 0; k < n; k++)
                 if (hits[k].t > t_min && hits[k].t < t_max)
                     return true;

@@ -261,17 +261,14 @@ static Status prepare(const Drawing *drawing, void **prepared, Err *err)
 {
     Status status;
     const double center = 0;
-    Resampling more = {0};
+    Resampling more = resampling_for(drawing->params->want_color ? drawing->params->antialias : 1);
     FieldPrepared *field;
     TRY(mem_calloc(&field, 1, sizeof *field, "tiles", err));
     TRY_GOTO(prepare_pass(drawing, 1, &center, &field->center, err));
-    if (drawing->params->want_color)
-        TRY_GOTO(resampling_init(drawing->params->antialias, &more, err));
     if (more.side > 0)
         TRY_GOTO(prepare_pass(drawing, more.side, more.offsets, &field->further, err));
     *prepared = field;
 done:
-    resampling_release(&more);
     if (status != STATUS_OK)
         release_prepared(field);
     return status;

@@ -93,12 +93,12 @@ static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Er
     (void)prepared;
     const RenderParams *params = drawing->params;
     const Band *band = &drawing->band;
-    RayPicture picture = {.drawing = drawing, .frame = frame};
-    Status status =
-        resampling_init(frame->color.values ? params->antialias : 1, &picture.more, err);
-    if (status == STATUS_OK)
-        threads_for((size_t)band->rows, params->threads, render_row, &picture);
-    if (status == STATUS_OK && picture.more.side > 0)
+    RayPicture picture = {.drawing = drawing,
+                          .frame = frame,
+                          .more = resampling_for(frame->color.values ? params->antialias : 1)};
+    Status status = STATUS_OK;
+    threads_for((size_t)band->rows, params->threads, render_row, &picture);
+    if (picture.more.side > 0)
         status =
             resampling_choose(&picture.more, params, band, &frame->color, params->threads, err);
     if (status == STATUS_OK && picture.more.side > 0)

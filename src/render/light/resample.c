@@ -3,6 +3,7 @@
  * threshold is held against its. */
 #include "render/light/resample.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,13 +50,13 @@ void resample_mask(const Plane *color, int above, int below, float threshold, in
     memset(mask + (height - (size_t)below) * width, 0, (size_t)below * width);
 }
 
-Status resampling_init(int antialias, Resampling *more, Err *err)
+Resampling resampling_for(int antialias)
 {
-    *more = (Resampling){.side = antialias > 1 ? antialias : 0};
-    TRY(mem_calloc(&more->offsets, (size_t)more->side, sizeof *more->offsets, "samples", err));
-    if (more->side > 0)
-        camera_sample_offsets(more->side, more->offsets);
-    return STATUS_OK;
+    assert(antialias <= RENDER_MOST_ANTIALIAS);
+    Resampling more = {.side = antialias > 1 ? antialias : 0};
+    if (more.side > 0)
+        camera_sample_offsets(more.side, more.offsets);
+    return more;
 }
 
 Status resampling_choose(Resampling *more, const RenderParams *params, const Band *band,
@@ -71,7 +72,6 @@ Status resampling_choose(Resampling *more, const RenderParams *params, const Ban
 
 void resampling_release(Resampling *more)
 {
-    free(more->offsets);
     free(more->mask);
     *more = (Resampling){0};
 }

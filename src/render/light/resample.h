@@ -14,14 +14,13 @@ void resample_mask(const Plane *color, int above, int below, float threshold, in
 
 /* The further samples of the pixels of a band. */
 typedef struct Resampling {
-    int side;        /* N of N x N further samples a pixel; 0: none */
-    double *offsets; /* owned; camera_sample_offsets(side) */
-    uint8_t *mask;   /* owned; 1 for pixels that get further samples; NULL: all do */
+    int side;                              /* N of N x N further samples a pixel; 0: none */
+    double offsets[RENDER_MOST_ANTIALIAS]; /* camera_sample_offsets(side) */
+    uint8_t *mask; /* owned; 1 for pixels that get further samples; NULL: all do */
 } Resampling;
 
-/* Sets *more (owned by the caller even when this fails) for `antialias` as in RenderParams.
- * STATUS_MEMORY. */
-MUST_CHECK Status resampling_init(int antialias, Resampling *more, Err *err);
+/* For `antialias` as in RenderParams; there is no mask yet, and nothing to release. */
+Resampling resampling_for(int antialias);
 /* Sets the mask, if the threshold of `params` asks for one, by the colours of the centre samples.
  * STATUS_MEMORY. */
 MUST_CHECK Status resampling_choose(Resampling *more, const RenderParams *params, const Band *band,

@@ -294,21 +294,13 @@ double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, 
     const Primitive *primitive = &bins->geometry->primitives[item];
     Ray ray = rasterview_ray(&bins->view, x, y);
     Hit hits[6];
-    int n = 0;
     double nearest = HUGE_VAL;
-    if (primitive->kind == PRIMITIVE_SPHERE) {
-        n = hit_sphere(ray, primitive->a, primitive->radius_mm, hits);
-    } else if (primitive->kind == PRIMITIVE_CYLINDER) {
-        CylinderFrame cylinder = cylinder_frame(primitive->a, primitive->b, primitive->radius_mm);
-        n = hit_cylinder(ray, &cylinder, hits);
-        if (primitive->round_a)
-            n += hit_sphere(ray, primitive->a, primitive->radius_mm, &hits[n]);
-        if (primitive->round_b)
-            n += hit_sphere(ray, primitive->b, primitive->radius_mm, &hits[n]);
-    } else {
-        JointFrame joint = primitive_joint(primitive);
-        n = hit_joint(ray, &joint, hits);
-    }
+    PrimitiveFrame frame = primitive_frame(primitive);
+    int n = primitive_hits(primitive, &frame, ray, hits);
+    if (primitive->round_a)
+        n += hit_sphere(ray, primitive->a, primitive->radius_mm, &hits[n]);
+    if (primitive->round_b)
+        n += hit_sphere(ray, primitive->b, primitive->radius_mm, &hits[n]);
     for (int i = 0; i < n; i++)
         if (hits[i].t >= NEAREST_SEEN_MM && hits[i].t < nearest) {
             nearest = hits[i].t;

@@ -321,17 +321,13 @@ static void release_prepared(void *prepared)
 static Status prepare_samples(const RenderParams *params, const RasterView *view,
                               RasterPrepared *raster, Err *err)
 {
-    Resampling more;
-    Status status = resampling_init(params->antialias, &more, err);
-    int n = more.side;
+    Resampling more = resampling_for(params->antialias);
+    size_t n = (size_t)more.side;
     raster->center = rastergrid_make(view, 0, 0);
-    if (status == STATUS_OK)
-        status = mem_calloc(&raster->further, (size_t)n * (size_t)n, sizeof *raster->further,
-                            "samples", err);
-    for (int i = 0; status == STATUS_OK && i < n * n; i++)
+    TRY(mem_calloc(&raster->further, n * n, sizeof *raster->further, "samples", err));
+    for (size_t i = 0; i < n * n; i++)
         raster->further[i] = rastergrid_make(view, more.offsets[i % n], more.offsets[i / n]);
-    resampling_release(&more);
-    return status;
+    return STATUS_OK;
 }
 
 static Status prepare(const Drawing *drawing, void **prepared, Err *err)

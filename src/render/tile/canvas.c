@@ -84,12 +84,11 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
                        .workers = params->threads,
                        .eye = *eye,
                        .kernels = tilekernels[kernels_kind(params->kernels)],
+                       .more = resampling_for(frame->color.values ? params->antialias : 1),
                        .look = tilelook_of(drawing->view, &appearance->finish, eye),
                        .needs_places = needs_places(drawing->view),
                        .wants_color = frame->color.values || frame->codes.codes8,
                        .wants_geometry = planes_want_geometry(frame)};
-    int antialias = frame->color.values ? params->antialias : 1;
-    TRY(resampling_init(antialias, &canvas->more, err));
     TRY(make_background(canvas, err));
     TRY(mem_calloc(&canvas->each, (size_t)canvas->workers, sizeof *canvas->each, "canvases", err));
     for (int i = 0; i < canvas->workers; i++)
