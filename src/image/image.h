@@ -127,8 +127,8 @@ MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *er
  * bits; it is unchanged then. */
 MUST_CHECK Status ids_take_picture(IdPlane *ids, Picture *picture, Err *err);
 
-/* Provenance written into a PNG as tEXt chunks, or iTXt chunks where it is not ASCII; the other formats hold none. Never a date or a
- * path. */
+/* Provenance written into a PNG as tEXt chunks, or iTXt chunks where it is not ASCII; the other
+ * formats hold none. Never a date or a path. */
 typedef struct ImageNote {
     const char *key;  /* "Software", "Description", "Comment"; at most 79 characters */
     const char *text; /* UTF-8 */
