@@ -83,8 +83,6 @@ const Command command_export = {
     .needs_output = true,
     .size = sizeof(ExportOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0},
-               {&coloring_table, offsetof(ExportOptions, meshing.coloring)},
-               {&blood_table, offsetof(ExportOptions, meshing.coloring.blood)}},
+    .tables = {{&own_table, 0}, COLORING_TABLES(ExportOptions, meshing.coloring)},
     .run = run_export,
 };

@@ -85,39 +85,21 @@ static Status run_models(void *options, Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
-static Status run_fields(void *options, Parsed *parsed, Err *err)
+static Status run_list(void *options, Parsed *parsed, Err *err)
 {
     (void)options;
-    (void)parsed;
-    return list(list_fields, err);
-}
-
-static Status run_looks(void *options, Parsed *parsed, Err *err)
-{
-    (void)options;
-    (void)parsed;
-    return list(list_looks, err);
-}
-
-static Status run_colormaps(void *options, Parsed *parsed, Err *err)
-{
-    (void)options;
-    (void)parsed;
-    return list(list_colormaps, err);
-}
-
-static Status run_domains(void *options, Parsed *parsed, Err *err)
-{
-    (void)options;
-    (void)parsed;
-    return list(list_domains, err);
-}
-
-static Status run_formats(void *options, Parsed *parsed, Err *err)
-{
-    (void)options;
-    (void)parsed;
-    return list(list_formats, err);
+    static const struct {
+        const Command *command;
+        ListNames *names;
+    } lists[] = {{&command_fields, list_fields},
+                 {&command_looks, list_looks},
+                 {&command_colormaps, list_colormaps},
+                 {&command_domains, list_domains},
+                 {&command_formats, list_formats}};
+    size_t i = 0;
+    while (lists[i].command != parsed->command)
+        i++;
+    return list(lists[i].names, err);
 }
 
 const Command command_models = {.name = "models",
@@ -129,14 +111,12 @@ const Command command_models = {.name = "models",
 const Command command_fields = {.name = "fields",
                                 .summary = "the values of --color-by, with their units",
                                 .operands = "",
-                                .run = run_fields};
+                                .run = run_list};
 const Command command_looks = {
-    .name = "looks", .summary = "the values of --look", .operands = "", .run = run_looks};
-const Command command_colormaps = {.name = "colormaps",
-                                   .summary = "the values of --colormap",
-                                   .operands = "",
-                                   .run = run_colormaps};
+    .name = "looks", .summary = "the values of --look", .operands = "", .run = run_list};
+const Command command_colormaps = {
+    .name = "colormaps", .summary = "the values of --colormap", .operands = "", .run = run_list};
 const Command command_domains = {
-    .name = "domains", .summary = "the shapes of --domain", .operands = "", .run = run_domains};
+    .name = "domains", .summary = "the shapes of --domain", .operands = "", .run = run_list};
 const Command command_formats = {
-    .name = "formats", .summary = "the formats of tree files", .operands = "", .run = run_formats};
+    .name = "formats", .summary = "the formats of tree files", .operands = "", .run = run_list};

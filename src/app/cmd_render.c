@@ -285,9 +285,6 @@ const Command command_render = {
     .needs_output = true,
     .size = sizeof(RenderOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0},
-               {&picture_table, offsetof(RenderOptions, picture)},
-               {&coloring_table, offsetof(RenderOptions, picture.coloring)},
-               {&blood_table, offsetof(RenderOptions, picture.coloring.blood)}},
+    .tables = {{&own_table, 0}, PICTURE_TABLES(RenderOptions, picture)},
     .run = run_render,
 };

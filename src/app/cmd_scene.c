@@ -158,9 +158,6 @@ const Command command_scene = {
     .needs_output = true,
     .size = sizeof(SceneOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0},
-               {&picture_table, offsetof(SceneOptions, picture)},
-               {&coloring_table, offsetof(SceneOptions, picture.coloring)},
-               {&blood_table, offsetof(SceneOptions, picture.coloring.blood)}},
+    .tables = {{&own_table, 0}, PICTURE_TABLES(SceneOptions, picture)},
     .run = run_scene,
 };

@@ -291,9 +291,6 @@ const Command command_verify = {
     .needs_output = true,
     .size = sizeof(VerifyOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0},
-               {&picture_table, offsetof(VerifyOptions, picture)},
-               {&coloring_table, offsetof(VerifyOptions, picture.coloring)},
-               {&blood_table, offsetof(VerifyOptions, picture.coloring.blood)}},
+    .tables = {{&own_table, 0}, PICTURE_TABLES(VerifyOptions, picture)},
     .run = run_verify,
 };

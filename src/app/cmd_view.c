@@ -470,9 +470,6 @@ const Command command_view = {
     .max_operands = 1,
     .size = sizeof(ViewOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0},
-               {&picture_table, offsetof(ViewOptions, picture)},
-               {&coloring_table, offsetof(ViewOptions, picture.coloring)},
-               {&blood_table, offsetof(ViewOptions, picture.coloring.blood)}},
+    .tables = {{&own_table, 0}, PICTURE_TABLES(ViewOptions, picture)},
     .run = run_view,
 };

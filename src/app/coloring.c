@@ -73,6 +73,15 @@ static Status set_range(const Coloring *coloring, const Field *field, ColorScale
     return STATUS_OK;
 }
 
+Status coloring_read_look(const char *name, Look *look, Err *err)
+{
+    char *path = NULL;
+    TRY(template_file("look", "looks", name, ".ini", &path, err));
+    Status status = look_read(look, path, err);
+    free(path);
+    return status;
+}
+
 static Status read_map(const Coloring *coloring, Colormap *map, Err *err)
 {
     char *path = NULL;

@@ -21,7 +21,17 @@ typedef struct Coloring {
 
 /* Of a zeroed Coloring. */
 void coloring_set_defaults(Coloring *coloring);
-extern const OptionTable coloring_table; /* sets a Coloring */
+extern const OptionTable coloring_table; /* sets a Coloring but its blood */
+/* The tables that set the Coloring at `path` of a command's options. */
+#define COLORING_TABLES(Type, path)                                                                \
+    {&coloring_table, offsetof(Type, path)},                                                       \
+    {                                                                                              \
+        &blood_table, offsetof(Type, path.blood)                                                   \
+    }
+
+/* Reads a look by its name in templates/looks or its path. Errors as template_file and look_read.
+ */
+MUST_CHECK Status coloring_read_look(const char *name, Look *look, Err *err);
 
 /* Whether the option has an effect; those on blood and colours have one with a field alone. */
 bool coloring_takes(const Coloring *coloring, const Option *option);

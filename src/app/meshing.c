@@ -6,7 +6,6 @@
 #include "app/picture.h"
 #include "app/povfiles.h"
 #include "app/progress.h"
-#include "app/templates.h"
 #include "derive/derive.h"
 #include "stage/stage.h"
 #include "tree/tree.h"
@@ -41,16 +40,10 @@ static Status color_vessels(const MeshingOptions *options, const char *tree_path
                             Err *err)
 {
     Look look;
-    char *path = NULL;
-    Status status;
-    TRY_GOTO(template_file("look", "looks", options->look, ".ini", &path, err));
-    TRY_GOTO(look_read(&look, path, err));
-    TRY_GOTO(coloring_appearance(&options->coloring, &made->tree, tree_path, &look,
-                                 &made->appearance, err));
-    TRY_GOTO(derive_field(&made->tree, &(TreeMeta){0}, "strahler", &made->orders, err));
-done:
-    free(path);
-    return status;
+    TRY(coloring_read_look(options->look, &look, err));
+    TRY(coloring_appearance(&options->coloring, &made->tree, tree_path, &look, &made->appearance,
+                            err));
+    return derive_field(&made->tree, &(TreeMeta){0}, "strahler", &made->orders, err);
 }
 
 /* STATUS_DIFFERS, saying what is wrong with a mesh that is not sound. */

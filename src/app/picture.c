@@ -3,7 +3,6 @@
  * effect on the picture asked for is refused. */
 #include "app/picture.h"
 
-#include "app/templates.h"
 #include "image/image.h"
 #include "render/render.h"
 #include "treeio/treeio.h"
@@ -269,15 +268,12 @@ static Status warn_of_losses(const Geometry *geometry, const StageReport *report
 
 static Status read_look(const PictureOptions *options, Look *look, Err *err)
 {
-    char *path = NULL;
-    TRY(template_file("look", "looks", options->look, ".ini", &path, err));
-    Status status = look_read(look, path, err);
-    free(path);
+    TRY(coloring_read_look(options->look, look, err));
     if (options->has_background)
         look->background = (Rgb){srgb_decode((float)options->background.x),
                                  srgb_decode((float)options->background.y),
                                  srgb_decode((float)options->background.z)};
-    return status;
+    return STATUS_OK;
 }
 
 static bool has_segments(const Tree *tree)

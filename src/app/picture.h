@@ -30,7 +30,10 @@ typedef struct PictureOptions {
 void picture_set_defaults(PictureOptions *options);
 /* Of --antialias and --prune-radius (mm), wherever they are options. */
 extern const Range antialias_range, prune_range;
-extern const OptionTable picture_table; /* sets a PictureOptions */
+extern const OptionTable picture_table; /* sets a PictureOptions but its coloring */
+/* The tables that set the PictureOptions at `path` of a command's options. */
+#define PICTURE_TABLES(Type, path)                                                                 \
+    {&picture_table, offsetof(Type, path)}, COLORING_TABLES(Type, path.coloring)
 
 /* How POV-Ray's isosurface is cut into cells. */
 CellParams picture_cells(const PictureOptions *options);

@@ -12,6 +12,13 @@ static bool is_folder(const char *path)
     return access(path, X_OK) == 0;
 }
 
+/* Takes the last `n` components of a path away, but not its root. */
+static void cut_components(char *path, int n)
+{
+    for (; n > 0 && strrchr(path, '/') > path; n--)
+        *strrchr(path, '/') = '\0';
+}
+
 Status templates_folder(char **folder, Err *err)
 {
     const char *given = getenv("CORCAST_TEMPLATES");
@@ -21,12 +28,14 @@ Status templates_folder(char **folder, Err *err)
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     if (length > 0) {
         program[length] = '\0';
-        program[file_name(program) - program] = '\0';
-        static const char *const places[] = {"../templates", "../../templates",
-                                             "../share/corcast/templates"};
+        static const struct {
+            int up; /* components fewer than for the one before */
+            const char *path;
+        } places[] = {{2, "templates"}, {0, "share/corcast/templates"}, {1, "templates"}};
         for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
             char *path = NULL;
-            TRY(file_join(program, places[i], &path, err));
+            cut_components(program, places[i].up);
+            TRY(file_join(program, places[i].path, &path, err));
             if (is_folder(path)) {
                 *folder = path;
                 return STATUS_OK;

@@ -1,3 +1,4 @@
+/* Slow: holds every cell against brute force. */
 #include "surface/surface.h"
 
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* Slow: holds the potential against brute force. */
 #include "render/cast/fieldcast.h"
 
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* Slow: refines whole trees at every level. */
 /* Refined trees: lower targets, and every promise of a tree kept [tree_promises.h]. */
 #include "grow/grow.h"
 
