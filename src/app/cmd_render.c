@@ -238,7 +238,7 @@ static Status draw_picture(const RenderOptions *options, Parsed *parsed, RenderP
     char *line = NULL;
     Progress progress;
     Status status = STATUS_OK;
-    TRY(picture_scene(picture, parsed, &scene, &staged, err));
+    TRY(picture_scene(picture, parsed, &scene, NULL, &staged, err));
     params->povray_cells = options->hits == HITS_POVRAY ? &cells : NULL;
     params->progress = progress_report;
     params->progress_context = &progress;

@@ -106,9 +106,11 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter, c
     const PictureOptions *picture = &options->picture;
     const char *tree = parsed->operands[0];
     Scene scene = {0};
+    Anatomy anatomy = {0};
     EmitReport report = {0};
-    TRY(picture_scene(picture, parsed, &scene, NULL, err));
+    TRY(picture_scene(picture, parsed, &scene, &anatomy, NULL, err));
     const EmitParams params = {.scene = &scene,
+                               .anatomy = &anatomy,
                                .command = line,
                                .shadows = picture->stage.shadows,
                                .ids = options->ids,
@@ -116,6 +118,7 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter, c
     Status status = scene_files_write(emitter, &params, tree, options->output, &report, err);
     if (status == STATUS_OK && !parsed->common.quiet)
         say_limits(&report, &scene);
+    anatomy_release(&anatomy);
     scene_release(&scene);
     return status;
 }

@@ -245,7 +245,7 @@ static Status verify(Verification *v, Folder *folder, Parsed *parsed, Err *err)
 {
     char *line = NULL;
     TRY(claim_folder(folder, &parsed->files, err));
-    TRY(picture_scene(v->picture, parsed, &v->scene, NULL, err));
+    TRY(picture_scene(v->picture, parsed, &v->scene, NULL, NULL, err));
     TRY(file_make_folder(v->folder, err));
     TRY(claim_folder(folder, &parsed->files, err));
     TRY(shown_name(v->tree, &v->name, err));

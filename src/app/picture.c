@@ -376,7 +376,7 @@ static Status make_scene(const PictureOptions *options, const PictureSource *sou
 }
 
 Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
-                     StageReport *report, Err *err)
+                     Anatomy *anatomy, StageReport *report, Err *err)
 {
     PictureSource source;
     StageReport staged;
@@ -386,6 +386,8 @@ Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene 
     if (status == STATUS_OK && !parsed->common.quiet)
         status =
             warn_of_losses(&made.geometry, &staged, (JointForm)options->joints, source.pruned, err);
+    if (status == STATUS_OK && anatomy)
+        status = stage_anatomy(&source.tree, made.geometry.origin, anatomy, err);
     picture_source_release(&source);
     if (status != STATUS_OK) {
         scene_release(&made);

@@ -80,9 +80,9 @@ MUST_CHECK Status picture_view(const PictureOptions *options, const PictureSourc
 
 /* Reads the tree and the look and makes all three. Says on standard error, unless quiet, how many
  * segments are pruned, cannot be drawn, or have no surface, and how many places are not joined.
- * `report` may be NULL. */
+ * `anatomy` and `report` may be NULL. */
 MUST_CHECK Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
-                                StageReport *report, Err *err);
+                                Anatomy *anatomy, StageReport *report, Err *err);
 
 /* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the
  * machine. */

@@ -10,6 +10,7 @@
 /* What is written, and how it is called. All is borrowed. */
 typedef struct EmitParams {
     const Scene *scene;           /* NULL for an emitter of meshes */
+    const Anatomy *anatomy;       /* of its tree; NULL: orders are 0, and nothing is named */
     const VesselMesh *mesh;       /* NULL for all others, and so are those that follow: */
     const VesselTree *vessels;    /* whose segments the mesh's labels name */
     const Appearance *appearance; /* for an emitter with colours */

@@ -83,13 +83,9 @@ static Status put_body(Text *out, void *context, Err *err)
 static Status put_tree(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    bool one_blob = false;
-    if (model_has(geometry->scene->geometry.model, MODEL_BLOB))
-        TRY(blob_is_whole(geometry->scene, &one_blob, err));
     Values values = {0};
     add_part(&values, "body", put_body, context);
-    return values_expand(&values, geometry->params,
-                         one_blob ? "povray/tree_blob.inc" : "povray/tree_union.inc", out, err);
+    return values_expand(&values, geometry->params, "povray/tree.inc", out, err);
 }
 
 static void add_finish(Values *values, const Finish *finish)
@@ -117,6 +113,7 @@ static Status put_geometry(Text *out, void *context, Err *err)
     add_float(&values, "green", scene->appearance.color.g);
     add_float(&values, "blue", scene->appearance.color.b);
     add_finish(&values, &scene->appearance.finish);
+    add_flag(&values, "many_colors", scene->appearance.colors != NULL);
     add_part(&values, "macros", put_macros, geometry);
     add_part(&values, "tree", put_tree, geometry);
     return values_expand(&values, params, "povray/vessels.inc", out, err);

@@ -180,7 +180,8 @@ static Status all_segments(Cells *cells, Box *box, Err *err)
     return STATUS_OK;
 }
 
-Status blob_is_whole(const Scene *scene, bool *whole, Err *err)
+/* Whether all of a blob is one, and not many, each clipped to a cell. */
+static Status blob_is_whole(const Scene *scene, bool *whole, Err *err)
 {
     Cells cells = {.scene = scene};
     Box box, half[2];
@@ -331,7 +332,9 @@ static Status put_groups(Text *out, void *context, Err *err)
         if (i % GROUP == 0)
             text_printf(out, "Blob_Group(%zu)\n", i / GROUP);
         text_printf(out, "Blob_Color(%zu,", i);
-        put_paint(out, scene, segment->segment);
+        text_number(out, segment->radius_mm);
+        text_puts(out, ",");
+        put_paint(out, geometry->params, segment->segment);
         text_puts(out, ")\n");
         if (i % GROUP == GROUP - 1 || i + 1 == scene->geometry.n_segments)
             text_printf(out, "Blob_Group_End(%zu)\n", i / GROUP);
@@ -367,14 +370,16 @@ Status put_blob_macros(Text *out, void *context, Err *err)
     const Scene *scene = geometry->scene;
     size_t n = scene->geometry.n_segments;
     bool painted = scene->appearance.colors || geometry->params->ids;
+    bool whole = false;
     Values values = {0};
     if (painted && n > MAX_PAINTED)
         return err_set(err, STATUS_INFEASIBLE,
                        "POV-Ray can paint at most %d segments of a blob one by one, not %zu",
                        MAX_PAINTED, n);
+    TRY(blob_is_whole(scene, &whole, err));
     add_shape(&values);
+    add_flag(&values, "whole", whole);
     add_flag(&values, "painted", painted);
-    add_flag(&values, "many_colors", scene->appearance.colors != NULL);
     Text *top = add_value(&values, "top"), *n_groups = add_value(&values, "n_groups");
     if (painted) {
         text_printf(top, "Fn%zu", count_nodes(n) - 1);

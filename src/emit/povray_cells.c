@@ -134,7 +134,6 @@ Status put_cell_macros(Text *out, void *context, Err *err)
         add_number(&values, names[i], erf_forms[erf][i]);
     add_flag(&values, "exact_erf", erf == ERF_EXACT);
     add_flag(&values, "painted", scene->appearance.colors || geometry->params->ids);
-    add_flag(&values, "many_colors", scene->appearance.colors != NULL);
     add_part(&values, "scales", put_scales, context);
     add_part(&values, "terms", put_terms, context);
     return values_expand(&values, geometry->params, "povray/isosurface.inc", out, err);
@@ -294,20 +293,24 @@ static void put_pick(Text *text, const CellTree *cells, const Cell *cell)
     close_calls(text, cell->count - 1);
 }
 
-static void put_segment_paint(Text *text, const Scene *scene, uint32_t segment)
+/* The last arguments of Cell_One_Paint and Cell_Paint. */
+static void put_segment_paint(Text *text, const EmitParams *params, uint32_t number)
 {
-    put_paint(text, scene, scene->geometry.segments[segment].segment);
+    const FieldSegment *segment = &params->scene->geometry.segments[number];
+    text_number(text, segment->radius_mm);
+    text_puts(text, ",");
+    put_paint(text, params, segment->segment);
 }
 
 /* Appends the paint of a cell: that of the term that is largest all over it, or of each. */
-static Status put_cell_paint(Text *text, const CellTemplates *templates, const Scene *scene,
+static Status put_cell_paint(Text *text, const CellTemplates *templates, const EmitParams *params,
                              const CellTree *cells, const Cell *cell, CellText *part, Err *err)
 {
     const CellTerm *terms = cells->terms + cell->first;
     bool grouped = cell->n_groups > 0;
     if (cell->largest != CELL_MIXED) {
         text_puts(text, " Cell_One_Paint(");
-        put_segment_paint(text, scene, cell->largest);
+        put_segment_paint(text, params, cell->largest);
         text_puts(text, ")");
         return STATUS_OK;
     }
@@ -322,7 +325,7 @@ static Status put_cell_paint(Text *text, const CellTemplates *templates, const S
     cleared(&part->paints);
     for (uint32_t k = 0; k < cell->count; k++) {
         text_printf(&part->paints, "Cell_Paint(%u,%u,", k, cell->count);
-        put_segment_paint(&part->paints, scene, terms[k].segment);
+        put_segment_paint(&part->paints, params, terms[k].segment);
         text_puts(&part->paints, ")");
     }
     const TmplValue values[] = {{"largest", text_chars(&part->largest)},
@@ -366,10 +369,10 @@ Status put_cells(Text *out, void *context, Err *err)
         const Cell *cell = &cells->cells[i];
         cleared(&part.paint);
         if (painted)
-            TRY_GOTO(put_cell_paint(&part.paint, &templates, scene, cells, cell, &part, err));
+            TRY_GOTO(
+                put_cell_paint(&part.paint, &templates, geometry->params, cells, cell, &part, err));
         TRY_GOTO(put_cell(out, &templates.cell, cells, cell, &part, err));
     }
-    text_puts(out, "Vessel_Texture(0,Vessel_Color)\n");
     status = text_check(out, err);
 done:
     release_cell_text(&part);

@@ -91,7 +91,7 @@ Status put_joint_macros(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/joints.inc", out, err);
 }
 
-void put_joint(Text *text, const Scene *scene, const Primitive *joint)
+void put_joint(Text *text, const EmitParams *params, const Primitive *joint)
 {
     JointFrame frame = primitive_joint(joint);
     Vec3 across = vec3_scale(frame.across, 1 / frame.radius);
@@ -117,6 +117,6 @@ void put_joint(Text *text, const Scene *scene, const Primitive *joint)
         text_number(text, numbers[i]);
     }
     text_puts(text, folded ? ",1," : ",0,");
-    put_paint(text, scene, joint->segment);
+    put_paint(text, params, joint->segment);
     text_puts(text, ")\n");
 }

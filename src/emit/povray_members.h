@@ -26,9 +26,7 @@ Status put_cells(Text *out, void *geometry, Err *err);
 Status put_blob_macros(Text *out, void *geometry, Err *err);
 Status put_blob(Text *out, void *geometry, Err *err);
 
-/* Whether all of a blob is one, and not many, each clipped to a cell. */
-MUST_CHECK Status blob_is_whole(const Scene *scene, bool *whole, Err *err);
 /* Appends the call that draws a joint. */
-void put_joint(Text *text, const Scene *scene, const Primitive *joint);
+void put_joint(Text *text, const EmitParams *params, const Primitive *joint);
 
 #endif

@@ -3,7 +3,7 @@
 #include "emit/povray_text.h"
 #include "emit/values.h"
 
-static void put_primitive(Text *text, const Scene *scene, const Primitive *primitive)
+static void put_primitive(Text *text, const EmitParams *params, const Primitive *primitive)
 {
     bool cylinder = primitive->kind == PRIMITIVE_CYLINDER;
     text_puts(text, cylinder ? "Vessel_Cylinder(" : "Vessel_Sphere(");
@@ -15,7 +15,7 @@ static void put_primitive(Text *text, const Scene *scene, const Primitive *primi
     text_puts(text, ",");
     text_number(text, primitive->radius_mm);
     text_puts(text, ",");
-    put_paint(text, scene, primitive->segment);
+    put_paint(text, params, primitive->segment);
     text_puts(text, ")\n");
 }
 
@@ -26,9 +26,9 @@ Status put_primitives(Text *out, void *context, Err *err)
     for (size_t i = 0; i < scene->geometry.n_primitives; i++) {
         const Primitive *primitive = &scene->geometry.primitives[i];
         if (primitive->kind == PRIMITIVE_JOINT)
-            put_joint(out, scene, primitive);
+            put_joint(out, geometry->params, primitive);
         else
-            put_primitive(out, scene, primitive);
+            put_primitive(out, geometry->params, primitive);
     }
     return text_check(out, err);
 }

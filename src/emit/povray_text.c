@@ -21,13 +21,27 @@ void put_color(Text *text, Rgb color)
                 number_text_float(color.b, b));
 }
 
-void put_paint(Text *text, const Scene *scene, uint32_t segment)
+/* A value in few digits, which are for the artist's own textures. */
+static void put_value(Text *text, double value)
 {
-    text_printf(text, "%u,", scene->geometry.ids[segment]);
-    if (scene->appearance.colors)
-        put_color(text, scene->appearance.colors[segment]);
+    if (isfinite(value))
+        text_printf(text, "%.6g", value);
     else
-        text_puts(text, "Vessel_Color");
+        text_puts(text, "Value_None");
+}
+
+void put_paint(Text *text, const EmitParams *params, uint32_t segment)
+{
+    const Appearance *appearance = &params->scene->appearance;
+    text_printf(text, "%u,%d,", params->scene->geometry.ids[segment],
+                params->anatomy ? params->anatomy->order[segment] : 0);
+    if (!appearance->colors) {
+        text_puts(text, "0,0");
+        return;
+    }
+    put_value(text, appearance->values[segment]);
+    text_puts(text, ",");
+    put_color(text, appearance->colors[segment]);
 }
 
 void put_linear(Text *text, const Linear *linear)

@@ -8,8 +8,9 @@
 void put_vector(Text *text, Vec3 v);
 /* <r,g,b> */
 void put_color(Text *text, Rgb color);
-/* The last two arguments of the macros: id,color of a segment, by its number. */
-void put_paint(Text *text, const Scene *scene, uint32_t segment);
+/* The last arguments of the macros, id,order,value,color of a segment, by its number; of a scene in
+ * one colour the last two are 0. */
+void put_paint(Text *text, const EmitParams *params, uint32_t segment);
 /* x*k0+y*k1-z*k2+k3 without the zeros; nothing when all are 0. */
 void put_linear(Text *text, const Linear *linear);
 

@@ -21,6 +21,7 @@ typedef struct Appearance {
     Finish finish;
     Rgb color;        /* of all segments, if `colors` is NULL */
     Rgb *colors;      /* owned; one for each segment, by its number; or NULL */
+    double *values;   /* owned; what `colors` stand for, NAN where there is none; or NULL */
     ColorScale scale; /* what `colors` mean; its map is owned; zeroed without `colors` */
 } Appearance;
 

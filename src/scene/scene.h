@@ -7,6 +7,7 @@
 #ifndef CORCAST_SCENE_SCENE_H
 #define CORCAST_SCENE_SCENE_H
 
+#include "scene/anatomy.h"
 #include "scene/appearance.h"
 #include "scene/geometry.h"
 #include "scene/models.h"

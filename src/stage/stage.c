@@ -229,15 +229,21 @@ Status stage_appearance(const Look *look, const Field *field, const ColorScale *
                         Appearance *appearance, Err *err)
 {
     Appearance made = {.finish = look->finish, .color = look->color};
+    Status status;
     if (field) {
-        TRY(mem_calloc(&made.colors, field->n, sizeof *made.colors, "colours", err));
+        TRY_GOTO(mem_calloc(&made.colors, field->n, sizeof *made.colors, "colours", err));
+        TRY_GOTO(mem_calloc(&made.values, field->n, sizeof *made.values, "values", err));
         made.scale = *scale;
     }
     for (size_t i = 0; field && i < field->n; i++) {
         float rgb[3];
         colorscale_linear(scale, field->value[i], rgb);
         made.colors[i] = (Rgb){rgb[0], rgb[1], rgb[2]};
+        made.values[i] = field->value[i];
     }
     *appearance = made;
     return STATUS_OK;
+done:
+    appearance_release(&made);
+    return status;
 }

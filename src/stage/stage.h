@@ -104,6 +104,10 @@ MUST_CHECK Status stage_geometry(const Tree *tree, const GeometryParams *params,
  * others. STATUS_INPUT when none can be drawn. */
 MUST_CHECK Status stage_vessels(const Tree *tree, VesselTree *vessels, size_t *dropped, Err *err);
 
+/* How the tree hangs together, in *anatomy (owned; anatomy_release), `origin` being that of the
+ * Geometry. O(n) of n nodes. */
+MUST_CHECK Status stage_anatomy(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err);
+
 /* The finish of the look, and a colour for each segment: that of its value on the scale, whose map
  * *appearance owns from then on (appearance_release); or, if `field` is NULL, the look's one
  * colour, and `scale` is not read. STATUS_MEMORY, and the map stays the caller's. */

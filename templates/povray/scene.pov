@@ -12,9 +12,9 @@
 // Render: povray +I${input} +O${output} +W${width} +H${height} -D
 // Size: ${width}x${height}
 //
-// Whatever stands in #ifndef can be set from outside: numbers on the command line, as
-// Declare=Light_Intensity=1.2 or Declare=Vessel_Red=0.2, vectors and colours too by #declare before an
-// #include of this file. For a transparent background: +UA Declare=Background_Transmit=1.
+// What stands in #ifndef and is a number can be set on the command line, as Declare=Light_Intensity=1.2 or
+// Declare=Vessel_Red=0.2; all that stands in #ifndef can be declared before an #include of this file. For a
+// transparent background: +UA Declare=Background_Transmit=1.
 #version 3.7;
 
 // 0 the picture; 1 depth, 2 normals, 3 segment ids, for checking other renderers against.
@@ -68,6 +68,7 @@ ${lights}
   background { rgb 0 }
 #end
 #if (Corcast_Plane = 2)
+  #declare T_Vessel = texture { pigment { rgb 1 } finish { ambient 0 diffuse 0.5 emission 0.5 } }
   // Signed lights along the axes turn a white finish into 0.5 + 0.5 * normal.
   #macro Light_Axis(Axis)
     light_source { Axis * 1e4, rgb Axis parallel point_at 0 shadowless }
@@ -99,10 +100,16 @@ ${lights}
       [1 rgb <0, 0, 3>]
     }
   };
+  #declare T_Vessel = texture { pigment { P_Depth } finish { ambient 0 diffuse 0 emission 1 } }
 #end
 
 // ---- vessels --------------------------------------------------------------------------------
 // The look of the vessels has its defaults with the geometry: Vessel_Red, _Green, _Blue (linear) and
 // Vessel_Ambient, _Diffuse, _Brilliance, _Phong, _Phong_Size, _Specular, _Roughness.
 ${geometry}
-object { Tree }
+object {
+  Tree
+  #if (!Tree_Painted) texture { T_Vessel } #end
+  interior { I_Vessel }
+  #if (!Light_Shadows) no_shadow #end
+}

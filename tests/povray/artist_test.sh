@@ -67,6 +67,78 @@ test_glass_is_declared_before_the_geometry() {
     done
 }
 
+# own_scene MODEL GEOMETRY OBJECT: MODEL.pov, which looks at the middle of a vessel, before a red background.
+own_scene() {
+    { printf '#version 3.7;\nglobal_settings { assumed_gamma 1 }\nbackground { rgb <1, 0, 0> }\n'
+      printf 'camera { orthographic location <0.625, -8.75, 30> right 2.5*x up 2*y direction -z }\n'
+      printf 'light_source { <0, 0, 100>, rgb 1 }\n#include "%s.inc"\n%s\n' "$2" "$3"; } >"$1".pov
+}
+
+# A scene of one's own, with any texture and interior: the same words do the same in every model, in one
+# that was written with colours too.
+test_the_tree_takes_any_texture_and_interior() {
+    local model glass='texture { pigment { rgbt 1 } finish { diffuse 0 } } interior { ior 1.4 fade_distance 1 fade_power 1001 fade_color <0, 0, 1> }'
+    for model in $MODELS; do
+        scene_of_a_vessel "$model" tree.pov
+        own_scene "$model" tree "object { Tree texture { pigment { rgb <0, 1, 0> } finish { ambient 1 diffuse 0 } } }"
+        draw "$model"
+        expect_no_warning "$model"
+        [ "$(values "$model.png" 30 22)" = "0 255 0" ] || fail "expected a green $model, got $(values "$model.png" 30 22)"
+        own_scene "$model" tree "object { Tree $glass }"
+        draw "$model" Declare=Tree_Merge=1
+        expect_no_warning "$model"
+        [[ $(values "$model.png" 30 22) =~ ^[0-9]?[0-9]\ 0\  ]] || fail "expected an interior in $model that takes the red, got $(values "$model.png" 30 22)"
+    done
+    run_ok corcast scene "$DATA/bifurcation.swc" --quiet --color-by radius -o colors.pov
+    own_scene own colors "object { Tree texture { pigment { rgb <0, 1, 0> } finish { ambient 1 diffuse 0 } } }"
+    draw own Declare=Tree_Colors=0
+    [ "$(values own.png 30 22)" = "0 255 0" ] || fail "expected a green tree, got $(values own.png 30 22)"
+}
+
+# The hooks T_Vessel and I_Vessel, before the scene as it was written.
+test_a_texture_and_an_interior_declared_before_the_scene_are_taken() {
+    local model
+    for model in $MODELS; do
+        scene_of_a_vessel "$model" plain.pov
+        { printf '#version 3.7;\n#declare T_Vessel = texture { pigment { rgbt 1 } finish { diffuse 0 } };\n'
+          printf '#declare I_Vessel = interior { fade_distance 1 fade_power 1001 fade_color <0, 0, 1> };\n'
+          printf '#declare Tree_Merge = 1;\n#declare Background_Color = rgb <1, 0, 0>;\n#include "plain.pov"\n'; } >"$model.pov"
+        draw "$model"
+        expect_no_warning "$model"
+        [[ $(values "$model.png" 30 22) =~ ^[0-9]?[0-9]\ 0\  ]] || fail "expected an interior in $model that takes the red, got $(values "$model.png" 30 22)"
+    done
+}
+
+# Segment 2 has order 2, radius 2.385 mm and the length 17.545 mm.
+test_each_segment_can_have_a_texture_by_what_it_is() {
+    local model
+    for model in $MODELS; do
+        run_ok corcast scene "$DATA/bifurcation.swc" --quiet --model "$model" --color-by length --size 60x45 \
+            --location 0.625,-8.75,30 --look-at 0.625,-8.75,0 --height 2 -o plain.pov
+        { printf '#version 3.7;\n#macro Vessel_Texture(Id, Order, Radius, Value)\n  texture { pigment { rgb <(Id = 2), (Order = 2 & Radius = 2.385), (Value > 17.54 & Value < 17.55)> } finish { ambient 1 diffuse 0 phong 0 } }\n'
+          printf '#end\n#include "plain.pov"\n'; } >"$model.pov"
+        draw "$model"
+        expect_no_warning "$model"
+        [ "$(values "$model.png" 30 22)" = "255 255 255" ] ||
+            fail "expected a texture by id, order, radius and value in $model, got $(values "$model.png" 30 22)"
+    done
+}
+
+# In glass of balls and cylinders in one another, POV-Ray loses count of what is inside; a merge has one wall.
+test_a_merge_has_no_walls_inside() {
+    local model
+    for model in cylinders joined rounded; do
+        run_ok corcast scene "$DATA/bifurcation.swc" --quiet --model $model -o tree.pov
+        own_scene $model tree 'object { Tree texture { pigment { rgbt 1 } finish { diffuse 0 ambient 0 phong 0.5 } } }'
+        sed -i 's/location.*direction -z/location <1.25, -17.5, 30> right 4*x up 3*y direction -z/' $model.pov
+        draw $model Declare=Joint_Sides=64
+        cp $model.png union.png
+        draw $model Declare=Joint_Sides=64 Declare=Tree_Merge=1
+        expect_no_warning $model
+        expect_differing 20 2700 union.png $model.png
+    done
+}
+
 test_the_background_can_be_transparent() {
     run_ok corcast scene "$DATA/bifurcation.swc" --quiet --size 60x45 -o seen.pov
     draw seen +UA Declare=Background_Transmit=1

@@ -493,7 +493,7 @@ test_joints_that_break_down_are_drawn_alike_to_the_letter() {
     run_ok corcast grow --terminals 600 --seed 3 --lambda 0 -o tree.swc
     run corcast verify tree.swc --model joined --joints paper --size 300x225 -o report
     [ "$status" -le 1 ] || fail "expected a comparison, got exit status $status$(said)"
-    grep -q ',1,[0-9]*,Vessel_Color)' report/scene.inc || fail "expected folded joints in the scene"
+    grep -q ',1,[0-9]*,0,0,0)' report/scene.inc || fail "expected folded joints in the scene"
     [ "$(differing report/povray.png report/native.png 8)" -le 10 ] ||
         fail "expected at most 10 pixels off by more than 8 levels"
 }

@@ -34,6 +34,8 @@ static Primitive joint = {.kind = PRIMITIVE_JOINT,
 static uint32_t ids[] = {2, 70000, 9};
 static Rgb colors[] = {{0.56f, 0.055f, 0.045f}, {0.1f, 0.2f, 0.3f}, {0.1f, 0.2f, 0.3f}};
 
+static double values[] = {2.385, NAN, 0.75};
+
 static FieldSegment segments[] = {
     {{0, 9, 0}, {0, 0, 0}, 1.5, 0},
     {{0, 0, 0}, {-4, -7, 1}, 1.2, 1},
@@ -129,7 +131,7 @@ static void the_numbers_of_a_cylinder_read_back_exactly(void **state)
     assert_true(v[3] == cylinder->b.x && v[4] == cylinder->b.y && v[5] == cylinder->b.z);
     assert_true(v[6] == cylinder->radius_mm);
     assert_int_equal(id, 2);
-    assert_string_equal(paint, "Vessel_Color");
+    assert_string_equal(paint, "0,0,0");
     assert_int_equal(count(out.geometry.chars, "\nVessel_Sphere("), 1);
     release(&out);
 }
@@ -177,7 +179,7 @@ static void a_joint_is_given_in_the_frame_of_its_first_circle(void **state)
     assert_int_equal(
         sscanf(call,
                "\nVessel_Joint(<%lf,%lf,%lf>,<%lf,%lf,%lf>,<%lf,%lf,%lf>,<%lf,%lf,%lf>,"
-               "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,0,%u,Vessel_Color)",
+               "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,0,%u,0,0,0)",
                &v[0], &v[1], &v[2], &v[3], &v[4], &v[5], &v[6], &v[7], &v[8], &v[9], &v[10], &v[11],
                &v[12], &v[13], &v[14], &v[15], &v[16], &v[17], &v[18], &v[19], &id),
         21);
@@ -199,8 +201,9 @@ static void segments_of_different_colours_carry_their_own(void **state)
     (void)state;
     Scene scene = make_scene(SCENE_ROUNDED);
     scene.appearance.colors = colors;
+    scene.appearance.values = values;
     Emitted out = emit(&scene, &two_files);
-    assert_non_null(strstr(out.geometry.chars, ",70000,<0.1,0.2,0.3>)\n"));
+    assert_non_null(strstr(out.geometry.chars, ",70000,0,Value_None,<0.1,0.2,0.3>)\n"));
     release(&out);
 }
 
@@ -275,7 +278,6 @@ static void ids_are_painted_only_when_asked_for(void **state)
     Scene scene = make_scene(SCENE_ISOSURFACE);
     Emitted plain = emit(&scene, &two_files);
     assert_null(strstr(plain.geometry.chars, "open Cell_One_Paint("));
-    assert_int_equal(count(plain.geometry.chars, "\nVessel_Texture(0,Vessel_Color)\n"), 1);
     EmitParams with_ids = two_files;
     with_ids.ids = true;
     Emitted painted = emit(&scene, &with_ids);
@@ -283,11 +285,13 @@ static void ids_are_painted_only_when_asked_for(void **state)
     size_t many = count(painted.geometry.chars, "\nCell_Top() ");
     assert_true(one > 0 && many > 0);
     assert_int_equal(one + many, painted.report.cells);
-    assert_non_null(strstr(painted.geometry.chars, "Cell_One_Paint(2,Vessel_Color)"));
+    assert_non_null(strstr(painted.geometry.chars, "Cell_One_Paint(1.5,2,0,0,0)"));
     release(&plain);
     scene.appearance.colors = segment_colors;
+    scene.appearance.values = values;
     plain = emit(&scene, &two_files);
-    assert_non_null(strstr(plain.geometry.chars, "Cell_One_Paint(3,<0.1,0.5,0.1>)"));
+    assert_non_null(
+        strstr(plain.geometry.chars, "Cell_One_Paint(1.2,3,0,Value_None,<0.1,0.5,0.1>)"));
     release(&plain);
     release(&painted);
 }
@@ -297,7 +301,7 @@ static void a_blob_is_given_by_the_ends_and_radii_of_its_segments(void **state)
     (void)state;
     Scene scene = make_scene(SCENE_BLOB);
     Emitted out = emit(&scene, &two_files);
-    assert_non_null(strstr(out.geometry.chars, "#declare Tree = blob {\nBlob_Start()\n"));
+    assert_non_null(strstr(out.geometry.chars, "#declare Tree = Tree_Of() {\nBlob_Start()\n"));
     assert_int_equal(count(out.geometry.chars, "\nVessel_Blob("), 3);
     assert_int_equal(count(out.geometry.chars, "\nBlob_Cell()"), 0);
     const char *call = strstr(out.geometry.chars, "\nVessel_Blob(<0,0,0>,<-4");
@@ -410,11 +414,13 @@ static void the_segments_of_a_blob_are_painted_only_when_asked_for(void **state)
     with_ids.ids = true;
     Emitted painted = emit(&scene, &with_ids);
     assert_int_equal(count(painted.geometry.chars, "\nBlob_Color("), 3);
-    assert_non_null(strstr(painted.geometry.chars, "\nBlob_Color(1,3,Vessel_Color)"));
+    assert_non_null(strstr(painted.geometry.chars, "\nBlob_Color(1,1.2,3,0,0,0)"));
     release(&plain);
     scene.appearance.colors = segment_colors;
+    scene.appearance.values = values;
     plain = emit(&scene, &two_files);
-    assert_non_null(strstr(plain.geometry.chars, "\nBlob_Color(1,3,<0.1,0.5,0.1>)"));
+    assert_non_null(
+        strstr(plain.geometry.chars, "\nBlob_Color(1,1.2,3,0,Value_None,<0.1,0.5,0.1>)"));
     release(&plain);
     release(&painted);
 }

@@ -1,0 +1,77 @@
+/* Orders and the main branch are fields of `derive`; which tree a segment is of is handed down from
+ * its root, as parents come before children. */
+#include "derive/derive.h"
+#include "stage/stage.h"
+
+#include <stdlib.h>
+
+static Status set_orders(const Tree *tree, int *order, Err *err)
+{
+    Field strahler = {0};
+    TRY(derive_field(tree, &(TreeMeta){0}, "strahler", &strahler, err));
+    for (size_t i = 0; i < tree->n; i++)
+        order[i] = tree_is_segment(tree, i) ? (int)strahler.value[i] : 0;
+    field_release(&strahler);
+    return STATUS_OK;
+}
+
+static void set_trees(const Tree *tree, Vec3 origin, Anatomy *anatomy)
+{
+    for (size_t i = 0; i < tree->n; i++) {
+        if (tree_is_segment(tree, i)) {
+            anatomy->tree[i] = anatomy->tree[tree->parent[i]];
+            continue;
+        }
+        anatomy->tree[i] = (uint32_t)anatomy->n_trees;
+        anatomy->root[anatomy->n_trees++] = vec3_sub(tree->position[i], origin);
+    }
+}
+
+static void add_to_path(Anatomy *anatomy, Vec3 point)
+{
+    size_t n = anatomy->n_path;
+    if (n == 0 || vec3_length(vec3_sub(point, anatomy->path[n - 1])) > 0)
+        anatomy->path[anatomy->n_path++] = point;
+}
+
+/* The thickest segment that leaves the first root, which is node 0; 0 when none does. */
+static size_t first_of_path(const Tree *tree)
+{
+    size_t thickest = 0;
+    for (size_t i = 1; i < tree->n; i++)
+        if (tree->parent[i] == 0 &&
+            (thickest == 0 || tree->radius_mm[i] > tree->radius_mm[thickest]))
+            thickest = i;
+    return thickest;
+}
+
+static Status set_path(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err)
+{
+    Field branch = {0};
+    TRY(derive_field(tree, &(TreeMeta){0}, "branch", &branch, err));
+    size_t first = first_of_path(tree);
+    add_to_path(anatomy, anatomy->root[0]);
+    for (size_t i = first; first > 0 && i < tree->n; i++)
+        if (branch.value[i] == branch.value[first])
+            add_to_path(anatomy, vec3_sub(tree->position[i], origin));
+    field_release(&branch);
+    return STATUS_OK;
+}
+
+Status stage_anatomy(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err)
+{
+    Anatomy made = {0};
+    Status status;
+    TRY_GOTO(mem_calloc(&made.order, tree->n, sizeof *made.order, "orders", err));
+    TRY_GOTO(mem_calloc(&made.tree, tree->n, sizeof *made.tree, "trees", err));
+    TRY_GOTO(mem_calloc(&made.root, tree->n, sizeof *made.root, "roots", err));
+    TRY_GOTO(mem_calloc(&made.path, tree->n, sizeof *made.path, "main branch", err));
+    TRY_GOTO(set_orders(tree, made.order, err));
+    set_trees(tree, origin, &made);
+    TRY_GOTO(set_path(tree, origin, &made, err));
+    *anatomy = made;
+    made = (Anatomy){0};
+done:
+    anatomy_release(&made);
+    return status;
+}
