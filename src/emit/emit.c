@@ -61,6 +61,12 @@ const Emitter emitters[] = {
      .of_meshes = true,
      .has_colors = true,
      .write = threemf_write},
+    {.name = "mesh2",
+     .extension = "inc",
+     .description = "a mesh2 for POV-Ray 3.7",
+     .of_meshes = true,
+     .has_colors = true,
+     .write = povray_write_mesh},
     {0},
 };
 

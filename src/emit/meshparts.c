@@ -54,6 +54,16 @@ void put_color_code(Text *out, const EmitParams *params, uint32_t segment)
     text_printf(out, "%02X%02X%02X", codes[0], codes[1], codes[2]);
 }
 
+Box mesh_box(const VesselMesh *mesh)
+{
+    Box box = box_empty();
+    for (size_t i = 0; i < mesh->n_points; i++) {
+        const float *x = mesh->points[i];
+        box = box_with_ball(box, vec3((double)x[0], (double)x[1], (double)x[2]), 0);
+    }
+    return box;
+}
+
 void mesh_flat_normal(const VesselMesh *mesh, size_t triangle, float normal[3])
 {
     Vec3 at[3];

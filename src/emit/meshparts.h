@@ -36,6 +36,9 @@ void vessel_color_codes(const EmitParams *params, uint32_t segment, uint8_t code
 /* Appends the codes: "C0102A". */
 void put_color_code(Text *out, const EmitParams *params, uint32_t segment);
 
+/* The box about its points. */
+Box mesh_box(const VesselMesh *mesh);
+
 /* The unit normal of a triangle, by the right hand; 0 where it has no area. */
 void mesh_flat_normal(const VesselMesh *mesh, size_t triangle, float normal[3]);
 

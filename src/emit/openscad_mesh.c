@@ -26,23 +26,13 @@ static Status put_faces(Text *out, void *context, Err *err)
     return text_check(out, err);
 }
 
-static Box box_of(const VesselMesh *mesh)
-{
-    Box box = box_empty();
-    for (size_t i = 0; i < mesh->n_points; i++) {
-        const float *x = mesh->points[i];
-        box = box_with_ball(box, vec3((double)x[0], (double)x[1], (double)x[2]), 0);
-    }
-    return box;
-}
-
 Status openscad_write_mesh(const EmitParams *params, Text *out, Text *second, EmitReport *report,
                            Err *err)
 {
     (void)second;
     (void)report;
     VesselMesh mesh = *params->mesh;
-    Box box = box_of(&mesh);
+    Box box = mesh_box(&mesh);
     Values values = {0};
     add_file(&values, params->file, ".stl", "");
     add_about(&values, params, box, vec3(0, 0, 0));

@@ -88,17 +88,6 @@ static Status put_tree(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/tree.inc", out, err);
 }
 
-static void add_finish(Values *values, const Finish *finish)
-{
-    add_float(values, "ambient", finish->ambient);
-    add_float(values, "diffuse", finish->diffuse);
-    add_float(values, "brilliance", finish->brilliance);
-    add_float(values, "phong", finish->phong);
-    add_float(values, "phong_size", finish->phong_size);
-    add_float(values, "specular", finish->specular);
-    add_float(values, "roughness", finish->roughness);
-}
-
 static Status put_geometry(Text *out, void *context, Err *err)
 {
     PovrayGeometry *geometry = context;

@@ -70,6 +70,17 @@ void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin)
                     origin.z);
 }
 
+void add_finish(Values *values, const Finish *finish)
+{
+    add_float(values, "ambient", finish->ambient);
+    add_float(values, "diffuse", finish->diffuse);
+    add_float(values, "brilliance", finish->brilliance);
+    add_float(values, "phong", finish->phong);
+    add_float(values, "phong_size", finish->phong_size);
+    add_float(values, "specular", finish->specular);
+    add_float(values, "roughness", finish->roughness);
+}
+
 void add_part(Values *values, const char *name, Status (*put)(Text *, void *, Err *), void *context)
 {
     assert(values->n_parts < PARTS_MAX);

@@ -5,7 +5,7 @@
 #include "emit/emit.h"
 #include "tmpl/tmpl.h"
 
-enum { VALUES_MAX = 32, PARTS_MAX = 4 };
+enum { VALUES_MAX = 32, PARTS_MAX = 5 };
 
 /* Zeroed: none. values_expand releases it. */
 typedef struct Values {
@@ -29,6 +29,8 @@ void add_file(Values *values, const char *file, const char *result, const char *
 /* `description`, `generator`, `command` and `extent`: the box in mm, and where its origin lies in
  * the tree when that was moved. */
 void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin);
+/* POV-Ray's names of a finish: `ambient`, `diffuse`, ... */
+void add_finish(Values *values, const Finish *finish);
 /* What `put` appends when the template comes to it. */
 void add_part(Values *values, const char *name, Status (*put)(Text *, void *, Err *),
               void *context);

@@ -83,7 +83,7 @@ test_failed_allocations_in_scene() {
 
 test_failed_allocations_in_export() {
     local extension
-    for extension in stl obj 3mf; do
+    for extension in stl obj 3mf inc; do
         fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o "o.$extension"
     done
     fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 --color-by flow -o o.glb
