@@ -176,14 +176,13 @@ static ReportSide side_of(const Sides *sides, int side, const Picture *picture)
 static Status write_page(const CompareOptions *options, const Sides *sides,
                          const CompareResult *result, const Picture *a, const Picture *b, Err *err)
 {
-    char *templates = NULL, *folder = NULL;
+    char *folder = NULL;
     Text title = TEXT_INIT;
     const char *const commands[] = {options->line};
     Status status = STATUS_OK;
     text_printf(&title, "%s and %s", file_name(sides->paths[0]), file_name(sides->paths[1]));
     TRY_GOTO(text_check(&title, err));
-    TRY_GOTO(templates_folder(&templates, err));
-    TRY_GOTO(file_join(templates, "report", &folder, err));
+    TRY_GOTO(templates_path("report", &folder, err));
     const ReportCase report = {.name = text_chars(&title),
                                .model = "",
                                .a = side_of(sides, 0, a),
@@ -194,7 +193,6 @@ static Status write_page(const CompareOptions *options, const Sides *sides,
     status = report_write_page(&report, folder, options->page, err);
 done:
     text_release(&title);
-    free(templates);
     free(folder);
     return status;
 }

@@ -40,13 +40,12 @@ static const OptionTable own_table = OPTION_TABLE(own);
 static Status run_report(void *options, Parsed *parsed, Err *err)
 {
     const ReportOptions *own_options = options;
-    char *templates = NULL, *folder = NULL;
+    char *folder = NULL;
     bool agree = false;
     Status status = STATUS_OK;
     for (int i = 0; i < parsed->n_operands; i++)
         TRY(note_case(parsed->operands[i], &parsed->files, err));
-    TRY_GOTO(templates_folder(&templates, err));
-    TRY_GOTO(file_join(templates, "report", &folder, err));
+    TRY_GOTO(templates_path("report", &folder, err));
     TRY_GOTO(report_merge(parsed->operands, (size_t)parsed->n_operands, own_options->power, folder,
                           own_options->page, &agree, err));
     if (!parsed->common.quiet)
@@ -55,7 +54,6 @@ static Status run_report(void *options, Parsed *parsed, Err *err)
     status = agree ? STATUS_OK : STATUS_DIFFERS;
 done:
     free(folder);
-    free(templates);
     return status;
 }
 

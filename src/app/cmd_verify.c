@@ -106,14 +106,11 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
     report.exact = verification_takes_two_steps(v) ? &v->exact_color : NULL;
     report.settled = v->asked ? &v->settled : NULL;
     *agrees = report_agrees(&report);
-    char *templates = NULL, *page = NULL;
-    TRY(templates_folder(&templates, err));
-    Status status = file_join(templates, "report", &page, err);
-    if (status == STATUS_OK)
-        status = report_write(&report, page, v->folder, err);
+    char *page = NULL;
+    TRY(templates_path("report", &page, err));
+    Status status = report_write(&report, page, v->folder, err);
     if (status == STATUS_OK && as_json)
         status = json_write(report_json(&report), "-", err);
-    free(templates);
     free(page);
     return status;
 }

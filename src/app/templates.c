@@ -72,19 +72,23 @@ static void list_names(const char *folder, const char *extension, const char *be
     free(entries);
 }
 
+Status templates_path(const char *name, char **path, Err *err)
+{
+    char *folder = NULL;
+    TRY(templates_folder(&folder, err));
+    Status status = file_join(folder, name, path, err);
+    free(folder);
+    return status;
+}
+
 Status template_names(const char *folder, const char *extension, Text *lines, Err *err)
 {
-    char *templates = NULL, *place = NULL;
-    TRY(templates_folder(&templates, err));
-    Status status = file_join(templates, folder, &place, err);
-    if (status == STATUS_OK) {
-        list_names(place, extension, "\n", "\n", lines);
-        text_puts(lines, "\n");
-        status = text_check(lines, err);
-    }
-    free(templates);
+    char *place = NULL;
+    TRY(templates_path(folder, &place, err));
+    list_names(place, extension, "\n", "\n", lines);
+    text_puts(lines, "\n");
     free(place);
-    return status;
+    return text_check(lines, err);
 }
 
 /* What there is in place of a file that is not there. */
@@ -107,13 +111,12 @@ Status template_file(const char *option, const char *folder, const char *value,
 {
     if (strchr(value, '/'))
         return mem_strdup(path, value, err);
-    char *templates = NULL, *place = NULL, *found = NULL;
+    char *place = NULL, *found = NULL;
     Text name = TEXT_INIT;
     Status status = STATUS_OK;
     text_printf(&name, "%s%s", value, extension);
     TRY_GOTO(text_check(&name, err));
-    TRY_GOTO(templates_folder(&templates, err));
-    TRY_GOTO(file_join(templates, folder, &place, err));
+    TRY_GOTO(templates_path(folder, &place, err));
     TRY_GOTO(file_join(place, text_chars(&name), &found, err));
     if (access(found, R_OK) != 0) {
         status = refuse_name(option, value, place, extension, err);
@@ -123,7 +126,6 @@ Status template_file(const char *option, const char *folder, const char *value,
     found = NULL;
 done:
     text_release(&name);
-    free(templates);
     free(place);
     free(found);
     return status;

@@ -5,9 +5,12 @@
 #include "base/base.h"
 
 /* The folder: CORCAST_TEMPLATES, or beside the build folder (../templates, ../../templates), or
- * installed
- * (../share/corcast/templates); in *folder (owned). STATUS_IO when there is none. */
+ * installed (../share/corcast/templates); in *folder (owned). STATUS_IO when there is none. */
 MUST_CHECK Status templates_folder(char **folder, Err *err);
+
+/* The path of what is called `name` in that folder, in *path (owned), whether it is there or not.
+ * Errors as templates_folder. */
+MUST_CHECK Status templates_path(const char *name, char **path, Err *err);
 
 /* The file that an option's value names: the value itself when it has a '/', else value + extension
  * in a folder of templates/; in *path (owned). STATUS_USAGE when that does not exist. */
