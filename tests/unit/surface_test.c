@@ -206,6 +206,80 @@ static void the_index_sums_the_terms_of_all_segments(void **state)
     fieldindex_free(index);
 }
 
+enum { GROUPED = 12, GROUPS = 20 };
+
+/* The groups as sets of bits, made into lists. */
+static void make_groups(const uint32_t *sets, Geometry *geometry)
+{
+    static uint32_t first[GROUPS + 1], members[GROUPS * GROUPED];
+    static uint32_t first_of_segment[GROUPED + 1], groups[GROUPS * GROUPED];
+    for (uint32_t group = 0; group < GROUPS; group++) {
+        first[group + 1] = first[group];
+        for (uint32_t i = 0; i < GROUPED; i++)
+            if (sets[group] >> i & 1)
+                members[first[group + 1]++] = i;
+    }
+    for (uint32_t i = 0; i < GROUPED; i++) {
+        first_of_segment[i + 1] = first_of_segment[i];
+        for (uint32_t group = 0; group < GROUPS; group++)
+            if (sets[group] >> i & 1)
+                groups[first_of_segment[i + 1]++] = group;
+    }
+    geometry->n_segments = GROUPED;
+    geometry->blend = (Blend){GROUPS, {first, members}, {first_of_segment, groups}};
+}
+
+/* Whether the set, which is not empty, is part of no other, and the first of its equals. */
+static bool is_kept(const uint32_t *sets, int self)
+{
+    for (int i = 0; i < GROUPS; i++)
+        if ((sets[i] & sets[self]) == sets[self] && (sets[i] != sets[self] || i < self))
+            return false;
+    return sets[self] != 0;
+}
+
+/* Which of the groups it is that stands for equal ones does not matter. */
+static void a_list_has_the_groups_that_no_other_holds_there(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 46);
+    for (int run = 0; run < 200; run++) {
+        uint32_t sets[GROUPS], local[GROUPS], list[GROUPED], listed = 0;
+        size_t n = 0, kept = 0;
+        Geometry geometry = {0};
+        LocalGroups *groups;
+        for (int i = 0; i < GROUPS; i++)
+            sets[i] = (uint32_t)(random_bits(&random) & random_bits(&random)) % (1U << GROUPED);
+        make_groups(sets, &geometry);
+        assert_int_equal(localgroups_new(&geometry, &groups, NULL), STATUS_OK);
+        for (uint32_t turn = 0; turn < 5; turn++) { /* the workspace is used again */
+            n = kept = listed = 0;
+            for (uint32_t i = 0; i < GROUPED; i++)
+                if (random_bits(&random) % 2)
+                    listed |= 1U << (list[n++] = i * 5 % GROUPED);
+            for (int i = 0; i < GROUPS; i++)
+                local[i] = sets[i] & listed;
+            for (int i = 0; i < GROUPS; i++)
+                kept += is_kept(local, i);
+            assert_int_equal(localgroups_find(groups, list, n), kept);
+            for (size_t group = 0; group < kept; group++) {
+                size_t count;
+                uint32_t set = 0, matches = 0;
+                const uint32_t *places = localgroups_members(groups, group, &count);
+                for (size_t i = 0; i < count; i++) {
+                    assert_true(i == 0 || places[i] > places[i - 1]);
+                    set |= 1U << list[places[i]];
+                }
+                for (int i = 0; i < GROUPS; i++)
+                    matches += local[i] == set && is_kept(local, i);
+                assert_int_equal(matches, 1);
+            }
+        }
+        localgroups_free(groups);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +292,7 @@ int main(void)
         cmocka_unit_test(log_form_is_the_distance_from_a_lone_vessel),
         cmocka_unit_test(the_tolerance_grows_as_the_surface_turns_from_the_ray),
         cmocka_unit_test(the_index_sums_the_terms_of_all_segments),
+        cmocka_unit_test(a_list_has_the_groups_that_no_other_holds_there),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
