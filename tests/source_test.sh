@@ -41,6 +41,15 @@ test_texts_and_json_are_made_by_the_functions_that_carry_a_failure_on() {
     [ -z "$found" ] || fail "expected text_chars, json_with, json_text and text_json in place of: $found"
 }
 
+# The later one would run twice and the earlier one never.
+test_no_test_file_names_two_tests_alike() {
+    local file twice
+    for file in "$REPO"/tests/*_test.sh "$REPO"/tests/*/*_test.sh; do
+        twice=$(sed -n 's/^test_\([a-z0-9_]*\)() *{.*/\1/p' "$file" | sort | uniq -d)
+        [ -z "$twice" ] || fail "$file has two tests $twice"
+    done
+}
+
 test_every_source_opens_with_its_design() {
     local file
     for file in $(cd "$REPO" && find src -name '*.c'); do

@@ -56,12 +56,6 @@ test_failed_allocations_in_help() {
     fail_each 400 one help --as fish
 }
 
-test_failed_allocations_in_export() {
-    inputs
-    fail_each 1 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o o.ply
-    fail_each 3 many export "$REPO/tests/golden/strangers.swc" --part-overlaps --tolerance 0.2 -o o.stl
-}
-
 test_failed_allocations_in_convert() {
     inputs
     fail_each 1 one convert ../tree.swc o.swc
@@ -83,6 +77,8 @@ test_failed_allocations_in_scene() {
 
 test_failed_allocations_in_export() {
     local extension
+    fail_each 1 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o o.ply
+    fail_each 3 many export "$REPO/tests/golden/strangers.swc" --part-overlaps --tolerance 0.2 -o o.stl
     for extension in stl obj 3mf inc; do
         fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o "o.$extension"
     done
