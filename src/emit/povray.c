@@ -88,6 +88,73 @@ static Status put_tree(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/tree.inc", out, err);
 }
 
+static void put_vectors(Text *text, const Vec3 *v, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        text_puts(text, i ? "," : "");
+        put_vector(text, v[i]);
+    }
+}
+
+/* Where the tree lies; without an anatomy its root is the middle of its extent. */
+static void add_places(Values *values, const EmitParams *params)
+{
+    const Geometry *geometry = &params->scene->geometry;
+    const Vec3 middle = box_center(geometry->bounds);
+    const Anatomy none = {
+        .root = (Vec3[]){middle}, .n_trees = 1, .path = (Vec3[]){middle}, .n_path = 1};
+    const Anatomy *anatomy = params->anatomy ? params->anatomy : &none;
+    put_vector(add_value(values, "low"), geometry->bounds.low);
+    put_vector(add_value(values, "high"), geometry->bounds.high);
+    text_printf(add_value(values, "segments"), "%zu", geometry->drawn);
+    text_printf(add_value(values, "n_roots"), "%zu", anatomy->n_trees);
+    put_vectors(add_value(values, "roots"), anatomy->root, anatomy->n_trees);
+    text_printf(add_value(values, "n_path"), "%zu", anatomy->n_path);
+    put_vectors(add_value(values, "path"), anatomy->path, anatomy->n_path);
+}
+
+/* A colour map has at most 256 entries; a class is two, with one colour. */
+static void put_color_map(Text *text, const Appearance *appearance)
+{
+    enum { STEPS = 256 };
+    const ColorScale *scale = &appearance->scale;
+    bool classes = scale->classes >= 2 && scale->classes <= STEPS / 2;
+    int n = !appearance->colors ? 1 : classes ? scale->classes : STEPS;
+    for (int i = 0; i < n; i++) {
+        Rgb color = appearance->color;
+        float rgb[3];
+        if (appearance->colors) {
+            colormap_linear(&scale->map, n > 1 ? (double)i / (n - 1) : 0.5, rgb);
+            color = (Rgb){rgb[0], rgb[1], rgb[2]};
+        }
+        for (int side = 0; side < (classes || n == 1 ? 2 : 1); side++) {
+            text_printf(text, "[%.6g rgb ",
+                        classes || n == 1 ? (double)(i + side) / n : (double)i / (n - 1));
+            put_color(text, color);
+            text_puts(text, "]");
+        }
+    }
+}
+
+/* A name within quotes: POV-Ray takes printable ASCII there. */
+static void put_quoted(Text *text, const char *name)
+{
+    for (; name && *name; name++)
+        text_printf(text, "%c",
+                    *name >= ' ' && *name <= '~' && !strchr("\"\\", *name) ? *name : '_');
+}
+
+static void add_scale(Values *values, const Appearance *appearance)
+{
+    const ColorScale *scale = &appearance->scale;
+    put_quoted(add_value(values, "value_name"), scale->name);
+    put_quoted(add_value(values, "value_unit"), scale->unit);
+    add_number(values, "value_low", scale->range[0]);
+    add_number(values, "value_high", scale->range[1]);
+    add_flag(values, "value_log", scale->log);
+    put_color_map(add_value(values, "color_map"), appearance);
+}
+
 static Status put_geometry(Text *out, void *context, Err *err)
 {
     PovrayGeometry *geometry = context;
@@ -103,6 +170,8 @@ static Status put_geometry(Text *out, void *context, Err *err)
     add_float(&values, "blue", scene->appearance.color.b);
     add_finish(&values, &scene->appearance.finish);
     add_flag(&values, "many_colors", scene->appearance.colors != NULL);
+    add_places(&values, params);
+    add_scale(&values, &scene->appearance);
     add_part(&values, "macros", put_macros, geometry);
     add_part(&values, "tree", put_tree, geometry);
     return values_expand(&values, params, "povray/vessels.inc", out, err);

@@ -103,12 +103,29 @@ ${lights}
   #declare T_Vessel = texture { pigment { P_Depth } finish { ambient 0 diffuse 0 emission 1 } }
 #end
 
+// ---- animation ------------------------------------------------------------------------------
+// Turn_Clock = 1: the tree turns once about the upright of the picture while clock goes from 0 to 1;
+// Growth_Clock = 1: it grows from its root.
+#ifndef (Turn_Clock)   #declare Turn_Clock   = 0; #end
+#ifndef (Growth_Clock) #declare Growth_Clock = 0; #end
+#ifndef (Tree_Turn)    #declare Tree_Turn    = Turn_Clock * clock * 360; #end // degrees
+#ifndef (Tree_Growth)  #declare Tree_Growth  = (Growth_Clock ? clock : 1); #end
+#macro Turn_Tree()
+  #local Axis = vnormalize(Camera_Up);
+  #local X = vaxis_rotate(x, Axis, Tree_Turn);
+  #local Y = vaxis_rotate(y, Axis, Tree_Turn);
+  #local Z = vaxis_rotate(z, Axis, Tree_Turn);
+  translate -Tree_Center
+  matrix <X.x, X.y, X.z, Y.x, Y.y, Y.z, Z.x, Z.y, Z.z, Tree_Center.x, Tree_Center.y, Tree_Center.z>
+#end
+
 // ---- vessels --------------------------------------------------------------------------------
 // The look of the vessels has its defaults with the geometry: Vessel_Red, _Green, _Blue (linear) and
 // Vessel_Ambient, _Diffuse, _Brilliance, _Phong, _Phong_Size, _Specular, _Roughness.
 ${geometry}
 object {
   Tree
+  #if (Tree_Turn != 0) Turn_Tree() #end
   #if (!Tree_Painted) texture { T_Vessel } #end
   interior { I_Vessel }
   #if (!Light_Shadows) no_shadow #end

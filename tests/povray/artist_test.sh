@@ -139,6 +139,45 @@ test_a_merge_has_no_walls_inside() {
     done
 }
 
+# The root of the bifurcation is at the origin, its main branch ends where the wider daughter does.
+test_a_scene_declares_where_the_tree_lies_and_what_its_colours_mean() {
+    run_ok corcast scene "$DATA/bifurcation.swc" --quiet --color-by length -o tree.pov
+    own_scene own tree '#debug concat("\n", vstr(3, Root_Position, " ", 0, 3), "; ", vstr(3, Path_At(1), " ", 0, 3), "; ", Value_Name, " ", Value_Unit, " ", str(Value_Place(17.5446), 0, 3), "; ", str(Tree_Segments, 0, 0), "\n")
+#if (vlength(Tree_Center - (Tree_Min + Tree_Max) / 2) > 0 | Tree_Max.x < 8.5 | Tree_Min.y > -31) #error "wrong box" #end
+sphere { Tree_Center, 0.1 pigment { gradient x color_map { Value_Color_Map } } }'
+    draw own
+    expect_no_warning own
+    grep -q '^0.000 0.000 0.000; 8.500 -29.875 0.000; length mm 1.000; 3$' own.log || fail "got $(grep ';' own.log)"
+}
+
+# What a clock drives draws without a warning in every model, and is not the picture without it.
+test_the_clock_turns_and_grows_the_tree() {
+    local model
+    for model in $MODELS; do
+        run_ok corcast scene "$DATA/bifurcation.swc" --quiet --model "$model" -o "$model.pov"
+        draw "$model"
+        cp "$model.png" still.png
+        draw "$model" Declare=Turn_Clock=1 +K0.3
+        expect_no_warning "$model"
+        expect_differing 10 2700 still.png "$model.png"
+        draw "$model" Declare=Growth_Clock=1 +K0.3
+        expect_no_warning "$model"
+        expect_differing 10 2700 still.png "$model.png"
+    done
+}
+
+test_the_examples_draw_the_tree_of_any_model() {
+    local model
+    for model in $MODELS; do
+        run_ok corcast scene "$DATA/bifurcation.swc" --quiet --model "$model" -o tree.pov
+        cp "$REPO/docs/examples/studio.pov" "$REPO/docs/examples/flight.pov" .
+        draw studio +W20 +H15 Declare=Studio_Blur=0
+        expect_no_warning studio
+        draw flight +W20 +H15 +K0.4
+        expect_no_warning flight
+    done
+}
+
 test_the_background_can_be_transparent() {
     run_ok corcast scene "$DATA/bifurcation.swc" --quiet --size 60x45 -o seen.pov
     draw seen +UA Declare=Background_Transmit=1

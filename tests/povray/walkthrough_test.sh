@@ -54,6 +54,15 @@ test_the_commands_of_the_readme_run() {
     expect_file report/report.html
 }
 
+test_the_commands_for_artists_run() {
+    ln -s "$REPO/tests" "$REPO/docs" .
+    run_commands docs/ARTIST.md
+    expect_file studio.png
+    expect_file turn3.png
+    ! cmp -s <(pngtopnm turn1.png) <(pngtopnm turn2.png) || fail "expected the tree to turn"
+    ! cmp -s <(pngtopnm growth2.png) <(pngtopnm growth3.png) || fail "expected the tree to grow"
+}
+
 test_the_commands_of_the_walkthrough_run() {
     run_commands docs/WALKTHROUGH.md
     expect_file blue.png

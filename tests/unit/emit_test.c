@@ -35,6 +35,9 @@ static uint32_t ids[] = {2, 70000, 9};
 static Rgb colors[] = {{0.56f, 0.055f, 0.045f}, {0.1f, 0.2f, 0.3f}, {0.1f, 0.2f, 0.3f}};
 
 static double values[] = {2.385, NAN, 0.75};
+static float map_colors[][3] = {{0.25f, 0, 0.375f}, {1, 0.875f, 0.125f}};
+static const ColorScale scale = {
+    .name = "length", .unit = "mm", .range = {0.75, 2.385}, .map = {.srgb = map_colors, .n = 2}};
 
 static FieldSegment segments[] = {
     {{0, 9, 0}, {0, 0, 0}, 1.5, 0},
@@ -202,6 +205,7 @@ static void segments_of_different_colours_carry_their_own(void **state)
     Scene scene = make_scene(SCENE_ROUNDED);
     scene.appearance.colors = colors;
     scene.appearance.values = values;
+    scene.appearance.scale = scale;
     Emitted out = emit(&scene, &two_files);
     assert_non_null(strstr(out.geometry.chars, ",70000,0,Value_None,<0.1,0.2,0.3>)\n"));
     release(&out);
@@ -289,6 +293,7 @@ static void ids_are_painted_only_when_asked_for(void **state)
     release(&plain);
     scene.appearance.colors = segment_colors;
     scene.appearance.values = values;
+    scene.appearance.scale = scale;
     plain = emit(&scene, &two_files);
     assert_non_null(
         strstr(plain.geometry.chars, "Cell_One_Paint(1.2,3,0,Value_None,<0.1,0.5,0.1>)"));
@@ -418,6 +423,7 @@ static void the_segments_of_a_blob_are_painted_only_when_asked_for(void **state)
     release(&plain);
     scene.appearance.colors = segment_colors;
     scene.appearance.values = values;
+    scene.appearance.scale = scale;
     plain = emit(&scene, &two_files);
     assert_non_null(
         strstr(plain.geometry.chars, "\nBlob_Color(1,1.2,3,0,Value_None,<0.1,0.5,0.1>)"));
