@@ -31,7 +31,7 @@ static const Option rows[] = {
      SETS(CHOICE, PictureOptions, potential),
      .choices = potentials,
      .group = GROUP_VESSELS,
-     .help = "isosurface: all vessels blend, or only neighbours in the tree"},
+     .help = "isosurface: all vessels blend, or only those near along the tree"},
     {.name = "joints",
      SETS(CHOICE, PictureOptions, joints),
      GIVEN(PictureOptions, has_joints),
