@@ -18,8 +18,9 @@
 static const double clearance = 0.1;
 /* Nearer than this, by height, it is looked at how near a point is. */
 static const double nearly = 0.3;
-/* Of the height: where the search along an edge ends, before one step of Newton's method. */
-static const double found_height = 2e-3;
+/* Of the height: where the search along an edge ends. The crossings stay on the edges: moved off
+ * them, triangles may run into each other. */
+static const double found_height = 1e-6;
 
 typedef struct Cutter {
     Lattice *lattice;
@@ -135,9 +136,6 @@ static PatchPoint wall_point(const Cutter *cutter, const FieldPart *part, Vec3 x
     const ZoneField *field = &cutter->plan->field;
     Vec3 gradient;
     FieldValue value = fieldpart_gradient(field, &cutter->tree->kept, part, x, &gradient);
-    double steepness = vec3_length(gradient);
-    x = vec3_add_scaled(x, gradient, (FIELD_LEVEL - value.phi) / (steepness * steepness));
-    value = fieldpart_gradient(field, &cutter->tree->kept, part, x, &gradient);
     const ZoneTerm *term = &field->terms[value.largest];
     return (PatchPoint){.x = x,
                         .normal = vec3_scale(gradient, -1 / vec3_length(gradient)),
@@ -167,32 +165,24 @@ static bool is_inside(const Cutter *cutter, uint32_t point)
     return cutter->lattice->points[point].height < 0;
 }
 
-/* Adds a triangle so turned that it faces away from a point of the lattice that is inside, or
- * towards one that is outside. */
-static Status add_triangle(Cutter *cutter, uint32_t a, uint32_t b, uint32_t c, uint32_t point)
+/* Corner `lone` is on its own side, the other three on the other. Their order is that of a
+ * tetrahedron turned as all are, so that the triangle of the crossings faces away from the lone
+ * corner. */
+static Status cut_corner(Cutter *cutter, const ZoneCell *from, const uint32_t corners[4], int lone)
 {
-    const PatchPoint *points = cutter->patch->points;
-    Vec3 from = points[a].x;
-    Vec3 normal = vec3_cross(vec3_sub(points[b].x, from), vec3_sub(points[c].x, from));
-    Vec3 towards = vec3_sub(cutter->lattice->points[point].x, from);
-    bool faces = vec3_dot(normal, towards) > 0, turn = faces == is_inside(cutter, point);
-    return patch_add_triangle(cutter->patch, (Triangle){{a, turn ? c : b, turn ? b : c}},
-                              cutter->err);
+    static const int others[4][3] = {{1, 2, 3}, {0, 3, 2}, {3, 0, 1}, {2, 1, 0}};
+    uint32_t apex = corners[lone], at[3];
+    bool inside = is_inside(cutter, apex);
+    for (int i = 0; i < 3; i++) {
+        uint32_t other = corners[others[lone][i]];
+        TRY(crossing_of(cutter, from, inside ? apex : other, inside ? other : apex,
+                        &at[inside ? i : 2 - i]));
+    }
+    return patch_add_triangle(cutter->patch, (Triangle){{at[0], at[1], at[2]}}, cutter->err);
 }
 
-/* One corner is on its own side, the other three on the other. */
-static Status cut_corner(Cutter *cutter, const ZoneCell *from, uint32_t lone,
-                         const uint32_t others[3])
-{
-    bool inside = is_inside(cutter, lone);
-    uint32_t at[3];
-    for (int i = 0; i < 3; i++)
-        TRY(crossing_of(cutter, from, inside ? lone : others[i], inside ? others[i] : lone,
-                        &at[i]));
-    return add_triangle(cutter, at[0], at[1], at[2], lone);
-}
-
-/* Points a and b are inside, c and d outside: a quadrilateral, cut along its shorter diagonal. */
+/* Points a and b are inside, c and d outside, and a, b, c, d are turned as all tetrahedra are: a
+ * quadrilateral, cut along its shorter diagonal. */
 static Status cut_middle(Cutter *cutter, const ZoneCell *from, uint32_t a, uint32_t b, uint32_t c,
                          uint32_t d)
 {
@@ -202,30 +192,29 @@ static Status cut_middle(Cutter *cutter, const ZoneCell *from, uint32_t a, uint3
     TRY(crossing_of(cutter, from, b, d, &bd));
     TRY(crossing_of(cutter, from, b, c, &bc));
     const PatchPoint *points = cutter->patch->points;
-    if (vec3_distance(points[ac].x, points[bd].x) <= vec3_distance(points[ad].x, points[bc].x)) {
-        TRY(add_triangle(cutter, ac, ad, bd, a));
-        return add_triangle(cutter, ac, bd, bc, b);
-    }
-    TRY(add_triangle(cutter, ac, ad, bc, a));
-    return add_triangle(cutter, ad, bd, bc, b);
+    bool first =
+        vec3_distance(points[ac].x, points[bd].x) <= vec3_distance(points[ad].x, points[bc].x);
+    TRY(patch_add_triangle(cutter->patch, (Triangle){{ac, ad, first ? bd : bc}}, cutter->err));
+    return patch_add_triangle(cutter->patch, (Triangle){{first ? ac : ad, bd, bc}}, cutter->err);
 }
 
+/* The corners are turned alike in all tetrahedra: det(at[1] - at[0], at[2] - at[0], at[3] - at[0])
+ * is positive. Triangles take their turn from that and not from where the crossings lie: of a
+ * triangle that is small beside what the crossings are found to, that would be chance. */
 static Status cut_tetrahedron(Cutter *cutter, const ZoneCell *from, const uint32_t at[4])
 {
-    uint32_t in[4], out[4];
-    int n_in = 0, n_out = 0;
+    int in[4], out[4], n_in = 0, n_out = 0;
     for (int i = 0; i < 4; i++)
         if (is_inside(cutter, at[i]))
-            in[n_in++] = at[i];
+            in[n_in++] = i;
         else
-            out[n_out++] = at[i];
-    if (n_in == 1)
-        return cut_corner(cutter, from, in[0], out);
-    if (n_in == 3)
-        return cut_corner(cutter, from, out[0], in);
-    if (n_in == 2)
-        return cut_middle(cutter, from, in[0], in[1], out[0], out[1]);
-    return STATUS_OK;
+            out[n_out++] = i;
+    if (n_in == 1 || n_in == 3)
+        return cut_corner(cutter, from, at, n_in == 1 ? in[0] : out[0]);
+    if (n_in != 2)
+        return STATUS_OK;
+    int swap = (in[0] + in[1]) % 2 == 0; /* the order in, out is an odd permutation */
+    return cut_middle(cutter, from, at[in[0]], at[in[1]], at[out[swap]], at[out[1 - swap]]);
 }
 
 /* The ends of the smallest edge among four leaves about it, along `axis`. */
