@@ -56,17 +56,35 @@ static double point_distance(Vec3 x, const FieldSegment *segment)
     return sqrt(vec3_distance2_along(vec3_sub(x, segment->a), vec3_sub(segment->b, segment->a)));
 }
 
+static bool is_disturbed_at(const ZoneTerm *others, size_t n, Vec3 x)
+{
+    double sum = 0;
+    for (size_t i = 0; i < n && sum <= disturbance; i++)
+        sum += zoneterm_value(&others[i], x);
+    return sum > disturbance;
+}
+
+/* The point of the other vessel's axis that is nearest to x. */
+static Vec3 nearest_of(const ZoneTerm *other, Vec3 x)
+{
+    double along = vec3_dot(vec3_sub(x, other->a), other->axis);
+    return vec3_add_scaled(other->a, other->axis, fmin(fmax(along, 0), other->length_k / other->k));
+}
+
+/* Tries points all round the circle, and those that face each other vessel, which may be thinner
+ * than the points are apart. */
 static bool is_disturbed(const ZoneTerm *others, size_t n, Vec3 center, Vec3 axis, double radius)
 {
     Vec3 u, v;
     vec3_across(axis, &u, &v);
-    for (int i = 0; i < CIRCLE_POINTS; i++) {
-        double angle = 6.283185307179586 * i / CIRCLE_POINTS, sum = 0;
+    for (size_t i = 0; i < CIRCLE_POINTS + n; i++) {
+        double angle = 6.283185307179586 * (double)i / CIRCLE_POINTS;
+        if (i >= CIRCLE_POINTS) {
+            Vec3 towards = vec3_sub(nearest_of(&others[i - CIRCLE_POINTS], center), center);
+            angle = atan2(vec3_dot(towards, v), vec3_dot(towards, u));
+        }
         Vec3 x = vec3_add_scaled(center, u, radius * cos(angle));
-        x = vec3_add_scaled(x, v, radius * sin(angle));
-        for (size_t j = 0; j < n && sum <= disturbance; j++)
-            sum += zoneterm_value(&others[j], x);
-        if (sum > disturbance)
+        if (is_disturbed_at(others, n, vec3_add_scaled(x, v, radius * sin(angle))))
             return true;
     }
     return false;
