@@ -70,7 +70,8 @@ expect_scene() {
     done
     shift
     run_ok corcast scene --quiet tree.swc --look ./flat.ini --size 60x80 "${options[@]}" -o s.pov
-    grep -oE '[(,][0-9]+,<[^<>]*>\)' s.inc | tr -d '()>' | sed 's/^,//; s/,<\|,/ /g' | sort -n | uniq >seen
+    grep -oE '[(,][0-9]+,[0-9]+,[0-9.e-]+,<[^<>]*>\)' s.inc | # Id, Order, Value, Color
+        sed -E 's/^.([0-9]+),.*<(.*)>\)$/\1 \2/; s/,/ /g' | sort -n | uniq >seen
     printf '%s\n' "$@" | paste -d ' ' seen - | awk '
         NF != 8 || $1 != $5 { bad = 1 }
         { for (i = 2; i <= 4; i++) if (($i - $(i + 4)) ^ 2 > 1e-13) bad = 1 }
