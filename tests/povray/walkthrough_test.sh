@@ -73,7 +73,10 @@ test_the_commands_of_every_other_document_run() {
     local document
     ln -s "$REPO/tests" tests
     for document in $(cd "$REPO" && echo docs/*.md docs/decisions/*.md); do
-        [ "$document" = docs/WALKTHROUGH.md ] || run_commands "$document"
+        case $document in
+        docs/WALKTHROUGH.md | docs/ARTIST.md) ;;
+        *) run_commands "$document" ;;
+        esac
     done
 }
 
