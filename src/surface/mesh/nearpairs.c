@@ -19,17 +19,15 @@ typedef struct NearSearch {
     PairList lists[MAX_WORKERS];
 } NearSearch;
 
-static double distance_to(Vec3 x, const FieldSegment *segment)
+double segment_distance_to(const FieldSegment *segment, Vec3 x)
 {
-    Vec3 span = vec3_sub(segment->b, segment->a);
-    double t = vec3_dot(vec3_sub(x, segment->a), span) / vec3_dot(span, span);
-    return vec3_distance(x, vec3_add_scaled(segment->a, span, fmin(fmax(t, 0), 1)));
+    return sqrt(vec3_distance2_along(vec3_sub(x, segment->a), vec3_sub(segment->b, segment->a)));
 }
 
 double segments_distance(const FieldSegment *a, const FieldSegment *b)
 {
-    double least = fmin(fmin(distance_to(a->a, b), distance_to(a->b, b)),
-                        fmin(distance_to(b->a, a), distance_to(b->b, a)));
+    double least = fmin(fmin(segment_distance_to(b, a->a), segment_distance_to(b, a->b)),
+                        fmin(segment_distance_to(a, b->a), segment_distance_to(a, b->b)));
     Vec3 d = vec3_sub(a->b, a->a), e = vec3_sub(b->b, b->a), between = vec3_sub(b->a, a->a);
     double dd = vec3_dot(d, d), ee = vec3_dot(e, e), de = vec3_dot(d, e);
     double det = dd * ee - de * de;

@@ -9,7 +9,8 @@
 MUST_CHECK Status nearpairs_find(const VesselTree *tree, int threads, NearPair **pairs, size_t *n,
                                  Err *err);
 
-/* The distance between two segments, mm. */
+/* The distance of the point x from a segment, and between two segments, mm. */
+double segment_distance_to(const FieldSegment *segment, Vec3 x);
 double segments_distance(const FieldSegment *a, const FieldSegment *b);
 
 #endif

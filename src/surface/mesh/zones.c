@@ -51,11 +51,6 @@ static Vec3 point_from(const FieldSegment *segment, int end, double mm)
     return vec3_add_scaled(from, vec3_normalized(vec3_sub(to, from)), mm);
 }
 
-static double point_distance(Vec3 x, const FieldSegment *segment)
-{
-    return sqrt(vec3_distance2_along(vec3_sub(x, segment->a), vec3_sub(segment->b, segment->a)));
-}
-
 static bool is_disturbed_at(const ZoneTerm *others, size_t n, Vec3 x)
 {
     double sum = 0;
@@ -102,17 +97,17 @@ static double last_near(const FieldSegment *self, int end, double length, const 
     double reach = self->radius_mm + field_reach * other->radius_mm, low = 0, high = length;
     for (int i = 0; i < 40; i++) {
         double one = low + (high - low) / 3, two = high - (high - low) / 3;
-        if (point_distance(point_from(self, end, one), other) <
-            point_distance(point_from(self, end, two), other))
+        if (segment_distance_to(other, point_from(self, end, one)) <
+            segment_distance_to(other, point_from(self, end, two)))
             high = two;
         else
             low = one;
     }
-    if (point_distance(point_from(self, end, low), other) > reach)
+    if (segment_distance_to(other, point_from(self, end, low)) > reach)
         return 0;
     for (high = length; high - low > 1e-3 * self->radius_mm;) {
         double middle = 0.5 * (low + high);
-        if (point_distance(point_from(self, end, middle), other) <= reach)
+        if (segment_distance_to(other, point_from(self, end, middle)) <= reach)
             low = middle;
         else
             high = middle;
@@ -239,9 +234,7 @@ static void near_part(const FieldSegment *a, const FieldSegment *b, double part[
     part[1] = -HUGE_VAL;
     for (int i = 0; i <= steps; i++) {
         double t = length * i / steps;
-        Vec3 x = point_from(a, 0, t);
-        FieldSegment here = {.a = x, .b = vec3_add_scaled(x, vec3_sub(b->b, b->a), 1e-9)};
-        if (segments_distance(&here, b) >= limit)
+        if (segment_distance_to(b, point_from(a, 0, t)) >= limit)
             continue;
         part[0] = fmin(part[0], t - length / steps);
         part[1] = fmax(part[1], t + length / steps);
