@@ -136,15 +136,6 @@ static Status read_node_field(NodeColumn column, const char *text, BuilderNode *
                         err);
 }
 
-/* Of a column of the tree: empty, NA and NaN are no value. */
-static Status read_value(const char *title, const char *text, double *value, Err *err)
-{
-    *value = (double)NAN;
-    if (!*text || strcasecmp(text, "na") == 0 || strcasecmp(text, "nan") == 0)
-        return STATUS_OK;
-    return field_number(title, text, -HUGE_VAL, value, err);
-}
-
 /* A row's fields; what becomes of columns of the tree waits in `value` until the node is added. */
 static Status read_row(TreeBuilder *builder, const Columns *columns, size_t line, char *text,
                        double *value, Err *err)
@@ -161,7 +152,7 @@ static Status read_row(TreeBuilder *builder, const Columns *columns, size_t line
         if (column->meaning < NODE_COLUMNS)
             TRY(read_node_field((NodeColumn)column->meaning, field, &node, &share, err));
         else
-            TRY(read_value(column->title, field, &value[column->meaning - NODE_COLUMNS], err));
+            TRY(field_value(column->title, field, &value[column->meaning - NODE_COLUMNS], err));
     }
     if (n != columns->n)
         return err_set(err, STATUS_INPUT, "the row has %zu field%s; there are %zu columns", n,

@@ -30,5 +30,7 @@ MUST_CHECK Status field_number(const char *what, const char *text, double minimu
                                Err *err);
 MUST_CHECK Status field_whole(const char *what, const char *text, int32_t minimum, int32_t maximum,
                               int32_t *out, Err *err);
+/* A finite number; NAN where the field is empty, NA or NaN. */
+MUST_CHECK Status field_value(const char *what, const char *text, double *out, Err *err);
 
 #endif

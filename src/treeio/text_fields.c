@@ -3,6 +3,7 @@
 #include "treeio/formats.h"
 
 #include <math.h>
+#include <strings.h>
 
 enum { SHOWN = 40 /* characters of a bad value */ };
 
@@ -34,5 +35,13 @@ Status field_whole(const char *what, const char *text, int32_t minimum, int32_t 
                        "the %s is '%.*s'; it must be a whole number from %d to %d", what, SHOWN,
                        text, minimum, maximum);
     *out = (int32_t)value;
+    return STATUS_OK;
+}
+
+Status field_value(const char *what, const char *text, double *out, Err *err)
+{
+    if (*text && strcasecmp(text, "na") != 0 && strcasecmp(text, "nan") != 0)
+        return field_number(what, text, -HUGE_VAL, out, err);
+    *out = (double)NAN;
     return STATUS_OK;
 }

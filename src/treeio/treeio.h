@@ -3,8 +3,8 @@
  *
  * Of every text format: line ends are LF, CR or CRLF; a line that starts with '#' is a comment,
  * wherever it stands. A comment "key: value" with a key of meta_rows sets Tree.meta; all others are
- * kept as remarks. Ids that start at 0 are refused, not shifted: 0 means "nothing" in id planes,
- * and ids are what users know their segments by. */
+ * kept as remarks. Ids of a tree start at 1, as 0 means "nothing" in id planes; ids of a file that
+ * start at 0 are read one higher. */
 #ifndef CORCAST_TREEIO_TREEIO_H
 #define CORCAST_TREEIO_TREEIO_H
 

@@ -306,17 +306,65 @@ static void rejects_flow_shares_that_make_no_sense(void **state)
                    ": terminal_flow is equal, but there are flow shares");
 }
 
+static void fields_may_be_parted_by_commas_and_a_line_may_name_them(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "id,type,X,Y,Z,radius,parent\n1,2,.5,.25,0,1.5,-1\n3, 2, 1, 2, 4, .5, 1\n",
+        "1;2;.5;.25;0;1.5;-1\n3;2;1;2;4;.5;1 # end\n",
+        "n\ttype\tx\ty\tz\tradius\tparent\n1.0\t2\t.5\t+.25\t0\t1.5\t-1\n3\t2\t1\t2\t4\t.5\t1\n",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        Tree tree = read_text(texts[i]);
+        assert_written(&tree, "1 2 0.5 0.25 0 1.5 -1\n3 2 1 2 4 0.5 1\n");
+        tree_release(&tree);
+    }
+}
+
+static void ids_may_start_at_0_and_the_parent_of_a_root_may_be_0(void **state)
+{
+    (void)state;
+    Tree tree = read_text("0 2 .5 0 0 1.5 -1\n1 2 1 2 4 .5 0\n2 2 3 2 4 .25 1\n");
+    assert_written(&tree, "1 2 0.5 0 0 1.5 -1\n2 2 1 2 4 0.5 1\n3 2 3 2 4 0.25 2\n");
+    tree_release(&tree);
+    tree = read_text("4 2 .5 0 0 1.5 0\n1 2 1 2 4 .5 4\n");
+    assert_written(&tree, "4 2 0.5 0 0 1.5 -1\n1 2 1 2 4 0.5 4\n");
+    tree_release(&tree);
+    assert_refused("# flow_share: 1 2.5\n0 2 .5 0 0 1.5 -1\n1 2 1 2 4 .5 0\n",
+                   ": the ids start at 0, but a flow_share names nodes by ids from 1 on");
+}
+
+static void more_columns_become_columns_of_the_tree(void **state)
+{
+    (void)state;
+    Tree tree = read_text("##n type x y z radius parent seg_id level mode timestamp TFresindex\n"
+                          "1 2 .5 0 0 1.5 -1 0 2.5 0 NA 7\n2 2 1 2 4 .5 1 1 3 0 12.5 nan\n");
+    assert_int_equal(tree.n_columns, 5);
+    assert_string_equal(tree.column[1].name, "level");
+    assert_true(tree.column[1].value[0] == 2.5 && tree.column[1].value[1] == 3);
+    assert_true(isnan(tree.column[3].value[0]) && tree.column[3].value[1] == 12.5);
+    tree_release(&tree);
+    tree = read_text("# n type x y z radius parent\n1 2 .5 0 0 1.5 -1 4.75\n");
+    assert_string_equal(tree.column[0].name, "column 8");
+    assert_true(tree.column[0].value[0] == 4.75);
+    tree_release(&tree);
+    assert_refused("1 2 .5 0 0 1.5 -1 high\n",
+                   ":1: the value is 'high'; it must be a finite number");
+}
+
 static void rejects_a_wrong_field_count(void **state)
 {
     (void)state;
     assert_refused("1 2 0 0 0 .5 -1\n2 2 1 1 1 .5\n",
                    ":2: the row has 6 fields; it must have 7: id type x y z radius parent");
-    assert_refused("1 2 0 0 0 .5 -1 8\n",
-                   ":1: the row has 8 fields; it must have 7: id type x y z radius parent");
     assert_refused("\n\nhello\n",
                    ":3: the row has 1 field; it must have 7: id type x y z radius parent");
-    assert_refused("1,2,0,0,0,.5,-1\n",
-                   ":1: the row has 1 field; it must have 7: id type x y z radius parent");
+    assert_refused("1,2,0,0,,.5,-1\n",
+                   ":1: the row has 6 fields; it must have 7: id type x y z radius parent");
+    assert_refused("1 2 0 0 0 .5 -1\n2 2 1 1 1 .5 1 8\n",
+                   ":2: the row has 8 fields; it must have 7: id type x y z radius parent");
+    assert_refused("1 2 0 0 0 .5 -1 8 9\n2 2 1 1 1 .5 1\n",
+                   ":2: the row has 7 fields; the rows before it have 9");
 }
 
 static void rejects_what_is_not_a_number(void **state)
@@ -362,13 +410,17 @@ static void rejects_ids_out_of_range(void **state)
 {
     (void)state;
     static const char allowed[] = "; it must be a whole number from 1 to 16777215";
-    static const char *const ids[] = {"0", "-3", "16777216", "1.5", "nan", "99999999999999999999"};
+    static const char *const ids[] = {"-3", "16777216", "1.5", "nan", "99999999999999999999"};
     for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
         char text[80], expected[120];
         snprintf(text, sizeof text, "#\n%s 2 0 0 0 .5 -1\n", ids[i]);
         snprintf(expected, sizeof expected, ":2: the id is '%s'%s", ids[i], allowed);
         assert_refused(text, expected);
     }
+    assert_refused("7 2 0 0 0 .5 -1\n0 2 0 0 1 .5 7\n",
+                   ":2: the id is '0'; it must be a whole number from 1 to 16777215");
+    assert_refused("0 2 0 0 0 .5 -1\n16777215 2 0 0 1 .5 0\n",
+                   ":2: the id is '16777215'; it must be a whole number from 0 to 16777214");
     Tree tree = read_text("16777215 2 0 0 0 .5 -1\n1e1 2 0 0 1 .5 16777215.0\n");
     assert_int_equal(tree.id[0], 16777215);
     assert_int_equal(tree.id[1], 10);
@@ -385,7 +437,7 @@ static void rejects_a_duplicate_id_naming_both_lines(void **state)
 static void rejects_an_unknown_parent(void **state)
 {
     (void)state;
-    static const char *const parents[] = {"3", "0", "16777215"};
+    static const char *const parents[] = {"3", "16777215"};
     for (size_t i = 0; i < sizeof parents / sizeof *parents; i++) {
         char text[80], expected[160];
         snprintf(text, sizeof text, "7 2 0 0 0 .5 -1\n8 2 0 0 1 .5 %s\n", parents[i]);
@@ -621,6 +673,9 @@ int main(void)
         cmocka_unit_test(rejects_a_known_key_of_bad_value),
         cmocka_unit_test(flow_shares_follow_their_nodes),
         cmocka_unit_test(rejects_flow_shares_that_make_no_sense),
+        cmocka_unit_test(fields_may_be_parted_by_commas_and_a_line_may_name_them),
+        cmocka_unit_test(ids_may_start_at_0_and_the_parent_of_a_root_may_be_0),
+        cmocka_unit_test(more_columns_become_columns_of_the_tree),
         cmocka_unit_test(rejects_a_wrong_field_count),
         cmocka_unit_test(rejects_what_is_not_a_number),
         cmocka_unit_test(rejects_what_is_not_finite),
