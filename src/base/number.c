@@ -2,13 +2,18 @@
  * is the shortest in all but rare cases of even fewer digits, whose trailing zeros are cut. For
  * values in [1e-4, 1e14) this is exact integer arithmetic, ten times as fast as printing and
  * reading: the value m 2^e scaled to so many digits before the point is N / 2^shift with the whole
- * number N = m 5^k, which 128 bits hold, and the spacing of doubles there is 5^k in units of N. The
- * program never calls setlocale, so that printf and strtod use '.'. */
+ * number N = m 5^k, which 128 bits hold, and the spacing of doubles there is 5^k in units of N.
+ *
+ * number_parse reads what has at most 19 digits and stands for a whole number times 10^k, k from
+ * -26 to 26, in the same arithmetic, five times as fast as strtod: the product with 5^k, or the
+ * quotient to at least 64 bits and whether anything remains, is rounded once. All else is strtod's.
+ * The program never calls setlocale, so that printf and strtod use '.'. */
 #include "base/number.h"
 
 #include "base/text.h"
 #include <ctype.h>
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -23,7 +28,7 @@ typedef struct Decimal {
     int exponent;    /* of ten, of the first */
 } Decimal;
 
-/* 5^k for k from 0 to 27, of all that 64 bits hold. */
+/* 5^k for k from 0 to 26. */
 static uint64_t power_of_5(int k)
 {
     static const uint32_t low[] = {1,       5,        25,        125,       625,
@@ -140,8 +145,118 @@ const char *bytes_text(double bytes, char out[BYTES_TEXT_SIZE])
     return out;
 }
 
+/* A decimal number as it is written: sign, digits times ten to the exponent. */
+typedef struct Written {
+    bool negative;
+    uint64_t digits;
+    int exponent;
+} Written;
+
+/* Reads the digits at *at; false when all of them are more than 19 without zeros in front. */
+static bool scan_digits(const char **at, uint64_t *digits)
+{
+    const uint64_t most = UINT64_C(999999999999999999);
+    for (; **at >= '0' && **at <= '9'; (*at)++) {
+        if (*digits > most)
+            return false;
+        *digits = 10 * *digits + (uint64_t)(**at - '0');
+    }
+    return true;
+}
+
+/* An exponent of up to three digits at *at, or none. */
+static bool scan_exponent(const char **at, int *exponent)
+{
+    uint64_t digits = 0;
+    *exponent = 0;
+    if (**at != 'e' && **at != 'E')
+        return true;
+    bool negative = *++*at == '-';
+    *at += negative || **at == '+';
+    const char *start = *at;
+    if (!scan_digits(at, &digits) || *at == start || *at > start + 3)
+        return false;
+    *exponent = negative ? -(int)digits : (int)digits;
+    return true;
+}
+
+/* False for whatever is not a number of few digits, or no number at all. */
+static bool scan_number(const char *at, Written *out)
+{
+    int exponent;
+    *out = (Written){.negative = *at == '-'};
+    at += out->negative || *at == '+';
+    const char *start = at;
+    if (!scan_digits(&at, &out->digits))
+        return false;
+    bool point = *at == '.';
+    at += point;
+    const char *fraction = at;
+    if (!scan_digits(&at, &out->digits) || at - start == point)
+        return false;
+    out->exponent = -(int)(at - fraction);
+    if (!scan_exponent(&at, &exponent) || *at)
+        return false;
+    out->exponent += exponent;
+    return true;
+}
+
+static int bits_of(Wide n)
+{
+    uint64_t high = (uint64_t)(n >> 64);
+    return high ? 128 - __builtin_clzll(high) : 64 - __builtin_clzll((uint64_t)n);
+}
+
+/* 2^e, of those that are normal doubles. */
+static double power_of_2(int e)
+{
+    uint64_t bits = (uint64_t)(e + DBL_MAX_EXP - 1) << (DBL_MANT_DIG - 1);
+    double power;
+    memcpy(&power, &bits, sizeof power);
+    return power;
+}
+
+/* The double nearest to (n + a rest below 1) 2^e, of two the even one. With a rest, n > 2^54. */
+static double nearest_double(Wide n, bool rest, int e)
+{
+    int spare = bits_of(n) - DBL_MANT_DIG;
+    if (spare <= 0)
+        return (double)(uint64_t)n * power_of_2(e);
+    uint64_t kept = (uint64_t)(n >> spare);
+    Wide half = (Wide)1 << (spare - 1), dropped = n & (2 * half - 1);
+    kept += dropped > half || (dropped == half && (rest || kept % 2));
+    return (double)kept * power_of_2(e + spare);
+}
+
+enum { MOST_FIVES = 26 };
+
+/* The magnitude; false when the exponent is out of the range of power_of_5. */
+static bool written_value(const Written *written, double *out)
+{
+    uint64_t m = written->digits;
+    int k = written->exponent;
+    if (m == 0 || k < -MOST_FIVES || k > MOST_FIVES) {
+        *out = 0;
+        return m == 0;
+    }
+    if (k >= 0) {
+        *out = nearest_double((Wide)m * power_of_5(k), false, k);
+        return true;
+    }
+    int shift = __builtin_clzll(m);
+    Wide scaled = (Wide)(m << shift) << 64, divisor = power_of_5(-k), quotient = scaled / divisor;
+    *out = nearest_double(quotient, quotient * divisor != scaled, k - 64 - shift);
+    return true;
+}
+
 bool number_parse(const char *chars, double *out)
 {
+    Written written;
+    double magnitude;
+    if (scan_number(chars, &written) && written_value(&written, &magnitude)) {
+        *out = written.negative ? -magnitude : magnitude;
+        return true;
+    }
     if (!*chars || isspace((unsigned char)*chars))
         return false;
     /* Hexadecimal numbers are C's, not the field's. */

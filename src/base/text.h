@@ -61,6 +61,9 @@ char *text_trim(char *text);
  * last, whose end is that of the text: for (char *rest = text, *line; (line = text_line(&rest));).
  */
 char *text_line(char **rest);
+/* Cuts the next field off the line at *rest in the same way; NULL when none is left. Fields stand
+ * between blanks, commas and semicolons, any number of them. */
+char *text_field(char **rest);
 
 /* U+FFFD, which stands for what is not UTF-8. */
 #define UTF8_REPLACEMENT "\xEF\xBF\xBD"

@@ -102,16 +102,9 @@ static Status read_share(TreeBuilder *builder, size_t line, const char *value, E
 static size_t cut_fields(char *line, char *field[MAX_FIELDS])
 {
     size_t count = 0;
-    line += strspn(line, TEXT_BLANKS);
-    while (*line) {
-        char *end = line + strcspn(line, BETWEEN_FIELDS);
-        char *next = end + strspn(end, BETWEEN_FIELDS);
+    for (char *word; (word = text_field(&line)); count++)
         if (count < MAX_FIELDS)
-            field[count] = line;
-        *end = '\0';
-        line = next;
-        count++;
-    }
+            field[count] = word;
     return count;
 }
 
@@ -189,7 +182,9 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
         reader->titles = line;
         return STATUS_OK;
     }
-    line[strcspn(line, "#")] = '\0';
+    char *comment = strchr(line, '#');
+    if (comment)
+        *comment = '\0';
     size_t count = cut_fields(line, field);
     if (count == 0)
         return STATUS_OK;

@@ -54,10 +54,35 @@ static void a_number_is_as_short_as_it_can_be(void **state)
     assert_string_equal(number_text_float(0.056f, text), "0.056");
 }
 
+/* Of any number of digits, with or without a point and an exponent, and of those in the middle
+ * between two doubles, which have 54 bits. */
+static void a_number_reads_as_strtod_reads_it(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 4711);
+    for (int i = 0; i < 300000; i++) {
+        char text[80];
+        int before = (int)(11 * random_uniform(&random)),
+            exponent = (int)(64 * random_uniform(&random)) - 32;
+        uint64_t odd = (uint64_t)(ldexp(random_uniform(&random), 53)) * 2 + 1;
+        uint64_t digits = (uint64_t)(1e10 * random_uniform(&random));
+        if (i % 3 == 0)
+            snprintf(text, sizeof text, "%llue%d", (unsigned long long)odd, exponent);
+        else
+            snprintf(text, sizeof text, "%s%.*s.%010llu%.*sE%+d", i % 2 ? "-" : "+", before,
+                     "0192837465", (unsigned long long)digits, i % 13, "000000000000", exponent);
+        double value, expected = strtod(text, NULL);
+        assert_true(number_parse(text, &value));
+        assert_memory_equal(&value, &expected, sizeof value);
+    }
+}
+
 static void text_that_is_no_number_is_refused(void **state)
 {
     (void)state;
-    static const char *const wrong[] = {"", " 1", "1 ", "1,5", "0x10", "1e", "--2", "1.2.3", "mm"};
+    static const char *const wrong[] = {"",  " 1", "1 ", "1,5", "0x10", "1e", "--2", "1.2.3", "mm",
+                                        ".", "+",  "-.", "1e+", "1e5e", "e5", ".e1", "1-"};
     double value = 7;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         assert_false(number_parse(wrong[i], &value));
@@ -493,6 +518,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_number_reads_back_to_the_same_double),
         cmocka_unit_test(a_number_is_as_short_as_it_can_be),
+        cmocka_unit_test(a_number_reads_as_strtod_reads_it),
         cmocka_unit_test(text_that_is_no_number_is_refused),
         cmocka_unit_test(text_grows_over_any_length),
         cmocka_unit_test(a_text_with_a_stream_holds_only_what_is_not_written_yet),
