@@ -24,6 +24,10 @@ typedef Status ReadLine(void *reader, size_t number, char *line, Err *err);
 MUST_CHECK Status lines_read(const TreeBuilder *builder, char *text, ReadLine *read, void *reader,
                              Err *err);
 
+/* Cuts a line in place into its fields [text_field]; returns how many there are, of which the first
+ * `most` go to `field`. */
+size_t fields_cut(char *line, char **field, size_t most);
+
 /* Numbers in a file: a finite one, at least `minimum`, and a whole one. STATUS_INPUT, without file
  * and record, calling it `what`. */
 MUST_CHECK Status field_number(const char *what, const char *text, double minimum, double *out,

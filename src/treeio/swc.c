@@ -98,16 +98,6 @@ static Status read_share(TreeBuilder *builder, size_t line, const char *value, E
     return builder_share(builder, number, part, line, err);
 }
 
-/* Cuts a line into fields, of which the first MAX_FIELDS go to `field`; returns how many. */
-static size_t cut_fields(char *line, char *field[MAX_FIELDS])
-{
-    size_t count = 0;
-    for (char *word; (word = text_field(&line)); count++)
-        if (count < MAX_FIELDS)
-            field[count] = word;
-    return count;
-}
-
 /* Whether a line names columns: "id type x y z radius parent", with any words for the others. */
 static bool names_columns(const char *line)
 {
@@ -140,7 +130,7 @@ static Status add_columns(const Reader *reader, Err *err)
 {
     char *copy = NULL, *title[MAX_FIELDS], number[32];
     TRY(mem_strdup(&copy, reader->titles ? reader->titles : "", err));
-    bool named = cut_fields(copy + strspn(copy, "#"), title) == reader->n_fields;
+    bool named = fields_cut(copy + strspn(copy, "#"), title, MAX_FIELDS) == reader->n_fields;
     Status status = STATUS_OK;
     for (size_t i = N_FIELDS, column; status == STATUS_OK && i < reader->n_fields; i++) {
         snprintf(number, sizeof number, "column %zu", i + 1);
@@ -185,7 +175,7 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
     char *comment = strchr(line, '#');
     if (comment)
         *comment = '\0';
-    size_t count = cut_fields(line, field);
+    size_t count = fields_cut(line, field, MAX_FIELDS);
     if (count == 0)
         return STATUS_OK;
     bool fits = reader->n_fields == 0 ? count >= N_FIELDS : count == reader->n_fields;

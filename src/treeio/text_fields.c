@@ -15,6 +15,15 @@ Status lines_read(const TreeBuilder *builder, char *text, ReadLine *read, void *
     return STATUS_OK;
 }
 
+size_t fields_cut(char *line, char **field, size_t most)
+{
+    size_t count = 0;
+    for (char *word; (word = text_field(&line)); count++)
+        if (count < most)
+            field[count] = word;
+    return count;
+}
+
 Status field_number(const char *what, const char *text, double minimum, double *out, Err *err)
 {
     double value;
