@@ -21,7 +21,7 @@ static Status put_joined_macros(Text *out, void *geometry, Err *err)
 static const struct {
     ModelElement element;
     Status (*put_macros)(Text *out, void *geometry, Err *err);
-    Status (*put_body)(Text *out, void *geometry, Err *err);
+    Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err);
 } geometries[] = {
     {MODEL_POTENTIAL, put_cell_macros, put_cells},
     {MODEL_BLOB, put_blob_macros, put_blob},
@@ -74,18 +74,10 @@ static Status put_macros(Text *out, void *context, Err *err)
     return geometries[row_of(geometry->scene)].put_macros(out, context, err);
 }
 
-static Status put_body(Text *out, void *context, Err *err)
-{
-    const PovrayGeometry *geometry = context;
-    return geometries[row_of(geometry->scene)].put_body(out, context, err);
-}
-
 static Status put_tree(Text *out, void *context, Err *err)
 {
-    const PovrayGeometry *geometry = context;
-    Values values = {0};
-    add_part(&values, "body", put_body, context);
-    return values_expand(&values, geometry->params, "povray/tree.inc", out, err);
+    PovrayGeometry *geometry = context;
+    return put_objects(out, geometry, geometries[row_of(geometry->scene)].put_object, err);
 }
 
 static void put_vectors(Text *text, const Vec3 *v, size_t n)
@@ -269,14 +261,13 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
 Status povray_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
 {
     PovrayGeometry geometry = {.params = params, .scene = params->scene, .report = report};
-    Status status = STATUS_OK;
-    if (model_has(params->scene->geometry.model, MODEL_POTENTIAL))
-        TRY(celltree_build(&params->scene->geometry, &params->cells, &geometry.cells, err));
-    report->cells = geometry.cells.n_cells;
+    Status status;
+    TRY_GOTO(povray_objects_find(&geometry, err));
+    report->cells = geometry.cells ? geometry.cells[0].n_cells : 0;
     if (params->second_file)
         TRY_GOTO(put_geometry(second, &geometry, err));
     TRY_GOTO(put_scene(out, &geometry, err));
 done:
-    celltree_release(&geometry.cells);
+    povray_objects_release(&geometry);
     return status;
 }

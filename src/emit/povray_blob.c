@@ -166,44 +166,53 @@ static Status put_cells_of(Cells *cells, size_t first, size_t n, Box box, bool w
     return STATUS_OK;
 }
 
-/* All segments, and the box that they reach into. */
-static Status all_segments(Cells *cells, Box *box, Err *err)
+/* The segments of the object, and the box that they reach into. */
+static Status cells_begin(const PovrayGeometry *geometry, Text *text, Cells *cells, Box *box,
+                          Err *err)
 {
-    const Scene *scene = cells->scene;
-    cells->room = scene->geometry.n_segments;
+    const Geometry *all = &geometry->scene->geometry;
+    const PovrayItems *items = &geometry->objects[geometry->object];
+    *cells = (Cells){.scene = geometry->scene, .text = text, .room = items->n};
     TRY(mem_calloc(&cells->lists, cells->room, sizeof *cells->lists, "cells", err));
     *box = box_empty();
-    for (size_t i = 0; i < scene->geometry.n_segments; i++) {
-        cells->lists[i] = (uint32_t)i;
-        *box = box_union(*box, reach_of(&scene->geometry.segments[i]));
+    for (size_t i = 0; i < items->n; i++) {
+        cells->lists[i] = items->index[i];
+        *box = box_union(*box, reach_of(&all->segments[items->index[i]]));
     }
     return STATUS_OK;
 }
 
-/* Whether all of a blob is one, and not many, each clipped to a cell. */
-static Status blob_is_whole(const Scene *scene, bool *whole, Err *err)
+/* Whether all of the object is one blob, and not many, each clipped to a cell. */
+static Status blob_is_whole(const PovrayGeometry *geometry, bool *whole, Err *err)
 {
-    Cells cells = {.scene = scene};
+    Cells cells;
     Box box, half[2];
     bool is_cut;
-    TRY(all_segments(&cells, &box, err));
-    Status status = halve(&cells, 0, scene->geometry.n_segments, box, half, &is_cut, err);
+    TRY(cells_begin(geometry, NULL, &cells, &box, err));
+    Status status = halve(&cells, 0, cells.room, box, half, &is_cut, err);
     free(cells.lists);
     if (status == STATUS_OK)
         *whole = !is_cut;
     return status;
 }
 
-Status put_blob(Text *out, void *context, Err *err)
+static Status put_blobs(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    Cells cells = {.scene = geometry->scene, .text = out};
+    Cells cells;
     Box box;
-    TRY(all_segments(&cells, &box, err));
-    Status status = put_cells_of(&cells, 0, cells.scene->geometry.n_segments, box, true, err);
+    TRY(cells_begin(geometry, out, &cells, &box, err));
+    Status status = put_cells_of(&cells, 0, cells.room, box, true, err);
     free(cells.lists);
     geometry->report->cells = cells.written;
     return status == STATUS_OK ? text_check(out, err) : status;
+}
+
+Status put_blob(Text *out, PovrayGeometry *geometry, Err *err)
+{
+    bool whole;
+    TRY(blob_is_whole(geometry, &whole, err));
+    return put_declaration(out, geometry, whole ? "blob" : "union", put_blobs, err);
 }
 
 /* ---- which term is largest ------------------------------------------------------------------- */
@@ -370,15 +379,12 @@ Status put_blob_macros(Text *out, void *context, Err *err)
     const Scene *scene = geometry->scene;
     size_t n = scene->geometry.n_segments;
     bool painted = scene->appearance.colors || geometry->params->ids;
-    bool whole = false;
     Values values = {0};
     if (painted && n > MAX_PAINTED)
         return err_set(err, STATUS_INFEASIBLE,
                        "POV-Ray can paint at most %d segments of a blob one by one, not %zu",
                        MAX_PAINTED, n);
-    TRY(blob_is_whole(scene, &whole, err));
     add_shape(&values);
-    add_flag(&values, "whole", whole);
     add_flag(&values, "painted", painted);
     Text *top = add_value(&values, "top"), *n_groups = add_value(&values, "n_groups");
     if (painted) {

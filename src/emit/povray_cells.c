@@ -61,11 +61,11 @@ static int scale_number(const Cell *cell)
 static Status put_scales(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    const CellTree *cells = &geometry->cells;
     Tmpl template = {0};
     bool used[N_SCALES] = {false};
-    for (size_t i = 0; i < cells->n_cells; i++)
-        used[scale_number(&cells->cells[i])] = true;
+    for (size_t k = 0; k < geometry->n_objects; k++)
+        for (size_t i = 0; i < geometry->cells[k].n_cells; i++)
+            used[scale_number(&geometry->cells[k].cells[i])] = true;
     Status status = load_template(&template, geometry->params, "povray/scale.inc", err);
     for (int number = 0; status == STATUS_OK && number < N_SCALES; number++) {
         char digits[12], scale[NUMBER_TEXT_SIZE], low[NUMBER_TEXT_SIZE], high[NUMBER_TEXT_SIZE],
@@ -100,7 +100,6 @@ static void find_used(const CellTree *cells, uint8_t *used)
 static Status put_terms(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    const CellTree *cells = &geometry->cells;
     size_t n = geometry->scene->geometry.n_segments;
     Tmpl term = {0}, tube = {0};
     uint8_t *used = NULL;
@@ -108,12 +107,13 @@ static Status put_terms(Text *out, void *context, Err *err)
     TRY_GOTO(load_template(&term, geometry->params, "povray/term.inc", err));
     TRY_GOTO(load_template(&tube, geometry->params, "povray/tube.inc", err));
     TRY_GOTO(mem_calloc(&used, n, sizeof *used, "functions", err));
-    find_used(cells, used);
+    for (size_t k = 0; k < geometry->n_objects; k++)
+        find_used(&geometry->cells[k], used);
     for (uint32_t i = 0; i < n; i++) {
         for (int function = 0; function < N_FUNCTIONS; function++) {
             if (used[i] & (1 << function))
-                TRY_GOTO(put_function(out, function == TUBE ? &tube : &term, i, &cells->forms[i],
-                                      function, err));
+                TRY_GOTO(put_function(out, function == TUBE ? &tube : &term, i,
+                                      &geometry->cells[0].forms[i], function, err));
         }
     }
 done:
@@ -127,7 +127,7 @@ Status put_cell_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Scene *scene = geometry->scene;
-    ErfForm erf = geometry->cells.erf;
+    ErfForm erf = geometry->cells[0].erf;
     Values values = {0};
     static const char *const names[ERF_TERMS] = {"erf1", "erf3", "erf5", "erf7", "erf9"};
     for (int i = 0; i < ERF_TERMS; i++)
@@ -354,11 +354,11 @@ static Status put_cell(Text *text, const Tmpl *template, const CellTree *cells, 
     return tmpl_apply(template, values, sizeof values / sizeof *values, text, err);
 }
 
-Status put_cells(Text *out, void *context, Err *err)
+static Status put_isosurfaces(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Scene *scene = geometry->scene;
-    const CellTree *cells = &geometry->cells;
+    const CellTree *cells = &geometry->cells[geometry->object];
     bool painted = geometry->params->ids || scene->appearance.colors;
     CellTemplates templates = {0};
     CellText part = {0};
@@ -378,4 +378,11 @@ done:
     release_cell_text(&part);
     release_cell_templates(&templates);
     return status;
+}
+
+/* Where no vessel is long enough for its thickness to have a surface, the guard is alone. */
+Status put_cells(Text *out, PovrayGeometry *geometry, Err *err)
+{
+    bool alone = geometry->cells[geometry->object].n_cells == 0;
+    return put_declaration(out, geometry, alone ? "object" : "union", put_isosurfaces, err);
 }

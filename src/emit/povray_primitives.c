@@ -1,4 +1,4 @@
-/* A union of one macro call for each primitive. */
+/* A union of one macro call for each primitive; POV-Ray warns of a union of one alone. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/values.h"
@@ -19,18 +19,24 @@ static void put_primitive(Text *text, const EmitParams *params, const Primitive 
     text_puts(text, ")\n");
 }
 
-Status put_primitives(Text *out, void *context, Err *err)
+static Status put_calls(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    const Scene *scene = geometry->scene;
-    for (size_t i = 0; i < scene->geometry.n_primitives; i++) {
-        const Primitive *primitive = &scene->geometry.primitives[i];
+    const PovrayItems *items = &geometry->objects[geometry->object];
+    for (size_t i = 0; i < items->n; i++) {
+        const Primitive *primitive = &geometry->scene->geometry.primitives[items->index[i]];
         if (primitive->kind == PRIMITIVE_JOINT)
             put_joint(out, geometry->params, primitive);
         else
             put_primitive(out, geometry->params, primitive);
     }
     return text_check(out, err);
+}
+
+Status put_primitives(Text *out, PovrayGeometry *geometry, Err *err)
+{
+    bool alone = geometry->objects[geometry->object].n == 1;
+    return put_declaration(out, geometry, alone ? "object" : "Tree_Of()", put_calls, err);
 }
 
 Status put_primitive_macros(Text *out, void *context, Err *err)

@@ -1,7 +1,8 @@
-/* The groups of a tree's potential. Neighbouring nodes often have the same segments, and what
- * blends at the end of a twig blends where the twig leaves, too, having passed there. A group that
- * is part of another adds nothing to their union, so only those are kept that no other holds. A
- * holder has every member, so it is looked for among the nodes of the member that has the fewest.
+/* The groups of a tree's potential, and of a part of it. Neighbouring nodes often have the same
+ * segments, and what blends at the end of a twig blends where the twig leaves, too, having passed
+ * there. A group that is part of another adds nothing to their union, so only those are kept that
+ * no other holds. A holder has every member, so it is looked for among the nodes of the member that
+ * has the fewest.
  */
 #include "scene/vesseltree.h"
 
@@ -116,5 +117,66 @@ done:
     numberlists_release(&nodes);
     numberlists_release(&blend.members);
     numberlists_release(&blend.groups);
+    return status;
+}
+
+/* The place of a number in a rising list that has it. */
+static uint32_t place_of(const uint32_t *list, size_t n, uint32_t number)
+{
+    size_t low = 0, high = n;
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        if (list[middle] <= number)
+            low = middle;
+        else
+            high = middle;
+    }
+    return (uint32_t)low;
+}
+
+/* The groups of some segments, each listed where its first segment is. */
+static Status part_members(const Blend *whole, const uint32_t *indices, size_t n, Blend *part,
+                           Err *err)
+{
+    const NumberLists *groups = &whole->groups, *members = &whole->members;
+    size_t most = 0, n_items = 0;
+    for (size_t i = 0; i < n; i++)
+        most += length_of(groups, indices[i]);
+    TRY(mem_calloc(&part->members.first, most + 1, sizeof *part->members.first, "groups", err));
+    TRY(mem_calloc(&part->members.items, most, sizeof *part->members.items, "groups", err));
+    for (size_t i = 0; i < n; i++)
+        for (uint32_t k = groups->first[indices[i]]; k < groups->first[indices[i] + 1]; k++) {
+            uint32_t from = members->first[groups->items[k]];
+            if (members->items[from] != indices[i])
+                continue;
+            for (; from < members->first[groups->items[k] + 1]; from++)
+                part->members.items[n_items++] = place_of(indices, n, members->items[from]);
+            part->members.first[++part->n_groups] = (uint32_t)n_items;
+        }
+    return STATUS_OK;
+}
+
+Status geometry_part(const Geometry *whole, const uint32_t *indices, size_t n, Geometry *part,
+                     Err *err)
+{
+    Geometry made = *whole;
+    Status status;
+    made.primitives = NULL;
+    made.ids = NULL;
+    made.segments = NULL;
+    made.blend = (Blend){0};
+    made.n_primitives = made.n_ends = made.n_ids = 0;
+    TRY_GOTO(mem_calloc(&made.segments, n, sizeof *made.segments, "segments", err));
+    for (size_t i = 0; i < n; i++)
+        made.segments[i] = whole->segments[indices[i]];
+    made.n_segments = made.drawn = n;
+    if (whole->blend.n_groups) {
+        TRY_GOTO(part_members(&whole->blend, indices, n, &made.blend, err));
+        TRY_GOTO(turn_over(&made.blend.members, made.blend.n_groups, n, &made.blend.groups, err));
+    }
+    *part = made;
+    return STATUS_OK;
+done:
+    geometry_release(&made);
     return status;
 }

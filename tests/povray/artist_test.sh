@@ -178,6 +178,41 @@ test_the_examples_draw_the_tree_of_any_model() {
     done
 }
 
+# Two bifurcations 40 mm apart, of which the second is moved beside the first and painted otherwise, and a root alone.
+test_the_trees_of_a_forest_are_objects_of_their_own() {
+    local model
+    { cat "$DATA/bifurcation.swc"; echo "90 1 0 0 9 2 -1"
+      awk '!/^#/ && NF { $1 += 10; $3 += 40; if ($7 > 0) $7 += 10; print }' "$DATA/bifurcation.swc"; } >forest.swc
+    for model in $MODELS; do
+        run_ok corcast scene forest.swc --quiet --model "$model" -o forest.pov
+        own_scene "$model" forest "#macro Shown(C) texture { pigment { rgb C } finish { ambient 1 diffuse 0 } } #end
+#if (dimension_size(Roots, 1) != 3) #error \"expected three roots\" #end
+object { Tree_1 translate 0.5 * x Shown(<0, 1, 0>) } object { Tree_2 Shown(y) }
+object { Tree_3 translate <-41.5, 0, 0> Shown(<0, 0, 1>) }"
+        draw "$model"
+        expect_no_warning "$model"
+        [ "$(values "$model.png" 55 22) $(values "$model.png" 5 22)" = "0 255 0 0 0 255" ] ||
+            fail "expected a green and a blue $model, got $(values "$model.png" 55 22) $(values "$model.png" 5 22)"
+        own_scene "$model" forest "object { Tree translate -40 * x texture { pigment { rgb y } finish { ambient 1 diffuse 0 } } }"
+        draw "$model"
+        [ "$(values "$model.png" 30 22)" = "0 255 0" ] || fail "expected the second tree in Tree of $model"
+    done
+}
+
+# A vessel alone, one that is too short to have an implicit surface, and one that is not drawn at all.
+test_the_smallest_trees_make_povray_warn_of_nothing() {
+    local model
+    printf '1 1 0 0 0 1.25 -1\n2 1 0 0 9.5 1.25 1\n' >one.swc
+    printf '1 1 0 0 0 1.25 -1\n2 1 0 0 0.01 1.25 1\n' >short.swc
+    for model in $MODELS; do
+        for tree in one short; do
+            run_ok corcast scene $tree.swc --quiet --model "$model" -o "$model.pov"
+            draw "$model" +W8 +H6
+            expect_no_warning "$model"
+        done
+    done
+}
+
 test_the_background_can_be_transparent() {
     run_ok corcast scene "$DATA/bifurcation.swc" --quiet --size 60x45 -o seen.pov
     draw seen +UA Declare=Background_Transmit=1

@@ -306,7 +306,7 @@ static void a_blob_is_given_by_the_ends_and_radii_of_its_segments(void **state)
     (void)state;
     Scene scene = make_scene(SCENE_BLOB);
     Emitted out = emit(&scene, &two_files);
-    assert_non_null(strstr(out.geometry.chars, "#declare Tree = Tree_Of() {\nBlob_Start()\n"));
+    assert_non_null(strstr(out.geometry.chars, "#declare Tree = blob {\nBlob_Start()\n"));
     assert_int_equal(count(out.geometry.chars, "\nVessel_Blob("), 3);
     assert_int_equal(count(out.geometry.chars, "\nBlob_Cell()"), 0);
     const char *call = strstr(out.geometry.chars, "\nVessel_Blob(<0,0,0>,<-4");
@@ -316,6 +316,89 @@ static void a_blob_is_given_by_the_ends_and_radii_of_its_segments(void **state)
                             &v[2], &v[3], &v[4], &v[5], &v[6]),
                      7);
     assert_true(v[3] == -4 && v[4] == -7 && v[5] == 1 && v[6] == 1.2);
+    release(&out);
+}
+
+/* Three trees, of the segments 0 and 2, of none, and of segment 1. */
+static const Anatomy forest = {.order = (int[]){1, 1, 1},
+                               .tree = (uint32_t[]){0, 2, 0},
+                               .root = (Vec3[]){{0, 9, 0}, {3, 4, 5}, {0, 0, 0}},
+                               .n_trees = 3,
+                               .path = (Vec3[]){{0, 9, 0}},
+                               .n_path = 1};
+
+/* How often `part` stands in the declaration of an object, which ends in a line of a brace. */
+static size_t count_in(const char *text, const char *declaration, const char *part)
+{
+    const char *from = strstr(text, declaration);
+    assert_non_null(from);
+    const char *end = strstr(from, "\n}\n");
+    assert_non_null(end);
+    char *body = strndup(from, (size_t)(end - from));
+    assert_non_null(body);
+    size_t n = count(body, part);
+    free(body);
+    return n;
+}
+
+static void a_forest_of_primitives_is_the_union_of_its_trees(void **state)
+{
+    (void)state;
+    Scene scene = make_scene(SCENE_ROUNDED);
+    EmitParams params = two_files;
+    Primitive many[] = {primitives[0], primitives[1], primitives[0]};
+    many[2].segment = 2;
+    scene.geometry.primitives = many;
+    scene.geometry.n_primitives = 3;
+    params.anatomy = &forest;
+    Emitted out = emit(&scene, &params);
+    const char *text = text_chars(&out.geometry);
+    assert_int_equal(count_in(text, "#declare Tree_1 = Tree_Of() {\n", "\nVessel_Cylinder("), 2);
+    assert_int_equal(count_in(text, "#declare Tree_2 = object {\n", "Vessel_"), 0);
+    assert_int_equal(count_in(text, "#declare Tree_3 = object {\n", "\nVessel_Sphere("), 1);
+    assert_int_equal(count_in(text, "#declare Tree = Tree_Of() {\n", "\nobject { Tree_"), 3);
+    release(&out);
+    scene.geometry.n_primitives = 2;
+    params.anatomy = NULL;
+    out = emit(&scene, &params);
+    text = text_chars(&out.geometry);
+    assert_null(strstr(text, "Tree_1 ="));
+    assert_int_equal(count_in(text, "#declare Tree = Tree_Of() {\n", "\nVessel_"), 2);
+    release(&out);
+}
+
+/* Cells of a tree call the functions that cells of the whole call, of its own segments alone. */
+static void a_tree_of_a_field_is_made_of_its_own_segments(void **state)
+{
+    (void)state;
+    const Blend by_tree = {.n_groups = 2,
+                           .members = {(uint32_t[]){0, 2, 3}, (uint32_t[]){0, 2, 1}},
+                           .groups = {(uint32_t[]){0, 1, 2, 3}, (uint32_t[]){0, 1, 0}}};
+    for (int grouped = 0; grouped < 2; grouped++) {
+        Scene scene = make_scene(SCENE_ISOSURFACE);
+        EmitParams params = two_files;
+        params.anatomy = &forest;
+        if (grouped)
+            scene.geometry.blend = by_tree;
+        Emitted out = emit(&scene, &params);
+        const char *text = text_chars(&out.geometry);
+        assert_true(count_in(text, "#declare Tree_1 = union {\n", "0(x,y,z)") > 0);
+        assert_true(count_in(text, "#declare Tree_1 = union {\n", "2(x,y,z)") > 0);
+        assert_int_equal(count_in(text, "#declare Tree_1 = union {\n", "1(x,y,z)"), 0);
+        assert_true(count_in(text, "#declare Tree_3 = union {\n", "1(x,y,z)") > 0);
+        assert_int_equal(count_in(text, "#declare Tree_3 = union {\n", "Fn_Max("), 0);
+        assert_true(count_in(text, "#declare Tree = union {\n", "1(x,y,z)") > 0);
+        assert_true((count_in(text, "#declare Tree = union {\n", "Fn_Max(") > 0) == grouped);
+        release(&out);
+    }
+    Scene scene = make_scene(SCENE_BLOB);
+    EmitParams params = two_files;
+    params.anatomy = &forest;
+    Emitted out = emit(&scene, &params);
+    const char *text = text_chars(&out.geometry);
+    assert_int_equal(count_in(text, "#declare Tree_1 = blob {\n", "\nVessel_Blob("), 2);
+    assert_int_equal(count_in(text, "#declare Tree_3 = blob {\n", "\nVessel_Blob("), 1);
+    assert_int_equal(count_in(text, "#declare Tree = blob {\n", "\nVessel_Blob("), 3);
     release(&out);
 }
 
@@ -575,6 +658,8 @@ int main(void)
         cmocka_unit_test(every_function_of_a_cell_is_declared),
         cmocka_unit_test(ids_are_painted_only_when_asked_for),
         cmocka_unit_test(a_blob_is_given_by_the_ends_and_radii_of_its_segments),
+        cmocka_unit_test(a_forest_of_primitives_is_the_union_of_its_trees),
+        cmocka_unit_test(a_tree_of_a_field_is_made_of_its_own_segments),
         cmocka_unit_test(a_large_blob_is_cut_into_cells_that_miss_nothing),
         cmocka_unit_test(a_blob_is_halved_from_129_segments_on),
         cmocka_unit_test(the_segments_of_a_blob_are_painted_only_when_asked_for),

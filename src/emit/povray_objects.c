@@ -1,0 +1,147 @@
+/* What a geometry declares: all of it as one object and, of a forest, each of its trees as one. The
+ * items of the trees are found by a counting sort, which keeps their order.
+ *
+ * Trees of primitives are members of the whole. Those of a field cannot be: where trees come near,
+ * the whole is the level set of the sum over all of them, so that each tree is a field of its own
+ * segments, beside it. The cells of an isosurface are found anew for each, with the whole's
+ * numbers, so that all call the same functions. */
+#include "emit/povray_members.h"
+#include "emit/values.h"
+
+#include <stdlib.h>
+
+static bool is_field(const PovrayGeometry *geometry)
+{
+    return model_has(geometry->scene->geometry.model, MODEL_FIELD);
+}
+
+static uint32_t segment_of_item(const PovrayGeometry *geometry, size_t item)
+{
+    const Geometry *all = &geometry->scene->geometry;
+    return is_field(geometry) ? all->segments[item].segment : all->primitives[item].segment;
+}
+
+/* Sorts the items by tree, behind those of the whole. */
+static void sort_items(PovrayGeometry *geometry, uint32_t *index)
+{
+    const uint32_t *tree = geometry->params->anatomy->tree;
+    const size_t n = geometry->objects[0].n;
+    for (size_t i = 0; i < n; i++)
+        geometry->objects[1 + tree[segment_of_item(geometry, i)]].n++;
+    for (size_t k = 1; k < geometry->n_objects; k++) {
+        geometry->objects[k].index = index;
+        index += geometry->objects[k].n;
+        geometry->objects[k].n = 0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        PovrayItems *object = &geometry->objects[1 + tree[segment_of_item(geometry, i)]];
+        geometry->indices[(size_t)(object->index - geometry->indices) + object->n++] = (uint32_t)i;
+    }
+}
+
+static Status find_items(PovrayGeometry *geometry, Err *err)
+{
+    const Anatomy *anatomy = geometry->params->anatomy;
+    const Geometry *all = &geometry->scene->geometry;
+    const size_t n = is_field(geometry) ? all->n_segments : all->n_primitives;
+    geometry->n_objects = anatomy && anatomy->n_trees > 1 ? 1 + anatomy->n_trees : 1;
+    TRY(mem_calloc(&geometry->objects, geometry->n_objects, sizeof *geometry->objects, "trees",
+                   err));
+    TRY(mem_calloc(&geometry->indices, 2 * n, sizeof *geometry->indices, "trees", err));
+    for (size_t i = 0; i < n; i++)
+        geometry->indices[i] = (uint32_t)i;
+    geometry->objects[0] = (PovrayItems){geometry->indices, n};
+    if (geometry->n_objects > 1)
+        sort_items(geometry, geometry->indices + n);
+    return STATUS_OK;
+}
+
+/* The cells of a part of the geometry, with the numbers of the whole. */
+static Status part_cells(const PovrayGeometry *geometry, PovrayItems items, CellTree *cells,
+                         Err *err)
+{
+    Geometry part = {0};
+    TRY(geometry_part(&geometry->scene->geometry, items.index, items.n, &part, err));
+    Status status = celltree_build(&part, &geometry->params->cells, cells, err);
+    geometry_release(&part);
+    for (size_t i = 0; i < cells->n_terms; i++)
+        cells->terms[i].segment = items.index[cells->terms[i].segment];
+    for (size_t i = 0; i < cells->n_cells; i++)
+        if (cells->cells[i].largest != CELL_MIXED)
+            cells->cells[i].largest = items.index[cells->cells[i].largest];
+    return status;
+}
+
+Status povray_objects_find(PovrayGeometry *geometry, Err *err)
+{
+    const Geometry *all = &geometry->scene->geometry;
+    TRY(find_items(geometry, err));
+    if (!model_has(all->model, MODEL_POTENTIAL))
+        return STATUS_OK;
+    TRY(mem_calloc(&geometry->cells, geometry->n_objects, sizeof *geometry->cells, "cells", err));
+    TRY(celltree_build(all, &geometry->params->cells, &geometry->cells[0], err));
+    for (size_t k = 1; k < geometry->n_objects; k++)
+        if (geometry->objects[k].n)
+            TRY(part_cells(geometry, geometry->objects[k], &geometry->cells[k], err));
+    return STATUS_OK;
+}
+
+void povray_objects_release(PovrayGeometry *geometry)
+{
+    for (size_t k = 0; geometry->cells && k < geometry->n_objects; k++)
+        celltree_release(&geometry->cells[k]);
+    free(geometry->cells);
+    free(geometry->objects);
+    free(geometry->indices);
+}
+
+Status put_declaration(Text *out, PovrayGeometry *geometry, const char *kind,
+                       Status (*put_members)(Text *, void *, Err *), Err *err)
+{
+    Values values = {0};
+    Text *name = add_value(&values, "name");
+    text_puts(name, "Tree");
+    if (geometry->object > 0)
+        text_printf(name, "_%zu", geometry->object);
+    text_puts(add_value(&values, "kind"), kind);
+    add_part(&values, "members", put_members, geometry);
+    return values_expand(&values, geometry->params, "povray/tree.inc", out, err);
+}
+
+/* What stands for a tree of which nothing is drawn. */
+static Status put_nothing(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    Values values = {0};
+    return values_expand(&values, geometry->params, "povray/nothing.inc", out, err);
+}
+
+/* The trees, as members of the whole. */
+static Status put_trees(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    Tmpl member = {0};
+    TRY(load_template(&member, geometry->params, "povray/member.inc", err));
+    Status status = STATUS_OK;
+    for (size_t k = 1; status == STATUS_OK && k < geometry->n_objects; k++) {
+        char number[NUMBER_TEXT_SIZE];
+        status = tmpl_apply(&member, (TmplValue[]){{"number", number_text((double)k, number)}}, 1,
+                            out, err);
+    }
+    tmpl_release(&member);
+    return status;
+}
+
+Status put_objects(Text *out, PovrayGeometry *geometry,
+                   Status (*put_object)(Text *, PovrayGeometry *, Err *), Err *err)
+{
+    for (geometry->object = 1; geometry->object < geometry->n_objects; geometry->object++)
+        if (geometry->objects[geometry->object].n)
+            TRY(put_object(out, geometry, err));
+        else
+            TRY(put_declaration(out, geometry, "object", put_nothing, err));
+    geometry->object = 0;
+    if (geometry->n_objects > 1 && !is_field(geometry))
+        return put_declaration(out, geometry, "Tree_Of()", put_trees, err);
+    return put_object(out, geometry, err);
+}
