@@ -2,11 +2,13 @@
  * say of the blood is laid over what the tree's file says. */
 #include "app/blood.h"
 #include "app/commands.h"
+#include "app/info_morphometry.h"
 #include "app/info_statistics.h"
 #include "app/options.h"
 #include "derive/derive.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
+#include <stdlib.h>
 
 static json_t *summary_json(const TreeSummary *summary)
 {
@@ -86,14 +88,27 @@ static void print_columns(const Tree *tree)
 
 typedef struct InfoOptions {
     bool json, stats;
+    const char *morphometry; /* NULL: beside none */
     BloodOptions blood;
 } InfoOptions;
+
+/* What is said of the tree, as far as it is asked for; owned. */
+typedef struct Findings {
+    TreeSummary summary;
+    TreeStatistics statistics;
+    Morphometry table;
+    MorphometryComparison comparison;
+} Findings;
 
 static const Option own[] = {
     {.name = "json", SETS(FLAG, InfoOptions, json), .help = "as JSON"},
     {.name = "stats",
      SETS(FLAG, InfoOptions, stats),
      .help = "radius and length by level and order, branching ratios"},
+    {.name = "morphometry",
+     SETS(LOOKUP, InfoOptions, morphometry),
+     .list = "morphometries",
+     .help = "a published table to stand beside: a file of templates/morphometry, or a path"},
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,
@@ -104,39 +119,54 @@ static const Option own[] = {
 static const OptionTable own_table = OPTION_TABLE(own);
 
 static Status show(const InfoOptions *options, const char *path, const Tree *tree,
-                   const TreeSummary *summary, const TreeStatistics *statistics, Err *err)
+                   const Findings *found, Err *err)
 {
     if (options->json) {
-        json_t *json = summary_json(summary);
+        json_t *json = summary_json(&found->summary);
         if (tree->n_columns > 0)
             json = json_with(json, "columns", columns_json(tree));
         if (options->stats)
-            json = json_with(json, "stats", statistics_json(statistics));
+            json = json_with(json, "stats", statistics_json(&found->statistics));
+        if (options->morphometry)
+            json =
+                json_with(json, "morphometry", morphometry_json(&found->table, &found->comparison));
         return json_write(json, "-", err);
     }
-    print_summary(path, summary);
+    print_summary(path, &found->summary);
     print_columns(tree);
     if (options->stats)
-        statistics_print(statistics);
+        statistics_print(&found->statistics);
+    if (options->morphometry)
+        morphometry_print(&found->table, &found->comparison);
     return STATUS_OK;
+}
+
+static Status find_out(const InfoOptions *options, const Tree *tree, Findings *found, Err *err)
+{
+    const TreeMeta said = blood_said(&options->blood);
+    TRY(derive_summary(tree, &said, &found->summary, err));
+    if (options->stats || options->morphometry)
+        TRY(derive_statistics(tree, &found->statistics, err));
+    if (!options->morphometry)
+        return STATUS_OK;
+    return morphometry_beside(&found->statistics, options->morphometry, &found->table,
+                              &found->comparison, err);
 }
 
 static Status run_info(void *options, Parsed *parsed, Err *err)
 {
     const InfoOptions *own_options = options;
-    const TreeMeta said = blood_said(&own_options->blood);
     Status status = STATUS_OK;
     Tree tree = {0};
-    TreeSummary summary;
-    TreeStatistics statistics = {0};
+    Findings found = {0};
     TRY(tree_read(&tree, parsed->operands[0], err));
     TRY_GOTO(blood_check(&own_options->blood, &tree, parsed, err));
-    TRY_GOTO(derive_summary(&tree, &said, &summary, err));
-    if (own_options->stats)
-        TRY_GOTO(derive_statistics(&tree, &statistics, err));
-    status = show(own_options, parsed->operands[0], &tree, &summary, &statistics, err);
+    TRY_GOTO(find_out(own_options, &tree, &found, err));
+    status = show(own_options, parsed->operands[0], &tree, &found, err);
 done:
-    statistics_release(&statistics);
+    statistics_release(&found.statistics);
+    morphometry_release(&found.table);
+    free(found.comparison.pair);
     tree_release(&tree);
     return status;
 }
@@ -147,7 +177,8 @@ const Command command_info = {
     .operands = "T.swc [--stats] [--json]",
     .examples = "  corcast info tree.swc\n"
                 "  corcast info tree.swc --json | jq .volume_mm3\n"
-                "  corcast info tree.swc --stats --json | jq .stats.by_strahler\n",
+                "  corcast info tree.swc --stats --json | jq .stats.by_strahler\n"
+                "  corcast info coronary.swc --morphometry kassab-lad\n",
     .min_operands = 1,
     .max_operands = 1,
     .size = sizeof(InfoOptions),

@@ -56,6 +56,11 @@ static Status list_colormaps(Text *lines, Err *err)
     return template_names("colormaps", ".txt", lines, err);
 }
 
+static Status list_morphometries(Text *lines, Err *err)
+{
+    return template_names("morphometry", ".txt", lines, err);
+}
+
 /* What models may be made of. */
 typedef enum ModelKind { MODELS_OF_ANYTHING, MODELS_OF_PRIMITIVES, MODELS_OF_A_FIELD } ModelKind;
 static const char *const model_kinds[] = {"anything", "primitives", "field", NULL};
@@ -91,11 +96,10 @@ static Status run_list(void *options, Parsed *parsed, Err *err)
     static const struct {
         const Command *command;
         ListNames *names;
-    } lists[] = {{&command_fields, list_fields},
-                 {&command_looks, list_looks},
-                 {&command_colormaps, list_colormaps},
-                 {&command_domains, list_domains},
-                 {&command_formats, list_formats}};
+    } lists[] = {
+        {&command_fields, list_fields},       {&command_looks, list_looks},
+        {&command_colormaps, list_colormaps}, {&command_domains, list_domains},
+        {&command_formats, list_formats},     {&command_morphometries, list_morphometries}};
     size_t i = 0;
     while (lists[i].command != parsed->command)
         i++;
@@ -120,3 +124,7 @@ const Command command_domains = {
     .name = "domains", .summary = "the shapes of --domain", .operands = "", .run = run_list};
 const Command command_formats = {
     .name = "formats", .summary = "the formats of tree files", .operands = "", .run = run_list};
+const Command command_morphometries = {.name = "morphometries",
+                                       .summary = "the values of --morphometry",
+                                       .operands = "",
+                                       .run = run_list};

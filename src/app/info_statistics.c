@@ -22,6 +22,20 @@ static void print_ratios(const OrderRatios *ratios)
            ratios->diameter, ratios->length);
 }
 
+static void print_connectivity(const TreeStatistics *statistics)
+{
+    size_t n = statistics->by_diameter_strahler.n;
+    printf("\nElements that spring from an element of each diameter-defined order\n  order");
+    for (size_t k = 0; k < n; k++)
+        printf(" %8zu", k + 1);
+    for (size_t i = 0; i < n; i++) {
+        printf("\n  %5zu", i + 1);
+        for (size_t k = 0; k <= i; k++)
+            printf(" %8.3f", statistics->daughters[i * n + k]);
+    }
+    printf("\n");
+}
+
 static void print_spread(const char *title, const BifurcationSpread *spread)
 {
     printf("  %-33s %.3f +- %.3f, median %.3f (%zu)\n", title, spread->mean, spread->sd,
@@ -37,6 +51,7 @@ void statistics_print(const TreeStatistics *statistics)
     print_table("By diameter-defined Strahler order (of the elements)", "order",
                 &statistics->by_diameter_strahler);
     print_ratios(&statistics->diameter_strahler_ratios);
+    print_connectivity(statistics);
     if (!statistics->diameter_orders_converged)
         printf("  the orders still changed after %d rounds\n", statistics->diameter_rounds);
     printf("\nBifurcations (mean +- standard deviation)\n");
@@ -80,6 +95,19 @@ static json_t *bifurcations_json(const BifurcationSpread *spread)
                      json_number(spread->median));
 }
 
+static json_t *connectivity_json(const TreeStatistics *statistics)
+{
+    size_t n = statistics->by_diameter_strahler.n;
+    json_t *rows = json_array();
+    for (size_t i = 0; i < n; i++) {
+        json_t *row = json_array();
+        for (size_t k = 0; k < n; k++)
+            row = json_with_item(row, json_number(statistics->daughters[i * n + k]));
+        rows = json_with_item(rows, row);
+    }
+    return rows;
+}
+
 json_t *statistics_json(const TreeStatistics *statistics)
 {
     const JsonMember members[] = {
@@ -90,6 +118,7 @@ json_t *statistics_json(const TreeStatistics *statistics)
         {"strahler_ratios", ratios_json(&statistics->strahler_ratios)},
         {"by_diameter_strahler", table_json("order", &statistics->by_diameter_strahler)},
         {"diameter_strahler_ratios", ratios_json(&statistics->diameter_strahler_ratios)},
+        {"connectivity", connectivity_json(statistics)},
         {"diameter_rounds", json_integer(statistics->diameter_rounds)},
         {"diameter_orders_converged", json_boolean(statistics->diameter_orders_converged)},
         {"symmetry", bifurcations_json(&statistics->symmetry)},

@@ -63,8 +63,24 @@ static void fill_rows(const Element *element, size_t n, StatisticsRow *row, int 
     }
 }
 
+/* The mean number of elements of order k that spring from an element of order m in entry
+ * (m - 1) n + k - 1; `row` has one for each order and for 0. */
+static void count_daughters(const Vessels *vessels, const int32_t *element_of,
+                            const Element *element, const StatisticsRow *row, int n,
+                            double *daughters)
+{
+    for (size_t v = 0; v < vessels->n; v++) {
+        int32_t parent = vessels->vessel[v].parent;
+        if (parent == NO_VESSEL || element_of[parent] == element_of[v])
+            continue;
+        int32_t from = element[element_of[parent]].group, to = element[element_of[v]].group;
+        daughters[(ptrdiff_t)(from - 1) * n + to - 1] += 1 / (double)row[from].elements;
+    }
+}
+
+/* `daughters`, not NULL for orders without gaps, is set (owned). */
 static Status make_table(const Vessels *vessels, const int32_t *group, const int32_t *heir,
-                         StatisticsTable *table, Err *err)
+                         StatisticsTable *table, double **daughters, Err *err)
 {
     int n_groups = 0;
     for (size_t v = 0; v < vessels->n; v++)
@@ -79,6 +95,11 @@ static Status make_table(const Vessels *vessels, const int32_t *group, const int
     TRY_GOTO(mem_calloc(&row, (size_t)n_groups, sizeof *row, "rows of statistics", err));
     size_t n = merge_vessels(vessels, group, heir, element_of, element);
     fill_rows(element, n, row, n_groups);
+    if (daughters) {
+        size_t orders = n_groups > 0 ? (size_t)n_groups - 1 : 0;
+        TRY_GOTO(mem_calloc(daughters, orders * orders, sizeof **daughters, "orders", err));
+        count_daughters(vessels, element_of, element, row, (int)orders, *daughters);
+    }
     table->n = 0;
     for (int g = 0; g < n_groups; g++)
         if (row[g].elements > 0)
@@ -206,11 +227,11 @@ done:
 
 /* The table of elements that are series of vessels of the same order. */
 static Status make_order_table(const Vessels *vessels, const int32_t *order, StatisticsTable *table,
-                               OrderRatios *ratios, Err *err)
+                               OrderRatios *ratios, double **daughters, Err *err)
 {
     int32_t *heir = NULL;
     TRY(vessels_heirs(vessels, order, &heir, err));
-    Status status = make_table(vessels, order, heir, table, err);
+    Status status = make_table(vessels, order, heir, table, daughters, err);
     free(heir);
     if (status == STATUS_OK)
         *ratios = order_ratios(table);
@@ -237,15 +258,16 @@ Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err)
     TRY_GOTO(mem_calloc(&group, vessels.n, sizeof *group, "levels", err));
     for (size_t v = 0; v < vessels.n; v++)
         group[v] = vessels.vessel[v].level;
-    TRY_GOTO(make_table(&vessels, group, NULL, &made.by_level, err));
+    TRY_GOTO(make_table(&vessels, group, NULL, &made.by_level, NULL, err));
     for (size_t v = 0; v < vessels.n; v++)
         group[v] = vessels.vessel[v].strahler;
-    TRY_GOTO(make_order_table(&vessels, group, &made.by_strahler, &made.strahler_ratios, err));
+    TRY_GOTO(
+        make_order_table(&vessels, group, &made.by_strahler, &made.strahler_ratios, NULL, err));
     TRY_GOTO(vessels_diameter_orders(&vessels, &diameter_order, &result, err));
     made.diameter_rounds = result.rounds;
     made.diameter_orders_converged = result.converged;
     TRY_GOTO(make_order_table(&vessels, diameter_order, &made.by_diameter_strahler,
-                              &made.diameter_strahler_ratios, err));
+                              &made.diameter_strahler_ratios, &made.daughters, err));
     TRY_GOTO(measure_forks(tree, &vessels, &made, err));
     *statistics = made;
 done:
@@ -262,5 +284,6 @@ void statistics_release(TreeStatistics *statistics)
     free(statistics->by_level.row);
     free(statistics->by_strahler.row);
     free(statistics->by_diameter_strahler.row);
+    free(statistics->daughters);
     *statistics = (TreeStatistics){0};
 }

@@ -28,6 +28,28 @@ test_stats_for_people_have_three_tables() {
     expect_stdout 'area ratio'
 }
 
+test_a_tree_stands_beside_every_published_table() {
+    local name
+    run_ok corcast grow --terminals 300 --seed 5 --domain ball:30 -o tree.swc
+    run_ok corcast morphometries
+    cp stdout names
+    printf 'kassab-lad\nkassab-lcx\nkassab-rca\n' >expected
+    expect_same names expected
+    while read -r name; do
+        run_ok corcast info tree.swc --morphometry "$name" --json
+        expect_json stdout '.morphometry | (.source | test("Kassab")) and .compared > 20 and
+            .compared == (.rows | length) and .passed == (.rows | map(select(.pass)) | length)'
+        expect_json stdout '.morphometry.rows | map(select(.measure == "diameter")
+            | .published_order - .order) | length > 3 and (unique | length) == 1'
+        run_ok corcast info tree.swc --morphometry "$name"
+        expect_stdout 'ratio of diameters  *all  *all'
+        expect_stdout '[0-9]* of [0-9]* pass$'
+    done <names
+    run corcast info tree.swc --morphometry kassab
+    expect_status 2
+    expect_sentence "--morphometry: 'kassab' is not kassab-lad, kassab-lcx or kassab-rca"
+}
+
 test_a_tree_of_one_segment_has_stats_without_ratios() {
     printf '1 1 0 0 0 1.5 -1\n2 3 3 0 0 1.5 1\n' >tree.swc
     run_ok corcast info tree.swc --stats --json

@@ -5,6 +5,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -187,6 +188,118 @@ static void tables_of_a_tree_by_hand(void **state)
     assert_close(statistics.area_ratio.median, (1 + 1.02 * 1.02) / (1.9 * 1.9));
     statistics_release(&statistics);
     tree_release(&tree);
+}
+
+static void elements_spring_from_elements_of_their_own_and_higher_orders(void **state)
+{
+    (void)state;
+    Tree tree = make_tree(HAND_N, hand_parent, hand_radius, hand_length);
+    TreeStatistics statistics = statistics_of(&tree);
+    /* twig 7 from 5 with its heir 6; 4 and 5 from branch 2, and 8, 10, 11 from 3 with its heir 9 */
+    const double daughters[3][3] = {{1.0 / 6, 0, 0}, {2.5, 0, 0}, {0, 2, 0}};
+    for (int i = 0; i < 9; i++)
+        if (fabs(statistics.daughters[i] - daughters[i / 3][i % 3]) > 1e-12)
+            fail_msg("entry %d is %g", i, statistics.daughters[i]);
+    statistics_release(&statistics);
+    tree_release(&tree);
+}
+
+static char folder[] = "/tmp/corcast-statistics-XXXXXX", table_path[64];
+
+static void write_table(const char *text)
+{
+    FILE *file = fopen(table_path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static const MorphometryPair *find_pair(const MorphometryComparison *comparison,
+                                        MorphometryMeasure measure, int order)
+{
+    for (size_t i = 0; i < comparison->n; i++)
+        if (comparison->pair[i].measure == measure && comparison->pair[i].order == order)
+            return &comparison->pair[i];
+    return NULL;
+}
+
+/* The tree's orders 1 to 3, of diameters 1.97, 4 and 8 mm, are orders 2 to 4 of the table. */
+static void a_tree_stands_beside_the_published_orders_of_its_diameters(void **state)
+{
+    (void)state;
+    write_table("# the head\nsource Nobody (1999)\nratios 2.44 nan 2.1\n"
+                "1 1000 100 1.1 .1 80 2 .1 nan nan nan\n"
+                "2 1900 80 1.3 .7 24 1.2 .2 2.2 nan nan\n"
+                "3 4100 90 7.9 3 8 1.9 nan 2.4 .4 nan\n"
+                "4 8100 nan 13 nan 3 1 .2 2.3 .1 .3\n"
+                "5 16000 nan nan nan 1 3 nan nan nan nan\n");
+    Tree tree = make_tree(HAND_N, hand_parent, hand_radius, hand_length);
+    TreeStatistics statistics = statistics_of(&tree);
+    Morphometry table;
+    MorphometryComparison beside;
+    Err err;
+    must(morphometry_read(&table, table_path, &err), &err);
+    assert_string_equal(table.source, "Nobody (1999)");
+    assert_int_equal(table.n, 5);
+    must(morphometry_compare(&statistics, &table, &beside, &err), &err);
+    const struct {
+        MorphometryMeasure measure;
+        int order, published;
+        double value, mean, room;
+    } pairs[] = {
+        {COMPARED_DIAMETER, 1, 2, 2 * 5.92 / 6, 1.9, 0.08},
+        {COMPARED_DIAMETER, 3, 4, 8, 8.1, 0.25 * 8.1},
+        {COMPARED_LENGTH, 2, 3, 7.5, 7.9, 3},
+        {COMPARED_VESSELS, 2, 3, 1.5, 1.9, 0.25 * 1.9},
+        {COMPARED_DAUGHTERS, 1, 2, 1.0 / 6, 0.2, 0.05},
+        {COMPARED_DAUGHTERS_1_LESS, 2, 3, 2.5, 2.4, 0.6},
+        {COMPARED_DAUGHTERS_2_LESS, 3, 4, 0, 0.1, 0.025},
+        {COMPARED_NUMBER_RATIO, 0, 0, statistics.diameter_strahler_ratios.number, 2.44, 0.61}};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        const MorphometryPair *pair = find_pair(&beside, pairs[i].measure, pairs[i].order);
+        assert_non_null(pair);
+        assert_int_equal(pair->published_order, pairs[i].published);
+        assert_true(fabs(pair->value - pairs[i].value) < 1e-12);
+        assert_close(pair->published.mean, pairs[i].mean);
+        assert_close(pair->room, pairs[i].room);
+        assert_true(pair->agrees == (pairs[i].measure != COMPARED_DAUGHTERS_2_LESS));
+    }
+    /* not published, or not of a tree of three orders */
+    assert_null(find_pair(&beside, COMPARED_DIAMETER_RATIO, 0));
+    assert_null(find_pair(&beside, COMPARED_DAUGHTERS, 2));
+    assert_null(find_pair(&beside, COMPARED_DAUGHTERS_3_LESS, 3));
+    size_t agreeing = 0;
+    for (size_t i = 0; i < beside.n; i++)
+        agreeing += beside.pair[i].agrees;
+    assert_int_equal(beside.agreeing, agreeing);
+    free(beside.pair);
+    morphometry_release(&table);
+    statistics_release(&statistics);
+    tree_release(&tree);
+}
+
+static void rejects_a_table_of_morphometry_that_is_none(void **state)
+{
+    (void)state;
+    static const char *const wrong[][2] = {
+        {"", ": a table of morphometry needs a row for order 1"},
+        {"1 9 1 1 1 9 2 .1 nan nan nan\n", ": a table of morphometry needs a source"},
+        {"source X\n2 9 1 1 1 9 2 .1 nan nan nan\n",
+         ":2: the row begins with order 2 and diameter 9; it must be order 1, and a "
+         "diameter above 0"},
+        {"source X\n1 0 1 1 1 9 2 .1 nan nan nan\n", ":2: the row begins with order 1"},
+        {"source X\nratios 2 3\n", ":2: 'ratios 2 3' is neither a source, nor ratios"},
+        {"source X\nsource Y\n", ":2: 'source Y' is neither"}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        Morphometry table;
+        Err err;
+        write_table(wrong[i][0]);
+        assert_int_equal(morphometry_read(&table, table_path, &err), STATUS_INPUT);
+        size_t length = strlen(table_path);
+        if (strncmp(err.text, table_path, length) != 0 ||
+            strncmp(err.text + length, wrong[i][1], strlen(wrong[i][1])) != 0)
+            fail_msg("'%s' is not '%s'", err.text, wrong[i][1]);
+    }
 }
 
 /* Radii grow by the cube root of 2 and lengths by 1.5 from order to order. */
@@ -415,6 +528,21 @@ static void measured_trees_have_statistics(void **state)
     tree_release(&tree);
 }
 
+static int make_folder(void **state)
+{
+    (void)state;
+    if (!mkdtemp(folder))
+        return -1;
+    snprintf(table_path, sizeof table_path, "%s/table.txt", folder);
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    return remove(table_path) == 0 ? rmdir(folder) : -1;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -422,6 +550,9 @@ int main(void)
         cmocka_unit_test(the_bound_between_orders_lies_between_their_deviations),
         cmocka_unit_test(orders_have_converged_when_one_vessel_in_a_hundred_changes),
         cmocka_unit_test(tables_of_a_tree_by_hand),
+        cmocka_unit_test(elements_spring_from_elements_of_their_own_and_higher_orders),
+        cmocka_unit_test(a_tree_stands_beside_the_published_orders_of_its_diameters),
+        cmocka_unit_test(rejects_a_table_of_morphometry_that_is_none),
         cmocka_unit_test(a_perfect_tree_has_the_ratios_it_was_made_with),
         cmocka_unit_test(a_tree_in_many_small_steps_has_the_same_statistics),
         cmocka_unit_test(a_vessel_whose_radius_changes_has_the_mean_weighted_by_length),
@@ -429,5 +560,5 @@ int main(void)
         cmocka_unit_test(counts_add_up_and_orders_nest_in_random_forests),
         cmocka_unit_test(measured_trees_have_statistics),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
