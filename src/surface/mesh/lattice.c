@@ -18,9 +18,10 @@
 static const double clearance = 0.1;
 /* Nearer than this, by height, it is looked at how near a point is. */
 static const double nearly = 0.3;
-/* Of the height: where the search along an edge ends. The crossings stay on the edges: moved off
- * them, triangles may run into each other. */
-static const double found_height = 1e-6;
+/* Of an edge: the longest step towards a crossing whose end is not looked at. The crossings stay on
+ * the edges: moved off them, triangles may run into each other. */
+static const double last_step = 1e-4;
+enum { MOST_STEPS = 40 };
 
 typedef struct Cutter {
     Lattice *lattice;
@@ -34,8 +35,8 @@ void lattice_release(Lattice *lattice)
 {
     free(lattice->points);
     free(lattice->centers);
+    free(lattice->crossings);
     pairtable_release(&lattice->corners);
-    pairtable_release(&lattice->crossings);
     *lattice = (Lattice){0};
 }
 
@@ -55,7 +56,7 @@ static void clear_wall(const Cutter *cutter, const FieldPart *part, double side,
     Vec3 moved = vec3_add_scaled(point->x, gradient, by / steepness);
     double height = field_height(fieldpart_value(field, pool, part, moved).phi);
     if ((height < 0) == (inside >= 0) && height != 0)
-        *point = (LatticePoint){moved, height};
+        *point = (LatticePoint){moved, height, NO_CROSSING};
 }
 
 /* A point whose field is that of the active cell `from`. */
@@ -65,7 +66,7 @@ static Status add_point(Cutter *cutter, const ZoneCell *from, Vec3 x, uint32_t *
     TRY(mem_reserve(&lattice->points, &lattice->capacity, lattice->n_points + 1,
                     sizeof *lattice->points, "points of a junction", cutter->err));
     FieldValue value = fieldpart_value(&cutter->plan->field, &cutter->tree->kept, &from->part, x);
-    LatticePoint point = {x, field_height(value.phi)};
+    LatticePoint point = {x, field_height(value.phi), NO_CROSSING};
     if (fabs(point.height) < nearly)
         clear_wall(cutter, &from->part, zonetree_side(cutter->tree, from->level), &point);
     *number = (uint32_t)lattice->n_points;
@@ -102,41 +103,9 @@ static Status corner_at(Cutter *cutter, const ZoneCell *from, const uint32_t at[
     return STATUS_OK;
 }
 
-/* Where the wall crosses the way from a point inside to one outside: regula falsi, halving the
- * value of an end that stays (Illinois). */
-static Vec3 find_crossing(const Cutter *cutter, const FieldPart *part, const LatticePoint *inside,
-                          const LatticePoint *outside)
+static PatchPoint wall_point(const ZoneField *field, Vec3 x, const FieldValue *value, Vec3 gradient)
 {
-    double low = 0, high = 1, at_low = inside->height, at_high = outside->height, t = 0;
-    int last = 0;
-    for (int i = 0; i < 30; i++) {
-        t = low + (high - low) * (at_low / (at_low - at_high));
-        Vec3 x = vec3_add_scaled(inside->x, vec3_sub(outside->x, inside->x), t);
-        double height =
-            field_height(fieldpart_value(&cutter->plan->field, &cutter->tree->kept, part, x).phi);
-        if (fabs(height) < found_height)
-            break;
-        int side = height < 0 ? -1 : 1;
-        if (side < 0) {
-            low = t;
-            at_low = height;
-            at_high *= side == last ? 0.5 : 1;
-        } else {
-            high = t;
-            at_high = height;
-            at_low *= side == last ? 0.5 : 1;
-        }
-        last = side;
-    }
-    return vec3_add_scaled(inside->x, vec3_sub(outside->x, inside->x), t);
-}
-
-static PatchPoint wall_point(const Cutter *cutter, const FieldPart *part, Vec3 x)
-{
-    const ZoneField *field = &cutter->plan->field;
-    Vec3 gradient;
-    FieldValue value = fieldpart_gradient(field, &cutter->tree->kept, part, x, &gradient);
-    const ZoneTerm *term = &field->terms[value.largest];
+    const ZoneTerm *term = &field->terms[value->largest];
     return (PatchPoint){.x = x,
                         .normal = vec3_scale(gradient, -1 / vec3_length(gradient)),
                         .radius_mm = term->radius_mm,
@@ -144,19 +113,46 @@ static PatchPoint wall_point(const Cutter *cutter, const FieldPart *part, Vec3 x
                         .arm = NO_ARM};
 }
 
+/* Where the wall crosses the way from a point inside to one outside: Newton's steps from where it
+ * would if the height were linear, which it nearly is; a step that would leave what is left of the
+ * way halves that. A last step is made without looking where it ends. */
+static PatchPoint find_crossing(const Cutter *cutter, const FieldPart *part,
+                                const LatticePoint *inside, const LatticePoint *outside)
+{
+    const ZoneField *field = &cutter->plan->field;
+    Vec3 way = vec3_sub(outside->x, inside->x), gradient;
+    double low = 0, high = 1, t = inside->height / (inside->height - outside->height);
+    for (int i = 0;; i++) {
+        Vec3 x = vec3_add_scaled(inside->x, way, t);
+        FieldValue value = fieldpart_gradient(field, &cutter->tree->kept, part, x, &gradient);
+        double step = (FIELD_LEVEL - value.phi) / vec3_dot(gradient, way);
+        *(value.phi > FIELD_LEVEL ? &low : &high) = t;
+        t += step;
+        if (!(t > low && t < high))
+            t = 0.5 * (low + high);
+        else if (fabs(step) < last_step)
+            return wall_point(field, vec3_add_scaled(inside->x, way, t), &value, gradient);
+        if (i == MOST_STEPS)
+            return wall_point(field, x, &value, gradient);
+    }
+}
+
 /* The point of the wall between two points of the lattice, of which `a` is inside. */
 static Status crossing_of(Cutter *cutter, const ZoneCell *from, uint32_t a, uint32_t b,
                           uint32_t *number)
 {
-    uint32_t *place;
-    bool is_new;
-    TRY(pairtable_place(&cutter->lattice->crossings, pair_key(a, b), &place, &is_new, cutter->err));
-    if (is_new) {
-        const LatticePoint *points = cutter->lattice->points;
-        Vec3 x = find_crossing(cutter, &from->part, &points[a], &points[b]);
-        TRY(patch_add_point(cutter->patch, wall_point(cutter, &from->part, x), place, cutter->err));
-    }
-    *number = *place;
+    Lattice *lattice = cutter->lattice;
+    LatticePoint *points = lattice->points;
+    for (*number = points[a].first; *number != NO_CROSSING;
+         *number = lattice->crossings[*number].next)
+        if (lattice->crossings[*number].outside == b)
+            return STATUS_OK;
+    TRY(mem_reserve(&lattice->crossings, &lattice->crossing_capacity, cutter->patch->n_points + 1,
+                    sizeof *lattice->crossings, "points of a junction", cutter->err));
+    TRY(patch_add_point(cutter->patch, find_crossing(cutter, &from->part, &points[a], &points[b]),
+                        number, cutter->err));
+    lattice->crossings[*number] = (LatticeCrossing){b, points[a].first};
+    points[a].first = *number;
     return STATUS_OK;
 }
 
@@ -370,8 +366,7 @@ Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan
 {
     Cutter cutter = {lattice, tree, plan, patch, err};
     patch->n_points = patch->n_triangles = 0;
-    pairtable_clear(&lattice->corners);
-    pairtable_clear(&lattice->crossings);
+    TRY(pairtable_begin(&lattice->corners, tree->n_cells / 2, err));
     TRY(mem_reserve(&lattice->centers, &lattice->center_capacity, tree->n_cells,
                     sizeof *lattice->centers, "points of a junction", err));
     for (size_t i = 0; i < tree->n_cells; i++)

@@ -9,8 +9,17 @@
 /* A point where the field is known. */
 typedef struct LatticePoint {
     Vec3 x;
-    double height; /* field_height there: below 0 inside */
+    double height;  /* field_height there: below 0 inside */
+    uint32_t first; /* of a point inside: crossing on an edge that begins there, or NO_CROSSING */
 } LatticePoint;
+
+#define NO_CROSSING UINT32_MAX
+
+/* Where an edge crosses the wall: a point of the patch of the same number. */
+typedef struct LatticeCrossing {
+    uint32_t outside; /* where the edge ends */
+    uint32_t next;    /* crossing on an edge that begins at the same point, or NO_CROSSING */
+} LatticeCrossing;
 
 /* What one thread needs; zeroed before the first use, and kept for the next zone. */
 typedef struct Lattice {
@@ -18,8 +27,9 @@ typedef struct Lattice {
     size_t n_points, capacity;
     uint32_t *centers; /* points, one a cell; 0: not yet */
     size_t center_capacity;
-    PairTable corners;   /* place in the lattice -> point */
-    PairTable crossings; /* two points -> point of the patch */
+    LatticeCrossing *crossings;
+    size_t crossing_capacity;
+    PairTable corners; /* place in the lattice -> point */
 } Lattice;
 
 void lattice_release(Lattice *lattice);

@@ -1,11 +1,11 @@
-/* Open addressing with linear probing, at most half full; multiplication by the golden ratio
- * spreads the keys. */
+/* Open addressing with linear probing, at most half full; the slot is the upper bits of the key's
+ * product with the golden ratio, which depend on all of its bits. */
 #include "surface/mesh/pairtable.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static const size_t first_size = 1024;
+static const size_t least_size = 256;
 
 void pairtable_release(PairTable *table)
 {
@@ -13,29 +13,35 @@ void pairtable_release(PairTable *table)
     *table = (PairTable){0};
 }
 
-void pairtable_clear(PairTable *table)
+Status pairtable_begin(PairTable *table, size_t expected, Err *err)
 {
-    if (table->slots)
-        memset(table->slots, 0xff, (table->mask + 1) * sizeof *table->slots);
+    size_t size = least_size;
+    while (size < 2 * expected)
+        size *= 2;
+    TRY(mem_reserve(&table->slots, &table->capacity, size, sizeof *table->slots,
+                    "points of a junction", err));
+    memset(table->slots, 0xff, size * sizeof *table->slots);
     table->count = 0;
+    table->size = size;
+    table->shift = __builtin_clzll(size) + 1;
+    return STATUS_OK;
 }
 
 /* The slot that holds the key, or the free one where it belongs. */
 static PairSlot *slot_of(const PairTable *table, uint64_t key)
 {
-    size_t at = (size_t)((key * 0x9e3779b97f4a7c15u) >> 20) & table->mask;
+    size_t at = (size_t)(key * 0x9e3779b97f4a7c15u >> table->shift);
     while (table->slots[at].key != key && table->slots[at].key != UINT64_MAX)
-        at = (at + 1) & table->mask;
+        at = (at + 1) & (table->size - 1);
     return &table->slots[at];
 }
 
 static Status grow(PairTable *table, Err *err)
 {
-    size_t size = table->slots ? 2 * (table->mask + 1) : first_size;
-    PairTable larger = {.mask = size - 1, .count = table->count};
-    TRY(mem_calloc(&larger.slots, size, sizeof *larger.slots, "points of a junction", err));
-    memset(larger.slots, 0xff, size * sizeof *larger.slots);
-    for (size_t i = 0; table->slots && i <= table->mask; i++)
+    PairTable larger = {0};
+    TRY(pairtable_begin(&larger, table->size, err));
+    larger.count = table->count;
+    for (size_t i = 0; i < table->size; i++)
         if (table->slots[i].key != UINT64_MAX)
             *slot_of(&larger, table->slots[i].key) = table->slots[i];
     free(table->slots);
@@ -45,7 +51,7 @@ static Status grow(PairTable *table, Err *err)
 
 Status pairtable_place(PairTable *table, uint64_t key, uint32_t **value, bool *is_new, Err *err)
 {
-    if (!table->slots || 2 * table->count > table->mask)
+    if (2 * table->count >= table->size)
         TRY(grow(table, err));
     PairSlot *slot = slot_of(table, key);
     *is_new = slot->key == UINT64_MAX;
@@ -59,8 +65,6 @@ Status pairtable_place(PairTable *table, uint64_t key, uint32_t **value, bool *i
 
 uint32_t *pairtable_find(const PairTable *table, uint64_t key)
 {
-    if (!table->slots)
-        return NULL;
     PairSlot *slot = slot_of(table, key);
     return slot->key == UINT64_MAX ? NULL : &slot->value;
 }

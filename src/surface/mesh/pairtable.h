@@ -10,15 +10,16 @@ typedef struct PairSlot {
     uint32_t value;
 } PairSlot;
 
-/* Zeroed: empty. Release with pairtable_release. */
+/* Zeroed, and made ready by pairtable_begin. Release with pairtable_release. */
 typedef struct PairTable {
     PairSlot *slots; /* owned */
-    size_t count, mask;
+    size_t count, size, capacity;
+    int shift; /* 64 less the binary logarithm of the size */
 } PairTable;
 
 void pairtable_release(PairTable *table);
-/* Empties it but keeps its room. */
-void pairtable_clear(PairTable *table);
+/* Empties it, with room for so many keys before it grows; keeps what memory it has. */
+MUST_CHECK Status pairtable_begin(PairTable *table, size_t expected, Err *err);
 
 /* Where the value of a key is kept, in *value (borrowed until the next call); *is_new tells that it
  * was put there now, as 0. O(1). */

@@ -154,7 +154,7 @@ Status planecut_make(PlaneCutter *cutter, const ZonePlan *plan, double ratio, Pa
 {
     Cut cut = {cutter, patch, plan->arms, plan->n_arms, patch->n_triangles};
     *sound = true;
-    pairtable_clear(&cutter->crossings);
+    TRY(pairtable_begin(&cutter->crossings, 0, err));
     TRY(mem_reserve(&cutter->behind, &cutter->behind_capacity, patch->n_points,
                     sizeof *cutter->behind, "points of a junction", err));
     for (size_t k = 0; k < cut.n_arms; k++)

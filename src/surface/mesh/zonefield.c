@@ -4,6 +4,7 @@
  * interval of width 2 rho, and largest at the point of that nearest to the middle. */
 #include "surface/mesh/zonefield.h"
 
+#include "surface/mesh/gauss.h"
 #include <float.h>
 #include <stdlib.h>
 
@@ -37,7 +38,7 @@ static TermPlace place_in(const ZoneTerm *term, Vec3 x)
 
 static double clamped_erf(double x)
 {
-    return x > saturated ? 1 : x < -saturated ? -1 : erf(x);
+    return x > saturated ? 1 : x < -saturated ? -1 : fast_erf(x);
 }
 
 static double axial(double u, double v)
@@ -56,7 +57,7 @@ static double value_at(const TermPlace *place)
 {
     if (distance2(place) > out_of_reach * out_of_reach)
         return 0;
-    return exp(-place->e2) * axial(place->u, place->v);
+    return exp_minus(place->e2) * axial(place->u, place->v);
 }
 
 double zoneterm_value(const ZoneTerm *term, Vec3 x)
@@ -70,7 +71,8 @@ static Vec3 term_gradient(const ZoneTerm *term, const TermPlace *place, double v
 {
     double slope = 0;
     if (fabs(place->u) < saturated || fabs(place->v) < saturated)
-        slope = exp(-place->e2 - place->u * place->u) - exp(-place->e2 - place->v * place->v);
+        slope =
+            exp_minus(place->e2 + place->u * place->u) - exp_minus(place->e2 + place->v * place->v);
     return vec3_add_scaled(vec3_scale(place->across, -2 * term->k * term->k * value), term->axis,
                            term->k * inv_sqrt_pi * slope);
 }
@@ -79,7 +81,7 @@ static double upper_bound(const TermPlace *place, double rho)
 {
     double across = fmax(0, sqrt(place->e2) - rho), off = 0.5 * (place->v - place->u);
     double towards = fmin(rho, fabs(off)) * (off > 0 ? 1 : -1);
-    return exp(-across * across) * axial(place->u + towards, place->v - towards);
+    return exp_minus(across * across) * axial(place->u + towards, place->v - towards);
 }
 
 static double lower_bound(const TermPlace *place, double rho)
@@ -89,7 +91,7 @@ static double lower_bound(const TermPlace *place, double rho)
         return 0; /* less than 0.02, which no sum needs */
     double one = axial(place->u + rho, place->v - rho),
            other = axial(place->u - rho, place->v + rho);
-    return exp(-across * across) * fmax(0, fmin(one, other));
+    return exp_minus(across * across) * fmax(0, fmin(one, other));
 }
 
 void partpool_release(PartPool *pool)

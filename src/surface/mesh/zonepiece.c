@@ -98,8 +98,8 @@ static Status follow_edges(const Maker *maker, size_t *n_edges, bool *sound)
     const Patch *patch = &worker->patch;
     TRY(mem_reserve(&worker->next, &worker->next_capacity, patch->n_points, sizeof *worker->next,
                     "points of a junction", maker->err));
-    pairtable_clear(&worker->edges);
     size_t corners = 3 * patch->n_triangles, open = 0;
+    TRY(pairtable_begin(&worker->edges, corners, maker->err));
     *sound = true;
     for (size_t i = 0; i < corners; i++) {
         const uint32_t *at = patch->triangles[i / 3].at;
