@@ -3,6 +3,7 @@
 #include "base/slab.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct Slab {
     struct Slab *next;
@@ -22,6 +23,14 @@ void *slabs_take(Slabs *slabs, size_t size, size_t slab)
     void *taken = slabs->last->bytes + slabs->used;
     slabs->used += size;
     return taken;
+}
+
+char *slabs_text(Slabs *slabs, const char *text)
+{
+    enum { TEXT_SLAB = 1 << 16 };
+    size_t size = strlen(text) + 1;
+    char *copy = slabs_take(slabs, (size + 3) & ~(size_t)3, TEXT_SLAB);
+    return copy ? memcpy(copy, text, size) : NULL;
 }
 
 void slabs_release(Slabs *slabs)

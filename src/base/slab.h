@@ -13,6 +13,8 @@ typedef struct Slabs {
 /* Takes `size` bytes, a multiple of 4, aligned to 4 and of any content; where a new slab is needed
  * it has `slab` bytes or more. NULL when there is no memory. Valid until slabs_release. */
 void *slabs_take(Slabs *slabs, size_t size, size_t slab);
+/* A copy of `text`, or NULL when there is no memory. Valid until slabs_release. */
+char *slabs_text(Slabs *slabs, const char *text);
 void slabs_release(Slabs *slabs);
 
 #endif

@@ -11,7 +11,9 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "tree/builder.h"   // IWYU pragma: export
+#include "tree/graph.h"     // IWYU pragma: export
 #include "tree/meta.h"      // IWYU pragma: export
+#include "tree/reading.h"   // IWYU pragma: export
 #include "tree/viscosity.h" // IWYU pragma: export
 #include <stdbool.h>
 #include <stdint.h>

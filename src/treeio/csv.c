@@ -189,7 +189,7 @@ Status csv_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
 {
     (void)size;
     Reader reader = {.builder = builder};
-    Status status = lines_read(builder, bytes, read_line, &reader, err);
+    Status status = lines_read(builder->name, bytes, read_line, &reader, err);
     free(reader.columns.column);
     free(reader.value);
     return status;

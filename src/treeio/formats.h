@@ -1,4 +1,13 @@
-/* The formats of the table in treeio.c: what each does, and what their texts share. */
+/* The formats of the table in treeio.c: what each does, and what their texts share.
+ *
+ * A new format is a file of this room and a row of that table. It is told by its extension; where
+ * several share one, and on standard input, by its TreeDetect. One whose file is a tree, with ids
+ * and parents, has a TreeRead, which hands nodes to a TreeBuilder [tree/builder.h]; one whose file
+ * is a network of points and lines has a GraphRead, which hands these to a Graph [tree/graph.h] as
+ * the file has them: treeio.c has it made a tree. Neither scales: options of the user are applied
+ * to what is handed over, but for those that only the reader can apply (radius_array, columns,
+ * ...), which it finds in graph->options and its row lists in `takes`. XML is parsed by
+ * treeio/xml.h; what is assumed is told to reading_note. A text is cut into lines by lines_read. */
 #ifndef CORCAST_TREEIO_FORMATS_H
 #define CORCAST_TREEIO_FORMATS_H
 
@@ -10,6 +19,8 @@ typedef bool TreeDetect(const char *start);
 /* Hands the file's bytes (zero-terminated; may be changed) to the builder. A text has LF at the
  * ends of its lines. STATUS_INPUT with file and record. */
 typedef Status TreeRead(TreeBuilder *builder, char *bytes, size_t size, Err *err);
+/* Likewise to a graph, in the file's own unit. */
+typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
 /* Writes a tree that tree_check accepts; errors of the stream are the caller's matter. */
 typedef Status TreeWrite(const Tree *tree, FILE *stream, Err *err);
 
@@ -20,9 +31,9 @@ TreeWrite swc_write, csv_write;
 /* Takes in one line (zero-terminated, without its end; may be changed), the file's `number`th.
  * STATUS_INPUT without file and line. */
 typedef Status ReadLine(void *reader, size_t number, char *line, Err *err);
-/* Hands all lines of a text to `read`, and says of which it was that it refuses. */
-MUST_CHECK Status lines_read(const TreeBuilder *builder, char *text, ReadLine *read, void *reader,
-                             Err *err);
+/* Hands all lines of a text to `read`, and says of which of the file `name` it was that it refuses.
+ */
+MUST_CHECK Status lines_read(const char *name, char *text, ReadLine *read, void *reader, Err *err);
 
 /* Cuts a line in place into its fields [text_field]; returns how many there are, of which the first
  * `most` go to `field`. */

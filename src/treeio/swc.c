@@ -190,7 +190,7 @@ Status swc_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
 {
     (void)size;
     Reader reader = {.builder = builder, .lowest_id = 1};
-    TRY(lines_read(builder, bytes, read_line, &reader, err));
+    TRY(lines_read(builder->name, bytes, read_line, &reader, err));
     if (reader.lowest_id == 0 && builder->n_shares > 0)
         return err_set(err, STATUS_INPUT,
                        "%s: the ids start at 0, but a flow_share names nodes by ids from 1 on",

@@ -7,11 +7,12 @@
 
 enum { SHOWN = 40 /* characters of a bad value */ };
 
-Status lines_read(const TreeBuilder *builder, char *text, ReadLine *read, void *reader, Err *err)
+Status lines_read(const char *name, char *text, ReadLine *read, void *reader, Err *err)
 {
+    const TreeBuilder named = {.name = name};
     size_t number = 1;
     for (char *line; (line = text_line(&text)); number++)
-        TRY(builder_blame(builder, number, read(reader, number, line, err), err));
+        TRY(builder_blame(&named, number, read(reader, number, line, err), err));
     return STATUS_OK;
 }
 

@@ -10,14 +10,40 @@
 
 enum { MAX_EXTENSIONS = 3 };
 
+/* Options of reading that not all formats take. */
+enum {
+    UNIT = 1,          /* the file does not say its unit, or not so that it must be believed */
+    VOXELS = 2,        /* its coordinates may be voxels */
+    MERGING = 4,       /* points may share a place */
+    LOOPS = 8,         /* it may have loops */
+    RADIUS_ARRAY = 16, /* it has named arrays, one of which holds the radii */
+    GRAPHML_KEYS = 32,
+    COLUMNS = 64, /* it is a table whose columns may have any name */
+    EDGES = 128,  /* it may be of points alone, with a second file for the lines */
+    ANY_GRAPH = UNIT | VOXELS | MERGING | LOOPS
+};
+
+/* What options are called in sentences. */
+static const struct {
+    unsigned bit;
+    const char *field;
+} option_fields[] = {
+    {UNIT, "input_unit"},           {VOXELS, "voxel_size"},
+    {MERGING, "merge_tolerance"},   {LOOPS, "break_loops"},
+    {RADIUS_ARRAY, "radius_array"}, {GRAPHML_KEYS, "graphml_keys"},
+    {COLUMNS, "columns"},           {EDGES, "edges"},
+};
+
 typedef struct Format {
     const char *name, *description;
     const char *extensions[MAX_EXTENSIONS + 1]; /* without the '.'; ends with NULL */
     bool no_columns;                            /* there is no place for a tree's columns */
+    unsigned takes;                             /* bits of the options of reading */
     FileForm form;
-    TreeDetect *detect; /* NULL: nothing tells */
-    TreeRead *read;
-    TreeWrite *write;
+    TreeDetect *detect;    /* NULL: nothing tells */
+    TreeRead *read;        /* one of a tree ... */
+    GraphRead *read_graph; /* ... or this one of a network */
+    TreeWrite *write;      /* NULL: the format is only read */
 } Format;
 
 /* As many rows of SWC as there are ids, of the longest numbers, have 3 GB. */
@@ -26,6 +52,7 @@ typedef struct Format {
 static const Format formats[] = {
     {.name = "SWC",
      .no_columns = true,
+     .takes = UNIT | VOXELS,
      .description = "id type x y z radius parent, a node a line, in mm",
      .extensions = {"swc"},
      .form = {.name = "an SWC file", .most_bytes = MOST_BYTES, .is_text = true},
@@ -41,8 +68,6 @@ static const Format formats[] = {
 };
 
 enum { N_FORMATS = sizeof formats / sizeof *formats };
-
-static const FileForm any_form = {.name = "a tree file", .most_bytes = MOST_BYTES, .is_text = true};
 
 static bool is_standard(const char *path)
 {
@@ -84,6 +109,27 @@ static const Format *find_format(const char *path, const char *start)
     return first;
 }
 
+/* The first format that a tree is written in to a file of this name; NULL when there is none. */
+static const Format *find_written(const char *path)
+{
+    for (size_t i = 0; i < N_FORMATS; i++)
+        if (formats[i].write && may_be(&formats[i], path))
+            return &formats[i];
+    return NULL;
+}
+
+/* Whether a file may begin so whose format only its bytes tell: what is no text is told by them. */
+static bool may_begin(const char *start, size_t count)
+{
+    bool is_binary = memchr(start, '\0', count) != NULL;
+    for (size_t i = 0; is_binary && i < N_FORMATS; i++)
+        is_binary = formats[i].form.is_text || !formats[i].detect || !formats[i].detect(start);
+    return !is_binary;
+}
+
+static const FileForm any_form = {
+    .name = "a tree file", .most_bytes = MOST_BYTES, .begins = may_begin};
+
 const char *tree_format_name(size_t i)
 {
     return i < N_FORMATS ? formats[i].name : NULL;
@@ -101,7 +147,7 @@ const char *tree_format_description(size_t i)
 
 bool tree_format_has_columns(const char *path)
 {
-    const Format *format = find_format(path, NULL);
+    const Format *format = find_written(path);
     return format && !format->no_columns;
 }
 
@@ -110,12 +156,25 @@ bool tree_format_known(const char *path)
     return find_format(path, NULL) != NULL;
 }
 
+/* Each extension once: several formats may share one. */
+static void list_extensions(Text *text, bool written)
+{
+    const char *listed[N_FORMATS];
+    size_t n = 0;
+    for (size_t i = 0; i < N_FORMATS; i++) {
+        bool is_new = !written || formats[i].write;
+        for (size_t k = 0; k < n && is_new; k++)
+            is_new = strcmp(listed[k], formats[i].extensions[0]) != 0;
+        if (is_new)
+            listed[n++] = formats[i].extensions[0];
+    }
+    for (size_t k = 0; k < n; k++)
+        text_printf(text, "%s.%s", k == 0 ? "" : k + 1 < n ? ", " : " or ", listed[k]);
+}
+
 void tree_format_list(Text *text)
 {
-    for (size_t i = 0; i < N_FORMATS; i++) {
-        const char *between = i + 1 < N_FORMATS ? ", " : " or ";
-        text_printf(text, "%s.%s", i ? between : "", formats[i].extensions[0]);
-    }
+    list_extensions(text, false);
 }
 
 static void suggest_extension(const char *path, Err *err)
@@ -128,39 +187,200 @@ static void suggest_extension(const char *path, Err *err)
     suggestion_add(&suggestion, ".", err);
 }
 
-Status tree_format_check(const char *path, Err *err)
+static Status refuse_extension(const char *path, bool written, Err *err)
 {
-    if (tree_format_known(path))
-        return STATUS_OK;
     Text known = TEXT_INIT;
-    tree_format_list(&known);
+    list_extensions(&known, written);
     Status status = text_check(&known, err);
     if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE,
-                         "%s: not the name of a tree file, which ends in %s, or is - for standard "
-                         "input or output",
-                         path, text_chars(&known));
+        status =
+            written && tree_format_known(path)
+                ? err_set(err, STATUS_USAGE, "%s: %s files are only read; a tree is written to %s",
+                          path, find_format(path, NULL)->name, text_chars(&known))
+                : err_set(err, STATUS_USAGE,
+                          "%s: not the name of a tree file, which ends in %s, or is - for "
+                          "standard input or output",
+                          path, text_chars(&known));
     text_release(&known);
     if (status == STATUS_USAGE)
         suggest_extension(path, err);
     return status;
 }
 
+Status tree_format_check(const char *path, Err *err)
+{
+    return find_written(path) ? STATUS_OK : refuse_extension(path, true, err);
+}
+
+/* ---- reading ---- */
+
+/* The options that are given, as bits. */
+static unsigned given_options(const ReadOptions *options)
+{
+    return (options->has_unit ? UNIT : 0u) |
+           (options->has_voxel_size || options->voxel_radii ? VOXELS : 0u) |
+           (options->merge_tolerance_mm > 0 ? MERGING : 0u) | (options->break_loops ? LOOPS : 0u) |
+           (options->radius_array ? RADIUS_ARRAY : 0u) |
+           (options->graphml_keys ? GRAPHML_KEYS : 0u) | (options->columns ? COLUMNS : 0u) |
+           (options->edges ? EDGES : 0u);
+}
+
+/* Appends "GXL, VTK and VTP": the formats that take an option. */
+static void put_takers(unsigned bit, Text *text)
+{
+    size_t left = 0;
+    for (size_t i = 0; i < N_FORMATS; i++)
+        left += (formats[i].takes & bit) != 0;
+    for (size_t i = 0; i < N_FORMATS; i++)
+        if (formats[i].takes & bit) {
+            const char *between = --left > 1 ? ", " : left == 1 ? " and " : "";
+            text_printf(text, "%s%s", formats[i].name, between);
+        }
+}
+
+static Status refuse_option(const Format *format, const char *name, unsigned bit, Err *err)
+{
+    size_t k = 0;
+    while (option_fields[k].bit != bit)
+        k++;
+    Text takers = TEXT_INIT;
+    put_takers(bit, &takers);
+    Status status = text_check(&takers, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE, "`%s` is for files of %s; %s is read as %s",
+                         option_fields[k].field, text_chars(&takers), name, format->name);
+    text_release(&takers);
+    return status;
+}
+
+static Status check_options(const Format *format, const char *name, const ReadOptions *options,
+                            Err *err)
+{
+    unsigned refused = given_options(options) & ~format->takes;
+    return refused ? refuse_option(format, name, refused & -refused, err) : STATUS_OK;
+}
+
+/* The format of this extension. */
+static Status format_called(const char *extension, const Format **format, Err *err)
+{
+    for (size_t i = 0; i < N_FORMATS; i++)
+        if (strcasecmp(formats[i].extensions[0], extension) == 0 ||
+            strcasecmp(formats[i].name, extension) == 0) {
+            *format = &formats[i];
+            return STATUS_OK;
+        }
+    Text known = TEXT_INIT;
+    list_extensions(&known, false);
+    Status status = text_check(&known, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE, "`input_format` '%s': known are %s, without the dot",
+                         extension, text_chars(&known));
+    text_release(&known);
+    return status;
+}
+
+/* A file, read and told. */
+typedef struct Source {
+    const char *name; /* for sentences */
+    const Format *format;
+    char *bytes; /* owned */
+    size_t size;
+} Source;
+
+static Status open_source(Source *source, const char *path, const char *format_name, Err *err)
+{
+    const Format *format = NULL;
+    if (format_name)
+        TRY(format_called(format_name, &format, err));
+    else if (!tree_format_known(path))
+        return refuse_extension(path, false, err);
+    else if (count_formats(path) == 1)
+        format = find_format(path, NULL);
+    *source = (Source){.name = is_standard(path) ? "standard input" : path, .format = format};
+    TRY(file_read(path, format ? &format->form : &any_form, &source->bytes, &source->size, err));
+    if (format)
+        return STATUS_OK;
+    source->format = find_format(path, source->bytes);
+    if (!source->format->form.is_text)
+        return STATUS_OK;
+    return file_to_text(source->name, &source->format->form, source->bytes, &source->size, err);
+}
+
+static Status read_graph(const Source *source, TreeBuilder *builder, const ReadOptions *options,
+                         TreeReading *reading, Err *err)
+{
+    Graph graph = {.name = source->name, .options = options, .reading = reading};
+    Status status = source->format->read_graph(&graph, source->bytes, source->size, err);
+    if (status == STATUS_OK)
+        status = graph_build(&graph, builder, err);
+    graph_release(&graph);
+    return status;
+}
+
+/* What options say of lengths, of a tree that a TreeRead has read in mm. */
+static void scale_tree(Tree *tree, const ReadOptions *options, TreeReading *reading)
+{
+    reading->unit = options->has_unit ? options->unit : LENGTH_MM;
+    reading->unit_said = options->has_unit;
+    reading->voxels = options->has_voxel_size;
+    LengthScale scale = length_scale(options, LENGTH_MM);
+    if (!options->has_unit && !options->has_voxel_size)
+        return;
+    for (size_t i = 0; i < tree->n; i++) {
+        tree->position[i] = length_scaled(&scale, tree->position[i]);
+        tree->radius_mm[i] *= scale.radius;
+    }
+}
+
+static Status read_source(const Source *source, Tree *tree, const ReadOptions *options,
+                          TreeReading *reading, Err *err)
+{
+    TreeBuilder builder = {.name = source->name};
+    const Format *format = source->format;
+    Tree made;
+    Status status = format->read ? format->read(&builder, source->bytes, source->size, err)
+                                 : read_graph(source, &builder, options, reading, err);
+    if (status == STATUS_OK)
+        status = builder_build(&builder, &made, err);
+    builder_release(&builder);
+    TRY(status);
+    if (format->read)
+        scale_tree(&made, options, reading);
+    status = tree_check(&made, err);
+    if (status == STATUS_OK)
+        status = reading_measure(reading, &made, err);
+    if (status == STATUS_OK)
+        *tree = made;
+    else
+        tree_release(&made);
+    return status;
+}
+
+Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options, TreeReading *reading,
+                    Err *err)
+{
+    static const ReadOptions nothing = {0};
+    const ReadOptions *said = options ? options : &nothing;
+    TreeReading made = {0};
+    Source source = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(open_source(&source, path, said->format, err));
+    made.format = source.format->name;
+    TRY_GOTO(check_options(source.format, source.name, said, err));
+    TRY_GOTO(read_source(&source, tree, said, &made, err));
+    if (reading) {
+        *reading = made;
+        made = (TreeReading){0};
+    }
+done:
+    reading_release(&made);
+    free(source.bytes);
+    return status;
+}
+
 Status tree_read(Tree *tree, const char *path, Err *err)
 {
-    size_t size = 0;
-    char *bytes = NULL;
-    TRY(tree_format_check(path, err));
-    bool one = count_formats(path) == 1;
-    TRY(file_read(path, one ? &find_format(path, NULL)->form : &any_form, &bytes, &size, err));
-    const Format *format = find_format(path, bytes);
-    TreeBuilder builder = {.name = is_standard(path) ? "standard input" : path};
-    Status status = format->read(&builder, bytes, size, err);
-    if (status == STATUS_OK)
-        status = builder_build(&builder, tree, err);
-    builder_release(&builder);
-    free(bytes);
-    return status;
+    return tree_read_as(tree, path, NULL, NULL, err);
 }
 
 Status tree_write(const Tree *tree, const char *path, Err *err)
@@ -169,7 +389,7 @@ Status tree_write(const Tree *tree, const char *path, Err *err)
     TRY(tree_format_check(path, err));
     TRY(tree_check(tree, err));
     TRY(outfile_open(&file, path, err));
-    Status status = find_format(path, NULL)->write(tree, file.stream, err);
+    Status status = find_written(path)->write(tree, file.stream, err);
     if (status == STATUS_OK)
         return outfile_commit(&file, err);
     outfile_discard(&file);

@@ -13,7 +13,7 @@
 
 /* Whether a path has the extension of a tree format, in capitals or not, or is "-". */
 bool tree_format_known(const char *path);
-/* STATUS_USAGE, saying which there are, unless tree_format_known. */
+/* STATUS_USAGE, saying which there are, unless a tree can be written to such a path. */
 MUST_CHECK Status tree_format_check(const char *path, Err *err);
 /* Whether the format of such a path has a place for a tree's columns. */
 bool tree_format_has_columns(const char *path);
@@ -34,9 +34,15 @@ void tree_format_list(Text *text);
  * that terminal_flow contradicts, and for a file without nodes. */
 MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
 
+/* Likewise, as the options say (NULL: nothing), and says what was found in *reading (owned;
+ * reading_release; may be NULL). STATUS_USAGE, naming it, for an option that the file's format does
+ * not take, and for a format that there is not; STATUS_INPUT also as graph_build. */
+MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options,
+                               TreeReading *reading, Err *err);
+
 /* Writes what is known of the tree, then its nodes in array order; every number reads back to the
- * same double. Columns are left out where tree_format_has_columns says so. STATUS_USAGE for an
- * unknown extension, STATUS_INPUT for a tree that tree_check refuses. */
+ * same double. Columns are left out where tree_format_has_columns says so. STATUS_USAGE as
+ * tree_format_check, STATUS_INPUT for a tree that tree_check refuses. */
 MUST_CHECK Status tree_write(const Tree *tree, const char *path, Err *err);
 
 #endif

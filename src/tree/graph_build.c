@@ -1,0 +1,532 @@
+/* The lines that are left after merging are sorted, thickest first, when there are loops, and taken
+ * one by one unless they close a loop (Kruskal, Proc. AMS 7 (1956), 48): what is left out is then
+ * the thinnest line of each loop. Each component's root is the first of the points that rank
+ * highest: said to be an inlet, one that directed lines lead away from alone, an end, any; of equal
+ * rank the thickest. From there a search in breadth directs the lines. */
+#include "tree/graph_parts.h"
+#include "tree/tree.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const ReadOptions no_options = {0};
+
+/* A line of the graph between kept points. */
+typedef struct Link {
+    uint32_t a, b;
+    uint32_t line;    /* of the graph */
+    double thickness; /* mm */
+} Link;
+
+typedef struct Building {
+    Graph *graph;
+    const ReadOptions *options;
+    TreeReading *reading;
+    uint32_t *place; /* the kept point of each point */
+    Link *link;
+    size_t n_links;
+    uint32_t *component; /* of each kept point, the first of its members */
+    uint32_t *degree;    /* links of each kept point */
+    uint32_t *first;     /* where each point's links begin in `at`; one more at the end */
+    uint32_t *at;
+    uint32_t *parent; /* of each kept point the parent + 1, 0: it has none */
+    uint32_t *above;  /* of each kept point the link to its parent */
+} Building;
+
+static void release(Building *building)
+{
+    free(building->place);
+    free(building->link);
+    free(building->component);
+    free(building->degree);
+    free(building->first);
+    free(building->at);
+    free(building->parent);
+    free(building->above);
+}
+
+/* ---- lines ---- */
+
+static double thickness_of(const Graph *graph, const GraphLine *line)
+{
+    if (!isnan(line->radius))
+        return line->radius;
+    double a = graph->point[line->a].radius, b = graph->point[line->b].radius;
+    return isnan(a) || isnan(b) ? 0 : fmin(a, b);
+}
+
+static Status link_lines(Building *building, Err *err)
+{
+    const Graph *graph = building->graph;
+    TRY(mem_calloc(&building->link, graph->n_lines, sizeof *building->link, "lines", err));
+    for (size_t i = 0; i < graph->n_lines; i++) {
+        const GraphLine *line = &graph->line[i];
+        if (line->a >= graph->n_points || line->b >= graph->n_points)
+            return graph_blame(graph, GRAPH_LINES, line->record,
+                               err_set(err, STATUS_INPUT,
+                                       "the line leads to point %zu; there are %zu points, "
+                                       "numbered from 0 on",
+                                       line->a > line->b ? line->a : line->b, graph->n_points),
+                               err);
+        Link link = {building->place[line->a], building->place[line->b], (uint32_t)i,
+                     thickness_of(graph, line)};
+        if (link.a == link.b)
+            building->reading->without_length++;
+        else
+            building->link[building->n_links++] = link;
+    }
+    return STATUS_OK;
+}
+
+static int order_lines(const void *a, const void *b)
+{
+    const Link *one = a, *other = b;
+    return one->line < other->line ? -1 : 1;
+}
+
+static int thickest_first(const void *a, const void *b)
+{
+    const Link *one = a, *other = b;
+    int order = number_order(other->thickness, one->thickness);
+    return order ? order : order_lines(a, b);
+}
+
+/* Both ends as one number, whichever way the link goes. */
+static uint64_t pair_of(const Link *link)
+{
+    uint32_t low = link->a < link->b ? link->a : link->b;
+    return (uint64_t)low << 32 | (link->a ^ link->b ^ low);
+}
+
+/* Of the links of one pair of points the first stays: a table of slots with linear probing holds
+ * numbers of those that are kept. */
+static Status drop_repeated(Building *building, Err *err)
+{
+    size_t slots = 64, kept = 0;
+    while (slots < 2 * building->n_links)
+        slots *= 2;
+    uint32_t *slot = NULL;
+    TRY(mem_calloc(&slot, slots, sizeof *slot, "slots for lines", err));
+    Link *link = building->link;
+    for (size_t i = 0; i < building->n_links; i++) {
+        uint64_t pair = pair_of(&link[i]), hash = pair * 0x9e3779b97f4a7c15u;
+        size_t at = (hash ^ hash >> 32) & (slots - 1);
+        while (slot[at] && pair_of(&link[slot[at] - 1]) != pair)
+            at = (at + 1) & (slots - 1);
+        if (slot[at])
+            continue;
+        link[kept++] = link[i];
+        slot[at] = (uint32_t)kept;
+    }
+    free(slot);
+    building->reading->repeated = building->n_links - kept;
+    building->n_links = kept;
+    return STATUS_OK;
+}
+
+/* ---- loops ---- */
+
+static Status note_cut(Building *building, const Link *link, Err *err)
+{
+    TreeReading *reading = building->reading;
+    const Graph *graph = building->graph;
+    if (reading->n_cuts == READ_MAX_CUTS)
+        return STATUS_OK;
+    if (!reading->cut)
+        TRY(mem_calloc(&reading->cut, READ_MAX_CUTS, sizeof *reading->cut, "cuts", err));
+    Vec3 a = graph->point[link->a].position, b = graph->point[link->b].position;
+    reading->cut[reading->n_cuts++] =
+        (ReadCut){graph->line[link->line].record, vec3_scale(vec3_add(a, b), 0.5), link->thickness};
+    return STATUS_OK;
+}
+
+/* Takes links in their order, and moves those that close loops to the end; *kept are left. */
+static void span(Building *building, size_t *kept)
+{
+    uint32_t *component = building->component;
+    Link *link = building->link;
+    for (uint32_t i = 0; i < building->graph->n_points; i++)
+        component[i] = i;
+    *kept = 0;
+    for (size_t i = 0; i < building->n_links; i++) {
+        uint32_t a = graph_first(component, link[i].a), b = graph_first(component, link[i].b);
+        if (a == b)
+            continue;
+        component[a < b ? b : a] = a < b ? a : b;
+        Link taken = link[i];
+        link[i] = link[*kept];
+        link[(*kept)++] = taken;
+    }
+}
+
+static Status refuse_loops(const Building *building, const Link *link, size_t loops, Err *err)
+{
+    const Graph *graph = building->graph;
+    Vec3 at = graph->point[link->a].position;
+    return graph_blame(
+        graph, GRAPH_LINES, graph->line[link->line].record,
+        err_set(err, STATUS_INPUT,
+                "the line closes a loop at %g, %g, %g mm, one of %zu; a tree has none, and "
+                "`break_loops` cuts each at its thinnest line",
+                at.x, at.y, at.z, loops),
+        err);
+}
+
+static Status cut_loops(Building *building, Err *err)
+{
+    size_t kept;
+    TRY(mem_calloc(&building->component, building->graph->n_points, sizeof *building->component,
+                   "components", err));
+    span(building, &kept);
+    size_t loops = building->reading->loops = building->n_links - kept;
+    if (loops > 0 && !building->options->break_loops)
+        return refuse_loops(building, &building->link[kept], loops, err);
+    if (loops > 0) {
+        qsort(building->link, building->n_links, sizeof *building->link, thickest_first);
+        span(building, &kept);
+        qsort(building->link + kept, loops, sizeof *building->link, order_lines);
+        for (size_t i = kept; i < building->n_links; i++)
+            TRY(note_cut(building, &building->link[i], err));
+    }
+    building->n_links = kept;
+    return STATUS_OK;
+}
+
+/* ---- roots ---- */
+
+static Status list_links(Building *building, Err *err)
+{
+    size_t n = building->graph->n_points;
+    TRY(mem_calloc(&building->degree, n, sizeof *building->degree, "degrees", err));
+    TRY(mem_calloc(&building->first, n, sizeof *building->first, "links of points", err));
+    TRY(mem_calloc(&building->at, 2 * building->n_links, sizeof *building->at, "links of points",
+                   err));
+    for (size_t i = 0; i < building->n_links; i++) {
+        building->degree[building->link[i].a]++;
+        building->degree[building->link[i].b]++;
+    }
+    uint32_t end = 0;
+    for (size_t i = 0; i < n; i++)
+        building->first[i] = end += building->degree[i];
+    for (size_t i = building->n_links; i-- > 0;) {
+        building->at[--building->first[building->link[i].a]] = (uint32_t)i;
+        building->at[--building->first[building->link[i].b]] = (uint32_t)i;
+    }
+    return STATUS_OK;
+}
+
+static const Link *link_at(const Building *building, uint32_t point, uint32_t k)
+{
+    return &building->link[building->at[building->first[point] + k]];
+}
+
+/* How well a point would do as the root of its component. */
+typedef enum Rank { RANK_ANY, RANK_END, RANK_SOURCE, RANK_INLET } Rank;
+
+typedef struct Candidate {
+    uint32_t point; /* + 1; 0: none yet */
+    Rank rank;
+    double thickness;
+} Candidate;
+
+static Candidate judge(const Building *building, uint32_t point)
+{
+    const Graph *graph = building->graph;
+    Candidate made = {.point = point + 1};
+    bool leads_away = true;
+    for (uint32_t k = 0; k < building->degree[point]; k++) {
+        const Link *link = link_at(building, point, k);
+        leads_away = leads_away && graph->line[link->line].is_directed && link->a == point;
+        made.thickness = fmax(made.thickness, link->thickness);
+    }
+    made.rank = graph->point[point].is_inlet   ? RANK_INLET
+                : leads_away                   ? RANK_SOURCE
+                : building->degree[point] == 1 ? RANK_END
+                                               : RANK_ANY;
+    return made;
+}
+
+static bool is_better(const Candidate *a, const Candidate *b)
+{
+    return !b->point || a->rank > b->rank || (a->rank == b->rank && a->thickness > b->thickness);
+}
+
+/* The best candidate of each component, at its first member. */
+static Status choose_roots(Building *building, Candidate *best, Err *err)
+{
+    TreeReading *reading = building->reading;
+    const Graph *graph = building->graph;
+    for (uint32_t i = 0; i < graph->n_points; i++) {
+        if (building->degree[i] == 0)
+            continue;
+        Candidate candidate = judge(building, i), *of = &best[graph_first(building->component, i)];
+        if (is_better(&candidate, of))
+            *of = candidate;
+    }
+    static const RootReason reasons[] = {[RANK_ANY] = ROOT_THICKEST,
+                                         [RANK_END] = ROOT_THICKEST,
+                                         [RANK_SOURCE] = ROOT_DIRECTION,
+                                         [RANK_INLET] = ROOT_SAID};
+    for (uint32_t i = 0; i < graph->n_points; i++) {
+        if (!best[i].point)
+            continue;
+        TRY(mem_reserve(&reading->root, &reading->roots_capacity, reading->n_roots + 1,
+                        sizeof *reading->root, "roots", err));
+        reading->root[reading->n_roots++] = (ReadRoot){
+            (int32_t)best[i].point, graph->is_tree ? ROOT_SAID : reasons[best[i].rank], 0};
+    }
+    return STATUS_OK;
+}
+
+/* Gives all points that hang on a root their parents; `queue` has room for all points. */
+static void direct_from(Building *building, uint32_t root, uint32_t *queue)
+{
+    size_t done = 0, n = 0;
+    queue[n++] = root;
+    while (done < n) {
+        uint32_t point = queue[done++];
+        for (uint32_t k = 0; k < building->degree[point]; k++) {
+            const Link *link = link_at(building, point, k);
+            uint32_t other = link->a ^ link->b ^ point;
+            if (other + 1 == building->parent[point])
+                continue;
+            building->parent[other] = point + 1;
+            building->above[other] = (uint32_t)(link - building->link);
+            building->reading->against +=
+                building->graph->line[link->line].is_directed && link->a == other;
+            queue[n++] = other;
+        }
+    }
+}
+
+static Status direct_links(Building *building, Err *err)
+{
+    size_t n = building->graph->n_points;
+    Candidate *best = NULL;
+    uint32_t *queue = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&best, n, sizeof *best, "roots", err));
+    TRY_GOTO(choose_roots(building, best, err));
+    TRY_GOTO(mem_calloc(&queue, n, sizeof *queue, "points", err));
+    TRY_GOTO(mem_calloc(&building->parent, n, sizeof *building->parent, "parents", err));
+    TRY_GOTO(mem_calloc(&building->above, n, sizeof *building->above, "parents", err));
+    for (size_t i = 0; i < building->reading->n_roots; i++)
+        direct_from(building, (uint32_t)building->reading->root[i].id - 1, queue);
+done:
+    free(best);
+    free(queue);
+    return status;
+}
+
+/* ---- nodes ---- */
+
+/* The ids of all kept points, in *id (owned): those that the file gives if it gives all, or else
+ * their numbers, or else numbers without gaps. */
+static Status number_points(const Building *building, int32_t **id, Err *err)
+{
+    const Graph *graph = building->graph;
+    int32_t *made = NULL, n = 0;
+    bool given = true;
+    size_t last = 0;
+    for (size_t i = 0; i < graph->n_points; i++)
+        if (building->degree[i] > 0) {
+            given = given && graph->point[i].id != 0;
+            last = i + 1;
+            n++;
+        }
+    if (n > TREE_MAX_ID)
+        return err_set(err, STATUS_INFEASIBLE, "%s: a tree of %d nodes is too large: at most %d",
+                       graph->name, n, TREE_MAX_ID);
+    TRY(mem_calloc(&made, graph->n_points, sizeof *made, "ids", err));
+    n = 0;
+    for (size_t i = 0; i < graph->n_points; i++)
+        if (building->degree[i] > 0)
+            made[i] = given                ? (int32_t)graph->point[i].id
+                      : last > TREE_MAX_ID ? ++n
+                                           : (int32_t)i + 1;
+    *id = made;
+    return STATUS_OK;
+}
+
+/* The point, as the file has it, whose values the node of a kept point has: the end of the line
+ * that leads to it, or at a root the kept point itself. */
+static size_t distal_point(const Building *building, uint32_t kept)
+{
+    if (!building->parent[kept])
+        return kept;
+    const Link *link = &building->link[building->above[kept]];
+    const GraphLine *line = &building->graph->line[link->line];
+    return link->b == kept ? line->b : line->a;
+}
+
+static Status radius_of(const Building *building, uint32_t kept, double *radius, Err *err)
+{
+    const Graph *graph = building->graph;
+    double thickest = 0;
+    if (building->parent[kept]) {
+        const GraphLine *line = &graph->line[building->link[building->above[kept]].line];
+        *radius =
+            isnan(line->radius) ? graph->point[distal_point(building, kept)].radius : line->radius;
+        if (!isnan(*radius))
+            return STATUS_OK;
+        return graph_blame(
+            graph, GRAPH_LINES, line->record,
+            err_set(err, STATUS_INPUT, "neither the line nor its distal point has a radius"), err);
+    }
+    for (uint32_t k = 0; k < building->degree[kept]; k++) {
+        const Link *link = link_at(building, kept, k);
+        double of_link;
+        TRY(radius_of(building, link->a ^ link->b ^ kept, &of_link, err));
+        thickest = fmax(thickest, of_link);
+    }
+    *radius = thickest;
+    return STATUS_OK;
+}
+
+static Status add_values(const Building *building, TreeBuilder *builder, uint32_t kept,
+                         size_t distal, Err *err)
+{
+    const Graph *graph = building->graph;
+    for (size_t k = 0; k < graph->n_columns; k++) {
+        const GraphColumn *column = &graph->column[k];
+        size_t at = distal;
+        if (column->of == GRAPH_LINES)
+            at = building->parent[kept] ? building->link[building->above[kept]].line : column->n;
+        if (at < column->n && !isnan(column->value[at]))
+            TRY(builder_value(builder, k, column->value[at], err));
+    }
+    return STATUS_OK;
+}
+
+static Status add_node(const Building *building, TreeBuilder *builder, uint32_t kept,
+                       const int32_t *id, Err *err)
+{
+    size_t distal = distal_point(building, kept);
+    const GraphPoint *point = &building->graph->point[kept];
+    uint32_t parent = building->parent[kept];
+    BuilderNode node = {.id = id[kept],
+                        .parent = parent ? id[parent - 1] : TREE_NO_PARENT,
+                        .type = point->has_type ? point->type : TREE_VESSEL_TYPE,
+                        .position = point->position,
+                        .record = point->record};
+    TRY(radius_of(building, kept, &node.radius_mm, err));
+    TRY(graph_blame(building->graph, GRAPH_POINTS, point->record, builder_node(builder, &node, err),
+                    err));
+    if (point->flow_share > 0)
+        TRY(builder_share(builder, node.id, point->flow_share, node.record, err));
+    return add_values(building, builder, kept, distal, err);
+}
+
+static bool has_column(const Graph *graph, GraphElement of, const char *name)
+{
+    for (size_t k = 0; k < graph->n_columns; k++)
+        if (graph->column[k].of == of && strcmp(graph->column[k].name, name) == 0)
+            return true;
+    return false;
+}
+
+static Status add_columns(const Graph *graph, TreeBuilder *builder, Err *err)
+{
+    Text name = TEXT_INIT;
+    Status status = STATUS_OK;
+    for (size_t k = 0; k < graph->n_columns && status == STATUS_OK; k++) {
+        const GraphColumn *column = &graph->column[k];
+        bool twice = column->of == GRAPH_POINTS && has_column(graph, GRAPH_LINES, column->name);
+        size_t number;
+        text_clear(&name);
+        text_printf(&name, twice ? "%s of points" : "%s", column->name);
+        status = text_check(&name, err);
+        if (status == STATUS_OK)
+            status = builder_column(builder, text_chars(&name), column->unit, &number, err);
+        if (status == STATUS_INPUT)
+            err_prefix(err, "%s: ", graph->name);
+    }
+    text_release(&name);
+    return status;
+}
+
+static Status hand_over(Building *building, TreeBuilder *builder, Err *err)
+{
+    const Graph *graph = building->graph;
+    TreeReading *reading = building->reading;
+    int32_t *id = NULL;
+    Status status = STATUS_OK;
+    TRY(number_points(building, &id, err));
+    builder->record = graph->point_record;
+    builder->meta = graph->meta;
+    building->graph->meta = (TreeMeta){0};
+    TRY_GOTO(add_columns(graph, builder, err));
+    for (uint32_t i = 0; i < graph->n_points; i++)
+        if (building->degree[i] > 0)
+            TRY_GOTO(add_node(building, builder, i, id, err));
+    for (size_t i = 0; i < reading->n_roots; i++)
+        reading->root[i].id = id[reading->root[i].id - 1];
+done:
+    free(id);
+    return status;
+}
+
+static void count_points(const Building *building)
+{
+    const Graph *graph = building->graph;
+    for (size_t i = 0; i < graph->n_points; i++)
+        if (building->place[i] != i)
+            building->reading->merged++;
+        else if (building->degree[i] == 0)
+            building->reading->unused++;
+}
+
+static bool all_are_whole(const Graph *graph)
+{
+    for (size_t i = 0; i < graph->n_points; i++) {
+        Vec3 at = graph->point[i].position;
+        if (at.x != floor(at.x) || at.y != floor(at.y) || at.z != floor(at.z))
+            return false;
+    }
+    return true;
+}
+
+/* What the reading says before anything is changed. */
+static void describe(const Graph *graph, const ReadOptions *options, TreeReading *reading)
+{
+    reading->is_graph = true;
+    reading->points = graph->n_points;
+    reading->lines = graph->n_lines;
+    reading->unit = options->has_unit ? options->unit : graph->unit;
+    reading->unit_said = options->has_unit || graph->unit_said;
+    reading->voxels = options->has_voxel_size;
+    reading->looks_like_voxels = !reading->voxels && !graph->unit_said && all_are_whole(graph);
+}
+
+static Status build(Building *building, TreeBuilder *builder, Err *err)
+{
+    Graph *graph = building->graph;
+    if (graph->n_lines == 0)
+        return err_set(err, STATUS_INPUT, "%s: the file has no lines; a tree has at least one",
+                       graph->name);
+    describe(graph, building->options, building->reading);
+    graph_scale(graph);
+    TRY(graph_merge(graph, &building->place, err));
+    TRY(link_lines(building, err));
+    if (!graph->is_tree)
+        TRY(drop_repeated(building, err));
+    if (building->n_links == 0)
+        return err_set(err, STATUS_INPUT, "%s: all lines begin and end at one place", graph->name);
+    TRY(cut_loops(building, err));
+    TRY(list_links(building, err));
+    count_points(building);
+    TRY(direct_links(building, err));
+    return hand_over(building, builder, err);
+}
+
+Status graph_build(Graph *graph, TreeBuilder *builder, Err *err)
+{
+    TreeReading own = {0};
+    Building building = {.graph = graph,
+                         .options = graph->options ? graph->options : &no_options,
+                         .reading = graph->reading ? graph->reading : &own};
+    Status status = build(&building, builder, err);
+    release(&building);
+    reading_release(&own);
+    return status;
+}

@@ -1,0 +1,148 @@
+/* Points that are joined are one, by union-find whose first member stands for all. Of the rest, in
+ * the order of the file, each becomes the nearest point kept before it within the tolerance, or is
+ * kept itself; so what is kept does not depend on chance, and a row of close points does not melt
+ * into one. Kept points are found in a hash table of cubes whose side is the tolerance: those in
+ * reach are in 27 of them, and few fit into one. Without a tolerance a cube is a place. */
+#include "tree/graph_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void graph_scale(Graph *graph)
+{
+    const LengthScale scale = length_scale(graph->options, graph->unit);
+    for (size_t i = 0; i < graph->n_points; i++) {
+        graph->point[i].position = length_scaled(&scale, graph->point[i].position);
+        graph->point[i].radius *= scale.radius;
+    }
+    for (size_t i = 0; i < graph->n_lines; i++)
+        graph->line[i].radius *= scale.radius;
+}
+
+uint32_t graph_first(uint32_t *place, uint32_t i)
+{
+    while (place[i] != i) {
+        place[i] = place[place[i]];
+        i = place[i];
+    }
+    return i;
+}
+
+/* Kept points by the cube they are in. */
+typedef struct Cubes {
+    const GraphPoint *point;
+    double side;    /* of a cube; 0: a cube is a place */
+    uint32_t *head; /* point + 1 of each slot */
+    uint32_t *next; /* of each point, the next + 1 of its slot */
+    size_t slots;   /* a power of two */
+} Cubes;
+
+static Vec3 cube_of(const Cubes *cubes, Vec3 at)
+{
+    if (cubes->side == 0)
+        return (Vec3){at.x + 0.0, at.y + 0.0, at.z + 0.0}; /* no -0 */
+    return (Vec3){floor(at.x / cubes->side), floor(at.y / cubes->side), floor(at.z / cubes->side)};
+}
+
+static size_t slot_of(const Cubes *cubes, Vec3 cube)
+{
+    uint64_t bits[3], hash = 0;
+    memcpy(bits, &cube, sizeof bits);
+    for (int k = 0; k < 3; k++) {
+        hash = (hash ^ bits[k]) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 32;
+    }
+    return hash & (cubes->slots - 1);
+}
+
+/* The nearest kept point of a cube that is nearer than *nearest, which becomes its distance, or
+ * *found. Of equally near ones the first of the file. */
+static uint32_t nearest_in(const Cubes *cubes, Vec3 cube, Vec3 at, uint32_t found, double *nearest)
+{
+    for (uint32_t i = cubes->head[slot_of(cubes, cube)]; i; i = cubes->next[i - 1]) {
+        double distance = vec3_distance(cubes->point[i - 1].position, at);
+        if (distance < *nearest || (distance == *nearest && i - 1 < found)) {
+            *nearest = distance;
+            found = i - 1;
+        }
+    }
+    return found;
+}
+
+/* The kept point that `i` becomes: another within reach, or itself. */
+static uint32_t find_kept(const Cubes *cubes, uint32_t i)
+{
+    Vec3 at = cubes->point[i].position, cube = cube_of(cubes, at);
+    double nearest = cubes->side;
+    if (cubes->side == 0)
+        return nearest_in(cubes, cube, at, i, &nearest);
+    uint32_t found = i;
+    for (int k = 0; k < 27; k++) {
+        Vec3 near = {cube.x + k % 3 - 1, cube.y + k / 3 % 3 - 1, cube.z + k / 9 - 1};
+        found = nearest_in(cubes, near, at, found, &nearest);
+    }
+    return found;
+}
+
+static void keep(Cubes *cubes, uint32_t i)
+{
+    size_t slot = slot_of(cubes, cube_of(cubes, cubes->point[i].position));
+    cubes->next[i] = cubes->head[slot];
+    cubes->head[slot] = i + 1;
+}
+
+static Status merge_places(const Graph *graph, double tolerance, uint32_t *place, Err *err)
+{
+    Cubes cubes = {.point = graph->point, .side = tolerance, .slots = 64};
+    while (cubes.slots < graph->n_points)
+        cubes.slots *= 2;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&cubes.head, cubes.slots, sizeof *cubes.head, "cubes of points", err));
+    TRY_GOTO(mem_calloc(&cubes.next, graph->n_points, sizeof *cubes.next, "cubes of points", err));
+    for (uint32_t i = 0; i < graph->n_points; i++) {
+        if (place[i] != i) {
+            place[i] = place[place[i]];
+            continue;
+        }
+        place[i] = find_kept(&cubes, i);
+        if (place[i] == i)
+            keep(&cubes, i);
+    }
+done:
+    free(cubes.head);
+    free(cubes.next);
+    return status;
+}
+
+static Status join_points(const Graph *graph, uint32_t *place, Err *err)
+{
+    for (size_t k = 0; k < graph->n_joins; k++) {
+        GraphJoin join = graph->join[k];
+        if (join.a >= graph->n_points || join.b >= graph->n_points)
+            return err_set(err, STATUS_INPUT, "%s: a joint names a point that there is not",
+                           graph->name);
+        uint32_t a = graph_first(place, (uint32_t)join.a), b = graph_first(place, (uint32_t)join.b);
+        place[a < b ? b : a] = a < b ? a : b;
+    }
+    return STATUS_OK;
+}
+
+Status graph_merge(const Graph *graph, uint32_t **place, Err *err)
+{
+    uint32_t *made = NULL;
+    Status status = STATUS_OK;
+    TRY(mem_calloc(&made, graph->n_points, sizeof *made, "places of points", err));
+    for (uint32_t i = 0; i < graph->n_points; i++)
+        made[i] = i;
+    TRY_GOTO(join_points(graph, made, err));
+    for (uint32_t i = 0; i < graph->n_points; i++)
+        made[i] = made[made[i]]; /* a chain leads to lower numbers, which are settled */
+    if (!graph->is_tree)
+        TRY_GOTO(merge_places(graph, graph->options ? graph->options->merge_tolerance_mm : 0, made,
+                              err));
+    *place = made;
+done:
+    if (status != STATUS_OK)
+        free(made);
+    return status;
+}

@@ -1,0 +1,29 @@
+/* What the files of the graph builder share. */
+#ifndef CORCAST_TREE_GRAPH_PARTS_H
+#define CORCAST_TREE_GRAPH_PARTS_H
+
+#include "tree/graph.h"
+
+typedef struct GraphColumn {
+    char *name, *unit;
+    GraphElement of;
+    double *value; /* of the first `n` elements */
+    size_t n, capacity;
+} GraphColumn;
+
+typedef struct GraphJoin {
+    size_t a, b;
+} GraphJoin;
+
+/* Scales points and lines to mm. */
+void graph_scale(Graph *graph);
+
+/* The point that each point becomes, the first of those that are joined or lie where it does, in
+ * *place (owned). STATUS_INPUT for a join of a point that there is not. O(points). */
+MUST_CHECK Status graph_merge(const Graph *graph, uint32_t **place, Err *err);
+
+/* The first of the members of what `i` belongs to, where place[i] is itself or an earlier member;
+ * shortens the way there. */
+uint32_t graph_first(uint32_t *place, uint32_t i);
+
+#endif

@@ -1,0 +1,155 @@
+/* What a tree shows is measured on the tree that was built, for every format alike. A unit is
+ * believed when the median radius, so read, is that of a vessel: the one that was gone by first,
+ * then the commoner before the rarer. */
+#include "tree/reading.h"
+
+#include "tree/tree.h"
+#include <stdarg.h>
+#include <stdlib.h>
+
+const char *const length_unit_names[LENGTH_UNITS + 1] = {"mm", "um", "cm", "m", NULL};
+
+const char *const root_reason_texts[ROOT_REASONS] = {
+    [ROOT_SAID] = "the file says so",
+    [ROOT_DIRECTION] = "lines lead away from it alone",
+    [ROOT_THICKEST] = "the thickest of the ends",
+};
+
+double length_unit_mm(LengthUnit unit)
+{
+    static const double mm[LENGTH_UNITS] = {
+        [LENGTH_MM] = 1, [LENGTH_UM] = 1e-3, [LENGTH_CM] = 10, [LENGTH_M] = 1e3};
+    return mm[unit];
+}
+
+LengthScale length_scale(const ReadOptions *options, LengthUnit unit)
+{
+    LengthScale scale = {{1, 1, 1}, 1};
+    if (options && options->has_voxel_size)
+        scale.position = options->voxel_size;
+    if (options && options->voxel_radii)
+        scale.radius = cbrt(scale.position.x * scale.position.y * scale.position.z);
+    double mm = length_unit_mm(options && options->has_unit ? options->unit : unit);
+    return (LengthScale){vec3_scale(scale.position, mm), scale.radius * mm};
+}
+
+Vec3 length_scaled(const LengthScale *scale, Vec3 position)
+{
+    return (Vec3){position.x * scale->position.x, position.y * scale->position.y,
+                  position.z * scale->position.z};
+}
+
+void reading_release(TreeReading *reading)
+{
+    for (size_t i = 0; i < reading->n_notes; i++)
+        free(reading->note[i]);
+    free(reading->note);
+    free(reading->root);
+    free(reading->cut);
+    *reading = (TreeReading){0};
+}
+
+Status reading_note(TreeReading *reading, Err *err, const char *format, ...)
+{
+    if (!reading)
+        return STATUS_OK;
+    char text[512];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    TRY(mem_reserve(&reading->note, &reading->notes_capacity, reading->n_notes + 1,
+                    sizeof *reading->note, "notes", err));
+    TRY(mem_strdup(&reading->note[reading->n_notes], text, err));
+    reading->n_notes++;
+    return STATUS_OK;
+}
+
+/* Gives the roots that have none yet the reason that the file has, and all the size of their
+ * components; `root` has room for one number a node. */
+static Status measure_roots(TreeReading *reading, const Tree *tree, uint32_t *root, Err *err)
+{
+    bool has_roots = reading->n_roots > 0;
+    size_t n = 0;
+    for (size_t i = 0; i < tree->n; i++) {
+        if (tree_is_segment(tree, i)) {
+            root[i] = root[tree->parent[i]];
+        } else {
+            root[i] = (uint32_t)n++;
+            if (!has_roots) {
+                TRY(mem_reserve(&reading->root, &reading->roots_capacity, n, sizeof *reading->root,
+                                "roots", err));
+                reading->root[reading->n_roots++] = (ReadRoot){tree->id[i], ROOT_SAID, 0};
+            }
+        }
+        reading->root[root[i]].nodes++;
+    }
+    return STATUS_OK;
+}
+
+static Status measure_degrees(TreeReading *reading, const Tree *tree, Err *err)
+{
+    int32_t *children;
+    TRY(tree_child_counts(tree, &children, err));
+    for (size_t i = 0; i < tree->n; i++) {
+        size_t degree = (size_t)children[i] + tree_is_segment(tree, i);
+        reading->degree[degree < READ_MAX_DEGREE ? degree : READ_MAX_DEGREE]++;
+    }
+    free(children);
+    return STATUS_OK;
+}
+
+static void believe(TreeReading *reading)
+{
+    static const Range of_vessels = {0.001, 4}; /* mm, median radii from capillaries to aortas */
+    static const LengthUnit commoner[] = {LENGTH_MM, LENGTH_UM, LENGTH_M, LENGTH_CM};
+    double median = reading->median_radius_mm / length_unit_mm(reading->unit);
+    reading->believed = reading->unit;
+    reading->believes = range_has(of_vessels, reading->median_radius_mm);
+    for (size_t k = 0; k < LENGTH_UNITS && !reading->believes; k++) {
+        reading->believed = commoner[k];
+        reading->believes = range_has(of_vessels, median * length_unit_mm(commoner[k]));
+    }
+}
+
+static void measure_radii(TreeReading *reading, const Tree *tree, double *radius)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < tree->n; i++) {
+        if (!tree_is_segment(tree, i))
+            continue;
+        radius[n++] = tree->radius_mm[i];
+        reading->without_radius += tree->radius_mm[i] == 0;
+    }
+    if (n > 0)
+        reading->median_radius_mm = select_number(radius, n, n / 2);
+}
+
+static bool is_whole(Vec3 v)
+{
+    return v.x == floor(v.x) && v.y == floor(v.y) && v.z == floor(v.z);
+}
+
+static bool all_are_whole(const Tree *tree)
+{
+    for (size_t i = 0; i < tree->n; i++)
+        if (!is_whole(tree->position[i]))
+            return false;
+    return true;
+}
+
+Status reading_measure(TreeReading *reading, const Tree *tree, Err *err)
+{
+    double *radius = NULL;
+    Status status = STATUS_OK;
+    TRY(mem_calloc(&radius, tree->n, sizeof *radius, "radii", err));
+    TRY_GOTO(measure_roots(reading, tree, (uint32_t *)radius, err));
+    TRY_GOTO(measure_degrees(reading, tree, err));
+    measure_radii(reading, tree, radius);
+    if (!reading->is_graph && reading->unit == LENGTH_MM && !reading->voxels)
+        reading->looks_like_voxels = all_are_whole(tree);
+    believe(reading);
+done:
+    free(radius);
+    return status;
+}

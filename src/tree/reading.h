@@ -1,0 +1,115 @@
+/* How a tree's file is to be read, where the user says so, and what was found in it.
+ *
+ * Most formats say neither their unit nor which way blood flows, and what they hold is often no
+ * tree. What is believed, and why, stands in a TreeReading, which `info` prints. */
+#ifndef CORCAST_TREE_READING_H
+#define CORCAST_TREE_READING_H
+
+#include "base/base.h"
+#include "geom/geom.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct Tree Tree;
+
+typedef enum LengthUnit { LENGTH_MM, LENGTH_UM, LENGTH_CM, LENGTH_M, LENGTH_UNITS } LengthUnit;
+
+/* By LengthUnit, "mm"; NULL ends them. */
+extern const char *const length_unit_names[LENGTH_UNITS + 1];
+/* How many mm the unit has. */
+double length_unit_mm(LengthUnit unit);
+
+/* Zeroed: nothing is said. Texts are borrowed. */
+typedef struct ReadOptions {
+    bool has_unit, has_voxel_size;
+    LengthUnit unit;           /* of coordinates and radii; else what is custom in the format */
+    Vec3 voxel_size;           /* by which coordinates are multiplied first, each above 0 */
+    bool voxel_radii;          /* radii are voxels, too: of the geometric mean of voxel_size */
+    double merge_tolerance_mm; /* points this near are one; 0: those at the same place */
+    bool break_loops;          /* cut each loop at its thinnest line, or else refuse loops */
+    const char *radius_array;  /* the array that holds the radii; NULL: by its name */
+    const char *graphml_keys;  /* "x=KEY,y=KEY,...": the keys that GraphML's attributes have */
+    const char *columns;       /* "x=NAME,y=NAME,...": the columns of a table */
+    const char *edges;         /* path of the table of lines beside one of points */
+    const char *format;        /* the format's chief extension, "vtk"; NULL: by name and bytes */
+} ReadOptions;
+
+/* What coordinates and radii of a file are multiplied by, to be mm. */
+typedef struct LengthScale {
+    Vec3 position;
+    double radius;
+} LengthScale;
+
+/* As the options (may be NULL) say; without them, of a file in `unit`. */
+LengthScale length_scale(const ReadOptions *options, LengthUnit unit);
+Vec3 length_scaled(const LengthScale *scale, Vec3 position);
+
+/* Why a node is a root. */
+typedef enum RootReason {
+    ROOT_SAID,      /* the file says so */
+    ROOT_DIRECTION, /* lines lead away from it and none to it */
+    ROOT_THICKEST,  /* the thickest of the ends */
+    ROOT_REASONS
+} RootReason;
+
+/* By RootReason, "the file says so". */
+extern const char *const root_reason_texts[ROOT_REASONS];
+
+typedef struct ReadRoot {
+    int32_t id;
+    RootReason reason;
+    size_t nodes; /* of its component */
+} ReadRoot;
+
+/* A line that was left out where a loop closed. */
+typedef struct ReadCut {
+    size_t record; /* of the line, in the file */
+    Vec3 position; /* of its middle, mm */
+    double radius_mm;
+} ReadCut;
+
+enum { READ_MAX_DEGREE = 8, READ_MAX_CUTS = 1000 };
+
+/* Zeroed: nothing is known; reading_release. */
+typedef struct TreeReading {
+    const char *format; /* its name, "VTK"; not owned */
+    /* Of formats that are no trees by themselves: what the file has ... */
+    bool is_graph;
+    size_t points, lines;
+    /* ... and what became of it. */
+    size_t merged;                   /* points that lie where another does */
+    size_t unused;                   /* points that no line uses */
+    size_t without_length, repeated; /* lines from a point to itself; given before */
+    size_t against;                  /* lines that the file directs towards the root */
+    size_t loops;                    /* lines beyond those of a tree */
+    ReadCut *cut;                    /* owned; the first READ_MAX_CUTS that --break-loops cut */
+    size_t n_cuts;
+    /* Of every tree. */
+    ReadRoot *root; /* owned; each is one component */
+    size_t n_roots, roots_capacity;
+    size_t degree[READ_MAX_DEGREE + 1]; /* nodes by segments that meet there; the last: or more */
+    size_t without_radius;              /* segments whose radius is 0 */
+    double median_radius_mm;            /* of the segments; 0: there are none */
+    LengthUnit unit;                    /* of coordinates and radii, which was gone by ... */
+    bool unit_said;                     /* ... because options or file say it */
+    bool voxels;                        /* coordinates were multiplied by a voxel's size */
+    LengthUnit believed;                /* what the radii look like */
+    bool believes;                      /* ... if they look like vessels in any unit */
+    bool looks_like_voxels;             /* all coordinates are whole numbers */
+    char **note;                        /* owned; sentences about what was assumed */
+    size_t n_notes, notes_capacity;
+} TreeReading;
+
+void reading_release(TreeReading *reading);
+
+/* Adds a sentence, without a full stop, about what was assumed: "radius is the point array
+ * 'Radius'". `reading` may be NULL. */
+MUST_CHECK Status reading_note(TreeReading *reading, Err *err, const char *format, ...)
+    PRINTF_LIKE(3, 4);
+
+/* Adds what a tree shows: roots that no one gave a reason for, degrees, median radius, the unit
+ * believed. O(nodes log nodes). */
+MUST_CHECK Status reading_measure(TreeReading *reading, const Tree *tree, Err *err);
+
+#endif
