@@ -67,7 +67,7 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
     const Emitter *emitter;
     TRY(scene_files_find(own_options->output, true, &emitter, err));
     TRY(check_colors(own_options, emitter, parsed, err));
-    TRY(scene_files_note(emitter, own_options->output, &parsed->files, err));
+    TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));
     return meshing_write(emitter, &own_options->meshing, own_options->output, parsed, err);
 }
 

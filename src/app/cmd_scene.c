@@ -15,7 +15,7 @@ static const char *const scad_forms[] = {
 
 typedef struct SceneOptions {
     const char *output;
-    bool ids;
+    bool ids, ini;
     ScadForm scad;
     PictureOptions picture;
 } SceneOptions;
@@ -30,6 +30,10 @@ static const Option own[] = {
      SETS(SWITCH, SceneOptions, ids),
      .group = GROUP_POVRAY,
      .help = "isosurface, blob: with what POV-Ray needs for the id plane"},
+    {.name = "ini",
+     SETS(SWITCH, SceneOptions, ini),
+     .group = GROUP_POVRAY,
+     .help = "size, antialiasing and animations in S.ini, too: povray S.ini draws the picture"},
     {.name = "scad",
      SETS(CHOICE, SceneOptions, scad),
      .choices = scad_forms,
@@ -66,6 +70,7 @@ static Status check_format(const Emitter *emitter, const Parsed *parsed, Err *er
                                 {"shadows", view, of_view},
                                 {"background", view, of_view},
                                 {"ids", povray, of_povray},
+                                {"ini", povray, of_povray},
                                 {"model", vessels, of_vessels},
                                 {"look", vessels, of_vessels},
                                 {"color-by", vessels, of_vessels},
@@ -79,6 +84,8 @@ static Status check(const SceneOptions *options, const Emitter *emitter, const P
 {
     const PictureOptions *picture = &options->picture;
     TRY(check_format(emitter, parsed, err));
+    if (options->ini && strcmp(options->output, "-") == 0)
+        return err_set(err, STATUS_USAGE, "--ini is a file beside S.pov; standard output has none");
     TRY(picture_check_needs(picture, parsed, err));
     TRY(picture_check_povray(picture, err));
     return emit_check_model(emitter, (SceneModel)picture->model, err);
@@ -112,10 +119,12 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter, c
     const EmitParams params = {.scene = &scene,
                                .anatomy = &anatomy,
                                .command = line,
+                               .antialias = picture->antialias,
                                .shadows = picture->stage.shadows,
                                .ids = options->ids,
                                .cells = picture_cells(picture)};
-    Status status = scene_files_write(emitter, &params, tree, options->output, &report, err);
+    Status status =
+        scene_files_write(emitter, &params, tree, options->output, options->ini, &report, err);
     if (status == STATUS_OK && !parsed->common.quiet)
         say_limits(&report, &scene);
     anatomy_release(&anatomy);
@@ -140,7 +149,7 @@ static Status run_scene(void *options, Parsed *parsed, Err *err)
     char *line = NULL;
     TRY(find_emitter(own_options, &emitter, err));
     TRY(check(own_options, emitter, parsed, err));
-    TRY(scene_files_note(emitter, own_options->output, &parsed->files, err));
+    TRY(scene_files_note(emitter, own_options->output, own_options->ini, &parsed->files, err));
     if (emitter->of_meshes)
         return meshing_write(emitter, &meshing, own_options->output, parsed, err);
     TRY(command_line_text(parsed, &line, err));

@@ -215,7 +215,7 @@ Status meshing_write(const Emitter *emitter, const MeshingOptions *options, cons
                                .orders = made.orders.value,
                                .manifest = text_chars(&said),
                                .command = line};
-    TRY_GOTO(scene_files_write(emitter, &params, tree, output, NULL, err));
+    TRY_GOTO(scene_files_write(emitter, &params, tree, output, false, NULL, err));
 done:
     free(line);
     text_release(&said);

@@ -24,16 +24,18 @@ Status scene_files_find(const char *output, bool of_meshes, const Emitter **emit
 
 /* The files beside a scene or mesh; NULL where there is none. */
 typedef struct Beside {
-    char *second, *manifest; /* owned */
+    char *second, *manifest, *settings; /* owned */
 } Beside;
 
 static void beside_release(Beside *beside)
 {
     free(beside->second);
     free(beside->manifest);
+    free(beside->settings);
 }
 
-static Status find_beside(const Emitter *emitter, const char *path, Beside *beside, Err *err)
+static Status find_beside(const Emitter *emitter, const char *path, bool settings, Beside *beside,
+                          Err *err)
 {
     char suffix[24];
     if (strcmp(path, "-") == 0)
@@ -41,23 +43,29 @@ static Status find_beside(const Emitter *emitter, const char *path, Beside *besi
     snprintf(suffix, sizeof suffix, ".%s.json", emitter->extension);
     if (emitter->of_meshes)
         TRY(file_with_suffix(path, suffix, &beside->manifest, err));
+    snprintf(suffix, sizeof suffix, ".%s", emitter->settings_extension);
+    if (settings)
+        TRY(file_with_suffix(path, suffix, &beside->settings, err));
     if (!emitter->second_extension)
         return STATUS_OK;
     snprintf(suffix, sizeof suffix, ".%s", emitter->second_extension);
     return file_with_suffix(path, suffix, &beside->second, err);
 }
 
-Status scene_files_note(const Emitter *emitter, const char *path, Files *files, Err *err)
+Status scene_files_note(const Emitter *emitter, const char *path, bool settings, Files *files,
+                        Err *err)
 {
     Beside beside = {0};
     Status status;
-    TRY_GOTO(find_beside(emitter, path, &beside, err));
+    TRY_GOTO(find_beside(emitter, path, settings, &beside, err));
     if (beside.second && emitter->check_name)
         TRY_GOTO(emitter->check_name(file_name(beside.second), err));
     if (beside.second)
         TRY_GOTO(files_write(files, emitter->second_holds, beside.second, err));
     if (beside.manifest)
         TRY_GOTO(files_write(files, "the manifest", beside.manifest, err));
+    if (beside.settings)
+        TRY_GOTO(files_write(files, "the settings", beside.settings, err));
 done:
     beside_release(&beside);
     return status;
@@ -71,14 +79,14 @@ static void surface_description(const char *tree_path, Text *out)
 }
 
 Status scene_files_write(const Emitter *emitter, const EmitParams *params, const char *tree_path,
-                         const char *path, EmitReport *report, Err *err)
+                         const char *path, bool settings, EmitReport *report, Err *err)
 {
     Text description = TEXT_INIT;
     char *templates = NULL;
     Beside beside = {0};
     Status status;
     TRY_GOTO(templates_folder(&templates, err));
-    TRY_GOTO(find_beside(emitter, path, &beside, err));
+    TRY_GOTO(find_beside(emitter, path, settings, &beside, err));
     if (params->scene)
         picture_description(&params->scene->geometry, tree_path, &description);
     else
@@ -88,6 +96,8 @@ Status scene_files_write(const Emitter *emitter, const EmitParams *params, const
     all.file = strcmp(path, "-") == 0 ? "scene.pov" : file_name(path);
     all.second_file = beside.second ? file_name(beside.second) : NULL;
     all.manifest_path = beside.manifest;
+    all.settings = beside.settings ? file_name(beside.settings) : NULL;
+    all.settings_path = beside.settings;
     all.description = text_chars(&description);
     all.generator = GENERATOR;
     status = emit_files(emitter, &all, path, beside.second, report, err);

@@ -178,7 +178,8 @@ static Status write_scene(Verification *v, bool ids, char **scene, Err *err)
                                .shadows = v->picture->stage.shadows,
                                .ids = ids,
                                .cells = v->cells};
-    return scene_files_write(emitter_find("pov", false), &params, v->tree, *scene, NULL, err);
+    return scene_files_write(emitter_find("pov", false), &params, v->tree, *scene, false, NULL,
+                             err);
 }
 
 static Status run_oracle(Verification *v, Err *err)

@@ -10,11 +10,13 @@ const Emitter emitters[] = {
      .extension = "pov",
      .second_extension = "inc",
      .second_holds = "the geometry",
+     .settings_extension = "ini",
      .description = "a scene for POV-Ray 3.7",
      .has_view = true,
      .elements = MODEL_PRIMITIVES | MODEL_FIELD,
      .check_name = povray_check_name,
-     .write = povray_write},
+     .write = povray_write,
+     .write_settings = povray_write_settings},
     {.name = "openscad",
      .extension = "scad",
      .description = "a parametric model for OpenSCAD",
@@ -103,9 +105,9 @@ Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err)
     return status;
 }
 
-/* What is written: the file, the second one, and the manifest. Those that there are stand in
- * `files` one after another. */
-enum { OUTPUTS = 3 };
+/* What is written: the file, the second one, the manifest, and the settings. Those that there are
+ * stand in `files` one after another. */
+enum { OUTPUTS = 4 };
 
 typedef struct Outputs {
     Text text[OUTPUTS];
@@ -143,6 +145,8 @@ static Status fill_outputs(const Emitter *emitter, const EmitParams *params, Out
     Status status = emitter->write(params, &text[0], &text[1], report, err);
     if (params->manifest)
         text_puts(&text[2], params->manifest);
+    if (status == STATUS_OK && params->settings)
+        status = emitter->write_settings(params, &text[3], err);
     for (size_t i = 0; i < OUTPUTS && status == STATUS_OK; i++)
         if (outputs->path[i])
             status = text_flush(&text[i], err);
@@ -154,7 +158,7 @@ static Status fill_outputs(const Emitter *emitter, const EmitParams *params, Out
 Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
                   const char *second_path, EmitReport *report, Err *err)
 {
-    Outputs outputs = {.path = {path, second_path, params->manifest_path}};
+    Outputs outputs = {.path = {path, second_path, params->manifest_path, params->settings_path}};
     EmitReport written = {0};
     Status status;
     if (!emitter->of_meshes)

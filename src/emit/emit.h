@@ -21,8 +21,11 @@ typedef struct EmitParams {
     const char *file;             /* names of the files as they stand in them, without folders; */
     const char *second_file;      /* NULL: what would go to the second file stands in the first */
     const char *description; /* what the scene shows; what would break its line becomes a blank */
-    const char *generator;   /* program and version */
-    const char *command;     /* that makes the scene, one line */
+    const char *settings; /* NULL, or the file, beside those, that its program is started with; */
+    const char *settings_path; /* where it is written; both or neither */
+    int antialias; /* samples along a pixel's side that it asks for; 1: as many as it likes */
+    const char *generator; /* program and version */
+    const char *command;   /* that makes the scene, one line */
     bool shadows;
     bool ids;         /* isosurface, blob: with the paint that the id plane needs */
     CellParams cells; /* isosurface */
@@ -40,7 +43,9 @@ typedef struct Emitter {
     const char *extension;        /* of its file: "pov" */
     const char *second_extension; /* of the file beside it: "inc"; NULL: it writes one file */
     const char *second_holds;     /* "the geometry" */
-    const char *description;      /* "a scene for POV-Ray 3.7" */
+    const char
+        *settings_extension; /* of the file that its program is started with: "ini"; or NULL */
+    const char *description; /* "a scene for POV-Ray 3.7" */
     bool binary;
     bool has_view;     /* it holds camera, lights and background, and not the vessels alone */
     bool of_meshes;    /* it writes params->mesh, not the scene */
@@ -48,6 +53,8 @@ typedef struct Emitter {
     unsigned elements; /* it can write what is made of these: bits ModelElement */
     /* STATUS_USAGE when the format cannot name a second file so. NULL: it takes any name. */
     Status (*check_name)(const char *second_file, Err *err);
+    /* Likewise of params->settings, which it appends to *out; NULL: there is none. */
+    Status (*write_settings)(const EmitParams *params, Text *out, Err *err);
     /* Appends the file to *out and, where params->second_file is given, the second one to *second,
      * as they are made: with streams [base/text.h] memory does not grow with the scene. *report is
      * zeroed before. STATUS_INPUT when a template is missing or does not fit, STATUS_USAGE as
@@ -68,8 +75,8 @@ void emitter_extensions(bool of_meshes, Text *out);
 MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err);
 
 /* Writes `path`, "-" being standard output, `second_path`, which is NULL when and only when
- * params->second_file is, and the manifest: all take their final names, or none does. `report` may
- * be NULL.
+ * params->second_file is, the settings and the manifest: all take their final names, or none does.
+ * `report` may be NULL.
  * As emit_check_model, and all that `write` returns. */
 MUST_CHECK Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
                              const char *second_path, EmitReport *report, Err *err);

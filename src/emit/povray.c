@@ -271,3 +271,43 @@ done:
     povray_objects_release(&geometry);
     return status;
 }
+
+/* A name without '[' is no name of a section. */
+static Status check_settings_name(const char *name, Err *err)
+{
+    if (!strchr(name, '['))
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "POV-Ray reads no INI file named '%s': a '[' there begins the name of a section",
+                   name);
+}
+
+static void add_names(Values *values, const EmitParams *params)
+{
+    const char *dot = strrchr(params->file, '.');
+    const bool like_switch = strchr("+-", *params->settings) != NULL;
+    Text *picture = add_value(values, "picture");
+    text_append(picture, params->file, dot ? (size_t)(dot - params->file) : strlen(params->file));
+    text_puts(picture, ".png");
+    text_puts(add_value(values, "scene"), params->file);
+    text_puts(add_value(values, "folder"), like_switch ? "./" : "");
+    add_word(values, "settings", params->settings, "\"");
+}
+
+Status povray_write_settings(const EmitParams *params, Text *out, Err *err)
+{
+    const Camera *camera = &params->scene->view.camera;
+    const bool adaptive = params->antialias <= 1;
+    Values values = {0};
+    TRY(check_settings_name(params->settings, err));
+    add_names(&values, params);
+    text_put_line(add_value(&values, "description"), params->description);
+    text_puts(add_value(&values, "generator"), params->generator);
+    text_puts(add_value(&values, "command"), params->command);
+    text_printf(add_value(&values, "width"), "%d", camera->width);
+    text_printf(add_value(&values, "height"), "%d", camera->height);
+    text_puts(add_value(&values, "method"), adaptive ? "2" : "1");
+    text_puts(add_value(&values, "threshold"), adaptive ? "0.1" : "0");
+    text_printf(add_value(&values, "depth"), "%d", adaptive ? 3 : params->antialias);
+    return values_expand(&values, params, "povray/scene.ini", out, err);
+}

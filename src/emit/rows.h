@@ -8,6 +8,7 @@ Status povray_check_name(const char *second_file, Err *err);
 Status povray_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
                     Err *err);
 
+Status povray_write_settings(const EmitParams *params, Text *out, Err *err);
 Status povray_write_mesh(const EmitParams *params, Text *out, Text *second, EmitReport *report,
                          Err *err);
 

@@ -36,13 +36,18 @@ static void put_word(Text *text, const char *name, const char *quotes)
     Text clean = TEXT_INIT, quoted = TEXT_INIT;
     text_put_line(&clean, name);
     const char *chars = text_chars(&clean);
-    bool plain = chars && !strchr(chars, ' ');
+    bool plain = chars && !strpbrk(chars, " ;=#'&");
     text_puts(&quoted, plain ? "" : quotes);
     text_puts(&quoted, chars);
     text_puts(&quoted, plain ? "" : quotes);
     text_put_shell_word(text, text_chars(&quoted));
     text_release(&clean);
     text_release(&quoted);
+}
+
+void add_word(Values *values, const char *value, const char *name, const char *quotes)
+{
+    put_word(add_value(values, value), name, quotes);
 }
 
 void add_file(Values *values, const char *file, const char *result, const char *quotes)
@@ -52,8 +57,8 @@ void add_file(Values *values, const char *file, const char *result, const char *
     text_append(&made, file, dot ? (size_t)(dot - file) : strlen(file));
     text_puts(&made, result);
     text_put_line(add_value(values, "file"), file);
-    put_word(add_value(values, "input"), file, quotes);
-    put_word(add_value(values, "output"), text_chars(&made), quotes);
+    add_word(values, "input", file, quotes);
+    add_word(values, "output", text_chars(&made), quotes);
     text_release(&made);
 }
 

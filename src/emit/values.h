@@ -22,9 +22,11 @@ void add_number(Values *values, const char *name, double value);
 void add_float(Values *values, const char *name, float value);
 /* "1" or "0" */
 void add_flag(Values *values, const char *name, bool value);
+/* `name` as a word of a shell, one line, for a command line of another program, which asks for
+ * `quotes` about a name with blanks, or for none (""). */
+void add_word(Values *values, const char *value, const char *name, const char *quotes);
 /* `file`, and for a command line that reads it, `input`, the file as a word of a shell, and
- * `output`, likewise, with `result` (".png") for its extension. `quotes` are those that the other
- * program asks for about a name with blanks, or "". */
+ * `output`, likewise, with `result` (".png") for its extension; `quotes` as add_word. */
 void add_file(Values *values, const char *file, const char *result, const char *quotes);
 /* `description`, `generator`, `command` and `extent`: the box in mm, and where its origin lies in
  * the tree when that was moved. */

@@ -130,4 +130,29 @@ test_povray_is_called_headless_with_the_size_asked_for() {
     grep -q -e '-D' arguments || fail "expected -D, got $(cat arguments)"
 }
 
+test_all_files_of_a_scene_take_their_names_or_none_does() {
+    run_ok corcast scene "$DATA/bifurcation.swc" --ini -o s.pov
+    expect_only s.pov s.inc s.ini
+    grep -q '^Input_File_Name="s.pov"$' s.ini || fail "expected s.ini to name s.pov"
+    rm s.*
+    mkdir s.ini
+    run corcast scene "$DATA/bifurcation.swc" --ini -o s.pov
+    expect_status 3
+    expect_sentence 's\.ini: cannot be written: it is a folder'
+    expect_only s.ini
+    run corcast scene "$DATA/bifurcation.swc" --recipe own.ini --ini -o own.pov
+    expect_status 2
+    printf 'size = 9x8\n' >own.ini
+    run corcast scene "$DATA/bifurcation.swc" --recipe own.ini --ini -o own.pov
+    expect_status 2
+    expect_sentence 'the settings .own.ini. would be written over'
+    run corcast scene "$DATA/bifurcation.swc" --ini -o 'a[b.pov'
+    expect_status 2
+    expect_sentence "POV-Ray reads no INI file named 'a\[b.ini'"
+    run corcast scene "$DATA/bifurcation.swc" --ini -o -
+    expect_status 2
+    expect_sentence '^corcast scene: --ini is a file beside S.pov'
+    expect_only s.ini own.ini
+}
+
 run_tests "$@"

@@ -213,6 +213,25 @@ test_the_smallest_trees_make_povray_warn_of_nothing() {
     done
 }
 
+# Of any name that an INI file can have; what stands in its comments is drawn as well.
+test_povray_draws_the_settings_of_a_scene_as_they_are() {
+    local name command
+    for name in tree "-o'neil & sons;#=\$(x) %s"; do
+        run_ok corcast scene "$DATA/bifurcation.swc" --quiet --size 24x18 --ini -o "./$name.pov"
+        command=$(sed -n 's/.*In its folder: //p' "./$name.ini")
+        eval "$command" >draw.log 2>&1 || fail "expected POV-Ray to obey $command: $(tail -3 draw.log)"
+        ! grep 'Warning:' draw.log || fail "expected no warning"
+        [ "$(pngtopnm "./$name.png" | head -2 | tail -1)" = "24 18" ] || fail "expected a picture of 24 x 18"
+    done
+    cp "./$name.png" flat.png
+    run_ok corcast scene "$DATA/bifurcation.swc" --quiet --size 24x18 --antialias 2 --ini -o tree.pov
+    povray tree.ini >draw.log 2>&1
+    expect_differing 5 99 flat.png tree.png
+    sed -i 's/^;\([A-Z]\)/\1/; s/^Final_Frame=.*/Final_Frame=2/; /Growth_Clock/,$d' tree.ini
+    povray tree.ini >draw.log 2>&1 || fail "expected POV-Ray to turn the tree: $(tail -3 draw.log)"
+    expect_differing 10 432 tree1.png tree2.png
+}
+
 test_the_background_can_be_transparent() {
     run_ok corcast scene "$DATA/bifurcation.swc" --quiet --size 60x45 -o seen.pov
     draw seen +UA Declare=Background_Transmit=1
