@@ -151,6 +151,25 @@ static void sketch_chain(Sketch *sketch, double step)
                        vec3(i * step, 1.5 * sin(0.3 * i * step), 0.8 * cos(0.2 * i * step)), 1);
 }
 
+/* The twig leaves the trunk at 31 degrees and comes out of its wall where the trunk's next segment,
+ * with which it does not blend, has begun: the groove between them is narrower than any cell. */
+static void a_twig_in_a_groove_is_one_sphere(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    sketch_begin(&sketch, vec3(0, 0, 0));
+    uint32_t fork = sketch_to(&sketch, 0, vec3(0.817, -1.793, 0), 0.848);
+    uint32_t next = sketch_to(&sketch, fork, vec3(1.718, -3.54, 0), 0.847);
+    sketch_to(&sketch, next, vec3(2.766, -5.81, 0), 0.843);
+    sketch_to(&sketch, fork, vec3(0.445, -7.605, 0), 0.13);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    assert_int_equal(made.report.n_swallowed, 0);
+    expect_near(&sketch.tree, &made, 0.003, 0.05);
+    release(&made);
+}
+
 static void fine_steps_keep_the_radius(void **state)
 {
     (void)state;
@@ -319,6 +338,7 @@ int main(void)
         cmocka_unit_test(a_straight_vessel_is_a_polygonal_cylinder),
         cmocka_unit_test(a_bifurcation_is_one_sphere_near_its_surface),
         cmocka_unit_test(a_trifurcation_of_unlike_radii_is_one_sphere),
+        cmocka_unit_test(a_twig_in_a_groove_is_one_sphere),
         cmocka_unit_test(fine_steps_keep_the_radius),
         cmocka_unit_test(near_strangers_stay_apart_and_are_listed),
         cmocka_unit_test(overlapping_strangers_are_refused_by_name),

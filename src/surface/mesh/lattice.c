@@ -29,6 +29,8 @@ typedef struct Cutter {
     const ZonePlan *plan;
     Patch *patch;
     Err *err;
+    const FieldPart *whole; /* in the tree's stack: for points away from active cells */
+    TetrahedronList *list;  /* where all tetrahedra go instead of being cut; or NULL */
 } Cutter;
 
 void lattice_release(Lattice *lattice)
@@ -56,18 +58,21 @@ static void clear_wall(const Cutter *cutter, const FieldPart *part, double side,
     Vec3 moved = vec3_add_scaled(point->x, gradient, by / steepness);
     double height = field_height(fieldpart_value(field, pool, part, moved).phi);
     if ((height < 0) == (inside >= 0) && height != 0)
-        *point = (LatticePoint){moved, height, NO_CROSSING};
+        *point = (LatticePoint){moved, height, NO_CROSSING, false};
 }
 
-/* A point whose field is that of the active cell `from`. */
+/* A point whose field is that of the cell `from` if that is active. */
 static Status add_point(Cutter *cutter, const ZoneCell *from, Vec3 x, uint32_t *number)
 {
     Lattice *lattice = cutter->lattice;
     TRY(mem_reserve(&lattice->points, &lattice->capacity, lattice->n_points + 1,
                     sizeof *lattice->points, "points of a junction", cutter->err));
-    FieldValue value = fieldpart_value(&cutter->plan->field, &cutter->tree->kept, &from->part, x);
-    LatticePoint point = {x, field_height(value.phi), NO_CROSSING};
-    if (fabs(point.height) < nearly)
+    bool is_near = from && from->state == CELL_ACTIVE;
+    const ZoneTree *tree = cutter->tree;
+    FieldValue value = fieldpart_value(&cutter->plan->field, is_near ? &tree->kept : &tree->stack,
+                                       is_near ? &from->part : cutter->whole, x);
+    LatticePoint point = {x, field_height(value.phi), NO_CROSSING, false};
+    if (is_near && fabs(point.height) < nearly)
         clear_wall(cutter, &from->part, zonetree_side(cutter->tree, from->level), &point);
     *number = (uint32_t)lattice->n_points;
     lattice->points[lattice->n_points++] = point;
@@ -137,6 +142,16 @@ static PatchPoint find_crossing(const Cutter *cutter, const FieldPart *part,
     }
 }
 
+/* In place of a crossing, where a point is inside only by decree. */
+static PatchPoint find_middle(const Cutter *cutter, const FieldPart *part,
+                              const LatticePoint *inside, const LatticePoint *outside)
+{
+    const ZoneField *field = &cutter->plan->field;
+    Vec3 x = vec3_scale(vec3_add(inside->x, outside->x), 0.5), gradient;
+    FieldValue value = fieldpart_gradient(field, &cutter->tree->kept, part, x, &gradient);
+    return wall_point(field, x, &value, gradient);
+}
+
 /* The point of the wall between two points of the lattice, of which `a` is inside. */
 static Status crossing_of(Cutter *cutter, const ZoneCell *from, uint32_t a, uint32_t b,
                           uint32_t *number)
@@ -149,8 +164,10 @@ static Status crossing_of(Cutter *cutter, const ZoneCell *from, uint32_t a, uint
             return STATUS_OK;
     TRY(mem_reserve(&lattice->crossings, &lattice->crossing_capacity, cutter->patch->n_points + 1,
                     sizeof *lattice->crossings, "points of a junction", cutter->err));
-    TRY(patch_add_point(cutter->patch, find_crossing(cutter, &from->part, &points[a], &points[b]),
-                        number, cutter->err));
+    PatchPoint point = points[a].is_mended
+                           ? find_middle(cutter, &from->part, &points[a], &points[b])
+                           : find_crossing(cutter, &from->part, &points[a], &points[b]);
+    TRY(patch_add_point(cutter->patch, point, number, cutter->err));
     lattice->crossings[*number] = (LatticeCrossing){b, points[a].first};
     points[a].first = *number;
     return STATUS_OK;
@@ -234,29 +251,38 @@ static Status edge_ends(Cutter *cutter, const uint32_t around[4], int axis, cons
     return STATUS_OK;
 }
 
+static Status list_tetrahedron(const Cutter *cutter, const uint32_t at[4])
+{
+    TetrahedronList *list = cutter->list;
+    TRY(mem_reserve(&list->items, &list->capacity, list->n + 1, sizeof *list->items,
+                    "points of a junction", cutter->err));
+    list->items[list->n++] = (Tetrahedron){{at[0], at[1], at[2], at[3]}};
+    return STATUS_OK;
+}
+
 /* Four leaves about a smallest edge; the second and third from the first one across. */
 static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
 {
     static const int turn[5] = {0, 1, 3, 2, 0};
     const ZoneCell *cells = cutter->tree->cells, *active = NULL;
+    bool is_behind = false;
     for (int i = 0; i < 4; i++) {
-        if (cells[around[i]].state == CELL_BEHIND)
-            return STATUS_OK;
+        is_behind = is_behind || cells[around[i]].state == CELL_BEHIND;
         if (cells[around[i]].state == CELL_ACTIVE)
             active = &cells[around[i]];
     }
-    if (!active)
+    if ((!active || is_behind) && !cutter->list)
         return STATUS_OK;
     uint32_t at[4];
     TRY(edge_ends(cutter, around, axis, active, at));
     for (int i = 0; i < 4; i++) {
         uint32_t a = around[turn[i]], b = around[turn[i + 1]];
         const ZoneCell *from = cells[a].state == CELL_ACTIVE ? &cells[a] : &cells[b];
-        if (a == b || from->state != CELL_ACTIVE)
+        if (a == b || (from->state != CELL_ACTIVE && !cutter->list))
             continue;
         TRY(center_of(cutter, from, a, &at[2]));
         TRY(center_of(cutter, from, b, &at[3]));
-        TRY(cut_tetrahedron(cutter, from, at));
+        TRY(cutter->list ? list_tetrahedron(cutter, at) : cut_tetrahedron(cutter, from, at));
     }
     return STATUS_OK;
 }
@@ -364,8 +390,6 @@ static Status walk_cell(Cutter *cutter, uint32_t cell)
 Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan, Patch *patch,
                     Err *err)
 {
-    Cutter cutter = {lattice, tree, plan, patch, err};
-    patch->n_points = patch->n_triangles = 0;
     TRY(pairtable_begin(&lattice->corners, tree->n_cells / 2, err));
     TRY(mem_reserve(&lattice->centers, &lattice->center_capacity, tree->n_cells,
                     sizeof *lattice->centers, "points of a junction", err));
@@ -374,5 +398,26 @@ Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan
     TRY(mem_reserve(&lattice->points, &lattice->capacity, 1, sizeof *lattice->points,
                     "points of a junction", err));
     lattice->n_points = 1; /* the first is none, so that 0 says "not yet" */
+    return lattice_cut(lattice, tree, plan, patch, err);
+}
+
+Status lattice_cut(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan, Patch *patch,
+                   Err *err)
+{
+    Cutter cutter = {lattice, tree, plan, patch, err, NULL, NULL};
+    patch->n_points = patch->n_triangles = 0;
+    for (size_t i = 0; i < lattice->n_points; i++)
+        lattice->points[i].first = NO_CROSSING;
     return walk_cell(&cutter, 0);
+}
+
+Status lattice_list(Lattice *lattice, ZoneTree *tree, const ZonePlan *plan, TetrahedronList *list,
+                    Err *err)
+{
+    FieldPart whole;
+    TRY(fieldpart_all(&plan->field, &tree->stack, &whole, err));
+    Cutter cutter = {lattice, tree, plan, NULL, err, &whole, list};
+    Status status = walk_cell(&cutter, 0);
+    tree->stack.n_terms = tree->stack.n_groups = 0;
+    return status;
 }

@@ -11,6 +11,7 @@ typedef struct LatticePoint {
     Vec3 x;
     double height;  /* field_height there: below 0 inside */
     uint32_t first; /* of a point inside: crossing on an edge that begins there, or NO_CROSSING */
+    bool is_mended; /* made inside, though it is not [mend.h] */
 } LatticePoint;
 
 #define NO_CROSSING UINT32_MAX
@@ -20,6 +21,15 @@ typedef struct LatticeCrossing {
     uint32_t outside; /* where the edge ends */
     uint32_t next;    /* crossing on an edge that begins at the same point, or NO_CROSSING */
 } LatticeCrossing;
+
+typedef struct Tetrahedron {
+    uint32_t at[4]; /* points */
+} Tetrahedron;
+
+typedef struct TetrahedronList {
+    Tetrahedron *items; /* owned */
+    size_t n, capacity;
+} TetrahedronList;
 
 /* What one thread needs; zeroed before the first use, and kept for the next zone. */
 typedef struct Lattice {
@@ -37,5 +47,14 @@ void lattice_release(Lattice *lattice);
 /* Puts the wall into *patch, which is emptied first. It is open only behind planes. */
 MUST_CHECK Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan,
                                Patch *patch, Err *err);
+
+/* The same again, of the points that lattice_make has left, whatever their heights are now. */
+MUST_CHECK Status lattice_cut(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan,
+                              Patch *patch, Err *err);
+
+/* Adds all tetrahedra of the octree to the list, and the points that lattice_make had no need of to
+ * the lattice. The field has MOST_PART_TERMS terms at most. */
+MUST_CHECK Status lattice_list(Lattice *lattice, ZoneTree *tree, const ZonePlan *plan,
+                               TetrahedronList *list, Err *err);
 
 #endif

@@ -31,6 +31,7 @@ void zoneworker_release(ZoneWorker *worker)
 {
     zonetree_release(&worker->tree);
     lattice_release(&worker->lattice);
+    mender_release(&worker->mender);
     planecutter_release(&worker->cutter);
     collapser_release(&worker->collapser);
     pairtable_release(&worker->edges);
@@ -310,12 +311,10 @@ static void measure_off(const Maker *maker)
     }
 }
 
-/* One attempt. */
-static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates, bool *sound)
+/* Makes what the lattice has left into a piece. */
+static Status finish(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates, bool *sound)
 {
     ZoneWorker *worker = maker->worker;
-    TRY(zonetree_build(&worker->tree, maker->plan, &fineness->cells, maker->err));
-    TRY(lattice_make(&worker->lattice, &worker->tree, maker->plan, &worker->patch, maker->err));
     TRY(planecut_make(&worker->cutter, maker->plan, fineness->cells.ratio, &worker->patch, sound,
                       maker->err));
     if (!*sound)
@@ -324,6 +323,20 @@ static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t 
     TRY(find_fates(maker, fineness->cells.ratio, fates));
     TRY(collapse_make(&worker->collapser, &worker->patch, fineness->sagitta, maker->err));
     return prove(maker, sound);
+}
+
+/* One attempt. */
+static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates, bool *sound)
+{
+    ZoneWorker *worker = maker->worker;
+    TRY(zonetree_build(&worker->tree, maker->plan, &fineness->cells, maker->err));
+    TRY(lattice_make(&worker->lattice, &worker->tree, maker->plan, &worker->patch, maker->err));
+    TRY(finish(maker, fineness, fates, sound));
+    if (*sound || maker->plan->field.n_terms > MOST_PART_TERMS)
+        return STATUS_OK;
+    TRY(mend_make(&worker->mender, &worker->lattice, &worker->tree, maker->plan, fineness->farthest,
+                  &worker->patch, sound, maker->err));
+    return *sound ? finish(maker, fineness, fates, sound) : STATUS_OK;
 }
 
 /* Two zero bits after each of the lowest ten. */

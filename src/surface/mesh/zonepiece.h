@@ -3,7 +3,7 @@
 #define CORCAST_SURFACE_ZONEPIECE_H
 
 #include "surface/mesh/collapse.h"
-#include "surface/mesh/lattice.h"
+#include "surface/mesh/mend.h"
 #include "surface/mesh/planecut.h"
 
 /* The points on the rim of an arm: rim_points[first .. first + n), by rising angle about the axis
@@ -56,6 +56,7 @@ typedef struct PlacedTriangle {
 typedef struct ZoneWorker {
     ZoneTree tree;
     Lattice lattice;
+    Mender mender;
     PlaneCutter cutter;
     Collapser collapser;
     PairTable edges;
