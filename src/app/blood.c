@@ -2,6 +2,9 @@
 #include "app/blood.h"
 
 #include "derive/derive.h"
+#include "treeio/treeio.h"
+#include <string.h>
+#include <strings.h>
 
 static const char of_tree[] = "the tree's";
 
@@ -13,6 +16,17 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .otherwise = of_tree,
      .help = "flow through the inlet"},
+    {.name = "terminal-flow",
+     SETS(TEXT, BloodOptions, terminal_flow),
+     .group = GROUP_BLOOD,
+     .argument = "equal|murray|FILE.csv",
+     .otherwise = of_tree,
+     .help = "how flow parts: the same for all terminals, as radius^gamma, or by id and flow"},
+    {.name = "gamma",
+     SAYS(GAMMA),
+     .group = GROUP_BLOOD,
+     .otherwise = "the tree's, or 3",
+     .help = "exponent of the radius, for murray"},
     {.name = "p-perf",
      SAYS(P_PERF),
      .group = GROUP_BLOOD,
@@ -63,8 +77,41 @@ Status blood_check_law(ViscosityLaw law, const Parsed *parsed, Err *err)
     return options_check_needs(parsed, needs, err);
 }
 
-Status blood_check(const BloodOptions *blood, const Tree *tree, const Parsed *parsed, Err *err)
+/* The exponent that is said, else the tree's, else Murray's own. */
+static double gamma_of(const BloodOptions *blood, const Tree *tree)
+{
+    const TreeMeta *source = blood->said.known[META_GAMMA] ? &blood->said : &tree->meta;
+    return source->known[META_GAMMA] ? source->number[META_GAMMA] : 3;
+}
+
+static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_path, Err *err)
+{
+    const char *law = blood->terminal_flow;
+    if (!law)
+        return STATUS_OK;
+    if (strcmp(law, "equal") == 0) {
+        tree_part_flow_equally(tree);
+        return STATUS_OK;
+    }
+    if (strcmp(law, "murray") == 0) {
+        Status status = tree_part_flow_by_radius(tree, gamma_of(blood, tree), err);
+        if (status == STATUS_INPUT)
+            err_prefix(err, "%s: ", tree_path);
+        return status;
+    }
+    if (strcasecmp(file_extension(law), "csv") == 0)
+        return tree_read_flows(tree, law, err);
+    return err_set(err, STATUS_USAGE, "--terminal-flow: '%.60s' is not equal, murray or a FILE.csv",
+                   law);
+}
+
+Status blood_settle(const BloodOptions *blood, const Parsed *parsed, Tree *tree, Err *err)
 {
     const TreeMeta said = blood_said(blood);
-    return blood_check_law(derive_viscosity_law(tree, &said), parsed, err);
+    const char *law = blood->terminal_flow;
+    const OptionNeed needs[] = {
+        {"gamma", law && strcmp(law, "murray") == 0, "is for --terminal-flow murray"}, {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    TRY(blood_check_law(derive_viscosity_law(tree, &said), parsed, err));
+    return part_flow(blood, tree, parsed->operands[0], err);
 }

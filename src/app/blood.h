@@ -7,8 +7,9 @@
 #include "tree/tree.h"
 
 typedef struct BloodOptions {
-    TreeMeta said;    /* but the law; nothing in it is owned */
-    ViscosityLaw law; /* where said.known has it */
+    TreeMeta said;             /* but the law; nothing in it is owned */
+    const char *terminal_flow; /* "equal", "murray" or a CSV of flows; NULL: the tree's */
+    ViscosityLaw law;          /* where said.known has it */
 } BloodOptions;
 
 extern const OptionTable blood_table; /* sets a BloodOptions; zeroed: nothing is said */
@@ -16,10 +17,12 @@ extern const OptionTable blood_table; /* sets a BloodOptions; zeroed: nothing is
 /* All that is said, as derive_field takes it. */
 TreeMeta blood_said(const BloodOptions *blood);
 
-/* STATUS_USAGE for an option of the command line that is of another law of viscosity than this one,
- * and than the tree's with what is said. */
+/* STATUS_USAGE for an option of the command line that is of another law of viscosity than this one.
+ */
 MUST_CHECK Status blood_check_law(ViscosityLaw law, const Parsed *parsed, Err *err);
-MUST_CHECK Status blood_check(const BloodOptions *blood, const Tree *tree, const Parsed *parsed,
-                              Err *err);
+/* Likewise of the tree that is the first operand, whose flow then parts among the terminals as is
+ * said. Errors as tree_part_flow_by_radius and tree_read_flows have them. */
+MUST_CHECK Status blood_settle(const BloodOptions *blood, const Parsed *parsed, Tree *tree,
+                               Err *err);
 
 #endif

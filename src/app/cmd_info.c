@@ -160,7 +160,7 @@ static Status run_info(void *options, Parsed *parsed, Err *err)
     Tree tree = {0};
     Findings found = {0};
     TRY(tree_read(&tree, parsed->operands[0], err));
-    TRY_GOTO(blood_check(&own_options->blood, &tree, parsed, err));
+    TRY_GOTO(blood_settle(&own_options->blood, parsed, &tree, err));
     TRY_GOTO(find_out(own_options, &tree, &found, err));
     status = show(own_options, parsed->operands[0], &tree, &found, err);
 done:

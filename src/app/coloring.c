@@ -4,6 +4,7 @@
 #include "app/commands.h"
 #include "app/templates.h"
 #include "image/image.h"
+#include "treeio/treeio.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +14,15 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .argument = "FIELD",
      .list = "fields",
-     .help = "a field of the tree, such as radius, flow or wss, or a column of its file"},
+     .help = "a field of the tree, such as radius, flow or wss, a column of its file, or "
+             "FILE.csv:COLUMN"},
+    {.name = "frame",
+     SETS(WHOLE, Coloring, frame),
+     FROM_TO(1, 1000000),
+     .group = GROUP_COLOR,
+     .argument = "K",
+     .otherwise = "",
+     .help = "of values that change with time: the K-th moment alone"},
     {.name = "colormap",
      SETS(LOOKUP, Coloring, colormap),
      .group = GROUP_COLOR,
@@ -91,35 +100,75 @@ static Status read_map(const Coloring *coloring, Colormap *map, Err *err)
     return status;
 }
 
-/* The field, and its scale; the sentences do not name the tree. */
-static Status read_field(const Coloring *coloring, const Tree *tree, Field *field,
-                         ColorScale *scale, Err *err)
+Status coloring_join(const Coloring *coloring, Tree *tree, char **joined, Err *err)
+{
+    size_t length;
+    const char *column;
+    if (!coloring->field || !values_parse(coloring->field, &length, &column))
+        return STATUS_OK;
+    char *path = NULL;
+    TRY(mem_strdup(&path, coloring->field, err));
+    path[length] = '\0';
+    Status status = tree_read_values(tree, path, column, joined, err);
+    free(path);
+    return status;
+}
+
+/* The field, and its scale; the sentences do not name the tree. All frames have one scale. */
+static Status read_field(const Coloring *coloring, const Tree *tree, const char *name,
+                         FieldSeries *series, ColorScale *scale, Err *err)
 {
     const TreeMeta said = blood_said(&coloring->blood);
-    TRY(derive_field(tree, &said, coloring->field, field, err));
-    TRY(set_range(coloring, field, scale, err));
-    scale->name = field->name;
-    scale->unit = field->unit;
+    TRY(derive_series(tree, &said, name, series, err));
+    if (coloring->frame > 1 && (size_t)coloring->frame > series->frames)
+        return err_set(err, STATUS_USAGE, "--frame %d: %s has %zu frame%s", coloring->frame,
+                       series->field.name, series->frames, series->frames == 1 ? "" : "s");
+    TRY(set_range(coloring, &series->field, scale, err));
+    scale->name = series->field.name;
+    scale->unit = series->field.unit;
+    return STATUS_OK;
+}
+
+/* The colours of all frames, or of the one that is asked for. */
+static Status color_frames(const Coloring *coloring, const Look *look, FieldSeries *series,
+                           const ColorScale *scale, Appearance *appearance, Err *err)
+{
+    size_t n = series->field.n / series->frames;
+    Field shown = series->field;
+    if (coloring->frame) {
+        shown.value += (size_t)(coloring->frame - 1) * n;
+        shown.n = n;
+    }
+    TRY(stage_appearance(look, &shown, scale, appearance, err));
+    if (coloring->frame || !series->time)
+        return STATUS_OK;
+    appearance->n_frames = series->frames;
+    appearance->n_segments = n;
+    appearance->time = series->time;
+    series->time = NULL;
     return STATUS_OK;
 }
 
 Status coloring_appearance(const Coloring *coloring, const Tree *tree, const char *tree_path,
-                           const Look *look, Appearance *appearance, Err *err)
+                           const char *joined, const Look *look, Appearance *appearance, Err *err)
 {
     if (!coloring->field)
         return stage_appearance(look, NULL, NULL, appearance, err);
-    Field field = {0};
+    FieldSeries series = {0};
     ColorScale scale = {.log = coloring->log, .classes = coloring->classes};
+    size_t length;
+    const char *column;
+    bool is_file = values_parse(coloring->field, &length, &column);
     Status status;
     TRY_GOTO(read_map(coloring, &scale.map, err));
-    status = read_field(coloring, tree, &field, &scale, err);
+    status = read_field(coloring, tree, is_file ? joined : coloring->field, &series, &scale, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", tree_path);
     TRY_GOTO(status);
-    TRY_GOTO(stage_appearance(look, &field, &scale, appearance, err));
+    TRY_GOTO(color_frames(coloring, look, &series, &scale, appearance, err));
 done:
     if (status != STATUS_OK)
         colormap_release(&scale.map);
-    field_release(&field);
+    fieldseries_release(&series);
     return status;
 }

@@ -15,6 +15,7 @@ typedef struct Coloring {
     const char *colormap;
     double range[2];
     bool has_range, log;
+    int frame;   /* of values over time, from 1 on; 0: all */
     int classes; /* 1: a colour for each value */
     BloodOptions blood;
 } Coloring;
@@ -38,13 +39,18 @@ bool coloring_takes(const Coloring *coloring, const Option *option);
 /* STATUS_USAGE when an option of the command line has none. */
 MUST_CHECK Status coloring_check_needs(const Coloring *coloring, const Parsed *parsed, Err *err);
 
+/* Where --color-by names a file, reads the values into the tree, and what they are called there
+ * into *joined (owned; else unchanged). As tree_read_values. */
+MUST_CHECK Status coloring_join(const Coloring *coloring, Tree *tree, char **joined, Err *err);
+
 /* What a look's vessels are to be coloured by, in *appearance (owned; appearance_release): without
  * --color-by the look's one colour; else the values of a field of the tree on a scale of the map,
- * from the least to the greatest finite value unless --range gives its ends. STATUS_USAGE when
- * templates/ lacks the map or the range cannot be logarithmic; else as derive_field; STATUS_INPUT,
+ * from the least to the greatest finite value of all frames unless --range gives its ends; `joined`
+ * is from coloring_join. STATUS_USAGE when templates/ lacks the map, there is no such frame or the
+ * range cannot be logarithmic; else as derive_series; STATUS_INPUT,
  * naming `tree_path`, when the field has no value to show, and naming the map's file otherwise. */
 MUST_CHECK Status coloring_appearance(const Coloring *coloring, const Tree *tree,
-                                      const char *tree_path, const Look *look,
+                                      const char *tree_path, const char *joined, const Look *look,
                                       Appearance *appearance, Err *err);
 
 #endif

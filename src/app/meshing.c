@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 typedef struct Meshing {
-    Tree tree;
+    PictureTree of;
     Appearance appearance; /* with the orders: for an emitter with colours */
     Field orders;
     VesselTree vessels;
@@ -24,11 +24,12 @@ typedef struct Meshing {
     size_t n_thinned;
 } Meshing;
 
-static Status read_vessels(const char *path, double prune_radius_mm, Meshing *made, Err *err)
+static Status read_vessels(const Parsed *parsed, const MeshingOptions *options, Meshing *made,
+                           Err *err)
 {
-    size_t dropped, pruned;
-    TRY(picture_read_tree(path, prune_radius_mm, &made->tree, &pruned, err));
-    TRY(stage_vessels(&made->tree, &made->vessels, &dropped, err));
+    size_t dropped;
+    TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &made->of, err));
+    TRY(stage_vessels(&made->of.tree, &made->vessels, &dropped, err));
     if (dropped)
         fprintf(stderr, "corcast: %zu segments have no length or no radius and are left out\n",
                 dropped);
@@ -36,14 +37,14 @@ static Status read_vessels(const char *path, double prune_radius_mm, Meshing *ma
 }
 
 /* What the segments look like, and by which orders they are grouped. */
-static Status color_vessels(const MeshingOptions *options, const char *tree_path, Meshing *made,
-                            Err *err)
+static Status color_vessels(const MeshingOptions *options, Meshing *made, Err *err)
 {
+    const PictureTree *of = &made->of;
     Look look;
     TRY(coloring_read_look(options->look, &look, err));
-    TRY(coloring_appearance(&options->coloring, &made->tree, tree_path, &look, &made->appearance,
-                            err));
-    return derive_field(&made->tree, &(TreeMeta){0}, "strahler", &made->orders, err);
+    TRY(coloring_appearance(&options->coloring, &of->tree, of->path, of->joined, &look,
+                            &made->appearance, err));
+    return derive_rule(&of->tree, &(TreeMeta){0}, "strahler", &made->orders, err);
 }
 
 /* STATUS_DIFFERS, saying what is wrong with a mesh that is not sound. */
@@ -121,12 +122,10 @@ static Status part(Meshing *made, int threads, Err *err)
 static Status make(const Parsed *parsed, const MeshingOptions *options, bool colored, Meshing *made,
                    Err *err)
 {
-    const char *tree_path = parsed->operands[0];
     const Common *common = &parsed->common;
-    TRY(read_vessels(tree_path, options->prune_radius_mm, made, err));
-    TRY(blood_check(&options->coloring.blood, &made->tree, parsed, err));
+    TRY(read_vessels(parsed, options, made, err));
     if (colored)
-        TRY(color_vessels(options, tree_path, made, err));
+        TRY(color_vessels(options, made, err));
     if (options->part_overlaps)
         TRY(part(made, common->threads, err));
     TRY(triangulate(made, options->tolerance, common, err));
@@ -219,7 +218,7 @@ Status meshing_write(const Emitter *emitter, const MeshingOptions *options, cons
 done:
     free(line);
     text_release(&said);
-    tree_release(&made.tree);
+    picture_tree_release(&made.of);
     appearance_release(&made.appearance);
     field_release(&made.orders);
     vesseltree_release(&made.vessels);

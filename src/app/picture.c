@@ -284,48 +284,59 @@ static bool has_segments(const Tree *tree)
     return false;
 }
 
-Status picture_read_tree(const char *path, double prune_radius_mm, Tree *tree, size_t *pruned,
-                         Err *err)
+/* The tree without thin segments, in its place. */
+static Status prune(const char *path, double radius_mm, Tree *tree, size_t *pruned, Err *err)
 {
-    Tree whole, rest;
-    *pruned = 0;
-    if (!(prune_radius_mm > 0))
-        return tree_read(tree, path, err);
-    TRY(tree_read(&whole, path, err));
-    Status status = tree_pruned(&whole, prune_radius_mm, &rest, err);
-    size_t n = whole.n;
-    tree_release(&whole);
-    TRY(status);
-    *pruned = n - rest.n;
+    Tree rest;
+    TRY(tree_pruned(tree, radius_mm, &rest, err));
+    *pruned = tree->n - rest.n;
     if (*pruned > 0 && !has_segments(&rest)) {
         tree_release(&rest);
         return err_set(err, STATUS_INPUT, "%s: all %zu segments are thinner than --prune-radius %g",
-                       path, *pruned, prune_radius_mm);
+                       path, *pruned, radius_mm);
     }
+    tree_release(tree);
     *tree = rest;
     return STATUS_OK;
+}
+
+Status picture_read_tree(const Coloring *coloring, double prune_radius_mm, const Parsed *parsed,
+                         PictureTree *out, Err *err)
+{
+    PictureTree made = {.path = parsed->operands[0]};
+    TRY(tree_read(&made.tree, made.path, err));
+    Status status = blood_settle(&coloring->blood, parsed, &made.tree, err);
+    if (status == STATUS_OK)
+        status = coloring_join(coloring, &made.tree, &made.joined, err);
+    if (status == STATUS_OK && prune_radius_mm > 0)
+        status = prune(made.path, prune_radius_mm, &made.tree, &made.pruned, err);
+    if (status == STATUS_OK)
+        *out = made;
+    else
+        picture_tree_release(&made);
+    return status;
+}
+
+void picture_tree_release(PictureTree *tree)
+{
+    tree_release(&tree->tree);
+    free(tree->joined);
 }
 
 Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                            PictureSource *source, Err *err)
 {
-    PictureSource made = {.path = parsed->operands[0]};
-    Status status = STATUS_OK;
+    PictureSource made;
     TRY(check_camera(options, err));
     TRY(read_look(options, &made.look, err));
-    TRY_GOTO(picture_read_tree(made.path, options->prune_radius_mm, &made.tree, &made.pruned, err));
-    TRY_GOTO(blood_check(&options->coloring.blood, &made.tree, parsed, err));
-done:
-    if (status == STATUS_OK)
-        *source = made;
-    else
-        picture_source_release(&made);
-    return status;
+    TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &made.of, err));
+    *source = made;
+    return STATUS_OK;
 }
 
 void picture_source_release(PictureSource *source)
 {
-    tree_release(&source->tree);
+    picture_tree_release(&source->of);
 }
 
 ViewParams picture_view_params(const PictureOptions *options)
@@ -346,13 +357,14 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
                                    .joints = (JointForm)options->joints,
                                    .graph = options->potential != 0 &&
                                             model_has(model, MODEL_POTENTIAL)};
-    return stage_geometry(&source->tree, &params, geometry, report, err);
+    return stage_geometry(&source->of.tree, &params, geometry, report, err);
 }
 
 Status picture_appearance(const PictureOptions *options, const PictureSource *source,
                           Appearance *appearance, Err *err)
 {
-    return coloring_appearance(&options->coloring, &source->tree, source->path, &source->look,
+    const PictureTree *of = &source->of;
+    return coloring_appearance(&options->coloring, &of->tree, of->path, of->joined, &source->look,
                                appearance, err);
 }
 
@@ -371,7 +383,7 @@ static Status make_scene(const PictureOptions *options, const PictureSource *sou
     if (status == STATUS_OK)
         status = picture_view(options, source, &scene->geometry, &scene->view, err);
     if (status == STATUS_INPUT)
-        err_prefix(err, "%s: ", source->path);
+        err_prefix(err, "%s: ", source->of.path);
     return status;
 }
 
@@ -384,10 +396,10 @@ Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene 
     TRY(picture_read_source(options, parsed, &source, err));
     Status status = make_scene(options, &source, &made, &staged, err);
     if (status == STATUS_OK && !parsed->common.quiet)
-        status =
-            warn_of_losses(&made.geometry, &staged, (JointForm)options->joints, source.pruned, err);
+        status = warn_of_losses(&made.geometry, &staged, (JointForm)options->joints,
+                                source.of.pruned, err);
     if (status == STATUS_OK && anatomy)
-        status = stage_anatomy(&source.tree, made.geometry.origin, anatomy, err);
+        status = stage_anatomy(&source.of.tree, made.geometry.origin, anatomy, err);
     picture_source_release(&source);
     if (status != STATUS_OK) {
         scene_release(&made);

@@ -49,17 +49,25 @@ bool picture_takes(const PictureOptions *options, const Option *option);
 /* STATUS_USAGE when an option is given that only the native renderer knows. */
 MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 
-/* Reads a tree, in *tree (owned), without the segments thinner than `prune_radius_mm`, 0 for none,
- * and says how many those were. STATUS_INPUT when no other is left. */
-MUST_CHECK Status picture_read_tree(const char *path, double prune_radius_mm, Tree *tree,
-                                    size_t *pruned, Err *err);
+/* A tree as it is drawn. */
+typedef struct PictureTree {
+    const char *path; /* for sentences; borrowed */
+    Tree tree;
+    char *joined;  /* as coloring_join has it; owned, or NULL */
+    size_t pruned; /* segments that were cut off */
+} PictureTree;
+
+/* Reads the tree that is the first operand, with the flows and the values that options say of it,
+ * and cuts off the segments thinner than `prune_radius_mm`, 0 for none. STATUS_INPUT when no other
+ * is left, and as tree_read, blood_settle and coloring_join. */
+MUST_CHECK Status picture_read_tree(const Coloring *coloring, double prune_radius_mm,
+                                    const Parsed *parsed, PictureTree *out, Err *err);
+void picture_tree_release(PictureTree *tree);
 
 /* What a picture is made from. */
 typedef struct PictureSource {
-    const char *path; /* of the tree, for sentences; borrowed */
+    PictureTree of;
     Look look;
-    Tree tree;
-    size_t pruned; /* segments that were cut off */
 } PictureSource;
 
 /* Reads look and tree, which is the first operand. STATUS_USAGE when options fight each other, or

@@ -1,5 +1,6 @@
-/* One table row a field; what no row names may be a column of the tree. The functions write every
- * node, roots with whatever suits their sweep; here the roots become NAN. */
+/* One table row a field; what the tree's file says, a column, goes before what would be derived.
+ * The functions write every node, roots with whatever suits their sweep; here the roots become NAN.
+ */
 #include "derive/derive.h"
 
 #include "derive/fields.h"
@@ -33,7 +34,7 @@ static const FieldRule rules[] = {
     {"pressure", "mmHg", field_pressure}, {"wss", "Pa", field_wss},
     {"reynolds", "", field_reynolds},     {"level", "", field_level},
     {"strahler", "", field_strahler},     {"diameter-strahler", "", field_diameter_strahler},
-    {"branch", "", field_branch},
+    {"branch", "", field_branch},         {"tree", "", field_tree},
 };
 
 enum { N_RULES = sizeof rules / sizeof *rules };
@@ -84,30 +85,104 @@ static Status unknown_field(const Tree *tree, const char *name, Err *err)
     return status;
 }
 
-Status derive_field(const Tree *tree, const TreeMeta *said, const char *name, Field *field,
-                    Err *err)
+/* Fills the field with the values of the row. */
+static Status fill(const FieldRule *rule, const Tree *tree, const TreeMeta *said, Field *field,
+                   Err *err)
 {
-    const FieldRule *rule = find_rule(name);
-    const TreeColumn *column = tree_column(tree, name);
-    if (!rule && !column)
-        return unknown_field(tree, name, err);
     double *value = NULL;
     TRY(mem_calloc(&value, tree->n, sizeof *value, "field values", err));
-    if (!rule)
-        memcpy(value, column->value, tree->n * sizeof *value);
-    Status status = rule ? rule->fill(tree, said, value, err) : STATUS_OK;
+    Status status = rule->fill(tree, said, value, err);
+    if (status == STATUS_INPUT) /* a need(), whose sentence goes on from here */
+        err_prefix(err, "the field %s ", rule->name);
     if (status != STATUS_OK) {
-        if (status == STATUS_INPUT) /* a need(), whose sentence goes on from here */
-            err_prefix(err, "the field %s ", rule->name);
         free(value);
         return status;
     }
+    *field = (Field){rule->name, rule->unit, value, tree->n};
+    return STATUS_OK;
+}
+
+static void clear_roots(const Tree *tree, Field *field)
+{
     for (size_t i = 0; i < tree->n; i++)
         if (!tree_is_segment(tree, i))
-            value[i] = (double)NAN;
-    *field =
-        (Field){rule ? rule->name : column->name, rule ? rule->unit : column->unit, value, tree->n};
+            field->value[i] = (double)NAN;
+}
+
+Status derive_rule(const Tree *tree, const TreeMeta *said, const char *name, Field *field, Err *err)
+{
+    const FieldRule *rule = find_rule(name);
+    if (!rule)
+        return unknown_field(tree, name, err);
+    TRY(fill(rule, tree, said, field, err));
+    clear_roots(tree, field);
     return STATUS_OK;
+}
+
+static Status derive_column(const Tree *tree, const TreeColumn *column, Field *field, Err *err)
+{
+    double *value = NULL;
+    TRY(mem_calloc(&value, tree->n, sizeof *value, "field values", err));
+    memcpy(value, column->value, tree->n * sizeof *value);
+    *field = (Field){column->name, column->unit, value, tree->n};
+    clear_roots(tree, field);
+    return STATUS_OK;
+}
+
+Status derive_field(const Tree *tree, const TreeMeta *said, const char *name, Field *field,
+                    Err *err)
+{
+    const TreeColumn *column = tree_column(tree, name);
+    return column ? derive_column(tree, column, field, err)
+                  : derive_rule(tree, said, name, field, err);
+}
+
+/* The frames of a series one behind the other. */
+static Status join_frames(const Tree *tree, const Series *frames, const char *name,
+                          FieldSeries *series, Err *err)
+{
+    FieldSeries made = {.frames = frames->n};
+    double *value = NULL;
+    TRY(mem_calloc(&value, frames->n * tree->n, sizeof *value, "field values", err));
+    Status status = mem_calloc(&made.time, frames->n, sizeof *made.time, "times", err);
+    if (status != STATUS_OK) {
+        free(value);
+        return status;
+    }
+    for (size_t k = 0; k < frames->n; k++) {
+        const TreeColumn *column = &tree->column[frames->frame[k].column];
+        Field frame = {name, column->unit, value + k * tree->n, tree->n};
+        memcpy(frame.value, column->value, tree->n * sizeof *frame.value);
+        clear_roots(tree, &frame);
+        made.time[k] = frames->frame[k].time;
+        made.field = (Field){name, column->unit, value, frames->n * tree->n};
+    }
+    *series = made;
+    return STATUS_OK;
+}
+
+Status derive_series(const Tree *tree, const TreeMeta *said, const char *name, FieldSeries *series,
+                     Err *err)
+{
+    Series frames = {0};
+    if (!tree_column(tree, name))
+        TRY(tree_series(tree, name, &frames, err));
+    if (frames.n == 0) {
+        FieldSeries made = {.frames = 1};
+        TRY(derive_field(tree, said, name, &made.field, err));
+        *series = made;
+        return STATUS_OK;
+    }
+    Status status = join_frames(tree, &frames, name, series, err);
+    series_release(&frames);
+    return status;
+}
+
+void fieldseries_release(FieldSeries *series)
+{
+    field_release(&series->field);
+    free(series->time);
+    *series = (FieldSeries){0};
 }
 
 void field_release(Field *field)

@@ -42,17 +42,36 @@ typedef struct Field {
  *     branch             main branch, numbered from 1 in array order: at each bifurcation the
  *                        thickest daughter (the first of several) continues its parent's, and the
  *                        others begin new ones, as do all segments that leave a root
+ *     tree               of a forest, numbered from 1 in the order of the roots
  *
- * or else the column of the tree of this name. mu is the constant viscosity of the blood, or
- * viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and Reynolds number of
- * a segment of radius 0 are not defined: NAN; so are the pressures at and below one. Capitals in
- * the name of a field are as small letters. What the user has `said` goes before what the tree
- * says. The names in *field are borrowed, of a column from the tree. STATUS_USAGE for an unknown
- * name; STATUS_INPUT, naming the option and the key of the file, when neither says what the field
- * needs. */
+ * unless the tree has a column of exactly this name, which goes before. Flow shares, and with them
+ * all fields of flow, are the tree's, or those of tree/outlets.h. mu is the constant viscosity of
+ * the blood, or viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and
+ * Reynolds number of a segment of radius 0 are not defined: NAN; so are the pressures at and below
+ * one. Capitals in the name of a field are as small letters. What the user has `said` goes before
+ * what the tree says. The names in *field are borrowed, of a column from the tree. STATUS_USAGE for
+ * an unknown name; STATUS_INPUT, naming the option and the key of the file, when neither says what
+ * the field needs. */
 MUST_CHECK Status derive_field(const Tree *tree, const TreeMeta *said, const char *name,
                                Field *field, Err *err);
 void field_release(Field *field);
+/* The same, but derived whatever columns the tree has. */
+MUST_CHECK Status derive_rule(const Tree *tree, const TreeMeta *said, const char *name,
+                              Field *field, Err *err);
+
+/* A field over time. */
+typedef struct FieldSeries {
+    Field field;  /* frame after frame, each of all nodes */
+    double *time; /* owned; of each frame, upwards; NULL: the field does not change */
+    size_t frames;
+} FieldSeries;
+
+/* As derive_field, but what the tree has as a series of columns [tree/series.h] goes before what is
+ * derived; in *series (owned; fieldseries_release). The name in it is borrowed from `name` or as
+ * derive_field has it. STATUS_INPUT also as tree_series. */
+MUST_CHECK Status derive_series(const Tree *tree, const TreeMeta *said, const char *name,
+                                FieldSeries *series, Err *err);
+void fieldseries_release(FieldSeries *series);
 
 /* Name and unit ("" for pure numbers) of field `i`, from 0 on; NULL after the last. */
 const char *derive_field_name(size_t i);

@@ -15,6 +15,7 @@ MUST_CHECK Status field_level(const Tree *tree, const TreeMeta *said, double *va
 MUST_CHECK Status field_strahler(const Tree *tree, const TreeMeta *said, double *value, Err *err);
 MUST_CHECK Status field_diameter_strahler(const Tree *tree, const TreeMeta *said, double *value,
                                           Err *err);
+MUST_CHECK Status field_tree(const Tree *tree, const TreeMeta *said, double *value, Err *err);
 MUST_CHECK Status field_branch(const Tree *tree, const TreeMeta *said, double *value, Err *err);
 
 /* Who says the key, if anybody does: the user before the tree. */

@@ -42,6 +42,15 @@ Status field_strahler(const Tree *tree, const TreeMeta *said, double *value, Err
     return STATUS_OK;
 }
 
+Status field_tree(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+{
+    (void)said, (void)err;
+    double trees = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        value[i] = tree_is_segment(tree, i) ? value[tree->parent[i]] : ++trees;
+    return STATUS_OK;
+}
+
 Status field_branch(const Tree *tree, const TreeMeta *said, double *value, Err *err)
 {
     (void)said;

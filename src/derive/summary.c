@@ -42,7 +42,7 @@ static void count_ends(const Tree *tree, const int32_t *children, TreeSummary *s
 static Status largest(const Tree *tree, const TreeMeta *said, const char *name, int *out, Err *err)
 {
     Field field;
-    TRY(derive_field(tree, said, name, &field, err));
+    TRY(derive_rule(tree, said, name, &field, err));
     double maximum = 0;
     for (size_t i = 0; i < field.n; i++)
         maximum = fmax(maximum, field.value[i]);
@@ -57,7 +57,7 @@ static Status sum_terminal_pressures(const Tree *tree, const TreeMeta *said,
     if (!pressure_is_known(tree, said) || summary->terminals == 0 || !(summary->min_radius_mm > 0))
         return STATUS_OK;
     Field pressure;
-    TRY(derive_field(tree, said, "pressure", &pressure, err));
+    TRY(derive_rule(tree, said, "pressure", &pressure, err));
     double low = HUGE_VAL, high = -HUGE_VAL, sum = 0;
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i) || children[i] > 0)

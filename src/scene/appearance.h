@@ -19,13 +19,22 @@ typedef struct Finish {
  * segments have the same numbers in all of them. */
 typedef struct Appearance {
     Finish finish;
-    Rgb color;        /* of all segments, if `colors` is NULL */
-    Rgb *colors;      /* owned; one for each segment, by its number; or NULL */
-    double *values;   /* owned; what `colors` stand for, NAN where there is none; or NULL */
-    ColorScale scale; /* what `colors` mean; its map is owned; zeroed without `colors` */
+    Rgb color;         /* of all segments, if `colors` is NULL */
+    Rgb *colors;       /* owned; one for each segment, by its number; or NULL */
+    double *values;    /* owned; what `colors` stand for, NAN where there is none; or NULL */
+    ColorScale scale;  /* what `colors` mean; its map is owned; zeroed without `colors` */
+    char *name, *unit; /* of the scale; owned */
+    /* Where colours change with time: `colors` and `values` are frame after frame of n_segments
+     * each, and these are those of the first one. */
+    double *time; /* owned; of each frame, upwards; NULL without frames */
+    size_t n_frames, n_segments;
 } Appearance;
 
 void appearance_release(Appearance *appearance);
+
+/* What vessels look like in a frame, from 0 on: borrowed from the appearance, and not to be
+ * released. O(1). */
+Appearance appearance_frame(const Appearance *appearance, size_t frame);
 
 static inline Rgb appearance_color(const Appearance *appearance, uint32_t segment)
 {

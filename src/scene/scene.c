@@ -17,7 +17,21 @@ void appearance_release(Appearance *appearance)
     free(appearance->colors);
     free(appearance->values);
     colormap_release(&appearance->scale.map);
+    free(appearance->name);
+    free(appearance->unit);
+    free(appearance->time);
     *appearance = (Appearance){0};
+}
+
+Appearance appearance_frame(const Appearance *appearance, size_t frame)
+{
+    Appearance one = *appearance;
+    if (one.n_frames > 0) {
+        one.colors += frame * one.n_segments;
+        one.values += frame * one.n_segments;
+    }
+    one.n_frames = 0;
+    return one;
 }
 
 void scene_release(Scene *scene)

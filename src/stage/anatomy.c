@@ -8,7 +8,7 @@
 static Status set_orders(const Tree *tree, int *order, Err *err)
 {
     Field strahler = {0};
-    TRY(derive_field(tree, &(TreeMeta){0}, "strahler", &strahler, err));
+    TRY(derive_rule(tree, &(TreeMeta){0}, "strahler", &strahler, err));
     for (size_t i = 0; i < tree->n; i++)
         order[i] = tree_is_segment(tree, i) ? (int)strahler.value[i] : 0;
     field_release(&strahler);
@@ -48,7 +48,7 @@ static size_t first_of_path(const Tree *tree)
 static Status set_path(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err)
 {
     Field branch = {0};
-    TRY(derive_field(tree, &(TreeMeta){0}, "branch", &branch, err));
+    TRY(derive_rule(tree, &(TreeMeta){0}, "branch", &branch, err));
     size_t first = first_of_path(tree);
     add_to_path(anatomy, anatomy->root[0]);
     for (size_t i = first; first > 0 && i < tree->n; i++)

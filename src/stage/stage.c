@@ -233,7 +233,11 @@ Status stage_appearance(const Look *look, const Field *field, const ColorScale *
     if (field) {
         TRY_GOTO(mem_calloc(&made.colors, field->n, sizeof *made.colors, "colours", err));
         TRY_GOTO(mem_calloc(&made.values, field->n, sizeof *made.values, "values", err));
+        TRY_GOTO(mem_strdup(&made.name, scale->name ? scale->name : "", err));
+        TRY_GOTO(mem_strdup(&made.unit, scale->unit ? scale->unit : "", err));
         made.scale = *scale;
+        made.scale.name = made.name;
+        made.scale.unit = made.unit;
     }
     for (size_t i = 0; field && i < field->n; i++) {
         float rgb[3];

@@ -110,7 +110,9 @@ MUST_CHECK Status stage_anatomy(const Tree *tree, Vec3 origin, Anatomy *anatomy,
 
 /* The finish of the look, and a colour for each segment: that of its value on the scale, whose map
  * *appearance owns from then on (appearance_release); or, if `field` is NULL, the look's one
- * colour, and `scale` is not read. STATUS_MEMORY, and the map stays the caller's. */
+ * colour, and `scale` is not read. A field of several frames, one behind the other, has as many
+ * colours; who hands it over says so in *appearance. STATUS_MEMORY, and the map stays the
+ * caller's. */
 MUST_CHECK Status stage_appearance(const Look *look, const Field *field, const ColorScale *scale,
                                    Appearance *appearance, Err *err);
 

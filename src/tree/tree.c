@@ -102,6 +102,22 @@ done:
     return status;
 }
 
+Status tree_set_column(Tree *tree, const char *name, const char *unit, double **value, Err *err)
+{
+    const TreeColumn *there = tree_column(tree, name);
+    if (!there)
+        return tree_add_column(tree, name, unit, value, err);
+    TreeColumn *column = &tree->column[there - tree->column];
+    char *copy;
+    TRY(mem_strdup(&copy, unit, err));
+    free(column->unit);
+    column->unit = copy;
+    for (size_t i = 0; i < tree->n; i++)
+        column->value[i] = (double)NAN;
+    *value = column->value;
+    return STATUS_OK;
+}
+
 Status tree_flow_shares(const Tree *tree, double **share, Err *err)
 {
     double *made = NULL;

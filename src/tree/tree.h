@@ -13,7 +13,9 @@
 #include "tree/builder.h"   // IWYU pragma: export
 #include "tree/graph.h"     // IWYU pragma: export
 #include "tree/meta.h"      // IWYU pragma: export
+#include "tree/outlets.h"   // IWYU pragma: export
 #include "tree/reading.h"   // IWYU pragma: export
+#include "tree/series.h"    // IWYU pragma: export
 #include "tree/viscosity.h" // IWYU pragma: export
 #include <stdbool.h>
 #include <stdint.h>
@@ -69,6 +71,10 @@ MUST_CHECK Status tree_add_flow_shares(Tree *tree, Err *err);
 
 /* Adds a column (name and unit copied) of NAN, for the caller to fill; *value is borrowed. */
 MUST_CHECK Status tree_add_column(Tree *tree, const char *name, const char *unit, double **value,
+                                  Err *err);
+/* The column of this name, for the caller to fill: the one there is, its unit now this one and its
+ * values NAN, or else a new one. */
+MUST_CHECK Status tree_set_column(Tree *tree, const char *name, const char *unit, double **value,
                                   Err *err);
 /* NULL when there is none of this name. */
 const TreeColumn *tree_column(const Tree *tree, const char *name);

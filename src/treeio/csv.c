@@ -29,45 +29,6 @@ typedef struct Columns {
     bool has[NODE_COLUMNS];
 } Columns;
 
-/* Takes the next field off *at, which becomes NULL behind the last; blanks around it go. A quoted
- * one ends with a quote that no other follows. */
-static Status next_field(char **at, char **field, Err *err)
-{
-    char *from = *at + strspn(*at, TEXT_BLANKS), *to = from;
-    *field = from;
-    if (*from != '"') {
-        to = from + strcspn(from, ",");
-        *at = *to ? to + 1 : NULL;
-        while (to > from && strchr(TEXT_BLANKS, to[-1]))
-            to--;
-        *to = '\0';
-        return STATUS_OK;
-    }
-    for (from++; *from && (*from != '"' || from[1] == '"'); from++) {
-        from += *from == '"';
-        *to++ = *from;
-    }
-    if (!*from)
-        return err_set(err, STATUS_INPUT, "a quote is not closed");
-    from += 1 + strspn(from + 1, TEXT_BLANKS);
-    if (*from && *from != ',')
-        return err_set(err, STATUS_INPUT, "a quote is followed by '%.40s'", from);
-    *at = *from ? from + 1 : NULL;
-    *to = '\0';
-    return STATUS_OK;
-}
-
-/* Parts "name [unit]"; the unit is "" where there is none. */
-static const char *cut_unit(char *title)
-{
-    size_t length = strlen(title);
-    char *open = strrchr(title, '[');
-    if (length == 0 || title[length - 1] != ']' || !open || open - title < 2 || open[-1] != ' ')
-        return "";
-    title[length - 1] = open[-1] = '\0';
-    return open + 1;
-}
-
 static Status read_title(TreeBuilder *builder, Columns *columns, char *title, Err *err)
 {
     size_t meaning = 0;
@@ -79,7 +40,7 @@ static Status read_title(TreeBuilder *builder, Columns *columns, char *title, Er
         columns->has[meaning] = true;
     } else {
         size_t number;
-        const char *unit = cut_unit(title);
+        const char *unit = csv_unit(title);
         TRY(builder_column(builder, title, unit, &number, err));
         meaning += number;
     }
@@ -93,7 +54,7 @@ static Status read_titles(TreeBuilder *builder, Columns *columns, char *line, Er
 {
     for (char *at = line; at;) {
         char *title;
-        TRY(next_field(&at, &title, err));
+        TRY(csv_field(&at, &title, err));
         TRY(read_title(builder, columns, title, err));
     }
     for (int column = 0; column <= LAST_NEEDED; column++)
@@ -145,7 +106,7 @@ static Status read_row(TreeBuilder *builder, const Columns *columns, size_t line
     size_t n = 0;
     for (char *at = text; at; n++) {
         char *field;
-        TRY(next_field(&at, &field, err));
+        TRY(csv_field(&at, &field, err));
         if (n >= columns->n)
             continue;
         const Column *column = &columns->column[n];

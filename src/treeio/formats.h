@@ -48,4 +48,11 @@ MUST_CHECK Status field_whole(const char *what, const char *text, int32_t minimu
 /* A finite number; NAN where the field is empty, NA or NaN. */
 MUST_CHECK Status field_value(const char *what, const char *text, double *out, Err *err);
 
+/* Takes the next field of a line of CSV off *at, in place, which becomes NULL behind the last;
+ * blanks around it go. A quoted one ends with a quote that no other follows. STATUS_INPUT, without
+ * file and line, when none does. */
+MUST_CHECK Status csv_field(char **at, char **field, Err *err);
+/* Parts "name [unit]" in place; the unit is "" where there is none. */
+const char *csv_unit(char *title);
+
 #endif

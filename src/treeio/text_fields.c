@@ -3,6 +3,7 @@
 #include "treeio/formats.h"
 
 #include <math.h>
+#include <string.h>
 #include <strings.h>
 
 enum { SHOWN = 40 /* characters of a bad value */ };
@@ -54,4 +55,40 @@ Status field_value(const char *what, const char *text, double *out, Err *err)
         return field_number(what, text, -HUGE_VAL, out, err);
     *out = (double)NAN;
     return STATUS_OK;
+}
+
+Status csv_field(char **at, char **field, Err *err)
+{
+    char *from = *at + strspn(*at, TEXT_BLANKS), *to = from;
+    *field = from;
+    if (*from != '"') {
+        to = from + strcspn(from, ",");
+        *at = *to ? to + 1 : NULL;
+        while (to > from && strchr(TEXT_BLANKS, to[-1]))
+            to--;
+        *to = '\0';
+        return STATUS_OK;
+    }
+    for (from++; *from && (*from != '"' || from[1] == '"'); from++) {
+        from += *from == '"';
+        *to++ = *from;
+    }
+    if (!*from)
+        return err_set(err, STATUS_INPUT, "a quote is not closed");
+    from += 1 + strspn(from + 1, TEXT_BLANKS);
+    if (*from && *from != ',')
+        return err_set(err, STATUS_INPUT, "a quote is followed by '%.40s'", from);
+    *at = *from ? from + 1 : NULL;
+    *to = '\0';
+    return STATUS_OK;
+}
+
+const char *csv_unit(char *title)
+{
+    size_t length = strlen(title);
+    char *open = strrchr(title, '[');
+    if (length == 0 || title[length - 1] != ']' || !open || open - title < 2 || open[-1] != ' ')
+        return "";
+    title[length - 1] = open[-1] = '\0';
+    return open + 1;
 }

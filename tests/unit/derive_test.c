@@ -113,11 +113,13 @@ static void orders_of_a_trifurcation_and_a_second_root(void **state)
     const double level[] = {none, 0, 0, 1, 1, 1, 2, 2, none, 0};
     const double strahler[] = {none, 2, 2, 2, 1, 1, 1, 1, none, 1};
     const double branch[] = {none, 1, 1, 2, 1, 3, 4, 2, none, 5};
+    const double trees[] = {none, 1, 1, 1, 1, 1, 1, 1, none, 2};
     const double flow[] = {none, 26, 26, 13, 6.5, 6.5, 6.5, 6.5, none, 6.5};
     TreeMeta params = {SAYS(Q_PERF, 32.5)};
     assert_field(&tree, &no_options, "level", "", level);
     assert_field(&tree, &no_options, "strahler", "", strahler);
     assert_field(&tree, &no_options, "branch", "", branch);
+    assert_field(&tree, &no_options, "tree", "", trees);
     assert_field(&tree, &params, "flow", "ml/min", flow);
     tree_release(&tree);
 }
@@ -239,9 +241,9 @@ static void an_unknown_field_is_answered_with_the_known_ones(void **state)
     Field field;
     Err err;
     assert_int_equal(derive_field(&tree, &no_options, "colour", &field, &err), STATUS_USAGE);
-    assert_string_equal(err.text,
-                        "there is no field 'colour'; known are radius, length, flow, velocity, "
-                        "pressure, wss, reynolds, level, strahler, diameter-strahler, branch");
+    assert_string_equal(
+        err.text, "there is no field 'colour'; known are radius, length, flow, velocity, "
+                  "pressure, wss, reynolds, level, strahler, diameter-strahler, branch, tree");
     tree_release(&tree);
 }
 
