@@ -2,19 +2,21 @@
  * tree a tree, a picture a picture of sRGB, a plane of floats a plane. */
 #include "app/commands.h"
 #include "app/options.h"
+#include "app/reading.h"
 #include "image/image.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
 #include <string.h>
 
 /* A tree in its normal form: parents before children, ids 1, 2, ... in that order. */
-static Status convert_tree(const char *from, const char *to, bool quiet, Err *err)
+static Status convert_tree(const Parsed *parsed, Err *err)
 {
+    const char *from = parsed->operands[0], *to = parsed->operands[1];
     Tree tree;
-    TRY(tree_read(&tree, from, err));
+    TRY(reading_tree(parsed, from, &tree, NULL, err));
     tree_renumber(&tree);
     Status status = tree_write(&tree, to, err);
-    if (status == STATUS_OK && !quiet && !tree_format_has_columns(to))
+    if (status == STATUS_OK && !parsed->common.quiet && !tree_format_has_columns(to))
         print_columns_left_out("convert", &tree, "the format has no place for them");
     tree_release(&tree);
     return status;
@@ -102,18 +104,19 @@ static Status run_convert(void *options, Parsed *parsed, Err *err)
 {
     (void)options;
     const char *from = parsed->operands[0], *to = parsed->operands[1];
-    FileKind kind = kind_of(to);
-    if (kind_of(from) == FILE_UNKNOWN || kind == FILE_UNKNOWN)
+    FileKind kind = kind_of(to), kind_from = parsed->reading.format ? FILE_TREE : kind_of(from);
+    if (kind_from == FILE_UNKNOWN || kind == FILE_UNKNOWN)
         return unknown_kind(kind == FILE_UNKNOWN ? to : from, err);
     if (kind == FILE_INPUT)
         return err_set(err, STATUS_USAGE,
                        "'%s' cannot be written: OpenEXR is only read; floats become .pfm", to);
-    if ((kind_of(from) == FILE_TREE) != (kind == FILE_TREE))
+    if ((kind_from == FILE_TREE) != (kind == FILE_TREE))
         return err_set(err, STATUS_USAGE,
                        "'%s' cannot become '%s': a tree and an image are different things", from,
                        to);
     if (kind == FILE_TREE)
-        return convert_tree(from, to, parsed->common.quiet, err);
+        return convert_tree(parsed, err);
+    TRY(reading_refuse(parsed, "is for trees", err));
     return kind == FILE_PICTURE ? convert_picture(from, to, err) : convert_plane(from, to, err);
 }
 
@@ -129,5 +132,6 @@ const Command command_convert = {
     .min_operands = 2,
     .max_operands = 2,
     .writes_last = true,
+    .reads_tree = true,
     .run = run_convert,
 };

@@ -81,6 +81,7 @@ const Command command_export = {
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
+    .reads_tree = true,
     .size = sizeof(ExportOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, COLORING_TABLES(ExportOptions, meshing.coloring)},

@@ -5,6 +5,7 @@
 #include "app/info_morphometry.h"
 #include "app/info_statistics.h"
 #include "app/options.h"
+#include "app/reading.h"
 #include "derive/derive.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
@@ -94,6 +95,7 @@ typedef struct InfoOptions {
 
 /* What is said of the tree, as far as it is asked for; owned. */
 typedef struct Findings {
+    TreeReading reading;
     TreeSummary summary;
     TreeStatistics statistics;
     Morphometry table;
@@ -130,10 +132,12 @@ static Status show(const InfoOptions *options, const char *path, const Tree *tre
         if (options->morphometry)
             json =
                 json_with(json, "morphometry", morphometry_json(&found->table, &found->comparison));
+        json = json_with(json, "reading", reading_json(&found->reading));
         return json_write(json, "-", err);
     }
     print_summary(path, &found->summary);
     print_columns(tree);
+    reading_print(&found->reading);
     if (options->stats)
         statistics_print(&found->statistics);
     if (options->morphometry)
@@ -159,11 +163,12 @@ static Status run_info(void *options, Parsed *parsed, Err *err)
     Status status = STATUS_OK;
     Tree tree = {0};
     Findings found = {0};
-    TRY(tree_read(&tree, parsed->operands[0], err));
+    TRY(reading_tree(parsed, parsed->operands[0], &tree, &found.reading, err));
     TRY_GOTO(blood_settle(&own_options->blood, parsed, &tree, err));
     TRY_GOTO(find_out(own_options, &tree, &found, err));
     status = show(own_options, parsed->operands[0], &tree, &found, err);
 done:
+    reading_release(&found.reading);
     statistics_release(&found.statistics);
     morphometry_release(&found.table);
     free(found.comparison.pair);
@@ -181,6 +186,7 @@ const Command command_info = {
                 "  corcast info coronary.swc --morphometry kassab-lad\n",
     .min_operands = 1,
     .max_operands = 1,
+    .reads_tree = true,
     .size = sizeof(InfoOptions),
     .tables = {{&own_table, 0}, {&blood_table, offsetof(InfoOptions, blood)}},
     .run = run_info,

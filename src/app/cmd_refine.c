@@ -1,5 +1,6 @@
 /* A tree from a file, refined within its domain: that of the option, or that of its header. */
 #include "app/commands.h"
+#include "app/reading.h"
 #include "app/refining.h"
 #include "app/tree_domain.h"
 #include "treeio/treeio.h"
@@ -50,7 +51,7 @@ static Status run_refine(void *options, Parsed *parsed, Err *err)
     bool has_domain;
     RefineReport report;
     Status status = STATUS_OK;
-    TRY_GOTO(tree_read(&tree, parsed->operands[0], err));
+    TRY_GOTO(reading_tree(parsed, parsed->operands[0], &tree, NULL, err));
     TRY_GOTO(find_domain(own_options->domain, &tree, &domain, &has_domain, err));
     if (domain.file)
         TRY_GOTO(files_read(&parsed->files, "--domain", domain.file, err));
@@ -78,6 +79,7 @@ const Command command_refine = {
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
+    .reads_tree = true,
     .size = sizeof(RefineOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, {&refining_table, offsetof(RefineOptions, refining)}},

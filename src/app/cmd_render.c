@@ -283,6 +283,7 @@ const Command command_render = {
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
+    .reads_tree = true,
     .size = sizeof(RenderOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(RenderOptions, picture)},

@@ -286,6 +286,7 @@ const Command command_verify = {
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
+    .reads_tree = true,
     .size = sizeof(VerifyOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(VerifyOptions, picture)},

@@ -468,6 +468,7 @@ const Command command_view = {
                 "  q, Escape  quit\n",
     .min_operands = 1,
     .max_operands = 1,
+    .reads_tree = true,
     .size = sizeof(ViewOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(ViewOptions, picture)},

@@ -3,8 +3,8 @@
 #include "app/growing.h"
 
 #include "app/blood.h"
+#include "app/reading.h"
 #include "app/tree_domain.h"
-#include "treeio/treeio.h"
 
 static const char *const tosses[] = {
     [GROW_TOSS_SEGMENT] = "segment", [GROW_TOSS_TERMINAL] = "terminal", NULL};
@@ -123,9 +123,9 @@ static Status take_meta(Growing *growing, Err *err)
     return STATUS_OK;
 }
 
-static Status read_from(Growing *growing, bool *has_domain, Err *err)
+static Status read_from(Growing *growing, const Parsed *parsed, bool *has_domain, Err *err)
 {
-    TRY(tree_read(&growing->from, growing->from_path, err));
+    TRY(reading_tree(parsed, growing->from_path, &growing->from, NULL, err));
     growing->params.from = &growing->from;
     TRY(take_meta(growing, err));
     if (growing->domain_spec)
@@ -157,8 +157,10 @@ Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
     params->inlet_shares = growing->inlet_share.n;
     params->inlet_share = growing->inlet_share.at;
     bool has_domain = false;
-    if (growing->from_path)
-        TRY(read_from(growing, &has_domain, err));
+    if (!growing->from_path)
+        TRY(reading_refuse(parsed, "needs --from", err));
+    else
+        TRY(read_from(growing, parsed, &has_domain, err));
     if (!has_domain)
         TRY(domain_parse(&growing->domain,
                          growing->domain_spec ? growing->domain_spec : plain_domain, err));

@@ -8,6 +8,7 @@
 #include "app/options.h"
 
 #include "app/commands.h"
+#include "app/reading.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,7 +51,7 @@ static void bind(Parsed *parsed, const OptionTable *table, void *base)
 Status parsed_init(Parsed *parsed, const Command *command, Err *err)
 {
     *parsed = (Parsed){.command = command, .common = {.seed = 1}};
-    size_t n = common_table.n;
+    size_t n = common_table.n + reading_table.n;
     for (int t = 0; t < MAX_TABLES && command->tables[t].table; t++)
         n += command->tables[t].table->n;
     TRY(mem_calloc(&parsed->settings, n, sizeof *parsed->settings, "options", err));
@@ -63,6 +64,8 @@ Status parsed_init(Parsed *parsed, const Command *command, Err *err)
         command->set_defaults(parsed->options);
     for (int t = 0; t < MAX_TABLES && command->tables[t].table; t++)
         bind(parsed, command->tables[t].table, (char *)parsed->options + command->tables[t].at);
+    if (command->reads_tree)
+        bind(parsed, &reading_table, &parsed->reading);
     bind(parsed, &common_table, &parsed->common);
     return STATUS_OK;
 }

@@ -48,6 +48,7 @@ typedef struct NumberList {
 /* The headings that options stand under, in the order of the help. */
 typedef enum OptionGroup {
     GROUP_FILES,
+    GROUP_INPUT,
     GROUP_TREE,
     GROUP_BLOOD,
     GROUP_OPTIMUM,
@@ -156,6 +157,7 @@ typedef struct Command {
     bool needs_output; /* the option output must be given */
     bool writes_last;  /* the last operand is written; the others are read */
     bool is_lookup;    /* operands are names, not files */
+    bool reads_tree;   /* it has the options of reading, which set parsed->reading */
     size_t size;       /* of the struct that its options set; 0: it has none of its own */
     void (*set_defaults)(void *options); /* of that struct, zeroed before; NULL: zeros */
     struct {
@@ -185,7 +187,8 @@ struct Parsed {
     const Command *command;
     void *options; /* of the command, command->size bytes; owned */
     Common common;
-    Setting *settings; /* all options, the command's first; owned */
+    ReadOptions reading; /* of commands that read trees */
+    Setting *settings;   /* all options, the command's first; owned */
     size_t n_settings;
     Files files; /* that operands and options name */
     const char *operands[MAX_OPERANDS];

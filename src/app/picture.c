@@ -3,9 +3,9 @@
  * effect on the picture asked for is refused. */
 #include "app/picture.h"
 
+#include "app/reading.h"
 #include "image/image.h"
 #include "render/render.h"
-#include "treeio/treeio.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -304,7 +304,7 @@ Status picture_read_tree(const Coloring *coloring, double prune_radius_mm, const
                          PictureTree *out, Err *err)
 {
     PictureTree made = {.path = parsed->operands[0]};
-    TRY(tree_read(&made.tree, made.path, err));
+    TRY(reading_tree(parsed, made.path, &made.tree, NULL, err));
     Status status = blood_settle(&coloring->blood, parsed, &made.tree, err);
     if (status == STATUS_OK)
         status = coloring_join(coloring, &made.tree, &made.joined, err);

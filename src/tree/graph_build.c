@@ -476,14 +476,12 @@ static void count_points(const Building *building)
             building->reading->unused++;
 }
 
-static bool all_are_whole(const Graph *graph)
+static bool looks_like_voxels(const Graph *graph)
 {
-    for (size_t i = 0; i < graph->n_points; i++) {
-        Vec3 at = graph->point[i].position;
-        if (at.x != floor(at.x) || at.y != floor(at.y) || at.z != floor(at.z))
+    for (size_t i = 0; i < graph->n_points; i++)
+        if (!reading_is_voxel(graph->point[i].position))
             return false;
-    }
-    return true;
+    return graph->n_points >= READ_FEW;
 }
 
 /* What the reading says before anything is changed. */
@@ -495,7 +493,7 @@ static void describe(const Graph *graph, const ReadOptions *options, TreeReading
     reading->unit = options->has_unit ? options->unit : graph->unit;
     reading->unit_said = options->has_unit || graph->unit_said;
     reading->voxels = options->has_voxel_size;
-    reading->looks_like_voxels = !reading->voxels && !graph->unit_said && all_are_whole(graph);
+    reading->looks_like_voxels = !reading->voxels && !graph->unit_said && looks_like_voxels(graph);
 }
 
 static Status build(Building *building, TreeBuilder *builder, Err *err)

@@ -125,17 +125,17 @@ static void measure_radii(TreeReading *reading, const Tree *tree, double *radius
         reading->median_radius_mm = select_number(radius, n, n / 2);
 }
 
-static bool is_whole(Vec3 v)
+bool reading_is_voxel(Vec3 at)
 {
-    return v.x == floor(v.x) && v.y == floor(v.y) && v.z == floor(v.z);
+    return at.x == floor(at.x) && at.y == floor(at.y) && at.z == floor(at.z);
 }
 
-static bool all_are_whole(const Tree *tree)
+static bool looks_like_voxels(const Tree *tree)
 {
     for (size_t i = 0; i < tree->n; i++)
-        if (!is_whole(tree->position[i]))
+        if (!reading_is_voxel(tree->position[i]))
             return false;
-    return true;
+    return tree->n >= READ_FEW;
 }
 
 Status reading_measure(TreeReading *reading, const Tree *tree, Err *err)
@@ -146,8 +146,8 @@ Status reading_measure(TreeReading *reading, const Tree *tree, Err *err)
     TRY_GOTO(measure_roots(reading, tree, (uint32_t *)radius, err));
     TRY_GOTO(measure_degrees(reading, tree, err));
     measure_radii(reading, tree, radius);
-    if (!reading->is_graph && reading->unit == LENGTH_MM && !reading->voxels)
-        reading->looks_like_voxels = all_are_whole(tree);
+    if (!reading->is_graph && !reading->unit_said && !reading->voxels)
+        reading->looks_like_voxels = looks_like_voxels(tree);
     believe(reading);
 done:
     free(radius);

@@ -69,7 +69,7 @@ typedef struct ReadCut {
     double radius_mm;
 } ReadCut;
 
-enum { READ_MAX_DEGREE = 8, READ_MAX_CUTS = 1000 };
+enum { READ_MAX_DEGREE = 8, READ_MAX_CUTS = 1000, READ_FEW = 20 };
 
 /* Zeroed: nothing is known; reading_release. */
 typedef struct TreeReading {
@@ -96,7 +96,7 @@ typedef struct TreeReading {
     bool voxels;                        /* coordinates were multiplied by a voxel's size */
     LengthUnit believed;                /* what the radii look like */
     bool believes;                      /* ... if they look like vessels in any unit */
-    bool looks_like_voxels;             /* all coordinates are whole numbers */
+    bool looks_like_voxels;             /* all of READ_FEW points or more are whole numbers */
     char **note;                        /* owned; sentences about what was assumed */
     size_t n_notes, notes_capacity;
 } TreeReading;
@@ -107,6 +107,9 @@ void reading_release(TreeReading *reading);
  * 'Radius'". `reading` may be NULL. */
 MUST_CHECK Status reading_note(TreeReading *reading, Err *err, const char *format, ...)
     PRINTF_LIKE(3, 4);
+
+/* Whether all coordinates are whole numbers. */
+bool reading_is_voxel(Vec3 position);
 
 /* Adds what a tree shows: roots that no one gave a reason for, degrees, median radius, the unit
  * believed. O(nodes log nodes). */

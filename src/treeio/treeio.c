@@ -318,10 +318,11 @@ static Status read_graph(const Source *source, TreeBuilder *builder, const ReadO
 }
 
 /* What options say of lengths, of a tree that a TreeRead has read in mm. */
-static void scale_tree(Tree *tree, const ReadOptions *options, TreeReading *reading)
+static void scale_tree(Tree *tree, const Format *format, const ReadOptions *options,
+                       TreeReading *reading)
 {
     reading->unit = options->has_unit ? options->unit : LENGTH_MM;
-    reading->unit_said = options->has_unit;
+    reading->unit_said = options->has_unit || !(format->takes & UNIT);
     reading->voxels = options->has_voxel_size;
     LengthScale scale = length_scale(options, LENGTH_MM);
     if (!options->has_unit && !options->has_voxel_size)
@@ -345,7 +346,7 @@ static Status read_source(const Source *source, Tree *tree, const ReadOptions *o
     builder_release(&builder);
     TRY(status);
     if (format->read)
-        scale_tree(&made, options, reading);
+        scale_tree(&made, format, options, reading);
     status = tree_check(&made, err);
     if (status == STATUS_OK)
         status = reading_measure(reading, &made, err);
