@@ -19,7 +19,7 @@ static const Option own[] = {
     {.name = "tolerance",
      SETS(NUMBER, ExportOptions, meshing.tolerance),
      .group = GROUP_VESSELS,
-     FROM_TO(0.002, 0.2),
+     .range = &tolerance_range,
      .help = "how far triangles may be off the surface, over the local radius"},
     {.name = "prune-radius",
      SETS(NUMBER, ExportOptions, meshing.prune_radius_mm),

@@ -56,7 +56,7 @@ static Status aim(Viewer *viewer, Err *err)
 static Status make_geometry(Viewer *viewer, Err *err)
 {
     Geometry made;
-    TRY(picture_geometry(viewer->options, &viewer->source, &made, NULL, err));
+    TRY(picture_geometry(viewer->options, &viewer->source, viewer->common, &made, NULL, err));
     geometry_release(&viewer->scene.geometry);
     viewer->scene.geometry = made;
     TRY(aim(viewer, err));
@@ -86,12 +86,19 @@ static void set_title(const Viewer *viewer)
     text_release(&title);
 }
 
+/* Where the tree cannot be had in this model, the one that there is stays. */
 static Status use_model(Viewer *viewer, SceneModel model, Err *err)
 {
+    int before = viewer->options->model;
     viewer->options->model = (int)model;
-    TRY(make_geometry(viewer, err));
+    Status status = make_geometry(viewer, err);
+    if (status != STATUS_OK && viewer->scene.geometry.model != model) {
+        fprintf(stderr, "corcast view: %s\n", err->text);
+        viewer->options->model = before;
+        return STATUS_OK;
+    }
     set_title(viewer);
-    return STATUS_OK;
+    return status;
 }
 
 /* The number of a field, that after the last being none. */
@@ -459,7 +466,7 @@ const Command command_view = {
                 "  corcast view tree.swc --model isosurface --color-by pressure --antialias 3\n"
                 "in the window:\n"
                 "  drag turns, drag with the right button or shift moves, the wheel zooms\n"
-                "  1 ... 5    cylinders, joined, rounded, isosurface, blob\n"
+                "  1 ... 6    cylinders, joined, rounded, isosurface, blob, mesh\n"
                 "  c          the next field that colours the vessels, or none\n"
                 "  p s a      projection, shadows, ambient occlusion\n"
                 "  r          back to where the camera was\n"

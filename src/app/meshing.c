@@ -47,23 +47,6 @@ static Status color_vessels(const MeshingOptions *options, Meshing *made, Err *e
     return derive_rule(&of->tree, &(TreeMeta){0}, "strahler", &made->orders, err);
 }
 
-/* STATUS_DIFFERS, saying what is wrong with a mesh that is not sound. */
-static Status check_sound(const VesselTree *vessels, const MeshReport *report, Err *err)
-{
-    if (meshreport_is_sound(report))
-        return STATUS_OK;
-    if (report->n_missing)
-        return err_set(err, STATUS_DIFFERS,
-                       "%zu segments have no triangles, segment %u among them; nothing is written",
-                       report->n_missing, vessels->ids[report->missing[0]]);
-    return err_set(err, STATUS_DIFFERS,
-                   "the surface is not sound: %zu parts for %zu trees, genus %zu, %zu open edges, "
-                   "%zu crossing pairs of triangles, %zu bridges; nothing is written (a smaller "
-                   "--tolerance may help)",
-                   report->components, report->trees, report->genus, report->open_edges,
-                   report->crossings, report->bridges);
-}
-
 /* Says before the work how much of it there is. */
 static Status say_estimate(const VesselTree *vessels, const MeshParams *params, bool quiet,
                            Err *err)
@@ -129,7 +112,7 @@ static Status make(const Parsed *parsed, const MeshingOptions *options, bool col
     if (options->part_overlaps)
         TRY(part(made, common->threads, err));
     TRY(triangulate(made, options->tolerance, common, err));
-    TRY(check_sound(&made->vessels, &made->report, err));
+    TRY(meshreport_check(&made->report, &made->vessels, err));
     say_result(&made->report, &made->mesh, common->quiet);
     return STATUS_OK;
 }

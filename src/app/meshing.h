@@ -7,9 +7,6 @@
 #include "base/base.h"
 #include "emit/emit.h"
 
-/* How far triangles may be off the surface, over the local radius, where nothing else is said. */
-#define MESHING_TOLERANCE 0.02
-
 typedef struct MeshingOptions {
     double tolerance;       /* over the local radius */
     double prune_radius_mm; /* 0: none */

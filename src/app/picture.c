@@ -3,6 +3,7 @@
  * effect on the picture asked for is refused. */
 #include "app/picture.h"
 
+#include "app/progress.h"
 #include "app/reading.h"
 #include "image/image.h"
 #include "render/render.h"
@@ -19,7 +20,8 @@ static const char *const views[] = {
 
 static const char *const erf_names[] = {[ERF_FAST] = "fast", [ERF_EXACT] = "exact", NULL};
 
-const Range antialias_range = {1, RENDER_MOST_ANTIALIAS}, prune_range = {0, 1e7};
+const Range antialias_range = {1, RENDER_MOST_ANTIALIAS}, prune_range = {0, 1e7},
+            tolerance_range = {0.002, 0.2};
 
 static const Option rows[] = {
     {.name = "model",
@@ -38,6 +40,15 @@ static const Option rows[] = {
      .choices = joint_forms,
      .group = GROUP_VESSELS,
      .help = "joined: what is done where vessels are too short or turn too sharply"},
+    {.name = "tolerance",
+     SETS(NUMBER, PictureOptions, tolerance),
+     .range = &tolerance_range,
+     .group = GROUP_VESSELS,
+     .help = "mesh: how far triangles may be off the surface, over the local radius"},
+    {.name = "part-overlaps",
+     SETS(FLAG, PictureOptions, part_overlaps),
+     .group = GROUP_VESSELS,
+     .help = "mesh: thin vessels that overlap others that they do not belong with"},
     {.name = "prune-radius",
      SETS(NUMBER, PictureOptions, prune_radius_mm),
      .range = &prune_range,
@@ -142,6 +153,7 @@ void picture_set_defaults(PictureOptions *picture)
 {
     *picture = (PictureOptions){.stage = view_defaults(),
                                 .model = SCENE_ROUNDED,
+                                .tolerance = MESHING_TOLERANCE,
                                 .size = {1000, 1000},
                                 .antialias = 1,
                                 .look = "cast"};
@@ -182,9 +194,10 @@ typedef struct ModelOption {
 } ModelOption;
 
 static const ModelOption of_models[] = {
-    {"potential", MODEL_POTENTIAL, ""}, {"erf", MODEL_POTENTIAL, ""},
-    {"cell-beta", MODEL_POTENTIAL, ""}, {"hits", MODEL_POTENTIAL, ""},
-    {"joints", MODEL_JOINTS, ""},       {"ids", MODEL_FIELD, "; other scenes have ids anyway"},
+    {"potential", MODEL_POTENTIAL, ""},     {"erf", MODEL_POTENTIAL, ""},
+    {"cell-beta", MODEL_POTENTIAL, ""},     {"hits", MODEL_POTENTIAL, ""},
+    {"joints", MODEL_JOINTS, ""},           {"tolerance", MODEL_TRIANGLES, ""},
+    {"part-overlaps", MODEL_TRIANGLES, ""}, {"ids", MODEL_FIELD, "; other scenes have ids anyway"},
 };
 
 /* The row of an option; NULL when it has an effect on all models. */
@@ -252,6 +265,11 @@ static Status warn_of_losses(const Geometry *geometry, const StageReport *report
                 "corcast: %zu of %zu segments are too short for their radius: the potential is "
                 "below e^-2 there and shows nothing\n",
                 hidden, segments);
+    if (report->thinned)
+        fprintf(stderr,
+                "corcast: %zu segments are thinned, because they overlap others that they do not "
+                "belong with, or blend with such\n",
+                report->thinned);
     if (report->places_short + report->places_sharp)
         fprintf(stderr,
                 "corcast: at %zu places vessels are too short for joints, at %zu they turn too "
@@ -350,14 +368,20 @@ ViewParams picture_view_params(const PictureOptions *options)
 }
 
 Status picture_geometry(const PictureOptions *options, const PictureSource *source,
-                        Geometry *geometry, StageReport *report, Err *err)
+                        const Common *common, Geometry *geometry, StageReport *report, Err *err)
 {
     const SceneModel model = (SceneModel)options->model;
-    const GeometryParams params = {.model = model,
-                                   .joints = (JointForm)options->joints,
-                                   .graph = options->potential != 0 &&
-                                            model_has(model, MODEL_POTENTIAL)};
-    return stage_geometry(&source->of.tree, &params, geometry, report, err);
+    Progress progress;
+    const GeometryParams params = {
+        .model = model,
+        .joints = (JointForm)options->joints,
+        .graph = options->potential != 0 && model_has(model, MODEL_POTENTIAL),
+        .part_overlaps = options->part_overlaps,
+        .mesh = {options->tolerance, common->threads, progress_report, &progress}};
+    progress_start(&progress, "triangulating", common->quiet);
+    Status status = stage_geometry(&source->of.tree, &params, geometry, report, err);
+    progress_end(&progress);
+    return status;
 }
 
 Status picture_appearance(const PictureOptions *options, const PictureSource *source,
@@ -375,11 +399,11 @@ Status picture_view(const PictureOptions *options, const PictureSource *source,
     return stage_view(&source->look, &params, geometry, view, err);
 }
 
-static Status make_scene(const PictureOptions *options, const PictureSource *source, Scene *scene,
-                         StageReport *report, Err *err)
+static Status make_scene(const PictureOptions *options, const PictureSource *source,
+                         const Common *common, Scene *scene, StageReport *report, Err *err)
 {
     TRY(picture_appearance(options, source, &scene->appearance, err));
-    Status status = picture_geometry(options, source, &scene->geometry, report, err);
+    Status status = picture_geometry(options, source, common, &scene->geometry, report, err);
     if (status == STATUS_OK)
         status = picture_view(options, source, &scene->geometry, &scene->view, err);
     if (status == STATUS_INPUT)
@@ -394,7 +418,7 @@ Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene 
     StageReport staged;
     Scene made = {0};
     TRY(picture_read_source(options, parsed, &source, err));
-    Status status = make_scene(options, &source, &made, &staged, err);
+    Status status = make_scene(options, &source, &parsed->common, &made, &staged, err);
     if (status == STATUS_OK && !parsed->common.quiet)
         status = warn_of_losses(&made.geometry, &staged, (JointForm)options->joints,
                                 source.of.pruned, err);

@@ -15,7 +15,10 @@ typedef struct PictureOptions {
     int model, potential, joints, projection, view; /* choices */
     int size[2];
     int antialias;
-    int occlusion; /* rays a sample; 0: none */
+    int occlusion;    /* rays a sample; 0: none */
+    double tolerance; /* of a mesh, over the local radius */
+    bool
+        part_overlaps; /* likewise: thin vessels that overlap others that they do not belong with */
     double prune_radius_mm;
     const char *look;
     Vec3 background; /* sRGB in [0, 1] */
@@ -28,8 +31,11 @@ typedef struct PictureOptions {
 
 /* Of zeroed options. */
 void picture_set_defaults(PictureOptions *options);
-/* Of --antialias and --prune-radius (mm), wherever they are options. */
-extern const Range antialias_range, prune_range;
+/* How far triangles may be off the surface, over the local radius, where nothing else is said. */
+#define MESHING_TOLERANCE 0.02
+
+/* Of --antialias, --prune-radius (mm) and --tolerance, wherever they are options. */
+extern const Range antialias_range, prune_range, tolerance_range;
 extern const OptionTable picture_table; /* sets a PictureOptions but its coloring */
 /* The tables that set the PictureOptions at `path` of a command's options. */
 #define PICTURE_TABLES(Type, path)                                                                 \
@@ -80,7 +86,8 @@ ViewParams picture_view_params(const PictureOptions *options);
 /* Each of the three things that a picture is of, as the options ask for it. `report` may be NULL.
  */
 MUST_CHECK Status picture_geometry(const PictureOptions *options, const PictureSource *source,
-                                   Geometry *geometry, StageReport *report, Err *err);
+                                   const Common *common, Geometry *geometry, StageReport *report,
+                                   Err *err);
 MUST_CHECK Status picture_appearance(const PictureOptions *options, const PictureSource *source,
                                      Appearance *appearance, Err *err);
 MUST_CHECK Status picture_view(const PictureOptions *options, const PictureSource *source,

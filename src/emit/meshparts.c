@@ -57,24 +57,9 @@ void put_color_code(Text *out, const EmitParams *params, uint32_t segment)
 Box mesh_box(const VesselMesh *mesh)
 {
     Box box = box_empty();
-    for (size_t i = 0; i < mesh->n_points; i++) {
-        const float *x = mesh->points[i];
-        box = box_with_ball(box, vec3((double)x[0], (double)x[1], (double)x[2]), 0);
-    }
+    for (size_t i = 0; i < mesh->n_points; i++)
+        box = box_with_ball(box, mesh_point(mesh, (uint32_t)i), 0);
     return box;
-}
-
-void mesh_flat_normal(const VesselMesh *mesh, size_t triangle, float normal[3])
-{
-    Vec3 at[3];
-    for (int i = 0; i < 3; i++) {
-        const float *x = mesh->points[mesh->triangles[triangle][i]];
-        at[i] = vec3((double)x[0], (double)x[1], (double)x[2]);
-    }
-    Vec3 across = vec3_cross(vec3_sub(at[1], at[0]), vec3_sub(at[2], at[0]));
-    double length = vec3_length(across);
-    for (int axis = 0; axis < 3; axis++)
-        normal[axis] = length > 0 ? (float)(vec3_component(across, axis) / length) : 0;
 }
 
 Status mesh_point_segments(const VesselMesh *mesh, uint32_t **segments, Err *err)

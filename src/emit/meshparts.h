@@ -19,17 +19,6 @@ typedef struct MeshParts {
 MUST_CHECK Status meshparts_find(const EmitParams *params, MeshParts *out, Err *err);
 void meshparts_release(MeshParts *parts);
 
-static inline bool mesh_is_cap(const VesselMesh *mesh, size_t triangle)
-{
-    return (mesh->labels[triangle] & MESH_CAP) != 0;
-}
-
-/* Index in params->vessels of the segment that a triangle belongs to. */
-static inline uint32_t mesh_segment(const VesselMesh *mesh, size_t triangle)
-{
-    return mesh->labels[triangle] & ~MESH_CAP;
-}
-
 /* The colour of a segment of params->vessels: linear, and as 8-bit codes of sRGB. */
 Rgb vessel_color(const EmitParams *params, uint32_t segment);
 void vessel_color_codes(const EmitParams *params, uint32_t segment, uint8_t codes[3]);
@@ -38,9 +27,6 @@ void put_color_code(Text *out, const EmitParams *params, uint32_t segment);
 
 /* The box about its points. */
 Box mesh_box(const VesselMesh *mesh);
-
-/* The unit normal of a triangle, by the right hand; 0 where it has no area. */
-void mesh_flat_normal(const VesselMesh *mesh, size_t triangle, float normal[3]);
 
 /* For each point the segment of the first triangle about it, in *segments (owned). */
 MUST_CHECK Status mesh_point_segments(const VesselMesh *mesh, uint32_t **segments, Err *err);

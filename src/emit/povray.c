@@ -25,6 +25,7 @@ static const struct {
 } geometries[] = {
     {MODEL_POTENTIAL, put_cell_macros, put_cells},
     {MODEL_BLOB, put_blob_macros, put_blob},
+    {MODEL_TRIANGLES, put_mesh_macros, put_mesh},
     {MODEL_JOINTS, put_joined_macros, put_primitives},
     {MODEL_CYLINDERS, put_primitive_macros, put_primitives},
 };

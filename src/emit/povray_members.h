@@ -37,15 +37,17 @@ Status put_cell_macros(Text *out, void *geometry, Err *err);
 /* The numbers of a blob and what tells its segments apart. STATUS_INFEASIBLE when POV-Ray cannot
  * paint them. */
 Status put_blob_macros(Text *out, void *geometry, Err *err);
+Status put_mesh_macros(Text *out, void *geometry, Err *err);
 
 /* Declares all objects, each by the function given, which is one of those that follow. */
 Status put_objects(Text *out, PovrayGeometry *geometry,
                    Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err), Err *err);
 /* Each declares geometry->object: a call for each primitive, an isosurface for each cell, the calls
- * that make a blob. STATUS_INFEASIBLE when POV-Ray cannot hold it. */
+ * that make a blob, the lists of a mesh2. STATUS_INFEASIBLE when POV-Ray cannot hold it. */
 Status put_primitives(Text *out, PovrayGeometry *geometry, Err *err);
 Status put_cells(Text *out, PovrayGeometry *geometry, Err *err);
 Status put_blob(Text *out, PovrayGeometry *geometry, Err *err);
+Status put_mesh(Text *out, PovrayGeometry *geometry, Err *err);
 
 /* The declaration of geometry->object as a `kind`, "union" say, of what `put_members` appends. */
 Status put_declaration(Text *out, PovrayGeometry *geometry, const char *kind,

@@ -1,10 +1,10 @@
 /* What a geometry declares: all of it as one object and, of a forest, each of its trees as one. The
  * items of the trees are found by a counting sort, which keeps their order.
  *
- * Trees of primitives are members of the whole. Those of a field cannot be: where trees come near,
- * the whole is the level set of the sum over all of them, so that each tree is a field of its own
- * segments, beside it. The cells of an isosurface are found anew for each, with the whole's
- * numbers, so that all call the same functions. */
+ * Trees of primitives and of triangles are members of the whole. Those of a field cannot be: where
+ * trees come near, the whole is the level set of the sum over all of them, so that each tree is a
+ * field of its own segments, beside it. The cells of an isosurface are found anew for each, with
+ * the whole's numbers, so that all call the same functions. */
 #include "emit/povray_members.h"
 #include "emit/values.h"
 
@@ -15,10 +15,16 @@ static bool is_field(const PovrayGeometry *geometry)
     return model_has(geometry->scene->geometry.model, MODEL_FIELD);
 }
 
+/* Else they are field segments. */
+static bool items_are_primitives(const Geometry *all)
+{
+    return model_has(all->model, MODEL_PRIMITIVES);
+}
+
 static uint32_t segment_of_item(const PovrayGeometry *geometry, size_t item)
 {
     const Geometry *all = &geometry->scene->geometry;
-    return is_field(geometry) ? all->segments[item].segment : all->primitives[item].segment;
+    return items_are_primitives(all) ? all->primitives[item].segment : all->segments[item].segment;
 }
 
 /* Sorts the items by tree, behind those of the whole. */
@@ -43,7 +49,7 @@ static Status find_items(PovrayGeometry *geometry, Err *err)
 {
     const Anatomy *anatomy = geometry->params->anatomy;
     const Geometry *all = &geometry->scene->geometry;
-    const size_t n = is_field(geometry) ? all->n_segments : all->n_primitives;
+    const size_t n = items_are_primitives(all) ? all->n_primitives : all->n_segments;
     geometry->n_objects = anatomy && anatomy->n_trees > 1 ? 1 + anatomy->n_trees : 1;
     TRY(mem_calloc(&geometry->objects, geometry->n_objects, sizeof *geometry->objects, "trees",
                    err));

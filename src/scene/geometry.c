@@ -55,6 +55,7 @@ void geometry_release(Geometry *geometry)
     free(geometry->segments);
     numberlists_release(&geometry->blend.members);
     numberlists_release(&geometry->blend.groups);
+    vesselmesh_release(&geometry->mesh);
     free(geometry->ids);
     *geometry = (Geometry){0};
 }

@@ -9,6 +9,7 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "scene/models.h"
+#include "scene/triangles.h"
 #include <stdint.h>
 
 /* No coordinate may be larger: POV-Ray ignores what lies farther than this along a ray
@@ -107,6 +108,8 @@ typedef struct Geometry {
     FieldSegment *segments; /* owned; empty for a primitive model */
     size_t n_segments;
     Blend blend;
+    VesselMesh mesh;  /* the wall of the segments, its labels their indices; empty but for a model
+                       * of triangles */
     bool open_joints; /* rays may see the inside of a joint, where its discs are not covered */
     uint32_t *ids;    /* owned; SWC id of each segment, by its number; > 0 where it is drawn */
     size_t n_ids;

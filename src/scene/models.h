@@ -13,6 +13,7 @@ typedef enum ModelElement {
     MODEL_JOINTS = 4,    /* ruled surfaces from cylinder to cylinder, which are cut back for them */
     MODEL_POTENTIAL = 8, /* segments of the Gaussian line potential */
     MODEL_BLOB = 16,     /* segments of the blob that stands in for it */
+    MODEL_TRIANGLES = 32, /* triangles of the surface of the potential */
 
     MODEL_PRIMITIVES = MODEL_CYLINDERS | MODEL_BALLS | MODEL_JOINTS,
     MODEL_FIELD = MODEL_POTENTIAL | MODEL_BLOB
@@ -36,7 +37,9 @@ typedef enum ModelProof {
       MODEL_CYLINDERS | MODEL_BALLS, IDENTITY)                                                     \
     X(ISOSURFACE, "isosurface", "the level set of a sum of Gaussian line potentials",              \
       MODEL_POTENTIAL, STEPS)                                                                      \
-    X(BLOB, "blob", "nearly that surface, as a blob of POV-Ray", MODEL_BLOB, FIELD)
+    X(BLOB, "blob", "nearly that surface, as a blob of POV-Ray", MODEL_BLOB, FIELD)                \
+    X(MESH, "mesh", "triangles of that surface, cut off flat at free ends", MODEL_TRIANGLES,       \
+      IDENTITY)
 
 typedef enum SceneModel {
 #define X(symbol, name, description, elements, proof) SCENE_##symbol,

@@ -11,6 +11,7 @@
 #include "scene/appearance.h"
 #include "scene/geometry.h"
 #include "scene/models.h"
+#include "scene/triangles.h"
 #include "scene/vesseltree.h"
 #include "scene/view.h"
 

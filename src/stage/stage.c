@@ -123,9 +123,41 @@ static Status add_graph(const Tree *tree, Geometry *geometry, Err *err)
     return status;
 }
 
+/* Triangulates the wall of the vessels. */
+static Status wall_vessels(VesselTree *vessels, const GeometryParams *params, VesselMesh *mesh,
+                           StageReport *counted, Err *err)
+{
+    MeshReport report;
+    uint32_t *thinned = NULL;
+    if (params->part_overlaps)
+        TRY(vesseltree_part(vessels, params->mesh.threads, &thinned, &counted->thinned, err));
+    free(thinned);
+    TRY(vesselmesh_build(vessels, &params->mesh, mesh, &report, err));
+    Status status = meshreport_check(&report, vessels, err);
+    meshreport_release(&report);
+    return status;
+}
+
+/* The wall of the segments that the geometry has, where they are now. */
+static Status add_mesh(const Tree *tree, const GeometryParams *params, Geometry *geometry,
+                       StageReport *counted, Err *err)
+{
+    VesselTree vessels;
+    size_t dropped;
+    TRY(stage_vessels(tree, &vessels, &dropped, err));
+    free(vessels.segments);
+    vessels.segments = geometry->segments;
+    Status status = wall_vessels(&vessels, params, &geometry->mesh, counted, err);
+    vessels.segments = NULL;
+    vesseltree_release(&vessels);
+    return status;
+}
+
 static Status add_model(const Tree *tree, const GeometryParams *params, Geometry *geometry,
                         StageReport *report, Err *err)
 {
+    if (model_has(geometry->model, MODEL_TRIANGLES))
+        return add_graph(tree, geometry, err);
     if (model_has(geometry->model, MODEL_FIELD))
         return params->graph ? add_graph(tree, geometry, err) : add_field(tree, geometry, err);
     TRY(mem_calloc(&geometry->primitives, 2 * tree->n, sizeof *geometry->primitives, "primitives",
@@ -214,6 +246,8 @@ Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *
     TRY_GOTO(geometry_check(&built, err));
     find_bounds(&built);
     move_to_origin(&built);
+    if (model_has(built.model, MODEL_TRIANGLES))
+        TRY_GOTO(add_mesh(tree, params, &built, &counted, err));
     *geometry = built;
     if (report)
         *report = counted;

@@ -6,6 +6,7 @@
 #include "derive/derive.h"
 #include "geom/geom.h"
 #include "scene/scene.h"
+#include "surface/surface.h"
 #include "tree/tree.h"
 
 /* A look is what pictures of any tree have in common: finish, colours, lights and ground, in sizes
@@ -63,6 +64,8 @@ typedef struct GeometryParams {
     SceneModel model;
     JointForm joints; /* of a joined model */
     bool graph; /* isosurface: segments blend only where they meet [docs/METHODS.md section 2.5] */
+    bool part_overlaps; /* mesh: vessels that overlap others than their own are thinned */
+    MeshParams mesh;    /* of a mesh */
 } GeometryParams;
 
 /* What a view is made by. Vectors are in the coordinates of the tree. */
@@ -84,6 +87,7 @@ ViewParams view_defaults(void);
 typedef struct StageReport {
     size_t drawn;   /* segments that the geometry stands for */
     size_t dropped; /* segments without length or radius, which cannot be drawn */
+    size_t thinned; /* segments that part_overlaps thinned */
     /* Of a joined model. The construction of joints breaks down at a place if a vessel is too short
      * for its joints; else if a vessel turns back too sharply; or it is not tried, because too many
      * vessels meet. */
@@ -94,8 +98,9 @@ typedef struct StageReport {
 /* The shape of a tree in *geometry (owned; geometry_release), of which nothing is borrowed. If the
  * tree lies farther from the origin than 16 times its size, the geometry is moved next to it by
  * whole millimetres, geometry->origin, and nothing seen changes. `report` may be NULL. STATUS_INPUT
- * when nothing can be drawn or a number is out of range, STATUS_MEMORY. O(n) of n nodes, but for
- * joints [cuts.h] and the graph. */
+ * when nothing can be drawn or a number is out of range, STATUS_MEMORY; of a mesh as
+ * vesselmesh_build, and STATUS_DIFFERS when it is not sound. O(n) of n nodes, but for joints
+ * [cuts.h], the graph and the mesh. */
 MUST_CHECK Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *geometry,
                                  StageReport *report, Err *err);
 

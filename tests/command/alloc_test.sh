@@ -73,6 +73,7 @@ test_failed_allocations_in_scene() {
     fail_each 3 many scene ../tree.swc --size 21x15 --model rounded --look print --shadows on -o o.pov
     fail_each 3 many scene ../tree.swc --size 21x15 --model blob --ids on --color-by radius -o o.pov
     fail_each 3 many scene "$DATA/bifurcation.swc" --size 21x15 --model isosurface --ids on -o o.pov
+    fail_each 5 many scene "$DATA/bifurcation.swc" --size 21x15 --model mesh --tolerance 0.2 --part-overlaps -o o.pov
 }
 
 test_failed_allocations_in_export() {

@@ -59,6 +59,13 @@ test_the_potential_of_the_graph_agrees() {
     agrees isosurface --potential graph --view iso --projection perspective
 }
 
+test_meshes_agree() {
+    tree_3d 12
+    agrees mesh --color-by radius --shadows on --view iso --antialias 2
+    rm -r report
+    agrees mesh --tolerance 0.1 --projection perspective --location 12,25,9 --look-at 1,16,2 --angle 30
+}
+
 test_isosurface_with_an_exact_erf_agrees() {
     tree_3d 30
     agrees isosurface --erf exact --shadows on
@@ -75,7 +82,7 @@ test_linear_codes_of_16_bits_agree_within_one_in_every_model() {
     local options
     tree_3d 30
     for options in 'cylinders --shadows on' 'joined --shadows on' 'rounded --shadows on' 'isosurface --shadows on' \
-        'blob --shadows on' 'rounded --projection perspective --antialias 3'; do
+        'blob --shadows on' 'rounded --projection perspective --antialias 3' 'mesh --tolerance 0.1 --shadows on'; do
         # shellcheck disable=SC2086
         run_ok corcast verify tree.swc --bits 16 --view iso --size 160x120 -o report --model $options
         expect_json report/report.json '.verdict == "agree" and .planes.color.bits == 16 and .planes.color.max_code <= 1'

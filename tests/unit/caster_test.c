@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -15,10 +16,29 @@
 typedef struct Wire {
     Primitive primitive;
     FieldSegment segment;
+    float points[3][3], normals[3][3];
+    uint32_t triangle[1][3], label;
     Geometry geometry;
 } Wire;
 
 static const double thickness = 2e-6;
+
+static void make_triangle(Wire *wire, double at)
+{
+    const float x[3] = {-0.01F, 0.01F, 0}, y[3] = {-0.01F, -0.01F, 0.01F};
+    for (uint32_t i = 0; i < 3; i++) {
+        memcpy(wire->points[i], (float[]){x[i], y[i], (float)at}, sizeof wire->points[i]);
+        memcpy(wire->normals[i], (float[]){0, 0, 1}, sizeof wire->normals[i]);
+        wire->triangle[0][i] = i;
+    }
+    wire->label = 0;
+    wire->geometry.mesh = (VesselMesh){.points = wire->points,
+                                       .normals = wire->normals,
+                                       .n_points = 3,
+                                       .triangles = wire->triangle,
+                                       .labels = &wire->label,
+                                       .n_triangles = 1};
+}
 
 static void make_wire(Wire *wire, SceneModel model, double at)
 {
@@ -27,7 +47,9 @@ static void make_wire(Wire *wire, SceneModel model, double at)
         .kind = PRIMITIVE_CYLINDER, .a = a, .b = b, .radius_mm = thickness / 2, .segment = 23};
     wire->segment = (FieldSegment){.a = a, .b = b, .radius_mm = thickness / 2, .segment = 23};
     wire->geometry = (Geometry){.model = model};
-    if (model == SCENE_ISOSURFACE || model == SCENE_BLOB) {
+    if (model == SCENE_MESH)
+        make_triangle(wire, at);
+    if (model_has(model, MODEL_FIELD | MODEL_TRIANGLES)) {
         wire->geometry.segments = &wire->segment;
         wire->geometry.n_segments = 1;
     } else {
@@ -64,8 +86,8 @@ static bool casts_shadow(SceneModel model, double at, double light)
 static void nothing_nearer_than_a_ten_thousandth_is_seen(void **state)
 {
     (void)state;
-    const SceneModel either[] = {SCENE_CYLINDERS, SCENE_ISOSURFACE};
-    for (int i = 0; i < 2; i++) {
+    const SceneModel either[] = {SCENE_CYLINDERS, SCENE_ISOSURFACE, SCENE_MESH};
+    for (int i = 0; i < 3; i++) {
         assert_false(is_seen(either[i], 1e-4 - 1.01 * thickness));
         assert_true(is_seen(either[i], 1e-4 + 1.01 * thickness));
     }
@@ -74,8 +96,8 @@ static void nothing_nearer_than_a_ten_thousandth_is_seen(void **state)
 static void nothing_within_a_thousandth_of_point_or_light_casts_a_shadow(void **state)
 {
     (void)state;
-    const SceneModel either[] = {SCENE_CYLINDERS, SCENE_ISOSURFACE};
-    for (int i = 0; i < 2; i++) {
+    const SceneModel either[] = {SCENE_CYLINDERS, SCENE_ISOSURFACE, SCENE_MESH};
+    for (int i = 0; i < 3; i++) {
         assert_false(casts_shadow(either[i], 1e-3 - 1.01 * thickness, 3));
         assert_true(casts_shadow(either[i], 1e-3 + 1.01 * thickness, 3));
         assert_true(casts_shadow(either[i], 3 - 1e-3 - 1.01 * thickness, 3));

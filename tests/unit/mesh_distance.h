@@ -27,11 +27,6 @@ typedef struct Ruler {
     uint32_t *near, *stamp, stamps;
 } Ruler;
 
-static inline Vec3 mesh_point(const VesselMesh *mesh, uint32_t i)
-{
-    return vec3((double)mesh->points[i][0], (double)mesh->points[i][1], (double)mesh->points[i][2]);
-}
-
 static inline bool ruler_is_round(const MeshReport *report, uint32_t segment)
 {
     for (size_t i = 0; i < report->n_round; i++)

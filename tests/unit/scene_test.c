@@ -131,6 +131,24 @@ static void a_ground_is_not_seen_along_itself_nor_beyond_all_bounds(void **state
     assert_false(ground_hit(&ground, (Ray){{0, 1.001e7, 0}, down}, 0, HUGE_VAL, &t));
 }
 
+/* Two triangles of segments 3 and 5 with an edge in common. */
+static void the_part_of_a_mesh_has_the_triangles_of_its_segments(void **state)
+{
+    (void)state;
+    float at[4][3] = {{0, 0, 0}, {2.385F, 0, 0}, {0, 1.7F, 0}, {2.5F, 1.9F, 0}};
+    uint32_t corners[2][3] = {{0, 1, 2}, {3, 2, 1}}, labels[2] = {3, 5 | MESH_CAP};
+    const VesselMesh mesh = {at, at, 4, corners, labels, 2};
+    const uint32_t segments[] = {1, 5, 8};
+    VesselMesh part;
+    assert_int_equal(vesselmesh_part(&mesh, segments, 3, &part, NULL), STATUS_OK);
+    assert_int_equal(part.n_triangles, 1);
+    assert_int_equal(part.n_points, 3);
+    assert_int_equal(part.labels[0], 1 | MESH_CAP);
+    for (int k = 0; k < 3; k++)
+        assert_memory_equal(part.points[part.triangles[0][k]], at[corners[1][k]], sizeof at[0]);
+    vesselmesh_release(&part);
+}
+
 static void expect_models(void (*list)(unsigned, Text *), unsigned elements, const char *expected)
 {
     Text names = TEXT_INIT;
@@ -146,6 +164,7 @@ static void models_are_listed_by_what_they_are_made_of(void **state)
     expect_models(models_of, MODEL_CYLINDERS | MODEL_BALLS, "cylinders and rounded");
     expect_models(models_with, MODEL_FIELD, "isosurface and blob");
     expect_models(models_with, MODEL_JOINTS, "joined");
+    expect_models(models_of, MODEL_TRIANGLES, "mesh");
     for (int i = 0; i < SCENE_MODELS; i++) {
         assert_string_equal(models[i].name, model_names[i]);
         assert_true(models[i].elements != 0 && *models[i].description);
@@ -163,6 +182,7 @@ int main(void)
         cmocka_unit_test(the_way_to_a_light_is_straight),
         cmocka_unit_test(the_points_of_an_area_light_span_its_sides),
         cmocka_unit_test(models_are_listed_by_what_they_are_made_of),
+        cmocka_unit_test(the_part_of_a_mesh_has_the_triangles_of_its_segments),
         cmocka_unit_test(a_ground_is_not_seen_along_itself_nor_beyond_all_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

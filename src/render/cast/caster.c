@@ -1,5 +1,6 @@
-/* One of four searches, by what the geometry is: primitives by a bounding volume hierarchy, a blob
- * piece by piece, an isosurface by proof, or as POV-Ray's own root finder finds it. What all have
+/* One of five searches, by what the geometry is: primitives and triangles by bounding volume
+ * hierarchies, a blob piece by piece, an isosurface by proof, or as POV-Ray's own root finder finds
+ * it. What all have
  * in common is here: POV-Ray's limits of what is too near to be seen or to cast a shadow, and
  * normals that face the viewer. Searches that need room while they run have a workspace for each
  * thread. */
@@ -8,6 +9,7 @@
 #include "render/cast/blobcast.h"
 #include "render/cast/bvh.h"
 #include "render/cast/fieldcast.h"
+#include "render/cast/meshcast.h"
 #include "render/cast/povray_isosurface.h"
 #include <stdlib.h>
 
@@ -19,7 +21,8 @@ static const double blob_nearest_mm = 1e-2;
 
 struct Caster {
     const Geometry *geometry;
-    Bvh *bvh;                     /* NULL for an implicit model */
+    Bvh *bvh;                     /* of primitives, or NULL */
+    MeshCast *mesh;               /* or NULL */
     PovrayIsosurface *isosurface; /* an implicit model as POV-Ray finds it, or NULL */
     FieldIndex *field;            /* an implicit model by proof, or NULL */
     FieldScratch **scratch;       /* one a worker */
@@ -46,6 +49,8 @@ Status caster_new(const Geometry *geometry, const CellParams *cells, int workers
             TRY_GOTO(blobscratch_new(caster->blob, &caster->blob_scratch[i], err));
     } else if (model_has(geometry->model, MODEL_PRIMITIVES)) {
         TRY_GOTO(bvh_build(geometry->primitives, geometry->n_primitives, &caster->bvh, err));
+    } else if (model_has(geometry->model, MODEL_TRIANGLES)) {
+        TRY_GOTO(meshcast_new(&geometry->mesh, &caster->mesh, err));
     } else if (cells) {
         TRY_GOTO(povray_isosurface_new(geometry, cells, &caster->isosurface, err));
     } else {
@@ -81,6 +86,7 @@ void caster_free(Caster *caster)
     blobcast_free(caster->blob);
     fieldindex_free(caster->field);
     povray_isosurface_free(caster->isosurface);
+    meshcast_free(caster->mesh);
     bvh_free(caster->bvh);
     free(caster);
 }
@@ -94,6 +100,8 @@ static bool find_first(const Caster *caster, int worker, Ray ray, Hit *hit, uint
         *index = (uint32_t)primitive;
         return found;
     }
+    if (caster->mesh)
+        return meshcast_first_hit(caster->mesh, ray, NEAREST_SEEN_MM, hit, index);
     if (caster->isosurface)
         return povray_isosurface_first_hit(caster->isosurface, ray, NEAREST_SEEN_MM, hit, index);
     if (caster->blob)
@@ -126,6 +134,8 @@ bool caster_shadow(Caster *caster, int worker, const Ground *ground, Vec3 point,
         return true;
     if (caster->bvh)
         return bvh_any_hit(caster->bvh, ray, near, far);
+    if (caster->mesh)
+        return meshcast_any_hit(caster->mesh, ray, near, far);
     if (caster->isosurface)
         return povray_isosurface_any_hit(caster->isosurface, ray, near, far);
     if (caster->blob)

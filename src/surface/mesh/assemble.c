@@ -29,15 +29,6 @@ typedef struct Assembly {
     MeshOff *off;
 } Assembly;
 
-void vesselmesh_release(VesselMesh *mesh)
-{
-    free(mesh->points);
-    free(mesh->normals);
-    free(mesh->triangles);
-    free(mesh->labels);
-    *mesh = (VesselMesh){0};
-}
-
 static uint32_t add_point(const Assembly *assembly, Vec3 x, Vec3 normal)
 {
     VesselMesh *mesh = assembly->mesh;

@@ -47,6 +47,22 @@ bool meshreport_is_sound(const MeshReport *report)
            report->crossings == 0 && report->bridges == 0 && report->n_missing == 0;
 }
 
+Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *err)
+{
+    if (meshreport_is_sound(report))
+        return STATUS_OK;
+    if (report->n_missing)
+        return err_set(err, STATUS_DIFFERS,
+                       "%zu segments have no triangles, segment %u among them; nothing is written",
+                       report->n_missing, tree->ids[report->missing[0]]);
+    return err_set(err, STATUS_DIFFERS,
+                   "the surface is not sound: %zu parts for %zu trees, genus %zu, %zu open edges, "
+                   "%zu crossing pairs of triangles, %zu bridges; nothing is written (a smaller "
+                   "`tolerance` may help)",
+                   report->components, report->trees, report->genus, report->open_edges,
+                   report->crossings, report->bridges);
+}
+
 static ZoneFineness fineness_of(double tolerance, double grid_mm)
 {
     double ratio = fmin(cell_ratio * sqrt(tolerance / cells_at), 0.7);
@@ -199,7 +215,7 @@ static Status refuse_overlap(const Build *build, Err *err)
     return err_set(
         err, STATUS_INPUT,
         "the vessels of segments %u and %u, which do not belong together, overlap by %.3g "
-        "mm (%zu such pairs); their walls cannot both be kept",
+        "mm (%zu such pairs); their walls cannot both be kept (`part_overlaps` thins them)",
         ids[pair->segments[0]], ids[pair->segments[1]], -pair->gap_mm, build->zones.n_overlapping);
 }
 

@@ -11,22 +11,6 @@
 #include "base/base.h"
 #include "scene/scene.h"
 
-/* Set in the label of a triangle that closes an end. */
-#define MESH_CAP 0x80000000u
-
-/* Triangles, counterclockwise seen from outside. Points are single precision, as most formats hold
- * them, so that what is checked is what is written. */
-typedef struct VesselMesh {
-    float (*points)[3];  /* mm; owned, as all of it */
-    float (*normals)[3]; /* unit, outward, of the exact surface; on the rim of a cap, of the wall */
-    size_t n_points;
-    uint32_t (*triangles)[3];
-    uint32_t *labels; /* one a triangle: index of its segment, and MESH_CAP */
-    size_t n_triangles;
-} VesselMesh;
-
-void vesselmesh_release(VesselMesh *mesh);
-
 /* What the triangles enclose, mm^3. */
 double vesselmesh_volume(const VesselMesh *mesh);
 
@@ -80,6 +64,8 @@ void meshreport_release(MeshReport *report);
 
 /* Whether the report is that of a mesh to be handed out. */
 bool meshreport_is_sound(const MeshReport *report);
+/* STATUS_DIFFERS, saying what is wrong, unless it is. */
+MUST_CHECK Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *err);
 
 /* Thins vessels that do not belong together and overlap, and what blends with them, until they are
  * apart; *thinned (owned) lists their indices, rising. STATUS_INPUT when that would leave less than

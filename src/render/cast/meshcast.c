@@ -1,0 +1,198 @@
+/* A tree of boxes [boxtree.h] and triangles, each met as POV-Ray 3.7 meets those of a mesh2
+ * (shape/mesh.cpp of 3.7.0.10): in the plane of the triangle, whose normal and distance are kept in
+ * single precision, and within its three edges as they are seen along the axis that the normal
+ * leans to most. The normal that is seen is interpolated between those of the corners, in single
+ * precision where POV-Ray has it, so that pictures are the same. */
+#include "render/cast/meshcast.h"
+
+#include <stdlib.h>
+
+static const double epsilon = 1e-10; /* POV-Ray's EPSILON */
+
+/* The points x of the plane have normal . x + distance = 0. */
+typedef struct TrianglePlane {
+    float normal[3]; /* unit; 0 of a triangle without area, which no ray meets */
+    float distance;
+} TrianglePlane;
+
+struct MeshCast {
+    const VesselMesh *mesh;
+    TrianglePlane *planes; /* one a triangle */
+    BoxTree tree;          /* of the triangles' boxes */
+};
+
+static Vec3 vec3_of(const float values[3])
+{
+    return vec3((double)values[0], (double)values[1], (double)values[2]);
+}
+
+/* The axis that a vector runs along most, as POV-Ray chooses among equals. */
+static int main_axis(Vec3 v)
+{
+    double x = fabs(v.x), y = fabs(v.y), z = fabs(v.z);
+    if (x > y)
+        return x > z ? 0 : 2;
+    return y > z ? 1 : 2;
+}
+
+static void find_corners(const VesselMesh *mesh, size_t triangle, Vec3 at[3])
+{
+    for (int k = 0; k < 3; k++)
+        at[k] = mesh_point(mesh, mesh->triangles[triangle][k]);
+}
+
+static TrianglePlane triangle_plane(const Vec3 at[3])
+{
+    Vec3 across = vec3_cross(vec3_sub(at[2], at[0]), vec3_sub(at[1], at[0]));
+    double length = vec3_length(across);
+    if (length == 0)
+        return (TrianglePlane){0};
+    Vec3 normal = vec3_scale(across, 1 / length);
+    return (TrianglePlane){{(float)normal.x, (float)normal.y, (float)normal.z},
+                           (float)-vec3_dot(normal, at[0])};
+}
+
+static Box triangle_box(const Vec3 at[3])
+{
+    Box box = box_empty();
+    for (int k = 0; k < 3; k++)
+        box = box_with_ball(box, at[k], 0);
+    /* A hit lies off the triangle by the rounding of its plane. */
+    return box_padded(box, 1e-6 * (vec3_length(box.low) + vec3_length(box.high)));
+}
+
+Status meshcast_new(const VesselMesh *mesh, MeshCast **out, Err *err)
+{
+    MeshCast *cast = NULL;
+    Box *boxes = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&cast, 1, sizeof *cast, "hierarchies", err));
+    TRY_GOTO(mem_calloc(&cast->planes, mesh->n_triangles, sizeof *cast->planes, "triangles", err));
+    TRY_GOTO(mem_calloc(&boxes, mesh->n_triangles, sizeof *boxes, "boxes", err));
+    cast->mesh = mesh;
+    for (size_t i = 0; i < mesh->n_triangles; i++) {
+        Vec3 at[3];
+        find_corners(mesh, i, at);
+        cast->planes[i] = triangle_plane(at);
+        boxes[i] = triangle_box(at);
+    }
+    TRY_GOTO(boxtree_build(boxes, mesh->n_triangles, &cast->tree, err));
+    *out = cast;
+    cast = NULL;
+done:
+    free(boxes);
+    meshcast_free(cast);
+    return status;
+}
+
+void meshcast_free(MeshCast *cast)
+{
+    if (!cast)
+        return;
+    free(cast->planes);
+    boxtree_release(&cast->tree);
+    free(cast);
+}
+
+/* Twice the area of the triangle that the point (x, y) and the edge from a to b make, seen along
+ * the third of the axes. */
+static double side_of(Vec3 a, Vec3 b, int along_x, int along_y, double x, double y)
+{
+    double ax = vec3_component(a, along_x), ay = vec3_component(a, along_y);
+    double bx = vec3_component(b, along_x), by = vec3_component(b, along_y);
+    return (bx - x) * (by - ay) - (by - y) * (bx - ax);
+}
+
+/* Whether a place in the triangle's plane lies within its edges, on one of them included. */
+static bool holds(const Vec3 at[3], Vec3 normal, Vec3 place)
+{
+    int axis = main_axis(normal), along_x = axis == 0, along_y = axis == 2 ? 1 : 2;
+    double px = vec3_component(place, along_x), py = vec3_component(place, along_y);
+    double a = side_of(at[0], at[1], along_x, along_y, px, py);
+    double b = side_of(at[1], at[2], along_x, along_y, px, py);
+    double c = side_of(at[2], at[0], along_x, along_y, px, py);
+    return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
+}
+
+static bool meets(const MeshCast *cast, uint32_t triangle, Ray ray, double *t)
+{
+    const TrianglePlane *plane = &cast->planes[triangle];
+    Vec3 normal = vec3_of(plane->normal), at[3];
+    double along = vec3_dot(normal, ray.direction);
+    if (fabs(along) < epsilon)
+        return false;
+    *t = -((double)plane->distance + vec3_dot(normal, ray.origin)) / along;
+    find_corners(cast->mesh, triangle, at);
+    return holds(at, normal, ray_at(ray, *t));
+}
+
+/* The normal at a place of the triangle: u goes from 0 at the first corner to 1 at the opposite
+ * edge, v along that edge, which is measured along the axis that it runs along most. */
+static Vec3 smooth_normal(const VesselMesh *mesh, size_t triangle, Vec3 place)
+{
+    Vec3 at[3], normal[3];
+    find_corners(mesh, triangle, at);
+    for (int k = 0; k < 3; k++)
+        normal[k] = vec3_of(mesh->normals[mesh->triangles[triangle][k]]);
+    Vec3 edge = vec3_normalized(vec3_sub(at[1], at[2])), from = vec3_sub(at[0], at[2]);
+    Vec3 across =
+        vec3_normalized(vec3_add_scaled(vec3_scale(from, -1), edge, vec3_dot(from, edge)));
+    double height = -vec3_dot(from, across);
+    Vec3 perp = {(double)(float)(across.x / height), (double)(float)(across.y / height),
+                 (double)(float)(across.z / height)};
+    Vec3 in = vec3_sub(place, at[0]), opposite = vec3_sub(at[2], at[1]);
+    double u = vec3_dot(in, perp);
+    if (u < epsilon)
+        return vec3_normalized(normal[0]);
+    int axis = main_axis(opposite);
+    double v = (vec3_component(in, axis) / u + vec3_component(vec3_sub(at[0], at[1]), axis)) /
+               vec3_component(opposite, axis);
+    Vec3 ahead = vec3_add_scaled(vec3_sub(normal[1], normal[0]), vec3_sub(normal[2], normal[1]), v);
+    return vec3_normalized(vec3_add_scaled(normal[0], ahead, u));
+}
+
+static Vec3 normal_at(const VesselMesh *mesh, size_t triangle, Vec3 place)
+{
+    float flat[3];
+    if (!mesh_is_cap(mesh, triangle))
+        return smooth_normal(mesh, triangle, place);
+    mesh_flat_normal(mesh, triangle, flat);
+    return vec3_normalized(vec3_of(flat));
+}
+
+bool meshcast_first_hit(const MeshCast *cast, Ray ray, double t_min, Hit *hit, uint32_t *segment)
+{
+    BoxWalk walk;
+    uint32_t best = UINT32_MAX;
+    hit->t = INFINITY;
+    boxwalk_start(&walk, &cast->tree, ray.origin, ray.direction, t_min, true);
+    for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, hit->t));)
+        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
+            uint32_t candidate = cast->tree.items[i];
+            double t;
+            if (!meets(cast, candidate, ray, &t) || t < t_min)
+                continue;
+            if (t < hit->t || (t == hit->t && candidate < best)) {
+                hit->t = t;
+                best = candidate;
+            }
+        }
+    if (best == UINT32_MAX)
+        return false;
+    hit->normal = normal_at(cast->mesh, best, ray_at(ray, hit->t));
+    *segment = mesh_segment(cast->mesh, best);
+    return true;
+}
+
+bool meshcast_any_hit(const MeshCast *cast, Ray ray, double t_min, double t_max)
+{
+    BoxWalk walk;
+    boxwalk_start(&walk, &cast->tree, ray.origin, ray.direction, t_min, false);
+    for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, t_max));)
+        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
+            double t;
+            if (meets(cast, cast->tree.items[i], ray, &t) && t > t_min && t < t_max)
+                return true;
+        }
+    return false;
+}
