@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# diagram: the tree unrolled flat, as SVG and as pixels.
+. "$(dirname "$0")/../lib.sh"
+
+# count N PATTERN FILE: so many lines of it say the pattern.
+count() {
+    local lines
+    lines=$(grep -c "$2" "$3")
+    [ "$lines" = "$1" ] || fail "$lines lines of $3 say $2, not $1"
+}
+
+test_a_diagram_has_a_bar_for_each_segment_with_its_value() {
+    grow_tree 40
+    run_ok corcast diagram tree.swc --color-by level -o tree.svg
+    xmllint --noout tree.svg || fail "xmllint refuses the SVG"
+    count 79 '<rect id="s[0-9]*" ' tree.svg
+    count 39 '<rect id="l[0-9]*" ' tree.svg
+    count 3 '<title>segment [0-9]*, level 1 </title>' tree.svg
+    count 1 '<desc>corcast .*: corcast diagram tree.swc --color-by level -o D.svg</desc>' tree.svg
+}
+
+# Chromium draws the SVG, and shares no code with us.
+test_the_pixels_are_those_of_the_svg() {
+    command -v chromium >chromium.path || skip "chromium is not installed"
+    grow_tree 25
+    run_ok corcast diagram tree.swc --color-by radius --margin 0 -o tree.svg
+    run_ok corcast diagram tree.swc --color-by radius --margin 0 --size 640x480 -o tree.png
+    echo '<body style="margin:0"><img src="tree.svg" style="width:640px;height:480px">' >page.html
+    timeout 60 chromium --headless=new --no-sandbox --disable-gpu --hide-scrollbars \
+        --window-size=640,480 --screenshot=chromium.png "file://$PWD/page.html" >chromium.log 2>&1
+    run corcast compare chromium.png tree.png --json
+    expect_json stdout '.rmse < 6 and .mean_abs < 1'
+}
+
+test_a_diagram_takes_the_colours_of_a_picture() {
+    printf '1 1 0 0 0 2.385 -1\n2 3 30 0 0 2.385 1\n' >tree.swc
+    run_ok corcast diagram tree.swc --gap 1 --size 40x40 --background 0.2,0.4,0.6 -o other.ppm
+    printf '\063\146\231' >expected
+    tail -c 3 other.ppm >corner
+    expect_same corner expected
+}
+
+test_options_that_do_nothing_are_refused() {
+    grow_tree 5
+    run corcast diagram tree.swc --size 40x40 -o tree.svg
+    expect_status 2
+    expect_sentence "--size is for pixels"
+    run corcast diagram tree.swc --log -o tree.svg
+    expect_status 2
+    expect_sentence "--log needs --color-by"
+    run corcast diagram tree.swc -o tree.xyz
+    expect_status 2
+    expect_only tree.swc
+}
+
+test_a_tree_without_length_has_no_diagram() {
+    printf '1 1 0 0 0 2.385 -1\n2 3 0 0 0 2.385 1\n' >tree.swc
+    run corcast diagram tree.swc -o tree.svg
+    expect_status 2
+    expect_sentence "tree.swc: no segment has a length"
+    expect_only tree.swc
+}
+
+run_tests "$@"
