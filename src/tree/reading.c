@@ -22,6 +22,17 @@ double length_unit_mm(LengthUnit unit)
     return mm[unit];
 }
 
+double length_from_mm(double mm, LengthUnit unit)
+{
+    const double factor = length_unit_mm(unit);
+    double best = mm / factor;
+    const double others[] = {nextafter(best, -HUGE_VAL), nextafter(best, HUGE_VAL)};
+    for (size_t i = 0; i < 2; i++)
+        if (fabs(others[i] * factor - mm) < fabs(best * factor - mm))
+            best = others[i];
+    return best;
+}
+
 LengthScale length_scale(const ReadOptions *options, LengthUnit unit)
 {
     LengthScale scale = {{1, 1, 1}, 1};

@@ -19,6 +19,9 @@ typedef enum LengthUnit { LENGTH_MM, LENGTH_UM, LENGTH_CM, LENGTH_M, LENGTH_UNIT
 extern const char *const length_unit_names[LENGTH_UNITS + 1];
 /* How many mm the unit has. */
 double length_unit_mm(LengthUnit unit);
+/* The number of units that, read as such, comes nearest to `mm`: what has been read and is written
+ * is the same number again. */
+double length_from_mm(double mm, LengthUnit unit);
 
 /* Zeroed: nothing is said. Texts are borrowed. */
 typedef struct ReadOptions {

@@ -16,14 +16,28 @@ const char *comment_value(const char *comment, const char *name)
     return *comment == ':' ? comment + 1 + strspn(comment + 1, TEXT_BLANKS) : NULL;
 }
 
-Status comment_read(TreeMeta *meta, const char *comment, Err *err)
+/* The value of a comment "key: value", and its key in *key; NULL when it is none. */
+static const char *key_value(const char *comment, MetaKey *key)
 {
     const char *name = comment + strspn(comment, TEXT_BLANKS);
-    MetaKey key = meta_find(name, strcspn(name, ":" TEXT_BLANKS));
-    const char *value = key == META_KEYS ? NULL : comment_value(name, meta_rows[key].name);
+    *key = meta_find(name, strcspn(name, ":" TEXT_BLANKS));
+    return *key == META_KEYS ? NULL : comment_value(name, meta_rows[*key].name);
+}
+
+Status comment_read(TreeMeta *meta, const char *comment, Err *err)
+{
+    MetaKey key;
+    const char *value = key_value(comment, &key);
     if (value)
         return meta_parse(meta, key, value, err);
     return meta_add_text(meta, META_KEYS, comment + (*comment == ' '), err);
+}
+
+Status comment_read_key(TreeMeta *meta, const char *comment, Err *err)
+{
+    MetaKey key;
+    const char *value = key_value(comment, &key);
+    return value ? meta_parse(meta, key, value, err) : STATUS_OK;
 }
 
 Status comments_write(const TreeMeta *meta, FILE *stream, Err *err)

@@ -12,6 +12,10 @@ const char *comment_value(const char *comment, const char *name);
  * follows the '#'. STATUS_INPUT, without file and line, as meta_parse. */
 MUST_CHECK Status comment_read(TreeMeta *meta, const char *comment, Err *err);
 
+/* Likewise, but leaves out what is no key: of formats whose files explain themselves in comments.
+ */
+MUST_CHECK Status comment_read_key(TreeMeta *meta, const char *comment, Err *err);
+
 /* Writes all that is known, a comment a line. STATUS_MEMORY. */
 MUST_CHECK Status comments_write(const TreeMeta *meta, FILE *stream, Err *err);
 

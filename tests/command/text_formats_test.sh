@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# Files of other programs in text formats: what is in them, and what comes back from them.
+. "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
+
+# expect_tree FILE FILTER: the jq filter is true of what info says of a measured file.
+expect_tree() {
+    [ -r "$SHARED/$1" ] || skip "$SHARED/$1 is not here"
+    run_ok corcast info --json "$SHARED/$1"
+    mv stdout info.json
+    expect_json info.json "$2"
+}
+
+test_decks_of_svonedsolver_have_their_segments_and_outlets() {
+    expect_tree simvascular_oned/14_AortoFem_Pulse_RCR.in '.segments == 124 and .terminals == 9 and .bifurcations == 7'
+    expect_tree simvascular_oned/Left_coronary_inlet_pressure_wave_outlet_coronary.in '.segments == 86 and .terminals == 6'
+}
+
+# tests/data/coronary.swc was made of this deck by hand, with numbers of five digits.
+test_a_deck_is_the_tree_that_was_made_of_it_by_hand() {
+    local deck=$SHARED/simvascular_oned/Left_coronary_inlet_pressure_wave_outlet_coronary.in
+    [ -r "$deck" ] || skip "$deck is not here"
+    run_ok corcast convert --quiet "$deck" deck.swc
+    run_ok corcast convert --quiet "$DATA/coronary.swc" hand.swc
+    # Each segment of the one, by both ends and its radius, is once in the other; their order differs.
+    awk '/^#/ { next } !seen[FILENAME]++ { file++ } { x[file, $1] = $3; y[file, $1] = $4; z[file, $1] = $5 }
+         $7 > 0 { n[file]++; id[file, n[file]] = $1; up[file, n[file]] = $7; r[file, n[file]] = $6 }
+         function apart(a, b) { return (x[1, a] - x[2, b]) ^ 2 + (y[1, a] - y[2, b]) ^ 2 + (z[1, a] - z[2, b]) ^ 2 > 1e-5 }
+         END { for (i = 1; i <= n[1]; i++) for (k = 1; k <= n[2]; k++)
+                   if (!apart(id[1, i], id[2, k]) && !apart(up[1, i], up[2, k]) && (r[1, i] - r[2, k]) ^ 2 < 1e-8) found++
+               exit !(n[1] == 86 && n[2] == 86 && found == 86) }' deck.swc hand.swc ||
+        fail "expected the same tree: $(paste deck.swc hand.swc | head -3)"
+}
+
+test_a_grown_tree_comes_back_from_decks_and_vmv() {
+    local format
+    grow_tree 60
+    for format in in vmv; do
+        run_ok corcast convert --quiet tree.swc tree.$format
+        run_ok corcast convert --quiet tree.$format back.$format
+        expect_same tree.$format back.$format
+        run_ok corcast convert --quiet tree.$format again.swc
+        paste <(grep -v '^#' tree.swc) <(grep -v '^#' again.swc) |
+            awk '{ for (k = 1; k <= 7; k++) if (k != 2 && ($k - $(k + 7)) ^ 2 > 1e-24 * $k ^ 2) exit 1 } END { exit NR != 120 }' ||
+            fail "expected the same nodes from .$format"
+    done
+    run_ok corcast info --json tree.in
+    expect_json stdout '.gamma == 3'
+}
+
+test_trees_of_other_generators_have_their_terminals() {
+    expect_tree peers/v3_100.cco '.segments == 199 and .terminals == 100 and .roots == 1'
+    expect_tree peers/opencco_3d_60.dat '.segments == 118 and .terminals == 60 and .roots == 1'
+}
+
+test_networks_of_secomb_have_loops() {
+    local file=$SHARED/secomb/Tumor1998.network.dat
+    [ -r "$file" ] || skip "$file is not here"
+    run corcast info "$file"
+    expect_status 2
+    expect_sentence 'Tumor1998.network.dat:86: the line closes a loop .* one of 14;'
+    run corcast info "$SHARED/secomb/Brain.network.dat"
+    expect_sentence 'one of 3;'
+}
+
+run_tests "$@"

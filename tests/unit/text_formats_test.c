@@ -1,0 +1,558 @@
+/* Networks in text formats, each a few lines long; files of other programs are read in
+ * tests/command/text_formats_test.sh. */
+#include "any_file.h"
+#include "treeio/treeio.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static char folder[] = "/tmp/corcast-texts-XXXXXX";
+static char path[64];
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    return rmdir(folder);
+}
+
+static void must(Status status, const Err *err)
+{
+    if (status != STATUS_OK)
+        fail_msg("%s", err->text);
+}
+
+/* Writes the bytes to a file with this extension, whose name is then in `path`. */
+static void put_file(const char *extension, const void *bytes, size_t size)
+{
+    Err err;
+    snprintf(path, sizeof path, "%s/tree.%s", folder, extension);
+    must(file_write(path, bytes, size, &err), &err);
+}
+
+static Tree read_as(const char *extension, const char *text, const ReadOptions *options)
+{
+    Tree tree = {0};
+    Err err;
+    put_file(extension, text, strlen(text));
+    Status status = tree_read_as(&tree, path, options, NULL, &err);
+    unlink(path);
+    must(status, &err);
+    return tree;
+}
+
+static Tree read_text(const char *extension, const char *text)
+{
+    return read_as(extension, text, NULL);
+}
+
+/* What the tree is written as in a file with this extension (owned). */
+static char *written(const Tree *tree, const char *extension)
+{
+    char *bytes = NULL;
+    size_t size = 0;
+    Err err;
+    snprintf(path, sizeof path, "%s/out.%s", folder, extension);
+    must(tree_write(tree, path, &err), &err);
+    must(file_read(path, &any_file, &bytes, &size, &err), &err);
+    unlink(path);
+    return bytes;
+}
+
+static void assert_written(const Tree *tree, const char *extension, const char *expected)
+{
+    char *bytes = written(tree, extension);
+    assert_string_equal(bytes, expected);
+    free(bytes);
+}
+
+/* The nodes as SWC. */
+static void assert_nodes(const Tree *tree, const char *expected)
+{
+    char *bytes = written(tree, "swc"), *rows = bytes;
+    while (*rows == '#')
+        rows = strchr(rows, '\n') + 1;
+    assert_string_equal(rows, expected);
+    free(bytes);
+}
+
+/* `expected` goes on from the file's name. */
+static void assert_refused(const char *extension, const char *text, const char *expected)
+{
+    Tree tree = {.n = 77};
+    Err err;
+    put_file(extension, text, strlen(text));
+    Status status = tree_read(&tree, path, &err);
+    unlink(path);
+    assert_int_equal(status, STATUS_INPUT);
+    assert_memory_equal(err.text, path, strlen(path));
+    assert_string_equal(err.text + strlen(path), expected);
+    assert_int_equal(tree.n, 77);
+}
+
+static double value_of(const Tree *tree, const char *column, size_t i)
+{
+    const TreeColumn *found = tree_column(tree, column);
+    assert_non_null(found);
+    return found->value[i];
+}
+
+/* ---- decks of svOneDSolver ---- */
+
+/* A tube that splits in two, of which one has a node of its own at the joint, some way off. */
+static const char deck[] = "# gamma: 2.7\n"
+                           "# - Name of the model (string)\n"
+                           "MODEL m\n"
+                           "DATATABLE Q LIST\n0.0 NODE\n1.0\nENDDATATABLE\n"
+                           "NODE 0 0 0 0.25\n"
+                           "NODE 1.0 0 0 2.5\n"
+                           "NODE 2 0 1.5 3.5\n"
+                           "node\t3 0,-1,3.5\n"
+                           "NODE 9 0 0.125 2.5\n"
+                           "JOINT J 1 I O\n"
+                           "JOINTOUTLET O 2 8 9\n"
+                           "JOINTINLET I 1 7\n"
+                           "SEGMENT a 7 2.25 50 0 1 2 1.5 0.0 M NONE 0.0 0 0 NOBOUND NONE\n"
+                           "SEGMENT b 8 1.75 25 1 2 1 1.25 0.0 M NONE 0.0 0 0 NOBOUND NONE\n"
+                           "SEGMENT c 9 1.5 20 9 3 1 0.75 0.0 M NONE 0.0 0 0 RCR Q\n"
+                           "OUTPUT TEXT\n";
+
+static void a_deck_is_connected_by_its_joints_alone(void **state)
+{
+    (void)state;
+    Tree tree = read_text("in", deck);
+    assert_int_equal(tree.n, 4);
+    assert_int_equal(tree.parent[2], 1);
+    assert_int_equal(tree.parent[3], 1);
+    assert_true(tree.position[1].z == 25 && tree.position[1].y == 0);
+    assert_true(tree.position[3].y == -10 && tree.position[3].z == 35);
+    for (size_t i = 1; i < 4; i++) {
+        double area_mm2 = 3.14159265358979323846 * tree.radius_mm[i] * tree.radius_mm[i];
+        assert_true(fabs(area_mm2 - 100 * value_of(&tree, "outlet area", i)) < 1e-9);
+    }
+    assert_true(value_of(&tree, "outlet area", 3) == 0.75 && value_of(&tree, "length", 2) == 1.75);
+    assert_true(tree.meta.number[META_GAMMA] == 2.7);
+    assert_int_equal(tree.meta.n_lines, 1);
+    tree_release(&tree);
+}
+
+static void a_deck_in_mm_has_areas_in_square_mm(void **state)
+{
+    (void)state;
+    const ReadOptions options = {.has_unit = true, .unit = LENGTH_MM};
+    Tree tree = read_as("in", deck, &options);
+    assert_true(tree.position[1].z == 2.5);
+    assert_true(fabs(tree.radius_mm[1] - sqrt(1.5 / 3.14159265358979323846)) < 1e-15);
+    tree_release(&tree);
+}
+
+static void a_deck_is_written_as_the_solver_takes_it(void **state)
+{
+    (void)state;
+    Tree tree = read_text("in", deck);
+    meta_set_number(&tree.meta, META_Q_PERF, 90);
+    meta_set_number(&tree.meta, META_P_TERM, 45);
+    meta_set_number(&tree.meta, META_VISCOSITY, 3.5);
+    static const char expected[] =
+        "# gamma: 2.7\n# p_term_mmHg: 45\n# q_perf_ml_min: 90\n# viscosity_cP: 3.5\n"
+        "# Units: cm, g, s\n\nMODEL tree_\n\n"
+        "NODE 0 0 0 0.25\nNODE 1 0 0 2.5\nNODE 2 0 1.5 3.5\nNODE 3 0 -1 3.5\n\n"
+        "JOINT J1 1 IN1 OUT1\nJOINTINLET IN1 1 0\nJOINTOUTLET OUT1 2 1 2\n\n"
+        "SEGMENT segment2 0 2.25 50 0 1 2 1.5 0.0 BLOOD NONE 0.0 0 0 NOBOUND NONE\n"
+        "SEGMENT segment3 1 1.75 25 1 2 1 1.25 0.0 BLOOD NONE 0.0 0 0 RESISTANCE R2\n"
+        "SEGMENT segment4 2 1.5 20 1 3 1 0.75 0.0 BLOOD NONE 0.0 0 0 RESISTANCE R3\n\n"
+        "DATATABLE R2 LIST\n0.0 79993.432449\nENDDATATABLE\n"
+        "DATATABLE R3 LIST\n0.0 79993.432449\nENDDATATABLE\n\n"
+        "DATATABLE INFLOW LIST\n0.0 1.5\n1.0 1.5\nENDDATATABLE\n\n"
+        "MATERIAL BLOOD OLUFSEN 1.06 0.035 0 2.0 1.0e15 -20 1e9\n\n"
+        "SOLVEROPTIONS 0.001 100 1000 2 INFLOW FLOW 1.0e-6 1 1\n\nOUTPUT TEXT\n";
+    tree_renumber(&tree);
+    assert_written(&tree, "in", expected);
+    Tree again = read_text("in", expected);
+    assert_written(&again, "in", expected);
+    tree_release(&again);
+    tree_release(&tree);
+}
+
+static void a_radius_that_has_changed_is_written_without_the_taper_it_had(void **state)
+{
+    (void)state;
+    Tree tree = read_text("in", deck);
+    tree.radius_mm[1] = 4;
+    char *bytes = written(&tree, "in");
+    assert_non_null(strstr(bytes, " 0.5026548245743669 0.5026548245743669 0.0 BLOOD"));
+    free(bytes);
+    tree_release(&tree);
+}
+
+static void what_no_deck_can_hold_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *swc, *sentence;
+    } bad[] = {
+        {"1 0 0 0 0 1 -1\n2 0 1 0 0 1 1\n3 0 0 5 0 1 -1\n4 0 1 5 0 1 3\n",
+         "a deck of svOneDSolver holds one tree; this is a forest of 2"},
+        {"1 0 0 0 0 1 -1\n2 0 1 0 0 1 1\n3 0 0 5 0 1 1\n",
+         "a deck of svOneDSolver has one segment at its inlet; this tree has 2"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        Err err;
+        Tree tree = read_text("swc", bad[i].swc);
+        snprintf(path, sizeof path, "%s/out.in", folder);
+        assert_int_equal(tree_write(&tree, path, &err), STATUS_INPUT);
+        assert_string_equal(err.text, bad[i].sentence);
+        assert_int_equal(access(path, F_OK), -1);
+        tree_release(&tree);
+    }
+}
+
+static void rejects_decks_that_make_no_sense(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *sentence;
+    } bad[] = {
+        {"NODE 0 0 0\n", ":1: the NODE card has 3 fields behind its name; it has 4"},
+        {"NODE 0 0 0 z\n", ":1: the coordinate is 'z'; it must be a finite number"},
+        {"NODE 0 0 0 0\n\nNODE 0 1 0 0\n", ":3: the NODE '0' has been given before, in line 1"},
+        {"NDOE 0 0 0 0\n", ":1: 'NDOE' is no card of a deck of svOneDSolver"},
+        {"SEGMENT a 7 2.25 50 0 1 2\n",
+         ":1: the SEGMENT card has 7 fields behind its name; it has at least 8"},
+        {"SEGMENT a 7 2.25 50 0 1 2 -1.5\n",
+         ":1: the outlet area is '-1.5'; it must be a finite number that is not negative"},
+        {"NODE 0 0 0 0\nSEGMENT a 7 2.25 50 0 1 2 1.5\n", ":2: there is no NODE '1'"},
+        {"JOINTINLET I 2 7\n", ":1: the card says 2 segments and names 1"},
+        {"NODE 0 0 0 0\nNODE 1 1 0 0\nSEGMENT a 7 1 1 0 1 2 2\nJOINT J 1 I O\nJOINTINLET I 1 8\n",
+         ":4: there is no SEGMENT of number '8'"},
+        {"JOINT J 1 I O\n", ":1: there is no JOINTINLET 'I'"},
+        {"NODE 0 0 0 0\n", ": the file has no lines; a tree has at least one"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_refused("in", bad[i].text, bad[i].sentence);
+}
+
+/* ---- VMV ---- */
+
+static const char vmv[] = "# gamma: 2.5\n"
+                          "$PARAM_BEGIN\nNUM_VERTS 5\nNUM_STRANDS 3\nNUM_ATTRIB_PER_VERT 4\n"
+                          "$PARAM_END\n\n"
+                          "$VERT_LIST_BEGIN\n"
+                          "1 0 0 0 9\n"
+                          "2 0 250 0 9\n"
+                          "3 0 750 0 8.5\n"
+                          "4 125 1250 0 5\n"
+                          "5 -125 1250 0 6.25\n"
+                          "$VERT_LIST_END\n\n"
+                          "$STRANDS_LIST_BEGIN\n"
+                          "1 1 2 3\n"
+                          "2 3 4\n"
+                          "3 3 5\n"
+                          "$STRANDS_LIST_END\n";
+
+static void vmv_is_read_and_written_in_um(void **state)
+{
+    (void)state;
+    Tree tree = read_text("vmv", vmv);
+    assert_nodes(&tree, "1 3 0 0 0 0.009000000000000001 -1\n"
+                        "2 3 0 0.25 0 0.009000000000000001 1\n"
+                        "3 3 0 0.75 0 0.0085 2\n"
+                        "4 3 0.125 1.25 0 0.005 3\n"
+                        "5 3 -0.125 1.25 0 0.00625 3\n");
+    assert_written(&tree, "vmv", vmv);
+    tree_release(&tree);
+}
+
+static void time_steps_and_values_of_vmv_become_columns(void **state)
+{
+    (void)state;
+    Tree tree = read_text("vmv", "$PARAM_BEGIN\nNUM_VERTS 2\nRADIUS_SIMULATION_TIME_STEPS 3\n"
+                                 "$PARAM_END\n"
+                                 "$VERT_LIST_BEGIN\n7 0 0 0 4 1.5\n8 0 0 9 3 2.5\n$VERT_LIST_END\n"
+                                 "$STRANDS_LIST_BEGIN\n1 7 8\n$STRANDS_LIST_END\n"
+                                 "$RADIUS_SIMULATION_BEGIN\n4 4.5 5\n3 3.25 nan\n"
+                                 "$RADIUS_SIMULATION_END\n"
+                                 "$FLOW_SIMULATION_BEGIN\n1\n2\n$FLOW_SIMULATION_END\n");
+    assert_int_equal(tree.n_columns, 5);
+    assert_true(value_of(&tree, "value", 1) == 2.5);
+    assert_true(value_of(&tree, "radius_1", 1) == 3.25 && isnan(value_of(&tree, "radius_2", 1)));
+    assert_true(value_of(&tree, "flow_0", 1) == 2);
+    tree_release(&tree);
+}
+
+static void the_order_of_strands_means_nothing_where_two_enter_one_vertex(void **state)
+{
+    (void)state;
+    Tree tree = read_text("vmv", "$VERT_LIST_BEGIN\n1 0 0 0 2\n2 0 0 9 3\n3 0 5 9 7\n"
+                                 "$VERT_LIST_END\n"
+                                 "$STRANDS_LIST_BEGIN\n1 1 2\n2 3 2\n$STRANDS_LIST_END\n");
+    assert_nodes(&tree, "3 3 0 0.005 0.009000000000000001 0.003 -1\n"
+                        "2 3 0 0 0.009000000000000001 0.003 3\n"
+                        "1 3 0 0 0 0.002 2\n");
+    tree_release(&tree);
+}
+
+static void rejects_vmv_that_makes_no_sense(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *sentence;
+    } bad[] = {
+        {"1 2 3\n", ":1: '1 2 3' stands in no section of VMV"},
+        {"$VERTS_BEGIN\n", ":1: '$VERTS_BEGIN' begins or ends no section of VMV"},
+        {"$VERT_LIST_BEGIN\n1 0 0 0\n",
+         ":2: the vertex has 4 fields; it has its number, three coordinates, a radius and at most "
+         "one value"},
+        {"$VERT_LIST_BEGIN\n1 0 0 0 1\n1 0 0 2 1\n",
+         ":3: the vertex '1' has been given before, in line 2"},
+        {"$VERT_LIST_BEGIN\n1 0 0 0 -2\n",
+         ":2: the radius is '-2'; it must be a finite number that is not negative"},
+        {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1 2\n",
+         ":5: there is no vertex '2'"},
+        {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1\n",
+         ":5: a strand has two vertices or more; this has 1"},
+        {"$PARAM_BEGIN\nNUM_VERTS 3000000\n$PARAM_END\n$VERT_LIST_BEGIN\n1 0 0 0 2\n",
+         ": the file says 3000000 vertices and has 1"},
+        {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$FLOW_SIMULATION_BEGIN\n1 2\n3 4\n",
+         ":6: there are more rows than vertices, of which there are 1"},
+        {"$VERT_LIST_BEGIN\n1 0 0 0 2\n2 0 0 0 2\n$FLOW_SIMULATION_BEGIN\n1 2\n3\n",
+         ":6: the row has 1 value; the first has 2"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_refused("vmv", bad[i].text, bad[i].sentence);
+}
+
+/* ---- trees of other generators ---- */
+
+static const char vita[] = "*Tree\n0 9 0 8330 0.0003 8591 2 0 3 1.3 1e-05\n\n"
+                           "*Vessels\n3\n"
+                           "0 0 9 0 0.5 4 1 0 0 0 0 2 1.3 0 0 0 0 0 0 0 7\n"
+                           "81 0.5 4 1 2.25 0 0 0 0 0 0 2 0.75 0 0 0 0 0 0 0 8\n"
+                           "2 0.5 4 1 -2 0 0 0 0 0 0 2 0.5 0 0 0 0 0 0 0 9\n\n"
+                           "*Connectivity\n0 -1 81 2\n81 0\n2 0\n";
+
+static void trees_of_vita_hang_together_by_their_section_connectivity(void **state)
+{
+    (void)state;
+    Tree tree = read_text("cco", vita);
+    assert_nodes(&tree, "1 3 0 9 0 1.3 -1\n2 3 0.5 4 1 1.3 1\n4 3 2.25 0 0 0.75 2\n"
+                        "6 3 -2 0 0 0.5 2\n");
+    assert_true(value_of(&tree, "vessel", 2) == 81 && value_of(&tree, "stage", 3) == 9);
+    tree_release(&tree);
+}
+
+static void rejects_trees_of_vita_that_make_no_sense(void **state)
+{
+    (void)state;
+    assert_refused("cco", "3\n", ":1: a tree of VItA begins with *Tree");
+    assert_refused("cco", "*Forest\n", ":1: '*Forest' is no section of VItA's trees");
+    assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2\n",
+                   ":3: the vessel has 12 numbers; it has 21");
+    assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 -1.3\n",
+                   ":3: the radius is '-1.3'; it must be a finite number that is not negative");
+    assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n",
+                   ": there is no section *Connectivity");
+    assert_refused("cco", "*Vessels\n2\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n*Connectivity\n0 -1\n",
+                   ": the file says 2 vessels and has 1");
+    assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n*Connectivity\n0 5\n",
+                   ":5: there is no vessel '5'");
+}
+
+static void edge_lists_of_opencco_lead_from_the_second_end_to_the_first(void **state)
+{
+    (void)state;
+    Tree tree =
+        read_text("dat", "0.5 4 1 0 9 0.25 1.25\n-2 0 0 0.5 4 1 0.5\n2.5 0 0 0.5 4 1 0.75\n");
+    assert_nodes(&tree, "2 3 0 9 0.25 1.25 -1\n1 3 0.5 4 1 1.25 2\n3 3 -2 0 0 0.5 1\n"
+                        "5 3 2.5 0 0 0.75 1\n");
+    tree_release(&tree);
+    assert_refused("dat", "0.5 4 1 0 9 0.25 1.25\n-2 0 0 0.5 4 1\n",
+                   ":2: the line '-2 0 0 0.5 4 1' is not seven numbers: the ends of a segment and "
+                   "its radius");
+}
+
+/* ---- Secomb's networks ---- */
+
+#define TISSUE                                                                                     \
+    "Some network\n 550. 520. 230.\tbox dimensions in microns\n 20 20 10\tpoints\n 200.\tbound\n"  \
+    " 25.\tlength\n 4\tnodsegm\n"
+
+static const char network[] = TISSUE " 3\ttotal number of segments\n"
+                                     " name type from to diam. rel. flow hem.\n"
+                                     "1\t5\t1\t25\t15.5\t10\t0.4\t*\n"
+                                     "2 4 7 25 9 -4.5 0.45\n"
+                                     "3 5 25 8 8 5.5 0.35 *\n"
+                                     "4 total number of nodes\n name x y z\n"
+                                     "1 0 0 500 *\n25 0 0 300\n7 125 0 50\n8 -125 0 50\n"
+                                     "3 total number of boundary nodes\n node bctyp\n"
+                                     "1 2 10 0.4 50 *\n7 2 -4.5 0.4 50\n8 0 13. 0.4 50\n";
+
+static void networks_of_secomb_have_diameters_in_um(void **state)
+{
+    (void)state;
+    Tree tree = read_text("dat", network);
+    assert_nodes(&tree, "1 3 0 0 0.5 0.00775 -1\n2 3 0 0 0.3 0.00775 1\n"
+                        "3 3 0.125 0 0.05 0.0045000000000000005 2\n4 3 -0.125 0 0.05 0.004 2\n");
+    assert_true(value_of(&tree, "flow", 2) == -4.5 && value_of(&tree, "hematocrit", 3) == 0.35);
+    assert_true(value_of(&tree, "type", 2) == 4 && value_of(&tree, "boundary value", 3) == 13);
+    assert_true(isnan(value_of(&tree, "boundary type", 1)));
+    tree_release(&tree);
+}
+
+static void rejects_networks_that_make_no_sense(void **state)
+{
+    (void)state;
+    assert_refused("dat", TISSUE "three\n",
+                   ":7: the number of segments is 'three'; it must be a whole number from 0 to "
+                   "16777215");
+    assert_refused("dat", TISSUE "1\nname\n1 5 1 2\n",
+                   ":9: the row of the segments has 4 fields; it has at least 5");
+    assert_refused("dat", TISSUE "1\nname\n1 5 1 2 thick\n",
+                   ":9: the diameter is 'thick'; it must be a finite number that is not negative");
+    assert_refused("dat", TISSUE "1\nname\n1 5 1 2 9\n2\nname\n1 0 0 0\n",
+                   ": the file ends before all its nodes are there");
+    assert_refused("dat", TISSUE "1\nname\n1 5 1 3 9\n2\nname\n1 0 0 0\n2 0 0 1\n",
+                   ":9: there is no node '3'");
+    assert_refused("dat", TISSUE "1\nname\n1 5 1 2 9\n2\nname\n1 0 0 0\n2 0 0 1\n1\nname\n5 2 1\n",
+                   ":16: there is no node '5'");
+    assert_refused("dat", "", ": the file ends before all its segments are there");
+}
+
+/* ---- MetaIO ---- */
+
+#define SCENE "ObjectType = Scene\nNDims = 3\nNObjects = 2\n"
+#define TUBE "ObjectType = Tube\nObjectSubType = Vessel\nNDims = 3\n"
+
+static void tubes_of_metaio_hang_on_the_points_of_their_parents(void **state)
+{
+    (void)state;
+    Tree tree = read_text("tre", SCENE TUBE
+                          "ID = 1\nParentID = -1\nRoot = True\nArtery = True\n"
+                          "ElementSpacing = 0.5 0.25 1\nPointDim = x y z r red\nNPoints = 3\n"
+                          "Points =\n0 0 0 2 1\n0 16 0 2 1\n0 32 0 1.5 0.25 \n" TUBE
+                          "ID = 2\nParentID = 1\nParentPoint = 1\n"
+                          "PointDim = id Z Y X Radius\nNPoints = 2\nPoints =\n"
+                          "7 0.5 6 2 0.75\n8 0.5 4.125 0.25 0.875\n");
+    assert_nodes(&tree, "1 3 0 0 0 1 -1\n2 3 0 4 0 1 1\n3 3 0 8 0 0.75 2\n"
+                        "5 3 0.25 4.125 0.5 0.875 2\n4 3 2 6 0.5 0.75 5\n");
+    assert_true(value_of(&tree, "tube", 3) == 2 && value_of(&tree, "id", 4) == 7);
+    assert_true(value_of(&tree, "artery", 1) == 1 && isnan(value_of(&tree, "artery", 4)));
+    assert_true(value_of(&tree, "red", 2) == 0.25 && isnan(value_of(&tree, "red", 3)));
+    tree_release(&tree);
+}
+
+static void a_matrix_and_an_offset_move_a_tube_of_metaio(void **state)
+{
+    (void)state;
+    Tree tree = read_text("tre", TUBE "TransformMatrix = 0 -1 0 1 0 0 0 0 1\nOffset = 10 20 30\n"
+                                      "CenterOfRotation = 1 0 0\nPointDim = x y z R\n"
+                                      "NPoints = 2\nPoints =\n1 0 0 2\n1 4 0.5 1\n");
+    assert_nodes(&tree, "1 3 11 20 30 1 -1\n2 3 7 20 30.5 1 1\n");
+    tree_release(&tree);
+}
+
+/* Two points as floats of the byte order given, with more room than they take, and then another
+ * tube in text. */
+static void packed_points_of_metaio_are_read_in_either_byte_order(void **state)
+{
+    (void)state;
+    static const float number[] = {0, 0.5f, 0, 2, 1, 2.25f, 0, 1.5f};
+    static const char *const orders[] = {"False", "True"};
+    for (int big = 0; big < 2; big++) {
+        char bytes[1000];
+        int length = snprintf(bytes, sizeof bytes,
+                              TUBE "BinaryData = True\nBinaryDataByteOrderMSB = %s\n"
+                                   "PointDim = x y z r\nNPoints = 2\nPoints =\n",
+                              orders[big]);
+        for (size_t i = 0; i < 8; i++) {
+            unsigned char native[4];
+            memcpy(native, &number[i], 4);
+            for (int k = 0; k < 4; k++)
+                bytes[length++] = (char)native[big ? 3 - k : k];
+        }
+        memcpy(bytes + length, "\0=\n\0 = 7\n", 9);
+        length += 9;
+        length +=
+            snprintf(bytes + length, 300,
+                     TUBE "PointDim = x y z r\nNPoints = 2\nPoints =\n1 2.25 0 1\n5 6 7 0.5\n");
+        Tree tree = {0};
+        Err err;
+        put_file("tre", bytes, (size_t)length);
+        Status status = tree_read(&tree, path, &err);
+        unlink(path);
+        must(status, &err);
+        assert_nodes(&tree, "1 3 0 0.5 0 1.5 -1\n2 3 1 2.25 0 1.5 1\n4 3 5 6 7 0.5 2\n");
+        tree_release(&tree);
+    }
+}
+
+static void rejects_scenes_of_metaio_that_make_no_sense(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *sentence;
+    } bad[] = {
+        {SCENE, ": there is no tube in the file"},
+        {TUBE "PointDim = x y z r\nPoints =\n", ":5: the tube does not say NPoints"},
+        {TUBE "PointDim = x y z\nNPoints = 1\nPoints =\n",
+         ":6: PointDim must name x, y, z and a radius"},
+        {TUBE "PointDim = x y z r\nNPoints = 2000000000\nPoints =\n1 2 3 4\n",
+         ":7: the file ends within the points of a tube"},
+        {TUBE "BinaryData = True\nPointDim = x y z r\nNPoints = 2000000000\nPoints =\n1 2 3 4\n",
+         ":7: the file ends within the points of a tube, which are to take 32000000000 bytes"},
+        {TUBE "PointDim = x y z r\nNPoints = 1\nPoints =\n1 2 3\n",
+         ":7: the point '1 2 3' is not the 4 numbers of PointDim"},
+        {TUBE "ElementSpacing = 1 2\n", ":4: ElementSpacing is '1 2'; it must be 3 numbers"},
+        {TUBE "ElementType = MET_SHORT\n",
+         ":4: ElementType is 'MET_SHORT'; it must be MET_FLOAT or MET_DOUBLE"},
+        {"ObjectType = Tube\nNDims = 4\n", ":2: the NDims is '4'; it must be a whole number from 2 "
+                                           "to 3"},
+        {TUBE "ParentID = 8\nPointDim = x y z r\nNPoints = 1\nPoints =\n1 2 3 4\n",
+         ":7: there is no object of the ID '8'"},
+        {TUBE "ID = 3\nParentID = 3\nPointDim = x y z r\nNPoints = 1\nPoints =\n1 2 3 4\n" TUBE
+              "ID = 3\nPointDim = x y z r\nNPoints = 1\nPoints =\n",
+         ":16: the object of the ID '3' has been given before, in line 8"},
+        {"ObjectType = Group\nNDims = 3\nID = 0\nOffset = 1 0 0\n" TUBE
+         "ParentID = 0\nPointDim = x y z r\nNPoints = 1\nPoints =\n1 2 3 4\n",
+         ":11: the object 0 moves those that it holds, which is not read"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_refused("tre", bad[i].text, bad[i].sentence);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_deck_is_connected_by_its_joints_alone),
+        cmocka_unit_test(a_deck_in_mm_has_areas_in_square_mm),
+        cmocka_unit_test(a_deck_is_written_as_the_solver_takes_it),
+        cmocka_unit_test(a_radius_that_has_changed_is_written_without_the_taper_it_had),
+        cmocka_unit_test(what_no_deck_can_hold_is_refused),
+        cmocka_unit_test(rejects_decks_that_make_no_sense),
+        cmocka_unit_test(vmv_is_read_and_written_in_um),
+        cmocka_unit_test(time_steps_and_values_of_vmv_become_columns),
+        cmocka_unit_test(the_order_of_strands_means_nothing_where_two_enter_one_vertex),
+        cmocka_unit_test(rejects_vmv_that_makes_no_sense),
+        cmocka_unit_test(trees_of_vita_hang_together_by_their_section_connectivity),
+        cmocka_unit_test(rejects_trees_of_vita_that_make_no_sense),
+        cmocka_unit_test(edge_lists_of_opencco_lead_from_the_second_end_to_the_first),
+        cmocka_unit_test(networks_of_secomb_have_diameters_in_um),
+        cmocka_unit_test(rejects_networks_that_make_no_sense),
+        cmocka_unit_test(tubes_of_metaio_hang_on_the_points_of_their_parents),
+        cmocka_unit_test(a_matrix_and_an_offset_move_a_tube_of_metaio),
+        cmocka_unit_test(packed_points_of_metaio_are_read_in_either_byte_order),
+        cmocka_unit_test(rejects_scenes_of_metaio_that_make_no_sense),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
