@@ -1,5 +1,6 @@
 /* Draws band by band, each as many rows as --memory holds, and writes each before the next, so that
  * a picture of any size needs the memory of one band. */
+#include "app/animation.h"
 #include "app/commands.h"
 #include "app/frames.h"
 #include "app/picture.h"
@@ -15,6 +16,7 @@ typedef struct RenderOptions {
     RenderMethod method;
     RenderKernels kernels;
     double threshold, memory_mb;
+    AnimationOptions animation;
     PictureOptions picture;
 } RenderOptions;
 
@@ -66,6 +68,23 @@ static const Option own[] = {
      .unit = "MB",
      .help = "of a band; larger pictures are drawn and written band by band"},
     {.name = "json", SETS(OUTPUT, RenderOptions, json), .help = "what was done, as JSON"},
+    {.name = "frames",
+     SETS(TEXT, RenderOptions, animation.frames),
+     .group = GROUP_ANIMATION,
+     .argument = "all|A..B",
+     .help = "a picture for each frame of values that change with time"},
+    {.name = "turn",
+     SETS(WHOLE, RenderOptions, animation.turn),
+     .group = GROUP_ANIMATION,
+     FROM_TO(1, 100000),
+     .otherwise = "",
+     .help = "so many pictures, once about the upright"},
+    {.name = "growth",
+     SETS(WHOLE, RenderOptions, animation.growth),
+     .group = GROUP_ANIMATION,
+     FROM_TO(1, 100000),
+     .otherwise = "",
+     .help = "so many pictures of the tree as it grows from its root"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -149,22 +168,80 @@ static Status draw_bands(Renderer *renderer, const Scene *scene, FramesWriter *w
     return STATUS_OK;
 }
 
-static Status draw(const Scene *scene, const RenderParams *params, const FramesForm *form,
-                   double memory_mb, RenderStats *stats, Err *err)
+/* One picture, by a renderer that is there or its own. */
+static Status draw(Renderer *renderer, const Scene *scene, const FramesForm *form, int step,
+                   Err *err)
 {
-    int step = band_rows(form, memory_mb);
-    TRY(picture_fits(form->width, step, 40, err));
-    Renderer *renderer;
-    TRY(renderer_new(&scene->geometry, params, &renderer, err));
     FramesWriter *writer = NULL;
-    Status status = frames_open(&writer, form, err);
-    if (status == STATUS_OK)
-        status = draw_bands(renderer, scene, writer, step, err);
-    *stats = renderer_stats(renderer);
-    renderer_free(renderer);
+    TRY(frames_open(&writer, form, err));
+    Status status = draw_bands(renderer, scene, writer, step, err);
     if (status == STATUS_OK)
         return frames_commit(writer, err);
     frames_discard(writer);
+    return status;
+}
+
+/* What is drawn, and how. */
+typedef struct Film {
+    AnimationSubject subject;
+    const Animation *animation;
+    const RenderParams *params;
+    int step; /* rows of a band */
+} Film;
+
+static void add_stats(RenderStats *all, const RenderStats *one)
+{
+    all->prepare_s += one->prepare_s;
+    all->trace_s += one->trace_s;
+    all->cpu_s += one->cpu_s;
+    all->rays += one->rays;
+    all->engine = one->engine;
+}
+
+/* The tree as it grows has a geometry, and with it a renderer, for each picture. */
+static Status draw_frame(const Film *film, int number, const FramesForm *form, Renderer *prepared,
+                         RenderStats *stats, Err *err)
+{
+    Scene shown, grown = {0};
+    Renderer *young = NULL;
+    FramesForm named = *form;
+    char *path = NULL;
+    Status status;
+    TRY_GOTO(animation_path(film->animation, form->path, number, &path, err));
+    named.path = path;
+    TRY_GOTO(animation_scene(film->animation, &film->subject, number, &shown, &grown, err));
+    if (!prepared)
+        TRY_GOTO(renderer_new(&shown.geometry, film->params, &young, err));
+    TRY_GOTO(draw(prepared ? prepared : young, &shown, &named, film->step, err));
+    if (young) {
+        const RenderStats one = renderer_stats(young);
+        add_stats(stats, &one);
+    }
+done:
+    renderer_free(young);
+    scene_release(&grown);
+    free(path);
+    return status;
+}
+
+static Status draw_all(const Film *film, const FramesForm *form, RenderStats *stats, Err *err)
+{
+    const Animation *animation = film->animation;
+    Progress *progress = film->params->progress_context;
+    Renderer *prepared = NULL;
+    Status status = STATUS_OK;
+    if (animation->kind != ANIMATION_GROWTH)
+        TRY(renderer_new(&film->subject.whole->geometry, film->params, &prepared, err));
+    for (int k = animation->first; k <= animation->last && status == STATUS_OK; k++) {
+        char what[48];
+        snprintf(what, sizeof what, "rendering %d of %d", k, animation->last);
+        progress_start(progress, animation->kind ? what : "rendering", film->subject.common->quiet);
+        status = draw_frame(film, k, form, prepared, stats, err);
+        progress_end(progress);
+    }
+    if (prepared)
+        *stats = renderer_stats(prepared);
+    renderer_free(prepared);
     return status;
 }
 
@@ -226,32 +303,66 @@ static Status plan_files(const RenderOptions *options, RenderParams *params, Fra
     return frames_check_output(options->output, options->planes != NULL, err);
 }
 
-static Status draw_picture(const RenderOptions *options, Parsed *parsed, RenderParams *params,
-                           FramesForm *form, Err *err)
+/* The names of all pictures, and of the planes beside them. */
+static Status note_files(const Animation *animation, const FramesForm *form, Files *files, Err *err)
+{
+    for (int k = animation->first; k <= animation->last; k++) {
+        FramesForm named = *form;
+        char *path;
+        TRY(animation_path(animation, form->path, k, &path, err));
+        named.path = path;
+        Status status = frames_note_planes(&named, files, err);
+        if (status == STATUS_OK && animation->kind != ANIMATION_NONE)
+            status = files_write(files, "-o", path, err);
+        free(path);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+/* The scene, and what of it follows from the animation. */
+static Status make_scene(const RenderOptions *options, Parsed *parsed, const PictureSource *source,
+                         Scene *scene, StageReport *staged, Animation *animation, Err *err)
 {
     const PictureOptions *picture = &options->picture;
-    const CellParams cells = picture_cells(picture);
-    bool quiet = parsed->common.quiet;
+    TRY(picture_scene_of(picture, source, parsed, scene, NULL, staged, err));
+    TRY(animation_count(animation, &scene->appearance, err));
+    if (animation->kind == ANIMATION_TURN)
+        TRY(animation_frame_turn(picture, source, scene, err));
+    return STATUS_OK;
+}
+
+static Status draw_pictures(const RenderOptions *options, Parsed *parsed, RenderParams *params,
+                            FramesForm *form, Animation *animation, Err *err)
+{
+    const CellParams cells = picture_cells(&options->picture);
+    PictureSource source = {0};
     Scene scene = {0};
-    RenderStats stats;
+    RenderStats stats = {0};
     StageReport staged;
     char *line = NULL;
     Progress progress;
-    Status status = STATUS_OK;
-    TRY(picture_scene(picture, parsed, &scene, NULL, &staged, err));
+    Status status;
     params->povray_cells = options->hits == HITS_POVRAY ? &cells : NULL;
     params->progress = progress_report;
     params->progress_context = &progress;
+    const Film film = {.subject = {&options->picture, &parsed->common, &source, &scene},
+                       .animation = animation,
+                       .params = params,
+                       .step = band_rows(form, options->memory_mb)};
+    TRY_GOTO(picture_fits(form->width, film.step, 40, err));
+    TRY_GOTO(picture_read_source(&options->picture, parsed, &source, err));
+    TRY_GOTO(make_scene(options, parsed, &source, &scene, &staged, animation, err));
+    TRY_GOTO(note_files(animation, form, &parsed->files, err));
     TRY_GOTO(command_line_text(parsed, &line, err));
     form->provenance = line;
-    progress_start(&progress, "rendering", quiet);
-    status = draw(&scene, params, form, options->memory_mb, &stats, err);
-    progress_end(&progress);
-    if (status == STATUS_OK && options->json)
+    TRY_GOTO(draw_all(&film, form, &stats, err));
+    if (options->json)
         status = write_report(options->json, &scene, &stats, &staged, params->threads, err);
 done:
     free(line);
     scene_release(&scene);
+    picture_source_release(&source);
     return status;
 }
 
@@ -267,10 +378,11 @@ static Status run_render(void *options, Parsed *parsed, Err *err)
                            .occlusion = picture->occlusion,
                            .method = own_options->method,
                            .kernels = own_options->kernels};
+    Animation animation;
     TRY(check(own_options, parsed, err));
     TRY(plan_files(own_options, &params, &form, err));
-    TRY(frames_note_planes(&form, &parsed->files, err));
-    return draw_picture(own_options, parsed, &params, &form, err);
+    TRY(animation_read(&own_options->animation, own_options->output, &animation, err));
+    return draw_pictures(own_options, parsed, &params, &form, &animation, err);
 }
 
 const Command command_render = {
@@ -279,7 +391,9 @@ const Command command_render = {
     .operands = "T.swc -o P.png",
     .examples = "  corcast render tree.swc -o tree.png\n"
                 "  corcast render tree.swc --model isosurface --antialias 3 -o tree.ppm\n"
-                "  corcast render tree.swc --planes depth,normal,id -o tree.png\n",
+                "  corcast render tree.swc --planes depth,normal,id -o tree.png\n"
+                "  corcast render tree.swc --turn 120 -o turn%03d.png\n"
+                "  corcast render tree.swc --color-by pulse.csv --frames all -o f%04d.png\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,

@@ -56,6 +56,7 @@ typedef enum OptionGroup {
     GROUP_CAMERA,
     GROUP_LIGHT,
     GROUP_COLOR,
+    GROUP_ANIMATION,
     GROUP_POVRAY,
     GROUP_JUDGE,
     GROUP_RUN,

@@ -415,16 +415,24 @@ Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene 
                      Anatomy *anatomy, StageReport *report, Err *err)
 {
     PictureSource source;
+    TRY(picture_read_source(options, parsed, &source, err));
+    Status status = picture_scene_of(options, &source, parsed, scene, anatomy, report, err);
+    picture_source_release(&source);
+    return status;
+}
+
+Status picture_scene_of(const PictureOptions *options, const PictureSource *source,
+                        const Parsed *parsed, Scene *scene, Anatomy *anatomy, StageReport *report,
+                        Err *err)
+{
     StageReport staged;
     Scene made = {0};
-    TRY(picture_read_source(options, parsed, &source, err));
-    Status status = make_scene(options, &source, &parsed->common, &made, &staged, err);
+    Status status = make_scene(options, source, &parsed->common, &made, &staged, err);
     if (status == STATUS_OK && !parsed->common.quiet)
         status = warn_of_losses(&made.geometry, &staged, (JointForm)options->joints,
-                                source.of.pruned, err);
+                                source->of.pruned, err);
     if (status == STATUS_OK && anatomy)
-        status = stage_anatomy(&source.of.tree, made.geometry.origin, anatomy, err);
-    picture_source_release(&source);
+        status = stage_anatomy(&source->of.tree, made.geometry.origin, anatomy, err);
     if (status != STATUS_OK) {
         scene_release(&made);
         return status;

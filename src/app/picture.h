@@ -99,6 +99,11 @@ MUST_CHECK Status picture_view(const PictureOptions *options, const PictureSourc
 MUST_CHECK Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
                                 Anatomy *anatomy, StageReport *report, Err *err);
 
+/* The same of a source that is there. */
+MUST_CHECK Status picture_scene_of(const PictureOptions *options, const PictureSource *source,
+                                   const Parsed *parsed, Scene *scene, Anatomy *anatomy,
+                                   StageReport *report, Err *err);
+
 /* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the
  * machine. */
 MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);

@@ -76,6 +76,14 @@ static inline Vec3 vec3_normalized(Vec3 a)
     return vec3_scale(a, 1 / vec3_length(a));
 }
 
+/* `a` turned about the unit vector `axis`, right-handed, by radians. */
+static inline Vec3 vec3_turned(Vec3 a, Vec3 axis, double angle)
+{
+    Vec3 result = vec3_scale(a, cos(angle));
+    result = vec3_add_scaled(result, vec3_cross(axis, a), sin(angle));
+    return vec3_add_scaled(result, axis, vec3_dot(axis, a) * (1 - cos(angle)));
+}
+
 /* Two unit vectors across the unit vector `axis`, right-handed with it: u x v = axis. */
 static inline void vec3_across(Vec3 axis, Vec3 *u, Vec3 *v)
 {

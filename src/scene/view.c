@@ -74,6 +74,44 @@ void camera_depth_range(const Camera *camera, Box box, double *near_mm, double *
     *far_mm = distance + radius;
 }
 
+View view_moved(const View *view, Vec3 by)
+{
+    View moved = *view;
+    moved.camera.location = vec3_add(view->camera.location, by);
+    for (size_t i = 0; i < view->n_lights; i++) {
+        moved.lights[i].location = vec3_add(view->lights[i].location, by);
+        moved.lights[i].target = vec3_add(view->lights[i].target, by);
+    }
+    moved.ground.offset_mm += vec3_dot(view->ground.normal, by);
+    return moved;
+}
+
+/* About the origin. */
+static View turned_view(const View *view, Vec3 axis, double angle)
+{
+    View turned = *view;
+    Camera *camera = &turned.camera;
+    Vec3 *vectors[] = {&camera->location, &camera->right, &camera->up, &camera->direction,
+                       &turned.ground.normal};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+        *vectors[i] = vec3_turned(*vectors[i], axis, angle);
+    for (size_t i = 0; i < view->n_lights; i++) {
+        Light *light = &turned.lights[i];
+        light->location = vec3_turned(light->location, axis, angle);
+        light->target = vec3_turned(light->target, axis, angle);
+        light->sides[0] = vec3_turned(light->sides[0], axis, angle);
+        light->sides[1] = vec3_turned(light->sides[1], axis, angle);
+    }
+    return turned;
+}
+
+View view_turned(const View *view, Vec3 center, Vec3 axis, double angle)
+{
+    View about = view_moved(view, vec3_scale(center, -1));
+    View turned = turned_view(&about, vec3_normalized(axis), angle);
+    return view_moved(&turned, center);
+}
+
 static LightWay way_to(Vec3 location, Vec3 place)
 {
     Vec3 to_light = vec3_sub(location, place);

@@ -101,6 +101,11 @@ typedef struct View {
     Rgb background;
 } View;
 
+/* The view with all that is in it moved, or turned about an axis through `center`, by radians: what
+ * is seen moves the other way. */
+View view_moved(const View *view, Vec3 by);
+View view_turned(const View *view, Vec3 center, Vec3 axis, double angle);
+
 /* STATUS_INPUT unless camera and ground are finite, the camera lies within SCENE_FARTHEST_MM of
  * the origin, and its vectors are not zero. */
 MUST_CHECK Status view_check(const View *view, Err *err);

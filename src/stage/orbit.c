@@ -56,20 +56,12 @@ void orbit_begin(ViewParams *params, const Camera *camera, const Geometry *geome
         params->height_mm = vec3_length(camera->up);
 }
 
-/* v turned about the unit axis. */
-static Vec3 turned(Vec3 v, Vec3 axis, double angle)
-{
-    Vec3 result = vec3_scale(v, cos(angle));
-    result = vec3_add_scaled(result, vec3_cross(axis, v), sin(angle));
-    return vec3_add_scaled(result, axis, vec3_dot(axis, v) * (1 - cos(angle)));
-}
-
 void orbit_turn(ViewParams *params, double right, double up)
 {
     Axes axes = axes_of(params);
-    axes.back = turned(axes.back, axes.up, -right);
-    axes.right = turned(axes.right, axes.up, -right);
-    axes.back = vec3_normalized(turned(axes.back, axes.right, up));
+    axes.back = vec3_turned(axes.back, axes.up, -right);
+    axes.right = vec3_turned(axes.right, axes.up, -right);
+    axes.back = vec3_normalized(vec3_turned(axes.back, axes.right, up));
     axes.up = vec3_normalized(vec3_cross(axes.back, axes.right));
     set_axes(params, axes);
 }
@@ -114,4 +106,34 @@ void orbit_project(ViewParams *params, Projection projection, const Geometry *ge
     }
     params->projection = projection;
     set_axes(params, axes);
+}
+
+void orbit_frame_turn(ViewParams *params, const Geometry *geometry)
+{
+    Vec3 center = box_center(geometry->bounds), direction, up;
+    bool perspective = params->projection == PROJECTION_PERSPECTIVE;
+    view_axes(params->view, &direction, &up);
+    Vec3 right = vec3_normalized(vec3_cross(direction, up));
+    up = vec3_cross(right, direction);
+    double aspect = (double)params->width / params->height, used = 1 - 2 * params->margin;
+    double tan_x = tan(params->angle_deg * degrees_pi / 2) * used, tan_y = tan_x / aspect;
+    double slant_x = sqrt(1 + tan_x * tan_x), slant_y = sqrt(1 + tan_y * tan_y);
+    double height = 0, distance = 0;
+    for (size_t i = 0; i < geometry_balls(geometry); i++) {
+        Ball ball = geometry_ball(geometry, i);
+        Vec3 from = vec3_sub(ball.center, center);
+        double along = fabs(vec3_dot(from, up)), r = ball.radius;
+        double off = vec3_length(vec3_cross(from, up));
+        height = fmax(height, 2 * fmax(along + r, (off + r) / aspect) / used);
+        distance = fmax(distance, off + (along + r * slant_y) / tan_y);
+        distance = fmax(distance, (off + r) * slant_x / tan_x);
+    }
+    if (!perspective) {
+        distance = vec3_distance(geometry->bounds.low, geometry->bounds.high);
+        params->height_mm = height;
+    }
+    params->look_at = vec3_add(center, geometry->origin);
+    params->location = vec3_add_scaled(params->look_at, direction, -distance);
+    params->up = up;
+    params->has_location = params->has_look_at = params->has_up = true;
 }

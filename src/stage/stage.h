@@ -138,6 +138,10 @@ void view_axes(NamedView view, Vec3 *direction, Vec3 *up);
  * geometry. */
 void orbit_begin(ViewParams *params, const Camera *camera, const Geometry *geometry);
 
+/* Sets these so that a named view, turned about the upright through the middle of the geometry,
+ * shows all of it at any angle. */
+void orbit_frame_turn(ViewParams *params, const Geometry *geometry);
+
 /* Turns what is seen to the right and up, in radians. */
 void orbit_turn(ViewParams *params, double right, double up);
 /* Makes what is seen larger by the factor, > 0: a picture of less height, or a nearer camera. */

@@ -217,19 +217,12 @@ static Status prune_columns(const Tree *tree, const int32_t *place, Tree *out, E
     return STATUS_OK;
 }
 
-Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
+/* A new tree of the nodes that have a place. */
+static Status take_placed(const Tree *tree, const int32_t *place, size_t n, Tree *out, Err *err)
 {
-    int32_t *place = NULL; /* of each node in the new tree */
-    TRY(mem_calloc(&place, tree->n, sizeof *place, "node places", err));
-    int32_t n = 0;
-    for (size_t i = 0; i < tree->n; i++) {
-        bool kept = !tree_is_segment(tree, i) ||
-                    (place[tree->parent[i]] != DROPPED && !(tree->radius_mm[i] < radius_mm));
-        place[i] = kept ? n++ : DROPPED;
-    }
     Tree made = {0};
     Status status = STATUS_OK;
-    TRY_GOTO(tree_init(&made, (size_t)n, err));
+    TRY_GOTO(tree_init(&made, n, err));
     TRY_GOTO(meta_copy(&made.meta, &tree->meta, err));
     for (size_t i = 0; i < tree->n; i++) {
         int32_t at = place[i];
@@ -247,7 +240,68 @@ Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
 done:
     if (status != STATUS_OK)
         tree_release(&made);
+    return status;
+}
+
+Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
+{
+    int32_t *place = NULL; /* of each node in the new tree */
+    TRY(mem_calloc(&place, tree->n, sizeof *place, "node places", err));
+    int32_t n = 0;
+    for (size_t i = 0; i < tree->n; i++) {
+        bool kept = !tree_is_segment(tree, i) ||
+                    (place[tree->parent[i]] != DROPPED && !(tree->radius_mm[i] < radius_mm));
+        place[i] = kept ? n++ : DROPPED;
+    }
+    Status status = take_placed(tree, place, (size_t)n, out, err);
     free(place);
+    return status;
+}
+
+/* The way along the vessels from its root to each node, mm, and the longest of them. */
+static double measure_ways(const Tree *tree, double *way)
+{
+    double longest = 0;
+    for (size_t i = 0; i < tree->n; i++) {
+        way[i] = tree_is_segment(tree, i) ? way[tree->parent[i]] + tree_segment_length(tree, i) : 0;
+        longest = fmax(longest, way[i]);
+    }
+    return longest;
+}
+
+/* Cuts off the segments of a part of the tree where the way is `reach`. */
+static void cut_ends(const Tree *tree, const int32_t *place, const double *way, double reach,
+                     Tree *part)
+{
+    for (size_t i = 0; i < tree->n; i++) {
+        if (place[i] == DROPPED || !(way[i] > reach))
+            continue;
+        size_t parent = (size_t)tree->parent[i];
+        double share = (reach - way[parent]) / (way[i] - way[parent]);
+        Vec3 from = tree->position[parent], span = vec3_sub(tree->position[i], from);
+        part->position[place[i]] = vec3_add_scaled(from, span, share);
+    }
+}
+
+Status tree_grown(const Tree *tree, double part, Tree *out, Err *err)
+{
+    int32_t *place = NULL, n = 0;
+    double *way = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&place, tree->n, sizeof *place, "node places", err));
+    TRY_GOTO(mem_calloc(&way, tree->n, sizeof *way, "ways", err));
+    double longest = measure_ways(tree, way), reach = part < 1 ? part * longest : longest;
+    for (size_t i = 0; i < tree->n; i++) {
+        bool kept =
+            !tree_is_segment(tree, i) || (place[tree->parent[i]] != DROPPED &&
+                                          (way[tree->parent[i]] < reach || !(way[i] > reach)));
+        place[i] = kept ? n++ : DROPPED;
+    }
+    TRY_GOTO(take_placed(tree, place, (size_t)n, out, err));
+    cut_ends(tree, place, way, reach, out);
+done:
+    free(place);
+    free(way);
     return status;
 }
 

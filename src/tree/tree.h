@@ -94,6 +94,11 @@ MUST_CHECK Status tree_check(const Tree *tree, Err *err);
  * hung on. */
 MUST_CHECK Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err);
 
+/* A new tree in *out (owned): what of the tree lies within `part`, above 0, of the longest way
+ * along the vessels from a root; segments that reach farther end there, with the radius they have.
+ * Ids, order, columns and flow as tree_pruned has them; from 1 on, the tree itself. */
+MUST_CHECK Status tree_grown(const Tree *tree, double part, Tree *out, Err *err);
+
 /* Gives the nodes the ids 1 to n in array order. */
 void tree_renumber(Tree *tree);
 

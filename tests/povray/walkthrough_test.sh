@@ -9,7 +9,7 @@ commands() {
     awk '!/^    / { inside = 0; next }
          { text = substr($0, 5) }
          text ~ /^; / { inside = 1; print "file " substr(text, 3); next }
-         text ~ /^(build\/corcast|povray|make) / { inside = 0; print "run " text; next }
+         text ~ /^(build\/corcast|povray|make|awk|ffmpeg) / { inside = 0; print "run " text; next }
          inside { print "line " text }' "$REPO/$1"
 }
 
@@ -71,7 +71,7 @@ test_the_commands_of_the_walkthrough_run() {
 
 test_the_commands_of_every_other_document_run() {
     local document
-    ln -s "$REPO/tests" tests
+    ln -s "$REPO/tests" "$REPO/docs" .
     for document in $(cd "$REPO" && echo docs/*.md docs/decisions/*.md); do
         case $document in
         docs/WALKTHROUGH.md | docs/ARTIST.md) ;;

@@ -426,6 +426,37 @@ static void a_chain_of_a_million_segments_is_no_deeper_than_a_bush(void **state)
     tree_release(&tree);
 }
 
+/* A trunk of 2.5 mm that parts into 4.5 and 1.25 mm, and a second root with 0.75 mm. */
+static void growth_cuts_vessels_at_the_same_way_from_their_roots(void **state)
+{
+    (void)state;
+    static const int32_t parent[] = {-1, 0, 1, 1, -1, 4};
+    static const double x[] = {0, 2.5, 7, 2.5, 10, 10.75}, y[] = {0, 0, 0, 1.25, 0, 0};
+    Tree tree, part;
+    Err err;
+    must(tree_init(&tree, 6, &err), &err);
+    for (size_t i = 0; i < 6; i++) {
+        tree.id[i] = 10 * (int32_t)i + 3;
+        tree.parent[i] = parent[i];
+        tree.position[i] = vec3(x[i], y[i], 0.5);
+        tree.radius_mm[i] = 1.375;
+    }
+    must(tree_grown(&tree, 0.5, &part, &err), &err); /* 3.5 mm */
+    must(tree_check(&part, &err), &err);
+    assert_int_equal(part.n, 6);
+    assert_true(part.position[2].x == 3.5 && part.position[3].y == 1);
+    assert_true(part.position[5].x == 10.75);
+    tree_release(&part);
+    must(tree_grown(&tree, 0.25, &part, &err), &err);
+    assert_int_equal(part.n, 4);
+    assert_true(part.position[1].x == 1.75 && part.id[3] == 53 && part.parent[3] == 2);
+    tree_release(&part);
+    must(tree_grown(&tree, 1, &part, &err), &err);
+    assert_memory_equal(part.position, tree.position, 6 * sizeof *part.position);
+    tree_release(&part);
+    tree_release(&tree);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -445,6 +476,7 @@ int main(void)
         cmocka_unit_test(renumbering_counts_from_one),
         cmocka_unit_test(the_bounds_hold_both_ends_with_the_segment_radius),
         cmocka_unit_test(a_chain_of_a_million_segments_is_no_deeper_than_a_bush),
+        cmocka_unit_test(growth_cuts_vessels_at_the_same_way_from_their_roots),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,141 @@
+#!/usr/bin/env bash
+# Several pictures of one tree: frames of values that change with time, a turn, growth; and the values in
+# files that colour segments.
+. "$(dirname "$0")/../lib.sh"
+
+SMALL="--size 60x50 --quiet"
+
+# A tree of 25 terminals in a ball, and in pulse.csv a wave that runs through it in 8 frames.
+make_pulse() {
+    run_ok corcast grow --terminals 25 --seed 3 --domain ball:20 --quiet -o tree.swc
+    awk 'BEGIN { printf "id"; for (k = 0; k < 8; k++) printf ",%.3f", k / 8; print "" }
+        !/^#/ && $7 > 0 {
+            printf "%d", $1
+            for (k = 0; k < 8; k++) printf ",%.4f", 93 + 27 * sin(6.28318 * (k / 8 - $1 / 50))
+            print ""
+        }' tree.swc >pulse.csv
+}
+
+test_each_frame_is_the_picture_of_its_moment() {
+    make_pulse
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --color-by pulse.csv --frames all $SMALL --planes id -o f%02d.ppm
+    [ "$(echo f*.ppm)" = "$(echo f0{1..8}{.id,}.ppm)" ] || fail "expected 8 pictures and planes, got $(echo f*)"
+    for k in 1 3 8; do
+        # shellcheck disable=SC2086
+        run_ok corcast render tree.swc --color-by pulse.csv:pulse --frame $k $SMALL -o still.ppm
+        expect_same still.ppm f0$k.ppm
+    done
+    expect_differing 100 3000 f01.ppm f03.ppm
+    # the range is that of all frames
+    range=$(awk -F, 'NR > 1 { for (k = 2; k <= 9; k++) { v = $k + 0
+        if (NR == 2 && k == 2 || v < low) low = v; if (NR == 2 && k == 2 || v > high) high = v } }
+        END { print low "," high }' pulse.csv)
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --color-by pulse.csv:pulse_0.250 --range "$range" $SMALL -o still.ppm
+    expect_same still.ppm f03.ppm
+}
+
+test_a_range_of_frames_keeps_their_numbers() {
+    make_pulse
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --color-by pulse.csv --frames 3..4 $SMALL -o f%d.png
+    expect_only f3.png f4.png pulse.csv tree.swc
+}
+
+test_rows_of_a_time_give_the_pictures_of_columns() {
+    make_pulse
+    awk -F, 'NR == 1 { print "name,time,flow_in,flow_out"; n = split($0, time) }
+        NR > 1 { for (k = n; k > 1; k--) print $1 "," time[k] "," $k ",0" }' pulse.csv >long.csv
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --color-by pulse.csv --frame 6 $SMALL -o columns.ppm
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --color-by long.csv:flow_in --frame 6 $SMALL -o rows.ppm
+    expect_same columns.ppm rows.ppm
+}
+
+# expect_border_free FILE: the outermost pixels of a 60 x 50 PPM are white.
+expect_border_free() {
+    tail -c 9000 "$1" | od -An -v -tu1 -w180 | awk 'NR == 1 || NR == 50 { for (i = 1; i <= 180; i++) if ($i < 255) exit 1 }
+        { for (i = 1; i <= 3; i++) if ($i < 255 || $(177 + i) < 255) exit 1 }' ||
+        fail "expected $1 to show all of the tree"
+}
+
+test_a_turn_shows_the_whole_tree_from_all_sides() {
+    make_pulse
+    for projection in orthographic perspective; do
+        # shellcheck disable=SC2086
+        run_ok corcast render tree.swc --turn 5 --projection $projection $SMALL -o t%d.ppm
+        for k in 1 2 3 4 5; do
+            expect_border_free t$k.ppm
+        done
+        expect_differing 300 3000 t1.ppm t3.ppm
+    done
+}
+
+test_growth_ends_with_the_tree_and_adds_to_what_is_there() {
+    make_pulse
+    for model in rounded joined; do
+        # shellcheck disable=SC2086
+        run_ok corcast render tree.swc --model $model --growth 4 --color-by strahler $SMALL --planes id -o g%d.ppm
+        # shellcheck disable=SC2086
+        run_ok corcast render tree.swc --model $model --color-by strahler $SMALL -o whole.ppm
+        expect_same whole.ppm g4.ppm
+        seen=0
+        for k in 1 2 3 4; do
+            now=$(tail -c 9000 g$k.id.ppm | od -An -v -tu1 -w3 | sort -u | wc -l)
+            [ "$now" -gt "$seen" ] || fail "expected more vessels in picture $k than $seen, got $now"
+            seen=$now
+        done
+    done
+}
+
+test_animations_that_cannot_be_are_refused() {
+    make_pulse
+    refused() {
+        sentence=$1
+        shift
+        run corcast render tree.swc --size 60x50 "$@"
+        expect_status 2
+        expect_sentence "$sentence"
+    }
+    refused "'x.png' has no place for a number" --turn 3 -o x.png
+    refused "'x%s.png' has no place" --turn 3 -o x%s.png
+    refused "'x%d%d.png' has no place" --turn 3 -o x%d%d.png
+    refused "'-' has no place" --turn 3 -o -
+    refused "exclude each other" --turn 3 --growth 3 -o x%d.png
+    refused "does not change with time" --frames all -o x%d.png
+    refused "flow does not change with time" --color-by flow --frames all -o x%d.png
+    refused "pulse has 8 frames, not 9" --color-by pulse.csv --frames 2..9 -o x%d.png
+    refused "--frame 9: pulse has 8 frames" --color-by pulse.csv --frame 9 -o x.png
+    refused "'4..3' is not all or A..B" --color-by pulse.csv --frames 4..3 -o x%d.png
+    refused "pulse.csv:1: there is no column 'x'" --color-by pulse.csv:x -o x.png
+    sed -i '4s/^[0-9]*/4711/' pulse.csv
+    refused "pulse.csv:4: the tree has no segment 4711" --color-by pulse.csv -o x.png
+    printf 'id,a\n2,nan\n' >nothing.csv
+    refused "the field a has no value" --color-by nothing.csv:a -o x.png
+    refused "nothing.csv: is a folder|No such file|not exist|missing" --color-by no/nothing.csv -o x.png
+    awk 'BEGIN { printf "id"; for (k = 0; k < 100000; k++) printf "," k; print "" }' >wide.csv
+    refused "wide.csv:1: there are more than 10000 columns" --color-by wide.csv -o x.png
+    expect_only pulse.csv nothing.csv wide.csv tree.swc
+}
+
+test_flow_of_measured_trees_parts_as_is_asked_for() {
+    run_ok corcast info "$DATA/coronary.swc" --q-perf 60 --p-perf 90 --viscosity 3.5 --terminal-flow murray
+    expect_stdout 'terminals at'
+    run corcast info "$DATA/coronary.swc" --terminal-flow half
+    expect_status 2
+    expect_sentence "--terminal-flow: 'half' is not equal, murray or a FILE.csv"
+    run corcast info "$DATA/coronary.swc" --gamma 2.5
+    expect_status 2
+    expect_sentence '--gamma is for --terminal-flow murray'
+    run corcast render "$DATA/coronary.swc" --terminal-flow murray --color-by flow -o x.png
+    expect_status 2
+    expect_sentence 'coronary.swc: the field flow needs the flow through the inlet'
+    printf 'id,flow\n4711,3\n' >flows.csv
+    run corcast info "$DATA/coronary.swc" --terminal-flow flows.csv
+    expect_status 2
+    expect_sentence 'flows.csv:2: the tree has no segment 4711'
+}
+
+run_tests
