@@ -66,7 +66,7 @@ static bool edge_is_near(const Work *work, uint32_t a, uint32_t b)
     const PatchPoint *one = &work->patch->points[a], *other = &work->patch->points[b];
     Vec3 edge = vec3_sub(other->x, one->x), turn = vec3_sub(other->normal, one->normal);
     double off = fabs(vec3_dot(edge, turn)) / 8;
-    return off <= work->sagitta * fmin(one->radius_mm, other->radius_mm);
+    return off <= work->sagitta * one->radius_mm && off <= work->sagitta * other->radius_mm;
 }
 
 /* Twice the area over the square of the longest side. */
@@ -175,34 +175,44 @@ static void collapse_edge(const Work *work, uint32_t point, const Ring *ring, ui
     collapser->first[point] = NONE;
 }
 
-/* Moves the point into the nearest neighbour that it may be moved into. */
+/* A neighbour and how far it is. */
+typedef struct Neighbor {
+    uint32_t point;
+    double length2;
+} Neighbor;
+
+/* Puts a neighbour of a point among `n` others, the nearest first. */
+static void insert_neighbor(const Work *work, uint32_t point, uint32_t other, Neighbor *list, int n)
+{
+    const PatchPoint *points = work->patch->points;
+    Vec3 edge = vec3_sub(points[other].x, points[point].x);
+    double length2 = vec3_dot(edge, edge);
+    for (; n > 0 && list[n - 1].length2 > length2; n--)
+        list[n] = list[n - 1];
+    list[n] = (Neighbor){other, length2};
+}
+
+/* Moves the point into the nearest neighbour that it may be moved into. Going round it, each
+ * triangle ends at another neighbour; on a rim one more is where the first begins. */
 static bool try_point(const Work *work, uint32_t point)
 {
     Ring ring;
-    const PatchPoint *points = work->patch->points;
+    Neighbor list[MOST_NEIGHBORS + 1];
     if (!find_ring(work, point, &ring))
         return false;
-    double tried = -1;
-    for (;;) {
-        double nearest = HUGE_VAL;
-        uint32_t target = NONE;
-        for (int i = 0; i < 2 * ring.n; i++) {
-            uint32_t other = i % 2 ? ring.from[i / 2] : ring.to[i / 2];
-            Vec3 edge = vec3_sub(points[other].x, points[point].x);
-            double length2 = vec3_dot(edge, edge);
-            if (length2 > tried && length2 < nearest) {
-                nearest = length2;
-                target = other;
-            }
-        }
-        if (target == NONE)
-            return false;
-        if (may_collapse(work, point, &ring, target)) {
-            collapse_edge(work, point, &ring, target);
+    int n = 0;
+    for (; n < ring.n; n++)
+        insert_neighbor(work, point, ring.to[n], list, n);
+    bool on_rim = work->patch->points[point].arm != NO_ARM;
+    for (int i = 0; i < ring.n && on_rim; i++)
+        if (shared_triangles(&ring, ring.from[i]) == 1)
+            insert_neighbor(work, point, ring.from[i], list, n++);
+    for (int i = 0; i < n; i++)
+        if (may_collapse(work, point, &ring, list[i].point)) {
+            collapse_edge(work, point, &ring, list[i].point);
             return true;
         }
-        tried = nearest;
-    }
+    return false;
 }
 
 static Status prepare(Collapser *collapser, const Patch *patch, Err *err)

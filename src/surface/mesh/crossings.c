@@ -147,12 +147,24 @@ static bool flat_edge_meets(const float *p, const float *q, const Face *face)
     return abs(beside) < 3;
 }
 
-/* Whether an edge of `a` meets `b`; `shared` is the corner of `a` that both have, or -1. */
-static bool an_edge_meets(const Search *search, const Face *a, const Face *b, int shared)
+/* On which sides of a face's plane the corners of another triangle lie; `shared` is the corner that
+ * both have, or -1. False when all others lie on one side, where the triangles cannot meet. */
+static bool find_sides(const Search *search, const float *const corners[3], const Face *face,
+                       int shared, int sides[3])
 {
-    int side[3];
-    for (int i = 0; i < 3; i++)
-        side[i] = i == shared ? 0 : side_of_face(search, b, a->at[i]);
+    int sum = 0;
+    for (int i = 0; i < 3; i++) {
+        sides[i] = i == shared ? 0 : side_of_face(search, face, corners[i]);
+        sum += sides[i];
+    }
+    return abs(sum) < (shared < 0 ? 3 : 2);
+}
+
+/* Whether an edge of `a` meets `b`; side[] is where the corners of `a` lie, `shared` the one that
+ * both have, or -1. */
+static bool an_edge_meets(const Search *search, const Face *a, const Face *b, const int side[3],
+                          int shared)
+{
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
         if (i == shared || j == shared || side[i] * side[j] > 0)
@@ -174,6 +186,23 @@ static bool folds(const Search *search, const Face *a, const Face *b, int lone)
     return cosine <= 0 && side_of_face(search, a, b->at[lone]) == 0;
 }
 
+/* Whether triangles that share a corner at most meet elsewhere; shared[] is that corner of either,
+ * or -1. */
+static bool faces_meet(const Search *search, uint32_t first, uint32_t second, const int shared[2])
+{
+    int of_a[3], of_b[3];
+    Face b = face_of(search->mesh, second);
+    const float *a_at[3];
+    for (int i = 0; i < 3; i++)
+        a_at[i] = search->mesh->points[search->mesh->triangles[first][i]];
+    if (!find_sides(search, a_at, &b, shared[0], of_a))
+        return false;
+    Face a = face_of(search->mesh, first);
+    return find_sides(search, b.at, &a, shared[1], of_b) &&
+           (an_edge_meets(search, &a, &b, of_a, shared[0]) ||
+            an_edge_meets(search, &b, &a, of_b, shared[1]));
+}
+
 static void test_pair(uint32_t first, uint32_t second, int worker, void *context)
 {
     Search *search = context;
@@ -188,11 +217,11 @@ static void test_pair(uint32_t first, uint32_t second, int worker, void *context
                 n_shared++;
             }
     bool cross = n_shared == 3;
-    if (!cross) {
+    if (n_shared < 2)
+        cross = faces_meet(search, first, second, shared);
+    else if (n_shared == 2) {
         Face a = face_of(search->mesh, first), b = face_of(search->mesh, second);
-        cross = n_shared == 2 ? folds(search, &a, &b, lone)
-                              : an_edge_meets(search, &a, &b, shared[0]) ||
-                                    an_edge_meets(search, &b, &a, shared[1]);
+        cross = folds(search, &a, &b, lone);
     }
     search->counts[worker] += cross;
 }

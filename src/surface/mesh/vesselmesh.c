@@ -15,7 +15,7 @@
 
 /* What the tolerance means for cells and edges, measured so that the mean distance to the surface
  * stays below 0.15 of it, and one sample of a thousand is beyond it. */
-static const double cells_at = 0.02, cell_ratio = 0.5, bending_ratio = 0.3, sagitta_part = 0.34,
+static const double cells_at = 0.02, cell_ratio = 0.48, bending_ratio = 0.22, sagitta_part = 0.33,
                     cap_part = 0.2, farthest_part = 1.75;
 
 typedef struct Build {
