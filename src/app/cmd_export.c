@@ -8,6 +8,7 @@
 
 typedef struct ExportOptions {
     const char *output;
+    double prune_radius_mm;
     MeshingOptions meshing;
 } ExportOptions;
 
@@ -22,7 +23,7 @@ static const Option own[] = {
      .range = &tolerance_range,
      .help = "how far triangles may be off the surface, over the local radius"},
     {.name = "prune-radius",
-     SETS(NUMBER, ExportOptions, meshing.prune_radius_mm),
+     SETS(NUMBER, ExportOptions, prune_radius_mm),
      .group = GROUP_VESSELS,
      .range = &prune_range,
      .unit = "mm",
@@ -65,10 +66,16 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
 {
     const ExportOptions *own_options = options;
     const Emitter *emitter;
+    PictureTree of;
     TRY(scene_files_find(own_options->output, true, &emitter, err));
     TRY(check_colors(own_options, emitter, parsed, err));
     TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));
-    return meshing_write(emitter, &own_options->meshing, own_options->output, parsed, err);
+    TRY(picture_read_tree(&own_options->meshing.coloring, own_options->prune_radius_mm, parsed, &of,
+                          err));
+    Status status =
+        meshing_write(emitter, &own_options->meshing, &of, own_options->output, parsed, err);
+    picture_tree_release(&of);
+    return status;
 }
 
 const Command command_export = {

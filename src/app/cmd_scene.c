@@ -1,5 +1,7 @@
 /* The extension of the output chooses the emitter, whose row says what it can hold; options that a
- * format has no use for are refused. */
+ * format has no use for are refused. OpenSCAD has two: modules, which it unites for half a second
+ * each, and one closed surface; where nothing that is asked for decides, the number of vessels
+ * does. */
 #include "app/commands.h"
 #include "app/meshing.h"
 #include "app/picture.h"
@@ -9,9 +11,9 @@
 #include <string.h>
 
 /* How a model for OpenSCAD is made. */
-typedef enum ScadForm { SCAD_PARAMETRIC, SCAD_POLYHEDRON } ScadForm;
+typedef enum ScadForm { SCAD_AUTO, SCAD_PARAMETRIC, SCAD_POLYHEDRON } ScadForm;
 static const char *const scad_forms[] = {
-    [SCAD_PARAMETRIC] = "parametric", [SCAD_POLYHEDRON] = "polyhedron", NULL};
+    [SCAD_AUTO] = "auto", [SCAD_PARAMETRIC] = "parametric", [SCAD_POLYHEDRON] = "polyhedron", NULL};
 
 typedef struct SceneOptions {
     const char *output;
@@ -38,7 +40,8 @@ static const Option own[] = {
      SETS(CHOICE, SceneOptions, scad),
      .choices = scad_forms,
      .group = GROUP_VESSELS,
-     .help = "S.scad: modules that answer to the customizer, or one closed surface"},
+     .help = "S.scad: modules that answer to the customizer, or one closed surface; auto: by the "
+             "number of vessels"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -50,7 +53,7 @@ static void set_defaults(void *options)
 }
 
 /* STATUS_USAGE for an option that has no effect on a file of this format. */
-static Status check_format(const Emitter *emitter, const Parsed *parsed, Err *err)
+static Status check_format(const Emitter *emitter, bool mesh, const Parsed *parsed, Err *err)
 {
     static const char of_view[] = "is for scenes with a camera (.pov); a solid has none";
     static const char of_povray[] = "is for scenes of POV-Ray (.pov)";
@@ -71,7 +74,7 @@ static Status check_format(const Emitter *emitter, const Parsed *parsed, Err *er
                                 {"background", view, of_view},
                                 {"ids", povray, of_povray},
                                 {"ini", povray, of_povray},
-                                {"model", vessels, of_vessels},
+                                {"model", vessels || mesh, of_vessels},
                                 {"look", vessels, of_vessels},
                                 {"color-by", vessels, of_vessels},
                                 {"scad", !povray, "is for models of OpenSCAD (.scad)"},
@@ -82,40 +85,42 @@ static Status check_format(const Emitter *emitter, const Parsed *parsed, Err *er
 static Status check(const SceneOptions *options, const Emitter *emitter, const Parsed *parsed,
                     Err *err)
 {
-    const PictureOptions *picture = &options->picture;
-    TRY(check_format(emitter, parsed, err));
+    PictureOptions picture = options->picture;
+    TRY(check_format(emitter, picture.model == SCENE_MESH, parsed, err));
     if (options->ini && strcmp(options->output, "-") == 0)
         return err_set(err, STATUS_USAGE, "--ini is a file beside S.pov; standard output has none");
-    TRY(picture_check_needs(picture, parsed, err));
-    TRY(picture_check_povray(picture, err));
-    return emit_check_model(emitter, (SceneModel)picture->model, err);
+    if (emitter->of_meshes)
+        picture.model = SCENE_MESH;
+    TRY(picture_check_needs(&picture, parsed, err));
+    TRY(picture_check_povray(&picture, err));
+    return emit_check_model(emitter, (SceneModel)picture.model, err);
 }
 
 /* What the user should know of the file besides. */
 static void say_limits(const EmitReport *report, const Scene *scene)
 {
-    enum { QUICK = 100 };
     if (report->joint_sides > 0)
         fprintf(stderr,
                 "corcast: more joints than POV-Ray holds exactly; they are meshes of %d sides, of "
                 "more with Declare=Joint_Sides=N\n",
                 report->joint_sides);
-    if (report->openscad_s > 0 && scene->geometry.drawn > QUICK)
+    if (report->openscad_s > 0 && scene->geometry.drawn > OPENSCAD_QUICK)
         fprintf(stderr,
                 "corcast: OpenSCAD takes about %.2g s to make a solid of %zu vessels, and its "
                 "preview a moment; --scad polyhedron is a solid at once\n",
                 report->openscad_s, scene->geometry.drawn);
 }
 
-static Status write_scene(const SceneOptions *options, const Emitter *emitter, const char *line,
-                          const Parsed *parsed, Err *err)
+static Status write_scene(const SceneOptions *options, const Emitter *emitter,
+                          const PictureSource *source, const char *line, const Parsed *parsed,
+                          Err *err)
 {
     const PictureOptions *picture = &options->picture;
-    const char *tree = parsed->operands[0];
+    const char *tree = source->of.path;
     Scene scene = {0};
     Anatomy anatomy = {0};
     EmitReport report = {0};
-    TRY(picture_scene(picture, parsed, &scene, &anatomy, NULL, err));
+    TRY(picture_scene_of(picture, source, parsed, &scene, &anatomy, NULL, err));
     const EmitParams params = {.scene = &scene,
                                .anatomy = &anatomy,
                                .command = line,
@@ -132,29 +137,81 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter, c
     return status;
 }
 
-/* The emitter that is asked for; standard output gets POV-Ray's. */
-static Status find_emitter(const SceneOptions *options, const Emitter **emitter, Err *err)
+static Status write_surface(const SceneOptions *options, const Emitter *emitter,
+                            const PictureSource *source, const Parsed *parsed, Err *err)
 {
-    const char *output = strcmp(options->output, "-") ? options->output : "scene.pov";
-    bool scad = strcmp(file_extension(output), "scad") == 0;
-    return scene_files_find(output, scad && options->scad == SCAD_POLYHEDRON, emitter, err);
+    const MeshingOptions meshing = {.tolerance = options->picture.tolerance,
+                                    .part_overlaps = options->picture.part_overlaps};
+    return meshing_write(emitter, &meshing, &source->of, options->output, parsed, err);
+}
+
+/* The form of a model for OpenSCAD, as far as the options decide. */
+static ScadForm asked_form(const SceneOptions *options, const Parsed *parsed)
+{
+    if (options->scad != SCAD_AUTO)
+        return options->scad;
+    if (options->picture.model == SCENE_MESH)
+        return SCAD_POLYHEDRON;
+    bool of_vessels = options_typed(parsed, "model") || options_typed(parsed, "look") ||
+                      options_typed(parsed, "color-by");
+    return of_vessels ? SCAD_PARAMETRIC : SCAD_AUTO;
+}
+
+/* The emitter of a form; of SCAD_AUTO, and of other files, that of scenes. Standard output gets
+ * POV-Ray's. */
+static Status find_emitter(const char *output, ScadForm form, const Emitter **emitter, Err *err)
+{
+    const char *name = strcmp(output, "-") ? output : "scene.pov";
+    bool scad = strcmp(file_extension(name), "scad") == 0;
+    return scene_files_find(name, scad && form == SCAD_POLYHEDRON, emitter, err);
+}
+
+/* By the number of vessels, which is said. */
+static ScadForm form_by_size(const Tree *tree, const SceneOptions *options, bool quiet)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        n += tree_is_segment(tree, i);
+    if (n <= OPENSCAD_QUICK)
+        return SCAD_PARAMETRIC;
+    if (!quiet)
+        fprintf(stderr,
+                "corcast: %zu vessels are more than OpenSCAD unites in good time, %d: %s is one "
+                "closed surface; --scad parametric writes modules\n",
+                n, OPENSCAD_QUICK, options->output);
+    return SCAD_POLYHEDRON;
+}
+
+/* Settles on an emitter and writes by it. */
+static Status write_source(const SceneOptions *options, const Emitter *emitter,
+                           const PictureSource *source, Parsed *parsed, Err *err)
+{
+    char *line = NULL;
+    bool is_open =
+        strcmp(emitter->extension, "scad") == 0 && asked_form(options, parsed) == SCAD_AUTO;
+    if (is_open)
+        TRY(find_emitter(options->output,
+                         form_by_size(&source->of.tree, options, parsed->common.quiet), &emitter,
+                         err));
+    TRY(scene_files_note(emitter, options->output, options->ini, &parsed->files, err));
+    if (emitter->of_meshes)
+        return write_surface(options, emitter, source, parsed, err);
+    TRY(command_line_text(parsed, &line, err));
+    Status status = write_scene(options, emitter, source, line, parsed, err);
+    free(line);
+    return status;
 }
 
 static Status run_scene(void *options, Parsed *parsed, Err *err)
 {
     const SceneOptions *own_options = options;
-    const MeshingOptions meshing = {.tolerance = MESHING_TOLERANCE,
-                                    .prune_radius_mm = own_options->picture.prune_radius_mm};
     const Emitter *emitter;
-    char *line = NULL;
-    TRY(find_emitter(own_options, &emitter, err));
+    PictureSource source;
+    TRY(find_emitter(own_options->output, asked_form(own_options, parsed), &emitter, err));
     TRY(check(own_options, emitter, parsed, err));
-    TRY(scene_files_note(emitter, own_options->output, own_options->ini, &parsed->files, err));
-    if (emitter->of_meshes)
-        return meshing_write(emitter, &meshing, own_options->output, parsed, err);
-    TRY(command_line_text(parsed, &line, err));
-    Status status = write_scene(own_options, emitter, line, parsed, err);
-    free(line);
+    TRY(picture_read_source(&own_options->picture, parsed, &source, err));
+    Status status = write_source(own_options, emitter, &source, parsed, err);
+    picture_source_release(&source);
     return status;
 }
 

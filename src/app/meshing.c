@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 typedef struct Meshing {
-    PictureTree of;
+    const PictureTree *of;
     Appearance appearance; /* with the orders: for an emitter with colours */
     Field orders;
     VesselTree vessels;
@@ -24,12 +24,10 @@ typedef struct Meshing {
     size_t n_thinned;
 } Meshing;
 
-static Status read_vessels(const Parsed *parsed, const MeshingOptions *options, Meshing *made,
-                           Err *err)
+static Status take_vessels(Meshing *made, Err *err)
 {
     size_t dropped;
-    TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &made->of, err));
-    TRY(stage_vessels(&made->of.tree, &made->vessels, &dropped, err));
+    TRY(stage_vessels(&made->of->tree, &made->vessels, &dropped, err));
     if (dropped)
         fprintf(stderr, "corcast: %zu segments have no length or no radius and are left out\n",
                 dropped);
@@ -39,7 +37,7 @@ static Status read_vessels(const Parsed *parsed, const MeshingOptions *options, 
 /* What the segments look like, and by which orders they are grouped. */
 static Status color_vessels(const MeshingOptions *options, Meshing *made, Err *err)
 {
-    const PictureTree *of = &made->of;
+    const PictureTree *of = made->of;
     Look look;
     TRY(coloring_read_look(options->look, &look, err));
     TRY(coloring_appearance(&options->coloring, &of->tree, of->path, of->joined, &look,
@@ -102,11 +100,10 @@ static Status part(Meshing *made, int threads, Err *err)
     return STATUS_OK;
 }
 
-static Status make(const Parsed *parsed, const MeshingOptions *options, bool colored, Meshing *made,
+static Status make(const Common *common, const MeshingOptions *options, bool colored, Meshing *made,
                    Err *err)
 {
-    const Common *common = &parsed->common;
-    TRY(read_vessels(parsed, options, made, err));
+    TRY(take_vessels(made, err));
     if (colored)
         TRY(color_vessels(options, made, err));
     if (options->part_overlaps)
@@ -178,15 +175,14 @@ static json_t *manifest(const Meshing *made)
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-Status meshing_write(const Emitter *emitter, const MeshingOptions *options, const char *output,
-                     const Parsed *parsed, Err *err)
+Status meshing_write(const Emitter *emitter, const MeshingOptions *options, const PictureTree *of,
+                     const char *output, const Parsed *parsed, Err *err)
 {
-    const char *tree = parsed->operands[0];
-    Meshing made = {0};
+    Meshing made = {.of = of};
     Text said = TEXT_INIT;
     char *line = NULL;
     Status status;
-    TRY_GOTO(make(parsed, options, emitter->has_colors, &made, err));
+    TRY_GOTO(make(&parsed->common, options, emitter->has_colors, &made, err));
     text_json(&said, manifest(&made), 2);
     text_puts(&said, "\n");
     TRY_GOTO(text_check(&said, err));
@@ -197,11 +193,10 @@ Status meshing_write(const Emitter *emitter, const MeshingOptions *options, cons
                                .orders = made.orders.value,
                                .manifest = text_chars(&said),
                                .command = line};
-    TRY_GOTO(scene_files_write(emitter, &params, tree, output, false, NULL, err));
+    TRY_GOTO(scene_files_write(emitter, &params, of->path, output, false, NULL, err));
 done:
     free(line);
     text_release(&said);
-    picture_tree_release(&made.of);
     appearance_release(&made.appearance);
     field_release(&made.orders);
     vesseltree_release(&made.vessels);

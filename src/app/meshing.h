@@ -4,23 +4,22 @@
 
 #include "app/coloring.h"
 #include "app/options.h"
+#include "app/picture.h"
 #include "base/base.h"
 #include "emit/emit.h"
 
 typedef struct MeshingOptions {
-    double tolerance;       /* over the local radius */
-    double prune_radius_mm; /* 0: none */
-    bool part_overlaps;     /* thin vessels that overlap others that they do not belong with */
-    const char *look;       /* for an emitter with colours, as the coloring */
+    double tolerance;   /* over the local radius */
+    bool part_overlaps; /* thin vessels that overlap others that they do not belong with */
+    const char *look;   /* for an emitter with colours, as the coloring */
     Coloring coloring;
 } MeshingOptions;
 
-/* Reads the tree that the command names, leaves out segments thinner than prune_radius_mm,
- * triangulates the others and writes `output` and its manifest. Says on standard error, unless
- * quiet, how much work it is, and what is to be known of the mesh. STATUS_DIFFERS when the mesh is
- * not sound; errors as tree_read, coloring_appearance, vesselmesh_build and emit_files have them.
- */
+/* Triangulates the vessels of a tree and writes `output` and its manifest. Says on standard error,
+ * unless quiet, how much work it is, and what is to be known of the mesh. STATUS_DIFFERS when the
+ * mesh is not sound; errors as coloring_appearance, vesselmesh_build and emit_files have them. */
 MUST_CHECK Status meshing_write(const Emitter *emitter, const MeshingOptions *options,
-                                const char *output, const Parsed *parsed, Err *err);
+                                const PictureTree *of, const char *output, const Parsed *parsed,
+                                Err *err);
 
 #endif

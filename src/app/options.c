@@ -309,13 +309,17 @@ Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
     return note_files(parsed, err);
 }
 
+bool options_typed(const Parsed *parsed, const char *name)
+{
+    const Setting *setting = find(parsed, name, strlen(name));
+    return setting && setting->typed;
+}
+
 Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *err)
 {
-    for (const OptionNeed *need = needs; need->name; need++) {
-        const Setting *setting = find(parsed, need->name, strlen(need->name));
-        if (!need->met && setting && setting->typed)
+    for (const OptionNeed *need = needs; need->name; need++)
+        if (!need->met && options_typed(parsed, need->name))
             return err_set(err, STATUS_USAGE, "--%s %s", need->name, need->sentence);
-    }
     return STATUS_OK;
 }
 

@@ -213,6 +213,9 @@ void parsed_release(Parsed *parsed);
  * given twice the last holds. With --help, nothing needs to be there. */
 MUST_CHECK Status options_parse(Parsed *parsed, int argc, char **argv, Err *err);
 
+/* Whether the option stands on the command line. */
+bool options_typed(const Parsed *parsed, const char *name);
+
 /* STATUS_USAGE for the first option of the command line whose need is not met: it would have no
  * effect. A recipe's options are defaults for many runs, and may be without effect in this one. */
 MUST_CHECK Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *err);

@@ -7,6 +7,9 @@
 #include "scene/scene.h"
 #include "surface/surface.h"
 
+/* So many vessels OpenSCAD unites in good time; of more, a mesh is the better model. */
+#define OPENSCAD_QUICK 100
+
 /* What is written, and how it is called. All is borrowed. */
 typedef struct EmitParams {
     const Scene *scene;           /* NULL for an emitter of meshes */

@@ -166,6 +166,7 @@ Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitRep
     add_file(&values, params->file, ".stl", "");
     add_about(&values, params, bounds, vec3(0, 0, 0));
     text_printf(add_value(&values, "count"), "%zu", shape->drawn);
+    text_printf(add_value(&values, "quick"), "%d", OPENSCAD_QUICK);
     text_printf(add_value(&values, "seconds"), "%.2g", openscad_seconds(scene));
     text_printf(add_value(&values, "max_radius"), "%.2g", largest_radius(scene));
     put_rgb(add_value(&values, "color"), scene->appearance.color);

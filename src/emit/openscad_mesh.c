@@ -37,6 +37,7 @@ Status openscad_write_mesh(const EmitParams *params, Text *out, Text *second, Em
     add_file(&values, params->file, ".stl", "");
     add_about(&values, params, box, vec3(0, 0, 0));
     text_printf(add_value(&values, "triangles"), "%zu", mesh.n_triangles);
+    text_printf(add_value(&values, "quick"), "%d", OPENSCAD_QUICK);
     text_printf(add_value(&values, "seconds"), "%.2g",
                 seconds_a_triangle * (double)mesh.n_triangles);
     text_printf(add_value(&values, "middle"), "%.4g", (box.low.z + box.high.z) / 2);

@@ -1,6 +1,8 @@
 // ${file}: ${description}
 // Auth: ${generator}, by: ${command}
-// ${count} vessels in millimetres. Extent: ${extent}
+// ${count} vessels in millimetres, as modules. Extent: ${extent}
+// Of more than ${quick} vessels one closed surface is written instead, unless corcast scene --scad parametric asks for
+// modules.
 //
 // Open it and change what Window > Customizer shows; F5 shows the result at once, F6 makes it a solid. Or without
 // a window:

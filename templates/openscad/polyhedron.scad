@@ -1,6 +1,8 @@
 // ${file}: ${description}
 // Auth: ${generator}, by: ${command}
 // One closed surface of ${triangles} triangles, in millimetres. Extent: ${extent}
+// That is what is written of more than ${quick} vessels, which OpenSCAD would take minutes to unite; of any number
+// corcast scene --scad parametric writes modules, with radii and wall in the customizer.
 //
 // F6 makes a solid of it at once, and so does, without a window:
 //   openscad -o ${output} ${input}
