@@ -64,7 +64,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate bench bench-grow bench-render bench-compare bench-mesh verify-all power power-program fit-blob check check-quick program unit \
+.PHONY: all deps demo validate bench bench-grow bench-render bench-compare bench-mesh verify-all power power-program fit-blob check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
@@ -132,6 +132,11 @@ fit-blob: $(FIT) ## how far the blob is from the potential; HOW=fit searches for
 check: ## every test; ends in "N passed, N failed"
 	$(Q).ci/deps build run check
 	$(Q)JOBS=$(JOBS) tests/check
+
+check-all: ## `make check`, and what needs packages of hundreds of MB: PrusaSlicer, Blender
+	$(Q).ci/deps build run check
+	$(Q).ci/deps all || echo 'what needs these packages is skipped' >&2
+	$(Q)JOBS=$(JOBS) tests/check usual all
 
 check-quick: ## what half a minute can test, of what is installed
 	$(Q)JOBS=$(JOBS) tests/check quick

@@ -38,6 +38,20 @@ test_no_model_makes_povray_warn() {
     grep -q Blob_Cell blob.inc || fail "expected a blob of many cells"
 }
 
+# A coloured and pruned forest in the shadows of every look, and the planes that `verify` asks for.
+test_no_look_and_no_plane_makes_povray_warn() {
+    local model look plane=0
+    run_ok corcast grow --quiet --terminals 40 --inlet 0,50 --inlet 0,-50 -o tree.swc
+    for model in $MODELS; do
+        for look in $(corcast looks); do
+            run_ok corcast scene tree.swc --quiet --model "$model" --look "$look" --shadows on --size 24x18 --view iso \
+                --projection perspective --color-by flow --log --classes 5 --prune-radius 0.3 -o "$model.pov"
+            draw "$model" +W24 +H18 Declare=Corcast_Plane=$((plane++ % 4))
+            expect_no_warning "$model"
+        done
+    done
+}
+
 # The vessel in the middle is blue, of whatever model, without a change of the files.
 test_colours_are_set_by_numbers_on_the_command_line() {
     local model

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# What `export` writes for artists, as Blender reads and draws it.
+. "$(dirname "$0")/../lib.sh"
+
+# in_blender ARGUMENT ...: blender.py with these.
+in_blender() {
+    command -v blender >/dev/null || skip "blender is not installed"
+    run_ok timeout 300 xvfb-run -a blender -b -noaudio --factory-startup --python-exit-code 1 \
+        -P "$REPO/tests/all/blender.py" -- "$@"
+}
+
+test_blender_imports_every_format_whole() {
+    local extension path triangles volume parts open
+    run_ok corcast grow --terminals 30 --domain ball:41 --inlet 0,41,0 --inlet 0,-41,0 --seed 7 --quiet -o t.swc
+    for extension in glb obj ply stl; do
+        run_ok corcast export t.swc --quiet -o t.$extension
+    done
+    in_blender measure t.glb t.obj t.ply t.stl
+    [ "$(grep -c '^MEASURED' stdout)" = 4 ] || fail "Blender reads not all of four files"
+    while read -r _ path triangles volume parts open; do
+        [ "$triangles $parts $open" = "$(jq .triangles t.stl.json) 2 0" ] ||
+            fail "Blender reads $triangles triangles, $parts parts and $open open edges of $path"
+        awk -v a="$(jq .volume_mm3 t.stl.json)" -v b="$volume" 'BEGIN { exit !(a > 100 && (a / b - 1) ^ 2 < 1e-5 ^ 2) }' ||
+            fail "Blender measures $volume mm^3 of $path"
+    done < <(grep '^MEASURED' stdout)
+}
+
+# Vessels are three pixels wide; `render` rounds the ends that the mesh cuts off flat.
+test_blender_draws_the_outline_of_a_glb_that_render_draws() {
+    run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 --quiet -o t.swc
+    run_ok corcast export t.swc --color-by radius --quiet -o t.glb
+    in_blender draw "$PWD/t.glb" "$PWD/blender.png"
+    run_ok corcast render t.swc --model isosurface --potential graph --location 0,0,100 --look-at 0,0,0 --height 100 \
+        --size 500x500 --planes id --quiet -o ours.ppm
+    /usr/bin/python3 - >compared <<'END' || fail "Blender draws another outline: $(cat compared)"
+import sys
+from skimage.io import imread
+from skimage.morphology import binary_dilation, disk
+theirs = imread("blender.png")[..., 3] > 127
+ours = imread("ours.id.ppm").reshape(500, 500, 3).any(axis=2)
+iou = (ours & theirs).sum() / (ours | theirs).sum()
+beyond = (theirs & ~binary_dilation(ours, disk(1))).sum()
+print("pixels", ours.sum(), "IoU", iou, "beyond", beyond)
+sys.exit(0 if ours.sum() > 9000 and iou > 0.985 and beyond == 0 else 1)
+END
+}
+
+run_tests "$@"
