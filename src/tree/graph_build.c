@@ -373,6 +373,10 @@ static Status radius_of(const Building *building, uint32_t kept, double *radius,
             graph, GRAPH_LINES, line->record,
             err_set(err, STATUS_INPUT, "neither the line nor its distal point has a radius"), err);
     }
+    if (graph->is_tree && !isnan(graph->point[kept].radius)) {
+        *radius = graph->point[kept].radius;
+        return STATUS_OK;
+    }
     for (uint32_t k = 0; k < building->degree[kept]; k++) {
         const Link *link = link_at(building, kept, k);
         double of_link;

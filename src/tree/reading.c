@@ -112,7 +112,7 @@ static Status measure_degrees(TreeReading *reading, const Tree *tree, Err *err)
 
 static void believe(TreeReading *reading)
 {
-    static const Range of_vessels = {0.001, 4}; /* mm, median radii from capillaries to aortas */
+    static const Range of_vessels = {0.001, 2.5}; /* mm: median radii */
     static const LengthUnit commoner[] = {LENGTH_MM, LENGTH_UM, LENGTH_M, LENGTH_CM};
     double median = reading->median_radius_mm / length_unit_mm(reading->unit);
     reading->believed = reading->unit;

@@ -24,9 +24,10 @@ typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
 /* Writes a tree that tree_check accepts; errors of the stream are the caller's matter. */
 typedef Status TreeWrite(const Tree *tree, FILE *stream, Err *err);
 
-TreeDetect csv_detect, opencco_detect, metaio_detect;
+TreeDetect csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect;
 TreeRead swc_read, csv_read;
-GraphRead oned_read, vita_read, secomb_read, opencco_read, vmv_read, metaio_read;
+GraphRead oned_read, vita_read, secomb_read, opencco_read, vmv_read, metaio_read, vtk_read,
+    vtp_read;
 TreeWrite swc_write, csv_write, oned_write, vmv_write;
 
 /* Takes in one line (zero-terminated, without its end; may be changed), the file's `number`th.

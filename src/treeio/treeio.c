@@ -65,6 +65,20 @@ static const Format formats[] = {
      .detect = csv_detect,
      .read = csv_read,
      .write = csv_write},
+    {.name = "VTK",
+     .description = "legacy VTK: lines as POLYDATA or UNSTRUCTURED_GRID, arrays of both",
+     .extensions = {"vtk"},
+     .takes = ANY_GRAPH | RADIUS_ARRAY,
+     .form = {.name = "a VTK file", .most_bytes = MOST_BYTES},
+     .detect = vtk_detect,
+     .read_graph = vtk_read},
+    {.name = "VTP",
+     .description = "VTK's XML: lines, arrays of points and of lines",
+     .extensions = {"vtp", "vtu"},
+     .takes = ANY_GRAPH | RADIUS_ARRAY,
+     .form = {.name = "a VTP file", .most_bytes = MOST_BYTES},
+     .detect = vtp_detect,
+     .read_graph = vtp_read},
     {.name = "SimVascular 1-D",
      .description = "a deck of svOneDSolver: nodes, segments and joints, in cm",
      .extensions = {"in"},
@@ -301,23 +315,34 @@ static Status check_options(const Format *format, const char *name, const ReadOp
     return refused ? refuse_option(format, name, refused & -refused, err) : STATUS_OK;
 }
 
-/* The format of this extension. */
-static Status format_called(const char *extension, const Format **format, Err *err)
+static Status refuse_format(const char *called, Err *err)
 {
-    for (size_t i = 0; i < N_FORMATS; i++)
-        if (strcasecmp(formats[i].extensions[0], extension) == 0 ||
-            strcasecmp(formats[i].name, extension) == 0) {
-            *format = &formats[i];
-            return STATUS_OK;
-        }
     Text known = TEXT_INIT;
     list_extensions(&known, false);
     Status status = text_check(&known, err);
     if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "`input_format` '%s': known are %s, without the dot",
-                         extension, text_chars(&known));
+        status = err_set(err, STATUS_USAGE,
+                         "`input_format` '%s': known are %s, without the dot, and the names that "
+                         "`corcast formats` lists",
+                         called, text_chars(&known));
     text_release(&known);
     return status;
+}
+
+/* The format of this name or extension, which are told apart by the bytes where several share the
+ * extension; NULL when they have to be known for that: *as is then a name of such a file. */
+static Status format_called(const char *called, const Format **format, char as[32], Err *err)
+{
+    for (size_t i = 0; i < N_FORMATS; i++)
+        if (strcasecmp(formats[i].name, called) == 0) {
+            *format = &formats[i];
+            return STATUS_OK;
+        }
+    snprintf(as, 32, ".%s", called);
+    if (strlen(called) > 30 || !tree_format_known(as))
+        return refuse_format(called, err);
+    *format = count_formats(as) == 1 ? find_format(as, NULL) : NULL;
+    return STATUS_OK;
 }
 
 /* A file, read and told. */
@@ -328,11 +353,12 @@ typedef struct Source {
     size_t size;
 } Source;
 
-static Status open_source(Source *source, const char *path, const char *format_name, Err *err)
+static Status open_source(Source *source, const char *path, const char *called, Err *err)
 {
     const Format *format = NULL;
-    if (format_name)
-        TRY(format_called(format_name, &format, err));
+    char as[32] = "";
+    if (called)
+        TRY(format_called(called, &format, as, err));
     else if (!tree_format_known(path))
         return refuse_extension(path, false, err);
     else if (count_formats(path) == 1)
@@ -341,7 +367,7 @@ static Status open_source(Source *source, const char *path, const char *format_n
     TRY(file_read(path, format ? &format->form : &any_form, &source->bytes, &source->size, err));
     if (format)
         return STATUS_OK;
-    source->format = find_format(path, source->bytes);
+    source->format = find_format(called ? as : path, source->bytes);
     if (!source->format->form.is_text)
         return STATUS_OK;
     return file_to_text(source->name, &source->format->form, source->bytes, &source->size, err);

@@ -1,0 +1,127 @@
+#!/usr/bin/env bash
+# Networks in VTK's files: those that VTK writes, and those of other programs.
+. "$(dirname "$0")/../lib.sh"
+
+PYTHON=/usr/bin/python3 # Debian's, which has VTK
+
+# expect_network FILE FILTER [OPTION...]: what info says of the file's network as JSON.
+expect_network() {
+    local file=$1 filter=$2
+    shift 2
+    [ -e "$SHARED/$file" ] || skip "the measured network $SHARED/$file is not here"
+    run_ok corcast info --quiet --json "$@" "$SHARED/$file"
+    expect_json stdout "$filter"
+}
+
+test_whatever_vtk_writes_is_read_alike() {
+    local file
+    "$PYTHON" -c 'import vtkmodules' 2>/dev/null || skip "python3-vtk9 is not installed"
+    mkdir files
+    "$PYTHON" "$REPO/tests/oracle/write_vtk.py" files >names || fail "VTK did not write its files"
+    [ "$(wc -l <names)" = 64 ] || fail "expected 64 files, got $(wc -l <names)"
+    cat >expected.csv <<'END'
+id,parent,x_mm,y_mm,z_mm,radius_mm,type,"pressure [Pa]","flow"
+1,-1,0,0,0,1.5,3,100.5,
+2,1,1.5,0.25,0,1.5,3,98,7.5
+3,2,3,0,0.5,1.375,3,95.25,7.5
+4,3,4,1,1,0.75,3,93,6.25
+5,4,5,2,1.25,0.625,3,92.125,6.25
+6,3,4,-1,-0.5,0.5,3,91,5.125
+END
+    while read -r file; do
+        run_ok corcast convert "files/$file" tree.csv
+        expect_same tree.csv expected.csv
+    done <names
+}
+
+test_the_arteries_of_a_brain_in_metres() {
+    expect_network brain_pvs/arteries_smooth.vtk '.segments == 12708 and .bifurcations == 145 and
+        .reading.degrees[1] == 147 and .reading.components == 1 and
+        .reading.roots[0].reason == "the file says so" and .reading.network.points == 12709 and
+        .reading.median_radius_mm > 0.49 and .reading.median_radius_mm < 1.40 and
+        (.reading.unit_said and .reading.believed_unit == "m")' --input-unit m
+    run_ok corcast info "$SHARED/brain_pvs/arteries_smooth.vtk"
+    expect_sentence 'taken for mm, but the median radius, 0.000536, looks like m; --input-unit'
+}
+
+test_vessels_of_the_cortex_with_radii_of_cells() {
+    expect_network bluebrain_vascpy/penetrating_artery.vtk '.segments == 1273 and
+        .reading.components == 1 and .reading.assumed[0] == "radius is the cell array '"'radius'"'"'
+    expect_network bluebrain_vascpy/penetrating_artery2.vtk '.segments == 809'
+    expect_network bluebrain_vascpy/test_smaller_vasculature.vtk '.segments == 897 and
+        .roots == 15 and .reading.believed_unit == "um"'
+    expect_network bluebrain_vascpy/one_loop.vtk '.segments == 159 and .reading.network.loops == 1 and
+        (.reading.network.cuts | length) == 1' --break-loops
+    run corcast info "$SHARED/bluebrain_vascpy/one_loop.vtk"
+    expect_status 2
+    expect_sentence 'one_loop.vtk: cell 120: the line closes a loop .* one of 1; .* --break-loops'
+    run corcast info "$SHARED/bluebrain_vascpy/fork_multiple_properties.vtk"
+    expect_status 2
+    expect_sentence "no array is called a radius, and --radius-array names none; .*'edge_property1'"
+    expect_network bluebrain_vascpy/fork_multiple_properties.vtk '.segments == 3 and
+        .min_radius_mm == 1' --radius-array point_property2
+}
+
+test_tumours_and_a_retina_whose_points_are_not_shared() {
+    expect_network microvesselchaste/retinal.vtp '.reading.network.loops == 203 and
+        .reading.components == 8' --radius-array Distance --break-loops
+    expect_network microvesselchaste/bio_original.vtp '.reading.network.lines == 7650 and
+        .reading.network.points == 15300 and .reading.network.merged_points == 6973 and
+        .reading.components == 1309' --break-loops
+    expect_network microvesselchaste/markelc_network.vtp '.reading.network.lines == 12656 and
+        .reading.network.unused_points == 8' --break-loops
+    expect_network microvesselchaste/tapmeier_network.vtp '.reading.segments_without_radius == 15 and
+        .reading.network.loops == 4 and .reading.degrees[4] == 3' --break-loops
+}
+
+test_trees_of_other_generators() {
+    local each='.terminals == 100 and .bifurcations == 99 and .reading.components == 1 and
+        .reading.network.loops == 0 and .reading.believed_unit == "mm"'
+    expect_network peers/ccolab_2d_100.vtk "$each"
+    expect_network peers/v3_100.vtp "$each and .root_radius_mm == 1.3"
+}
+
+test_points_nearby_are_one_within_the_tolerance() {
+    cat >near.vtk <<'END'
+# vtk DataFile Version 3.0
+two vessels that touch but nearly
+ASCII
+DATASET POLYDATA
+POINTS 4 float
+0 0 0 5 0 0 5 0.02 0 9 1 0
+LINES 2 6
+2 0 1
+2 2 3
+CELL_DATA 2
+FIELD FieldData 1
+radius 1 2 float
+1.5 1.25
+END
+    run_ok corcast info --json near.vtk
+    expect_json stdout '.roots == 2'
+    run_ok corcast info --json near.vtk --merge-tolerance 0.03
+    expect_json stdout '.roots == 1 and .reading.network.merged_points == 1 and .segments == 2'
+    run_ok corcast info --json near.vtk --input-unit cm --voxel-size 1,2,3 --voxel-radii
+    expect_json stdout '(.root_radius_mm - 15 * pow(6; 1/3) | fabs) < 1e-12 and
+        (.bbox_mm[0][0] + .root_radius_mm | fabs) < 1e-12'
+}
+
+test_options_that_a_format_does_not_take_are_refused() {
+    cp "$DATA/bifurcation.swc" tree.swc
+    run corcast info tree.swc --radius-array thickness
+    expect_status 2
+    expect_sentence "--radius-array is for files of VTK.*; tree.swc is read as SWC"
+    run corcast grow --terminals 3 --break-loops -o out.swc
+    expect_status 2
+    expect_sentence '--break-loops needs --from'
+    run corcast info tree.swc --voxel-size 1,2
+    expect_status 2
+    expect_sentence '--voxel-size takes three numbers above 0'
+    run corcast convert tree.swc tree.vtk --input-format vtk
+    expect_status 2
+    run corcast info tree.swc --input-format swcc
+    expect_status 2
+    expect_sentence "--input-format 'swcc': known are .swc, .*, without the dot"
+}
+
+run_tests
