@@ -3,6 +3,8 @@
 #ifndef CORCAST_BASE_UNITS_H
 #define CORCAST_BASE_UNITS_H
 
+#include "base/text.h"
+
 static inline double pa_from_mmhg(double mmhg)
 {
     return mmhg * 133.322387415;
@@ -27,5 +29,15 @@ static inline double pa_s_from_cp(double cp)
 {
     return cp * 1e-3;
 }
+
+/* Units by name, of pressure (Pa, mmHg, dyn/cm2, ...), length, flow and velocity. */
+
+/* The unit of this name, which lasts; NULL when there is none. */
+const char *unit_named(const char *name);
+/* How many of the unit `to` one of the unit `from` is; 0 when one of them is not known or they are
+ * of different kinds. */
+double unit_ratio(const char *from, const char *to);
+/* Appends the other units of the same kind: "kPa, mmHg"; nothing of one that is not known. */
+void unit_put_others(const char *unit, Text *text);
 
 #endif

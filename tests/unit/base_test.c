@@ -372,6 +372,26 @@ static void units_of_users_and_of_calculation_are_related_as_defined(void **stat
     assert_true(fabs(pa_s_from_cp(3.6) - 0.0036) < 1e-18);
 }
 
+static void units_have_names_and_ratios_to_those_of_their_kind(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *from, *to;
+        double ratio;
+    } cases[] = {{"Pa", "dyn/cm2", 10},  {"mmHg", "kPa", 0.133322387415}, {"mm/s", "cm/s", 0.1},
+                 {"ml/s", "ml/min", 60}, {"mm3/s", "ml/min", 0.06},       {"mm", "um", 1000}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        assert_true(fabs(unit_ratio(cases[i].from, cases[i].to) / cases[i].ratio - 1) < 1e-14);
+    assert_true(unit_ratio("Pa", "mm") == 0);
+    assert_true(unit_ratio("Pa", "psi") == 0 && unit_ratio("", "Pa") == 0);
+    assert_string_equal(unit_named("cm/s"), "cm/s");
+    assert_null(unit_named("furlong"));
+    Text others = TEXT_INIT;
+    unit_put_others("mm/s", &others);
+    assert_string_equal(text_chars(&others), "um/s, cm/s, m/s");
+    text_release(&others);
+}
+
 static void sizes_are_said_in_units_that_suit_them(void **state)
 {
     (void)state;
@@ -533,6 +553,7 @@ int main(void)
         cmocka_unit_test(a_file_that_is_not_of_its_form_is_refused),
         cmocka_unit_test(a_text_has_one_kind_of_line_ends),
         cmocka_unit_test(units_of_users_and_of_calculation_are_related_as_defined),
+        cmocka_unit_test(units_have_names_and_ratios_to_those_of_their_kind),
         cmocka_unit_test(sizes_are_said_in_units_that_suit_them),
         cmocka_unit_test(numbers_stand_between_blanks),
         cmocka_unit_test(suffixes_replace_extensions_only),
