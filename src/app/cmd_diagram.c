@@ -97,10 +97,9 @@ static Status paint(const DiagramOptions *options, Drawing *drawing, Err *err)
         Rgb color = appearance_color(&drawing->appearance, (uint32_t)i);
         memcpy(drawing->color[i], &color, sizeof color);
     }
+    const Rgb background = rgb_of_option(options->background);
     drawing->paint = (DiagramPaint){.color = (const float(*)[3])drawing->color,
-                                    .background = {srgb_decode((float)options->background.x),
-                                                   srgb_decode((float)options->background.y),
-                                                   srgb_decode((float)options->background.z)},
+                                    .background = {background.r, background.g, background.b},
                                     .margin = options->margin};
     return STATUS_OK;
 }
@@ -113,8 +112,10 @@ static Status make_drawing(const DiagramOptions *options, const Parsed *parsed, 
     TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &drawing->of, err));
     if (of->pruned > 0 && !parsed->common.quiet)
         fprintf(stderr, "corcast: %zu segments are pruned\n", of->pruned);
-    TRY(coloring_appearance(&options->coloring, &of->tree, of->path, of->joined, &drawing->look,
-                            &drawing->appearance, err));
+    const ColoredTree tree = picture_colored_tree(of);
+    TRY(coloring_appearance(&options->coloring, &tree, &drawing->look, &drawing->appearance, err));
+    if (!parsed->common.quiet)
+        coloring_say(&drawing->appearance);
     TRY(paint(options, drawing, err));
     Status status = diagram_lay_out(&drawing->of.tree, options->gap_mm, &drawing->diagram, err);
     if (status == STATUS_INPUT)
@@ -129,8 +130,8 @@ static Status write_picture(const DiagramOptions *options, const Drawing *drawin
     TRY(picture_fits(options->size[0], options->size[1], 40, err));
     TRY(diagram_draw(&drawing->diagram, &drawing->paint, options->size[0], options->size[1],
                      &frame.color, err));
-    Status status =
-        frames_write(&frame, options->output, options->bits, ENCODING_SRGB, command, err);
+    Status status = frames_write(&frame, options->output, options->bits, ENCODING_SRGB, command,
+                                 drawing->appearance.said, err);
     frame_release(&frame);
     return status;
 }

@@ -51,11 +51,6 @@ static Status list_looks(Text *lines, Err *err)
     return template_names("looks", ".ini", lines, err);
 }
 
-static Status list_colormaps(Text *lines, Err *err)
-{
-    return template_names("colormaps", ".txt", lines, err);
-}
-
 static Status list_morphometries(Text *lines, Err *err)
 {
     return template_names("morphometry", ".txt", lines, err);
@@ -96,10 +91,11 @@ static Status run_list(void *options, Parsed *parsed, Err *err)
     static const struct {
         const Command *command;
         ListNames *names;
-    } lists[] = {
-        {&command_fields, list_fields},       {&command_looks, list_looks},
-        {&command_colormaps, list_colormaps}, {&command_domains, list_domains},
-        {&command_formats, list_formats},     {&command_morphometries, list_morphometries}};
+    } lists[] = {{&command_fields, list_fields},
+                 {&command_looks, list_looks},
+                 {&command_domains, list_domains},
+                 {&command_formats, list_formats},
+                 {&command_morphometries, list_morphometries}};
     size_t i = 0;
     while (lists[i].command != parsed->command)
         i++;
@@ -118,8 +114,6 @@ const Command command_fields = {.name = "fields",
                                 .run = run_list};
 const Command command_looks = {
     .name = "looks", .summary = "the values of --look", .operands = "", .run = run_list};
-const Command command_colormaps = {
-    .name = "colormaps", .summary = "the values of --colormap", .operands = "", .run = run_list};
 const Command command_domains = {
     .name = "domains", .summary = "the shapes of --domain", .operands = "", .run = run_list};
 const Command command_formats = {

@@ -138,6 +138,8 @@ static Status write_report(const char *path, const Scene *scene, const RenderSta
         };
         report = json_with_members(report, of_joints, sizeof of_joints / sizeof *of_joints);
     }
+    if (scene->appearance.said)
+        report = json_with(report, "color", coloring_json(&scene->appearance));
     return json_write(report, path, err);
 }
 
@@ -356,6 +358,7 @@ static Status draw_pictures(const RenderOptions *options, Parsed *parsed, Render
     TRY_GOTO(note_files(animation, form, &parsed->files, err));
     TRY_GOTO(command_line_text(parsed, &line, err));
     form->provenance = line;
+    form->colors = scene.appearance.said;
     TRY_GOTO(draw_all(&film, form, &stats, err));
     if (options->json)
         status = write_report(options->json, &scene, &stats, &staged, params->threads, err);

@@ -52,8 +52,9 @@ static bool is_linear(const FramesForm *form)
 static Status open_picture(FramesWriter *writer, Err *err)
 {
     const FramesForm *form = writer->form;
-    const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", form->provenance}};
-    const ImageNotes all = {.notes = notes, .count = 2};
+    const ImageNote notes[] = {
+        {"Software", GENERATOR}, {"Comment", form->provenance}, {"Colors", form->colors}};
+    const ImageNotes all = {.notes = notes, .count = form->colors ? 3 : 2};
     const ImageForm image = {.width = form->width,
                              .height = form->height,
                              .channels = 3,
@@ -172,7 +173,7 @@ void frames_discard(FramesWriter *writer)
 }
 
 Status frames_write(const Frame *frame, const char *path, int bits, Encoding encoding,
-                    const char *provenance, Err *err)
+                    const char *provenance, const char *colors, Err *err)
 {
     const FramesForm form = {.width = bits ? frame->color.width : frame->id.width,
                              .height = bits ? frame->color.height : frame->id.height,
@@ -183,7 +184,8 @@ Status frames_write(const Frame *frame, const char *path, int bits, Encoding enc
                              .depth = frame->depth.values != NULL,
                              .normal = frame->normal.values != NULL,
                              .id = frame->id.ids != NULL,
-                             .provenance = provenance};
+                             .provenance = provenance,
+                             .colors = colors};
     FramesWriter *writer;
     TRY(frames_open(&writer, &form, err));
     Status status = frames_rows(writer, frame, err);

@@ -23,6 +23,7 @@ typedef struct FramesForm {
     Encoding encoding; /* of its codes; .pfm is linear */
     bool picture, color, depth, normal, id;
     const char *provenance; /* the command line; of the picture */
+    const char *colors;     /* what they mean; of the picture; NULL: nothing */
 } FramesForm;
 
 /* Takes note of the planes that are to be written, of the picture's name or not. */
@@ -43,6 +44,6 @@ void frames_discard(FramesWriter *writer);
  * 0.
  */
 MUST_CHECK Status frames_write(const Frame *frame, const char *path, int bits, Encoding encoding,
-                               const char *provenance, Err *err);
+                               const char *provenance, const char *colors, Err *err);
 
 #endif

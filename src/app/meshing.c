@@ -35,14 +35,15 @@ static Status take_vessels(Meshing *made, Err *err)
 }
 
 /* What the segments look like, and by which orders they are grouped. */
-static Status color_vessels(const MeshingOptions *options, Meshing *made, Err *err)
+static Status color_vessels(const MeshingOptions *options, bool quiet, Meshing *made, Err *err)
 {
-    const PictureTree *of = made->of;
+    const ColoredTree tree = picture_colored_tree(made->of);
     Look look;
     TRY(coloring_read_look(options->look, &look, err));
-    TRY(coloring_appearance(&options->coloring, &of->tree, of->path, of->joined, &look,
-                            &made->appearance, err));
-    return derive_rule(&of->tree, &(TreeMeta){0}, "strahler", &made->orders, err);
+    TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
+    if (!quiet)
+        coloring_say(&made->appearance);
+    return derive_rule(tree.drawn, &(TreeMeta){0}, "strahler", &made->orders, err);
 }
 
 /* Says before the work how much of it there is. */
@@ -105,7 +106,7 @@ static Status make(const Common *common, const MeshingOptions *options, bool col
 {
     TRY(take_vessels(made, err));
     if (colored)
-        TRY(color_vessels(options, made, err));
+        TRY(color_vessels(options, common->quiet, made, err));
     if (options->part_overlaps)
         TRY(part(made, common->threads, err));
     TRY(triangulate(made, options->tolerance, common, err));

@@ -186,24 +186,77 @@ static Status read_list(const Option *option, const char *value, void *where, Er
     return STATUS_OK;
 }
 
+/* The 16 of HTML, and what else they are called. */
+static const struct {
+    const char *name;
+    uint32_t rgb;
+} color_names[] = {
+    {"black", 0x000000},  {"white", 0xffffff},  {"gray", 0x808080},    {"grey", 0x808080},
+    {"silver", 0xc0c0c0}, {"red", 0xff0000},    {"maroon", 0x800000},  {"orange", 0xffa500},
+    {"yellow", 0xffff00}, {"olive", 0x808000},  {"lime", 0x00ff00},    {"green", 0x008000},
+    {"aqua", 0x00ffff},   {"cyan", 0x00ffff},   {"teal", 0x008080},    {"blue", 0x0000ff},
+    {"navy", 0x000080},   {"purple", 0x800080}, {"fuchsia", 0xff00ff}, {"magenta", 0xff00ff},
+};
+
+/* A name, or #RRGGBB. */
+static bool read_code(const char *value, uint32_t *rgb)
+{
+    if (value[0] == '#' && strspn(value + 1, "0123456789abcdefABCDEF") == 6 && !value[7]) {
+        *rgb = (uint32_t)strtoul(value + 1, NULL, 16);
+        return true;
+    }
+    for (size_t i = 0; i < sizeof color_names / sizeof *color_names; i++)
+        if (strcmp(color_names[i].name, value) == 0) {
+            *rgb = color_names[i].rgb;
+            return true;
+        }
+    return false;
+}
+
 static Status read_color(const Option *option, const char *value, void *where, Err *err)
 {
+    uint32_t code;
+    if (read_code(value, &code)) {
+        *(Vec3 *)where =
+            vec3((code >> 16) / 255.0, (code >> 8 & 255) / 255.0, (code & 255) / 255.0);
+        return STATUS_OK;
+    }
     double rgb[3];
     bool read = read_numbers(value, ',', 3, 3, rgb);
     for (int i = 0; i < 3; i++)
         read = read && rgb[i] >= 0 && rgb[i] <= 1;
     if (!read)
-        return wrong(option, value, "R,G,B, three numbers from 0 to 1 parted by commas", err);
+        return wrong(option, value,
+                     "R,G,B, three numbers from 0 to 1 parted by commas, #RRGGBB or the name of a "
+                     "colour, as in red",
+                     err);
     *(Vec3 *)where = vec3(rgb[0], rgb[1], rgb[2]);
     return STATUS_OK;
 }
 
+/* A number, or with '%' a percentile. */
+static bool read_end(const char *text, size_t length, double *at, bool *percent)
+{
+    char number[64];
+    *percent = length > 0 && text[length - 1] == '%';
+    length -= *percent;
+    if (length >= sizeof number)
+        return false;
+    memcpy(number, text, length);
+    number[length] = '\0';
+    return number_parse(number, at) && isfinite(*at) && (!*percent || (*at >= 0 && *at <= 100));
+}
+
 static Status read_range(const Option *option, const char *value, void *where, Err *err)
 {
-    double range[2];
-    if (!read_numbers(value, ',', 2, 2, range) || !(range[0] < range[1]))
-        return wrong(option, value, "A,B, two numbers with A below B", err);
-    memcpy(where, range, sizeof range);
+    RangeEnds ends;
+    const char *comma = strchr(value, ',');
+    if (!comma || !read_end(value, (size_t)(comma - value), &ends.at[0], &ends.percent[0]) ||
+        !read_end(comma + 1, strlen(comma + 1), &ends.at[1], &ends.percent[1]) ||
+        (ends.percent[0] == ends.percent[1] && !(ends.at[0] < ends.at[1])))
+        return wrong(option, value,
+                     "A,B, two numbers with A below B, or percentiles from 0% to 100%", err);
+    *(RangeEnds *)where = ends;
     return STATUS_OK;
 }
 
@@ -295,7 +348,12 @@ static void put_size(const void *where, Text *text)
 
 static void put_range(const void *where, Text *text)
 {
-    put_numbers(text, where, 2);
+    const RangeEnds *ends = where;
+    for (int i = 0; i < 2; i++) {
+        text_puts(text, i ? "," : "");
+        put_numbers(text, &ends->at[i], 1);
+        text_puts(text, ends->percent[i] ? "%" : "");
+    }
 }
 
 /* ---- kinds ----------------------------------------------------------------------------------- */

@@ -26,9 +26,9 @@ typedef enum OptionKind {
     OPTION_VECTOR,  /* Vec3: X,Y or X,Y,Z */
     OPTION_VECTORS, /* VectorList: X,Y or X,Y,Z, given several times */
     OPTION_NUMBERS, /* NumberList: A,B,... */
-    OPTION_COLOR,   /* Vec3: R,G,B, each in [0, 1] */
+    OPTION_COLOR,   /* Vec3: R,G,B, each in [0, 1], sRGB; #RRGGBB or a name */
     OPTION_SIZE,    /* int[2]: WxH, each in the range */
-    OPTION_RANGE,   /* double[2]: A,B with A below B */
+    OPTION_RANGE,   /* RangeEnds: A,B with A below B */
     OPTION_CHOICE   /* int or an enum: index into choices */
 } OptionKind;
 
@@ -44,6 +44,12 @@ typedef struct NumberList {
     double at[MAX_LIST];
     size_t n;
 } NumberList;
+
+/* Each a value, or a percentile, 0 to 100, of values that there are. */
+typedef struct RangeEnds {
+    double at[2];
+    bool percent[2];
+} RangeEnds;
 
 /* The headings that options stand under, in the order of the help. */
 typedef enum OptionGroup {
@@ -131,7 +137,7 @@ static inline const char *option_unit(const Option *option)
 #define OPTION_TYPE_NUMBERS NumberList
 #define OPTION_TYPE_COLOR Vec3
 #define OPTION_TYPE_SIZE int *
-#define OPTION_TYPE_RANGE double *
+#define OPTION_TYPE_RANGE RangeEnds
 #define OPTION_TYPE_CHOICE int : (char)0, unsigned
 
 /* Descriptions that set members of one struct. */

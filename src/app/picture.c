@@ -288,9 +288,7 @@ static Status read_look(const PictureOptions *options, Look *look, Err *err)
 {
     TRY(coloring_read_look(options->look, look, err));
     if (options->has_background)
-        look->background = (Rgb){srgb_decode((float)options->background.x),
-                                 srgb_decode((float)options->background.y),
-                                 srgb_decode((float)options->background.z)};
+        look->background = rgb_of_option(options->background);
     return STATUS_OK;
 }
 
@@ -303,18 +301,21 @@ static bool has_segments(const Tree *tree)
 }
 
 /* The tree without thin segments, in its place. */
-static Status prune(const char *path, double radius_mm, Tree *tree, size_t *pruned, Err *err)
+static Status prune(double radius_mm, bool keep_whole, PictureTree *of, Err *err)
 {
     Tree rest;
-    TRY(tree_pruned(tree, radius_mm, &rest, err));
-    *pruned = tree->n - rest.n;
-    if (*pruned > 0 && !has_segments(&rest)) {
+    TRY(tree_pruned(&of->tree, radius_mm, &rest, err));
+    of->pruned = of->tree.n - rest.n;
+    if (of->pruned > 0 && !has_segments(&rest)) {
         tree_release(&rest);
         return err_set(err, STATUS_INPUT, "%s: all %zu segments are thinner than --prune-radius %g",
-                       path, *pruned, radius_mm);
+                       of->path, of->pruned, radius_mm);
     }
-    tree_release(tree);
-    *tree = rest;
+    if (keep_whole)
+        of->whole = of->tree;
+    else
+        tree_release(&of->tree);
+    of->tree = rest;
     return STATUS_OK;
 }
 
@@ -327,7 +328,7 @@ Status picture_read_tree(const Coloring *coloring, double prune_radius_mm, const
     if (status == STATUS_OK)
         status = coloring_join(coloring, &made.tree, &made.joined, err);
     if (status == STATUS_OK && prune_radius_mm > 0)
-        status = prune(made.path, prune_radius_mm, &made.tree, &made.pruned, err);
+        status = prune(prune_radius_mm, coloring->range_of == RANGE_OF_TREE, &made, err);
     if (status == STATUS_OK)
         *out = made;
     else
@@ -338,7 +339,16 @@ Status picture_read_tree(const Coloring *coloring, double prune_radius_mm, const
 void picture_tree_release(PictureTree *tree)
 {
     tree_release(&tree->tree);
+    tree_release(&tree->whole);
     free(tree->joined);
+}
+
+ColoredTree picture_colored_tree(const PictureTree *tree)
+{
+    return (ColoredTree){.path = tree->path,
+                         .joined = tree->joined,
+                         .drawn = &tree->tree,
+                         .whole = tree->whole.n ? &tree->whole : &tree->tree};
 }
 
 Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
@@ -387,9 +397,8 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
 Status picture_appearance(const PictureOptions *options, const PictureSource *source,
                           Appearance *appearance, Err *err)
 {
-    const PictureTree *of = &source->of;
-    return coloring_appearance(&options->coloring, &of->tree, of->path, of->joined, &source->look,
-                               appearance, err);
+    const ColoredTree tree = picture_colored_tree(&source->of);
+    return coloring_appearance(&options->coloring, &tree, &source->look, appearance, err);
 }
 
 Status picture_view(const PictureOptions *options, const PictureSource *source,
@@ -431,6 +440,8 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
     if (status == STATUS_OK && !parsed->common.quiet)
         status = warn_of_losses(&made.geometry, &staged, (JointForm)options->joints,
                                 source->of.pruned, err);
+    if (status == STATUS_OK && !parsed->common.quiet)
+        coloring_say(&made.appearance);
     if (status == STATUS_OK && anatomy)
         status = stage_anatomy(&source->of.tree, made.geometry.origin, anatomy, err);
     if (status != STATUS_OK) {

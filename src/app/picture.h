@@ -59,6 +59,7 @@ MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 typedef struct PictureTree {
     const char *path; /* for sentences; borrowed */
     Tree tree;
+    Tree whole;    /* before segments were cut off, for colours that are of it; zeroed: as `tree` */
     char *joined;  /* as coloring_join has it; owned, or NULL */
     size_t pruned; /* segments that were cut off */
 } PictureTree;
@@ -69,6 +70,8 @@ typedef struct PictureTree {
 MUST_CHECK Status picture_read_tree(const Coloring *coloring, double prune_radius_mm,
                                     const Parsed *parsed, PictureTree *out, Err *err);
 void picture_tree_release(PictureTree *tree);
+/* The same for coloring_appearance; borrowed. */
+ColoredTree picture_colored_tree(const PictureTree *tree);
 
 /* What a picture is made from. */
 typedef struct PictureSource {

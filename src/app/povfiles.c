@@ -78,6 +78,13 @@ static void surface_description(const char *tree_path, Text *out)
     text_puts(out, ", its surface");
 }
 
+/* What the colours mean, or NULL. */
+static const char *said_of(const EmitParams *params)
+{
+    const Appearance *appearance = params->scene ? &params->scene->appearance : params->appearance;
+    return appearance ? appearance->said : NULL;
+}
+
 Status scene_files_write(const Emitter *emitter, const EmitParams *params, const char *tree_path,
                          const char *path, bool settings, EmitReport *report, Err *err)
 {
@@ -91,6 +98,8 @@ Status scene_files_write(const Emitter *emitter, const EmitParams *params, const
         picture_description(&params->scene->geometry, tree_path, &description);
     else
         surface_description(tree_path, &description);
+    if (said_of(params))
+        text_printf(&description, ", coloured by %s", said_of(params));
     EmitParams all = *params;
     all.templates = templates;
     all.file = strcmp(path, "-") == 0 ? "scene.pov" : file_name(path);

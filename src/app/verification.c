@@ -75,7 +75,8 @@ static Status write_frame(const Verification *v, const Frame *frame, const char 
 {
     char *path = NULL;
     TRY(file_join(v->folder, name, &path, err));
-    Status status = frames_write(frame, path, v->bits, encoding, provenance, err);
+    Status status =
+        frames_write(frame, path, v->bits, encoding, provenance, v->scene.appearance.said, err);
     free(path);
     return status;
 }
@@ -197,7 +198,7 @@ static Status run_oracle(Verification *v, Err *err)
     if (status == STATUS_OK)
         status = file_join(v->folder, "povray.png", &picture, err);
     if (status == STATUS_OK)
-        status = frames_write(&v->povray, picture, 0, ENCODING_SRGB, NULL, err);
+        status = frames_write(&v->povray, picture, 0, ENCODING_SRGB, NULL, NULL, err);
     free(picture);
     return status;
 }

@@ -6,13 +6,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Takes one line, which is a colour, blank or a comment. */
+static bool is_separate(const char *line)
+{
+    static const char word[] = "separate";
+    size_t length = strlen(word);
+    return strncmp(line, word, length) == 0 &&
+           line[length + strspn(line + length, " \t\r")] == '\0';
+}
+
+/* Takes one line, which is a colour, blank, a comment or what kind of map it is. */
 static Status take_line(Colormap *map, size_t *capacity, const char *line, Err *err)
 {
     double c[3];
     line += strspn(line, " \t");
     if (*line == '#' || *line == '\0')
         return STATUS_OK;
+    if (map->n == 0 && is_separate(line)) {
+        map->separate = true;
+        return STATUS_OK;
+    }
     bool fits = numbers_parse(line, 3, c);
     for (int i = 0; i < 3; i++)
         fits = fits && c[i] >= 0 && c[i] <= 1;
@@ -67,4 +79,10 @@ void colormap_linear(const Colormap *map, double fraction, float rgb[3])
         float a = map->srgb[low][c], b = map->srgb[low + 1][c];
         rgb[c] = srgb_decode(isnan(fraction) ? 0.5f : a + (b - a) * part);
     }
+}
+
+void colormap_color(const Colormap *map, size_t number, float rgb[3])
+{
+    for (int c = 0; c < 3; c++)
+        rgb[c] = srgb_decode(map->srgb[number % map->n][c]);
 }

@@ -1,8 +1,10 @@
 /* A value's place on the map is linear between the ends of the range, of values or of their
- * logarithms. */
+ * logarithms. Where colours do not run on, the value chooses one of a few steps instead. */
 #include "image/colorscale.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* NAN where the scale cannot show the value. */
 static double scaled(const ColorScale *scale, double value)
@@ -10,11 +12,17 @@ static double scaled(const ColorScale *scale, double value)
     return scale->log ? (value > 0 ? log(value) : (double)NAN) : value;
 }
 
+/* Whether the value may set the ends of the range. */
+static bool counts(const ColorScale *scale, double value)
+{
+    return isfinite(scaled(scale, value));
+}
+
 bool colorscale_fit(ColorScale *scale, const double *values, size_t n)
 {
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < n; i++) {
-        if (!isfinite(scaled(scale, values[i])))
+        if (!counts(scale, values[i]))
             continue;
         low = fmin(low, values[i]);
         high = fmax(high, values[i]);
@@ -26,19 +34,158 @@ bool colorscale_fit(ColorScale *scale, const double *values, size_t n)
     return true;
 }
 
-/* The place on the map of the class that a fraction of the range lies in. */
-static double place_of_class(double fraction, int classes)
+static double percentile(const double *sorted, size_t n, double percent)
 {
-    double number = floor(fraction * classes);
-    return fmin(number, classes - 1) / (classes - 1);
+    if (n == 0)
+        return (double)NAN;
+    double place = percent / 100 * (double)(n - 1);
+    size_t low = (size_t)place, next = low + 1 < n ? low + 1 : low;
+    return sorted[low] + (sorted[next] - sorted[low]) * (place - (double)low);
+}
+
+Status colorscale_percentiles(const ColorScale *scale, const double *values, size_t n,
+                              const double percent[2], double out[2], Err *err)
+{
+    double *sorted;
+    size_t count = 0;
+    TRY(mem_calloc(&sorted, n, sizeof *sorted, "values", err));
+    for (size_t i = 0; i < n; i++)
+        if (counts(scale, values[i]))
+            sorted[count++] = values[i];
+    sort_numbers(sorted, count);
+    for (int end = 0; end < 2; end++)
+        out[end] = percentile(sorted, count, percent[end]);
+    free(sorted);
+    return STATUS_OK;
+}
+
+double colorscale_place(const ColorScale *scale, double value)
+{
+    double low = scaled(scale, scale->range[0]), high = scaled(scale, scale->range[1]);
+    double width = high - low, above = scaled(scale, value) - low;
+    return width > 0 ? above / width : above + 0.5;
+}
+
+double colorscale_lowest(const ColorScale *scale)
+{
+    return scale->n_bounds ? colorscale_place(scale, scale->bounds[0]) : 0;
+}
+
+double colorscale_highest(const ColorScale *scale)
+{
+    return scale->n_bounds ? colorscale_place(scale, scale->bounds[scale->n_bounds - 1]) : 1;
+}
+
+static bool is_below(const ColorScale *scale, double place)
+{
+    return place < colorscale_lowest(scale);
+}
+
+/* A value on a bound belongs to the class above. */
+static bool is_above(const ColorScale *scale, double place)
+{
+    return scale->n_bounds ? place >= colorscale_highest(scale) : place > 1;
+}
+
+ScaleOutside colorscale_outside(const ColorScale *scale, const double *values, size_t n)
+{
+    ScaleOutside outside = {0};
+    for (size_t i = 0; i < n; i++) {
+        double place = colorscale_place(scale, values[i]);
+        outside.none += isnan(place);
+        outside.below += is_below(scale, place);
+        outside.above += is_above(scale, place);
+    }
+    return outside;
+}
+
+bool colorscale_counts(const ColorScale *scale)
+{
+    return scale->map.separate && !scale->n_bounds && scale->classes < 2;
+}
+
+int colorscale_steps(const ColorScale *scale)
+{
+    if (scale->n_bounds)
+        return scale->n_bounds + 1;
+    if (scale->classes >= 2)
+        return scale->classes;
+    return scale->map.separate ? (int)scale->map.n : 0;
+}
+
+void colorscale_step_color(const ColorScale *scale, int step, float rgb[3])
+{
+    if (scale->map.separate)
+        colormap_color(&scale->map, (size_t)step, rgb);
+    else
+        colormap_linear(&scale->map, (double)step / (colorscale_steps(scale) - 1), rgb);
+}
+
+/* The step of a place, unless a separate map has the say. */
+static int step_at(const ColorScale *scale, double place)
+{
+    int step = 0;
+    if (!scale->n_bounds)
+        return (int)fmin(fmax(floor(place * scale->classes), 0), scale->classes - 1);
+    while (step < scale->n_bounds && colorscale_place(scale, scale->bounds[step]) <= place)
+        step++;
+    return step;
+}
+
+/* The colour of its own that the place has, or NULL. */
+static const ScaleColor *own_color(const ColorScale *scale, double place)
+{
+    const ScaleColor *own = isnan(place)             ? &scale->none
+                            : is_below(scale, place) ? &scale->under
+                            : is_above(scale, place) ? &scale->over
+                                                     : NULL;
+    return own && own->given ? own : NULL;
+}
+
+void colorscale_at(const ColorScale *scale, double place, float rgb[3])
+{
+    const ScaleColor *own = own_color(scale, place);
+    if (own)
+        memcpy(rgb, own->rgb, sizeof own->rgb);
+    else if (!isnan(place) && (scale->n_bounds || scale->classes >= 2))
+        colorscale_step_color(scale, step_at(scale, place), rgb);
+    else
+        colormap_linear(&scale->map, place, rgb);
+}
+
+/* The step of a value on a separate map. */
+static size_t number_of(const ColorScale *scale, double value)
+{
+    double n = (double)scale->map.n, number = fmod(floor(value) - 1, n);
+    return isfinite(number) ? (size_t)(number < 0 ? number + n : number) : 0;
 }
 
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3])
 {
-    double low = scaled(scale, scale->range[0]), high = scaled(scale, scale->range[1]);
-    double width = high - low, above = scaled(scale, value) - low;
-    double fraction = width > 0 ? above / width : above + 0.5;
-    if (scale->classes >= 2 && !isnan(fraction))
-        fraction = place_of_class(fraction, scale->classes);
-    colormap_linear(&scale->map, fraction, rgb);
+    double place = colorscale_place(scale, value);
+    if (colorscale_counts(scale) && !isnan(place) && !own_color(scale, place))
+        colormap_color(&scale->map, number_of(scale, value), rgb);
+    else
+        colorscale_at(scale, place, rgb);
+}
+
+/* In three digits, or as the whole number that it is. */
+static void put_short(Text *text, double value)
+{
+    char digits[32];
+    bool whole = value == floor(value) && fabs(value) < 1e6;
+    snprintf(digits, sizeof digits, whole ? "%.0f" : "%#.3g", whole ? value + 0 : value);
+    size_t length = strlen(digits);
+    if (digits[length - 1] == '.')
+        digits[length - 1] = '\0';
+    text_puts(text, digits);
+}
+
+void colorscale_put_range(const ColorScale *scale, Text *text)
+{
+    text_printf(text, "%s ", scale->name);
+    put_short(text, scale->range[0]);
+    text_puts(text, " to ");
+    put_short(text, scale->range[1]);
+    text_printf(text, "%s%s", *scale->unit ? " " : "", scale->unit);
 }

@@ -24,6 +24,9 @@ typedef struct Appearance {
     double *values;    /* owned; what `colors` stand for, NAN where there is none; or NULL */
     ColorScale scale;  /* what `colors` mean; its map is owned; zeroed without `colors` */
     char *name, *unit; /* of the scale; owned */
+    size_t n_values;
+    char *said;  /* owned; what `colors` mean, for people: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
+    bool fitted; /* the range is that of values, and nobody's choice */
     /* Where colours change with time: `colors` and `values` are frame after frame of n_segments
      * each, and these are those of the first one. */
     double *time; /* owned; of each frame, upwards; NULL without frames */

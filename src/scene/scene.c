@@ -20,6 +20,7 @@ void appearance_release(Appearance *appearance)
     free(appearance->name);
     free(appearance->unit);
     free(appearance->time);
+    free(appearance->said);
     *appearance = (Appearance){0};
 }
 

@@ -3,6 +3,7 @@
 #define CORCAST_STAGE_PLACES_H
 
 #include "base/base.h"
+#include "stage/stage.h"
 #include "tree/tree.h"
 
 /* POV-Ray refuses cylinders shorter than this [docs/POVRAY.md]. */
@@ -14,9 +15,6 @@ typedef struct Places {
     int32_t *cover;
     int32_t *place; /* for each node: the node that stands for all nodes at the same place */
 } Places;
-
-/* Whether segment i has a radius and a length that POV-Ray takes; false for a root. */
-bool segment_can_be_drawn(const Tree *tree, size_t i);
 
 /* Fills *places (owned; places_release). O(n) of n nodes, unless many lie close to
  * each other. STATUS_MEMORY. */

@@ -272,6 +272,7 @@ Status stage_appearance(const Look *look, const Field *field, const ColorScale *
         made.scale = *scale;
         made.scale.name = made.name;
         made.scale.unit = made.unit;
+        made.n_values = field->n;
     }
     for (size_t i = 0; field && i < field->n; i++) {
         float rgb[3];

@@ -113,6 +113,9 @@ MUST_CHECK Status stage_vessels(const Tree *tree, VesselTree *vessels, size_t *d
  * Geometry. O(n) of n nodes. */
 MUST_CHECK Status stage_anatomy(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err);
 
+/* Whether segment i has a radius and a length that can be drawn; false for a root. */
+bool segment_can_be_drawn(const Tree *tree, size_t i);
+
 /* The finish of the look, and a colour for each segment: that of its value on the scale, whose map
  * *appearance owns from then on (appearance_release); or, if `field` is NULL, the look's one
  * colour, and `scale` is not read. A field of several frames, one behind the other, has as many

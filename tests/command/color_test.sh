@@ -170,4 +170,158 @@ test_a_field_of_flow_follows_what_options_say_of_the_blood() {
     expect_sentence '--hematocrit is for --viscosity-law pries'
 }
 
+# says LINE: all that stands on standard error.
+says() {
+    [ "$(cat stderr)" = "$1" ] || fail "expected the line '$1'$(said)"
+}
+
+test_the_range_is_said_in_the_log_the_json_the_picture_and_the_scene() {
+    local said='radius 1.37 to 21.9 mm, of the 5 segments drawn'
+    make_vessels
+    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --json r.json -o p.png
+    says "corcast: $said"
+    [ "$(jq -r '.color | "\(.field) \(.unit) \(.low) \(.high) \(.log) \(.said)"' r.json)" = \
+        "radius mm 1.37 21.92 false $said" ] || fail "expected the range in the JSON, got $(jq -c .color r.json)"
+    grep -aq "$said" p.png || fail "expected the range in the picture's text"
+    run_ok corcast scene --quiet tree.swc --input-unit mm --color-by radius -o s.pov
+    grep -q "^// Desc: .*, coloured by $said\$" s.pov || fail "expected the range in the scene's head"
+    grep -qx "#declare Value_Said = \"$said\";" s.inc || fail "expected the range in the anatomy"
+    run_ok corcast render --quiet tree.swc --input-unit mm --size 60x80 --color-by radius -o p.png
+    [ ! -s stderr ] || fail "expected --quiet to say nothing, got '$(cat stderr)'"
+}
+
+# 2.74 and 10.96 mm are 2740 and 10960 um; the map's ends and the classes move with the unit.
+test_a_unit_goes_for_range_classes_and_what_is_said() {
+    make_vessels
+    expect_codes --color-by radius --unit um --range 2740,10960 -- \
+        "2 68 1 84" "4 68 1 84" "6 49 104 142" "8 253 231 37" "10 253 231 37"
+    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --unit cm --classes 0.2,1.5 -o p.ppm
+    says 'corcast: radius 0.137 to 2.19 cm, of the 5 segments drawn; classes at 0.2, 1.5'
+    refuses "--unit: the field radius is in mm, not in Pa; it can be in um, cm, m" --color-by radius --unit Pa
+    refuses "--unit: the field level is a pure number, not in Pa" --color-by level --unit Pa
+}
+
+# refuses SENTENCE OPTION...
+refuses() {
+    local sentence=$1
+    shift
+    run corcast render tree.swc --input-unit mm "$@" -o no.ppm
+    expect_status 2
+    expect_sentence "$sentence"
+    [ ! -e no.ppm ] || fail "expected no picture, from: $command_line"
+}
+
+test_classes_may_have_bounds() {
+    make_vessels
+    expect_codes --color-by radius --classes 2,5.48,15 -- \
+        "2 68 1 84" "4 49 104 142" "6 53 183 121" "8 53 183 121" "10 253 231 37"
+    refuses '--classes: bounds ascend, but 5 comes before 2' --color-by radius --classes 1,5,2
+    refuses "--classes: '2.5' is not a whole number from 1 to 256, nor a list of bounds" \
+        --color-by radius --classes 2.5
+    refuses '--log has no effect on classes that have bounds' --color-by radius --classes 1,2 --log
+    refuses '--range has no effect on classes that have bounds' --color-by radius --classes 1,2 --range 1,2
+}
+
+# Of 1.37, 2.74, 5.48, 10.96 and 21.92, 25 % are below 2.74, 75 % below 10.96.
+test_a_range_may_be_of_percentiles() {
+    make_vessels
+    expect_codes --color-by radius --range 25%,75% -- \
+        "2 68 1 84" "4 68 1 84" "6 49 104 142" "8 253 231 37" "10 253 231 37"
+    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --range 25%,75% -o p.ppm
+    says 'corcast: radius 2.74 to 11.0 mm, 25% to 75% of the 5 segments drawn; 1 below, 1 above'
+    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --range 2,6 -o p.ppm
+    says 'corcast: radius 2 to 6 mm, as given; 1 below, 2 above'
+    refuses "'75%,25%' is not A,B, two numbers with A below B, or percentiles" --color-by radius --range 75%,25%
+    refuses "'2,1' is not A,B, two numbers with A below B" --color-by radius --range 2,1
+    refuses '--range: 30, of the field radius, is not below 10.96' --color-by radius --range 30,75%
+}
+
+test_a_pruned_picture_may_keep_the_range_of_the_tree() {
+    make_vessels
+    expect_codes --color-by radius --prune-radius 5 --range-of tree -- \
+        "6 65 68 135" "8 35 136 142" "10 253 231 37"
+    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --prune-radius 5 --range-of tree -o p.ppm
+    grep -qx 'corcast: radius 1.37 to 21.9 mm, of all 5 segments of the tree' stderr ||
+        fail "expected the range of the tree$(said)"
+    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --prune-radius 5 -o p.ppm
+    grep -qx 'corcast: radius 5.48 to 21.9 mm, of the 3 segments drawn' stderr ||
+        fail "expected the range of what is drawn$(said)"
+    refuses '--range-of has no effect on a --range of two values' --color-by radius --range-of tree --range 1,2
+}
+
+test_values_outside_the_range_and_segments_without_one_have_their_colours() {
+    make_vessels
+    expect_codes --color-by radius --range 2.74,10.96 --under '#0080ff' --over red -- \
+        "2 0 128 255" "4 68 1 84" "6 49 104 142" "8 253 231 37" "10 255 0 0"
+    expect_codes --color-by radius --classes 2,15 --under navy --over 0.25,0.5,0.75 -- \
+        "2 0 0 128" "4 33 144 140" "6 33 144 140" "8 33 144 140" "10 64 128 191"
+    corcast convert tree.swc tree.csv
+    awk -F, 'NR == 1 { print $0 ",load" } NR > 1 { print $0 "," (NR == 3 ? "" : NR == 5 ? -1 : NR) }' tree.csv >load.csv
+    # shellcheck disable=SC2086
+    run_ok corcast render load.csv --look flat $VIEW --color-by load --log --no-data lime -o p.ppm
+    grep -q 'load 7 to 11, of the 5 segments drawn; logarithmic; 2 without a logarithm' stderr ||
+        fail "expected to hear of values without a logarithm$(said)"
+    numbers p.ppm | tr -s ' ' | grep -qx ' 0 255 0' || fail "expected the colour of no data"
+    refuses "--under: 'bleu' is not R,G,B" --color-by radius --under bleu
+}
+
+test_a_map_of_separate_colours_counts_whole_numbers() {
+    make_vessels
+    expect_codes --color-by strahler --colormap Set1 -- \
+        "2 228 26 28" "4 228 26 28" "6 228 26 28" "8 228 26 28" "10 228 26 28"
+    expect_codes --color-by radius --classes 2,5,15 --colormap Dark2 -- \
+        "2 27 158 119" "4 217 95 2" "6 117 112 179" "8 117 112 179" "10 231 41 138"
+    refuses '--colormap Set1 has separate colours, for whole numbers' --color-by radius --colormap Set1
+}
+
+test_a_field_of_many_decades_gets_a_hint() {
+    run_ok corcast grow --quiet --terminals 1234 -o tree.swc
+    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by flow -o p.ppm
+    grep -qx 'corcast: the field flow spans 3.1 decades, which --log shows evenly' stderr ||
+        fail "expected a hint$(said)"
+    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by flow --log -o p.ppm
+    [ "$(wc -l <stderr)" = 1 ] || fail "expected no hint with --log$(said)"
+    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by pressure -o p.ppm
+    [ "$(wc -l <stderr)" = 1 ] || fail "expected no hint for pressure$(said)"
+}
+
+test_a_field_without_any_value_is_refused() {
+    make_vessels
+    corcast convert tree.swc tree.csv
+    sed '1s/$/,load/; 2,$s/$/,/' tree.csv >none.csv
+    sed '1s/$/,load/; 2,$s/$/,-2.5/' tree.csv >below.csv
+    run corcast render none.csv --color-by load -o no.ppm
+    expect_status 2
+    expect_sentence 'none.csv: --color-by: the field load has no value'
+    run corcast render below.csv --color-by load --log -o no.ppm
+    expect_status 2
+    expect_sentence 'below.csv: --color-by: the field load has no value above 0'
+    run_ok corcast render below.csv --size 60x80 --color-by load -o p.ppm
+    says 'corcast: load -2.50 to -2.50, of the 5 segments drawn'
+}
+
+# The look flat is the map itself; data is, where the light falls, to 2 codes of 255.
+test_looks_for_data_show_the_colour_of_the_map() {
+    local look most
+    make_vessels
+    for look in flat data; do
+        run_ok corcast render --quiet tree.swc --input-unit mm --look $look $VIEW --color-by radius --range 1,21.92 --planes id -o p.ppm
+        most=$(paste -d ' ' <(numbers p.id.ppm) <(numbers p.ppm) | awk '$3 == 10 && $5 > most { most = $5 } END { print most }')
+        [ "$most" -ge 229 ] && [ "$most" -le 231 ] || fail "expected the look $look to show 231, got $most"
+    done
+}
+
+test_the_maps_are_listed_with_licences_and_drawn() {
+    run_ok corcast colormaps --cite -o maps.ppm
+    expect_same stdout <(for map in "$REPO"/templates/colormaps/*.txt; do
+        name=$(basename "$map" .txt)
+        printf '%s\t' "$name"
+        sed -n 's/^# //p' "$map" | tr '\n' ' ' | sed -E 's/.*Cite: (.*) One colour.*/\1\n/'
+    done)
+    [ "$(grep -c 'Licence: ' stdout)" = "$(wc -l <stdout)" ] || fail "expected a licence of each map"
+    [ "$(sed -n 2p maps.ppm)" = "512 392" ] || fail "expected 12 strips, got $(sed -n 2p maps.ppm)"
+    tail -c $((512 * 392 * 3)) maps.ppm | tail -c $((512 * 3 * 9)) | head -c 3 | od -An -tu1 | grep -qx ' *68 *1 *84' ||
+        fail "expected the last strip to begin with viridis' first colour"
+}
+
 run_tests "$@"

@@ -17,6 +17,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
         for (int c = 0; c < 3; c++)
             assert(rgb[c] >= 0 && rgb[c] <= 1);
     }
+    for (size_t i = 0; i <= map.n; i += map.n) {
+        float rgb[3];
+        colormap_color(&map, i, rgb);
+        assert(rgb[0] >= 0 && rgb[0] <= 1);
+    }
     colormap_release(&map);
     return 0;
 }

@@ -1,5 +1,5 @@
-/* The colours of a value, against matplotlib's published tables and the sRGB standard (IEC
- * 61966-2-1), worked out by hand. */
+/* The colours of a value, against the published tables (matplotlib's; Crameri's as GMT has them, in
+ * 8 bits) and the sRGB standard (IEC 61966-2-1), worked out by hand. */
 #include "image/image.h"
 #include <math.h>
 #include <setjmp.h>
@@ -70,6 +70,26 @@ static void ships_the_published_tables(void **state)
          {0.494877, 0.011990, 0.657865},
          {0.798216, 0.280197, 0.469538},
          {0.940015, 0.975158, 0.131326}},
+        {"templates/colormaps/cividis.txt",
+         {0.000000, 0.135112, 0.304751},
+         {0.263738, 0.307831, 0.422789},
+         {0.488697, 0.485318, 0.471008},
+         {0.995737, 0.909344, 0.217772}},
+        {"templates/colormaps/batlow.txt",
+         {1 / 255.0, 25 / 255.0, 89 / 255.0},
+         {34 / 255.0, 96 / 255.0, 97 / 255.0},
+         {130 / 255.0, 130 / 255.0, 49 / 255.0},
+         {250 / 255.0, 204 / 255.0, 250 / 255.0}},
+        {"templates/colormaps/vik.txt",
+         {0, 18 / 255.0, 97 / 255.0},
+         {48 / 255.0, 125 / 255.0, 166 / 255.0},
+         {236 / 255.0, 229 / 255.0, 224 / 255.0},
+         {89 / 255.0, 0, 8 / 255.0}},
+        {"templates/colormaps/romaO.txt",
+         {115 / 255.0, 57 / 255.0, 87 / 255.0},
+         {170 / 255.0, 117 / 255.0, 47 / 255.0},
+         {203 / 255.0, 225 / 255.0, 179 / 255.0},
+         {114 / 255.0, 57 / 255.0, 89 / 255.0}},
     };
     for (size_t m = 0; m < sizeof maps / sizeof *maps; m++) {
         Colormap map;
@@ -189,16 +209,163 @@ static void a_scale_is_fitted_to_what_it_can_show(void **state)
     assert_true(scale.range[0] == 0.5 && scale.range[1] == 2.385);
 }
 
+static void ships_colours_that_are_separate(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path;
+        size_t n;
+        int first[3], last[3]; /* 8-bit codes */
+    } maps[] = {
+        {"templates/colormaps/Set1.txt", 9, {228, 26, 28}, {153, 153, 153}},
+        {"templates/colormaps/Set2.txt", 8, {102, 194, 165}, {179, 179, 179}},
+        {"templates/colormaps/Dark2.txt", 8, {27, 158, 119}, {102, 102, 102}},
+        {"templates/colormaps/Paired.txt", 12, {166, 206, 227}, {177, 89, 40}},
+    };
+    for (size_t m = 0; m < sizeof maps / sizeof *maps; m++) {
+        Colormap map;
+        read_map(&map, maps[m].path);
+        assert_true(map.separate);
+        assert_int_equal(map.n, maps[m].n);
+        const int *first = maps[m].first, *last = maps[m].last;
+        assert_rgb(map.srgb[0], first[0] / 255.0, first[1] / 255.0, first[2] / 255.0);
+        assert_rgb(map.srgb[map.n - 1], last[0] / 255.0, last[1] / 255.0, last[2] / 255.0);
+        colormap_release(&map);
+    }
+}
+
+static void a_map_is_separate_by_a_line_before_its_colours(void **state)
+{
+    (void)state;
+    Colormap map;
+    read_text(&map, "# three\nseparate \n0.25 0.5 0.75\n1 0 0\n0 0 1\n");
+    assert_true(map.separate);
+    float rgb[3];
+    colormap_color(&map, 3, rgb);
+    assert_rgb(rgb, 0.050876088, 0.21404114, 0.52252155);
+    colormap_release(&map);
+    const char *late = "0.25 0.5 0.75\nseparate\n1 0 0\n";
+    assert_int_equal(file_write("build/colormap_test.in", late, strlen(late), &err), STATUS_OK);
+    assert_int_equal(colormap_read(&map, "build/colormap_test.in", &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "colormap_test.in:2: "));
+    unlink("build/colormap_test.in");
+}
+
+static void bounds_part_classes_that_are_open_at_both_ends(void **state)
+{
+    (void)state;
+    ColorScale scale = ramp(false, 0, 0.1, 54.1);
+    scale.bounds[0] = 0.4;
+    scale.bounds[1] = 1;
+    scale.bounds[2] = 2.5;
+    scale.n_bounds = 3;
+    assert_int_equal(colorscale_steps(&scale), 4);
+    const struct {
+        double value, place;
+    } cases[] = {{-7, 0},      {0.39, 0},       {0.4, 1 / 3.0}, {0.99, 1 / 3.0},
+                 {1, 2 / 3.0}, {2.49, 2 / 3.0}, {2.5, 1},       {99, 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        assert_place(&scale, cases[i].value, cases[i].place);
+    colormap_release(&scale.map);
+}
+
+static void whole_numbers_count_separate_colours_round_and_round(void **state)
+{
+    (void)state;
+    ColorScale scale = ramp(false, 0, 1, 7);
+    scale.map.separate = true;
+    assert_true(colorscale_counts(&scale));
+    assert_place(&scale, 1, 0);
+    assert_place(&scale, 2, 1);
+    assert_place(&scale, 7, 0);
+    assert_place(&scale, 0, 1);
+    assert_place(&scale, -1, 0);
+    assert_place(&scale, NAN, 0.5);
+    scale.classes = 7; /* of which the third has the first colour again */
+    assert_false(colorscale_counts(&scale));
+    assert_place(&scale, 3.2, 0);
+    colormap_release(&scale.map);
+}
+
+static void values_outside_may_have_colours_of_their_own(void **state)
+{
+    (void)state;
+    ColorScale scale = ramp(false, 0, 2.5, 7.5);
+    scale.under = (ScaleColor){true, {1, 0, 0.25f}};
+    scale.over = (ScaleColor){true, {0, 1, 0.5f}};
+    scale.none = (ScaleColor){true, {0.125f, 0, 1}};
+    float rgb[3];
+    colorscale_linear(&scale, 2.49, rgb);
+    assert_rgb(rgb, 1, 0, 0.25);
+    colorscale_linear(&scale, 7.51, rgb);
+    assert_rgb(rgb, 0, 1, 0.5);
+    colorscale_linear(&scale, (double)NAN, rgb);
+    assert_rgb(rgb, 0.125, 0, 1);
+    assert_place(&scale, 2.5, 0);
+    assert_place(&scale, 7.5, 1);
+    const double values[] = {2.49, 2.5, 7.5, 8, 9, (double)NAN};
+    ScaleOutside outside = colorscale_outside(&scale, values, 6);
+    assert_int_equal(outside.below, 1);
+    assert_int_equal(outside.above, 2);
+    assert_int_equal(outside.none, 1);
+    colormap_release(&scale.map);
+}
+
+static void percentiles_lie_between_neighbours_in_order(void **state)
+{
+    (void)state;
+    const double values[] = {9, (double)NAN, 1, 4, -3, 16};
+    ColorScale scale = {.range = {0, 1}};
+    double out[2];
+    const double ends[] = {0, 100}, between[] = {12.5, 90};
+    assert_int_equal(colorscale_percentiles(&scale, values, 6, ends, out, &err), STATUS_OK);
+    assert_true(out[0] == -3 && out[1] == 16);
+    assert_int_equal(colorscale_percentiles(&scale, values, 6, between, out, &err), STATUS_OK);
+    assert_float_equal(out[0], -1, 1e-12);
+    assert_float_equal(out[1], 13.2, 1e-12);
+    scale.log = true;
+    assert_int_equal(colorscale_percentiles(&scale, values, 6, ends, out, &err), STATUS_OK);
+    assert_true(out[0] == 1 && out[1] == 16);
+    assert_int_equal(colorscale_percentiles(&scale, values + 1, 1, ends, out, &err), STATUS_OK);
+    assert_true(isnan(out[0]) && isnan(out[1]));
+}
+
+static void a_range_is_said_in_three_digits(void **state)
+{
+    (void)state;
+    static const struct {
+        double low, high;
+        const char *unit, *said;
+    } cases[] = {{3.7002, 54.13, "Pa", "wss 3.70 to 54.1 Pa"},
+                 {0.25, 267.69, "Pa", "wss 0.250 to 268 Pa"},
+                 {0, 57, "", "wss 0 to 57"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const ColorScale scale = {
+            .name = "wss", .unit = cases[i].unit, .range = {cases[i].low, cases[i].high}};
+        Text text = TEXT_INIT;
+        colorscale_put_range(&scale, &text);
+        assert_string_equal(text_chars(&text), cases[i].said);
+        text_release(&text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(decodes_srgb_as_the_standard_says),
         cmocka_unit_test(ships_the_published_tables),
+        cmocka_unit_test(ships_colours_that_are_separate),
+        cmocka_unit_test(a_map_is_separate_by_a_line_before_its_colours),
         cmocka_unit_test(takes_a_fraction_to_its_place_in_the_table),
         cmocka_unit_test(mixes_neighbours_as_they_are_encoded),
         cmocka_unit_test(stays_at_the_ends_and_takes_what_is_no_number_for_middle_grey),
         cmocka_unit_test(a_scale_is_linear_in_values_or_in_their_logarithms),
         cmocka_unit_test(classes_are_equal_steps_that_use_the_whole_map),
+        cmocka_unit_test(bounds_part_classes_that_are_open_at_both_ends),
+        cmocka_unit_test(whole_numbers_count_separate_colours_round_and_round),
+        cmocka_unit_test(values_outside_may_have_colours_of_their_own),
+        cmocka_unit_test(percentiles_lie_between_neighbours_in_order),
+        cmocka_unit_test(a_range_is_said_in_three_digits),
         cmocka_unit_test(a_scale_is_fitted_to_what_it_can_show),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
