@@ -198,27 +198,35 @@ static Status grow(Mender *mender, const Lattice *lattice, Err *err)
     return STATUS_OK;
 }
 
-/* Makes inside what the outside has not reached. False, and nothing is made, when a point of that
- * is too far from the wall. */
-static bool take_in(const Mender *mender, Lattice *lattice, double farthest)
+static bool is_stopped_up(const Mender *mender, const Lattice *lattice, size_t point)
 {
-    for (int pass = 0; pass < 2; pass++)
-        for (size_t i = 1; i < lattice->n_points; i++) {
-            LatticePoint *point = &lattice->points[i];
-            if (point->height < 0 || mender->states[i] == POINT_OUTSIDE)
-                continue;
-            if (pass == 0 && point->height > 2 * farthest) /* it is of half a radius */
-                return false;
-            if (pass == 1) {
-                point->height = -point->height - 1e-300;
-                point->is_mended = true;
-            }
-        }
-    return true;
+    return lattice->points[point].height >= 0 && mender->states[point] != POINT_OUTSIDE;
+}
+
+/* How far the points that the outside has not reached are from the wall at most, over the local
+ * radius; heights are in halves of that. */
+static double find_width(const Mender *mender, const Lattice *lattice)
+{
+    double width = 0;
+    for (size_t i = 1; i < lattice->n_points; i++)
+        if (is_stopped_up(mender, lattice, i))
+            width = fmax(width, lattice->points[i].height / 2);
+    return width;
+}
+
+static void take_in(const Mender *mender, Lattice *lattice)
+{
+    for (size_t i = 1; i < lattice->n_points; i++) {
+        LatticePoint *point = &lattice->points[i];
+        if (!is_stopped_up(mender, lattice, i))
+            continue;
+        point->height = -point->height - 1e-300; /* below 0 also where it is 0 */
+        point->is_mended = true;
+    }
 }
 
 Status mend_make(Mender *mender, Lattice *lattice, ZoneTree *tree, const ZonePlan *plan,
-                 double farthest, Patch *patch, bool *sound, Err *err)
+                 double farthest, Patch *patch, double *width, Err *err)
 {
     mender->all.n = 0;
     TRY(lattice_list(lattice, tree, plan, &mender->all, err));
@@ -231,10 +239,13 @@ Status mend_make(Mender *mender, Lattice *lattice, ZoneTree *tree, const ZonePla
         mender->states[i] = POINT_INSIDE;
         mender->slots[i] = 0;
     }
-    *sound = seed(mender, lattice, tree);
-    if (!*sound)
+    *width = HUGE_VAL;
+    if (!seed(mender, lattice, tree))
         return STATUS_OK;
     TRY(grow(mender, lattice, err));
-    *sound = take_in(mender, lattice, farthest);
-    return *sound ? lattice_cut(lattice, tree, plan, patch, err) : STATUS_OK;
+    *width = find_width(mender, lattice);
+    if (*width > farthest)
+        return STATUS_OK;
+    take_in(mender, lattice);
+    return lattice_cut(lattice, tree, plan, patch, err);
 }

@@ -24,9 +24,10 @@ void mender_release(Mender *mender);
 
 /* Takes the wall that lattice_make has left in *patch for another one that bounds a ball, which the
  * arms of the zone leave through the planes; points of the lattice that lie in tunnels and hollows
- * become inside for that. *sound is false, and the patch as it was, when such a point is farther
- * from the wall than `farthest` of the local radius: a tunnel so wide is no flaw of the lattice. */
+ * become inside for that. *width is how far they are from the wall at most, over the local radius;
+ * where it is above `farthest`, the patch stays as it was: a tunnel so wide is no flaw of the
+ * lattice. */
 MUST_CHECK Status mend_make(Mender *mender, Lattice *lattice, ZoneTree *tree, const ZonePlan *plan,
-                            double farthest, Patch *patch, bool *sound, Err *err);
+                            double farthest, Patch *patch, double *width, Err *err);
 
 #endif

@@ -3,12 +3,18 @@
  * connected; and points - edges + triangles = 2 - arms, that of a sphere with so many holes. */
 #include "surface/mesh/zonepiece.h"
 
+#include "surface/mesh/nearpairs.h"
 #include <stdlib.h>
 
 #define NONE UINT32_MAX
 
 enum { MOST_REPEATS = 7, MOST_REFINEMENTS = 2 };
 static const double finer = 0.85;
+/* Over the radius of the thinner: gaps that cells may be too wide for. */
+static const double narrow_gap = 0.3;
+/* Over the usual cell: a hole that is no flaw of the lattice. Where vessels do not blend, cells are
+ * a sixth of that. */
+static const double wide_hole = 0.25;
 
 typedef struct Maker {
     ZoneWorker *worker;
@@ -325,18 +331,52 @@ static Status finish(const Maker *maker, const ZoneFineness *fineness, uint8_t *
     return prove(maker, sound);
 }
 
-/* One attempt. */
-static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates, bool *sound)
+/* One attempt; *hole is how wide a tunnel is that makes the wall unsound, over the local radius. */
+static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates, bool *sound,
+                      double *hole)
 {
     ZoneWorker *worker = maker->worker;
+    *hole = 0;
     TRY(zonetree_build(&worker->tree, maker->plan, &fineness->cells, maker->err));
     TRY(lattice_make(&worker->lattice, &worker->tree, maker->plan, &worker->patch, maker->err));
     TRY(finish(maker, fineness, fates, sound));
     if (*sound || maker->plan->field.n_terms > MOST_PART_TERMS)
         return STATUS_OK;
     TRY(mend_make(&worker->mender, &worker->lattice, &worker->tree, maker->plan, fineness->farthest,
-                  &worker->patch, sound, maker->err));
-    return *sound ? finish(maker, fineness, fates, sound) : STATUS_OK;
+                  &worker->patch, hole, maker->err));
+    return *hole <= fineness->farthest ? finish(maker, fineness, fates, sound) : STATUS_OK;
+}
+
+static bool is_member(const ZoneField *field, uint32_t group, uint32_t term)
+{
+    for (uint32_t i = field->first[group]; i < field->first[group + 1]; i++)
+        if (field->members[i] == term)
+            return true;
+    return false;
+}
+
+/* The gap between the walls of the two segments of the zone that blend nowhere and are the nearest
+ * to each other, over the radius of the thinner. */
+static double find_gap(const Maker *maker, uint32_t pair[2])
+{
+    const ZoneField *field = &maker->plan->field;
+    double least = HUGE_VAL;
+    for (uint32_t i = 0; i < field->n_terms; i++)
+        for (uint32_t k = i + 1; k < field->n_terms; k++) {
+            const FieldSegment *one = &maker->tree->segments[field->terms[i].segment];
+            const FieldSegment *other = &maker->tree->segments[field->terms[k].segment];
+            double gap = segments_distance(one, other) - one->radius_mm - other->radius_mm;
+            bool blend = false;
+            gap /= fmin(one->radius_mm, other->radius_mm);
+            for (uint32_t g = 0; g < field->n_groups && gap < least && !blend; g++)
+                blend = is_member(field, g, i) && is_member(field, g, k);
+            if (gap >= least || blend)
+                continue;
+            least = gap;
+            pair[0] = field->terms[i].segment;
+            pair[1] = field->terms[k].segment;
+        }
+    return least;
 }
 
 /* Two zero bits after each of the lowest ten. */
@@ -402,6 +442,32 @@ static Status keep_patch(ZoneWorker *worker, double grid, ZonePiece *piece, Err 
     return STATUS_OK;
 }
 
+static Status refuse(const Maker *maker, Err *err)
+{
+    const uint32_t *ids = maker->tree->ids;
+    uint32_t pair[2];
+    if (find_gap(maker, pair) < 0)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "the vessels of segments %u and %u overlap, though they do not meet there, "
+                       "so that their wall is no tube",
+                       ids[pair[0]], ids[pair[1]]);
+    return err_set(err, STATUS_INFEASIBLE,
+                   "the vessels about segment %u run into each other so that their wall is no "
+                   "tube; they make a loop",
+                   ids[maker->plan->field.terms[0].segment]);
+}
+
+/* How many steps finer the cells of the next attempt are; 0: none would help. A wide hole is there
+ * for good, unless it is closed by a gap that cells are too wide for. */
+static int steps_finer(const Maker *maker, double hole, double cell, int left)
+{
+    uint32_t pair[2];
+    if (hole <= wide_hole * cell || left == 0)
+        return left > 0;
+    double gap = find_gap(maker, pair);
+    return gap >= 0 && gap < narrow_gap ? left : 0;
+}
+
 Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
                       const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates, Err *err)
 {
@@ -409,24 +475,20 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
     const Maker maker = {worker, tree, plan, &made, err};
     ZoneFineness used = *fineness;
     bool sound = false, near = false;
+    double hole;
     Status status = STATUS_OK;
-    for (int repeats = 0; repeats <= MOST_REPEATS && !near; repeats++) {
+    for (int repeats = 0, steps = 1; steps && !near; repeats += steps) {
         zonepiece_release(&made);
-        TRY_GOTO(attempt(&maker, &used, fates, &sound));
+        TRY_GOTO(attempt(&maker, &used, fates, &sound, &hole));
         made.repeats = repeats;
         if (sound)
             measure_off(&maker);
         near = sound && (made.off.ratio <= fineness->farthest || repeats >= MOST_REFINEMENTS);
-        used.cells.ratio *= sound ? 1 : finer;
-        used.cells.bending *= sound ? finer : finer * finer;
+        steps = sound ? 1 : steps_finer(&maker, hole, used.cells.ratio, MOST_REPEATS - repeats);
+        used.cells.ratio *= sound ? 1 : pow(finer, steps);
+        used.cells.bending *= pow(finer, sound ? 1 : 2 * steps);
     }
-    if (near)
-        status = keep_patch(worker, fineness->grid_mm, &made, err);
-    else
-        status = err_set(err, STATUS_INFEASIBLE,
-                         "the vessels about segment %u run into each other so that their wall is "
-                         "no tube; they overlap, or make a loop",
-                         tree->ids[plan->field.terms[0].segment]);
+    status = near ? keep_patch(worker, fineness->grid_mm, &made, err) : refuse(&maker, err);
     if (status == STATUS_OK) {
         *piece = made;
         made = (ZonePiece){0};
