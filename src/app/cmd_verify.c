@@ -238,25 +238,24 @@ static Status check(const VerifyOptions *options, const Parsed *parsed, Err *err
 }
 
 /* Reads the tree, makes the folder, draws both sides and compares them. */
-static Status verify(Verification *v, Folder *folder, Parsed *parsed, Err *err)
+static Status verify(Verification *v, int frame, Folder *folder, Parsed *parsed, Err *err)
 {
-    char *line = NULL;
     TRY(claim_folder(folder, &parsed->files, err));
     TRY(picture_scene(v->picture, parsed, &v->scene, NULL, NULL, err));
+    TRY(verification_pick_frame(v, frame, err));
     TRY(file_make_folder(v->folder, err));
     TRY(claim_folder(folder, &parsed->files, err));
     TRY(shown_name(v->tree, &v->name, err));
-    TRY(command_line_text(parsed, &line, err));
-    v->commands[v->n_commands++] = line;
     TRY(verification_draw(v, err));
     return verification_compare(v, err);
 }
 
 static Status run_verify(void *options, Parsed *parsed, Err *err)
 {
-    const VerifyOptions *own_options = options;
+    VerifyOptions *own_options = options;
     Status status = STATUS_OK;
     bool agrees = false;
+    const int frame = own_options->picture.coloring.frame;
     Verification v = {.picture = &own_options->picture,
                       .common = &parsed->common,
                       .tree = parsed->operands[0],
@@ -265,7 +264,9 @@ static Status run_verify(void *options, Parsed *parsed, Err *err)
                       .kernels = own_options->kernels};
     Folder folder = {own_options->folder, -1};
     TRY(check(own_options, parsed, err));
-    TRY_GOTO(verify(&v, &folder, parsed, err));
+    TRY_GOTO(command_line_text(parsed, &v.commands[v.n_commands++], err));
+    own_options->picture.coloring.frame = 0; /* the scene for POV-Ray has all */
+    TRY_GOTO(verify(&v, frame, &folder, parsed, err));
     TRY_GOTO(write_report(&v, own_options->json, &agrees, err));
     if (!own_options->json && !parsed->common.quiet)
         TRY_GOTO(print_verdict(&v, agrees, err));

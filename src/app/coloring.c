@@ -383,15 +383,22 @@ json_t *coloring_json(const Appearance *appearance)
 
 /* ---- appearance ------------------------------------------------------------------------------ */
 
+Status coloring_check_frame(int frame, const char *name, size_t frames, Err *err)
+{
+    if (frames >= (size_t)frame)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "--frame %d: %s has %zu frame%s", frame, name, frames,
+                   frames == 1 ? "" : "s");
+}
+
 /* The colours of all frames, or of the one that is asked for. */
 static Status color_frames(const Coloring *coloring, const Look *look, FieldSeries *series,
                            const ColorScale *scale, Appearance *appearance, Err *err)
 {
     size_t n = series->field.n / series->frames;
     Field shown = series->field;
-    if (coloring->frame > 1 && (size_t)coloring->frame > series->frames)
-        return err_set(err, STATUS_USAGE, "--frame %d: %s has %zu frame%s", coloring->frame,
-                       series->field.name, series->frames, series->frames == 1 ? "" : "s");
+    if (coloring->frame)
+        TRY(coloring_check_frame(coloring->frame, series->field.name, series->frames, err));
     if (coloring->frame) {
         shown.value += (size_t)(coloring->frame - 1) * n;
         shown.n = n;

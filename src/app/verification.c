@@ -13,6 +13,8 @@
 
 void verification_release(Verification *v)
 {
+    if (v->frames.n_frames > 0)
+        v->scene.appearance = v->frames;
     scene_release(&v->scene);
     frame_release(&v->native);
     frame_release(&v->povray);
@@ -125,6 +127,13 @@ static Status read_plane(Verification *v, OraclePlane plane, const char *path, E
     return STATUS_OK;
 }
 
+/* At which the scene is in the frame that is verified. */
+static double clock_of(const Verification *v)
+{
+    size_t n = v->frames.n_frames;
+    return n > 1 ? (double)(v->frame - 1) / (double)(n - 1) : 0;
+}
+
 static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane plane, Err *err)
 {
     static const char *const names[] = {
@@ -151,6 +160,7 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
                            .threads = v->common->threads,
                            .plane = plane,
                            .bits = v->bits,
+                           .clock = clock_of(v),
                            .progress = progress_report,
                            .progress_context = &progress};
     Status status = povray_from_environment(&params, err);
@@ -174,7 +184,10 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
 static Status write_scene(Verification *v, bool ids, char **scene, Err *err)
 {
     TRY(file_join(v->folder, ids ? "ids.pov" : "scene.pov", scene, err));
-    const EmitParams params = {.scene = &v->scene,
+    Scene whole = v->scene;
+    if (v->frames.n_frames > 0)
+        whole.appearance = v->frames;
+    const EmitParams params = {.scene = &whole,
                                .command = v->commands[0],
                                .shadows = v->picture->stage.shadows,
                                .ids = ids,
@@ -201,6 +214,20 @@ static Status run_oracle(Verification *v, Err *err)
         status = frames_write(&v->povray, picture, 0, ENCODING_SRGB, NULL, NULL, err);
     free(picture);
     return status;
+}
+
+Status verification_pick_frame(Verification *v, int frame, Err *err)
+{
+    const Appearance *all = &v->scene.appearance;
+    size_t n = all->n_frames ? all->n_frames : 1;
+    if (frame > 0)
+        TRY(coloring_check_frame(frame, all->name ? all->name : "the picture", n, err));
+    v->frame = frame ? frame : 1;
+    if (all->n_frames == 0)
+        return STATUS_OK;
+    v->frames = *all;
+    v->scene.appearance = appearance_frame(&v->frames, (size_t)v->frame - 1);
+    return STATUS_OK;
 }
 
 Status verification_draw(Verification *v, Err *err)

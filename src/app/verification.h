@@ -13,6 +13,8 @@ typedef struct Verification {
     const char *tree, *folder;
     char *name; /* of the tree, for the report; owned */
     Scene scene;
+    Appearance frames; /* owned; of all moments, where scene.appearance is one of them */
+    int frame;         /* its number, from 1 on */
     CellParams cells;
     Frame native, povray,
         exact; /* `exact` of an isosurface, whose `native` is POV-Ray's view of it */
@@ -35,6 +37,10 @@ void verification_release(Verification *v);
 
 /* Whether the model is an implicit surface, of which `exact` and `surface` are, too. */
 bool verification_takes_two_steps(const Verification *v);
+
+/* Of a scene whose colours change with time, the moment that is verified, 0 for the first; the
+ * scene for POV-Ray has all. STATUS_USAGE when there is no such frame. */
+MUST_CHECK Status verification_pick_frame(Verification *v, int frame, Err *err);
 
 /* Draws the scene with POV-Ray and natively, and writes scene and planes to the folder, which is
  * there; the first of the commands is in them. Errors as oracle_run, render and frames_write have

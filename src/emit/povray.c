@@ -149,6 +149,37 @@ static void add_scale(Values *values, const Appearance *appearance)
     put_color_map(add_value(values, "color_map"), appearance);
 }
 
+/* A frame is a case of a #switch, of which POV-Ray reads one. */
+static Status put_cases(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Appearance *appearance = &geometry->scene->appearance;
+    for (size_t k = 0; k < appearance->n_frames; k++) {
+        const Appearance frame = appearance_frame(appearance, k);
+        text_printf(out, "#case (%zu)\n", k + 1);
+        put_frame(out, &frame);
+        text_puts(out, "#break\n");
+    }
+    return text_check(out, err);
+}
+
+static Status put_frames(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Appearance *appearance = &geometry->scene->appearance;
+    if (appearance->n_frames == 0)
+        return STATUS_OK;
+    Values values = {0};
+    text_printf(add_value(&values, "count"), "%zu", appearance->n_frames);
+    Text *times = add_value(&values, "times");
+    for (size_t k = 0; k < appearance->n_frames; k++) {
+        text_puts(times, k ? "," : "");
+        text_number(times, appearance->time[k]);
+    }
+    add_part(&values, "frames", put_cases, context);
+    return values_expand(&values, geometry->params, "povray/frames.inc", out, err);
+}
+
 static Status put_geometry(Text *out, void *context, Err *err)
 {
     PovrayGeometry *geometry = context;
@@ -166,6 +197,7 @@ static Status put_geometry(Text *out, void *context, Err *err)
     add_flag(&values, "many_colors", scene->appearance.colors != NULL);
     add_places(&values, params);
     add_scale(&values, &scene->appearance);
+    add_part(&values, "frames", put_frames, geometry);
     add_part(&values, "macros", put_macros, geometry);
     add_part(&values, "tree", put_tree, geometry);
     return values_expand(&values, params, "povray/vessels.inc", out, err);

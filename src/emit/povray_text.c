@@ -39,9 +39,34 @@ void put_paint(Text *text, const EmitParams *params, uint32_t segment)
         text_puts(text, "0,0");
         return;
     }
+    if (appearance->n_frames > 0) {
+        text_printf(text, "Frame_Values[%u],Frame_Colors[%u]", segment, segment);
+        return;
+    }
     put_value(text, appearance->values[segment]);
     text_puts(text, ",");
     put_color(text, appearance->colors[segment]);
+}
+
+static void put_list_end(Text *text, size_t i, size_t n)
+{
+    enum { A_LINE = 8 };
+    text_puts(text, i + 1 == n ? " }\n" : i % A_LINE == A_LINE - 1 ? ",\n" : ",");
+}
+
+void put_frame(Text *text, const Appearance *frame)
+{
+    size_t n = frame->n_segments;
+    text_printf(text, "#declare Frame_Values = array[%zu] { ", n);
+    for (size_t i = 0; i < n; i++) {
+        put_value(text, frame->values[i]);
+        put_list_end(text, i, n);
+    }
+    text_printf(text, "#declare Frame_Colors = array[%zu] { ", n);
+    for (size_t i = 0; i < n; i++) {
+        put_color(text, frame->colors[i]);
+        put_list_end(text, i, n);
+    }
 }
 
 void put_linear(Text *text, const Linear *linear)

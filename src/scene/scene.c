@@ -30,6 +30,7 @@ Appearance appearance_frame(const Appearance *appearance, size_t frame)
     if (one.n_frames > 0) {
         one.colors += frame * one.n_segments;
         one.values += frame * one.n_segments;
+        one.n_values = one.n_segments;
     }
     one.n_frames = 0;
     return one;

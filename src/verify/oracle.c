@@ -86,6 +86,10 @@ static Status make_arguments(const OracleParams *params, const char *scene, cons
     } else {
         TRY(add_argument(arguments, err, "-A"));
     }
+    if (params->clock > 0) {
+        char clock[NUMBER_TEXT_SIZE];
+        TRY(add_argument(arguments, err, "+K%s", number_text(params->clock, clock)));
+    }
     if (params->threads > 0)
         TRY(add_argument(arguments, err, "+WT%d", params->threads));
     static const char *const always[] = {"+Q9", "-UA", "-TH", "-C", "-D", "+GW", "+V"};

@@ -138,4 +138,4 @@ test_flow_of_measured_trees_parts_as_is_asked_for() {
     expect_sentence 'flows.csv:2: the tree has no segment 4711'
 }
 
-run_tests
+run_tests "$@"

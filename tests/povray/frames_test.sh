@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# Colours that change with time, and turns: POV-Ray by its own clock draws what corcast draws frame by frame.
+. "$(dirname "$0")/../lib.sh"
+
+SIZE="--size 40x36"
+
+# A tree of 20 terminals and a pulse of 24 frames.
+make_pulse() {
+    run_ok corcast grow --terminals 20 --seed 5 --domain ball:20 --quiet -o tree.swc
+    awk -f "$REPO/docs/examples/pulse.awk" tree.swc >pulse.csv
+}
+
+test_the_clock_of_povray_picks_the_frames_of_corcast() {
+    make_pulse
+    cut -d , -f 1,3,6,9,12 pulse.csv >four.csv
+    # shellcheck disable=SC2086
+    run_ok corcast scene tree.swc --color-by four.csv $SIZE -o tree.pov
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --color-by four.csv $SIZE --frames all -o ours%d.png
+    run_ok povray +Itree.pov +Otheirs.png +W40 +H36 -D -A +KFI1 +KFF4 File_Gamma=srgb
+    for k in 1 2 3 4; do
+        run_ok corcast compare theirs$k.png ours$k.png
+    done
+    run corcast compare theirs2.png ours3.png
+    expect_status 1
+    run_ok povray +Itree.pov +Oone.png +W40 +H36 -D -A Declare=Tree_Frame=3 File_Gamma=srgb
+    run_ok corcast compare one.png ours3.png
+}
+
+test_a_frame_is_verified_in_every_model() {
+    make_pulse
+    for model in $(corcast models); do
+        # shellcheck disable=SC2086
+        run_ok corcast verify tree.swc --color-by pulse.csv --frame 7 --model "$model" $SIZE -o check
+    done
+    grep -q -e '+K0\.26' check/report.html || fail "expected the clock of frame 7 in the report"
+    # shellcheck disable=SC2086
+    run corcast verify tree.swc --color-by pulse.csv --frame 25 $SIZE -o check
+    expect_status 2
+    expect_sentence '--frame 25: pulse has 24 frames'
+}
+
+test_a_turn_is_that_of_the_scene() {
+    make_pulse
+    view="$SIZE --location 3,20,80 --look-at 0,0,0 --projection perspective"
+    # shellcheck disable=SC2086
+    run_ok corcast scene tree.swc $view -o tree.pov
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --turn 3 $view -o ours%d.png
+    run_ok povray +Itree.pov +Otheirs.png +W40 +H36 -D -A +KFI1 +KFF3 +KC Declare=Turn_Clock=1 File_Gamma=srgb
+    for k in 1 2 3; do
+        run_ok corcast compare theirs$k.png ours$k.png
+    done
+}
+
+run_tests "$@"
