@@ -17,6 +17,12 @@ static const char *const node_columns[NODE_COLUMNS] = {
 
 enum { LAST_NEEDED = RADIUS };
 
+/* What a CSV of segments begins with. */
+static const char *const segment_columns[] = {"id",    "parent", "x0_mm", "y0_mm",     "z0_mm",
+                                              "x1_mm", "y1_mm",  "z1_mm", "radius_mm", "length_mm"};
+
+enum { SEGMENT_COLUMNS = sizeof segment_columns / sizeof *segment_columns };
+
 /* What a column of the file is. */
 typedef struct Column {
     const char *title; /* borrowed from the text */
@@ -54,7 +60,7 @@ static Status read_titles(TreeBuilder *builder, Columns *columns, char *line, Er
 {
     for (char *at = line; at;) {
         char *title;
-        TRY(csv_field(&at, &title, err));
+        TRY(csv_field(&at, ',', &title, err));
         TRY(read_title(builder, columns, title, err));
     }
     for (int column = 0; column <= LAST_NEEDED; column++)
@@ -106,7 +112,7 @@ static Status read_row(TreeBuilder *builder, const Columns *columns, size_t line
     size_t n = 0;
     for (char *at = text; at; n++) {
         char *field;
-        TRY(csv_field(&at, &field, err));
+        TRY(csv_field(&at, ',', &field, err));
         if (n >= columns->n)
             continue;
         const Column *column = &columns->column[n];
@@ -156,16 +162,15 @@ Status csv_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
     return status;
 }
 
-/* The first line that is no comment names an id and a parent. */
+/* The first line that is no comment names a parent and coordinates in mm. */
 bool csv_detect(const char *start)
 {
     while (*start == '#' || *start == '\n')
         start += strcspn(start, "\n") + (start[strcspn(start, "\n")] != '\0');
     size_t length = strcspn(start, "\n");
-    if (!memchr(start, ',', length))
-        return false;
-    const char *parent = strstr(start, "parent");
-    return parent && parent < start + length;
+    const char *parent = memmem(start, length, node_columns[PARENT], strlen(node_columns[PARENT]));
+    return parent && memchr(start, ',', length) &&
+           memmem(start, length, node_columns[X], strlen(node_columns[X]));
 }
 
 static void write_quoted(const char *text, FILE *stream)
@@ -177,9 +182,19 @@ static void write_quoted(const char *text, FILE *stream)
     }
 }
 
+static bool is_among(const char *name, const char *const *names, size_t n)
+{
+    while (n > 0 && strcmp(names[n - 1], name) != 0)
+        n--;
+    return n > 0;
+}
+
+/* A column of the tree that is called like one of the file's own gets another title. */
 static void write_title(const TreeColumn *column, FILE *stream)
 {
-    fputs(",\"", stream);
+    bool is_taken = is_among(column->name, node_columns, NODE_COLUMNS) ||
+                    is_among(column->name, segment_columns, SEGMENT_COLUMNS);
+    fputs(is_taken ? ",\"value of " : ",\"", stream);
     write_quoted(column->name, stream);
     if (*column->unit) {
         fputs(" [", stream);
@@ -229,5 +244,44 @@ Status csv_write(const Tree *tree, FILE *stream, Err *err)
     write_titles(tree, stream);
     for (size_t i = 0; i < tree->n; i++)
         write_row(tree, i, stream);
+    return STATUS_OK;
+}
+
+/* What such a file, read, has brought, and is written anyway. */
+static bool is_length(const TreeColumn *column)
+{
+    return strcmp(column->name, segment_columns[SEGMENT_COLUMNS - 1]) == 0;
+}
+
+/* Both ends of each segment, the proximal one first. */
+static void write_segment(const Tree *tree, size_t i, FILE *stream)
+{
+    const size_t ends[] = {(size_t)tree->parent[i], i};
+    fprintf(stream, "%d,%d", tree->id[i], tree->id[tree->parent[i]]);
+    for (size_t k = 0; k < 2; k++) {
+        write_number(tree->position[ends[k]].x, stream);
+        write_number(tree->position[ends[k]].y, stream);
+        write_number(tree->position[ends[k]].z, stream);
+    }
+    write_number(tree->radius_mm[i], stream);
+    write_number(tree_segment_length(tree, i), stream);
+    for (size_t k = 0; k < tree->n_columns; k++)
+        if (!is_length(&tree->column[k]))
+            write_number(tree->column[k].value[i], stream);
+    putc('\n', stream);
+}
+
+Status csv_segments_write(const Tree *tree, FILE *stream, Err *err)
+{
+    TRY(comments_write(&tree->meta, stream, err));
+    for (size_t k = 0; k < SEGMENT_COLUMNS; k++)
+        fprintf(stream, "%s%s", k ? "," : "", segment_columns[k]);
+    for (size_t k = 0; k < tree->n_columns; k++)
+        if (!is_length(&tree->column[k]))
+            write_title(&tree->column[k], stream);
+    putc('\n', stream);
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i))
+            write_segment(tree, i, stream);
     return STATUS_OK;
 }

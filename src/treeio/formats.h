@@ -27,8 +27,8 @@ typedef Status TreeWrite(const Tree *tree, FILE *stream, Err *err);
 TreeDetect csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect;
 TreeRead swc_read, csv_read;
 GraphRead oned_read, vita_read, secomb_read, opencco_read, vmv_read, metaio_read, vtk_read,
-    vtp_read;
-TreeWrite swc_write, csv_write, oned_write, vmv_write;
+    vtp_read, table_read;
+TreeWrite swc_write, csv_write, csv_segments_write, oned_write, vmv_write;
 
 /* Takes in one line (zero-terminated, without its end; may be changed), the file's `number`th.
  * STATUS_INPUT without file and line. */
@@ -51,9 +51,9 @@ MUST_CHECK Status field_whole(const char *what, const char *text, int32_t minimu
 MUST_CHECK Status field_value(const char *what, const char *text, double *out, Err *err);
 
 /* Takes the next field of a line of CSV off *at, in place, which becomes NULL behind the last;
- * blanks around it go. A quoted one ends with a quote that no other follows. STATUS_INPUT, without
- * file and line, when none does. */
-MUST_CHECK Status csv_field(char **at, char **field, Err *err);
+ * blanks around it go, and where `separator` is one, several are like one. A quoted one ends with a
+ * quote that no other follows. STATUS_INPUT, without file and line, when none does. */
+MUST_CHECK Status csv_field(char **at, char separator, char **field, Err *err);
 /* Parts "name [unit]" in place; the unit is "" where there is none. */
 const char *csv_unit(char *title);
 

@@ -57,13 +57,30 @@ Status field_value(const char *what, const char *text, double *out, Err *err)
     return STATUS_OK;
 }
 
-Status csv_field(char **at, char **field, Err *err)
+/* Moves past blanks that part no fields. */
+static char *skip_blanks(char *at, char separator)
 {
-    char *from = *at + strspn(*at, TEXT_BLANKS), *to = from;
+    while (*at && *at != separator && strchr(TEXT_BLANKS, *at))
+        at++;
+    return at;
+}
+
+/* What comes behind a separator; a blank parts fields together with those that follow it. */
+static char *behind(char *separator)
+{
+    if (!*separator)
+        return NULL;
+    return *separator == ' ' ? separator + strspn(separator, TEXT_BLANKS) : separator + 1;
+}
+
+Status csv_field(char **at, char separator, char **field, Err *err)
+{
+    const char ends[] = {separator, '\0'};
+    char *from = skip_blanks(*at, separator), *to = from;
     *field = from;
     if (*from != '"') {
-        to = from + strcspn(from, ",");
-        *at = *to ? to + 1 : NULL;
+        to = from + strcspn(from, ends);
+        *at = behind(to);
         while (to > from && strchr(TEXT_BLANKS, to[-1]))
             to--;
         *to = '\0';
@@ -75,10 +92,10 @@ Status csv_field(char **at, char **field, Err *err)
     }
     if (!*from)
         return err_set(err, STATUS_INPUT, "a quote is not closed");
-    from += 1 + strspn(from + 1, TEXT_BLANKS);
-    if (*from && *from != ',')
+    from = skip_blanks(from + 1, separator);
+    if (*from && *from != separator)
         return err_set(err, STATUS_INPUT, "a quote is followed by '%.40s'", from);
-    *at = *from ? from + 1 : NULL;
+    *at = behind(from);
     *to = '\0';
     return STATUS_OK;
 }

@@ -42,7 +42,7 @@ typedef struct Format {
     FileForm form;
     TreeDetect *detect;    /* NULL: nothing tells */
     TreeRead *read;        /* one of a tree ... */
-    GraphRead *read_graph; /* ... or this one of a network */
+    GraphRead *read_graph; /* ... or this one of a network; with both, `detect` tells trees */
     TreeWrite *write;      /* NULL: the format is only read */
 } Format;
 
@@ -58,12 +58,21 @@ static const Format formats[] = {
      .form = {.name = "an SWC file", .most_bytes = MOST_BYTES, .is_text = true},
      .read = swc_read,
      .write = swc_write},
+    {.name = "CSV of segments",
+     .description = "a segment a line: both ends, radius, length, any columns of values",
+     .extensions = {"segments.csv"},
+     .takes = ANY_GRAPH | COLUMNS,
+     .form = {.name = "a CSV file", .most_bytes = MOST_BYTES, .is_text = true},
+     .read_graph = table_read,
+     .write = csv_segments_write},
     {.name = "CSV",
-     .description = "a node a line, columns by name, any columns of values beside them",
-     .extensions = {"csv"},
+     .description = "a node or a vessel a line, columns by name, any columns of values beside them",
+     .extensions = {"csv", "tsv"},
+     .takes = ANY_GRAPH | COLUMNS | EDGES,
      .form = {.name = "a CSV file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = csv_detect,
      .read = csv_read,
+     .read_graph = table_read,
      .write = csv_write},
     {.name = "VTK",
      .description = "legacy VTK: lines as POLYDATA or UNSTRUCTURED_GRID, arrays of both",
@@ -129,13 +138,21 @@ static bool is_standard(const char *path)
     return strcmp(path, "-") == 0;
 }
 
+/* Whether the path ends in '.' and the extension, which may have dots itself. */
+static bool has_extension(const char *path, const char *extension)
+{
+    size_t length = strlen(path), of_extension = strlen(extension);
+    return length > of_extension && path[length - of_extension - 1] == '.' &&
+           strcasecmp(path + length - of_extension, extension) == 0;
+}
+
 /* Whether a file of this name may be of the format. */
 static bool may_be(const Format *format, const char *path)
 {
     if (is_standard(path))
         return true;
     for (const char *const *extension = format->extensions; *extension; extension++)
-        if (strcasecmp(file_extension(path), *extension) == 0)
+        if (has_extension(path, *extension))
             return true;
     return false;
 }
@@ -389,7 +406,7 @@ static void scale_tree(Tree *tree, const Format *format, const ReadOptions *opti
                        TreeReading *reading)
 {
     reading->unit = options->has_unit ? options->unit : LENGTH_MM;
-    reading->unit_said = options->has_unit || !(format->takes & UNIT);
+    reading->unit_said = options->has_unit || format->read_graph; /* CSV's titles say mm */
     reading->voxels = options->has_voxel_size;
     LengthScale scale = length_scale(options, LENGTH_MM);
     if (!options->has_unit && !options->has_voxel_size)
@@ -400,19 +417,29 @@ static void scale_tree(Tree *tree, const Format *format, const ReadOptions *opti
     }
 }
 
+/* Whether the file is a tree, and what options say of networks does not ask for more. */
+static bool reads_tree(const Source *source, const ReadOptions *options)
+{
+    const Format *format = source->format;
+    if (!format->read || !format->read_graph)
+        return format->read != NULL;
+    return format->detect(source->bytes) && given_options(options) == 0;
+}
+
 static Status read_source(const Source *source, Tree *tree, const ReadOptions *options,
                           TreeReading *reading, Err *err)
 {
     TreeBuilder builder = {.name = source->name};
     const Format *format = source->format;
+    bool is_tree = reads_tree(source, options);
     Tree made;
-    Status status = format->read ? format->read(&builder, source->bytes, source->size, err)
-                                 : read_graph(source, &builder, options, reading, err);
+    Status status = is_tree ? format->read(&builder, source->bytes, source->size, err)
+                            : read_graph(source, &builder, options, reading, err);
     if (status == STATUS_OK)
         status = builder_build(&builder, &made, err);
     builder_release(&builder);
     TRY(status);
-    if (format->read)
+    if (is_tree)
         scale_tree(&made, format, options, reading);
     status = tree_check(&made, err);
     if (status == STATUS_OK)

@@ -261,7 +261,7 @@ static Status read_titles(ValuesReader *reader, char *line, Err *err)
 {
     for (char *at = line; at;) {
         char *title;
-        TRY(csv_field(&at, &title, err));
+        TRY(csv_field(&at, ',', &title, err));
         TRY(add_field(reader, title, err));
     }
     if (reader->key == NONE || count_wanted(reader) == 0)
@@ -404,7 +404,7 @@ static Status read_row(ValuesReader *reader, size_t line, char *text, Err *err)
     Status status = STATUS_OK;
     for (char *at = text; at && status == STATUS_OK; n++) {
         char *next;
-        status = csv_field(&at, &next, err);
+        status = csv_field(&at, ',', &next, err);
         if (n < reader->n_fields)
             field[n] = next;
     }

@@ -62,4 +62,23 @@ test_networks_of_secomb_have_loops() {
     expect_sentence 'one of 3;'
 }
 
+# 31 columns without titles: both ends of a vessel in the first six, its radius in the 22nd.
+test_a_table_without_titles_is_read_by_the_numbers_of_its_columns() {
+    local table=$SHARED/peers/svv_500.csv
+    [ -r "$table" ] || skip "$table is not here"
+    run_ok corcast info --json --input-unit cm --columns x0=1,y0=2,z0=3,x1=4,y1=5,z1=6,radius=22 "$table"
+    expect_json stdout '.segments == 999 and .terminals == 500 and .roots == 1 and (.root_radius_mm - 0.29358 | fabs) < 1e-6'
+    run corcast info "$table"
+    expect_status 2
+    expect_sentence 'svv_500.csv:1: the table has no titles; --columns says'
+}
+
+test_a_grown_tree_comes_back_from_a_csv_of_segments() {
+    grow_tree 60
+    run_ok corcast convert tree.swc tree.segments.csv
+    [ "$(grep -vc '^#' tree.segments.csv)" = 120 ] || fail "expected a title and a row for each segment"
+    run_ok corcast convert --quiet tree.segments.csv back.swc
+    cmp -s <(grep -v '^#' tree.swc) <(grep -v '^#' back.swc) || fail "expected the same nodes"
+}
+
 run_tests "$@"

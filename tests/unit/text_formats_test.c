@@ -531,6 +531,147 @@ static void rejects_scenes_of_metaio_that_make_no_sense(void **state)
         assert_refused("tre", bad[i].text, bad[i].sentence);
 }
 
+/* ---- tables ---- */
+
+/* Refused, in whatever file. */
+static void assert_table_refused(const char *text, const ReadOptions *options, const char *expected)
+{
+    Tree tree = {.n = 77};
+    Err err;
+    put_file("csv", text, strlen(text));
+    Status status = tree_read_as(&tree, path, options, NULL, &err);
+    unlink(path);
+    assert_int_equal(status, STATUS_INPUT);
+    if (!strstr(err.text, expected))
+        fail_msg("expected '%s' in '%s'", expected, err.text);
+    assert_int_equal(tree.n, 77);
+}
+
+static void titles_say_unit_and_diameter(void **state)
+{
+    (void)state;
+    Tree tree =
+        read_text("csv", "# gamma: 2.5\n\"Node ID\",parent,X [um],y (um),z_um,Diameter_mm,age [a],"
+                         "name\n"
+                         "7,,0,0,500,0.25,3,inlet\n9,7.0,125,0,250,0.125,NA,x\n"
+                         "8,9,-250,0,0,0.0625,4.5,\n");
+    assert_nodes(&tree, "7 3 0 0 0.5 0.125 -1\n9 3 0.125 0 0.25 0.0625 7\n"
+                        "8 3 -0.25 0 0 0.03125 9\n");
+    assert_true(value_of(&tree, "age", 2) == 4.5 && isnan(value_of(&tree, "age", 1)));
+    assert_true(isnan(value_of(&tree, "name", 0)) && tree.meta.number[META_GAMMA] == 2.5);
+    assert_string_equal(tree_column(&tree, "age")->unit, "a");
+    tree_release(&tree);
+}
+
+static void vessels_are_joined_where_their_ends_are_at_the_same_place(void **state)
+{
+    (void)state;
+    const ReadOptions options = {.has_unit = true,
+                                 .unit = LENGTH_CM,
+                                 .columns = "x0=1,y0=2,z0=3,x1=4,y1=5,z1=6,radius=8,flow=9"};
+    Tree tree = read_as("csv",
+                        "0.5,4,1,-2,0,0,7,0.5,1.5\n0,9,0.25,0.5,4,1,nan,1.25,3.5\n"
+                        "0.5,4,1,2.5,0,0,7,0.75,2\n",
+                        &options);
+    assert_nodes(&tree, "3 3 0 90 2.5 12.5 -1\n1 3 5 40 10 12.5 3\n2 3 -20 0 0 5 1\n"
+                        "6 3 25 0 0 7.5 1\n");
+    assert_true(value_of(&tree, "flow", 1) == 3.5 && value_of(&tree, "column 7", 2) == 7);
+    tree_release(&tree);
+    const ReadOptions in_order = {.columns = "x0,y0,z0,x1,y1,z1,,radius"};
+    tree = read_as("csv", "0.5\t4\t1\t-2\t0\t0\t\t0.5\n", &in_order);
+    assert_nodes(&tree, "1 3 0.5 4 1 0.5 -1\n2 3 -2 0 0 0.5 1\n");
+    tree_release(&tree);
+}
+
+/* Nodes and edges as Voreen writes them. */
+static void a_second_table_holds_the_lines_between_nodes(void **state)
+{
+    (void)state;
+    Err err;
+    char edges[96];
+    static const char lines[] = "id;node1id;node2id;length;avgRadiusAvg\n"
+                                "0;0;1;10.5;2.5\n4;1;2;11;1.5\n9;3;1;11.25;1.25\n";
+    snprintf(edges, sizeof edges, "%s/edges.csv", folder);
+    must(file_write(edges, lines, strlen(lines), &err), &err);
+    const ReadOptions options = {.edges = edges};
+    Tree tree = read_as("csv",
+                        "id;pos_x;pos_y;pos_z;isAtSampleBorder\n0;0;0;0;true\n"
+                        "1;0;0;10;false\n2;5;0;20;true\n3;-5;0;20;true\n",
+                        &options);
+    assert_nodes(&tree, "1 3 0 0 0 2.5 -1\n2 3 0 0 10 2.5 1\n3 3 5 0 20 1.5 2\n"
+                        "4 3 -5 0 20 1.25 2\n");
+    assert_true(value_of(&tree, "edge", 3) == 9 && value_of(&tree, "length", 2) == 11);
+    assert_true(value_of(&tree, "isAtSampleBorder", 1) == 0);
+    tree_release(&tree);
+    assert_table_refused("id,x,y\n0,1,2\n1,2,3\n", &options, "edges.csv:3: there is no node '2'");
+    assert_table_refused("x,y\n0,1\n", &options, "the table has no column id, which `edges` go by");
+    unlink(edges);
+    assert_table_refused("x0,y0,z0,x1,y1,z1,radius\n0,1,2,3,4,5,6\n", &options,
+                         "the table is no table of nodes, which `edges` are for");
+}
+
+static void a_csv_of_segments_is_written_and_read_again(void **state)
+{
+    (void)state;
+    static const char expected[] =
+        "# gamma: 2.7\n"
+        "id,parent,x0_mm,y0_mm,z0_mm,x1_mm,y1_mm,z1_mm,radius_mm,length_mm,\"age [a]\",\"value of "
+        "type\"\n"
+        "7,12,0.5,1.25,-2,3.5,5.25,-2,2.385,5,41.5,\n"
+        "30,7,3.5,5.25,-2,3.5,-6.75,3,1.655,13,,7\n";
+    Tree tree = read_text("csv", "# gamma: 2.7\nid,parent,x_mm,y_mm,z_mm,radius_mm,age [a],type\n"
+                                 "12,,0.5,1.25,-2,2.385,,5\n7,12,3.5,5.25,-2,2.385,41.5,5\n"
+                                 "30,7,3.5,-6.75,3,1.655,,5\n");
+    double *value;
+    Err err;
+    must(tree_add_column(&tree, "type", "", &value, &err), &err);
+    value[2] = 7;
+    assert_written(&tree, "segments.csv", expected);
+    Tree again = read_text("segments.csv", expected);
+    assert_nodes(&again, "1 3 0.5 1.25 -2 2.385 -1\n2 3 3.5 5.25 -2 2.385 1\n"
+                         "4 3 3.5 -6.75 3 1.655 2\n");
+    assert_true(value_of(&again, "vessel", 2) == 30 && value_of(&again, "age", 1) == 41.5);
+    tree_release(&again);
+    tree_release(&tree);
+}
+
+static void rejects_tables_that_make_no_sense(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *columns, *sentence;
+    } bad[] = {
+        {"1,2,3,4\n", NULL,
+         "csv:1: the table has no titles; `columns` says which column is which, "},
+        {"a,b,c\n1,2,3\n", NULL,
+         "csv:1: the table has neither the columns x, y, z of nodes nor x0, y0, z0, x1, y1, z1"},
+        {"from,to,r\n1,2,3\n", NULL,
+         "csv:1: the table is one of lines; read that of their nodes, and this one as `edges`"},
+        {"id,x,y,r\n1,2,3,4\n", NULL,
+         "csv: the table has nodes, but no parents; `edges` names the table of lines"},
+        {"id,parent,x,y,r\n1,,3,4\n", NULL, "csv:2: the row has 4 fields; there are 5 columns"},
+        {"id,parent,x,y,r\n1,,3,4,1\n2,5,3,4,1\n", NULL, "csv:3: there is no node '5'"},
+        {"id,parent,x,y,r\n1,,3,4,1\n1,,3,5,1\n", NULL,
+         "csv:3: the node '1' has been given before, in line 2"},
+        {"id,parent,x,y,r\n1,,3,east,1\n", NULL,
+         "csv:2: the y is 'east'; it must be a finite number"},
+        {"id,parent,x,y,d\n1,,3,4,-1\n", NULL,
+         "csv:2: the diameter is '-1'; it must be a finite number that is not negative"},
+        {"id,parent,x_mm,y_um,r\n1,,3,4,-1\n", "radius=r",
+         "csv:1: the unit of 'y_um' is not that of the columns before it"},
+        {"id,parent,x,y,r\n1,,3,4,1\n", "radius=R",
+         "csv: there is no column 'R', which `columns` names"},
+        {"1,2\n", "x,y,z", "csv: there is no column 3, which `columns` calls 'z'"},
+        {"id,parent,x,y,thick,r\n1,,3,4,1,1\n", "radius=thick,radius=r",
+         "csv:1: two columns are to be radius"},
+        {"id,parent,x,y,\"r\n", NULL, "csv:1: a quote is not closed"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        const ReadOptions options = {.columns = bad[i].columns};
+        assert_table_refused(bad[i].text, &options, bad[i].sentence);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -553,6 +694,11 @@ int main(void)
         cmocka_unit_test(a_matrix_and_an_offset_move_a_tube_of_metaio),
         cmocka_unit_test(packed_points_of_metaio_are_read_in_either_byte_order),
         cmocka_unit_test(rejects_scenes_of_metaio_that_make_no_sense),
+        cmocka_unit_test(titles_say_unit_and_diameter),
+        cmocka_unit_test(vessels_are_joined_where_their_ends_are_at_the_same_place),
+        cmocka_unit_test(a_second_table_holds_the_lines_between_nodes),
+        cmocka_unit_test(a_csv_of_segments_is_written_and_read_again),
+        cmocka_unit_test(rejects_tables_that_make_no_sense),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
