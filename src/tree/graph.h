@@ -47,7 +47,8 @@ typedef struct Graph {
     LengthUnit unit; /* that is custom in the format, for the reader to set; mm */
     bool unit_said;  /* the file itself says the unit; for the reader to set */
     bool is_tree;    /* the file was made of a tree, and each line is directed and leads from a
-                      * parent to its child: nothing is merged or removed; for the reader to set */
+                      * parent to its child, and each point has its own id but for those that are
+                      * joined: nothing is merged or removed; for the reader to set */
     GraphPoint *point;
     size_t n_points, points_capacity;
     GraphLine *line;

@@ -194,6 +194,13 @@ static Status cut_loops(Building *building, Err *err)
 
 /* ---- roots ---- */
 
+/* Whether a point becomes a node: of a tree also one that no line leads to. */
+static bool is_node(const Building *building, size_t point)
+{
+    return building->place[point] == point &&
+           (building->degree[point] > 0 || building->graph->is_tree);
+}
+
 static Status list_links(Building *building, Err *err)
 {
     size_t n = building->graph->n_points;
@@ -257,7 +264,7 @@ static Status choose_roots(Building *building, Candidate *best, Err *err)
     TreeReading *reading = building->reading;
     const Graph *graph = building->graph;
     for (uint32_t i = 0; i < graph->n_points; i++) {
-        if (building->degree[i] == 0)
+        if (!is_node(building, i))
             continue;
         Candidate candidate = judge(building, i), *of = &best[graph_first(building->component, i)];
         if (is_better(&candidate, of))
@@ -329,7 +336,7 @@ static Status number_points(const Building *building, int32_t **id, Err *err)
     bool given = true;
     size_t last = 0;
     for (size_t i = 0; i < graph->n_points; i++)
-        if (building->degree[i] > 0) {
+        if (is_node(building, i)) {
             given = given && graph->point[i].id != 0;
             last = i + 1;
             n++;
@@ -340,7 +347,7 @@ static Status number_points(const Building *building, int32_t **id, Err *err)
     TRY(mem_calloc(&made, graph->n_points, sizeof *made, "ids", err));
     n = 0;
     for (size_t i = 0; i < graph->n_points; i++)
-        if (building->degree[i] > 0)
+        if (is_node(building, i))
             made[i] = given                ? (int32_t)graph->point[i].id
                       : last > TREE_MAX_ID ? ++n
                                            : (int32_t)i + 1;
@@ -449,6 +456,45 @@ static Status add_columns(const Graph *graph, TreeBuilder *builder, Err *err)
     return status;
 }
 
+/* The points by their ids, 0 where none has it, in *order (owned), *last the largest. */
+static Status order_points(const Building *building, const int32_t *id, uint32_t **order,
+                           size_t *last, Err *err)
+{
+    size_t n = building->graph->n_points, largest = 0;
+    uint32_t *made = NULL;
+    for (size_t i = 0; i < n; i++)
+        largest = (size_t)id[i] > largest ? (size_t)id[i] : largest;
+    TRY(mem_calloc(&made, largest + 1, sizeof *made, "ids", err));
+    for (uint32_t i = 0; i < n; i++)
+        if (id[i] > 0)
+            made[id[i]] = i + 1;
+    *order = made;
+    *last = largest;
+    return STATUS_OK;
+}
+
+/* In the order of the file; those of a tree in that of its ids, which were in order there, while
+ * its points may be anywhere. */
+static Status add_nodes(const Building *building, TreeBuilder *builder, const int32_t *id, Err *err)
+{
+    size_t n = building->graph->n_points;
+    if (!building->graph->is_tree) {
+        for (uint32_t i = 0; i < n; i++)
+            if (is_node(building, i))
+                TRY(add_node(building, builder, i, id, err));
+        return STATUS_OK;
+    }
+    uint32_t *order = NULL;
+    size_t last = 0;
+    TRY(order_points(building, id, &order, &last, err));
+    Status status = STATUS_OK;
+    for (size_t k = 1; k <= last && status == STATUS_OK; k++)
+        if (order[k])
+            status = add_node(building, builder, order[k] - 1, id, err);
+    free(order);
+    return status;
+}
+
 static Status hand_over(Building *building, TreeBuilder *builder, Err *err)
 {
     const Graph *graph = building->graph;
@@ -460,9 +506,7 @@ static Status hand_over(Building *building, TreeBuilder *builder, Err *err)
     builder->meta = graph->meta;
     building->graph->meta = (TreeMeta){0};
     TRY_GOTO(add_columns(graph, builder, err));
-    for (uint32_t i = 0; i < graph->n_points; i++)
-        if (building->degree[i] > 0)
-            TRY_GOTO(add_node(building, builder, i, id, err));
+    TRY_GOTO(add_nodes(building, builder, id, err));
     for (size_t i = 0; i < reading->n_roots; i++)
         reading->root[i].id = id[reading->root[i].id - 1];
 done:
@@ -476,7 +520,7 @@ static void count_points(const Building *building)
     for (size_t i = 0; i < graph->n_points; i++)
         if (building->place[i] != i)
             building->reading->merged++;
-        else if (building->degree[i] == 0)
+        else if (!is_node(building, i))
             building->reading->unused++;
 }
 
@@ -503,7 +547,7 @@ static void describe(const Graph *graph, const ReadOptions *options, TreeReading
 static Status build(Building *building, TreeBuilder *builder, Err *err)
 {
     Graph *graph = building->graph;
-    if (graph->n_lines == 0)
+    if (graph->n_lines == 0 && !graph->is_tree)
         return err_set(err, STATUS_INPUT, "%s: the file has no lines; a tree has at least one",
                        graph->name);
     describe(graph, building->options, building->reading);
@@ -512,7 +556,7 @@ static Status build(Building *building, TreeBuilder *builder, Err *err)
     TRY(link_lines(building, err));
     if (!graph->is_tree)
         TRY(drop_repeated(building, err));
-    if (building->n_links == 0)
+    if (building->n_links == 0 && !graph->is_tree)
         return err_set(err, STATUS_INPUT, "%s: all lines begin and end at one place", graph->name);
     TRY(cut_loops(building, err));
     TRY(list_links(building, err));

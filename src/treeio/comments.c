@@ -40,25 +40,30 @@ Status comment_read_key(TreeMeta *meta, const char *comment, Err *err)
     return value ? meta_parse(meta, key, value, err) : STATUS_OK;
 }
 
+bool comments_next(MetaWalk *walk, Text *line)
+{
+    MetaLine at;
+    if (!meta_walk(walk, &at))
+        return false;
+    text_clear(line);
+    if (at.key != META_KEYS)
+        text_printf(line, "%s: ", meta_rows[at.key].name);
+    if (at.text)
+        text_puts(line, at.text);
+    else
+        meta_put_value(walk->meta, at.key, line);
+    return true;
+}
+
 Status comments_write(const TreeMeta *meta, FILE *stream, Err *err)
 {
-    Text value = TEXT_INIT;
-    MetaLine line;
-    for (MetaWalk walk = {.meta = meta}; meta_walk(&walk, &line);) {
-        text_clear(&value);
-        if (line.text)
-            text_puts(&value, line.text);
-        else
-            meta_put_value(meta, line.key, &value);
-        const char *chars = text_chars(&value);
-        if (!chars)
-            break;
-        if (line.key == META_KEYS)
+    Text line = TEXT_INIT;
+    for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
+        const char *chars = text_chars(&line);
+        if (chars)
             fprintf(stream, *chars ? "# %s\n" : "#%s\n", chars);
-        else
-            fprintf(stream, "# %s: %s\n", meta_rows[line.key].name, chars);
     }
-    Status status = text_check(&value, err);
-    text_release(&value);
+    Status status = text_check(&line, err);
+    text_release(&line);
     return status;
 }

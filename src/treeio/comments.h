@@ -16,6 +16,10 @@ MUST_CHECK Status comment_read(TreeMeta *meta, const char *comment, Err *err);
  */
 MUST_CHECK Status comment_read_key(TreeMeta *meta, const char *comment, Err *err);
 
+/* The next of all that is known, as comment_read takes it, in *line; false behind the last. Begin
+ * with {.meta = meta}. */
+bool comments_next(MetaWalk *walk, Text *line);
+
 /* Writes all that is known, a comment a line. STATUS_MEMORY. */
 MUST_CHECK Status comments_write(const TreeMeta *meta, FILE *stream, Err *err);
 

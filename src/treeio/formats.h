@@ -28,7 +28,7 @@ TreeDetect csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect;
 TreeRead swc_read, csv_read;
 GraphRead oned_read, vita_read, secomb_read, opencco_read, vmv_read, metaio_read, vtk_read,
     vtp_read, table_read;
-TreeWrite swc_write, csv_write, csv_segments_write, oned_write, vmv_write;
+TreeWrite swc_write, csv_write, csv_segments_write, oned_write, vmv_write, vtk_write, vtp_write;
 
 /* Takes in one line (zero-terminated, without its end; may be changed), the file's `number`th.
  * STATUS_INPUT without file and line. */

@@ -5,6 +5,7 @@
  *
  * VessMorphoVis writes strands away from the root. A file in which every vertex is entered by one
  * line at most is taken to be written so; in any other, the order of a strand means nothing. */
+#include "treeio/branches.h"
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/names.h"
@@ -250,33 +251,14 @@ static void write_number(double mm, FILE *stream)
     fprintf(stream, " %s", number_text(length_from_mm(mm, LENGTH_UM), number));
 }
 
-/* The branch that begins with segment i: `only_child` is the child of each node that has one. */
-static void write_strand(const Tree *tree, size_t i, size_t strand, const int32_t *only_child,
-                         FILE *stream)
+static void write_strands(const Tree *tree, const Branches *branches, FILE *stream)
 {
-    fprintf(stream, "%zu %d", strand, tree->parent[i] + 1);
-    for (int32_t at = (int32_t)i; at >= 0; at = only_child[at])
-        fprintf(stream, " %d", at + 1);
-    putc('\n', stream);
-}
-
-/* A segment begins a strand unless it is the only one to leave a node that is no root. */
-static bool begins_strand(const Tree *tree, size_t i, const int32_t *children)
-{
-    int32_t parent = tree->parent[i];
-    return tree_is_segment(tree, i) &&
-           (children[parent] != 1 || !tree_is_segment(tree, (size_t)parent));
-}
-
-static Status only_children(const Tree *tree, const int32_t *children, int32_t **out, Err *err)
-{
-    TRY(mem_calloc(out, tree->n, sizeof **out, "children", err));
-    for (size_t i = 0; i < tree->n; i++)
-        (*out)[i] = TREE_NO_PARENT;
-    for (size_t i = 0; i < tree->n; i++)
-        if (tree_is_segment(tree, i) && children[tree->parent[i]] == 1)
-            (*out)[tree->parent[i]] = (int32_t)i;
-    return STATUS_OK;
+    for (size_t k = 0, at = 0; k < branches->n; k++) {
+        fprintf(stream, "%zu %d", k + 1, tree->parent[branches->node[at]] + 1);
+        for (; at < branches->end[k]; at++)
+            fprintf(stream, " %d", branches->node[at] + 1);
+        putc('\n', stream);
+    }
 }
 
 static void write_vertices(const Tree *tree, FILE *stream)
@@ -295,26 +277,17 @@ static void write_vertices(const Tree *tree, FILE *stream)
 
 Status vmv_write(const Tree *tree, FILE *stream, Err *err)
 {
-    int32_t *children = NULL, *only_child = NULL;
-    size_t strands = 0, strand = 0;
-    Status status = STATUS_OK;
-    TRY_GOTO(tree_child_counts(tree, &children, err));
-    TRY_GOTO(only_children(tree, children, &only_child, err));
-    TRY_GOTO(comments_write(&tree->meta, stream, err));
-    for (size_t i = 0; i < tree->n; i++)
-        strands += begins_strand(tree, i, children);
+    Branches branches;
+    TRY(branches_find(tree, &branches, err));
+    Status status = comments_write(&tree->meta, stream, err);
     fprintf(stream,
             "$PARAM_BEGIN\nNUM_VERTS %zu\nNUM_STRANDS %zu\nNUM_ATTRIB_PER_VERT 4\n"
             "$PARAM_END\n\n",
-            tree->n, strands);
+            tree->n, branches.n);
     write_vertices(tree, stream);
     fprintf(stream, "$STRANDS_LIST_BEGIN\n");
-    for (size_t i = 0; i < tree->n; i++)
-        if (begins_strand(tree, i, children))
-            write_strand(tree, i, ++strand, only_child, stream);
+    write_strands(tree, &branches, stream);
     fprintf(stream, "$STRANDS_LIST_END\n");
-done:
-    free(children);
-    free(only_child);
+    branches_release(&branches);
     return status;
 }

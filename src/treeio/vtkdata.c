@@ -76,6 +76,29 @@ void vtk_numbers(const VtkType *type, bool is_big_endian, const char *bytes, siz
     }
 }
 
+static uint64_t bits_of_number(const VtkType *type, double number)
+{
+    float single = (float)number;
+    uint32_t low;
+    uint64_t bits;
+    memcpy(&low, &single, sizeof low);
+    memcpy(&bits, &number, sizeof bits);
+    if (type->is_float)
+        return type->size == 4 ? low : bits;
+    return type->is_signed ? (uint64_t)(int64_t)number : (uint64_t)number;
+}
+
+void vtk_bytes(const VtkType *type, bool is_big_endian, const double *numbers, size_t n,
+               char *bytes)
+{
+    size_t size = type->size;
+    for (size_t i = 0; i < n; i++, bytes += size) {
+        uint64_t bits = bits_of_number(type, numbers[i]);
+        for (size_t k = 0; k < size; k++, bits >>= 8)
+            bytes[is_big_endian ? size - 1 - k : k] = (char)(bits & 0xff);
+    }
+}
+
 /* ---- data ---- */
 
 void vtk_release_array(VtkArray *array)
@@ -212,6 +235,18 @@ static const VtkArray *find_exact(const VtkArrays *arrays, const char *name)
     return NULL;
 }
 
+bool vtk_is_own(const char *name)
+{
+    static const char *const own[] = {"radius", "id", "type", "flow_share"};
+    size_t length = strlen(name);
+    while (length > 0 && name[length - 1] == '_')
+        length--;
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        if (strlen(own[i]) == length && strncmp(own[i], name, length) == 0)
+            return true;
+    return false;
+}
+
 /* ---- what arrays mean ---- */
 
 /* Plain names of radii, and of diameters, best first. */
@@ -230,11 +265,11 @@ static const char *const diameter_names[] = {"diameter", "vesseldiameter", "diam
 
 typedef struct Meaning {
     const VtkArray *radius;
-    GraphElement of;                            /* that have the radius */
-    double factor;                              /* 0.5 of diameters */
-    const VtkArray *inlet;                      /* of points; NULL: there is none */
-    double inlet_value;                         /* where the inlets are */
-    const VtkArray *id, *parent, *type, *share; /* of points, of files that are trees */
+    GraphElement of;                   /* that have the radius */
+    double factor;                     /* 0.5 of diameters */
+    const VtkArray *inlet;             /* of points; NULL: there is none */
+    double inlet_value;                /* where the inlets are */
+    const VtkArray *id, *type, *share; /* of points, of files that were made of a tree */
 } Meaning;
 
 static bool take_radius(Meaning *meaning, const VtkData *data, const char *plain, double factor)
@@ -315,36 +350,40 @@ static void find_inlets(Meaning *meaning, const VtkData *data)
     }
 }
 
-/* Whether each line leads from a parent to its child, by the arrays of ids: the file is of a tree,
- * as vtp_write writes it. */
-static bool lines_are_a_tree(const Meaning *meaning, const VtkData *data)
+/* What the program itself has written of a tree [vtkwrite.c]: lines of text; NULL: nothing. */
+static const VtkArray *find_remarks(const VtkData *data)
 {
-    if (!meaning->id || !meaning->parent)
-        return false;
-    const double *id = meaning->id->value, *parent = meaning->parent->value;
-    for (size_t line = 0, at = 0; line < data->n_lines; at = data->end[line++])
-        for (size_t k = at + 1; k < data->end[line]; k++)
-            if (parent[(size_t)data->corner[k]] != id[(size_t)data->corner[k - 1]])
-                return false;
-    for (size_t i = 0; i < data->n_points; i++)
-        if (!(id[i] >= 1 && id[i] <= TREE_MAX_ID && id[i] == floor(id[i])))
+    for (size_t i = 0; i < data->of_file.n; i++)
+        if (data->of_file.array[i].text && strcmp(data->of_file.array[i].name, "corcast") == 0)
+            return &data->of_file.array[i];
+    return NULL;
+}
+
+static bool are_ids(const VtkArray *array)
+{
+    for (size_t i = 0; i < array->n; i++)
+        if (!(array->value[i] >= 1 && array->value[i] <= TREE_MAX_ID &&
+              array->value[i] == floor(array->value[i])))
             return false;
     return true;
+}
+
+static void find_tree(Meaning *meaning, const VtkData *data)
+{
+    const VtkArray *id = find_exact(&data->of_points, "id");
+    if (!find_remarks(data) || !id || !are_ids(id))
+        return;
+    meaning->id = id;
+    meaning->type = find_exact(&data->of_points, "type");
+    meaning->share = find_exact(&data->of_points, "flow_share");
+    meaning->inlet = NULL;
 }
 
 static Status find_meaning(Meaning *meaning, const VtkData *data, const Graph *graph, Err *err)
 {
     TRY(find_radius(meaning, data, graph, err));
     find_inlets(meaning, data);
-    meaning->id = find_exact(&data->of_points, "id");
-    meaning->parent = find_exact(&data->of_points, "parent");
-    if (lines_are_a_tree(meaning, data)) {
-        meaning->type = find_exact(&data->of_points, "type");
-        meaning->share = find_exact(&data->of_points, "flow_share");
-        meaning->inlet = NULL;
-    } else {
-        meaning->id = meaning->parent = NULL;
-    }
+    find_tree(meaning, data);
     return STATUS_OK;
 }
 
@@ -440,6 +479,8 @@ static Status add_column(const VtkData *data, Graph *graph, const VtkArray *arra
     size_t column;
     if (status == STATUS_OK) {
         const char *unit = csv_unit(title);
+        if (graph->is_tree && vtk_is_own(title))
+            title[strlen(title) - 1] = '\0';
         status = graph_column(graph, of, title, unit, &column, err);
     }
     if (status == STATUS_INPUT)
@@ -451,17 +492,17 @@ static Status add_column(const VtkData *data, Graph *graph, const VtkArray *arra
     return status;
 }
 
-/* Whether an array has become something else than a column. */
+/* Whether an array has become something else than a column; of other programs' files also another
+ * of the radius's name, as that of points beside that of cells. */
 static bool is_used(const Meaning *meaning, const VtkArray *array)
 {
     char plain[PLAIN_SIZE];
     vtk_plain_name(meaning->radius->name, plain, sizeof plain);
-    const VtkArray *const used[] = {meaning->radius, meaning->id, meaning->parent, meaning->type,
-                                    meaning->share};
+    const VtkArray *const used[] = {meaning->radius, meaning->id, meaning->type, meaning->share};
     for (size_t i = 0; i < sizeof used / sizeof *used; i++)
         if (array == used[i])
             return true;
-    return array->components == 1 && has_plain_name(array, plain);
+    return !meaning->id && array->components == 1 && has_plain_name(array, plain);
 }
 
 static Status add_columns(const Meaning *meaning, const VtkData *data, Graph *graph,
@@ -484,23 +525,47 @@ static Status add_columns(const Meaning *meaning, const VtkData *data, Graph *gr
     return STATUS_OK;
 }
 
-/* What is known of the tree, as lines of text [vtp_write]. */
+static Status read_remark(Graph *graph, const char *line, Err *err)
+{
+    Text comment = TEXT_INIT;
+    text_printf(&comment, " %s", line);
+    Status status = text_check(&comment, err);
+    if (status == STATUS_OK)
+        status = comment_read(&graph->meta, text_chars(&comment), err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", graph->name);
+    text_release(&comment);
+    return status;
+}
+
 static Status read_remarks(const VtkData *data, Graph *graph, Err *err)
 {
-    for (size_t i = 0; i < data->of_file.n; i++) {
-        const VtkArray *array = &data->of_file.array[i];
-        if (!array->text || strcmp(array->name, "corcast") != 0)
-            continue;
-        for (const char *line = array->text; line < array->text + array->text_size;
-             line += strlen(line) + 1) {
-            Status status = comment_read(&graph->meta, line, err);
-            if (status == STATUS_INPUT)
-                err_prefix(err, "%s: ", graph->name);
-            TRY(status);
-        }
-        graph->unit_said = true;
-    }
+    const VtkArray *remarks = find_remarks(data);
+    const char *end = remarks ? remarks->text + remarks->text_size : NULL;
+    graph->unit_said = remarks != NULL;
+    for (const char *line = remarks ? remarks->text : end; line < end; line += strlen(line) + 1)
+        TRY(read_remark(graph, line, err));
     return STATUS_OK;
+}
+
+/* Points of one id are one node, wherever they stand in the file. */
+static Status join_points(const VtkArray *id, Graph *graph, Err *err)
+{
+    double last = 0;
+    uint32_t *first = NULL; /* point + 1 of each id */
+    for (size_t i = 0; i < id->n; i++)
+        last = fmax(last, id->value[i]);
+    TRY(mem_calloc(&first, (size_t)last + 1, sizeof *first, "ids", err));
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < id->n && status == STATUS_OK; i++) {
+        uint32_t *entry = &first[(size_t)id->value[i]];
+        if (*entry)
+            status = graph_join(graph, *entry - 1, i, err);
+        else
+            *entry = (uint32_t)i + 1;
+    }
+    free(first);
+    return status;
 }
 
 static Status check_sizes(const VtkData *data, const Graph *graph, Err *err)
@@ -534,7 +599,7 @@ Status vtk_to_graph(const VtkData *data, Graph *graph, Err *err)
     graph->point_record = "point";
     graph->line_record = "cell";
     TRY(check_sizes(data, graph, err));
-    if (data->n_lines == 0)
+    if (data->n_lines == 0 && !find_remarks(data))
         return err_set(err, STATUS_INPUT, "%s: there are no lines in it%s", graph->name,
                        data->n_cells ? ", only other cells" : "");
     TRY(find_meaning(&meaning, data, graph, err));
@@ -542,6 +607,8 @@ Status vtk_to_graph(const VtkData *data, Graph *graph, Err *err)
     TRY(tell(&meaning, data, graph->reading, err));
     TRY(read_remarks(data, graph, err));
     TRY(add_points(&meaning, data, graph, err));
+    if (graph->is_tree)
+        TRY(join_points(meaning.id, graph, err));
     TRY(add_lines(&meaning, data, graph, err));
     TRY(add_columns(&meaning, data, graph, GRAPH_POINTS, err));
     return add_columns(&meaning, data, graph, GRAPH_LINES, err);

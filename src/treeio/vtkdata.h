@@ -17,6 +17,10 @@ const VtkType *vtk_type_of_xml(const char *name);
 /* Converts n values from bytes that lie anywhere. */
 void vtk_numbers(const VtkType *type, bool is_big_endian, const char *bytes, size_t n, double *out);
 
+/* The other way round. */
+void vtk_bytes(const VtkType *type, bool is_big_endian, const double *numbers, size_t n,
+               char *bytes);
+
 /* An array of `n` tuples of `components` numbers, or of lines of text. */
 typedef struct VtkArray {
     char *name; /* owned */
@@ -76,6 +80,10 @@ MUST_CHECK Status vtk_add_cells(VtkData *data, const VtkCells *cells, size_t fir
 /* The name without what tells writings of one name apart: capitals, blanks, signs and a unit in
  * brackets; in `out`, cut to its size. */
 void vtk_plain_name(const char *name, char *out, size_t size);
+
+/* Whether the program has an array of its own of this name, underscores at its end left out: in its
+ * files a column so called has an underscore more. */
+bool vtk_is_own(const char *name);
 
 /* Hands all over to the graph: radius, inlets and direction by the names of arrays, other arrays as
  * columns. `graph->reading` is told what was assumed. STATUS_INPUT, with the file's name, when a

@@ -106,6 +106,68 @@ END
         (.bbox_mm[0][0] + .root_radius_mm | fabs) < 1e-12'
 }
 
+# a_strange_forest: a root alone, types, shares, a step without length, columns, remarks.
+a_strange_forest() {
+    cat >tree.csv <<'END'
+# gamma: 2.75
+#  a remark that begins with two blanks
+# command: corcast grow --terminals 2 -o "T é.swc"
+id,parent,x_mm,y_mm,z_mm,radius_mm,type,flow_share,"wall shear [Pa]","50% <of> it","radius"
+1,-1,50,0,0,0.75,3,0,1.5,2,
+2,-1,0,0,0,2.385,1,0,,7,
+3,2,1.5,0,0,1.25,2,0.125,3.25,,4
+4,3,1.5,0,0,1.25,2,0,1e-300,1,
+5,4,3,1,0.5,0.5,-7,0,0.1,2,5.5
+6,4,3,-1,0.1,0,3,2.5,-2,3,
+7,5,4,1,0.5,0.5,3,0,-0.3333333333333333,4,
+END
+}
+
+test_nothing_is_lost_on_the_way_through_vtk_and_back() {
+    local extension
+    a_strange_forest
+    run_ok corcast convert tree.csv before.csv
+    for extension in vtp vtk; do
+        run_ok corcast convert before.csv "there.$extension"
+        run_ok corcast convert "there.$extension" after.csv
+        expect_same before.csv after.csv
+        run_ok corcast convert "there.$extension" "again.$extension"
+        expect_same "there.$extension" "again.$extension"
+    done
+    corcast grow --terminals 77 --domain ball:20 --inlet 0,20,0 --inlet 0,-20,0 -o grown.swc --quiet
+    run_ok corcast convert grown.swc grown.vtp
+    run_ok corcast convert grown.vtp back.swc
+    expect_same grown.swc back.swc
+}
+
+# expect_seen FILE FILTER: what VTK's own reader finds in the file, beside what info says of it.
+expect_seen() {
+    "$PYTHON" "$REPO/tests/oracle/read_vtk.py" "$1" >seen.json || fail "VTK does not read $1"
+    corcast info --json "$1" >info.json || fail "info does not read $1"
+    jq -s '{seen: .[0], info: .[1]}' seen.json info.json >both.json
+    expect_json both.json "$2"
+}
+
+test_vtk_reads_what_is_written_and_puts_tubes_about_it() {
+    local extension
+    "$PYTHON" -c 'import vtkmodules' 2>/dev/null || skip "python3-vtk9 is not installed"
+    corcast grow --terminals 120 -o grown.swc --quiet
+    a_strange_forest
+    for extension in vtp vtk; do
+        run_ok corcast convert grown.swc "grown.$extension"
+        expect_seen "grown.$extension" '.seen.points == 1 + 2 * 239 and .seen.lines == 239 and
+            .seen.tube_strips == 24 * 239 and
+            (.seen.length_mm - .info.total_length_mm | fabs) < 1e-9 and
+            (.seen.volume_mm3 - .info.volume_mm3 | fabs) < 1e-9 and
+            (.seen.tube_bounds[5] - .info.root_radius_mm | fabs) < 1e-6 and
+            (.seen.remarks | index("gamma: 3") != null)'
+        run_ok corcast convert tree.csv "strange.$extension"
+        expect_seen "strange.$extension" '.seen.arrays == ["radius", "wall shear [Pa]",
+            "50% <of> it", "radius_", "id", "type", "flow_share"] and .seen.lines == 3 and
+            .seen.verts == 2 and .seen.remarks[1] == " a remark that begins with two blanks"'
+    done
+}
+
 test_options_that_a_format_does_not_take_are_refused() {
     cp "$DATA/bifurcation.swc" tree.swc
     run corcast info tree.swc --radius-array thickness
