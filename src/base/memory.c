@@ -3,6 +3,7 @@
 #include "base/memory.h"
 
 #include "base/number.h"
+#include <malloc.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -69,6 +70,11 @@ Status mem_reserve(void *items, size_t *capacity, size_t needed, size_t size, co
     memcpy(items, &memory, sizeof memory);
     *capacity = wanted;
     return STATUS_OK;
+}
+
+void mem_trim(void)
+{
+    (void)malloc_trim(0);
 }
 
 Status mem_out_of(const char *purpose, const char *subject, Err *err)

@@ -21,6 +21,10 @@ MUST_CHECK Status mem_check(double bytes, const char *name, Err *err);
 MUST_CHECK Status mem_reserve(void *items, size_t *capacity, size_t needed, size_t size,
                               const char *what, Err *err);
 
+/* Hands memory that has been freed back to the system, which the C library keeps else where small
+ * blocks lie about it. Milliseconds. */
+void mem_trim(void);
+
 /* STATUS_MEMORY with the sentence "out of memory: no room `purpose` `subject`", as in "to read", a
  * file. For what a library allocates: one that fails without telling why leaves ENOMEM in errno
  * where that was it. */

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { ZONES_A_TRIM = 1024 };
 static const double full_turn = 6.283185307179586;
 
 typedef struct RimPlace {
@@ -219,6 +220,8 @@ Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *piec
     for (uint32_t z = 0; z < zones->n_zones; z++) {
         add_piece(&assembly, &pieces[z]);
         zonepiece_release(&pieces[z]);
+        if (z % ZONES_A_TRIM == 0)
+            mem_trim();
     }
     for (uint32_t i = 0; i < tree->n_segments; i++) {
         if (!zones->is_tube[i])

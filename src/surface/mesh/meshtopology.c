@@ -9,44 +9,60 @@
 
 static const uint32_t no_tree = UINT32_MAX;
 
-typedef struct EdgeLists {
-    uint32_t *first; /* one a point, and one more */
-    uint32_t *ends;  /* twice the other point, and 1 when the triangle goes from it */
-} EdgeLists;
+/* Points whose edges are listed at a time, so that the lists take less memory than the mesh. */
+enum { POINTS_AT_A_TIME = 1 << 22 };
 
-static int compare_numbers(const void *a, const void *b)
-{
-    uint32_t one = *(const uint32_t *)a, other = *(const uint32_t *)b;
-    return (one > other) - (one < other);
-}
+/* The edges from points [from, to) to points of a higher number. */
+typedef struct EdgeLists {
+    uint32_t from, to;
+    uint32_t *first; /* one a point, and two more */
+    uint32_t *ends;  /* twice the other point, and 1 when the triangle goes from it */
+    size_t capacity;
+} EdgeLists;
 
 static Status list_edges(const VesselMesh *mesh, EdgeLists *lists, Err *err)
 {
-    TRY(mem_calloc(&lists->first, mesh->n_points + 2, sizeof *lists->first, "edges", err));
-    TRY(mem_calloc(&lists->ends, 3 * mesh->n_triangles, sizeof *lists->ends, "edges", err));
+    uint32_t n = lists->to - lists->from;
+    for (uint32_t i = 0; i < n + 2; i++)
+        lists->first[i] = 0;
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < 3 * mesh->n_triangles; i++) {
             uint32_t a = mesh->triangles[i / 3][i % 3], b = mesh->triangles[i / 3][(i + 1) % 3];
             uint32_t low = a < b ? a : b, high = a < b ? b : a;
+            if (low < lists->from || low >= lists->to)
+                continue;
             if (pass == 0)
-                lists->first[low + 2]++;
+                lists->first[low - lists->from + 2]++;
             else
-                lists->ends[lists->first[low + 1]++] = 2 * high + (a > b);
+                lists->ends[lists->first[low - lists->from + 1]++] = 2 * high + (a > b);
         }
-        for (size_t i = 2; i <= mesh->n_points && pass == 0; i++)
+        for (uint32_t i = 2; i < n + 2 && pass == 0; i++)
             lists->first[i] += lists->first[i - 1];
+        TRY(mem_reserve(&lists->ends, &lists->capacity, lists->first[n + 1], sizeof *lists->ends,
+                        "edges", err));
     }
     return STATUS_OK;
 }
 
-/* Edges that do not have two triangles, one each way. */
-static size_t count_open(const VesselMesh *mesh, const EdgeLists *lists)
+static void sort_few(uint32_t *numbers, size_t n)
+{
+    for (size_t i = 1; i < n; i++) {
+        uint32_t own = numbers[i];
+        size_t at = i;
+        for (; at > 0 && numbers[at - 1] > own; at--)
+            numbers[at] = numbers[at - 1];
+        numbers[at] = own;
+    }
+}
+
+/* Edges in the lists that do not have two triangles, one each way. */
+static size_t count_listed(const EdgeLists *lists)
 {
     size_t open = 0;
-    for (size_t i = 0; i < mesh->n_points; i++) {
+    for (uint32_t i = 0; i < lists->to - lists->from; i++) {
         uint32_t *ends = &lists->ends[lists->first[i]];
         size_t n = lists->first[i + 1] - lists->first[i];
-        qsort(ends, n, sizeof *ends, compare_numbers);
+        sort_few(ends, n);
         for (size_t k = 0; k < n;) {
             size_t same = k;
             while (same < n && ends[same] / 2 == ends[k] / 2)
@@ -56,6 +72,26 @@ static size_t count_open(const VesselMesh *mesh, const EdgeLists *lists)
         }
     }
     return open;
+}
+
+/* Edges that do not have two triangles, one each way. */
+static Status count_open(const VesselMesh *mesh, size_t *open, Err *err)
+{
+    EdgeLists lists = {0};
+    size_t most = mesh->n_points < POINTS_AT_A_TIME ? mesh->n_points : POINTS_AT_A_TIME;
+    Status status = mem_calloc(&lists.first, most + 2, sizeof *lists.first, "edges", err);
+    *open = 0;
+    while (lists.to < mesh->n_points && status == STATUS_OK) {
+        size_t rest = mesh->n_points - lists.to;
+        lists.from = lists.to;
+        lists.to += (uint32_t)(rest < most ? rest : most);
+        status = list_edges(mesh, &lists, err);
+        if (status == STATUS_OK)
+            *open += count_listed(&lists);
+    }
+    free(lists.first);
+    free(lists.ends);
+    return status;
 }
 
 static uint32_t root_of(uint32_t *root, uint32_t point)
@@ -112,25 +148,21 @@ double vesselmesh_volume(const VesselMesh *mesh)
 Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *trees, MeshReport *report,
                           Err *err)
 {
-    EdgeLists lists = {0};
-    uint32_t *root = NULL;
+    uint32_t *root = NULL, *tree = NULL;
     Status status;
-    TRY_GOTO(list_edges(mesh, &lists, err));
-    report->open_edges = count_open(mesh, &lists);
-    free(lists.ends);
-    lists.ends = NULL;
+    TRY(count_open(mesh, &report->open_edges, err));
     TRY_GOTO(mem_calloc(&root, mesh->n_points, sizeof *root, "points", err));
+    TRY_GOTO(mem_calloc(&tree, mesh->n_points, sizeof *tree, "points", err));
     join_points(mesh, root);
     report->components = 0;
     for (uint32_t i = 0; i < mesh->n_points; i++)
         report->components += root_of(root, i) == i;
-    report->bridges = count_bridges(mesh, root, lists.first, trees);
+    report->bridges = count_bridges(mesh, root, tree, trees);
     report->euler = (long long)mesh->n_points - (long long)(mesh->n_triangles / 2);
     report->genus = (size_t)llabs((2 * (long long)report->components - report->euler) / 2);
     report->volume_mm3 = vesselmesh_volume(mesh);
 done:
-    free(lists.first);
-    free(lists.ends);
+    free(tree);
     free(root);
     return status;
 }

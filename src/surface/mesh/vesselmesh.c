@@ -18,6 +18,10 @@
 static const double cells_at = 0.02, cell_ratio = 0.48, bending_ratio = 0.22, sagitta_part = 0.33,
                     cap_part = 0.2, farthest_part = 1.75;
 
+/* After a zone of more terms a thread does not keep its room: it would be ten times what most need.
+ */
+enum { TERMS_TO_KEEP = 100 };
+
 typedef struct Build {
     const VesselTree *tree;
     const MeshParams *params;
@@ -85,17 +89,23 @@ void vesselmesh_estimate(const VesselTree *tree, const MeshParams *params, doubl
     *bytes = *triangles * 80;
 }
 
+static void release_workers(Build *build, int n_workers)
+{
+    for (int i = 0; i < n_workers && build->workers; i++)
+        zoneworker_release(&build->workers[i]);
+    free(build->workers);
+    build->workers = NULL;
+}
+
 static void release_build(Build *build, int n_workers)
 {
+    release_workers(build, n_workers);
     numberlists_release(&build->incident);
     numberlists_release(&build->blending);
     for (uint32_t z = 0; z < build->zones.n_zones && build->pieces; z++)
         zonepiece_release(&build->pieces[z]);
-    for (int i = 0; i < n_workers && build->workers; i++)
-        zoneworker_release(&build->workers[i]);
     zones_release(&build->zones);
     free(build->pieces);
-    free(build->workers);
     free(build->fates);
     free(build->statuses);
     free(build->errors);
@@ -113,6 +123,8 @@ static void make_zone(size_t index, int worker, void *context)
     if (status == STATUS_OK) {
         status = zonepiece_make(&build->workers[worker], build->tree, &plan, &build->fineness,
                                 &build->pieces[index], build->fates, err);
+        if (plan.field.n_terms > TERMS_TO_KEEP)
+            zoneworker_release(&build->workers[worker]);
         zoneplan_release(&plan);
     }
     build->statuses[worker] = status;
@@ -133,6 +145,7 @@ static Status make_zones(Build *build, int n_workers, Err *err)
     for (size_t i = 0; i < build->tree->n_segments; i++)
         build->fates[i] = build->zones.is_tube[i] ? SEGMENT_PRESENT : SEGMENT_MISSING;
     threads_for(n_zones, n_workers, make_zone, build);
+    release_workers(build, n_workers);
     for (int i = 0; i < n_workers; i++)
         if (build->statuses[i] != STATUS_OK)
             return err_set(err, build->statuses[i], "%s", build->errors[i].text);
