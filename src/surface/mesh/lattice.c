@@ -115,6 +115,7 @@ static PatchPoint wall_point(const ZoneField *field, Vec3 x, const FieldValue *v
                         .normal = vec3_scale(gradient, -1 / vec3_length(gradient)),
                         .radius_mm = term->radius_mm,
                         .segment = term->segment,
+                        .tube = term->arm,
                         .arm = NO_ARM};
 }
 

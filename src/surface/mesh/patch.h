@@ -4,15 +4,15 @@
 
 #include "base/base.h"
 #include "geom/geom.h"
+#include "surface/mesh/zonefield.h"
 #include <stdint.h>
-
-#define NO_ARM UINT16_MAX
 
 typedef struct PatchPoint {
     Vec3 x;           /* mm */
     Vec3 normal;      /* unit, outward */
     double radius_mm; /* of the vessel whose term is largest there */
     uint32_t segment; /* that vessel */
+    uint16_t tube;    /* that vessel's arm, or NO_ARM */
     uint16_t arm;     /* the arm on the rim of whose plane it lies, or NO_ARM */
 } PatchPoint;
 

@@ -1,5 +1,5 @@
 /* A plane is put into the widest gap between the points near it, so that no sliver is cut off. What
- * lies within the arm's tube and beyond the plane is behind; each edge from before to behind gets
+ * is on an arm's tube and beyond its plane is behind; each edge from before to behind gets
  * one point, found by the lattice's straight line and put on the circle. */
 #include "surface/mesh/planecut.h"
 
@@ -21,14 +21,17 @@ void planecutter_release(PlaneCutter *cutter)
     pairtable_release(&cutter->crossings);
     free(cutter->behind);
     free(cutter->renamed);
-    free(cutter->along);
+    free(cutter->near);
     *cutter = (PlaneCutter){0};
 }
 
-/* How far x lies beyond the plane, mm; -HUGE_VAL when it is not of the arm's tube. */
-static double along_arm(const Arm *arm, Vec3 x)
+/* How far a point lies beyond the plane of its arm, mm; -HUGE_VAL when it is on no arm's tube. */
+static double along_tube(const Cut *cut, const PatchPoint *point)
 {
-    Vec3 from = vec3_sub(x, arm->at);
+    if (point->tube == NO_ARM)
+        return -HUGE_VAL;
+    const Arm *arm = &cut->arms[point->tube];
+    Vec3 from = vec3_sub(point->x, arm->at);
     double along = vec3_dot(from, arm->outward), reach = tube_reach * arm->radius_mm;
     double across2 = vec3_dot(from, from) - along * along;
     if (across2 > reach * reach || along > (ARM_TAIL + 1) * arm->radius_mm)
@@ -36,44 +39,55 @@ static double along_arm(const Arm *arm, Vec3 x)
     return along;
 }
 
-static int compare_doubles(const void *a, const void *b)
+static int compare_places(const void *a, const void *b)
 {
-    double one = *(const double *)a, other = *(const double *)b;
-    return (one > other) - (one < other);
+    const PlaneNear *one = a, *other = b;
+    return one->arm != other->arm ? (one->arm > other->arm) - (one->arm < other->arm)
+                                  : (one->along > other->along) - (one->along < other->along);
 }
 
-/* Moves the plane into the middle of the widest gap within `room` of it. */
-static Status move_plane(const Cut *cut, Arm *arm, double room, Err *err)
+/* Moves the plane into the middle of the widest gap between places, of which there are two at
+ * least. */
+static void move_plane(Arm *arm, const PlaneNear *places, size_t n)
 {
-    PlaneCutter *cutter = cut->cutter;
-    TRY(mem_reserve(&cutter->along, &cutter->along_capacity, cut->patch->n_points + 2,
-                    sizeof *cutter->along, "points of a junction", err));
-    size_t n = 0;
-    cutter->along[n++] = -room;
-    cutter->along[n++] = room;
-    for (size_t i = 0; i < cut->patch->n_points; i++) {
-        double along = along_arm(arm, cut->patch->points[i].x);
-        if (fabs(along) < room)
-            cutter->along[n++] = along;
-    }
-    qsort(cutter->along, n, sizeof *cutter->along, compare_doubles);
     size_t widest = 0;
     for (size_t i = 1; i + 1 < n; i++)
-        if (cutter->along[i + 1] - cutter->along[i] >
-            cutter->along[widest + 1] - cutter->along[widest])
+        if (places[i + 1].along - places[i].along > places[widest + 1].along - places[widest].along)
             widest = i;
-    double by = 0.5 * (cutter->along[widest] + cutter->along[widest + 1]);
+    double by = 0.5 * (places[widest].along + places[widest + 1].along);
     arm->at = vec3_add_scaled(arm->at, arm->outward, by);
+}
+
+/* Moves each plane into the widest gap between points within `room` radii of it. */
+static Status move_planes(const Cut *cut, double room, Err *err)
+{
+    PlaneCutter *cutter = cut->cutter;
+    size_t n = 0;
+    TRY(mem_reserve(&cutter->near, &cutter->near_capacity, cut->patch->n_points + 2 * cut->n_arms,
+                    sizeof *cutter->near, "points of a junction", err));
+    for (size_t k = 0; k < cut->n_arms; k++)
+        for (int side = -1; side < 2; side += 2)
+            cutter->near[n++] = (PlaneNear){(uint16_t)k, side * room * cut->arms[k].radius_mm};
+    for (size_t i = 0; i < cut->patch->n_points; i++) {
+        const PatchPoint *point = &cut->patch->points[i];
+        double along = along_tube(cut, point);
+        if (point->tube != NO_ARM && fabs(along) < room * cut->arms[point->tube].radius_mm)
+            cutter->near[n++] = (PlaneNear){point->tube, along};
+    }
+    qsort(cutter->near, n, sizeof *cutter->near, compare_places);
+    for (size_t from = 0, to = 0; from < n; from = to) {
+        while (to < n && cutter->near[to].arm == cutter->near[from].arm)
+            to++;
+        move_plane(&cut->arms[cutter->near[from].arm], &cutter->near[from], to - from);
+    }
     return STATUS_OK;
 }
 
 static void mark_behind(const Cut *cut)
 {
     for (size_t i = 0; i < cut->patch->n_points; i++) {
-        cut->cutter->behind[i] = NO_ARM;
-        for (size_t k = 0; k < cut->n_arms; k++)
-            if (along_arm(&cut->arms[k], cut->patch->points[i].x) > 0)
-                cut->cutter->behind[i] = (uint16_t)k;
+        const PatchPoint *point = &cut->patch->points[i];
+        cut->cutter->behind[i] = along_tube(cut, point) > 0 ? point->tube : NO_ARM;
     }
 }
 
@@ -98,6 +112,7 @@ static Status rim_point(const Cut *cut, uint32_t before, uint32_t behind, uint32
                             .normal = normal,
                             .radius_mm = arm->radius_mm,
                             .segment = arm->segment,
+                            .tube = arm_number,
                             .arm = arm_number};
         TRY(patch_add_point(cut->patch, point, place, err));
     }
@@ -157,8 +172,7 @@ Status planecut_make(PlaneCutter *cutter, const ZonePlan *plan, double ratio, Pa
     TRY(pairtable_begin(&cutter->crossings, 0, err));
     TRY(mem_reserve(&cutter->behind, &cutter->behind_capacity, patch->n_points,
                     sizeof *cutter->behind, "points of a junction", err));
-    for (size_t k = 0; k < cut.n_arms; k++)
-        TRY(move_plane(&cut, &cut.arms[k], 0.25 * ratio * cut.arms[k].radius_mm, err));
+    TRY(move_planes(&cut, 0.25 * ratio, err));
     mark_behind(&cut);
     for (size_t i = 0; i < cut.n_whole; i++)
         TRY(cut_triangle(&cut, i, sound, err));

@@ -6,13 +6,19 @@
 #include "surface/mesh/patch.h"
 #include "surface/mesh/zones.h"
 
+/* A point on an arm's tube: how far it lies beyond the plane, mm. */
+typedef struct PlaneNear {
+    uint16_t arm;
+    double along;
+} PlaneNear;
+
 /* Workspace of a thread; zeroed before the first use. */
 typedef struct PlaneCutter {
     PairTable crossings; /* edge -> point on the rim */
     uint16_t *behind;    /* one a point: the arm whose plane it lies behind, or NO_ARM */
     uint32_t *renamed;
-    double *along;
-    size_t behind_capacity, renamed_capacity, along_capacity;
+    PlaneNear *near;
+    size_t behind_capacity, renamed_capacity, near_capacity;
 } PlaneCutter;
 
 void planecutter_release(PlaneCutter *cutter);

@@ -18,7 +18,8 @@ static const double inv_sqrt_pi = 0.56418958354775628695;
 ZoneTerm zoneterm_of(Vec3 a, Vec3 b, double radius_mm, uint32_t segment)
 {
     double length = vec3_distance(a, b), k = sqrt(2) / radius_mm;
-    return (ZoneTerm){a, vec3_scale(vec3_sub(b, a), 1 / length), k, k * length, radius_mm, segment};
+    return (ZoneTerm){
+        a, vec3_scale(vec3_sub(b, a), 1 / length), k, k * length, radius_mm, segment, NO_ARM};
 }
 
 /* A place in the coordinates of a term: how far inside either end, how far from the axis. */

@@ -14,8 +14,12 @@ typedef struct ZoneTerm {
     double length_k; /* of the segment, times k */
     double radius_mm;
     uint32_t segment; /* of the tree */
+    uint16_t arm;     /* of the zone, that the term is of, or NO_ARM */
 } ZoneTerm;
 
+#define NO_ARM UINT16_MAX
+
+/* The term of a segment that is no arm. */
 ZoneTerm zoneterm_of(Vec3 a, Vec3 b, double radius_mm, uint32_t segment);
 /* The term at x, in [0, 1]. */
 double zoneterm_value(const ZoneTerm *term, Vec3 x);

@@ -32,10 +32,12 @@ static Status add_arm(Planner *planner, uint32_t segment, int end, Err *err)
     double plane = planner->zones->plane[segment][end], radius = self->radius_mm;
     TRY(mem_reserve(&plan->arms, &planner->arm_capacity, plan->n_arms + 1, sizeof *plan->arms,
                     "tubes", err));
+    ZoneTerm *term = &plan->field.terms[plan->field.n_terms++];
+    *term = zoneterm_of(from, vec3_add_scaled(from, outward, plane + ARM_TAIL * radius), radius,
+                        segment);
+    term->arm = (uint16_t)plan->n_arms;
     plan->arms[plan->n_arms++] =
         (Arm){segment, end, vec3_add_scaled(from, outward, plane), outward, radius};
-    plan->field.terms[plan->field.n_terms++] = zoneterm_of(
-        from, vec3_add_scaled(from, outward, plane + ARM_TAIL * radius), radius, segment);
     return STATUS_OK;
 }
 

@@ -43,16 +43,12 @@ static bool is_behind(const Builder *builder, const PartBounds *bounds, Vec3 cen
     const ZonePlan *plan = builder->plan;
     if (bounds->all - bounds->largest > 0.1 * FIELD_LEVEL)
         return false;
-    uint32_t segment = plan->field.terms[bounds->largest_term].segment;
-    for (size_t i = 0; i < plan->n_arms; i++) {
-        const Arm *arm = &plan->arms[i];
-        if (arm->segment != segment)
-            continue;
-        double behind = vec3_dot(vec3_sub(center, arm->at), arm->outward);
-        if (behind - ball > margin_behind * builder->size->ratio * arm->radius_mm)
-            return true;
-    }
-    return false;
+    uint16_t number = plan->field.terms[bounds->largest_term].arm;
+    if (number == NO_ARM)
+        return false;
+    const Arm *arm = &plan->arms[number];
+    double behind = vec3_dot(vec3_sub(center, arm->at), arm->outward);
+    return behind - ball > margin_behind * builder->size->ratio * arm->radius_mm;
 }
 
 static Vec3 normal_at(const Builder *builder, const FieldPart *part, Vec3 x)
