@@ -258,6 +258,23 @@ static void a_twig_within_a_trunk_is_swallowed_not_missing(void **state)
     release(&made);
 }
 
+/* It reaches five radii into the tube that is cut off behind the junction. */
+static void a_twig_along_the_axis_of_a_trunk_is_swallowed_not_missing(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    sketch_begin(&sketch, vec3(0, 0, 0));
+    uint32_t fork = sketch_to(&sketch, 0, vec3(0.866, -0.618, 0), 0.258);
+    sketch_to(&sketch, fork, vec3(1.59, -1.732, 0), 0.108);
+    sketch_to(&sketch, fork, vec3(3.055, -3.894, 0), 0.249);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    assert_int_equal(made.report.n_swallowed, 1);
+    assert_int_equal(made.report.swallowed[0], 1);
+    release(&made);
+}
+
 /* A mesh of loose triangles. */
 static size_t crossings_of(float (*points)[3], uint32_t (*triangles)[3], size_t n)
 {
@@ -344,6 +361,7 @@ int main(void)
         cmocka_unit_test(overlapping_strangers_are_refused_by_name),
         cmocka_unit_test(vessels_at_both_ends_of_a_short_one_do_not_blend),
         cmocka_unit_test(a_twig_within_a_trunk_is_swallowed_not_missing),
+        cmocka_unit_test(a_twig_along_the_axis_of_a_trunk_is_swallowed_not_missing),
         cmocka_unit_test(triangles_that_pierce_touch_or_fold_are_found),
         cmocka_unit_test(all_pairs_of_boxes_that_meet_are_found_once),
     };

@@ -195,12 +195,25 @@ static Status prove(const Maker *maker, bool *sound)
     return STATUS_OK;
 }
 
+/* Whether a point lies in an arm, which the field of the zone has only a part of. */
+static bool is_in_arm(const Maker *maker, Vec3 x)
+{
+    for (size_t k = 0; k < maker->plan->n_arms; k++) {
+        const FieldSegment *arm = &maker->tree->segments[maker->plan->arms[k].segment];
+        if (segment_distance_to(arm, x) < arm->radius_mm)
+            return true;
+    }
+    return false;
+}
+
 /* Whether the wall about a segment, where its own term is the largest, has a point at all; then
  * *at is one. */
-static bool find_own_wall(const ZonePlan *plan, const ZoneTree *tree, const FieldPart *all,
-                          const FieldSegment *segment, uint32_t number, Vec3 *at)
+static bool find_own_wall(const Maker *maker, const FieldPart *all, uint32_t number, Vec3 *at)
 {
     enum { PLACES = 5, ANGLES = 8 };
+    const ZonePlan *plan = maker->plan;
+    const ZoneTree *tree = &maker->worker->tree;
+    const FieldSegment *segment = &maker->tree->segments[number];
     Vec3 u, v, axis = vec3_sub(segment->b, segment->a);
     vec3_across(vec3_normalized(axis), &u, &v);
     for (int i = 0; i < PLACES * ANGLES; i++) {
@@ -218,7 +231,7 @@ static bool find_own_wall(const ZonePlan *plan, const ZoneTree *tree, const Fiel
         }
         *at = vec3_add_scaled(from, way, low);
         FieldValue value = fieldpart_gradient(&plan->field, &tree->stack, all, *at, &gradient);
-        if (plan->field.terms[value.largest].segment == number)
+        if (plan->field.terms[value.largest].segment == number && !is_in_arm(maker, *at))
             return true;
     }
     return false;
@@ -239,8 +252,7 @@ static Status look_for(const Maker *maker, uint32_t number, double ratio, uint8_
     TRY(fieldpart_narrow(&maker->plan->field, &tree->stack, &all, middle, reach, 0, &near, &bounds,
                          maker->err));
     *fate = SEGMENT_SWALLOWED;
-    if (near.n_terms <= MOST_PART_TERMS &&
-        find_own_wall(maker->plan, tree, &near, segment, number, &at)) {
+    if (near.n_terms <= MOST_PART_TERMS && find_own_wall(maker, &near, number, &at)) {
         double nearest = HUGE_VAL;
         for (size_t i = 0; i < patch->n_points; i++)
             nearest = fmin(nearest, vec3_distance(patch->points[i].x, at));
