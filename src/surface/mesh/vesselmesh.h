@@ -54,7 +54,7 @@ typedef struct MeshReport {
     NearPair *near; /* owned; gaps below NEAR_GAP of the thinner radius, overlaps first */
     size_t n_near, n_overlapping;
     double volume_mm3;
-    MeshOff off; /* of tubes all, of junctions a quarter of the triangles, by the field's slope */
+    MeshOff off; /* of junctions at the middle of each triangle and of its longest edge */
     size_t zones, repeated; /* junction zones, and those that needed finer cells */
 } MeshReport;
 

@@ -290,43 +290,90 @@ static Status find_fates(const Maker *maker, double ratio, uint8_t *fates)
     return STATUS_OK;
 }
 
-/* How far a point is off the wall, by the field's value and slope there. */
-static void measure_at(const Maker *maker, Vec3 x, double radius_mm)
+/* Whether a place is inside the wall, as far as is known: behind a plane it is as `otherwise`. */
+static bool is_inside(const Maker *maker, Vec3 x, bool otherwise)
 {
     const ZoneTree *tree = &maker->worker->tree;
-    const ZoneCell *cell = zonetree_active(tree, x);
-    Vec3 gradient;
-    if (!cell)
-        return;
-    FieldValue value =
-        fieldpart_gradient(&maker->plan->field, &tree->kept, &cell->part, x, &gradient);
-    double steepness = vec3_length(gradient);
-    if (steepness > 0)
-        meshoff_add(&maker->piece->off, fabs(value.phi - FIELD_LEVEL) / steepness, radius_mm);
+    const ZoneCell *cell = zonetree_leaf(tree, x);
+    if (!cell || cell->state == CELL_OUTSIDE)
+        return false;
+    if (cell->state == CELL_ACTIVE)
+        return fieldpart_value(&maker->plan->field, &tree->kept, &cell->part, x).phi >= FIELD_LEVEL;
+    return cell->state == CELL_INSIDE || otherwise;
 }
 
-/* Measures the middle and the middle of the longest edge of some triangles. */
+/* How far x, which is inside or not, is from the wall along `outward` or against it, up to a
+ * radius. */
+static double search_wall(const Maker *maker, Vec3 x, bool inside, Vec3 outward, double radius_mm)
+{
+    double low = 0, high = 0.01 * radius_mm, sign = inside ? 1 : -1;
+    while (high < radius_mm &&
+           is_inside(maker, vec3_add_scaled(x, outward, sign * high), inside) == inside) {
+        low = high;
+        high *= 1.5;
+    }
+    for (int i = 0; i < 8 && high < radius_mm; i++) {
+        double middle = 0.5 * (low + high);
+        bool same = is_inside(maker, vec3_add_scaled(x, outward, sign * middle), inside) == inside;
+        *(same ? &low : &high) = middle;
+    }
+    return fmin(high, radius_mm);
+}
+
+/* How far a point of a triangle is off the wall: by the field's value and slope if it is near and
+ * the field about as steep as at a vessel's wall, where its slope is 4 FIELD_LEVEL / r; else
+ * searched for along the field's slope and the triangle's normal. */
+static double measure_at(const Maker *maker, Vec3 x, Vec3 normal, double radius_mm)
+{
+    static const double near = 0.01, steep = FIELD_LEVEL;
+    const ZoneTree *tree = &maker->worker->tree;
+    const ZoneCell *cell = zonetree_leaf(tree, x);
+    Vec3 gradient;
+    if (!cell || cell->state == CELL_BEHIND)
+        return 0;
+    if (cell->state != CELL_ACTIVE)
+        return search_wall(maker, x, cell->state == CELL_INSIDE, normal, radius_mm);
+    FieldValue value =
+        fieldpart_gradient(&maker->plan->field, &tree->kept, &cell->part, x, &gradient);
+    double slope = vec3_length(gradient), off = fabs(value.phi - FIELD_LEVEL) / slope;
+    if (off <= near * radius_mm && slope * radius_mm >= steep)
+        return off;
+    bool inside = value.phi >= FIELD_LEVEL;
+    double one = search_wall(maker, x, inside, normal, radius_mm);
+    return slope > 0 ? fmin(one, search_wall(maker, x, inside, vec3_scale(gradient, -1 / slope),
+                                             radius_mm))
+                     : one;
+}
+
+/* Measures the middle of a triangle and that of its longest edge. */
+static void measure_triangle(const Maker *maker, const Triangle *triangle)
+{
+    const PatchPoint *points = maker->worker->patch.points, *at[3];
+    Vec3 middle = vec3(0, 0, 0), of_longest = middle;
+    double longest = 0, radius = HUGE_VAL;
+    for (int k = 0; k < 3; k++) {
+        at[k] = &points[triangle->at[k]];
+        middle = vec3_add_scaled(middle, at[k]->x, 1.0 / 3);
+        radius = fmin(radius, at[k]->radius_mm);
+    }
+    for (int k = 0; k < 3; k++) {
+        Vec3 a = at[k]->x, b = at[(k + 1) % 3]->x;
+        if (vec3_distance(a, b) > longest) {
+            longest = vec3_distance(a, b);
+            of_longest = vec3_scale(vec3_add(a, b), 0.5);
+        }
+    }
+    Vec3 normal =
+        vec3_normalized(vec3_cross(vec3_sub(at[1]->x, at[0]->x), vec3_sub(at[2]->x, at[0]->x)));
+    MeshOff *off = &maker->piece->off;
+    meshoff_add(off, measure_at(maker, middle, normal, radius), radius);
+    meshoff_add(off, measure_at(maker, of_longest, normal, radius), radius);
+}
+
 static void measure_off(const Maker *maker)
 {
-    enum { EVERY = 4 };
-    const Patch *patch = &maker->worker->patch;
-    for (size_t i = 0; i < patch->n_triangles; i += EVERY) {
-        const PatchPoint *at[3];
-        Vec3 middle = vec3(0, 0, 0), of_longest = middle;
-        double longest = 0;
-        for (int k = 0; k < 3; k++)
-            at[k] = &patch->points[patch->triangles[i].at[k]];
-        for (int k = 0; k < 3; k++) {
-            Vec3 a = at[k]->x, b = at[(k + 1) % 3]->x;
-            middle = vec3_add_scaled(middle, a, 1.0 / 3);
-            if (vec3_distance(a, b) > longest) {
-                longest = vec3_distance(a, b);
-                of_longest = vec3_scale(vec3_add(a, b), 0.5);
-            }
-        }
-        measure_at(maker, middle, at[0]->radius_mm);
-        measure_at(maker, of_longest, at[0]->radius_mm);
-    }
+    for (size_t i = 0; i < maker->worker->patch.n_triangles; i++)
+        measure_triangle(maker, &maker->worker->patch.triangles[i]);
 }
 
 /* Makes what the lattice has left into a piece. */

@@ -28,7 +28,7 @@ typedef struct ZonePiece {
     size_t n_rims;
     uint32_t *rim_points;
     int repeats; /* with finer cells */
-    MeshOff off; /* of a sample of the triangles' middles and longest edges */
+    MeshOff off; /* of the triangles' middles and longest edges */
 } ZonePiece;
 
 void zonepiece_release(ZonePiece *piece);

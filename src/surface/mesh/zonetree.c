@@ -174,13 +174,13 @@ static uint32_t leaf_at(const ZoneTree *tree, const int64_t at[3], int level)
     return cell;
 }
 
-const ZoneCell *zonetree_active(const ZoneTree *tree, Vec3 x)
+const ZoneCell *zonetree_leaf(const ZoneTree *tree, Vec3 x)
 {
     double unit = zonetree_side(tree, ZONETREE_LEVELS);
     Vec3 from = vec3_scale(vec3_sub(x, tree->corner), 1 / unit);
     const int64_t at[3] = {(int64_t)floor(from.x), (int64_t)floor(from.y), (int64_t)floor(from.z)};
     uint32_t leaf = leaf_at(tree, at, ZONETREE_LEVELS);
-    return leaf != UINT32_MAX && tree->cells[leaf].state == CELL_ACTIVE ? &tree->cells[leaf] : NULL;
+    return leaf != UINT32_MAX ? &tree->cells[leaf] : NULL;
 }
 
 /* Splits a leaf that has only been found too large by its neighbour. */

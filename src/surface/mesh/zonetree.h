@@ -42,8 +42,8 @@ MUST_CHECK Status zonetree_build(ZoneTree *tree, const ZonePlan *plan, const Cel
                                  Err *err);
 void zonetree_release(ZoneTree *tree);
 
-/* The active leaf that holds x, or NULL. O(levels). */
-const ZoneCell *zonetree_active(const ZoneTree *tree, Vec3 x);
+/* The leaf that holds x; NULL outside the tree. O(levels). */
+const ZoneCell *zonetree_leaf(const ZoneTree *tree, Vec3 x);
 
 static inline double zonetree_side(const ZoneTree *tree, int level)
 {
