@@ -147,9 +147,8 @@ void vtk_release_cells(VtkCells *cells)
     *cells = (VtkCells){0};
 }
 
-/* Adds a polyline, cell number `cell`, through points of these numbers, in this order. */
-static Status add_line(VtkData *data, size_t cell, const double *corner, size_t n,
-                       size_t first_point, Err *err)
+Status vtk_add_line(VtkData *data, size_t cell, const double *corner, size_t n, size_t first_point,
+                    Err *err)
 {
     TRY(mem_reserve(&data->corner, &data->corners_capacity, data->n_corners + n,
                     sizeof *data->corner, "points of lines", err));
@@ -171,10 +170,10 @@ static Status add_cell(VtkData *data, double type, const double *corner, size_t 
     size_t cell = data->n_cells++;
     if (type == VTK_QUADRATIC_EDGE && n == 3) {
         const double in_order[] = {corner[0], corner[2], corner[1]};
-        return add_line(data, cell, in_order, n, first_point, err);
+        return vtk_add_line(data, cell, in_order, n, first_point, err);
     }
     if (type == VTK_LINE || type == VTK_POLY_LINE)
-        return add_line(data, cell, corner, n, first_point, err);
+        return vtk_add_line(data, cell, corner, n, first_point, err);
     data->not_lines += type != VTK_VERTEX && type != VTK_POLY_VERTEX;
     return STATUS_OK;
 }
@@ -247,6 +246,18 @@ bool vtk_is_own(const char *name)
     return false;
 }
 
+void vtk_put_column_name(const TreeColumn *column, Text *text)
+{
+    text_put_line(text, column->name);
+    if (vtk_is_own(column->name))
+        text_puts(text, "_");
+    if (!*column->unit)
+        return;
+    text_puts(text, " [");
+    text_put_line(text, column->unit);
+    text_puts(text, "]");
+}
+
 /* ---- what arrays mean ---- */
 
 /* Plain names of radii, and of diameters, best first. */
@@ -289,7 +300,7 @@ static void put_names(const VtkArrays *arrays, const char *of, Text *text, size_
         if (arrays->array[i].value && arrays->array[i].components == 1 && (*n)++ < SHOWN) {
             text_puts(text, *n > 1 ? ", '" : "'");
             text_put_line(text, arrays->array[i].name);
-            text_printf(text, "' of %s", of);
+            text_printf(text, "' of %ss", of);
         }
 }
 
@@ -298,8 +309,8 @@ static Status refuse_radius(const VtkData *data, const Graph *graph, const char 
 {
     Text names = TEXT_INIT;
     size_t n = 0;
-    put_names(&data->of_points, "points", &names, &n);
-    put_names(&data->of_cells, "cells", &names, &n);
+    put_names(&data->of_points, graph->point_record, &names, &n);
+    put_names(&data->of_cells, graph->line_record, &names, &n);
     Status status = text_check(&names, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_INPUT, "%s: %s; %s%.600s", graph->name, what,
@@ -354,7 +365,7 @@ static void find_inlets(Meaning *meaning, const VtkData *data)
 static const VtkArray *find_remarks(const VtkData *data)
 {
     for (size_t i = 0; i < data->of_file.n; i++)
-        if (data->of_file.array[i].text && strcmp(data->of_file.array[i].name, "corcast") == 0)
+        if (data->of_file.array[i].text && strcmp(data->of_file.array[i].name, VTK_KNOWN) == 0)
             return &data->of_file.array[i];
     return NULL;
 }
@@ -387,11 +398,13 @@ static Status find_meaning(Meaning *meaning, const VtkData *data, const Graph *g
     return STATUS_OK;
 }
 
-static Status tell(const Meaning *meaning, const VtkData *data, TreeReading *reading, Err *err)
+static Status tell(const Meaning *meaning, const VtkData *data, const Graph *graph, Err *err)
 {
+    TreeReading *reading = graph->reading;
     TRY(reading_note(reading, err, "radius is %sthe %s array '%.60s'",
                      meaning->factor == 1 ? "" : "half of ",
-                     meaning->of == GRAPH_POINTS ? "point" : "cell", meaning->radius->name));
+                     meaning->of == GRAPH_POINTS ? graph->point_record : graph->line_record,
+                     meaning->radius->name));
     if (meaning->inlet)
         TRY(reading_note(reading, err, "inlets are the points whose '%.60s' is %g",
                          meaning->inlet->name, meaning->inlet_value));
@@ -442,7 +455,7 @@ static Status add_lines(const Meaning *meaning, const VtkData *data, Graph *grap
                 .a = (size_t)data->corner[k - 1],
                 .b = (size_t)data->corner[k],
                 .radius = radius ? meaning->factor * radius->value[data->cell[i]] : (double)NAN,
-                .is_directed = graph->is_tree,
+                .is_directed = graph->is_tree || data->is_directed,
                 .record = data->cell[i]};
             TRY(graph_blame(graph, GRAPH_LINES, line.record, graph_line(graph, &line, err), err));
         }
@@ -596,15 +609,15 @@ static Status check_sizes(const VtkData *data, const Graph *graph, Err *err)
 Status vtk_to_graph(const VtkData *data, Graph *graph, Err *err)
 {
     Meaning meaning = {0};
-    graph->point_record = "point";
-    graph->line_record = "cell";
+    graph->point_record = graph->point_record ? graph->point_record : "point";
+    graph->line_record = graph->line_record ? graph->line_record : "cell";
     TRY(check_sizes(data, graph, err));
     if (data->n_lines == 0 && !find_remarks(data))
         return err_set(err, STATUS_INPUT, "%s: there are no lines in it%s", graph->name,
                        data->n_cells ? ", only other cells" : "");
     TRY(find_meaning(&meaning, data, graph, err));
     graph->is_tree = meaning.id != NULL;
-    TRY(tell(&meaning, data, graph->reading, err));
+    TRY(tell(&meaning, data, graph, err));
     TRY(read_remarks(data, graph, err));
     TRY(add_points(&meaning, data, graph, err));
     if (graph->is_tree)

@@ -4,6 +4,9 @@
 
 #include "tree/tree.h"
 
+/* The text that holds what is known of a tree that the program wrote, a comment a line. */
+#define VTK_KNOWN "corcast"
+
 /* A type of numbers, as both kinds of files call it. */
 typedef struct VtkType {
     const char *legacy, *xml; /* NULL: that kind does not know it */
@@ -46,6 +49,7 @@ typedef struct VtkData {
     size_t n_lines, ends_capacity, cells_capacity;
     size_t n_cells;   /* of any kind */
     size_t not_lines; /* cells that are neither lines nor points */
+    bool is_directed; /* blood flows along the lines */
     VtkArrays of_points, of_cells, of_file;
 } VtkData;
 
@@ -54,6 +58,10 @@ void vtk_release_array(VtkArray *array);
 
 /* Adds an array to those of *arrays, which owns it then, also on failure. */
 MUST_CHECK Status vtk_add_array(VtkArrays *arrays, VtkArray *array, Err *err);
+/* Adds a polyline, cell number `cell`, through `n` points, counted from number `first_point` on. */
+MUST_CHECK Status vtk_add_line(VtkData *data, size_t cell, const double *corner, size_t n,
+                               size_t first_point, Err *err);
+
 /* Types of cells that are read, or passed over in silence. */
 enum {
     VTK_VERTEX = 1,
@@ -84,6 +92,8 @@ void vtk_plain_name(const char *name, char *out, size_t size);
 /* Whether the program has an array of its own of this name, underscores at its end left out: in its
  * files a column so called has an underscore more. */
 bool vtk_is_own(const char *name);
+/* Appends what a column of the tree is called in its files, "NAME [UNIT]". */
+void vtk_put_column_name(const TreeColumn *column, Text *text);
 
 /* Hands all over to the graph: radius, inlets and direction by the names of arrays, other arrays as
  * columns. `graph->reading` is told what was assumed. STATUS_INPUT, with the file's name, when a

@@ -135,19 +135,10 @@ static double number_at(const Lines *lines, const Sheet *sheet, size_t i)
 static void put_name(const Lines *lines, const Sheet *sheet, Text *text)
 {
     text_clear(text);
-    if (sheet->kind != COLUMN) {
+    if (sheet->kind != COLUMN)
         text_puts(text, kinds[sheet->kind].name);
-        return;
-    }
-    const TreeColumn *column = &lines->tree->column[sheet->column];
-    text_put_line(text, column->name);
-    if (vtk_is_own(column->name))
-        text_puts(text, "_");
-    if (*column->unit) {
-        text_puts(text, " [");
-        text_put_line(text, column->unit);
-        text_puts(text, "]");
-    }
+    else
+        vtk_put_column_name(&lines->tree->column[sheet->column], text);
 }
 
 static void write_numbers(const Lines *lines, const Sheet *sheet, bool is_big_endian, FILE *stream)
@@ -215,7 +206,7 @@ static void put_remarks(const TreeMeta *meta, Text *text)
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);)
         n++;
     text_printf(text,
-                "    <FieldData>\n      <DataArray type=\"String\" Name=\"corcast\" "
+                "    <FieldData>\n      <DataArray type=\"String\" Name=\"" VTK_KNOWN "\" "
                 "NumberOfTuples=\"%zu\" format=\"ascii\">\n",
                 n);
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
@@ -335,7 +326,7 @@ static void put_legacy_remarks(const TreeMeta *meta, Text *text)
     size_t n = 0;
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);)
         n++;
-    text_printf(text, "FIELD FieldData 1\ncorcast 1 %zu string\n", n);
+    text_printf(text, "FIELD FieldData 1\n" VTK_KNOWN " 1 %zu string\n", n);
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
         const char *chars = text_chars(&line);
         put_string(chars ? chars : "", text);

@@ -1,0 +1,204 @@
+/* GXL of VascuSynth and OpenCCO: nodes with a position of two or three numbers, edges from the
+ * parent to the child with a radius. Their names have blanks around them, and their node types are
+ * not always true (OpenCCO calls the first child of the root so): roots are found by the edges.
+ * What is known of the tree stands in attributes of <info_graph>, as OpenCCO has its pressures. */
+#include "treeio/comments.h"
+#include "treeio/formats.h"
+#include "treeio/namednetwork.h"
+#include "treeio/xml.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const axes[] = {"x", "y", "z"};
+
+typedef struct Reader {
+    NamedNetwork network;
+    Graph *graph;
+    char *attribute; /* whose values are read; owned */
+    size_t component;
+} Reader;
+
+/* The element that an attribute describes: "node", "edge", "info_graph" or another. */
+static const char *described(const Xml *xml)
+{
+    size_t up = 1;
+    while (*xml_around(xml, up) && strcmp(xml_around(xml, up), "attr") != 0)
+        up++;
+    return xml_around(xml, up + 1);
+}
+
+static Status begin_attribute(Reader *reader, const XmlElement *element, Err *err)
+{
+    const char *name;
+    TRY(xml_needed(element, "name", &name, err));
+    free(reader->attribute);
+    reader->attribute = NULL;
+    TRY(mem_strdup(&reader->attribute, name, err));
+    char *trimmed = text_trim(reader->attribute);
+    memmove(reader->attribute, trimmed, strlen(trimmed) + 1);
+    reader->component = 0;
+    return STATUS_OK;
+}
+
+static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err)
+{
+    Reader *reader = context;
+    const char *name, *from, *to;
+    if (strcmp(element->name, "attr") == 0)
+        return begin_attribute(reader, element, err);
+    if (strcmp(element->name, "node") == 0) {
+        TRY(xml_needed(element, "id", &name, err));
+        return namednetwork_point(&reader->network, name, xml_line(xml), err);
+    }
+    if (strcmp(element->name, "edge") != 0)
+        return STATUS_OK;
+    TRY(xml_needed(element, "from", &from, err));
+    TRY(xml_needed(element, "to", &to, err));
+    return namednetwork_line(&reader->network, from, to, xml_line(xml), err);
+}
+
+/* A number of the attribute: a coordinate, or one under the attribute's name. */
+static Status take_number(Reader *reader, Attributes *of, bool of_point, double value, Err *err)
+{
+    size_t component = reader->component++;
+    if (of_point && strcmp(reader->attribute, "position") == 0)
+        return component < 3 ? attributes_set(of, axes[component], value, err)
+                             : err_set(err, STATUS_INPUT, "a position has more than 3 numbers");
+    return component == 0 ? attributes_set(of, reader->attribute, value, err) : STATUS_OK;
+}
+
+static Status take_remark(Reader *reader, const char *text, Err *err)
+{
+    if (strcmp(reader->attribute, VTK_KNOWN) == 0)
+        return namednetwork_known(&reader->network, text, err);
+    Text comment = TEXT_INIT;
+    text_printf(&comment, "%s: ", reader->attribute);
+    text_put_line(&comment, text);
+    Status status = text_check(&comment, err);
+    if (status == STATUS_OK)
+        status = comment_read(&reader->graph->meta, text_chars(&comment), err);
+    text_release(&comment);
+    return status;
+}
+
+static Status end(void *context, Xml *xml, const char *name, char *text, Err *err)
+{
+    Reader *reader = context;
+    const char *of = described(xml);
+    double value;
+    bool of_point = strcmp(of, "node") == 0, of_line = strcmp(of, "edge") == 0;
+    if (!reader->attribute || strcmp(name, "attr") == 0 || strcmp(name, "tup") == 0)
+        return STATUS_OK;
+    if (strcmp(of, "info_graph") == 0)
+        return take_remark(reader, text, err);
+    if (strcmp(name, "string") == 0 || (!of_point && !of_line))
+        return STATUS_OK;
+    TRY(field_number(reader->attribute, text, -HUGE_VAL, &value, err));
+    return take_number(reader, of_point ? &reader->network.of_points : &reader->network.of_lines,
+                       of_point, value, err);
+}
+
+Status gxl_read(Graph *graph, char *bytes, size_t size, Err *err)
+{
+    static const XmlHandlers handlers = {begin, end};
+    Reader reader = {.network = {.names = {.what = "node"}}, .graph = graph};
+    Status status = xml_read(graph->name, bytes, size, &handlers, &reader, err);
+    reader.network.data.is_directed = true;
+    if (status == STATUS_OK)
+        status = namednetwork_to_graph(&reader.network, axes, graph, err);
+    namednetwork_release(&reader.network);
+    free(reader.attribute);
+    return status;
+}
+
+bool gxl_detect(const char *start)
+{
+    return xml_begins(start, "gxl");
+}
+
+/* ---- writing ---- */
+
+static const char *node_type(const Tree *tree, const int32_t *children, size_t i)
+{
+    if (!tree_is_segment(tree, i))
+        return " root node ";
+    return children[i] == 0 ? " terminal node " : " bifurication "; /* as the others spell it */
+}
+
+static void put_attribute(Text *text, const char *name, double value)
+{
+    if (isnan(value))
+        return;
+    text_puts(text, "    <attr name=\" ");
+    text_escaped(text, name);
+    text_puts(text, "\"><float>");
+    text_number(text, value);
+    text_puts(text, "</float></attr>\n");
+}
+
+static void put_node(const Tree *tree, const int32_t *children, size_t i, Text *text)
+{
+    const double place[] = {tree->position[i].x, tree->position[i].y, tree->position[i].z};
+    text_printf(text,
+                "  <node id=\"n%d\">\n    <attr name=\" nodeType\"><string>%s</string></attr>\n"
+                "    <attr name=\" position\"><tup>",
+                tree->id[i], node_type(tree, children, i));
+    for (int k = 0; k < 3; k++) {
+        text_puts(text, "<float>");
+        text_number(text, place[k]);
+        text_puts(text, "</float>");
+    }
+    text_puts(text, "</tup></attr>\n");
+    put_attribute(text, "id", tree->id[i]);
+    put_attribute(text, "type", tree->type[i]);
+    put_attribute(text, "radius", tree->radius_mm[i]);
+    if (tree->flow_share && tree->flow_share[i] > 0)
+        put_attribute(text, "flow_share", tree->flow_share[i]);
+    text_puts(text, "  </node>\n");
+}
+
+static void put_edge(const Tree *tree, size_t i, Text *text, Text *name)
+{
+    text_printf(text, "  <edge id=\"e%d\" to=\"n%d\" from=\"n%d\">\n", tree->id[i], tree->id[i],
+                tree->id[tree->parent[i]]);
+    put_attribute(text, "radius", tree->radius_mm[i]);
+    for (size_t k = 0; k < tree->n_columns; k++) {
+        text_clear(name);
+        vtk_put_column_name(&tree->column[k], name);
+        put_attribute(text, text_chars(name), tree->column[k].value[i]);
+    }
+    text_puts(text, "  </edge>\n");
+}
+
+static Status put_graph(const Tree *tree, const int32_t *children, Text *text, Err *err)
+{
+    Text name = TEXT_INIT;
+    text_puts(text, "<gxl><graph id=\"tree\" edgeids=\" true\" edgemode=\" directed\" "
+                    "hypergraph=\" false\">\n<info_graph>\n"
+                    "    <attr name=\" " VTK_KNOWN "\"><string>");
+    namednetwork_put_known(&tree->meta, text);
+    text_puts(text, "</string></attr>\n</info_graph>\n");
+    for (size_t i = 0; i < tree->n; i++)
+        put_node(tree, children, i, text);
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i))
+            put_edge(tree, i, text, &name);
+    text_puts(text, "</graph></gxl>\n");
+    Status status = text_check(&name, err);
+    text_release(&name);
+    return status;
+}
+
+Status gxl_write(const Tree *tree, FILE *stream, Err *err)
+{
+    int32_t *children;
+    TRY(tree_child_counts(tree, &children, err));
+    Text text = TEXT_TO(stream);
+    Status status = put_graph(tree, children, &text, err);
+    if (status == STATUS_OK)
+        status = text_flush(&text, err);
+    text_release(&text);
+    free(children);
+    return status;
+}
