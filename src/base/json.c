@@ -13,12 +13,17 @@ json_t *json_number(double value)
 json_t *json_text(const char *chars)
 {
     if (!chars)
-        return json_null();
+        return NULL;
     Text text = TEXT_INIT;
     text_utf8(&text, chars);
     json_t *made = json_string(text_chars(&text));
     text_release(&text);
     return made;
+}
+
+json_t *json_text_or_null(const char *chars)
+{
+    return chars ? json_text(chars) : json_null();
 }
 
 /* `whole` when a part was taken; jansson has then let go of the part if it was not. */

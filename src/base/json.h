@@ -10,8 +10,11 @@
 
 /* A JSON real, or null where the value is not finite. New reference, as of all below. */
 json_t *json_number(double value);
-/* A JSON string; what of `chars` is not UTF-8 is replaced as text_utf8 does. NULL gives null. */
+/* A JSON string; what of `chars` is not UTF-8 is replaced as text_utf8 does. NULL when `chars` is
+ * NULL, as the characters of a text that failed are. */
 json_t *json_text(const char *chars);
+/* Likewise of what need not be there: null when `chars` is NULL. */
+json_t *json_text_or_null(const char *chars);
 
 typedef struct JsonMember {
     const char *key;

@@ -1,6 +1,7 @@
 /* A format is a row: what it is called, what it can hold, and a function that appends it to texts.
  * The texts flow into temporary files that take their names together once all is written, so that a
- * failure half way leaves what the user had. */
+ * failure half way leaves what the user had. What goes to standard output is held until then, so
+ * that who reads it gets all or nothing. */
 #include "emit/rows.h"
 
 #include <string.h>
@@ -123,7 +124,7 @@ static Status open_outputs(Outputs *outputs, Err *err)
         if (!outputs->path[i])
             continue;
         TRY(outfile_open(file, outputs->path[i], err));
-        outputs->text[i] = TEXT_TO(file->stream);
+        outputs->text[i] = file->stream == stdout ? TEXT_INIT : TEXT_TO(file->stream);
         outputs->n++;
     }
     return STATUS_OK;
@@ -138,6 +139,18 @@ static const char *failed_path(const Outputs *outputs)
     return outputs->files[i].path;
 }
 
+/* Hands what has not flowed yet over to the text's stream. */
+static Status end_output(Text *text, FILE *stream, Err *err)
+{
+    Text held = TEXT_TO(stream);
+    if (stream != stdout)
+        return text_flush(text, err);
+    text_add(&held, text);
+    Status status = text_flush(&held, err);
+    text_release(&held);
+    return status;
+}
+
 static Status fill_outputs(const Emitter *emitter, const EmitParams *params, Outputs *outputs,
                            EmitReport *report, Err *err)
 {
@@ -147,9 +160,9 @@ static Status fill_outputs(const Emitter *emitter, const EmitParams *params, Out
         text_puts(&text[2], params->manifest);
     if (status == STATUS_OK && params->settings)
         status = emitter->write_settings(params, &text[3], err);
-    for (size_t i = 0; i < OUTPUTS && status == STATUS_OK; i++)
+    for (size_t i = 0, n = 0; i < OUTPUTS && status == STATUS_OK; i++)
         if (outputs->path[i])
-            status = text_flush(&text[i], err);
+            status = end_output(&text[i], outputs->files[n++].stream, err);
     if (status == STATUS_IO)
         err_prefix(err, "%s: ", failed_path(outputs));
     return status;

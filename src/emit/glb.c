@@ -162,19 +162,13 @@ static void add_order(const Glb *glb, size_t order, Lists *lists)
     lists->n++;
 }
 
-/* NULL, from a text that failed, makes what is made of it fail. */
-static json_t *told(const char *text)
-{
-    return text ? json_text(text) : NULL;
-}
-
 /* What is known of the tree, and what its colours mean; flat, because assimp 5.2 aborts on objects
  * within. */
 static json_t *root_extras(const EmitParams *params)
 {
     const ColorScale *scale = &params->appearance->scale;
     const JsonMember about[] = {
-        {"description", told(params->description)},
+        {"description", json_text(params->description)},
         {"coordinates", json_text("mm, y up; the scale of this node makes metres of them")},
     };
     json_t *extras = json_with_members(json_object(), about, 2);
@@ -217,7 +211,7 @@ static json_t *material(const Finish *finish)
 static json_t *asset(const EmitParams *params)
 {
     const JsonMember extras[] = {
-        {"command", told(params->command)},
+        {"command", json_text(params->command)},
     };
     const JsonMember members[] = {
         {"version", json_text("2.0")},

@@ -1,7 +1,5 @@
 /* Camera, lights and ground are POV-Ray's, whose arithmetic camera_ray and ground_hit repeat
- * operation by operation, so that rays of both programs are the same to the last bit. The inverse
- * of the camera needs no such thing: it solves point = location + z direction + x right + y up by
- * cross products, for any three vectors that are not in one plane. */
+ * operation by operation, so that rays of both programs are the same to the last bit. */
 #include "scene/view.h"
 
 #include "scene/geometry.h"
@@ -20,23 +18,6 @@ Ray camera_ray(const Camera *camera, double i, double j)
     if (camera->projection == PROJECTION_ORTHOGRAPHIC)
         return (Ray){vec3_add(camera->location, offset), vec3_normalized(camera->direction)};
     return (Ray){camera->location, vec3_normalized(vec3_add(camera->direction, offset))};
-}
-
-bool camera_project(const Camera *camera, Vec3 point, double *i, double *j, double *depth_mm)
-{
-    bool perspective = camera->projection == PROJECTION_PERSPECTIVE;
-    Vec3 from = vec3_sub(point, camera->location), normal = vec3_cross(camera->right, camera->up);
-    double z = vec3_dot(from, normal) / vec3_dot(camera->direction, normal);
-    if (perspective && !(z > 0))
-        return false;
-    Vec3 offset = vec3_add_scaled(from, camera->direction, -z);
-    double per_area = 1 / (vec3_dot(normal, normal) * (perspective ? z : 1));
-    double x0 = vec3_dot(vec3_cross(offset, camera->up), normal) * per_area;
-    double y0 = vec3_dot(vec3_cross(camera->right, offset), normal) * per_area;
-    *i = (x0 + 0.5) * camera->width - 0.5;
-    *j = (0.5 - y0) * camera->height - 0.5;
-    *depth_mm = perspective ? vec3_length(from) : z * vec3_length(camera->direction);
-    return true;
 }
 
 Camera camera_of_pixel(const Camera *camera, int i, int j)

@@ -28,13 +28,6 @@ typedef struct Camera {
  * camera point (perspective) or from the plane through location (orthographic). */
 Ray camera_ray(const Camera *camera, double i, double j);
 
-/* Where a point is seen: the inverse of camera_ray, so that camera_ray(camera, *i, *j) meets the
- * point at t = *depth_mm. Coordinates outside the picture are given as well, and so are depths
- * below 0 of an orthographic camera. For what is put over a picture, such as the labels of a
- * figure; renderers have viewpoints of their own. False, and nothing is set, when the point does
- * not lie in front of a perspective camera. */
-bool camera_project(const Camera *camera, Vec3 point, double *i, double *j, double *depth_mm);
-
 /* A camera of 1 x 1 pixels that sees what pixel (i, j) sees, the further samples of antialiasing
  * included. In perspective its direction is neither unit nor square to right and up. */
 Camera camera_of_pixel(const Camera *camera, int i, int j);

@@ -23,7 +23,7 @@ json_t *report_json(const ReportCase *report)
     const JsonMember members[] = {
         {"verdict", json_text(reason ? "differ" : "agree")},
         {"severity", json_number(report_severity(report))},
-        {"reason", json_text(reason)},
+        {"reason", json_text_or_null(reason)},
         {"name", json_text(report->name)},
         {"model", json_text(report->model)},
         {"tier", json_text(report->planes[PLANE_COLOR]->tolerance.tier)},

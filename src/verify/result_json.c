@@ -135,8 +135,8 @@ json_t *compare_json(const CompareResult *result)
 {
     const JsonMember members[] = {
         {"verdict", json_text(result->agrees ? "agree" : "differ")},
-        {"reason", json_text(*result->reason ? result->reason : NULL)},
-        {"cause", json_text(*result->cause ? result->cause : NULL)},
+        {"reason", json_text_or_null(*result->reason ? result->reason : NULL)},
+        {"cause", json_text_or_null(*result->cause ? result->cause : NULL)},
         {"tier", json_text(result->tolerance.tier)},
         {"pixels", number((double)result->pixels)},
         {"width", number(result->width)},

@@ -158,6 +158,17 @@ static void what_is_made_of_a_text_that_failed_fails_too(void **state)
     text_release(&copy);
 }
 
+static void a_text_that_failed_is_no_json_and_one_that_is_not_there_is_null(void **state)
+{
+    (void)state;
+    assert_null(json_text(NULL));
+    json_t *nothing = json_text_or_null(NULL), *word = json_text_or_null("2.385 mm");
+    assert_true(json_is_null(nothing));
+    assert_string_equal(json_string_value(word), "2.385 mm");
+    json_decref(nothing);
+    json_decref(word);
+}
+
 static void bytes_that_are_not_utf8_become_replacement_characters(void **state)
 {
     (void)state;
@@ -543,6 +554,7 @@ int main(void)
         cmocka_unit_test(text_grows_over_any_length),
         cmocka_unit_test(a_text_with_a_stream_holds_only_what_is_not_written_yet),
         cmocka_unit_test(what_is_made_of_a_text_that_failed_fails_too),
+        cmocka_unit_test(a_text_that_failed_is_no_json_and_one_that_is_not_there_is_null),
         cmocka_unit_test(bytes_that_are_not_utf8_become_replacement_characters),
         cmocka_unit_test(json_made_of_nothing_is_nothing),
         cmocka_unit_test(a_number_in_json_reads_back_to_the_same_double),

@@ -25,6 +25,26 @@ static const Camera cameras[] = {
      .height = 141},
 };
 
+/* The inverse of camera_ray, by another way than POV-Ray's: it solves point = location + z
+ * direction
+ * + x right + y up by cross products. False where a perspective camera sees nothing. */
+static bool camera_project(const Camera *camera, Vec3 point, double *i, double *j, double *depth_mm)
+{
+    bool perspective = camera->projection == PROJECTION_PERSPECTIVE;
+    Vec3 from = vec3_sub(point, camera->location), normal = vec3_cross(camera->right, camera->up);
+    double z = vec3_dot(from, normal) / vec3_dot(camera->direction, normal);
+    if (perspective && !(z > 0))
+        return false;
+    Vec3 offset = vec3_add_scaled(from, camera->direction, -z);
+    double per_area = 1 / (vec3_dot(normal, normal) * (perspective ? z : 1));
+    double x0 = vec3_dot(vec3_cross(offset, camera->up), normal) * per_area;
+    double y0 = vec3_dot(vec3_cross(camera->right, offset), normal) * per_area;
+    *i = (x0 + 0.5) * camera->width - 0.5;
+    *j = (0.5 - y0) * camera->height - 0.5;
+    *depth_mm = perspective ? vec3_length(from) : z * vec3_length(camera->direction);
+    return true;
+}
+
 static void a_point_is_seen_where_the_ray_meets_it(void **state)
 {
     (void)state;

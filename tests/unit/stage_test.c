@@ -56,6 +56,67 @@ static Scene stage(const StageParams *params, StageReport *report)
     return scene;
 }
 
+/* Two trees whose rows are mixed: of the first a thick branch, with a step of no length, goes on
+ * behind the thin one that comes before it; the second is a root alone. */
+static Tree make_forest(void)
+{
+    static const int32_t parents[] = {-1, 0, -1, 0, 3, 4, 3};
+    static const double radii[] = {2.385, 0.7, 1, 2.385, 1.9, 1.9, 1.2};
+    static const Vec3 places[] = {{0, 20, 0}, {9, 9, 9},  {70, 0, 0}, {0, 10, 1},
+                                  {0, 10, 1}, {-5, 4, 2}, {6, 3, -1}};
+    Tree tree;
+    assert_int_equal(tree_init(&tree, 7, NULL), STATUS_OK);
+    for (int i = 0; i < 7; i++) {
+        tree.id[i] = i + 1;
+        tree.parent[i] = parents[i];
+        tree.radius_mm[i] = radii[i];
+        tree.position[i] = places[i];
+    }
+    return tree;
+}
+
+static void an_anatomy_tells_trees_orders_and_the_way_along_the_thickest_branch(void **state)
+{
+    (void)state;
+    static const uint32_t trees[] = {0, 0, 1, 0, 0, 0, 0};
+    static const int orders[] = {0, 1, 0, 2, 1, 1, 1};
+    static const Vec3 path[] = {{-10, 19, 0.5}, {-10, 9, 1.5}, {-15, 3, 2.5}};
+    Tree tree = make_forest();
+    Anatomy anatomy = {0};
+    assert_int_equal(stage_anatomy(&tree, vec3(10, 1, -0.5), &anatomy, NULL), STATUS_OK);
+    assert_int_equal(anatomy.n_trees, 2);
+    assert_near(anatomy.root[0], path[0], 0);
+    assert_near(anatomy.root[1], vec3(60, -1, 0.5), 0);
+    for (int i = 0; i < 7; i++) {
+        assert_int_equal(anatomy.tree[i], trees[i]);
+        assert_int_equal(anatomy.order[i], orders[i]);
+    }
+    assert_int_equal(anatomy.n_path, 3);
+    for (int i = 0; i < 3; i++)
+        assert_near(anatomy.path[i], path[i], 0);
+    anatomy_release(&anatomy);
+    assert_null(anatomy.tree);
+    tree_release(&tree);
+}
+
+/* A root alone has a path, which is where it stands. */
+static void the_path_of_a_tree_without_segments_is_its_root(void **state)
+{
+    (void)state;
+    Tree tree;
+    Anatomy anatomy = {0};
+    assert_int_equal(tree_init(&tree, 1, NULL), STATUS_OK);
+    tree.id[0] = 1;
+    tree.parent[0] = -1;
+    tree.radius_mm[0] = 2.385;
+    tree.position[0] = vec3(3, 4, 5);
+    assert_int_equal(stage_anatomy(&tree, vec3(0, 0, 0), &anatomy, NULL), STATUS_OK);
+    assert_int_equal(anatomy.n_path, 1);
+    assert_near(anatomy.path[0], vec3(3, 4, 5), 0);
+    anatomy_release(&anatomy);
+    tree_release(&tree);
+}
+
 static void segments_without_length_or_radius_are_counted_not_drawn(void **state)
 {
     (void)state;
@@ -788,6 +849,8 @@ static void the_thickest_of_the_sisters_that_end_together_is_drawn(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_anatomy_tells_trees_orders_and_the_way_along_the_thickest_branch),
+        cmocka_unit_test(the_path_of_a_tree_without_segments_is_its_root),
         cmocka_unit_test(segments_without_length_or_radius_are_counted_not_drawn),
         cmocka_unit_test(the_thickest_of_the_sisters_that_end_together_is_drawn),
         cmocka_unit_test(a_segment_inside_its_sister_is_left_out),
