@@ -185,7 +185,7 @@ test_the_examples_draw_the_tree_of_any_model() {
     for model in $MODELS; do
         run_ok corcast scene "$DATA/bifurcation.swc" --quiet --model "$model" -o tree.pov
         cp "$REPO/docs/examples/studio.pov" "$REPO/docs/examples/flight.pov" .
-        draw studio +W20 +H15 Declare=Studio_Blur=0
+        draw studio +W20 +H15 Declare=Studio_Blur=0 Declare=Studio_Skin=0
         expect_no_warning studio
         draw flight +W20 +H15 +K0.4
         expect_no_warning flight
@@ -245,6 +245,23 @@ test_povray_draws_the_settings_of_a_scene_as_they_are() {
     sed -i 's/^;\([A-Z]\)/\1/; s/^Final_Frame=.*/Final_Frame=2/; /Growth_Clock/,$d' tree.ini
     povray tree.ini >draw.log 2>&1 || fail "expected POV-Ray to turn the tree: $(tail -3 draw.log)"
     expect_differing 10 432 tree1.png tree2.png
+}
+
+# Area lights, radiosity, subsurface, glass and focal blur: without any of them the picture is another one.
+test_the_studio_has_each_of_its_five() {
+    local part
+    run_ok corcast scene "$DATA/coronary.swc" --quiet --model blob -o tree.pov
+    cp "$REPO/docs/examples/studio.pov" .
+    draw studio +W32 +H24 Declare=Studio_Blur=0
+    ! grep 'Warning:' studio.log | grep -v experimental || fail "expected no warning but of subsurface"
+    cp studio.png all.png
+    for part in Soft Bounce Skin Glass; do
+        draw studio +W32 +H24 Declare=Studio_Blur=0 Declare=Studio_$part=0
+        cp studio.png $part.png
+        expect_differing 20 768 all.png $part.png
+    done
+    draw studio +W32 +H24 Declare=Studio_Skin=0
+    expect_differing 20 768 studio.png Skin.png
 }
 
 test_the_background_can_be_transparent() {
