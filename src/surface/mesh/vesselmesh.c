@@ -15,8 +15,8 @@
 
 /* What the tolerance means for cells and edges, measured so that the mean distance to the surface
  * stays below 0.15 of it, and one sample of a thousand is beyond it. */
-static const double cells_at = 0.02, cell_ratio = 0.48, bending_ratio = 0.22, sagitta_part = 0.33,
-                    cap_part = 0.2, farthest_part = 1.75;
+static const double cells_at = 0.02, cell_ratio = 0.48, bending_ratio = 0.2, sagitta_part = 0.30,
+                    cap_part = 0.2, farthest_part = 1.4;
 
 /* After a zone of more terms a thread does not keep its room: it would be ten times what most need.
  */
