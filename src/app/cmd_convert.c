@@ -6,16 +6,54 @@
 #include "image/image.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+typedef struct ConvertOptions {
+    const char *values; /* "FILE" or "FILE:COLUMN"; NULL: none */
+} ConvertOptions;
+
+static const Option own[] = {
+    {.name = "values",
+     SETS(TEXT, ConvertOptions, values),
+     .group = GROUP_FILES,
+     .argument = "FILE[:COLUMN]",
+     .help = "values of the tree's segments by id, from a CSV or a folder of svOneDSolver"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+/* Reads the values that are asked for into the tree. */
+static Status join_values(const ConvertOptions *options, Parsed *parsed, Tree *tree, Err *err)
+{
+    size_t length;
+    const char *column;
+    char *path = NULL;
+    if (!options->values)
+        return STATUS_OK;
+    if (!values_parse(options->values, &length, &column))
+        return err_set(err, STATUS_USAGE,
+                       "--values: '%.60s' is not a FILE.csv, FILE.csv:COLUMN or FOLDER:flow",
+                       options->values);
+    TRY(mem_strdup(&path, options->values, err));
+    path[length] = '\0';
+    Status status = files_read(&parsed->files, "--values", path, err);
+    if (status == STATUS_OK)
+        status = tree_read_values(tree, path, column, NULL, err);
+    free(path);
+    return status;
+}
+
 /* A tree in its normal form: parents before children, ids 1, 2, ... in that order. */
-static Status convert_tree(const Parsed *parsed, Err *err)
+static Status convert_tree(const ConvertOptions *options, Parsed *parsed, Err *err)
 {
     const char *from = parsed->operands[0], *to = parsed->operands[1];
     Tree tree;
     TRY(reading_tree(parsed, from, &tree, NULL, err));
+    Status status = join_values(options, parsed, &tree, err);
     tree_renumber(&tree);
-    Status status = tree_write(&tree, to, err);
+    if (status == STATUS_OK)
+        status = tree_write(&tree, to, err);
     if (status == STATUS_OK && !parsed->common.quiet && !tree_format_has_columns(to))
         print_columns_left_out("convert", &tree, "the format has no place for them");
     tree_release(&tree);
@@ -102,7 +140,7 @@ static Status unknown_kind(const char *path, Err *err)
 
 static Status run_convert(void *options, Parsed *parsed, Err *err)
 {
-    (void)options;
+    const ConvertOptions *own_options = options;
     const char *from = parsed->operands[0], *to = parsed->operands[1];
     FileKind kind = kind_of(to), kind_from = parsed->reading.format ? FILE_TREE : kind_of(from);
     if (kind_from == FILE_UNKNOWN || kind == FILE_UNKNOWN)
@@ -115,7 +153,9 @@ static Status run_convert(void *options, Parsed *parsed, Err *err)
                        "'%s' cannot become '%s': a tree and an image are different things", from,
                        to);
     if (kind == FILE_TREE)
-        return convert_tree(parsed, err);
+        return convert_tree(own_options, parsed, err);
+    const OptionNeed needs[] = {{"values", false, "is for trees"}, {0}};
+    TRY(options_check_needs(parsed, needs, err));
     TRY(reading_refuse(parsed, "is for trees", err));
     return kind == FILE_PICTURE ? convert_picture(from, to, err) : convert_plane(from, to, err);
 }
@@ -126,6 +166,7 @@ const Command command_convert = {
     .operands = "IN OUT",
     .examples = "  corcast convert measured.swc tidy.swc\n"
                 "  corcast convert tree.swc tree.csv\n"
+                "  corcast convert tree.swc pulse.vtp --values pulse.csv\n"
                 "  corcast convert picture.ppm picture.png\n"
                 "  corcast convert render.exr render.pfm\n"
                 "  corcast convert - - < measured.swc > tidy.swc\n",
@@ -133,5 +174,7 @@ const Command command_convert = {
     .max_operands = 2,
     .writes_last = true,
     .reads_tree = true,
+    .size = sizeof(ConvertOptions),
+    .tables = {{&own_table, 0}},
     .run = run_convert,
 };

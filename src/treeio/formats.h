@@ -25,8 +25,8 @@ typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
 typedef Status TreeWrite(const Tree *tree, FILE *stream, Err *err);
 
 TreeDetect csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect, gxl_detect,
-    graphml_detect, amiraxml_detect;
-TreeRead swc_read, csv_read;
+    graphml_detect, amiraxml_detect, pvd_detect;
+TreeRead swc_read, csv_read, pvd_read;
 GraphRead oned_read, vita_read, secomb_read, opencco_read, vmv_read, metaio_read, vtk_read,
     vtp_read, gxl_read, graphml_read, amiraxml_read, table_read;
 TreeWrite swc_write, csv_write, csv_segments_write, oned_write, vmv_write, vtk_write, vtp_write,
@@ -51,6 +51,10 @@ MUST_CHECK Status field_whole(const char *what, const char *text, int32_t minimu
                               int32_t *out, Err *err);
 /* A finite number; NAN where the field is empty, NA or NaN. */
 MUST_CHECK Status field_value(const char *what, const char *text, double *out, Err *err);
+
+/* Reads a quantity ("flow") of a folder of svOneDSolver into columns of the tree, as
+ * tree_read_values. */
+MUST_CHECK Status steps_read(Tree *tree, const char *folder, const char *quantity, Err *err);
 
 /* Takes the next field of a line of CSV off *at, in place, which becomes NULL behind the last;
  * blanks around it go, and where `separator` is one, several are like one. A quoted one ends with a

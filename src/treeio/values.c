@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 enum { NONE = -1 };
 
@@ -541,8 +542,23 @@ static Status read_csv(ValuesReader *reader, Err *err)
     return status;
 }
 
+static bool is_folder(const char *path, size_t length)
+{
+    struct stat about;
+    char *copy = strndup(path, length);
+    bool is = copy && stat(copy, &about) == 0 && S_ISDIR(about.st_mode);
+    free(copy);
+    return is;
+}
+
 bool values_parse(const char *text, size_t *path, const char **column)
 {
+    size_t length = strcspn(text, ":");
+    if (length > 0 && is_folder(text, length)) {
+        *path = length;
+        *column = text[length] ? text + length + 1 : NULL;
+        return true;
+    }
     for (const char *end = text; *end; end++) {
         bool is_end = strncasecmp(end, ".csv", 4) == 0 && (end[4] == '\0' || end[4] == ':');
         if (!is_end || end == text)
@@ -562,7 +578,8 @@ Status tree_read_values(Tree *tree, const char *path, const char *column, char *
                            .one_thing = name != NULL,
                            .key = NONE,
                            .time = NONE};
-    Status status = read_csv(&reader, err);
+    Status status = is_folder(path, strlen(path)) ? steps_read(tree, path, column, err)
+                                                  : read_csv(&reader, err);
     if (status == STATUS_OK && name)
         status = mem_strdup(name, column ? column : reader.what, err);
     reader_release(&reader);

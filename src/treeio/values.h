@@ -7,9 +7,9 @@
 #include "tree/tree.h"
 #include <stdbool.h>
 
-/* Splits "FILE:COLUMN" or "FILE", FILE being one that tree_read_values reads: the length of its
- * path in *path, and the column behind it, NULL without one, in *column (borrowed). False when no
- * such file is named. */
+/* Splits "FILE:COLUMN" or "FILE", FILE being one that tree_read_values reads, a CSV or a folder
+ * that svOneDSolver has written: the length of its path in *path, and the column behind it, NULL
+ * without one, in *column (borrowed). False when no such file is named. */
 bool values_parse(const char *text, size_t *path, const char **column);
 
 /* Reads values of the tree's segments, by their ids, into columns of the tree, where they take the

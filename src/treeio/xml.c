@@ -97,7 +97,8 @@ static Status end(Xml *xml, const char *name, Err *err)
 static void XMLCALL on_end(void *context, const XML_Char *name)
 {
     Xml *xml = context;
-    check(xml, end(xml, local_name(name), xml->err));
+    if (xml->status == STATUS_OK) /* that of an empty element follows its begin in any case */
+        check(xml, end(xml, local_name(name), xml->err));
 }
 
 static void XMLCALL on_text(void *context, const XML_Char *chars, int length)

@@ -54,6 +54,99 @@ test_rows_of_a_time_give_the_pictures_of_columns() {
     expect_same columns.ppm rows.ppm
 }
 
+test_a_folder_of_svonedsolver_gives_the_pictures_of_columns() {
+    make_pulse
+    mkdir steps
+    awk -F, 'NR > 1 { file = "steps/tree_segment" $1 "_flow.dat"; row = ""
+        for (k = 2; k <= NF; k++) row = row " " $k
+        print "1 2 3 4 5 6 7 8" >file; print row >file; close(file) }' pulse.csv
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --color-by pulse.csv --frame 6 $SMALL -o columns.ppm
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --color-by steps:flow --frame 6 $SMALL -o steps.ppm
+    expect_same columns.ppm steps.ppm
+    refused() {
+        run corcast render tree.swc --quiet --color-by "$1" -o x.ppm
+        expect_status 2
+        expect_sentence "$2"
+    }
+    refused steps 'steps: of a folder of svOneDSolver one of flow, pressure, area, wss and Re is shown'
+    refused steps:wss 'steps: there is no file \.\.\._wss\.dat in it'
+    echo 1 2 3 >steps/tree_segment7_flow.dat
+    refused steps:flow 'steps/tree_segment7_flow.dat:1: there are 3 time steps, and 8 in tree_segment10_flow.dat'
+    mv steps/tree_segment7_flow.dat steps/tree_aorta_flow.dat
+    refused steps:flow "tree_aorta_flow.dat:1: the name of the segment, 'tree_aorta', does not end in the id"
+}
+
+# write_vtp COLUMN FILE: the tree with its radius and this column of pulse.csv as arrays of points.
+write_vtp() {
+    awk -v column="$1" '
+        BEGIN { FS = ","; while ((getline <"pulse.csv") > 0) value[$1] = $column; FS = " " }
+        /^#/ { next }
+        { place[$1] = n++; points = points $3 " " $4 " " $5 "\n"; radius = radius $6 " "
+          pressure = pressure ($1 in value ? value[$1] : "nan") " "
+          if ($7 > 0) { lines = lines place[$7] " " n - 1 "\n"; offsets = offsets 2 * ++m " " } }
+        function array(name, type, parts, text) {
+            print "<DataArray type=\"" type "\" Name=\"" name "\" NumberOfComponents=\"" parts "\" format=\"ascii\">" text "</DataArray>"
+        }
+        END { print "<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\"><PolyData>"
+              print "<Piece NumberOfPoints=\"" n "\" NumberOfLines=\"" m "\"><PointData>"
+              array("radius", "Float64", 1, radius); array("pressure", "Float64", 1, pressure)
+              print "</PointData><Points>"; array("xyz", "Float64", 3, points); print "</Points><Lines>"
+              array("connectivity", "Int64", 1, lines); array("offsets", "Int64", 1, offsets)
+              print "</Lines></Piece></PolyData></VTKFile>" }' tree.swc >"$2"
+}
+
+test_an_index_of_vtp_files_is_a_series() {
+    make_pulse
+    for k in 2 3 4; do write_vtp $k m$k.vtp; done
+    index() {
+        echo '<VTKFile type="Collection" version="0.1"><Collection>'
+        printf '<DataSet timestep="%s" part="0" file="%s"/>\n' "$@"
+        echo '</Collection></VTKFile>'
+    }
+    index 0.1 m3.vtp 0 m2.vtp 0.2 m4.vtp >run.pvd
+    cut -d , -f 1-4 pulse.csv >three.csv
+    for k in 1 3; do
+        # shellcheck disable=SC2086
+        run_ok corcast render run.pvd --color-by pressure --frame $k $SMALL -o index.ppm
+        # shellcheck disable=SC2086
+        run_ok corcast render tree.swc --color-by three.csv --frame $k $SMALL -o columns.ppm
+        expect_same index.ppm columns.ppm
+    done
+    run_ok corcast info run.pvd
+    expect_stdout 'columns +pressure_0, pressure_0.1, pressure_0.2'
+    refused() {
+        index "$@" >bad.pvd
+        run corcast info bad.pvd
+        expect_status 2
+        expect_sentence "$sentence"
+    }
+    sentence='bad.pvd:3: m2.vtp has this timestep already, 0.5' refused 0.5 m2.vtp 0.5 m3.vtp
+    sentence='bad.pvd:2: no.vtp: ' refused 0.5 no.vtp
+    sentence="bad.pvd:2: the timestep is 'x'" refused x m2.vtp
+    sentence="bad.pvd:2: 'bad.pvd' is an index itself" refused 0 bad.pvd
+    sed '/^31 /,$d' tree.swc >less.swc && mv less.swc tree.swc && write_vtp 2 less.vtp
+    sentence='the tree in less.vtp is not that in m2.vtp' refused 0 m2.vtp 1 less.vtp
+}
+
+test_values_become_columns_of_a_converted_tree() {
+    make_pulse
+    run_ok corcast convert tree.swc pulse.csv.csv --values pulse.csv
+    # shellcheck disable=SC2086
+    run_ok corcast render pulse.csv.csv --color-by pulse --frame 3 $SMALL -o converted.ppm
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --color-by pulse.csv --frame 3 $SMALL -o joined.ppm
+    expect_same converted.ppm joined.ppm
+    run corcast convert tree.swc pulse.csv --values pulse.csv
+    expect_status 2
+    expect_sentence "would be written over --values 'pulse.csv'"
+    run corcast convert tree.swc x.csv --values pulse.txt
+    expect_status 2
+    expect_sentence "--values: 'pulse.txt' is not a FILE.csv, FILE.csv:COLUMN or FOLDER:flow"
+    expect_only converted.ppm joined.ppm pulse.csv pulse.csv.csv tree.swc
+}
+
 # expect_border_free FILE: the outermost pixels of a 60 x 50 PPM are white.
 expect_border_free() {
     tail -c 9000 "$1" | od -An -v -tu1 -w180 | awk 'NR == 1 || NR == 50 { for (i = 1; i <= 180; i++) if ($i < 255) exit 1 }
@@ -95,7 +188,7 @@ test_animations_that_cannot_be_are_refused() {
     refused() {
         sentence=$1
         shift
-        run corcast render tree.swc --size 60x50 "$@"
+        run corcast render tree.swc --size 60x50 --quiet "$@"
         expect_status 2
         expect_sentence "$sentence"
     }

@@ -35,7 +35,7 @@ test_a_frame_is_verified_in_every_model() {
     done
     grep -q -e '+K0\.26' check/report.html || fail "expected the clock of frame 7 in the report"
     # shellcheck disable=SC2086
-    run corcast verify tree.swc --color-by pulse.csv --frame 25 $SIZE -o check
+    run corcast verify tree.swc --quiet --color-by pulse.csv --frame 25 $SIZE -o check
     expect_status 2
     expect_sentence '--frame 25: pulse has 24 frames'
 }

@@ -1,0 +1,211 @@
+/* ParaView's index of a time series: the names of files, each the tree at one moment. The first is
+ * the tree; the arrays of all become columns NAME_TIME of it, one series each [tree/series.h], but
+ * for those that are the same at all moments, which stay one column. */
+#include "treeio/formats.h"
+#include "treeio/treeio.h"
+#include "treeio/xml.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+typedef struct Moment {
+    double time;
+    char *path; /* owned */
+    size_t line;
+    Tree tree;
+} Moment;
+
+typedef struct Collection {
+    const char *name; /* of the index */
+    Moment *moment;   /* owned */
+    size_t n, capacity;
+} Collection;
+
+static void release(Collection *collection)
+{
+    for (size_t i = 0; i < collection->n; i++) {
+        free(collection->moment[i].path);
+        tree_release(&collection->moment[i].tree);
+    }
+    free(collection->moment);
+}
+
+/* `file`, which is told from the folder of the index. */
+static Status beside(const char *index, const char *file, char **out, Err *err)
+{
+    if (*file == '/')
+        return mem_strdup(out, file, err);
+    Text path = TEXT_INIT;
+    text_append(&path, index, (size_t)(file_name(index) - index));
+    text_puts(&path, file);
+    Status status = text_take(&path, out, err);
+    text_release(&path);
+    return status;
+}
+
+static Status begin_element(void *context, Xml *xml, const XmlElement *element, Err *err)
+{
+    Collection *collection = context;
+    Moment made = {.line = xml_line(xml)};
+    const char *time, *file, *part = xml_attribute(element, "part");
+    if (strcmp(element->name, "DataSet") != 0)
+        return STATUS_OK;
+    TRY(xml_needed(element, "timestep", &time, err));
+    TRY(xml_needed(element, "file", &file, err));
+    TRY(field_number("timestep", time, -HUGE_VAL, &made.time, err));
+    if (part && *part && strcmp(part, "0") != 0)
+        return err_set(err, STATUS_INPUT, "part %.20s: a tree in several files cannot be read",
+                       part);
+    if (strcasecmp(file_extension(file), "pvd") == 0)
+        return err_set(err, STATUS_INPUT, "'%.60s' is an index itself", file);
+    TRY(mem_reserve(&collection->moment, &collection->capacity, collection->n + 1, sizeof made,
+                    "moments", err));
+    TRY(beside(collection->name, file, &made.path, err));
+    collection->moment[collection->n++] = made;
+    return STATUS_OK;
+}
+
+static int by_time(const void *a, const void *b)
+{
+    const Moment *x = a, *y = b;
+    int order = number_order(x->time, y->time);
+    return order ? order : (x->line > y->line) - (x->line < y->line);
+}
+
+/* Whether the tree has the nodes of the first one, and its columns by number. */
+static Status check_moment(const Collection *collection, const Moment *moment, Err *err)
+{
+    const Tree *first = &collection->moment[0].tree, *tree = &moment->tree;
+    bool same = tree->n == first->n &&
+                memcmp(tree->parent, first->parent, tree->n * sizeof *tree->parent) == 0 &&
+                memcmp(tree->id, first->id, tree->n * sizeof *tree->id) == 0;
+    if (!same)
+        return err_set(err, STATUS_INPUT, "%s: the tree in %s is not that in %s", collection->name,
+                       moment->path, collection->moment[0].path);
+    bool columns = tree->n_columns == first->n_columns;
+    for (size_t k = 0; k < first->n_columns && columns; k++)
+        columns = strcmp(tree->column[k].name, first->column[k].name) == 0;
+    if (!columns)
+        return err_set(err, STATUS_INPUT, "%s: the arrays in %s are not those in %s",
+                       collection->name, moment->path, collection->moment[0].path);
+    return STATUS_OK;
+}
+
+static Status read_moments(Collection *collection, Err *err)
+{
+    if (collection->n == 0)
+        return err_set(err, STATUS_INPUT, "%s: there is no DataSet in it", collection->name);
+    qsort(collection->moment, collection->n, sizeof *collection->moment, by_time);
+    for (size_t i = 0; i < collection->n; i++) {
+        Moment *moment = &collection->moment[i];
+        if (i > 0 && moment->time == moment[-1].time)
+            return err_set(err, STATUS_INPUT, "%s:%zu: %s has this timestep already, %g",
+                           collection->name, moment->line, moment[-1].path, moment->time);
+        Status status = tree_read(&moment->tree, moment->path, err);
+        if (status != STATUS_OK)
+            err_prefix(err, "%s:%zu: ", collection->name, moment->line);
+        TRY(status);
+        TRY(check_moment(collection, moment, err));
+        TRY(mem_check((double)collection->n * (double)moment->tree.n_columns *
+                          (double)moment->tree.n * sizeof(double),
+                      collection->name, err));
+    }
+    return STATUS_OK;
+}
+
+/* Whether a column is the same at all moments. */
+static bool is_constant(const Collection *collection, size_t column)
+{
+    const Tree *first = &collection->moment[0].tree;
+    for (size_t m = 1; m < collection->n; m++) {
+        const double *one = first->column[column].value;
+        const double *other = collection->moment[m].tree.column[column].value;
+        for (size_t i = 0; i < first->n; i++)
+            if (one[i] != other[i] && !(isnan(one[i]) && isnan(other[i])))
+                return false;
+    }
+    return true;
+}
+
+/* `source` gets the values of each column of the builder. */
+static Status add_column(TreeBuilder *builder, const Moment *moment, size_t column, bool constant,
+                         const double **source, Err *err)
+{
+    const TreeColumn *from = &moment->tree.column[column];
+    char time[NUMBER_TEXT_SIZE];
+    Text name = TEXT_INIT;
+    size_t number;
+    text_puts(&name, from->name);
+    if (!constant)
+        text_printf(&name, "_%s", number_text(moment->time, time));
+    Status status = text_check(&name, err);
+    if (status == STATUS_OK)
+        status = builder_column(builder, text_chars(&name), from->unit, &number, err);
+    text_release(&name);
+    TRY(status);
+    source[number] = from->value;
+    return STATUS_OK;
+}
+
+static Status add_columns(TreeBuilder *builder, const Collection *collection, const double **source,
+                          Err *err)
+{
+    for (size_t k = 0; k < collection->moment[0].tree.n_columns; k++) {
+        bool constant = is_constant(collection, k);
+        for (size_t m = 0; m < (constant ? 1 : collection->n); m++)
+            TRY(add_column(builder, &collection->moment[m], k, constant, source, err));
+    }
+    return STATUS_OK;
+}
+
+static Status add_nodes(TreeBuilder *builder, const Tree *tree, const double **source, Err *err)
+{
+    for (size_t i = 0; i < tree->n; i++) {
+        const BuilderNode node = {.id = tree->id[i],
+                                  .parent = tree_is_segment(tree, i) ? tree->id[tree->parent[i]]
+                                                                     : TREE_NO_PARENT,
+                                  .type = tree->type[i],
+                                  .position = tree->position[i],
+                                  .radius_mm = tree->radius_mm[i],
+                                  .record = i + 1};
+        TRY(builder_node(builder, &node, err));
+        for (size_t k = 0; k < builder->n_columns; k++)
+            TRY(builder_value(builder, k, source[k][i], err));
+        if (tree->flow_share && tree->flow_share[i] > 0)
+            TRY(builder_share(builder, node.id, tree->flow_share[i], node.record, err));
+    }
+    return STATUS_OK;
+}
+
+static Status build(TreeBuilder *builder, Collection *collection, Err *err)
+{
+    const Tree *tree = &collection->moment[0].tree;
+    const double **source = NULL;
+    TRY(mem_calloc(&source, collection->n * tree->n_columns, sizeof *source, "columns", err));
+    Status status = add_columns(builder, collection, source, err);
+    if (status == STATUS_OK)
+        status = add_nodes(builder, tree, source, err);
+    if (status == STATUS_OK)
+        status = meta_copy(&builder->meta, &tree->meta, err);
+    free(source);
+    return status;
+}
+
+Status pvd_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
+{
+    Collection collection = {.name = builder->name};
+    static const XmlHandlers handlers = {.begin = begin_element};
+    Status status = xml_read(builder->name, bytes, size, &handlers, &collection, err);
+    if (status == STATUS_OK)
+        status = read_moments(&collection, err);
+    if (status == STATUS_OK)
+        status = build(builder, &collection, err);
+    release(&collection);
+    return status;
+}
+
+bool pvd_detect(const char *start)
+{
+    return xml_begins(start, "VTKFile") && strstr(start, "Collection") != NULL;
+}
