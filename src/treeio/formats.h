@@ -24,11 +24,11 @@ typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
 /* Writes a tree that tree_check accepts; errors of the stream are the caller's matter. */
 typedef Status TreeWrite(const Tree *tree, FILE *stream, Err *err);
 
-TreeDetect csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect, gxl_detect,
-    graphml_detect, amiraxml_detect, pvd_detect;
+TreeDetect amira_detect, csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect,
+    gxl_detect, graphml_detect, amiraxml_detect, pvd_detect;
 TreeRead swc_read, csv_read, pvd_read;
 GraphRead oned_read, vita_read, secomb_read, opencco_read, vmv_read, metaio_read, vtk_read,
-    vtp_read, gxl_read, graphml_read, amiraxml_read, table_read;
+    vtp_read, gxl_read, graphml_read, amiraxml_read, table_read, amira_read;
 TreeWrite swc_write, csv_write, csv_segments_write, oned_write, vmv_write, vtk_write, vtp_write,
     gxl_write, graphml_write;
 

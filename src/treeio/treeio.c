@@ -167,6 +167,13 @@ static const Format formats[] = {
      .form = {.name = "a MetaIO scene", .most_bytes = MOST_BYTES},
      .detect = metaio_detect,
      .read_graph = metaio_read},
+    {.name = "Amira",
+     .description = "a spatial graph of Amira or Avizo, in um",
+     .extensions = {"am"},
+     .takes = ANY_GRAPH | RADIUS_ARRAY,
+     .form = {.name = "an Amira file", .most_bytes = MOST_BYTES},
+     .detect = amira_detect,
+     .read_graph = amira_read},
 };
 
 enum { N_FORMATS = sizeof formats / sizeof *formats };

@@ -2,6 +2,7 @@
  * tests/command/text_formats_test.sh. */
 #include "tree_files.h"
 
+#include <libdeflate.h>
 #include <math.h>
 
 /* ---- decks of svOneDSolver ---- */
@@ -427,6 +428,169 @@ static void rejects_scenes_of_metaio_that_make_no_sense(void **state)
         assert_refused("tre", bad[i].text, bad[i].sentence);
 }
 
+/* ---- Amira ---- */
+
+#define AMIRA_HEADER(kind)                                                                         \
+    "# " kind "\n# by hand\n\ndefine VERTEX 4\ndefine EDGE 3\ndefine POINT 8\n\n"                  \
+    "Parameters {\n    SpatialGraphUnitsVertex { Unit -1, Dimension -1 }\n"                        \
+    "    ContentType \"HxSpatialGraph\"\n}\n\n"
+
+static const char amira[] = AMIRA_HEADER(
+    "AmiraMesh 3D ASCII 2.0") "VERTEX { float[3] VertexCoordinates } @1\nVERTEX { int Labels } @7\n"
+                              "EDGE { int[2] EdgeConnectivity } @2\nEDGE { int NumEdgePoints } @3\n"
+                              "EDGE { int strahler } @6\n"
+                              "POINT { float[3] EdgePointCoordinates } @4\nPOINT { float thickness "
+                              "} @5\n\n"
+                              "# Data section follows\n"
+                              "@1\n0 0 0\n0 250 0\n125 500 0\n-125 500 0\n\n"
+                              "@3\n3\n2\n3\n\n@2\n0 1\n1 2\n3 1\n\n"
+                              "@4\n0 0 0\n0 125 50\n0 250 0\n0 250 0\n125 500 0\n-125 500 0\n-62.5 "
+                              "375 0\n0 250 0\n"
+                              "@5\n9\n9.5\n9\n5\n4.5\n3\n3.25\n4\n@6\n3\n1\n2\n@"
+                              "7\n11\n12\n13\n14\n";
+
+static const char amira_nodes[] = "1 3 0 0 0 0.0095 -1\n"
+                                  "2 3 0 0.125 0.05 0.0095 1\n"
+                                  "3 3 0 0.25 0 0.009000000000000001 2\n"
+                                  "5 3 0.125 0.5 0 0.0045000000000000005 3\n"
+                                  "7 3 -0.0625 0.375 0 0.0032500000000000003 3\n"
+                                  "6 3 -0.125 0.5 0 0.003 7\n";
+
+static void graphs_of_amira_have_radii_at_the_points_of_edges(void **state)
+{
+    (void)state;
+    Tree tree = read_text("am", amira);
+    assert_nodes(&tree, amira_nodes);
+    assert_true(value_of(&tree, "strahler", 2) == 3 && value_of(&tree, "strahler", 4) == 2);
+    assert_true(value_of(&tree, "Labels", 2) == 12 && value_of(&tree, "Labels", 5) == 14);
+    assert_true(isnan(value_of(&tree, "Labels", 1)));
+    tree_release(&tree);
+}
+
+static size_t put_packed(char *to, int block, const float *number, size_t n, bool big, int packing)
+{
+    char plain[512], packed[1024];
+    size_t size = 4 * n, length = size;
+    for (size_t i = 0; i < n; i++) {
+        unsigned char native[4];
+        memcpy(native, &number[i], 4);
+        for (size_t k = 0; k < 4; k++)
+            plain[4 * i + k] = (char)native[big ? 3 - k : k];
+    }
+    if (packing == 2) {
+        struct libdeflate_compressor *deflater = libdeflate_alloc_compressor(9);
+        length = libdeflate_zlib_compress(deflater, plain, size, packed, sizeof packed);
+        libdeflate_free_compressor(deflater);
+    } else if (packing == 1) {
+        length = 0;
+        for (size_t i = 0; i < size;) {
+            size_t same = 1;
+            while (i + same < size && same < 127 && plain[i + same] == plain[i])
+                same++;
+            packed[length++] = same > 1 ? (char)same : (char)0x81;
+            packed[length++] = plain[i];
+            i += same;
+        }
+    } else {
+        memcpy(packed, plain, size);
+    }
+    to += sprintf(to, "@%d\n", block);
+    memcpy(to, packed, length);
+    to[length] = '\n';
+    return length;
+}
+
+/* As floats all of them, in the order of the header's blocks. */
+static void packed_blocks_of_amira_are_read(void **state)
+{
+    (void)state;
+    static const float vertices[] = {0, 0, 0, 0, 250, 0, 125, 500, 0, -125, 500, 0};
+    static const float ends[] = {0, 1, 1, 2, 3, 1}, counts[] = {3, 2, 3};
+    static const float points[] = {0,   0,   0, 0,    125, 50, 0,      250, 0, 0, 250, 0,
+                                   125, 500, 0, -125, 500, 0,  -62.5f, 375, 0, 0, 250, 0};
+    static const float radii[] = {9, 9.5f, 9, 5, 4.5f, 3, 3.25f, 4};
+    static const struct {
+        const float *number;
+        size_t n;
+        const char *declared;
+    } blocks[] = {{vertices, 12, "VERTEX { float[3] VertexCoordinates }"},
+                  {ends, 6, "EDGE { float[2] EdgeConnectivity }"},
+                  {counts, 3, "EDGE { float NumEdgePoints }"},
+                  {points, 24, "POINT { float[3] EdgePointCoordinates }"},
+                  {radii, 8, "POINT { float thickness }"}};
+    static const char *const packings[] = {"", "HxByteRLE", "HxZip"};
+    for (int kind = 0; kind < 6; kind++) {
+        char bytes[4000], data[4000];
+        size_t length = 0, at;
+        int packing = kind / 2;
+        bool big = kind % 2;
+        at = (size_t)sprintf(bytes, "%s",
+                             big ? AMIRA_HEADER("AmiraMesh BINARY 2.0")
+                                 : AMIRA_HEADER("AmiraMesh BINARY-LITTLE-ENDIAN 2.1"));
+        for (int i = 0; i < 5; i++) {
+            size_t packed =
+                put_packed(data + length, i + 1, blocks[i].number, blocks[i].n, big, packing);
+            at += (size_t)sprintf(bytes + at, packing ? "%s @%d(%s,%zu)\n" : "%s @%d\n",
+                                  blocks[i].declared, i + 1, packings[packing], packed);
+            length += packed + 4;
+        }
+        memcpy(bytes + at, data, length);
+        Tree tree = {0};
+        Err err;
+        put_file("am", bytes, at + length);
+        Status status = tree_read(&tree, path, &err);
+        unlink(path);
+        must(status, &err);
+        assert_nodes(&tree, amira_nodes);
+        tree_release(&tree);
+    }
+}
+
+/* The graph with `from` in the place of what begins at `at`. */
+static void assert_amira_refused(const char *at, const char *with, const char *expected)
+{
+    char text[2000];
+    const char *found = strstr(amira, at);
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(found - amira), amira, with, found + strlen(at));
+    assert_refused("am", text, expected);
+}
+
+static void rejects_graphs_of_amira_that_make_no_sense(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *at, *with, *sentence;
+    } bad[] = {
+        {"HxSpatialGraph", "HxCluster",
+         ":22: the ContentType is not HxSpatialGraph: the file holds no network"},
+        {"define EDGE 3\n", "", ":21: the header does not define EDGE"},
+        {"define POINT 8", "define POINT 2000000000",
+         ":39: 6000000000 numbers of 'EdgePointCoordinates' cannot be in the 122 bytes left"},
+        {"define POINT 8", "define POINT -8",
+         ":6: the POINT is '-8'; it must be a whole number from 0 to 2147483647"},
+        {"define POINT 8", "define POINT 9", ":47: '@5' is no number, and 3 are to come"},
+        {"@5\n\n# Data", "@5(HxMagic,12)\n\n# Data",
+         ":19: the block @5 is packed by 'HxMagic'; HxByteRLE and HxZip are read"},
+        {"float thickness", "complex thickness",
+         ":19: 'complex' is no type of numbers that is read"},
+        {"} @6", "}", ":18: a declaration is 'EDGE { TYPE NAME } @BLOCK'"},
+        {"@6\n3\n1\n2\n", "@8\n3\n1\n2\n", ":57: the block @8 is not declared"},
+        {"@7\n11\n12", "@7\n11\ntwelve", ":62: 'twelve' is no number, and 3 are to come"},
+        {"@7\n11\n12", "@7\n11 12 7\n12", ":63: '13' stands where a block begins"},
+        {"@3\n3\n2", "@3\n3\n3", ": the edges have 9 points together, POINT is 8"},
+        {"@3\n3\n2", "@3\n3\n1", ": edge 1 has 1 points; it needs those of both its vertices"},
+        {"0 1\n1 2\n3 1", "0 1\n1 4\n3 1", ": an edge leads to vertex 4; there are 4"},
+        {"NumEdgePoints } @3", "EdgePoints } @3",
+         ": there is no block of EDGE { NumEdgePoints } with 1 number each"},
+        {"thickness", "weight",
+         ": no array is called a radius, and `radius_array` names none; its arrays of one number "
+         "are 'Labels' of points, 'weight' of points, 'strahler' of cells"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_amira_refused(bad[i].at, bad[i].with, bad[i].sentence);
+    assert_refused("am", "# AmiraMesh 3D ASCII 2.0\n", ":1: the file has no block of numbers");
+}
+
 /* ---- tables ---- */
 
 /* Refused, in whatever file. */
@@ -590,6 +754,9 @@ int main(void)
         cmocka_unit_test(a_matrix_and_an_offset_move_a_tube_of_metaio),
         cmocka_unit_test(packed_points_of_metaio_are_read_in_either_byte_order),
         cmocka_unit_test(rejects_scenes_of_metaio_that_make_no_sense),
+        cmocka_unit_test(graphs_of_amira_have_radii_at_the_points_of_edges),
+        cmocka_unit_test(packed_blocks_of_amira_are_read),
+        cmocka_unit_test(rejects_graphs_of_amira_that_make_no_sense),
         cmocka_unit_test(titles_say_unit_and_diameter),
         cmocka_unit_test(vessels_are_joined_where_their_ends_are_at_the_same_place),
         cmocka_unit_test(a_second_table_holds_the_lines_between_nodes),
