@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 typedef struct ConvertOptions {
     const char *values; /* "FILE" or "FILE:COLUMN"; NULL: none */
@@ -44,6 +45,25 @@ static Status join_values(const ConvertOptions *options, Parsed *parsed, Tree *t
     return status;
 }
 
+/* An index for ParaView and the files that it names, none of which is read here. */
+static Status write_moments(const Tree *tree, Parsed *parsed, const char *to, Err *err)
+{
+    size_t n = 0;
+    Status status = tree_count_moments(tree, &n, err);
+    for (size_t k = 0; k < n && status == STATUS_OK; k++) {
+        char *path = NULL;
+        status = tree_moment_path(to, k, &path, err);
+        if (status == STATUS_OK)
+            status = files_write(&parsed->files, to, path, err);
+        free(path);
+    }
+    if (status == STATUS_OK)
+        return tree_write_moments(tree, to, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", parsed->operands[0]);
+    return status;
+}
+
 /* A tree in its normal form: parents before children, ids 1, 2, ... in that order. */
 static Status convert_tree(const ConvertOptions *options, Parsed *parsed, Err *err)
 {
@@ -52,9 +72,10 @@ static Status convert_tree(const ConvertOptions *options, Parsed *parsed, Err *e
     TRY(reading_tree(parsed, from, &tree, NULL, err));
     Status status = join_values(options, parsed, &tree, err);
     tree_renumber(&tree);
+    bool moments = strcasecmp(file_extension(to), "pvd") == 0;
     if (status == STATUS_OK)
-        status = tree_write(&tree, to, err);
-    if (status == STATUS_OK && !parsed->common.quiet && !tree_format_has_columns(to))
+        status = moments ? write_moments(&tree, parsed, to, err) : tree_write(&tree, to, err);
+    if (status == STATUS_OK && !moments && !parsed->common.quiet && !tree_format_has_columns(to))
         print_columns_left_out("convert", &tree, "the format has no place for them");
     tree_release(&tree);
     return status;
@@ -166,7 +187,7 @@ const Command command_convert = {
     .operands = "IN OUT",
     .examples = "  corcast convert measured.swc tidy.swc\n"
                 "  corcast convert tree.swc tree.csv\n"
-                "  corcast convert tree.swc pulse.vtp --values pulse.csv\n"
+                "  corcast convert tree.swc pulse.pvd --values pulse.csv\n"
                 "  corcast convert picture.ppm picture.png\n"
                 "  corcast convert render.exr render.pfm\n"
                 "  corcast convert - - < measured.swc > tidy.swc\n",

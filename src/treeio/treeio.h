@@ -46,4 +46,14 @@ MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *
  * tree_format_check, STATUS_INPUT for a tree that tree_check refuses. */
 MUST_CHECK Status tree_write(const Tree *tree, const char *path, Err *err);
 
+/* Writes a tree whose columns are series [tree/series.h] as an index for ParaView, P.pvd, and a
+ * file for each moment, P_0001.vtp, ..., in which the columns have the names of their series. The
+ * index comes last. STATUS_INPUT, naming no file, when the tree has no series, or some of different
+ * times; else as tree_write. */
+MUST_CHECK Status tree_write_moments(const Tree *tree, const char *path, Err *err);
+/* How many moments there are. Errors likewise. */
+MUST_CHECK Status tree_count_moments(const Tree *tree, size_t *n, Err *err);
+/* The file of a moment, from 0 on, in *out (owned). */
+MUST_CHECK Status tree_moment_path(const char *path, size_t moment, char **out, Err *err);
+
 #endif

@@ -147,6 +147,32 @@ test_values_become_columns_of_a_converted_tree() {
     expect_only converted.ppm joined.ppm pulse.csv pulse.csv.csv tree.swc
 }
 
+test_an_index_that_is_written_reads_back() {
+    make_pulse
+    run_ok corcast convert tree.swc run.pvd --values pulse.csv
+    [ "$(echo run_*.vtp)" = "$(echo run_000{1..8}.vtp)" ] || fail "expected 8 moments, got $(echo run_*)"
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --color-by pulse.csv --frame 6 $SMALL -o columns.ppm
+    # shellcheck disable=SC2086
+    run_ok corcast render run.pvd --color-by pulse --frame 6 $SMALL -o index.ppm
+    expect_same columns.ppm index.ppm
+    run_ok corcast convert tree.swc wide.vtp --values pulse.csv
+    # shellcheck disable=SC2086
+    run_ok corcast render wide.vtp --color-by pulse --frame 6 $SMALL -o wide.ppm
+    expect_same columns.ppm wide.ppm
+    run corcast convert tree.swc x.pvd
+    expect_status 2
+    expect_sentence 'tree.swc: the tree has no values that change with time'
+    awk -F, -v OFS=, 'NR == 1 { $2 = "a_1"; $3 = "a_2"; $4 = "b_1"; $5 = "b_3"; } { NF = 5; print }' pulse.csv >two.csv
+    run corcast convert tree.swc x.pvd --values two.csv
+    expect_status 2
+    expect_sentence 'the series a and b are of different times'
+    run corcast convert run_0002.vtp run.pvd --values pulse.csv
+    expect_status 2
+    expect_sentence "'run_0002.vtp' would be written over the input 'run_0002.vtp'"
+    ! ls x* >/dev/null 2>&1 || fail "expected no file for what is refused"
+}
+
 # expect_border_free FILE: the outermost pixels of a 60 x 50 PPM are white.
 expect_border_free() {
     tail -c 9000 "$1" | od -An -v -tu1 -w180 | awk 'NR == 1 || NR == 50 { for (i = 1; i <= 180; i++) if ($i < 255) exit 1 }
