@@ -24,10 +24,14 @@ typedef struct Meshing {
     size_t n_thinned;
 } Meshing;
 
-static Status take_vessels(Meshing *made, Err *err)
+const char *const vessel_body_names[] = {
+    [BODY_POTENTIAL] = "isosurface", [BODY_ROUND] = "rounded", NULL};
+
+static Status take_vessels(Meshing *made, VesselBody body, Err *err)
 {
     size_t dropped;
     TRY(stage_vessels(&made->of->tree, &made->vessels, &dropped, err));
+    made->vessels.body = body;
     if (dropped)
         fprintf(stderr, "corcast: %zu segments have no length or no radius and are left out\n",
                 dropped);
@@ -104,7 +108,7 @@ static Status part(Meshing *made, int threads, Err *err)
 static Status make(const Common *common, const MeshingOptions *options, bool colored, Meshing *made,
                    Err *err)
 {
-    TRY(take_vessels(made, err));
+    TRY(take_vessels(made, (VesselBody)options->body, err));
     if (colored)
         TRY(color_vessels(options, common->quiet, made, err));
     if (options->part_overlaps)
@@ -152,6 +156,7 @@ static json_t *manifest(const Meshing *made)
     const MeshReport *report = &made->report;
     const JsonMember members[] = {
         {"generator", json_text(GENERATOR)},
+        {"model", json_text(vessel_body_names[vessels->body])},
         {"unit", json_text("mm")},
         {"trees", count(report->trees)},
         {"components", count(report->components)},

@@ -8,7 +8,11 @@
 #include "base/base.h"
 #include "emit/emit.h"
 
+/* The models whose walls are triangulated, by VesselBody; NULL ends them. */
+extern const char *const vessel_body_names[];
+
 typedef struct MeshingOptions {
+    int body;           /* choice: VesselBody */
     double tolerance;   /* over the local radius */
     bool part_overlaps; /* thin vessels that overlap others that they do not belong with */
     const char *look;   /* for an emitter with colours, as the coloring */

@@ -5,6 +5,12 @@
 
 #include "scene/geometry.h"
 
+/* What is made of vessels. */
+typedef enum VesselBody {
+    BODY_POTENTIAL, /* what exceeds FIELD_LEVEL; cut off flat at ends */
+    BODY_ROUND      /* cylinders, and at each node a ball of the largest radius that meets there */
+} VesselBody;
+
 /* Segments, and the nodes at their ends a and b. Any number of trees; a segment joins two different
  * nodes, and segments make no loops. */
 typedef struct VesselTree {
@@ -12,6 +18,7 @@ typedef struct VesselTree {
     uint32_t (*nodes)[2];   /* of each segment; below n_nodes */
     uint32_t *ids;          /* SWC id of each segment */
     size_t n_segments, n_nodes;
+    VesselBody body;
 } VesselTree;
 
 /* Frees the arrays and zeroes *tree. */

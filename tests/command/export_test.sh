@@ -63,10 +63,26 @@ test_manifest_proves_the_mesh() {
     expect_json m.stl.json '.segments_present == 3 and .segments_missing == []'
 }
 
+test_the_rounded_model_is_one_closed_mesh_too() {
+    run_ok corcast grow --terminals 9 --domain ball:41 --seed 7 -o t.swc --quiet
+    run_ok corcast export t.swc --model rounded -o m.stl --quiet
+    expect_json m.stl.json '.model == "rounded" and .components == 1 and .genus == 0 and .watertight'
+    expect_json m.stl.json '.self_intersections == 0 and .round_ends == [] and .max_distance_over_radius < 0.05'
+    [ "$(admesh_says m.stl 'Total disconnected facets')" = 0 ] || fail "admesh finds gaps"
+    run_ok corcast export t.swc -o flat.stl --quiet
+    expect_json flat.stl.json '.model == "isosurface"'
+    run corcast export t.swc --model joined -o none.stl
+    expect_status 2
+    expect_sentence "--model: 'joined' is not one of isosurface, rounded"
+}
+
 test_same_bytes_for_any_number_of_threads() {
     corcast grow --terminals 23 --domain ball:41 --seed 7 -o t.swc --quiet
     run_ok corcast export t.swc -o one.ply --threads 1 --quiet
     run_ok corcast export t.swc -o three.ply --threads 3 --quiet
+    expect_same one.ply three.ply
+    run_ok corcast export t.swc --model rounded --tolerance 0.1 -o one.ply --threads 1 --quiet
+    run_ok corcast export t.swc --model rounded --tolerance 0.1 -o three.ply --threads 3 --quiet
     expect_same one.ply three.ply
     expect_same one.ply.json three.ply.json
 }
@@ -251,4 +267,4 @@ test_refuses_an_unknown_extension() {
     expect_sentence "'m.xyz' does not end in .scad, .stl, .ply, .glb, .obj, .3mf or .inc"
 }
 
-run_tests
+run_tests "$@"

@@ -2,6 +2,7 @@
 #include "base/random.h"
 #include "surface/mesh/boxpairs.h"
 #include "surface/mesh/meshcheck.h"
+#include "surface/mesh/nearpairs.h"
 #include "surface/mesh/zones.h"
 
 #include <setjmp.h>
@@ -293,6 +294,92 @@ static size_t crossings_of(float (*points)[3], uint32_t (*triangles)[3], size_t 
     return found;
 }
 
+/* How far x is outside the vessels, over the radius of the one that it is nearest to. */
+static double outside_round(const VesselTree *tree, Vec3 x)
+{
+    double least = HUGE_VAL, radius = 1;
+    for (size_t i = 0; i < tree->n_segments; i++) {
+        const FieldSegment *segment = &tree->segments[i];
+        double outside = segment_distance_to(segment, x) - segment->radius_mm;
+        if (outside < least) {
+            least = outside;
+            radius = segment->radius_mm;
+        }
+    }
+    return least / radius;
+}
+
+/* Points all over the triangles, as many for each as its area asks for. */
+static void expect_round_wall(const VesselTree *tree, const VesselMesh *mesh)
+{
+    Random random;
+    size_t n = 0, beyond = 0;
+    double sum = 0, worst = 0;
+    random_seed(&random, 2385);
+    for (size_t i = 0; i < mesh->n_triangles; i++) {
+        Vec3 a = mesh_point(mesh, mesh->triangles[i][0]);
+        Vec3 u = vec3_sub(mesh_point(mesh, mesh->triangles[i][1]), a);
+        Vec3 v = vec3_sub(mesh_point(mesh, mesh->triangles[i][2]), a);
+        double wanted = 40 * vec3_length(vec3_cross(u, v)) + random_uniform(&random);
+        for (int k = 1; k <= wanted; k++) {
+            double s = random_uniform(&random), t = random_uniform(&random);
+            bool over = s + t > 1;
+            Vec3 x = vec3_add_scaled(vec3_add_scaled(a, u, over ? 1 - s : s), v, over ? 1 - t : t);
+            double off = fabs(outside_round(tree, x));
+            n++;
+            sum += off;
+            beyond += off > 0.02;
+            worst = fmax(worst, off);
+        }
+    }
+    if (n < 3000 || sum / (double)n > 0.003 || beyond > n / 500 || worst > 0.05)
+        fail_msg("mean %g, worst %g, %zu of %zu beyond 0.02", sum / (double)n, worst, beyond, n);
+}
+
+/* A fork, a bend and a branch at a right angle. */
+static void the_wall_of_a_round_body_is_that_of_cylinders_and_balls(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    sketch_begin(&sketch, vec3(0, 0, 0));
+    uint32_t fork = sketch_to(&sketch, 0, vec3(11.3, 0.4, -0.7), 1.31);
+    uint32_t bend = sketch_to(&sketch, fork, vec3(17.9, 5.2, 1.1), 1.07);
+    sketch_to(&sketch, fork, vec3(18.4, -4.1, -1.9), 0.94);
+    uint32_t side = sketch_to(&sketch, bend, vec3(18.3, 14.6, 1.9), 1.07);
+    sketch_to(&sketch, side, vec3(18.7, 24.1, 2.3), 1.07);
+    sketch_to(&sketch, side, vec3(26.3, 14.2, 1.7), 0.61);
+    sketch.tree.body = BODY_ROUND;
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    assert_int_equal(made.report.n_round, 0);
+    for (size_t i = 0; i < made.mesh.n_triangles; i++)
+        assert_false(mesh_is_cap(&made.mesh, i));
+    for (uint32_t i = 0; i < made.mesh.n_points; i++)
+        assert_true(fabs(outside_round(&sketch.tree, mesh_point(&made.mesh, i))) < 1e-4);
+    expect_round_wall(&sketch.tree, &made.mesh);
+    release(&made);
+}
+
+static void fine_steps_of_a_round_body_keep_its_volume(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    uint32_t node = 0;
+    sketch_begin(&sketch, vec3(0, 0, 0));
+    for (int i = 1; i <= 40; i++)
+        node = sketch_to(&sketch, node, vec3(0.27 * i, 0.04 * i, 0), 1.31);
+    sketch.tree.body = BODY_ROUND;
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    double length = 40 * sqrt(0.27 * 0.27 + 0.04 * 0.04), r = 1.31;
+    double volume = 3.141592653589793 * r * r * (length + 4 * r / 3);
+    if (!(fabs(made.report.volume_mm3 / volume - 1) < 0.005))
+        fail_msg("%g of the volume, %zu", made.report.volume_mm3 / volume, made.mesh.n_triangles);
+    release(&made);
+}
+
 static void triangles_that_pierce_touch_or_fold_are_found(void **state)
 {
     (void)state;
@@ -366,6 +453,8 @@ int main(void)
         cmocka_unit_test(vessels_at_both_ends_of_a_short_one_do_not_blend),
         cmocka_unit_test(a_twig_within_a_trunk_is_swallowed_not_missing),
         cmocka_unit_test(a_twig_along_the_axis_of_a_trunk_is_swallowed_not_missing),
+        cmocka_unit_test(the_wall_of_a_round_body_is_that_of_cylinders_and_balls),
+        cmocka_unit_test(fine_steps_of_a_round_body_keep_its_volume),
         cmocka_unit_test(triangles_that_pierce_touch_or_fold_are_found),
         cmocka_unit_test(all_pairs_of_boxes_that_meet_are_found_once),
     };

@@ -42,23 +42,36 @@ void lattice_release(Lattice *lattice)
     *lattice = (Lattice){0};
 }
 
-/* Moves a point off the wall. */
+/* Moves a point by a vector, unless its height is then less than this. */
+static bool move_point(const Cutter *cutter, const FieldPart *part, Vec3 by, double least_height,
+                       LatticePoint *point)
+{
+    Vec3 moved = vec3_add(point->x, by);
+    FieldValue value = fieldpart_value(&cutter->plan->field, &cutter->tree->kept, part, moved);
+    double height = field_height(value.phi);
+    if (!(fabs(height) >= least_height))
+        return false;
+    *point = (LatticePoint){moved, height, NO_CROSSING, false};
+    return true;
+}
+
+/* Moves a point off the wall, on its own side; to the inside where it would come too near another
+ * wall, as outside in a crease. */
 static void clear_wall(const Cutter *cutter, const FieldPart *part, double side,
                        LatticePoint *point)
 {
-    const ZoneField *field = &cutter->plan->field;
-    const PartPool *pool = &cutter->tree->kept;
     Vec3 gradient;
-    FieldValue value = fieldpart_gradient(field, pool, part, point->x, &gradient);
+    FieldValue value =
+        fieldpart_gradient(&cutter->plan->field, &cutter->tree->kept, part, point->x, &gradient);
     double steepness = vec3_length(gradient), least = clearance * side;
     double inside = (value.phi - FIELD_LEVEL) / steepness; /* mm, about */
     if (!(fabs(inside) < least))
         return;
     double by = (inside >= 0 ? least : -least) - inside;
-    Vec3 moved = vec3_add_scaled(point->x, gradient, by / steepness);
-    double height = field_height(fieldpart_value(field, pool, part, moved).phi);
-    if ((height < 0) == (inside >= 0) && height != 0)
-        *point = (LatticePoint){moved, height, NO_CROSSING, false};
+    double least_height = 0.25 * least * steepness / FIELD_LEVEL; /* half of that at `least` */
+    if (!move_point(cutter, part, vec3_scale(gradient, by / steepness), least_height, point))
+        move_point(cutter, part, vec3_scale(gradient, (least - inside) / steepness), least_height,
+                   point);
 }
 
 /* A point whose field is that of the cell `from` if that is active. */

@@ -17,6 +17,8 @@
  * stays below 0.15 of it, and one sample of a thousand is beyond it. */
 static const double cells_at = 0.02, cell_ratio = 0.48, bending_ratio = 0.2, sagitta_part = 0.30,
                     cap_part = 0.2, farthest_part = 1.4;
+/* Of a round body: its balls bend both ways, and its creases are cut off. */
+static const double round_sagitta_part = 0.25, round_farthest_part = 1.75;
 
 /* After a zone of more terms a thread does not keep its room: it would be ten times what most need.
  */
@@ -67,12 +69,13 @@ Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *e
                    report->crossings, report->bridges);
 }
 
-static ZoneFineness fineness_of(double tolerance, double grid_mm)
+static ZoneFineness fineness_of(const VesselTree *tree, double tolerance, double grid_mm)
 {
+    bool is_round = tree->body == BODY_ROUND;
     double ratio = fmin(cell_ratio * sqrt(tolerance / cells_at), 0.7);
     return (ZoneFineness){{ratio, bending_ratio * tolerance / cells_at},
-                          sagitta_part * tolerance,
-                          farthest_part * tolerance,
+                          (is_round ? round_sagitta_part : sagitta_part) * tolerance,
+                          (is_round ? round_farthest_part : farthest_part) * tolerance,
                           grid_mm};
 }
 
@@ -85,7 +88,8 @@ static uint32_t sides_of(double sagitta)
 void vesselmesh_estimate(const VesselTree *tree, const MeshParams *params, double *triangles,
                          double *bytes)
 {
-    *triangles = 560.0 * (double)tree->n_segments * 0.02 / params->tolerance;
+    double a_segment = tree->body == BODY_ROUND ? 1500 : 560;
+    *triangles = a_segment * (double)tree->n_segments * 0.02 / params->tolerance;
     *bytes = *triangles * 80;
 }
 
@@ -243,7 +247,8 @@ static Status fill_report(Build *build, const VesselMesh *mesh, MeshReport *repo
                             &report->crossings, err));
     TRY(list_fate(build, SEGMENT_MISSING, &report->missing, &report->n_missing, err));
     TRY(list_fate(build, SEGMENT_SWALLOWED, &report->swallowed, &report->n_swallowed, err));
-    TRY(list_round(build, report, err));
+    if (build->tree->body != BODY_ROUND)
+        TRY(list_round(build, report, err));
     report->near = build->zones.strangers;
     report->n_near = build->zones.n_strangers;
     report->n_overlapping = build->zones.n_overlapping;
@@ -266,7 +271,7 @@ Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, Vessel
     int n_workers = params->threads > 0 ? params->threads : threads_available();
     Build build = {.tree = tree,
                    .params = params,
-                   .fineness = fineness_of(params->tolerance, mesh_grid(tree))};
+                   .fineness = fineness_of(tree, params->tolerance, mesh_grid(tree))};
     VesselMesh made = {0};
     MeshReport found = {0};
     Status status;

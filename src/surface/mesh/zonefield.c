@@ -13,13 +13,21 @@ static const double significant = 0.1 * FIELD_LEVEL;
 static const double out_of_reach = 3.4;
 /* From here on 1 - erf(x) is below 2e-9. */
 static const double saturated = 4.25;
+/* Walls bend away from the planes that they are taken for. */
+static const double crease_slack = 1.2;
 static const double inv_sqrt_pi = 0.56418958354775628695;
 
-ZoneTerm zoneterm_of(Vec3 a, Vec3 b, double radius_mm, uint32_t segment)
+ZoneTerm zoneterm_of(Vec3 a, Vec3 b, double radius_mm, uint32_t segment, VesselBody body)
 {
     double length = vec3_distance(a, b), k = sqrt(2) / radius_mm;
-    return (ZoneTerm){
-        a, vec3_scale(vec3_sub(b, a), 1 / length), k, k * length, radius_mm, segment, NO_ARM};
+    return (ZoneTerm){.a = a,
+                      .axis = vec3_scale(vec3_sub(b, a), 1 / length),
+                      .k = k,
+                      .length_k = k * length,
+                      .radius_mm = radius_mm,
+                      .segment = segment,
+                      .arm = NO_ARM,
+                      .is_round = body == BODY_ROUND};
 }
 
 /* A place in the coordinates of a term: how far inside either end, how far from the axis. */
@@ -54,23 +62,35 @@ static double distance2(const TermPlace *place)
     return place->e2 + beyond * beyond;
 }
 
-static double value_at(const TermPlace *place)
+static double value_at(const ZoneTerm *term, const TermPlace *place)
 {
-    if (distance2(place) > out_of_reach * out_of_reach)
+    double from_segment = distance2(place);
+    if (from_segment > out_of_reach * out_of_reach)
         return 0;
+    if (term->is_round)
+        return exp_minus(from_segment);
     return exp_minus(place->e2) * axial(place->u, place->v);
+}
+
+/* From the nearest point of the segment to the place, mm. */
+static Vec3 from_nearest(const ZoneTerm *term, const TermPlace *place)
+{
+    double beyond = fmax(0, -place->v) - fmax(0, -place->u);
+    return vec3_add_scaled(place->across, term->axis, beyond / term->k);
 }
 
 double zoneterm_value(const ZoneTerm *term, Vec3 x)
 {
     TermPlace place = place_in(term, x);
-    return value_at(&place);
+    return value_at(term, &place);
 }
 
 /* Of a term at a place, given its value there. */
 static Vec3 term_gradient(const ZoneTerm *term, const TermPlace *place, double value)
 {
     double slope = 0;
+    if (term->is_round)
+        return vec3_scale(from_nearest(term, place), -2 * term->k * term->k * value);
     if (fabs(place->u) < saturated || fabs(place->v) < saturated)
         slope =
             exp_minus(place->e2 + place->u * place->u) - exp_minus(place->e2 + place->v * place->v);
@@ -78,18 +98,24 @@ static Vec3 term_gradient(const ZoneTerm *term, const TermPlace *place, double v
                            term->k * inv_sqrt_pi * slope);
 }
 
-static double upper_bound(const TermPlace *place, double rho)
+static double upper_bound(const ZoneTerm *term, const TermPlace *place, double rho)
 {
+    if (term->is_round) {
+        double from_segment = fmax(0, sqrt(distance2(place)) - rho);
+        return exp_minus(from_segment * from_segment);
+    }
     double across = fmax(0, sqrt(place->e2) - rho), off = 0.5 * (place->v - place->u);
     double towards = fmin(rho, fabs(off)) * (off > 0 ? 1 : -1);
     return exp_minus(across * across) * axial(place->u + towards, place->v - towards);
 }
 
-static double lower_bound(const TermPlace *place, double rho)
+static double lower_bound(const ZoneTerm *term, const TermPlace *place, double rho)
 {
-    double across = sqrt(place->e2) + rho;
+    double across = sqrt(term->is_round ? distance2(place) : place->e2) + rho;
     if (across > 2)
         return 0; /* less than 0.02, which no sum needs */
+    if (term->is_round)
+        return exp_minus(across * across);
     double one = axial(place->u + rho, place->v - rho),
            other = axial(place->u - rho, place->v + rho);
     return exp_minus(across * across) * fmax(0, fmin(one, other));
@@ -233,8 +259,45 @@ static bool has_parted(const PartPool *pool, const FieldPart *part)
     return true;
 }
 
+/* A wall that may pass a ball: its normal, and how far the centre is outside it, mm. */
+typedef struct NearWall {
+    Vec3 normal;
+    double outside;
+} NearWall;
+
+/* Whether two walls, as planes, meet in a ball of this radius, or face each other in it. */
+static bool walls_meet(const NearWall *a, const NearWall *b, double radius_mm)
+{
+    double cosine = vec3_dot(a->normal, b->normal);
+    double apart = a->outside * a->outside + b->outside * b->outside -
+                   2 * cosine * a->outside * b->outside; /* (distance * sine)^2 */
+    return cosine < -0.5 || apart <= (1 - cosine * cosine) * radius_mm * radius_mm;
+}
+
+/* How much the normals of walls differ at most that meet in the ball. */
+static double find_crease(const ZoneField *field, const PartPool *pool, const FieldPart *part,
+                          Vec3 center, double radius_mm)
+{
+    NearWall walls[MOST_PART_TERMS];
+    uint32_t n = 0;
+    double most = 0;
+    for (uint32_t i = 0; i < part->n_terms && n < MOST_PART_TERMS; i++) {
+        if (pool->work[i].upper < FIELD_LEVEL || pool->work[i].lower > FIELD_LEVEL)
+            continue;
+        const ZoneTerm *term = &field->terms[pool->terms[part->first_term + i]];
+        TermPlace place = place_in(term, center);
+        Vec3 from = from_nearest(term, &place);
+        walls[n] = (NearWall){vec3_normalized(from), vec3_length(from) - term->radius_mm};
+        for (uint32_t k = 0; k < n; k++)
+            if (walls_meet(&walls[k], &walls[n], crease_slack * radius_mm))
+                most = fmax(most, vec3_distance(walls[k].normal, walls[n].normal));
+        n++;
+    }
+    return most;
+}
+
 static void sum_bounds(const ZoneField *field, const PartPool *pool, const FieldPart *part,
-                       PartBounds *bounds)
+                       Vec3 center, double radius_mm, PartBounds *bounds)
 {
     *bounds = (PartBounds){.thinnest = HUGE_VAL};
     for (uint32_t i = 0; i < part->n_terms; i++) {
@@ -259,7 +322,11 @@ static void sum_bounds(const ZoneField *field, const PartPool *pool, const Field
         bounds->upper = fmax(bounds->upper, upper);
         bounds->lower = fmax(bounds->lower, lower);
     }
-    bounds->parted = part->n_groups > 1 && has_parted(pool, part);
+    bool is_round = field->n_terms > 0 && field->terms[0].is_round;
+    if (is_round)
+        bounds->crease = find_crease(field, pool, part, center, radius_mm);
+    else
+        bounds->parted = part->n_groups > 1 && has_parted(pool, part);
 }
 
 Status fieldpart_narrow(const ZoneField *field, PartPool *pool, const FieldPart *part, Vec3 center,
@@ -279,12 +346,12 @@ Status fieldpart_narrow(const ZoneField *field, PartPool *pool, const FieldPart 
         if (distance2(&place) > reach * reach)
             continue;
         work[narrow.n_terms++] =
-            (TermWork){i, upper_bound(&place, inner), lower_bound(&place, inner)};
+            (TermWork){i, upper_bound(term, &place, inner), lower_bound(term, &place, inner)};
         pool->terms[pool->n_terms++] = number;
     }
     narrow.words = (narrow.n_terms + 63) / 64;
     TRY(narrow_groups(pool, part, &narrow, err));
-    sum_bounds(field, pool, &narrow, bounds);
+    sum_bounds(field, pool, &narrow, center, inner_mm, bounds);
     *out = narrow;
     return STATUS_OK;
 }
@@ -322,7 +389,7 @@ FieldValue fieldpart_gradient(const ZoneField *field, const PartPool *pool, cons
     values[0] = 0; /* where there is no term */
     for (uint32_t i = 0; i < part->n_terms; i++) {
         places[i] = place_in(&field->terms[terms[i]], x);
-        values[i] = value_at(&places[i]);
+        values[i] = value_at(&field->terms[terms[i]], &places[i]);
     }
     FieldValue best = largest_group(pool, part, values);
     const uint64_t *group = &pool->groups[part->first_group + (size_t)best.group * part->words];

@@ -7,7 +7,9 @@
 #include "scene/scene.h"
 #include <stdint.h>
 
-/* A term of the potential, prepared: lengths times k are in units of radius / sqrt2. */
+/* A term of the potential, prepared: lengths times k are in units of radius / sqrt2. Of a round
+ * body a term is exp(-(k d)^2), d being the distance from the segment itself: at FIELD_LEVEL a
+ * cylinder with balls at its ends. */
 typedef struct ZoneTerm {
     Vec3 a, axis;    /* from a on; unit */
     double k;        /* sqrt2 / radius, 1/mm */
@@ -15,16 +17,18 @@ typedef struct ZoneTerm {
     double radius_mm;
     uint32_t segment; /* of the tree */
     uint16_t arm;     /* of the zone, that the term is of, or NO_ARM */
+    bool is_round;
 } ZoneTerm;
 
 #define NO_ARM UINT16_MAX
 
 /* The term of a segment that is no arm. */
-ZoneTerm zoneterm_of(Vec3 a, Vec3 b, double radius_mm, uint32_t segment);
+ZoneTerm zoneterm_of(Vec3 a, Vec3 b, double radius_mm, uint32_t segment, VesselBody body);
 /* The term at x, in [0, 1]. */
 double zoneterm_value(const ZoneTerm *term, Vec3 x);
 
-/* Of the terms of one zone: groups[i] lists the numbers of those that blend at its i-th node. */
+/* Of the terms of one zone: groups[i] lists the numbers of those that blend at its i-th node; of a
+ * round body none blend, and each is a group. */
 typedef struct ZoneField {
     ZoneTerm *terms;
     uint32_t n_terms;
@@ -71,6 +75,7 @@ typedef struct PartBounds {
     uint32_t largest_term;   /* number of that term in the field */
     double thinnest, widest; /* radii of terms that may exceed a tenth of the level, mm */
     bool parted;             /* two such terms do not blend: no group holds both */
+    double crease; /* of a round body: how much the normals of walls that may pass differ at most */
 } PartBounds;
 
 /* The part of `part` that matters in the ball: terms that may exceed 10^-5 there; and what bounds

@@ -34,7 +34,7 @@ static Status add_arm(Planner *planner, uint32_t segment, int end, Err *err)
                     "tubes", err));
     ZoneTerm *term = &plan->field.terms[plan->field.n_terms++];
     *term = zoneterm_of(from, vec3_add_scaled(from, outward, plane + ARM_TAIL * radius), radius,
-                        segment);
+                        segment, planner->tree->body);
     term->arm = (uint16_t)plan->n_arms;
     plan->arms[plan->n_arms++] =
         (Arm){segment, end, vec3_add_scaled(from, outward, plane), outward, radius};
@@ -57,7 +57,7 @@ static Status add_node(Planner *planner, uint32_t node, Err *err)
             TRY(add_arm(planner, segment, end, err));
         else if (end == 0)
             plan->field.terms[plan->field.n_terms++] =
-                zoneterm_of(self->a, self->b, self->radius_mm, segment);
+                zoneterm_of(self->a, self->b, self->radius_mm, segment, planner->tree->body);
     }
     return STATUS_OK;
 }
@@ -98,6 +98,30 @@ static Status add_group(Planner *planner, uint32_t node, Err *err)
     return STATUS_OK;
 }
 
+/* Each term a group. */
+static Status add_lone_groups(Planner *planner, Err *err)
+{
+    ZoneField *field = &planner->plan.field;
+    TRY(mem_calloc(&field->first, field->n_terms + 1, sizeof *field->first, "terms", err));
+    TRY(mem_calloc(&field->members, field->n_terms, sizeof *field->members, "terms", err));
+    for (uint32_t i = 0; i < field->n_terms; i++) {
+        field->members[i] = i;
+        field->first[++field->n_groups] = i + 1;
+    }
+    return STATUS_OK;
+}
+
+static Status add_groups(Planner *planner, const uint32_t *nodes, uint32_t n_nodes, Err *err)
+{
+    ZoneField *field = &planner->plan.field;
+    if (planner->tree->body == BODY_ROUND)
+        return add_lone_groups(planner, err);
+    TRY(mem_calloc(&field->first, n_nodes + 1, sizeof *field->first, "nodes", err));
+    for (uint32_t i = 0; i < n_nodes; i++)
+        TRY(add_group(planner, nodes[i], err));
+    return STATUS_OK;
+}
+
 Status zoneplan_make(const VesselTree *tree, const NumberLists *incident,
                      const NumberLists *blending, const Zones *zones, uint32_t zone, ZonePlan *out,
                      Err *err)
@@ -107,12 +131,10 @@ Status zoneplan_make(const VesselTree *tree, const NumberLists *incident,
     const uint32_t *nodes = &zones->nodes.items[zones->nodes.first[zone]];
     uint32_t n_nodes = zones->nodes.first[zone + 1] - zones->nodes.first[zone];
     Status status;
-    TRY_GOTO(mem_calloc(&plan->field.first, n_nodes + 1, sizeof *plan->field.first, "nodes", err));
     for (uint32_t i = 0; i < n_nodes; i++)
         TRY_GOTO(add_node(&planner, nodes[i], err));
     qsort(plan->field.terms, plan->field.n_terms, sizeof *plan->field.terms, compare_terms);
-    for (uint32_t i = 0; i < n_nodes; i++)
-        TRY_GOTO(add_group(&planner, nodes[i], err));
+    TRY_GOTO(add_groups(&planner, nodes, n_nodes, err));
     *out = *plan;
     return STATUS_OK;
 done:

@@ -85,9 +85,15 @@ static bool is_disturbed(const ZoneTerm *others, size_t n, Vec3 center, Vec3 axi
     return false;
 }
 
-static bool is_flat_end(const NumberLists *incident, uint32_t node)
+static bool is_end(const NumberLists *incident, uint32_t node)
 {
     return incident->first[node + 1] - incident->first[node] == 1;
+}
+
+/* Ends of a round body are zones: the plane stays off the ball. */
+static bool is_flat_end(const Divider *divider, uint32_t node)
+{
+    return divider->tree->body != BODY_ROUND && is_end(divider->incident, node);
 }
 
 /* How far from the end of a segment another may disturb its wall: the last place whose distance
@@ -131,7 +137,7 @@ static Status find_free(const Divider *divider, uint32_t segment, int end, doubl
         uint32_t other = divider->blending->items[i];
         const FieldSegment *one = &tree->segments[other];
         if (other != segment)
-            others[n++] = zoneterm_of(one->a, one->b, one->radius_mm, other);
+            others[n++] = zoneterm_of(one->a, one->b, one->radius_mm, other, tree->body);
     }
     double last = 0, length = length_of(self), step = search_step * self->radius_mm;
     for (size_t i = 0; i < n; i++)
@@ -142,6 +148,8 @@ static Status find_free(const Divider *divider, uint32_t segment, int end, doubl
                                       self->radius_mm))
         steps--;
     *free_mm = steps * step;
+    if (tree->body == BODY_ROUND && is_end(divider->incident, node))
+        *free_mm = fmax(*free_mm, plane_room * self->radius_mm);
     free(others);
     return STATUS_OK;
 }
@@ -196,7 +204,7 @@ static double room_needed(const Divider *divider, uint32_t segment)
 {
     double radii = 0.1;
     for (int end = 0; end < 2; end++)
-        if (!is_flat_end(divider->incident, divider->tree->nodes[segment][end]))
+        if (!is_flat_end(divider, divider->tree->nodes[segment][end]))
             radii += plane_room;
     return radii * divider->tree->segments[segment].radius_mm;
 }
@@ -313,8 +321,8 @@ static Status number_zones(const Divider *divider, Zones *zones, Err *err)
     TRY(mem_calloc(&zones->zone, tree->n_nodes, sizeof *zones->zone, "nodes", err));
     for (uint32_t i = 0; i < tree->n_nodes; i++) {
         uint32_t first = divider->incident->first[i], root = root_of(divider, i);
-        bool flat = is_flat_end(divider->incident, i) &&
-                    divider->is_tube[divider->incident->items[first]] && !divider->joined[i];
+        bool flat = is_flat_end(divider, i) && divider->is_tube[divider->incident->items[first]] &&
+                    !divider->joined[i];
         bool used = divider->incident->first[i + 1] > first;
         zones->zone[i] = flat || !used ? NO_ZONE : root == i ? zones->n_zones++ : zones->zone[root];
     }

@@ -17,6 +17,8 @@ static const double half_diagonal = 0.8660254037844387;
 static const double known_reach = 1.75;
 /* Cells near vessels that do not blend, and the least of all, over the usual. */
 static const double parted_part = 1.0 / 6, least_part = 1.0 / 8;
+/* Of the bending: a crease is cut off, and not an arc. */
+static const double crease_part = 0.22;
 /* Behind a plane walls go on for so many usual cells, in which the plane may be moved. */
 static const double margin_behind = 0.75;
 static const double surely = 1e-3;
@@ -94,6 +96,8 @@ static bool must_split(const Builder *builder, const FieldPart *part, const Part
         return true;
     if (bounds->parted)
         return side > parted_part * usual;
+    if (side * bounds->crease > crease_part * builder->size->bending * bounds->thinnest)
+        return true;
     if (side < 2 * least_part * usual || bounds->all - bounds->largest < lone * FIELD_LEVEL)
         return false;
     return side * turn_across(builder, part, center, side) >
