@@ -18,6 +18,11 @@ static const char *const projections[] = {
 static const char *const views[] = {
     [VIEW_FRONT] = "front", [VIEW_TOP] = "top", [VIEW_LEFT] = "left", [VIEW_ISO] = "iso", NULL};
 
+/* What a point has the colour of: its largest term, or the mean of all. */
+enum { BLEND_SEGMENT, BLEND_BLENDED };
+static const char *const color_blends[] = {
+    [BLEND_SEGMENT] = "segment", [BLEND_BLENDED] = "blended", NULL};
+
 static const char *const erf_names[] = {[ERF_FAST] = "fast", [ERF_EXACT] = "exact", NULL};
 
 const Range antialias_range = {1, RENDER_MOST_ANTIALIAS}, prune_range = {0, 1e7},
@@ -55,6 +60,12 @@ static const Option rows[] = {
      .group = GROUP_VESSELS,
      .unit = "mm",
      .help = "drop segments thinner than this"},
+    {.name = "color-blend",
+     SETS(CHOICE, PictureOptions, color_blend),
+     .choices = color_blends,
+     .group = GROUP_COLOR,
+     .help =
+         "isosurface, blob: a point has its largest segment's colour, or that of the mean value"},
     {.name = "size",
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
@@ -194,10 +205,15 @@ typedef struct ModelOption {
 } ModelOption;
 
 static const ModelOption of_models[] = {
-    {"potential", MODEL_POTENTIAL, ""},     {"erf", MODEL_POTENTIAL, ""},
-    {"cell-beta", MODEL_POTENTIAL, ""},     {"hits", MODEL_POTENTIAL, ""},
-    {"joints", MODEL_JOINTS, ""},           {"tolerance", MODEL_TRIANGLES, ""},
-    {"part-overlaps", MODEL_TRIANGLES, ""}, {"ids", MODEL_FIELD, "; other scenes have ids anyway"},
+    {"potential", MODEL_POTENTIAL, ""},
+    {"erf", MODEL_POTENTIAL, ""},
+    {"cell-beta", MODEL_POTENTIAL, ""},
+    {"hits", MODEL_POTENTIAL, ""},
+    {"joints", MODEL_JOINTS, ""},
+    {"tolerance", MODEL_TRIANGLES, ""},
+    {"part-overlaps", MODEL_TRIANGLES, ""},
+    {"color-blend", MODEL_FIELD, ""},
+    {"ids", MODEL_FIELD, "; other scenes have ids anyway"},
 };
 
 /* The row of an option; NULL when it has an effect on all models. */
@@ -394,11 +410,38 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
     return status;
 }
 
+/* Has the colours blend, if they are to. */
+static Status blend(const PictureOptions *options, Appearance *appearance, Err *err)
+{
+    enum { MOST_STEPS = 128 }; /* that a colour map of POV-Ray holds */
+    const ColorScale *scale = &appearance->scale;
+    if (options->color_blend == BLEND_SEGMENT || !appearance->colors)
+        return STATUS_OK;
+    if (colorscale_counts(scale))
+        return err_set(
+            err, STATUS_USAGE,
+            "--color-blend blended: --colormap %s has separate colours, which blend only "
+            "with --classes",
+            options->coloring.colormap);
+    if (colorscale_steps(scale) > MOST_STEPS)
+        return err_set(err, STATUS_USAGE,
+                       "--color-blend blended takes at most %d --classes, not %d", MOST_STEPS,
+                       colorscale_steps(scale));
+    return stage_blend(appearance, err);
+}
+
 Status picture_appearance(const PictureOptions *options, const PictureSource *source,
                           Appearance *appearance, Err *err)
 {
     const ColoredTree tree = picture_colored_tree(&source->of);
-    return coloring_appearance(&options->coloring, &tree, &source->look, appearance, err);
+    Appearance made;
+    TRY(coloring_appearance(&options->coloring, &tree, &source->look, &made, err));
+    Status status = blend(options, &made, err);
+    if (status == STATUS_OK)
+        *appearance = made;
+    else
+        appearance_release(&made);
+    return status;
 }
 
 Status picture_view(const PictureOptions *options, const PictureSource *source,

@@ -12,7 +12,7 @@
 
 typedef struct PictureOptions {
     ViewParams stage; /* but projection, view and size, which are below */
-    int model, potential, joints, projection, view; /* choices */
+    int model, potential, joints, projection, view, color_blend; /* choices */
     int size[2];
     int antialias;
     int occlusion;    /* rays a sample; 0: none */

@@ -37,7 +37,8 @@ typedef struct Asker {
     const SettleCase *asked;
     View one; /* the view through one pixel, or in dimmer lights */
     Renderer *first,
-        *cached; /* of other models: with POV-Ray's limit, and that of its shadow cache */
+        *cached;    /* of other models: with POV-Ray's limit, and that of its shadow cache */
+    TermMean *mean; /* of a blob whose colours blend, or NULL */
     Blockage blockages[VIEW_MAX_LIGHTS]; /* of each light, to the place last asked about */
 } Asker;
 
@@ -50,6 +51,7 @@ static void asker_release(Asker *asker)
 {
     renderer_free(asker->first);
     renderer_free(asker->cached);
+    termmean_free(asker->mean);
 }
 
 static Status new_renderer(Asker *asker, double shadow_from_mm, Renderer **out, Err *err)
@@ -65,7 +67,9 @@ static Status asker_init(Asker *asker, const SettleCase *asked, Err *err)
     asker->asked = asked;
     asker->one = asked->scene->view;
     if (proof_of(asked) == PROOF_FIELD)
-        return STATUS_OK;
+        return asked->scene->appearance.places
+                   ? termmean_new(&asked->scene->geometry, &asker->mean, err)
+                   : STATUS_OK;
     TRY(new_renderer(asker, first_slack_mm, &asker->first, err));
     return new_renderer(asker, cached_slack_mm, &asker->cached, err);
 }
@@ -236,7 +240,11 @@ static Look wall_at(const Asker *asker, Ray ray, double t)
     const FieldSegment *wall = find_wall(asker, ray, seen.at.point, &seen.at.normal);
     seen.id = scene->geometry.ids[wall->segment];
     seen.at.finish = &scene->appearance.finish;
-    seen.at.pigment = appearance_color(&scene->appearance, wall->segment);
+    seen.at.pigment =
+        asker->mean
+            ? appearance_blended(&scene->appearance,
+                                 termmean_at(asker->mean, scene->appearance.places, seen.at.point))
+            : appearance_color(&scene->appearance, wall->segment);
     return seen;
 }
 

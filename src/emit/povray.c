@@ -106,24 +106,26 @@ static void add_places(Values *values, const EmitParams *params)
     put_vectors(add_value(values, "path"), anatomy->path, anatomy->n_path);
 }
 
-/* A colour map has at most 256 entries; a class is two, with one colour. */
+/* A colour map has at most 256 entries; a step of one colour is two. */
 static void put_color_map(Text *text, const Appearance *appearance)
 {
-    enum { STEPS = 256 };
+    enum { ENTRIES = COLORRAMP_ENTRIES };
+    char place[NUMBER_TEXT_SIZE];
     const ColorScale *scale = &appearance->scale;
-    bool classes = scale->classes >= 2 && scale->classes <= STEPS / 2;
-    int n = !appearance->colors ? 1 : classes ? scale->classes : STEPS;
+    int steps = !appearance->colors ? 1 : colorscale_steps(scale);
+    bool stepped = steps > 0 && steps <= ENTRIES / 2;
+    int n = stepped ? steps : ENTRIES;
     for (int i = 0; i < n; i++) {
-        Rgb color = appearance->color;
-        float rgb[3];
-        if (appearance->colors) {
-            colormap_linear(&scale->map, n > 1 ? (double)i / (n - 1) : 0.5, rgb);
-            color = (Rgb){rgb[0], rgb[1], rgb[2]};
-        }
-        for (int side = 0; side < (classes || n == 1 ? 2 : 1); side++) {
-            text_printf(text, "[%.6g rgb ",
-                        classes || n == 1 ? (double)(i + side) / n : (double)i / (n - 1));
-            put_color(text, color);
+        float rgb[3] = {appearance->color.r, appearance->color.g, appearance->color.b};
+        if (appearance->colors && stepped)
+            colorscale_step_color(scale, i, rgb);
+        else if (appearance->colors)
+            colormap_linear(&scale->map, (double)i / (n - 1), rgb);
+        for (int side = 0; side < (stepped ? 2 : 1); side++) {
+            text_printf(
+                text, "[%s rgb ",
+                number_text_float((float)((double)(i + side) / (stepped ? n : n - 1)), place));
+            put_color(text, (Rgb){rgb[0], rgb[1], rgb[2]});
             text_puts(text, "]");
         }
     }
@@ -147,6 +149,14 @@ static void add_scale(Values *values, const Appearance *appearance)
     add_number(values, "value_high", scale->range[1]);
     add_flag(values, "value_log", scale->log);
     put_color_map(add_value(values, "color_map"), appearance);
+    text_printf(add_value(values, "n_bounds"), "%d", scale->n_bounds);
+    Text *bounds = add_value(values, "bounds");
+    for (int i = 0; i < scale->n_bounds; i++) {
+        text_number(bounds, scale->bounds[i]);
+        text_puts(bounds, ", ");
+    }
+    text_printf(add_value(values, "count"), "%d",
+                colorscale_counts(scale) ? colorscale_steps(scale) : 0);
 }
 
 /* A frame is a case of a #switch, of which POV-Ray reads one. */
@@ -198,6 +208,8 @@ static Status put_geometry(Text *out, void *context, Err *err)
     add_places(&values, params);
     add_scale(&values, &scene->appearance);
     add_part(&values, "frames", put_frames, geometry);
+    add_flag(&values, "blended", povray_blends(geometry));
+    add_part(&values, "blend", put_blend_macros, geometry);
     add_part(&values, "macros", put_macros, geometry);
     add_part(&values, "tree", put_tree, geometry);
     return values_expand(&values, params, "povray/vessels.inc", out, err);

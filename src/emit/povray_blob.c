@@ -224,7 +224,8 @@ typedef struct Item {
 
 typedef struct Paints {
     const Scene *scene;
-    const Tmpl *node; /* the function of a box */
+    const double *places; /* of sums for colours that blend; NULL: the largest term is found */
+    const Tmpl *node;     /* the function of a box */
     Item *items;
     Text *text;
     unsigned nodes;
@@ -238,16 +239,24 @@ static int by_key(const void *a, const void *b)
     return x->segment < y->segment ? -1 : x->segment > y->segment;
 }
 
-static void put_term(Text *text, const Scene *scene, uint32_t number)
+static void put_term(Text *text, const Paints *paints, uint32_t number)
 {
-    TermForm form = term_form(&scene->geometry.segments[number]);
+    const FieldSegment *segment = &paints->scene->geometry.segments[number];
+    TermForm form = term_form(segment);
     const Linear *const parts[] = {&form.v, &form.w, &form.start, &form.end};
-    text_puts(text, "Fn_Blob_Term(");
+    text_puts(text, paints->places ? "+Fn_Blob_Weight(" : ",Fn_Blob_Term(");
     for (int i = 0; i < 4; i++) {
+        text_puts(text, i ? "," : "");
         put_linear(text, parts[i]);
-        text_puts(text, ",");
     }
-    text_printf(text, "%u)", number);
+    if (!paints->places) {
+        text_printf(text, ",%u)", number);
+        return;
+    }
+    double place = paints->places[segment->segment];
+    text_printf(text, ")*select(k,%d,1,", !isnan(place));
+    text_number(text, isnan(place) ? 0 : place);
+    text_puts(text, ")");
 }
 
 /* The middle of an extent along an axis, and a little more than its half, in few digits. */
@@ -259,7 +268,8 @@ static void extent_along(double low, double high, char middle[NUMBER_TEXT_SIZE],
     snprintf(half, NUMBER_TEXT_SIZE, "%.6g", (high - low) / 2 * 1.001 + fabs(center) * 1e-5);
 }
 
-/* Declares the function of a box, the largest of those listed where the box holds the point. */
+/* Declares the function of a box: of those listed the largest, or the sum, where the box holds the
+ * point. */
 static Status put_function(Paints *paints, Box box, const Text *list, Err *err)
 {
     char number[NUMBER_TEXT_SIZE], middle[3][NUMBER_TEXT_SIZE], half[3][NUMBER_TEXT_SIZE];
@@ -294,13 +304,12 @@ static Status put_node(Paints *paints, size_t first, size_t n, Err *err)
         sort_along(paints, items, n, box_longest_axis(box));
         for (int half = 0; half < 2; half++) {
             TRY(put_node(paints, half ? first + n / 2 : first, half ? n - n / 2 : n / 2, err));
-            text_printf(&list, ",Fn%u(x,y,z)", paints->nodes - 1);
+            text_printf(&list, paints->places ? "+Fw%u(x,y,z,k)" : ",Fn%u(x,y,z)",
+                        paints->nodes - 1);
         }
     }
-    for (size_t i = 0; n <= LEAF && i < n; i++) {
-        text_puts(&list, ",");
-        put_term(&list, paints->scene, items[i].segment);
-    }
+    for (size_t i = 0; n <= LEAF && i < n; i++)
+        put_term(&list, paints, items[i].segment);
     Status status = put_function(paints, box, &list, err);
     text_release(&list);
     return status;
@@ -312,15 +321,16 @@ static size_t count_nodes(size_t n)
     return n <= LEAF ? 1 : 1 + count_nodes(n / 2) + count_nodes(n - n / 2);
 }
 
-/* The functions that find the largest term. */
-static Status put_functions(Text *out, void *context, Err *err)
+/* The functions that find the largest term, or that sum terms for the mean of `places`. */
+static Status put_hierarchy(Text *out, const PovrayGeometry *geometry, const double *places,
+                            Err *err)
 {
-    const PovrayGeometry *geometry = context;
     Tmpl node = {0};
-    Paints paints = {.scene = geometry->scene, .node = &node, .text = out};
+    Paints paints = {.scene = geometry->scene, .places = places, .node = &node, .text = out};
     size_t n = paints.scene->geometry.n_segments;
     Status status;
-    TRY(load_template(&node, geometry->params, "povray/blob_node.inc", err));
+    TRY(load_template(&node, geometry->params,
+                      places ? "povray/blob_weight.inc" : "povray/blob_node.inc", err));
     TRY_GOTO(mem_calloc(&paints.items, n, sizeof *paints.items, "segments", err));
     for (size_t i = 0; i < n; i++)
         paints.items[i].segment = (uint32_t)i;
@@ -329,6 +339,30 @@ done:
     free(paints.items);
     tmpl_release(&node);
     return status;
+}
+
+static Status put_functions(Text *out, void *context, Err *err)
+{
+    return put_hierarchy(out, context, NULL, err);
+}
+
+static Status put_weights(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    return put_hierarchy(out, geometry, geometry->scene->appearance.places, err);
+}
+
+/* What finds the mean where colours blend. */
+static Status put_blend(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    Values values = {0};
+    if (!povray_blends(geometry))
+        return text_check(out, err);
+    text_printf(add_value(&values, "top"), "Fw%zu",
+                count_nodes(geometry->scene->geometry.n_segments) - 1);
+    add_part(&values, "nodes", put_weights, context);
+    return values_expand(&values, geometry->params, "povray/blob_blend.inc", out, err);
 }
 
 /* The segments' paints. */
@@ -392,6 +426,7 @@ Status put_blob_macros(Text *out, void *context, Err *err)
         text_printf(n_groups, "%zu", (n + GROUP - 1) / GROUP);
     }
     add_part(&values, "paint", painted ? put_functions : put_nothing, context);
+    add_part(&values, "blend", put_blend, context);
     add_part(&values, "groups", painted ? put_groups : put_nothing, context);
     return values_expand(&values, geometry->params, "povray/blob.inc", out, err);
 }

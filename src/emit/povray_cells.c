@@ -143,26 +143,28 @@ Status put_cell_macros(Text *out, void *context, Err *err)
 
 /* A cell's values, with room that every cell uses again. */
 typedef struct CellText {
-    Text low, high, function, paint, sum, largest, pick, paints;
+    Text low, high, function, paint, sum, largest, pick, paints, by_segment, mean, known;
     char max_gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE], count[NUMBER_TEXT_SIZE];
 } CellText;
 
 static void release_cell_text(CellText *part)
 {
-    Text *const texts[] = {&part->low,  &part->high,    &part->function, &part->paint,
-                           &part->pick, &part->largest, &part->paints,   &part->sum};
+    Text *const texts[] = {&part->low,  &part->high,    &part->function,  &part->paint,
+                           &part->pick, &part->largest, &part->paints,    &part->sum,
+                           &part->mean, &part->known,   &part->by_segment};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         text_release(texts[i]);
 }
 
 typedef struct CellTemplates {
-    Tmpl cell, paints, group_paints;
+    Tmpl cell, paints, group_paints, blend;
 } CellTemplates;
 
 static Status load_cell_templates(const EmitParams *params, CellTemplates *templates, Err *err)
 {
     TRY(load_template(&templates->cell, params, "povray/cell.inc", err));
     TRY(load_template(&templates->paints, params, "povray/cell_paints.inc", err));
+    TRY(load_template(&templates->blend, params, "povray/cell_blend.inc", err));
     return load_template(&templates->group_paints, params, "povray/cell_group_paints.inc", err);
 }
 
@@ -171,6 +173,7 @@ static void release_cell_templates(CellTemplates *templates)
     tmpl_release(&templates->cell);
     tmpl_release(&templates->paints);
     tmpl_release(&templates->group_paints);
+    tmpl_release(&templates->blend);
 }
 
 static Text *cleared(Text *text)
@@ -337,6 +340,89 @@ static Status put_cell_paint(Text *text, const CellTemplates *templates, const E
                       grouped ? 5 : 4, text, err);
 }
 
+/* ---- colours that blend ---------------------------------------------------------------------- */
+
+/* The place on the scale of a term's segment; NAN: it has none. */
+static double place_of(const EmitParams *params, const CellTerm *term)
+{
+    const Scene *scene = params->scene;
+    return scene->appearance.places[scene->geometry.segments[term->segment].segment];
+}
+
+/* The sum of the terms whose segments have places, times these if `placed`; "(0)" without any. */
+static void put_known_sum(Text *text, const EmitParams *params, TermChoice choice, bool placed)
+{
+    text_puts(text, "(0");
+    for (uint32_t k = 0; k < choice.n; k++) {
+        const CellTerm *term = chosen_term(&choice, k);
+        double place = place_of(params, term);
+        if (isnan(place))
+            continue;
+        text_puts(text, "+");
+        put_term(text, term);
+        if (!placed)
+            continue;
+        text_puts(text, "*(");
+        text_number(text, place);
+        text_puts(text, ")");
+    }
+    text_puts(text, ")");
+}
+
+/* The mean place over the terms, or the known part of their weight. */
+static void put_ratio(Text *text, const EmitParams *params, TermChoice choice, bool of_known)
+{
+    put_known_sum(text, params, choice, !of_known);
+    text_puts(text, "/max(");
+    if (of_known)
+        put_sum(text, choice);
+    else
+        put_known_sum(text, params, choice, false);
+    text_puts(text, ",1e-30)");
+}
+
+/* The same of all terms of the cell, or of the group whose sum is largest:
+ * Fn_Choose(S1-Fn_Sum,of group 1,Fn_Choose(S2-Fn_Sum,of group 2,...)). */
+static void put_cell_ratio(Text *text, const EmitParams *params, const CellTree *cells,
+                           const Cell *cell, bool of_known)
+{
+    if (cell->n_groups == 0)
+        put_ratio(text, params, all_terms(cells, cell), of_known);
+    for (uint32_t group = 0; group < cell->n_groups; group++) {
+        TermChoice choice = terms_of_group(cells, cell, group);
+        bool last = group + 1 == cell->n_groups;
+        if (!last) {
+            text_puts(text, "Fn_Choose(");
+            put_sum(text, choice);
+            text_puts(text, "-Fn_Sum(x,y,z),");
+        }
+        put_ratio(text, params, choice, of_known);
+        text_puts(text, last ? "" : ",");
+    }
+    for (uint32_t group = 1; group < cell->n_groups; group++)
+        text_puts(text, ")");
+}
+
+/* Appends the paint of a cell in which colours may blend, in place of that by segment, which is in
+ * part->by_segment. */
+static Status put_cell_blend(Text *text, const CellTemplates *templates, const EmitParams *params,
+                             const CellTree *cells, const Cell *cell, CellText *part, Err *err)
+{
+    cleared(&part->sum);
+    if (cell->n_groups > 0) {
+        text_puts(&part->sum, "Cell_Sum() ");
+        put_potential(&part->sum, cells, cell);
+        text_puts(&part->sum, " Cell_Sum_End() ");
+    }
+    put_cell_ratio(cleared(&part->mean), params, cells, cell, false);
+    put_cell_ratio(cleared(&part->known), params, cells, cell, true);
+    const TmplValue values[] = {{"sum", text_chars(&part->sum)},
+                                {"mean", text_chars(&part->mean)},
+                                {"known", text_chars(&part->known)},
+                                {"paint", text_chars(&part->by_segment)}};
+    return tmpl_apply(&templates->blend, values, sizeof values / sizeof *values, text, err);
+}
+
 static Status put_cell(Text *text, const Tmpl *template, const CellTree *cells, const Cell *cell,
                        CellText *part, Err *err)
 {
@@ -367,10 +453,15 @@ static Status put_isosurfaces(Text *out, void *context, Err *err)
     text_puts(out, "Cell_Guard()\n");
     for (size_t i = 0; i < cells->n_cells; i++) {
         const Cell *cell = &cells->cells[i];
+        bool blended = povray_blends(geometry) && cell->count > 1;
         cleared(&part.paint);
+        cleared(&part.by_segment);
         if (painted)
+            TRY_GOTO(put_cell_paint(blended ? &part.by_segment : &part.paint, &templates,
+                                    geometry->params, cells, cell, &part, err));
+        if (blended)
             TRY_GOTO(
-                put_cell_paint(&part.paint, &templates, geometry->params, cells, cell, &part, err));
+                put_cell_blend(&part.paint, &templates, geometry->params, cells, cell, &part, err));
         TRY_GOTO(put_cell(out, &templates.cell, cells, cell, &part, err));
     }
     status = text_check(out, err);

@@ -38,6 +38,9 @@ Status put_cell_macros(Text *out, void *geometry, Err *err);
  * paint them. */
 Status put_blob_macros(Text *out, void *geometry, Err *err);
 Status put_mesh_macros(Text *out, void *geometry, Err *err);
+/* Whether colours blend, and what blends them, if they do. */
+bool povray_blends(const PovrayGeometry *geometry);
+Status put_blend_macros(Text *out, void *geometry, Err *err);
 
 /* Declares all objects, each by the function given, which is one of those that follow. */
 Status put_objects(Text *out, PovrayGeometry *geometry,

@@ -5,7 +5,7 @@
 #include "emit/emit.h"
 #include "tmpl/tmpl.h"
 
-enum { VALUES_MAX = 32, PARTS_MAX = 6 };
+enum { VALUES_MAX = 40, PARTS_MAX = 6 };
 
 /* Zeroed: none. values_expand releases it. */
 typedef struct Values {

@@ -142,15 +142,52 @@ static const ScaleColor *own_color(const ColorScale *scale, double place)
     return own && own->given ? own : NULL;
 }
 
-void colorscale_at(const ColorScale *scale, double place, float rgb[3])
+/* Whether the place has a colour of its own or is on a step, and that colour. */
+static bool take_step(const ColorScale *scale, double place, float rgb[3])
 {
     const ScaleColor *own = own_color(scale, place);
-    if (own)
+    if (own) {
         memcpy(rgb, own->rgb, sizeof own->rgb);
-    else if (!isnan(place) && (scale->n_bounds || scale->classes >= 2))
-        colorscale_step_color(scale, step_at(scale, place), rgb);
-    else
+        return true;
+    }
+    if (isnan(place) || (!scale->n_bounds && scale->classes < 2))
+        return false;
+    colorscale_step_color(scale, step_at(scale, place), rgb);
+    return true;
+}
+
+void colorscale_at(const ColorScale *scale, double place, float rgb[3])
+{
+    if (!take_step(scale, place, rgb))
         colormap_linear(&scale->map, place, rgb);
+}
+
+void colorramp_init(ColorRamp *ramp, const Colormap *map)
+{
+    for (int i = 0; i < COLORRAMP_ENTRIES; i++) {
+        double place = i / (COLORRAMP_ENTRIES - 1.0);
+        ramp->place[i] = (float)place;
+        colormap_linear(map, place, ramp->rgb[i]);
+    }
+}
+
+void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double place, float rgb[3])
+{
+    if (take_step(scale, place, rgb))
+        return;
+    if (isnan(place)) {
+        colormap_linear(&scale->map, place, rgb);
+        return;
+    }
+    place = fmin(fmax(place, 0), 1);
+    int i = (int)(place * (COLORRAMP_ENTRIES - 1));
+    i -= i > 0 && place <= (double)ramp->place[i];
+    i = i < COLORRAMP_ENTRIES - 2 ? i : COLORRAMP_ENTRIES - 2;
+    double low = (double)ramp->place[i], part = (place - low) / ((double)ramp->place[i + 1] - low);
+    for (int c = 0; c < 3; c++) {
+        double a = (double)ramp->rgb[i][c], b = (double)ramp->rgb[i + 1][c];
+        rgb[c] = (float)(a + part * (b - a));
+    }
 }
 
 /* The step of a value on a separate map. */

@@ -66,6 +66,18 @@ void colorscale_at(const ColorScale *scale, double place, float rgb[3]);
 /* The linear colour of a value. */
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3]);
 
+/* Colours that run on as POV-Ray's colour maps hold them: at places of equal distances from 0 to 1,
+ * between which linear colours are interpolated. */
+enum { COLORRAMP_ENTRIES = 256 };
+typedef struct ColorRamp {
+    float place[COLORRAMP_ENTRIES];
+    float rgb[COLORRAMP_ENTRIES][3];
+} ColorRamp;
+
+void colorramp_init(ColorRamp *ramp, const Colormap *map);
+/* As colorscale_at, but of colours that run on the ramp's, which was made of the scale's map. */
+void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double place, float rgb[3]);
+
 /* Appends "wss 3.70 to 54.1 Pa". */
 void colorscale_put_range(const ColorScale *scale, Text *text);
 

@@ -19,3 +19,11 @@ void band_progress(const Band *band, const RenderParams *params, int height, boo
     double done = (further ? 1 + more * part : part) / (1 + more);
     params->progress((band->first + done * band->rows) / height, params->progress_context);
 }
+
+Rgb drawing_color(const Drawing *drawing, uint32_t segment, Vec3 point)
+{
+    const Appearance *appearance = drawing->appearance;
+    if (!drawing->mean)
+        return appearance_color(appearance, segment);
+    return appearance_blended(appearance, termmean_at(drawing->mean, appearance->places, point));
+}

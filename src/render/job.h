@@ -81,8 +81,12 @@ typedef struct Drawing {
     const Appearance *appearance;
     const RenderParams *params;
     struct Caster *caster; /* for the rays that the engine asks for; NULL where it asks for none */
+    const TermMean *mean;  /* of colours that blend; else NULL */
     Band band;
 } Drawing;
+
+/* The linear colour of the segment of this number at a point of its surface. */
+Rgb drawing_color(const Drawing *drawing, uint32_t segment, Vec3 point);
 
 /* Reports progress of the whole picture by params->progress, if there is one. `part`, from 0 to 1,
  * is of the present pass over the band: that of the centre samples, or, if `further`, of the

@@ -24,6 +24,7 @@ struct Renderer {
     const Geometry *geometry;
     RenderParams params; /* with the number of threads */
     Caster *caster;      /* of the geometry; NULL until a view needs it */
+    TermMean *mean;      /* likewise; NULL until an appearance needs it */
     RenderStats stats;
     /* What is kept while engine, camera, lights and antialiasing are these. */
     const Engine *engine; /* NULL: nothing is */
@@ -106,6 +107,19 @@ static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
     return STATUS_OK;
 }
 
+/* Makes what blends colours if the drawing needs it and none before did. */
+static Status prepare_mean(Renderer *renderer, Drawing *drawing, Err *err)
+{
+    if (!drawing->appearance->places || !model_has(renderer->geometry->model, MODEL_FIELD))
+        return STATUS_OK;
+    double start_s = clock_seconds();
+    if (!renderer->mean)
+        TRY(termmean_new(renderer->geometry, &renderer->mean, err));
+    renderer->stats.prepare_s += clock_seconds() - start_s;
+    drawing->mean = renderer->mean;
+    return STATUS_OK;
+}
+
 RenderKernels render_fastest_kernels(void)
 {
     return (RenderKernels)kernels_usable();
@@ -156,6 +170,7 @@ void renderer_free(Renderer *renderer)
         return;
     forget_view(renderer);
     caster_free(renderer->caster);
+    termmean_free(renderer->mean);
     free(renderer);
 }
 
@@ -239,6 +254,8 @@ Status renderer_rows(Renderer *renderer, const View *view, const Appearance *app
                        .params = &renderer->params,
                        .band = band_of(&renderer->params, height, first, rows)};
     Status status = prepare_caster(renderer, &drawing, err);
+    if (status == STATUS_OK)
+        status = prepare_mean(renderer, &drawing, err);
     if (status == STATUS_OK)
         status = draw(renderer, &drawing, &made, err);
     renderer->stats.cpu_s += clock_cpu_seconds() - start_cpu_s;

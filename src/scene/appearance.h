@@ -25,6 +25,8 @@ typedef struct Appearance {
     ColorScale scale;  /* what `colors` mean; its map is owned; zeroed without `colors` */
     char *name, *unit; /* of the scale; owned */
     size_t n_values;
+    double *places;  /* owned; of the values on the scale, where colours blend; or NULL */
+    ColorRamp *ramp; /* owned; that they blend on; or NULL */
     char *said;  /* owned; what `colors` mean, for people: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
     bool fitted; /* the range is that of values, and nobody's choice */
     /* Where colours change with time: `colors` and `values` are frame after frame of n_segments
@@ -38,6 +40,9 @@ void appearance_release(Appearance *appearance);
 /* What vessels look like in a frame, from 0 on: borrowed from the appearance, and not to be
  * released. O(1). */
 Appearance appearance_frame(const Appearance *appearance, size_t frame);
+
+/* The linear colour of a place on the scale, where colours blend. */
+Rgb appearance_blended(const Appearance *appearance, double place);
 
 static inline Rgb appearance_color(const Appearance *appearance, uint32_t segment)
 {

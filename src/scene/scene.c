@@ -16,6 +16,8 @@ void appearance_release(Appearance *appearance)
 {
     free(appearance->colors);
     free(appearance->values);
+    free(appearance->places);
+    free(appearance->ramp);
     colormap_release(&appearance->scale.map);
     free(appearance->name);
     free(appearance->unit);
@@ -31,9 +33,17 @@ Appearance appearance_frame(const Appearance *appearance, size_t frame)
         one.colors += frame * one.n_segments;
         one.values += frame * one.n_segments;
         one.n_values = one.n_segments;
+        one.places = one.places ? one.places + frame * one.n_segments : NULL;
     }
     one.n_frames = 0;
     return one;
+}
+
+Rgb appearance_blended(const Appearance *appearance, double place)
+{
+    float rgb[3];
+    colorscale_on_ramp(&appearance->scale, appearance->ramp, place, rgb);
+    return (Rgb){rgb[0], rgb[1], rgb[2]};
 }
 
 void scene_release(Scene *scene)

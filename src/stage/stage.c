@@ -286,3 +286,14 @@ done:
     appearance_release(&made);
     return status;
 }
+
+Status stage_blend(Appearance *appearance, Err *err)
+{
+    const size_t n = appearance->n_values;
+    TRY(mem_calloc(&appearance->ramp, 1, sizeof *appearance->ramp, "colours", err));
+    TRY(mem_calloc(&appearance->places, n, sizeof *appearance->places, "places", err));
+    colorramp_init(appearance->ramp, &appearance->scale.map);
+    for (size_t i = 0; i < n; i++)
+        appearance->places[i] = colorscale_place(&appearance->scale, appearance->values[i]);
+    return STATUS_OK;
+}

@@ -124,6 +124,11 @@ bool segment_can_be_drawn(const Tree *tree, size_t i);
 MUST_CHECK Status stage_appearance(const Look *look, const Field *field, const ColorScale *scale,
                                    Appearance *appearance, Err *err);
 
+/* Has an appearance of a scale blend its colours where segments do: a point has the colour of the
+ * mean of their places on the scale, weighted by their terms [surface/termmean.h]. STATUS_MEMORY.
+ */
+MUST_CHECK Status stage_blend(Appearance *appearance, Err *err);
+
 /* The camera that `params` asks for, with lights, ground and background of the look about the
  * geometry. STATUS_USAGE when the vectors given make no camera, STATUS_INPUT when it is too far
  * away. O(size of the geometry). */

@@ -153,3 +153,38 @@ uint32_t cell_largest_term(const CellTree *cells, const Cell *cell, Vec3 x)
 {
     return largest_sum(cells, cell, x).segment;
 }
+
+/* The group whose sum is largest at x, the first of equals. */
+static uint32_t largest_group(const CellTree *cells, const Cell *cell, Vec3 x)
+{
+    const CellTerm *terms = cells->terms + cell->first;
+    double most = -1;
+    uint32_t best = 0;
+    for (uint32_t group = 0; group < cell->n_groups; group++) {
+        uint32_t n;
+        const uint32_t *places = cell_group(cells, cell, group, &n);
+        double phi = sum_terms(cells, terms, places, n, x).phi;
+        best = phi > most ? group : best;
+        most = fmax(phi, most);
+    }
+    return best;
+}
+
+double cell_mean(const CellTree *cells, const Cell *cell, const FieldSegment *segments,
+                 const double *numbers, Vec3 x)
+{
+    uint32_t n = cell->count;
+    const uint32_t *places =
+        cell->n_groups ? cell_group(cells, cell, largest_group(cells, cell, x), &n) : NULL;
+    double all = 0, known = 0, sum = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        const CellTerm *term = &cells->terms[cell->first + (places ? places[i] : i)];
+        double value = term_at(cells, term, x), number = numbers[segments[term->segment].segment];
+        all += value;
+        if (isnan(number))
+            continue;
+        known += value;
+        sum += value * number;
+    }
+    return 2 * known >= all && known > 0 ? sum / known : (double)NAN;
+}

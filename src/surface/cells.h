@@ -121,5 +121,10 @@ double cell_function(const CellTree *cells, const Cell *cell, Vec3 x);
 /* The index in geometry->segments of its largest term at x, of those of the group whose sum is
  * largest; the first of equals. */
 uint32_t cell_largest_term(const CellTree *cells, const Cell *cell, Vec3 x);
+/* The mean, weighted by its terms at x, or those of the same group, of
+ * numbers[segments[i].segment], as termmean_at has it, and as POV-Ray evaluates it; `segments` is
+ * geometry->segments. */
+double cell_mean(const CellTree *cells, const Cell *cell, const FieldSegment *segments,
+                 const double *numbers, Vec3 x);
 
 #endif

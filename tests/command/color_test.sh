@@ -311,6 +311,33 @@ test_looks_for_data_show_the_colour_of_the_map() {
     done
 }
 
+# Two vessels end to end, of values 1 and 3: by segment there are two colours, blended at most both and what
+# lies between them, and half way both weigh the same.
+test_colours_blend_where_vessels_do() {
+    local model
+    printf '1 1 -30 10 0 10 -1\n2 3 0 10 0 10 1\n3 3 30 10 0 10 2\n' >tree.swc
+    corcast convert tree.swc tree.csv
+    sed '/^#/!{s/$/,1/;}' tree.csv | awk -F, -v OFS=, '/^#/ { print; next } !head { $NF = "load"; head = 1 } /^3,/ { $NF = 3 } { print }' >load.csv
+    for model in isosurface blob; do
+        run_ok corcast render load.csv --quiet --look flat $VIEW --model $model --color-by load -o segment.ppm
+        run_ok corcast render load.csv --quiet --look flat $VIEW --model $model --color-by load --color-blend blended -o blended.ppm
+        [ "$(numbers segment.ppm | sort -u | wc -l)" = 3 ] || fail "expected two colours by segment as $model"
+        numbers blended.ppm | sort -u >seen
+        [ "$(wc -l <seen)" -ge 6 ] || fail "expected colours between the two as $model, got $(wc -l <seen)"
+        # Columns 29 and 30 of 60 lie 1.06 mm to either side of the middle, the entries 128 and 127 of the map.
+        numbers blended.ppm | awk 'NR % 60 == 30 || NR % 60 == 31' | sort -u | grep -v 255 >middle
+        [ "$(wc -l <middle)" = 2 ] && [ "$(awk '{ sum += $2 } END { print int(sum / 2) }' middle)" -ge 142 ] &&
+            [ "$(awk '{ sum += $2 } END { print int(sum / 2) }' middle)" -le 146 ] ||
+            fail "expected the middle of the map in the middle as $model, got '$(cat middle)'"
+        run_ok corcast render load.csv --quiet --look flat $VIEW --model $model --color-by load --classes 2 --color-blend blended -o steps.ppm
+        [ "$(numbers steps.ppm | sort -u | wc -l)" = 3 ] || fail "expected two classes as $model"
+    done
+    refuses '--color-blend is for --model isosurface and blob' --model joined --color-by level --color-blend blended
+    refuses '--colormap Set1 has separate colours, which blend only with --classes' \
+        --model blob --color-by level --colormap Set1 --color-blend blended
+    refuses '--color-blend needs --color-by' --model blob --color-blend blended
+}
+
 test_the_maps_are_listed_with_licences_and_drawn() {
     run_ok corcast colormaps --cite -o maps.ppm
     expect_same stdout <(for map in "$REPO"/templates/colormaps/*.txt; do

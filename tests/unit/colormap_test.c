@@ -269,6 +269,35 @@ static void bounds_part_classes_that_are_open_at_both_ends(void **state)
     colormap_release(&scale.map);
 }
 
+/* A ramp of 256 entries, between which the mixture is linear and not of codes. */
+static void a_ramp_has_the_colours_of_the_map(void **state)
+{
+    (void)state;
+    ColorScale scale = ramp(false, 0, 2, 4);
+    ColorRamp on;
+    colorramp_init(&on, &scale.map);
+    float rgb[3];
+    for (int i = 0; i <= 51; i++) {
+        colorscale_on_ramp(&scale, &on, i / 51.0, rgb);
+        double linear = (double)srgb_decode((float)(i / 51.0));
+        assert_rgb(rgb, linear, linear, linear);
+    }
+    colorscale_on_ramp(&scale, &on, 127.5 / 255, rgb);
+    double middle = ((double)srgb_decode(127 / 255.0f) + (double)srgb_decode(128 / 255.0f)) / 2;
+    assert_rgb(rgb, middle, middle, middle);
+    colorscale_on_ramp(&scale, &on, -2.385, rgb);
+    assert_rgb(rgb, 0, 0, 0);
+    colorscale_on_ramp(&scale, &on, (double)NAN, rgb);
+    assert_rgb(rgb, 0.21404114, 0.21404114, 0.21404114);
+    scale.over = (ScaleColor){true, {0, 1, 0.5f}};
+    colorscale_on_ramp(&scale, &on, 1.001, rgb);
+    assert_rgb(rgb, 0, 1, 0.5);
+    scale.classes = 3;
+    colorscale_on_ramp(&scale, &on, 0.6, rgb);
+    assert_rgb(rgb, 0.21404114, 0.21404114, 0.21404114);
+    colormap_release(&scale.map);
+}
+
 static void whole_numbers_count_separate_colours_round_and_round(void **state)
 {
     (void)state;
@@ -362,6 +391,7 @@ int main(void)
         cmocka_unit_test(a_scale_is_linear_in_values_or_in_their_logarithms),
         cmocka_unit_test(classes_are_equal_steps_that_use_the_whole_map),
         cmocka_unit_test(bounds_part_classes_that_are_open_at_both_ends),
+        cmocka_unit_test(a_ramp_has_the_colours_of_the_map),
         cmocka_unit_test(whole_numbers_count_separate_colours_round_and_round),
         cmocka_unit_test(values_outside_may_have_colours_of_their_own),
         cmocka_unit_test(percentiles_lie_between_neighbours_in_order),

@@ -63,8 +63,8 @@ static void assert_seen_alike(Views *views, Ray ray)
     Hit hit;
     double t;
     Vec3 normal;
-    uint32_t segment, exact_segment;
-    bool found = povray_isosurface_first_hit(views->halving, ray, 1e-4, &hit, &segment);
+    uint32_t segment, exact_segment, cell;
+    bool found = povray_isosurface_first_hit(views->halving, ray, 1e-4, &hit, &segment, &cell);
     bool exact = field_first_hit(views->index, views->scratch, ray, 1e-4, INFINITY, &t, &normal,
                                  &exact_segment);
     double cosine = exact ? -vec3_dot(normal, ray.direction) : 0;
@@ -163,8 +163,8 @@ static void a_hit_is_behind_the_wall_by_less_than_the_accuracy(void **state)
     for (double y = -0.7; y < 0.7; y += 0.0137) {
         Ray ray = {vec3(2.385, y, 30), vec3(0, 0, -1)};
         Hit hit;
-        uint32_t segment;
-        assert_true(povray_isosurface_first_hit(halving, ray, 1e-4, &hit, &segment));
+        uint32_t segment, cell;
+        assert_true(povray_isosurface_first_hit(halving, ray, 1e-4, &hit, &segment, &cell));
         double wall = 30 - sqrt(0.73 * 0.73 - y * y);
         assert_true(hit.t >= wall - 1e-9 && hit.t < wall + cell_accuracy(0.73) + 1e-9);
         assert_int_equal(segment, 0);
@@ -198,9 +198,9 @@ static void an_empty_scene_shows_nothing(void **state)
     const Geometry geometry = {.model = SCENE_ISOSURFACE};
     PovrayIsosurface *halving = halving_of(&geometry);
     Hit hit;
-    uint32_t segment;
+    uint32_t segment, cell;
     Ray ray = {vec3(0, 0, 30), vec3(0, 0, -1)};
-    assert_false(povray_isosurface_first_hit(halving, ray, 1e-4, &hit, &segment));
+    assert_false(povray_isosurface_first_hit(halving, ray, 1e-4, &hit, &segment, &cell));
     assert_false(povray_isosurface_any_hit(halving, ray, 1e-3, 60));
     povray_isosurface_free(halving);
 }

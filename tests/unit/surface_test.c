@@ -280,6 +280,108 @@ static void a_list_has_the_groups_that_no_other_holds_there(void **state)
     }
 }
 
+/* What termmean_at is by definition, of all segments or of those with from <= index < to. */
+static double mean_of(const Geometry *geometry, const double *numbers, size_t from, size_t to,
+                      Vec3 x)
+{
+    bool blob = geometry->model == SCENE_BLOB;
+    double all = 0, known = 0, sum = 0;
+    for (size_t i = from; i < to; i++) {
+        const FieldSegment *segment = &geometry->segments[i];
+        double term = blob ? fmax(blob_term(segment, x), 0) : potential_term(segment, x);
+        double number = numbers[segment->segment];
+        all += term;
+        known += isnan(number) ? 0 : term;
+        sum += isnan(number) ? 0 : term * number;
+    }
+    return known > 0 && 2 * known >= all ? sum / known : (double)NAN;
+}
+
+static void the_mean_is_weighted_by_the_terms_of_all_that_have_a_number(void **state)
+{
+    (void)state;
+    enum { N = 60, POINTS = 400 };
+    Random random;
+    random_seed(&random, 2385);
+    FieldSegment segments[N];
+    double numbers[N];
+    size_t felt = 0, none = 0;
+    for (uint32_t i = 0; i < N; i++) {
+        segments[i] = random_segment(&random);
+        segments[i].segment = N - 1 - i;
+        numbers[N - 1 - i] = i % 3 == 1 ? (double)NAN : uniform(&random, -2, 5);
+    }
+    for (int model = 0; model < 2; model++) {
+        const Geometry geometry = {
+            .model = model ? SCENE_BLOB : SCENE_ISOSURFACE, .segments = segments, .n_segments = N};
+        TermMean *mean;
+        assert_int_equal(termmean_new(&geometry, &mean, NULL), STATUS_OK);
+        for (int k = 0; k < POINTS; k++) {
+            Vec3 x = random_place_near(&segments[k % N], &random, 1.1);
+            double is = termmean_at(mean, numbers, x),
+                   should = mean_of(&geometry, numbers, 0, N, x);
+            assert_true(isnan(is) == isnan(should));
+            assert_true(isnan(is) || fabs(is - should) < 1e-6);
+            felt += !isnan(is);
+            none += isnan(is);
+        }
+        termmean_free(mean);
+    }
+    assert_true(felt > POINTS && none > POINTS / 4);
+}
+
+/* Two groups that cross: at the wall of one, the other does not count. */
+static void the_mean_of_groups_is_that_of_the_largest(void **state)
+{
+    (void)state;
+    FieldSegment segments[] = {{{-9, 0, 0}, {0, 0, 0}, 1.3, 0},
+                               {{0, 0, 0}, {9, 2, 0}, 1.1, 1},
+                               {{1, -7, 1.8}, {-1, 8, 1.7}, 0.9, 2}};
+    const Geometry geometry = {.model = SCENE_ISOSURFACE,
+                               .segments = segments,
+                               .n_segments = 3,
+                               .blend = {2,
+                                         {(uint32_t[]){0, 2, 3}, (uint32_t[]){0, 1, 2}},
+                                         {(uint32_t[]){0, 1, 2, 3}, (uint32_t[]){0, 0, 1}}}};
+    const double numbers[] = {0.25, 2.385, 7};
+    TermMean *mean;
+    assert_int_equal(termmean_new(&geometry, &mean, NULL), STATUS_OK);
+    const Vec3 at_first = {0.3, 0.2, -1.2}, at_second = {0.1, 0.4, 2.6};
+    assert_true(fabs(termmean_at(mean, numbers, at_first) -
+                     mean_of(&geometry, numbers, 0, 2, at_first)) < 1e-12);
+    assert_true(fabs(termmean_at(mean, numbers, at_second) - 7) < 1e-12);
+    termmean_free(mean);
+}
+
+/* A cell leaves out small terms, and has erf as a polynomial. */
+static void the_mean_of_a_cell_is_nearly_that_of_all_terms(void **state)
+{
+    (void)state;
+    FieldSegment segments[] = {{{-9, 0, 0}, {0, 0, 0}, 1.3, 0},
+                               {{0, 0, 0}, {9, 2, 0}, 1.1, 1},
+                               {{0, 0, 0}, {6, -8, 1.7}, 0.9, 2}};
+    const Geometry geometry = {.model = SCENE_ISOSURFACE, .segments = segments, .n_segments = 3};
+    const double numbers[] = {0.25, 1, 0};
+    const CellParams params = {.beta = 0.5, .erf = ERF_FAST};
+    CellTree cells = {0};
+    TermMean *mean;
+    int compared = 0;
+    assert_int_equal(termmean_new(&geometry, &mean, NULL), STATUS_OK);
+    assert_int_equal(celltree_build(&geometry, &params, &cells, NULL), STATUS_OK);
+    for (size_t i = 0; i < cells.n_cells; i++) {
+        const Cell *cell = &cells.cells[i];
+        Vec3 x = vec3_scale(vec3_add(cell->low, cell->high), 0.5);
+        if (fabs(cell_function(&cells, cell, x)) > 0.5 * cell->scale)
+            continue;
+        compared++;
+        assert_true(fabs(cell_mean(&cells, cell, segments, numbers, x) -
+                         termmean_at(mean, numbers, x)) < 2e-3);
+    }
+    assert_true(compared > 20);
+    celltree_release(&cells);
+    termmean_free(mean);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -292,6 +394,9 @@ int main(void)
         cmocka_unit_test(log_form_is_the_distance_from_a_lone_vessel),
         cmocka_unit_test(the_tolerance_grows_as_the_surface_turns_from_the_ray),
         cmocka_unit_test(the_index_sums_the_terms_of_all_segments),
+        cmocka_unit_test(the_mean_is_weighted_by_the_terms_of_all_that_have_a_number),
+        cmocka_unit_test(the_mean_of_groups_is_that_of_the_largest),
+        cmocka_unit_test(the_mean_of_a_cell_is_nearly_that_of_all_terms),
         cmocka_unit_test(a_list_has_the_groups_that_no_other_holds_there),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -92,7 +92,8 @@ void caster_free(Caster *caster)
 }
 
 /* The hit, and the index of the primitive or field segment that is hit. */
-static bool find_first(const Caster *caster, int worker, Ray ray, Hit *hit, uint32_t *index)
+static bool find_first(const Caster *caster, int worker, Ray ray, Hit *hit, uint32_t *index,
+                       uint32_t *cell)
 {
     if (caster->bvh) {
         size_t primitive = 0;
@@ -103,7 +104,8 @@ static bool find_first(const Caster *caster, int worker, Ray ray, Hit *hit, uint
     if (caster->mesh)
         return meshcast_first_hit(caster->mesh, ray, NEAREST_SEEN_MM, hit, index);
     if (caster->isosurface)
-        return povray_isosurface_first_hit(caster->isosurface, ray, NEAREST_SEEN_MM, hit, index);
+        return povray_isosurface_first_hit(caster->isosurface, ray, NEAREST_SEEN_MM, hit, index,
+                                           cell);
     if (caster->blob)
         return blobcast_first_hit(caster->blob, caster->blob_scratch[worker], ray, blob_nearest_mm,
                                   INFINITY, &hit->t, &hit->normal, index);
@@ -115,14 +117,24 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
 {
     const Geometry *geometry = caster->geometry;
     Hit hit;
-    uint32_t index;
-    if (!find_first(caster, worker, ray, &hit, &index))
+    uint32_t index, cell = 0;
+    if (!find_first(caster, worker, ray, &hit, &index, &cell))
         return false;
     bool inwards = vec3_dot(hit.normal, ray.direction) > 0;
     *surfel = (Surfel){hit.t, inwards ? vec3_scale(hit.normal, -1) : hit.normal,
                        caster->bvh ? geometry->primitives[index].segment
-                                   : geometry->segments[index].segment};
+                                   : geometry->segments[index].segment,
+                       cell};
     return true;
+}
+
+double caster_mean(const Caster *caster, const TermMean *mean, const Surfel *surfel,
+                   const double *numbers, Vec3 point)
+{
+    if (!caster || !caster->isosurface)
+        return termmean_at(mean, numbers, point);
+    return povray_isosurface_mean(caster->isosurface, surfel->cell, caster->geometry->segments,
+                                  numbers, point);
 }
 
 bool caster_shadow(Caster *caster, int worker, const Ground *ground, Vec3 point, Vec3 towards,

@@ -17,6 +17,7 @@ typedef struct Surfel {
     double t;         /* mm along the ray */
     Vec3 normal;      /* unit, facing the viewer */
     uint32_t segment; /* number of the segment */
+    uint32_t cell;    /* number of POV-Ray's cell; undefined where there are none */
 } Surfel;
 
 /* Builds the search structure of the geometry, which is borrowed until caster_free, with workspaces
@@ -34,6 +35,11 @@ void caster_free(Caster *caster);
  * blob): true and *surfel, or false. `worker`, in [0, workers), is the calling thread's number,
  * which no other thread may use at the same time; so it is below. */
 bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel);
+/* The mean of numbers[segment] at a point of an implicit surface that the surfel is of, weighted by
+ * the segments' terms: of POV-Ray's cell where there are cells, else by `mean` [termmean_at]. The
+ * caster may be NULL: there are no cells. */
+double caster_mean(const Caster *caster, const TermMean *mean, const Surfel *surfel,
+                   const double *numbers, Vec3 point);
 /* Whether a vessel or the ground is in the way from `point` for `distance` mm (or HUGE_VAL) along
  * `towards` (unit). What is nearer to the point than the limit of caster_shadow_from, or nearer to
  * the other end than 0.001 mm, is not. */

@@ -180,16 +180,21 @@ static bool find_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min, 
 }
 
 bool povray_isosurface_first_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min,
-                                 Hit *hit, uint32_t *segment)
+                                 Hit *hit, uint32_t *segment, uint32_t *number)
 {
-    uint32_t number;
-    if (!find_hit(isosurface, ray, t_min, HUGE_VAL, false, &number, &hit->t))
+    if (!find_hit(isosurface, ray, t_min, HUGE_VAL, false, number, &hit->t))
         return false;
-    const Cell *cell = &isosurface->tree.cells[number];
+    const Cell *cell = &isosurface->tree.cells[*number];
     Vec3 x = ray_at(ray, hit->t);
     hit->normal = cell_normal(&isosurface->tree, cell, x);
     *segment = cell_largest_term(&isosurface->tree, cell, x);
     return true;
+}
+
+double povray_isosurface_mean(const PovrayIsosurface *isosurface, uint32_t cell,
+                              const FieldSegment *segments, const double *numbers, Vec3 x)
+{
+    return cell_mean(&isosurface->tree, &isosurface->tree.cells[cell], segments, numbers, x);
 }
 
 bool povray_isosurface_any_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min,

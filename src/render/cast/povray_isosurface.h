@@ -20,10 +20,14 @@ void povray_isosurface_free(PovrayIsosurface *isosurface);
 
 /* The first hit with t >= t_min of all cells: true and *hit, with the forward-difference normal
  * (unit, of no particular side), and the index in Geometry.segments of the one whose term is
- * largest there; or false. As in
- * POV-Ray, a cell tells of one hit alone. */
+ * largest there, and *cell, its cell's number; or false. As in POV-Ray, a cell tells of one hit
+ * alone. */
 bool povray_isosurface_first_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min,
-                                 Hit *hit, uint32_t *segment);
+                                 Hit *hit, uint32_t *segment, uint32_t *cell);
+
+/* cell_mean of the cell of this number. */
+double povray_isosurface_mean(const PovrayIsosurface *isosurface, uint32_t cell,
+                              const FieldSegment *segments, const double *numbers, Vec3 x);
 
 /* Whether the hit of any cell has t in (t_min, t_max). */
 bool povray_isosurface_any_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min,

@@ -94,9 +94,10 @@ static void color_samples(const FieldPicture *picture, int worker, const SeenTil
         int column = seen->column + tile_sample_x(sample), row = seen->row + tile_sample_y(sample);
         Surfel surfel, *hit = NULL;
         if (seen->hits && seen->hits->state[sample] == TILE_HIT) {
-            surfel = (Surfel){seen_depth(seen, sample),
-                              vec3_normalized(world_normal(picture, seen, sample)),
-                              drawing->geometry->segments[seen->hits->segment[sample]].segment};
+            uint32_t index = seen->hits->segment[sample];
+            surfel = (Surfel){.t = seen_depth(seen, sample),
+                              .normal = vec3_normalized(world_normal(picture, seen, sample)),
+                              .segment = drawing->geometry->segments[index].segment};
             hit = &surfel;
         }
         Rgb rgb = ray_color(drawing, worker, sample_ray(picture, seen, sample),

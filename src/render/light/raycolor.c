@@ -27,6 +27,15 @@ bool raycolor_is_needed(const View *view, const RenderParams *params)
     return params->occlusion > 0 || view->ground.present || (params->shadows && soft);
 }
 
+static Rgb pigment_of(const Drawing *drawing, const Surfel *surfel, Vec3 point)
+{
+    const Appearance *appearance = drawing->appearance;
+    if (!drawing->mean)
+        return appearance_color(appearance, surfel->segment);
+    return appearance_blended(
+        appearance, caster_mean(drawing->caster, drawing->mean, surfel, appearance->places, point));
+}
+
 Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, const Surfel *surfel)
 {
     const View *view = drawing->view;
@@ -38,10 +47,10 @@ Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, c
     if (!on_ground && !surfel)
         return view->background;
     ShadowContext context = {drawing->caster, ground, worker};
+    Vec3 point = ray_at(ray, t);
     ShadePoint at = {.finish = on_ground ? &ground->finish : &appearance->finish,
-                     .pigment =
-                         on_ground ? ground->color : appearance_color(appearance, surfel->segment),
-                     .point = ray_at(ray, t),
+                     .pigment = on_ground ? ground->color : pigment_of(drawing, surfel, point),
+                     .point = point,
                      .normal = on_ground ? ground->normal : surfel->normal,
                      .direction = ray.direction,
                      .open = 1};

@@ -86,7 +86,7 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
                        .kernels = tilekernels[kernels_kind(params->kernels)],
                        .more = resampling_for(frame->color.values ? params->antialias : 1),
                        .look = tilelook_of(drawing->view, &appearance->finish, eye),
-                       .needs_places = needs_places(drawing->view),
+                       .needs_places = needs_places(drawing->view) || drawing->mean,
                        .wants_color = frame->color.values || frame->codes.codes8,
                        .wants_geometry = planes_want_geometry(frame)};
     TRY(make_background(canvas, err));
@@ -140,13 +140,16 @@ static Vec3 load_vec3(const float values[3][TILE_SAMPLES], int sample)
     return vec3((double)values[0][sample], (double)values[1][sample], (double)values[2][sample]);
 }
 
-static void set_pigments(const Canvas *canvas, const TileHits *hits, TileSurface *surface)
+static void set_pigments(const Canvas *canvas, const SeenTile *seen, TileSurface *surface)
 {
-    const Rgb *colors = canvas->drawing->appearance->colors;
+    const TileHits *hits = seen->hits;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (hits->state[sample] != TILE_HIT)
             continue;
-        Rgb pigment = colors[segment_of(canvas, hits, sample)];
+        Vec3 point = {0, 0, 0};
+        if (canvas->drawing->mean)
+            point = viewpoint_point(&canvas->eye, seen_place(seen, sample));
+        Rgb pigment = drawing_color(canvas->drawing, segment_of(canvas, hits, sample), point);
         surface->pigment[0][sample] = pigment.r;
         surface->pigment[1][sample] = pigment.g;
         surface->pigment[2][sample] = pigment.b;
@@ -173,7 +176,7 @@ float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
     own->surface.hits = seen->hits;
     own->surface.shadowed = shadowed;
     if (canvas->drawing->appearance->colors)
-        set_pigments(canvas, seen->hits, &own->surface);
+        set_pigments(canvas, seen, &own->surface);
     if (canvas->needs_places)
         set_places(seen, &own->surface);
     canvas->kernels->shade(&canvas->look, &own->surface, own->color);

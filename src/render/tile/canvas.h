@@ -27,7 +27,8 @@ typedef struct Canvas {
     Frame *frame;           /* borrowed */
     Viewpoint eye;
     const TileKernels *kernels;
-    bool needs_places; /* light or sight differ from place to place: shading asks for TileHits.z */
+    bool needs_places; /* light, sight or colours differ from place to place: shading asks for
+                        * TileHits.z */
     bool wants_color, wants_geometry;
     bool wholly_colored; /* the engine sets colours where nothing is seen, too; at first false */
     TileLook look;

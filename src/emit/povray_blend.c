@@ -1,0 +1,67 @@
+/* Where colours blend, POV-Ray finds a point's mean place on the scale, by functions that
+ * povray_cells.c and povray_blob.c write, and takes it to a colour as colorscale_at does. A blob's
+ * own blending of textures is not used: it weights colours by the strengths of single components,
+ * and of those that subtract, too. */
+#include "emit/povray_members.h"
+#include "emit/povray_text.h"
+#include "emit/values.h"
+
+bool povray_blends(const PovrayGeometry *geometry)
+{
+    const Scene *scene = geometry->scene;
+    return scene->appearance.places && model_has(scene->geometry.model, MODEL_FIELD);
+}
+
+/* The place on the colour map of the place x on the scale. */
+static void put_map(Text *text, const ColorScale *scale)
+{
+    if (scale->n_bounds == 0) {
+        text_puts(text, "min(max(x, 0), 1)");
+        return;
+    }
+    text_puts(text, "(0.5");
+    for (int i = 0; i < scale->n_bounds; i++) {
+        text_puts(text, " + select(x - (");
+        text_number(text, colorscale_place(scale, scale->bounds[i]));
+        text_puts(text, "), 0, 1)");
+    }
+    text_printf(text, ") / %d", scale->n_bounds + 1);
+}
+
+static void put_own(Text *text, const ScaleColor *own)
+{
+    const float grey = srgb_decode(0.5f);
+    put_color(text,
+              own->given ? (Rgb){own->rgb[0], own->rgb[1], own->rgb[2]} : (Rgb){grey, grey, grey});
+}
+
+static bool all_are_known(const Appearance *appearance)
+{
+    for (size_t i = 0; i < appearance->n_values; i++)
+        if (isnan(appearance->places[i]))
+            return false;
+    return true;
+}
+
+Status put_blend_macros(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Appearance *appearance = &geometry->scene->appearance;
+    const ColorScale *scale = &appearance->scale;
+    const double never = 1e30;
+    Values values = {0};
+    if (!povray_blends(geometry))
+        return text_check(out, err);
+    if (appearance->n_frames > 0)
+        return err_set(err, STATUS_USAGE,
+                       "`color_blend`: in a scene of POV-Ray colours that change with time do not "
+                       "blend; `frame` chooses one moment");
+    put_map(add_value(&values, "map"), scale);
+    add_number(&values, "lowest", scale->under.given ? colorscale_lowest(scale) : -never);
+    add_number(&values, "highest", scale->over.given ? colorscale_highest(scale) : never);
+    add_flag(&values, "own", scale->under.given || scale->over.given || !all_are_known(appearance));
+    put_own(add_value(&values, "under"), &scale->under);
+    put_own(add_value(&values, "over"), &scale->over);
+    put_own(add_value(&values, "none"), &scale->none);
+    return values_expand(&values, geometry->params, "povray/blend.inc", out, err);
+}
