@@ -35,20 +35,22 @@ typedef struct GraphLine {
 
 typedef enum GraphElement { GRAPH_POINTS, GRAPH_LINES } GraphElement;
 
-/* Begin with {.name, .point_record, .line_record, .options, .reading} (all borrowed, the last four
- * may be NULL); release with graph_release. What a reader may set is said. */
+/* Begin with {.name, .point_record, .line_record, .options, .reading, .tree} (all borrowed, the
+ * last five may be NULL); release with graph_release. What a reader may set is said. */
 typedef struct Graph {
     const char *name;         /* of the file */
     const char *point_record; /* what the records of points are called, "point"; NULL: lines */
     const char *line_record;  /* likewise "cell" */
     const ReadOptions *options;
     TreeReading *reading;
-    TreeMeta meta;   /* of the tree, for the reader to fill */
-    LengthUnit unit; /* that is custom in the format, for the reader to set; mm */
-    bool unit_said;  /* the file itself says the unit; for the reader to set */
-    bool is_tree;    /* the file was made of a tree, and each line is directed and leads from a
-                      * parent to its child, and each point has its own id but for those that are
-                      * joined: nothing is merged or removed; for the reader to set */
+    TreeBuilder *tree; /* a reader that finds a tree in its file, with ids and parents, in mm, may
+                        * hand its nodes and meta over here, and leave the graph empty */
+    TreeMeta meta;     /* of the tree, for the reader to fill */
+    LengthUnit unit;   /* that is custom in the format, for the reader to set; mm */
+    bool unit_said;    /* the file itself says the unit; for the reader to set */
+    bool is_tree;      /* the file was made of a tree, and each line is directed and leads from a
+                        * parent to its child, and each point has its own id but for those that are
+                        * joined: nothing is merged or removed; for the reader to set */
     GraphPoint *point;
     size_t n_points, points_capacity;
     GraphLine *line;

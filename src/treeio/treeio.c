@@ -435,12 +435,14 @@ static Status open_source(Source *source, const char *path, const char *called, 
     return file_to_text(source->name, &source->format->form, source->bytes, &source->size, err);
 }
 
+/* *is_tree: the file was a tree after all. */
 static Status read_graph(const Source *source, TreeBuilder *builder, const ReadOptions *options,
-                         TreeReading *reading, Err *err)
+                         TreeReading *reading, bool *is_tree, Err *err)
 {
-    Graph graph = {.name = source->name, .options = options, .reading = reading};
+    Graph graph = {.name = source->name, .options = options, .reading = reading, .tree = builder};
     Status status = source->format->read_graph(&graph, source->bytes, source->size, err);
-    if (status == STATUS_OK)
+    *is_tree = builder->n > 0;
+    if (status == STATUS_OK && !*is_tree)
         status = graph_build(&graph, builder, err);
     graph_release(&graph);
     return status;
@@ -479,7 +481,7 @@ static Status read_source(const Source *source, Tree *tree, const ReadOptions *o
     bool is_tree = reads_tree(source, options);
     Tree made;
     Status status = is_tree ? format->read(&builder, source->bytes, source->size, err)
-                            : read_graph(source, &builder, options, reading, err);
+                            : read_graph(source, &builder, options, reading, &is_tree, err);
     if (status == STATUS_OK)
         status = builder_build(&builder, &made, err);
     builder_release(&builder);

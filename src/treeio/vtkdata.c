@@ -65,9 +65,32 @@ static double number_of_bits(const VtkType *type, uint64_t bits)
     return (double)((int64_t)(bits << unused) >> unused);
 }
 
+/* The common cases at a fraction of the time: the machine's own order. */
+static bool take_plain(const VtkType *type, bool is_big_endian, const char *bytes, size_t n,
+                       double *out)
+{
+    if (is_big_endian != (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__))
+        return false;
+    if (type->is_float && type->size == sizeof(double)) {
+        if (n > 0)
+            memcpy(out, bytes, n * sizeof *out);
+        return true;
+    }
+    if (type->is_float || !type->is_signed || type->size != sizeof(int32_t))
+        return false;
+    for (size_t i = 0; i < n; i++) {
+        int32_t number;
+        memcpy(&number, bytes + i * sizeof number, sizeof number);
+        out[i] = number;
+    }
+    return true;
+}
+
 void vtk_numbers(const VtkType *type, bool is_big_endian, const char *bytes, size_t n, double *out)
 {
     size_t size = type->size;
+    if (take_plain(type, is_big_endian, bytes, n, out))
+        return;
     for (size_t i = 0; i < n; i++, bytes += size) {
         uint64_t bits = 0;
         for (size_t k = 0; k < size; k++)
@@ -379,15 +402,23 @@ static bool are_ids(const VtkArray *array)
     return true;
 }
 
+/* Whether all arrays are of points and one number each, as in the program's own files. */
+static bool are_columns(const VtkData *data)
+{
+    for (size_t i = 0; i < data->of_points.n; i++)
+        if (!data->of_points.array[i].value || data->of_points.array[i].components != 1)
+            return false;
+    return data->of_cells.n == 0;
+}
+
 static void find_tree(Meaning *meaning, const VtkData *data)
 {
     const VtkArray *id = find_exact(&data->of_points, "id");
-    if (!find_remarks(data) || !id || !are_ids(id))
+    if (!find_remarks(data) || !id || !are_ids(id) || !are_columns(data))
         return;
     meaning->id = id;
     meaning->type = find_exact(&data->of_points, "type");
     meaning->share = find_exact(&data->of_points, "flow_share");
-    meaning->inlet = NULL;
 }
 
 static Status find_meaning(Meaning *meaning, const VtkData *data, const Graph *graph, Err *err)
@@ -413,33 +444,34 @@ static Status tell(const Meaning *meaning, const VtkData *data, const Graph *gra
     return STATUS_OK;
 }
 
-/* ---- to the graph ---- */
-
-static double value_of(const VtkArray *array, size_t i)
+/* Whether an array has become something else than a column; of other programs' files also another
+ * of the radius's name, as that of points beside that of cells. */
+static bool is_used(const Meaning *meaning, const VtkArray *array)
 {
-    return array ? array->value[i] : 0;
+    char plain[PLAIN_SIZE];
+    vtk_plain_name(meaning->radius->name, plain, sizeof plain);
+    const VtkArray *const used[] = {meaning->radius, meaning->id, meaning->type, meaning->share};
+    for (size_t i = 0; i < sizeof used / sizeof *used; i++)
+        if (array == used[i])
+            return true;
+    return !meaning->id && array->components == 1 && has_plain_name(array, plain);
 }
 
-/* A share that is no number above 0 is none. */
-static double share_of(const Meaning *meaning, size_t i)
+/* ---- to the graph ---- */
+
+static Vec3 position_of(const VtkData *data, size_t i)
 {
-    double share = value_of(meaning->share, i);
-    return share > 0 && isfinite(share) ? share : 0;
+    return (Vec3){data->point[3 * i], data->point[3 * i + 1], data->point[3 * i + 2]};
 }
 
 static Status add_points(const Meaning *meaning, const VtkData *data, Graph *graph, Err *err)
 {
     const VtkArray *radius = meaning->of == GRAPH_POINTS ? meaning->radius : NULL;
     for (size_t i = 0; i < data->n_points; i++) {
-        double type = value_of(meaning->type, i);
         const GraphPoint point = {
-            .position = {data->point[3 * i], data->point[3 * i + 1], data->point[3 * i + 2]},
+            .position = position_of(data, i),
             .radius = radius ? meaning->factor * radius->value[i] : (double)NAN,
             .is_inlet = meaning->inlet && meaning->inlet->value[i] == meaning->inlet_value,
-            .has_type = meaning->type && fabs(type) <= INT32_MAX,
-            .type = fabs(type) <= INT32_MAX ? (int32_t)type : 0,
-            .flow_share = share_of(meaning, i),
-            .id = (int64_t)value_of(meaning->id, i),
             .record = i};
         TRY(graph_blame(graph, GRAPH_POINTS, i, graph_point(graph, &point, err), err));
     }
@@ -455,7 +487,7 @@ static Status add_lines(const Meaning *meaning, const VtkData *data, Graph *grap
                 .a = (size_t)data->corner[k - 1],
                 .b = (size_t)data->corner[k],
                 .radius = radius ? meaning->factor * radius->value[data->cell[i]] : (double)NAN,
-                .is_directed = graph->is_tree || data->is_directed,
+                .is_directed = data->is_directed,
                 .record = data->cell[i]};
             TRY(graph_blame(graph, GRAPH_LINES, line.record, graph_line(graph, &line, err), err));
         }
@@ -492,8 +524,6 @@ static Status add_column(const VtkData *data, Graph *graph, const VtkArray *arra
     size_t column;
     if (status == STATUS_OK) {
         const char *unit = csv_unit(title);
-        if (graph->is_tree && vtk_is_own(title))
-            title[strlen(title) - 1] = '\0';
         status = graph_column(graph, of, title, unit, &column, err);
     }
     if (status == STATUS_INPUT)
@@ -503,19 +533,6 @@ static Status add_column(const VtkData *data, Graph *graph, const VtkArray *arra
     text_release(&text);
     free(title);
     return status;
-}
-
-/* Whether an array has become something else than a column; of other programs' files also another
- * of the radius's name, as that of points beside that of cells. */
-static bool is_used(const Meaning *meaning, const VtkArray *array)
-{
-    char plain[PLAIN_SIZE];
-    vtk_plain_name(meaning->radius->name, plain, sizeof plain);
-    const VtkArray *const used[] = {meaning->radius, meaning->id, meaning->type, meaning->share};
-    for (size_t i = 0; i < sizeof used / sizeof *used; i++)
-        if (array == used[i])
-            return true;
-    return !meaning->id && array->components == 1 && has_plain_name(array, plain);
 }
 
 static Status add_columns(const Meaning *meaning, const VtkData *data, Graph *graph,
@@ -538,46 +555,148 @@ static Status add_columns(const Meaning *meaning, const VtkData *data, Graph *gr
     return STATUS_OK;
 }
 
-static Status read_remark(Graph *graph, const char *line, Err *err)
+/* ---- to a tree ---- */
+
+static Status read_remark(TreeBuilder *builder, const char *line, Err *err)
 {
     Text comment = TEXT_INIT;
     text_printf(&comment, " %s", line);
     Status status = text_check(&comment, err);
     if (status == STATUS_OK)
-        status = comment_read(&graph->meta, text_chars(&comment), err);
+        status = comment_read(&builder->meta, text_chars(&comment), err);
     if (status == STATUS_INPUT)
-        err_prefix(err, "%s: ", graph->name);
+        err_prefix(err, "%s: ", builder->name);
     text_release(&comment);
     return status;
 }
 
-static Status read_remarks(const VtkData *data, Graph *graph, Err *err)
+static Status read_remarks(const VtkArray *remarks, TreeBuilder *builder, Err *err)
 {
-    const VtkArray *remarks = find_remarks(data);
-    const char *end = remarks ? remarks->text + remarks->text_size : NULL;
-    graph->unit_said = remarks != NULL;
-    for (const char *line = remarks ? remarks->text : end; line < end; line += strlen(line) + 1)
-        TRY(read_remark(graph, line, err));
+    const char *end = remarks->text + remarks->text_size;
+    for (const char *line = remarks->text; line < end; line += strlen(line) + 1)
+        TRY(read_remark(builder, line, err));
     return STATUS_OK;
 }
 
-/* Points of one id are one node, wherever they stand in the file. */
-static Status join_points(const VtkArray *id, Graph *graph, Err *err)
+/* Of each id that there may be: the point that has the node's values, + 1, 0 for none, and its
+ * parent's id, 0 for none. */
+typedef struct Nodes {
+    uint32_t *point;
+    int32_t *parent;
+    size_t n;
+} Nodes;
+
+/* A node's values are at the end of the line to it, a root's at its first point. */
+static Status find_nodes(const Meaning *meaning, const VtkData *data, const Graph *graph,
+                         Nodes *nodes, Err *err)
 {
-    double last = 0;
-    uint32_t *first = NULL; /* point + 1 of each id */
-    for (size_t i = 0; i < id->n; i++)
-        last = fmax(last, id->value[i]);
-    TRY(mem_calloc(&first, (size_t)last + 1, sizeof *first, "ids", err));
-    Status status = STATUS_OK;
-    for (size_t i = 0; i < id->n && status == STATUS_OK; i++) {
-        uint32_t *entry = &first[(size_t)id->value[i]];
-        if (*entry)
-            status = graph_join(graph, *entry - 1, i, err);
-        else
-            *entry = (uint32_t)i + 1;
+    const double *id = meaning->id->value;
+    for (size_t i = data->n_points; i-- > 0;)
+        nodes->point[(size_t)id[i]] = (uint32_t)i + 1;
+    for (size_t i = 0, at = 0; i < data->n_lines; at = data->end[i++])
+        for (size_t k = at + 1; k < data->end[i]; k++) {
+            size_t from = (size_t)data->corner[k - 1], to = (size_t)data->corner[k];
+            size_t node = (size_t)id[to];
+            if (nodes->parent[node])
+                return graph_blame(
+                    graph, GRAPH_LINES, data->cell[i],
+                    err_set(err, STATUS_INPUT, "it leads to node %zu, as another line does", node),
+                    err);
+            nodes->parent[node] = (int32_t)id[from];
+            nodes->point[node] = (uint32_t)to + 1;
+        }
+    return STATUS_OK;
+}
+
+static Status make_nodes(const Meaning *meaning, const VtkData *data, const Graph *graph,
+                         Nodes *nodes, Err *err)
+{
+    for (size_t i = 0; i < meaning->id->n; i++)
+        if ((size_t)meaning->id->value[i] > nodes->n)
+            nodes->n = (size_t)meaning->id->value[i];
+    TRY(mem_calloc(&nodes->point, nodes->n + 1, sizeof *nodes->point, "nodes", err));
+    TRY(mem_calloc(&nodes->parent, nodes->n + 1, sizeof *nodes->parent, "nodes", err));
+    return find_nodes(meaning, data, graph, nodes, err);
+}
+
+static Status add_node(const Meaning *meaning, const VtkData *data, TreeBuilder *builder,
+                       const Nodes *nodes, size_t id, Err *err)
+{
+    size_t i = nodes->point[id] - 1;
+    double type = meaning->type ? meaning->type->value[i] : TREE_VESSEL_TYPE;
+    double share = meaning->share ? meaning->share->value[i] : 0;
+    if (!(fabs(type) <= INT32_MAX))
+        return err_set(err, STATUS_INPUT, "the type is %g, which is no whole number", type);
+    const BuilderNode node = {.id = (int64_t)id,
+                              .parent = nodes->parent[id] ? nodes->parent[id] : TREE_NO_PARENT,
+                              .type = (int32_t)type,
+                              .position = position_of(data, i),
+                              .radius_mm = meaning->radius->value[i],
+                              .record = i};
+    TRY(builder_node(builder, &node, err));
+    return share == 0 ? STATUS_OK : builder_share(builder, node.id, share, i, err);
+}
+
+/* The arrays that are columns in *column, which has room for all, and their number in *n; the
+ * builder has them in this order. */
+static Status list_columns(const Meaning *meaning, const VtkData *data, TreeBuilder *builder,
+                           const VtkArray **column, size_t *n, Err *err)
+{
+    for (size_t i = 0; i < data->of_points.n; i++) {
+        const VtkArray *array = &data->of_points.array[i];
+        char *title = NULL;
+        size_t number;
+        if (is_used(meaning, array))
+            continue;
+        TRY(mem_strdup(&title, array->name, err));
+        const char *unit = csv_unit(title);
+        if (vtk_is_own(title))
+            title[strlen(title) - 1] = '\0';
+        Status status = builder_column(builder, title, unit, &number, err);
+        free(title);
+        if (status == STATUS_INPUT)
+            err_prefix(err, "%s: ", builder->name);
+        TRY(status);
+        column[(*n)++] = array;
     }
-    free(first);
+    return STATUS_OK;
+}
+
+static Status add_nodes(const Meaning *meaning, const VtkData *data, TreeBuilder *builder,
+                        const Nodes *nodes, Err *err)
+{
+    const VtkArray **column = NULL;
+    size_t n = 0;
+    Status status = STATUS_OK;
+    TRY(mem_calloc(&column, data->of_points.n, sizeof(VtkArray *), "columns", err));
+    TRY_GOTO(list_columns(meaning, data, builder, column, &n, err));
+    for (size_t id = 1; id <= nodes->n; id++) {
+        if (!nodes->point[id])
+            continue;
+        size_t i = nodes->point[id] - 1;
+        TRY_GOTO(builder_blame(builder, i, add_node(meaning, data, builder, nodes, id, err), err));
+        for (size_t k = 0; k < n; k++)
+            if (!isnan(column[k]->value[i]))
+                TRY_GOTO(builder_value(builder, k, column[k]->value[i], err));
+    }
+done:
+    free(column);
+    return status;
+}
+
+/* A file of the program's own: points of one id are one node, lines lead away from the root. Nodes
+ * are handed over in the order of their ids, which is that of the tree when it was written. */
+static Status to_tree(const Meaning *meaning, const VtkData *data, Graph *graph, Err *err)
+{
+    Nodes nodes = {0};
+    TreeBuilder *builder = graph->tree;
+    builder->record = graph->point_record;
+    TRY(read_remarks(find_remarks(data), builder, err));
+    Status status = make_nodes(meaning, data, graph, &nodes, err);
+    if (status == STATUS_OK)
+        status = add_nodes(meaning, data, builder, &nodes, err);
+    free(nodes.point);
+    free(nodes.parent);
     return status;
 }
 
@@ -616,12 +735,10 @@ Status vtk_to_graph(const VtkData *data, Graph *graph, Err *err)
         return err_set(err, STATUS_INPUT, "%s: there are no lines in it%s", graph->name,
                        data->n_cells ? ", only other cells" : "");
     TRY(find_meaning(&meaning, data, graph, err));
-    graph->is_tree = meaning.id != NULL;
+    if (meaning.id)
+        return to_tree(&meaning, data, graph, err);
     TRY(tell(&meaning, data, graph, err));
-    TRY(read_remarks(data, graph, err));
     TRY(add_points(&meaning, data, graph, err));
-    if (graph->is_tree)
-        TRY(join_points(meaning.id, graph, err));
     TRY(add_lines(&meaning, data, graph, err));
     TRY(add_columns(&meaning, data, graph, GRAPH_POINTS, err));
     return add_columns(&meaning, data, graph, GRAPH_LINES, err);

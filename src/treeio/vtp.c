@@ -186,16 +186,17 @@ static Status finish_array(Array *of, size_t n, Err *err)
 
 static Status decode(const Reader *reader, Array *of, const char *from, size_t left, Err *err)
 {
-    char *bytes = NULL;
+    const char *bytes = NULL;
+    char *decoded = NULL;
     size_t size = 0;
-    TRY(vtp_decode(&reader->coding, reader->is_base64, from, left, &bytes, &size, err));
+    TRY(vtp_decode(&reader->coding, reader->is_base64, from, left, &bytes, &size, &decoded, err));
     size_t n = size / of->type->size;
     Status status = mem_calloc(&of->array.value, n, sizeof *of->array.value, "numbers", err);
     if (status == STATUS_OK) {
         vtk_numbers(of->type, reader->coding.is_big_endian, bytes, n, of->array.value);
         status = finish_array(of, n, err);
     }
-    free(bytes);
+    free(decoded);
     return status;
 }
 

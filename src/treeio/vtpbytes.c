@@ -107,20 +107,26 @@ static Status check_claim(const Stream *stream, double claimed, double most, Err
                    bytes_text(claimed, claim), bytes_text(bytes_left(stream), left));
 }
 
-static Status decode_plain(Stream *stream, const VtpCoding *coding, char **bytes, size_t *size,
-                           Err *err)
+/* Raw bytes stay where they are. */
+static Status decode_plain(Stream *stream, const VtpCoding *coding, const char **bytes,
+                           size_t *size, char **decoded, Err *err)
 {
     size_t n = 0;
     char *made = NULL;
     TRY(take_number(stream, coding, &n, err));
     TRY(check_claim(stream, (double)n, bytes_left(stream), err));
+    if (!stream->is_base64 && n <= (size_t)(stream->end - stream->at)) {
+        *bytes = stream->at;
+        *size = n;
+        return STATUS_OK;
+    }
     TRY(mem_calloc(&made, n, 1, "bytes of an array", err));
     Status status = take(stream, made, n, err);
     if (status != STATUS_OK) {
         free(made);
         return status;
     }
-    *bytes = made;
+    *bytes = *decoded = made;
     *size = n;
     return STATUS_OK;
 }
@@ -169,7 +175,7 @@ static Status inflate_blocks(Stream *stream, const Blocks *blocks, char *out, ch
     return STATUS_OK;
 }
 
-static Status decode_blocks(Stream *stream, const VtpCoding *coding, Blocks *blocks, char **bytes,
+static Status decode_blocks(Stream *stream, const VtpCoding *coding, Blocks *blocks, char **decoded,
                             size_t *size, Err *err)
 {
     double total = 0;
@@ -186,7 +192,7 @@ static Status decode_blocks(Stream *stream, const VtpCoding *coding, Blocks *blo
     if (!inflater)
         TRY_GOTO(mem_out_of("to inflate", "an array", err));
     TRY_GOTO(inflate_blocks(stream, blocks, made, packed, inflater, err));
-    *bytes = made;
+    *decoded = made;
     *size = (size_t)total;
     made = NULL;
 done:
@@ -198,13 +204,15 @@ done:
 }
 
 Status vtp_decode(const VtpCoding *coding, bool is_base64, const char *from, size_t left,
-                  char **bytes, size_t *size, Err *err)
+                  const char **bytes, size_t *size, char **decoded, Err *err)
 {
     Stream stream = {.at = from, .end = from + left, .is_base64 = is_base64};
+    *decoded = NULL;
     if (!coding->is_compressed)
-        return decode_plain(&stream, coding, bytes, size, err);
+        return decode_plain(&stream, coding, bytes, size, decoded, err);
     Blocks blocks = {0};
-    Status status = decode_blocks(&stream, coding, &blocks, bytes, size, err);
+    Status status = decode_blocks(&stream, coding, &blocks, decoded, size, err);
+    *bytes = *decoded;
     free(blocks.packed);
     return status;
 }

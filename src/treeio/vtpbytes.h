@@ -11,10 +11,11 @@ typedef struct VtpCoding {
     size_t header_size; /* 4 or 8: of the numbers that say how many bytes follow */
 } VtpCoding;
 
-/* Decodes the array that begins at `from`, of which the file has `left` more bytes, to *bytes
- * (owned). STATUS_INPUT, without the file, when there are fewer than announced, or they are not
- * base64 or zlib's. */
+/* Decodes the array that begins at `from`, of which the file has `left` more bytes. Its `*size`
+ * bytes are *bytes, borrowed from *decoded (owned) or, where this becomes NULL, from the file.
+ * STATUS_INPUT, without the file, when there are fewer than announced, or they are not base64 or
+ * zlib's. */
 MUST_CHECK Status vtp_decode(const VtpCoding *coding, bool is_base64, const char *from, size_t left,
-                             char **bytes, size_t *size, Err *err);
+                             const char **bytes, size_t *size, char **decoded, Err *err);
 
 #endif

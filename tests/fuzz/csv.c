@@ -3,6 +3,6 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
-    fuzz_tree("tree.csv", bytes, size);
+    fuzz_tree("tree.csv", NULL, bytes, size);
     return 0;
 }

@@ -1,5 +1,5 @@
-/* A tree from a file of these bytes and this name. One that is read is written so that it reads
- * back to the same bytes. */
+/* A tree from a file of these bytes and this name, read as the options say (NULL: nothing). One
+ * that is read is written so that it reads back to the same bytes. */
 #ifndef CORCAST_TESTS_FUZZ_FOREST_H
 #define CORCAST_TESTS_FUZZ_FOREST_H
 
@@ -17,14 +17,15 @@ static inline void read_whole(const char *path, char **bytes, size_t *size)
     (void)status;
 }
 
-static inline void fuzz_tree(const char *name, const uint8_t *bytes, size_t size)
+static inline void fuzz_tree(const char *name, const ReadOptions *options, const uint8_t *bytes,
+                             size_t size)
 {
     Tree tree, again;
     Err err = {{0}};
     char *first, *second, path[128];
     size_t first_size, second_size;
     strcpy(path, fuzz_file(name, bytes, size));
-    Status status = tree_read(&tree, path, &err);
+    Status status = tree_read_as(&tree, path, options, NULL, &err);
     fuzz_check_refusal(status, &err, path);
     if (status != STATUS_OK)
         return;

@@ -1,0 +1,8 @@
+/* A network in VTK's XML, whose loops are cut. */
+#include "forest.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+{
+    fuzz_tree("tree.vtp", &(const ReadOptions){.break_loops = true}, bytes, size);
+    return 0;
+}
