@@ -211,8 +211,9 @@ Status vtk_add_cells(VtkData *data, const VtkCells *cells, size_t first_point, E
                            "cell %zu ends at %g of the numbers of points; ends must rise to at "
                            "most %zu",
                            i, end, cells->n_corners);
-        TRY(add_cell(data, cells->type ? cells->type[i] : cells->of, cells->corner + (size_t)at,
-                     (size_t)(end - at), first_point, err));
+        const double *corner = end > at ? cells->corner + (size_t)at : NULL;
+        TRY(add_cell(data, cells->type ? cells->type[i] : cells->of, corner, (size_t)(end - at),
+                     first_point, err));
         at = end;
     }
     return STATUS_OK;
@@ -388,7 +389,7 @@ static void find_inlets(Meaning *meaning, const VtkData *data)
 static const VtkArray *find_remarks(const VtkData *data)
 {
     for (size_t i = 0; i < data->of_file.n; i++)
-        if (data->of_file.array[i].text && strcmp(data->of_file.array[i].name, VTK_KNOWN) == 0)
+        if (!data->of_file.array[i].value && strcmp(data->of_file.array[i].name, VTK_KNOWN) == 0)
             return &data->of_file.array[i];
     return NULL;
 }
@@ -572,9 +573,8 @@ static Status read_remark(TreeBuilder *builder, const char *line, Err *err)
 
 static Status read_remarks(const VtkArray *remarks, TreeBuilder *builder, Err *err)
 {
-    const char *end = remarks->text + remarks->text_size;
-    for (const char *line = remarks->text; line < end; line += strlen(line) + 1)
-        TRY(read_remark(builder, line, err));
+    for (size_t at = 0; at < remarks->text_size; at += strlen(remarks->text + at) + 1)
+        TRY(read_remark(builder, remarks->text + at, err));
     return STATUS_OK;
 }
 

@@ -29,7 +29,7 @@ typedef struct VtkArray {
     char *name; /* owned */
     size_t n, components;
     double *value; /* owned; NULL: it is of text */
-    char *text;    /* owned; of text, each line zero-terminated */
+    char *text;    /* owned; of text, each line zero-terminated; NULL: none */
     size_t text_size;
 } VtkArray;
 

@@ -3,6 +3,6 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
-    fuzz_tree("tree.csv", NULL, bytes, size);
+    fuzz_tree("tree.csv", NULL, 0, bytes, size);
     return 0;
 }

@@ -17,10 +17,23 @@ static inline void read_whole(const char *path, char **bytes, size_t *size)
     (void)status;
 }
 
-static inline void fuzz_tree(const char *name, const ReadOptions *options, const uint8_t *bytes,
-                             size_t size)
+/* Writes the tree and reads it again, in its place. */
+static inline void there_and_back(Tree *tree, const char *path)
 {
-    Tree tree, again;
+    Err err;
+    Status status = tree_write(tree, path, &err);
+    assert(status == STATUS_OK);
+    tree_release(tree);
+    status = tree_read(tree, path, &err);
+    assert(status == STATUS_OK);
+    (void)status;
+}
+
+/* `trips` there and back go before; after them the order of the nodes is that of the format. */
+static inline void fuzz_tree(const char *name, const ReadOptions *options, int trips,
+                             const uint8_t *bytes, size_t size)
+{
+    Tree tree;
     Err err = {{0}};
     char *first, *second, path[128];
     size_t first_size, second_size;
@@ -29,19 +42,17 @@ static inline void fuzz_tree(const char *name, const ReadOptions *options, const
     fuzz_check_refusal(status, &err, path);
     if (status != STATUS_OK)
         return;
-    status = tree_write(&tree, path, &err);
-    assert(status == STATUS_OK);
+    for (int trip = 0; trip < trips; trip++)
+        there_and_back(&tree, path);
+    there_and_back(&tree, path);
     read_whole(path, &first, &first_size);
-    status = tree_read(&again, path, &err);
-    assert(status == STATUS_OK);
-    status = tree_write(&again, path, &err);
+    status = tree_write(&tree, path, &err);
     assert(status == STATUS_OK);
     read_whole(path, &second, &second_size);
     assert(first_size == second_size && memcmp(first, second, first_size) == 0);
     free(first);
     free(second);
     tree_release(&tree);
-    tree_release(&again);
 }
 
 #endif

@@ -13,7 +13,8 @@ typedef struct Values {
     unsigned choice;
     uint64_t seed;
     size_t count;
-    double number, range[2];
+    double number;
+    RangeEnds range;
     Vec3 vector, color;
     VectorList vectors;
     NumberList numbers;
@@ -43,7 +44,7 @@ static const OptionTable table = OPTION_TABLE(rows);
 static void set_defaults(void *options)
 {
     *(Values *)options =
-        (Values){.whole = 4, .size = {1, 1}, .count = 4, .number = 4, .range[1] = 1};
+        (Values){.whole = 4, .size = {1, 1}, .count = 4, .number = 4, .range.at[1] = 1};
 }
 
 static const Command command = {.name = "render",
@@ -61,7 +62,9 @@ static void check(const Values *values)
     assert(values->count >= 1 && values->count <= 1000000 && values->number >= 0.5);
     assert(values->size[0] >= 1 && values->size[0] <= 9999);
     assert(values->size[1] >= 1 && values->size[1] <= 9999);
-    assert(values->range[0] < values->range[1] && values->choice < 2);
+    const RangeEnds *range = &values->range;
+    assert(range->percent[0] != range->percent[1] || range->at[0] < range->at[1]);
+    assert(values->choice < 2);
     assert(values->color.x >= 0 && values->color.y <= 1);
     assert(values->vectors.n <= MAX_LIST && values->numbers.n <= MAX_LIST);
 }

@@ -3,6 +3,6 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
-    fuzz_tree("tree.swc", NULL, bytes, size);
+    fuzz_tree("tree.swc", NULL, 0, bytes, size);
     return 0;
 }

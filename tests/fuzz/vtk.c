@@ -3,6 +3,6 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
-    fuzz_tree("tree.vtk", &(const ReadOptions){.break_loops = true}, bytes, size);
+    fuzz_tree("tree.vtk", &(const ReadOptions){.break_loops = true}, 1, bytes, size);
     return 0;
 }
