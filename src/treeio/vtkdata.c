@@ -403,19 +403,20 @@ static bool are_ids(const VtkArray *array)
     return true;
 }
 
-/* Whether all arrays are of points and one number each, as in the program's own files. */
-static bool are_columns(const VtkData *data)
+static bool are_columns(const VtkArrays *arrays)
 {
-    for (size_t i = 0; i < data->of_points.n; i++)
-        if (!data->of_points.array[i].value || data->of_points.array[i].components != 1)
+    for (size_t i = 0; i < arrays->n; i++)
+        if (arrays->array[i].components != 1)
             return false;
-    return data->of_cells.n == 0;
+    return true;
 }
 
+/* A file of the program's own has ids, what is known as text, and one number an array. */
 static void find_tree(Meaning *meaning, const VtkData *data)
 {
     const VtkArray *id = find_exact(&data->of_points, "id");
-    if (!find_remarks(data) || !id || !are_ids(id) || !are_columns(data))
+    if (meaning->of != GRAPH_POINTS || meaning->factor != 1 || !find_remarks(data) || !id ||
+        !are_ids(id) || !are_columns(&data->of_points) || !are_columns(&data->of_cells))
         return;
     meaning->id = id;
     meaning->type = find_exact(&data->of_points, "type");
@@ -578,10 +579,10 @@ static Status read_remarks(const VtkArray *remarks, TreeBuilder *builder, Err *e
     return STATUS_OK;
 }
 
-/* Of each id that there may be: the point that has the node's values, + 1, 0 for none, and its
- * parent's id, 0 for none. */
+/* Of each id that there may be: the point and the cell that have the node's values, + 1, and its
+ * parent's id; 0 for none. */
 typedef struct Nodes {
-    uint32_t *point;
+    uint32_t *point, *cell;
     int32_t *parent;
     size_t n;
 } Nodes;
@@ -604,6 +605,7 @@ static Status find_nodes(const Meaning *meaning, const VtkData *data, const Grap
                     err);
             nodes->parent[node] = (int32_t)id[from];
             nodes->point[node] = (uint32_t)to + 1;
+            nodes->cell[node] = (uint32_t)data->cell[i] + 1;
         }
     return STATUS_OK;
 }
@@ -615,6 +617,7 @@ static Status make_nodes(const Meaning *meaning, const VtkData *data, const Grap
         if ((size_t)meaning->id->value[i] > nodes->n)
             nodes->n = (size_t)meaning->id->value[i];
     TRY(mem_calloc(&nodes->point, nodes->n + 1, sizeof *nodes->point, "nodes", err));
+    TRY(mem_calloc(&nodes->cell, nodes->n + 1, sizeof *nodes->cell, "nodes", err));
     TRY(mem_calloc(&nodes->parent, nodes->n + 1, sizeof *nodes->parent, "nodes", err));
     return find_nodes(meaning, data, graph, nodes, err);
 }
@@ -634,30 +637,51 @@ static Status add_node(const Meaning *meaning, const VtkData *data, TreeBuilder 
                               .radius_mm = meaning->radius->value[i],
                               .record = i};
     TRY(builder_node(builder, &node, err));
-    return share == 0 ? STATUS_OK : builder_share(builder, node.id, share, i, err);
+    return isnan(share) || share == 0 ? STATUS_OK : builder_share(builder, node.id, share, i, err);
 }
 
-/* The arrays that are columns in *column, which has room for all, and their number in *n; the
- * builder has them in this order. */
-static Status list_columns(const Meaning *meaning, const VtkData *data, TreeBuilder *builder,
-                           const VtkArray **column, size_t *n, Err *err)
+/* The arrays that are columns, those of points first; the builder has them in this order. */
+typedef struct Columns {
+    const VtkArray **array;
+    size_t n, of_points;
+} Columns;
+
+static Status add_column_of(const VtkArray *array, TreeBuilder *builder, Err *err)
 {
-    for (size_t i = 0; i < data->of_points.n; i++) {
-        const VtkArray *array = &data->of_points.array[i];
-        char *title = NULL;
-        size_t number;
-        if (is_used(meaning, array))
+    char *title = NULL;
+    size_t number;
+    TRY(mem_strdup(&title, array->name, err));
+    const char *unit = csv_unit(title);
+    if (vtk_is_own(title))
+        title[strlen(title) - 1] = '\0';
+    Status status = builder_column(builder, title, unit, &number, err);
+    free(title);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", builder->name);
+    return status;
+}
+
+static Status list_columns(const Meaning *meaning, const VtkArrays *arrays, TreeBuilder *builder,
+                           Columns *columns, Err *err)
+{
+    for (size_t i = 0; i < arrays->n; i++) {
+        const VtkArray *array = &arrays->array[i];
+        if (is_used(meaning, array) || !array->value)
             continue;
-        TRY(mem_strdup(&title, array->name, err));
-        const char *unit = csv_unit(title);
-        if (vtk_is_own(title))
-            title[strlen(title) - 1] = '\0';
-        Status status = builder_column(builder, title, unit, &number, err);
-        free(title);
-        if (status == STATUS_INPUT)
-            err_prefix(err, "%s: ", builder->name);
-        TRY(status);
-        column[(*n)++] = array;
+        TRY(add_column_of(array, builder, err));
+        columns->array[columns->n++] = array;
+    }
+    return STATUS_OK;
+}
+
+static Status add_values_of(const Columns *columns, const Nodes *nodes, size_t id,
+                            TreeBuilder *builder, Err *err)
+{
+    for (size_t k = 0; k < columns->n; k++) {
+        size_t at = k < columns->of_points ? nodes->point[id] : nodes->cell[id];
+        double value = at ? columns->array[k]->value[at - 1] : (double)NAN;
+        if (!isnan(value))
+            TRY(builder_value(builder, k, value, err));
     }
     return STATUS_OK;
 }
@@ -665,22 +689,22 @@ static Status list_columns(const Meaning *meaning, const VtkData *data, TreeBuil
 static Status add_nodes(const Meaning *meaning, const VtkData *data, TreeBuilder *builder,
                         const Nodes *nodes, Err *err)
 {
-    const VtkArray **column = NULL;
-    size_t n = 0;
+    Columns columns = {0};
     Status status = STATUS_OK;
-    TRY(mem_calloc(&column, data->of_points.n, sizeof(VtkArray *), "columns", err));
-    TRY_GOTO(list_columns(meaning, data, builder, column, &n, err));
+    TRY(mem_calloc(&columns.array, data->of_points.n + data->of_cells.n, sizeof(VtkArray *),
+                   "columns", err));
+    TRY_GOTO(list_columns(meaning, &data->of_points, builder, &columns, err));
+    columns.of_points = columns.n;
+    TRY_GOTO(list_columns(meaning, &data->of_cells, builder, &columns, err));
     for (size_t id = 1; id <= nodes->n; id++) {
         if (!nodes->point[id])
             continue;
-        size_t i = nodes->point[id] - 1;
-        TRY_GOTO(builder_blame(builder, i, add_node(meaning, data, builder, nodes, id, err), err));
-        for (size_t k = 0; k < n; k++)
-            if (!isnan(column[k]->value[i]))
-                TRY_GOTO(builder_value(builder, k, column[k]->value[i], err));
+        status = add_node(meaning, data, builder, nodes, id, err);
+        TRY_GOTO(builder_blame(builder, nodes->point[id] - 1, status, err));
+        TRY_GOTO(add_values_of(&columns, nodes, id, builder, err));
     }
 done:
-    free(column);
+    free(columns.array);
     return status;
 }
 
@@ -696,6 +720,7 @@ static Status to_tree(const Meaning *meaning, const VtkData *data, Graph *graph,
     if (status == STATUS_OK)
         status = add_nodes(meaning, data, builder, &nodes, err);
     free(nodes.point);
+    free(nodes.cell);
     free(nodes.parent);
     return status;
 }
