@@ -75,8 +75,8 @@ static Status convert_tree(const ConvertOptions *options, Parsed *parsed, Err *e
     bool moments = strcasecmp(file_extension(to), "pvd") == 0;
     if (status == STATUS_OK)
         status = moments ? write_moments(&tree, parsed, to, err) : tree_write(&tree, to, err);
-    if (status == STATUS_OK && !moments && !parsed->common.quiet && !tree_format_has_columns(to))
-        print_columns_left_out("convert", &tree, "the format has no place for them");
+    if (status == STATUS_OK && !moments && !parsed->common.quiet)
+        print_left_out("convert", &tree, to);
     tree_release(&tree);
     return status;
 }

@@ -134,8 +134,8 @@ static Status finish(const GrowOptions *options, const Common *common, const Tre
         fprintf(stderr, "corcast grow: %s\n", why->text);
     if (!common->quiet)
         print_report(report);
-    if (!common->quiet && !tree_format_has_columns(options->output))
-        print_columns_left_out("grow", tree, "the format has no place for them");
+    if (!common->quiet)
+        print_left_out("grow", tree, options->output);
     print_warnings(report, &options->growing.domain, refined->target_before > 0);
     if (!common->quiet)
         refining_print(refined);

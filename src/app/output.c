@@ -2,6 +2,7 @@
  * of the options' values rather than of what was typed, so that a recipe, the order of the options
  * and what does not matter leave no trace; names for people; JSON. */
 #include "app/commands.h"
+#include "treeio/treeio.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -137,6 +138,17 @@ void print_columns_left_out(const char *command, const Tree *tree, const char *w
     for (size_t k = 0; k < tree->n_columns; k++)
         fprintf(stderr, "%s%.40s", k ? ", " : "", tree->column[k].name);
     fprintf(stderr, " are left out: %s\n", why);
+}
+
+void print_left_out(const char *command, const Tree *tree, const char *path)
+{
+    Text lost = TEXT_INIT;
+    tree_format_losses(path, tree, &lost);
+    const char *chars = text_chars(&lost);
+    if (chars && *chars)
+        fprintf(stderr, "corcast %s: %s are left out: the format has no place for them\n", command,
+                chars);
+    text_release(&lost);
 }
 
 Status json_write(json_t *object, const char *path, Err *err)

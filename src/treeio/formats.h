@@ -24,6 +24,10 @@ typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
 /* Writes a tree that tree_check accepts; errors of the stream are the caller's matter. */
 typedef Status TreeWrite(const Tree *tree, FILE *stream, Err *err);
 
+/* Whether a column of the tree is written, although columns as such are not. */
+typedef bool TreeKeeps(const TreeColumn *column);
+
+TreeKeeps oned_keeps;
 TreeDetect amira_detect, csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect,
     gxl_detect, graphml_detect, amiraxml_detect, pvd_detect;
 TreeRead swc_read, csv_read, pvd_read;

@@ -182,13 +182,21 @@ static const struct {
 
 enum { N_CARDS = sizeof cards / sizeof *cards };
 
+/* SimVascular heads its decks with "UNITS IN CGS", corcast with "Units: cm, g, s". */
+static Status read_comment(Graph *graph, const char *comment, Err *err)
+{
+    if (strcasestr(comment, "units in cgs") || strcasestr(comment, "units: cm, g, s"))
+        graph->unit_said = true;
+    return comment_read_key(&graph->meta, comment, err);
+}
+
 static Status read_line(void *reader, size_t number, char *line, Err *err)
 {
     Deck *deck = reader;
     char *field[MAX_FIELDS];
     line += strspn(line, TEXT_BLANKS);
     if (*line == '#')
-        return comment_read_key(&deck->graph->meta, line + 1, err);
+        return read_comment(deck->graph, line + 1, err);
     Card card = {field, fields_cut(line, field, MAX_FIELDS), number};
     if (card.count == 0)
         return STATUS_OK;
@@ -366,12 +374,20 @@ done:
     return status;
 }
 
+bool oned_keeps(const TreeColumn *column)
+{
+    for (size_t k = 0; k < DECK_COLUMNS; k++)
+        if (strcmp(column->name, deck_columns[k].name) == 0 &&
+            strcmp(column->unit, deck_columns[k].unit) == 0)
+            return true;
+    return false;
+}
+
 /* The value of a column that a deck brought, or else `otherwise`. */
 static double deck_value(const Tree *tree, DeckColumn k, size_t i, double otherwise)
 {
     const TreeColumn *column = tree_column(tree, deck_columns[k].name);
-    bool is_ours = column && strcmp(column->unit, deck_columns[k].unit) == 0;
-    return is_ours && column->value[i] > 0 ? column->value[i] : otherwise;
+    return column && oned_keeps(column) && column->value[i] > 0 ? column->value[i] : otherwise;
 }
 
 static void put_segment(const DeckTree *deck, size_t i)

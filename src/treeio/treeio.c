@@ -23,6 +23,9 @@ enum {
     ANY_GRAPH = UNIT | VOXELS | MERGING | LOOPS
 };
 
+/* What a tree may hold that not all formats have a place for. */
+enum { LOSES_COLUMNS = 1, LOSES_TYPES = 2, LOSES_SHARES = 4 };
+
 /* What options are called in sentences. */
 static const struct {
     unsigned bit;
@@ -37,8 +40,9 @@ static const struct {
 typedef struct Format {
     const char *name, *description;
     const char *extensions[MAX_EXTENSIONS + 1]; /* without the '.'; ends with NULL */
-    bool no_columns;                            /* there is no place for a tree's columns */
-    unsigned takes;                             /* bits of the options of reading */
+    unsigned loses;                             /* bits of what there is no place for */
+    TreeKeeps *keeps; /* of the columns that are lost, those that are not; NULL: none */
+    unsigned takes;   /* bits of the options of reading */
     FileForm form;
     TreeDetect *detect;    /* NULL: nothing tells */
     TreeRead *read;        /* one of a tree ... */
@@ -51,7 +55,7 @@ typedef struct Format {
 
 static const Format formats[] = {
     {.name = "SWC",
-     .no_columns = true,
+     .loses = LOSES_COLUMNS,
      .takes = UNIT | VOXELS,
      .description = "id type x y z radius parent, a node a line, in mm",
      .extensions = {"swc"},
@@ -59,6 +63,7 @@ static const Format formats[] = {
      .read = swc_read,
      .write = swc_write},
     {.name = "CSV of segments",
+     .loses = LOSES_TYPES | LOSES_SHARES,
      .description = "a segment a line: both ends, radius, length, any columns of values",
      .extensions = {"segments.csv"},
      .takes = ANY_GRAPH | COLUMNS,
@@ -127,6 +132,8 @@ static const Format formats[] = {
      .detect = amiraxml_detect,
      .read_graph = amiraxml_read},
     {.name = "SimVascular 1-D",
+     .loses = LOSES_COLUMNS | LOSES_TYPES | LOSES_SHARES,
+     .keeps = oned_keeps,
      .description = "a deck of svOneDSolver: nodes, segments and joints, in cm",
      .extensions = {"in"},
      .takes = ANY_GRAPH,
@@ -134,7 +141,7 @@ static const Format formats[] = {
      .read_graph = oned_read,
      .write = oned_write},
     {.name = "VMV",
-     .no_columns = true,
+     .loses = LOSES_COLUMNS | LOSES_TYPES | LOSES_SHARES,
      .description = "vertices and strands of VessMorphoVis, in um",
      .extensions = {"vmv"},
      .takes = ANY_GRAPH,
@@ -262,10 +269,41 @@ const char *tree_format_description(size_t i)
     return i < N_FORMATS ? formats[i].description : NULL;
 }
 
-bool tree_format_has_columns(const char *path)
+static bool has_types(const Tree *tree)
+{
+    size_t i = 0;
+    while (i < tree->n && tree->type[i] == TREE_VESSEL_TYPE)
+        i++;
+    return i < tree->n;
+}
+
+/* Appends "the columns age and wss": those that are lost. */
+static void put_lost_columns(const Format *format, const Tree *tree, Text *text)
+{
+    size_t n = 0;
+    for (size_t k = 0; k < tree->n_columns; k++)
+        if (!format->keeps || !format->keeps(&tree->column[k])) {
+            text_puts(text, n++ ? ", " : "the columns ");
+            text_put_line(text, tree->column[k].name);
+        }
+}
+
+void tree_format_losses(const char *path, const Tree *tree, Text *text)
 {
     const Format *format = find_written(path);
-    return format && !format->no_columns;
+    unsigned loses = format ? format->loses : 0;
+    Text columns = TEXT_INIT;
+    if (loses & LOSES_COLUMNS)
+        put_lost_columns(format, tree, &columns);
+    const char *const lost[] = {
+        text_chars(&columns), (loses & LOSES_TYPES) && has_types(tree) ? "the types" : "",
+        (loses & LOSES_SHARES) && tree->flow_share ? "the flow shares" : ""};
+    for (size_t i = 0, n = 0; i < sizeof lost / sizeof *lost; i++)
+        if (!lost[i] || *lost[i]) {
+            text_puts(text, n++ ? " and " : "");
+            text_puts(text, lost[i]);
+        }
+    text_release(&columns);
 }
 
 bool tree_format_known(const char *path)

@@ -16,8 +16,9 @@
 bool tree_format_known(const char *path);
 /* STATUS_USAGE, saying which there are, unless a tree can be written to such a path. */
 MUST_CHECK Status tree_format_check(const char *path, Err *err);
-/* Whether the format of such a path has a place for a tree's columns. */
-bool tree_format_has_columns(const char *path);
+/* Appends what of the tree the format of such a path has no place for, "the columns age, wss and
+ * the types"; nothing when it holds all. */
+void tree_format_losses(const char *path, const Tree *tree, Text *text);
 /* Name ("SWC"), chief extension ("swc") and description of format `i`, from 0 on; NULL after the
  * last. The first is written to standard output. */
 const char *tree_format_name(size_t i);
@@ -42,7 +43,7 @@ MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *
                                TreeReading *reading, Err *err);
 
 /* Writes what is known of the tree, then its nodes in array order; every number reads back to the
- * same double. Columns are left out where tree_format_has_columns says so. STATUS_USAGE as
+ * same double. What tree_format_losses says is left out. STATUS_USAGE as
  * tree_format_check, STATUS_INPUT for a tree that tree_check refuses. */
 MUST_CHECK Status tree_write(const Tree *tree, const char *path, Err *err);
 

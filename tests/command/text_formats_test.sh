@@ -81,4 +81,31 @@ test_a_grown_tree_comes_back_from_a_csv_of_segments() {
     cmp -s <(grep -v '^#' tree.swc) <(grep -v '^#' back.swc) || fail "expected the same nodes"
 }
 
+# MetaIO of ITK 5.2 wrote both, of three tubes: a trunk, one that names the trunk's second point, and one that
+# names none and ends beside its last point; ElementSpacing is 0.5 0.5 0.25.
+test_tubes_that_metaio_wrote_are_the_same_in_text_and_packed() {
+    local file
+    for file in tubes tubes-packed; do
+        run_ok corcast convert --quiet "$DATA/metaio/$file.tre" $file.swc
+        [ "$(tr '\n' ';' <$file.swc)" = "1 3 0 0 0 2 -1;2 3 0 10 2 2 1;3 3 0 20 4 1.5 2;4 3 -0.5 10.5 2 1.25 2;5 3 -5 15 3 1 4;6 3 0.5 20.5 4 1 3;7 3 7.5 30 5 0.75 6;" ] ||
+            fail "expected three tubes, got $(cat $file.swc)"
+    done
+    run_ok corcast convert "$DATA/metaio/tubes.tre" tubes.csv
+    grep -q '^5,.*,21,' tubes.csv || fail "expected the ids of the points: $(cat tubes.csv)"
+}
+
+test_what_a_format_has_no_place_for_is_said() {
+    printf '%s\n' id,parent,x_mm,y_mm,z_mm,radius_mm,type,flow_share,age 1,,0,9,0,1,3,0, 2,1,0,4,0,1,3,0,41 \
+        3,2,-4,0,0,0.5,5,0.75,37.5 4,2,4,0,0,0.5,3,1.5, >tree.csv
+    run_ok corcast convert tree.csv tree.vmv
+    expect_sentence '^corcast convert: the columns age and the types and the flow shares are left out: the format has no place for them$'
+    run_ok corcast convert tree.csv tree.segments.csv
+    expect_sentence '^corcast convert: the types and the flow shares are left out: '
+    run_ok corcast convert tree.csv tree.vtp
+    [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
+    [ -r "$SHARED/simvascular_oned/14_AortoFem_Pulse_RCR.in" ] || return 0
+    run_ok corcast convert "$SHARED/simvascular_oned/14_AortoFem_Pulse_RCR.in" deck.in
+    [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
+}
+
 run_tests "$@"
