@@ -27,6 +27,11 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      .range = &tolerance_range,
      .help = "how far triangles may be off the surface, over the local radius"},
+    {.name = "lod",
+     SETS(NUMBER, ExportOptions, meshing.lod),
+     .group = GROUP_VESSELS,
+     FROM_TO(RANGE_ABOVE_0, 1),
+     .help = "level of detail: make about this part of the triangles, farther off the surface"},
     {.name = "prune-radius",
      SETS(NUMBER, ExportOptions, prune_radius_mm),
      .group = GROUP_VESSELS,
@@ -51,6 +56,7 @@ static void set_defaults(void *options)
 {
     ExportOptions *own_options = options;
     own_options->meshing.tolerance = MESHING_TOLERANCE;
+    own_options->meshing.lod = 1;
     own_options->meshing.look = "cast";
     coloring_set_defaults(&own_options->meshing.coloring);
 }

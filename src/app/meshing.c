@@ -54,13 +54,12 @@ static Status color_vessels(const MeshingOptions *options, bool quiet, Meshing *
 static Status say_estimate(const VesselTree *vessels, const MeshParams *params, bool quiet,
                            Err *err)
 {
-    double triangles, bytes;
-    char text[BYTES_TEXT_SIZE];
-    vesselmesh_estimate(vessels, params, &triangles, &bytes);
+    char memory[BYTES_TEXT_SIZE];
+    MeshEstimate estimate = vesselmesh_estimate(vessels, params);
     if (!quiet)
-        fprintf(stderr, "corcast: about %.2g triangles, which take %s of memory\n", triangles,
-                bytes_text(bytes, text));
-    return mem_check(bytes, "the mesh", err);
+        fprintf(stderr, "corcast: about %.2g triangles, which take %.2g s and %s of memory\n",
+                estimate.triangles, estimate.seconds, bytes_text(estimate.bytes, memory));
+    return mem_check(estimate.bytes, "the mesh", err);
 }
 
 static void say_result(const MeshReport *report, const VesselMesh *mesh, bool quiet)
@@ -80,10 +79,12 @@ static void say_result(const MeshReport *report, const VesselMesh *mesh, bool qu
                 report->volume_mm3);
 }
 
-static Status triangulate(Meshing *made, double tolerance, const Common *common, Err *err)
+static Status triangulate(Meshing *made, const MeshingOptions *options, const Common *common,
+                          Err *err)
 {
     Progress progress;
-    MeshParams params = {.tolerance = tolerance,
+    MeshParams params = {.tolerance = options->tolerance,
+                         .lod = options->lod,
                          .threads = common->threads,
                          .progress = progress_report,
                          .context = &progress};
@@ -113,7 +114,7 @@ static Status make(const Common *common, const MeshingOptions *options, bool col
         TRY(color_vessels(options, common->quiet, made, err));
     if (options->part_overlaps)
         TRY(part(made, common->threads, err));
-    TRY(triangulate(made, options->tolerance, common, err));
+    TRY(triangulate(made, options, common, err));
     TRY(meshreport_check(&made->report, &made->vessels, err));
     say_result(&made->report, &made->mesh, common->quiet);
     return STATUS_OK;
@@ -175,6 +176,7 @@ static json_t *manifest(const Meshing *made)
         {"triangles", count(mesh->n_triangles)},
         {"points", count(mesh->n_points)},
         {"volume_mm3", json_number(report->volume_mm3)},
+        {"tolerance", json_number(report->tolerance)},
         {"max_distance_mm", json_number(report->off.mm)},
         {"max_distance_over_radius", json_number(report->off.ratio)},
     };

@@ -14,6 +14,7 @@ extern const char *const vessel_body_names[];
 typedef struct MeshingOptions {
     int body;           /* choice: VesselBody */
     double tolerance;   /* over the local radius */
+    double lod;         /* the part of the triangles that are to be made; 0: as 1 */
     bool part_overlaps; /* thin vessels that overlap others that they do not belong with */
     const char *look;   /* for an emitter with colours, as the coloring */
     Coloring coloring;

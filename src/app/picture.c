@@ -398,12 +398,15 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
 {
     const SceneModel model = (SceneModel)options->model;
     Progress progress;
-    const GeometryParams params = {
-        .model = model,
-        .joints = (JointForm)options->joints,
-        .graph = options->potential != 0 && model_has(model, MODEL_POTENTIAL),
-        .part_overlaps = options->part_overlaps,
-        .mesh = {options->tolerance, common->threads, progress_report, &progress}};
+    const GeometryParams params = {.model = model,
+                                   .joints = (JointForm)options->joints,
+                                   .graph =
+                                       options->potential != 0 && model_has(model, MODEL_POTENTIAL),
+                                   .part_overlaps = options->part_overlaps,
+                                   .mesh = {.tolerance = options->tolerance,
+                                            .threads = common->threads,
+                                            .progress = progress_report,
+                                            .context = &progress}};
     progress_start(&progress, "triangulating", common->quiet);
     Status status = stage_geometry(&source->of.tree, &params, geometry, report, err);
     progress_end(&progress);

@@ -261,6 +261,43 @@ test_part_overlaps_thins_them_and_says_so() {
     expect_json m.stl.json '[.near_pairs[].gap_mm] | min > 0'
 }
 
+# The time depends on the machine, and is only seen to be told.
+test_says_before_what_the_work_takes() {
+    local terminals told
+    for terminals in 3 17 60; do
+        corcast grow --terminals "$terminals" --domain ball:41 --seed 7 -o t.swc --quiet
+        run_ok corcast export t.swc -o t.stl --tolerance 0.067
+        told=$(sed -n 's/.*about \([0-9.e+]*\) triangles, which take [0-9.e-]* s and [0-9.]* [kM]B of memory/\1/p' stderr)
+        awk -v a="$told" -v b="$(jq .triangles t.stl.json)" 'BEGIN { exit !(a > b / 2 && a < 2 * b) }' ||
+            fail "$(jq .triangles t.stl.json) triangles, but it says: $(cat stderr)"
+    done
+}
+
+test_refuses_before_the_work_what_needs_more_memory_than_there_is() {
+    awk 'BEGIN { for (i = 1; i <= 400000; i++) print i, 3, i * 2.385, 0, 0, 0.31, i > 1 ? i - 1 : -1 }' >long.swc
+    run timeout 20 "$CORCAST" export long.swc --tolerance 0.002 -o m.stl --quiet
+    expect_status 3
+    expect_sentence 'the mesh: out of memory: needs [0-9.]* [GT]B, and this machine has'
+    expect_only long.swc
+}
+
+test_level_of_detail_keeps_about_that_part_of_the_triangles() {
+    local part
+    grown
+    for part in 0.37 0.12; do
+        run_ok corcast export t.swc --lod "$part" -o less.stl --quiet
+        awk -v a="$(jq .triangles less.stl.json)" -v b="$(jq .triangles t.stl.json)" -v part="$part" \
+            'BEGIN { exit !(a > 0.8 * part * b && a < 1.25 * part * b) }' ||
+            fail "$(jq .triangles less.stl.json) of $(jq .triangles t.stl.json) triangles are no $part"
+        expect_json less.stl.json '.watertight and .components == 1 and .genus == 0 and .self_intersections == 0'
+        expect_json less.stl.json '.segments_missing == [] and .tolerance > 0.05'
+        expect_json less.stl.json ".max_distance_over_radius > $(jq .max_distance_over_radius t.stl.json)"
+    done
+    run corcast export t.swc --lod 1.2 -o less.stl
+    expect_status 2
+    expect_sentence "--lod: '1.2' is not a number above 0 and at most 1"
+}
+
 test_refuses_an_unknown_extension() {
     run corcast export "$DATA/bifurcation.swc" -o m.xyz
     expect_status 2

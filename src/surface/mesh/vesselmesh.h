@@ -16,7 +16,9 @@ double vesselmesh_volume(const VesselMesh *mesh);
 
 typedef struct MeshParams {
     double tolerance; /* of the local radius, in [0.001, 0.2]: what few places exceed */
-    int threads;      /* 0: all processors */
+    double lod;  /* in (0, 1]: about this part of the triangles that the tolerance takes, and no
+                  * fewer than about 9 for each radius of length; 0: as 1 */
+    int threads; /* 0: all processors */
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *context;
 } MeshParams;
@@ -54,7 +56,9 @@ typedef struct MeshReport {
     NearPair *near; /* owned; gaps below NEAR_GAP of the thinner radius, overlaps first */
     size_t n_near, n_overlapping;
     double volume_mm3;
-    MeshOff off; /* of junctions at the middle of each triangle and of its longest edge */
+    double tolerance; /* that the triangles were made for: above what was asked where `lod` is below
+                         1 */
+    MeshOff off;      /* of junctions at the middle of each triangle and of its longest edge */
     size_t zones, repeated; /* junction zones, and those that needed finer cells */
 } MeshReport;
 
@@ -73,9 +77,14 @@ MUST_CHECK Status meshreport_check(const MeshReport *report, const VesselTree *t
 MUST_CHECK Status vesseltree_part(VesselTree *tree, int threads, uint32_t **thinned, size_t *n,
                                   Err *err);
 
-/* How many triangles, and bytes of memory, a tree takes about. O(n). */
-void vesselmesh_estimate(const VesselTree *tree, const MeshParams *params, double *triangles,
-                         double *bytes);
+/* What the mesh of a tree takes, within a factor of 2 as a rule. */
+typedef struct MeshEstimate {
+    double triangles, bytes; /* of memory, at the most */
+    double seconds;          /* on so many threads of a processor of 2023 */
+} MeshEstimate;
+
+/* O(n). */
+MeshEstimate vesselmesh_estimate(const VesselTree *tree, const MeshParams *params);
 
 /* Triangulates the surface. The same bytes for any number of threads. *report is filled also where
  * the mesh is not sound. STATUS_INPUT naming a pair of ids when vessels that do not blend overlap,
