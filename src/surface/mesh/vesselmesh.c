@@ -18,7 +18,7 @@
 static const double cells_at = 0.02, cell_ratio = 0.48, bending_ratio = 0.2, sagitta_part = 0.30,
                     cap_part = 0.2, farthest_part = 1.4;
 /* Of a round body: its balls bend both ways, and its creases are cut off. */
-static const double round_sagitta_part = 0.25, round_farthest_part = 1.75;
+static const double round_sagitta_part = 0.24, round_farthest_part = 1.75;
 
 /* After a zone of more terms a thread does not keep its room: it would be ten times what most need.
  */
