@@ -3,6 +3,7 @@
 #include "app/templates.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -56,6 +57,8 @@ static void list_names(const char *folder, const char *extension, const char *be
     struct dirent **entries = NULL;
     int n = scandir(folder, &entries, NULL, alphasort);
     const char *last = NULL;
+    if (n < 0 && errno == ENOMEM)
+        text_puts(out, NULL);
     for (int i = 0; i < n; i++) {
         char *name = entries[i]->d_name;
         size_t length = strlen(name), ending = strlen(extension);

@@ -74,6 +74,7 @@ test_failed_allocations_in_scene() {
     fail_each 3 many scene ../tree.swc --size 21x15 --model blob --ids on --color-by radius -o o.pov
     fail_each 3 many scene "$DATA/bifurcation.swc" --size 21x15 --model isosurface --ids on -o o.pov
     fail_each 5 many scene "$DATA/bifurcation.swc" --size 21x15 --model mesh --tolerance 0.2 --part-overlaps -o o.pov
+    fail_each 5 many scene "$DATA/bifurcation.swc" --size 21x15 --model blob --color-by radius --color-blend blended -o o.pov
 }
 
 test_failed_allocations_in_export() {
@@ -97,7 +98,13 @@ test_failed_allocations_in_render() {
     fail_each 5 many render ../tree.swc --size 21x15 --model isosurface --hits povray --planes id -o o.ppm
     fail_each 3 one render ../tree.swc --size 21x15 --method raster --ao 2 --antialias 2 -o o.pfm
     fail_each 3 one render ../tree.swc --size 21x15 --method zbuffer --color-by wss --log --bits 16 -o o.png
+    fail_each 3 one render ../tree.swc --size 21x15 --model isosurface --color-by wss --unit kPa --range 2%,98% \
+        --range-of tree --prune-radius 0.4 --color-blend blended -o o.png
     THREADS=2 fail_each 3 one render ../tree.swc --size 64x64 --method raster --shadows on -o o.png
+}
+
+test_failed_allocations_in_colormaps() {
+    fail_each 3 one colormaps -o o.ppm
 }
 
 test_failed_allocations_in_compare() {

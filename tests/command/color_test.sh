@@ -336,6 +336,11 @@ test_colours_blend_where_vessels_do() {
     refuses '--colormap Set1 has separate colours, which blend only with --classes' \
         --model blob --color-by level --colormap Set1 --color-blend blended
     refuses '--color-blend needs --color-by' --model blob --color-blend blended
+    printf 'id,0,0.5\n2,1,2\n3,3,4\n' >load.csv
+    run corcast scene tree.swc --quiet --color-by load.csv:load --model blob --color-blend blended -o no.pov
+    expect_status 2
+    expect_sentence 'colours that change with time do not blend; --frame chooses one moment'
+    run_ok corcast scene tree.swc --quiet --color-by load.csv:load --frame 2 --model blob --color-blend blended -o yes.pov
 }
 
 test_the_maps_are_listed_with_licences_and_drawn() {
