@@ -2,7 +2,7 @@
  * branch. A polyline has points of its own, all with the values of its segments, its first point
  * with those of its first segment, so that a tube about it is as thick as the vessel from end to
  * end, where points shared with the parent would make it a cone. Points that are one node have one
- * `id`, by which the tree is found again [vtkdata.c]; what is known of it are lines of text in the
+ * `id`, by which the tree is found again [vtktree.c]; what is known of it are lines of text in the
  * field data. Which arrays there are is one table for both kinds of files; numbers go through one
  * buffer, whatever the tree's size. */
 #include "treeio/branches.h"

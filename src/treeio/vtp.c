@@ -261,20 +261,26 @@ static Array *find_array(const Reader *reader, size_t piece, Section section, co
     return NULL;
 }
 
+/* The points of the first piece are moved, those of others appended. */
 static Status add_points(const Reader *reader, size_t piece, VtkData *data, Err *err)
 {
-    const Array *of = find_array(reader, piece, POINTS, NULL);
+    Array *of = find_array(reader, piece, POINTS, NULL);
     if (!of || !of->array.value)
         return STATUS_OK;
     if (of->array.components != 3)
         return err_set(err, STATUS_INPUT, "points have %zu coordinates; they must have 3",
                        of->array.components);
     size_t n = data->n_points + of->array.n;
-    TRY(mem_reserve(&data->point, &data->points_capacity, 3 * n, sizeof *data->point, "points",
-                    err));
-    if (of->array.n > 0)
+    if (!data->point) {
+        data->point = of->array.value;
+        of->array.value = NULL;
+        data->points_capacity = 3 * n;
+    } else {
+        TRY(mem_reserve(&data->point, &data->points_capacity, 3 * n, sizeof *data->point, "points",
+                        err));
         memcpy(data->point + 3 * data->n_points, of->array.value,
                3 * of->array.n * sizeof *data->point);
+    }
     data->n_points = n;
     return STATUS_OK;
 }
