@@ -81,6 +81,7 @@ test_failed_allocations_in_export() {
     local extension
     fail_each 1 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o o.ply
     fail_each 3 many export "$REPO/tests/golden/strangers.swc" --part-overlaps --tolerance 0.2 -o o.stl
+    fail_each 7 many export "$DATA/bifurcation.swc" --model rounded --tolerance 0.2 -o o.stl
     for extension in stl obj 3mf inc; do
         fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o "o.$extension"
     done
