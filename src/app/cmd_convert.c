@@ -1,6 +1,8 @@
 /* What a file holds is told by its extension, and what is read becomes what is to be written: a
  * tree a tree, a picture a picture of sRGB, a plane of floats a plane. */
+#include "app/blood.h"
 #include "app/commands.h"
+#include "app/field_columns.h"
 #include "app/options.h"
 #include "app/reading.h"
 #include "image/image.h"
@@ -12,6 +14,8 @@
 
 typedef struct ConvertOptions {
     const char *values; /* "FILE" or "FILE:COLUMN"; NULL: none */
+    const char *fields; /* "all" or "NAME,..."; NULL: none */
+    BloodOptions blood;
 } ConvertOptions;
 
 static const Option own[] = {
@@ -20,6 +24,12 @@ static const Option own[] = {
      .group = GROUP_FILES,
      .argument = "FILE[:COLUMN]",
      .help = "values of the tree's segments by id, from a CSV or a folder of svOneDSolver"},
+    {.name = "fields",
+     SETS(TEXT, ConvertOptions, fields),
+     .group = GROUP_FILES,
+     .argument = "all|NAME,...",
+     .list = "fields",
+     .help = "what follows from the tree, and is to be in its file as columns"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -43,6 +53,16 @@ static Status join_values(const ConvertOptions *options, Parsed *parsed, Tree *t
         status = tree_read_values(tree, path, column, NULL, err);
     free(path);
     return status;
+}
+
+/* Derives the fields that are asked for into the tree. */
+static Status join_fields(const ConvertOptions *options, const Parsed *parsed, Tree *tree, Err *err)
+{
+    if (!options->fields)
+        return STATUS_OK;
+    const TreeMeta said = blood_said(&options->blood);
+    TRY(blood_settle(&options->blood, parsed, tree, err));
+    return field_columns_add(tree, &said, options->fields, parsed->common.quiet, err);
 }
 
 /* An index for ParaView and the files that it names, none of which is read here. */
@@ -71,6 +91,8 @@ static Status convert_tree(const ConvertOptions *options, Parsed *parsed, Err *e
     Tree tree;
     TRY(reading_tree(parsed, from, &tree, NULL, err));
     Status status = join_values(options, parsed, &tree, err);
+    if (status == STATUS_OK)
+        status = join_fields(options, parsed, &tree, err);
     tree_renumber(&tree);
     bool moments = strcasecmp(file_extension(to), "pvd") == 0;
     if (status == STATUS_OK)
@@ -175,7 +197,8 @@ static Status run_convert(void *options, Parsed *parsed, Err *err)
                        to);
     if (kind == FILE_TREE)
         return convert_tree(own_options, parsed, err);
-    const OptionNeed needs[] = {{"values", false, "is for trees"}, {0}};
+    const OptionNeed needs[] = {
+        {"values", false, "is for trees"}, {"fields", false, "is for trees"}, {0}};
     TRY(options_check_needs(parsed, needs, err));
     TRY(reading_refuse(parsed, "is for trees", err));
     return kind == FILE_PICTURE ? convert_picture(from, to, err) : convert_plane(from, to, err);
@@ -187,6 +210,7 @@ const Command command_convert = {
     .operands = "IN OUT",
     .examples = "  corcast convert measured.swc tidy.swc\n"
                 "  corcast convert tree.swc tree.csv\n"
+                "  corcast convert tree.swc tree.segments.csv --fields all\n"
                 "  corcast convert tree.swc pulse.pvd --values pulse.csv\n"
                 "  corcast convert picture.ppm picture.png\n"
                 "  corcast convert render.exr render.pfm\n"
@@ -196,6 +220,6 @@ const Command command_convert = {
     .writes_last = true,
     .reads_tree = true,
     .size = sizeof(ConvertOptions),
-    .tables = {{&own_table, 0}},
+    .tables = {{&own_table, 0}, {&blood_table, offsetof(ConvertOptions, blood)}},
     .run = run_convert,
 };

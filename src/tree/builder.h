@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 typedef struct Tree Tree;
+typedef struct TreeReading TreeReading;
 
 enum { BUILDER_MAX_COLUMNS = 10000 };
 
@@ -26,11 +27,12 @@ typedef struct BuilderNode {
     size_t record;    /* where in the file, for sentences */
 } BuilderNode;
 
-/* Begin with {.name = ..., .record = ...}; release with builder_release. */
+/* Begin with {.name = ..., .record = ..., .reading = ...}; release with builder_release. */
 typedef struct TreeBuilder {
     const char *name;   /* of the file (borrowed) */
     const char *record; /* what its records are called, "point" (borrowed); NULL: they are lines */
-    TreeMeta meta;      /* of the tree, for the reader to fill */
+    TreeReading *reading; /* where the reader says what it assumes (borrowed); may be NULL */
+    TreeMeta meta;        /* of the tree, for the reader to fill */
     struct BuilderRow *row;
     size_t n, capacity;
     int32_t last_id; /* the largest */

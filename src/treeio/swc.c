@@ -191,11 +191,14 @@ Status swc_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
     (void)size;
     Reader reader = {.builder = builder, .lowest_id = 1};
     TRY(lines_read(builder->name, bytes, read_line, &reader, err));
-    if (reader.lowest_id == 0 && builder->n_shares > 0)
+    if (reader.lowest_id == 1)
+        return STATUS_OK;
+    if (builder->n_shares > 0)
         return err_set(err, STATUS_INPUT,
                        "%s: the ids start at 0, but a flow_share names nodes by ids from 1 on",
                        builder->name);
-    return STATUS_OK;
+    return reading_note(builder->reading, err,
+                        "ids start at 0 in the file, and are one higher here");
 }
 
 /* Appends the decimal digits of the number, and then a blank. */

@@ -532,11 +532,24 @@ static Status read_vessel(Table *table, size_t line, Err *err)
     return graph_line(graph, &vessel, err);
 }
 
+/* The node that a line names, or, of nodes without ids, numbers from 0 on. */
+static Status find_node(const Table *table, Role role, size_t *node, Err *err)
+{
+    char *name = field_of(table, role);
+    int32_t number;
+    if (table->nodes->n > 0)
+        return names_find(table->nodes, name, node, err);
+    TRY(field_whole(roles[role].alias[0], name, 0, (int32_t)table->graph->n_points - 1, &number,
+                    err));
+    *node = (size_t)number;
+    return STATUS_OK;
+}
+
 static Status read_edge(Table *table, size_t line, Err *err)
 {
     GraphLine edge = {.record = line};
-    TRY(names_find(table->nodes, field_of(table, ROLE_FROM), &edge.a, err));
-    TRY(names_find(table->nodes, field_of(table, ROLE_TO), &edge.b, err));
+    TRY(find_node(table, ROLE_FROM, &edge.a, err));
+    TRY(find_node(table, ROLE_TO, &edge.b, err));
     TRY(read_radius(table, &edge.radius, err));
     TRY(put_values(table, table->graph->n_lines, err));
     return graph_line(table->graph, &edge, err);
@@ -630,11 +643,10 @@ static Status read_tables(Table *table, char *bytes, Err *err)
     const char *edges = options ? options->edges : NULL;
     TRY(parse_sayings(table->sayings, options ? options->columns : NULL, err));
     TRY(read_table(table, bytes, err));
-    if (table->kind == NODES && edges && !table->at[ROLE_ID])
-        return err_set(err, STATUS_INPUT, "%s: the table has no column id, which `edges` go by",
-                       table->name);
     if (table->kind == NODES && edges)
         TRY(read_beside(table, edges, err));
+    if (table->kind == NODES && edges && !table->at[ROLE_ID])
+        TRY(reading_note(graph->reading, err, "nodes have no ids, and are numbered from 0 on"));
     TRY(check_sayings(table->sayings, table->name, err));
     if (table->kind != NODES && edges)
         return err_set(err, STATUS_INPUT,

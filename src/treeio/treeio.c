@@ -514,7 +514,7 @@ static bool reads_tree(const Source *source, const ReadOptions *options)
 static Status read_source(const Source *source, Tree *tree, const ReadOptions *options,
                           TreeReading *reading, Err *err)
 {
-    TreeBuilder builder = {.name = source->name};
+    TreeBuilder builder = {.name = source->name, .reading = reading};
     const Format *format = source->format;
     bool is_tree = reads_tree(source, options);
     Tree made;

@@ -108,4 +108,28 @@ test_what_a_format_has_no_place_for_is_said() {
     [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
 }
 
+test_ids_that_start_at_0_are_told_of() {
+    printf '0 3 0 9 0 1 -1\n1 3 0 4 0 1 0\n' >tree.swc
+    run_ok corcast info tree.swc
+    expect_stdout 'ids start at 0 in the file, and are one higher here'
+}
+
+# In svOneDSolver's units and by hand: 60 ml/min through a radius of 2 mm are 1000 mm3/s at 79.6 mm/s.
+test_derived_fields_become_columns_of_what_is_written() {
+    printf '%s\n' '# q_perf_ml_min: 60' '# viscosity_cP: 3.5' '1 3 0 9 0 2 -1' '2 3 0 4 0 2 1' >tree.swc
+    run_ok corcast convert tree.swc tree.segments.csv --fields velocity,wss
+    [ "$(sed -n '3p' tree.segments.csv)" = 'id,parent,x0_mm,y0_mm,z0_mm,x1_mm,y1_mm,z1_mm,radius_mm,length_mm,"velocity [mm/s]","wss [Pa]"' ] ||
+        fail "expected titles with units, got $(sed -n '3p' tree.segments.csv)"
+    sed -n '4p' tree.segments.csv | awk -F, '{ exit !(($11 - 79.57747) ^ 2 < 1e-8 && ($12 - 0.5570423) ^ 2 < 1e-12) }' ||
+        fail "expected velocity and shear stress, got $(sed -n '4p' tree.segments.csv)"
+    run_ok corcast convert tree.swc tree.csv --fields all
+    expect_sentence '^corcast convert: pressure are? left out: neither the tree nor an option says what they? needs?$'
+    run_ok corcast convert tree.swc tree.csv --fields all --p-perf 90
+    [ ! -s stderr ] || fail "expected all fields: $(cat stderr)"
+    run_ok corcast convert tree.swc other.csv --fields strahler --quiet
+    run corcast convert tree.swc tree.csv --fields speed
+    expect_status 2
+    expect_sentence "there is no field 'speed'; known are radius, "
+}
+
 run_tests "$@"

@@ -664,7 +664,12 @@ static void a_second_table_holds_the_lines_between_nodes(void **state)
     assert_true(value_of(&tree, "isAtSampleBorder", 1) == 0);
     tree_release(&tree);
     assert_table_refused("id,x,y\n0,1,2\n1,2,3\n", &options, "edges.csv:3: there is no node '2'");
-    assert_table_refused("x,y\n0,1\n", &options, "the table has no column id, which `edges` go by");
+    tree = read_as("csv", "X,Y,Z\n0,0,0\n0,0,10\n5,0,20\n-5,0,20\n", &options);
+    assert_nodes(&tree, "1 3 0 0 0 2.5 -1\n2 3 0 0 10 2.5 1\n3 3 5 0 20 1.5 2\n"
+                        "4 3 -5 0 20 1.25 2\n");
+    tree_release(&tree);
+    assert_table_refused("x,y\n0,1\n1,1\n2,2\n", &options,
+                         "edges.csv:4: the from is '3'; it must be a whole number from 0 to 2");
     unlink(edges);
     assert_table_refused("x0,y0,z0,x1,y1,z1,radius\n0,1,2,3,4,5,6\n", &options,
                          "the table is no table of nodes, which `edges` are for");
