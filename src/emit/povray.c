@@ -340,6 +340,17 @@ static void add_names(Values *values, const EmitParams *params)
     add_word(values, "settings", params->settings, "\"");
 }
 
+static Status put_frame_settings(Text *out, void *context, Err *err)
+{
+    const EmitParams *params = context;
+    size_t n = params->scene->appearance.n_frames;
+    if (n == 0)
+        return STATUS_OK;
+    Values values = {0};
+    text_printf(add_value(&values, "count"), "%zu", n);
+    return values_expand(&values, params, "povray/frames.ini", out, err);
+}
+
 Status povray_write_settings(const EmitParams *params, Text *out, Err *err)
 {
     const Camera *camera = &params->scene->view.camera;
@@ -355,5 +366,7 @@ Status povray_write_settings(const EmitParams *params, Text *out, Err *err)
     text_puts(add_value(&values, "method"), adaptive ? "2" : "1");
     text_puts(add_value(&values, "threshold"), adaptive ? "0.1" : "0");
     text_printf(add_value(&values, "depth"), "%d", adaptive ? 3 : params->antialias);
+    EmitParams all = *params;
+    add_part(&values, "frames", put_frame_settings, &all);
     return values_expand(&values, params, "povray/scene.ini", out, err);
 }

@@ -108,6 +108,21 @@ test_failed_allocations_in_colormaps() {
     fail_each 3 one colormaps -o o.ppm
 }
 
+test_failed_allocations_in_animations() {
+    inputs
+    printf 'id,0,0.5\n2,1,2\n3,4,5\n' >frames.csv
+    printf 'name,time,q,p\n2,0,1,2\n2,1,1,2\n3,0,4,5\n3,1,6,7\n' >rows.csv
+    printf 'id,flow\n3,25\n' >flows.csv
+    run_ok corcast convert tree.swc moments.pvd --values frames.csv
+    fail_each 1 many render ../tree.swc --size 9x8 --color-by ../frames.csv --frames all -o o%d.ppm
+    fail_each 3 many render ../tree.swc --size 9x8 --color-by ../rows.csv:q --turn 2 -o o%d.png
+    fail_each 3 many render ../tree.swc --size 9x8 --color-by flow --terminal-flow ../flows.csv --growth 2 -o o%d.png
+    fail_each 3 one render ../moments.pvd --size 9x8 --color-by frames -o o.png
+    fail_each 3 many convert ../tree.swc o.pvd --values ../rows.csv
+    fail_each 3 many scene ../tree.swc --size 21x15 --color-by ../frames.csv -o o.pov
+    fail_each 1 one info ../tree.swc --terminal-flow murray
+}
+
 test_failed_allocations_in_compare() {
     inputs
     fail_each 1 one compare ../a.png ../b.png

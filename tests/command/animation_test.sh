@@ -209,6 +209,15 @@ test_growth_ends_with_the_tree_and_adds_to_what_is_there() {
     done
 }
 
+test_ffmpeg_makes_a_film_of_them() {
+    command -v ffmpeg >/dev/null || skip "ffmpeg is not installed"
+    make_pulse
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc --color-by pulse.csv --frames all $SMALL -o f%04d.png
+    run_ok ffmpeg -nostdin -loglevel error -framerate 24 -i f%04d.png -pix_fmt yuv420p pulse.mp4
+    expect_file pulse.mp4
+}
+
 test_animations_that_cannot_be_are_refused() {
     make_pulse
     refused() {
