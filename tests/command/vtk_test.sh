@@ -168,6 +168,25 @@ test_vtk_reads_what_is_written_and_puts_tubes_about_it() {
     done
 }
 
+test_derived_fields_go_along_as_columns() {
+    corcast grow --terminals 40 -o grown.swc --quiet
+    run_ok corcast convert grown.swc fields.vtp --fields flow,WSS
+    run_ok corcast info --json fields.vtp
+    expect_json stdout '.columns == [{"name": "flow", "unit": "ml/min"}, {"name": "wss", "unit": "Pa"}]'
+    run_ok corcast convert grown.swc all.csv --fields all --q-perf 250
+    head -20 all.csv | grep '^id' >titles
+    grep -q '"flow \[ml/min\]".*"pressure \[mmHg\]".*"strahler".*"tree"' titles || fail "got $(cat titles)"
+    grep -q '250' all.csv || fail "the root segment does not carry 250 ml/min"
+    run_ok corcast convert "$DATA/coronary.swc" all.vtp --fields all
+    expect_sentence 'flow, velocity, pressure, wss, reynolds are left out'
+    run corcast convert grown.swc some.vtp --fields flow,warmth
+    expect_status 2
+    expect_sentence "there is no field 'warmth'"
+    run corcast convert grown.swc some.vtp --q-perf 3
+    expect_status 2
+    expect_sentence '^corcast convert: --q-perf .*--fields'
+}
+
 test_options_that_a_format_does_not_take_are_refused() {
     cp "$DATA/bifurcation.swc" tree.swc
     run corcast info tree.swc --radius-array thickness
