@@ -96,62 +96,119 @@ static bool is_flat_end(const Divider *divider, uint32_t node)
     return divider->tree->body != BODY_ROUND && is_end(divider->incident, node);
 }
 
-/* How far from the end of a segment another may disturb its wall: the last place whose distance
- * from the other's axis is within reach. The distance is convex along a line. */
-static double last_near(const FieldSegment *self, int end, double length, const FieldSegment *other)
+static double distance_at(const FieldSegment *self, int end, double mm, const FieldSegment *other)
 {
-    double reach = self->radius_mm + field_reach * other->radius_mm, low = 0, high = length;
+    return segment_distance_to(other, point_from(self, end, mm));
+}
+
+/* How far from the end of a segment the place is that is nearest to another. The distance is convex
+ * along a line. */
+static double nearest_place(const FieldSegment *self, int end, double length,
+                            const FieldSegment *other)
+{
+    double low = 0, high = length;
     for (int i = 0; i < 40; i++) {
         double one = low + (high - low) / 3, two = high - (high - low) / 3;
-        if (segment_distance_to(other, point_from(self, end, one)) <
-            segment_distance_to(other, point_from(self, end, two)))
+        if (distance_at(self, end, one, other) < distance_at(self, end, two, other))
             high = two;
         else
             low = one;
     }
-    if (segment_distance_to(other, point_from(self, end, low)) > reach)
+    return low;
+}
+
+/* How far from the end of a segment another may disturb its wall: the last place whose distance
+ * from the other's axis is within reach. */
+static double last_near(const FieldSegment *self, int end, double length, const FieldSegment *other)
+{
+    double reach = self->radius_mm + field_reach * other->radius_mm, low = 0, high = length;
+    if (distance_at(self, end, 0, other) > reach)
+        low = nearest_place(self, end, length, other);
+    if (distance_at(self, end, low, other) > reach)
         return 0;
-    for (high = length; high - low > 1e-3 * self->radius_mm;) {
+    if (distance_at(self, end, length, other) <= reach)
+        return length;
+    while (high - low > 1e-3 * self->radius_mm) {
         double middle = 0.5 * (low + high);
-        if (segment_distance_to(other, point_from(self, end, middle)) <= reach)
-            low = middle;
-        else
-            high = middle;
+        *(distance_at(self, end, middle, other) <= reach ? &low : &high) = middle;
     }
     return high;
 }
 
+/* A vessel that blends at the end of another, and how far from there it may disturb that one. */
+typedef struct Neighbor {
+    double last_mm;
+    uint32_t segment;
+} Neighbor;
+
+static int compare_reach(const void *a, const void *b)
+{
+    const Neighbor *one = a, *other = b;
+    if (one->last_mm != other->last_mm)
+        return one->last_mm > other->last_mm ? -1 : 1;
+    return (one->segment > other->segment) - (one->segment < other->segment);
+}
+
+/* The vessels that may disturb the segment near its end, those that reach farthest from there
+ * first. */
+static size_t find_neighbors(const Divider *divider, uint32_t segment, int end, Neighbor *neighbors)
+{
+    const VesselTree *tree = divider->tree;
+    const FieldSegment *self = &tree->segments[segment];
+    const uint32_t *first = &divider->blending->first[tree->nodes[segment][end]];
+    double length = length_of(self);
+    size_t n = 0;
+    for (uint32_t i = first[0]; i < first[1]; i++) {
+        uint32_t other = divider->blending->items[i];
+        double last = other == segment ? 0 : last_near(self, end, length, &tree->segments[other]);
+        if (last > 0)
+            neighbors[n++] = (Neighbor){last, other};
+    }
+    qsort(neighbors, n, sizeof *neighbors, compare_reach);
+    return n;
+}
+
 /* How far from its end the segment is free: beyond the last place that is disturbed, as a thin
  * vessel that leaves a thick one at a small angle comes out of its wall far from the node. */
+static double last_disturbed(const VesselTree *tree, uint32_t segment, int end,
+                             const Neighbor *neighbors, size_t n, ZoneTerm *others)
+{
+    const FieldSegment *self = &tree->segments[segment];
+    Vec3 axis = vec3_normalized(vec3_sub(self->b, self->a));
+    double step = search_step * self->radius_mm;
+    size_t near = 0;
+    for (double steps = n ? ceil(neighbors[0].last_mm / step) : 0; steps > 0; steps--) {
+        double at = (steps - 1) * step;
+        for (; near < n && neighbors[near].last_mm >= at; near++) {
+            uint32_t number = neighbors[near].segment;
+            const FieldSegment *other = &tree->segments[number];
+            others[near] = zoneterm_of(other->a, other->b, other->radius_mm, number, tree->body);
+        }
+        if (is_disturbed(others, near, point_from(self, end, at), axis, self->radius_mm))
+            return steps * step;
+    }
+    return 0;
+}
+
 static Status find_free(const Divider *divider, uint32_t segment, int end, double *free_mm,
                         Err *err)
 {
     const VesselTree *tree = divider->tree;
-    const FieldSegment *self = &tree->segments[segment];
     uint32_t node = tree->nodes[segment][end];
-    const uint32_t *first = divider->blending->first;
-    ZoneTerm *others;
-    TRY(mem_calloc(&others, first[node + 1] - first[node], sizeof *others, "terms", err));
-    size_t n = 0;
-    for (uint32_t i = first[node]; i < first[node + 1]; i++) {
-        uint32_t other = divider->blending->items[i];
-        const FieldSegment *one = &tree->segments[other];
-        if (other != segment)
-            others[n++] = zoneterm_of(one->a, one->b, one->radius_mm, other, tree->body);
-    }
-    double last = 0, length = length_of(self), step = search_step * self->radius_mm;
-    for (size_t i = 0; i < n; i++)
-        last = fmax(last, last_near(self, end, length, &tree->segments[others[i].segment]));
-    Vec3 axis = vec3_normalized(vec3_sub(self->b, self->a));
-    double steps = ceil(last / step);
-    while (steps > 0 && !is_disturbed(others, n, point_from(self, end, (steps - 1) * step), axis,
-                                      self->radius_mm))
-        steps--;
-    *free_mm = steps * step;
+    const uint32_t *first = &divider->blending->first[node];
+    Neighbor *neighbors = NULL;
+    ZoneTerm *others = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&neighbors, first[1] - first[0], sizeof *neighbors, "terms", err));
+    TRY_GOTO(mem_calloc(&others, first[1] - first[0], sizeof *others, "terms", err));
+    size_t n = find_neighbors(divider, segment, end, neighbors);
+    *free_mm = last_disturbed(tree, segment, end, neighbors, n, others);
     if (tree->body == BODY_ROUND && is_end(divider->incident, node))
-        *free_mm = fmax(*free_mm, plane_room * self->radius_mm);
+        *free_mm = fmax(*free_mm, plane_room * tree->segments[segment].radius_mm);
+done:
+    free(neighbors);
     free(others);
-    return STATUS_OK;
+    return status;
 }
 
 typedef struct FreeSearch {
