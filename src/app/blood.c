@@ -77,6 +77,16 @@ Status blood_check_law(ViscosityLaw law, const Parsed *parsed, Err *err)
     return options_check_needs(parsed, needs, err);
 }
 
+Status blood_refuse(const Parsed *parsed, const char *sentence, Err *err)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        if (setting->typed && setting->option->group == GROUP_BLOOD)
+            return err_set(err, STATUS_USAGE, "--%s %s", setting->option->name, sentence);
+    }
+    return STATUS_OK;
+}
+
 /* The exponent that is said, else the tree's, else Murray's own. */
 static double gamma_of(const BloodOptions *blood, const Tree *tree)
 {

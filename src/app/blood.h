@@ -20,8 +20,10 @@ TreeMeta blood_said(const BloodOptions *blood);
 /* STATUS_USAGE for an option of the command line that is of another law of viscosity than this one.
  */
 MUST_CHECK Status blood_check_law(ViscosityLaw law, const Parsed *parsed, Err *err);
-/* Likewise of the tree that is the first operand, whose flow then parts among the terminals as is
- * said. Errors as tree_part_flow_by_radius and tree_read_flows have them. */
+/* STATUS_USAGE, with this end of the sentence, for an option on blood on the command line. */
+MUST_CHECK Status blood_refuse(const Parsed *parsed, const char *sentence, Err *err);
+/* As blood_check_law of the tree that is the first operand, whose flow then parts among the
+ * terminals as is said. Errors as tree_part_flow_by_radius and tree_read_flows have them. */
 MUST_CHECK Status blood_settle(const BloodOptions *blood, const Parsed *parsed, Tree *tree,
                                Err *err);
 

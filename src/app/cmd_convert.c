@@ -59,7 +59,7 @@ static Status join_values(const ConvertOptions *options, Parsed *parsed, Tree *t
 static Status join_fields(const ConvertOptions *options, const Parsed *parsed, Tree *tree, Err *err)
 {
     if (!options->fields)
-        return STATUS_OK;
+        return blood_refuse(parsed, "needs --fields", err);
     const TreeMeta said = blood_said(&options->blood);
     TRY(blood_settle(&options->blood, parsed, tree, err));
     return field_columns_add(tree, &said, options->fields, parsed->common.quiet, err);
@@ -201,6 +201,7 @@ static Status run_convert(void *options, Parsed *parsed, Err *err)
         {"values", false, "is for trees"}, {"fields", false, "is for trees"}, {0}};
     TRY(options_check_needs(parsed, needs, err));
     TRY(reading_refuse(parsed, "is for trees", err));
+    TRY(blood_refuse(parsed, "is for trees", err));
     return kind == FILE_PICTURE ? convert_picture(from, to, err) : convert_plane(from, to, err);
 }
 
