@@ -119,6 +119,9 @@ test_failed_allocations_in_animations() {
     fail_each 3 many render ../tree.swc --size 9x8 --color-by flow --terminal-flow ../flows.csv --growth 2 -o o%d.png
     fail_each 3 one render ../moments.pvd --size 9x8 --color-by frames -o o.png
     fail_each 3 many convert ../tree.swc o.pvd --values ../rows.csv
+    mkdir steps
+    echo 1 2 >steps/segment2_flow.dat
+    fail_each 1 one render ../tree.swc --size 9x8 --color-by ../steps:flow -o o.png
     fail_each 3 many scene ../tree.swc --size 21x15 --color-by ../frames.csv -o o.pov
     fail_each 1 one info ../tree.swc --terminal-flow murray
 }
