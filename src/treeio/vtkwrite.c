@@ -329,7 +329,10 @@ static void put_legacy_remarks(const TreeMeta *meta, Text *text)
     text_printf(text, "FIELD FieldData 1\n" VTK_KNOWN " 1 %zu string\n", n);
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
         const char *chars = text_chars(&line);
-        put_string(chars ? chars : "", text);
+        if (chars)
+            put_string(chars, text);
+        else
+            text_puts(text, NULL);
     }
     text_puts(text, "\n");
     text_release(&line);

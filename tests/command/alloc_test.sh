@@ -66,6 +66,17 @@ test_failed_allocations_in_convert() {
     fail_each 1 one convert "$DATA/images/rgb8-lzw.tif" o.ppm
 }
 
+test_failed_allocations_in_networks() {
+    local corpus=$REPO/tests/fuzz/corpus
+    fail_each 1 one convert "$corpus/vtp/packed" --input-format vtu o.vtp
+    fail_each 1 one convert "$corpus/vtp/own" --input-format vtp o.vtk
+    fail_each 1 one convert "$corpus/vtk/text" --input-format vtk o.csv
+    fail_each 1 one convert "$corpus/vtk/own" --input-format vtk o.vtp --fields strahler
+    printf '# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\n' >loop.vtk
+    printf 'LINES 1 6\n5 0 1 2 3 0\nPOINT_DATA 4\nFIELD f 1\nradius 1 4 float\n4 3 2 1\n' >>loop.vtk
+    fail_each 1 one info ../loop.vtk --break-loops --merge-tolerance 0.1 --json
+}
+
 test_failed_allocations_in_scene() {
     inputs
     fail_each 3 many scene ../tree.swc --size 21x15 --model cylinders -o o.pov
