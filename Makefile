@@ -64,7 +64,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate bench bench-grow bench-render bench-compare bench-mesh verify-all power power-program fit-blob check check-all check-quick program unit \
+.PHONY: all deps demo validate bench bench-grow bench-render bench-compare bench-mesh export-all verify-all power power-program fit-blob check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
@@ -112,6 +112,11 @@ bench-mesh: ## time the triangulation, and measure how far it is off the surface
 	$(Q).ci/deps build
 	$(Q)$(AGAIN) all $(MESHES)
 	$(Q)tests/bench/mesh
+
+export-all: ## export hundreds of grown and of random trees, each looked at by admesh; GROWN=96 RANDOM=200
+	$(Q).ci/deps build check
+	$(Q)$(AGAIN) all
+	$(Q)tests/export-all $(or $(GROWN),96) $(or $(RANDOM),200)
 
 verify-all: ## verify models x trees x projections x shadows x antialiasing; report in out/verify/
 	$(Q).ci/deps build run

@@ -253,6 +253,29 @@ test_refuses_vessels_that_overlap_by_name() {
     expect_only
 }
 
+test_refuses_vessels_that_leave_one_node_and_overlap_by_name() {
+    printf '%s\n' '1 3 0 0 0 1 -1' '2 3 7.9 0 0 1 1' '3 3 9.7 -0.3 0 0.91 2' '4 3 8.3 0.5 0 0.63 2' \
+        '5 3 10.5 -0.6 0 0.91 3' '6 3 10.3 0.9 0 0.59 4' '7 3 11.3 -0.1 0 0.47 5' '8 3 11.8 0.6 0 0.46 6' >t.swc
+    run corcast export t.swc --tolerance 0.05 -o m.stl --quiet
+    expect_status 2
+    expect_sentence 'the vessels of segments [0-9]+ and [0-9]+ overlap, though they do not meet there'
+    expect_only t.swc
+}
+
+test_refuses_a_vessel_that_is_too_short_to_have_a_surface() {
+    printf '%s\n' '1 3 0 0 0 1 -1' '2 3 0.05 0 0 1 1' >t.swc
+    run corcast export t.swc -o m.stl --quiet
+    expect_status 2
+    expect_sentence 'segment 2, and what it meets, is so short for its radius that it has no surface'
+    expect_only t.swc
+}
+
+test_names_may_begin_with_a_hyphen() {
+    cp "$DATA/bifurcation.swc" ./-t.swc
+    run_ok corcast export -o -m.stl --quiet -- -t.swc
+    expect_json ./-m.stl.json '.watertight'
+}
+
 test_part_overlaps_thins_them_and_says_so() {
     run_ok corcast export "$REPO/tests/golden/strangers.swc" --part-overlaps -o m.stl
     grep -q 'segments are thinned' stderr || fail "it does not say so: $(cat stderr)"

@@ -505,6 +505,11 @@ static Status refuse(const Maker *maker, Err *err)
 {
     const uint32_t *ids = maker->tree->ids;
     uint32_t pair[2];
+    if (maker->worker->patch.n_triangles == 0)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "segment %u, and what it meets, is so short for its radius that it has no "
+                       "surface",
+                       ids[maker->plan->field.terms[0].segment]);
     if (find_gap(maker, pair) < 0)
         return err_set(err, STATUS_INFEASIBLE,
                        "the vessels of segments %u and %u overlap, though they do not meet there, "
