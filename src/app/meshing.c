@@ -57,8 +57,9 @@ static Status say_estimate(const VesselTree *vessels, const MeshParams *params, 
     char memory[BYTES_TEXT_SIZE];
     MeshEstimate estimate = vesselmesh_estimate(vessels, params);
     if (!quiet)
-        fprintf(stderr, "corcast: about %.2g triangles, which take %.2g s and %s of memory\n",
-                estimate.triangles, estimate.seconds, bytes_text(estimate.bytes, memory));
+        fprintf(stderr, "corcast: about %.2g triangles, which take %.*f s and %s of memory\n",
+                estimate.triangles, estimate.seconds < 10, estimate.seconds,
+                bytes_text(estimate.bytes, memory));
     return mem_check(estimate.bytes, "the mesh", err);
 }
 

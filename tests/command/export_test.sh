@@ -297,7 +297,7 @@ test_says_before_what_the_work_takes() {
 }
 
 test_refuses_before_the_work_what_needs_more_memory_than_there_is() {
-    awk 'BEGIN { for (i = 1; i <= 400000; i++) print i, 3, i * 2.385, 0, 0, 0.31, i > 1 ? i - 1 : -1 }' >long.swc
+    awk 'BEGIN { for (i = 1; i <= 400000; i++) print i, 3, i * 2.385, 0, 0, 0.31, (i > 1 ? i - 1 : -1) }' >long.swc
     run timeout 20 "$CORCAST" export long.swc --tolerance 0.002 -o m.stl --quiet
     expect_status 3
     expect_sentence 'the mesh: out of memory: needs [0-9.]* [GT]B, and this machine has'

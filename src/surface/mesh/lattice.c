@@ -29,8 +29,9 @@ typedef struct Cutter {
     const ZonePlan *plan;
     Patch *patch;
     Err *err;
-    const FieldPart *whole; /* in the tree's stack: for points away from active cells */
-    TetrahedronList *list;  /* where all tetrahedra go instead of being cut; or NULL */
+    TetrahedronList *list; /* where all tetrahedra go instead of being cut; or NULL */
+    ZoneTree *away;        /* for the list: the tree, whose stack has `whole`: */
+    FieldPart whole;       /* all terms, for points away from active cells */
 } Cutter;
 
 void lattice_release(Lattice *lattice)
@@ -74,6 +75,25 @@ static void clear_wall(const Cutter *cutter, const FieldPart *part, double side,
                    point);
 }
 
+/* The field at a point away from active cells: of all terms, or, where those are too many at once,
+ * of those that matter there. */
+static Status value_away(const Cutter *cutter, Vec3 x, FieldValue *value)
+{
+    const ZoneField *field = &cutter->plan->field;
+    PartPool *stack = &cutter->away->stack;
+    const size_t n_terms = stack->n_terms, n_groups = stack->n_groups;
+    FieldPart part = cutter->whole;
+    PartBounds bounds;
+    if (part.n_terms > MOST_PART_TERMS)
+        TRY(fieldpart_narrow(field, stack, &cutter->whole, x, 0, 0, &part, &bounds, cutter->err));
+    if (part.n_terms > MOST_PART_TERMS)
+        return zonefield_refuse(cutter->err);
+    *value = fieldpart_value(field, stack, &part, x);
+    stack->n_terms = n_terms;
+    stack->n_groups = n_groups;
+    return STATUS_OK;
+}
+
 /* A point whose field is that of the cell `from` if that is active. */
 static Status add_point(Cutter *cutter, const ZoneCell *from, Vec3 x, uint32_t *number)
 {
@@ -81,9 +101,11 @@ static Status add_point(Cutter *cutter, const ZoneCell *from, Vec3 x, uint32_t *
     TRY(mem_reserve(&lattice->points, &lattice->capacity, lattice->n_points + 1,
                     sizeof *lattice->points, "points of a junction", cutter->err));
     bool is_near = from && from->state == CELL_ACTIVE;
-    const ZoneTree *tree = cutter->tree;
-    FieldValue value = fieldpart_value(&cutter->plan->field, is_near ? &tree->kept : &tree->stack,
-                                       is_near ? &from->part : cutter->whole, x);
+    FieldValue value;
+    if (is_near)
+        value = fieldpart_value(&cutter->plan->field, &cutter->tree->kept, &from->part, x);
+    else
+        TRY(value_away(cutter, x, &value));
     LatticePoint point = {x, field_height(value.phi), NO_CROSSING, false};
     if (is_near && fabs(point.height) < nearly)
         clear_wall(cutter, &from->part, zonetree_side(cutter->tree, from->level), &point);
@@ -418,7 +440,7 @@ Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan
 Status lattice_cut(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan, Patch *patch,
                    Err *err)
 {
-    Cutter cutter = {lattice, tree, plan, patch, err, NULL, NULL};
+    Cutter cutter = {lattice, tree, plan, patch, err, .list = NULL};
     patch->n_points = patch->n_triangles = 0;
     for (size_t i = 0; i < lattice->n_points; i++)
         lattice->points[i].first = NO_CROSSING;
@@ -428,9 +450,8 @@ Status lattice_cut(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan,
 Status lattice_list(Lattice *lattice, ZoneTree *tree, const ZonePlan *plan, TetrahedronList *list,
                     Err *err)
 {
-    FieldPart whole;
-    TRY(fieldpart_all(&plan->field, &tree->stack, &whole, err));
-    Cutter cutter = {lattice, tree, plan, NULL, err, &whole, list};
+    Cutter cutter = {lattice, tree, plan, NULL, err, list, .away = tree};
+    TRY(fieldpart_all(&plan->field, &tree->stack, &cutter.whole, err));
     Status status = walk_cell(&cutter, 0);
     tree->stack.n_terms = tree->stack.n_groups = 0;
     return status;

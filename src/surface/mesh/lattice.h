@@ -53,7 +53,7 @@ MUST_CHECK Status lattice_cut(Lattice *lattice, const ZoneTree *tree, const Zone
                               Patch *patch, Err *err);
 
 /* Adds all tetrahedra of the octree to the list, and the points that lattice_make had no need of to
- * the lattice. The field has MOST_PART_TERMS terms at most. */
+ * the lattice. */
 MUST_CHECK Status lattice_list(Lattice *lattice, ZoneTree *tree, const ZonePlan *plan,
                                TetrahedronList *list, Err *err);
 

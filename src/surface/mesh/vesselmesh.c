@@ -93,7 +93,7 @@ static uint32_t sides_of(double sagitta)
 /* Measured on grown trees of 200 to 20,000 segments at tolerances of 0.005 to 1.6, for each radius
  * of length, of which a segment counts so many at most: triangles and seconds are a / tolerance +
  * b; a mesh of the least triangles has so many. */
-static const double most_radii = 6, triangles_a = 1.73, triangles_b = 5, least_triangles = 8,
+static const double most_radii = 6, triangles_a = 1.9, triangles_b = 5, least_triangles = 8,
                     seconds_a = 1e-5, seconds_b = 1.4e-4, bytes_a_triangle = 100, least_bytes = 8e6;
 /* A round body takes so many times as much. */
 static const double round_part = 2.7;

@@ -137,6 +137,13 @@ static Status reserve_part(PartPool *pool, size_t terms, size_t words, Err *err)
                        sizeof *pool->groups, "terms of a junction", err);
 }
 
+Status zonefield_refuse(Err *err)
+{
+    return err_set(err, STATUS_INFEASIBLE,
+                   "more than %d segments come together at one place; leave some out",
+                   MOST_PART_TERMS);
+}
+
 /* An empty part on top of the pool; its groups come after. */
 static FieldPart begin_part(const PartPool *pool, uint32_t n_terms)
 {

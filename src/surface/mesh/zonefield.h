@@ -61,6 +61,9 @@ void partpool_release(PartPool *pool);
 /* Of a part whose field is asked for. */
 enum { MOST_PART_TERMS = 512 };
 
+/* STATUS_INFEASIBLE, saying that a part has more. */
+Status zonefield_refuse(Err *err);
+
 /* All terms and groups of a field, put into the pool. */
 MUST_CHECK Status fieldpart_all(const ZoneField *field, PartPool *pool, FieldPart *out, Err *err);
 /* A copy of a part of `from` in `to`. */

@@ -10,6 +10,8 @@
 
 enum { MOST_REPEATS = 7, MOST_REFINEMENTS = 2 };
 static const double finer = 0.85;
+/* Over the distance: a change of it by finer cells after which still finer ones are not tried. */
+static const double alike = 0.02;
 /* Over the radius of the thinner: gaps that cells may be too wide for. */
 static const double narrow_gap = 0.3;
 /* Over the usual cell: a hole that is no flaw of the lattice. Where vessels do not blend, cells are
@@ -399,7 +401,7 @@ static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t 
     TRY(zonetree_build(&worker->tree, maker->plan, &fineness->cells, maker->err));
     TRY(lattice_make(&worker->lattice, &worker->tree, maker->plan, &worker->patch, maker->err));
     TRY(finish(maker, fineness, fates, sound));
-    if (*sound || maker->plan->field.n_terms > MOST_PART_TERMS)
+    if (*sound)
         return STATUS_OK;
     TRY(mend_make(&worker->mender, &worker->lattice, &worker->tree, maker->plan, fineness->farthest,
                   &worker->patch, hole, maker->err));
@@ -539,7 +541,7 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
     const Maker maker = {worker, tree, plan, &made, err};
     ZoneFineness used = *fineness;
     bool sound = false, near = false;
-    double hole;
+    double hole, before = 0;
     Status status = STATUS_OK;
     for (int repeats = 0, steps = 1; steps && !near; repeats += steps) {
         zonepiece_release(&made);
@@ -547,7 +549,9 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
         made.repeats = repeats;
         if (sound)
             measure_off(&maker);
-        near = sound && (made.off.ratio <= fineness->farthest || repeats >= MOST_REFINEMENTS);
+        near = sound && (made.off.ratio <= fineness->farthest || repeats >= MOST_REFINEMENTS ||
+                         fabs(made.off.ratio - before) < alike * before);
+        before = sound ? made.off.ratio : 0;
         steps = sound ? 1 : steps_finer(&maker, hole, used.cells.ratio, MOST_REPEATS - repeats);
         used.cells.ratio *= sound ? 1 : pow(finer, steps);
         used.cells.bending *= pow(finer, sound ? 1 : 2 * steps);

@@ -129,9 +129,7 @@ static Status settle(Builder *builder, uint32_t number, const FieldPart *part, E
     tree->cells[number].state = (uint8_t)state;
     if (state == CELL_ACTIVE && side <= builder->size->ratio * bounds.thinnest &&
         own.n_terms > MOST_PART_TERMS)
-        return err_set(err, STATUS_INFEASIBLE,
-                       "more than %d segments come together at one place; leave some out",
-                       MOST_PART_TERMS);
+        return zonefield_refuse(err);
     if (state == CELL_ACTIVE && cell.level < ZONETREE_LEVELS &&
         must_split(builder, &own, &bounds, center, side))
         TRY(split(builder, number, &own, err));
