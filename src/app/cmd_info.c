@@ -75,16 +75,49 @@ static json_t *columns_json(const Tree *tree)
     return rows;
 }
 
-static void print_columns(const Tree *tree)
+/* The series that column `k` is of, as one: "pressure (mmHg): 24 frames, 0 to 0.8", its columns
+ * marked; the column itself where there is none. */
+static Status print_column(const Tree *tree, size_t k, bool *printed, Err *err)
 {
-    for (size_t k = 0; k < tree->n_columns; k++) {
-        const TreeColumn *column = &tree->column[k];
-        printf("%s%.40s", k ? ", " : "  columns       ", column->name);
-        if (*column->unit)
-            printf(" (%.40s)", column->unit);
+    const TreeColumn *column = &tree->column[k];
+    size_t length = 0;
+    double time;
+    char *name = NULL;
+    Series series = {0};
+    if (series_parse(column->name, &length, &time)) {
+        TRY(mem_strdup(&name, column->name, err));
+        name[length] = '\0';
+        Status status = tree_series(tree, name, &series, NULL);
+        free(name);
+        if (status == STATUS_MEMORY)
+            return err_set(err, status, "out of memory: no room for a series");
+    }
+    printf("%.*s", series.n ? (int)(length < 40 ? length : 40) : 40, column->name);
+    if (*column->unit)
+        printf(" (%.40s)", column->unit);
+    if (series.n)
+        printf(": %zu frames, %g to %g", series.n, series.frame[0].time,
+               series.frame[series.n - 1].time);
+    for (size_t i = 0; i < series.n; i++)
+        printed[series.frame[i].column] = true;
+    series_release(&series);
+    return STATUS_OK;
+}
+
+static Status print_columns(const Tree *tree, Err *err)
+{
+    bool *printed = NULL;
+    Status status = mem_calloc(&printed, tree->n_columns, sizeof *printed, "columns", err);
+    for (size_t k = 0; k < tree->n_columns && status == STATUS_OK; k++) {
+        if (printed[k])
+            continue;
+        printf("%s", k ? ", " : "  columns       ");
+        status = print_column(tree, k, printed, err);
     }
     if (tree->n_columns > 0)
         printf("\n");
+    free(printed);
+    return status;
 }
 
 typedef struct InfoOptions {
@@ -136,7 +169,7 @@ static Status show(const InfoOptions *options, const char *path, const Tree *tre
         return json_write(json, "-", err);
     }
     print_summary(path, &found->summary);
-    print_columns(tree);
+    TRY(print_columns(tree, err));
     reading_print(&found->reading);
     if (options->stats)
         statistics_print(&found->statistics);

@@ -115,7 +115,7 @@ test_an_index_of_vtp_files_is_a_series() {
         expect_same index.ppm columns.ppm
     done
     run_ok corcast info run.pvd
-    expect_stdout 'columns +pressure_0, pressure_0.1, pressure_0.2'
+    expect_stdout 'columns +pressure: 3 frames, 0 to 0.2$'
     refused() {
         index "$@" >bad.pvd
         run corcast info bad.pvd
