@@ -285,6 +285,23 @@ static Status choose_roots(Building *building, Candidate *best, Err *err)
     return STATUS_OK;
 }
 
+/* Says how many inlets are not the roots that they could be. */
+static Status tell_inlets(const Building *building, Err *err)
+{
+    const TreeReading *reading = building->reading;
+    const GraphPoint *point = building->graph->point;
+    size_t inlets = 0;
+    for (size_t i = 0; i < building->graph->n_points; i++)
+        inlets += is_node(building, i) && point[i].is_inlet;
+    for (size_t i = 0; i < reading->n_roots; i++)
+        inlets -= point[reading->root[i].id - 1].is_inlet;
+    if (inlets == 0)
+        return STATUS_OK;
+    return reading_note(building->reading, err,
+                        "%zu more inlets are ends, as each tree has one root, the thickest",
+                        inlets);
+}
+
 /* Gives all points that hang on a root their parents; `queue` has room for all points. */
 static void direct_from(Building *building, uint32_t root, uint32_t *queue)
 {
@@ -314,6 +331,7 @@ static Status direct_links(Building *building, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&best, n, sizeof *best, "roots", err));
     TRY_GOTO(choose_roots(building, best, err));
+    TRY_GOTO(tell_inlets(building, err));
     TRY_GOTO(mem_calloc(&queue, n, sizeof *queue, "points", err));
     TRY_GOTO(mem_calloc(&building->parent, n, sizeof *building->parent, "parents", err));
     TRY_GOTO(mem_calloc(&building->above, n, sizeof *building->above, "parents", err));
@@ -553,6 +571,8 @@ static Status build(Building *building, TreeBuilder *builder, Err *err)
     describe(graph, building->options, building->reading);
     graph_scale(graph);
     TRY(graph_merge(graph, &building->place, err));
+    for (size_t i = 0; i < graph->n_points; i++)
+        graph->point[building->place[i]].is_inlet |= graph->point[i].is_inlet;
     TRY(link_lines(building, err));
     if (!graph->is_tree)
         TRY(drop_repeated(building, err));

@@ -39,7 +39,8 @@ test_the_arteries_of_a_brain_in_metres() {
         .reading.degrees[1] == 147 and .reading.components == 1 and
         .reading.roots[0].reason == "the file says so" and .reading.network.points == 12709 and
         .reading.median_radius_mm > 0.49 and .reading.median_radius_mm < 1.40 and
-        (.reading.unit_said and .reading.believed_unit == "m")' --input-unit m
+        (.reading.unit_said and .reading.believed_unit == "m") and
+        (.reading.assumed[2] | startswith("2 more inlets"))' --input-unit m
     run_ok corcast info "$SHARED/brain_pvs/arteries_smooth.vtk"
     expect_sentence 'taken for mm, but the median radius, 0.000536, looks like m; --input-unit'
 }

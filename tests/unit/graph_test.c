@@ -138,6 +138,24 @@ static void the_file_says_the_root_by_an_inlet_or_else_by_directions(void **stat
     }
 }
 
+static void an_inlet_among_merged_points_is_one_and_others_are_told(void **state)
+{
+    (void)state;
+    Net net = {0};
+    Tree tree;
+    for (int i = 0; i < 6; i++)
+        put_point(&net, (i + 1) / 2, 0.25, 0, 1 + 0.125 * i);
+    for (size_t i = 0; i < 6; i += 2)
+        put_line(&net, i, i + 1, NONE);
+    net.graph.point[2].is_inlet = net.graph.point[0].is_inlet = true;
+    must(build(&net, &tree), &net.err);
+    assert_int_equal(net.reading.root[0].id, 2);
+    assert_int_equal(net.reading.root[0].reason, ROOT_SAID);
+    assert_string_equal(net.reading.note[0],
+                        "1 more inlets are ends, as each tree has one root, the thickest");
+    release(&net, &tree);
+}
+
 static void merges_points_at_one_place_and_drops_what_is_not_needed(void **state)
 {
     (void)state;
@@ -335,6 +353,7 @@ int main(void)
         cmocka_unit_test(directs_lines_away_from_the_thickest_end),
         cmocka_unit_test(a_line_has_its_own_radius_before_its_points),
         cmocka_unit_test(the_file_says_the_root_by_an_inlet_or_else_by_directions),
+        cmocka_unit_test(an_inlet_among_merged_points_is_one_and_others_are_told),
         cmocka_unit_test(merges_points_at_one_place_and_drops_what_is_not_needed),
         cmocka_unit_test(what_is_not_connected_is_a_forest),
         cmocka_unit_test(refuses_loops_unless_told_to_cut_them),
