@@ -43,8 +43,10 @@ static Status add_all(Tree *tree, const TreeMeta *said, bool quiet, Err *err)
             status = STATUS_OK;
         }
     }
+    if (status == STATUS_OK)
+        status = text_check(&lacking, err);
     const char *names = text_chars(&lacking);
-    if (status == STATUS_OK && !quiet && names && *names)
+    if (status == STATUS_OK && !quiet && *names)
         fprintf(stderr,
                 "corcast convert: %s are left out: neither the tree nor an option says what they "
                 "need\n",

@@ -140,15 +140,21 @@ void print_columns_left_out(const char *command, const Tree *tree, const char *w
     fprintf(stderr, " are left out: %s\n", why);
 }
 
+/* Nothing is allocated, which could fail: the file has been written. */
 void print_left_out(const char *command, const Tree *tree, const char *path)
 {
-    Text lost = TEXT_INIT;
-    tree_format_losses(path, tree, &lost);
-    const char *chars = text_chars(&lost);
-    if (chars && *chars)
-        fprintf(stderr, "corcast %s: %s are left out: the format has no place for them\n", command,
-                chars);
-    text_release(&lost);
+    const TreeLosses lost = tree_format_losses(path, tree);
+    if (!lost.columns && !lost.types && !lost.flow_shares)
+        return;
+    fprintf(stderr, "corcast %s: ", command);
+    for (size_t k = 0, n = 0; k < tree->n_columns; k++)
+        if (!tree_format_keeps(path, &tree->column[k]))
+            fprintf(stderr, "%s%.40s", n++ ? ", " : "the columns ", tree->column[k].name);
+    if (lost.types)
+        fprintf(stderr, "%sthe types", lost.columns ? " and " : "");
+    if (lost.flow_shares)
+        fprintf(stderr, "%sthe flow shares", lost.columns || lost.types ? " and " : "");
+    fprintf(stderr, " are left out: the format has no place for them\n");
 }
 
 Status json_write(json_t *object, const char *path, Err *err)

@@ -277,33 +277,21 @@ static bool has_types(const Tree *tree)
     return i < tree->n;
 }
 
-/* Appends "the columns age and wss": those that are lost. */
-static void put_lost_columns(const Format *format, const Tree *tree, Text *text)
+bool tree_format_keeps(const char *path, const TreeColumn *column)
 {
-    size_t n = 0;
-    for (size_t k = 0; k < tree->n_columns; k++)
-        if (!format->keeps || !format->keeps(&tree->column[k])) {
-            text_puts(text, n++ ? ", " : "the columns ");
-            text_put_line(text, tree->column[k].name);
-        }
+    const Format *format = find_written(path);
+    return !format || !(format->loses & LOSES_COLUMNS) || (format->keeps && format->keeps(column));
 }
 
-void tree_format_losses(const char *path, const Tree *tree, Text *text)
+TreeLosses tree_format_losses(const char *path, const Tree *tree)
 {
     const Format *format = find_written(path);
     unsigned loses = format ? format->loses : 0;
-    Text columns = TEXT_INIT;
-    if (loses & LOSES_COLUMNS)
-        put_lost_columns(format, tree, &columns);
-    const char *const lost[] = {
-        text_chars(&columns), (loses & LOSES_TYPES) && has_types(tree) ? "the types" : "",
-        (loses & LOSES_SHARES) && tree->flow_share ? "the flow shares" : ""};
-    for (size_t i = 0, n = 0; i < sizeof lost / sizeof *lost; i++)
-        if (!lost[i] || *lost[i]) {
-            text_puts(text, n++ ? " and " : "");
-            text_puts(text, lost[i]);
-        }
-    text_release(&columns);
+    TreeLosses lost = {.types = (loses & LOSES_TYPES) && has_types(tree),
+                       .flow_shares = (loses & LOSES_SHARES) && tree->flow_share};
+    for (size_t k = 0; k < tree->n_columns; k++)
+        lost.columns += !tree_format_keeps(path, &tree->column[k]);
+    return lost;
 }
 
 bool tree_format_known(const char *path)

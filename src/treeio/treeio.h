@@ -16,9 +16,13 @@
 bool tree_format_known(const char *path);
 /* STATUS_USAGE, saying which there are, unless a tree can be written to such a path. */
 MUST_CHECK Status tree_format_check(const char *path, Err *err);
-/* Appends what of the tree the format of such a path has no place for, "the columns age, wss and
- * the types"; nothing when it holds all. */
-void tree_format_losses(const char *path, const Tree *tree, Text *text);
+/* What a tree holds and the format of a path has no place for. */
+typedef struct TreeLosses {
+    bool types, flow_shares;
+    size_t columns; /* those that tree_format_keeps denies */
+} TreeLosses;
+TreeLosses tree_format_losses(const char *path, const Tree *tree);
+bool tree_format_keeps(const char *path, const TreeColumn *column);
 /* Name ("SWC"), chief extension ("swc") and description of format `i`, from 0 on; NULL after the
  * last. The first is written to standard output. */
 const char *tree_format_name(size_t i);

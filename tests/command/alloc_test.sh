@@ -60,6 +60,8 @@ test_failed_allocations_in_convert() {
     inputs
     fail_each 1 one convert ../tree.swc o.swc
     fail_each 1 one convert "$DATA/columns.csv" o.csv
+    fail_each 2 one convert "$DATA/columns.csv" o.segments.csv --fields all
+    fail_each 3 one convert "$DATA/metaio/tubes.tre" o.vmv
     fail_each 1 one convert ../a.png o.ppm
     fail_each 1 one convert "$DATA/images/depth.exr" o.pfm
     fail_each 1 one convert ../a.png o.tif
