@@ -135,45 +135,77 @@ static Status check_size(const char *name, const FileForm *form, double bytes, E
                    bytes_text(form->most_bytes, most), form->name);
 }
 
-/* What is no file of its kind is refused with the block that tells so. */
-static Status read_blocks(FILE *stream, const char *name, const FileForm *form, Text *all, Err *err)
+enum { BLOCK = 1 << 16 };
+
+/* Bytes of a stream, a zero behind them. */
+typedef struct Bytes {
+    char *at; /* owned */
+    size_t n, capacity;
+} Bytes;
+
+/* Puts the file's name in front of the sentence of memory that ran out. */
+static Status named(const char *name, Status status, Err *err)
 {
-    char block[1 << 16];
-    size_t count;
+    if (status == STATUS_MEMORY)
+        err_prefix(err, "%s: ", name);
+    return status;
+}
+
+/* Makes room for all of a file that says its size, so that it need not be moved as it grows. */
+static Status reserve_file(FILE *stream, const char *name, const FileForm *form, Bytes *all,
+                           Err *err)
+{
     struct stat about;
-    if (fstat(fileno(stream), &about) == 0 && S_ISREG(about.st_mode)) {
-        TRY(check_size(name, form, (double)about.st_size, err));
-        TRY(mem_check((double)about.st_size, name, err));
-    }
+    if (fstat(fileno(stream), &about) != 0 || !S_ISREG(about.st_mode))
+        return STATUS_OK;
+    TRY(check_size(name, form, (double)about.st_size, err));
+    TRY(mem_check((double)about.st_size, name, err));
+    size_t capacity = (size_t)about.st_size + BLOCK + 1;
+    TRY(named(name, mem_calloc(&all->at, capacity, 1, "bytes", err), err));
+    all->capacity = capacity;
+    return STATUS_OK;
+}
+
+/* What is no file of its kind is refused with the block that tells so. */
+static Status read_blocks(FILE *stream, const char *name, const FileForm *form, Bytes *all,
+                          Err *err)
+{
+    size_t count;
+    bool has_zero = false;
+    TRY(reserve_file(stream, name, form, all, err));
     do {
-        count = fread(block, 1, sizeof block, stream);
-        if (all->length == 0 && form->begins && !form->begins(block, count))
+        TRY(named(name, mem_reserve(&all->at, &all->capacity, all->n + BLOCK + 1, 1, "bytes", err),
+                  err));
+        char *block = all->at + all->n;
+        count = fread(block, 1, BLOCK, stream);
+        block[count] = '\0';
+        if (all->n == 0 && form->begins && !form->begins(block, count))
             return err_set(err, STATUS_INPUT, "%s: is not %s", name, form->name);
-        TRY(check_size(name, form, (double)(all->length + count), err));
-        text_append(all, block, count);
-    } while (count > 0 && !all->failed && !(form->is_text && memchr(block, '\0', count)));
+        all->n += count;
+        TRY(check_size(name, form, (double)all->n, err));
+        has_zero = form->is_text && memchr(block, '\0', count);
+    } while (count > 0 && !has_zero);
     if (ferror(stream))
         return err_set(err, STATUS_IO, "%s: reading failed: %s", name, strerror(errno));
-    Status status = text_check(all, err);
-    if (status != STATUS_OK)
-        err_prefix(err, "%s: ", name);
-    else if (form->is_text)
-        status = file_to_text(name, form, all->chars, &all->length, err);
-    return status;
+    if (has_zero)
+        return file_to_text(name, form, all->at, &all->n, err);
+    if (form->is_text)
+        tidy_lines(all->at, &all->n);
+    return STATUS_OK;
 }
 
 static Status read_stream(FILE *stream, const char *name, const FileForm *form, char **bytes,
                           size_t *size, Err *err)
 {
-    Text all = TEXT_INIT;
+    Bytes all = {0};
     Status status = read_blocks(stream, name, form, &all, err);
-    if (status != STATUS_OK) {
-        text_release(&all);
-        return status;
+    if (status == STATUS_OK) {
+        *bytes = all.at;
+        *size = all.n;
+    } else {
+        free(all.at);
     }
-    *bytes = all.chars;
-    *size = all.length;
-    return STATUS_OK;
+    return status;
 }
 
 Status file_read(const char *path, const FileForm *form, char **bytes, size_t *size, Err *err)
