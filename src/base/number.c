@@ -4,9 +4,10 @@
  * reading: the value m 2^e scaled to so many digits before the point is N / 2^shift with the whole
  * number N = m 5^k, which 128 bits hold, and the spacing of doubles there is 5^k in units of N.
  *
- * number_parse reads what has at most 19 digits and stands for a whole number times 10^k, k from
+ * number_take reads what has at most 19 digits and stands for a whole number times 10^k, k from
  * -26 to 26, in the same arithmetic, five times as fast as strtod: the product with 5^k, or the
- * quotient to at least 64 bits and whether anything remains, is rounded once. All else is strtod's.
+ * quotient to at least 64 bits and whether anything remains, is rounded once. All else is
+ * strtod's, in number_parse.
  * The program never calls setlocale, so that printf and strtod use '.'. */
 #include "base/number.h"
 
@@ -181,21 +182,21 @@ static bool scan_exponent(const char **at, int *exponent)
 }
 
 /* False for whatever is not a number of few digits, or no number at all. */
-static bool scan_number(const char *at, Written *out)
+static bool scan_number(const char **at, Written *out)
 {
     int exponent;
-    *out = (Written){.negative = *at == '-'};
-    at += out->negative || *at == '+';
-    const char *start = at;
-    if (!scan_digits(&at, &out->digits))
+    *out = (Written){.negative = **at == '-'};
+    *at += out->negative || **at == '+';
+    const char *start = *at;
+    if (!scan_digits(at, &out->digits))
         return false;
-    bool point = *at == '.';
-    at += point;
-    const char *fraction = at;
-    if (!scan_digits(&at, &out->digits) || at - start == point)
+    bool point = **at == '.';
+    *at += point;
+    const char *fraction = *at;
+    if (!scan_digits(at, &out->digits) || *at - start == point)
         return false;
-    out->exponent = -(int)(at - fraction);
-    if (!scan_exponent(&at, &exponent) || *at)
+    out->exponent = -(int)(*at - fraction);
+    if (!scan_exponent(at, &exponent))
         return false;
     out->exponent += exponent;
     return true;
@@ -249,12 +250,24 @@ static bool written_value(const Written *written, double *out)
     return true;
 }
 
-bool number_parse(const char *chars, double *out)
+bool number_take(const char **at, double *out)
 {
     Written written;
     double magnitude;
-    if (scan_number(chars, &written) && written_value(&written, &magnitude)) {
-        *out = written.negative ? -magnitude : magnitude;
+    const char *end = *at;
+    if (!scan_number(&end, &written) || !written_value(&written, &magnitude))
+        return false;
+    *out = written.negative ? -magnitude : magnitude;
+    *at = end;
+    return true;
+}
+
+bool number_parse(const char *chars, double *out)
+{
+    const char *behind = chars;
+    double taken;
+    if (number_take(&behind, &taken) && !*behind) {
+        *out = taken;
         return true;
     }
     if (!*chars || isspace((unsigned char)*chars))

@@ -23,9 +23,13 @@ const char *bytes_text(double bytes, char out[BYTES_TEXT_SIZE]);
  * in decimal or exponent form. False when anything is left over or nothing is there; "nan" and
  * "inf" are read as such, so callers check with isfinite. */
 bool number_parse(const char *chars, double *out);
-/* Likewise `count` numbers parted by blanks, which may also stand at either end. */
+/* Takes the finite number that stands at *at off the text, whatever follows it, and moves *at
+ * behind it. False, with *at where it was, when there is none, and for those of many digits or of a
+ * large exponent, which number_parse may read. */
+bool number_take(const char **at, double *out);
+/* As number_parse, `count` numbers parted by blanks, which may also stand at either end. */
 bool numbers_parse(const char *chars, size_t count, double *out);
-/* Likewise for a whole number in [minimum, maximum]. */
+/* As number_parse, a whole number in [minimum, maximum]. */
 bool integer_parse(const char *chars, long long minimum, long long maximum, long long *out);
 
 #endif

@@ -101,19 +101,13 @@ char *text_line(char **rest)
     return line;
 }
 
-/* By comparisons: strcspn makes a table of its set each time, which takes longer than a field. */
-static bool parts_fields(char c)
-{
-    return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\v' || c == '\f';
-}
-
 char *text_field(char **rest)
 {
     char *field = *rest;
-    while (parts_fields(*field))
+    while (text_parts_fields(*field))
         field++;
     char *end = field;
-    while (*end && !parts_fields(*end))
+    while (*end && !text_parts_fields(*end))
         end++;
     *rest = end;
     if (*end)

@@ -61,6 +61,12 @@ char *text_trim(char *text);
  * last, whose end is that of the text: for (char *rest = text, *line; (line = text_line(&rest));).
  */
 char *text_line(char **rest);
+/* Whether fields of a line stand on either side of it. By comparisons: strcspn makes a table of its
+ * set each time, which takes longer than a field. */
+static inline bool text_parts_fields(char c)
+{
+    return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\v' || c == '\f';
+}
 /* Cuts the next field off the line at *rest in the same way; NULL when none is left. Fields stand
  * between blanks, commas and semicolons, any number of them. */
 char *text_field(char **rest);

@@ -1,6 +1,13 @@
 /* SWC: lines are cut in place into fields. Flow shares travel as comments "flow_share: ID SHARE",
  * which every reader of SWC skips.
  *
+ * Numbers take most of the time, so that a large file is read by all processors: blocks of whole
+ * lines, of which each thread reads the plain rows, seven numbers and nothing else, without a
+ * change of the text, up to the first line that is none. In the order of the file, these rows are
+ * handed on then, and what is left of the block is read line by line, by the only code that refuses
+ * anything. A few blocks a thread at a time keep what has been read but not handed on in the
+ * processor's cache. Rows are written likewise, a block of text a thread.
+ *
  * The dialects: fields may be parted by commas or semicolons, a line may name the columns, with '#'
  * or without, ids may start at 0, a root may have the parent 0, and more columns may follow, as in
  * Vaa3D's ESWC, which become the tree's. Whether ids start at 0 is told by the first row, before
@@ -25,26 +32,31 @@ typedef struct Reader {
     size_t n_fields;    /* in every row; 0: there has been none */
     int32_t lowest_id;  /* 0 or 1 */
     const char *titles; /* the last line that names columns (borrowed from the text), or NULL */
+    char *rest;         /* of the text; NULL: nothing */
+    size_t line;        /* number of its first line */
 } Reader;
+
+/* What number of a file is as an id of the tree, whose ids start at 1. Where those of the file do,
+ * the parent 0 is none. */
+static int64_t id_of(const Reader *reader, int32_t number)
+{
+    return number < reader->lowest_id ? TREE_NO_PARENT : (int64_t)number + 1 - reader->lowest_id;
+}
 
 static Status read_id(const Reader *reader, const char *text, int64_t *id, Err *err)
 {
     int32_t number = 0;
     TRY(field_whole("id", text, reader->lowest_id, TREE_MAX_ID - 1 + reader->lowest_id, &number,
                     err));
-    *id = (int64_t)number + 1 - reader->lowest_id;
+    *id = id_of(reader, number);
     return STATUS_OK;
 }
 
-/* Where ids start at 1, the parent 0 is none. */
 static Status read_parent(const Reader *reader, const char *text, int64_t *parent, Err *err)
 {
     int32_t number = 0;
     TRY(field_whole("parent", text, TREE_NO_PARENT, TREE_MAX_ID, &number, err));
-    if (number < reader->lowest_id)
-        *parent = TREE_NO_PARENT;
-    else
-        *parent = (int64_t)number + 1 - reader->lowest_id;
+    *parent = id_of(reader, number);
     return STATUS_OK;
 }
 
@@ -161,13 +173,12 @@ static Status refuse_count(const Reader *reader, size_t count, Err *err)
                    count == 1 ? "" : "s", N_FIELDS);
 }
 
-static Status read_line(void *context, size_t number, char *line, Err *err)
+static Status read_line(Reader *reader, char *line, Err *err)
 {
-    Reader *reader = context;
     char *field[MAX_FIELDS];
     line += strspn(line, TEXT_BLANKS);
     if (*line == '#')
-        return read_comment(reader, number, line + 1, err);
+        return read_comment(reader, reader->line, line + 1, err);
     if (reader->n_fields == 0 && names_columns(line)) {
         reader->titles = line;
         return STATUS_OK;
@@ -183,14 +194,137 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
         return refuse_count(reader, count, err);
     if (reader->n_fields == 0)
         TRY(begin_rows(reader, field[0], count, err));
-    return read_row(reader, number, field, err);
+    return read_row(reader, reader->line, field, err);
+}
+
+/* Reads the lines that begin before `end`. */
+static Status read_lines(Reader *reader, const char *end, Err *err)
+{
+    for (; reader->rest && reader->rest < end; reader->line++) {
+        char *line = text_line(&reader->rest);
+        TRY(builder_blame(reader->builder, reader->line, read_line(reader, line, err), err));
+    }
+    return STATUS_OK;
+}
+
+/* ---- plain rows ------------------------------------------------------------------------------ */
+
+enum { BLOCK = 1 << 18 /* bytes */, SHORTEST_ROW = 14 /* with its end */, BLOCKS_PER_THREAD = 8 };
+
+/* Whole lines of the text. */
+typedef struct Block {
+    char *rest, *end;  /* what is not read of it */
+    BuilderNode *node; /* room for its rows (borrowed) */
+    size_t n;          /* of rows that are read */
+} Block;
+
+/* Blocks that are read at once. */
+typedef struct Wave {
+    const Reader *reader;
+    Block *block;      /* owned */
+    BuilderNode *node; /* of all blocks; owned */
+    size_t n;          /* blocks, at most */
+} Wave;
+
+static bool is_whole(double value, double minimum, double maximum)
+{
+    return value >= minimum && value <= maximum && value == (double)(int64_t)value;
+}
+
+/* Takes a line of seven numbers that read_row would accept, and moves past it; else false. */
+static bool take_row(const Reader *reader, char **rest, BuilderNode *node)
+{
+    const char *at = *rest;
+    double field[N_FIELDS];
+    for (size_t k = 0; k < N_FIELDS; k++) {
+        while (text_parts_fields(*at))
+            at++;
+        if (!number_take(&at, &field[k]) || (!text_parts_fields(*at) && k + 1 < N_FIELDS))
+            return false;
+    }
+    while (text_parts_fields(*at))
+        at++;
+    if ((*at && *at != '\n') || !is_whole(field[1], INT32_MIN, INT32_MAX) || !(field[5] >= 0) ||
+        !is_whole(field[0], reader->lowest_id, TREE_MAX_ID - 1 + reader->lowest_id) ||
+        !is_whole(field[6], TREE_NO_PARENT, TREE_MAX_ID))
+        return false;
+    *node = (BuilderNode){.id = id_of(reader, (int32_t)field[0]),
+                          .parent = id_of(reader, (int32_t)field[6]),
+                          .type = (int32_t)field[1],
+                          .position = {field[2], field[3], field[4]},
+                          .radius_mm = field[5]};
+    *rest += at - *rest + (*at == '\n');
+    return true;
+}
+
+static void take_rows(size_t index, int worker, void *context)
+{
+    const Wave *wave = context;
+    Block *block = &wave->block[index];
+    (void)worker;
+    while (block->rest < block->end && take_row(wave->reader, &block->rest, &block->node[block->n]))
+        block->n++;
+}
+
+/* The block that begins at `from`: of one line where that is longer than a block. */
+static Block cut_block(char *from, char *end)
+{
+    char *last = end - from > BLOCK ? memrchr(from, '\n', BLOCK) : end - 1;
+    last = last ? last : memchr(from, '\n', (size_t)(end - from));
+    return (Block){.rest = from, .end = last ? last + 1 : end};
+}
+
+/* Hands the rows of a block on, and reads what is left of it. */
+static Status finish_block(Reader *reader, const Block *block, Err *err)
+{
+    for (size_t i = 0; i < block->n; i++, reader->line++) {
+        block->node[i].record = reader->line;
+        TRY(builder_blame(reader->builder, reader->line,
+                          builder_node(reader->builder, &block->node[i], err), err));
+    }
+    reader->rest = block->rest;
+    return read_lines(reader, block->end, err);
+}
+
+static Status read_wave(Reader *reader, Wave *wave, size_t rows_per_block, char *end, Err *err)
+{
+    size_t n = 0;
+    for (char *from = reader->rest; n < wave->n && from < end; from = wave->block[n++].end) {
+        wave->block[n] = cut_block(from, end);
+        wave->block[n].node = wave->node + n * rows_per_block;
+    }
+    threads_for(n, 0, take_rows, wave);
+    for (size_t i = 0; i < n; i++)
+        TRY(finish_block(reader, &wave->block[i], err));
+    return STATUS_OK;
+}
+
+/* Reads the rest of a text whose rows have seven fields. */
+static Status read_plain_rows(Reader *reader, char *end, Err *err)
+{
+    size_t size = (size_t)(end - reader->rest), blocks = size / BLOCK + 1;
+    size_t most = (size_t)threads_available() * BLOCKS_PER_THREAD;
+    size_t rows = (size < BLOCK ? size : BLOCK) / SHORTEST_ROW + 1;
+    Wave wave = {.reader = reader, .n = blocks < most ? blocks : most};
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&wave.block, wave.n, sizeof *wave.block, "blocks of lines", err));
+    TRY_GOTO(mem_calloc(&wave.node, wave.n * rows, sizeof *wave.node, "rows", err));
+    while (reader->rest && reader->rest < end)
+        TRY_GOTO(read_wave(reader, &wave, rows, end, err));
+done:
+    free(wave.block);
+    free(wave.node);
+    return status;
 }
 
 Status swc_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
 {
-    (void)size;
-    Reader reader = {.builder = builder, .lowest_id = 1};
-    TRY(lines_read(builder->name, bytes, read_line, &reader, err));
+    Reader reader = {.builder = builder, .lowest_id = 1, .rest = bytes, .line = 1};
+    char *end = bytes + size;
+    while (reader.rest && reader.rest < end && reader.n_fields != N_FIELDS)
+        TRY(read_lines(&reader, reader.rest + 1, err));
+    if (reader.rest && reader.rest < end)
+        TRY(read_plain_rows(&reader, end, err));
     if (reader.lowest_id == 1)
         return STATUS_OK;
     if (builder->n_shares > 0)
@@ -200,6 +334,8 @@ Status swc_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
     return reading_note(builder->reading, err,
                         "ids start at 0 in the file, and are one higher here");
 }
+
+/* ---- writing --------------------------------------------------------------------------------- */
 
 /* Appends the decimal digits of the number, and then a blank. */
 static char *put_whole(char *to, int64_t value)
@@ -228,9 +364,8 @@ static char *put_number(char *to, double value)
 }
 
 /* By hand: fprintf would take as long as all four numbers. */
-static void write_row(const Tree *tree, size_t i, FILE *stream)
+static char *put_row(const Tree *tree, size_t i, char *to)
 {
-    char row[8 * NUMBER_TEXT_SIZE], *to = row;
     to = put_whole(to, tree->id[i]);
     to = put_whole(to, tree->type[i]);
     to = put_number(to, tree->position[i].x);
@@ -239,7 +374,48 @@ static void write_row(const Tree *tree, size_t i, FILE *stream)
     to = put_number(to, tree->radius_mm[i]);
     to = put_whole(to, tree_is_segment(tree, i) ? tree->id[tree->parent[i]] : -1);
     to[-1] = '\n';
-    fwrite(row, 1, (size_t)(to - row), stream);
+    return to;
+}
+
+enum { ROWS = 1024 /* of a page */, LONGEST_ROW = 8 * NUMBER_TEXT_SIZE };
+
+/* Pages of rows that are made at once. */
+typedef struct Pages {
+    const Tree *tree;
+    size_t first;   /* row of the first page */
+    size_t *length; /* of each page's text; owned */
+    char *text;     /* of all, with room for LONGEST_ROW a row; owned */
+} Pages;
+
+static void fill_page(size_t index, int worker, void *context)
+{
+    const Pages *pages = context;
+    size_t first = pages->first + index * ROWS, left = pages->tree->n - first;
+    char *text = pages->text + index * ROWS * LONGEST_ROW, *to = text;
+    (void)worker;
+    for (size_t i = first; i < first + (left < ROWS ? left : ROWS); i++)
+        to = put_row(pages->tree, i, to);
+    pages->length[index] = (size_t)(to - text);
+}
+
+static Status write_rows(const Tree *tree, FILE *stream, Err *err)
+{
+    size_t n = (tree->n + ROWS - 1) / ROWS, most = (size_t)threads_available() * BLOCKS_PER_THREAD;
+    Pages pages = {.tree = tree};
+    Status status = STATUS_OK;
+    most = n < most ? n : most;
+    TRY_GOTO(mem_calloc(&pages.length, most, sizeof *pages.length, "pages", err));
+    TRY_GOTO(mem_calloc(&pages.text, most * ROWS, LONGEST_ROW, "rows", err));
+    for (; n > 0; n -= most, pages.first += most * ROWS) {
+        most = n < most ? n : most;
+        threads_for(most, 0, fill_page, &pages);
+        for (size_t i = 0; i < most; i++)
+            fwrite(pages.text + i * ROWS * LONGEST_ROW, 1, pages.length[i], stream);
+    }
+done:
+    free(pages.length);
+    free(pages.text);
+    return status;
 }
 
 Status swc_write(const Tree *tree, FILE *stream, Err *err)
@@ -250,7 +426,5 @@ Status swc_write(const Tree *tree, FILE *stream, Err *err)
         if (tree->flow_share[i] > 0)
             fprintf(stream, "# %s: %d %s\n", share_key, tree->id[i],
                     number_text(tree->flow_share[i], share));
-    for (size_t i = 0; i < tree->n; i++)
-        write_row(tree, i, stream);
-    return STATUS_OK;
+    return write_rows(tree, stream, err);
 }

@@ -643,6 +643,60 @@ static void a_chain_of_a_million_rows_in_reverse_is_read(void **state)
     tree_release(&tree);
 }
 
+/* Rows of a chain, in which row `odd` stands as said; the file has many blocks of them. */
+static Text chain_with(int32_t odd, const char *row)
+{
+    Text text = TEXT_INIT;
+    for (int32_t id = 1; id <= 60000; id++)
+        if (id == odd)
+            text_puts(&text, row);
+        else
+            text_printf(&text, "%d 3 %d.385 0 -2.5e-7 .25 %d\n", id, id % 71, id > 1 ? id - 1 : -1);
+    return text;
+}
+
+static void any_line_may_stand_among_the_rows_of_a_large_file(void **state)
+{
+    (void)state;
+    Text text =
+        chain_with(31007, "# flow_share: 31007 2.385\n\n31007 3 1,.5;0 2.385 31006 # odd\n");
+    Tree tree = read_bytes(text.chars, text.length);
+    text_release(&text);
+    assert_int_equal(tree.n, 60000);
+    for (size_t i = 0; i < tree.n; i++) {
+        bool is_odd = i + 1 == 31007;
+        assert_int_equal(tree.id[i], i + 1);
+        assert_int_equal(tree.parent[i], (int32_t)i - 1);
+        assert_true(tree.position[i].x == (is_odd ? 1 : (double)((i + 1) % 71) + .385));
+        assert_true(tree.radius_mm[i] == (is_odd ? 2.385 : .25));
+        assert_true(tree.flow_share[i] == (is_odd ? 2.385 : 0));
+    }
+    tree_release(&tree);
+}
+
+static void a_bad_row_of_a_large_file_is_named_by_its_line(void **state)
+{
+    (void)state;
+    const struct {
+        const char *row, *sentence;
+    } cases[] = {
+        {"31007 3 0 0 0 -1 1\n", ":31007: the radius is '-1'; it must be a finite number that is "
+                                 "not negative"},
+        {"# remark\n7 3 0 0 0 1 1\n",
+         ":31008: the id 7 is already that of line 7; every node needs "
+         "its own"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Text text = chain_with(31007, cases[i].row);
+        Tree tree;
+        Err err;
+        must(file_write(input, text.chars, text.length, &err), &err);
+        text_release(&text);
+        assert_int_equal(tree_read(&tree, input, &err), STATUS_INPUT);
+        assert_non_null(strstr(err.text, cases[i].sentence));
+    }
+}
+
 static void a_tree_that_breaks_a_promise_is_not_written(void **state)
 {
     (void)state;
@@ -694,6 +748,8 @@ int main(void)
         cmocka_unit_test(the_hand_made_trees_survive_the_round_trip),
         cmocka_unit_test(measured_trees_are_read),
         cmocka_unit_test(a_chain_of_a_million_rows_in_reverse_is_read),
+        cmocka_unit_test(any_line_may_stand_among_the_rows_of_a_large_file),
+        cmocka_unit_test(a_bad_row_of_a_large_file_is_named_by_its_line),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
