@@ -44,8 +44,9 @@ static void print_summary(const char *path, const TreeSummary *summary)
 {
     const Box *box = &summary->bounds;
     printf("%s\n", path);
-    printf("  segments      %zu (%zu terminals, %zu bifurcations, %zu root%s)\n", summary->segments,
-           summary->terminals, summary->bifurcations, summary->roots,
+    printf("  segments      %zu (%zu terminal%s, %zu bifurcation%s, %zu root%s)\n",
+           summary->segments, summary->terminals, summary->terminals == 1 ? "" : "s",
+           summary->bifurcations, summary->bifurcations == 1 ? "" : "s", summary->roots,
            summary->roots == 1 ? "" : "s");
     printf("  total length  %.6g mm\n", summary->total_length_mm);
     printf("  volume        %.6g mm^3\n", summary->volume_mm3);

@@ -137,7 +137,7 @@ Status reading_tree(const Parsed *parsed, const char *path, Tree *tree, TreeRead
 /* What of a network did not become part of the tree, as counts and what they are of. */
 typedef struct LeftOut {
     size_t count;
-    const char *key, *what;
+    const char *key, *one, *more; /* what it is called in sentences */
 } LeftOut;
 
 enum { LEFT_OUT = 5 };
@@ -145,33 +145,43 @@ enum { LEFT_OUT = 5 };
 static void list_left_out(const TreeReading *reading, LeftOut list[LEFT_OUT])
 {
     const LeftOut all[LEFT_OUT] = {
-        {reading->merged, "merged_points", "points merged into others"},
-        {reading->unused, "unused_points", "points that no line uses"},
-        {reading->without_length, "lines_without_length", "lines without length"},
-        {reading->repeated, "repeated_lines", "lines given before"},
-        {reading->loops, "loops", "lines cut where a loop closed"},
+        {reading->merged, "merged_points", "point merged into another",
+         "points merged into others"},
+        {reading->unused, "unused_points", "point that no line uses", "points that no line uses"},
+        {reading->without_length, "lines_without_length", "line without length",
+         "lines without length"},
+        {reading->repeated, "repeated_lines", "line given before", "lines given before"},
+        {reading->loops, "loops", "line cut where a loop closed", "lines cut where loops closed"},
     };
     for (size_t i = 0; i < LEFT_OUT; i++)
         list[i] = all[i];
+}
+
+/* Of the word behind a count. */
+static const char *ending(size_t count)
+{
+    return count == 1 ? "" : "s";
 }
 
 static void print_network(const TreeReading *reading)
 {
     LeftOut left[LEFT_OUT];
     list_left_out(reading, left);
-    printf("  read as       %s, %zu points and %zu lines\n", reading->format, reading->points,
-           reading->lines);
+    printf("  read as       %s, %zu point%s and %zu line%s\n", reading->format, reading->points,
+           ending(reading->points), reading->lines, ending(reading->lines));
     for (size_t i = 0, n = 0; i < LEFT_OUT; i++)
         if (left[i].count > 0)
             printf("  %s %zu %s\n", n++ ? "             " : "left out     ", left[i].count,
-                   left[i].what);
+                   left[i].count == 1 ? left[i].one : left[i].more);
     for (size_t i = 0; i < reading->n_cuts && i < 3; i++)
         printf("  cut at        %g, %g, %g mm, radius %g mm\n", reading->cut[i].position.x,
                reading->cut[i].position.y, reading->cut[i].position.z, reading->cut[i].radius_mm);
     if (reading->n_cuts > 3)
-        printf("                and %zu more places\n", reading->loops - 3);
+        printf("                and %zu more place%s\n", reading->loops - 3,
+               ending(reading->loops - 3));
     if (reading->against > 0)
-        printf("  directions    %zu lines are given towards the root\n", reading->against);
+        printf("  directions    %zu line%s given towards the root\n", reading->against,
+               reading->against == 1 ? " is" : "s are");
 }
 
 static void print_roots(const TreeReading *reading)
@@ -179,8 +189,9 @@ static void print_roots(const TreeReading *reading)
     enum { SHOWN = 5 };
     printf("  components    %zu\n", reading->n_roots);
     for (size_t i = 0; i < reading->n_roots && i < SHOWN; i++)
-        printf("  root          %d, %s; %zu nodes\n", reading->root[i].id,
-               root_reason_texts[reading->root[i].reason], reading->root[i].nodes);
+        printf("  root          %d, %s; %zu node%s\n", reading->root[i].id,
+               root_reason_texts[reading->root[i].reason], reading->root[i].nodes,
+               ending(reading->root[i].nodes));
     if (reading->n_roots > SHOWN)
         printf("                and %zu more\n", reading->n_roots - SHOWN);
 }
@@ -208,7 +219,8 @@ static void print_unit(const TreeReading *reading)
                reading->believes ? length_unit_names[reading->believed] : "no vessel's");
     printf("%s\n", reading->looks_like_voxels ? ", and coordinates like voxels" : "");
     if (reading->without_radius > 0)
-        printf("  no radius     %zu segments\n", reading->without_radius);
+        printf("  no radius     %zu segment%s\n", reading->without_radius,
+               ending(reading->without_radius));
 }
 
 void reading_print(const TreeReading *reading)

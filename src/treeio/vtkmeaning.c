@@ -191,7 +191,9 @@ Status vtk_tell_meaning(const VtkMeaning *meaning, const VtkData *data, const Gr
         TRY(reading_note(reading, err, "inlets are the points whose '%.60s' is %g",
                          meaning->inlet->name, meaning->inlet_value));
     if (data->not_lines > 0)
-        TRY(reading_note(reading, err, "%zu cells are no lines and are left out", data->not_lines));
+        TRY(reading_note(reading, err, "%zu cell%s no line%s left out", data->not_lines,
+                         data->not_lines == 1 ? " is" : "s are",
+                         data->not_lines == 1 ? " and is" : "s and are"));
     return STATUS_OK;
 }
 

@@ -53,6 +53,8 @@ test_vessels_of_the_cortex_with_radii_of_cells() {
         .roots == 15 and .reading.believed_unit == "um"'
     expect_network bluebrain_vascpy/one_loop.vtk '.segments == 159 and .reading.network.loops == 1 and
         (.reading.network.cuts | length) == 1' --break-loops
+    run_ok corcast info "$SHARED/bluebrain_vascpy/one_loop.vtk" --break-loops
+    expect_stdout '^  left out      1 line cut where a loop closed$'
     run corcast info "$SHARED/bluebrain_vascpy/one_loop.vtk"
     expect_status 2
     expect_sentence 'one_loop.vtk: cell 120: the line closes a loop .* one of 1; .* --break-loops'
