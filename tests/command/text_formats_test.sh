@@ -58,6 +58,13 @@ test_networks_of_secomb_have_loops() {
     run corcast info "$file"
     expect_status 2
     expect_sentence 'Tumor1998.network.dat:86: the line closes a loop .* one of 14;'
+    run_ok corcast info --break-loops "$file"
+    expect_stdout ' 92 points and 104 lines$'
+    expect_stdout ' 14 lines cut where a loop closed$'
+    run_ok corcast convert --quiet --break-loops "$file" cut.csv
+    [ "$(awk -F, '/^#/ { next } !n++ { for (k = 1; k <= NF; k++) if ($k ~ /boundary type/) column = k; next }
+                  $column != "" { boundary++ } END { print n - 1, boundary }' cut.csv)" = "92 17" ] ||
+        fail "expected 92 nodes, 17 of them with a boundary type"
     run corcast info "$SHARED/secomb/Brain.network.dat"
     expect_sentence 'one of 3;'
 }
