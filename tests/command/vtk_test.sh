@@ -190,6 +190,31 @@ test_derived_fields_go_along_as_columns() {
     expect_sentence '^corcast convert: --q-perf .*--fields'
 }
 
+test_a_file_that_is_cut_off_or_is_something_else_is_refused() {
+    local extension size cut
+    a_strange_forest
+    for extension in vtp vtk; do
+        run_ok corcast convert tree.csv "whole.$extension"
+        size=$(wc -c <"whole.$extension")
+        for cut in 0 1 20 $((size / 5)) $((size / 2)) $((size * 3 / 4)); do
+            head -c "$cut" "whole.$extension" >"cut.$extension"
+            run corcast info "cut.$extension"
+            expect_status 2
+            expect_sentence "cut\\.$extension"
+        done
+    done
+    cp whole.vtp other.vtk
+    cp whole.vtk other.vtp
+    head -c 4000 /dev/urandom >noise.vtp
+    for cut in other.vtk other.vtp noise.vtp; do
+        run corcast info "$cut"
+        expect_status 2
+        expect_sentence "$cut"
+    done
+    run_ok corcast info --input-format vtp other.vtk
+    corcast info - <whole.vtk >from_pipe 2>stderr || fail "info - failed$(said)"
+}
+
 test_options_that_a_format_does_not_take_are_refused() {
     cp "$DATA/bifurcation.swc" tree.swc
     run corcast info tree.swc --radius-array thickness
