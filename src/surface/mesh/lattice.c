@@ -32,6 +32,9 @@ typedef struct Cutter {
     TetrahedronList *list; /* where all tetrahedra go instead of being cut; or NULL */
     ZoneTree *away;        /* for the list: the tree, whose stack has `whole`: */
     FieldPart whole;       /* all terms, for points away from active cells */
+    FieldPart local;       /* of many terms, those that matter within local_mm of local_at */
+    Vec3 local_at;
+    double local_mm;
 } Cutter;
 
 void lattice_release(Lattice *lattice)
@@ -75,22 +78,35 @@ static void clear_wall(const Cutter *cutter, const FieldPart *part, double side,
                    point);
 }
 
-/* The field at a point away from active cells: of all terms, or, where those are too many at once,
- * of those that matter there. */
-static Status value_away(const Cutter *cutter, Vec3 x, FieldValue *value)
+/* Makes cutter->local what matters near x, of few enough terms. */
+static Status find_local(Cutter *cutter, Vec3 x)
 {
-    const ZoneField *field = &cutter->plan->field;
     PartPool *stack = &cutter->away->stack;
-    const size_t n_terms = stack->n_terms, n_groups = stack->n_groups;
-    FieldPart part = cutter->whole;
     PartBounds bounds;
-    if (part.n_terms > MOST_PART_TERMS)
-        TRY(fieldpart_narrow(field, stack, &cutter->whole, x, 0, 0, &part, &bounds, cutter->err));
-    if (part.n_terms > MOST_PART_TERMS)
-        return zonefield_refuse(cutter->err);
-    *value = fieldpart_value(field, stack, &part, x);
-    stack->n_terms = n_terms;
-    stack->n_groups = n_groups;
+    const double widest = cutter->away->side / 16;
+    double reach = widest;
+    do {
+        stack->n_terms = cutter->whole.first_term + cutter->whole.n_terms;
+        stack->n_groups =
+            cutter->whole.first_group + (size_t)cutter->whole.words * cutter->whole.n_groups;
+        TRY(fieldpart_narrow(&cutter->plan->field, stack, &cutter->whole, x, reach, reach,
+                             &cutter->local, &bounds, cutter->err));
+        cutter->local_at = x;
+        cutter->local_mm = reach;
+        reach /= 2;
+    } while (cutter->local.n_terms > MOST_PART_TERMS && reach > 1e-6 * widest);
+    return cutter->local.n_terms > MOST_PART_TERMS ? zonefield_refuse(cutter->err) : STATUS_OK;
+}
+
+/* The field at a point away from active cells: of all terms, or, where those are too many at once,
+ * of those that matter near by; the points of a walk lie close together. */
+static Status value_away(Cutter *cutter, Vec3 x, FieldValue *value)
+{
+    bool few = cutter->whole.n_terms <= MOST_PART_TERMS;
+    if (!few && !(vec3_distance(x, cutter->local_at) < cutter->local_mm))
+        TRY(find_local(cutter, x));
+    *value = fieldpart_value(&cutter->plan->field, &cutter->away->stack,
+                             few ? &cutter->whole : &cutter->local, x);
     return STATUS_OK;
 }
 
