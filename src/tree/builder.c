@@ -146,7 +146,7 @@ Status builder_value(TreeBuilder *builder, size_t column_number, double value, E
 {
     BuilderColumn *column = &builder->column[column_number];
     TRY(fill_column(builder, column, builder->n, err));
-    column->value[builder->n - 1] = value;
+    column->value[builder->n - 1] = isfinite(value) ? value : (double)NAN;
     return STATUS_OK;
 }
 

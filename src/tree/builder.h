@@ -58,7 +58,7 @@ MUST_CHECK Status builder_node(TreeBuilder *builder, const BuilderNode *node, Er
  * against all others. */
 MUST_CHECK Status builder_column(TreeBuilder *builder, const char *name, const char *unit,
                                  size_t *column, Err *err);
-/* Sets the column's value of the node added last. What is not set is NAN. */
+/* Sets the column's value of the node added last. What is not set, or not finite, is NAN. */
 MUST_CHECK Status builder_value(TreeBuilder *builder, size_t column, double value, Err *err);
 
 /* Says the flow share, above 0, of a node given before or after. */

@@ -116,7 +116,7 @@ static void reads_legacy_bytes_of_each_type(void **state)
                                 "\0\0\0\0\0\0\0\1\0\0\0\0\xff\xff\0\2\0\0\nLINES 1 4\n"
                                 "\0\0\0\3\0\0\0\0\0\0\0\1\0\0\0\2\nPOINT_DATA 3\nFIELD f 3\n"
                                 "radius 1 3 unsigned_char\n\3\2\xc8\nw 1 3 double\n"
-                                "\x40\x04\0\0\0\0\0\0\xbf\xf0\0\0\0\0\0\0\x7f\xf8\0\0\0\0\0\0\n"
+                                "\x40\x04\0\0\0\0\0\0\xbf\xf0\0\0\0\0\0\0\x7f\xf0\0\0\0\0\0\0\n"
                                 "s 1 3 string\n\xc1"
                                 "a\xc0\xc2zz\n";
     Tree tree = {0};
