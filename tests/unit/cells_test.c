@@ -149,7 +149,8 @@ static void make_graph_scene(Random *random, TestScene *test)
     }
     nodes[n - 1][0] = n;
     nodes[n - 1][1] = n + 1;
-    const VesselTree tree = {test->segments, nodes, NULL, n, n + 2};
+    const VesselTree tree = {
+        .segments = test->segments, .nodes = nodes, .n_segments = n, .n_nodes = n + 2};
     assert_int_equal(vesseltree_blend(&tree, &test->geometry.blend, NULL), STATUS_OK);
     assert_true(test->geometry.blend.n_groups > 3);
 }
