@@ -19,7 +19,7 @@ static inline double exp_minus(double x)
     double even = 1 + f2 * (1.0 / 2 + f2 * (1.0 / 24 + f2 * (1.0 / 720)));
     double odd = 1 + f2 * (1.0 / 6 + f2 * (1.0 / 120 + f2 * (1.0 / 5040)));
     double sum = even + f * odd;
-    int64_t bits, power;
+    uint64_t bits, power;
     memcpy(&bits, &sum, sizeof bits);
     memcpy(&power, &shifted, sizeof power);
     bits += power << 52;
