@@ -1,21 +1,14 @@
 /* Rows are kept as given until all are there. Then parents are found in a direct table of ids, and
  * rows placed: from each row not yet placed, the walk towards the root collects the ancestors that
  * are not placed either, and they go before it. Rows with parents first keep their order, every row
- * is walked over twice at most, and a walk that meets itself is a cycle. */
+ * is walked over twice at most, and a walk that meets itself is a cycle. Rows that are in order
+ * all, as those of most large files, become the tree without a copy. */
 #include "tree/builder.h"
 
 #include "tree/tree.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef struct BuilderRow {
-    int32_t id, type;
-    int32_t parent; /* id; from find_parents on a row index; or TREE_NO_PARENT */
-    Vec3 position;
-    double radius_mm;
-    size_t record;
-} BuilderRow;
 
 typedef struct BuilderColumn {
     char *name, *unit;
@@ -38,7 +31,12 @@ void builder_release(TreeBuilder *builder)
         free(builder->column[k].unit);
         free(builder->column[k].value);
     }
-    free(builder->row);
+    free(builder->id);
+    free(builder->type);
+    free(builder->parent);
+    free(builder->position);
+    free(builder->radius_mm);
+    free(builder->row_record);
     free(builder->column);
     free(builder->share);
     meta_release(&builder->meta);
@@ -91,17 +89,40 @@ static Status check_node(const BuilderNode *node, Err *err)
     return STATUS_OK;
 }
 
+/* Makes room for one row more in every array. */
+static Status reserve_row(TreeBuilder *builder, Err *err)
+{
+    const struct {
+        void *array;
+        size_t size;
+    } arrays[] = {
+        {&builder->id, sizeof *builder->id},
+        {&builder->type, sizeof *builder->type},
+        {&builder->parent, sizeof *builder->parent},
+        {&builder->position, sizeof *builder->position},
+        {&builder->radius_mm, sizeof *builder->radius_mm},
+        {&builder->row_record, sizeof *builder->row_record},
+    };
+    size_t capacity = builder->capacity;
+    for (size_t k = 0; builder->n == builder->capacity && k < sizeof arrays / sizeof *arrays; k++) {
+        capacity = builder->capacity;
+        TRY(mem_reserve(arrays[k].array, &capacity, builder->n + 1, arrays[k].size, "nodes", err));
+    }
+    builder->capacity = capacity;
+    return STATUS_OK;
+}
+
 Status builder_node(TreeBuilder *builder, const BuilderNode *node, Err *err)
 {
     TRY(check_node(node, err));
-    TRY(mem_reserve(&builder->row, &builder->capacity, builder->n + 1, sizeof *builder->row,
-                    "nodes", err));
-    builder->row[builder->n++] = (BuilderRow){.id = (int32_t)node->id,
-                                              .type = node->type,
-                                              .parent = (int32_t)node->parent,
-                                              .position = node->position,
-                                              .radius_mm = node->radius_mm,
-                                              .record = node->record};
+    TRY(reserve_row(builder, err));
+    size_t i = builder->n++;
+    builder->id[i] = (int32_t)node->id;
+    builder->type[i] = node->type;
+    builder->parent[i] = (int32_t)node->parent;
+    builder->position[i] = node->position;
+    builder->radius_mm[i] = node->radius_mm;
+    builder->row_record[i] = node->record;
     if (node->id > builder->last_id)
         builder->last_id = (int32_t)node->id;
     return STATUS_OK;
@@ -173,16 +194,15 @@ static Status index_ids(const TreeBuilder *builder, int32_t **table, Err *err)
     TRY(mem_calloc(&made, (size_t)builder->last_id + 1, sizeof *made, "table entries for ids",
                    err));
     for (size_t i = 0; i < builder->n; i++) {
-        const BuilderRow *row = &builder->row[i];
-        int32_t *entry = &made[row->id];
+        int32_t *entry = &made[builder->id[i]];
         if (*entry) {
-            size_t first = builder->row[*entry - 1].record;
+            size_t first = builder->row_record[*entry - 1];
             free(made);
-            return builder_blame(builder, row->record,
+            return builder_blame(builder, builder->row_record[i],
                                  err_set(err, STATUS_INPUT,
                                          "the id %d is already that of %s %zu; every node needs "
                                          "its own",
-                                         row->id, builder->record ? builder->record : "line",
+                                         builder->id[i], builder->record ? builder->record : "line",
                                          first),
                                  err);
         }
@@ -202,13 +222,12 @@ static int32_t row_of(const TreeBuilder *builder, const int32_t *table, int32_t 
 static Status find_parents(TreeBuilder *builder, const int32_t *table, Err *err)
 {
     for (size_t i = 0; i < builder->n; i++) {
-        BuilderRow *row = &builder->row[i];
-        if (row->parent == TREE_NO_PARENT)
+        int32_t id = builder->parent[i];
+        if (id == TREE_NO_PARENT)
             continue;
-        int32_t parent = row_of(builder, table, row->parent);
-        if (parent == NO_ROW)
-            return builder_blame(builder, row->record, unknown_parent(row->parent, err), err);
-        row->parent = parent;
+        builder->parent[i] = row_of(builder, table, id);
+        if (builder->parent[i] == NO_ROW)
+            return builder_blame(builder, builder->row_record[i], unknown_parent(id, err), err);
     }
     return STATUS_OK;
 }
@@ -219,22 +238,22 @@ enum { UNPLACED = -1, WALKED = -2 };
 static Status place_with_ancestors(const TreeBuilder *builder, int32_t start, int32_t *place,
                                    int32_t *placed, Err *err)
 {
-    const BuilderRow *row = builder->row;
+    const int32_t *parent = builder->parent;
     int32_t length = 0, at = start;
-    for (; at != TREE_NO_PARENT && place[at] == UNPLACED; at = row[at].parent) {
+    for (; at != TREE_NO_PARENT && place[at] == UNPLACED; at = parent[at]) {
         place[at] = WALKED;
         length++;
     }
     if (at != TREE_NO_PARENT && place[at] == WALKED)
-        return builder_blame(builder, row[at].record,
+        return builder_blame(builder, builder->row_record[at],
                              err_set(err, STATUS_INPUT,
                                      "node %d is its own %s; parents must lead to a root, whose "
                                      "parent is %d",
-                                     row[at].id, row[at].parent == at ? "parent" : "ancestor",
+                                     builder->id[at], parent[at] == at ? "parent" : "ancestor",
                                      TREE_NO_PARENT),
                              err);
     at = start;
-    for (int32_t below = length; below > 0; at = row[at].parent)
+    for (int32_t below = length; below > 0; at = parent[at])
         place[at] = *placed + --below;
     *placed += length;
     return STATUS_OK;
@@ -257,17 +276,39 @@ done:
     return status;
 }
 
-static void fill_nodes(const TreeBuilder *builder, const int32_t *place, Tree *tree)
+static bool are_in_order(const TreeBuilder *builder, const int32_t *place)
 {
+    for (size_t i = 0; i < builder->n; i++)
+        if (place[i] != (int32_t)i)
+            return false;
+    return true;
+}
+
+static void move_nodes(TreeBuilder *builder, Tree *tree)
+{
+    *tree = (Tree){.n = builder->n,
+                   .id = builder->id,
+                   .type = builder->type,
+                   .parent = builder->parent,
+                   .position = builder->position,
+                   .radius_mm = builder->radius_mm};
+    builder->id = builder->type = builder->parent = NULL;
+    builder->position = NULL;
+    builder->radius_mm = NULL;
+}
+
+static Status copy_nodes(const TreeBuilder *builder, const int32_t *place, Tree *tree, Err *err)
+{
+    TRY(tree_init(tree, builder->n, err));
     for (size_t i = 0; i < builder->n; i++) {
-        const BuilderRow *row = &builder->row[i];
-        int32_t at = place[i];
-        tree->id[at] = row->id;
-        tree->type[at] = row->type;
-        tree->parent[at] = row->parent == TREE_NO_PARENT ? TREE_NO_PARENT : place[row->parent];
-        tree->position[at] = row->position;
-        tree->radius_mm[at] = row->radius_mm;
+        int32_t at = place[i], parent = builder->parent[i];
+        tree->id[at] = builder->id[i];
+        tree->type[at] = builder->type[i];
+        tree->parent[at] = parent == TREE_NO_PARENT ? TREE_NO_PARENT : place[parent];
+        tree->position[at] = builder->position[i];
+        tree->radius_mm[at] = builder->radius_mm[i];
     }
+    return STATUS_OK;
 }
 
 static Status fill_columns(const TreeBuilder *builder, const int32_t *place, Tree *tree, Err *err)
@@ -329,8 +370,10 @@ Status builder_build(TreeBuilder *builder, Tree *out, Err *err)
     TRY_GOTO(index_ids(builder, &table, err));
     TRY_GOTO(find_parents(builder, table, err));
     TRY_GOTO(place_rows(builder, &place, err));
-    TRY_GOTO(tree_init(&tree, builder->n, err));
-    fill_nodes(builder, place, &tree);
+    if (are_in_order(builder, place))
+        move_nodes(builder, &tree);
+    else
+        TRY_GOTO(copy_nodes(builder, place, &tree, err));
     TRY_GOTO(fill_columns(builder, place, &tree, err));
     TRY_GOTO(fill_shares(builder, table, place, &tree, err));
     TRY_GOTO(tree_check(&tree, err));

@@ -31,11 +31,14 @@ typedef struct BuilderNode {
 typedef struct TreeBuilder {
     const char *name;   /* of the file (borrowed) */
     const char *record; /* what its records are called, "point" (borrowed); NULL: they are lines */
-    TreeReading *reading; /* where the reader says what it assumes (borrowed); may be NULL */
-    TreeMeta meta;        /* of the tree, for the reader to fill */
-    struct BuilderRow *row;
-    size_t n, capacity;
-    int32_t last_id; /* the largest */
+    TreeReading *reading;        /* where the reader says what it assumes (borrowed); may be NULL */
+    TreeMeta meta;               /* of the tree, for the reader to fill */
+    int32_t *id, *type, *parent; /* of each row; a parent by its id */
+    Vec3 *position;
+    double *radius_mm;
+    size_t *row_record;
+    size_t n, capacity; /* rows */
+    int32_t last_id;    /* the largest */
     struct BuilderColumn *column;
     size_t n_columns, columns_capacity;
     struct BuilderShare *share;
