@@ -285,6 +285,13 @@ static Status add_points(const Reader *reader, size_t piece, VtkData *data, Err 
     return STATUS_OK;
 }
 
+/* Of an array that has been used. */
+static void release_values(Array *of)
+{
+    free(of->array.value);
+    of->array.value = NULL;
+}
+
 static Status add_cells(const Reader *reader, size_t piece, VtkData *data, size_t first_point,
                         Err *err)
 {
@@ -294,8 +301,8 @@ static Status add_cells(const Reader *reader, size_t piece, VtkData *data, size_
     } kinds[] = {
         {VERTS, VTK_POLY_VERTEX}, {LINES, VTK_POLY_LINE}, {POLYS, 0}, {STRIPS, 0}, {CELLS, 0}};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
-        const Array *corners = find_array(reader, piece, kinds[k].section, "connectivity");
-        const Array *ends = find_array(reader, piece, kinds[k].section, "offsets");
+        Array *corners = find_array(reader, piece, kinds[k].section, "connectivity");
+        Array *ends = find_array(reader, piece, kinds[k].section, "offsets");
         const Array *types = find_array(reader, piece, CELLS, "types");
         if (!corners || !ends)
             continue;
@@ -309,6 +316,8 @@ static Status add_cells(const Reader *reader, size_t piece, VtkData *data, size_
                                 .n_corners = corners->array.n,
                                 .of = kinds[k].type};
         TRY(vtk_add_cells(data, &cells, first_point, err));
+        release_values(corners);
+        release_values(ends);
     }
     return STATUS_OK;
 }
