@@ -218,6 +218,7 @@ const Command command_diagram = {
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
+    .reads_tree = true,
     .size = sizeof(DiagramOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, COLORING_TABLES(DiagramOptions, coloring)},

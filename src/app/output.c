@@ -144,16 +144,21 @@ void print_columns_left_out(const char *command, const Tree *tree, const char *w
 void print_left_out(const char *command, const Tree *tree, const char *path)
 {
     const TreeLosses lost = tree_format_losses(path, tree);
-    if (!lost.columns && !lost.types && !lost.flow_shares)
+    const struct {
+        bool is_lost;
+        const char *what;
+    } others[] = {{lost.types, "the types"},
+                  {lost.flow_shares, "the flow shares"},
+                  {lost.root_values, "the roots' values"}};
+    if (!lost.columns && !lost.types && !lost.flow_shares && !lost.root_values)
         return;
     fprintf(stderr, "corcast %s: ", command);
     for (size_t k = 0, n = 0; k < tree->n_columns; k++)
         if (!tree_format_keeps(path, &tree->column[k]))
             fprintf(stderr, "%s%.40s", n++ ? ", " : "the columns ", tree->column[k].name);
-    if (lost.types)
-        fprintf(stderr, "%sthe types", lost.columns ? " and " : "");
-    if (lost.flow_shares)
-        fprintf(stderr, "%sthe flow shares", lost.columns || lost.types ? " and " : "");
+    for (size_t i = 0, n = lost.columns; i < sizeof others / sizeof *others; i++)
+        if (others[i].is_lost)
+            fprintf(stderr, "%s%s", n++ ? " and " : "", others[i].what);
     fprintf(stderr, " are left out: the format has no place for them\n");
 }
 

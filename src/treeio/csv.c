@@ -17,11 +17,8 @@ static const char *const node_columns[NODE_COLUMNS] = {
 
 enum { LAST_NEEDED = RADIUS };
 
-/* What a CSV of segments begins with. */
-static const char *const segment_columns[] = {"id",    "parent", "x0_mm", "y0_mm",     "z0_mm",
-                                              "x1_mm", "y1_mm",  "z1_mm", "radius_mm", "length_mm"};
-
-enum { SEGMENT_COLUMNS = sizeof segment_columns / sizeof *segment_columns };
+const char *const csv_segment_titles[CSV_SEGMENT_TITLES + 1] = {
+    "id", "parent", "x0_mm", "y0_mm", "z0_mm", "x1_mm", "y1_mm", "z1_mm", "radius_mm", "length_mm"};
 
 /* What a column of the file is. */
 typedef struct Column {
@@ -193,7 +190,7 @@ static bool is_among(const char *name, const char *const *names, size_t n)
 static void write_title(const TreeColumn *column, FILE *stream)
 {
     bool is_taken = is_among(column->name, node_columns, NODE_COLUMNS) ||
-                    is_among(column->name, segment_columns, SEGMENT_COLUMNS);
+                    is_among(column->name, csv_segment_titles, CSV_SEGMENT_TITLES);
     fputs(is_taken ? ",\"value of " : ",\"", stream);
     write_quoted(column->name, stream);
     if (*column->unit) {
@@ -247,12 +244,6 @@ Status csv_write(const Tree *tree, FILE *stream, Err *err)
     return STATUS_OK;
 }
 
-/* What such a file, read, has brought, and is written anyway. */
-static bool is_length(const TreeColumn *column)
-{
-    return strcmp(column->name, segment_columns[SEGMENT_COLUMNS - 1]) == 0;
-}
-
 /* Both ends of each segment, the proximal one first. */
 static void write_segment(const Tree *tree, size_t i, FILE *stream)
 {
@@ -266,19 +257,17 @@ static void write_segment(const Tree *tree, size_t i, FILE *stream)
     write_number(tree->radius_mm[i], stream);
     write_number(tree_segment_length(tree, i), stream);
     for (size_t k = 0; k < tree->n_columns; k++)
-        if (!is_length(&tree->column[k]))
-            write_number(tree->column[k].value[i], stream);
+        write_number(tree->column[k].value[i], stream);
     putc('\n', stream);
 }
 
 Status csv_segments_write(const Tree *tree, FILE *stream, Err *err)
 {
     TRY(comments_write(&tree->meta, stream, err));
-    for (size_t k = 0; k < SEGMENT_COLUMNS; k++)
-        fprintf(stream, "%s%s", k ? "," : "", segment_columns[k]);
+    for (size_t k = 0; k < CSV_SEGMENT_TITLES; k++)
+        fprintf(stream, "%s%s", k ? "," : "", csv_segment_titles[k]);
     for (size_t k = 0; k < tree->n_columns; k++)
-        if (!is_length(&tree->column[k]))
-            write_title(&tree->column[k], stream);
+        write_title(&tree->column[k], stream);
     putc('\n', stream);
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))

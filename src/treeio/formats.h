@@ -67,4 +67,8 @@ MUST_CHECK Status csv_field(char **at, char separator, char **field, Err *err);
 /* Parts "name [unit]" in place; the unit is "" where there is none. */
 const char *csv_unit(char *title);
 
+/* The titles that a CSV of segments begins with, "id" first; NULL ends them. */
+enum { CSV_SEGMENT_TITLES = 10 };
+extern const char *const csv_segment_titles[CSV_SEGMENT_TITLES + 1];
+
 #endif

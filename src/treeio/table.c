@@ -2,6 +2,9 @@
  * of vessels with both ends. Columns are told by what options call them, or else by names that
  * programs give them; those that mean nothing here become columns of the tree.
  *
+ * The program's own CSV of segments is known by the titles that it begins with, none of which is a
+ * column of the tree: ids are those of the distal nodes, and lengths follow from the ends.
+ *
  * A first line of numbers alone is a row: the table has no titles, and options name its columns by
  * their numbers. Fields are parted by what the first line has most of: semicolons, tabs, commas, or
  * else blanks. What a row names may come later, so parents are looked up at the end. */
@@ -113,8 +116,9 @@ typedef struct Table {
     char separator;
     Column *column;
     size_t n, capacity;
-    size_t at[ROLES]; /* the column + 1 of each role; 0: none */
-    char **field;     /* room for one row */
+    size_t first_value; /* the columns before are no values: the table is the program's own */
+    size_t at[ROLES];   /* the column + 1 of each role; 0: none */
+    char **field;       /* room for one row */
     double radius_factor;
     Child *child;
     size_t n_children, children_capacity;
@@ -312,10 +316,21 @@ static Status add_value(Table *table, size_t k, Err *err)
     return status;
 }
 
+/* Whether the table begins with the titles of a CSV of segments, and options say nothing of it. */
+static bool begins_as_own(const Table *table)
+{
+    size_t k = 0;
+    while (k < table->n && k < CSV_SEGMENT_TITLES && table->column[k].title &&
+           strcmp(table->column[k].title, csv_segment_titles[k]) == 0)
+        k++;
+    return k == CSV_SEGMENT_TITLES && table->sayings->n == 0;
+}
+
 /* Those whose role is none of this kind of table are values, and so are numbers of its elements. */
 static Status add_values(Table *table, Err *err)
 {
-    for (size_t k = 0; k < table->n; k++) {
+    table->first_value = begins_as_own(table) ? CSV_SEGMENT_TITLES : 0;
+    for (size_t k = table->first_value; k < table->n; k++) {
         Column *column = &table->column[k];
         if (column->role == ROLE_ID && table->kind != NODES)
             column->title = table->kind == LINES ? "edge" : "vessel";
@@ -474,7 +489,7 @@ static bool value_of(const char *text, double *value, bool *is_text)
 
 static Status put_values(Table *table, size_t element, Err *err)
 {
-    for (size_t k = 0; k < table->n; k++) {
+    for (size_t k = table->first_value; k < table->n; k++) {
         Column *column = &table->column[k];
         double value;
         bool is_text;
@@ -487,6 +502,13 @@ static Status put_values(Table *table, size_t element, Err *err)
     return STATUS_OK;
 }
 
+/* 0 where the field is none that a node may have. */
+static int64_t id_of(const char *field)
+{
+    long long id;
+    return field && integer_parse(field, 1, TREE_MAX_ID, &id) ? id : 0;
+}
+
 static Status read_node(Table *table, size_t line, Err *err)
 {
     Graph *graph = table->graph;
@@ -494,13 +516,11 @@ static Status read_node(Table *table, size_t line, Err *err)
     GraphPoint point = {.record = line};
     char *id = field_of(table, ROLE_ID), *parent = field_of(table, ROLE_PARENT);
     const char *type = field_of(table, ROLE_TYPE), *share = field_of(table, ROLE_SHARE);
-    long long number;
     TRY(read_position(table, ROLE_X, &point.position, err));
     TRY(read_radius(table, &point.radius, err));
     if (id)
         TRY(names_add(table->nodes, id, at, line, err));
-    if (id && integer_parse(id, 1, TREE_MAX_ID, &number))
-        point.id = number;
+    point.id = id_of(id);
     point.has_type = type != NULL;
     if (type)
         TRY(field_whole("type", type, INT32_MIN, INT32_MAX, &point.type, err));
@@ -523,6 +543,10 @@ static Status read_vessel(Table *table, size_t line, Err *err)
                           {.radius = (double)NAN, .record = line}};
     GraphLine vessel = {
         .a = graph->n_points, .b = graph->n_points + 1, .is_directed = true, .record = line};
+    if (table->first_value > 0) {
+        ends[0].id = id_of(field_of(table, ROLE_PARENT));
+        ends[1].id = id_of(field_of(table, ROLE_ID));
+    }
     TRY(read_position(table, ROLE_X0, &ends[0].position, err));
     TRY(read_position(table, ROLE_X1, &ends[1].position, err));
     TRY(read_radius(table, &vessel.radius, err));

@@ -4,6 +4,7 @@
 #include "treeio/treeio.h"
 
 #include "treeio/formats.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -24,7 +25,12 @@ enum {
 };
 
 /* What a tree may hold that not all formats have a place for. */
-enum { LOSES_COLUMNS = 1, LOSES_TYPES = 2, LOSES_SHARES = 4 };
+enum {
+    LOSES_COLUMNS = 1,
+    LOSES_TYPES = 2,
+    LOSES_SHARES = 4,
+    LOSES_ROOT_VALUES = 8 /* of columns, which are of segments there */
+};
 
 /* What options are called in sentences. */
 static const struct {
@@ -63,7 +69,7 @@ static const Format formats[] = {
      .read = swc_read,
      .write = swc_write},
     {.name = "CSV of segments",
-     .loses = LOSES_TYPES | LOSES_SHARES,
+     .loses = LOSES_TYPES | LOSES_SHARES | LOSES_ROOT_VALUES,
      .description = "a segment a line: both ends, radius, length, any columns of values",
      .extensions = {"segments.csv"},
      .takes = ANY_GRAPH | COLUMNS,
@@ -115,6 +121,7 @@ static const Format formats[] = {
      .form = {.name = "a GXL file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = gxl_detect,
      .read_graph = gxl_read,
+     .loses = LOSES_ROOT_VALUES,
      .write = gxl_write},
     {.name = "GraphML",
      .description = "of VesselVio, VesselExpress, igraph and networkx: nodes and edges with keys",
@@ -123,6 +130,7 @@ static const Format formats[] = {
      .form = {.name = "a GraphML file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = graphml_detect,
      .read_graph = graphml_read,
+     .loses = LOSES_ROOT_VALUES,
      .write = graphml_write},
     {.name = "Amira XML",
      .description = "Amira's spatial graph as a workbook: points and segments, in um",
@@ -277,6 +285,16 @@ static bool has_types(const Tree *tree)
     return i < tree->n;
 }
 
+/* Whether a root has a value in a column. */
+static bool has_root_values(const Tree *tree)
+{
+    for (size_t k = 0; k < tree->n_columns; k++)
+        for (size_t i = 0; i < tree->n; i++)
+            if (!tree_is_segment(tree, i) && !isnan(tree->column[k].value[i]))
+                return true;
+    return false;
+}
+
 bool tree_format_keeps(const char *path, const TreeColumn *column)
 {
     const Format *format = find_written(path);
@@ -288,7 +306,8 @@ TreeLosses tree_format_losses(const char *path, const Tree *tree)
     const Format *format = find_written(path);
     unsigned loses = format ? format->loses : 0;
     TreeLosses lost = {.types = (loses & LOSES_TYPES) && has_types(tree),
-                       .flow_shares = (loses & LOSES_SHARES) && tree->flow_share};
+                       .flow_shares = (loses & LOSES_SHARES) && tree->flow_share,
+                       .root_values = (loses & LOSES_ROOT_VALUES) && has_root_values(tree)};
     for (size_t k = 0; k < tree->n_columns; k++)
         lost.columns += !tree_format_keeps(path, &tree->column[k]);
     return lost;

@@ -19,7 +19,8 @@ MUST_CHECK Status tree_format_check(const char *path, Err *err);
 /* What a tree holds and the format of a path has no place for. */
 typedef struct TreeLosses {
     bool types, flow_shares;
-    size_t columns; /* those that tree_format_keeps denies */
+    bool root_values; /* in columns, although those are not lost */
+    size_t columns;   /* those that tree_format_keeps denies */
 } TreeLosses;
 TreeLosses tree_format_losses(const char *path, const Tree *tree);
 bool tree_format_keeps(const char *path, const TreeColumn *column);

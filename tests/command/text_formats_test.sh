@@ -88,6 +88,26 @@ test_a_grown_tree_comes_back_from_a_csv_of_segments() {
     cmp -s <(grep -v '^#' tree.swc) <(grep -v '^#' back.swc) || fail "expected the same nodes"
 }
 
+test_columns_of_any_name_come_back_from_a_csv_of_segments() {
+    printf '%s\n' 'id,parent,x_mm,y_mm,z_mm,radius_mm,type,"vessel","value of length_mm","edge"' 1,-1,0,9,0,1,3,,, \
+        2,1,0,4,0,1,3,41,2.385,1 3,2,-4,0,0,0.5,3,37.5,,2 4,2,4,0,0,0.25,3,,1,3 >tree.csv
+    run_ok corcast convert tree.csv tree.segments.csv
+    [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
+    run_ok corcast convert tree.segments.csv back.csv
+    expect_same tree.csv back.csv
+}
+
+# The rows stand in another order, and the ids are not those that nodes would be given.
+test_values_find_the_segments_of_a_csv_of_segments_by_its_ids() {
+    printf '%s\n' id,parent,x0_mm,y0_mm,z0_mm,x1_mm,y1_mm,z1_mm,radius_mm,length_mm \
+        30,12,0,4,0,4,0,0,0.25,5.65 12,7,0,9,0,0,4,0,1,5 13,12,0,4,0,-4,0,0,0.5,5.65 >tree.segments.csv
+    printf '%s\n' id,age 12,41 30,2.385 13,37.5 >age.csv
+    run_ok corcast convert tree.segments.csv aged.csv --values age.csv
+    grep -q '^[0-9]*,[0-9]*,4,0,0,0.25,3,2.385$' aged.csv || fail "expected the age of segment 30: $(cat aged.csv)"
+    run corcast render tree.segments.csv --color-by age.csv:age --size 20x20 -o aged.ppm
+    expect_status 0
+}
+
 # MetaIO of ITK 5.2 wrote both, of three tubes: a trunk, one that names the trunk's second point, and one that
 # names none and ends beside its last point; ElementSpacing is 0.5 0.5 0.25.
 test_tubes_that_metaio_wrote_are_the_same_in_text_and_packed() {
@@ -108,6 +128,11 @@ test_what_a_format_has_no_place_for_is_said() {
     expect_sentence '^corcast convert: the columns age and the types and the flow shares are left out: the format has no place for them$'
     run_ok corcast convert tree.csv tree.segments.csv
     expect_sentence '^corcast convert: the types and the flow shares are left out: '
+    run_ok corcast convert tree.csv tree.gxl
+    [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
+    sed -i 's/^1,.*/&2.385/' tree.csv
+    run_ok corcast convert tree.csv tree.gxl
+    expect_sentence "^corcast convert: the roots' values are left out: "
     run_ok corcast convert tree.csv tree.vtp
     [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
     [ -r "$SHARED/simvascular_oned/14_AortoFem_Pulse_RCR.in" ] || return 0
