@@ -60,7 +60,7 @@ test_networks_of_secomb_have_loops() {
     expect_sentence 'Tumor1998.network.dat:86: the line closes a loop .* one of 14;'
     run_ok corcast info --break-loops "$file"
     expect_stdout ' 92 points and 104 lines$'
-    expect_stdout ' 14 lines cut where a loop closed$'
+    expect_stdout ' 14 lines cut where loops closed$'
     run_ok corcast convert --quiet --break-loops "$file" cut.csv
     [ "$(awk -F, '/^#/ { next } !n++ { for (k = 1; k <= NF; k++) if ($k ~ /boundary type/) column = k; next }
                   $column != "" { boundary++ } END { print n - 1, boundary }' cut.csv)" = "92 17" ] ||
