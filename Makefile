@@ -91,7 +91,7 @@ validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
 	$(Q)tests/validate
 
 bench: ## the benchmarks, one after another
-	$(Q)for part in grow render compare mesh; do $(MAKE) --no-print-directory bench-$$part || exit; done
+	$(Q)for part in grow render compare mesh trees; do $(MAKE) --no-print-directory bench-$$part || exit; done
 
 bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
 	$(Q).ci/deps build bench
@@ -117,6 +117,11 @@ export-all: ## export hundreds of grown and of random trees, each looked at by a
 	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tests/export-all $(or $(GROWN),96) $(or $(RANDOM),200)
+
+bench-trees: ## time reading and writing a tree, beside numpy and VTK; BENCH=full for 10^6 terminals
+	$(Q).ci/deps build check
+	$(Q)$(AGAIN) all
+	$(Q)tests/bench/trees
 
 verify-all: ## verify models x trees x projections x shadows x antialiasing; report in out/verify/
 	$(Q).ci/deps build run
