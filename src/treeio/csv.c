@@ -162,12 +162,17 @@ Status csv_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
 /* The first line that is no comment names a parent and coordinates in mm. */
 bool csv_detect(const char *start)
 {
-    while (*start == '#' || *start == '\n')
-        start += strcspn(start, "\n") + (start[strcspn(start, "\n")] != '\0');
+    start = text_first_row(start);
     size_t length = strcspn(start, "\n");
     const char *parent = memmem(start, length, node_columns[PARENT], strlen(node_columns[PARENT]));
     return parent && memchr(start, ',', length) &&
            memmem(start, length, node_columns[X], strlen(node_columns[X]));
+}
+
+bool csv_segments_detect(const char *start)
+{
+    static const char titles[] = "id,parent,x0_mm,";
+    return strncmp(text_first_row(start), titles, strlen(titles)) == 0;
 }
 
 static void write_quoted(const char *text, FILE *stream)

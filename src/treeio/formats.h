@@ -29,7 +29,8 @@ typedef bool TreeKeeps(const TreeColumn *column);
 
 TreeKeeps oned_keeps;
 TreeDetect amira_detect, csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect,
-    gxl_detect, graphml_detect, amiraxml_detect, pvd_detect;
+    gxl_detect, graphml_detect, amiraxml_detect, pvd_detect, csv_segments_detect, oned_detect,
+    vmv_detect, vita_detect;
 TreeRead swc_read, csv_read, pvd_read;
 GraphRead oned_read, vita_read, secomb_read, opencco_read, vmv_read, metaio_read, vtk_read,
     vtp_read, gxl_read, graphml_read, amiraxml_read, table_read, amira_read;
@@ -42,6 +43,10 @@ typedef Status ReadLine(void *reader, size_t number, char *line, Err *err);
 /* Hands all lines of a text to `read`, and says of which of the file `name` it was that it refuses.
  */
 MUST_CHECK Status lines_read(const char *name, char *text, ReadLine *read, void *reader, Err *err);
+
+/* Of a text that may begin with comments and empty lines, the first line behind them, at its first
+ * character that is no blank. */
+const char *text_first_row(const char *start);
 
 /* Cuts a line in place into its fields [text_field]; returns how many there are, of which the first
  * `most` go to `field`. */

@@ -182,6 +182,17 @@ static const struct {
 
 enum { N_CARDS = sizeof cards / sizeof *cards };
 
+/* The first word is the name of a card. */
+bool oned_detect(const char *start)
+{
+    start = text_first_row(start);
+    size_t i = 0, length = strcspn(start, TEXT_BLANKS "\r\n");
+    while (i < N_CARDS &&
+           (strlen(cards[i].name) != length || strncasecmp(cards[i].name, start, length) != 0))
+        i++;
+    return i < N_CARDS;
+}
+
 /* SimVascular heads its decks with "UNITS IN CGS", corcast with "Units: cm, g, s". */
 static Status read_comment(Graph *graph, const char *comment, Err *err)
 {

@@ -17,6 +17,17 @@ Status lines_read(const char *name, char *text, ReadLine *read, void *reader, Er
     return STATUS_OK;
 }
 
+const char *text_first_row(const char *start)
+{
+    static const char blanks[] = TEXT_BLANKS "\r\n";
+    start += strspn(start, blanks);
+    while (*start == '#') {
+        start += strcspn(start, "\n");
+        start += strspn(start, blanks);
+    }
+    return start;
+}
+
 size_t fields_cut(char *line, char **field, size_t most)
 {
     size_t count = 0;

@@ -141,3 +141,9 @@ Status vita_read(Graph *graph, char *bytes, size_t size, Err *err)
     names_release(&reader.vessels);
     return status;
 }
+
+bool vita_detect(const char *start)
+{
+    const char *title = section_titles[TREE];
+    return strncmp(text_first_row(start), title, strlen(title)) == 0;
+}

@@ -291,3 +291,8 @@ Status vmv_write(const Tree *tree, FILE *stream, Err *err)
     branches_release(&branches);
     return status;
 }
+
+bool vmv_detect(const char *start)
+{
+    return *text_first_row(start) == '$';
+}

@@ -102,10 +102,15 @@ test_a_tree_on_standard_input_is_told_by_its_first_bytes() {
     run_ok corcast convert tree.swc tree.csv
     grep -v '^#' tree.csv >bare.csv
     local file
-    for file in tree.csv bare.csv tree.swc; do
+    for file in segments.csv vtk vtp gxl graphml vmv in; do
+        run_ok corcast convert --quiet tree.swc "tree.$file"
+    done
+    for file in bare.csv tree.*; do
         run_ok corcast info - --json <"$file"
         expect_json stdout '.terminals == 7'
     done
+    printf '*Tree\n0 9 0 1 1 1 1 1 1 1 1 1\n\n*Vessels\n1\n' | run corcast info -
+    expect_sentence 'standard input: there is no section \*Connectivity'
 }
 
 test_a_column_of_a_csv_colours_its_segments() {
