@@ -655,6 +655,8 @@ static Status read_beside(const Table *nodes, const char *path, Err *err)
     nodes->graph->line_record = "line of the edges";
     TRY(file_read(path, &form, &bytes, &size, err));
     Status status = read_table(&edges, bytes, err);
+    if (status == STATUS_OK && edges.n == 0)
+        status = err_set(err, STATUS_INPUT, "%s: the table of lines is empty", path);
     release_table(&edges);
     free(bytes);
     return status;

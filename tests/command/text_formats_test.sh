@@ -121,6 +121,39 @@ test_tubes_that_metaio_wrote_are_the_same_in_text_and_packed() {
     grep -q '^5,.*,21,' tubes.csv || fail "expected the ids of the points: $(cat tubes.csv)"
 }
 
+test_a_table_of_lines_that_is_empty_is_named() {
+    printf '%s\n' id,x,y,z,radius 1,0,0,0,1 2,1,0,0,1 >nodes.csv
+    : >lines.csv
+    run corcast info nodes.csv --edges lines.csv
+    expect_status 2
+    expect_sentence 'lines.csv: the table of lines is empty$'
+}
+
+# Cut off at seven places, each file is refused in one sentence with its name, or is a smaller tree.
+test_files_of_all_formats_that_are_cut_off_are_refused_in_a_sentence() {
+    local extension size k whole
+    grow_tree 9
+    for extension in csv segments.csv vtk vtp gxl graphml vmv in; do
+        run_ok corcast convert --quiet tree.swc "tree.$extension"
+    done
+    cp "$DATA/metaio/tubes.tre" "$DATA/metaio/tubes-packed.tre" .
+    tail -n +2 "$REPO/tests/fuzz/corpus/networks/vita" >tree.cco
+    tail -n +2 "$REPO/tests/fuzz/corpus/networks/secomb" >tree.dat
+    tail -n +2 "$REPO/tests/fuzz/corpus/networks/amira-text" >tree.am
+    tail -n +2 "$REPO/tests/fuzz/corpus/networks/amira-packed" >packed.am
+    tail -n +2 "$REPO/tests/fuzz/corpus/networks/amira_xml" >tree.xml
+    for whole in tree.* packed.am *.tre; do
+        size=$(stat -c %s "$whole")
+        for ((k = 0; k < 7; k++)); do
+            head -c $((size * k / 7)) "$whole" >"cut-$whole"
+            run corcast info --quiet "cut-$whole"
+            [ "$status" = 0 ] && continue
+            expect_status 2
+            expect_sentence "^corcast info: cut-$whole"
+        done
+    done
+}
+
 test_what_a_format_has_no_place_for_is_said() {
     printf '%s\n' id,parent,x_mm,y_mm,z_mm,radius_mm,type,flow_share,age 1,,0,9,0,1,3,0, 2,1,0,4,0,1,3,0,41 \
         3,2,-4,0,0,0.5,5,0.75,37.5 4,2,4,0,0,0.5,3,1.5, >tree.csv
