@@ -326,7 +326,14 @@ static bool begins_as_own(const Table *table)
     return k == CSV_SEGMENT_TITLES && table->sayings->n == 0;
 }
 
-/* Those whose role is none of this kind of table are values, and so are numbers of its elements. */
+/* Whether a column is not what its title says: tables of this kind have no such column, or it is a
+ * diameter beside a radius. */
+static bool is_needless(const Table *table, Role role)
+{
+    return !(roles[role].kinds & table->kind) || (role == ROLE_DIAMETER && table->at[ROLE_RADIUS]);
+}
+
+/* Those that are needless are values, and so are numbers of the table's elements. */
 static Status add_values(Table *table, Err *err)
 {
     table->first_value = begins_as_own(table) ? CSV_SEGMENT_TITLES : 0;
@@ -334,7 +341,7 @@ static Status add_values(Table *table, Err *err)
         Column *column = &table->column[k];
         if (column->role == ROLE_ID && table->kind != NODES)
             column->title = table->kind == LINES ? "edge" : "vessel";
-        if (column->role != ROLE_VALUE && !(roles[column->role].kinds & table->kind)) {
+        if (column->role != ROLE_VALUE && is_needless(table, column->role)) {
             table->at[column->role] = 0;
             column->role = ROLE_VALUE;
         }

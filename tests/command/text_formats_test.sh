@@ -121,6 +121,13 @@ test_tubes_that_metaio_wrote_are_the_same_in_text_and_packed() {
     grep -q '^5,.*,21,' tubes.csv || fail "expected the ids of the points: $(cat tubes.csv)"
 }
 
+test_a_diameter_beside_a_radius_is_a_column() {
+    printf '%s\n' x0,y0,z0,x1,y1,z1,diameter_um,radius 0,0,0,5,0,0,4770,2.25 >vessels.csv
+    run_ok corcast convert vessels.csv tree.csv
+    grep -q '"diameter_um"$' tree.csv && grep -q '^2,1,5,0,0,2.25,3,4770$' tree.csv ||
+        fail "expected the radius and the diameter: $(cat tree.csv)"
+}
+
 test_a_table_of_lines_that_is_empty_is_named() {
     printf '%s\n' id,x,y,z,radius 1,0,0,0,1 2,1,0,0,1 >nodes.csv
     : >lines.csv
