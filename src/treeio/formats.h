@@ -1,6 +1,6 @@
 /* The formats of the table in treeio.c: what each does, and what their texts share.
  *
- * A new format is a file of this room and a row of that table. It is told by its extension; where
+ * A new format is a file of a sub-room and a row of that table. It is told by its extension; where
  * several share one, and on standard input, by its TreeDetect. One whose file is a tree, with ids
  * and parents, has a TreeRead, which hands nodes to a TreeBuilder [tree/builder.h]; one whose file
  * is a network of points and lines has a GraphRead, which hands these to a Graph [tree/graph.h] as

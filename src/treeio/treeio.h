@@ -10,7 +10,7 @@
 
 #include "base/base.h"
 #include "tree/tree.h"
-#include "treeio/values.h" // IWYU pragma: export
+#include "treeio/series/values.h" // IWYU pragma: export
 
 /* Whether a path has the extension of a tree format, in capitals or not, or is "-". */
 bool tree_format_known(const char *path);

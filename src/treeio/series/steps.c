@@ -5,7 +5,7 @@
  * a row for each of the segment's points from its inlet to its outlet, a column for each time step,
  * no header. A segment's value is that of the last row, its distal end. What the segment is called
  * ends in its id, as in the decks that corcast writes ("segment12"). */
-#include "treeio/values.h"
+#include "treeio/series/values.h"
 
 #include "treeio/formats.h"
 #include <dirent.h>

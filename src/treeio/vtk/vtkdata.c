@@ -1,6 +1,6 @@
 /* Numbers are kept as doubles, which hold every index that a file of this size can have; their
  * bytes are put together by shifts, whatever the order, but for the two common types. */
-#include "treeio/vtkdata.h"
+#include "treeio/vtk/vtkdata.h"
 
 #include <ctype.h>
 #include <math.h>

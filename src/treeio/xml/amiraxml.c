@@ -3,9 +3,9 @@
  * points of a list of ids. Ends of segments are points of their own each, which lie at one place
  * where segments meet; so the worksheet Nodes has nothing to add. The first row of a worksheet
  * names its columns. Segments have no direction. */
-#include "treeio/attributes.h"
 #include "treeio/formats.h"
 #include "treeio/names.h"
+#include "treeio/vtk/attributes.h"
 #include "treeio/xml.h"
 
 #include <math.h>

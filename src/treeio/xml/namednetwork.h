@@ -3,9 +3,9 @@
 #ifndef CORCAST_TREEIO_NAMEDNETWORK_H
 #define CORCAST_TREEIO_NAMEDNETWORK_H
 
-#include "treeio/attributes.h"
 #include "treeio/names.h"
-#include "treeio/vtkdata.h"
+#include "treeio/vtk/attributes.h"
+#include "treeio/vtk/vtkdata.h"
 
 /* Begin with {.names = {.what = "node"}}; release with namednetwork_release. */
 typedef struct NamedNetwork {

@@ -2,8 +2,8 @@
  * once, and those in the AppendedData behind it, which need not be XML, when that has been found.
  * Then the pieces are put together. What an array is for is told by the element around it. */
 #include "treeio/formats.h"
-#include "treeio/vtkdata.h"
-#include "treeio/vtpbytes.h"
+#include "treeio/vtk/vtkdata.h"
+#include "treeio/vtk/vtpbytes.h"
 #include "treeio/xml.h"
 
 #include <stdint.h>

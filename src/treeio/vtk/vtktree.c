@@ -4,7 +4,7 @@
  * it was written. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
-#include "treeio/vtkmeaning.h"
+#include "treeio/vtk/vtkmeaning.h"
 
 #include <math.h>
 #include <stdint.h>

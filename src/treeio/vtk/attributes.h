@@ -3,7 +3,7 @@
 #ifndef CORCAST_TREEIO_ATTRIBUTES_H
 #define CORCAST_TREEIO_ATTRIBUTES_H
 
-#include "treeio/vtkdata.h"
+#include "treeio/vtk/vtkdata.h"
 
 /* Zeroed: none. The arrays are released with the VtkData that they are handed to, or by
  * attributes_release. */

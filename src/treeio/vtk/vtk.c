@@ -3,7 +3,7 @@
  * that are left before any room is made for it. Polylines come as counts and points one behind the
  * other (before version 5) or as two arrays, OFFSETS and CONNECTIVITY. */
 #include "treeio/formats.h"
-#include "treeio/vtkdata.h"
+#include "treeio/vtk/vtkdata.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -4,8 +4,8 @@
  * What is known of the tree stands in attributes of <info_graph>, as OpenCCO has its pressures. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
-#include "treeio/namednetwork.h"
 #include "treeio/xml.h"
+#include "treeio/xml/namednetwork.h"
 
 #include <stdlib.h>
 #include <string.h>

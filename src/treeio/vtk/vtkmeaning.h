@@ -2,7 +2,7 @@
 #ifndef CORCAST_TREEIO_VTKMEANING_H
 #define CORCAST_TREEIO_VTKMEANING_H
 
-#include "treeio/vtkdata.h"
+#include "treeio/vtk/vtkdata.h"
 
 /* All borrowed from the data; of one number for each point or cell. */
 typedef struct VtkMeaning {

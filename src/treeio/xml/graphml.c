@@ -7,8 +7,8 @@
  * remarks. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
-#include "treeio/namednetwork.h"
 #include "treeio/xml.h"
+#include "treeio/xml/namednetwork.h"
 
 #include <math.h>
 #include <stdlib.h>

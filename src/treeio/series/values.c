@@ -5,7 +5,7 @@
  * The columns of values get their names in the tree before any row is read, and the wanted ones
  * alone take memory. Rows with a time wait until all are read, as only then the frames are known;
  * sorted by segment and time, what is missing or stands twice is beside its neighbours. */
-#include "treeio/values.h"
+#include "treeio/series/values.h"
 
 #include "treeio/formats.h"
 #include <math.h>

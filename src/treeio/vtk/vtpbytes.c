@@ -3,7 +3,7 @@
  * on without padding behind the number, but behind those of blocks there may be some; a group that
  * is padded gives fewer bytes and the next begins anew, so that either is read. zlib makes nothing
  * 1032 times smaller, so a file that announces more is refused before room is made for it. */
-#include "treeio/vtpbytes.h"
+#include "treeio/vtk/vtpbytes.h"
 
 #include <libdeflate.h>
 #include <stdint.h>

@@ -1,5 +1,5 @@
 /* An array is filled up with NAN when a later element has a number, and at the end. */
-#include "treeio/attributes.h"
+#include "treeio/vtk/attributes.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -7,7 +7,7 @@
  * they become polylines of what VTK's files have, joined where edges share a vertex. Numbers of
  * vertices go to the points that lie there. */
 #include "treeio/formats.h"
-#include "treeio/vtkdata.h"
+#include "treeio/vtk/vtkdata.h"
 
 #include <ctype.h>
 #include <libdeflate.h>

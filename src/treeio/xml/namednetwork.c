@@ -1,5 +1,5 @@
 /* Lines are kept by the names of their ends until all points are there. */
-#include "treeio/namednetwork.h"
+#include "treeio/xml/namednetwork.h"
 
 #include "treeio/comments.h"
 

@@ -1,7 +1,7 @@
 /* Points and lines as they are; every array that means nothing else becomes a column, one of
  * several components several columns. */
 #include "treeio/formats.h"
-#include "treeio/vtkmeaning.h"
+#include "treeio/vtk/vtkmeaning.h"
 
 #include <math.h>
 #include <stdlib.h>

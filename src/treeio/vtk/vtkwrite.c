@@ -8,7 +8,7 @@
 #include "treeio/branches.h"
 #include "treeio/comments.h"
 #include "treeio/formats.h"
-#include "treeio/vtkdata.h"
+#include "treeio/vtk/vtkdata.h"
 
 #include <math.h>
 #include <stdlib.h>

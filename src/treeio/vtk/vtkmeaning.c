@@ -1,7 +1,7 @@
 /* An array is what it is by its plain name [vtk_plain_name]: the names of the table of radii are
  * those that programs of vessels use, best first; of equal ones the array of cells is taken, as a
  * segment is a cell. A file of the program's own goes by its own names alone. */
-#include "treeio/vtkmeaning.h"
+#include "treeio/vtk/vtkmeaning.h"
 
 #include <math.h>
 #include <stdlib.h>
