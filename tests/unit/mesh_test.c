@@ -130,6 +130,24 @@ static void a_bifurcation_is_one_sphere_near_its_surface(void **state)
     release(&made);
 }
 
+/* Rounding carries a point of a rim over the angle that rims begin at. */
+static void a_tree_far_from_the_origin_is_as_near_its_surface(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    const Vec3 root = vec3(9000, 7000, -3000);
+    sketch_begin(&sketch, root);
+    uint32_t fork = sketch_to(&sketch, 0, vec3_add(root, vec3(2.3, 0.4, 0.6)), 0.31);
+    sketch_to(&sketch, fork, vec3_add(root, vec3(4.3, 2.6, -0.6)), 0.24);
+    sketch_to(&sketch, fork, vec3_add(root, vec3(4.7, -2.5, 0.5)), 0.26);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    expect_near(&sketch.tree, &made, 0.003, 0.03);
+    assert_true(made.report.off.ratio < 0.03);
+    release(&made);
+}
+
 static void a_trifurcation_of_unlike_radii_is_one_sphere(void **state)
 {
     (void)state;
@@ -445,6 +463,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_straight_vessel_is_a_polygonal_cylinder),
         cmocka_unit_test(a_bifurcation_is_one_sphere_near_its_surface),
+        cmocka_unit_test(a_tree_far_from_the_origin_is_as_near_its_surface),
         cmocka_unit_test(a_trifurcation_of_unlike_radii_is_one_sphere),
         cmocka_unit_test(a_twig_in_a_groove_is_one_sphere),
         cmocka_unit_test(fine_steps_keep_the_radius),

@@ -105,16 +105,19 @@ static void add_cap(Assembly *assembly, uint32_t segment, int end)
     }
 }
 
-/* Angles of a rim's points about the axis, from -pi to pi. */
+/* Angles of a rim's points about the axis, rising from about -pi on: each is the one nearest to
+ * that before it, as rounding may have carried a point at -pi or pi over to the other. */
 static void find_angles(const Assembly *assembly, const FieldSegment *segment, RimPlace rim,
                         double *angles)
 {
     Vec3 u, v;
+    double before = -full_turn / 2;
     vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
     for (uint32_t i = 0; i < rim.n; i++) {
         const float *x = assembly->mesh->points[assembly->rim_points[rim.first + i]];
         Vec3 from = vec3_sub(vec3((double)x[0], (double)x[1], (double)x[2]), segment->a);
-        angles[i] = atan2(vec3_dot(from, v), vec3_dot(from, u));
+        double angle = atan2(vec3_dot(from, v), vec3_dot(from, u));
+        before = angles[i] = angle - full_turn * rint((angle - before) / full_turn);
     }
 }
 
