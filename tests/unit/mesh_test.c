@@ -148,6 +148,25 @@ static void a_tree_far_from_the_origin_is_as_near_its_surface(void **state)
     release(&made);
 }
 
+/* The attempts are 0.0349, 0.0411 and 0.0411 off. */
+static void the_attempt_that_is_the_least_off_is_kept(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    sketch_begin(&sketch, vec3(0, 0, 0));
+    uint32_t one = sketch_to(&sketch, 0, vec3(2.31, 0, 0), 0.31);
+    uint32_t other = sketch_to(&sketch, one, vec3(2.75, -0.09, 0), 0.27);
+    sketch_to(&sketch, one, vec3(3.62, 1.52, 0), 0.12);
+    sketch_to(&sketch, other, vec3(4.47, 0.75, 0), 0.22);
+    sketch_to(&sketch, other, vec3(4.47, -1.18, 0), 0.13);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    assert_int_equal(made.report.repeated, 1);
+    assert_true(made.report.off.ratio < 0.038);
+    release(&made);
+}
+
 static void a_trifurcation_of_unlike_radii_is_one_sphere(void **state)
 {
     (void)state;
@@ -464,6 +483,7 @@ int main(void)
         cmocka_unit_test(a_straight_vessel_is_a_polygonal_cylinder),
         cmocka_unit_test(a_bifurcation_is_one_sphere_near_its_surface),
         cmocka_unit_test(a_tree_far_from_the_origin_is_as_near_its_surface),
+        cmocka_unit_test(the_attempt_that_is_the_least_off_is_kept),
         cmocka_unit_test(a_trifurcation_of_unlike_radii_is_one_sphere),
         cmocka_unit_test(a_twig_in_a_groove_is_one_sphere),
         cmocka_unit_test(fine_steps_keep_the_radius),

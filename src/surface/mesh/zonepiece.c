@@ -534,29 +534,49 @@ static int steps_finer(const Maker *maker, double hole, double cell, int left)
     return gap >= 0 && gap < narrow_gap ? left : 0;
 }
 
+/* One attempt, measured: all of the piece but its points and triangles. */
+static Status attempt_measured(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates,
+                               bool *sound, double *hole)
+{
+    zonepiece_release(maker->piece);
+    TRY(attempt(maker, fineness, fates, sound, hole));
+    if (*sound)
+        measure_off(maker);
+    return STATUS_OK;
+}
+
+/* Finer cells can put a triangle across a groove that wider ones did not. So the attempt that is
+ * the least off is made again, which takes no room meanwhile, unless it was the last. */
 Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
                       const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates, Err *err)
 {
     ZonePiece made = {0};
     const Maker maker = {worker, tree, plan, &made, err};
-    ZoneFineness used = *fineness;
-    bool sound = false, near = false;
-    double hole, before = 0;
+    ZoneFineness used = *fineness, best = used;
+    bool sound = false;
+    double hole, before = 0, least = HUGE_VAL;
+    int repeats = 0;
     Status status = STATUS_OK;
-    for (int repeats = 0, steps = 1; steps && !near; repeats += steps) {
-        zonepiece_release(&made);
-        TRY_GOTO(attempt(&maker, &used, fates, &sound, &hole));
-        made.repeats = repeats;
+    for (int steps = 1; steps; repeats += steps) {
+        TRY_GOTO(attempt_measured(&maker, &used, fates, &sound, &hole));
+        double ratio = sound ? made.off.ratio : HUGE_VAL;
+        if (ratio < least) {
+            least = ratio;
+            best = used;
+        }
         if (sound)
-            measure_off(&maker);
-        near = sound && (made.off.ratio <= fineness->farthest || repeats >= MOST_REFINEMENTS ||
-                         fabs(made.off.ratio - before) < alike * before);
-        before = sound ? made.off.ratio : 0;
-        steps = sound ? 1 : steps_finer(&maker, hole, used.cells.ratio, MOST_REPEATS - repeats);
+            steps = ratio > fineness->farthest && repeats < MOST_REFINEMENTS &&
+                    fabs(ratio - before) >= alike * before;
+        else
+            steps = steps_finer(&maker, hole, used.cells.ratio, MOST_REPEATS - repeats);
+        before = sound ? ratio : 0;
         used.cells.ratio *= sound ? 1 : pow(finer, steps);
         used.cells.bending *= pow(finer, sound ? 1 : 2 * steps);
     }
-    status = near ? keep_patch(worker, fineness->grid_mm, &made, err) : refuse(&maker, err);
+    if (isfinite(least) && !(sound && made.off.ratio <= least))
+        TRY_GOTO(attempt_measured(&maker, &best, fates, &sound, &hole));
+    made.repeats = repeats;
+    status = sound ? keep_patch(worker, fineness->grid_mm, &made, err) : refuse(&maker, err);
     if (status == STATUS_OK) {
         *piece = made;
         made = (ZonePiece){0};

@@ -70,8 +70,8 @@ void zoneworker_release(ZoneWorker *worker);
 
 /* Makes the wall of a zone; of the segments that lie wholly in it, fates[segment] is set. Repeats
  * with finer cells what is not a sphere with one hole for each arm, and a time or two what is too
- * far off. STATUS_INFEASIBLE, naming the
- * id of a segment, when that does not help. */
+ * far off, of which the attempt that is the least off is kept. STATUS_INFEASIBLE, naming the id of
+ * a segment, when that does not help. */
 MUST_CHECK Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
                                  const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates,
                                  Err *err);
