@@ -250,18 +250,60 @@ static double group_sum(const uint64_t *group, uint32_t words, const double *val
     return sum;
 }
 
-/* Whether two terms that may matter are in no group together. */
+static const uint64_t *group_of(const PartPool *pool, const FieldPart *part, uint32_t number)
+{
+    return &pool->groups[part->first_group + (size_t)number * part->words];
+}
+
+/* The group that stands for the ball: its sum is bounded the highest from below. */
+static uint32_t leading_group(const PartPool *pool, const FieldPart *part)
+{
+    const size_t stride = sizeof *pool->work / sizeof pool->work->lower;
+    double most = -1;
+    uint32_t best = 0;
+    for (uint32_t g = 0; g < part->n_groups; g++) {
+        double lower = group_sum(group_of(pool, part, g), part->words, &pool->work->lower, stride);
+        if (lower > most) {
+            most = lower;
+            best = g;
+        }
+    }
+    return best;
+}
+
+/* Whether the sum over group `a` is below that over `b` in the whole ball: what both have is left
+ * out. */
+static bool is_below(const PartPool *pool, const FieldPart *part, const uint64_t *a,
+                     const uint64_t *b)
+{
+    const size_t stride = sizeof *pool->work / sizeof pool->work->lower;
+    uint64_t only_a[MOST_PART_TERMS / 64], only_b[MOST_PART_TERMS / 64];
+    for (uint32_t w = 0; w < part->words; w++) {
+        only_a[w] = a[w] & ~b[w];
+        only_b[w] = b[w] & ~a[w];
+    }
+    return group_sum(only_a, part->words, &pool->work->upper, stride) <
+           group_sum(only_b, part->words, &pool->work->lower, stride);
+}
+
+/* Whether two terms that may matter are in no group together, of groups whose sum may be the
+ * largest somewhere in the ball. */
 static bool has_parted(const PartPool *pool, const FieldPart *part)
 {
     if (part->n_terms > MOST_PART_TERMS)
         return false;
     uint64_t matters[MOST_PART_TERMS / 64] = {0};
+    const uint64_t *leader = group_of(pool, part, leading_group(pool, part));
+    for (uint32_t g = 0; g < part->n_groups; g++) {
+        const uint64_t *group = group_of(pool, part, g);
+        for (uint32_t w = 0; w < part->words && !is_below(pool, part, group, leader); w++)
+            matters[w] |= group[w];
+    }
     for (uint32_t i = 0; i < part->n_terms; i++)
-        if (pool->work[i].upper > significant)
-            matters[i / 64] |= (uint64_t)1 << i % 64;
+        if (pool->work[i].upper <= significant)
+            matters[i / 64] &= ~((uint64_t)1 << i % 64);
     for (uint32_t g = 0; g < part->n_groups; g++)
-        if (is_subset(matters, &pool->groups[part->first_group + (size_t)g * part->words],
-                      part->words))
+        if (is_subset(matters, group_of(pool, part, g), part->words))
             return false;
     return true;
 }

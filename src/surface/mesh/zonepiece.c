@@ -9,6 +9,8 @@
 #define NONE UINT32_MAX
 
 enum { MOST_REPEATS = 7, MOST_REFINEMENTS = 2 };
+/* A zone of more cells takes as long as thousands of others: it is not made anew to be nearer. */
+enum { CELLS_TO_REFINE = 2000000 };
 static const double finer = 0.85;
 /* Over the distance: a change of it by finer cells after which still finer ones are not tried. */
 static const double alike = 0.02;
@@ -566,6 +568,7 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
         }
         if (sound)
             steps = ratio > fineness->farthest && repeats < MOST_REFINEMENTS &&
+                    worker->tree.n_cells <= CELLS_TO_REFINE &&
                     fabs(ratio - before) >= alike * before;
         else
             steps = steps_finer(&maker, hole, used.cells.ratio, MOST_REPEATS - repeats);
