@@ -26,7 +26,7 @@ static const double surely = 1e-3;
 static const double lone = 0.03;
 
 /* With all that is made from them, so many cells take 4 GB of memory. */
-enum { MOST_CELLS = 6000000 };
+enum { MOST_CELLS = 5000000 };
 
 typedef struct Builder {
     ZoneTree *tree;
