@@ -12,8 +12,9 @@ enum { MOST_REPEATS = 7, MOST_REFINEMENTS = 2 };
 /* A zone of more cells takes as long as thousands of others: it is not made anew to be nearer. */
 enum { CELLS_TO_REFINE = 2000000 };
 static const double finer = 0.85;
-/* Over the distance: a change of it by finer cells after which still finer ones are not tried. */
-static const double alike = 0.02;
+/* Over the distance: a change of it by finer cells where the wall bends, after which those are not
+ * tried again. Finer cells everywhere are, beyond so many times the distance that should be. */
+static const double alike = 0.02, far_off = 1.5;
 /* Over the radius of the thinner: gaps that cells may be too wide for. */
 static const double narrow_gap = 0.3;
 /* Over the usual cell: a hole that is no flaw of the lattice. Where vessels do not blend, cells are
@@ -566,14 +567,14 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
             least = ratio;
             best = used;
         }
+        bool stuck = sound && fabs(ratio - before) < alike * before;
         if (sound)
-            steps = ratio > fineness->farthest && repeats < MOST_REFINEMENTS &&
-                    worker->tree.n_cells <= CELLS_TO_REFINE &&
-                    fabs(ratio - before) >= alike * before;
+            steps = ratio > (stuck ? far_off : 1) * fineness->farthest &&
+                    repeats < MOST_REFINEMENTS && worker->tree.n_cells <= CELLS_TO_REFINE;
         else
             steps = steps_finer(&maker, hole, used.cells.ratio, MOST_REPEATS - repeats);
         before = sound ? ratio : 0;
-        used.cells.ratio *= sound ? 1 : pow(finer, steps);
+        used.cells.ratio *= sound && !stuck ? 1 : pow(finer, steps);
         used.cells.bending *= pow(finer, sound ? 1 : 2 * steps);
     }
     if (isfinite(least) && !(sound && made.off.ratio <= least))
