@@ -151,31 +151,33 @@ static Status named(const char *name, Status status, Err *err)
     return status;
 }
 
-/* Makes room for all of a file that says its size, so that it need not be moved as it grows. */
-static Status reserve_file(FILE *stream, const char *name, const FileForm *form, Bytes *all,
-                           Err *err)
+/* The bytes of a file that says its size, 0 of all else. */
+static Status find_size(FILE *stream, const char *name, const FileForm *form, size_t *size,
+                        Err *err)
 {
     struct stat about;
-    if (fstat(fileno(stream), &about) != 0 || !S_ISREG(about.st_mode))
-        return STATUS_OK;
-    TRY(check_size(name, form, (double)about.st_size, err));
-    TRY(mem_check((double)about.st_size, name, err));
-    size_t capacity = (size_t)about.st_size + BLOCK + 1;
-    TRY(named(name, mem_calloc(&all->at, capacity, 1, "bytes", err), err));
-    all->capacity = capacity;
-    return STATUS_OK;
+    bool is_file = fstat(fileno(stream), &about) == 0 && S_ISREG(about.st_mode);
+    *size = is_file ? (size_t)about.st_size : 0;
+    return check_size(name, form, (double)*size, err);
 }
 
-/* What is no file of its kind is refused with the block that tells so. */
+static Status reserve(Bytes *all, size_t n, const char *name, Err *err)
+{
+    return named(name, mem_reserve(&all->at, &all->capacity, n + BLOCK + 1, 1, "bytes", err), err);
+}
+
+/* What is no file of its kind is refused with the block that tells so; behind the first there is
+ * room for all of the file, so that it need not be moved as it grows. */
 static Status read_blocks(FILE *stream, const char *name, const FileForm *form, Bytes *all,
                           Err *err)
 {
-    size_t count;
+    size_t count, size;
     bool has_zero = false;
-    TRY(reserve_file(stream, name, form, all, err));
+    TRY(find_size(stream, name, form, &size, err));
     do {
-        TRY(named(name, mem_reserve(&all->at, &all->capacity, all->n + BLOCK + 1, 1, "bytes", err),
-                  err));
+        if (all->n > 0 && size > all->capacity)
+            TRY(mem_check((double)size, name, err));
+        TRY(reserve(all, all->n > 0 && size > all->n ? size : all->n, name, err));
         char *block = all->at + all->n;
         count = fread(block, 1, BLOCK, stream);
         block[count] = '\0';

@@ -121,7 +121,7 @@ test_a_radius_of_a_thousand_kilometres() {
 
 test_two_hundred_segments_at_one_place() {
     rows '1 3 0 0 0 1 -1'
-    seq -f '%g 3 5 1 2 1 1' 2 200 >>tree.swc
+    seq -f '%g 3 5 1.25 2 1 1' 2 200 >>tree.swc
     each_way draws
     run corcast scene tree.swc --model blob -o scene.pov
     expect_status 2
