@@ -12,6 +12,7 @@
 #   expect_file F              the file is there and not empty
 #   expect_only F ...          the current folder holds these files and no other
 #   expect_json FILE FILTER    the jq filter is true of the file
+#   expect_tree FILE FILTER ... it is true of what info, with the options, says of a file of ../shared/data
 #   skip REASON                ends the test: not run, and said so
 #   fail REASON                ends the test: failed
 set -u
@@ -112,6 +113,15 @@ expect_json() {
     jq -e "$2" "$1" >/dev/null 2>jq.error ||
         fail "expected JSON in $1 with $2, got: $(head -c 400 "$1" | tr '\n' ' ')$(cat jq.error)"
     rm -f jq.error
+}
+
+expect_tree() {
+    local file=$1 filter=$2
+    shift 2
+    [ -r "$SHARED/$file" ] || skip "$SHARED/$file is not here"
+    run_ok corcast info --quiet --json "$@" "$SHARED/$file"
+    mv stdout info.json
+    expect_json info.json "$filter"
 }
 
 # A grown tree of N terminals in ./tree.swc.

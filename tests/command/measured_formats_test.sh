@@ -2,16 +2,6 @@
 # Every tree and network of ../shared/data, with the counts that its README gives.
 . "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
-# expect_tree FILE FILTER [OPTION...]: the jq filter is true of what info says of the file.
-expect_tree() {
-    local file=$1 filter=$2
-    shift 2
-    [ -r "$SHARED/$file" ] || skip "$SHARED/$file is not here"
-    run_ok corcast info --quiet --json "$@" "$SHARED/$file"
-    mv stdout info.json
-    expect_json info.json "$filter"
-}
-
 # expect_values FILE COLUMN FILTER: awk's filter is true of n, low and high of a column's values; the file has
 # been made a CSV, without loops.
 expect_values() {

@@ -2,14 +2,6 @@
 # Files of other programs in text formats: what is in them, and what comes back from them.
 . "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
-# expect_tree FILE FILTER: the jq filter is true of what info says of a measured file.
-expect_tree() {
-    [ -r "$SHARED/$1" ] || skip "$SHARED/$1 is not here"
-    run_ok corcast info --json "$SHARED/$1"
-    mv stdout info.json
-    expect_json info.json "$2"
-}
-
 test_decks_of_svonedsolver_have_their_segments_and_outlets() {
     expect_tree simvascular_oned/14_AortoFem_Pulse_RCR.in '.segments == 124 and .terminals == 9 and .bifurcations == 7'
     expect_tree simvascular_oned/Left_coronary_inlet_pressure_wave_outlet_coronary.in '.segments == 86 and .terminals == 6'

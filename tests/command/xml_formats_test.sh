@@ -2,14 +2,6 @@
 # Networks in XML: files of other programs, and of the libraries that they are written with.
 . "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
-# expect_tree FILE FILTER: the jq filter is true of what info says of a measured file.
-expect_tree() {
-    [ -r "$SHARED/$1" ] || skip "$SHARED/$1 is not here"
-    run_ok corcast info --json "$SHARED/$1"
-    mv stdout info.json
-    expect_json info.json "$2"
-}
-
 test_trees_of_vascusynth_and_opencco_have_their_terminals() {
     local tree='.bifurcations == .terminals - 1 and .roots == 1 and .reading.network.loops == 0'
     expect_tree peers/opencco_2d_100.xml ".terminals == 100 and $tree"
