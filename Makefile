@@ -18,7 +18,7 @@ AGAIN = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(JOBS))
 
 ROOMS := $(filter-out app,$(notdir $(patsubst %/,%,$(wildcard src/*/))))
 ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c) $(ROOMS:%=src/%/*/*.c))
-APP_SOURCES := $(wildcard src/app/*.c)
+APP_SOURCES := $(wildcard src/app/*.c src/app/*/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
 FORMATTED := $(sort $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
 	tests/alloc/*.c tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h))

@@ -1,10 +1,8 @@
-/* The subcommands, and what their output has in common. */
+/* The subcommands. */
 #ifndef CORCAST_APP_COMMANDS_H
 #define CORCAST_APP_COMMANDS_H
 
-#include "app/options.h"
-#include "base/base.h"
-#include "tree/tree.h"
+#include "app/run/options.h"
 
 extern const Command command_grow, command_refine, command_info, command_convert, command_scene,
     command_export, command_povray, command_render, command_view, command_verify, command_compare,
@@ -18,36 +16,5 @@ extern const Command *const all_commands[];
 const Command *command_find(const char *name);
 /* STATUS_USAGE for a name that no command has, with one that may have been meant. */
 Status command_unknown(const char *name, Err *err);
-
-#define GENERATOR "corcast " CORCAST_VERSION
-
-/* Whether a word is one of a list that ends in NULL. */
-bool is_one_of(const char *word, const char *const *words);
-
-/* Appends a file's name as a word for a shell that a command takes for an operand: one that looks
- * like an option gets "./" before it. */
-void put_shell_operand(Text *text, const char *path);
-
-/* The last component of a path as one line of UTF-8 for people and reports, in *out (owned). */
-MUST_CHECK Status shown_name(const char *path, char **out, Err *err);
-
-/* The command line for provenance, in *out (owned), one line of UTF-8 that a shell takes: the
- * operands, each option that differs from its default, whether it came from the command line or a
- * recipe, and the output under the name that the help gives it; without what the result does not
- * depend on, and of each path the last component alone, so that no folder of the user's is told. */
-MUST_CHECK Status command_line_text(const Parsed *parsed, char **out, Err *err);
-
-/* Adds the command line to those that a tree's file says. */
-MUST_CHECK Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err);
-
-/* Says on standard error that the tree's columns, if there are any, are not in what a command
- * writes, and why. */
-void print_columns_left_out(const char *command, const Tree *tree, const char *why);
-/* Likewise what the format of the file `path` has no place for. */
-void print_left_out(const char *command, const Tree *tree, const char *path);
-
-/* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets
- * go of it. Numbers that are not finite must have been left out or set to null. */
-MUST_CHECK Status json_write(json_t *object, const char *path, Err *err);
 
 #endif

@@ -1,7 +1,6 @@
 /* What shells complete: the command, then its options, and of an option's value the choices there
  * are, the names that a command of corcast's own lists, or files. Each shell gets one script in its
  * own language, made anew with each version. */
-#include "app/commands.h"
 #include "app/help.h"
 #include <string.h>
 

@@ -3,6 +3,7 @@
 #include "app/help.h"
 
 #include "app/commands.h"
+#include "app/run/output.h"
 #include <stdio.h>
 #include <string.h>
 

@@ -3,7 +3,7 @@
 #ifndef CORCAST_APP_HELP_H
 #define CORCAST_APP_HELP_H
 
-#include "app/options.h"
+#include "app/run/options.h"
 
 /* Prints what `corcast COMMAND --help` does; without a command, what `corcast --help` does. */
 MUST_CHECK Status help_print(const Command *command, Err *err);

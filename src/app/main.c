@@ -1,6 +1,7 @@
 /* Finds the command, reads its options, runs it, and says in one line why it failed. All that
  * differs between commands stands in their descriptions. */
 #include "app/commands.h"
+#include "app/run/output.h"
 
 #include "app/help.h"
 #include <stdio.h>

@@ -2,6 +2,7 @@
  * options by heading, as the help does. A page has no date: the same sources make the same page. */
 #include "app/commands.h"
 #include "app/help.h"
+#include "app/run/output.h"
 #include <string.h>
 
 /* Calls `put` for the options of each heading that has some, after `head` for the heading. */

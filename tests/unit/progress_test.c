@@ -1,4 +1,4 @@
-#include "app/progress.h"
+#include "app/run/progress.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

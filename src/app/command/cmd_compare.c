@@ -1,0 +1,531 @@
+/* Two images or planes, whole numbers or floats: what they hold decides which of the comparisons of
+ * verify they go to, and the tolerance is made of a tier, a file and single limits, each over the
+ * one before. The exit status is the verdict. */
+#include "app/commands.h"
+#include "app/run/options.h"
+#include "app/run/output.h"
+#include "app/run/templates.h"
+#include "verify/verify.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef enum Tier { TIER_A, TIER_B, TIER_SURFACE, TIER_NONE } Tier;
+
+typedef struct CompareOptions {
+    PlaneKind kind; /* PLANE_KINDS: told by the names */
+    Tier tier;
+    const char *ids_a, *ids_b;
+    const char *tolerance, *junit;
+    const char *heat, *difference, *flicker, *ledger, *page;
+    char *line; /* owned; the command */
+    bool json, metrics, has_metrics, has_tier, has_levels, has_ppm, has_pixelmatch;
+    double levels, ppm, depth_mm, pixelmatch;
+} CompareOptions;
+
+/* What is compared. */
+typedef struct Sides {
+    const char *paths[2];
+    Image images[2];
+    IdPlane ids[2]; /* without ids unless they are given */
+    Status status[4];
+    Err err[4];
+    const char *id_paths[2];
+} Sides;
+
+static void sides_release(Sides *sides)
+{
+    for (int side = 0; side < 2; side++) {
+        image_release(&sides->images[side]);
+        idplane_release(&sides->ids[side]);
+    }
+}
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+/* What a file holds, by its name as `render --planes` gives it. */
+static PlaneKind kind_of(const char *path)
+{
+    static const struct {
+        const char *part;
+        PlaneKind kind;
+    } names[] = {{".id.", PLANE_ID}, {"normal.", PLANE_NORMAL}, {"depth.", PLANE_DEPTH}};
+    const char *name = file_name(path), *extension = file_extension(path);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        size_t length = strlen(names[i].part), tail = strlen(extension);
+        if (strlen(name) >= length + tail &&
+            strncmp(name + strlen(name) - tail - length, names[i].part, length) == 0)
+            return names[i].kind;
+    }
+    return PLANE_COLOR;
+}
+
+static Status read_ids(IdPlane *ids, const char *path, Err *err)
+{
+    Picture picture;
+    TRY(picture_read(&picture, path, err));
+    Status status = ids_take_picture(ids, &picture, err);
+    picture_release(&picture);
+    if (status != STATUS_OK)
+        err_prefix(err, "%s: ", path);
+    return status;
+}
+
+/* File 0 and 1 are the images, 2 and 3 their ids. */
+static void read_file(size_t index, int worker, void *context)
+{
+    (void)worker;
+    Sides *sides = context;
+    size_t side = index % 2;
+    const char *path = index < 2 ? sides->paths[side] : sides->id_paths[side];
+    if (!path)
+        return;
+    sides->status[index] = index < 2 ? image_read(&sides->images[side], path, &sides->err[index])
+                                     : read_ids(&sides->ids[side], path, &sides->err[index]);
+}
+
+/* Reads all files at once; of several errors the first file's is reported. */
+static Status read_files(Sides *sides, int threads, Err *err)
+{
+    threads_for(4, threads, read_file, sides);
+    for (int i = 0; i < 4; i++)
+        if (sides->status[i] != STATUS_OK)
+            return err_set(err, sides->status[i], "%s", sides->err[i].text);
+    if (!sides->images[0].plane.values != !sides->images[1].plane.values &&
+        (sides->paths[0] && sides->paths[1]))
+        return err_set(err, STATUS_INPUT,
+                       "%s holds %s and %s %s; only images of one depth can be compared",
+                       sides->paths[0], sides->images[0].plane.values ? "floats" : "whole numbers",
+                       sides->paths[1], sides->images[1].plane.values ? "floats" : "whole numbers");
+    return STATUS_OK;
+}
+
+/* Pictures of unlike gamma become planes of linear colours, those of unlike depth 16 bits deep. */
+static Status match_pictures(Image images[2], Err *err)
+{
+    if (images[0].plane.values)
+        return STATUS_OK;
+    if (images[0].picture.gamma == images[1].picture.gamma) {
+        if (images[0].picture.bits == images[1].picture.bits)
+            return STATUS_OK;
+        TRY(picture_widen(&images[0].picture, err));
+        return picture_widen(&images[1].picture, err);
+    }
+    for (int side = 0; side < 2; side++) {
+        TRY(plane_from_picture(&images[side].plane, &images[side].picture, err));
+        picture_release(&images[side].picture);
+    }
+    return STATUS_OK;
+}
+
+/* ---- tolerance ------------------------------------------------------------------------------- */
+
+/* *name owns the tier's name when that comes from a file. */
+static Status make_tolerance(const CompareOptions *options, Tolerance *tolerance, char **name,
+                             Err *err)
+{
+    Tier tier = options->tolerance && !options->has_tier ? TIER_NONE : options->tier;
+    *tolerance = tier == TIER_A         ? tolerance_identity(options->depth_mm)
+                 : tier == TIER_B       ? tolerance_tolerant(options->depth_mm)
+                 : tier == TIER_SURFACE ? tolerance_surface(options->depth_mm)
+                                        : tolerance_none();
+    if (options->tolerance)
+        TRY(tolerance_read(tolerance, name, options->tolerance, err));
+    if (options->has_levels) {
+        tolerance->color_levels = options->levels;
+        tolerance->interior_levels = (double)INFINITY;
+    }
+    if (options->has_ppm)
+        tolerance->color_ppm = tolerance->id_ppm = tolerance->depth_ppm = tolerance->normal_ppm =
+            tolerance->coverage_ppm = tolerance->pixelmatch_ppm = options->ppm;
+    if (options->has_pixelmatch) {
+        tolerance->pixelmatch = options->pixelmatch;
+        tolerance->color_ppm = (double)INFINITY;
+        if (!options->has_ppm)
+            tolerance->pixelmatch_ppm = 0;
+    }
+    if (options->has_levels || options->has_ppm || options->depth_mm > 0 || options->has_pixelmatch)
+        tolerance->tier = "given";
+    return STATUS_OK;
+}
+
+/* ---- comparison ------------------------------------------------------------------------------ */
+
+static Status write_picture(Status (*make)(Picture *, const Picture *, const Picture *, Err *),
+                            const char *path, const Picture *a, const Picture *b, Err *err)
+{
+    Picture picture;
+    if (!path)
+        return STATUS_OK;
+    TRY(make(&picture, a, b, err));
+    Status status = picture_write(&picture, path, ENCODING_SRGB, NULL, err);
+    picture_release(&picture);
+    return status;
+}
+
+static ReportSide side_of(const Sides *sides, int side, const Picture *picture)
+{
+    return (ReportSide){.name = sides->paths[side],
+                        .key = side ? "b" : "a",
+                        .version = "",
+                        .seconds = (double)NAN,
+                        .picture = picture,
+                        .ids = sides->ids[side].ids ? &sides->ids[side] : NULL};
+}
+
+static Status write_page(const CompareOptions *options, const Sides *sides,
+                         const CompareResult *result, const Picture *a, const Picture *b, Err *err)
+{
+    char *folder = NULL;
+    Text title = TEXT_INIT;
+    const char *const commands[] = {options->line};
+    Status status = STATUS_OK;
+    text_printf(&title, "%s and %s", file_name(sides->paths[0]), file_name(sides->paths[1]));
+    TRY_GOTO(text_check(&title, err));
+    TRY_GOTO(templates_path("report", &folder, err));
+    const ReportCase report = {.name = text_chars(&title),
+                               .model = "",
+                               .a = side_of(sides, 0, a),
+                               .b = side_of(sides, 1, b),
+                               .commands = commands,
+                               .n_commands = 1,
+                               .planes = {[PLANE_COLOR] = result}};
+    status = report_write_page(&report, folder, options->page, err);
+done:
+    text_release(&title);
+    free(folder);
+    return status;
+}
+
+static Status write_pictures(const CompareOptions *options, const Sides *sides,
+                             const CompareResult *result, const Picture *a, const Picture *b,
+                             Err *err)
+{
+    if (options->page)
+        TRY(write_page(options, sides, result, a, b, err));
+    TRY(write_picture(heat_picture, options->heat, a, b, err));
+    TRY(write_picture(difference_picture, options->difference, a, b, err));
+    if (!options->flicker)
+        return STATUS_OK;
+    Text png = TEXT_INIT;
+    Status status = flicker_png(a, b, &png, err);
+    if (status == STATUS_OK)
+        status = file_write_text(options->flicker, &png, err);
+    text_release(&png);
+    return status;
+}
+
+static Status write_ledger(const char *path, const Ledger *ledger, Err *err)
+{
+    Text csv = TEXT_INIT;
+    if (!path)
+        return STATUS_OK;
+    ledger_csv(ledger, &csv);
+    Status status = file_write_text(path, &csv, err);
+    text_release(&csv);
+    return status;
+}
+
+static Status compare_codes(const CompareOptions *options, const Sides *sides,
+                            const Tolerance *tolerance, CompareResult *result, Err *err)
+{
+    bool ids = options->ids_a != NULL;
+    const Rendering a = {.picture = &sides->images[0].picture, .ids = ids ? &sides->ids[0] : NULL};
+    const Rendering b = {.picture = &sides->images[1].picture, .ids = ids ? &sides->ids[1] : NULL};
+    Ledger ledger = {0};
+    Picture shown[2] = {{0}, {0}};
+    Status status = STATUS_OK;
+    TRY_GOTO(compare_pictures(&a, &b, tolerance, result, &ledger, err));
+    if (!result->agrees)
+        TRY_GOTO(compare_cause(a.picture, b.picture, result, err));
+    TRY_GOTO(write_ledger(options->ledger, &ledger, err));
+    bool coded = a.picture->gamma == 0; /* as a screen shows it */
+    if (!coded)
+        TRY_GOTO(picture_to_srgb(&shown[0], a.picture, 16, err));
+    if (!coded)
+        TRY_GOTO(picture_to_srgb(&shown[1], b.picture, 16, err));
+    const Picture *shown_a = coded ? a.picture : &shown[0];
+    const Picture *shown_b = coded ? b.picture : &shown[1];
+    if (options->metrics || options->page)
+        TRY_GOTO(compare_perception(shown_a, shown_b, result, err));
+    status = write_pictures(options, sides, result, shown_a, shown_b, err);
+done:
+    picture_release(&shown[0]);
+    picture_release(&shown[1]);
+    ledger_release(&ledger);
+    return status;
+}
+
+static Status compare_linear(const CompareOptions *options, const Sides *sides,
+                             const Tolerance *tolerance, CompareResult *result, Err *err)
+{
+    const Plane *a = &sides->images[0].plane, *b = &sides->images[1].plane;
+    if (options->ledger)
+        return err_set(err, STATUS_USAGE,
+                       "--ledger is of two pictures of 8 or 16 bits and one gamma");
+    bool ids = options->ids_a != NULL;
+    TRY(compare_colors(a, b, ids ? &sides->ids[0] : NULL, ids ? &sides->ids[1] : NULL, tolerance,
+                       options->metrics || options->page, result, err));
+    Picture clipped[2] = {{0}, {0}};
+    Status status = STATUS_OK;
+    if (options->heat || options->difference || options->flicker || options->page) {
+        TRY_GOTO(picture_from_plane(&clipped[0], a, ENCODING_SRGB, 16, err));
+        TRY_GOTO(picture_from_plane(&clipped[1], b, ENCODING_SRGB, 16, err));
+        status = write_pictures(options, sides, result, &clipped[0], &clipped[1], err);
+    }
+done:
+    picture_release(&clipped[0]);
+    picture_release(&clipped[1]);
+    return status;
+}
+
+static Status compare_geometry(PlaneKind kind, const CompareOptions *options, const Sides *sides,
+                               const Tolerance *tolerance, CompareResult *result, Err *err)
+{
+    bool ids = options->ids_a != NULL;
+    for (int side = 0; side < 2; side++)
+        if (!sides->images[side].plane.values)
+            return err_set(
+                err, STATUS_INPUT,
+                "%s: holds whole numbers; a %s plane is of floats (PFM, OpenEXR or TIFF)",
+                sides->paths[side], plane_kind_name(kind));
+    return compare_planes(kind, &sides->images[0].plane, &sides->images[1].plane,
+                          ids ? &sides->ids[0] : NULL, ids ? &sides->ids[1] : NULL, tolerance,
+                          result, err);
+}
+
+static Status compare_files(const CompareOptions *options, PlaneKind kind, Sides *sides,
+                            const Tolerance *tolerance, int threads, CompareResult *result,
+                            Err *err)
+{
+    if (kind == PLANE_ID) {
+        sides->id_paths[0] = sides->paths[0];
+        sides->id_paths[1] = sides->paths[1];
+        sides->paths[0] = sides->paths[1] = NULL;
+    } else {
+        sides->id_paths[0] = options->ids_a;
+        sides->id_paths[1] = options->ids_b;
+    }
+    TRY(read_files(sides, threads, err));
+    if (kind == PLANE_ID)
+        return compare_ids(&sides->ids[0], &sides->ids[1], tolerance, result, err);
+    if (kind != PLANE_COLOR)
+        return compare_geometry(kind, options, sides, tolerance, result, err);
+    TRY(match_pictures(sides->images, err));
+    if (sides->images[0].plane.values)
+        return compare_linear(options, sides, tolerance, result, err);
+    return compare_codes(options, sides, tolerance, result, err);
+}
+
+/* ---- output ---------------------------------------------------------------------------------- */
+
+static Status write_junit(const CompareResult *result, const char *path, const char *name,
+                          double seconds, Err *err)
+{
+    Text xml = TEXT_INIT;
+    if (!path)
+        return STATUS_OK;
+    compare_junit(result, name, seconds, &xml);
+    Status status = file_write_text(path, &xml, err);
+    text_release(&xml);
+    return status;
+}
+
+static Status print_result(const CompareOptions *options, const CompareResult *result, bool quiet,
+                           Err *err)
+{
+    if (options->json)
+        return json_write(compare_json(result), "-", err);
+    if (quiet)
+        return STATUS_OK;
+    Text text = TEXT_INIT;
+    compare_text(result, &text);
+    Status status = text_check(&text, err);
+    size_t length = text.length;
+    if (status == STATUS_OK && !options->metrics)
+        length = strcspn(text_chars(&text), "\n") + 1;
+    if (status == STATUS_OK)
+        fwrite(text_chars(&text), 1, length, stdout);
+    text_release(&text);
+    return status;
+}
+
+static Status check_options(const CompareOptions *options, PlaneKind kind, Err *err)
+{
+    if (!options->ids_a != !options->ids_b)
+        return err_set(err, STATUS_USAGE, "--ids-a and --ids-b go together; one is missing");
+    if (options->ledger && !options->ids_a)
+        return err_set(err, STATUS_USAGE, "--ledger needs --ids-a and --ids-b, to tell segments");
+    if (kind != PLANE_COLOR && (options->heat || options->difference || options->flicker ||
+                                options->ledger || options->page))
+        return err_set(err, STATUS_USAGE,
+                       "-o, --difference, --flicker, --ledger and --html are of two pictures, not "
+                       "of two %s planes",
+                       plane_kind_name(kind));
+    return STATUS_OK;
+}
+
+static const char *const kinds[] = {"color", "depth", "normal", "id", "auto", NULL};
+static const char *const tiers[] = {"A", "B", "surface", "none", NULL};
+
+static const Option own[] = {
+    {.name = "json", SETS(FLAG, CompareOptions, json), .help = "as JSON"},
+    {.name = "junit",
+     SETS(OUTPUT, CompareOptions, junit),
+     .argument = "FILE.xml",
+     .help = "JUnit XML, a test case for each rule"},
+    {.name = "kind",
+     SETS(CHOICE, CompareOptions, kind),
+     .choices = kinds,
+     .help = "what the files hold; auto: by their names"},
+    {.name = "tier",
+     SETS(CHOICE, CompareOptions, tier),
+     GIVEN(CompareOptions, has_tier),
+     .choices = tiers,
+     .group = GROUP_JUDGE,
+     .help = "what is still agreement"},
+    {.name = "tolerance",
+     SETS(INPUT, CompareOptions, tolerance),
+     .group = GROUP_JUDGE,
+     .argument = "FILE.ini",
+     .help = "limits of one's own, the others unjudged unless --tier is given"},
+    {.name = "levels",
+     SETS(NUMBER, CompareOptions, levels),
+     GIVEN(CompareOptions, has_levels),
+     FROM_TO(0, 255),
+     .group = GROUP_JUDGE,
+     .help = "8-bit levels a pixel may be off"},
+    {.name = "ppm",
+     SETS(NUMBER, CompareOptions, ppm),
+     GIVEN(CompareOptions, has_ppm),
+     FROM_TO(0, 1e6),
+     .group = GROUP_JUDGE,
+     .otherwise = "2 in tier A",
+     .help = "pixels in a million that may be off by more"},
+    {.name = "depth-mm",
+     SETS(NUMBER, CompareOptions, depth_mm),
+     FROM_TO(0, 1e7),
+     .group = GROUP_JUDGE,
+     .unit = "mm",
+     .help = "a depth may be off"},
+    {.name = "pixelmatch",
+     SETS(NUMBER, CompareOptions, pixelmatch),
+     GIVEN(CompareOptions, has_pixelmatch),
+     FROM_TO(0, 1),
+     .group = GROUP_JUDGE,
+     .argument = "T",
+     .otherwise = "",
+     .help = "count pixels as pixelmatch 7.2.0 does at this threshold; 0.1 is its own"},
+    {.name = "metrics",
+     SETS(SWITCH, CompareOptions, metrics),
+     GIVEN(CompareOptions, has_metrics),
+     .group = GROUP_JUDGE,
+     .otherwise = "on with --json",
+     .help = "FLIP, SSIM, CIEDE2000 and all that was measured"},
+    {.name = "ids-a",
+     SETS(INPUT, CompareOptions, ids_a),
+     .help = "id plane of A; tells silhouettes from surfaces"},
+    {.name = "ids-b", SETS(INPUT, CompareOptions, ids_b), .help = "id plane of B"},
+    {.name = "output",
+     SETS(OUTPUT, CompareOptions, heat),
+     .argument = "H.png",
+     .help = "heat map of the difference of two pictures"},
+    {.name = "difference",
+     SETS(OUTPUT, CompareOptions, difference),
+     .argument = "D.png",
+     .help = "signed difference, 128 + 8 (B - A)"},
+    {.name = "flicker",
+     SETS(OUTPUT, CompareOptions, flicker),
+     .argument = "F.png",
+     .help = "animated PNG that shows A and B in turn"},
+    {.name = "ledger",
+     SETS(OUTPUT, CompareOptions, ledger),
+     .argument = "L.csv",
+     .help = "the account of every segment"},
+    {.name = "html",
+     SETS(OUTPUT, CompareOptions, page),
+     .is_told = true,
+     .argument = "PAGE.html",
+     .help = "one page about two pictures: swipe, blink, zoom, differences, numbers"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    ((CompareOptions *)options)->kind = PLANE_KINDS;
+}
+
+/* Reads, compares and says what was found. */
+static Status compare(const CompareOptions *options, PlaneKind kind, const Parsed *parsed,
+                      bool *agrees, Err *err)
+{
+    CompareResult result;
+    Tolerance tolerance;
+    char *tier_name = NULL, *name = NULL;
+    Sides sides = {.paths = {parsed->operands[0], parsed->operands[1]}};
+    double start_s = clock_seconds();
+    Status status = STATUS_OK;
+    TRY_GOTO(make_tolerance(options, &tolerance, &tier_name, err));
+    TRY_GOTO(
+        compare_files(options, kind, &sides, &tolerance, parsed->common.threads, &result, err));
+    TRY_GOTO(shown_name(parsed->operands[0], &name, err));
+    TRY_GOTO(write_junit(&result, options->junit, name, clock_seconds() - start_s, err));
+    TRY_GOTO(print_result(options, &result, parsed->common.quiet, err));
+    *agrees = result.agrees;
+done:
+    sides_release(&sides);
+    free(tier_name);
+    free(name);
+    return status;
+}
+
+static Status run_compare(void *options, Parsed *parsed, Err *err)
+{
+    CompareOptions *own_options = options;
+    bool agrees;
+    PlaneKind kind =
+        own_options->kind == PLANE_KINDS ? kind_of(parsed->operands[0]) : own_options->kind;
+    bool color = kind == PLANE_COLOR;
+    const OptionNeed needs[] = {{"depth-mm", kind == PLANE_DEPTH, "is for two depth planes"},
+                                {"levels", color, "is for two pictures"},
+                                {"pixelmatch", color, "is for two pictures"},
+                                {"ids-a", kind != PLANE_ID, "is for other planes than ids"},
+                                {"ids-b", kind != PLANE_ID, "is for other planes than ids"},
+                                {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    TRY(check_options(own_options, kind, err));
+    TRY(command_line_text(parsed, &own_options->line, err));
+    if (!own_options->has_metrics)
+        own_options->metrics = own_options->json;
+    Status status = compare(own_options, kind, parsed, &agrees, err);
+    free(own_options->line);
+    TRY(status);
+    return agrees ? STATUS_OK : STATUS_DIFFERS;
+}
+
+const Command command_compare = {
+    .name = "compare",
+    .summary = "compare two images or planes",
+    .operands = "A B",
+    .examples =
+        "  corcast compare reference.png mine.png\n"
+        "  corcast compare a.ppm b.ppm --ids-a a.id.ppm --ids-b b.id.ppm --tier B --json\n"
+        "  corcast compare a.exr b.exr --metrics on --tolerance mine.ini\n"
+        "  corcast compare a.depth.pfm b.depth.pfm --depth-mm 0.01\n"
+        "  corcast compare reference.png mine.png --html page.html\n"
+        "\ntiers of agreement:\n"
+        "  A        identity: on all but 2 pixels in a million the same colours, ids and depths\n"
+        "  B        what a renderer in single precision keeps: a few pixels at edges, no bias,\n"
+        "           no segment missing, moved or of another colour\n"
+        "  surface  what iteration towards a surface keeps: 99.5 % of colours within 2 levels,\n"
+        "           99 % of depths within 0.01 mm, nothing missing\n"
+        "  none     everything is measured, nothing is judged but numbers that are none\n",
+    .min_operands = 2,
+    .max_operands = 2,
+    .size = sizeof(CompareOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}},
+    .run = run_compare,
+};

@@ -1,0 +1,227 @@
+/* What a file holds is told by its extension, and what is read becomes what is to be written: a
+ * tree a tree, a picture a picture of sRGB, a plane of floats a plane. */
+#include "app/commands.h"
+#include "app/run/options.h"
+#include "app/run/output.h"
+#include "app/run/reading.h"
+#include "app/trees/blood.h"
+#include "app/trees/field_columns.h"
+#include "image/image.h"
+#include "treeio/treeio.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+typedef struct ConvertOptions {
+    const char *values; /* "FILE" or "FILE:COLUMN"; NULL: none */
+    const char *fields; /* "all" or "NAME,..."; NULL: none */
+    BloodOptions blood;
+} ConvertOptions;
+
+static const Option own[] = {
+    {.name = "values",
+     SETS(TEXT, ConvertOptions, values),
+     .group = GROUP_FILES,
+     .argument = "FILE[:COLUMN]",
+     .help = "values of the tree's segments by id, from a CSV or a folder of svOneDSolver"},
+    {.name = "fields",
+     SETS(TEXT, ConvertOptions, fields),
+     .group = GROUP_FILES,
+     .argument = "all|NAME,...",
+     .list = "fields",
+     .help = "what follows from the tree, and is to be in its file as columns"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+/* Reads the values that are asked for into the tree. */
+static Status join_values(const ConvertOptions *options, Parsed *parsed, Tree *tree, Err *err)
+{
+    size_t length;
+    const char *column;
+    char *path = NULL;
+    if (!options->values)
+        return STATUS_OK;
+    if (!values_parse(options->values, &length, &column))
+        return err_set(err, STATUS_USAGE,
+                       "--values: '%.60s' is not a FILE.csv, FILE.csv:COLUMN or FOLDER:flow",
+                       options->values);
+    TRY(mem_strdup(&path, options->values, err));
+    path[length] = '\0';
+    Status status = files_read(&parsed->files, "--values", path, err);
+    if (status == STATUS_OK)
+        status = tree_read_values(tree, path, column, NULL, err);
+    free(path);
+    return status;
+}
+
+/* Derives the fields that are asked for into the tree. */
+static Status join_fields(const ConvertOptions *options, const Parsed *parsed, Tree *tree, Err *err)
+{
+    if (!options->fields)
+        return blood_refuse(parsed, "needs --fields", err);
+    const TreeMeta said = blood_said(&options->blood);
+    TRY(blood_settle(&options->blood, parsed, tree, err));
+    return field_columns_add(tree, &said, options->fields, parsed->common.quiet, err);
+}
+
+/* An index for ParaView and the files that it names, none of which is read here. */
+static Status write_moments(const Tree *tree, Parsed *parsed, const char *to, Err *err)
+{
+    size_t n = 0;
+    Status status = tree_count_moments(tree, &n, err);
+    for (size_t k = 0; k < n && status == STATUS_OK; k++) {
+        char *path = NULL;
+        status = tree_moment_path(to, k, &path, err);
+        if (status == STATUS_OK)
+            status = files_write(&parsed->files, to, path, err);
+        free(path);
+    }
+    if (status == STATUS_OK)
+        return tree_write_moments(tree, to, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", parsed->operands[0]);
+    return status;
+}
+
+/* A tree in its normal form: parents before children, ids 1, 2, ... in that order. */
+static Status convert_tree(const ConvertOptions *options, Parsed *parsed, Err *err)
+{
+    const char *from = parsed->operands[0], *to = parsed->operands[1];
+    Tree tree;
+    TRY(reading_tree(parsed, from, &tree, NULL, err));
+    Status status = join_values(options, parsed, &tree, err);
+    if (status == STATUS_OK)
+        status = join_fields(options, parsed, &tree, err);
+    tree_renumber(&tree);
+    bool moments = strcasecmp(file_extension(to), "pvd") == 0;
+    if (status == STATUS_OK)
+        status = moments ? write_moments(&tree, parsed, to, err) : tree_write(&tree, to, err);
+    if (status == STATUS_OK && !moments && !parsed->common.quiet)
+        print_left_out("convert", &tree, to);
+    tree_release(&tree);
+    return status;
+}
+
+/* Codes of another gamma become sRGB's, which all formats hold. */
+static Status read_srgb(const char *path, Picture *srgb, Err *err)
+{
+    Picture picture;
+    TRY(picture_read(&picture, path, err));
+    if (picture.gamma == 0) {
+        *srgb = picture;
+        return STATUS_OK;
+    }
+    Status status = picture_to_srgb(srgb, &picture, picture.bits, err);
+    picture_release(&picture);
+    return status;
+}
+
+static Status convert_picture(const char *from, const char *to, Err *err)
+{
+    Picture picture;
+    TRY(read_srgb(from, &picture, err));
+    const ImageNote note = {"Software", GENERATOR};
+    const ImageNotes notes = {.notes = &note, .count = 1};
+    Status status = picture_write(&picture, to, ENCODING_SRGB, &notes, err);
+    picture_release(&picture);
+    return status;
+}
+
+static Status convert_plane(const char *from, const char *to, Err *err)
+{
+    Plane plane;
+    TRY(plane_read(&plane, from, err));
+    Status status = plane_write(&plane, to, err);
+    plane_release(&plane);
+    return status;
+}
+
+/* What an output is to hold; an input that is no tree is told by its first bytes. */
+typedef enum FileKind { FILE_TREE, FILE_PICTURE, FILE_PLANE, FILE_INPUT, FILE_UNKNOWN } FileKind;
+
+static const struct {
+    const char *extension;
+    FileKind kind;
+} images[] = {{"png", FILE_PICTURE}, {"ppm", FILE_PICTURE}, {"pgm", FILE_PICTURE},
+              {"tif", FILE_PICTURE}, {"pfm", FILE_PLANE},   {"exr", FILE_INPUT},
+              {"tiff", FILE_PICTURE}};
+
+enum { N_IMAGES = sizeof images / sizeof *images };
+
+static FileKind kind_of(const char *path)
+{
+    if (tree_format_known(path))
+        return FILE_TREE;
+    for (size_t i = 0; i < N_IMAGES; i++)
+        if (strcmp(file_extension(path), images[i].extension) == 0)
+            return images[i].kind;
+    return FILE_UNKNOWN;
+}
+
+static Status unknown_kind(const char *path, Err *err)
+{
+    Text trees = TEXT_INIT;
+    tree_format_list(&trees);
+    Status status = text_check(&trees, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE,
+                         "'%s' has an unknown extension; known are %s for trees, and .png, .ppm, "
+                         ".pgm, .tif and .pfm for images, and .exr for one that is read",
+                         path, text_chars(&trees));
+    text_release(&trees);
+    if (status != STATUS_USAGE)
+        return status;
+    Suggestion suggestion = suggestion_for(file_extension(path), strlen(file_extension(path)));
+    for (size_t i = 0; tree_format_extension(i); i++)
+        suggestion_offer(&suggestion, tree_format_extension(i));
+    for (size_t i = 0; i < N_IMAGES; i++)
+        suggestion_offer(&suggestion, images[i].extension);
+    suggestion_add(&suggestion, ".", err);
+    return status;
+}
+
+static Status run_convert(void *options, Parsed *parsed, Err *err)
+{
+    const ConvertOptions *own_options = options;
+    const char *from = parsed->operands[0], *to = parsed->operands[1];
+    FileKind kind = kind_of(to), kind_from = parsed->reading.format ? FILE_TREE : kind_of(from);
+    if (kind_from == FILE_UNKNOWN || kind == FILE_UNKNOWN)
+        return unknown_kind(kind == FILE_UNKNOWN ? to : from, err);
+    if (kind == FILE_INPUT)
+        return err_set(err, STATUS_USAGE,
+                       "'%s' cannot be written: OpenEXR is only read; floats become .pfm", to);
+    if ((kind_from == FILE_TREE) != (kind == FILE_TREE))
+        return err_set(err, STATUS_USAGE,
+                       "'%s' cannot become '%s': a tree and an image are different things", from,
+                       to);
+    if (kind == FILE_TREE)
+        return convert_tree(own_options, parsed, err);
+    const OptionNeed needs[] = {
+        {"values", false, "is for trees"}, {"fields", false, "is for trees"}, {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    TRY(reading_refuse(parsed, "is for trees", err));
+    TRY(blood_refuse(parsed, "is for trees", err));
+    return kind == FILE_PICTURE ? convert_picture(from, to, err) : convert_plane(from, to, err);
+}
+
+const Command command_convert = {
+    .name = "convert",
+    .summary = "convert trees and images",
+    .operands = "IN OUT",
+    .examples = "  corcast convert measured.swc tidy.swc\n"
+                "  corcast convert tree.swc tree.csv\n"
+                "  corcast convert tree.swc tree.segments.csv --fields all\n"
+                "  corcast convert tree.swc pulse.pvd --values pulse.csv\n"
+                "  corcast convert picture.ppm picture.png\n"
+                "  corcast convert render.exr render.pfm\n"
+                "  corcast convert - - < measured.swc > tidy.swc\n",
+    .min_operands = 2,
+    .max_operands = 2,
+    .writes_last = true,
+    .reads_tree = true,
+    .size = sizeof(ConvertOptions),
+    .tables = {{&own_table, 0}, {&blood_table, offsetof(ConvertOptions, blood)}},
+    .run = run_convert,
+};

@@ -1,0 +1,227 @@
+/* One layout, drawn as SVG or as pixels: the output's extension says which. */
+#include "app/commands.h"
+#include "app/pictures/coloring.h"
+#include "app/pictures/frames.h"
+#include "app/pictures/picture.h"
+#include "app/run/output.h"
+#include "app/run/templates.h"
+#include "diagram/diagram.h"
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct DiagramOptions {
+    const char *output, *look;
+    int size[2], bits;
+    double gap_mm, prune_radius_mm, margin;
+    Vec3 background; /* sRGB in [0, 1] */
+    Coloring coloring;
+} DiagramOptions;
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, DiagramOptions, output),
+     .argument = "D.svg",
+     .help = "the diagram: .svg, true to size, or .png, .tif, .ppm"},
+    {.name = "gap",
+     SETS(NUMBER, DiagramOptions, gap_mm),
+     FROM_TO(0, 1e7),
+     .group = GROUP_VESSELS,
+     .unit = "mm",
+     .otherwise = "by the height that suits the width",
+     .help = "space between two branches"},
+    {.name = "prune-radius",
+     SETS(NUMBER, DiagramOptions, prune_radius_mm),
+     .group = GROUP_VESSELS,
+     .range = &prune_range,
+     .unit = "mm",
+     .otherwise = "",
+     .help = "drop segments thinner than this"},
+    {.name = "size",
+     SETS(SIZE, DiagramOptions, size),
+     FROM_TO(1, IMAGE_MAX_SIDE),
+     .group = GROUP_CAMERA,
+     .help = "pixels"},
+    {.name = "margin",
+     SETS(NUMBER, DiagramOptions, margin),
+     FROM_TO(0, 0.45),
+     .group = GROUP_CAMERA,
+     .help = "free part on each side"},
+    {.name = "bits",
+     SETS(WHOLE, DiagramOptions, bits),
+     .range = &bits_range,
+     .argument = "8|16",
+     .help = "of a PNG or PPM"},
+    {.name = "look",
+     SETS(LOOKUP, DiagramOptions, look),
+     .group = GROUP_COLOR,
+     .list = "looks",
+     .help = "colour of what no field colours: a file of templates/looks, or a path"},
+    {.name = "background",
+     SETS(COLOR, DiagramOptions, background),
+     .group = GROUP_LIGHT,
+     .help = "sRGB, each from 0 to 1"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    DiagramOptions *own_options = options;
+    *own_options = (DiagramOptions){
+        .look = "cast", .size = {1200, 900}, .bits = 8, .margin = 0.05, .background = {1, 1, 1}};
+    coloring_set_defaults(&own_options->coloring);
+}
+
+/* What the diagram is drawn of. */
+typedef struct Drawing {
+    PictureTree of;
+    Look look;
+    Appearance appearance;
+    Diagram diagram;
+    DiagramPaint paint;
+    float (*color)[3]; /* owned; what paint.color borrows */
+} Drawing;
+
+static void drawing_release(Drawing *drawing)
+{
+    picture_tree_release(&drawing->of);
+    appearance_release(&drawing->appearance);
+    diagram_release(&drawing->diagram);
+    free(drawing->color);
+}
+
+static Status paint(const DiagramOptions *options, Drawing *drawing, Err *err)
+{
+    size_t n = drawing->of.tree.n;
+    TRY(mem_calloc(&drawing->color, n, sizeof *drawing->color, "colours", err));
+    for (size_t i = 0; i < n; i++) {
+        Rgb color = appearance_color(&drawing->appearance, (uint32_t)i);
+        memcpy(drawing->color[i], &color, sizeof color);
+    }
+    const Rgb background = rgb_of_option(options->background);
+    drawing->paint = (DiagramPaint){.color = (const float(*)[3])drawing->color,
+                                    .background = {background.r, background.g, background.b},
+                                    .margin = options->margin};
+    return STATUS_OK;
+}
+
+static Status make_drawing(const DiagramOptions *options, const Parsed *parsed, Drawing *drawing,
+                           Err *err)
+{
+    const PictureTree *of = &drawing->of;
+    TRY(coloring_read_look(options->look, &drawing->look, err));
+    TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &drawing->of, err));
+    if (of->pruned > 0 && !parsed->common.quiet)
+        fprintf(stderr, "corcast: %zu segments are pruned\n", of->pruned);
+    const ColoredTree tree = picture_colored_tree(of);
+    TRY(coloring_appearance(&options->coloring, &tree, &drawing->look, &drawing->appearance, err));
+    if (!parsed->common.quiet)
+        coloring_say(&drawing->appearance);
+    TRY(paint(options, drawing, err));
+    Status status = diagram_lay_out(&drawing->of.tree, options->gap_mm, &drawing->diagram, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", of->path);
+    return status;
+}
+
+static Status write_picture(const DiagramOptions *options, const Drawing *drawing,
+                            const char *command, Err *err)
+{
+    Frame frame = {0};
+    TRY(picture_fits(options->size[0], options->size[1], 40, err));
+    TRY(diagram_draw(&drawing->diagram, &drawing->paint, options->size[0], options->size[1],
+                     &frame.color, err));
+    Status status = frames_write(&frame, options->output, options->bits, ENCODING_SRGB, command,
+                                 drawing->appearance.said, err);
+    frame_release(&frame);
+    return status;
+}
+
+static Status put_svg(const Drawing *drawing, const DiagramSvg *svg, const char *path, Err *err)
+{
+    OutFile file;
+    TRY(outfile_open(&file, path, err));
+    Text text = TEXT_TO(file.stream);
+    Status status =
+        diagram_put_svg(&drawing->diagram, &drawing->of.tree, &drawing->paint, svg, &text, err);
+    if (status == STATUS_OK)
+        status = text_flush(&text, err);
+    text_release(&text);
+    if (status == STATUS_OK)
+        return outfile_commit(&file, err);
+    outfile_discard(&file);
+    return status;
+}
+
+static Status write_svg(const DiagramOptions *options, const Drawing *drawing, const char *tree,
+                        const char *command, Err *err)
+{
+    char *templates = NULL, *name = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(templates_folder(&templates, err));
+    TRY_GOTO(shown_name(tree, &name, err));
+    const Appearance *appearance = &drawing->appearance;
+    const DiagramSvg svg = {.templates = templates,
+                            .description = name,
+                            .generator = GENERATOR,
+                            .command = command,
+                            .name = appearance->colors ? appearance->scale.name : NULL,
+                            .unit = appearance->scale.unit,
+                            .values = appearance->values};
+    status = put_svg(drawing, &svg, options->output, err);
+done:
+    free(templates);
+    free(name);
+    return status;
+}
+
+static bool is_svg(const DiagramOptions *options)
+{
+    return strcmp(file_extension(options->output), "svg") == 0;
+}
+
+static Status check(const DiagramOptions *options, const Parsed *parsed, Err *err)
+{
+    static const char of_pixels[] = "is for pixels; an .svg is true to size";
+    const OptionNeed needs[] = {
+        {"size", !is_svg(options), of_pixels}, {"bits", !is_svg(options), of_pixels}, {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    TRY(bits_check(options->bits, err));
+    TRY(coloring_check_needs(&options->coloring, parsed, err));
+    return is_svg(options) ? STATUS_OK : frames_check_output(options->output, false, err);
+}
+
+static Status run_diagram(void *options, Parsed *parsed, Err *err)
+{
+    const DiagramOptions *own_options = options;
+    Drawing drawing = {0};
+    char *command = NULL;
+    Status status;
+    TRY(check(own_options, parsed, err));
+    TRY_GOTO(make_drawing(own_options, parsed, &drawing, err));
+    TRY_GOTO(command_line_text(parsed, &command, err));
+    if (is_svg(own_options))
+        status = write_svg(own_options, &drawing, parsed->operands[0], command, err);
+    else
+        status = write_picture(own_options, &drawing, command, err);
+done:
+    free(command);
+    drawing_release(&drawing);
+    return status;
+}
+
+const Command command_diagram = {
+    .name = "diagram",
+    .summary = "draw a tree unrolled flat, lengths and diameters true",
+    .operands = "T.swc -o D.svg",
+    .examples = "  corcast diagram tree.swc --color-by wss -o wss.svg\n"
+                "  corcast diagram tree.swc --color-by pressure --size 2400x1800 -o pressure.png\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(DiagramOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}, COLORING_TABLES(DiagramOptions, coloring)},
+    .run = run_diagram,
+};

@@ -1,0 +1,107 @@
+/* The extension of the output chooses the emitter, as in cmd_scene.c; meshing.c makes the closed
+ * surface that it writes. Options about colours are refused for a format that has none. */
+#include "app/commands.h"
+#include "app/pictures/meshing.h"
+#include "app/pictures/picture.h"
+#include "app/pictures/povfiles.h"
+#include "emit/emit.h"
+
+typedef struct ExportOptions {
+    const char *output;
+    double prune_radius_mm;
+    MeshingOptions meshing;
+} ExportOptions;
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, ExportOptions, output),
+     .argument = "M.stl",
+     .help = "the mesh; its extension chooses the format"},
+    {.name = "model",
+     SETS(CHOICE, ExportOptions, meshing.body),
+     .choices = vessel_body_names,
+     .group = GROUP_VESSELS,
+     .help = "the wall: vessels that blend where they meet, or cylinders and balls"},
+    {.name = "tolerance",
+     SETS(NUMBER, ExportOptions, meshing.tolerance),
+     .group = GROUP_VESSELS,
+     .range = &tolerance_range,
+     .help = "how far triangles may be off the surface, over the local radius"},
+    {.name = "lod",
+     SETS(NUMBER, ExportOptions, meshing.lod),
+     .group = GROUP_VESSELS,
+     FROM_TO(RANGE_ABOVE_0, 1),
+     .help = "level of detail: make about this part of the triangles, farther off the surface"},
+    {.name = "prune-radius",
+     SETS(NUMBER, ExportOptions, prune_radius_mm),
+     .group = GROUP_VESSELS,
+     .range = &prune_range,
+     .unit = "mm",
+     .otherwise = "",
+     .help = "drop segments thinner than this"},
+    {.name = "part-overlaps",
+     SETS(FLAG, ExportOptions, meshing.part_overlaps),
+     .group = GROUP_VESSELS,
+     .help = "thin vessels that overlap others that they do not belong with"},
+    {.name = "look",
+     SETS(LOOKUP, ExportOptions, meshing.look),
+     .group = GROUP_COLOR,
+     .list = "looks",
+     .help = "colour and finish: a file of templates/looks, or a path"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    ExportOptions *own_options = options;
+    own_options->meshing.tolerance = MESHING_TOLERANCE;
+    own_options->meshing.lod = 1;
+    own_options->meshing.look = "cast";
+    coloring_set_defaults(&own_options->meshing.coloring);
+}
+
+/* STATUS_USAGE for an option about colours that has no effect. */
+static Status check_colors(const ExportOptions *options, const Emitter *emitter,
+                           const Parsed *parsed, Err *err)
+{
+    static const char of_colors[] = "is for formats with colours";
+    const OptionNeed format[] = {{"look", emitter->has_colors, of_colors},
+                                 {"color-by", emitter->has_colors, of_colors},
+                                 {0}};
+    TRY(options_check_needs(parsed, format, err));
+    return coloring_check_needs(&options->meshing.coloring, parsed, err);
+}
+
+static Status run_export(void *options, Parsed *parsed, Err *err)
+{
+    const ExportOptions *own_options = options;
+    const Emitter *emitter;
+    PictureTree of;
+    TRY(scene_files_find(own_options->output, true, &emitter, err));
+    TRY(check_colors(own_options, emitter, parsed, err));
+    TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));
+    TRY(picture_read_tree(&own_options->meshing.coloring, own_options->prune_radius_mm, parsed, &of,
+                          err));
+    Status status =
+        meshing_write(emitter, &own_options->meshing, &of, own_options->output, parsed, err);
+    picture_tree_release(&of);
+    return status;
+}
+
+const Command command_export = {
+    .name = "export",
+    .summary = "write the vessels' surface as a closed mesh",
+    .operands = "T.swc -o M.stl",
+    .examples = "  corcast export tree.swc -o tree.stl\n"
+                "  corcast export tree.swc --color-by strahler -o tree.glb\n"
+                "  corcast export tree.swc --tolerance 0.05 -o tree.ply\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(ExportOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}, COLORING_TABLES(ExportOptions, meshing.coloring)},
+    .run = run_export,
+};

@@ -1,0 +1,190 @@
+/* Grows, refines if asked, writes, and only then speaks: what a user has to know of a tree that is
+ * not as it should be is said with --quiet, too. */
+#include "app/commands.h"
+#include "app/run/output.h"
+#include "app/run/progress.h"
+#include "app/trees/growing.h"
+#include "app/trees/refining.h"
+#include "treeio/treeio.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+static Status write_report(const char *path, const GrowReport *report, const RefineReport *refined,
+                           int threads, Err *err)
+{
+    double target = refined->target_before > 0 ? refined->target_after : report->target;
+    json_t *json =
+        json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:I, s:b, s:i}", "generator", GENERATOR,
+                  "seconds", report->seconds + refined->seconds, "terminals",
+                  (json_int_t)report->terminals, "target", target, "root_radius_mm",
+                  report->root_radius_mm, "tosses", (json_int_t)report->tosses, "rejected",
+                  (json_int_t)report->rejected, "thickness", report->thickness, "broken",
+                  (json_int_t)report->broken, "complete", report->complete, "threads", threads);
+    json_t *change = json_null();
+    if (report->median_change > 0)
+        change = json_pack("{s:f, s:f, s:f}", "median", report->median_change, "min",
+                           report->least_change, "max", report->greatest_change);
+    return json_write(json_with(json, "radius_change", change), path, err);
+}
+
+static void print_report(const GrowReport *report)
+{
+    fprintf(stderr, "grew %zu terminals in %.3g s: target %.6g, root radius %.4g mm\n",
+            report->terminals, report->seconds, report->target, report->root_radius_mm);
+    if (report->median_change > 0)
+        fprintf(stderr,
+                "the radii of the tree of --from changed by a median factor of %.2g (%.2g to "
+                "%.2g)\n",
+                report->median_change, report->least_change, report->greatest_change);
+}
+
+/* The domain's size, and what may be wrong with it. */
+static void print_size(const Domain *domain)
+{
+    Box box = domain->bounds;
+    Vec3 size = vec3_sub(box.high, box.low);
+    fprintf(stderr, "the domain, %.4g x %.4g", size.x, size.y);
+    if (domain->dimension == 3)
+        fprintf(stderr, " x %.4g", size.z);
+    fprintf(stderr, " mm%s, ",
+            domain->unit_is_guessed ? " if the file's unit is that (FILE,10 is a file in cm)" : "");
+}
+
+/* What a user has to know of a tree that is not as it should be. */
+static void print_warnings(const GrowReport *report, const Domain *domain, bool refined)
+{
+    Box box = domain->bounds;
+    if (report->root_radius_mm > vec3_distance(box.low, box.high)) {
+        fprintf(stderr, "corcast: ");
+        print_size(domain);
+        fprintf(stderr,
+                "is smaller than the radius of the root, %.4g mm: such a tree is of numbers only; "
+                "move --gamma towards 3 or lower --q-perf\n",
+                report->root_radius_mm);
+    } else if (report->thickness < 1) {
+        fprintf(stderr, "corcast: ");
+        print_size(domain);
+        fprintf(stderr,
+                "was too full for vessels of their real thickness: they keep clear of each other "
+                "at %g of it only; ask for fewer terminals, a larger domain or a smaller "
+                "--q-perf\n",
+                report->thickness);
+    }
+    if (report->broken > 0 && !refined)
+        fprintf(stderr,
+                "corcast: %zu segment%s shorter than wide or too near to others all the same\n",
+                report->broken, report->broken == 1 ? " is" : "s are");
+}
+
+/* Refinement moves all nodes of one tree. */
+static Status check_refining(const Growing *growing, const Refining *refining, Err *err)
+{
+    if (refining->level == GROW_REFINE_NONE)
+        return STATUS_OK;
+    if (growing->from_path)
+        return err_set(err, STATUS_USAGE,
+                       "--refine: would move the tree of --from; use corcast refine afterwards");
+    if (growing->inlet.n > 1)
+        return err_set(err, STATUS_USAGE,
+                       "--refine: takes one tree, not one from each of %zu inlets",
+                       growing->inlet.n);
+    return STATUS_OK;
+}
+
+/* Grows with progress; why growth stopped early, if it did and that is allowed, goes to *why. */
+static Status grow(Growing *growing, bool quiet, Tree *tree, GrowReport *report, Err *why, Err *err)
+{
+    Progress progress;
+    growing->params.progress = progress_report;
+    growing->params.progress_context = &progress;
+    progress_start(&progress, "growing", quiet);
+    Status status = grow_tree(&growing->params, &growing->domain, tree, report, err);
+    *why = *err;
+    progress_end(&progress);
+    return status;
+}
+
+typedef struct GrowOptions {
+    const char *output, *json;
+    Growing growing;
+    Refining refining;
+} GrowOptions;
+
+static const Option own[] = {
+    {.name = "output", SETS(OUTPUT, GrowOptions, output), .argument = "T.swc", .help = "the tree"},
+    {.name = "json", SETS(OUTPUT, GrowOptions, json), .help = "what was done, as JSON"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    growing_set_defaults(&((GrowOptions *)options)->growing);
+}
+
+/* Writes the tree and the report, and says what was done. */
+static Status finish(const GrowOptions *options, const Common *common, const Tree *tree,
+                     const GrowReport *report, const RefineReport *refined, const Err *why,
+                     Err *err)
+{
+    int threads = common->threads ? common->threads : threads_available();
+    TRY(tree_write(tree, options->output, err));
+    if (options->json)
+        TRY(write_report(options->json, report, refined, threads, err));
+    if (!report->complete)
+        fprintf(stderr, "corcast grow: %s\n", why->text);
+    if (!common->quiet)
+        print_report(report);
+    if (!common->quiet)
+        print_left_out("grow", tree, options->output);
+    print_warnings(report, &options->growing.domain, refined->target_before > 0);
+    if (!common->quiet)
+        refining_print(refined);
+    return STATUS_OK;
+}
+
+static Status run_grow(void *options, Parsed *parsed, Err *err)
+{
+    GrowOptions *own_options = options;
+    Growing *growing = &own_options->growing;
+    const Refining *refining = &own_options->refining;
+    Tree tree = {0};
+    GrowReport report;
+    RefineReport refined;
+    Err why;
+    Status status = STATUS_OK;
+    TRY(tree_format_check(own_options->output, err));
+    TRY_GOTO(check_refining(growing, refining, err));
+    TRY_GOTO(refining_check(refining, parsed, err));
+    TRY_GOTO(growing_prepare(growing, parsed, err));
+    TRY_GOTO(grow(growing, parsed->common.quiet, &tree, &report, &why, err));
+    options_name_fields(parsed, &why);
+    TRY_GOTO(refining_apply(refining, &parsed->common, &growing->domain, &tree, &refined, err));
+    if (refined.target_before > 0)
+        report.root_radius_mm = tree.radius_mm[0];
+    TRY_GOTO(command_describe(parsed, &tree.meta, err));
+    TRY_GOTO(refining_describe(refining, &refined, &tree.meta, err));
+    status = finish(own_options, &parsed->common, &tree, &report, &refined, &why, err);
+done:
+    growing_release(growing);
+    tree_release(&tree);
+    return status;
+}
+
+const Command command_grow = {
+    .name = "grow",
+    .summary = "grow an arterial tree by constrained constructive optimization",
+    .operands = "-o T.swc",
+    .examples = "  corcast grow --terminals 4000 --seed 7 -o tree.swc\n"
+                "  corcast grow --domain ball:30 --gamma 2.55 --lambda 1 -o tree.swc\n"
+                "  corcast grow --from tree.swc --terminals 8000 -o larger.swc\n"
+                "  corcast grow --inlet 0,50 --inlet 30,-40 --inlet-shares 0.7,0.3 -o forest.swc\n",
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(GrowOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0},
+               {&growing_table, offsetof(GrowOptions, growing)},
+               {&refining_table, offsetof(GrowOptions, refining)}},
+    .run = run_grow,
+};

@@ -1,0 +1,124 @@
+/* What there is to choose from, one name a line, for people and scripts. */
+#include "app/commands.h"
+#include "app/pictures/picture.h"
+#include "app/run/options.h"
+#include "app/run/templates.h"
+#include "derive/derive.h"
+#include "domain/domain.h"
+#include "treeio/treeio.h"
+#include <stdio.h>
+
+/* Fills `lines`. */
+typedef Status ListNames(Text *lines, Err *err);
+
+static Status list(ListNames *names, Err *err)
+{
+    Text lines = TEXT_INIT;
+    Status status = names(&lines, err);
+    if (status == STATUS_OK)
+        status = text_check(&lines, err);
+    if (status == STATUS_OK && text_chars(&lines))
+        fputs(text_chars(&lines), stdout);
+    text_release(&lines);
+    return status;
+}
+
+static Status list_fields(Text *lines, Err *err)
+{
+    for (size_t i = 0; derive_field_name(i); i++)
+        text_printf(lines, *derive_field_unit(i) ? "%s\t%s\n" : "%s\n", derive_field_name(i),
+                    derive_field_unit(i));
+    return text_check(lines, err);
+}
+
+static Status list_domains(Text *lines, Err *err)
+{
+    for (size_t i = 0; domain_shape_name(i); i++)
+        text_printf(lines, "%s:%s\n", domain_shape_name(i), domain_shape_parameters(i));
+    return text_check(lines, err);
+}
+
+static Status list_formats(Text *lines, Err *err)
+{
+    for (size_t i = 0; tree_format_name(i); i++)
+        text_printf(lines, ".%s\t%s\t%s\n", tree_format_extension(i), tree_format_name(i),
+                    tree_format_description(i));
+    return text_check(lines, err);
+}
+
+static Status list_looks(Text *lines, Err *err)
+{
+    return template_names("looks", ".ini", lines, err);
+}
+
+static Status list_morphometries(Text *lines, Err *err)
+{
+    return template_names("morphometry", ".txt", lines, err);
+}
+
+/* What models may be made of. */
+typedef enum ModelKind { MODELS_OF_ANYTHING, MODELS_OF_PRIMITIVES, MODELS_OF_A_FIELD } ModelKind;
+static const char *const model_kinds[] = {"anything", "primitives", "field", NULL};
+static const unsigned kind_elements[] = {~0U, MODEL_PRIMITIVES, MODEL_FIELD};
+
+typedef struct ModelsOptions {
+    ModelKind of;
+} ModelsOptions;
+
+static const Option models_own[] = {
+    {.name = "of",
+     SETS(CHOICE, ModelsOptions, of),
+     .choices = model_kinds,
+     .help = "models made of nothing else"},
+};
+
+static const OptionTable models_table = OPTION_TABLE(models_own);
+
+static Status run_models(void *options, Parsed *parsed, Err *err)
+{
+    (void)parsed;
+    (void)err;
+    const ModelsOptions *own = options;
+    for (int i = 0; i < SCENE_MODELS; i++)
+        if (model_is_of((SceneModel)i, kind_elements[own->of]))
+            puts(models[i].name);
+    return STATUS_OK;
+}
+
+static Status run_list(void *options, Parsed *parsed, Err *err)
+{
+    (void)options;
+    static const struct {
+        const Command *command;
+        ListNames *names;
+    } lists[] = {{&command_fields, list_fields},
+                 {&command_looks, list_looks},
+                 {&command_domains, list_domains},
+                 {&command_formats, list_formats},
+                 {&command_morphometries, list_morphometries}};
+    size_t i = 0;
+    while (lists[i].command != parsed->command)
+        i++;
+    return list(lists[i].names, err);
+}
+
+const Command command_models = {.name = "models",
+                                .summary = "the values of --model",
+                                .operands = "",
+                                .size = sizeof(ModelsOptions),
+                                .tables = {{&models_table, 0}},
+                                .run = run_models};
+const Command command_fields = {.name = "fields",
+                                .summary = "the values of --color-by, with their units",
+                                .operands = "",
+                                .run = run_list};
+const Command command_looks = {
+    .name = "looks", .summary = "the values of --look", .operands = "", .run = run_list};
+const Command command_domains = {
+    .name = "domains", .summary = "the shapes of --domain", .operands = "", .run = run_list};
+const Command command_formats = {
+    .name = "formats", .summary = "the formats of tree files", .operands = "", .run = run_list};
+const Command command_morphometries = {.name = "morphometries",
+                                       .summary = "the values of --morphometry",
+                                       .operands = "",
+                                       .run = run_list};

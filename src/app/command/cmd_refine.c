@@ -1,0 +1,88 @@
+/* A tree from a file, refined within its domain: that of the option, or that of its header. */
+#include "app/commands.h"
+#include "app/run/output.h"
+#include "app/run/reading.h"
+#include "app/trees/refining.h"
+#include "app/trees/tree_domain.h"
+#include "treeio/treeio.h"
+#include <stdio.h>
+
+typedef struct RefineOptions {
+    const char *output, *domain;
+    Refining refining;
+} RefineOptions;
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, RefineOptions, output),
+     .argument = "R.swc",
+     .help = "the refined tree"},
+    {.name = "domain",
+     SETS(TEXT, RefineOptions, domain),
+     .group = GROUP_TREE,
+     .argument = "SHAPE",
+     .otherwise = "the tree's",
+     .help = "tissue to stay in; a tree without one may go anywhere"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    ((RefineOptions *)options)->refining.level = GROW_REFINE_TOPOLOGY;
+}
+
+/* The domain of the option, or of the tree; *found says whether there is one. */
+static Status find_domain(const char *spec, const Tree *tree, Domain *domain, bool *found, Err *err)
+{
+    if (!spec)
+        return tree_domain(tree, domain, found, err);
+    *found = true;
+    return domain_parse(domain, spec, err);
+}
+
+static Status run_refine(void *options, Parsed *parsed, Err *err)
+{
+    const RefineOptions *own_options = options;
+    const Refining *refining = &own_options->refining;
+    TRY(tree_format_check(own_options->output, err));
+    TRY(refining_check(refining, parsed, err));
+    Tree tree = {0};
+    Domain domain = {0};
+    bool has_domain;
+    RefineReport report;
+    Status status = STATUS_OK;
+    TRY_GOTO(reading_tree(parsed, parsed->operands[0], &tree, NULL, err));
+    TRY_GOTO(find_domain(own_options->domain, &tree, &domain, &has_domain, err));
+    if (domain.file)
+        TRY_GOTO(files_read(&parsed->files, "--domain", domain.file, err));
+    if (!parsed->common.quiet)
+        print_columns_left_out("refine", &tree, "their segments move");
+    TRY_GOTO(refining_apply(refining, &parsed->common, has_domain ? &domain : NULL, &tree, &report,
+                            err));
+    TRY_GOTO(command_describe(parsed, &tree.meta, err));
+    TRY_GOTO(refining_describe(refining, &report, &tree.meta, err));
+    TRY_GOTO(tree_write(&tree, own_options->output, err));
+    if (!parsed->common.quiet)
+        refining_print(&report);
+done:
+    domain_release(&domain);
+    tree_release(&tree);
+    return status;
+}
+
+const Command command_refine = {
+    .name = "refine",
+    .summary = "lower the target of a grown or measured tree",
+    .operands = "T.swc -o R.swc",
+    .examples = "  corcast refine tree.swc --refine topology -o better.swc\n"
+                "  corcast refine tree.swc --refine anneal --refine-seconds 30 -o best.swc\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(RefineOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}, {&refining_table, offsetof(RefineOptions, refining)}},
+    .run = run_refine,
+};

@@ -1,0 +1,409 @@
+/* Draws band by band, each as many rows as --memory holds, and writes each before the next, so that
+ * a picture of any size needs the memory of one band. */
+#include "app/commands.h"
+#include "app/pictures/animation.h"
+#include "app/pictures/frames.h"
+#include "app/pictures/picture.h"
+#include "app/run/output.h"
+#include "app/run/progress.h"
+#include "render/render.h"
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct RenderOptions {
+    const char *output, *planes, *json;
+    int bits;
+    unsigned hits;
+    RenderMethod method;
+    RenderKernels kernels;
+    double threshold, memory_mb;
+    AnimationOptions animation;
+    PictureOptions picture;
+} RenderOptions;
+
+enum { HITS_EXACT, HITS_POVRAY };
+static const char *const hits_names[] = {"exact", "povray", NULL};
+static const char *const methods[] = {
+    [RENDER_TRACE] = "trace", [RENDER_RASTER] = "raster", [RENDER_ZBUFFER] = "zbuffer", NULL};
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, RenderOptions, output),
+     .argument = "P",
+     .help = "the picture: .png, .ppm, .tif or .pfm"},
+    {.name = "planes",
+     SETS(TEXT, RenderOptions, planes),
+     .argument = "LIST",
+     .help = "planes beside it: color,depth,normal,id"},
+    {.name = "bits",
+     SETS(WHOLE, RenderOptions, bits),
+     .range = &bits_range,
+     .argument = "8|16",
+     .help = "of a PNG or PPM"},
+    {.name = "method",
+     SETS(CHOICE, RenderOptions, method),
+     .choices = methods,
+     .group = GROUP_RUN,
+     .help = "all but isosurfaces: as POV-Ray does, fast, or as the paper does"},
+    {.name = "hits",
+     SETS(CHOICE, RenderOptions, hits),
+     .choices = hits_names,
+     .group = GROUP_POVRAY,
+     .help = "isosurface: where it is, or where POV-Ray's root finder sees it"},
+    {.name = "antialias-threshold",
+     SETS(NUMBER, RenderOptions, threshold),
+     FROM_TO(0, 1),
+     .group = GROUP_LIGHT,
+     .argument = "T",
+     .help = "antialias only pixels that differ by T from a neighbour; 0: all, as POV-Ray"},
+    {.name = "kernels",
+     SETS(CHOICE, RenderOptions, kernels),
+     .choices = render_kernel_names,
+     .group = GROUP_RUN,
+     .help = "instructions that tiles are drawn with, for tests"},
+    {.name = "memory",
+     SETS(NUMBER, RenderOptions, memory_mb),
+     FROM_TO(1e-3, 1e9),
+     .group = GROUP_RUN,
+     .aside = true,
+     .unit = "MB",
+     .help = "of a band; larger pictures are drawn and written band by band"},
+    {.name = "json", SETS(OUTPUT, RenderOptions, json), .help = "what was done, as JSON"},
+    {.name = "frames",
+     SETS(TEXT, RenderOptions, animation.frames),
+     .group = GROUP_ANIMATION,
+     .argument = "all|A..B",
+     .help = "a picture for each frame of values that change with time"},
+    {.name = "turn",
+     SETS(WHOLE, RenderOptions, animation.turn),
+     .group = GROUP_ANIMATION,
+     FROM_TO(1, 100000),
+     .otherwise = "",
+     .help = "so many pictures, once about the upright"},
+    {.name = "growth",
+     SETS(WHOLE, RenderOptions, animation.growth),
+     .group = GROUP_ANIMATION,
+     FROM_TO(1, 100000),
+     .otherwise = "",
+     .help = "so many pictures of the tree as it grows from its root"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    RenderOptions *own_options = options;
+    picture_set_defaults(&own_options->picture);
+    own_options->bits = 8;
+    own_options->method = RENDER_TRACE;
+    own_options->kernels = KERNELS_FASTEST;
+    own_options->memory_mb = 128;
+}
+
+/* --planes: which planes are written beside the picture. */
+static Status read_planes(const char *list, RenderParams *params, Err *err)
+{
+    static const char *const names[] = {"color", "depth", "normal", "id"};
+    bool *const wanted[] = {&params->want_color, &params->want_depth, &params->want_normal,
+                            &params->want_id};
+    while (list && *list) {
+        size_t length = strcspn(list, ",");
+        size_t i = 0;
+        while (i < 4 && (strlen(names[i]) != length || strncmp(names[i], list, length) != 0))
+            i++;
+        if (i == 4)
+            return err_set(err, STATUS_USAGE,
+                           "--planes: '%.*s' is not one of color, depth, normal, id", (int)length,
+                           list);
+        *wanted[i] = true;
+        list += length + (list[length] == ',');
+    }
+    return STATUS_OK;
+}
+
+static Status write_report(const char *path, const Scene *scene, const RenderStats *stats,
+                           const StageReport *staged, int threads, Err *err)
+{
+    json_t *report = json_pack(
+        "{s:s, s:s, s:s, s:i, s:i, s:f, s:f, s:f, s:I, s:i}", "generator", GENERATOR, "model",
+        models[scene->geometry.model].name, "engine", stats->engine, "width",
+        scene->view.camera.width, "height", scene->view.camera.height, "prepare_seconds",
+        stats->prepare_s, "trace_seconds", stats->trace_s, "cpu_seconds", stats->cpu_s, "rays",
+        (json_int_t)stats->rays, "threads", threads ? threads : threads_available());
+    if (model_has(scene->geometry.model, MODEL_JOINTS)) {
+        const JsonMember of_joints[] = {
+            {"joints", json_integer((json_int_t)staged->joints)},
+            {"places_short", json_integer((json_int_t)staged->places_short)},
+            {"places_sharp", json_integer((json_int_t)staged->places_sharp)},
+            {"places_crowded", json_integer((json_int_t)staged->places_crowded)},
+        };
+        report = json_with_members(report, of_joints, sizeof of_joints / sizeof *of_joints);
+    }
+    if (scene->appearance.said)
+        report = json_with(report, "color", coloring_json(&scene->appearance));
+    return json_write(report, path, err);
+}
+
+/* Rows of a band so that it takes about `memory_mb`: floats, codes and masks. */
+static int band_rows(const FramesForm *form, double memory_mb)
+{
+    int bytes = 12 + form->bits / 8 * 3 + 1 + 4 * form->depth + 12 * form->normal + 7 * form->id;
+    double rows = memory_mb * 1e6 / ((double)bytes * form->width);
+    if (rows >= form->height)
+        return form->height;
+    return rows < 2 * RENDER_BAND_STEP ? RENDER_BAND_STEP
+                                       : (int)rows / RENDER_BAND_STEP * RENDER_BAND_STEP;
+}
+
+/* Draws band after band and writes each before the next. */
+static Status draw_bands(Renderer *renderer, const Scene *scene, FramesWriter *writer, int step,
+                         Err *err)
+{
+    int height = scene->view.camera.height;
+    for (int first = 0; first < height; first += step) {
+        Frame band;
+        int rows = step < height - first ? step : height - first;
+        TRY(renderer_rows(renderer, &scene->view, &scene->appearance, first, rows, &band, err));
+        Status status = frames_rows(writer, &band, err);
+        frame_release(&band);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+/* One picture, by a renderer that is there or its own. */
+static Status draw(Renderer *renderer, const Scene *scene, const FramesForm *form, int step,
+                   Err *err)
+{
+    FramesWriter *writer = NULL;
+    TRY(frames_open(&writer, form, err));
+    Status status = draw_bands(renderer, scene, writer, step, err);
+    if (status == STATUS_OK)
+        return frames_commit(writer, err);
+    frames_discard(writer);
+    return status;
+}
+
+/* What is drawn, and how. */
+typedef struct Film {
+    AnimationSubject subject;
+    const Animation *animation;
+    const RenderParams *params;
+    int step; /* rows of a band */
+} Film;
+
+static void add_stats(RenderStats *all, const RenderStats *one)
+{
+    all->prepare_s += one->prepare_s;
+    all->trace_s += one->trace_s;
+    all->cpu_s += one->cpu_s;
+    all->rays += one->rays;
+    all->engine = one->engine;
+}
+
+/* The tree as it grows has a geometry, and with it a renderer, for each picture. */
+static Status draw_frame(const Film *film, int number, const FramesForm *form, Renderer *prepared,
+                         RenderStats *stats, Err *err)
+{
+    Scene shown, grown = {0};
+    Renderer *young = NULL;
+    FramesForm named = *form;
+    char *path = NULL;
+    Status status;
+    TRY_GOTO(animation_path(film->animation, form->path, number, &path, err));
+    named.path = path;
+    TRY_GOTO(animation_scene(film->animation, &film->subject, number, &shown, &grown, err));
+    if (!prepared)
+        TRY_GOTO(renderer_new(&shown.geometry, film->params, &young, err));
+    TRY_GOTO(draw(prepared ? prepared : young, &shown, &named, film->step, err));
+    if (young) {
+        const RenderStats one = renderer_stats(young);
+        add_stats(stats, &one);
+    }
+done:
+    renderer_free(young);
+    scene_release(&grown);
+    free(path);
+    return status;
+}
+
+static Status draw_all(const Film *film, const FramesForm *form, RenderStats *stats, Err *err)
+{
+    const Animation *animation = film->animation;
+    Progress *progress = film->params->progress_context;
+    Renderer *prepared = NULL;
+    Status status = STATUS_OK;
+    if (animation->kind != ANIMATION_GROWTH)
+        TRY(renderer_new(&film->subject.whole->geometry, film->params, &prepared, err));
+    for (int k = animation->first; k <= animation->last && status == STATUS_OK; k++) {
+        char what[48];
+        snprintf(what, sizeof what, "rendering %d of %d", k, animation->last);
+        progress_start(progress, animation->kind ? what : "rendering", film->subject.common->quiet);
+        status = draw_frame(film, k, form, prepared, stats, err);
+        progress_end(progress);
+    }
+    if (prepared)
+        *stats = renderer_stats(prepared);
+    renderer_free(prepared);
+    return status;
+}
+
+/* Only primitives are drawn but by rays. */
+static Status check_method(const RenderOptions *options, Err *err)
+{
+    SceneModel model = (SceneModel)options->picture.model;
+    if (model_is_of(model, MODEL_PRIMITIVES))
+        return STATUS_OK;
+    Text able = TEXT_INIT;
+    models_of(MODEL_PRIMITIVES, &able);
+    Status status = err_set(err, STATUS_USAGE, "--method %s is for %s, not for %s",
+                            methods[options->method], text_chars(&able), models[model].name);
+    text_release(&able);
+    return status;
+}
+
+/* Options that fight each other, or that the method does not know. */
+static Status check(const RenderOptions *options, const Parsed *parsed, Err *err)
+{
+    const PictureOptions *picture = &options->picture;
+    TRY(bits_check(options->bits, err));
+    const OptionNeed needs[] = {{"bits", strcmp(file_extension(options->output), "pfm") != 0,
+                                 "is for whole numbers; a .pfm holds floats"},
+                                {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    TRY(picture_check_needs(picture, parsed, err));
+    if (options->threshold > 0 && picture->antialias == 1)
+        return err_set(err, STATUS_USAGE,
+                       "--antialias-threshold needs --antialias N, with N from 2 to 9");
+    if (options->method != RENDER_TRACE)
+        TRY(check_method(options, err));
+    if (options->method == RENDER_ZBUFFER &&
+        (picture->stage.shadows || picture->antialias > 1 || picture->occlusion > 0))
+        return err_set(err, STATUS_USAGE,
+                       "--method zbuffer draws neither shadows nor antialiased pictures nor "
+                       "ambient occlusion");
+    return STATUS_OK;
+}
+
+/* The files that --planes asks for, beside the picture. */
+static Status plan_files(const RenderOptions *options, RenderParams *params, FramesForm *form,
+                         Err *err)
+{
+    TRY(read_planes(options->planes, params, err));
+    *form = (FramesForm){.width = options->picture.size[0],
+                         .height = options->picture.size[1],
+                         .path = options->output,
+                         .bits = options->bits,
+                         .encoding = ENCODING_SRGB,
+                         .picture = true,
+                         .color = params->want_color,
+                         .depth = params->want_depth,
+                         .normal = params->want_normal,
+                         .id = params->want_id};
+    params->codes_suffice =
+        form->bits == 8 && !form->color && strcmp(file_extension(form->path), "pfm") != 0;
+    params->want_color = true;
+    return frames_check_output(options->output, options->planes != NULL, err);
+}
+
+/* The names of all pictures, and of the planes beside them. */
+static Status note_files(const Animation *animation, const FramesForm *form, Files *files, Err *err)
+{
+    for (int k = animation->first; k <= animation->last; k++) {
+        FramesForm named = *form;
+        char *path;
+        TRY(animation_path(animation, form->path, k, &path, err));
+        named.path = path;
+        Status status = frames_note_planes(&named, files, err);
+        if (status == STATUS_OK && animation->kind != ANIMATION_NONE)
+            status = files_write(files, "-o", path, err);
+        free(path);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+/* The scene, and what of it follows from the animation. */
+static Status make_scene(const RenderOptions *options, Parsed *parsed, const PictureSource *source,
+                         Scene *scene, StageReport *staged, Animation *animation, Err *err)
+{
+    const PictureOptions *picture = &options->picture;
+    TRY(picture_scene_of(picture, source, parsed, scene, NULL, staged, err));
+    TRY(animation_count(animation, &scene->appearance, err));
+    if (animation->kind == ANIMATION_TURN)
+        TRY(animation_frame_turn(picture, source, scene, err));
+    return STATUS_OK;
+}
+
+static Status draw_pictures(const RenderOptions *options, Parsed *parsed, RenderParams *params,
+                            FramesForm *form, Animation *animation, Err *err)
+{
+    const CellParams cells = picture_cells(&options->picture);
+    PictureSource source = {0};
+    Scene scene = {0};
+    RenderStats stats = {0};
+    StageReport staged;
+    char *line = NULL;
+    Progress progress;
+    Status status;
+    params->povray_cells = options->hits == HITS_POVRAY ? &cells : NULL;
+    params->progress = progress_report;
+    params->progress_context = &progress;
+    const Film film = {.subject = {&options->picture, &parsed->common, &source, &scene},
+                       .animation = animation,
+                       .params = params,
+                       .step = band_rows(form, options->memory_mb)};
+    TRY_GOTO(picture_fits(form->width, film.step, 40, err));
+    TRY_GOTO(picture_read_source(&options->picture, parsed, &source, err));
+    TRY_GOTO(make_scene(options, parsed, &source, &scene, &staged, animation, err));
+    TRY_GOTO(note_files(animation, form, &parsed->files, err));
+    TRY_GOTO(command_line_text(parsed, &line, err));
+    form->provenance = line;
+    form->colors = scene.appearance.said;
+    TRY_GOTO(draw_all(&film, form, &stats, err));
+    if (options->json)
+        status = write_report(options->json, &scene, &stats, &staged, params->threads, err);
+done:
+    free(line);
+    scene_release(&scene);
+    picture_source_release(&source);
+    return status;
+}
+
+static Status run_render(void *options, Parsed *parsed, Err *err)
+{
+    const RenderOptions *own_options = options;
+    const PictureOptions *picture = &own_options->picture;
+    FramesForm form;
+    RenderParams params = {.threads = parsed->common.threads,
+                           .antialias = picture->antialias,
+                           .antialias_threshold = own_options->threshold,
+                           .shadows = picture->stage.shadows,
+                           .occlusion = picture->occlusion,
+                           .method = own_options->method,
+                           .kernels = own_options->kernels};
+    Animation animation;
+    TRY(check(own_options, parsed, err));
+    TRY(plan_files(own_options, &params, &form, err));
+    TRY(animation_read(&own_options->animation, own_options->output, &animation, err));
+    return draw_pictures(own_options, parsed, &params, &form, &animation, err);
+}
+
+const Command command_render = {
+    .name = "render",
+    .summary = "render a tree with the native renderer",
+    .operands = "T.swc -o P.png",
+    .examples = "  corcast render tree.swc -o tree.png\n"
+                "  corcast render tree.swc --model isosurface --antialias 3 -o tree.ppm\n"
+                "  corcast render tree.swc --planes depth,normal,id -o tree.png\n"
+                "  corcast render tree.swc --turn 120 -o turn%03d.png\n"
+                "  corcast render tree.swc --color-by pulse.csv --frames all -o f%04d.png\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(RenderOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}, PICTURE_TABLES(RenderOptions, picture)},
+    .run = run_render,
+};

@@ -1,0 +1,296 @@
+/* What a verification leaves: a folder with the scene, all planes and the report, and its verdict
+ * as text. */
+#include "app/commands.h"
+#include "app/pictures/frames.h"
+#include "app/pictures/verification.h"
+#include "app/run/output.h"
+#include "app/run/templates.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+/* ---- the folder ------------------------------------------------------------------------------ */
+
+/* All that a verification leaves. The verdict comes first: what is interrupted leaves none. */
+static const char *const left[] = {
+    "report.html",      "report.json",       "junit.xml",         "diff.png",
+    "scene.pov",        "scene.inc",         "ids.pov",           "ids.inc",
+    "povray.png",       "povray.depth.png",  "povray.normal.png", "povray.id.png",
+    "povray.depth.pfm", "povray.normal.pfm", "povray.id.ppm",     "native.png",
+    "native.depth.pfm", "native.normal.pfm", "native.id.ppm",     "exact.png",
+    "exact.depth.pfm",  "exact.normal.pfm",  "exact.id.ppm"};
+
+/* Where a verification writes to. */
+typedef struct Folder {
+    const char *path;
+    int lock; /* the folder, locked, or -1 */
+} Folder;
+
+/* Does `what` with the path of each file of the folder. */
+static Status for_all_files(const Folder *folder, Files *files,
+                            Status (*what)(Files *files, const char *path, Err *err), Err *err)
+{
+    for (size_t i = 0; i < sizeof left / sizeof *left; i++) {
+        char *path = NULL;
+        TRY(file_join(folder->path, left[i], &path, err));
+        Status status = what(files, path, err);
+        free(path);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+static Status note_file(Files *files, const char *path, Err *err)
+{
+    return files_write(files, "-o", path, err);
+}
+
+static Status remove_file(Files *files, const char *path, Err *err)
+{
+    (void)files;
+    if (unlink(path) == 0 || errno == ENOENT)
+        return STATUS_OK;
+    return err_set(err, STATUS_IO, "%s: cannot be removed: %s", path, strerror(errno));
+}
+
+/* Where the folder is there, keeps other verifications out of it until the end of the process, and
+ * removes what an earlier one has left: an old verdict is none about this tree. A file system
+ * without locks has none. */
+static Status claim_folder(Folder *folder, Files *files, Err *err)
+{
+    if (folder->lock >= 0)
+        return STATUS_OK;
+    folder->lock = open(folder->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder->lock < 0)
+        return errno == ENOENT ? STATUS_OK
+                               : err_set(err, STATUS_IO, "%s: cannot be written to: %s",
+                                         folder->path, strerror(errno));
+    if (flock(folder->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        return err_set(err, STATUS_IO, "%s: another verification is writing to this folder",
+                       folder->path);
+    TRY(for_all_files(folder, files, note_file, err));
+    return for_all_files(folder, files, remove_file, err);
+}
+
+/* ---- the verdict ------------------------------------------------------------------------------
+ */
+
+static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err)
+{
+    ReportCase report = {.name = v->name,
+                         .model = models[v->scene.geometry.model].name,
+                         .a = {.name = "POV-Ray",
+                               .key = "povray",
+                               .version = v->run.version,
+                               .seconds = v->run.seconds,
+                               .picture = verification_shown_by_povray(v),
+                               .ids = &v->povray.id,
+                               .depth = &v->povray.depth,
+                               .normal = &v->povray.normal},
+                         .b = {.name = "corcast",
+                               .key = "native",
+                               .version = CORCAST_VERSION,
+                               .seconds = v->stats.prepare_s + v->stats.trace_s,
+                               .picture = verification_shown_natively(v),
+                               .ids = &v->native.id,
+                               .depth = &v->native.depth,
+                               .normal = &v->native.normal},
+                         .commands = (const char *const *)v->commands,
+                         .n_commands = v->n_commands};
+    for (int kind = 0; kind < PLANE_KINDS; kind++)
+        report.planes[kind] = &v->results[kind];
+    report.surface = verification_takes_two_steps(v) ? &v->surface : NULL;
+    report.exact = verification_takes_two_steps(v) ? &v->exact_color : NULL;
+    report.settled = v->asked ? &v->settled : NULL;
+    *agrees = report_agrees(&report);
+    char *page = NULL;
+    TRY(templates_path("report", &page, err));
+    Status status = report_write(&report, page, v->folder, err);
+    if (status == STATUS_OK && as_json)
+        status = json_write(report_json(&report), "-", err);
+    free(page);
+    return status;
+}
+
+static void print_surface(const SurfaceCheck *surface)
+{
+    printf("  %-7s %-7s", "surface", surface->agrees ? "agree" : "differ");
+    if (surface->agrees)
+        printf("99 %% within %.3g mm, worst %.3g mm, %zu pixels graze\n", surface->p99_mm,
+               surface->max_mm, surface->grazing);
+    else
+        printf("%s\n", surface->reason);
+}
+
+static void print_exact(const CompareResult *exact)
+{
+    printf("  %-7s %-7s", "exact", exact->agrees ? "agree" : "differ");
+    if (exact->agrees)
+        printf("gain %.6f, %zu of %zu pixels off by more than %g levels\n", exact->gain,
+               exact->beyond_pixels, exact->common_pixels, exact->tolerance.color_levels);
+    else
+        printf("%s\n", exact->reason);
+}
+
+/* A line for each cause that was met, and for the first pixels where. */
+static Status print_settled(const Settled *settled, Err *err)
+{
+    Text text = TEXT_INIT;
+    for (SettledCause cause = settled->from; cause <= settled->to; cause++)
+        if (settled->count[cause])
+            text_printf(&text, "  %-7s %-7s%s: %zu, at most %zu allowed; corcast is right there\n",
+                        "settled",
+                        settled->count[cause] <= settled_allowed(settled, cause) ? "agree"
+                                                                                 : "differ",
+                        settled_cause_sentence(cause), settled->count[cause],
+                        settled_allowed(settled, cause));
+    for (int i = 0; i < settled->n_first && settled->from == SETTLED_ROOT; i++) {
+        text_printf(&text, "                 %s ", settled_cause_name(settled->first[i].cause));
+        settled_describe(&settled->first[i], "POV-Ray", "corcast", &text);
+        text_puts(&text, "\n");
+    }
+    Status status = text_check(&text, err);
+    if (status == STATUS_OK)
+        fputs(text_chars(&text), stdout);
+    text_release(&text);
+    return status;
+}
+
+static Status print_verdict(const Verification *v, bool agrees, Err *err)
+{
+    for (int kind = 0; kind < PLANE_KINDS; kind++) {
+        const CompareResult *result = &v->results[kind];
+        printf("  %-7s %-7s", plane_kind_name((PlaneKind)kind),
+               result->agrees ? "agree" : "differ");
+        if (!result->agrees)
+            printf("%s\n", result->reason);
+        else if (kind == PLANE_DEPTH)
+            printf("median %.3g mm, 99 %% within %.3g mm, worst %.3g mm\n", result->median,
+                   result->p99, result->max);
+        else if (kind == PLANE_NORMAL)
+            printf("median %.3g deg, 99 %% within %.3g deg, worst %.3g deg\n", result->median,
+                   result->p99, result->max);
+        else
+            printf("%zu of %zu pixels differ\n", result->differing_pixels, result->pixels);
+    }
+    if (v->asked)
+        TRY(print_settled(&v->settled, err));
+    if (verification_takes_two_steps(v))
+        print_surface(&v->surface);
+    if (verification_takes_two_steps(v))
+        print_exact(&v->exact_color);
+    printf("%s: POV-Ray %s in %.2f s, corcast in %.2f s; %s/report.html\n",
+           agrees ? "agree" : "differ", v->run.version, v->run.seconds,
+           v->stats.prepare_s + v->stats.trace_s, v->folder);
+    return STATUS_OK;
+}
+
+typedef struct VerifyOptions {
+    const char *folder;
+    int bits;
+    RenderKernels kernels;
+    bool json;
+    PictureOptions picture;
+} VerifyOptions;
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(FOLDER, VerifyOptions, folder),
+     .argument = "DIR",
+     .is_told = true,
+     .help = "folder for the report, the scene and all planes"},
+    {.name = "bits",
+     SETS(WHOLE, VerifyOptions, bits),
+     .range = &bits_range,
+     .group = GROUP_JUDGE,
+     .argument = "8|16",
+     .help = "of the colours compared: 8, sRGB, or 16, linear"},
+    {.name = "kernels",
+     SETS(CHOICE, VerifyOptions, kernels),
+     .choices = render_kernel_names,
+     .group = GROUP_RUN,
+     .help = "instructions that the exact isosurface is drawn with, for tests"},
+    {.name = "json", SETS(FLAG, VerifyOptions, json), .help = "the report on standard output"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    VerifyOptions *own_options = options;
+    picture_set_defaults(&own_options->picture);
+    own_options->bits = 8;
+    own_options->kernels = KERNELS_FASTEST;
+}
+
+static Status check(const VerifyOptions *options, const Parsed *parsed, Err *err)
+{
+    const PictureOptions *picture = &options->picture;
+    if (strcmp(options->folder, "-") == 0)
+        return err_set(err, STATUS_USAGE, "-o: a report is a folder, not standard output");
+    TRY(bits_check(options->bits, err));
+    TRY(picture_check_needs(picture, parsed, err));
+    TRY(picture_check_povray(picture, err));
+    return picture_fits(picture->size[0], picture->size[1], 120, err);
+}
+
+/* Reads the tree, makes the folder, draws both sides and compares them. */
+static Status verify(Verification *v, int frame, Folder *folder, Parsed *parsed, Err *err)
+{
+    TRY(claim_folder(folder, &parsed->files, err));
+    TRY(picture_scene(v->picture, parsed, &v->scene, NULL, NULL, err));
+    TRY(verification_pick_frame(v, frame, err));
+    TRY(file_make_folder(v->folder, err));
+    TRY(claim_folder(folder, &parsed->files, err));
+    TRY(shown_name(v->tree, &v->name, err));
+    TRY(verification_draw(v, err));
+    return verification_compare(v, err);
+}
+
+static Status run_verify(void *options, Parsed *parsed, Err *err)
+{
+    VerifyOptions *own_options = options;
+    Status status = STATUS_OK;
+    bool agrees = false;
+    const int frame = own_options->picture.coloring.frame;
+    Verification v = {.picture = &own_options->picture,
+                      .common = &parsed->common,
+                      .tree = parsed->operands[0],
+                      .folder = own_options->folder,
+                      .bits = own_options->bits,
+                      .kernels = own_options->kernels};
+    Folder folder = {own_options->folder, -1};
+    TRY(check(own_options, parsed, err));
+    TRY_GOTO(command_line_text(parsed, &v.commands[v.n_commands++], err));
+    own_options->picture.coloring.frame = 0; /* the scene for POV-Ray has all */
+    TRY_GOTO(verify(&v, frame, &folder, parsed, err));
+    TRY_GOTO(write_report(&v, own_options->json, &agrees, err));
+    if (!own_options->json && !parsed->common.quiet)
+        TRY_GOTO(print_verdict(&v, agrees, err));
+    status = agrees ? STATUS_OK : STATUS_DIFFERS;
+done:
+    if (folder.lock >= 0)
+        close(folder.lock);
+    verification_release(&v);
+    return status;
+}
+
+const Command command_verify = {
+    .name = "verify",
+    .summary = "prove that POV-Ray and the native renderer agree",
+    .operands = "T.swc -o DIR",
+    .examples = "  corcast verify tree.swc -o check\n"
+                "  corcast verify tree.swc --model isosurface --size 400x400 -o check\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(VerifyOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}, PICTURE_TABLES(VerifyOptions, picture)},
+    .run = run_verify,
+};

@@ -1,0 +1,196 @@
+/* One writer a file. The planes take their final names first and the picture last, so that a
+ * picture never stands beside planes of another. */
+#include "app/pictures/frames.h"
+
+#include "app/run/output.h"
+#include <stdlib.h>
+#include <string.h>
+
+Status frames_check_output(const char *path, bool planes, Err *err)
+{
+    if (strcmp(path, "-") == 0) {
+        if (planes)
+            return err_set(err, STATUS_USAGE, "--planes needs -o FILE, to name the planes after");
+        return STATUS_OK;
+    }
+    static const char *const known[] = {"png", "ppm", "pfm", "tif", "tiff"};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (strcmp(file_extension(path), known[i]) == 0)
+            return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png, .ppm, .tif or .pfm", path);
+}
+
+const Range bits_range = {8, 16};
+
+Status bits_check(int bits, Err *err)
+{
+    if (bits == 8 || bits == 16)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "--bits: '%d' is not 8 or 16", bits);
+}
+
+typedef enum FrameFile { FILE_COLOR, FILE_DEPTH, FILE_NORMAL, FILE_ID, FILE_PICTURE } FrameFile;
+enum { FRAME_FILES = FILE_PICTURE + 1 };
+
+struct FramesWriter {
+    const FramesForm *form;
+    ImageWriter *files[FRAME_FILES]; /* NULL: not wanted */
+};
+
+static bool is_wanted(const FramesForm *form, int file)
+{
+    const bool wanted[FRAME_FILES] = {form->color, form->depth, form->normal, form->id,
+                                      form->picture};
+    return wanted[file];
+}
+
+static bool is_linear(const FramesForm *form)
+{
+    return strcmp(file_extension(form->path), "pfm") == 0;
+}
+
+static Status open_picture(FramesWriter *writer, Err *err)
+{
+    const FramesForm *form = writer->form;
+    const ImageNote notes[] = {
+        {"Software", GENERATOR}, {"Comment", form->provenance}, {"Colors", form->colors}};
+    const ImageNotes all = {.notes = notes, .count = form->colors ? 3 : 2};
+    const ImageForm image = {.width = form->width,
+                             .height = form->height,
+                             .channels = 3,
+                             .bits = is_linear(form) ? 32 : form->bits,
+                             .encoding = form->encoding,
+                             .notes = &all};
+    return imagewriter_open(&writer->files[FILE_PICTURE], form->path, &image, err);
+}
+
+static const struct {
+    const char *suffix;
+    int channels, bits;
+} planes[] = {[FILE_COLOR] = {".color.pfm", 3, 32},
+              [FILE_DEPTH] = {".depth.pfm", 1, 32},
+              [FILE_NORMAL] = {".normal.pfm", 3, 32},
+              [FILE_ID] = {".id.ppm", 3, 8}};
+
+Status frames_note_planes(const FramesForm *form, Files *files, Err *err)
+{
+    for (int file = 0; file < FILE_PICTURE; file++) {
+        char *name = NULL;
+        if (!is_wanted(form, file))
+            continue;
+        TRY(file_with_suffix(form->path, planes[file].suffix, &name, err));
+        Status status = files_write(files, "--planes", name, err);
+        free(name);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+static Status open_plane(FramesWriter *writer, int file, Err *err)
+{
+    const ImageForm image = {.width = writer->form->width,
+                             .height = writer->form->height,
+                             .channels = planes[file].channels,
+                             .bits = planes[file].bits,
+                             .encoding = ENCODING_LINEAR};
+    char *name = NULL;
+    TRY(file_with_suffix(writer->form->path, planes[file].suffix, &name, err));
+    Status status = imagewriter_open(&writer->files[file], name, &image, err);
+    free(name);
+    return status;
+}
+
+Status frames_open(FramesWriter **out, const FramesForm *form, Err *err)
+{
+    FramesWriter *writer;
+    TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
+    writer->form = form;
+    Status status = STATUS_OK;
+    for (int file = 0; file < FRAME_FILES && status == STATUS_OK; file++)
+        if (is_wanted(form, file))
+            status =
+                file == FILE_PICTURE ? open_picture(writer, err) : open_plane(writer, file, err);
+    if (status != STATUS_OK) {
+        frames_discard(writer);
+        return status;
+    }
+    *out = writer;
+    return STATUS_OK;
+}
+
+static Status write_codes(ImageWriter *file, Picture *codes, Err *err)
+{
+    Status status = imagewriter_codes(file, codes, err);
+    picture_release(codes);
+    return status;
+}
+
+static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
+{
+    ImageWriter *file = writer->files[FILE_PICTURE];
+    if (is_linear(writer->form))
+        return imagewriter_floats(file, &rows->color, err);
+    if (rows->codes.codes8)
+        return imagewriter_codes(file, &rows->codes, err);
+    Picture codes;
+    TRY(picture_from_plane(&codes, &rows->color, writer->form->encoding, writer->form->bits, err));
+    return write_codes(file, &codes, err);
+}
+
+Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err)
+{
+    const Plane *const values[] = {
+        [FILE_COLOR] = &rows->color, [FILE_DEPTH] = &rows->depth, [FILE_NORMAL] = &rows->normal};
+    for (int file = FILE_COLOR; file <= FILE_NORMAL; file++)
+        if (writer->files[file])
+            TRY(imagewriter_floats(writer->files[file], values[file], err));
+    if (writer->files[FILE_ID]) {
+        Picture codes;
+        TRY(picture_from_ids(&codes, &rows->id, err));
+        TRY(write_codes(writer->files[FILE_ID], &codes, err));
+    }
+    return writer->files[FILE_PICTURE] ? write_picture(writer, rows, err) : STATUS_OK;
+}
+
+Status frames_commit(FramesWriter *writer, Err *err)
+{
+    Status status = STATUS_OK;
+    for (int file = 0; file < FRAME_FILES && status == STATUS_OK; file++) {
+        if (!writer->files[file])
+            continue;
+        status = imagewriter_commit(writer->files[file], err);
+        writer->files[file] = NULL;
+    }
+    frames_discard(writer);
+    return status;
+}
+
+void frames_discard(FramesWriter *writer)
+{
+    for (int file = 0; writer && file < FRAME_FILES; file++)
+        imagewriter_discard(writer->files[file]);
+    free(writer);
+}
+
+Status frames_write(const Frame *frame, const char *path, int bits, Encoding encoding,
+                    const char *provenance, const char *colors, Err *err)
+{
+    const FramesForm form = {.width = bits ? frame->color.width : frame->id.width,
+                             .height = bits ? frame->color.height : frame->id.height,
+                             .path = path,
+                             .bits = bits,
+                             .encoding = encoding,
+                             .picture = bits != 0,
+                             .depth = frame->depth.values != NULL,
+                             .normal = frame->normal.values != NULL,
+                             .id = frame->id.ids != NULL,
+                             .provenance = provenance,
+                             .colors = colors};
+    FramesWriter *writer;
+    TRY(frames_open(&writer, &form, err));
+    Status status = frames_rows(writer, frame, err);
+    if (status == STATUS_OK)
+        return frames_commit(writer, err);
+    frames_discard(writer);
+    return status;
+}

@@ -1,0 +1,49 @@
+/* Frames as files: the picture and the planes beside it. */
+#ifndef CORCAST_APP_FRAMES_H
+#define CORCAST_APP_FRAMES_H
+
+#include "app/run/files.h"
+#include "base/base.h"
+#include "image/image.h"
+
+/* STATUS_USAGE when `path` is no image file, or is standard output although planes are wanted. */
+MUST_CHECK Status frames_check_output(const char *path, bool planes, Err *err);
+
+/* Of the bits of a picture, of which only the ends are taken. */
+extern const Range bits_range;
+/* STATUS_USAGE unless 8 or 16. */
+MUST_CHECK Status bits_check(int bits, Err *err);
+
+/* Which files are to be written for a frame. */
+typedef struct FramesForm {
+    int width, height; /* of the whole picture */
+    const char *path;  /* of the picture; the planes of P.png are P.color.pfm, P.depth.pfm,
+                        * P.normal.pfm and P.id.ppm */
+    int bits;          /* of a picture that is no .pfm: 8 or 16 */
+    Encoding encoding; /* of its codes; .pfm is linear */
+    bool picture, color, depth, normal, id;
+    const char *provenance; /* the command line; of the picture */
+    const char *colors;     /* what they mean; of the picture; NULL: nothing */
+} FramesForm;
+
+/* Takes note of the planes that are to be written, of the picture's name or not. */
+MUST_CHECK Status frames_note_planes(const FramesForm *form, Files *files, Err *err);
+
+/* Files being written band by band; none has its final name before frames_commit. */
+typedef struct FramesWriter FramesWriter;
+
+/* `form` is borrowed until the end. Follow with exactly one of frames_commit and frames_discard,
+ * each of which frees the writer, also on failure. */
+MUST_CHECK Status frames_open(FramesWriter **out, const FramesForm *form, Err *err);
+/* The next rows, with all the planes that are to be written. */
+MUST_CHECK Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err);
+MUST_CHECK Status frames_commit(FramesWriter *writer, Err *err);
+void frames_discard(FramesWriter *writer);
+
+/* Writes a whole frame: the planes that it has but for the colour, and the picture if `bits` is not
+ * 0.
+ */
+MUST_CHECK Status frames_write(const Frame *frame, const char *path, int bits, Encoding encoding,
+                               const char *provenance, const char *colors, Err *err);
+
+#endif

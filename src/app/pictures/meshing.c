@@ -1,0 +1,216 @@
+/* The surface is proved before anything is written: what the manifest says is of the very triangles
+ * that go into the file, and a mesh that is not sound becomes no file. */
+#include "app/pictures/meshing.h"
+
+#include "app/pictures/picture.h"
+#include "app/pictures/povfiles.h"
+#include "app/run/output.h"
+#include "app/run/progress.h"
+#include "derive/derive.h"
+#include "stage/stage.h"
+#include "tree/tree.h"
+#include "treeio/treeio.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct Meshing {
+    const PictureTree *of;
+    Appearance appearance; /* with the orders: for an emitter with colours */
+    Field orders;
+    VesselTree vessels;
+    VesselMesh mesh;
+    MeshReport report;
+    uint32_t *thinned; /* indices of segments, by --part-overlaps */
+    size_t n_thinned;
+} Meshing;
+
+const char *const vessel_body_names[] = {
+    [BODY_POTENTIAL] = "isosurface", [BODY_ROUND] = "rounded", NULL};
+
+static Status take_vessels(Meshing *made, VesselBody body, Err *err)
+{
+    size_t dropped;
+    TRY(stage_vessels(&made->of->tree, &made->vessels, &dropped, err));
+    made->vessels.body = body;
+    if (dropped)
+        fprintf(stderr, "corcast: %zu segments have no length or no radius and are left out\n",
+                dropped);
+    return STATUS_OK;
+}
+
+/* What the segments look like, and by which orders they are grouped. */
+static Status color_vessels(const MeshingOptions *options, bool quiet, Meshing *made, Err *err)
+{
+    const ColoredTree tree = picture_colored_tree(made->of);
+    Look look;
+    TRY(coloring_read_look(options->look, &look, err));
+    TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
+    if (!quiet)
+        coloring_say(&made->appearance);
+    return derive_rule(tree.drawn, &(TreeMeta){0}, "strahler", &made->orders, err);
+}
+
+/* Says before the work how much of it there is. */
+static Status say_estimate(const VesselTree *vessels, const MeshParams *params, bool quiet,
+                           Err *err)
+{
+    char memory[BYTES_TEXT_SIZE];
+    MeshEstimate estimate = vesselmesh_estimate(vessels, params);
+    if (!quiet)
+        fprintf(stderr, "corcast: about %.2g triangles, which take %.*f s and %s of memory\n",
+                estimate.triangles, estimate.seconds < 10, estimate.seconds,
+                bytes_text(estimate.bytes, memory));
+    return mem_check(estimate.bytes, "the mesh", err);
+}
+
+static void say_result(const MeshReport *report, const VesselMesh *mesh, bool quiet)
+{
+    if (report->n_swallowed)
+        fprintf(stderr, "corcast: %zu segments lie wholly within others and have no wall\n",
+                report->n_swallowed);
+    if (report->n_round && !quiet)
+        fprintf(stderr,
+                "corcast: %zu ends are round, because other vessels are in the way of a flat one\n",
+                report->n_round);
+    if (report->n_near && !quiet)
+        fprintf(stderr, "corcast: %zu pairs of vessels that do not belong together come near\n",
+                report->n_near);
+    if (!quiet)
+        fprintf(stderr, "corcast: %zu triangles, %.6g mm^3\n", mesh->n_triangles,
+                report->volume_mm3);
+}
+
+static Status triangulate(Meshing *made, const MeshingOptions *options, const Common *common,
+                          Err *err)
+{
+    Progress progress;
+    MeshParams params = {.tolerance = options->tolerance,
+                         .lod = options->lod,
+                         .threads = common->threads,
+                         .progress = progress_report,
+                         .context = &progress};
+    TRY(say_estimate(&made->vessels, &params, common->quiet, err));
+    progress_start(&progress, "triangulating", common->quiet);
+    Status status = vesselmesh_build(&made->vessels, &params, &made->mesh, &made->report, err);
+    progress_end(&progress);
+    return status;
+}
+
+static Status part(Meshing *made, int threads, Err *err)
+{
+    TRY(vesseltree_part(&made->vessels, threads, &made->thinned, &made->n_thinned, err));
+    if (made->n_thinned)
+        fprintf(stderr,
+                "corcast: %zu segments are thinned, because they overlap others that they do not "
+                "belong with, or blend with such\n",
+                made->n_thinned);
+    return STATUS_OK;
+}
+
+static Status make(const Common *common, const MeshingOptions *options, bool colored, Meshing *made,
+                   Err *err)
+{
+    TRY(take_vessels(made, (VesselBody)options->body, err));
+    if (colored)
+        TRY(color_vessels(options, common->quiet, made, err));
+    if (options->part_overlaps)
+        TRY(part(made, common->threads, err));
+    TRY(triangulate(made, options, common, err));
+    TRY(meshreport_check(&made->report, &made->vessels, err));
+    say_result(&made->report, &made->mesh, common->quiet);
+    return STATUS_OK;
+}
+
+/* ---- the manifest ---------------------------------------------------------------------------- */
+
+static json_t *id_list(const VesselTree *vessels, const uint32_t *list, size_t n)
+{
+    json_t *ids = json_array();
+    for (size_t i = 0; i < n; i++)
+        ids = json_with_item(ids, json_integer(vessels->ids[list[i]]));
+    return ids;
+}
+
+static json_t *pair_list(const VesselTree *vessels, const MeshReport *report)
+{
+    json_t *pairs = json_array();
+    for (size_t i = 0; i < report->n_near; i++) {
+        const NearPair *pair = &report->near[i];
+        const JsonMember members[] = {
+            {"segments", json_pack("[i,i]", (int)vessels->ids[pair->segments[0]],
+                                   (int)vessels->ids[pair->segments[1]])},
+            {"gap_mm", json_number(pair->gap_mm)},
+        };
+        pairs = json_with_item(pairs, json_with_members(json_object(), members, 2));
+    }
+    return pairs;
+}
+
+static json_t *count(size_t n)
+{
+    return json_integer((json_int_t)n);
+}
+
+static json_t *manifest(const Meshing *made)
+{
+    const VesselTree *vessels = &made->vessels;
+    const VesselMesh *mesh = &made->mesh;
+    const MeshReport *report = &made->report;
+    const JsonMember members[] = {
+        {"generator", json_text(GENERATOR)},
+        {"model", json_text(vessel_body_names[vessels->body])},
+        {"unit", json_text("mm")},
+        {"trees", count(report->trees)},
+        {"components", count(report->components)},
+        {"genus", count(report->genus)},
+        {"euler", json_integer(report->euler)},
+        {"watertight", json_boolean(report->open_edges == 0)},
+        {"self_intersections", count(report->crossings)},
+        {"bridges", count(report->bridges)},
+        {"segments", count(vessels->n_segments)},
+        {"segments_present", count(vessels->n_segments - report->n_missing - report->n_swallowed)},
+        {"segments_missing", id_list(vessels, report->missing, report->n_missing)},
+        {"segments_swallowed", id_list(vessels, report->swallowed, report->n_swallowed)},
+        {"segments_thinned", id_list(vessels, made->thinned, made->n_thinned)},
+        {"round_ends", id_list(vessels, report->round, report->n_round)},
+        {"near_pairs", pair_list(vessels, report)},
+        {"triangles", count(mesh->n_triangles)},
+        {"points", count(mesh->n_points)},
+        {"volume_mm3", json_number(report->volume_mm3)},
+        {"tolerance", json_number(report->tolerance)},
+        {"max_distance_mm", json_number(report->off.mm)},
+        {"max_distance_over_radius", json_number(report->off.ratio)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+Status meshing_write(const Emitter *emitter, const MeshingOptions *options, const PictureTree *of,
+                     const char *output, const Parsed *parsed, Err *err)
+{
+    Meshing made = {.of = of};
+    Text said = TEXT_INIT;
+    char *line = NULL;
+    Status status;
+    TRY_GOTO(make(&parsed->common, options, emitter->has_colors, &made, err));
+    text_json(&said, manifest(&made), 2);
+    text_puts(&said, "\n");
+    TRY_GOTO(text_check(&said, err));
+    TRY_GOTO(command_line_text(parsed, &line, err));
+    const EmitParams params = {.mesh = &made.mesh,
+                               .vessels = &made.vessels,
+                               .appearance = &made.appearance,
+                               .orders = made.orders.value,
+                               .manifest = text_chars(&said),
+                               .command = line};
+    TRY_GOTO(scene_files_write(emitter, &params, of->path, output, false, NULL, err));
+done:
+    free(line);
+    text_release(&said);
+    appearance_release(&made.appearance);
+    field_release(&made.orders);
+    vesseltree_release(&made.vessels);
+    vesselmesh_release(&made.mesh);
+    meshreport_release(&made.report);
+    free(made.thinned);
+    return status;
+}

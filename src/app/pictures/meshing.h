@@ -1,0 +1,30 @@
+/* The surface of a tree's vessels as triangles, for the commands that write it. */
+#ifndef CORCAST_APP_MESHING_H
+#define CORCAST_APP_MESHING_H
+
+#include "app/pictures/coloring.h"
+#include "app/pictures/picture.h"
+#include "app/run/options.h"
+#include "base/base.h"
+#include "emit/emit.h"
+
+/* The models whose walls are triangulated, by VesselBody; NULL ends them. */
+extern const char *const vessel_body_names[];
+
+typedef struct MeshingOptions {
+    int body;           /* choice: VesselBody */
+    double tolerance;   /* over the local radius */
+    double lod;         /* the part of the triangles that are to be made; 0: as 1 */
+    bool part_overlaps; /* thin vessels that overlap others that they do not belong with */
+    const char *look;   /* for an emitter with colours, as the coloring */
+    Coloring coloring;
+} MeshingOptions;
+
+/* Triangulates the vessels of a tree and writes `output` and its manifest. Says on standard error,
+ * unless quiet, how much work it is, and what is to be known of the mesh. STATUS_DIFFERS when the
+ * mesh is not sound; errors as coloring_appearance, vesselmesh_build and emit_files have them. */
+MUST_CHECK Status meshing_write(const Emitter *emitter, const MeshingOptions *options,
+                                const PictureTree *of, const char *output, const Parsed *parsed,
+                                Err *err);
+
+#endif

@@ -1,0 +1,117 @@
+/* What a picture shows: the options that scene, render and verify share, and the scene they
+ * make. */
+#ifndef CORCAST_APP_PICTURE_H
+#define CORCAST_APP_PICTURE_H
+
+#include "app/pictures/coloring.h"
+#include "app/run/options.h"
+#include "scene/scene.h"
+#include "stage/stage.h"
+#include "surface/surface.h"
+#include "tree/tree.h"
+
+typedef struct PictureOptions {
+    ViewParams stage; /* but projection, view and size, which are below */
+    int model, potential, joints, projection, view, color_blend; /* choices */
+    int size[2];
+    int antialias;
+    int occlusion;    /* rays a sample; 0: none */
+    double tolerance; /* of a mesh, over the local radius */
+    bool
+        part_overlaps; /* likewise: thin vessels that overlap others that they do not belong with */
+    double prune_radius_mm;
+    const char *look;
+    Vec3 background; /* sRGB in [0, 1] */
+    bool has_background;
+    bool has_height, has_angle, has_view, has_joints;
+    int erf;          /* choice: ErfForm */
+    double cell_beta; /* as in CellParams */
+    Coloring coloring;
+} PictureOptions;
+
+/* Of zeroed options. */
+void picture_set_defaults(PictureOptions *options);
+/* How far triangles may be off the surface, over the local radius, where nothing else is said. */
+#define MESHING_TOLERANCE 0.02
+
+/* Of --antialias, --prune-radius (mm) and --tolerance, wherever they are options. */
+extern const Range antialias_range, prune_range, tolerance_range;
+extern const OptionTable picture_table; /* sets a PictureOptions but its coloring */
+/* The tables that set the PictureOptions at `path` of a command's options. */
+#define PICTURE_TABLES(Type, path)                                                                 \
+    {&picture_table, offsetof(Type, path)}, COLORING_TABLES(Type, path.coloring)
+
+/* How POV-Ray's isosurface is cut into cells. */
+CellParams picture_cells(const PictureOptions *options);
+
+/* STATUS_USAGE when an option of the command line has no effect on this picture. Not for `view`,
+ * whose keys change models and fields. */
+MUST_CHECK Status picture_check_needs(const PictureOptions *options, const Parsed *parsed,
+                                      Err *err);
+
+/* Whether the option has an effect on this picture, if it is given. */
+bool picture_takes(const PictureOptions *options, const Option *option);
+
+/* STATUS_USAGE when an option is given that only the native renderer knows. */
+MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
+
+/* A tree as it is drawn. */
+typedef struct PictureTree {
+    const char *path; /* for sentences; borrowed */
+    Tree tree;
+    Tree whole;    /* before segments were cut off, for colours that are of it; zeroed: as `tree` */
+    char *joined;  /* as coloring_join has it; owned, or NULL */
+    size_t pruned; /* segments that were cut off */
+} PictureTree;
+
+/* Reads the tree that is the first operand, with the flows and the values that options say of it,
+ * and cuts off the segments thinner than `prune_radius_mm`, 0 for none. STATUS_INPUT when no other
+ * is left, and as tree_read, blood_settle and coloring_join. */
+MUST_CHECK Status picture_read_tree(const Coloring *coloring, double prune_radius_mm,
+                                    const Parsed *parsed, PictureTree *out, Err *err);
+void picture_tree_release(PictureTree *tree);
+/* The same for coloring_appearance; borrowed. */
+ColoredTree picture_colored_tree(const PictureTree *tree);
+
+/* What a picture is made from. */
+typedef struct PictureSource {
+    PictureTree of;
+    Look look;
+} PictureSource;
+
+/* Reads look and tree, which is the first operand. STATUS_USAGE when options fight each other, or
+ * say of the blood what the law of its viscosity does not take. */
+MUST_CHECK Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
+                                      PictureSource *source, Err *err);
+void picture_source_release(PictureSource *source);
+/* The view that the options ask for. */
+ViewParams picture_view_params(const PictureOptions *options);
+/* Each of the three things that a picture is of, as the options ask for it. `report` may be NULL.
+ */
+MUST_CHECK Status picture_geometry(const PictureOptions *options, const PictureSource *source,
+                                   const Common *common, Geometry *geometry, StageReport *report,
+                                   Err *err);
+MUST_CHECK Status picture_appearance(const PictureOptions *options, const PictureSource *source,
+                                     Appearance *appearance, Err *err);
+MUST_CHECK Status picture_view(const PictureOptions *options, const PictureSource *source,
+                               const Geometry *geometry, View *view, Err *err);
+
+/* Reads the tree and the look and makes all three. Says on standard error, unless quiet, how many
+ * segments are pruned, cannot be drawn, or have no surface, and how many places are not joined.
+ * `anatomy` and `report` may be NULL. */
+MUST_CHECK Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
+                                Anatomy *anatomy, StageReport *report, Err *err);
+
+/* The same of a source that is there. */
+MUST_CHECK Status picture_scene_of(const PictureOptions *options, const PictureSource *source,
+                                   const Parsed *parsed, Scene *scene, Anatomy *anatomy,
+                                   StageReport *report, Err *err);
+
+/* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the
+ * machine. */
+MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);
+
+/* One line that says what a geometry shows. */
+void picture_description(const Geometry *geometry, const char *tree_path, Text *out);
+
+#endif

@@ -1,0 +1,131 @@
+/* Where the files of a scene go, and which POV-Ray draws them. */
+#include "app/pictures/povfiles.h"
+
+#include "app/pictures/picture.h"
+#include "app/run/output.h"
+#include "app/run/templates.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+Status scene_files_find(const char *output, bool of_meshes, const Emitter **emitter, Err *err)
+{
+    *emitter = emitter_find(file_extension(output), of_meshes);
+    if (*emitter)
+        return STATUS_OK;
+    Text extensions = TEXT_INIT;
+    emitter_extensions(of_meshes, &extensions);
+    Status status =
+        err_set(err, STATUS_USAGE, "-o: '%s' does not end in %s", output, text_chars(&extensions));
+    text_release(&extensions);
+    return status;
+}
+
+/* The files beside a scene or mesh; NULL where there is none. */
+typedef struct Beside {
+    char *second, *manifest, *settings; /* owned */
+} Beside;
+
+static void beside_release(Beside *beside)
+{
+    free(beside->second);
+    free(beside->manifest);
+    free(beside->settings);
+}
+
+static Status find_beside(const Emitter *emitter, const char *path, bool settings, Beside *beside,
+                          Err *err)
+{
+    char suffix[24];
+    if (strcmp(path, "-") == 0)
+        return STATUS_OK;
+    snprintf(suffix, sizeof suffix, ".%s.json", emitter->extension);
+    if (emitter->of_meshes)
+        TRY(file_with_suffix(path, suffix, &beside->manifest, err));
+    snprintf(suffix, sizeof suffix, ".%s", emitter->settings_extension);
+    if (settings)
+        TRY(file_with_suffix(path, suffix, &beside->settings, err));
+    if (!emitter->second_extension)
+        return STATUS_OK;
+    snprintf(suffix, sizeof suffix, ".%s", emitter->second_extension);
+    return file_with_suffix(path, suffix, &beside->second, err);
+}
+
+Status scene_files_note(const Emitter *emitter, const char *path, bool settings, Files *files,
+                        Err *err)
+{
+    Beside beside = {0};
+    Status status;
+    TRY_GOTO(find_beside(emitter, path, settings, &beside, err));
+    if (beside.second && emitter->check_name)
+        TRY_GOTO(emitter->check_name(file_name(beside.second), err));
+    if (beside.second)
+        TRY_GOTO(files_write(files, emitter->second_holds, beside.second, err));
+    if (beside.manifest)
+        TRY_GOTO(files_write(files, "the manifest", beside.manifest, err));
+    if (beside.settings)
+        TRY_GOTO(files_write(files, "the settings", beside.settings, err));
+done:
+    beside_release(&beside);
+    return status;
+}
+
+static void surface_description(const char *tree_path, Text *out)
+{
+    text_puts(out, "arterial tree ");
+    text_put_line(out, file_name(tree_path));
+    text_puts(out, ", its surface");
+}
+
+/* What the colours mean, or NULL. */
+static const char *said_of(const EmitParams *params)
+{
+    const Appearance *appearance = params->scene ? &params->scene->appearance : params->appearance;
+    return appearance ? appearance->said : NULL;
+}
+
+Status scene_files_write(const Emitter *emitter, const EmitParams *params, const char *tree_path,
+                         const char *path, bool settings, EmitReport *report, Err *err)
+{
+    Text description = TEXT_INIT;
+    char *templates = NULL;
+    Beside beside = {0};
+    Status status;
+    TRY_GOTO(templates_folder(&templates, err));
+    TRY_GOTO(find_beside(emitter, path, settings, &beside, err));
+    if (params->scene)
+        picture_description(&params->scene->geometry, tree_path, &description);
+    else
+        surface_description(tree_path, &description);
+    if (said_of(params))
+        text_printf(&description, ", coloured by %s", said_of(params));
+    EmitParams all = *params;
+    all.templates = templates;
+    all.file = strcmp(path, "-") == 0 ? "scene.pov" : file_name(path);
+    all.second_file = beside.second ? file_name(beside.second) : NULL;
+    all.manifest_path = beside.manifest;
+    all.settings = beside.settings ? file_name(beside.settings) : NULL;
+    all.settings_path = beside.settings;
+    all.description = text_chars(&description);
+    all.generator = GENERATOR;
+    status = emit_files(emitter, &all, path, beside.second, report, err);
+done:
+    text_release(&description);
+    free(templates);
+    beside_release(&beside);
+    return status;
+}
+
+Status povray_from_environment(OracleParams *params, Err *err)
+{
+    const char *patience = getenv("CORCAST_POVRAY_PATIENCE");
+    params->program = getenv("CORCAST_POVRAY");
+    params->patience_s = 600;
+    if (!patience || (number_parse(patience, &params->patience_s) && isfinite(params->patience_s) &&
+                      params->patience_s >= 0))
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "CORCAST_POVRAY_PATIENCE: '%s' is not a number of seconds of at least 0",
+                   patience);
+}

@@ -1,0 +1,351 @@
+/* One scene, two renderers: the scene is written for POV-Ray and rendered natively from memory;
+ * then all four planes of both are held against each other. An implicit surface takes two steps:
+ * corcast repeats POV-Ray's root finder, whose picture must be POV-Ray's, and where that sees the
+ * surface is held against where it is. */
+#include "app/pictures/verification.h"
+
+#include "app/pictures/frames.h"
+#include "app/pictures/povfiles.h"
+#include "app/pictures/settle.h"
+#include "app/run/progress.h"
+#include <math.h>
+#include <stdlib.h>
+
+void verification_release(Verification *v)
+{
+    if (v->frames.n_frames > 0)
+        v->scene.appearance = v->frames;
+    scene_release(&v->scene);
+    frame_release(&v->native);
+    frame_release(&v->povray);
+    frame_release(&v->exact);
+    picture_release(&v->native_picture);
+    picture_release(&v->povray_picture);
+    picture_release(&v->native_shown);
+    settled_release(&v->settled);
+    picture_release(&v->povray_shown);
+    for (size_t i = 0; i < v->n_commands; i++)
+        free(v->commands[i]);
+    free(v->name);
+}
+
+/* ---- the two sides --------------------------------------------------------------------------- */
+
+bool verification_takes_two_steps(const Verification *v)
+{
+    return models[v->scene.geometry.model].proof == PROOF_STEPS;
+}
+
+/* Whether POV-Ray needs a scene of its own to paint ids. */
+static bool has_id_scene(const Verification *v)
+{
+    return model_has(v->scene.geometry.model, MODEL_FIELD);
+}
+
+static RenderParams render_params(const Verification *v, const CellParams *povray_cells)
+{
+    return (RenderParams){.kernels = v->kernels,
+                          .threads = v->common->threads,
+                          .antialias = v->picture->antialias,
+                          .shadows = v->picture->stage.shadows,
+                          .povray_cells = povray_cells,
+                          .want_color = true,
+                          .want_depth = true,
+                          .want_normal = true,
+                          .want_id = true};
+}
+
+static Status render_frame(Verification *v, const CellParams *povray_cells, Frame *frame, Err *err)
+{
+    Progress progress;
+    RenderParams params = render_params(v, povray_cells);
+    params.progress = progress_report;
+    params.progress_context = &progress;
+    progress_start(&progress, povray_cells ? "corcast, as POV-Ray" : "corcast", v->common->quiet);
+    Status status = render(&v->scene, &params, frame, &v->stats, err);
+    progress_end(&progress);
+    return status;
+}
+
+static Encoding encoding_of(const Verification *v)
+{
+    return v->bits == 16 ? ENCODING_LINEAR : ENCODING_SRGB;
+}
+
+static Status write_frame(const Verification *v, const Frame *frame, const char *name,
+                          Encoding encoding, const char *provenance, Err *err)
+{
+    char *path = NULL;
+    TRY(file_join(v->folder, name, &path, err));
+    Status status =
+        frames_write(frame, path, v->bits, encoding, provenance, v->scene.appearance.said, err);
+    free(path);
+    return status;
+}
+
+/* Of an isosurface, where POV-Ray's root finder sees it. */
+static const CellParams *cells_of(const Verification *v)
+{
+    return verification_takes_two_steps(v) ? &v->cells : NULL;
+}
+
+static Status render_native(Verification *v, Err *err)
+{
+    const char *provenance = v->commands[0];
+    TRY(render_frame(v, cells_of(v), &v->native, err));
+    TRY(picture_from_plane(&v->native_picture, &v->native.color, encoding_of(v), v->bits, err));
+    TRY(write_frame(v, &v->native, "native.png", encoding_of(v), provenance, err));
+    if (!verification_takes_two_steps(v))
+        return STATUS_OK;
+    TRY(render_frame(v, NULL, &v->exact, err));
+    return write_frame(v, &v->exact, "exact.png", ENCODING_SRGB, provenance, err);
+}
+
+/* What a screen shows of linear codes. */
+static Status show_both(Verification *v, Err *err)
+{
+    if (v->bits == 8)
+        return STATUS_OK;
+    TRY(picture_to_srgb(&v->povray_shown, &v->povray_picture, 8, err));
+    return picture_to_srgb(&v->native_shown, &v->native_picture, 8, err);
+}
+
+static Status read_plane(Verification *v, OraclePlane plane, const char *path, Err *err)
+{
+    double near_mm, far_mm;
+    camera_depth_range(&v->scene.view.camera, v->scene.geometry.bounds, &near_mm, &far_mm);
+    switch (plane) {
+    case ORACLE_COLOR:
+        return picture_read(&v->povray_picture, path, err);
+    case ORACLE_DEPTH:
+        return oracle_read_depth(&v->povray.depth, path, near_mm, far_mm, err);
+    case ORACLE_NORMAL:
+        return oracle_read_normal(&v->povray.normal, path, err);
+    case ORACLE_ID:
+        return oracle_read_ids(&v->povray.id, path, err);
+    }
+    return STATUS_OK;
+}
+
+/* At which the scene is in the frame that is verified. */
+static double clock_of(const Verification *v)
+{
+    size_t n = v->frames.n_frames;
+    return n > 1 ? (double)(v->frame - 1) / (double)(n - 1) : 0;
+}
+
+static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane plane, Err *err)
+{
+    static const char *const names[] = {
+        [ORACLE_COLOR] = "povray.png",
+        [ORACLE_DEPTH] = "povray.depth.png",
+        [ORACLE_NORMAL] = "povray.normal.png",
+        [ORACLE_ID] = "povray.id.png",
+    };
+    static const char *const labels[] = {
+        [ORACLE_COLOR] = "POV-Ray, picture",
+        [ORACLE_DEPTH] = "POV-Ray, depth",
+        [ORACLE_NORMAL] = "POV-Ray, normals",
+        [ORACLE_ID] = "POV-Ray, ids",
+    };
+    char *path = NULL;
+    TRY(file_join(v->folder, names[plane], &path, err));
+    Progress progress;
+    progress_start(&progress, labels[plane], v->common->quiet);
+    OracleParams params = {.scene = scene,
+                           .output = path,
+                           .width = v->picture->size[0],
+                           .height = v->picture->size[1],
+                           .antialias = v->picture->antialias,
+                           .threads = v->common->threads,
+                           .plane = plane,
+                           .bits = v->bits,
+                           .clock = clock_of(v),
+                           .progress = progress_report,
+                           .progress_context = &progress};
+    Status status = povray_from_environment(&params, err);
+    if (status == STATUS_OK)
+        status = oracle_command(&params, &v->commands[v->n_commands], err);
+    if (status == STATUS_OK) {
+        v->n_commands++;
+        status = oracle_run(&params, plane == ORACLE_COLOR ? &v->run : NULL, err);
+    }
+    progress_end(&progress);
+    if (status == STATUS_OK)
+        status = read_plane(v, plane, path, err);
+    if (status == STATUS_INPUT) /* of POV-Ray's making */
+        status = STATUS_TOOL;
+    free(path);
+    return status;
+}
+
+/* Writes the scene; the ids of an implicit surface are painted in a scene of their own, as they
+ * take most of it. It has no anatomy, which changes no picture and has POV-Ray read each tree of a
+ * field twice. */
+static Status write_scene(Verification *v, bool ids, char **scene, Err *err)
+{
+    TRY(file_join(v->folder, ids ? "ids.pov" : "scene.pov", scene, err));
+    Scene whole = v->scene;
+    if (v->frames.n_frames > 0)
+        whole.appearance = v->frames;
+    const EmitParams params = {.scene = &whole,
+                               .command = v->commands[0],
+                               .shadows = v->picture->stage.shadows,
+                               .ids = ids,
+                               .cells = v->cells};
+    return scene_files_write(emitter_find("pov", false), &params, v->tree, *scene, false, NULL,
+                             err);
+}
+
+static Status run_oracle(Verification *v, Err *err)
+{
+    char *scene = NULL, *ids = NULL;
+    Status status = write_scene(v, false, &scene, err);
+    if (status == STATUS_OK && has_id_scene(v))
+        status = write_scene(v, true, &ids, err);
+    for (int plane = ORACLE_COLOR; status == STATUS_OK && plane <= ORACLE_ID; plane++)
+        status =
+            run_oracle_plane(v, plane == ORACLE_ID && ids ? ids : scene, (OraclePlane)plane, err);
+    free(scene);
+    free(ids);
+    char *picture = NULL;
+    if (status == STATUS_OK)
+        status = file_join(v->folder, "povray.png", &picture, err);
+    if (status == STATUS_OK)
+        status = frames_write(&v->povray, picture, 0, ENCODING_SRGB, NULL, NULL, err);
+    free(picture);
+    return status;
+}
+
+Status verification_pick_frame(Verification *v, int frame, Err *err)
+{
+    const Appearance *all = &v->scene.appearance;
+    size_t n = all->n_frames ? all->n_frames : 1;
+    if (frame > 0)
+        TRY(coloring_check_frame(frame, all->name ? all->name : "the picture", n, err));
+    v->frame = frame ? frame : 1;
+    if (all->n_frames == 0)
+        return STATUS_OK;
+    v->frames = *all;
+    v->scene.appearance = appearance_frame(&v->frames, (size_t)v->frame - 1);
+    return STATUS_OK;
+}
+
+Status verification_draw(Verification *v, Err *err)
+{
+    v->cells = picture_cells(v->picture);
+    TRY(run_oracle(v, err));
+    TRY(render_native(v, err));
+    return show_both(v, err);
+}
+
+/* ---- comparison ------------------------------------------------------------------------------ */
+
+const Picture *verification_shown_by_povray(const Verification *v)
+{
+    return v->bits == 8 ? &v->povray_picture : &v->povray_shown;
+}
+
+const Picture *verification_shown_natively(const Verification *v)
+{
+    return v->bits == 8 ? &v->native_picture : &v->native_shown;
+}
+
+/* Asks who is right where the sides differ; the tolerance then knows. */
+static Status settle_sides(Verification *v, const Rendering *a, const Rendering *b,
+                           Tolerance *tolerance, Err *err)
+{
+    const RenderParams params = render_params(v, cells_of(v));
+    const SettleCase asked = {&v->scene, &params, a, b, encoding_of(v), tolerance};
+    v->asked = settle_applies(&asked);
+    if (!v->asked)
+        return STATUS_OK;
+    TRY(settle_pixels(&asked, &v->settled, err));
+    tolerance->settled = v->settled.marks;
+    return STATUS_OK;
+}
+
+/* Whether vessels are seen whole: their mean breadth, twice the area over the outline, is at most a
+ * quarter of the picture. Along an edge between pixels an outline is pi / 4 long
+ * [Cauchy-Crofton]. */
+static bool sees_whole_vessels(const IdPlane *ids)
+{
+    size_t width = (size_t)ids->width, height = (size_t)ids->height, seen = 0, sides = 0;
+    for (size_t y = 0; y < height; y++)
+        for (size_t x = 0; x < width; x++) {
+            const uint32_t *id = &ids->ids[y * width + x];
+            seen += *id != 0;
+            sides += x + 1 < width && !id[0] != !id[1];
+            sides += y + 1 < height && !id[0] != !id[width];
+        }
+    double side = (double)(width < height ? width : height);
+    return 2 * (double)seen * 4 <= side * 0.785398163397448 * (double)sides;
+}
+
+/* Of a vessel from near by, POV-Ray's steps tilt all normals that are seen one way, by up to 0.1
+ * degrees: what that makes of the colours averages out over the breadth of a vessel alone. */
+static Tolerance exact_tolerance(const IdPlane *ids)
+{
+    Tolerance tolerance = tolerance_surface(0);
+    tolerance.title = "exact color";
+    if (sees_whole_vessels(ids))
+        return tolerance;
+    tolerance.gain = tolerance.offset_levels = tolerance.interior_ppm = (double)INFINITY;
+    tolerance.segment_levels = tolerance.bias_levels = 1.5;
+    return tolerance;
+}
+
+/* Holds where POV-Ray's root finder sees the surface against where it is. */
+static Status check_surface(Verification *v, Err *err)
+{
+    const Frame *seen = &v->native, *exact = &v->exact;
+    const SurfaceSight sight = {seen->depth.values, seen->normal.values, seen->id.ids};
+    const SurfaceSight exact_sight = {exact->depth.values, exact->normal.values, exact->id.ids};
+    Plane allowed = {0};
+    TRY(plane_init(&allowed, seen->depth.width, seen->depth.height, 1, err));
+    Status status = surface_tolerance(&v->scene.geometry, &v->scene.view.camera, v->cells.erf,
+                                      &sight, &exact_sight, allowed.values, err);
+    if (status == STATUS_OK)
+        status = surface_check(&seen->depth, &exact->depth, &allowed, &v->surface, err);
+    plane_release(&allowed);
+    return status;
+}
+
+/* Holds the colours of the surface where it is against POV-Ray's, as they are shown. */
+static Status compare_exact(Verification *v, const Rendering *povray, Err *err)
+{
+    Picture picture;
+    const Tolerance tolerance = exact_tolerance(&v->exact.id);
+    TRY(picture_from_plane(&picture, &v->exact.color, ENCODING_SRGB, 8, err));
+    Rendering a = *povray;
+    a.picture = verification_shown_by_povray(v);
+    const Rendering b = {&picture, &v->exact.id, &v->exact.depth, &v->exact.normal};
+    Status status = compare_pictures(&a, &b, &tolerance, &v->exact_color, NULL, err);
+    picture_release(&picture);
+    return status;
+}
+
+Status verification_compare(Verification *v, Err *err)
+{
+    double near_mm, far_mm;
+    camera_depth_range(&v->scene.view.camera, v->scene.geometry.bounds, &near_mm, &far_mm);
+    Tolerance tolerance = tolerance_identity((far_mm - near_mm) / 65535);
+    const IdPlane *a = &v->povray.id, *b = &v->native.id;
+    const Rendering view_a = {&v->povray_picture, a, &v->povray.depth, &v->povray.normal};
+    const Rendering view_b = {&v->native_picture, b, &v->native.depth, &v->native.normal};
+    TRY(settle_sides(v, &view_a, &view_b, &tolerance, err));
+    TRY(compare_pictures(&view_a, &view_b, &tolerance, &v->results[PLANE_COLOR], NULL, err));
+    TRY(compare_perception(verification_shown_by_povray(v), verification_shown_natively(v),
+                           &v->results[PLANE_COLOR], err));
+    if (!v->results[PLANE_COLOR].agrees)
+        TRY(compare_cause(&v->povray_picture, &v->native_picture, &v->results[PLANE_COLOR], err));
+    TRY(compare_planes(PLANE_DEPTH, &v->povray.depth, &v->native.depth, a, b, &tolerance,
+                       &v->results[PLANE_DEPTH], err));
+    TRY(compare_planes(PLANE_NORMAL, &v->povray.normal, &v->native.normal, a, b, &tolerance,
+                       &v->results[PLANE_NORMAL], err));
+    TRY(compare_ids(a, b, &tolerance, &v->results[PLANE_ID], err));
+    if (!verification_takes_two_steps(v))
+        return STATUS_OK;
+    TRY(compare_exact(v, &view_a, err));
+    return check_surface(v, err);
+}

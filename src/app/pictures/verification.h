@@ -1,0 +1,58 @@
+/* A scene as POV-Ray and corcast draw it, and how the two compare. */
+#ifndef CORCAST_APP_VERIFICATION_H
+#define CORCAST_APP_VERIFICATION_H
+
+#include "app/pictures/picture.h"
+#include "app/run/options.h"
+#include "render/render.h"
+#include "verify/verify.h"
+
+typedef struct Verification {
+    const PictureOptions *picture;
+    const Common *common;
+    const char *tree, *folder;
+    char *name; /* of the tree, for the report; owned */
+    Scene scene;
+    Appearance frames; /* owned; of all moments, where scene.appearance is one of them */
+    int frame;         /* its number, from 1 on */
+    CellParams cells;
+    Frame native, povray,
+        exact; /* `exact` of an isosurface, whose `native` is POV-Ray's view of it */
+    int bits;  /* of the colours that are compared */
+    RenderKernels kernels;
+    Picture native_picture, povray_picture; /* sRGB of 8 bits, or linear of 16 */
+    Picture native_shown, povray_shown;     /* of 16 bits, in sRGB of 8 bits */
+    RenderStats stats;                      /* of the exact frame, where there is one */
+    OracleRun run;                          /* of the colour plane */
+    CompareResult results[PLANE_KINDS];
+    Settled settled;
+    bool asked; /* whether anything was settled, or nothing had to be */
+    SurfaceCheck surface;
+    CompareResult exact_color;
+    char *commands[8]; /* owned */
+    size_t n_commands;
+} Verification;
+
+void verification_release(Verification *v);
+
+/* Whether the model is an implicit surface, of which `exact` and `surface` are, too. */
+bool verification_takes_two_steps(const Verification *v);
+
+/* Of a scene whose colours change with time, the moment that is verified, 0 for the first; the
+ * scene for POV-Ray has all. STATUS_USAGE when there is no such frame. */
+MUST_CHECK Status verification_pick_frame(Verification *v, int frame, Err *err);
+
+/* Draws the scene with POV-Ray and natively, and writes scene and planes to the folder, which is
+ * there; the first of the commands is in them. Errors as oracle_run, render and frames_write have
+ * them. */
+MUST_CHECK Status verification_draw(Verification *v, Err *err);
+
+/* Compares what is drawn: results, settled and, where there are two steps, surface and exact_color.
+ */
+MUST_CHECK Status verification_compare(Verification *v, Err *err);
+
+/* A side's colours as a screen shows them. */
+const Picture *verification_shown_by_povray(const Verification *v);
+const Picture *verification_shown_natively(const Verification *v);
+
+#endif

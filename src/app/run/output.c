@@ -1,0 +1,173 @@
+/* What commands have in common when they write: the command line that a file tells of itself, made
+ * of the options' values rather than of what was typed, so that a recipe, the order of the options
+ * and what does not matter leave no trace; names for people; JSON. */
+#include "app/run/output.h"
+#include "treeio/treeio.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool is_one_of(const char *word, const char *const *words)
+{
+    while (*words && strcmp(*words, word) != 0)
+        words++;
+    return *words;
+}
+
+/* *line, cleaned for one line, in *out. */
+static Status take_line(Text *line, char **out, Err *err)
+{
+    Text clean = TEXT_INIT;
+    text_put_line(&clean, text_chars(line));
+    text_release(line);
+    Status status = text_take(&clean, out, err);
+    text_release(&clean);
+    return status;
+}
+
+Status shown_name(const char *path, char **out, Err *err)
+{
+    Text name = TEXT_INIT;
+    text_puts(&name, file_name(path));
+    return take_line(&name, out, err);
+}
+
+/* Of a path the last component. What stands before a colon in a text is no path, as in
+ * mesh:FILE, and a file of the user's own is told from a template by its '/'. */
+static void put_shown_value(const Setting *setting, size_t at, Text *text)
+{
+    Text value = TEXT_INIT;
+    setting_put(setting, at, &value);
+    const char *whole = text_chars(&value), *name = whole;
+    OptionKind kind = setting->option->kind;
+    size_t kept = kind == OPTION_TEXT && whole && strchr(whole, ':')
+                      ? (size_t)(strchr(whole, ':') + 1 - whole)
+                      : 0;
+    Text shown = TEXT_INIT;
+    if (whole && (option_is_path(setting->option) || kept))
+        name = file_name(whole + kept);
+    text_append(&shown, whole, whole ? kept : 0);
+    text_puts(&shown, kind == OPTION_LOOKUP && name != whole ? "./" : "");
+    text_puts(&shown, name);
+    text_put_shell_word(text, text_chars(&shown));
+    text_release(&shown);
+    text_release(&value);
+}
+
+/* Appends the option as often as it has to be given. */
+static void put_shown(const Setting *setting, Text *text)
+{
+    for (size_t at = 0; at < setting_count(setting); at++) {
+        text_printf(text, " --%s", setting->option->name);
+        if (setting->option->kind == OPTION_FLAG)
+            continue;
+        text_puts(text, " ");
+        put_shown_value(setting, at, text);
+    }
+}
+
+/* Appends the output under the name that the help gives it, with the extension that it has: what is
+ * written does not depend on its own name, but where it tells that. */
+static void put_output(const Setting *setting, Text *text)
+{
+    const char *path = *(const char *const *)(setting->base + setting->option->where);
+    const char *name = setting->option->argument, *extension = file_extension(path ? path : "");
+    if (!path)
+        return;
+    text_puts(text, " -o ");
+    if (setting->option->is_told || (strcmp(path, "-") == 0 && !strchr(name, '.')))
+        text_put_shell_word(text, file_name(path));
+    else if (*extension)
+        text_printf(text, "%.*s.%s", (int)strcspn(name, "."), name, extension);
+    else
+        text_puts(text, name);
+}
+
+/* The output itself stands last; others are told where what is written shows them. */
+static bool tells(const Setting *setting, const Setting *plain, Text *text)
+{
+    const Option *option = setting->option;
+    bool output = strcmp(option->name, "output") == 0;
+    bool hidden = option->kind == OPTION_OUTPUT && !option->is_told;
+    return !option->aside && !output && !hidden && setting_differs(setting, plain, text);
+}
+
+void put_shell_operand(Text *text, const char *path)
+{
+    Text word = TEXT_INIT;
+    text_printf(&word, "%s%s", path[0] == '-' && path[1] ? "./" : "", path);
+    text_put_shell_word(text, text_chars(&word));
+    text_release(&word);
+}
+
+Status command_line_text(const Parsed *parsed, char **out, Err *err)
+{
+    Parsed plain;
+    TRY(parsed_init(&plain, parsed->command, err));
+    Text text = TEXT_INIT;
+    text_printf(&text, "corcast %s", parsed->command->name);
+    for (int i = 0; i < parsed->n_operands; i++) {
+        text_puts(&text, " ");
+        put_shell_operand(&text, file_name(parsed->operands[i]));
+    }
+    for (size_t i = 0; i < parsed->n_settings; i++)
+        if (tells(&parsed->settings[i], &plain.settings[i], &text))
+            put_shown(&parsed->settings[i], &text);
+    const Setting *output = parsed_find(parsed, "output", strlen("output"));
+    if (output)
+        put_output(output, &text);
+    parsed_release(&plain);
+    return take_line(&text, out, err);
+}
+
+Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err)
+{
+    char *line = NULL;
+    TRY(command_line_text(parsed, &line, err));
+    Status status = meta_add_text(meta, META_COMMAND, line, err);
+    free(line);
+    return status;
+}
+
+void print_columns_left_out(const char *command, const Tree *tree, const char *why)
+{
+    if (tree->n_columns == 0)
+        return;
+    fprintf(stderr, "corcast %s: the columns ", command);
+    for (size_t k = 0; k < tree->n_columns; k++)
+        fprintf(stderr, "%s%.40s", k ? ", " : "", tree->column[k].name);
+    fprintf(stderr, " are left out: %s\n", why);
+}
+
+/* Nothing is allocated, which could fail: the file has been written. */
+void print_left_out(const char *command, const Tree *tree, const char *path)
+{
+    const TreeLosses lost = tree_format_losses(path, tree);
+    const struct {
+        bool is_lost;
+        const char *what;
+    } others[] = {{lost.types, "the types"},
+                  {lost.flow_shares, "the flow shares"},
+                  {lost.root_values, "the roots' values"}};
+    if (!lost.columns && !lost.types && !lost.flow_shares && !lost.root_values)
+        return;
+    fprintf(stderr, "corcast %s: ", command);
+    for (size_t k = 0, n = 0; k < tree->n_columns; k++)
+        if (!tree_format_keeps(path, &tree->column[k]))
+            fprintf(stderr, "%s%.40s", n++ ? ", " : "the columns ", tree->column[k].name);
+    for (size_t i = 0, n = lost.columns; i < sizeof others / sizeof *others; i++)
+        if (others[i].is_lost)
+            fprintf(stderr, "%s%s", n++ ? " and " : "", others[i].what);
+    fprintf(stderr, " are left out: the format has no place for them\n");
+}
+
+Status json_write(json_t *object, const char *path, Err *err)
+{
+    Text text = TEXT_INIT;
+    text_json(&text, object, 2);
+    text_puts(&text, "\n");
+    Status status = file_write_text(path, &text, err);
+    text_release(&text);
+    return status;
+}

@@ -1,0 +1,174 @@
+/* What a command line says of growth becomes grow's parameters in three steps: defaults, the header
+ * of a tree to grow on from, and what the user gave, each over the one before. */
+#include "app/trees/growing.h"
+
+#include "app/run/reading.h"
+#include "app/trees/blood.h"
+#include "app/trees/tree_domain.h"
+
+static const char *const tosses[] = {
+    [GROW_TOSS_SEGMENT] = "segment", [GROW_TOSS_TERMINAL] = "terminal", NULL};
+static const char plain_domain[] = "disc:50";
+
+static const Option rows[] = {
+    {.name = "terminals",
+     SETS(COUNT, Growing, params.terminals),
+     FROM_TO(1, GROW_MAX_TERMINALS),
+     .group = GROUP_TREE,
+     .help = "in the whole tree"},
+    {.name = "domain",
+     SETS(TEXT, Growing, domain_spec),
+     .group = GROUP_TREE,
+     .argument = "SHAPE",
+     .otherwise = plain_domain,
+     .help = "tissue, mm: disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
+             "shell:A,B,C,THICKNESS, polygon:FILE, mask:FILE, mesh:FILE"},
+    {.name = "inlet",
+     SETS(VECTORS, Growing, inlet),
+     .group = GROUP_TREE,
+     .otherwise = "top of the rim",
+     .help = "where the tree starts, mm; given several times: one tree from each"},
+    {.name = "inlet-shares",
+     SETS(NUMBERS, Growing, inlet_share),
+     .group = GROUP_TREE,
+     .otherwise = "equal",
+     .help = "of the terminals for the trees, in the order of the inlets, any sum"},
+    {.name = "from",
+     SETS(INPUT, Growing, from_path),
+     .group = GROUP_FILES,
+     .argument = "T.swc",
+     .help = "grow on from this tree: its nodes keep places, ids and types, its segments stay "
+             "straight; all radii follow anew. What its header says holds unless options say "
+             "otherwise"},
+    {.name = "gamma",
+     SETS_KEY(Growing, params.gamma, given, GAMMA),
+     .group = GROUP_BLOOD,
+     .help = "Murray exponent"},
+    {.name = "lambda",
+     SETS_KEY(Growing, params.lambda, given, LAMBDA),
+     .group = GROUP_OPTIMUM,
+     .help = "target: sum of length * radius^lambda"},
+    {.name = "p-perf",
+     SETS_KEY(Growing, params.p_perf_mmhg, given, P_PERF),
+     .group = GROUP_BLOOD,
+     .help = "pressure at the inlet"},
+    {.name = "p-term",
+     SETS_KEY(Growing, params.p_term_mmhg, given, P_TERM),
+     .group = GROUP_BLOOD,
+     .help = "pressure at every terminal"},
+    {.name = "q-perf",
+     SETS_KEY(Growing, params.q_perf_ml_min, given, Q_PERF),
+     .group = GROUP_BLOOD,
+     .help = "flow through all inlets"},
+    {.name = "viscosity",
+     SETS_KEY(Growing, params.viscosity_cp, given, VISCOSITY),
+     .group = GROUP_BLOOD,
+     .help = "of the blood"},
+    {.name = "viscosity-law",
+     SETS(CHOICE, Growing, params.viscosity_law),
+     GIVEN(Growing, given[META_VISCOSITY_LAW]),
+     .choices = viscosity_law_names,
+     .group = GROUP_BLOOD,
+     .help = "the same in all vessels, or by their diameter, Pries 1994"},
+    {.name = "hematocrit",
+     SETS_KEY(Growing, params.hematocrit, given, HEMATOCRIT),
+     .group = GROUP_BLOOD,
+     .argument = "H",
+     .help = "for pries"},
+    {.name = "plasma-viscosity",
+     SETS_KEY(Growing, params.plasma_viscosity_cp, given, PLASMA_VISCOSITY),
+     .group = GROUP_BLOOD,
+     .help = "for pries"},
+    {.name = "terminal-flow",
+     SETS(CHOICE, Growing, params.terminal_flow),
+     GIVEN(Growing, given[META_TERMINAL_FLOW]),
+     .choices = terminal_flow_names,
+     .group = GROUP_BLOOD,
+     .help = "the same through all terminals, or as large as the tissue nearest to each"},
+    {.name = "candidates",
+     SETS(WHOLE, Growing, params.candidates),
+     FROM_TO(1, GROW_MAX_CANDIDATES),
+     .group = GROUP_OPTIMUM,
+     .argument = "K",
+     .help = "nearest segments tried for each terminal"},
+    {.name = "toss",
+     SETS(CHOICE, Growing, params.toss),
+     .choices = tosses,
+     .group = GROUP_OPTIMUM,
+     .help = "new terminals keep their distance to"},
+    {.name = "partial",
+     SETS(FLAG, Growing, params.partial),
+     .group = GROUP_TREE,
+     .help = "write the tree so far when no more terminals find room"},
+};
+
+const OptionTable growing_table = OPTION_TABLE(rows);
+
+void growing_set_defaults(Growing *growing)
+{
+    growing->params = grow_defaults();
+}
+
+/* What is known of the tree and no option says. */
+static Status take_meta(Growing *growing, Err *err)
+{
+    const Tree *from = &growing->from;
+    grow_take(&growing->params, &from->meta, growing->given);
+    if (from->flow_share && !from->meta.known[META_TERMINAL_FLOW] &&
+        !growing->given[META_TERMINAL_FLOW])
+        return err_set(
+            err, STATUS_USAGE,
+            "--from: the tree has flow shares, and does not say after what new terminals "
+            "are to get theirs; give --terminal-flow equal or territory");
+    return STATUS_OK;
+}
+
+static Status read_from(Growing *growing, const Parsed *parsed, bool *has_domain, Err *err)
+{
+    TRY(reading_tree(parsed, growing->from_path, &growing->from, NULL, err));
+    growing->params.from = &growing->from;
+    TRY(take_meta(growing, err));
+    if (growing->domain_spec)
+        return STATUS_OK;
+    TRY(tree_domain(&growing->from, &growing->domain, has_domain, err));
+    if (*has_domain)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "--from: the header of the tree names no domain; give --domain");
+}
+
+/* Takes note of the domain's file, and refuses what the law of viscosity, settled by now, does not
+ * take. */
+static Status check(const Growing *growing, Parsed *parsed, Err *err)
+{
+    TRY(blood_check_law(growing->params.viscosity_law, parsed, err));
+    if (!growing->domain.file)
+        return STATUS_OK;
+    return files_read(&parsed->files, "--domain", growing->domain.file, err);
+}
+
+Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
+{
+    GrowParams *params = &growing->params;
+    params->seed = parsed->common.seed;
+    params->threads = parsed->common.threads;
+    params->inlets = growing->inlet.n;
+    params->inlet = growing->inlet.at;
+    params->inlet_shares = growing->inlet_share.n;
+    params->inlet_share = growing->inlet_share.at;
+    bool has_domain = false;
+    if (!growing->from_path)
+        TRY(reading_refuse(parsed, "needs --from", err));
+    else
+        TRY(read_from(growing, parsed, &has_domain, err));
+    if (!has_domain)
+        TRY(domain_parse(&growing->domain,
+                         growing->domain_spec ? growing->domain_spec : plain_domain, err));
+    return check(growing, parsed, err);
+}
+
+void growing_release(Growing *growing)
+{
+    domain_release(&growing->domain);
+    tree_release(&growing->from);
+}

@@ -1,0 +1,29 @@
+/* The options of growth, and what they name: the domain, and a tree to grow on from. */
+#ifndef CORCAST_APP_GROWING_H
+#define CORCAST_APP_GROWING_H
+
+#include "app/run/options.h"
+#include "grow/grow.h"
+
+typedef struct Growing {
+    GrowParams params;
+    Domain domain;
+    Tree from;
+    const char *domain_spec, *from_path; /* NULL: not given */
+    VectorList inlet;
+    NumberList inlet_share;
+    bool given[META_KEYS]; /* which options of these keys were */
+} Growing;
+
+/* Of a zeroed Growing: grow_defaults. */
+void growing_set_defaults(Growing *growing);
+extern const OptionTable growing_table; /* sets a Growing */
+
+/* Reads what the options name, takes note of the domain's file, and completes the parameters; what
+ * they do not give is taken from the header of the tree to grow on from, where it tells.
+ * STATUS_USAGE, too, for options without effect. */
+MUST_CHECK Status growing_prepare(Growing *growing, Parsed *parsed, Err *err);
+
+void growing_release(Growing *growing);
+
+#endif
