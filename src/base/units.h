@@ -30,6 +30,8 @@ static inline double pa_s_from_cp(double cp)
     return cp * 1e-3;
 }
 
+#define MM_PER_INCH 25.4
+
 /* Units by name, of pressure (Pa, mmHg, dyn/cm2, ...), length, flow and velocity. */
 
 /* The unit of this name, which lasts; NULL when there is none. */

@@ -66,6 +66,7 @@ typedef struct RowEncoder {
     Status (*end)(void *self, Err *err); /* writes what comes last; may be NULL */
     void (*release)(void *self);         /* NULL is allowed */
     bool plain;                          /* the file has the size of its values, and a header */
+    bool keeps_dpi;                      /* has a place for the resolution on paper */
 } RowEncoder;
 
 extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, pfm_encoder;

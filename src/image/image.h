@@ -137,7 +137,7 @@ typedef struct ImageNote {
 typedef struct ImageNotes {
     const ImageNote *notes; /* borrowed */
     int count;
-    double dpi; /* pHYs of a PNG; 0: not written */
+    double dpi; /* pHYs of a PNG, XResolution and YResolution of a TIFF; 0: not written */
 } ImageNotes;
 
 /* What is to be written. */
@@ -175,6 +175,9 @@ MUST_CHECK Status picture_write(const Picture *picture, const char *path, Encodi
 /* Appends the bytes of the PNG file that picture_write would write to `out`. */
 MUST_CHECK Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNotes *notes,
                                  Text *out, Err *err);
+/* Whether files of this name keep ImageNotes.dpi. */
+bool image_keeps_dpi(const char *path);
+
 /* What a file holds: integer codes, or linear floats. */
 typedef struct Image {
     Picture picture; /* without codes when the file holds floats */

@@ -17,21 +17,35 @@ struct ImageWriter {
     int next; /* row */
 };
 
+/* Of codes; NULL when the extension is none of theirs. */
+static const RowEncoder *encoder_of(const char *path)
+{
+    static const struct {
+        const char *extension;
+        const RowEncoder *encoder;
+    } formats[] = {{"ppm", &ppm_encoder},
+                   {"pgm", &pgm_encoder},
+                   {"png", &png_encoder},
+                   {"tif", &tiff_encoder},
+                   {"tiff", &tiff_encoder}};
+    const char *extension = strcmp(path, "-") ? file_extension(path) : "ppm";
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (strcasecmp(formats[i].extension, extension) == 0)
+            return formats[i].encoder;
+    return NULL;
+}
+
+bool image_keeps_dpi(const char *path)
+{
+    const RowEncoder *encoder = encoder_of(path);
+    return encoder && encoder->keeps_dpi;
+}
+
 static Status choose_encoder(const char *path, const ImageForm *form, const RowEncoder **encoder,
                              Err *err)
 {
-    const char *extension = file_extension(path);
-    if (form->bits == 32)
-        *encoder = &pfm_encoder;
-    else if (strcmp(path, "-") == 0 || strcasecmp(extension, "ppm") == 0)
-        *encoder = &ppm_encoder;
-    else if (strcasecmp(extension, "pgm") == 0)
-        *encoder = &pgm_encoder;
-    else if (strcasecmp(extension, "png") == 0)
-        *encoder = &png_encoder;
-    else if (strcasecmp(extension, "tif") == 0 || strcasecmp(extension, "tiff") == 0)
-        *encoder = &tiff_encoder;
-    else
+    *encoder = form->bits == 32 ? &pfm_encoder : encoder_of(path);
+    if (!*encoder)
         return err_set(err, STATUS_USAGE,
                        "%s: the extension of a picture must be .ppm, .pgm, .png or .tif", path);
     if (*encoder == &pgm_encoder && form->channels != 1)

@@ -115,4 +115,5 @@ static Status write_rows(void *self, const void *values, int first, int n, Err *
     return STATUS_OK;
 }
 
-const RowEncoder pfm_encoder = {begin, write_rows, NULL, release_writer, true};
+const RowEncoder pfm_encoder = {
+    .begin = begin, .rows = write_rows, .release = release_writer, .plain = true};

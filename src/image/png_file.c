@@ -269,7 +269,7 @@ static void set_provenance(Writer *self, const ImageNotes *notes)
     }
     png_set_text(self->png, self->info, self->chunks, notes->count);
     if (notes->dpi > 0) {
-        png_uint_32 per_metre = (png_uint_32)(notes->dpi / 0.0254 + 0.5);
+        png_uint_32 per_metre = (png_uint_32)(notes->dpi * 1000 / MM_PER_INCH + 0.5);
         png_set_pHYs(self->png, self->info, per_metre, per_metre, PNG_RESOLUTION_METER);
     }
 }
@@ -381,4 +381,5 @@ static void release_writer(void *self)
     free(writer);
 }
 
-const RowEncoder png_encoder = {begin, write_rows, end, release_writer, false};
+const RowEncoder png_encoder = {
+    .begin = begin, .rows = write_rows, .end = end, .release = release_writer, .keeps_dpi = true};

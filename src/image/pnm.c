@@ -182,5 +182,7 @@ static Status write_rows(void *self, const void *values, int first, int n, Err *
     return STATUS_OK;
 }
 
-const RowEncoder ppm_encoder = {begin_ppm, write_rows, NULL, release_writer, true};
-const RowEncoder pgm_encoder = {begin_pgm, write_rows, NULL, release_writer, true};
+const RowEncoder ppm_encoder = {
+    .begin = begin_ppm, .rows = write_rows, .release = release_writer, .plain = true};
+const RowEncoder pgm_encoder = {
+    .begin = begin_pgm, .rows = write_rows, .release = release_writer, .plain = true};

@@ -50,6 +50,10 @@ static bool set_fields(TIFF *handle, const ImageForm *form, int rows_per_strip)
                TIFFSetField(handle, TIFFTAG_ROWSPERSTRIP, (uint32_t)rows_per_strip) &&
                TIFFSetField(handle, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE) &&
                TIFFSetField(handle, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
+    if (form->notes && form->notes->dpi > 0)
+        set = set && TIFFSetField(handle, TIFFTAG_XRESOLUTION, form->notes->dpi) &&
+              TIFFSetField(handle, TIFFTAG_YRESOLUTION, form->notes->dpi) &&
+              TIFFSetField(handle, TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
     for (int i = 0; form->notes && set && i < form->notes->count; i++) {
         const ImageNote *note = &form->notes->notes[i];
         bool software = strcmp(note->key, "Software") == 0;
@@ -148,4 +152,5 @@ static void release_writer(void *self)
     free(writer);
 }
 
-const RowEncoder tiff_encoder = {begin, write_rows, end, release_writer, false};
+const RowEncoder tiff_encoder = {
+    .begin = begin, .rows = write_rows, .end = end, .release = release_writer, .keeps_dpi = true};

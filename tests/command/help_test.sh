@@ -13,7 +13,7 @@ test_help_prints_headings_ranges_and_defaults() {
     expect_stdout '--gamma NUMBER +Murray exponent; above 0 and at most 10 \(3\)$'
     run_ok corcast render --help
     expect_stdout '^camera:$'
-    expect_stdout '--size WxH +pixels \(1000x1000\)$'
+    expect_stdout '--size WxH +pixels, or on paper, as 89mmx60mm; 89mm is a square \(1000x1000\)$'
     [ "$(awk 'length > 92' stdout | grep -vc '^  corcast')" -eq 0 ] || fail "expected no line of options over 92 columns"
     run_ok corcast refine --help
     tr -s ' \n' ' ' <stdout | grep -q 'geometry, topology, anneal (topology)' || fail "expected the default of refine"

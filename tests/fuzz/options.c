@@ -9,7 +9,8 @@ enum { MAX_ARGUMENTS = 40 };
 typedef struct Values {
     bool flag, on, given;
     const char *text;
-    int whole, size[2];
+    int whole;
+    PictureSize size;
     unsigned choice;
     uint64_t seed;
     size_t count;
@@ -35,6 +36,11 @@ static const Option rows[] = {
     {.name = "numbers", SETS(NUMBERS, Values, numbers), .help = ""},
     {.name = "color", SETS(COLOR, Values, color), .help = ""},
     {.name = "size", SETS(SIZE, Values, size), FROM_TO(1, 9999), .help = ""},
+    {.name = "dpi",
+     SETS(NUMBER, Values, size.dpi),
+     GIVEN(Values, size.has_dpi),
+     FROM_TO(1, 1e5),
+     .help = ""},
     {.name = "range", SETS(RANGE, Values, range), .help = ""},
     {.name = "choice", SETS(CHOICE, Values, choice), .choices = choices, .help = ""},
 };
@@ -44,7 +50,7 @@ static const OptionTable table = OPTION_TABLE(rows);
 static void set_defaults(void *options)
 {
     *(Values *)options =
-        (Values){.whole = 4, .size = {1, 1}, .count = 4, .number = 4, .range.at[1] = 1};
+        (Values){.whole = 4, .size = {.pixels = {1, 1}}, .count = 4, .number = 4, .range.at[1] = 1};
 }
 
 static const Command command = {.name = "render",
@@ -60,8 +66,8 @@ static void check(const Values *values)
 {
     assert(values->whole >= 1 && values->whole <= 9);
     assert(values->count >= 1 && values->count <= 1000000 && values->number >= 0.5);
-    assert(values->size[0] >= 1 && values->size[0] <= 9999);
-    assert(values->size[1] >= 1 && values->size[1] <= 9999);
+    assert(values->size.pixels[0] >= 1 && values->size.pixels[0] <= 9999);
+    assert(values->size.pixels[1] >= 1 && values->size.pixels[1] <= 9999);
     const RangeEnds *range = &values->range;
     assert(range->percent[0] != range->percent[1] || range->at[0] < range->at[1]);
     assert(values->choice < 2);

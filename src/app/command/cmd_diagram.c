@@ -11,7 +11,8 @@
 
 typedef struct DiagramOptions {
     const char *output, *look;
-    int size[2], bits;
+    PictureSize size;
+    int bits;
     double gap_mm, prune_radius_mm, margin;
     Vec3 background; /* sRGB in [0, 1] */
     Coloring coloring;
@@ -40,7 +41,9 @@ static const Option own[] = {
      SETS(SIZE, DiagramOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
-     .help = "pixels"},
+     .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
+    {DPI_OF_SIZE(DiagramOptions, size), .group = GROUP_CAMERA,
+     .help = "pixels an inch on paper, which .png and .tif keep"},
     {.name = "margin",
      SETS(NUMBER, DiagramOptions, margin),
      FROM_TO(0, 0.45),
@@ -67,8 +70,11 @@ static const OptionTable own_table = OPTION_TABLE(own);
 static void set_defaults(void *options)
 {
     DiagramOptions *own_options = options;
-    *own_options = (DiagramOptions){
-        .look = "cast", .size = {1200, 900}, .bits = 8, .margin = 0.05, .background = {1, 1, 1}};
+    *own_options = (DiagramOptions){.look = "cast",
+                                    .size = {.pixels = {1200, 900}},
+                                    .bits = 8,
+                                    .margin = 0.05,
+                                    .background = {1, 1, 1}};
     coloring_set_defaults(&own_options->coloring);
 }
 
@@ -128,11 +134,17 @@ static Status write_picture(const DiagramOptions *options, const Drawing *drawin
                             const char *command, Err *err)
 {
     Frame frame = {0};
-    TRY(picture_fits(options->size[0], options->size[1], 40, err));
-    TRY(diagram_draw(&drawing->diagram, &drawing->paint, options->size[0], options->size[1],
-                     &frame.color, err));
-    Status status = frames_write(&frame, options->output, options->bits, ENCODING_SRGB, command,
-                                 drawing->appearance.said, err);
+    TRY(picture_fits(options->size.pixels[0], options->size.pixels[1], 40, err));
+    TRY(diagram_draw(&drawing->diagram, &drawing->paint, options->size.pixels[0],
+                     options->size.pixels[1], &frame.color, err));
+    const FramesForm form = {.path = options->output,
+                             .bits = options->bits,
+                             .encoding = ENCODING_SRGB,
+                             .picture = true,
+                             .dpi = options->size.dpi,
+                             .provenance = command,
+                             .colors = drawing->appearance.said};
+    Status status = frames_write(&frame, &form, err);
     frame_release(&frame);
     return status;
 }
@@ -183,9 +195,12 @@ static bool is_svg(const DiagramOptions *options)
 static Status check(const DiagramOptions *options, const Parsed *parsed, Err *err)
 {
     static const char of_pixels[] = "is for pixels; an .svg is true to size";
-    const OptionNeed needs[] = {
-        {"size", !is_svg(options), of_pixels}, {"bits", !is_svg(options), of_pixels}, {0}};
+    const OptionNeed needs[] = {{"size", !is_svg(options), of_pixels},
+                                {"dpi", !is_svg(options), of_pixels},
+                                {"bits", !is_svg(options), of_pixels},
+                                {0}};
     TRY(options_check_needs(parsed, needs, err));
+    TRY(picture_check_dpi(&options->size, options->output, parsed, err));
     TRY(bits_check(options->bits, err));
     TRY(coloring_check_needs(&options->coloring, parsed, err));
     return is_svg(options) ? STATUS_OK : frames_check_output(options->output, false, err);

@@ -11,15 +11,16 @@
 #include <string.h>
 
 /* The size that the scene's "// Size: WxH" comment asks for. */
-static Status size_of_scene(const char *path, int size[2], Err *err)
+static Status size_of_scene(const char *path, PictureSize *size, Err *err)
 {
     static const FileForm form = {.name = "a scene", .most_bytes = 4e9, .is_text = true};
     char *text = NULL;
     size_t length;
+    int *side = size->pixels;
     TRY(file_read(path, &form, &text, &length, err));
     const char *line = strstr(text, "// Size: ");
-    bool found = line && sscanf(line, "// Size: %dx%d", &size[0], &size[1]) == 2 && size[0] > 0 &&
-                 size[1] > 0 && size[0] <= IMAGE_MAX_SIDE && size[1] <= IMAGE_MAX_SIDE;
+    bool found = line && sscanf(line, "// Size: %dx%d", &side[0], &side[1]) == 2 && side[0] > 0 &&
+                 side[1] > 0 && side[0] <= IMAGE_MAX_SIDE && side[1] <= IMAGE_MAX_SIDE;
     free(text);
     if (found)
         return STATUS_OK;
@@ -28,7 +29,7 @@ static Status size_of_scene(const char *path, int size[2], Err *err)
 
 typedef struct PovrayOptions {
     const char *output;
-    int size[2];
+    PictureSize size;
     bool has_size;
     int antialias, bits;
     OraclePlane plane;
@@ -47,7 +48,9 @@ static const Option own[] = {
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .otherwise = "what the scene says",
-     .help = "pixels"},
+     .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
+    {DPI_OF_SIZE(PovrayOptions, size), .group = GROUP_CAMERA,
+     .help = "pixels an inch of a size on paper"},
     {.name = "antialias",
      SETS(WHOLE, PovrayOptions, antialias),
      .range = &antialias_range,
@@ -74,14 +77,16 @@ static void set_defaults(void *options)
 static Status check(PovrayOptions *options, const Parsed *parsed, Err *err)
 {
     bool color = options->plane == ORACLE_COLOR;
-    const OptionNeed needs[] = {
-        {"antialias", color, "is for --plane color"}, {"bits", color, "is for --plane color"}, {0}};
+    const OptionNeed needs[] = {{"antialias", color, "is for --plane color"},
+                                {"bits", color, "is for --plane color"},
+                                {"dpi", size_is_on_paper(&options->size), NEEDS_PAPER},
+                                {0}};
     if (strcmp(file_extension(options->output), "png") != 0)
         return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png", options->output);
     TRY(bits_check(options->bits, err));
     TRY(options_check_needs(parsed, needs, err));
     TRY(file_check_regular(parsed->operands[0], err));
-    return options->has_size ? STATUS_OK : size_of_scene(parsed->operands[0], options->size, err);
+    return options->has_size ? STATUS_OK : size_of_scene(parsed->operands[0], &options->size, err);
 }
 
 static Status run_povray(void *options, Parsed *parsed, Err *err)
@@ -92,8 +97,8 @@ static Status run_povray(void *options, Parsed *parsed, Err *err)
     TRY(check(own_options, parsed, err));
     OracleParams params = {.scene = parsed->operands[0],
                            .output = own_options->output,
-                           .width = own_options->size[0],
-                           .height = own_options->size[1],
+                           .width = own_options->size.pixels[0],
+                           .height = own_options->size.pixels[1],
                            .antialias = own_options->antialias,
                            .threads = parsed->common.threads,
                            .plane = own_options->plane,

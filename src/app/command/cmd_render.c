@@ -272,6 +272,7 @@ static Status check(const RenderOptions *options, const Parsed *parsed, Err *err
                                 {0}};
     TRY(options_check_needs(parsed, needs, err));
     TRY(picture_check_needs(picture, parsed, err));
+    TRY(picture_check_dpi(&picture->size, options->output, parsed, err));
     if (options->threshold > 0 && picture->antialias == 1)
         return err_set(err, STATUS_USAGE,
                        "--antialias-threshold needs --antialias N, with N from 2 to 9");
@@ -290,11 +291,12 @@ static Status plan_files(const RenderOptions *options, RenderParams *params, Fra
                          Err *err)
 {
     TRY(read_planes(options->planes, params, err));
-    *form = (FramesForm){.width = options->picture.size[0],
-                         .height = options->picture.size[1],
+    *form = (FramesForm){.width = options->picture.size.pixels[0],
+                         .height = options->picture.size.pixels[1],
                          .path = options->output,
                          .bits = options->bits,
                          .encoding = ENCODING_SRGB,
+                         .dpi = options->picture.size.dpi,
                          .picture = true,
                          .color = params->want_color,
                          .depth = params->want_depth,

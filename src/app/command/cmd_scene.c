@@ -54,14 +54,17 @@ static void set_defaults(void *options)
 }
 
 /* STATUS_USAGE for an option that has no effect on a file of this format. */
-static Status check_format(const Emitter *emitter, bool mesh, const Parsed *parsed, Err *err)
+static Status check_format(const Emitter *emitter, const PictureOptions *picture,
+                           const Parsed *parsed, Err *err)
 {
     static const char of_view[] = "is for scenes with a camera (.pov); a solid has none";
     static const char of_povray[] = "is for scenes of POV-Ray (.pov)";
     static const char of_vessels[] = "is for vessels; a polyhedron is the surface of all";
     const bool view = emitter->has_view, povray = strcmp(emitter->extension, "pov") == 0;
-    const bool vessels = !emitter->of_meshes;
+    const bool vessels = !emitter->of_meshes, mesh = picture->model == SCENE_MESH;
+    const bool on_paper = view && size_is_on_paper(&picture->size);
     const OptionNeed needs[] = {{"size", view, of_view},
+                                {"dpi", on_paper, NEEDS_PAPER},
                                 {"projection", view, of_view},
                                 {"view", view, of_view},
                                 {"location", view, of_view},
@@ -87,7 +90,7 @@ static Status check(const SceneOptions *options, const Emitter *emitter, const P
                     Err *err)
 {
     PictureOptions picture = options->picture;
-    TRY(check_format(emitter, picture.model == SCENE_MESH, parsed, err));
+    TRY(check_format(emitter, &picture, parsed, err));
     if (options->ini && strcmp(options->output, "-") == 0)
         return err_set(err, STATUS_USAGE, "--ini is a file beside S.pov; standard output has none");
     if (emitter->of_meshes)

@@ -235,7 +235,7 @@ static Status check(const VerifyOptions *options, const Parsed *parsed, Err *err
     TRY(bits_check(options->bits, err));
     TRY(picture_check_needs(picture, parsed, err));
     TRY(picture_check_povray(picture, err));
-    return picture_fits(picture->size[0], picture->size[1], 120, err);
+    return picture_fits(picture->size.pixels[0], picture->size.pixels[1], 120, err);
 }
 
 /* Reads the tree, makes the folder, draws both sides and compares them. */

@@ -328,8 +328,8 @@ static Status on_event(Viewer *viewer, const WindowEvent *event, Err *err)
     case WINDOW_WHEEL:
         return on_wheel(viewer, event, err);
     case WINDOW_SIZE:
-        viewer->options->size[0] = event->x < 1 ? 1 : (int)event->x;
-        viewer->options->size[1] = event->y < 1 ? 1 : (int)event->y;
+        viewer->options->size.pixels[0] = event->x < 1 ? 1 : (int)event->x;
+        viewer->options->size.pixels[1] = event->y < 1 ? 1 : (int)event->y;
         return aim(viewer, err);
     case WINDOW_EXPOSED:
         viewer->moved = true;
@@ -405,8 +405,8 @@ static Status open_viewer(Viewer *viewer, Err *err)
     ViewParams stage = picture_view_params(options);
     orbit_begin(&stage, &viewer->scene.view.camera, &viewer->scene.geometry);
     viewer->home = options->stage = stage;
-    TRY(window_open(&viewer->window, file_name(viewer->tree), options->size[0], options->size[1],
-                    err));
+    TRY(window_open(&viewer->window, file_name(viewer->tree), options->size.pixels[0],
+                    options->size.pixels[1], err));
     set_title(viewer);
     return STATUS_OK;
 }

@@ -54,7 +54,7 @@ static Status open_picture(FramesWriter *writer, Err *err)
     const FramesForm *form = writer->form;
     const ImageNote notes[] = {
         {"Software", GENERATOR}, {"Comment", form->provenance}, {"Colors", form->colors}};
-    const ImageNotes all = {.notes = notes, .count = form->colors ? 3 : 2};
+    const ImageNotes all = {.notes = notes, .count = form->colors ? 3 : 2, .dpi = form->dpi};
     const ImageForm image = {.width = form->width,
                              .height = form->height,
                              .channels = 3,
@@ -172,22 +172,16 @@ void frames_discard(FramesWriter *writer)
     free(writer);
 }
 
-Status frames_write(const Frame *frame, const char *path, int bits, Encoding encoding,
-                    const char *provenance, const char *colors, Err *err)
+Status frames_write(const Frame *frame, const FramesForm *form, Err *err)
 {
-    const FramesForm form = {.width = bits ? frame->color.width : frame->id.width,
-                             .height = bits ? frame->color.height : frame->id.height,
-                             .path = path,
-                             .bits = bits,
-                             .encoding = encoding,
-                             .picture = bits != 0,
-                             .depth = frame->depth.values != NULL,
-                             .normal = frame->normal.values != NULL,
-                             .id = frame->id.ids != NULL,
-                             .provenance = provenance,
-                             .colors = colors};
+    FramesForm whole = *form;
+    whole.width = form->picture ? frame->color.width : frame->id.width;
+    whole.height = form->picture ? frame->color.height : frame->id.height;
+    whole.depth = frame->depth.values != NULL;
+    whole.normal = frame->normal.values != NULL;
+    whole.id = frame->id.ids != NULL;
     FramesWriter *writer;
-    TRY(frames_open(&writer, &form, err));
+    TRY(frames_open(&writer, &whole, err));
     Status status = frames_rows(writer, frame, err);
     if (status == STATUS_OK)
         return frames_commit(writer, err);

@@ -21,6 +21,7 @@ typedef struct FramesForm {
                         * P.normal.pfm and P.id.ppm */
     int bits;          /* of a picture that is no .pfm: 8 or 16 */
     Encoding encoding; /* of its codes; .pfm is linear */
+    double dpi;        /* pixels an inch on paper; 0: not known */
     bool picture, color, depth, normal, id;
     const char *provenance; /* the command line; of the picture */
     const char *colors;     /* what they mean; of the picture; NULL: nothing */
@@ -40,10 +41,8 @@ MUST_CHECK Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err)
 MUST_CHECK Status frames_commit(FramesWriter *writer, Err *err);
 void frames_discard(FramesWriter *writer);
 
-/* Writes a whole frame: the planes that it has but for the colour, and the picture if `bits` is not
- * 0.
- */
-MUST_CHECK Status frames_write(const Frame *frame, const char *path, int bits, Encoding encoding,
-                               const char *provenance, const char *colors, Err *err);
+/* Writes a whole frame as the form says, its size and planes, but for the colour, those that the
+ * frame has. */
+MUST_CHECK Status frames_write(const Frame *frame, const FramesForm *form, Err *err);
 
 #endif

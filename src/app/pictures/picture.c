@@ -70,7 +70,9 @@ static const Option rows[] = {
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
-     .help = "pixels"},
+     .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
+    {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
+     .help = "pixels an inch on paper, which .png and .tif keep"},
     {.name = "projection",
      SETS(CHOICE, PictureOptions, projection),
      .choices = projections,
@@ -165,7 +167,7 @@ void picture_set_defaults(PictureOptions *picture)
     *picture = (PictureOptions){.stage = view_defaults(),
                                 .model = SCENE_ROUNDED,
                                 .tolerance = MESHING_TOLERANCE,
-                                .size = {1000, 1000},
+                                .size = {.pixels = {1000, 1000}},
                                 .antialias = 1,
                                 .look = "cast"};
     coloring_set_defaults(&picture->coloring);
@@ -253,6 +255,15 @@ Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, 
             return refuse(setting->option, of, err);
     }
     return coloring_check_needs(&options->coloring, parsed, err);
+}
+
+Status picture_check_dpi(const PictureSize *size, const char *output, const Parsed *parsed,
+                         Err *err)
+{
+    const OptionNeed needs[] = {{"dpi", size_is_on_paper(size) || image_keeps_dpi(output),
+                                 NEEDS_PAPER ", or a file that keeps it (.png, .tif)"},
+                                {0}};
+    return options_check_needs(parsed, needs, err);
 }
 
 Status picture_check_povray(const PictureOptions *options, Err *err)
@@ -388,8 +399,8 @@ ViewParams picture_view_params(const PictureOptions *options)
     ViewParams params = options->stage;
     params.projection = (Projection)options->projection;
     params.view = (NamedView)options->view;
-    params.width = options->size[0];
-    params.height = options->size[1];
+    params.width = options->size.pixels[0];
+    params.height = options->size.pixels[1];
     return params;
 }
 

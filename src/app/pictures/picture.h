@@ -13,7 +13,7 @@
 typedef struct PictureOptions {
     ViewParams stage; /* but projection, view and size, which are below */
     int model, potential, joints, projection, view, color_blend; /* choices */
-    int size[2];
+    PictureSize size;
     int antialias;
     int occlusion;    /* rays a sample; 0: none */
     double tolerance; /* of a mesh, over the local radius */
@@ -48,6 +48,10 @@ CellParams picture_cells(const PictureOptions *options);
  * whose keys change models and fields. */
 MUST_CHECK Status picture_check_needs(const PictureOptions *options, const Parsed *parsed,
                                       Err *err);
+
+/* STATUS_USAGE when --dpi is given and has an effect neither on the size nor on the file. */
+MUST_CHECK Status picture_check_dpi(const PictureSize *size, const char *output,
+                                    const Parsed *parsed, Err *err);
 
 /* Whether the option has an effect on this picture, if it is given. */
 bool picture_takes(const PictureOptions *options, const Option *option);

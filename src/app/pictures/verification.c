@@ -77,8 +77,14 @@ static Status write_frame(const Verification *v, const Frame *frame, const char 
 {
     char *path = NULL;
     TRY(file_join(v->folder, name, &path, err));
-    Status status =
-        frames_write(frame, path, v->bits, encoding, provenance, v->scene.appearance.said, err);
+    const FramesForm form = {.path = path,
+                             .bits = v->bits,
+                             .encoding = encoding,
+                             .picture = true,
+                             .dpi = v->picture->size.dpi,
+                             .provenance = provenance,
+                             .colors = v->scene.appearance.said};
+    Status status = frames_write(frame, &form, err);
     free(path);
     return status;
 }
@@ -154,8 +160,8 @@ static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane p
     progress_start(&progress, labels[plane], v->common->quiet);
     OracleParams params = {.scene = scene,
                            .output = path,
-                           .width = v->picture->size[0],
-                           .height = v->picture->size[1],
+                           .width = v->picture->size.pixels[0],
+                           .height = v->picture->size.pixels[1],
                            .antialias = v->picture->antialias,
                            .threads = v->common->threads,
                            .plane = plane,
@@ -212,7 +218,7 @@ static Status run_oracle(Verification *v, Err *err)
     if (status == STATUS_OK)
         status = file_join(v->folder, "povray.png", &picture, err);
     if (status == STATUS_OK)
-        status = frames_write(&v->povray, picture, 0, ENCODING_SRGB, NULL, NULL, err);
+        status = frames_write(&v->povray, &(FramesForm){.path = picture}, err);
     free(picture);
     return status;
 }

@@ -48,7 +48,7 @@ static Status wrong(const Option *option, const char *value, const char *allowed
 
 static Status wrong_number(const Option *option, const char *value, const char *what, Err *err)
 {
-    char range[RANGE_TEXT_SIZE] = "", allowed[RANGE_TEXT_SIZE + 32];
+    char range[RANGE_TEXT_SIZE] = "", allowed[RANGE_TEXT_SIZE + 128];
     if (option_range(option))
         range_text(*option_range(option), range);
     snprintf(allowed, sizeof allowed, "%s%s%s", what, *range ? " " : "", range);
@@ -140,16 +140,55 @@ static Status read_number(const Option *option, const char *value, void *where, 
     return STATUS_OK;
 }
 
+static const struct {
+    const char *name;
+    double mm;
+} paper_units[] = {{"mm", 1}, {"cm", 10}, {"in", MM_PER_INCH}, {"pt", MM_PER_INCH / 72}};
+
+/* A number and how many mm one of its unit is, 0 where it has none. */
+static bool read_side(const char *text, size_t length, double *side, double *mm)
+{
+    char number[64];
+    *mm = 0;
+    for (size_t i = 0; i < sizeof paper_units / sizeof *paper_units; i++)
+        if (length > 2 && strncmp(text + length - 2, paper_units[i].name, 2) == 0)
+            *mm = paper_units[i].mm;
+    length -= *mm > 0 ? 2 : 0;
+    if (length >= sizeof number)
+        return false;
+    memcpy(number, text, length);
+    number[length] = '\0';
+    return number_parse(number, side) && isfinite(*side) && *side > 0;
+}
+
+/* Both sides are in pixels or both are lengths; one length is that of both. */
+static bool read_sides(const char *value, double sides[2], double mm[2])
+{
+    const char *by = strchr(value, 'x');
+    if (!read_side(value, by ? (size_t)(by - value) : strlen(value), &sides[0], &mm[0]))
+        return false;
+    sides[1] = sides[0];
+    mm[1] = mm[0];
+    return by ? read_side(by + 1, strlen(by + 1), &sides[1], &mm[1]) && (mm[0] > 0) == (mm[1] > 0)
+              : mm[0] > 0;
+}
+
 static Status read_size(const Option *option, const char *value, void *where, Err *err)
 {
-    double size[2] = {0, 0};
-    bool read = read_numbers(value, 'x', 2, 2, size);
-    for (int i = 0; i < 2; i++)
-        read = read && range_has(*option_range(option), size[i]) && size[i] == floor(size[i]);
+    PictureSize *size = where;
+    double sides[2], mm[2];
+    bool read = read_sides(value, sides, mm);
+    for (int i = 0; i < 2 && read && mm[i] == 0; i++)
+        read = range_has(*option_range(option), sides[i]) && sides[i] == floor(sides[i]);
     if (!read)
-        return wrong_number(option, value, "WIDTHxHEIGHT in pixels, each a whole number", err);
-    ((int *)where)[0] = (int)size[0];
-    ((int *)where)[1] = (int)size[1];
+        return wrong_number(option, value,
+                            "a size on paper, as 89mm or 89mmx60mm (or in cm, in, pt), or "
+                            "WIDTHxHEIGHT in pixels, each a whole number",
+                            err);
+    for (int i = 0; i < 2; i++) {
+        size->mm[i] = sides[i] * mm[i];
+        size->pixels[i] = mm[i] > 0 ? 0 : (int)sides[i];
+    }
     return STATUS_OK;
 }
 
@@ -343,7 +382,16 @@ static void put_list(const void *where, Text *text)
 
 static void put_size(const void *where, Text *text)
 {
-    text_printf(text, "%dx%d", ((const int *)where)[0], ((const int *)where)[1]);
+    const PictureSize *size = where;
+    for (int i = 0; i < 2; i++) {
+        text_puts(text, i ? "x" : "");
+        if (size_is_on_paper(size)) {
+            text_number(text, size->mm[i]);
+            text_puts(text, "mm");
+        } else {
+            text_printf(text, "%d", size->pixels[i]);
+        }
+    }
 }
 
 static void put_range(const void *where, Text *text)

@@ -297,6 +297,37 @@ static Status check_present(const Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
+/* The pixels of a size on paper. */
+static Status settle_size(const Option *option, PictureSize *size, Err *err)
+{
+    enum { PAPER_DPI = 300 };
+    if (!size_is_on_paper(size))
+        return STATUS_OK;
+    size->dpi = size->has_dpi ? size->dpi : PAPER_DPI;
+    for (int i = 0; i < 2; i++) {
+        double pixels = round(size->mm[i] / MM_PER_INCH * size->dpi);
+        char range[RANGE_TEXT_SIZE];
+        if (!range_has(*option_range(option), pixels))
+            return err_set(err, STATUS_USAGE, "--%s: %g mm at %g dpi are %.0f pixels, not %s",
+                           option->name, size->mm[i], size->dpi, pixels,
+                           range_text(*option_range(option), range));
+        size->pixels[i] = (int)pixels;
+    }
+    return STATUS_OK;
+}
+
+/* What can be said only of all options together. */
+static Status settle(const Parsed *parsed, Err *err)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        if (setting->option->kind == OPTION_SIZE)
+            TRY(settle_size(setting->option, (void *)(setting->base + setting->option->where),
+                            err));
+    }
+    return STATUS_OK;
+}
+
 Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
 {
     TRY(read_arguments(parsed, argc, argv, false, err));
@@ -305,6 +336,7 @@ Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
     TRY(read_arguments(parsed, argc, argv, true, err));
     if (parsed->common.help)
         return STATUS_OK;
+    TRY(settle(parsed, err));
     TRY(check_present(parsed, err));
     return note_files(parsed, err);
 }

@@ -27,7 +27,7 @@ typedef enum OptionKind {
     OPTION_VECTORS, /* VectorList: X,Y or X,Y,Z, given several times */
     OPTION_NUMBERS, /* NumberList: A,B,... */
     OPTION_COLOR,   /* Vec3: R,G,B, each in [0, 1], sRGB; #RRGGBB or a name */
-    OPTION_SIZE,    /* int[2]: WxH, each in the range */
+    OPTION_SIZE,    /* PictureSize: WxH in pixels, each in the range, or in lengths, as 89mmx60mm */
     OPTION_RANGE,   /* RangeEnds: A,B with A below B */
     OPTION_CHOICE   /* int or an enum: index into choices */
 } OptionKind;
@@ -50,6 +50,19 @@ typedef struct RangeEnds {
     double at[2];
     bool percent[2];
 } RangeEnds;
+
+/* Width and height of a picture, in pixels or on paper. */
+typedef struct PictureSize {
+    int pixels[2]; /* of lengths, what they are at `dpi`, once all options are read */
+    double mm[2];  /* 0 0: pixels were given */
+    double dpi;    /* pixels an inch on paper; 0: not known */
+    bool has_dpi;  /* given, not the default of lengths */
+} PictureSize;
+
+static inline bool size_is_on_paper(const PictureSize *size)
+{
+    return size->mm[0] > 0;
+}
 
 /* The headings that options stand under, in the order of the help. */
 typedef enum OptionGroup {
@@ -121,6 +134,13 @@ static inline const char *option_unit(const Option *option)
         least, most                                                                                \
     }
 
+/* The resolution of the PictureSize at `path`; a command where it would have no effect refuses it
+ * with the sentence below. */
+#define DPI_OF_SIZE(Type, path)                                                                    \
+    .name = "dpi", SETS(NUMBER, Type, path.dpi), GIVEN(Type, path.has_dpi), FROM_TO(1, 1e5),       \
+    .argument = "N", .otherwise = "300 of a size on paper"
+#define NEEDS_PAPER "needs a --size on paper, as 89mm"
+
 #define OPTION_TYPE_FLAG bool
 #define OPTION_TYPE_SWITCH bool
 #define OPTION_TYPE_TEXT const char *
@@ -136,7 +156,7 @@ static inline const char *option_unit(const Option *option)
 #define OPTION_TYPE_VECTORS VectorList
 #define OPTION_TYPE_NUMBERS NumberList
 #define OPTION_TYPE_COLOR Vec3
-#define OPTION_TYPE_SIZE int *
+#define OPTION_TYPE_SIZE PictureSize
 #define OPTION_TYPE_RANGE RangeEnds
 #define OPTION_TYPE_CHOICE int : (char)0, unsigned
 
