@@ -92,4 +92,8 @@ MUST_CHECK Status graph_value(Graph *graph, size_t column, size_t at, double val
  * Afterwards the graph can only be released. */
 MUST_CHECK Status graph_build(Graph *graph, TreeBuilder *builder, Err *err);
 
+/* How many nodes of a tree lie where earlier ones do, so that graph_build, to which only points and
+ * lines are handed, makes one of them and those. O(n). STATUS_MEMORY. */
+MUST_CHECK Status graph_count_merged(const Tree *tree, size_t *n, Err *err);
+
 #endif

@@ -4,6 +4,7 @@
  * into one. Kept points are found in a hash table of cubes whose side is the tolerance: those in
  * reach are in 27 of them, and few fit into one. Without a tolerance a cube is a place. */
 #include "tree/graph_parts.h"
+#include "tree/tree.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -144,5 +145,23 @@ Status graph_merge(const Graph *graph, uint32_t **place, Err *err)
 done:
     if (status != STATUS_OK)
         free(made);
+    return status;
+}
+
+Status graph_count_merged(const Tree *tree, size_t *n, Err *err)
+{
+    Graph graph = {.n_points = tree->n};
+    uint32_t *place = NULL;
+    Status status;
+    TRY(mem_calloc(&graph.point, tree->n, sizeof *graph.point, "points", err));
+    for (size_t i = 0; i < tree->n; i++)
+        graph.point[i].position = tree->position[i];
+    TRY_GOTO(graph_merge(&graph, &place, err));
+    *n = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        *n += place[i] != i;
+done:
+    free(place);
+    free(graph.point);
     return status;
 }

@@ -29,7 +29,10 @@ enum {
     LOSES_COLUMNS = 1,
     LOSES_TYPES = 2,
     LOSES_SHARES = 4,
-    LOSES_ROOT_VALUES = 8 /* of columns, which are of segments there */
+    LOSES_ROOT_VALUES = 8, /* of columns, which are of segments there */
+    LOSES_ROOT_RADII = 16,
+    LOSES_IDS = 32, /* nodes are told by their places */
+    IS_NETWORK = LOSES_TYPES | LOSES_SHARES | LOSES_ROOT_RADII | LOSES_IDS
 };
 
 /* What options are called in sentences. */
@@ -69,7 +72,7 @@ static const Format formats[] = {
      .read = swc_read,
      .write = swc_write},
     {.name = "CSV of segments",
-     .loses = LOSES_TYPES | LOSES_SHARES | LOSES_ROOT_VALUES,
+     .loses = IS_NETWORK | LOSES_ROOT_VALUES,
      .description = "a segment a line: both ends, radius, length, any columns of values",
      .extensions = {"segments.csv"},
      .takes = ANY_GRAPH | COLUMNS,
@@ -141,7 +144,7 @@ static const Format formats[] = {
      .detect = amiraxml_detect,
      .read_graph = amiraxml_read},
     {.name = "SimVascular 1-D",
-     .loses = LOSES_COLUMNS | LOSES_TYPES | LOSES_SHARES,
+     .loses = IS_NETWORK | LOSES_COLUMNS,
      .keeps = oned_keeps,
      .description = "a deck of svOneDSolver: nodes, segments and joints, in cm",
      .extensions = {"in"},
@@ -151,7 +154,7 @@ static const Format formats[] = {
      .read_graph = oned_read,
      .write = oned_write},
     {.name = "VMV",
-     .loses = LOSES_COLUMNS | LOSES_TYPES | LOSES_SHARES,
+     .loses = IS_NETWORK | LOSES_COLUMNS,
      .description = "vertices and strands of VessMorphoVis, in um",
      .extensions = {"vmv"},
      .takes = ANY_GRAPH,
@@ -299,13 +302,27 @@ static bool has_root_values(const Tree *tree)
     return false;
 }
 
+/* Whether a root is not as thick as the thickest segment that leaves it. */
+static Status has_own_root_radii(const Tree *tree, bool *has, Err *err)
+{
+    double *thickest;
+    TRY(mem_calloc(&thickest, tree->n, sizeof *thickest, "radii", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i))
+            thickest[tree->parent[i]] = fmax(thickest[tree->parent[i]], tree->radius_mm[i]);
+    for (size_t i = 0; i < tree->n; i++)
+        *has = *has || (!tree_is_segment(tree, i) && tree->radius_mm[i] != thickest[i]);
+    free(thickest);
+    return STATUS_OK;
+}
+
 bool tree_format_keeps(const char *path, const TreeColumn *column)
 {
     const Format *format = find_written(path);
     return !format || !(format->loses & LOSES_COLUMNS) || (format->keeps && format->keeps(column));
 }
 
-TreeLosses tree_format_losses(const char *path, const Tree *tree)
+Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, Err *err)
 {
     const Format *format = find_written(path);
     unsigned loses = format ? format->loses : 0;
@@ -314,7 +331,12 @@ TreeLosses tree_format_losses(const char *path, const Tree *tree)
                        .root_values = (loses & LOSES_ROOT_VALUES) && has_root_values(tree)};
     for (size_t k = 0; k < tree->n_columns; k++)
         lost.columns += !tree_format_keeps(path, &tree->column[k]);
-    return lost;
+    if (loses & LOSES_ROOT_RADII)
+        TRY(has_own_root_radii(tree, &lost.root_radii, err));
+    if (loses & LOSES_IDS)
+        TRY(graph_count_merged(tree, &lost.merged, err));
+    *out = lost;
+    return STATUS_OK;
 }
 
 bool tree_format_known(const char *path)

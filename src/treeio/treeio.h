@@ -20,9 +20,13 @@ MUST_CHECK Status tree_format_check(const char *path, Err *err);
 typedef struct TreeLosses {
     bool types, flow_shares;
     bool root_values; /* in columns, although those are not lost */
+    bool root_radii;  /* which are not those of the thickest segments that leave the roots */
     size_t columns;   /* those that tree_format_keeps denies */
+    size_t merged;    /* nodes where others lie, of which a reader makes one */
 } TreeLosses;
-TreeLosses tree_format_losses(const char *path, const Tree *tree);
+/* O(n); STATUS_MEMORY. */
+MUST_CHECK Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, Err *err);
+/* Of a format that has no place for columns as such: whether it has one for this. */
 bool tree_format_keeps(const char *path, const TreeColumn *column);
 /* Name ("SWC"), chief extension ("swc") and description of format `i`, from 0 on; NULL after the
  * last. The first is written to standard output. */

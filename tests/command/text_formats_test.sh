@@ -154,6 +154,7 @@ test_files_of_all_formats_that_are_cut_off_are_refused_in_a_sentence() {
 }
 
 test_what_a_format_has_no_place_for_is_said() {
+    local extension
     printf '%s\n' id,parent,x_mm,y_mm,z_mm,radius_mm,type,flow_share,age 1,,0,9,0,1,3,0, 2,1,0,4,0,1,3,0,41 \
         3,2,-4,0,0,0.5,5,0.75,37.5 4,2,4,0,0,0.5,3,1.5, >tree.csv
     run_ok corcast convert tree.csv tree.vmv
@@ -166,6 +167,18 @@ test_what_a_format_has_no_place_for_is_said() {
     run_ok corcast convert tree.csv tree.gxl
     expect_sentence "^corcast convert: the roots' values are left out: "
     run_ok corcast convert tree.csv tree.vtp
+    [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
+    printf '%s\n' '1 3 0 9 0 1.5 -1' '2 3 0 4 0 0.9 1' '3 3 0 4 0 0.8 2' '4 3 -4 0 0 0.5 3' '5 3 0 4 0 0.4 4' >tree.swc
+    for extension in vmv segments.csv in; do
+        run_ok corcast convert tree.swc "tree.$extension"
+        grep -q "^corcast convert: the roots' own radii are left out: " stderr || fail "got of $extension: $(cat stderr)"
+        grep -q '^corcast convert: nodes that lie where others do: 2; ' stderr || fail "got of $extension: $(cat stderr)"
+        run_ok corcast info --json "tree.$extension"
+        expect_json stdout '.segments == 2'
+        run_ok corcast convert tree.swc "tree.$extension" --quiet
+        [ ! -s stderr ] || fail "expected silence: $(cat stderr)"
+    done
+    run_ok corcast convert tree.swc tree.gxl
     [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
     [ -r "$SHARED/simvascular_oned/14_AortoFem_Pulse_RCR.in" ] || return 0
     run_ok corcast convert "$SHARED/simvascular_oned/14_AortoFem_Pulse_RCR.in" deck.in

@@ -215,6 +215,37 @@ test_a_file_that_is_cut_off_or_is_something_else_is_refused() {
     corcast info - <whole.vtk >from_pipe 2>stderr || fail "info - failed$(said)"
 }
 
+# write_zeros TYPE POINTS BLOCKS: bomb.vtp, whose array of radii becomes so many blocks of 32 MB of zeros.
+write_zeros() {
+    "$PYTHON" - "$@" >bomb.vtp <<'END'
+import base64, struct, sys, zlib
+kind, points, blocks = sys.argv[1], sys.argv[2], int(sys.argv[3])
+size = 1 << 25
+packed = zlib.compress(bytes(size), 1)
+head = struct.pack("<%dI" % (3 + blocks), blocks, size, 0, *[len(packed)] * blocks)
+print('<VTKFile type="PolyData" byte_order="LittleEndian" compressor="vtkZLibDataCompressor"><PolyData>'
+      f'<Piece NumberOfPoints="{points}" NumberOfLines="1"><PointData><DataArray type="{kind}" Name="radius" '
+      'format="binary">' + base64.b64encode(head).decode() + base64.b64encode(packed * blocks).decode() +
+      '</DataArray></PointData></Piece></PolyData></VTKFile>')
+END
+}
+
+test_a_small_file_that_unpacks_to_gigabytes_is_refused_before_it_takes_their_memory() {
+    write_zeros Float32 6 32
+    [ "$(stat -c %s bomb.vtp)" -lt 7000000 ] || fail "expected a small file"
+    run bash -c "ulimit -v 300000; exec '$CORCAST' info bomb.vtp"
+    expect_status 2
+    expect_sentence "bomb.vtp:1: the array 'radius' of PointData: it announces 1.1 GB; by the numbers of points and cells of its piece it has at most 24 bytes$"
+    write_zeros Int8 16777215 1
+    run bash -c "ulimit -v 300000; exec '$CORCAST' info bomb.vtp"
+    expect_status 2
+    expect_sentence 'it announces 33.6 MB; .* it has at most 16.8 MB$'
+    write_zeros Int8 999999999999 "$(awk '/^MemTotal/ { print int($2 * 1024 / 9 / 2 ^ 25) + 1 }' /proc/meminfo)"
+    run bash -c "ulimit -v 300000; exec '$CORCAST' info bomb.vtp"
+    expect_status 3
+    expect_sentence 'bomb.vtp: out of memory: needs .* GB, and this machine has '
+}
+
 test_options_that_a_format_does_not_take_are_refused() {
     cp "$DATA/bifurcation.swc" tree.swc
     run corcast info tree.swc --radius-array thickness

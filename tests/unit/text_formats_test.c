@@ -188,6 +188,20 @@ static void time_steps_and_values_of_vmv_become_columns(void **state)
     tree_release(&tree);
 }
 
+/* VessMorphoVis announces steps of sections that it does not write. */
+static void vmv_of_other_programs_is_read(void **state)
+{
+    (void)state;
+    Tree tree = read_text("vmv", "$PARAM_BEGIN\n$NUM_VERTS 2\n$NUM_STRANDS 1\n"
+                                 "FLOW_SIMULATION_TIME_STEPS 7\n$PARAM_END\n"
+                                 "$VERT_LIST_BEGIN\n1 0 0 0 3.5\n2 0 250 0 3.5\n$VERT_LIST_END\n"
+                                 "$STRANDS_LIST_BEGIN\n1 1 2\n$STRANDS_LIST_END\n");
+    assert_nodes(&tree, "1 3 0 0 0 0.0035 -1\n2 3 0 0.25 0 0.0035 1\n");
+    tree_release(&tree);
+    assert_refused("vmv", "$PARAM_BEGIN\n$NUM_VERTS 7\n$PARAM_END\n",
+                   ": the file says 7 vertices and has 0");
+}
+
 static void the_order_of_strands_means_nothing_where_two_enter_one_vertex(void **state)
 {
     (void)state;
@@ -225,6 +239,9 @@ static void rejects_vmv_that_makes_no_sense(void **state)
          ":6: there are more rows than vertices, of which there are 1"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n2 0 0 0 2\n$FLOW_SIMULATION_BEGIN\n1 2\n3\n",
          ":6: the row has 1 value; the first has 2"},
+        {"$PARAM_BEGIN\nFLOW_SIMULATION_TIME_STEPS 3\n$PARAM_END\n"
+         "$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$FLOW_SIMULATION_BEGIN\n1 2\n",
+         ": the file says 3 time steps of flows and has 2"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_refused("vmv", bad[i].text, bad[i].sentence);
@@ -748,6 +765,7 @@ int main(void)
         cmocka_unit_test(rejects_decks_that_make_no_sense),
         cmocka_unit_test(vmv_is_read_and_written_in_um),
         cmocka_unit_test(time_steps_and_values_of_vmv_become_columns),
+        cmocka_unit_test(vmv_of_other_programs_is_read),
         cmocka_unit_test(the_order_of_strands_means_nothing_where_two_enter_one_vertex),
         cmocka_unit_test(rejects_vmv_that_makes_no_sense),
         cmocka_unit_test(trees_of_vita_hang_together_by_their_section_connectivity),

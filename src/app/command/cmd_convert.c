@@ -97,9 +97,8 @@ static Status convert_tree(const ConvertOptions *options, Parsed *parsed, Err *e
     tree_renumber(&tree);
     bool moments = strcasecmp(file_extension(to), "pvd") == 0;
     if (status == STATUS_OK)
-        status = moments ? write_moments(&tree, parsed, to, err) : tree_write(&tree, to, err);
-    if (status == STATUS_OK && !moments && !parsed->common.quiet)
-        print_left_out("convert", &tree, to);
+        status = moments ? write_moments(&tree, parsed, to, err)
+                         : output_tree("convert", &tree, to, parsed->common.quiet, err);
     tree_release(&tree);
     return status;
 }

@@ -128,15 +128,13 @@ static Status finish(const GrowOptions *options, const Common *common, const Tre
                      Err *err)
 {
     int threads = common->threads ? common->threads : threads_available();
-    TRY(tree_write(tree, options->output, err));
+    TRY(output_tree("grow", tree, options->output, common->quiet, err));
     if (options->json)
         TRY(write_report(options->json, report, refined, threads, err));
     if (!report->complete)
         fprintf(stderr, "corcast grow: %s\n", why->text);
     if (!common->quiet)
         print_report(report);
-    if (!common->quiet)
-        print_left_out("grow", tree, options->output);
     print_warnings(report, &options->growing.domain, refined->target_before > 0);
     if (!common->quiet)
         refining_print(refined);

@@ -62,7 +62,7 @@ static Status run_refine(void *options, Parsed *parsed, Err *err)
                             err));
     TRY_GOTO(command_describe(parsed, &tree.meta, err));
     TRY_GOTO(refining_describe(refining, &report, &tree.meta, err));
-    TRY_GOTO(tree_write(&tree, own_options->output, err));
+    TRY_GOTO(output_tree("refine", &tree, own_options->output, parsed->common.quiet, err));
     if (!parsed->common.quiet)
         refining_print(&report);
 done:

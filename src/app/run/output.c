@@ -141,25 +141,47 @@ void print_columns_left_out(const char *command, const Tree *tree, const char *w
 }
 
 /* Nothing is allocated, which could fail: the file has been written. */
-void print_left_out(const char *command, const Tree *tree, const char *path)
+static void print_left_out(const char *command, const Tree *tree, const char *path,
+                           const TreeLosses *lost)
 {
-    const TreeLosses lost = tree_format_losses(path, tree);
     const struct {
         bool is_lost;
         const char *what;
-    } others[] = {{lost.types, "the types"},
-                  {lost.flow_shares, "the flow shares"},
-                  {lost.root_values, "the roots' values"}};
-    if (!lost.columns && !lost.types && !lost.flow_shares && !lost.root_values)
+    } others[] = {{lost->types, "the types"},
+                  {lost->flow_shares, "the flow shares"},
+                  {lost->root_values, "the roots' values"},
+                  {lost->root_radii, "the roots' own radii"}};
+    if (!lost->columns && !lost->types && !lost->flow_shares && !lost->root_values &&
+        !lost->root_radii)
         return;
     fprintf(stderr, "corcast %s: ", command);
     for (size_t k = 0, n = 0; k < tree->n_columns; k++)
         if (!tree_format_keeps(path, &tree->column[k]))
             fprintf(stderr, "%s%.40s", n++ ? ", " : "the columns ", tree->column[k].name);
-    for (size_t i = 0, n = lost.columns; i < sizeof others / sizeof *others; i++)
+    for (size_t i = 0, n = lost->columns; i < sizeof others / sizeof *others; i++)
         if (others[i].is_lost)
             fprintf(stderr, "%s%s", n++ ? " and " : "", others[i].what);
     fprintf(stderr, " are left out: the format has no place for them\n");
+}
+
+static void print_merged(const char *command, const TreeLosses *lost)
+{
+    if (lost->merged)
+        fprintf(stderr,
+                "corcast %s: nodes that lie where others do: %zu; the format tells nodes by their "
+                "places, so that such a segment comes back as none, or closes a loop\n",
+                command, lost->merged);
+}
+
+Status output_tree(const char *command, const Tree *tree, const char *path, bool quiet, Err *err)
+{
+    TreeLosses lost = {0};
+    if (!quiet)
+        TRY(tree_format_losses(path, tree, &lost, err));
+    TRY(tree_write(tree, path, err));
+    print_left_out(command, tree, path, &lost);
+    print_merged(command, &lost);
+    return STATUS_OK;
 }
 
 Status json_write(json_t *object, const char *path, Err *err)

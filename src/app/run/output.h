@@ -30,8 +30,10 @@ MUST_CHECK Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *er
 /* Says on standard error that the tree's columns, if there are any, are not in what a command
  * writes, and why. */
 void print_columns_left_out(const char *command, const Tree *tree, const char *why);
-/* Likewise what the format of the file `path` has no place for. */
-void print_left_out(const char *command, const Tree *tree, const char *path);
+/* Writes a tree [tree_write] and, unless `quiet`, says likewise what the format of the file `path`
+ * has no place for. STATUS_MEMORY, too. */
+MUST_CHECK Status output_tree(const char *command, const Tree *tree, const char *path, bool quiet,
+                              Err *err);
 
 /* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets
  * go of it. Numbers that are not finite must have been left out or set to null. */

@@ -1,7 +1,9 @@
 /* VMV, the files of VessMorphoVis: sections between "$NAME_BEGIN" and "$NAME_END". $PARAM says how
  * many there are of each thing, $VERT_LIST has a vertex a line, its number, position, radius and
  * sometimes one more value, $STRANDS_LIST a polyline of vertices a line, behind its number, and
- * $RADIUS_SIMULATION and the like one row of values a vertex, a value a time step.
+ * $RADIUS_SIMULATION and the like one row of values a vertex, a value a time step. VessMorphoVis
+ * announces steps also of sections that it does not write, and Ultraliser puts a '$' before the
+ * names of parameters, too.
  *
  * VessMorphoVis writes strands away from the root. A file in which every vertex is entered by one
  * line at most is taken to be written so; in any other, the order of a strand means nothing. */
@@ -28,10 +30,14 @@ typedef enum Section {
 static const struct {
     const char *name;
     const char *series; /* what the column of a time step is called, before its number */
+    const char *steps;
 } sections[SECTIONS] = {
-    [PARAMETERS] = {"PARAM", NULL},       [VERTICES] = {"VERT_LIST", NULL},
-    [STRANDS] = {"STRANDS_LIST", NULL},   [RADIUS] = {"RADIUS_SIMULATION", "radius"},
-    [FLOW] = {"FLOW_SIMULATION", "flow"}, [PRESSURE] = {"PRESSURE_SIMULATION", "pressure"},
+    [PARAMETERS] = {.name = "PARAM"},
+    [VERTICES] = {.name = "VERT_LIST"},
+    [STRANDS] = {.name = "STRANDS_LIST"},
+    [RADIUS] = {"RADIUS_SIMULATION", "radius", "time steps of radii"},
+    [FLOW] = {"FLOW_SIMULATION", "flow", "time steps of flows"},
+    [PRESSURE] = {"PRESSURE_SIMULATION", "pressure", "time steps of pressures"},
 };
 
 enum { VERTEX_FIELDS = 5, MAX_VERTEX_FIELDS = 6 };
@@ -40,6 +46,7 @@ enum { VERTEX_FIELDS = 5, MAX_VERTEX_FIELDS = 6 };
 typedef struct TimeSteps {
     size_t column; /* of the first step; those of the others follow */
     size_t steps, rows;
+    int32_t said; /* as the parameters say how many steps there are; -1: they do not */
 } TimeSteps;
 
 typedef struct Reader {
@@ -62,6 +69,12 @@ static Status read_parameter(Reader *reader, char *line, Err *err)
         return field_whole(name, value, 0, INT32_MAX, &reader->vertices, err);
     if (strcmp(name, "NUM_STRANDS") == 0)
         return field_whole(name, value, 0, INT32_MAX, &reader->strands, err);
+    for (int section = RADIUS; section < SECTIONS; section++) {
+        size_t length = strlen(sections[section].name);
+        if (strncmp(name, sections[section].name, length) == 0 &&
+            strcmp(name + length, "_TIME_STEPS") == 0)
+            return field_whole(name, value, 0, INT32_MAX, &reader->series[section].said, err);
+    }
     return STATUS_OK;
 }
 
@@ -177,6 +190,8 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
     line = text_trim(line);
     if (*line == '#')
         return comment_read(&reader->graph->meta, line + 1, err);
+    if (reader->section == PARAMETERS && strncmp(line, "$NUM_", 5) == 0)
+        line++;
     if (*line == '$')
         return change_section(reader, line, err);
     if (!*line)
@@ -210,6 +225,8 @@ static Status check_counts(const Reader *reader, Err *err)
     TRY(check_count(reader, "strands", reader->strands, reader->n_strands, err));
     for (int section = RADIUS; section < SECTIONS; section++) {
         const TimeSteps *series = &reader->series[section];
+        if (series->rows > 0)
+            TRY(check_count(reader, sections[section].steps, series->said, series->steps, err));
         if (series->rows > 0 && series->rows != reader->graph->n_points)
             return err_set(err, STATUS_INPUT, "%s: %s has %zu rows for %zu vertices",
                            reader->graph->name, sections[section].name, series->rows,
@@ -238,6 +255,8 @@ Status vmv_read(Graph *graph, char *bytes, size_t size, Err *err)
     (void)size;
     Reader reader = {.graph = graph, .vertices = -1, .strands = -1, .names = {.what = "vertex"}};
     graph->unit = LENGTH_UM;
+    for (int section = RADIUS; section < SECTIONS; section++)
+        reader.series[section].said = -1;
     Status status = lines_read(graph->name, bytes, read_line, &reader, err);
     if (status == STATUS_OK)
         status = check_counts(&reader, err);

@@ -35,6 +35,7 @@ typedef struct Array {
     size_t offset; /* in the appended data */
     Section section;
     size_t piece;
+    double most; /* numbers that it can have, as its piece says */
 } Array;
 
 typedef struct Reader {
@@ -44,6 +45,8 @@ typedef struct Reader {
     Array *array;
     size_t n, capacity;
     size_t pieces;
+    double points, cells;     /* as the piece that is being read says; 0 before the first */
+    double taken;             /* bytes that the numbers of all arrays take so far */
     bool in_array, is_base64; /* of the array, or the appended data */
     size_t appended;          /* where its first byte is; 0: there is none */
 } Reader;
@@ -87,6 +90,37 @@ static Status read_whole(const XmlElement *element, const char *name, long long 
     return STATUS_OK;
 }
 
+static Status begin_piece(Reader *reader, const XmlElement *element, Err *err)
+{
+    static const char *const of_cells[] = {"NumberOfCells", "NumberOfVerts", "NumberOfLines",
+                                           "NumberOfStrips", "NumberOfPolys"};
+    size_t n;
+    TRY(read_whole(element, "NumberOfPoints", INT64_MAX, 0, &n, err));
+    reader->pieces++;
+    reader->points = (double)n;
+    reader->cells = 0;
+    for (size_t k = 0; k < sizeof of_cells / sizeof *of_cells; k++) {
+        TRY(read_whole(element, of_cells[k], INT64_MAX, 0, &n, err));
+        reader->cells += (double)n;
+    }
+    return STATUS_OK;
+}
+
+/* How many numbers an array can have. Nothing says how long lines are, or the file's own data: a
+ * hundred for each point and cell and a million besides are more than any of ours takes. */
+static double most_numbers(const Reader *reader, const Array *of)
+{
+    switch (of->section) {
+    case POINTS:
+    case POINT_DATA:
+        return reader->points * (double)of->array.components;
+    case CELL_DATA:
+        return reader->cells * (double)of->array.components;
+    default:
+        return 100 * (reader->points + reader->cells) + 1e6;
+    }
+}
+
 static Status begin_array(Reader *reader, Section section, const XmlElement *element, Err *err)
 {
     enum { MOST_COMPONENTS = 1000 };
@@ -104,6 +138,7 @@ static Status begin_array(Reader *reader, Section section, const XmlElement *ele
     TRY(read_whole(element, "offset", INT64_MAX, 0, &made.offset, err));
     if (made.array.components == 0)
         made.array.components = 1;
+    made.most = most_numbers(reader, &made);
     TRY(mem_reserve(&reader->array, &reader->capacity, reader->n + 1, sizeof made, "arrays", err));
     TRY(mem_strdup(&made.array.name, name ? name : "", err));
     reader->array[reader->n++] = made;
@@ -121,7 +156,7 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
         return read_file_element(reader, element, err);
     }
     if (strcmp(element->name, "Piece") == 0)
-        reader->pieces++;
+        return begin_piece(reader, element, err);
     if (strcmp(element->name, "AppendedData") == 0) {
         const char *encoding = xml_attribute(element, "encoding");
         reader->is_base64 = !encoding || strcmp(encoding, "raw") != 0;
@@ -184,13 +219,16 @@ static Status finish_array(Array *of, size_t n, Err *err)
     return STATUS_OK;
 }
 
-static Status decode(const Reader *reader, Array *of, const char *from, size_t left, Err *err)
+static Status decode(Reader *reader, Array *of, const char *from, size_t left, Err *err)
 {
     const char *bytes = NULL;
     char *decoded = NULL;
     size_t size = 0;
-    TRY(vtp_decode(&reader->coding, reader->is_base64, from, left, &bytes, &size, &decoded, err));
+    const VtpRoom room = {reader->name, of->most, of->type->size, reader->taken};
+    TRY(vtp_decode(&reader->coding, reader->is_base64, from, left, &room, &bytes, &size, &decoded,
+                   err));
     size_t n = size / of->type->size;
+    reader->taken += (double)n * sizeof *of->array.value;
     Status status = mem_calloc(&of->array.value, n, sizeof *of->array.value, "numbers", err);
     if (status == STATUS_OK) {
         vtk_numbers(of->type, reader->coding.is_big_endian, bytes, n, of->array.value);

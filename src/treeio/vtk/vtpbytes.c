@@ -2,7 +2,8 @@
  * large each is and the last, how many bytes each has compressed, and these. In base64 the bytes go
  * on without padding behind the number, but behind those of blocks there may be some; a group that
  * is padded gives fewer bytes and the next begins anew, so that either is read. zlib makes nothing
- * 1032 times smaller, so a file that announces more is refused before room is made for it. */
+ * 1032 times smaller, so a file that announces more is refused before room is made for it, and so
+ * is one that announces more than its array can have: a megabyte could become one of zeros. */
 #include "treeio/vtk/vtpbytes.h"
 
 #include <libdeflate.h>
@@ -175,14 +176,27 @@ static Status inflate_blocks(Stream *stream, const Blocks *blocks, char *out, ch
     return STATUS_OK;
 }
 
-static Status decode_blocks(Stream *stream, const VtpCoding *coding, Blocks *blocks, char **decoded,
-                            size_t *size, Err *err)
+static Status check_room(double total, const VtpRoom *room, Err *err)
+{
+    char claim[BYTES_TEXT_SIZE], allowed[BYTES_TEXT_SIZE];
+    double size = (double)room->size, most = room->numbers * size;
+    if (total > most)
+        return err_set(err, STATUS_INPUT,
+                       "it announces %s; by the numbers of points and cells of its piece it has at "
+                       "most %s",
+                       bytes_text(total, claim), bytes_text(most, allowed));
+    return mem_check(room->taken + total + total / size * sizeof(double), room->name, err);
+}
+
+static Status decode_blocks(Stream *stream, const VtpCoding *coding, const VtpRoom *room,
+                            Blocks *blocks, char **decoded, size_t *size, Err *err)
 {
     double total = 0;
     char *made = NULL, *packed = NULL;
     size_t largest = 0;
     struct libdeflate_decompressor *inflater = NULL;
     TRY(read_blocks(stream, coding, blocks, &total, err));
+    TRY(check_room(total, room, err));
     for (size_t i = 0; i < blocks->n; i++)
         largest = blocks->packed[i] > largest ? blocks->packed[i] : largest;
     Status status = STATUS_OK;
@@ -204,14 +218,14 @@ done:
 }
 
 Status vtp_decode(const VtpCoding *coding, bool is_base64, const char *from, size_t left,
-                  const char **bytes, size_t *size, char **decoded, Err *err)
+                  const VtpRoom *room, const char **bytes, size_t *size, char **decoded, Err *err)
 {
     Stream stream = {.at = from, .end = from + left, .is_base64 = is_base64};
     *decoded = NULL;
     if (!coding->is_compressed)
         return decode_plain(&stream, coding, bytes, size, decoded, err);
     Blocks blocks = {0};
-    Status status = decode_blocks(&stream, coding, &blocks, decoded, size, err);
+    Status status = decode_blocks(&stream, coding, room, &blocks, decoded, size, err);
     *bytes = *decoded;
     free(blocks.packed);
     return status;

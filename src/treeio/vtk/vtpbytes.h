@@ -11,11 +11,21 @@ typedef struct VtpCoding {
     size_t header_size; /* 4 or 8: of the numbers that say how many bytes follow */
 } VtpCoding;
 
+/* What a compressed array may become. */
+typedef struct VtpRoom {
+    const char *name; /* of the file */
+    double numbers;   /* that it has at most */
+    size_t size;      /* bytes of each */
+    double taken;     /* bytes that the numbers before it take, which are doubles */
+} VtpRoom;
+
 /* Decodes the array that begins at `from`, of which the file has `left` more bytes. Its `*size`
  * bytes are *bytes, borrowed from *decoded (owned) or, where this becomes NULL, from the file.
- * STATUS_INPUT, without the file, when there are fewer than announced, or they are not base64 or
- * zlib's. */
+ * STATUS_INPUT, without the file, when there are fewer than announced, they are not base64 or
+ * zlib's, or compressed ones would become more numbers than there is room for; STATUS_MEMORY,
+ * naming the file, when the machine has not the memory for these. */
 MUST_CHECK Status vtp_decode(const VtpCoding *coding, bool is_base64, const char *from, size_t left,
-                             const char **bytes, size_t *size, char **decoded, Err *err);
+                             const VtpRoom *room, const char **bytes, size_t *size, char **decoded,
+                             Err *err);
 
 #endif
