@@ -30,7 +30,7 @@ test_blender_draws_the_outline_of_a_glb_that_render_draws() {
     run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 --quiet -o t.swc
     run_ok corcast export t.swc --color-by radius --quiet -o t.glb
     in_blender draw "$PWD/t.glb" "$PWD/blender.png"
-    run_ok corcast render t.swc --model isosurface --potential graph --location 0,0,100 --look-at 0,0,0 --height 100 \
+    run_ok corcast render --exact t.swc --model isosurface --potential graph --location 0,0,100 --look-at 0,0,0 --height 100 \
         --size 500x500 --planes id --quiet -o ours.ppm
     /usr/bin/python3 - >compared <<'END' || fail "Blender draws another outline: $(cat compared)"
 import sys

@@ -21,8 +21,8 @@ fail_each() {
 # A grown tree of five terminals, and pictures of it that differ, with all planes.
 inputs() {
     run_ok corcast grow --terminals 5 --seed 3 -o tree.swc
-    run_ok corcast render tree.swc --size 21x15 --planes depth,normal,id -o a.png
-    run_ok corcast render tree.swc --size 21x15 --planes depth,normal,id --model cylinders --height 70 -o b.png
+    run_ok corcast render --exact tree.swc --size 21x15 --planes depth,normal,id -o a.png
+    run_ok corcast render --exact tree.swc --size 21x15 --planes depth,normal,id --model cylinders --height 70 -o b.png
 }
 
 test_failed_allocations_in_grow() {

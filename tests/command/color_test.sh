@@ -53,7 +53,7 @@ expect_codes() {
     done
     shift
     # shellcheck disable=SC2086
-    run_ok corcast render --quiet tree.swc --look ./flat.ini $VIEW --planes color,id "${options[@]}" -o p.ppm
+    run_ok corcast render --antialias 1 --quiet tree.swc --look ./flat.ini $VIEW --planes color,id "${options[@]}" -o p.ppm
     expected=$(printf '%s\n' "0 $background" "$@")
     paste -d ' ' <(numbers p.id.ppm | awk '{ print $1 * 65536 + $2 * 256 + $3 }') <(numbers p.ppm) |
         tr -s ' ' | sort -n | uniq >seen
@@ -149,7 +149,7 @@ test_a_background_is_given_as_it_is_encoded() {
 
 test_a_picture_of_16_bits_has_the_same_colours_more_finely() {
     make_vessels
-    run_ok corcast render --quiet tree.swc --look ./flat.ini --size 60x80 --bits 16 --color-by radius -o p.ppm
+    run_ok corcast render --exact --quiet tree.swc --look ./flat.ini --size 60x80 --bits 16 --color-by radius -o p.ppm
     # The entry 17, 0.282656 0.100196 0.422160, times 65535.
     tail -c 28800 p.ppm | od -An -v -tu2 --endian=big -w6 | tr -s ' ' | grep -qx ' 18524 6566 27666' ||
         fail "expected a pixel of the codes 18524 6566 27666"
@@ -160,9 +160,9 @@ test_a_field_of_flow_follows_what_options_say_of_the_blood() {
     local law='--viscosity-law pries --hematocrit 0.31 --plasma-viscosity 1.05'
     run_ok corcast grow --terminals 23 --quiet -o constant.swc
     sed 's/^# viscosity_cP.*/# viscosity_law: pries\n# hematocrit: 0.31\n# plasma_viscosity_cP: 1.05/' constant.swc >pries.swc
-    run_ok corcast render --quiet constant.swc --size 60x80 --color-by pressure $law -o said.ppm
-    run_ok corcast render --quiet pries.swc --size 60x80 --color-by pressure -o written.ppm
-    run_ok corcast render --quiet constant.swc --size 60x80 --color-by pressure -o constant.ppm
+    run_ok corcast render --exact --quiet constant.swc --size 60x80 --color-by pressure $law -o said.ppm
+    run_ok corcast render --exact --quiet pries.swc --size 60x80 --color-by pressure -o written.ppm
+    run_ok corcast render --exact --quiet constant.swc --size 60x80 --color-by pressure -o constant.ppm
     expect_same said.ppm written.ppm
     ! cmp -s said.ppm constant.ppm || fail "expected the law to change the picture"
     run corcast render constant.swc --color-by pressure --hematocrit 0.31 -o no.ppm
@@ -178,7 +178,7 @@ says() {
 test_the_range_is_said_in_the_log_the_json_the_picture_and_the_scene() {
     local said='radius 1.37 to 21.9 mm, of the 5 segments drawn'
     make_vessels
-    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --json r.json -o p.png
+    run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by radius --json r.json -o p.png
     says "corcast: $said"
     [ "$(jq -r '.color | "\(.field) \(.unit) \(.low) \(.high) \(.log) \(.said)"' r.json)" = \
         "radius mm 1.37 21.92 false $said" ] || fail "expected the range in the JSON, got $(jq -c .color r.json)"
@@ -186,7 +186,7 @@ test_the_range_is_said_in_the_log_the_json_the_picture_and_the_scene() {
     run_ok corcast scene --quiet tree.swc --input-unit mm --color-by radius -o s.pov
     grep -q "^// Desc: .*, coloured by $said\$" s.pov || fail "expected the range in the scene's head"
     grep -qx "#declare Value_Said = \"$said\";" s.inc || fail "expected the range in the anatomy"
-    run_ok corcast render --quiet tree.swc --input-unit mm --size 60x80 --color-by radius -o p.png
+    run_ok corcast render --exact --quiet tree.swc --input-unit mm --size 60x80 --color-by radius -o p.png
     [ ! -s stderr ] || fail "expected --quiet to say nothing, got '$(cat stderr)'"
 }
 
@@ -195,7 +195,7 @@ test_a_unit_goes_for_range_classes_and_what_is_said() {
     make_vessels
     expect_codes --color-by radius --unit um --range 2740,10960 -- \
         "2 68 1 84" "4 68 1 84" "6 49 104 142" "8 253 231 37" "10 253 231 37"
-    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --unit cm --classes 0.2,1.5 -o p.ppm
+    run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by radius --unit cm --classes 0.2,1.5 -o p.ppm
     says 'corcast: radius 0.137 to 2.19 cm, of the 5 segments drawn; classes at 0.2, 1.5'
     refuses "--unit: the field radius is in mm, not in Pa; it can be in um, cm, m" --color-by radius --unit Pa
     refuses "--unit: the field level is a pure number, not in Pa" --color-by level --unit Pa
@@ -227,9 +227,9 @@ test_a_range_may_be_of_percentiles() {
     make_vessels
     expect_codes --color-by radius --range 25%,75% -- \
         "2 68 1 84" "4 68 1 84" "6 49 104 142" "8 253 231 37" "10 253 231 37"
-    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --range 25%,75% -o p.ppm
+    run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by radius --range 25%,75% -o p.ppm
     says 'corcast: radius 2.74 to 11.0 mm, 25% to 75% of the 5 segments drawn; 1 below, 1 above'
-    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --range 2,6 -o p.ppm
+    run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by radius --range 2,6 -o p.ppm
     says 'corcast: radius 2 to 6 mm, as given; 1 below, 2 above'
     refuses "'75%,25%' is not A,B, two numbers with A below B, or percentiles" --color-by radius --range 75%,25%
     refuses "'2,1' is not A,B, two numbers with A below B" --color-by radius --range 2,1
@@ -240,10 +240,10 @@ test_a_pruned_picture_may_keep_the_range_of_the_tree() {
     make_vessels
     expect_codes --color-by radius --prune-radius 5 --range-of tree -- \
         "6 65 68 135" "8 35 136 142" "10 253 231 37"
-    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --prune-radius 5 --range-of tree -o p.ppm
+    run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by radius --prune-radius 5 --range-of tree -o p.ppm
     grep -qx 'corcast: radius 1.37 to 21.9 mm, of all 5 segments of the tree' stderr ||
         fail "expected the range of the tree$(said)"
-    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by radius --prune-radius 5 -o p.ppm
+    run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by radius --prune-radius 5 -o p.ppm
     grep -qx 'corcast: radius 5.48 to 21.9 mm, of the 3 segments drawn' stderr ||
         fail "expected the range of what is drawn$(said)"
     refuses '--range-of has no effect on a --range of two values' --color-by radius --range-of tree --range 1,2
@@ -258,7 +258,7 @@ test_values_outside_the_range_and_segments_without_one_have_their_colours() {
     corcast convert tree.swc tree.csv
     awk -F, 'NR == 1 { print $0 ",load" } NR > 1 { print $0 "," (NR == 3 ? "" : NR == 5 ? -1 : NR) }' tree.csv >load.csv
     # shellcheck disable=SC2086
-    run_ok corcast render load.csv --look flat $VIEW --color-by load --log --no-data lime -o p.ppm
+    run_ok corcast render --exact load.csv --look flat $VIEW --color-by load --log --no-data lime -o p.ppm
     grep -q 'load 7 to 11, of the 5 segments drawn; logarithmic; 2 without a logarithm' stderr ||
         fail "expected to hear of values without a logarithm$(said)"
     numbers p.ppm | tr -s ' ' | grep -qx ' 0 255 0' || fail "expected the colour of no data"
@@ -276,12 +276,12 @@ test_a_map_of_separate_colours_counts_whole_numbers() {
 
 test_a_field_of_many_decades_gets_a_hint() {
     run_ok corcast grow --quiet --terminals 1234 -o tree.swc
-    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by flow -o p.ppm
+    run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by flow -o p.ppm
     grep -qx 'corcast: the field flow spans 3.1 decades, which --log shows evenly' stderr ||
         fail "expected a hint$(said)"
-    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by flow --log -o p.ppm
+    run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by flow --log -o p.ppm
     [ "$(wc -l <stderr)" = 1 ] || fail "expected no hint with --log$(said)"
-    run_ok corcast render tree.swc --input-unit mm --size 60x80 --color-by pressure -o p.ppm
+    run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by pressure -o p.ppm
     [ "$(wc -l <stderr)" = 1 ] || fail "expected no hint for pressure$(said)"
 }
 
@@ -296,7 +296,7 @@ test_a_field_without_any_value_is_refused() {
     run corcast render below.csv --color-by load --log -o no.ppm
     expect_status 2
     expect_sentence 'below.csv: --color-by: the field load has no value above 0'
-    run_ok corcast render below.csv --size 60x80 --color-by load -o p.ppm
+    run_ok corcast render --exact below.csv --size 60x80 --color-by load -o p.ppm
     says 'corcast: load -2.50 to -2.50, of the 5 segments drawn'
 }
 
@@ -305,7 +305,7 @@ test_looks_for_data_show_the_colour_of_the_map() {
     local look most
     make_vessels
     for look in flat data; do
-        run_ok corcast render --quiet tree.swc --input-unit mm --look $look $VIEW --color-by radius --range 1,21.92 --planes id -o p.ppm
+        run_ok corcast render --exact --quiet tree.swc --input-unit mm --look $look $VIEW --color-by radius --range 1,21.92 --planes id -o p.ppm
         most=$(paste -d ' ' <(numbers p.id.ppm) <(numbers p.ppm) | awk '$3 == 10 && $5 > most { most = $5 } END { print most }')
         [ "$most" -ge 229 ] && [ "$most" -le 231 ] || fail "expected the look $look to show 231, got $most"
     done
@@ -319,8 +319,8 @@ test_colours_blend_where_vessels_do() {
     corcast convert tree.swc tree.csv
     sed '/^#/!{s/$/,1/;}' tree.csv | awk -F, -v OFS=, '/^#/ { print; next } !head { $NF = "load"; head = 1 } /^3,/ { $NF = 3 } { print }' >load.csv
     for model in isosurface blob; do
-        run_ok corcast render load.csv --quiet --look flat $VIEW --model $model --color-by load -o segment.ppm
-        run_ok corcast render load.csv --quiet --look flat $VIEW --model $model --color-by load --color-blend blended -o blended.ppm
+        run_ok corcast render --exact load.csv --quiet --look flat $VIEW --model $model --color-by load -o segment.ppm
+        run_ok corcast render --exact load.csv --quiet --look flat $VIEW --model $model --color-by load --color-blend blended -o blended.ppm
         [ "$(numbers segment.ppm | sort -u | wc -l)" = 3 ] || fail "expected two colours by segment as $model"
         numbers blended.ppm | sort -u >seen
         [ "$(wc -l <seen)" -ge 6 ] || fail "expected colours between the two as $model, got $(wc -l <seen)"
@@ -329,7 +329,7 @@ test_colours_blend_where_vessels_do() {
         [ "$(wc -l <middle)" = 2 ] && [ "$(awk '{ sum += $2 } END { print int(sum / 2) }' middle)" -ge 142 ] &&
             [ "$(awk '{ sum += $2 } END { print int(sum / 2) }' middle)" -le 146 ] ||
             fail "expected the middle of the map in the middle as $model, got '$(cat middle)'"
-        run_ok corcast render load.csv --quiet --look flat $VIEW --model $model --color-by load --classes 2 --color-blend blended -o steps.ppm
+        run_ok corcast render --exact load.csv --quiet --look flat $VIEW --model $model --color-by load --classes 2 --color-blend blended -o steps.ppm
         [ "$(numbers steps.ppm | sort -u | wc -l)" = 3 ] || fail "expected two classes as $model"
     done
     refuses '--color-blend is for --model isosurface and blob' --model joined --color-by level --color-blend blended

@@ -95,7 +95,7 @@ test_depth_planes_are_compared() {
     printf '1 1 -10 0 0 1.5 -1\n2 3 10 0 0 1.5 1\n' >thin.swc
     local tree
     for tree in thick thin; do
-        run_ok corcast render $tree.swc --size 40x40 --location 0,0,30 --look-at 0,0,0 --height 20 \
+        run_ok corcast render --exact $tree.swc --size 40x40 --location 0,0,30 --look-at 0,0,0 --height 20 \
             --planes depth -o $tree.ppm
     done
     run_ok corcast compare thick.depth.pfm thick.depth.pfm
@@ -195,7 +195,7 @@ expect_cause() {
 
 test_the_cause_is_said_where_it_is_certain() {
     run_ok corcast grow --terminals 30 --seed 3 -o tree.swc
-    run_ok corcast render tree.swc --size 121x93 -o a.png
+    run_ok corcast render --exact tree.swc --size 121x93 -o a.png
     pngtopnm a.png >a.ppm
     pnmflip -lr a.ppm | pnmtopng >b.png
     expect_cause 'B is A mirrored, left for right'
@@ -214,24 +214,24 @@ test_the_cause_is_said_where_it_is_certain() {
 test_other_shades_within_the_same_outlines_are_told_from_other_shapes() {
     run_ok corcast grow --terminals 30 --seed 3 -o tree.swc
     sed 's/^phong = 0.32/phong = 0.39/' "$REPO/templates/looks/cast.ini" >shiny.ini
-    run_ok corcast render tree.swc --size 121x93 --planes id -o a.png
-    run_ok corcast render tree.swc --size 121x93 --planes id --look ./shiny.ini -o b.png
+    run_ok corcast render --exact tree.swc --size 121x93 --planes id -o a.png
+    run_ok corcast render --exact tree.swc --size 121x93 --planes id --look ./shiny.ini -o b.png
     expect_cause 'only shading differs, by up to [0-9.]+ levels on [0-9.]+ % of the pixels, B being brighter; the outlines against the background are equal'
     run corcast compare a.png b.png --ids-a a.id.ppm --ids-b b.id.ppm
     expect_stdout 'the outlines of all segments are equal$'
     run corcast compare b.png a.png --json
     expect_json stdout '.cause | test("B being darker")'
     awk '/^#/ { print; next } $1 == 5 { $6 *= 1.3 } { print }' tree.swc >thick.swc
-    run_ok corcast render thick.swc --size 121x93 -o b.png
+    run_ok corcast render --exact thick.swc --size 121x93 -o b.png
     run corcast compare a.png b.png --json
     expect_json stdout '.verdict == "differ" and .cause == null'
 }
 
 test_every_segment_has_its_line_in_the_ledger() {
     run_ok corcast grow --terminals 12 --seed 3 -o tree.swc
-    run_ok corcast render tree.swc --size 160x120 --planes id -o a.ppm
+    run_ok corcast render --exact tree.swc --size 160x120 --planes id -o a.ppm
     awk '/^#/ { print; next } $1 == 5 { $6 *= 1.3 } { print }' tree.swc >thick.swc
-    run_ok corcast render thick.swc --size 160x120 --planes id --view front -o b.ppm
+    run_ok corcast render --exact thick.swc --size 160x120 --planes id --view front -o b.ppm
     run corcast compare a.ppm b.ppm --ids-a a.id.ppm --ids-b b.id.ppm --tier B --ledger ledger.csv --json
     expect_status 1
     head -1 ledger.csv | grep -q '^id,area_a,area_b,' || fail "expected a header"

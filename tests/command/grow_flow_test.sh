@@ -100,7 +100,7 @@ test_info_and_scene_take_such_trees() {
     run_ok corcast grow --terminals 30 --terminal-flow territory --viscosity-law pries -o tree.swc
     run_ok corcast info tree.swc
     expect_stdout 'terminals at  60 to 60 mmHg'
-    run_ok corcast render tree.swc --color-by pressure --size 60x60 -o tree.png
+    run_ok corcast render --exact tree.swc --color-by pressure --size 60x60 -o tree.png
 }
 
 test_options_out_of_range_are_refused() {

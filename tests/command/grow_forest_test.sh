@@ -80,7 +80,7 @@ test_info_scene_and_render_take_forests() {
     expect_stdout '40 terminals, 38 bifurcations, 2 roots'
     expect_stdout 'terminals at  60 to 60 mmHg'
     run_ok corcast scene forest.swc -o forest.pov
-    run_ok corcast render forest.swc --color-by pressure --size 60x60 -o forest.png
+    run_ok corcast render --exact forest.swc --color-by pressure --size 60x60 -o forest.png
     expect_file forest.png
 }
 

@@ -36,9 +36,9 @@ test_line_ends_and_byte_order_marks_change_nothing() {
     expect_same_however_written r.ini t.swc corcast grow --recipe r.ini -o t.swc
     expect_same_however_written t.swc u.swc corcast convert t.swc u.swc
     printf '[vessel]\ncolor = 0.2 0.31 0.4\n\n[light key]\ndirection = 1 2 3\n' >look.ini
-    expect_same_however_written look.ini p.ppm corcast render t.swc --look ./look.ini --size 31x17 -o p.ppm
+    expect_same_however_written look.ini p.ppm corcast render --exact t.swc --look ./look.ini --size 31x17 -o p.ppm
     printf '# two ends\n0.1 0.2 0.3\n\n0.9 0.81 0.7\n' >map.txt
-    expect_same_however_written map.txt p.ppm corcast render t.swc --color-by radius --colormap ./map.txt \
+    expect_same_however_written map.txt p.ppm corcast render --exact t.swc --color-by radius --colormap ./map.txt \
         --size 31x17 -o p.ppm
     printf '0 0\n60 0\n60 60\n0 60\n\n20 20\n40 20\n40 40\n20 40\n' >ring.txt
     expect_same_however_written ring.txt t.swc corcast grow --terminals 5 --domain polygon:ring.txt -o t.swc
@@ -48,20 +48,20 @@ test_line_ends_and_byte_order_marks_change_nothing() {
 
 test_a_tolerance_may_have_any_line_ends() {
     printf 'tier = ours\ncolor_ppm = 20\n' >t.ini
-    run_ok corcast render "$DATA/bifurcation.swc" --size 31x17 -o p.ppm
+    run_ok corcast render --exact "$DATA/bifurcation.swc" --size 31x17 -o p.ppm
     expect_same_however_written t.ini d.png corcast compare p.ppm p.ppm --tolerance t.ini -o d.png
 }
 
 test_zero_bytes_are_refused_with_file_and_line() {
     local tree=$DATA/bifurcation.swc
     printf '[vessel]\ncolor = 1 0.5 0.25\n\0[light key]\n' >look.ini
-    expect_zero_byte_refused look.ini:3 corcast render "$tree" --look ./look.ini -o p.png
+    expect_zero_byte_refused look.ini:3 corcast render --exact "$tree" --look ./look.ini -o p.png
     printf 'seed = 4\rterm\0inals = 9\r' >r.ini
     expect_zero_byte_refused r.ini:2 corcast grow --recipe r.ini -o t.swc
     printf 'color_ppm = 20\0\n' >t.ini
     expect_zero_byte_refused t.ini:1 corcast compare a.png b.png --tolerance t.ini
     printf '0 0 0\r\n1 1 1\r\n\0' >map.txt
-    expect_zero_byte_refused map.txt:3 corcast render "$tree" --color-by radius --colormap ./map.txt -o p.png
+    expect_zero_byte_refused map.txt:3 corcast render --exact "$tree" --color-by radius --colormap ./map.txt -o p.png
     expect_only look.ini r.ini t.ini map.txt
 }
 
@@ -112,7 +112,7 @@ test_numbers_of_looks_and_maps_are_decimal() {
 
 test_pixelmatch_in_a_tolerance_is_from_0_to_1() {
     local value
-    run_ok corcast render "$DATA/bifurcation.swc" --size 31x17 -o p.ppm
+    run_ok corcast render --exact "$DATA/bifurcation.swc" --size 31x17 -o p.ppm
     for value in 9 inf -0.1 1.5; do
         echo "pixelmatch = $value" >t.ini
         run corcast compare p.ppm p.ppm --tolerance t.ini

@@ -35,7 +35,7 @@ test_a_stopped_render_leaves_nothing() {
     local signal
     grow_tree 300
     for signal in TERM INT; do
-        stop_after 0.5 $signal "$CORCAST" render tree.swc --model isosurface --size 3000x3000 \
+        stop_after 0.5 $signal "$CORCAST" render --exact tree.swc --model isosurface --size 3000x3000 \
             --antialias 9 --planes depth,normal,id -o picture.png
         expect_only tree.swc
     done

@@ -19,7 +19,7 @@ find_usable() {
 
 # draw KERNELS NAME OPTION...: all planes of a picture.
 draw() {
-    run_ok corcast render --quiet tree.swc --size 160x120 --planes color,depth,normal,id --kernels "$1" \
+    run_ok corcast render --antialias 1 --quiet tree.swc --size 160x120 --planes color,depth,normal,id --kernels "$1" \
         -o "$2.png" "${@:3}"
 }
 

@@ -22,7 +22,7 @@ each_way() {
 draws() {
     local method
     for method in trace raster; do
-        run timeout 60 "$CORCAST" render tree.swc --size 120x120 --quiet --method $method \
+        run timeout 60 "$CORCAST" render --antialias 1 tree.swc --size 120x120 --quiet --method $method \
             --planes depth,normal,id "$@" -o $method.ppm
         expect_status 0
         ! tail -n +4 $method.normal.pfm | od -A n -t f4 -v | grep -qi nan || fail "expected no NaN with $method $*"
@@ -43,7 +43,7 @@ levels() {
 refuses() {
     local sentence=$1
     shift
-    run timeout 60 "$CORCAST" render tree.swc --size 40x40 "$@" -o picture.ppm
+    run timeout 60 "$CORCAST" render --exact tree.swc --size 40x40 "$@" -o picture.ppm
     expect_status 2
     expect_sentence "$sentence"
     [ ! -e picture.ppm ] || fail "expected no picture"
@@ -69,14 +69,14 @@ test_a_node_of_a_hundred_thousand_daughters_is_drawn_in_seconds() {
     local model
     star 100000
     for model in cylinders rounded; do
-        within 8 "$CORCAST" render tree.swc --model $model --method raster --size 40x30 -o $model.png
+        within 8 "$CORCAST" render --antialias 1 tree.swc --model $model --method raster --size 40x30 -o $model.png
         expect_status 0
     done
 }
 
 test_a_node_of_thousands_of_daughters_is_joined_in_seconds() {
     star 12000
-    within 10 "$CORCAST" render tree.swc --model joined --method raster --size 40x30 -o joined.png
+    within 10 "$CORCAST" render --antialias 1 tree.swc --model joined --method raster --size 40x30 -o joined.png
     expect_status 0
 }
 
@@ -137,7 +137,7 @@ test_a_camera_inside_a_vessel() {
     local model
     rows '1 3 0 0 0 1 -1' '2 3 5 0 0 1 1' '3 3 8 3 0 .5 2' '4 3 8 -3 0 .5 2'
     for model in $(corcast models); do
-        run_ok corcast render tree.swc --model $model --projection perspective --location 2.5,0,0 --look-at 8,0,0 \
+        run_ok corcast render --exact tree.swc --model $model --projection perspective --location 2.5,0,0 --look-at 8,0,0 \
             --size 40x40 --planes depth -o picture.ppm
         ! tail -n +4 picture.depth.pfm | od -A n -t f4 -v | grep -qiE 'nan|inf' ||
             fail "expected to see the vessel's wall everywhere in $model"

@@ -136,7 +136,7 @@ test_the_outline_is_the_silhouette_that_render_draws() {
     /usr/bin/python3 -c 'import skimage' 2>import.log || skip "python3-skimage is not installed"
     fork
     scad fork.svg fork.scad 'part="outline"' '$fn=16'
-    run_ok corcast render fork.swc --location 0,0,100 --look-at 0,0,0 --height 40 --size 800x800 --planes id -o ours.ppm
+    run_ok corcast render --exact fork.swc --location 0,0,100 --look-at 0,0,0 --height 40 --size 800x800 --planes id -o ours.ppm
     /usr/bin/python3 - >silhouette <<'END' || fail "the silhouettes differ: $(cat silhouette)"
 import re, sys
 import numpy as np

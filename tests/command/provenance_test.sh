@@ -121,7 +121,7 @@ test_the_text_of_a_picture_makes_it_again() {
     run_ok corcast grow --quiet --terminals 9 -o tree.swc
     sed 's/^0 /0.04 /' "$REPO/templates/colormaps/magma.txt" >mine.txt
     printf '[render]\nmargin = 0.125\nview = iso\n' >mine.ini
-    run_ok corcast render tree.swc --quiet --recipe mine.ini --size 60x44 --antialias 2 --color-by wss --colormap ./mine.txt \
+    run_ok corcast render --exact tree.swc --quiet --recipe mine.ini --size 60x44 --antialias 2 --color-by wss --colormap ./mine.txt \
         --prune-radius 0.01 --memory 0.001 -o picture.png
     again picture.png "$(command_of picture.png)"
     ! grep -aq 'memory\|recipe' picture.png || fail "expected only what the picture depends on"
@@ -129,8 +129,8 @@ test_the_text_of_a_picture_makes_it_again() {
 
 test_a_page_of_two_pictures_tells_the_command_that_makes_it() {
     run_ok corcast grow --quiet --terminals 9 -o tree.swc
-    run_ok corcast render tree.swc --quiet --size 60x44 -o a.png
-    run_ok corcast render tree.swc --quiet --size 60x44 --antialias 3 -o b.png
+    run_ok corcast render --exact tree.swc --quiet --size 60x44 -o a.png
+    run_ok corcast render --exact tree.swc --quiet --size 60x44 --antialias 3 -o b.png
     run corcast compare a.png b.png --quiet --levels 3.5 --metrics off --html page.html
     expect_status 1
     mkdir pasted

@@ -23,7 +23,7 @@ test_a_section_is_for_the_command_of_its_name() {
     run_ok corcast grow --recipe figure.ini -o tree.swc
     run_ok "$CHECK_TREE" tree.swc
     expect_stdout '^terminals 9$'
-    run_ok corcast render tree.swc --recipe figure.ini -o picture.ppm
+    run_ok corcast render --exact tree.swc --recipe figure.ini -o picture.ppm
     pnmfile picture.ppm | grep -q '31 by 17' || fail "expected 31 by 17, got $(pnmfile picture.ppm)"
 }
 

@@ -33,7 +33,7 @@ test_every_model_gives_a_picture_of_the_size_asked_for() {
     local model
     grow_tree 20
     for model in $MODELS; do
-        run_ok corcast render tree.swc --model $model --size 83x41 -o $model.ppm
+        run_ok corcast render --exact tree.swc --model $model --size 83x41 -o $model.ppm
         pnmfile $model.ppm | grep -q 'PPM raw, 83 by 41  maxval 255' ||
             fail "expected a P6 of 83 x 41, got $(pnmfile $model.ppm)"
         [ "$(colours $model.ppm)" -gt 20 ] || fail "expected a shaded picture of $model"
@@ -44,10 +44,10 @@ test_the_number_of_threads_does_not_change_the_picture() {
     local model threads
     grow_tree 60
     for model in $MODELS; do
-        run_ok corcast render tree.swc --model $model --size 150x90 --threads 1 -o picture.ppm
+        run_ok corcast render --exact tree.swc --model $model --size 150x90 --threads 1 -o picture.ppm
         mv picture.ppm one.ppm
         for threads in 2 5; do
-            run_ok corcast render tree.swc --model $model --size 150x90 --threads $threads -o picture.ppm
+            run_ok corcast render --exact tree.swc --model $model --size 150x90 --threads $threads -o picture.ppm
             expect_same one.ppm picture.ppm
         done
     done
@@ -55,26 +55,26 @@ test_the_number_of_threads_does_not_change_the_picture() {
 
 test_png_and_ppm_hold_the_same_pixels() {
     grow_tree 20
-    run_ok corcast render tree.swc --size 60x45 -o picture.ppm
-    run_ok corcast render tree.swc --size 60x45 -o picture.png
+    run_ok corcast render --exact tree.swc --size 60x45 -o picture.ppm
+    run_ok corcast render --exact tree.swc --size 60x45 -o picture.png
     expect_same_pixels picture.ppm picture.png
 }
 
 test_a_png_says_where_it_comes_from_and_neither_when_nor_where() {
     grow_tree 5
-    run_ok corcast render tree.swc --size 30x30 -o picture.png
+    run_ok corcast render --exact tree.swc --size 30x30 -o picture.png
     LC_ALL=C grep -qa 'tEXt' picture.png || fail "expected provenance in a tEXt chunk"
     LC_ALL=C grep -qa 'sRGB' picture.png || fail "expected an sRGB chunk"
     LC_ALL=C grep -qa 'corcast' picture.png || fail "expected the program's name"
     ! LC_ALL=C grep -qa -e 'tIME' -e "$PWD" picture.png || fail "expected neither a date nor a path"
     mkdir elsewhere
-    run_ok corcast render tree.swc --size 30x30 -o elsewhere/picture.png
+    run_ok corcast render --exact tree.swc --size 30x30 -o elsewhere/picture.png
     expect_same picture.png elsewhere/picture.png
 }
 
 test_the_planes_stand_beside_the_picture() {
     grow_tree 20
-    run_ok corcast render tree.swc --size 50x30 --planes color,depth,normal,id -o picture.png
+    run_ok corcast render --exact tree.swc --size 50x30 --planes color,depth,normal,id -o picture.png
     expect_only tree.swc picture.png picture.{color,depth,normal}.pfm picture.id.ppm
     [ "$(head -c 8 picture.depth.pfm | head -1)" = Pf ] || fail "expected a grey PFM"
     [ "$(head -c 8 picture.normal.pfm | head -1)" = PF ] || fail "expected a colour PFM"
@@ -89,7 +89,7 @@ test_the_id_plane_holds_ids_of_segments() {
     grow_tree 12
     grep -v '^#' tree.swc | awk '$7 != -1 { print $1 }' | sort >segments
     for model in $MODELS; do
-        run_ok corcast render tree.swc --model $model --size 200x200 --planes id -o picture.ppm
+        run_ok corcast render --exact tree.swc --model $model --size 200x200 --planes id -o picture.ppm
         pnmtoplainpnm picture.id.ppm | tail -n +4 | tr -s ' \n' '\n' | grep -v '^$' | paste - - - |
             awk '{ id = $1 * 65536 + $2 * 256 + $3 } id { print id }' | sort -u >seen
         [ -z "$(comm -13 segments seen)" ] || fail "ids that are no segment: $(comm -13 segments seen | tr '\n' ' ')"
@@ -103,7 +103,7 @@ test_depth_and_normal_of_one_tube_are_what_geometry_says() {
     printf '1 1 -10 0 0 2 -1\n2 3 10 0 0 2 1\n' >tube.swc
     for model in $MODELS; do
         [ $model = mesh ] && how='--tolerance 0.002' || how=''
-        run_ok corcast render tube.swc --model $model $how --size 11x11 --location 0,0,30 --look-at 0,0,0 \
+        run_ok corcast render --exact tube.swc --model $model $how --size 11x11 --location 0,0,30 --look-at 0,0,0 \
             --height 11 --planes depth,normal -o picture.ppm
         pfm_value picture.depth.pfm 60 1 >value
         awk '{ exit !($1 > 27.998 && $1 < 28.002) }' value ||
@@ -126,21 +126,21 @@ pfm_value() {
 
 test_a_picture_goes_to_standard_output() {
     grow_tree 8
-    run_ok corcast render tree.swc --size 40x30 -o picture.ppm
-    run_ok corcast render tree.swc --size 40x30 -o -
+    run_ok corcast render --exact tree.swc --size 40x30 -o picture.ppm
+    run_ok corcast render --exact tree.swc --size 40x30 -o -
     expect_same_pixels stdout picture.ppm
 }
 
 test_a_tree_comes_from_standard_input() {
     grow_tree 8
-    run_ok corcast render tree.swc --size 40x30 -o from_file.ppm
-    corcast render - --size 40x30 -o from_pipe.ppm <tree.swc 2>stderr || fail "render - failed$(said)"
+    run_ok corcast render --exact tree.swc --size 40x30 -o from_file.ppm
+    corcast render --exact - --size 40x30 -o from_pipe.ppm <tree.swc 2>stderr || fail "render - failed$(said)"
     expect_same_pixels from_file.ppm from_pipe.ppm
 }
 
 test_convert_changes_the_format_and_not_the_pixels() {
     grow_tree 8
-    run_ok corcast render tree.swc --size 40x30 -o picture.ppm
+    run_ok corcast render --exact tree.swc --size 40x30 -o picture.ppm
     run_ok corcast convert picture.ppm picture.png
     run_ok corcast convert picture.png again.ppm
     expect_same_pixels picture.ppm again.ppm
@@ -148,36 +148,37 @@ test_convert_changes_the_format_and_not_the_pixels() {
 
 test_antialiasing_gives_colours_in_between() {
     grow_tree 20
-    run_ok corcast render tree.swc --size 80x80 -o sharp.ppm
-    run_ok corcast render tree.swc --size 80x80 --antialias 3 -o smooth.ppm
+    run_ok corcast render --exact tree.swc --size 80x80 -o sharp.ppm
+    run_ok corcast render --exact tree.swc --size 80x80 --antialias 3 -o smooth.ppm
     [ "$(colours smooth.ppm)" -gt "$(colours sharp.ppm)" ] || fail "expected more colours with antialiasing"
 }
 
 test_perspective_and_shadows_change_the_picture() {
     run_ok corcast grow --terminals 40 --domain ball:20 -o tree.swc
-    run_ok corcast render tree.swc --size 80x80 -o flat.ppm
-    run_ok corcast render tree.swc --size 80x80 --shadows on -o shadows.ppm
-    run_ok corcast render tree.swc --size 80x80 --projection perspective -o perspective.ppm
+    run_ok corcast render --exact tree.swc --size 80x80 -o flat.ppm
+    run_ok corcast render --exact tree.swc --size 80x80 --shadows on -o shadows.ppm
+    run_ok corcast render --exact tree.swc --size 80x80 --projection perspective -o perspective.ppm
     expect_differing 96 96 flat.ppm shadows.ppm
     expect_differing 954 954 flat.ppm perspective.ppm
 }
 
 test_pruning_drops_thin_segments_from_the_picture() {
     grow_tree 60
-    run_ok corcast render tree.swc --size 200x200 --planes id -o all.ppm
-    run_ok corcast render tree.swc --size 200x200 --planes id --prune-radius 1 -o thick.ppm
+    run_ok corcast render --exact tree.swc --size 200x200 --planes id -o all.ppm
+    run_ok corcast render --exact tree.swc --size 200x200 --planes id --prune-radius 1 -o thick.ppm
     [ "$(colours thick.id.ppm)" -lt "$(colours all.id.ppm)" ] || fail "expected fewer segments"
 }
 
 test_fields_colour_the_segments() {
     local field
     grow_tree 30
-    run_ok corcast render tree.swc --size 80x80 -o plain.ppm
+    run_ok corcast render --exact tree.swc --size 80x80 -o plain.ppm
     for field in radius flow velocity pressure wss reynolds level strahler branch; do
-        run_ok corcast render tree.swc --size 80x80 --color-by $field -o $field.ppm
+        run_ok corcast render --exact tree.swc --size 80x80 --color-by $field -o $field.ppm
         expect_differing 307 307 plain.ppm $field.ppm
     done
-    run_ok corcast render tree.swc --size 80x80 --color-by radius --log --range 0.5,3 --colormap magma -o log.ppm
+    run_ok corcast render --exact tree.swc --size 80x80 --color-by radius --log --range 0.5,3 --colormap magma \
+        -o log.ppm
     run corcast render tree.swc --size 80x80 --color-by loudness -o no.ppm
     expect_status 2
     expect_sentence 'loudness'
@@ -185,8 +186,8 @@ test_fields_colour_the_segments() {
 
 test_a_field_is_named_in_capitals_too() {
     grow_tree 5
-    run_ok corcast render tree.swc --size 40x40 --color-by wss -o small.ppm
-    run_ok corcast render tree.swc --size 40x40 --color-by WSS -o capital.ppm
+    run_ok corcast render --exact tree.swc --size 40x40 --color-by wss -o small.ppm
+    run_ok corcast render --exact tree.swc --size 40x40 --color-by WSS -o capital.ppm
     expect_same small.ppm capital.ppm
 }
 
@@ -195,12 +196,12 @@ test_a_field_that_needs_flow_is_refused_where_nothing_is_known_of_it() {
     run corcast render tree.swc --size 20x20 --color-by flow -o picture.ppm
     expect_status 2
     expect_sentence 'q[-_]perf'
-    run_ok corcast render tree.swc --size 20x20 --color-by flow --q-perf 312.5 -o picture.ppm
+    run_ok corcast render --exact tree.swc --size 20x20 --color-by flow --q-perf 312.5 -o picture.ppm
 }
 
 test_the_background_is_the_colour_asked_for() {
     grow_tree 5
-    run_ok corcast render tree.swc --size 40x40 --background 0,0,0 -o black.ppm
+    run_ok corcast render --exact tree.swc --size 40x40 --background 0,0,0 -o black.ppm
     [ "$(tail -c 3 black.ppm | od -A n -t u1 | tr -s ' ')" = " 0 0 0" ] ||
         fail "expected a black corner, got $(tail -c 3 black.ppm | od -A n -t u1)"
 }
@@ -212,9 +213,13 @@ test_the_report_says_what_drew_the_picture() {
         run_ok corcast render tree.swc $options --size 21x17 --json report.json -o picture.ppm
         expect_json report.json ".engine == \"$engine\""
     done <<'END'
-trace --model rounded --shadows on
-raster --model rounded --method raster --shadows on
+raster --model rounded --shadows on
+raster --model cylinders --method fastest
+raster --model joined --method raster --shadows on
+trace --model rounded --method trace
+trace --model rounded --exact --shadows on
 trace --model rounded --method raster --ao 2
+trace --model joined --look print
 zbuffer --model rounded --method zbuffer
 trace --model blob
 field --model isosurface
@@ -224,11 +229,11 @@ END
 
 test_places_without_joints_are_counted_and_said() {
     run_ok corcast grow --terminals 600 --seed 3 --lambda 0 -o tree.swc
-    run_ok corcast render tree.swc --model joined --size 60x60 --json report.json -o picture.png
+    run_ok corcast render --exact tree.swc --model joined --size 60x60 --json report.json -o picture.png
     expect_sentence 'at [0-9]+ places vessels are too short for joints, at [0-9]+ they turn too sharply.*drawn round'
     expect_json report.json '.joints > 1000 and .places_short > 0 and .places_sharp > 0'
     expect_json report.json '.joints == 1198 - 2 * (.places_short + .places_sharp)'
-    run_ok corcast render tree.swc --model joined --joints paper --size 60x60 --json report.json -o paper.png
+    run_ok corcast render --exact tree.swc --model joined --joints paper --size 60x60 --json report.json -o paper.png
     expect_sentence 'joined all the same'
     expect_json report.json '.joints == 1198'
     expect_differing 22 22 picture.png paper.png
@@ -241,9 +246,9 @@ test_ambient_occlusion_darkens_every_model_alike_for_any_number_of_threads() {
     local model threads
     run_ok corcast grow --terminals 40 --domain ball:20 -o tree.swc
     for model in $MODELS; do
-        run_ok corcast render tree.swc --model $model --look print --size 90x70 --antialias 2 -o none.ppm
+        run_ok corcast render --exact tree.swc --model $model --look print --size 90x70 --antialias 2 -o none.ppm
         for threads in 1 3; do
-            run_ok corcast render tree.swc --model $model --look print --size 90x70 --ao 9 --antialias 2 \
+            run_ok corcast render --exact tree.swc --model $model --look print --size 90x70 --ao 9 --antialias 2 \
                 --threads $threads -o ao$threads.ppm
         done
         expect_same ao1.ppm ao3.ppm
@@ -258,11 +263,11 @@ brightness() {
 
 # What --model joined says of trees where joints cannot be; odd_trees_test.sh draws them in every way.
 test_places_of_odd_trees_that_have_no_joints_are_counted() {
-    run_ok corcast render "$DATA/star.swc" --model joined --size 100x100 --json report.json -o picture.png
+    run_ok corcast render --exact "$DATA/star.swc" --model joined --size 100x100 --json report.json -o picture.png
     expect_json report.json '.places_short + .places_sharp == 1'
-    run_ok corcast render "$DATA/collinear.swc" --model joined --size 80x100 --json report.json -o picture.png
+    run_ok corcast render --exact "$DATA/collinear.swc" --model joined --size 80x100 --json report.json -o picture.png
     expect_json report.json '.joints == 0'
-    run_ok corcast render "$DATA/stout.swc" --model joined --size 80x100 --json report.json -o picture.png
+    run_ok corcast render --exact "$DATA/stout.swc" --model joined --size 80x100 --json report.json -o picture.png
     expect_json report.json '.joints == 1 and .places_short == 19'
 }
 
@@ -290,10 +295,10 @@ test_bands_give_the_bytes_of_the_whole() {
     grow_tree 60
     for model in $MODELS; do
         for extension in ppm png pfm tif; do
-            run_ok corcast render tree.swc --model $model --size 90x70 --antialias 2 --antialias-threshold 0.05 \
+            run_ok corcast render --exact tree.swc --model $model --size 90x70 --antialias 2 --antialias-threshold 0.05 \
                 --planes color,depth,normal,id --memory 1000 -o picture.$extension
             for file in picture.*; do mv "$file" "whole.${file#picture.}"; done
-            run_ok corcast render tree.swc --model $model --size 90x70 --antialias 2 --antialias-threshold 0.05 \
+            run_ok corcast render --exact tree.swc --model $model --size 90x70 --antialias 2 --antialias-threshold 0.05 \
                 --planes color,depth,normal,id --memory 0.001 -o picture.$extension
             for file in picture.*; do
                 case $file in
@@ -309,10 +314,11 @@ test_bands_give_the_bytes_of_the_whole() {
 # Whole, its floats alone would take 192 MB.
 test_a_large_picture_needs_the_memory_of_a_band() {
     grow_tree 60
-    (ulimit -v 150000 && "$CORCAST" render tree.swc --size 4000x4000 --memory 20 --quiet -o picture.ppm) 2>stderr ||
+    (ulimit -v 150000 && "$CORCAST" render --exact tree.swc --size 4000x4000 --memory 20 --quiet \
+        -o picture.ppm) 2>stderr ||
         fail "expected 16 megapixels in 150 MB of addresses$(said)"
     pnmfile picture.ppm | grep -q 'PPM raw, 4000 by 4000' || fail "expected 4000 x 4000, got $(pnmfile picture.ppm)"
-    run_ok corcast render tree.swc --size 4000x4000 --memory 1000 -o whole.ppm
+    run_ok corcast render --exact tree.swc --size 4000x4000 --memory 1000 -o whole.ppm
     expect_same picture.ppm whole.ppm
 }
 
@@ -346,7 +352,7 @@ test_a_truncated_picture_is_refused() {
     expect_status 2
     expect_sentence "short\.ppm"
     grow_tree 3
-    run_ok corcast render tree.swc --size 40x40 -o picture.png
+    run_ok corcast render --exact tree.swc --size 40x40 -o picture.png
     head -c 150 picture.png >short.png
     run corcast convert short.png out.ppm
     expect_status 2
@@ -361,12 +367,12 @@ rows() {
 
 test_adaptive_antialiasing_needs_antialiasing() {
     grow_tree 20
-    run corcast render tree.swc --antialias-threshold 0.1 -o picture.ppm
+    run corcast render tree.swc --exact --antialias-threshold 0.1 -o picture.ppm
     expect_status 2
     expect_sentence 'antialias-threshold needs --antialias N'
-    run_ok corcast render tree.swc --model isosurface --size 90x60 --antialias 3 -o all.ppm
-    run_ok corcast render tree.swc --model isosurface --size 90x60 --antialias 3 --antialias-threshold 0.02 -o edges.ppm
-    run_ok corcast render tree.swc --model isosurface --size 90x60 -o none.ppm
+    run_ok corcast render --exact tree.swc --model isosurface --size 90x60 --antialias 3 -o all.ppm
+    run_ok corcast render --exact tree.swc --model isosurface --size 90x60 --antialias 3 --antialias-threshold 0.02 -o edges.ppm
+    run_ok corcast render --exact tree.swc --model isosurface --size 90x60 -o none.ppm
     expect_differing 40 50 all.ppm edges.ppm
     expect_differing 290 320 edges.ppm none.ppm
 }
@@ -391,10 +397,42 @@ test_tiles_agree_with_rays_to_tier_b_and_to_the_measured_floor() {
     done
 }
 
+test_pictures_are_by_default_antialiased_and_within_tier_b_of_exact_ones() {
+    local model tree=$REPO/tests/golden/ball60.swc
+    for model in $MODELS; do
+        run_ok corcast render "$tree" --model $model --view iso --shadows on --size 240x180 --planes id -o plain.png
+        run_ok corcast render "$tree" --model $model --view iso --shadows on --size 240x180 --planes id \
+            --exact --antialias 3 -o exact.png
+        run_ok corcast compare exact.png plain.png --ids-a exact.id.ppm --ids-b plain.id.ppm --tier B
+    done
+}
+
+test_an_exact_picture_has_one_ray_a_pixel_unless_more_are_asked_for() {
+    grow_tree 20
+    run_ok corcast render tree.swc --size 80x60 --exact -o exact.ppm
+    run_ok corcast render tree.swc --size 80x60 --method trace --antialias 1 -o one.ppm
+    expect_same exact.ppm one.ppm
+    run_ok corcast render tree.swc --size 80x60 --exact --antialias 3 -o smooth.ppm
+    run_ok corcast render tree.swc --size 80x60 --method trace -o traced.ppm
+    expect_same smooth.ppm traced.ppm
+    run corcast render tree.swc --size 80x60 --exact --method raster -o raster.ppm
+    expect_status 2
+    expect_sentence '--exact is --method trace, not --method raster'
+}
+
+test_a_picture_wider_than_tiles_go_is_traced() {
+    grow_tree 3
+    run_ok corcast render tree.swc --antialias 1 --size 524296x1 --json report.json -o picture.ppm
+    expect_json report.json '.engine == "trace"'
+    run corcast render tree.swc --antialias 1 --size 524296x1 --method raster -o raster.ppm
+    expect_status 2
+    expect_sentence 'draws pictures of up to 524280 pixels a side'
+}
+
 test_joints_to_the_letter_are_the_same_by_every_method() {
     local method
     for method in trace raster; do
-        run_ok corcast render "$REPO/tests/golden/disc200-lambda0.swc" --model joined --joints paper --size 500x500 \
+        run_ok corcast render --antialias 1 "$REPO/tests/golden/disc200-lambda0.swc" --model joined --joints paper --size 500x500 \
             --method $method -o $method.ppm
     done
     run_ok corcast compare trace.ppm raster.ppm --json --tier none
@@ -419,8 +457,8 @@ test_methods_say_what_they_do_not_draw() {
 
 test_the_potential_of_the_graph_keeps_strangers_apart() {
     rows '1 3 -9 1.1 0 1 -1' '2 3 9 1.1 0 1 1' '3 3 -9 -1.1 0 1 -1' '4 3 9 -1.1 0 1 3'
-    run_ok corcast render tree.swc --model isosurface --size 90x60 -o paper.ppm
-    run_ok corcast render tree.swc --model isosurface --size 90x60 --potential graph -o graph.ppm
+    run_ok corcast render --exact tree.swc --model isosurface --size 90x60 -o paper.ppm
+    run_ok corcast render --exact tree.swc --model isosurface --size 90x60 --potential graph -o graph.ppm
     expect_differing 380 400 paper.ppm graph.ppm
     run_ok corcast scene tree.swc --model isosurface --potential graph --color-by radius --ids on -o tree.pov
     grep -q 'Fn_Max(Fm0(x,y,z),Fm1(x,y,z))' tree.inc || fail "expected the larger of two potentials in a cell"
@@ -431,10 +469,10 @@ test_the_potential_of_the_graph_keeps_strangers_apart() {
 
 test_segments_that_vanish_are_counted() {
     rows '1 3 0 0 0 1 -1' '2 3 0.1 0 0 1 1' '3 3 50 0 0 1 -1' '4 3 60 0 0 1 3' '5 3 60 9 0 0.05 4'
-    run_ok corcast render tree.swc --model isosurface --size 20x20 --prune-radius 0.06 -o picture.ppm
+    run_ok corcast render --exact tree.swc --model isosurface --size 20x20 --prune-radius 0.06 -o picture.ppm
     grep -q '1 of 3 segments are pruned' stderr || fail "expected the number of pruned segments$(said)"
     grep -q '1 of 2 segments are too short for their radius' stderr || fail "expected the number that vanish$(said)"
-    run_ok corcast render tree.swc --model isosurface --size 20x20 --quiet -o picture.ppm
+    run_ok corcast render --exact tree.swc --model isosurface --size 20x20 --quiet -o picture.ppm
     [ ! -s stderr ] || fail "expected silence$(said)"
     run corcast render tree.swc --prune-radius 1.25 -o none.ppm
     expect_status 2
@@ -443,7 +481,7 @@ test_segments_that_vanish_are_counted() {
 
 # A picture without NaN in its planes, or one sentence and status 2; never a crash or a hang.
 survives() {
-    run timeout 60 "$CORCAST" render tree.swc --size 40x40 --planes depth,normal -o picture.ppm "$@"
+    run timeout 60 "$CORCAST" render --exact tree.swc --size 40x40 --planes depth,normal -o picture.ppm "$@"
     if [ "$status" -eq 2 ]; then
         expect_sentence '[a-z]'
     else

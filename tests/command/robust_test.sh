@@ -40,8 +40,8 @@ test_limits_of_size_leave_nothing() {
 test_a_verdict_that_cannot_be_told_is_a_failure() {
     local stream
     grow_tree 3
-    run_ok corcast render tree.swc --size 30x20 -o a.png
-    run_ok corcast render tree.swc --size 30x20 --background 0,0,0 -o b.png
+    run_ok corcast render --exact tree.swc --size 30x20 -o a.png
+    run_ok corcast render --exact tree.swc --size 30x20 --background 0,0,0 -o b.png
     for stream in '>/dev/full' '>&-'; do
         for arguments in 'compare a.png b.png' 'compare a.png a.png' 'info tree.swc' --version --help; do
             eval "\$CORCAST $arguments $stream 2>stderr"
@@ -54,7 +54,7 @@ test_a_verdict_that_cannot_be_told_is_a_failure() {
 test_a_file_does_not_take_the_place_of_a_closed_stream() {
     "$CORCAST" grow --terminals 30 -o tree.swc >&- 2>&- || fail "expected exit status 0, got $?"
     check_tree tree.swc
-    "$CORCAST" render tree.swc --size 30x20 -o a.png <&- >&- 2>&- || fail "expected exit status 0, got $?"
+    "$CORCAST" render --exact tree.swc --size 30x20 -o a.png <&- >&- 2>&- || fail "expected exit status 0, got $?"
     pngtopnm a.png >a.ppm || fail "expected a picture"
 }
 
@@ -215,7 +215,7 @@ refuses() {
 test_no_file_is_written_over_one_that_is_read() {
     local name
     cp "$DATA/bifurcation.swc" tree.swc
-    run_ok corcast render tree.swc --size 20x10 --planes id -o a.png
+    run_ok corcast render --exact tree.swc --size 20x10 --planes id -o a.png
     ln -s a.png link.png
     ln a.png hard.png
     for name in a.png ./a.png "$PWD/a.png" link.png hard.png; do
@@ -247,7 +247,7 @@ test_no_file_is_written_over_one_that_is_read() {
 
 test_no_file_is_written_twice() {
     cp "$DATA/bifurcation.swc" tree.swc
-    run_ok corcast render tree.swc --size 20x10 -o a.png
+    run_ok corcast render --exact tree.swc --size 20x10 -o a.png
     refuses "-o 'j.swc' and --json 'j.swc' are one file; write to two" grow --terminals 3 -o j.swc --json j.swc
     refuses "-o 's.png' and --json './s.png' are one file" render tree.swc -o s.png --json ./s.png
     refuses "--json 's.depth.pfm' and --planes 's.depth.pfm'" \
@@ -268,7 +268,7 @@ test_devices_and_ones_own_old_files_may_be_written() {
     local i
     cp "$DATA/bifurcation.swc" tree.swc
     for i in 1 2; do
-        run_ok corcast render tree.swc --size 20x10 --planes depth,id -o a.png --json a.json
+        run_ok corcast render --exact tree.swc --size 20x10 --planes depth,id -o a.png --json a.json
         run_ok corcast compare a.png a.png -o heat.png --difference difference.png
     done
     run_ok corcast grow --terminals 3 -o new.swc --json /dev/null
@@ -276,7 +276,7 @@ test_devices_and_ones_own_old_files_may_be_written() {
     expect_json new.json '.terminals == 3'
     echo 'size = 20x10' >recipe.ini
     echo 'output = old.png' >>recipe.ini
-    run_ok corcast render tree.swc --recipe recipe.ini -o new.png
+    run_ok corcast render --exact tree.swc --recipe recipe.ini -o new.png
     [ ! -e old.png ] || fail "expected the command line to win"
 }
 
@@ -334,8 +334,8 @@ test_a_recipe_may_say_what_has_no_effect_in_this_run() {
     cp "$DATA/bifurcation.swc" tree.swc
     printf '[grow]\nhematocrit = 0.3\nrefine-moves = 9\n[render]\nrange = 1,2\ncolormap = magma\nhits = povray\nsize = 20x10\n' >all.ini
     run_ok corcast grow --terminals 3 --recipe all.ini -o x.swc
-    run_ok corcast render tree.swc --recipe all.ini -o x.png
-    run_ok corcast render tree.swc --recipe all.ini --color-by radius -o y.png
+    run_ok corcast render --exact tree.swc --recipe all.ini -o x.png
+    run_ok corcast render --exact tree.swc --recipe all.ini --color-by radius -o y.png
     expect_differing 12 12 x.png y.png
 }
 
@@ -388,7 +388,7 @@ test_provenance_and_junit_are_text_whatever_the_name() {
         run_ok corcast compare --junit a.xml -- "./$name.png" a.png
         python3 -c 'import xml.dom.minidom; xml.dom.minidom.parse("a.xml")' 2>lint || fail "expected XML from $name: $(tail -1 lint)"
     done
-    run_ok corcast render "./${NAMES[3]}" --size 20x10 -o a.png
+    run_ok corcast render --exact "./${NAMES[3]}" --size 20x10 -o a.png
     grep -qaF "'o'\\''neil & \"sons\"; \$(x) \`y\`.swc'" a.png || fail "expected the name in quotes"
 }
 
@@ -397,7 +397,7 @@ test_names_may_be_as_long_as_the_system_allows() {
     stem=$(printf 'n%.0s' $(seq 251))
     run_ok corcast grow --terminals 3 -o "$stem.swc"
     run_ok corcast scene "$stem.swc" -o "$stem.pov"
-    run_ok corcast render "$stem.swc" --size 20x10 -o "$stem.png"
+    run_ok corcast render --exact "$stem.swc" --size 20x10 -o "$stem.png"
     run corcast render "$stem.swc" --size 20x10 --planes depth -o "$stem.png"
     expect_status 3
     expect_sentence 'File name too long'

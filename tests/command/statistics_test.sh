@@ -85,7 +85,7 @@ END
 
 test_color_by_diameter_defined_order() {
     grow_tree 30
-    run_ok corcast render tree.swc --color-by diameter-strahler --size 40x30 -o picture.ppm
+    run_ok corcast render --exact tree.swc --color-by diameter-strahler --size 40x30 -o picture.ppm
 }
 
 run_tests "$@"

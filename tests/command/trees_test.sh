@@ -116,8 +116,8 @@ test_a_tree_on_standard_input_is_told_by_its_first_bytes() {
 test_a_column_of_a_csv_colours_its_segments() {
     printf '%s\n' 'id,parent,x_mm,y_mm,z_mm,radius_mm,age [a]' 1,,0,9,0,1, 2,1,0,4,0,1,41 3,2,-4,0,0,0.5,37.5 \
         4,2,4,0,0,0.5, >tree.csv
-    run_ok corcast render tree.csv --color-by age --range 30,50 --size 40x30 -o age.ppm
-    run_ok corcast render tree.csv --color-by radius --range 30,50 --size 40x30 -o radius.ppm
+    run_ok corcast render --exact tree.csv --color-by age --range 30,50 --size 40x30 -o age.ppm
+    run_ok corcast render --exact tree.csv --color-by radius --range 30,50 --size 40x30 -o radius.ppm
     ! cmp -s age.ppm radius.ppm || fail "expected the ages to be seen"
     run corcast render tree.csv --color-by weight --size 40x30 -o weight.ppm
     expect_status 2
@@ -256,7 +256,7 @@ test_measured_trees_are_read() {
         run_ok corcast convert "$file" normal.swc
         run_ok corcast convert normal.swc again.swc
         expect_same normal.swc again.swc
-        run_ok corcast render "$file" --model rounded --size 60x40 -o picture.ppm
+        run_ok corcast render --exact "$file" --model rounded --size 60x40 -o picture.ppm
     done
 }
 

@@ -155,16 +155,16 @@ test_lists_hold_what_options_take() {
     local name
     grow_tree 5
     for name in $(corcast models); do
-        run_ok corcast render tree.swc --quiet --size 16x12 --model "$name" -o picture.ppm
+        run_ok corcast render --exact tree.swc --quiet --size 16x12 --model "$name" -o picture.ppm
     done
     for name in $(corcast fields | cut -f 1); do
-        run_ok corcast render tree.swc --quiet --size 16x12 --color-by "$name" -o picture.ppm
+        run_ok corcast render --exact tree.swc --quiet --size 16x12 --color-by "$name" -o picture.ppm
     done
     for name in $(corcast looks); do
-        run_ok corcast render tree.swc --quiet --size 16x12 --look "$name" -o picture.ppm
+        run_ok corcast render --exact tree.swc --quiet --size 16x12 --look "$name" -o picture.ppm
     done
     for name in $(corcast colormaps | cut -f 1); do
-        run_ok corcast render tree.swc --quiet --size 16x12 --color-by level --colormap "$name" -o picture.ppm
+        run_ok corcast render --exact tree.swc --quiet --size 16x12 --color-by level --colormap "$name" -o picture.ppm
     done
     for name in $(corcast domains); do
         run corcast grow --domain "${name%%:*}:" -o other.swc
@@ -220,10 +220,10 @@ test_help_and_version_go_by_their_usual_names() {
 
 test_a_switch_without_a_value_is_on() {
     run_ok corcast grow --terminals 40 --domain ball:20 --seed 6 -o tree.swc
-    run_ok corcast render tree.swc --size 60x45 --shadows --quiet -o flag.ppm
-    run_ok corcast render tree.swc --size 60x45 --shadows on -o on.ppm
-    run_ok corcast render --size 60x45 -o last.ppm --shadows tree.swc
-    run_ok corcast render tree.swc --size 60x45 --shadows off -o off.ppm
+    run_ok corcast render --exact tree.swc --size 60x45 --shadows --quiet -o flag.ppm
+    run_ok corcast render --exact tree.swc --size 60x45 --shadows on -o on.ppm
+    run_ok corcast render --exact --size 60x45 -o last.ppm --shadows tree.swc
+    run_ok corcast render --exact tree.swc --size 60x45 --shadows off -o off.ppm
     expect_same flag.ppm on.ppm
     expect_same last.ppm on.ppm
     expect_differing 34 34 on.ppm off.ppm

@@ -29,10 +29,15 @@ scene_options() {
     case_options "$1" | sed -E 's/ *--method [a-z]+//'
 }
 
+# How corcast draws a case: as POV-Ray does, or by the method that it names.
+native_options() {
+    case_options "$1" | grep -q -- '--method' && echo --antialias 1 || echo --exact
+}
+
 # The files of a case are named from the repository's folder. The options are words: no quotes around them.
 # shellcheck disable=SC2046
 draw_native() {
-    (cd "$REPO" && corcast render --quiet "$(case_tree "$1")" $(case_options "$1") ${3-} -o "$OLDPWD/$2")
+    (cd "$REPO" && corcast render --quiet "$(case_tree "$1")" $(native_options "$1") $(case_options "$1") ${3-} -o "$OLDPWD/$2")
 }
 
 # Of an implicit surface what POV-Ray's root finder sees of it, which is not quite where it is.

@@ -32,7 +32,7 @@ test_mesh2_has_the_silhouette_and_the_normals_of_the_surface() {
     mesh_scene shaded.pov 'object { Tree texture { pigment { color rgb 1 } finish { ambient 0 diffuse 1 } } }'
     draw mask.pov mask.png
     draw shaded.pov shaded.png
-    run_ok corcast render t.swc --model isosurface --potential graph --location 0,0,100 --look-at 0,0,0 --height 100 \
+    run_ok corcast render --exact t.swc --model isosurface --potential graph --location 0,0,100 --look-at 0,0,0 --height 100 \
         --size 500x500 --planes id,normal -o ours.ppm
     /usr/bin/python3 - >compared <<'END' || fail "POV-Ray's mesh is not our surface: $(cat compared)"
 import sys

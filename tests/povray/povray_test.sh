@@ -99,7 +99,7 @@ color = 0.4 0.2 0.6
 INI
     for model in $(corcast models); do
         # shellcheck disable=SC2086
-        run_ok corcast render --quiet tree.swc --look ./look.ini --model $model $view -o native.png
+        run_ok corcast render --exact --quiet tree.swc --look ./look.ini --model $model $view -o native.png
         [ "$(codes native.png)" = " 177 169 173" ] || fail "expected 177 169 173, got $(codes native.png), from: $command_line"
         # shellcheck disable=SC2086
         run_ok corcast scene --quiet tree.swc --look ./look.ini --model $model $view -o scene.pov

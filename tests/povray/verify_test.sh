@@ -256,9 +256,9 @@ test_shadows_on_the_ground_agree() {
         rm -r report
     done
     agrees rounded --look ./lights.ini --projection perspective --location 40,10,90 --look-at 0,-10,0 --antialias 2
-    corcast render tree.swc --look ./lights.ini --size 90x90 --view iso -o ground.ppm
+    corcast render --exact tree.swc --look ./lights.ini --size 90x90 --view iso -o ground.ppm
     sed -i '/ground/,$d' lights.ini
-    corcast render tree.swc --look ./lights.ini --size 90x90 --view iso -o none.ppm
+    corcast render --exact tree.swc --look ./lights.ini --size 90x90 --view iso -o none.ppm
     expect_differing 8100 8100 ground.ppm none.ppm
 }
 
@@ -309,9 +309,9 @@ test_soft_shadows_agree_but_for_the_shadow_cache() {
         and .settled.rules[0].measured > 0'
     [ "$(differing report/povray.png report/native.png 1)" -eq 0 ] ||
         fail "expected none to differ by more than a level"
-    corcast render tree.swc --model rounded --look ./lights.ini --shadows on --size 240x180 -o soft.ppm
+    corcast render --exact tree.swc --model rounded --look ./lights.ini --shadows on --size 240x180 -o soft.ppm
     sed -i '/^size/d' lights.ini
-    corcast render tree.swc --model rounded --look ./lights.ini --shadows on --size 240x180 -o hard.ppm
+    corcast render --exact tree.swc --model rounded --look ./lights.ini --shadows on --size 240x180 -o hard.ppm
     expect_differing 1100 1400 soft.ppm hard.ppm
 }
 
@@ -418,12 +418,13 @@ test_soft_shadows_fall_on_isosurfaces() {
     point_lights
     printf 'size = 0.8\nsamples = 4\n' >>lights.ini
     for hits in exact povray; do
-        run_ok corcast render tree.swc --model isosurface --hits $hits --look ./lights.ini --shadows on \
+        run_ok corcast render --exact tree.swc --model isosurface --hits $hits --look ./lights.ini --shadows on \
             --size 160x120 -o $hits.png
     done
     [ "$(differing exact.png povray.png 3)" -le 20 ] || fail "expected the same soft shadows on both"
     sed -i '/^size/d' lights.ini
-    run_ok corcast render tree.swc --model isosurface --look ./lights.ini --shadows on --size 160x120 -o hard.png
+    run_ok corcast render --exact tree.swc --model isosurface --look ./lights.ini --shadows on --size 160x120 \
+        -o hard.png
     [ "$(differing exact.png hard.png 3)" -gt 40 ] || fail "expected soft shadows to differ from hard ones"
 }
 

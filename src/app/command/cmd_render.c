@@ -14,6 +14,7 @@ typedef struct RenderOptions {
     const char *output, *planes, *json;
     int bits;
     unsigned hits;
+    bool exact, has_method;
     RenderMethod method;
     RenderKernels kernels;
     double threshold, memory_mb;
@@ -23,8 +24,11 @@ typedef struct RenderOptions {
 
 enum { HITS_EXACT, HITS_POVRAY };
 static const char *const hits_names[] = {"exact", "povray", NULL};
-static const char *const methods[] = {
-    [RENDER_TRACE] = "trace", [RENDER_RASTER] = "raster", [RENDER_ZBUFFER] = "zbuffer", NULL};
+static const char *const methods[] = {[RENDER_TRACE] = "trace",
+                                      [RENDER_RASTER] = "raster",
+                                      [RENDER_ZBUFFER] = "zbuffer",
+                                      [RENDER_FASTEST] = "fastest",
+                                      NULL};
 
 static const Option own[] = {
     {.name = "output",
@@ -40,11 +44,18 @@ static const Option own[] = {
      .range = &bits_range,
      .argument = "8|16",
      .help = "of a PNG or PPM"},
+    {.name = "exact",
+     SETS(FLAG, RenderOptions, exact),
+     .group = GROUP_RUN,
+     .help = "the picture that verify draws: POV-Ray's arithmetic, ray by ray, and one ray a pixel "
+             "unless --antialias says more"},
     {.name = "method",
      SETS(CHOICE, RenderOptions, method),
+     GIVEN(RenderOptions, has_method),
      .choices = methods,
      .group = GROUP_RUN,
-     .help = "all but isosurfaces: as POV-Ray does, fast, or as the paper does"},
+     .help = "cylinders, joined, rounded: as POV-Ray does, by tiles, as the paper does, or tiles "
+             "where they can"},
     {.name = "hits",
      SETS(CHOICE, RenderOptions, hits),
      .choices = hits_names,
@@ -95,7 +106,8 @@ static void set_defaults(void *options)
     RenderOptions *own_options = options;
     picture_set_defaults(&own_options->picture);
     own_options->bits = 8;
-    own_options->method = RENDER_TRACE;
+    own_options->picture.antialias = PICTURE_ANTIALIAS;
+    own_options->method = RENDER_FASTEST;
     own_options->kernels = KERNELS_FASTEST;
     own_options->memory_mb = 128;
 }
@@ -248,6 +260,16 @@ static Status draw_all(const Film *film, const FramesForm *form, RenderStats *st
     return status;
 }
 
+/* What follows from --exact and --method where nothing is said of it. */
+static void settle(RenderOptions *options)
+{
+    PictureOptions *picture = &options->picture;
+    if (options->exact && !options->has_method)
+        options->method = RENDER_TRACE;
+    if (!picture->has_antialias && (options->exact || options->method == RENDER_ZBUFFER))
+        picture->antialias = 1;
+}
+
 /* Only primitives are drawn but by rays. */
 static Status check_method(const RenderOptions *options, Err *err)
 {
@@ -276,7 +298,10 @@ static Status check(const RenderOptions *options, const Parsed *parsed, Err *err
     if (options->threshold > 0 && picture->antialias == 1)
         return err_set(err, STATUS_USAGE,
                        "--antialias-threshold needs --antialias N, with N from 2 to 9");
-    if (options->method != RENDER_TRACE)
+    if (options->exact && options->method != RENDER_TRACE)
+        return err_set(err, STATUS_USAGE, "--exact is --method trace, not --method %s",
+                       methods[options->method]);
+    if (options->has_method && options->method != RENDER_TRACE)
         TRY(check_method(options, err));
     if (options->method == RENDER_ZBUFFER &&
         (picture->stage.shadows || picture->antialias > 1 || picture->occlusion > 0))
@@ -374,8 +399,9 @@ done:
 
 static Status run_render(void *options, Parsed *parsed, Err *err)
 {
-    const RenderOptions *own_options = options;
+    RenderOptions *own_options = options;
     const PictureOptions *picture = &own_options->picture;
+    settle(own_options);
     FramesForm form;
     RenderParams params = {.threads = parsed->common.threads,
                            .antialias = picture->antialias,
@@ -396,7 +422,7 @@ const Command command_render = {
     .summary = "render a tree with the native renderer",
     .operands = "T.swc -o P.png",
     .examples = "  corcast render tree.swc -o tree.png\n"
-                "  corcast render tree.swc --model isosurface --antialias 3 -o tree.ppm\n"
+                "  corcast render tree.swc --model isosurface --shadows on -o tree.ppm\n"
                 "  corcast render tree.swc --planes depth,normal,id -o tree.png\n"
                 "  corcast render tree.swc --turn 120 -o turn%03d.png\n"
                 "  corcast render tree.swc --color-by pulse.csv --frames all -o f%04d.png\n",

@@ -437,6 +437,7 @@ static void set_defaults(void *options)
 {
     ViewOptions *own_options = options;
     picture_set_defaults(&own_options->picture);
+    own_options->picture.antialias = PICTURE_ANTIALIAS;
     own_options->recipe = "view.ini";
 }
 
@@ -464,7 +465,7 @@ const Command command_view = {
     .summary = "look at a tree in a window",
     .operands = "T.swc",
     .examples = "  corcast view tree.swc\n"
-                "  corcast view tree.swc --model isosurface --color-by pressure --antialias 3\n"
+                "  corcast view tree.swc --model isosurface --color-by pressure --shadows on\n"
                 "in the window:\n"
                 "  drag turns, drag with the right button or shift moves, the wheel zooms\n"
                 "  1 ... 6    cylinders, joined, rounded, isosurface, blob, mesh\n"

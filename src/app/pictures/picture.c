@@ -124,6 +124,7 @@ static const Option rows[] = {
      .help = "free part on each side when the tree is framed"},
     {.name = "antialias",
      SETS(WHOLE, PictureOptions, antialias),
+     GIVEN(PictureOptions, has_antialias),
      .range = &antialias_range,
      .group = GROUP_LIGHT,
      .help = "N x N samples a pixel"},

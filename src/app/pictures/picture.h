@@ -23,14 +23,16 @@ typedef struct PictureOptions {
     const char *look;
     Vec3 background; /* sRGB in [0, 1] */
     bool has_background;
-    bool has_height, has_angle, has_view, has_joints;
+    bool has_height, has_angle, has_view, has_joints, has_antialias;
     int erf;          /* choice: ErfForm */
     double cell_beta; /* as in CellParams */
     Coloring coloring;
 } PictureOptions;
 
-/* Of zeroed options. */
+/* Of zeroed options: for POV-Ray's pictures, of one ray a pixel. */
 void picture_set_defaults(PictureOptions *options);
+/* --antialias where nothing is said and pictures are not held against POV-Ray's. */
+enum { PICTURE_ANTIALIAS = 3 };
 /* How far triangles may be off the surface, over the local radius, where nothing else is said. */
 #define MESHING_TOLERANCE 0.02
 

@@ -147,6 +147,12 @@ static size_t chunks_for(const Geometry *geometry, size_t threads)
     return (chunks + threads - 1) / threads * threads;
 }
 
+bool rasterbins_take(const Geometry *geometry, int width, int height)
+{
+    const int most = UINT16_MAX * TILE_SIDE;
+    return rasterbins_items(geometry) <= MOST_ITEMS && width <= most && height <= most;
+}
+
 static Status make_bins(RasterBins *bins, int threads, Err *err)
 {
     size_t n = rasterbins_items(bins->geometry),

@@ -25,6 +25,8 @@ static inline size_t rasterbins_items(const Geometry *geometry)
     return geometry->n_primitives - geometry->n_ends;
 }
 
+/* Whether rasterbins_new takes a picture of this geometry and size. */
+bool rasterbins_take(const Geometry *geometry, int width, int height);
 /* Whether rasterbins_new uses one thread for this geometry, however many it may use. */
 bool rasterbins_are_small(const Geometry *geometry);
 

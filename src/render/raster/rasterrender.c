@@ -412,9 +412,18 @@ done:
     return status;
 }
 
+static bool is_asked(const Drawing *drawing)
+{
+    const Camera *camera = &drawing->view->camera;
+    RenderMethod method = drawing->params->method;
+    return method == RENDER_RASTER ||
+           (method == RENDER_FASTEST &&
+            rasterbins_take(drawing->geometry, camera->width, camera->height));
+}
+
 static bool can_draw(const Drawing *drawing)
 {
-    return drawing->geometry->n_primitives > 0 && drawing->params->method == RENDER_RASTER &&
+    return drawing->geometry->n_primitives > 0 && is_asked(drawing) &&
            !raycolor_is_needed(drawing->view, drawing->params);
 }
 
