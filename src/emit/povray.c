@@ -1,13 +1,16 @@
 /* Two files: the scene (camera, lights) and the geometry, one declaration of Tree
- * [docs/POVRAY.md]; or the one within the other. Both are made from their templates, of which the
+ * [docs/POVRAY.md]; or the one within the other; or, of a surface that is exported, the second
+ * alone. Both are made from their templates, of which the
  * long parts, the macros and members of the geometry, are written when the template comes to them.
  * What the geometry is made of chooses its row of `geometries`. */
+#include "emit/meshparts.h"
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/rows.h"
 #include "emit/values.h"
 
 #include <ctype.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Those of primitives, and those of joints. */
@@ -317,6 +320,48 @@ done:
     povray_objects_release(&geometry);
     return status;
 }
+
+/* ---- a surface ------------------------------------------------------------------------------- */
+
+/* The geometry of what is exported: borrowed but for its ids. */
+static Status take_surface(const EmitParams *params, Geometry *geometry, Err *err)
+{
+    const VesselTree *vessels = params->vessels;
+    *geometry = (Geometry){.model = SCENE_MESH,
+                           .segments = vessels->segments,
+                           .n_segments = vessels->n_segments,
+                           .mesh = *params->mesh,
+                           .drawn = vessels->n_segments,
+                           .bounds = mesh_box(params->mesh)};
+    for (size_t i = 0; i < vessels->n_segments; i++)
+        if (vessels->segments[i].segment >= geometry->n_ids)
+            geometry->n_ids = vessels->segments[i].segment + 1;
+    TRY(mem_calloc(&geometry->ids, geometry->n_ids, sizeof *geometry->ids, "ids", err));
+    for (size_t i = 0; i < vessels->n_segments; i++)
+        geometry->ids[vessels->segments[i].segment] = vessels->ids[i];
+    return STATUS_OK;
+}
+
+/* The second file of a scene of triangles, without the first. */
+Status povray_write_mesh(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                         Err *err)
+{
+    (void)second;
+    Scene scene = {.appearance = *params->appearance};
+    EmitParams all = *params;
+    PovrayGeometry geometry = {.params = &all, .scene = &scene, .report = report};
+    Status status;
+    all.scene = &scene;
+    TRY_GOTO(take_surface(params, &scene.geometry, err));
+    TRY_GOTO(povray_objects_find(&geometry, err));
+    TRY_GOTO(put_geometry(out, &geometry, err));
+done:
+    povray_objects_release(&geometry);
+    free(scene.geometry.ids);
+    return status;
+}
+
+/* ---- settings -------------------------------------------------------------------------------- */
 
 /* A name without '[' is no name of a section. */
 static Status check_settings_name(const char *name, Err *err)

@@ -183,6 +183,20 @@ test_obj_and_its_materials_are_both_written_or_neither() {
     expect_only m.mtl
 }
 
+# But for the box about it, which the scene has wider.
+test_the_inc_that_is_exported_is_that_of_a_scene() {
+    local options='--tolerance 0.1 --color-by flow --quiet'
+    run_ok corcast grow --terminals 9 --domain ball:41 --inlet 0,41,0 --inlet 0,-41,0 --seed 7 --quiet -o t.swc
+    # shellcheck disable=SC2086
+    run_ok corcast scene t.swc --model mesh $options -o mesh.pov
+    grep -vE '^//|^#declare Tree_M' mesh.inc >of-scene
+    # shellcheck disable=SC2086
+    run_ok corcast export t.swc $options -o mesh.inc
+    grep -vE '^//|^#declare Tree_M' mesh.inc >of-export
+    grep -q '^#declare Tree_2 = mesh2' of-export || fail "expected the second tree by its name"
+    expect_same of-scene of-export
+}
+
 test_glb_has_no_error_and_no_warning_of_the_validator() {
     local coloring
     grown

@@ -15,8 +15,9 @@
 
 typedef struct Meshing {
     const PictureTree *of;
-    Appearance appearance; /* with the orders: for an emitter with colours */
+    Appearance appearance; /* with orders and anatomy: for an emitter with colours */
     Field orders;
+    Anatomy anatomy;
     VesselTree vessels;
     VesselMesh mesh;
     MeshReport report;
@@ -47,6 +48,7 @@ static Status color_vessels(const MeshingOptions *options, bool quiet, Meshing *
     TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
     if (!quiet)
         coloring_say(&made->appearance);
+    TRY(stage_anatomy(tree.drawn, vec3(0, 0, 0), &made->anatomy, err));
     return derive_rule(tree.drawn, &(TreeMeta){0}, "strahler", &made->orders, err);
 }
 
@@ -200,6 +202,7 @@ Status meshing_write(const Emitter *emitter, const MeshingOptions *options, cons
                                .vessels = &made.vessels,
                                .appearance = &made.appearance,
                                .orders = made.orders.value,
+                               .anatomy = emitter->has_colors ? &made.anatomy : NULL,
                                .manifest = text_chars(&said),
                                .command = line};
     TRY_GOTO(scene_files_write(emitter, &params, of->path, output, false, NULL, err));
@@ -208,6 +211,7 @@ done:
     text_release(&said);
     appearance_release(&made.appearance);
     field_release(&made.orders);
+    anatomy_release(&made.anatomy);
     vesseltree_release(&made.vessels);
     vesselmesh_release(&made.mesh);
     meshreport_release(&made.report);
