@@ -4,6 +4,7 @@
 
 #include "base/clock.h"     // IWYU pragma: export
 #include "base/file.h"      // IWYU pragma: export
+#include "base/hash.h"      // IWYU pragma: export
 #include "base/ini.h"       // IWYU pragma: export
 #include "base/interrupt.h" // IWYU pragma: export
 #include "base/json.h"      // IWYU pragma: export

@@ -33,6 +33,9 @@ Status image_other_colors(const char *name, const char *where, Err *err);
 MUST_CHECK Status image_check_profile(const char *name, const uint8_t *profile, size_t size,
                                       Err *err);
 
+/* STATUS_INPUT naming the file: it is a picture that cannot be read row by row. */
+Status image_no_rows(const char *name, Err *err);
+
 /* Four bytes, the most significant first. */
 static inline uint32_t image_u32(const uint8_t *at)
 {
@@ -70,6 +73,20 @@ typedef struct RowEncoder {
 } RowEncoder;
 
 extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, pfm_encoder;
+
+/* How a format is read a few rows at a time, from a stream with places. */
+typedef struct RowDecoder {
+    bool (*is)(const ImageBytes *file); /* by the first bytes, all that may be there */
+    /* Reads what comes first into *form, whose notes last as long as *self, which is owned by the
+     * caller, who releases it, also on failure. STATUS_INPUT for what cannot be read so. */
+    Status (*begin)(FILE *stream, const char *name, ImageForm *form, void **self, Err *err);
+    /* The next `n` rows, codes of 8 or 16 bits as the form says. */
+    Status (*rows)(void *self, void *values, int n, Err *err);
+    Status (*end)(void *self, Err *err); /* reads what comes last */
+    void (*release)(void *self);         /* NULL is allowed */
+} RowDecoder;
+
+extern const RowDecoder png_rows_decoder, tiff_rows_decoder;
 
 /* How a format is read. */
 typedef struct ImageDecoder {

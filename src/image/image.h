@@ -127,10 +127,11 @@ MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *er
  * bits; it is unchanged then. */
 MUST_CHECK Status ids_take_picture(IdPlane *ids, Picture *picture, Err *err);
 
-/* Provenance written into a PNG as tEXt chunks, or iTXt chunks where it is not ASCII; the other
+/* Provenance written into a PNG as tEXt chunks, or iTXt chunks where it is not ASCII; a TIFF has
+ * Software, PageName for "Shard", and ImageDescription for the last of the others. The other
  * formats hold none. Never a date or a path. */
 typedef struct ImageNote {
-    const char *key;  /* "Software", "Description", "Comment"; at most 79 characters */
+    const char *key;  /* "Software", "Comment", "Colors", "Shard"; at most 79 characters */
     const char *text; /* UTF-8 */
 } ImageNote;
 
@@ -177,6 +178,24 @@ MUST_CHECK Status picture_to_png(const Picture *picture, Encoding encoding, cons
                                  Text *out, Err *err);
 /* Whether files of this name keep ImageNotes.dpi. */
 bool image_keeps_dpi(const char *path);
+
+/* A PNG or TIFF being read a few rows at a time, from the top down, so that a picture of any size
+ * takes the memory of its rows. */
+typedef struct ImageReader ImageReader;
+
+/* STATUS_INPUT, naming the file, when it is missing or no sound PNG or TIFF of the form that
+ * imagewriter_open writes: sRGB or linear codes of 8 or 16 bits in 1 or 3 channels, interleaved,
+ * not turned, a single page. Close with imagereader_close. */
+MUST_CHECK Status imagereader_open(ImageReader **out, const char *path, Err *err);
+/* What the file says of itself, its notes and resolution included; borrowed. Of a TIFF's notes,
+ * ImageDescription is "Comment". */
+const ImageForm *imagereader_form(const ImageReader *reader);
+/* The text of a note, NULL when there is none; borrowed. */
+const char *imagereader_note(const ImageReader *reader, const char *key);
+/* The next rows->height rows into a picture of the file's width, channels and bits; the last of
+ * them read all that there is of the file. STATUS_INPUT when it is broken. */
+MUST_CHECK Status imagereader_codes(ImageReader *reader, Picture *rows, Err *err);
+void imagereader_close(ImageReader *reader);
 
 /* What a file holds: integer codes, or linear floats. */
 typedef struct Image {

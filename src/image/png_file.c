@@ -4,10 +4,9 @@
  * is clobbered.
  *
  * What a header claims is bounded before allocation. */
-#include "image/formats.h"
+#include "image/png_complaint.h"
 
 #include <errno.h>
-#include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,20 +16,15 @@ static bool png_is(const ImageBytes *file)
     return file->size >= 8 && png_sig_cmp(file->bytes, 0, 8) == 0;
 }
 
-/* What libpng says, kept for the sentence. */
-typedef struct Complaint {
-    char text[200];
-} Complaint;
-
-static void on_error(png_structp png, png_const_charp message)
+void png_on_error(png_structp png, png_const_charp message)
 {
-    Complaint *complaint = png_get_error_ptr(png);
+    PngComplaint *complaint = png_get_error_ptr(png);
     snprintf(complaint->text, sizeof complaint->text, "%s", message);
     image_plain_text(complaint->text);
     longjmp(png_jmpbuf(png), 1);
 }
 
-static void on_warning(png_structp png, png_const_charp message)
+void png_on_warning(png_structp png, png_const_charp message)
 {
     (void)png;
     (void)message;
@@ -47,7 +41,7 @@ typedef struct Reader {
     png_bytep *rows; /* owned; into bytes */
     Picture picture; /* owned */
     double gamma;    /* of the picture */
-    Complaint complaint;
+    PngComplaint complaint;
     Err *err;
 } Reader;
 
@@ -220,7 +214,8 @@ static Status png_decode(const ImageBytes *file, Image *image, Err *err)
         return STATUS_OK;
     Reader self = {.file = *file, .err = err};
     errno = 0;
-    self.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &self.complaint, on_error, on_warning);
+    self.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &self.complaint, png_on_error,
+                                      png_on_warning);
     self.info = self.png ? png_create_info_struct(self.png) : NULL;
     Status status = self.info ? read_guarded(&self)
                               : err_set(err, STATUS_MEMORY, "out of memory: no room to read a PNG");
@@ -245,7 +240,7 @@ typedef struct Writer {
     png_infop info;
     uint8_t *row;     /* owned; of 16-bit codes */
     png_text *chunks; /* owned */
-    Complaint complaint;
+    PngComplaint complaint;
 } Writer;
 
 static bool is_ascii(const char *text)
@@ -363,8 +358,8 @@ static Status begin(FILE *stream, const ImageForm *form, void **self, Err *err)
                        "bytes of a row", err));
     TRY(mem_calloc(&writer->chunks, form->notes ? (size_t)form->notes->count : 0,
                    sizeof *writer->chunks, "PNG texts", err));
-    writer->png =
-        png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer->complaint, on_error, on_warning);
+    writer->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer->complaint, png_on_error,
+                                          png_on_warning);
     writer->info = writer->png ? png_create_info_struct(writer->png) : NULL;
     return writer->info ? begin_guarded(writer, err)
                         : err_set(err, STATUS_MEMORY, "out of memory: no room to write a PNG");

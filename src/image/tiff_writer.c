@@ -36,6 +36,14 @@ static Status guarded(TiffWork *work, Writer *self, Err *err)
     return tiff_guard(work, self, &self->tiff, "that is written", err);
 }
 
+/* The field that a note is kept in. */
+static uint32_t field_of(const char *key)
+{
+    if (strcmp(key, "Software") == 0)
+        return TIFFTAG_SOFTWARE;
+    return strcmp(key, "Shard") == 0 ? TIFFTAG_PAGENAME : TIFFTAG_IMAGEDESCRIPTION;
+}
+
 static bool set_fields(TIFF *handle, const ImageForm *form, int rows_per_strip)
 {
     bool set = TIFFSetField(handle, TIFFTAG_IMAGEWIDTH, (uint32_t)form->width) &&
@@ -56,9 +64,7 @@ static bool set_fields(TIFF *handle, const ImageForm *form, int rows_per_strip)
               TIFFSetField(handle, TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
     for (int i = 0; form->notes && set && i < form->notes->count; i++) {
         const ImageNote *note = &form->notes->notes[i];
-        bool software = strcmp(note->key, "Software") == 0;
-        set = TIFFSetField(handle, software ? TIFFTAG_SOFTWARE : TIFFTAG_IMAGEDESCRIPTION,
-                           note->text);
+        set = TIFFSetField(handle, field_of(note->key), note->text);
     }
     return set;
 }

@@ -50,6 +50,28 @@ void tree_release(Tree *tree)
     *tree = (Tree){0};
 }
 
+void tree_hash(const Tree *tree, Hash *hash)
+{
+    const TreeMeta *meta = &tree->meta;
+    size_t n = tree->n;
+    hash_add(hash, &n, sizeof n);
+    hash_add(hash, tree->id, n * sizeof *tree->id);
+    hash_add(hash, tree->type, n * sizeof *tree->type);
+    hash_add(hash, tree->parent, n * sizeof *tree->parent);
+    hash_add(hash, tree->position, n * sizeof *tree->position);
+    hash_add(hash, tree->radius_mm, n * sizeof *tree->radius_mm);
+    hash_add(hash, tree->flow_share, tree->flow_share ? n * sizeof *tree->flow_share : 0);
+    for (size_t k = 0; k < tree->n_columns; k++) {
+        hash_add_text(hash, tree->column[k].name);
+        hash_add_text(hash, tree->column[k].unit);
+        hash_add(hash, tree->column[k].value, n * sizeof *tree->column[k].value);
+    }
+    hash_add(hash, meta->known, sizeof meta->known);
+    for (MetaKey key = 0; key < META_KEYS; key++)
+        if (meta->known[key])
+            hash_add(hash, &meta->number[key], sizeof meta->number[key]);
+}
+
 double tree_segment_length(const Tree *tree, size_t i)
 {
     if (!tree_is_segment(tree, i))

@@ -102,6 +102,9 @@ MUST_CHECK Status tree_grown(const Tree *tree, double part, Tree *out, Err *err)
 /* Gives the nodes the ids 1 to n in array order. */
 void tree_renumber(Tree *tree);
 
+/* Adds all of the tree, but the texts that are known of it, to what `hash` stands for. */
+void tree_hash(const Tree *tree, Hash *hash);
+
 /* The box of all nodes and of all segments with their radii, a segment rounded at its ends. */
 Box tree_bounds(const Tree *tree);
 

@@ -4,6 +4,7 @@
 #include "app/pictures/animation.h"
 #include "app/pictures/frames.h"
 #include "app/pictures/picture.h"
+#include "app/pictures/shard.h"
 #include "app/run/output.h"
 #include "app/run/progress.h"
 #include "render/render.h"
@@ -19,6 +20,7 @@ typedef struct RenderOptions {
     RenderKernels kernels;
     double threshold, memory_mb;
     AnimationOptions animation;
+    ShardOptions shard;
     PictureOptions picture;
 } RenderOptions;
 
@@ -167,14 +169,25 @@ static int band_rows(const FramesForm *form, double memory_mb)
                                        : (int)rows / RENDER_BAND_STEP * RENDER_BAND_STEP;
 }
 
-/* Draws band after band and writes each before the next. */
-static Status draw_bands(Renderer *renderer, const Scene *scene, FramesWriter *writer, int step,
-                         Err *err)
+/* What is drawn, and how. */
+typedef struct Film {
+    AnimationSubject subject;
+    const Animation *animation;
+    const RenderParams *params;
+    const Parsed *parsed;
+    bool resume, part; /* what is there is kept; a note says what the picture is */
+    Shard shard;       /* of each picture; its hash is still to be made */
+    int step;          /* rows of a band */
+} Film;
+
+/* Draws the shard's rows band after band and writes each before the next. */
+static Status draw_bands(Renderer *renderer, const Scene *scene, FramesWriter *writer,
+                         const Film *film, Err *err)
 {
-    int height = scene->view.camera.height;
-    for (int first = 0; first < height; first += step) {
+    const int end = film->shard.first + film->shard.rows;
+    for (int first = film->shard.first; first < end; first += film->step) {
         Frame band;
-        int rows = step < height - first ? step : height - first;
+        int rows = film->step < end - first ? film->step : end - first;
         TRY(renderer_rows(renderer, &scene->view, &scene->appearance, first, rows, &band, err));
         Status status = frames_rows(writer, &band, err);
         frame_release(&band);
@@ -184,25 +197,17 @@ static Status draw_bands(Renderer *renderer, const Scene *scene, FramesWriter *w
 }
 
 /* One picture, by a renderer that is there or its own. */
-static Status draw(Renderer *renderer, const Scene *scene, const FramesForm *form, int step,
+static Status draw(Renderer *renderer, const Scene *scene, const FramesForm *form, const Film *film,
                    Err *err)
 {
     FramesWriter *writer = NULL;
     TRY(frames_open(&writer, form, err));
-    Status status = draw_bands(renderer, scene, writer, step, err);
+    Status status = draw_bands(renderer, scene, writer, film, err);
     if (status == STATUS_OK)
         return frames_commit(writer, err);
     frames_discard(writer);
     return status;
 }
-
-/* What is drawn, and how. */
-typedef struct Film {
-    AnimationSubject subject;
-    const Animation *animation;
-    const RenderParams *params;
-    int step; /* rows of a band */
-} Film;
 
 static void add_stats(RenderStats *all, const RenderStats *one)
 {
@@ -213,21 +218,46 @@ static void add_stats(RenderStats *all, const RenderStats *one)
     all->engine = one->engine;
 }
 
-/* The tree as it grows has a geometry, and with it a renderer, for each picture. */
-static Status draw_frame(const Film *film, int number, const FramesForm *form, Renderer *prepared,
+/* The note of picture `number`, which the form then has, and whether the file has it already. */
+static Status find_shard(const Film *film, FramesForm *form, int number, Text *note, bool *there,
+                         Err *err)
+{
+    Shard shard = film->shard;
+    const Tree *tree = &film->subject.source->of.tree;
+    TRY(shard_hash(&shard, film->parsed, form->provenance, tree, number, err));
+    shard_put(&shard, note);
+    TRY(text_check(note, err));
+    form->shard = text_chars(note);
+    if (film->resume)
+        TRY(shard_is_there(form->path, &shard, there, err));
+    if (*there && !film->subject.common->quiet)
+        fprintf(stderr, "%s is there\n", form->path);
+    return STATUS_OK;
+}
+
+/* The tree as it grows has a geometry, and with it a renderer, for each picture; else the first
+ * picture that is drawn makes *prepared for all. */
+static Status draw_frame(const Film *film, int number, const FramesForm *form, Renderer **prepared,
                          RenderStats *stats, Err *err)
 {
     Scene shown, grown = {0};
     Renderer *young = NULL;
+    Renderer **renderer = film->animation->kind == ANIMATION_GROWTH ? &young : prepared;
     FramesForm named = *form;
+    Text note = TEXT_INIT;
+    bool there = false;
     char *path = NULL;
     Status status;
     TRY_GOTO(animation_path(film->animation, form->path, number, &path, err));
     named.path = path;
+    if (film->part)
+        TRY_GOTO(find_shard(film, &named, number, &note, &there, err));
+    if (there)
+        goto done;
     TRY_GOTO(animation_scene(film->animation, &film->subject, number, &shown, &grown, err));
-    if (!prepared)
-        TRY_GOTO(renderer_new(&shown.geometry, film->params, &young, err));
-    TRY_GOTO(draw(prepared ? prepared : young, &shown, &named, film->step, err));
+    if (!*renderer)
+        TRY_GOTO(renderer_new(&shown.geometry, film->params, renderer, err));
+    TRY_GOTO(draw(*renderer, &shown, &named, film, err));
     if (young) {
         const RenderStats one = renderer_stats(young);
         add_stats(stats, &one);
@@ -235,6 +265,7 @@ static Status draw_frame(const Film *film, int number, const FramesForm *form, R
 done:
     renderer_free(young);
     scene_release(&grown);
+    text_release(&note);
     free(path);
     return status;
 }
@@ -245,13 +276,11 @@ static Status draw_all(const Film *film, const FramesForm *form, RenderStats *st
     Progress *progress = film->params->progress_context;
     Renderer *prepared = NULL;
     Status status = STATUS_OK;
-    if (animation->kind != ANIMATION_GROWTH)
-        TRY(renderer_new(&film->subject.whole->geometry, film->params, &prepared, err));
     for (int k = animation->first; k <= animation->last && status == STATUS_OK; k++) {
         char what[48];
         snprintf(what, sizeof what, "rendering %d of %d", k, animation->last);
         progress_start(progress, animation->kind ? what : "rendering", film->subject.common->quiet);
-        status = draw_frame(film, k, form, prepared, stats, err);
+        status = draw_frame(film, k, form, &prepared, stats, err);
         progress_end(progress);
     }
     if (prepared)
@@ -350,6 +379,18 @@ static Status note_files(const Animation *animation, const FramesForm *form, Fil
     return STATUS_OK;
 }
 
+/* Of an animation the one picture that --only asks for. */
+static Status pick_only(int only, Animation *animation, Err *err)
+{
+    if (only == 0)
+        return STATUS_OK;
+    if (only < animation->first || only > animation->last)
+        return err_set(err, STATUS_USAGE, "--only: %d is not a picture from %d to %d", only,
+                       animation->first, animation->last);
+    animation->first = animation->last = only;
+    return STATUS_OK;
+}
+
 /* The scene, and what of it follows from the animation. */
 static Status make_scene(const RenderOptions *options, Parsed *parsed, const PictureSource *source,
                          Scene *scene, StageReport *staged, Animation *animation, Err *err)
@@ -357,13 +398,14 @@ static Status make_scene(const RenderOptions *options, Parsed *parsed, const Pic
     const PictureOptions *picture = &options->picture;
     TRY(picture_scene_of(picture, source, parsed, scene, NULL, staged, err));
     TRY(animation_count(animation, &scene->appearance, err));
+    TRY(pick_only(options->shard.only, animation, err));
     if (animation->kind == ANIMATION_TURN)
         TRY(animation_frame_turn(picture, source, scene, err));
     return STATUS_OK;
 }
 
 static Status draw_pictures(const RenderOptions *options, Parsed *parsed, RenderParams *params,
-                            FramesForm *form, Animation *animation, Err *err)
+                            FramesForm *form, Animation *animation, const Shard *shard, Err *err)
 {
     const CellParams cells = picture_cells(&options->picture);
     PictureSource source = {0};
@@ -379,11 +421,22 @@ static Status draw_pictures(const RenderOptions *options, Parsed *parsed, Render
     const Film film = {.subject = {&options->picture, &parsed->common, &source, &scene},
                        .animation = animation,
                        .params = params,
+                       .parsed = parsed,
+                       .resume = options->shard.resume,
+                       .part = options->shard.resume || options->shard.tile,
+                       .shard = *shard,
                        .step = band_rows(form, options->memory_mb)};
     TRY_GOTO(picture_fits(form->width, film.step, 40, err));
     TRY_GOTO(picture_read_source(&options->picture, parsed, &source, err));
     TRY_GOTO(make_scene(options, parsed, &source, &scene, &staged, animation, err));
     TRY_GOTO(note_files(animation, form, &parsed->files, err));
+    if (options->shard.commands) {
+        const int tiles = options->shard.tiles;
+        status =
+            shard_print_commands(&options->shard, parsed, form->path, tiles ? 1 : animation->first,
+                                 tiles ? tiles : animation->last, err);
+        goto done;
+    }
     TRY_GOTO(command_line_text(parsed, &line, err));
     form->provenance = line;
     form->colors = scene.appearance.said;
@@ -395,6 +448,19 @@ done:
     scene_release(&scene);
     picture_source_release(&source);
     return status;
+}
+
+/* The part that is drawn, whose rows are those of the file. */
+static Status settle_shard(const ShardOptions *options, bool animated, const Parsed *parsed,
+                           FramesForm *form, Shard *shard, Err *err)
+{
+    const RenderKernels kernels = ((const RenderOptions *)parsed->options)->kernels;
+    TRY(shard_check(options, animated, form, parsed, err));
+    TRY(shard_of_tile(options->tile, form->height, shard, err));
+    snprintf(shard->kernels, sizeof shard->kernels, "%s",
+             render_kernel_names[kernels ? kernels : render_fastest_kernels()]);
+    form->height = shard->rows;
+    return STATUS_OK;
 }
 
 static Status run_render(void *options, Parsed *parsed, Err *err)
@@ -411,10 +477,13 @@ static Status run_render(void *options, Parsed *parsed, Err *err)
                            .method = own_options->method,
                            .kernels = own_options->kernels};
     Animation animation;
+    Shard shard;
     TRY(check(own_options, parsed, err));
     TRY(plan_files(own_options, &params, &form, err));
     TRY(animation_read(&own_options->animation, own_options->output, &animation, err));
-    return draw_pictures(own_options, parsed, &params, &form, &animation, err);
+    TRY(settle_shard(&own_options->shard, animation.kind != ANIMATION_NONE, parsed, &form, &shard,
+                     err));
+    return draw_pictures(own_options, parsed, &params, &form, &animation, &shard, err);
 }
 
 const Command command_render = {
@@ -432,6 +501,8 @@ const Command command_render = {
     .reads_tree = true,
     .size = sizeof(RenderOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0}, PICTURE_TABLES(RenderOptions, picture)},
+    .tables = {{&own_table, 0},
+               {&shard_table, offsetof(RenderOptions, shard)},
+               PICTURE_TABLES(RenderOptions, picture)},
     .run = run_render,
 };

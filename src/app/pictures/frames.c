@@ -52,9 +52,12 @@ static bool is_linear(const FramesForm *form)
 static Status open_picture(FramesWriter *writer, Err *err)
 {
     const FramesForm *form = writer->form;
-    const ImageNote notes[] = {
-        {"Software", GENERATOR}, {"Comment", form->provenance}, {"Colors", form->colors}};
-    const ImageNotes all = {.notes = notes, .count = form->colors ? 3 : 2, .dpi = form->dpi};
+    ImageNote notes[4] = {{"Software", GENERATOR}, {"Comment", form->provenance}};
+    ImageNotes all = {.notes = notes, .count = 2, .dpi = form->dpi};
+    if (form->colors)
+        notes[all.count++] = (ImageNote){"Colors", form->colors};
+    if (form->shard)
+        notes[all.count++] = (ImageNote){"Shard", form->shard};
     const ImageForm image = {.width = form->width,
                              .height = form->height,
                              .channels = 3,

@@ -25,6 +25,7 @@ typedef struct FramesForm {
     bool picture, color, depth, normal, id;
     const char *provenance; /* the command line; of the picture */
     const char *colors;     /* what they mean; of the picture; NULL: nothing */
+    const char *shard;      /* the note that says what part of what it is; NULL: none */
 } FramesForm;
 
 /* Takes note of the planes that are to be written, of the picture's name or not. */

@@ -76,6 +76,7 @@ typedef enum OptionGroup {
     GROUP_LIGHT,
     GROUP_COLOR,
     GROUP_ANIMATION,
+    GROUP_PARTS,
     GROUP_POVRAY,
     GROUP_JUDGE,
     GROUP_RUN,
@@ -173,7 +174,7 @@ typedef struct OptionTable {
 
 typedef struct Parsed Parsed;
 
-enum { MAX_OPERANDS = 512, MAX_TABLES = 4 };
+enum { MAX_OPERANDS = 512, MAX_TABLES = 5 };
 
 typedef struct Command {
     const char *name;

@@ -4,9 +4,11 @@
 #include "app/run/output.h"
 #include "treeio/treeio.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 bool is_one_of(const char *word, const char *const *words)
 {
@@ -55,15 +57,25 @@ static void put_shown_value(const Setting *setting, size_t at, Text *text)
     text_release(&value);
 }
 
+static void put_whole_value(const Setting *setting, size_t at, Text *text)
+{
+    Text value = TEXT_INIT;
+    setting_put(setting, at, &value);
+    text_put_shell_word(text, text_chars(&value));
+    text_release(&value);
+}
+
+typedef void PutValue(const Setting *setting, size_t at, Text *text);
+
 /* Appends the option as often as it has to be given. */
-static void put_shown(const Setting *setting, Text *text)
+static void put_setting(const Setting *setting, PutValue *put_value, Text *text)
 {
     for (size_t at = 0; at < setting_count(setting); at++) {
         text_printf(text, " --%s", setting->option->name);
         if (setting->option->kind == OPTION_FLAG)
             continue;
         text_puts(text, " ");
-        put_shown_value(setting, at, text);
+        put_value(setting, at, text);
     }
 }
 
@@ -113,12 +125,50 @@ Status command_line_text(const Parsed *parsed, char **out, Err *err)
     }
     for (size_t i = 0; i < parsed->n_settings; i++)
         if (tells(&parsed->settings[i], &plain.settings[i], &text))
-            put_shown(&parsed->settings[i], &text);
+            put_setting(&parsed->settings[i], put_shown_value, &text);
     const Setting *output = parsed_find(parsed, "output", strlen("output"));
     if (output)
         put_output(output, &text);
     parsed_release(&plain);
     return take_line(&text, out, err);
+}
+
+/* `cd` to the working folder, and the program by its own path. */
+static Status put_program(Text *text, Err *err)
+{
+    char program[4096];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    char *here = getcwd(NULL, 0);
+    if (!here)
+        return err_set(err, STATUS_IO, "the working folder has no name: %s", strerror(errno));
+    text_puts(text, "cd ");
+    text_put_shell_word(text, here);
+    free(here);
+    program[length > 0 ? length : 0] = '\0';
+    text_puts(text, " && ");
+    text_put_shell_word(text, length > 0 ? program : "corcast");
+    return STATUS_OK;
+}
+
+Status command_again(const Parsed *parsed, const char *const *without, Text *text, Err *err)
+{
+    Parsed plain;
+    TRY(put_program(text, err));
+    TRY(parsed_init(&plain, parsed->command, err));
+    text_printf(text, " %s", parsed->command->name);
+    for (int i = 0; i < parsed->n_operands; i++) {
+        text_puts(text, " ");
+        put_shell_operand(text, parsed->operands[i]);
+    }
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        const char *name = setting->option->name;
+        if (strcmp(name, "output") != 0 && strcmp(name, "recipe") != 0 &&
+            !is_one_of(name, without) && setting_differs(setting, &plain.settings[i], text))
+            put_setting(setting, put_whole_value, text);
+    }
+    parsed_release(&plain);
+    return text_check(text, err);
 }
 
 Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err)

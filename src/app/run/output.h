@@ -24,6 +24,13 @@ MUST_CHECK Status shown_name(const char *path, char **out, Err *err);
  * depend on, and of each path the last component alone, so that no folder of the user's is told. */
 MUST_CHECK Status command_line_text(const Parsed *parsed, char **out, Err *err);
 
+/* Appends `cd HERE && /PATH/corcast COMMAND`, the operands and each option that differs from its
+ * default but the output and those named in `without`, which ends in NULL, all quoted for a shell:
+ * the same run from any folder, to which more options may be appended. STATUS_IO when the working
+ * folder has no name. */
+MUST_CHECK Status command_again(const Parsed *parsed, const char *const *without, Text *text,
+                                Err *err);
+
 /* Adds the command line to those that a tree's file says. */
 MUST_CHECK Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err);
 

@@ -1,0 +1,59 @@
+/* Parts of a picture in files of their own, tiles of whole rows, and what such a file says of
+ * itself: which part of what it is, and a hash of all that it was made from. */
+#ifndef CORCAST_APP_SHARD_H
+#define CORCAST_APP_SHARD_H
+
+#include "app/pictures/frames.h"
+#include "app/run/options.h"
+#include "base/base.h"
+#include "image/image.h"
+#include "tree/tree.h"
+
+typedef struct ShardOptions {
+    const char *tile; /* "I/N"; NULL: the whole picture */
+    int tiles;        /* commands for so many; 0: none */
+    int only;         /* this picture of an animation; 0: all */
+    bool commands;    /* are printed, and nothing is drawn */
+    bool resume;      /* what is there and right is not drawn again */
+} ShardOptions;
+
+extern const OptionTable shard_table; /* sets a ShardOptions */
+
+/* The rows first .. first + rows of a picture of so many. A whole picture is tile 1 of 1. */
+typedef struct Shard {
+    int number, count;
+    int first, rows, height;
+    char kernels[16]; /* the instructions that it was drawn with */
+    HashText made_from;
+} Shard;
+
+/* STATUS_USAGE for options that fight each other, and for parts in a file that holds no notes;
+ * `animated`: there are several pictures. */
+MUST_CHECK Status shard_check(const ShardOptions *options, bool animated, const FramesForm *form,
+                              const Parsed *parsed, Err *err);
+
+/* The part that --tile asks for of a picture of `height` rows, without hash. All tiles together are
+ * the picture, and each is at least RENDER_BAND_STEP rows, or all there are. STATUS_USAGE, naming
+ * what is allowed, when there is no such tile. */
+MUST_CHECK Status shard_of_tile(const char *tile, int height, Shard *shard, Err *err);
+
+/* Hashes what picture `number` is made from into the shard: program, command line, instructions,
+ * the tree as it was read, and the files that options name. STATUS_INPUT when one cannot be read.
+ */
+MUST_CHECK Status shard_hash(Shard *shard, const Parsed *parsed, const char *line, const Tree *tree,
+                             int number, Err *err);
+
+/* Appends the note of a file, "Shard". */
+void shard_put(const Shard *shard, Text *text);
+/* Reads such a note; false when it is none. */
+bool shard_parse(const char *note, Shard *shard);
+
+/* Whether the file `path` holds this shard, sound to its last row. STATUS_MEMORY. */
+MUST_CHECK Status shard_is_there(const char *path, const Shard *shard, bool *there, Err *err);
+
+/* Prints a command a line on standard output for all tiles, or for the pictures first .. last of an
+ * animation. */
+MUST_CHECK Status shard_print_commands(const ShardOptions *options, const Parsed *parsed,
+                                       const char *output, int first, int last, Err *err);
+
+#endif

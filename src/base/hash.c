@@ -1,0 +1,28 @@
+/* libmd comes with every Debian system: dpkg itself checks packages by it. */
+#include "base/hash.h"
+
+#include <string.h>
+
+void hash_begin(Hash *hash)
+{
+    SHA256Init(&hash->state);
+}
+
+void hash_add(Hash *hash, const void *bytes, size_t size)
+{
+    if (size > 0)
+        SHA256Update(&hash->state, bytes, size);
+}
+
+void hash_add_text(Hash *hash, const char *text)
+{
+    const char *all = text ? text : "";
+    hash_add(hash, all, strlen(all) + 1);
+}
+
+HashText hash_text(Hash *hash)
+{
+    HashText text;
+    SHA256End(&hash->state, text.chars);
+    return text;
+}
