@@ -47,23 +47,29 @@ static Status put_triangles(Text *out, void *context, Err *err)
     return text_check(out, err);
 }
 
-static Status put_model(const EmitParams *params, Text *out, Err *err)
+static Status put_model(Text *out, void *context, Err *err)
 {
+    const EmitParams *params = context;
     Values values = {0};
-    EmitParams context = *params;
     text_escaped(add_value(&values, "generator"), params->generator);
     text_escaped(add_value(&values, "description"), params->description);
     text_escaped(add_value(&values, "command"), params->command);
-    add_part(&values, "colors", put_colors, &context);
-    add_part(&values, "vertices", put_vertices, &context);
-    add_part(&values, "triangles", put_triangles, &context);
+    add_part(&values, "colors", put_colors, context);
+    add_part(&values, "vertices", put_vertices, context);
+    add_part(&values, "triangles", put_triangles, context);
     return values_expand(&values, params, "3mf/model.xml", out, err);
 }
 
-static Status put_constant(const EmitParams *params, const char *name, Text *out, Err *err)
+static Status put_types(Text *out, void *context, Err *err)
 {
     Values none = {0};
-    return values_expand(&none, params, name, out, err);
+    return values_expand(&none, context, "3mf/content_types.xml", out, err);
+}
+
+static Status put_relations(Text *out, void *context, Err *err)
+{
+    Values none = {0};
+    return values_expand(&none, context, "3mf/rels.xml", out, err);
 }
 
 Status threemf_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
@@ -71,18 +77,10 @@ Status threemf_write(const EmitParams *params, Text *out, Text *second, EmitRepo
 {
     (void)second;
     (void)report;
-    Text types = TEXT_INIT, relations = TEXT_INIT, model = TEXT_INIT;
-    const ZipEntry entries[] = {
-        {"[Content_Types].xml", &types}, {"_rels/.rels", &relations}, {"3D/3dmodel.model", &model}};
-    Status status;
-    TRY_GOTO(put_constant(params, "3mf/content_types.xml", &types, err));
-    TRY_GOTO(put_constant(params, "3mf/rels.xml", &relations, err));
-    TRY_GOTO(put_model(params, &model, err));
-    TRY_GOTO(zip_put(entries, sizeof entries / sizeof *entries, out, err));
-    TRY_GOTO(text_check(out, err));
-done:
-    text_release(&types);
-    text_release(&relations);
-    text_release(&model);
-    return status;
+    EmitParams context = *params;
+    const ZipEntry entries[] = {{"[Content_Types].xml", put_types, &context},
+                                {"_rels/.rels", put_relations, &context},
+                                {"3D/3dmodel.model", put_model, &context}};
+    TRY(zip_put(entries, sizeof entries / sizeof *entries, out, err));
+    return text_check(out, err);
 }

@@ -6,13 +6,16 @@
 
 typedef struct ZipEntry {
     const char *name;
-    const Text *text; /* borrowed; one that failed makes the archive fail */
+    /* Appends what it holds, handed `context`. */
+    Status (*put)(Text *out, void *context, Err *err);
+    void *context;
 } ZipEntry;
 
 enum { ZIP_MOST_ENTRIES = 8 };
 
-/* Appends an archive of them, deflated, dated 1 January 1980 so that the same entries give the same
- * bytes. STATUS_INFEASIBLE when an entry has 4 GB, STATUS_MEMORY. */
+/* Appends an archive of them, deflated as they are made, dated 1 January 1980 so that the same
+ * entries give the same bytes. STATUS_INFEASIBLE when there are 4 GB, STATUS_MEMORY, and what the
+ * entries return. */
 MUST_CHECK Status zip_put(const ZipEntry *entries, size_t n, Text *out, Err *err);
 
 #endif
