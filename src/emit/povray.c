@@ -284,6 +284,19 @@ static void add_camera(Values *values, const Camera *camera)
     put_vector(add_value(values, "direction"), camera->direction);
 }
 
+/* What render adds to the picture and POV-Ray does not, as a line of the header. */
+static void put_effects(Text *text, const Effects *effects)
+{
+    Text names = TEXT_INIT;
+    effects_list(effects, &names);
+    if (names.length || names.failed) {
+        text_puts(text, "// Not in this scene, but in what corcast render draws: ");
+        text_add(text, &names);
+        text_puts(text, "\n");
+    }
+    text_release(&names);
+}
+
 static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
 {
     Values values = {0};
@@ -295,6 +308,7 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     text_put_line(add_value(&values, "geometry_file"),
                   params->second_file ? params->second_file : "the last part of this file");
     add_about(&values, params, scene->geometry.bounds, scene->geometry.origin);
+    put_effects(add_value(&values, "effects"), &scene->view.effects);
     add_camera(&values, &scene->view.camera);
     add_flag(&values, "shadows", params->shadows);
     add_float(&values, "background_red", scene->view.background.r);

@@ -4,16 +4,21 @@
  * nothing but colours.
  *
  * The first engine of the table that can draws: the special ones first, rays, which can draw
- * anything, last. */
+ * anything, last.
+ *
+ * A picture with effects is drawn as one of N x N times the pixels, N being its antialiasing, part
+ * of the band by part; effects are drawn on those samples, whose means are its pixels. */
 #include "render/render.h"
 
 #include "render/cast/caster.h"
+#include "render/effect/effect.h"
 #include "render/field/fieldrender.h"
 #include "render/light/rayrender.h"
 #include "render/raster/rasterrender.h"
 #include "render/raster/zbuffer.h"
 #include "render/tile/tilekernels.h"
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,6 +30,7 @@ struct Renderer {
     RenderParams params; /* with the number of threads */
     Caster *caster;      /* of the geometry; NULL until a view needs it */
     TermMean *mean;      /* likewise; NULL until an appearance needs it */
+    RadiusTable radii;   /* likewise; empty until effects need it */
     RenderStats stats;
     /* What is kept while engine, camera, lights and antialiasing are these. */
     const Engine *engine; /* NULL: nothing is */
@@ -171,14 +177,16 @@ void renderer_free(Renderer *renderer)
     forget_view(renderer);
     caster_free(renderer->caster);
     termmean_free(renderer->mean);
+    radiustable_release(&renderer->radii);
     free(renderer);
 }
 
-static bool is_prepared(const Renderer *renderer, const Engine *engine, const View *view)
+static bool is_prepared(const Renderer *renderer, const Engine *engine, const Drawing *drawing)
 {
+    const View *view = drawing->view;
     size_t size = view->n_lights * sizeof *view->lights;
     return renderer->engine == engine && renderer->n_lights == view->n_lights &&
-           renderer->antialias == renderer->params.antialias &&
+           renderer->antialias == drawing->params->antialias &&
            memcmp(&renderer->camera, &view->camera, sizeof view->camera) == 0 &&
            memcmp(renderer->lights, view->lights, size) == 0;
 }
@@ -189,7 +197,7 @@ static Status prepare_view(Renderer *renderer, const Drawing *drawing, Err *err)
     const View *view = drawing->view;
     const Engine *engine = engine_for(drawing);
     double start_s = clock_seconds();
-    if (is_prepared(renderer, engine, view))
+    if (is_prepared(renderer, engine, drawing))
         return STATUS_OK;
     forget_view(renderer);
     if (engine->prepare)
@@ -199,7 +207,7 @@ static Status prepare_view(Renderer *renderer, const Drawing *drawing, Err *err)
     memcpy(&renderer->camera, &view->camera, sizeof view->camera);
     memcpy(renderer->lights, view->lights, view->n_lights * sizeof *view->lights);
     renderer->n_lights = view->n_lights;
-    renderer->antialias = renderer->params.antialias;
+    renderer->antialias = drawing->params->antialias;
     renderer->stats.preparations++;
     renderer->stats.prepare_s += clock_seconds() - start_s;
     return STATUS_OK;
@@ -224,15 +232,104 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
     TRY(make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
     TRY(renderer->engine->rows(drawing, renderer->prepared, frame, err));
     renderer->stats.trace_s += clock_seconds() - start_s;
+    renderer->stats.rays += (size_t)drawing->view->camera.width * (size_t)drawing->band.rows;
     return STATUS_OK;
 }
 
+/* ---- pictures with effects --------------------------------------------------------------------
+ */
+
+/* About so many samples are drawn at a time, of some fifty bytes each. */
+static const double samples_at_once = 2e6;
+
+static int rounded_up(int rows)
+{
+    return (rows + RENDER_BAND_STEP - 1) / RENDER_BAND_STEP * RENDER_BAND_STEP;
+}
+
+/* The rows of samples of the pixels' rows first .. first + rows, with those that decide them. */
+static Band band_of_samples(const View *fine, int side, int first, int rows)
+{
+    int margin = rounded_up(effects_reach(&fine->effects, side));
+    Band band = {.first = first * side, .rows = rows * side};
+    int left = fine->camera.height - band.first - band.rows;
+    band.above = margin < band.first ? margin : band.first;
+    band.below = margin < left ? margin : left;
+    band.first -= band.above;
+    band.rows += band.above + band.below;
+    return band;
+}
+
+/* Draws rows of pixels, counted in the picture, into the rows of `color` from `row` on. */
+static Status draw_samples(Renderer *renderer, const Drawing *fine, int first, int rows,
+                           Plane *color, int row, Err *err)
+{
+    const View *view = fine->view;
+    Frame frame = {0};
+    Drawing drawing = *fine;
+    drawing.band = band_of_samples(view, renderer->params.antialias, first, rows);
+    TRY(draw(renderer, &drawing, &frame, err));
+    const Samples samples = {.effects = &view->effects,
+                             .camera = &view->camera,
+                             .radii = &renderer->radii,
+                             .paper = view->background,
+                             .side = renderer->params.antialias,
+                             .threads = fine->params->threads,
+                             .band = drawing.band,
+                             .frame = &frame};
+    Status status = effects_draw(&samples, err);
+    if (status == STATUS_OK)
+        effects_reduce(&samples, color, row);
+    frame_release(&frame);
+    return status;
+}
+
+/* The colours of the drawing's band. */
+static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
+{
+    const RenderParams *params = drawing->params;
+    const Band *band = &drawing->band;
+    RenderParams once = *params;
+    View fine = *drawing->view;
+    Drawing of_samples = *drawing;
+    fine.camera.width *= params->antialias;
+    fine.camera.height *= params->antialias;
+    once.antialias = 1;
+    once.codes_suffice = false;
+    once.want_depth = once.want_id = true;
+    once.want_normal = fine.effects.outline.crease_cosine > -1;
+    of_samples.view = &fine;
+    of_samples.params = &once;
+    if (!renderer->radii.rows)
+        TRY(radiustable_make(renderer->geometry, &renderer->radii, err));
+    TRY(plane_init(&frame->color, drawing->view->camera.width, band->rows, 3, err));
+    int step = (int)fmin(samples_at_once / fine.camera.width / params->antialias, 1e6);
+    step = step < RENDER_BAND_STEP ? RENDER_BAND_STEP : step / RENDER_BAND_STEP * RENDER_BAND_STEP;
+    for (int row = 0; row < band->rows; row += step) {
+        int rows = step < band->rows - row ? step : band->rows - row;
+        TRY(draw_samples(renderer, &of_samples, band->first + row, rows, &frame->color, row, err));
+    }
+    return STATUS_OK;
+}
+
+/* The planes of geometry, of the pixels' centres, and the colours with effects. */
+static Status draw_with_effects(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
+{
+    RenderParams shape = *drawing->params;
+    Drawing centers = *drawing;
+    shape.want_color = false;
+    centers.params = &shape;
+    if (shape.want_depth || shape.want_normal || shape.want_id)
+        TRY(draw(renderer, &centers, frame, err));
+    return draw_effects(renderer, drawing, frame, err);
+}
+
 /* The band with the neighbours that adaptive antialiasing looks at. */
-static Band band_of(const RenderParams *params, int height, int first, int rows)
+static Band band_of(bool adaptive, int height, int first, int rows)
 {
     Band band = {.first = first, .rows = rows};
     int left = height - first - rows;
-    if (params->antialias > 1 && params->antialias_threshold > 0) {
+    if (adaptive) {
         band.above = first > 0 ? RENDER_BAND_STEP : 0;
         band.below = left < RENDER_BAND_STEP ? left : RENDER_BAND_STEP;
     }
@@ -244,6 +341,9 @@ static Band band_of(const RenderParams *params, int height, int first, int rows)
 Status renderer_rows(Renderer *renderer, const View *view, const Appearance *appearance, int first,
                      int rows, Frame *frame, Err *err)
 {
+    const RenderParams *params = &renderer->params;
+    const bool effects = params->want_color && effects_present(&view->effects);
+    const bool adaptive = !effects && params->antialias > 1 && params->antialias_threshold > 0;
     int height = view->camera.height;
     assert(first >= 0 && rows > 0 && first + rows <= height && first % RENDER_BAND_STEP == 0);
     Frame made = {0};
@@ -251,15 +351,14 @@ Status renderer_rows(Renderer *renderer, const View *view, const Appearance *app
     Drawing drawing = {.geometry = renderer->geometry,
                        .view = view,
                        .appearance = appearance,
-                       .params = &renderer->params,
-                       .band = band_of(&renderer->params, height, first, rows)};
+                       .params = params,
+                       .band = band_of(adaptive, height, first, rows)};
     Status status = prepare_caster(renderer, &drawing, err);
     if (status == STATUS_OK)
         status = prepare_mean(renderer, &drawing, err);
     if (status == STATUS_OK)
-        status = draw(renderer, &drawing, &made, err);
+        status = (effects ? draw_with_effects : draw)(renderer, &drawing, &made, err);
     renderer->stats.cpu_s += clock_cpu_seconds() - start_cpu_s;
-    renderer->stats.rays += (size_t)view->camera.width * (size_t)drawing.band.rows;
     if (status != STATUS_OK) {
         frame_release(&made);
         return status;

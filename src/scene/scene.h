@@ -9,6 +9,7 @@
 
 #include "scene/anatomy.h"
 #include "scene/appearance.h"
+#include "scene/effects.h"
 #include "scene/geometry.h"
 #include "scene/models.h"
 #include "scene/triangles.h"

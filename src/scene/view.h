@@ -6,6 +6,7 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "scene/appearance.h"
+#include "scene/effects.h"
 
 typedef enum Projection { PROJECTION_ORTHOGRAPHIC, PROJECTION_PERSPECTIVE } Projection;
 
@@ -91,7 +92,8 @@ typedef struct View {
     Light lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
     Ground ground;
-    Rgb background;
+    Rgb background; /* the paper */
+    Effects effects;
 } View;
 
 /* The view with all that is in it moved, or turned about an axis through `center`, by radians: what

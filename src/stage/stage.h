@@ -35,19 +35,43 @@ typedef struct LookGround {
     double ambient, diffuse;
 } LookGround;
 
+/* Effects [scene/effects.h] in sizes of picture and tree. Widths are in thousandths of the
+ * picture's shorter side, so that a picture of twice the pixels looks the same. */
+typedef struct LookEffects {
+    double outline_width, outline_radii, outline_deeper; /* width 0: none */
+    double crease_deg; /* between normals of vessels that touch, from which on a line parts them;
+                        * 180: never */
+    Rgb outline_color;
+    double halo_width, halo_radii, halo_deeper; /* width 0: none */
+    double fade_nearest, fade_farthest;         /* parts of the paper's colour */
+    double xray_per_diameter;                   /* of the thickest vessel, or */
+    double xray_per_mm;                         /* 0, both: no x-ray */
+} LookEffects;
+
+enum { LOOK_MAX_ABOUT = 160 };
+
 typedef struct Look {
+    char about[LOOK_MAX_ABOUT + 1]; /* one line for people, or "" */
     Finish finish;
     Rgb color; /* of vessels that no field colours */
     Rgb background;
     LookLight lights[LOOK_MAX_LIGHTS];
     int n_lights;
     LookGround ground;
+    LookEffects effects;
 } Look;
 
-/* Reads an INI file with the sections [vessel] color, [background] color, [finish] ambient diffuse
- * brilliance phong phong_size specular roughness, [light NAME] direction or position, color, size,
- * samples, and [ground] normal or axis, gap, color, ambient, diffuse. STATUS_INPUT naming file and
- * line on an unknown section or key and on a bad value. */
+/* The effects of the look, none of which POV-Ray draws, in a picture whose shorter side has 1000
+ * thousandth_px pixels, of a tree whose thickest vessel has this diameter; it fades from 0 to 1 mm.
+ */
+Effects look_effects(const Look *look, double thousandth_px, double diameter_mm);
+
+/* Reads an INI file with the sections [look] about, [vessel] color, [background] color, [finish]
+ * ambient diffuse brilliance phong phong_size specular roughness, [light NAME] direction or
+ * position, color, size, samples, [ground] normal or axis, gap, color, ambient, diffuse, [outline]
+ * width, radii, deeper, crease, color, [halo] width, radii, deeper, [fade] nearest, farthest, and
+ * [xray] per_diameter or per_mm. STATUS_INPUT naming file and line on an unknown section or key and
+ * on a bad value. */
 MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
 
 typedef enum NamedView { VIEW_FRONT, VIEW_TOP, VIEW_LEFT, VIEW_ISO } NamedView;

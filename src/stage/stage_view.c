@@ -203,6 +203,46 @@ static Light place_light(const LookLight *light, const Camera *camera, Box bound
     return placed;
 }
 
+/* ---- effects --------------------------------------------------------------------------------- */
+
+/* Vessels fade from the nearest axis on to the farthest, in depth along the ray, or over this part
+ * of the diagonal of their box where they are less apart: a flat tree face-on does not fade. */
+static const double least_fade = 1.0 / 3;
+
+static void place_fade(const Camera *camera, const Geometry *geometry, Fade *fade)
+{
+    double diagonal = vec3_distance(geometry->bounds.low, geometry->bounds.high);
+    fade->near_mm = INFINITY;
+    fade->far_mm = -INFINITY;
+    for (size_t i = 0; i < geometry_balls(geometry); i++) {
+        Vec3 from = vec3_sub(geometry_ball(geometry, i).center, camera->location);
+        double depth = camera->projection == PROJECTION_PERSPECTIVE
+                           ? vec3_length(from)
+                           : vec3_dot(from, camera->direction);
+        fade->near_mm = fmin(fade->near_mm, depth);
+        fade->far_mm = fmax(fade->far_mm, depth);
+    }
+    fade->far_mm = fmax(fade->far_mm, fade->near_mm + least_fade * diagonal);
+}
+
+static double thickest_mm(const Geometry *geometry)
+{
+    double radius = 0;
+    for (size_t i = 0; i < geometry->n_primitives; i++)
+        radius = fmax(radius, geometry->primitives[i].radius_mm);
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        radius = fmax(radius, geometry->segments[i].radius_mm);
+    return 2 * radius;
+}
+
+static Effects place_effects(const Look *look, const Camera *camera, const Geometry *geometry)
+{
+    double thousandth_px = fmin(camera->width, camera->height) / 1000;
+    Effects effects = look_effects(look, thousandth_px, thickest_mm(geometry));
+    place_fade(camera, geometry, &effects.fade);
+    return effects;
+}
+
 Status stage_view(const Look *look, const ViewParams *params, const Geometry *geometry, View *view,
                   Err *err)
 {
@@ -211,6 +251,7 @@ Status stage_view(const Look *look, const ViewParams *params, const Geometry *ge
     near.location = vec3_sub(params->location, geometry->origin);
     near.look_at = vec3_sub(params->look_at, geometry->origin);
     TRY(place_camera(geometry, &near, &made.camera, err));
+    made.effects = place_effects(look, &made.camera, geometry);
     made.ground = place_ground(&look->ground, &made.camera, geometry);
     for (size_t i = 0; i < made.n_lights; i++)
         made.lights[i] =

@@ -8,7 +8,7 @@
 // Units are millimetres. The camera is given by its own vectors, so that the world is right-handed:
 // seen from the front, x runs to the right, y up, and z towards the viewer.
 // Extent: ${extent}
-//
+${effects}//
 // Render: povray +I${input} +O${output} +W${width} +H${height} -D
 // Size: ${width}x${height}
 //

@@ -160,7 +160,7 @@ test_lists_hold_what_options_take() {
     for name in $(corcast fields | cut -f 1); do
         run_ok corcast render --exact tree.swc --quiet --size 16x12 --color-by "$name" -o picture.ppm
     done
-    for name in $(corcast looks); do
+    for name in $(corcast looks | cut -f 1); do
         run_ok corcast render --exact tree.swc --quiet --size 16x12 --look "$name" -o picture.ppm
     done
     for name in $(corcast colormaps | cut -f 1); do

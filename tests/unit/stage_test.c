@@ -742,7 +742,9 @@ static void a_look_is_read(void **state)
         "brilliance = 1.5\nphong_size = 25\nspecular = 0.625\nroughness = 0.03125\n"
         "[light a]\ndirection = 0 1 2\n[light b]\ncolor = 0 0 1\n"
         "[light c]\nposition = 1 2 -3\nsize = 0.75\nsamples = 8\n"
-        "[ground]\naxis = 0 2 0\ngap = 0.5\ncolor = 1 0.5 0\ndiffuse = 0.25\n",
+        "[ground]\naxis = 0 2 0\ngap = 0.5\ncolor = 1 0.5 0\ndiffuse = 0.25\n"
+        "[look]\nabout = red, and shining\n[outline]\nwidth = 2.5\ncrease = 60\n"
+        "color = 0 0.5 0\n[halo]\nradii = 3\n[fade]\nnearest = 0.25\n[xray]\nper_mm = 0.75\n",
         &read, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(status, STATUS_OK);
@@ -760,7 +762,16 @@ static void a_look_is_read(void **state)
     assert_true(read.ground.present && read.ground.in_world && read.ground.normal.y == 2);
     assert_true(read.ground.gap == 0.5 && read.ground.color.g == 0.5f);
     assert_true(read.ground.ambient == 0.1 && read.ground.diffuse == 0.25);
+    assert_string_equal(read.about, "red, and shining");
+    const Effects effects = look_effects(&read, 2, 1);
+    assert_true(effects.outline.width_px == 5 && effects.outline.color.g == 0.5f);
+    assert_true(fabs(effects.outline.crease_cosine - 0.5) < 1e-15);
+    assert_true(effects.halo.width_px == 4 && effects.halo.radii == 3);
+    assert_true(effects.fade.nearest == 0.25 && effects.fade.farthest == 0.8);
+    assert_true(effects.xray.per_mm == 0.75);
     assert_int_equal(read_look_text("[vessel]\ncolor = 1 1 1\n", &read, &err), STATUS_OK);
+    const Effects none = look_effects(&read, 2, 1);
+    assert_false(effects_present(&none));
     assert_false(read.ground.present);
 }
 
@@ -785,6 +796,15 @@ static void a_bad_look_names_its_line(void **state)
         {"[ground]\ngap = -1\n", ":2:", "from 0 to 100"},
         {"[ground]\nambient = 2\n", ":2:", "from 0 to 1"},
         {"[ground]\nphong = 1\n", ":2:", "normal, axis, gap"},
+        {"[outline]\nwidth = 0\n", ":2:", "from 0.1 to 50"},
+        {"[outline]\nthickness = 1\n", ":2:", "width, radii"},
+        {"[outline]\ncolor = red\n", ":2:", "from 0 to 1"},
+        {"[halo]\ndeeper = -1\n", ":2:", "from 0 to 1000"},
+        {"[halo]\ncolor = 1 1 1\n", ":2:", "radii or deeper"},
+        {"[fade]\nfarthest = 1.5\n", ":2:", "from 0 to 1"},
+        {"[xray]\nper_mm = 0\n", ":2:", "from 1e-6 to 1e6"},
+        {"[xray]\nlength = 1\n", ":2:", "per_diameter or per_mm"},
+        {"[look]\nname = red\n", ":2:", "about"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Look read;

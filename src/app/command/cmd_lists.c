@@ -7,6 +7,8 @@
 #include "domain/domain.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* Fills `lines`. */
 typedef Status ListNames(Text *lines, Err *err);
@@ -46,9 +48,43 @@ static Status list_formats(Text *lines, Err *err)
     return text_check(lines, err);
 }
 
+/* Appends what is to be said of a look: whether POV-Ray repeats it, and what it is. */
+static Status describe_look(const char *name, Text *lines, Err *err)
+{
+    char *path = NULL;
+    Look look;
+    Text names = TEXT_INIT;
+    TRY(template_file("look", "looks", name, ".ini", &path, err));
+    Status status = look_read(&look, path, err);
+    free(path);
+    TRY(status);
+    const Effects effects = look_effects(&look, 1, 1);
+    effects_list(&effects, &names);
+    text_printf(lines, "%s\t", name);
+    if (effects.xray.per_mm > 0)
+        text_puts(lines, "POV-Ray draws none");
+    else
+        text_puts(lines, names.length ? "POV-Ray draws it without " : "POV-Ray draws the same");
+    if (!(effects.xray.per_mm > 0))
+        text_add(lines, &names);
+    text_printf(lines, "\t%s\n", look.about);
+    text_release(&names);
+    return text_check(lines, err);
+}
+
 static Status list_looks(Text *lines, Err *err)
 {
-    return template_names("looks", ".ini", lines, err);
+    Text names = TEXT_INIT;
+    Status status = template_names("looks", ".ini", &names, err);
+    char *rest = NULL, *all = NULL;
+    if (status == STATUS_OK)
+        status = mem_strdup(&all, text_chars(&names), err);
+    for (char *name = all ? strtok_r(all, "\n", &rest) : NULL; name && status == STATUS_OK;
+         name = strtok_r(NULL, "\n", &rest))
+        status = describe_look(name, lines, err);
+    free(all);
+    text_release(&names);
+    return status;
 }
 
 static Status list_morphometries(Text *lines, Err *err)

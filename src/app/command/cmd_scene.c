@@ -125,6 +125,10 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter,
     Anatomy anatomy = {0};
     EmitReport report = {0};
     TRY(picture_scene_of(picture, source, parsed, &scene, &anatomy, NULL, err));
+    Status status = STATUS_OK;
+    if (emitter->has_view)
+        status = picture_say_effects(picture, &scene.view, "the scene is without them",
+                                     parsed->common.quiet, err);
     const EmitParams params = {.scene = &scene,
                                .anatomy = &anatomy,
                                .command = line,
@@ -132,8 +136,9 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter,
                                .shadows = picture->stage.shadows,
                                .ids = options->ids,
                                .cells = picture_cells(picture)};
-    Status status =
-        scene_files_write(emitter, &params, tree, options->output, options->ini, &report, err);
+    if (status == STATUS_OK)
+        status =
+            scene_files_write(emitter, &params, tree, options->output, options->ini, &report, err);
     if (status == STATUS_OK && !parsed->common.quiet)
         say_limits(&report, &scene);
     anatomy_release(&anatomy);

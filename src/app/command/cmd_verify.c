@@ -243,6 +243,9 @@ static Status verify(Verification *v, int frame, Folder *folder, Parsed *parsed,
 {
     TRY(claim_folder(folder, &parsed->files, err));
     TRY(picture_scene(v->picture, parsed, &v->scene, NULL, NULL, err));
+    TRY(picture_say_effects(v->picture, &v->scene.view, "left out on both sides",
+                            parsed->common.quiet, err));
+    v->scene.view.effects = (Effects){0};
     TRY(verification_pick_frame(v, frame, err));
     TRY(file_make_folder(v->folder, err));
     TRY(claim_folder(folder, &parsed->files, err));

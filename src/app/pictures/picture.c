@@ -512,6 +512,23 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
     return STATUS_OK;
 }
 
+Status picture_say_effects(const PictureOptions *options, const View *view, const char *what,
+                           bool quiet, Err *err)
+{
+    Text names = TEXT_INIT;
+    if (view->effects.xray.per_mm > 0)
+        return err_set(err, STATUS_USAGE,
+                       "--look %s is an x-ray, which POV-Ray does not draw; render does",
+                       options->look);
+    effects_list(&view->effects, &names);
+    Status status = text_check(&names, err);
+    if (status == STATUS_OK && names.length && !quiet)
+        fprintf(stderr, "corcast: --look %s: %s are corcast's own, and %s\n", options->look,
+                text_chars(&names), what);
+    text_release(&names);
+    return status;
+}
+
 Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
 {
     double needed = (double)width * height * bytes_a_pixel;

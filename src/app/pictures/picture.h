@@ -113,6 +113,11 @@ MUST_CHECK Status picture_scene_of(const PictureOptions *options, const PictureS
                                    const Parsed *parsed, Scene *scene, Anatomy *anatomy,
                                    StageReport *report, Err *err);
 
+/* Says on standard error, unless quiet, what of the look is no picture of POV-Ray's, and `what`
+ * becomes of it. STATUS_USAGE when nothing would be left. */
+MUST_CHECK Status picture_say_effects(const PictureOptions *options, const View *view,
+                                      const char *what, bool quiet, Err *err);
+
 /* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the
  * machine. */
 MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);

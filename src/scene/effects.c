@@ -1,0 +1,19 @@
+/* Sentences name effects as users do. */
+#include "scene/effects.h"
+
+void effects_list(const Effects *effects, Text *out)
+{
+    const struct {
+        bool present;
+        const char *name;
+    } all[] = {{effects->outline.width_px > 0, "outlines"},
+               {effects->halo.width_px > 0, "halos"},
+               {effects->fade.nearest > 0 || effects->fade.farthest > 0, "fading with depth"},
+               {effects->xray.per_mm > 0, "x-ray"}};
+    int left = 0;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        left += all[i].present;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (all[i].present)
+            text_printf(out, "%s%s", all[i].name, --left == 0 ? "" : left == 1 ? " and " : ", ");
+}
