@@ -154,7 +154,7 @@ check-quick: ## what half a minute can test, of what is installed
 # The program users run is always the release build.
 ifeq ($(MODE),release)
 build/corcast: $(BUILD)/corcast
-	$(Q)cp $< $@
+	$(Q)cp --remove-destination $< $@
 else
 build/corcast:
 	$(Q)$(MAKE) MODE=release build/corcast

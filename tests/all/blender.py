@@ -1,6 +1,6 @@
 # Run by Blender, as blender_test.sh has it: `measure FILE...` prints of each file triangles, volume in mm^3, parts and
-# open edges; `draw FILE.glb PICTURE` draws 500 x 500 pixels, 100 mm high, seen along -z, y up, of which only where
-# something is seen counts.
+# open edges; `draw FILE.glb PICTURE` draws 500 x 500 pixels, 100 mm high, seen along -z, y up, the sun behind the
+# camera, transparent where nothing is seen.
 import sys
 
 import bpy
@@ -71,6 +71,10 @@ def draw(path, picture):
     eye.location, eye.rotation_euler = (0, -0.1, 0), (numpy.pi / 2, 0, 0)
     scene.collection.objects.link(eye)
     scene.camera = eye
+    sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
+    sun.data.energy, sun.rotation_euler = 3, eye.rotation_euler
+    scene.collection.objects.link(sun)
+    scene.view_settings.view_transform = "Standard"  # sRGB
     scene.render.engine = "CYCLES"
     scene.cycles.samples, scene.cycles.use_denoising = 1, False
     scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BLACKMAN_HARRIS", 0.01  # the pixel's middle
