@@ -46,8 +46,13 @@ typedef struct RenderParams {
     bool shadows;
     double shadow_from_mm; /* what is nearer to a lit place casts no shadow on it; 0: POV-Ray's
                             * limit, 0.001 mm */
-    int occlusion; /* 0: ambient light is the same everywhere; N: the part of it that reaches a
-                    * point is found by N rays, which no POV-Ray picture repeats */
+    int occlusion;   /* 0: ambient light is the same everywhere; N: the part of it that reaches a
+                      * point is found by N rays, which no POV-Ray picture repeats */
+    bool cover_thin; /* vessels thinner than a pixel are drawn by the part of it that they cover,
+                      * and cast no shadows, which no POV-Ray picture repeats; else samples hit or
+                      * miss them. Planes of geometry have what samples hit in any case */
+    double
+        least_px; /* likewise: vessels are drawn at least so wide, from 0 to 64; 0: as they are */
     const CellParams *povray_cells; /* an isosurface is drawn where POV-Ray's root finder sees it in
                                      * these cells; NULL: where it is, by proof */
     bool

@@ -3,6 +3,9 @@
  * antialiasing come that are not the same to the last bit, or another engine. An appearance decides
  * nothing but colours.
  *
+ * Where vessels thinner than a pixel are drawn by coverage, the colours are those of a renderer of
+ * the other vessels alone, and the thin ones are laid over them [thin/thinvessels.h].
+ *
  * The first engine of the table that can draws: the special ones first, rays, which can draw
  * anything, last.
  *
@@ -16,6 +19,7 @@
 #include "render/light/rayrender.h"
 #include "render/raster/rasterrender.h"
 #include "render/raster/zbuffer.h"
+#include "render/thin/thinvessels.h"
 #include "render/tile/tilekernels.h"
 #include <assert.h>
 #include <math.h>
@@ -39,6 +43,11 @@ struct Renderer {
     Light lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
     int antialias;
+    /* What is kept while thin vessels are drawn for this camera. */
+    Camera thin_camera;
+    ThinVessels thin;
+    Geometry rest_geometry; /* without the thin ones */
+    Renderer *rest;         /* of that; NULL: none is thin */
 };
 
 /* ---- planes ------------------------------------------------------------------------------------
@@ -97,18 +106,26 @@ static const Engine *engine_for(const Drawing *drawing)
     return engines[i];
 }
 
-/* Makes the caster if the drawing needs it and none before did. */
-static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
+/* Makes the caster if there is none yet. */
+static Status make_caster(Renderer *renderer, Err *err)
 {
     const RenderParams *params = &renderer->params;
-    if (!renderer->caster && engine_for(drawing)->needs_rays(drawing)) {
-        double start_s = clock_seconds();
-        TRY(caster_new(renderer->geometry, params->povray_cells, params->threads, &renderer->caster,
-                       err));
-        if (params->shadow_from_mm > 0)
-            caster_shadow_from(renderer->caster, params->shadow_from_mm);
-        renderer->stats.prepare_s += clock_seconds() - start_s;
-    }
+    if (renderer->caster)
+        return STATUS_OK;
+    double start_s = clock_seconds();
+    TRY(caster_new(renderer->geometry, params->povray_cells, params->threads, &renderer->caster,
+                   err));
+    if (params->shadow_from_mm > 0)
+        caster_shadow_from(renderer->caster, params->shadow_from_mm);
+    renderer->stats.prepare_s += clock_seconds() - start_s;
+    return STATUS_OK;
+}
+
+/* Likewise if the drawing needs it. */
+static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
+{
+    if (engine_for(drawing)->needs_rays(drawing))
+        TRY(make_caster(renderer, err));
     drawing->caster = renderer->caster;
     return STATUS_OK;
 }
@@ -152,7 +169,7 @@ Status renderer_new(const Geometry *geometry, const RenderParams *params, Render
     if (params->threads <= 0)
         renderer->params.threads = threads_available();
     Drawing any = {.geometry = geometry, .view = &plain, .params = &renderer->params};
-    Status status = prepare_caster(renderer, &any, err);
+    Status status = params->cover_thin ? STATUS_OK : prepare_caster(renderer, &any, err);
     if (status != STATUS_OK) {
         renderer_free(renderer);
         return status;
@@ -170,11 +187,20 @@ static void forget_view(Renderer *renderer)
     renderer->engine = NULL;
 }
 
+static void forget_thin(Renderer *renderer)
+{
+    renderer_free(renderer->rest);
+    renderer->rest = NULL;
+    geometry_release(&renderer->rest_geometry);
+    thinvessels_release(&renderer->thin);
+}
+
 void renderer_free(Renderer *renderer)
 {
     if (!renderer)
         return;
     forget_view(renderer);
+    forget_thin(renderer);
     caster_free(renderer->caster);
     termmean_free(renderer->mean);
     radiustable_release(&renderer->radii);
@@ -216,11 +242,22 @@ static Status prepare_view(Renderer *renderer, const Drawing *drawing, Err *err)
 void renderer_antialias(Renderer *renderer, int antialias)
 {
     renderer->params.antialias = antialias;
+    if (renderer->rest)
+        renderer_antialias(renderer->rest, antialias);
 }
 
 RenderStats renderer_stats(const Renderer *renderer)
 {
-    return renderer->stats;
+    RenderStats stats = renderer->stats;
+    if (renderer->rest) {
+        const RenderStats *rest = &renderer->rest->stats;
+        stats.prepare_s += rest->prepare_s;
+        stats.trace_s += rest->trace_s;
+        stats.cpu_s += rest->cpu_s;
+        stats.rays += rest->rays;
+        stats.engine = rest->engine;
+    }
+    return stats;
 }
 
 static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
@@ -338,21 +375,20 @@ static Band band_of(bool adaptive, int height, int first, int rows)
     return band;
 }
 
-Status renderer_rows(Renderer *renderer, const View *view, const Appearance *appearance, int first,
-                     int rows, Frame *frame, Err *err)
+/* The rows as samples see all vessels. */
+static Status sampled_rows(Renderer *renderer, const View *view, const Appearance *appearance,
+                           int first, int rows, Frame *frame, Err *err)
 {
     const RenderParams *params = &renderer->params;
     const bool effects = params->want_color && effects_present(&view->effects);
     const bool adaptive = !effects && params->antialias > 1 && params->antialias_threshold > 0;
-    int height = view->camera.height;
-    assert(first >= 0 && rows > 0 && first + rows <= height && first % RENDER_BAND_STEP == 0);
     Frame made = {0};
     double start_cpu_s = clock_cpu_seconds();
     Drawing drawing = {.geometry = renderer->geometry,
                        .view = view,
                        .appearance = appearance,
                        .params = params,
-                       .band = band_of(adaptive, height, first, rows)};
+                       .band = band_of(adaptive, view->camera.height, first, rows)};
     Status status = prepare_caster(renderer, &drawing, err);
     if (status == STATUS_OK)
         status = prepare_mean(renderer, &drawing, err);
@@ -367,6 +403,98 @@ Status renderer_rows(Renderer *renderer, const View *view, const Appearance *app
         cut_planes(&made, &drawing.band);
     *frame = made;
     return STATUS_OK;
+}
+
+/* ---- thin vessels ---------------------------------------------------------------------------- */
+
+/* Finds the thin vessels of another view, and a renderer of the rest. */
+static Status prepare_thin(Renderer *renderer, const Camera *camera, Err *err)
+{
+    const RenderParams *params = &renderer->params;
+    if (memcmp(&renderer->thin_camera, camera, sizeof *camera) == 0)
+        return STATUS_OK;
+    double start_s = clock_seconds();
+    forget_thin(renderer);
+    TRY(thinvessels_find(renderer->geometry, camera, params->least_px, &renderer->thin, err));
+    if (renderer->thin.n > 0) {
+        RenderParams of_rest = *params;
+        of_rest.cover_thin = of_rest.codes_suffice = of_rest.want_normal = of_rest.want_id = false;
+        of_rest.want_depth = true;
+        TRY(thinvessels_rest(&renderer->thin, camera, &renderer->rest_geometry, err));
+        TRY(renderer_new(&renderer->rest_geometry, &of_rest, &renderer->rest, err));
+    }
+    memcpy(&renderer->thin_camera, camera, sizeof *camera);
+    renderer->stats.prepare_s += clock_seconds() - start_s;
+    return STATUS_OK;
+}
+
+/* Draws the thin vessels over the rows of the rest. */
+static Status cover_rows(Renderer *renderer, const View *view, const Appearance *appearance,
+                         int first, Frame *frame, Err *err)
+{
+    Renderer *rest = renderer->rest;
+    Drawing drawing = {.geometry = &renderer->rest_geometry,
+                       .view = view,
+                       .appearance = appearance,
+                       .params = &rest->params,
+                       .caster = rest->caster,
+                       .band = {.first = first, .rows = frame->color.height}};
+    double start_s = clock_seconds(), start_cpu_s = clock_cpu_seconds();
+    TRY(rest->params.shadows ? make_caster(rest, err) : STATUS_OK);
+    drawing.caster = rest->caster;
+    TRY(thinvessels_draw(&renderer->thin, &drawing, frame, err));
+    rest->stats.trace_s += clock_seconds() - start_s;
+    rest->stats.cpu_s += clock_cpu_seconds() - start_cpu_s;
+    return STATUS_OK;
+}
+
+/* The planes that samples of all vessels find, beside colours that are there. */
+static Status add_planes(Renderer *renderer, const View *view, const Appearance *appearance,
+                         int first, Frame *frame, Err *err)
+{
+    RenderParams *params = &renderer->params;
+    Frame planes;
+    plane_release(&frame->depth);
+    if (!params->want_depth && !params->want_normal && !params->want_id)
+        return STATUS_OK;
+    params->want_color = false;
+    Status status =
+        sampled_rows(renderer, view, appearance, first, frame->color.height, &planes, err);
+    params->want_color = true;
+    if (status != STATUS_OK)
+        return status;
+    planes.color = frame->color;
+    *frame = planes;
+    return STATUS_OK;
+}
+
+static Status covered_rows(Renderer *renderer, const View *view, const Appearance *appearance,
+                           int first, int rows, Frame *frame, Err *err)
+{
+    Frame made;
+    TRY(sampled_rows(renderer->rest, view, appearance, first, rows, &made, err));
+    Status status = cover_rows(renderer, view, appearance, first, &made, err);
+    if (status == STATUS_OK)
+        status = add_planes(renderer, view, appearance, first, &made, err);
+    if (status == STATUS_OK)
+        *frame = made;
+    else
+        frame_release(&made);
+    return status;
+}
+
+Status renderer_rows(Renderer *renderer, const View *view, const Appearance *appearance, int first,
+                     int rows, Frame *frame, Err *err)
+{
+    assert(first >= 0 && rows > 0 && first + rows <= view->camera.height &&
+           first % RENDER_BAND_STEP == 0);
+    bool covers = renderer->params.cover_thin && renderer->params.want_color &&
+                  !effects_have_shape(&view->effects);
+    if (covers)
+        TRY(prepare_thin(renderer, &view->camera, err));
+    if (covers && renderer->rest)
+        return covered_rows(renderer, view, appearance, first, rows, frame, err);
+    return sampled_rows(renderer, view, appearance, first, rows, frame, err);
 }
 
 Status render(const Scene *scene, const RenderParams *params, Frame *frame, RenderStats *stats,

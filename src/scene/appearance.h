@@ -10,6 +10,14 @@ typedef struct Rgb {
     float r, g, b;
 } Rgb;
 
+/* A colour on the way from one to another, at a part of it in [0, 1]. */
+static inline Rgb rgb_mixed(Rgb from, Rgb to, double part)
+{
+    return (Rgb){(float)((double)from.r + ((double)to.r - (double)from.r) * part),
+                 (float)((double)from.g + ((double)to.g - (double)from.g) * part),
+                 (float)((double)from.b + ((double)to.b - (double)from.b) * part)};
+}
+
 /* POV-Ray's finish; METHODS section 3. */
 typedef struct Finish {
     float ambient, diffuse, brilliance, phong, phong_size, specular, roughness;

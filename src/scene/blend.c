@@ -120,18 +120,35 @@ done:
     return status;
 }
 
-/* The place of a number in a rising list that has it. */
-static uint32_t place_of(const uint32_t *list, size_t n, uint32_t number)
+/* The place of a number in a rising list; `n` where it is not. */
+static size_t place_of(const uint32_t *list, size_t n, uint32_t number)
 {
     size_t low = 0, high = n;
-    while (high - low > 1) {
+    while (low < high) {
         size_t middle = low + (high - low) / 2;
-        if (list[middle] <= number)
-            low = middle;
+        if (list[middle] < number)
+            low = middle + 1;
         else
             high = middle;
     }
-    return (uint32_t)low;
+    return low < n && list[low] == number ? low : n;
+}
+
+/* Appends those members of a group that are among `indices`, unless the first of them is not
+ * number `i`: then the group is listed elsewhere. */
+static bool add_members(const NumberLists *members, uint32_t group, const uint32_t *indices,
+                        size_t n, size_t i, uint32_t *items, size_t *n_items)
+{
+    size_t end = *n_items;
+    for (uint32_t k = members->first[group]; k < members->first[group + 1]; k++) {
+        size_t place = place_of(indices, n, members->items[k]);
+        if (place < n)
+            items[end++] = (uint32_t)place;
+    }
+    if (items[*n_items] != i)
+        return false;
+    *n_items = end;
+    return true;
 }
 
 /* The groups of some segments, each listed where its first segment is. */
@@ -140,19 +157,19 @@ static Status part_members(const Blend *whole, const uint32_t *indices, size_t n
 {
     const NumberLists *groups = &whole->groups, *members = &whole->members;
     size_t most = 0, n_items = 0;
+    uint32_t longest = 0;
     for (size_t i = 0; i < n; i++)
         most += length_of(groups, indices[i]);
+    for (uint32_t g = 0; g < whole->n_groups; g++)
+        longest = length_of(members, g) > longest ? length_of(members, g) : longest;
     TRY(mem_calloc(&part->members.first, most + 1, sizeof *part->members.first, "groups", err));
-    TRY(mem_calloc(&part->members.items, most, sizeof *part->members.items, "groups", err));
+    TRY(mem_calloc(&part->members.items, most + longest, sizeof *part->members.items, "groups",
+                   err));
     for (size_t i = 0; i < n; i++)
-        for (uint32_t k = groups->first[indices[i]]; k < groups->first[indices[i] + 1]; k++) {
-            uint32_t from = members->first[groups->items[k]];
-            if (members->items[from] != indices[i])
-                continue;
-            for (; from < members->first[groups->items[k] + 1]; from++)
-                part->members.items[n_items++] = place_of(indices, n, members->items[from]);
-            part->members.first[++part->n_groups] = (uint32_t)n_items;
-        }
+        for (uint32_t k = groups->first[indices[i]]; k < groups->first[indices[i] + 1]; k++)
+            if (add_members(members, groups->items[k], indices, n, i, part->members.items,
+                            &n_items))
+                part->members.first[++part->n_groups] = (uint32_t)n_items;
     return STATUS_OK;
 }
 

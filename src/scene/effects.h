@@ -55,4 +55,18 @@ static inline bool effects_present(const Effects *effects)
            effects->fade.nearest > 0 || effects->fade.farthest > 0 || effects->xray.per_mm > 0;
 }
 
+/* Whether there are some that need to know which vessel each sample is of. */
+static inline bool effects_have_shape(const Effects *effects)
+{
+    return effects->outline.width_px > 0 || effects->halo.width_px > 0 || effects->xray.per_mm > 0;
+}
+
+/* The part of the paper's colour that a vessel has at a depth. */
+static inline double fade_at(const Fade *fade, double depth_mm)
+{
+    double part = (depth_mm - fade->near_mm) / (fade->far_mm - fade->near_mm);
+    part = part < 0 ? 0 : part > 1 ? 1 : part;
+    return fade->nearest + (fade->farthest - fade->nearest) * part;
+}
+
 #endif

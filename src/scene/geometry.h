@@ -121,8 +121,9 @@ typedef struct Geometry {
 void geometry_release(Geometry *geometry);
 
 /* Some field segments of a geometry, by rising index, as one of their own: *part (owned) has them,
- * numbered anew, and the groups that they blend in, each of which holds none of the others; of the
- * rest what the whole has, but no primitives and no ids. O(n log n), where few segments blend. */
+ * numbered anew, and the groups that they blend in, without the segments that are not in the part;
+ * of the rest what the whole has, but no primitives and no ids. O(n log n), where few segments
+ * blend. */
 MUST_CHECK Status geometry_part(const Geometry *whole, const uint32_t *indices, size_t n,
                                 Geometry *part, Err *err);
 

@@ -479,6 +479,30 @@ test_segments_that_vanish_are_counted() {
     expect_sentence 'tree\.swc: all 3 segments are thinner than --prune-radius 1\.25'
 }
 
+test_vessels_thinner_than_a_pixel_are_drawn_by_their_area() {
+    run_ok corcast grow --terminals 700 --seed 5 -o tree.swc
+    run_ok corcast render tree.swc --size 90x90 --planes id --quiet -o covered.pfm
+    run_ok corcast render tree.swc --size 90x90 --planes id --method trace --quiet -o sampled.pfm
+    run_ok corcast render tree.swc --size 1440x1440 --method raster --quiet -o fine.pfm
+    cmp covered.id.ppm sampled.id.ppm || fail "expected the same ids"
+    oiiotool fine.pfm --resize:filter=box 90x90 -d float -o mean.tif || fail "oiiotool failed"
+    local covered sampled
+    covered=$(idiff covered.pfm mean.tif | awk '/RMS error/ { print $4 }')
+    sampled=$(idiff sampled.pfm mean.tif | awk '/RMS error/ { print $4 }')
+    awk "BEGIN { exit !($covered < 0.5 * $sampled) }" || fail "expected less than half of $sampled, got $covered"
+}
+
+test_a_least_width_needs_a_picture_that_can_have_it() {
+    rows '1 3 0 0 0 1 -1' '2 3 50 0 0 1 1' '3 3 60 9 0 0.05 2'
+    run_ok corcast render tree.swc --size 60x60 --min-width 1.5 --quiet -o wide.png
+    run corcast render tree.swc --min-width 1.5 --exact -o wide.png
+    expect_status 2
+    expect_sentence 'min-width is for --method fastest'
+    run corcast render tree.swc --min-width 65 -o wide.png
+    expect_status 2
+    expect_sentence 'min-width.*from 0 to 64'
+}
+
 # A picture without NaN in its planes, or one sentence and status 2; never a crash or a hang.
 survives() {
     run timeout 60 "$CORCAST" render --exact tree.swc --size 40x40 --planes depth,normal -o picture.ppm "$@"

@@ -18,7 +18,7 @@ typedef struct RenderOptions {
     bool exact, has_method;
     RenderMethod method;
     RenderKernels kernels;
-    double threshold, memory_mb;
+    double threshold, memory_mb, min_width_px;
     AnimationOptions animation;
     ShardOptions shard;
     PictureOptions picture;
@@ -58,6 +58,12 @@ static const Option own[] = {
      .group = GROUP_RUN,
      .help = "cylinders, joined, rounded: as POV-Ray does, by tiles, as the paper does, or tiles "
              "where they can"},
+    {.name = "min-width",
+     SETS(NUMBER, RenderOptions, min_width_px),
+     FROM_TO(0, 64),
+     .argument = "PX",
+     .group = GROUP_VESSELS,
+     .help = "vessels are drawn at least so many pixels wide; 0: as wide as they are"},
     {.name = "hits",
      SETS(CHOICE, RenderOptions, hits),
      .choices = hits_names,
@@ -299,6 +305,13 @@ static void settle(RenderOptions *options)
         picture->antialias = 1;
 }
 
+/* Whether vessels thinner than a pixel are drawn by their coverage: not where a method is asked
+ * for, whose picture it is. */
+static bool covers_thin(const RenderOptions *options)
+{
+    return options->method == RENDER_FASTEST && options->hits == HITS_EXACT;
+}
+
 /* Only primitives are drawn but by rays. */
 static Status check_method(const RenderOptions *options, Err *err)
 {
@@ -322,6 +335,12 @@ static Status check(const RenderOptions *options, const Parsed *parsed, Err *err
                                  "is for whole numbers; a .pfm holds floats"},
                                 {0}};
     TRY(options_check_needs(parsed, needs, err));
+    if (options->min_width_px > 0 && !covers_thin(options))
+        return err_set(err, STATUS_USAGE,
+                       "--min-width is for --method fastest, without --exact and --hits povray");
+    if (options->min_width_px > 0 && model_is_of((SceneModel)picture->model, MODEL_TRIANGLES))
+        return err_set(err, STATUS_USAGE, "--min-width is for vessels, not for --model %s",
+                       models[picture->model].name);
     TRY(picture_check_needs(picture, parsed, err));
     TRY(picture_check_dpi(&picture->size, options->output, parsed, err));
     if (options->threshold > 0 && picture->antialias == 1)
@@ -475,6 +494,8 @@ static Status run_render(void *options, Parsed *parsed, Err *err)
                            .shadows = picture->stage.shadows,
                            .occlusion = picture->occlusion,
                            .method = own_options->method,
+                           .cover_thin = covers_thin(own_options),
+                           .least_px = own_options->min_width_px,
                            .kernels = own_options->kernels};
     Animation animation;
     Shard shard;

@@ -210,24 +210,6 @@ static void gather(const Edges *edges, size_t row, float *line, float *gap)
 
 /* ---- colours --------------------------------------------------------------------------------- */
 
-static float mixed(float from, float to, double part)
-{
-    return (float)((double)from + ((double)to - (double)from) * part);
-}
-
-static Rgb rgb_mixed(Rgb from, Rgb to, double part)
-{
-    return (Rgb){mixed(from.r, to.r, part), mixed(from.g, to.g, part), mixed(from.b, to.b, part)};
-}
-
-/* The part of the paper's colour that a vessel has at a depth. */
-static double faded(const Fade *fade, double depth_mm)
-{
-    double part = (depth_mm - fade->near_mm) / (fade->far_mm - fade->near_mm);
-    part = fmin(fmax(part, 0), 1);
-    return fade->nearest + (fade->farthest - fade->nearest) * part;
-}
-
 static void draw_row(size_t number, int worker, void *context)
 {
     const Edges *edges = context;
@@ -245,8 +227,8 @@ static void draw_row(size_t number, int worker, void *context)
             continue;
         Rgb seen =
             rgb_mixed((Rgb){color[0], color[1], color[2]}, effects->outline.color, (double)line[x]);
-        seen =
-            rgb_mixed(seen, samples->paper, faded(&effects->fade, (double)frame->depth.values[at]));
+        seen = rgb_mixed(seen, samples->paper,
+                         fade_at(&effects->fade, (double)frame->depth.values[at]));
         seen = rgb_mixed(seen, samples->paper, (double)gap[x]);
         color[0] = seen.r;
         color[1] = seen.g;

@@ -1,0 +1,236 @@
+/* Vessels thinner than a pixel cover their own area of it. */
+#include "render/render.h"
+
+#include "test_scene.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { SIDE = 64, FINER = 16 };
+/* One pixel is so wide: the picture is 16 mm. */
+#define PIXEL_MM (16.0 / SIDE)
+
+static Err err;
+
+/* Parallel to the picture, looked at along -z, from white paper; vessels are black, and alike from
+ * all sides. */
+static void look_at_paper(Scene *scene, Primitive *primitives, size_t n, int side)
+{
+    *scene = (Scene){.geometry = {.model = SCENE_CYLINDERS,
+                                  .primitives = primitives,
+                                  .n_primitives = n,
+                                  .ids = test_ids(),
+                                  .n_ids = MOST_TEST_IDS,
+                                  .drawn = n,
+                                  .bounds = {{-9, -9, -9}, {9, 9, 9}}},
+                     .view = {.camera = {.location = {0, 0, 20},
+                                         .right = {16, 0, 0},
+                                         .up = {0, 16, 0},
+                                         .direction = {0, 0, -1},
+                                         .width = side,
+                                         .height = side},
+                              .background = {1, 1, 1}},
+                     .appearance = {.finish = {.ambient = 1, .brilliance = 1, .roughness = 0.05f}}};
+}
+
+static Primitive vessel(Vec3 a, Vec3 b, double radius_mm, uint32_t segment)
+{
+    return (Primitive){PRIMITIVE_CYLINDER, .a = a, .b = b, .radius_mm = radius_mm,
+                       .segment = segment};
+}
+
+static Frame drawn(Scene *scene, bool cover, double least_px, int antialias, int threads)
+{
+    Frame frame;
+    const RenderParams params = {.method = RENDER_FASTEST,
+                                 .threads = threads,
+                                 .antialias = antialias,
+                                 .cover_thin = cover,
+                                 .least_px = least_px,
+                                 .want_color = true};
+    assert_int_equal(render(scene, &params, &frame, NULL, &err), STATUS_OK);
+    return frame;
+}
+
+/* How many pixels are black, in parts of pixels. */
+static double ink(const Frame *frame)
+{
+    double sum = 0;
+    for (size_t i = 0; i < (size_t)SIDE * SIDE; i++)
+        sum += 1 - (double)frame->color.values[3 * i];
+    return sum;
+}
+
+static double ink_of(Primitive *primitives, size_t n, double least_px)
+{
+    Scene scene;
+    look_at_paper(&scene, primitives, n, SIDE);
+    Frame frame = drawn(&scene, true, least_px, 1, 1);
+    double sum = ink(&frame);
+    frame_release(&frame);
+    return sum;
+}
+
+/* The trunk that is never thin, beyond the right edge of the picture. */
+static Primitive trunk(void)
+{
+    return vessel(vec3(12, -3, 0), vec3(12, 3, 0), 1.5, 0);
+}
+
+static void covers_its_length_times_its_width_wherever_it_lies(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 23; k++) {
+        double turn = 0.277 * k, width_px = 0.05 + 0.04 * k;
+        Vec3 a = vec3(0.17 * k - 2, 1.3 - 0.11 * k, 2);
+        Vec3 b = vec3_add(a, vec3(3.7 * cos(turn), 3.7 * sin(turn), 1));
+        Primitive vessels[] = {trunk(), vessel(a, b, width_px * PIXEL_MM / 2, 1)};
+        assert_true(fabs(ink_of(vessels, 2, 0) - 3.7 / PIXEL_MM * width_px) < 2e-3);
+    }
+}
+
+static void covers_as_much_in_pieces_as_in_one(void **state)
+{
+    (void)state;
+    enum { PIECES = 97 };
+    Primitive vessels[1 + PIECES] = {trunk()};
+    Vec3 a = vec3(-4.1, -2.3, 0), step = vec3(0.07, 0.03, 0);
+    for (uint32_t k = 0; k < PIECES; k++)
+        vessels[1 + k] = vessel(vec3_add_scaled(a, step, k), vec3_add_scaled(a, step, k + 1.0),
+                                0.45 * PIXEL_MM, k + 1);
+    double length = PIECES * vec3_length(step) / PIXEL_MM;
+    assert_true(fabs(ink_of(vessels, 1 + PIECES, 0) - 0.9 * length) < 0.01 * length);
+}
+
+static void hides_behind_what_is_thicker(void **state)
+{
+    (void)state;
+    Primitive wall = vessel(vec3(-3, 0, 0), vec3(3, 0, 0), 2, 0);
+    Primitive before[] = {wall, vessel(vec3(-2, 1, 3), vec3(2, 1, 3), 0.2 * PIXEL_MM, 1)};
+    Primitive behind[] = {wall, vessel(vec3(-2, 1, -3), vec3(2, 1, -3), 0.2 * PIXEL_MM, 1)};
+    Rgb colors[] = {{0.5f, 0.5f, 0.5f}, {0, 0, 0}};
+    double sums[3];
+    for (int k = 0; k < 3; k++) {
+        Scene scene;
+        look_at_paper(&scene, k == 1 ? before : behind, k ? 2 : 1, SIDE);
+        scene.appearance.colors = colors;
+        Frame frame = drawn(&scene, true, 0, 1, 1);
+        sums[k] = ink(&frame);
+        frame_release(&frame);
+    }
+    assert_true(sums[1] > sums[0] + 0.19 * 4 / PIXEL_MM);
+    assert_true(sums[2] == sums[0]);
+}
+
+static void is_drawn_as_wide_as_is_asked_for(void **state)
+{
+    (void)state;
+    Primitive vessels[] = {trunk(), vessel(vec3(-4, -1, 0), vec3(3, 2, 0), 0.1 * PIXEL_MM, 1)};
+    double length = sqrt(58) / PIXEL_MM;
+    assert_true(fabs(ink_of(vessels, 2, 0.75) - 0.75 * length) < 1e-3 * length);
+    assert_true(fabs(ink_of(vessels, 2, 2.25) - 2.25 * length) < 0.02 * length);
+}
+
+enum { CROWD = 250 };
+
+static void throw_vessels(Primitive vessels[CROWD])
+{
+    Random random;
+    random_seed(&random, 2385);
+    for (uint32_t i = 0; i < CROWD; i++) {
+        Vec3 a = vec3(14 * random_uniform(&random) - 7, 14 * random_uniform(&random) - 7,
+                      6 * random_uniform(&random));
+        double turn = 6.283 * random_uniform(&random);
+        vessels[i] = vessel(a, vec3_add(a, vec3(1.1 * cos(turn), 1.1 * sin(turn), 0.3)),
+                            PIXEL_MM * (0.04 + 0.3 * random_uniform(&random)), i);
+    }
+    vessels[0].radius_mm = 2 * PIXEL_MM;
+}
+
+/* The root mean square distance of a picture from the mean of the pixels that a finer one has in
+ * its place. */
+static double distance_from(const Frame *frame, const Frame *fine)
+{
+    double sum = 0;
+    for (size_t y = 0; y < SIDE; y++)
+        for (size_t x = 0; x < SIDE; x++) {
+            double mean = 0;
+            for (size_t k = 0; k < FINER * FINER; k++)
+                mean += (double)fine->color.values[3 * ((y * FINER + k / FINER) * SIDE * FINER +
+                                                        x * FINER + k % FINER)];
+            mean /= FINER * FINER;
+            double off = (double)frame->color.values[3 * (y * SIDE + x)] - mean;
+            sum += off * off;
+        }
+    return sqrt(sum / (SIDE * SIDE));
+}
+
+static void is_nearer_to_the_mean_of_many_samples_than_ten_samples_are(void **state)
+{
+    (void)state;
+    Primitive vessels[CROWD];
+    Scene scene, fine_scene;
+    throw_vessels(vessels);
+    look_at_paper(&scene, vessels, CROWD, SIDE);
+    look_at_paper(&fine_scene, vessels, CROWD, SIDE * FINER);
+    Frame fine = drawn(&fine_scene, false, 0, 1, 2);
+    Frame covered = drawn(&scene, true, 0, 3, 2), sampled = drawn(&scene, false, 0, 3, 2);
+    double by_cover = distance_from(&covered, &fine), by_samples = distance_from(&sampled, &fine);
+    print_message("off by %.4f, samples by %.4f\n", by_cover, by_samples);
+    assert_true(by_cover < 0.02 && by_samples > 2.5 * by_cover);
+    frame_release(&fine);
+    frame_release(&covered);
+    frame_release(&sampled);
+}
+
+static void has_the_same_bytes_whatever_threads_and_bands(void **state)
+{
+    (void)state;
+    Primitive vessels[CROWD];
+    Scene scene;
+    Renderer *renderer;
+    throw_vessels(vessels);
+    look_at_paper(&scene, vessels, CROWD, SIDE);
+    light_test_scene(&scene);
+    scene.appearance.color = (Rgb){0.6f, 0.3f, 0.2f};
+    Frame whole = drawn(&scene, true, 0, 2, 1);
+    const RenderParams params = {.method = RENDER_FASTEST,
+                                 .threads = 3,
+                                 .antialias = 2,
+                                 .cover_thin = true,
+                                 .want_color = true,
+                                 .want_id = true};
+    assert_int_equal(renderer_new(&scene.geometry, &params, &renderer, &err), STATUS_OK);
+    for (int first = 0; first < SIDE; first += 24) {
+        Frame band;
+        int rows = SIDE - first < 24 ? SIDE - first : 24;
+        assert_int_equal(
+            renderer_rows(renderer, &scene.view, &scene.appearance, first, rows, &band, &err),
+            STATUS_OK);
+        assert_memory_equal(whole.color.values + (size_t)(3 * first * SIDE), band.color.values,
+                            (size_t)(3 * rows * SIDE) * sizeof(float));
+        assert_non_null(band.id.ids);
+        frame_release(&band);
+    }
+    renderer_free(renderer);
+    frame_release(&whole);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(covers_its_length_times_its_width_wherever_it_lies),
+        cmocka_unit_test(covers_as_much_in_pieces_as_in_one),
+        cmocka_unit_test(hides_behind_what_is_thicker),
+        cmocka_unit_test(is_drawn_as_wide_as_is_asked_for),
+        cmocka_unit_test(is_nearer_to_the_mean_of_many_samples_than_ten_samples_are),
+        cmocka_unit_test(has_the_same_bytes_whatever_threads_and_bands),
+    };
+    return cmocka_run_group_tests_name("thin", tests, NULL, NULL);
+}
