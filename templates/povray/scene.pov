@@ -32,12 +32,28 @@ global_settings {
 #ifndef (Camera_Up)          #declare Camera_Up          = ${up}; #end        // full height
 #ifndef (Camera_Direction)   #declare Camera_Direction   = ${direction}; #end // unit
 
+// A part of the picture is the picture of a smaller camera: rows 128 to 191, say, of ${width}x${height} are
+// +W${width} +H64 Declare=Picture_Height=${height} Declare=Part_Top=128, and columns likewise. It has the whole's
+// pixels, to the code, with antialiasing too if that is without jitter and not +AM1 with a threshold above 0.
+#ifndef (Picture_Width)  #declare Picture_Width  = image_width; #end  // pixels of the whole
+#ifndef (Picture_Height) #declare Picture_Height = image_height; #end
+#ifndef (Part_Left)      #declare Part_Left      = 0; #end            // where the part begins, pixels
+#ifndef (Part_Top)       #declare Part_Top       = 0; #end
+#local Part_Place = Camera_Right * ((Part_Left + image_width / 2) / Picture_Width - 0.5)
+                  - Camera_Up * ((Part_Top + image_height / 2) / Picture_Height - 0.5);
+
 camera {
-  #if (Camera_Perspective) perspective #else orthographic #end
-  location  Camera_Location
-  right     Camera_Right
-  up        Camera_Up
-  direction Camera_Direction
+  #if (Camera_Perspective)
+    perspective
+    location  Camera_Location
+    direction Camera_Direction + Part_Place
+  #else
+    orthographic
+    location  Camera_Location + Part_Place
+    direction Camera_Direction
+  #end
+  right     Camera_Right * (image_width / Picture_Width)
+  up        Camera_Up * (image_height / Picture_Height)
 }
 
 // ---- light ----------------------------------------------------------------------------------

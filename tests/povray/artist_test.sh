@@ -154,6 +154,37 @@ test_a_merge_has_no_walls_inside() {
 }
 
 # The root of the bifurcation is at the origin, its main branch ends where the wider daughter does.
+# draw_part NAME SCENE WIDTHxHEIGHT LEFT TOP ARGUMENT...: a part of the picture of 60x45, as NAME.ppm.
+draw_part() {
+    local name=$1 scene=$2 size=$3 left=$4 top=$5
+    shift 5
+    draw "$scene" "+W${size%x*}" "+H${size#*x}" Declare=Picture_Width=60 Declare=Picture_Height=45 \
+        Declare=Part_Left="$left" Declare=Part_Top="$top" "$@"
+    pngtopnm "$scene.png" >"$name.ppm"
+}
+
+test_parts_of_a_picture_are_the_whole_to_the_code() {
+    local model projection=perspective other=orthographic switches
+    run_ok corcast grow --quiet --terminals 60 --seed 3 --domain ball:30 -o tree.swc
+    for model in $MODELS; do
+        run_ok corcast scene tree.swc --quiet --model "$model" --view iso --projection $projection --shadows on \
+            --color-by flow --size 60x45 -o "$model.pov"
+        switches='-A'
+        [ $projection = perspective ] || switches='+A0.0 +AM1 +R2 -J'
+        # shellcheck disable=SC2086
+        {
+            draw "$model" $switches
+            pngtopnm "$model.png" >whole.ppm
+            draw_part a "$model" 23x17 0 0 $switches
+            draw_part b "$model" 37x17 23 0 $switches
+            draw_part c "$model" 60x28 0 17 $switches
+        }
+        pnmcat -lr a.ppm b.ppm | pnmcat -tb - c.ppm >joined.ppm
+        expect_same whole.ppm joined.ppm
+        switches=$projection projection=$other other=$switches
+    done
+}
+
 test_a_scene_declares_where_the_tree_lies_and_what_its_colours_mean() {
     run_ok corcast scene "$DATA/bifurcation.swc" --quiet --color-by length -o tree.pov
     own_scene own tree '#debug concat("\n", vstr(3, Root_Position, " ", 0, 3), "; ", vstr(3, Path_At(1), " ", 0, 3), "; ", Value_Name, " ", Value_Unit, " ", str(Value_Place(17.5446), 0, 3), "; ", str(Tree_Segments, 0, 0), "\n")
