@@ -21,13 +21,14 @@
 #include "render/raster/zbuffer.h"
 #include "render/thin/thinvessels.h"
 #include "render/tile/tilekernels.h"
+#include "render/xray/xray.h"
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const Engine *const engines[] = {&field_engine, &raster_engine, &zbuffer_engine,
-                                        &ray_engine};
+static const Engine *const engines[] = {&xray_engine, &field_engine, &raster_engine,
+                                        &zbuffer_engine, &ray_engine};
 
 struct Renderer {
     const Geometry *geometry;
@@ -314,7 +315,7 @@ static Status draw_samples(Renderer *renderer, const Drawing *fine, int first, i
                              .threads = fine->params->threads,
                              .band = drawing.band,
                              .frame = &frame};
-    Status status = effects_draw(&samples, err);
+    Status status = frame.id.ids ? effects_draw(&samples, err) : STATUS_OK;
     if (status == STATUS_OK)
         effects_reduce(&samples, color, row);
     frame_release(&frame);
@@ -333,8 +334,8 @@ static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *fr
     fine.camera.height *= params->antialias;
     once.antialias = 1;
     once.codes_suffice = false;
-    once.want_depth = once.want_id = true;
-    once.want_normal = fine.effects.outline.crease_cosine > -1;
+    once.want_depth = once.want_id = !(fine.effects.xray.per_mm > 0);
+    once.want_normal = once.want_id && fine.effects.outline.crease_cosine > -1;
     of_samples.view = &fine;
     of_samples.params = &once;
     if (!renderer->radii.rows)

@@ -39,6 +39,25 @@ test_halos_part_vessels_whatever_the_model() {
     done
 }
 
+# No colour of a field, no picture of POV-Ray; a tube of radius 3.1 is 6.2 mm thick, whose light is exp(-2).
+test_an_xray_shows_lengths_alone() {
+    make_crossing
+    sed -i '/^[34] /d' tree.swc
+    printf '[vessel]\ncolor = 0 0 0\n[background]\ncolor = 1 1 1\n[xray]\nper_diameter = 2\n' >film.ini
+    run_ok corcast render tree.swc --quiet --size 9x9 --antialias 1 --height 12 --location 0,0,50 --look-at 0,0,0 --look ./film.ini -o film.pfm
+    tail -c $((81 * 12)) film.pfm | od -An -v -tf4 -w12 | sed -n 41p |
+        awk '{ exit !($1 > 0.13533 && $1 < 0.13534) }' || fail "expected exp(-2) of the light in the middle"
+    run corcast render tree.swc --look xray --color-by radius -o no.png
+    expect_status 2
+    expect_sentence '--look xray has two colours of its own; --color-by has no effect'
+    run corcast scene tree.swc --quiet --look xray -o no.pov
+    expect_status 2
+    expect_sentence '--look xray is an x-ray, which POV-Ray does not draw; render does'
+    run corcast verify tree.swc --quiet --look xray -o report
+    expect_status 2
+    expect_only film.ini film.pfm tree.swc
+}
+
 test_planes_of_geometry_know_nothing_of_effects() {
     local plane
     make_crossing
@@ -47,6 +66,17 @@ test_planes_of_geometry_know_nothing_of_effects() {
     for plane in depth.pfm normal.pfm id.ppm; do
         expect_same without.$plane with.$plane
     done
+}
+
+test_options_that_effects_leave_no_room_for_are_refused() {
+    make_crossing
+    run corcast render tree.swc --quiet --look journal --exact -o no.png
+    expect_status 2
+    expect_sentence '--exact is the picture that verify draws, and verify leaves out what --look journal adds to it'
+    run corcast render tree.swc --quiet --look journal --antialias-threshold 0.1 -o no.png
+    expect_status 2
+    expect_sentence '--antialias-threshold: --look journal needs all samples of every pixel'
+    expect_only tree.swc
 }
 
 test_pictures_with_effects_are_the_same_whatever_the_memory_and_threads() {

@@ -39,9 +39,10 @@ static void a_normal_is_between_those_of_the_corners(void **state)
     VesselMesh mesh;
     MeshCast *cast = cast_one(&label, &mesh);
     Hit hit;
-    assert_true(meshcast_first_hit(cast, ray_through_parts(), 1e-4, &hit, &segment));
+    bool leaves;
+    assert_true(meshcast_first_hit(cast, ray_through_parts(), 1e-4, &hit, &segment, &leaves));
     assert_int_equal(segment, 7);
-    assert_true(fabs(hit.t - 3.885) <= 1e-6);
+    assert_true(fabs(hit.t - 3.885) <= 1e-6 && leaves);
     Vec3 expected = vec3_normalized(
         vec3(-0.6 * parts.x + 0.28 * parts.z, -0.6 * parts.y + 0.96 * parts.z, -0.4));
     assert_true(vec3_distance(hit.normal, expected) < 1e-6);
@@ -55,7 +56,8 @@ static void a_cap_has_the_normal_of_its_plane(void **state)
     VesselMesh mesh;
     MeshCast *cast = cast_one(&label, &mesh);
     Hit hit;
-    assert_true(meshcast_first_hit(cast, ray_through_parts(), 1e-4, &hit, &segment));
+    bool leaves;
+    assert_true(meshcast_first_hit(cast, ray_through_parts(), 1e-4, &hit, &segment, &leaves));
     assert_int_equal(segment, 7);
     assert_true(vec3_distance(hit.normal, vec3(0, 0, 1)) < 1e-6);
     meshcast_free(cast);
@@ -69,11 +71,16 @@ static void rays_beside_the_edges_and_short_of_the_plane_meet_nothing(void **sta
     MeshCast *cast = cast_one(&label, &mesh);
     const Vec3 up = {0, 0, 1}, inside = {1.125, 1.25, 0};
     Hit hit;
-    assert_false(meshcast_first_hit(cast, (Ray){{-0.001, 1.25, 0}, up}, 1e-4, &hit, &segment));
-    assert_false(meshcast_first_hit(cast, (Ray){{1.125, -0.001, 0}, up}, 1e-4, &hit, &segment));
-    assert_false(meshcast_first_hit(cast, (Ray){{2.127, 1.75, 0}, up}, 1e-4, &hit, &segment));
-    assert_true(meshcast_first_hit(cast, (Ray){{2.123, 1.75, 0}, up}, 1e-4, &hit, &segment));
-    assert_false(meshcast_first_hit(cast, (Ray){inside, up}, 2.386, &hit, &segment));
+    bool leaves;
+    assert_false(
+        meshcast_first_hit(cast, (Ray){{-0.001, 1.25, 0}, up}, 1e-4, &hit, &segment, &leaves));
+    assert_false(
+        meshcast_first_hit(cast, (Ray){{1.125, -0.001, 0}, up}, 1e-4, &hit, &segment, &leaves));
+    assert_false(
+        meshcast_first_hit(cast, (Ray){{2.127, 1.75, 0}, up}, 1e-4, &hit, &segment, &leaves));
+    assert_true(
+        meshcast_first_hit(cast, (Ray){{2.123, 1.75, 0}, up}, 1e-4, &hit, &segment, &leaves));
+    assert_false(meshcast_first_hit(cast, (Ray){inside, up}, 2.386, &hit, &segment, &leaves));
     assert_true(meshcast_any_hit(cast, (Ray){inside, up}, 1e-3, 2.386));
     assert_false(meshcast_any_hit(cast, (Ray){inside, up}, 1e-3, 2.384));
     meshcast_free(cast);
@@ -135,7 +142,8 @@ static void the_nearest_of_many_is_found(void **state)
             least = fmin(least, at);
         }
         Hit hit;
-        bool found = meshcast_first_hit(cast, ray, 1e-4, &hit, &segment);
+        bool leaves;
+        bool found = meshcast_first_hit(cast, ray, 1e-4, &hit, &segment, &leaves);
         assert_int_equal(found, nearest < TRIANGLES);
         met += found;
         if (!found)

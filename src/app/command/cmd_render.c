@@ -410,6 +410,23 @@ static Status pick_only(int only, Animation *animation, Err *err)
     return STATUS_OK;
 }
 
+/* Options that have no place beside effects of the look. */
+static Status check_effects(const RenderOptions *options, const View *view, Err *err)
+{
+    if (!effects_present(&view->effects))
+        return STATUS_OK;
+    if (options->exact)
+        return err_set(err, STATUS_USAGE,
+                       "--exact is the picture that verify draws, and verify leaves out what "
+                       "--look %s adds to it",
+                       options->picture.look);
+    if (options->threshold > 0)
+        return err_set(err, STATUS_USAGE,
+                       "--antialias-threshold: --look %s needs all samples of every pixel",
+                       options->picture.look);
+    return STATUS_OK;
+}
+
 /* The scene, and what of it follows from the animation. */
 static Status make_scene(const RenderOptions *options, Parsed *parsed, const PictureSource *source,
                          Scene *scene, StageReport *staged, Animation *animation, Err *err)
@@ -448,6 +465,7 @@ static Status draw_pictures(const RenderOptions *options, Parsed *parsed, Render
     TRY_GOTO(picture_fits(form->width, film.step, 40, err));
     TRY_GOTO(picture_read_source(&options->picture, parsed, &source, err));
     TRY_GOTO(make_scene(options, parsed, &source, &scene, &staged, animation, err));
+    TRY_GOTO(check_effects(options, &scene.view, err));
     TRY_GOTO(note_files(animation, form, &parsed->files, err));
     if (options->shard.commands) {
         const int tiles = options->shard.tiles;

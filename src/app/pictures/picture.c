@@ -315,6 +315,10 @@ static Status warn_of_losses(const Geometry *geometry, const StageReport *report
 static Status read_look(const PictureOptions *options, Look *look, Err *err)
 {
     TRY(coloring_read_look(options->look, look, err));
+    if (look_effects(look, 1, 1).xray.per_mm > 0 && options->coloring.field)
+        return err_set(err, STATUS_USAGE,
+                       "--look %s has two colours of its own; --color-by has no effect",
+                       options->look);
     if (options->has_background)
         look->background = rgb_of_option(options->background);
     return STATUS_OK;

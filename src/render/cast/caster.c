@@ -91,9 +91,10 @@ void caster_free(Caster *caster)
     free(caster);
 }
 
-/* The hit, and the index of the primitive or field segment that is hit. */
+/* The hit, and the index of the primitive or field segment that is hit; of triangles, whose normals
+ * are not theirs alone, also whether the ray leaves there. */
 static bool find_first(const Caster *caster, int worker, Ray ray, Hit *hit, uint32_t *index,
-                       uint32_t *cell)
+                       uint32_t *cell, bool *leaves)
 {
     if (caster->bvh) {
         size_t primitive = 0;
@@ -102,7 +103,7 @@ static bool find_first(const Caster *caster, int worker, Ray ray, Hit *hit, uint
         return found;
     }
     if (caster->mesh)
-        return meshcast_first_hit(caster->mesh, ray, NEAREST_SEEN_MM, hit, index);
+        return meshcast_first_hit(caster->mesh, ray, NEAREST_SEEN_MM, hit, index, leaves);
     if (caster->isosurface)
         return povray_isosurface_first_hit(caster->isosurface, ray, NEAREST_SEEN_MM, hit, index,
                                            cell);
@@ -118,13 +119,16 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
     const Geometry *geometry = caster->geometry;
     Hit hit;
     uint32_t index, cell = 0;
-    if (!find_first(caster, worker, ray, &hit, &index, &cell))
+    bool leaves = false;
+    if (!find_first(caster, worker, ray, &hit, &index, &cell, &leaves))
         return false;
     bool inwards = vec3_dot(hit.normal, ray.direction) > 0;
-    *surfel = (Surfel){hit.t, inwards ? vec3_scale(hit.normal, -1) : hit.normal,
-                       caster->bvh ? geometry->primitives[index].segment
-                                   : geometry->segments[index].segment,
-                       cell};
+    *surfel = (Surfel){.t = hit.t,
+                       .normal = inwards ? vec3_scale(hit.normal, -1) : hit.normal,
+                       .segment = caster->bvh ? geometry->primitives[index].segment
+                                              : geometry->segments[index].segment,
+                       .leaves = caster->mesh ? leaves : inwards,
+                       .cell = cell};
     return true;
 }
 

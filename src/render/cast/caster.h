@@ -17,6 +17,7 @@ typedef struct Surfel {
     double t;         /* mm along the ray */
     Vec3 normal;      /* unit, facing the viewer */
     uint32_t segment; /* number of the segment */
+    bool leaves;      /* seen from inside the vessel */
     uint32_t cell;    /* number of POV-Ray's cell; undefined where there are none */
 } Surfel;
 

@@ -11,7 +11,7 @@ static const double epsilon = 1e-10; /* POV-Ray's EPSILON */
 
 /* The points x of the plane have normal . x + distance = 0. */
 typedef struct TrianglePlane {
-    float normal[3]; /* unit; 0 of a triangle without area, which no ray meets */
+    float normal[3]; /* unit, inward; 0 of a triangle without area, which no ray meets */
     float distance;
 } TrianglePlane;
 
@@ -160,7 +160,8 @@ static Vec3 normal_at(const VesselMesh *mesh, size_t triangle, Vec3 place)
     return vec3_normalized(vec3_of(flat));
 }
 
-bool meshcast_first_hit(const MeshCast *cast, Ray ray, double t_min, Hit *hit, uint32_t *segment)
+bool meshcast_first_hit(const MeshCast *cast, Ray ray, double t_min, Hit *hit, uint32_t *segment,
+                        bool *leaves)
 {
     BoxWalk walk;
     uint32_t best = UINT32_MAX;
@@ -179,6 +180,7 @@ bool meshcast_first_hit(const MeshCast *cast, Ray ray, double t_min, Hit *hit, u
         }
     if (best == UINT32_MAX)
         return false;
+    *leaves = vec3_dot(vec3_of(cast->planes[best].normal), ray.direction) < 0;
     hit->normal = normal_at(cast->mesh, best, ray_at(ray, hit->t));
     *segment = mesh_segment(cast->mesh, best);
     return true;

@@ -15,8 +15,10 @@ void meshcast_free(MeshCast *cast);
 
 /* The nearest crossing with t >= t_min: true and *hit, *segment (the index in the triangle's label;
  * of equally near triangles the first), or false. The normal is that of the surface at the corners,
- * interpolated; on a cap, the triangle's own. */
-bool meshcast_first_hit(const MeshCast *cast, Ray ray, double t_min, Hit *hit, uint32_t *segment);
+ * interpolated; on a cap, the triangle's own. *leaves: whether the ray comes from within, by the
+ * triangle itself. */
+bool meshcast_first_hit(const MeshCast *cast, Ray ray, double t_min, Hit *hit, uint32_t *segment,
+                        bool *leaves);
 
 /* Whether there is a crossing with t in (t_min, t_max). */
 bool meshcast_any_hit(const MeshCast *cast, Ray ray, double t_min, double t_max);

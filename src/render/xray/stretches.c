@@ -1,0 +1,75 @@
+/* A primitive is a solid: the ray is inside between its first and its second crossing, its third
+ * and its fourth. A joint has the two discs besides its wall, which nobody draws, as they are
+ * covered; where its rulings cross, what is enclosed is what an odd number of crossings precedes.
+ */
+#include "render/xray/xray.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Where the ray crosses the disc across the axis. */
+static int cross_disc(Ray ray, Vec3 center, Vec3 axis, double radius, double *t)
+{
+    double along = vec3_dot(ray.direction, axis);
+    double at = vec3_dot(vec3_sub(center, ray.origin), axis) / along;
+    if (!isfinite(at) || !(vec3_distance(ray_at(ray, at), center) <= radius))
+        return 0;
+    *t = at;
+    return 1;
+}
+
+static void sort_few(double *t, int n)
+{
+    for (int i = 1; i < n; i++)
+        for (int j = i; j > 0 && t[j] < t[j - 1]; j--) {
+            double swapped = t[j];
+            t[j] = t[j - 1];
+            t[j - 1] = swapped;
+        }
+}
+
+int primitive_stretches(const Primitive *primitive, const PrimitiveFrame *frame, Ray ray,
+                        Stretch stretches[3])
+{
+    enum { MOST = 6 };
+    Hit hits[4];
+    double t[MOST];
+    int n = primitive_hits(primitive, frame, ray, hits), made = 0;
+    for (int i = 0; i < n; i++)
+        t[i] = hits[i].t;
+    if (primitive->kind == PRIMITIVE_JOINT) {
+        n += cross_disc(ray, primitive->a, primitive->axis_a, primitive->radius_mm, &t[n]);
+        n += cross_disc(ray, primitive->b, primitive->axis_b, primitive->radius_b_mm, &t[n]);
+    }
+    sort_few(t, n);
+    if (primitive->kind == PRIMITIVE_CYLINDER && n > 2) { /* through a rim */
+        t[1] = t[n - 1];
+        n = 2;
+    }
+    for (int i = 0; i + 1 < n; i += 2)
+        if (t[i + 1] > 0)
+            stretches[made++] = (Stretch){fmax(t[i], 0), t[i + 1]};
+    return made;
+}
+
+static int by_from(const void *a, const void *b)
+{
+    const Stretch *x = a, *y = b;
+    return (x->from > y->from) - (x->from < y->from);
+}
+
+double stretches_length(Stretch *stretches, size_t n)
+{
+    double length = 0, reached = -HUGE_VAL;
+    for (size_t i = 1; i < n; i++)
+        if (stretches[i].from < stretches[i - 1].from) {
+            qsort(stretches, n, sizeof *stretches, by_from);
+            break;
+        }
+    for (size_t i = 0; i < n; i++) {
+        if (stretches[i].to > reached)
+            length += stretches[i].to - fmax(stretches[i].from, reached);
+        reached = fmax(reached, stretches[i].to);
+    }
+    return length;
+}
