@@ -197,6 +197,9 @@ const char *imagereader_note(const ImageReader *reader, const char *key);
 MUST_CHECK Status imagereader_codes(ImageReader *reader, Picture *rows, Err *err);
 void imagereader_close(ImageReader *reader);
 
+/* Appends the picture, its codes sRGB's, as the address of an image that a page holds itself:
+ * "data:image/png;base64,...". */
+MUST_CHECK Status picture_put_uri(const Picture *picture, Text *out, Err *err);
 /* What a file holds: integer codes, or linear floats. */
 typedef struct Image {
     Picture picture; /* without codes when the file holds floats */

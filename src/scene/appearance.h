@@ -33,8 +33,9 @@ typedef struct Appearance {
     ColorScale scale;  /* what `colors` mean; its map is owned; zeroed without `colors` */
     char *name, *unit; /* of the scale; owned */
     size_t n_values;
-    double *places;  /* owned; of the values on the scale, where colours blend; or NULL */
-    ColorRamp *ramp; /* owned; that they blend on; or NULL */
+    ScaleOutside outside; /* of the segments drawn */
+    double *places;       /* owned; of the values on the scale, where colours blend; or NULL */
+    ColorRamp *ramp;      /* owned; that they blend on; or NULL */
     char *said;  /* owned; what `colors` mean, for people: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
     bool fitted; /* the range is that of values, and nobody's choice */
     /* Where colours change with time: `colors` and `values` are frame after frame of n_segments

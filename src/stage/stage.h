@@ -102,6 +102,8 @@ typedef struct ViewParams {
     double angle_deg; /* full horizontal angle of a perspective camera, in (0, 180) */
     double height_mm; /* of an orthographic picture; 0: frames the tree */
     double margin;    /* free part of the picture on each side when framing, in [0, 0.45] */
+    int room[2];      /* pixels at the right edge and the lower one that framing leaves free; of a
+                       * perspective picture at the edges across from them, too */
     bool shadows;     /* whether lights cast them */
 } ViewParams;
 

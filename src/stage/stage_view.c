@@ -115,6 +115,8 @@ static Status place_camera(const Geometry *geometry, const ViewParams *params, C
     double diagonal = vec3_distance(bounds.low, bounds.high);
     double aspect = (double)params->width / params->height;
     double used = 1 - 2 * params->margin; /* part of the picture that the tree may fill */
+    double room_x = (double)params->room[0] / params->width;
+    double room_y = (double)params->room[1] / params->height;
     *camera = (Camera){.projection = params->projection,
                        .direction = direction,
                        .width = params->width,
@@ -122,18 +124,24 @@ static Status place_camera(const Geometry *geometry, const ViewParams *params, C
     if (params->projection == PROJECTION_ORTHOGRAPHIC) {
         Extent extent = extent_along(geometry, right, up);
         double wide = extent.high_x - extent.low_x, high = extent.high_y - extent.low_y;
-        double height =
-            params->height_mm > 0 ? params->height_mm : fmax(high, wide / aspect) / used;
+        double least = fmax(high / (1 - room_y), wide / (1 - room_x) / aspect) / used;
+        double height = params->height_mm > 0 ? params->height_mm : least;
         Vec3 middle = vec3_scale(right, (extent.low_x + extent.high_x) / 2);
         middle = vec3_add_scaled(middle, up, (extent.low_y + extent.high_y) / 2);
         middle = vec3_add_scaled(middle, direction, vec3_dot(center, direction) - diagonal);
+        if (params->room[0] > 0)
+            middle = vec3_add_scaled(middle, right, room_x / 2 * height * aspect);
+        if (params->room[1] > 0)
+            middle = vec3_add_scaled(middle, up, -room_y / 2 * height);
         camera->location = params->has_location ? params->location : middle;
         camera->right = vec3_scale(right, height * aspect);
         camera->up = vec3_scale(up, height);
         return STATUS_OK;
     }
     double tan_x = tan(params->angle_deg * degrees_pi / 2), tan_y = tan_x / aspect;
-    double distance = framing_distance(geometry, direction, right, up, tan_x * used, tan_y * used);
+    double distance =
+        framing_distance(geometry, direction, right, up, tan_x * used * (1 - 2 * room_x),
+                         tan_y * used * (1 - 2 * room_y));
     camera->location =
         params->has_location ? params->location : vec3_add_scaled(center, direction, -distance);
     camera->right = vec3_scale(right, 2 * tan_x);

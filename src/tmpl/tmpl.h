@@ -3,6 +3,7 @@
 #define CORCAST_TMPL_TMPL_H
 
 #include "base/base.h"
+#include <stdbool.h>
 
 /* What ${name} stands for. Both are borrowed and zero-terminated. */
 typedef struct TmplValue {
@@ -41,5 +42,27 @@ MUST_CHECK Status tmpl_stream(const Tmpl *tmpl, const TmplValue *values, size_t 
 /* Loads, applies once and releases. */
 MUST_CHECK Status tmpl_expand(const char *path, const TmplValue *values, size_t n, Text *out,
                               Err *err);
+
+/* ---- pages of markup -------------------------------------------------------------------------
+ */
+
+/* What fills a template of HTML or SVG in: a text for each of its names. Begin with {0}. */
+typedef struct Markup {
+    struct {
+        const char *name; /* borrowed */
+        bool markup;      /* put in as it stands; else escaped */
+        Text text;
+    } parts[48];
+    size_t n;
+} Markup;
+
+/* A new, empty part for the caller to fill with text, or with markup. Borrowed. */
+Text *markup_text(Markup *self, const char *name);
+Text *markup_raw(Markup *self, const char *name);
+void markup_release(Markup *self);
+/* Appends the template `file` of the folder `templates`, filled in, and releases the parts, on
+ * failure, too. STATUS_INPUT as tmpl_apply. */
+MUST_CHECK Status markup_put(Markup *self, const char *templates, const char *file, Text *out,
+                             Err *err);
 
 #endif

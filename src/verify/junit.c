@@ -2,9 +2,9 @@
  * properties and failure. A comparison has a test case for each rule, a report one for each check
  * with its rules as properties. */
 #include "verify/check.h"
-#include "verify/html.h"
 #include "verify/report.h"
 #include "verify/result.h"
+#include "verify/rounded.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -14,8 +14,6 @@ json_t *worst_segments_json(const CompareResult *result);
 MUST_CHECK Status report_tables(const ReportCase *report, const char *templates, Text *rules,
                                 Text *measures, Err *err);
 
-/* Appends a picture as a data: URI. */
-MUST_CHECK Status report_picture(Text *out, const Picture *picture, Err *err);
 /* Appends the depths and normals of both sides as data: URIs for the page's script, "data:," for
  * what is not known or larger than 4 million pixels. Depth: 0 for nothing, else 1 to 65534 over
  * range_mm, in red and green; normals: 128 + 127 n; the angle between them in 0.001 degrees, in red

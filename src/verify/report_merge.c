@@ -1,7 +1,8 @@
 /* One page from the pages of several cases: each holds its row of the table and its section between
  * marks, and report.json its verdict, so that nothing is drawn or measured again. */
-#include "verify/html.h"
+#include "tmpl/tmpl.h"
 #include "verify/report.h"
+#include "verify/rounded.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -122,29 +123,29 @@ static const char *mark(json_t *row, const char *rule)
 static Status put_fault(json_t *row, const char *templates, Text *out, Err *err)
 {
     static const char *const rules[] = {"A", "B", "pixelmatch", "flip", "psnr", "blender", "ssim"};
-    HtmlParts parts = {0};
-    text_puts(html_text(&parts, "fault"), text_of(row, "fault"));
-    text_puts(html_text(&parts, "model"), text_of(row, "model"));
+    Markup parts = {0};
+    text_puts(markup_text(&parts, "fault"), text_of(row, "fault"));
+    text_puts(markup_text(&parts, "model"), text_of(row, "model"));
     for (size_t k = 0; k < sizeof rules / sizeof *rules; k++)
-        text_puts(html_text(&parts, rules[k]), mark(row, rules[k]));
-    return html_put(&parts, templates, "power_fault.html", out, err);
+        text_puts(markup_text(&parts, rules[k]), mark(row, rules[k]));
+    return markup_put(&parts, templates, "power_fault.html", out, err);
 }
 
 static Status put_limit(json_t *row, const char *templates, Text *out, Err *err)
 {
     static const char *const texts[] = {"parameter", "model", "unit"};
     static const char *const limits[] = {"A", "B", "pixelmatch", "blender"};
-    HtmlParts parts = {0};
+    Markup parts = {0};
     for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
-        text_puts(html_text(&parts, texts[k]), text_of(row, texts[k]));
+        text_puts(markup_text(&parts, texts[k]), text_of(row, texts[k]));
     for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
         json_t *limit = json_object_get(row, limits[k]);
         if (json_is_number(limit))
-            text_printf(html_text(&parts, limits[k]), "%.2g", json_number_value(limit));
+            text_printf(markup_text(&parts, limits[k]), "%.2g", json_number_value(limit));
         else
-            text_puts(html_text(&parts, limits[k]), "never");
+            text_puts(markup_text(&parts, limits[k]), "never");
     }
-    return html_put(&parts, templates, "power_limit.html", out, err);
+    return markup_put(&parts, templates, "power_limit.html", out, err);
 }
 
 static Status put_rows(json_t *rows, Status (*put)(json_t *, const char *, Text *, Err *),
@@ -163,21 +164,21 @@ static Status put_rows(json_t *rows, Status (*put)(json_t *, const char *, Text 
 static Status put_power(const char *path, const char *templates, Text *out, Err *err)
 {
     json_t *json = NULL;
-    HtmlParts parts = {0};
+    Markup parts = {0};
     TRY(read_json(&json, path, err));
-    text_printf(html_text(&parts, "alarms"), "%zu",
+    text_printf(markup_text(&parts, "alarms"), "%zu",
                 json_array_size(json_object_get(json, "alarms")));
-    text_printf(html_text(&parts, "scenes"), "%lld",
+    text_printf(markup_text(&parts, "scenes"), "%lld",
                 json_integer_value(json_object_get(json, "clean_scenes")) +
                     json_integer_value(json_object_get(json, "povray_scenes")));
     Status status = put_rows(json_object_get(json, "faults"), put_fault, templates,
-                             html_markup(&parts, "faults"), err);
+                             markup_raw(&parts, "faults"), err);
     if (status == STATUS_OK)
         status = put_rows(json_object_get(json, "limits"), put_limit, templates,
-                          html_markup(&parts, "limits"), err);
+                          markup_raw(&parts, "limits"), err);
     if (status == STATUS_OK)
-        status = html_put(&parts, templates, "power.html", out, err);
-    html_release(&parts);
+        status = markup_put(&parts, templates, "power.html", out, err);
+    markup_release(&parts);
     json_decref(json);
     return status;
 }

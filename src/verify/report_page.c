@@ -1,9 +1,10 @@
 /* The page for people. The templates have the markup, the look and the viewer; what repeats or
  * depends on the case is filled in here, from the inside out: rows, the case, the page. Pictures go
  * in as data: URIs, because a page opened from disk may not read the pixels of a file beside it. */
+#include "tmpl/tmpl.h"
 #include "verify/check.h"
-#include "verify/html.h"
 #include "verify/report.h"
+#include "verify/rounded.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -90,12 +91,12 @@ static Status put_legend(const char *templates, Text *out, Err *err)
     for (int i = 0; i < HEAT_STEPS; i++) {
         const HeatStep *step = &heat_steps[i];
         int to = i + 1 < HEAT_STEPS ? heat_steps[i + 1].from_level - 1 : 255;
-        HtmlParts parts = {0};
-        text_printf(html_text(&parts, "color"), "#%02x%02x%02x", step->red, step->green,
+        Markup parts = {0};
+        text_printf(markup_text(&parts, "color"), "#%02x%02x%02x", step->red, step->green,
                     step->blue);
-        text_printf(html_text(&parts, "levels"), to > step->from_level ? "%d–%d" : "%d",
+        text_printf(markup_text(&parts, "levels"), to > step->from_level ? "%d–%d" : "%d",
                     step->from_level, to);
-        TRY(html_put(&parts, templates, "legend.html", out, err));
+        TRY(markup_put(&parts, templates, "legend.html", out, err));
     }
     return STATUS_OK;
 }
@@ -110,12 +111,12 @@ static Status class_part(const ReportCase *report, Text *part, Err *err)
                             geometry ? b->normal : NULL};
     Picture classes;
     TRY(class_picture(&classes, &in_a, &in_b, &report->planes[PLANE_COLOR]->tolerance, err));
-    Status status = report_picture(part, &classes, err);
+    Status status = picture_put_uri(&classes, part, err);
     picture_release(&classes);
     return status;
 }
 
-static Status plane_parts(const ReportCase *report, HtmlParts *parts, Err *err)
+static Status plane_parts(const ReportCase *report, Markup *parts, Err *err)
 {
     static const char *const names[REPORT_PLANES] = {[REPORT_DEPTH_A] = "depth_a",
                                                      [REPORT_DEPTH_B] = "depth_b",
@@ -125,10 +126,10 @@ static Status plane_parts(const ReportCase *report, HtmlParts *parts, Err *err)
     Text *planes[REPORT_PLANES];
     double range_mm[2];
     for (int i = 0; i < REPORT_PLANES; i++)
-        planes[i] = html_markup(parts, names[i]);
+        planes[i] = markup_raw(parts, names[i]);
     TRY(report_planes(&report->a, &report->b, planes, range_mm, err));
-    text_printf(html_text(parts, "depth_range"), "%.9g %.9g", range_mm[0], range_mm[1]);
-    return class_part(report, html_markup(parts, "classes"), err);
+    text_printf(markup_text(parts, "depth_range"), "%.9g %.9g", range_mm[0], range_mm[1]);
+    return class_part(report, markup_raw(parts, "classes"), err);
 }
 
 /* "data:," is an empty document: the viewer then knows no ids. */
@@ -140,7 +141,7 @@ static Status ids_part(Text *part, const IdPlane *ids, Err *err)
     }
     Picture picture;
     TRY(picture_from_ids(&picture, ids, err));
-    Status status = report_picture(part, &picture, err);
+    Status status = picture_put_uri(&picture, part, err);
     picture_release(&picture);
     return status;
 }
@@ -183,60 +184,60 @@ static void put_segments(const CompareResult *color, Text *out)
                                            : "Not told apart: no id planes were given.");
 }
 
-static void fill_words(const ReportCase *report, HtmlParts *parts)
+static void fill_words(const ReportCase *report, Markup *parts)
 {
     const CompareResult *color = report->planes[PLANE_COLOR];
     bool agrees = report_agrees(report);
-    text_puts(html_text(parts, "name"), report->name);
-    text_puts(html_text(parts, "parted"), *report->model ? ", " : "");
-    text_puts(html_text(parts, "model"), report->model);
-    text_puts(html_text(parts, "class"), class_of(agrees));
-    text_puts(html_text(parts, "verdict"), verdict_of(agrees));
-    put_sentence(report, html_text(parts, "sentence"));
-    text_puts(html_text(parts, "options"), options_of(report));
-    text_printf(html_text(parts, "size"), "%d × %d", color->width, color->height);
-    text_puts(html_text(parts, "tier"), color->tolerance.tier);
-    text_puts(html_text(parts, "name_a"), report->a.name);
-    text_puts(html_text(parts, "name_b"), report->b.name);
-    Text *sides = html_text(parts, "sides");
-    side_words(&report->a, html_text(parts, "alt_a"), sides);
-    side_words(&report->b, html_text(parts, "alt_b"), sides);
+    text_puts(markup_text(parts, "name"), report->name);
+    text_puts(markup_text(parts, "parted"), *report->model ? ", " : "");
+    text_puts(markup_text(parts, "model"), report->model);
+    text_puts(markup_text(parts, "class"), class_of(agrees));
+    text_puts(markup_text(parts, "verdict"), verdict_of(agrees));
+    put_sentence(report, markup_text(parts, "sentence"));
+    text_puts(markup_text(parts, "options"), options_of(report));
+    text_printf(markup_text(parts, "size"), "%d × %d", color->width, color->height);
+    text_puts(markup_text(parts, "tier"), color->tolerance.tier);
+    text_puts(markup_text(parts, "name_a"), report->a.name);
+    text_puts(markup_text(parts, "name_b"), report->b.name);
+    Text *sides = markup_text(parts, "sides");
+    side_words(&report->a, markup_text(parts, "alt_a"), sides);
+    side_words(&report->b, markup_text(parts, "alt_b"), sides);
     put_origin(sides);
-    Text *commands = html_text(parts, "commands");
+    Text *commands = markup_text(parts, "commands");
     for (size_t i = 0; i < report->n_commands; i++)
         text_printf(commands, "%s\n", report->commands[i]);
-    put_segments(color, html_text(parts, "segment_lines"));
-    text_json(html_text(parts, "segments"), worst_segments_json(color), 0);
+    put_segments(color, markup_text(parts, "segment_lines"));
+    text_json(markup_text(parts, "segments"), worst_segments_json(color), 0);
 }
 
 static Status put_case(const ReportCase *report, const Picture *heat, const char *templates,
                        Text *out, Err *err)
 {
-    HtmlParts parts = {0};
+    Markup parts = {0};
     Status status = STATUS_OK;
     fill_words(report, &parts);
-    Text *rules = html_markup(&parts, "rules"), *measures = html_markup(&parts, "measures");
+    Text *rules = markup_raw(&parts, "rules"), *measures = markup_raw(&parts, "measures");
     TRY_GOTO(report_tables(report, templates, rules, measures, err));
-    TRY_GOTO(put_legend(templates, html_markup(&parts, "legend"), err));
-    TRY_GOTO(report_picture(html_markup(&parts, "image_a"), report->a.picture, err));
-    TRY_GOTO(report_picture(html_markup(&parts, "image_b"), report->b.picture, err));
-    TRY_GOTO(report_picture(html_markup(&parts, "image_heat"), heat, err));
-    TRY_GOTO(ids_part(html_markup(&parts, "ids_a"), report->a.ids, err));
-    TRY_GOTO(ids_part(html_markup(&parts, "ids_b"), report->b.ids, err));
+    TRY_GOTO(put_legend(templates, markup_raw(&parts, "legend"), err));
+    TRY_GOTO(picture_put_uri(report->a.picture, markup_raw(&parts, "image_a"), err));
+    TRY_GOTO(picture_put_uri(report->b.picture, markup_raw(&parts, "image_b"), err));
+    TRY_GOTO(picture_put_uri(heat, markup_raw(&parts, "image_heat"), err));
+    TRY_GOTO(ids_part(markup_raw(&parts, "ids_a"), report->a.ids, err));
+    TRY_GOTO(ids_part(markup_raw(&parts, "ids_b"), report->b.ids, err));
     TRY_GOTO(plane_parts(report, &parts, err));
-    status = html_put(&parts, templates, "case.html", out, err);
+    status = markup_put(&parts, templates, "case.html", out, err);
 done:
-    html_release(&parts);
+    markup_release(&parts);
     return status;
 }
 
 /* ---------------------------------------------------------------------------- row of the case */
 
 /* A number to sort by, -1 where it is not known, and as it is shown. */
-static void put_cell(HtmlParts *parts, const char *sorted, const char *shown, double value)
+static void put_cell(Markup *parts, const char *sorted, const char *shown, double value)
 {
-    Text *text = html_text(parts, shown);
-    text_printf(html_text(parts, sorted), "%.9g", isnan(value) ? -1 : value);
+    Text *text = markup_text(parts, shown);
+    text_printf(markup_text(parts, sorted), "%.9g", isnan(value) ? -1 : value);
     if (!isnan(value))
         text_rounded(text, value, "");
 }
@@ -245,24 +246,24 @@ static Status put_row(const ReportCase *report, const char *templates, Text *row
 {
     const CompareResult *color = report->planes[PLANE_COLOR];
     bool agrees = report_agrees(report);
-    HtmlParts parts = {0};
+    Markup parts = {0};
     Picture thumbnail;
     TRY(report_thumbnail(&thumbnail, report->b.picture, err));
-    Status status = report_picture(html_markup(&parts, "thumbnail"), &thumbnail, err);
+    Status status = picture_put_uri(&thumbnail, markup_raw(&parts, "thumbnail"), err);
     picture_release(&thumbnail);
-    text_puts(html_text(&parts, "name"), report->name);
-    text_puts(html_text(&parts, "options"), options_of(report));
-    text_puts(html_text(&parts, "model"), report->model);
-    text_puts(html_text(&parts, "class"), class_of(agrees));
-    text_puts(html_text(&parts, "verdict"), agrees ? "✓ agree" : "✗ differ");
-    text_printf(html_text(&parts, "severity"), "%.9g", report_severity(report));
+    text_puts(markup_text(&parts, "name"), report->name);
+    text_puts(markup_text(&parts, "options"), options_of(report));
+    text_puts(markup_text(&parts, "model"), report->model);
+    text_puts(markup_text(&parts, "class"), class_of(agrees));
+    text_puts(markup_text(&parts, "verdict"), agrees ? "✓ agree" : "✗ differ");
+    text_printf(markup_text(&parts, "severity"), "%.9g", report_severity(report));
     put_cell(&parts, "differing_value", "differing", (double)color->differing_pixels);
     put_cell(&parts, "largest_value", "largest", color->max_abs);
     put_cell(&parts, "flip_value", "flip", color->flip_mean);
     put_cell(&parts, "ssim_value", "ssim", color->ssim);
     if (status == STATUS_OK)
-        status = html_put(&parts, templates, "row.html", row, err);
-    html_release(&parts);
+        status = markup_put(&parts, templates, "row.html", row, err);
+    markup_release(&parts);
     return status;
 }
 
@@ -271,18 +272,18 @@ static Status put_row(const ReportCase *report, const char *templates, Text *row
 Status report_write_frame(const ReportFrame *frame, const char *templates, const char *path,
                           Err *err)
 {
-    HtmlParts parts = {0};
+    Markup parts = {0};
     Text page = TEXT_INIT;
-    text_puts(html_text(&parts, "title"), frame->title);
-    text_puts(html_text(&parts, "class"), class_of(frame->agrees));
-    text_puts(html_text(&parts, "verdict"), verdict_of(frame->agrees));
-    text_puts(html_text(&parts, "heading"), frame->heading);
-    text_puts(html_text(&parts, "sentence"), frame->sentence);
-    text_puts(html_text(&parts, "table_hidden"), frame->n_cases == 1 ? " hidden" : "");
-    text_add(html_markup(&parts, "rows"), frame->rows);
-    text_add(html_markup(&parts, "cases"), frame->cases);
-    text_add(html_markup(&parts, "power"), frame->power);
-    Status status = html_put(&parts, templates, "report.html", &page, err);
+    text_puts(markup_text(&parts, "title"), frame->title);
+    text_puts(markup_text(&parts, "class"), class_of(frame->agrees));
+    text_puts(markup_text(&parts, "verdict"), verdict_of(frame->agrees));
+    text_puts(markup_text(&parts, "heading"), frame->heading);
+    text_puts(markup_text(&parts, "sentence"), frame->sentence);
+    text_puts(markup_text(&parts, "table_hidden"), frame->n_cases == 1 ? " hidden" : "");
+    text_add(markup_raw(&parts, "rows"), frame->rows);
+    text_add(markup_raw(&parts, "cases"), frame->cases);
+    text_add(markup_raw(&parts, "power"), frame->power);
+    Status status = markup_put(&parts, templates, "report.html", &page, err);
     if (status == STATUS_OK)
         status = file_write_text(path, &page, err);
     text_release(&page);

@@ -74,7 +74,7 @@ static Status put_pictures(Picture pictures[REPORT_PLANES], bool filled, ReportP
 {
     for (ReportPlane i = first; i <= last; i++) {
         if (filled)
-            TRY(report_picture(parts[i], &pictures[i], err));
+            TRY(picture_put_uri(&pictures[i], parts[i], err));
         else
             text_puts(parts[i], "data:,");
     }

@@ -1,5 +1,6 @@
 /* Draws band by band, each as many rows as --memory holds, and writes each before the next, so that
  * a picture of any size needs the memory of one band. */
+#include "app/command/render_panel.h"
 #include "app/commands.h"
 #include "app/pictures/animation.h"
 #include "app/pictures/frames.h"
@@ -21,6 +22,7 @@ typedef struct RenderOptions {
     double threshold, memory_mb, min_width_px;
     AnimationOptions animation;
     ShardOptions shard;
+    Annotation annotation;
     PictureOptions picture;
 } RenderOptions;
 
@@ -36,7 +38,7 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, RenderOptions, output),
      .argument = "P",
-     .help = "the picture: .png, .ppm, .tif or .pfm"},
+     .help = "the picture: .png, .ppm, .tif or .pfm, or a page that holds it: .pdf, .svg"},
     {.name = "planes",
      SETS(TEXT, RenderOptions, planes),
      .argument = "LIST",
@@ -113,6 +115,7 @@ static void set_defaults(void *options)
 {
     RenderOptions *own_options = options;
     picture_set_defaults(&own_options->picture);
+    annotation_set_defaults(&own_options->annotation);
     own_options->bits = 8;
     own_options->picture.antialias = PICTURE_ANTIALIAS;
     own_options->method = RENDER_FASTEST;
@@ -326,15 +329,26 @@ static Status check_method(const RenderOptions *options, Err *err)
     return status;
 }
 
+/* What is written as codes: 8 bits of a page, and nothing over floats. */
+static Status check_codes(const RenderOptions *options, const Parsed *parsed, Err *err)
+{
+    const bool floats = strcmp(file_extension(options->output), "pfm") == 0;
+    const OptionNeed needs[] = {
+        {"bits", !floats, "is for whole numbers; a .pfm holds floats"},
+        {"bits", !frames_is_page(options->output), "is for pictures; a page holds one of 8 bits"},
+        {0}};
+    TRY(bits_check(options->bits, err));
+    if (floats && annotation_is_any(&options->annotation))
+        return err_set(err, STATUS_USAGE,
+                       "-o: a .pfm holds numbers to measure, and no legend, scale bar or letter");
+    return options_check_needs(parsed, needs, err);
+}
+
 /* Options that fight each other, or that the method does not know. */
 static Status check(const RenderOptions *options, const Parsed *parsed, Err *err)
 {
     const PictureOptions *picture = &options->picture;
-    TRY(bits_check(options->bits, err));
-    const OptionNeed needs[] = {{"bits", strcmp(file_extension(options->output), "pfm") != 0,
-                                 "is for whole numbers; a .pfm holds floats"},
-                                {0}};
-    TRY(options_check_needs(parsed, needs, err));
+    TRY(check_codes(options, parsed, err));
     if (options->min_width_px > 0 && !covers_thin(options))
         return err_set(err, STATUS_USAGE,
                        "--min-width is for --method fastest, without --exact and --hits povray");
@@ -342,6 +356,7 @@ static Status check(const RenderOptions *options, const Parsed *parsed, Err *err
         return err_set(err, STATUS_USAGE, "--min-width is for vessels, not for --model %s",
                        models[picture->model].name);
     TRY(picture_check_needs(picture, parsed, err));
+    TRY(annotation_check(&options->annotation, picture, parsed, err));
     TRY(picture_check_dpi(&picture->size, options->output, parsed, err));
     if (options->threshold > 0 && picture->antialias == 1)
         return err_set(err, STATUS_USAGE,
@@ -357,6 +372,12 @@ static Status check(const RenderOptions *options, const Parsed *parsed, Err *err
                        "--method zbuffer draws neither shadows nor antialiased pictures nor "
                        "ambient occlusion");
     return STATUS_OK;
+}
+
+/* Whether something is drawn over the picture, or holds it. */
+static bool is_on_sheet(const RenderOptions *options)
+{
+    return annotation_is_any(&options->annotation) || frames_is_page(options->output);
 }
 
 /* The files that --planes asks for, beside the picture. */
@@ -375,10 +396,12 @@ static Status plan_files(const RenderOptions *options, RenderParams *params, Fra
                          .depth = params->want_depth,
                          .normal = params->want_normal,
                          .id = params->want_id};
-    params->codes_suffice =
-        form->bits == 8 && !form->color && strcmp(file_extension(form->path), "pfm") != 0;
+    params->codes_suffice = form->bits == 8 && !form->color && !is_on_sheet(options) &&
+                            strcmp(file_extension(form->path), "pfm") != 0;
     params->want_color = true;
-    return frames_check_output(options->output, options->planes != NULL, err);
+    return frames_is_page(options->output)
+               ? STATUS_OK
+               : frames_check_output(options->output, options->planes != NULL, err);
 }
 
 /* The names of all pictures, and of the planes beside them. */
@@ -427,20 +450,40 @@ static Status check_effects(const RenderOptions *options, const View *view, Err 
     return STATUS_OK;
 }
 
-/* The scene, and what of it follows from the animation. */
-static Status make_scene(const RenderOptions *options, Parsed *parsed, const PictureSource *source,
-                         Scene *scene, StageReport *staged, Animation *animation, Err *err)
+/* The scene, with room for a legend, and what of it follows from the animation. */
+static Status make_scene(RenderOptions *options, Parsed *parsed, const PictureSource *source,
+                         const FigureFonts *fonts, Scene *scene, StageReport *staged,
+                         Animation *animation, Err *err)
 {
-    const PictureOptions *picture = &options->picture;
+    PictureOptions *picture = &options->picture;
     TRY(picture_scene_of(picture, source, parsed, scene, NULL, staged, err));
     TRY(animation_count(animation, &scene->appearance, err));
     TRY(pick_only(options->shard.only, animation, err));
+    if (options->annotation.legend) {
+        TRY(annotation_make_room(&options->annotation, fonts, &scene->appearance, picture, err));
+        TRY(picture_view(picture, source, &scene->geometry, &scene->view, err));
+    }
     if (animation->kind == ANIMATION_TURN)
         TRY(animation_frame_turn(picture, source, scene, err));
     return STATUS_OK;
 }
 
-static Status draw_pictures(const RenderOptions *options, Parsed *parsed, RenderParams *params,
+/* What lies over the picture of the scene. */
+static Status fill_sheet(const RenderOptions *options, const char *tree, const Scene *scene,
+                         const char *command, Sheet *sheet, Err *err)
+{
+    FigurePage *page = &sheet->page;
+    Text description = TEXT_INIT;
+    sheet_begin(sheet, options->picture.size.pixels, annotation_dpi(&options->picture));
+    picture_description(&scene->geometry, tree, &description);
+    Status status = sheet_describe(sheet, &description, command, err);
+    text_release(&description);
+    TRY(status);
+    const FigureBox whole = {0, 0, page->width_mm, page->height_mm};
+    return annotation_put(&options->annotation, scene, whole, page, err);
+}
+
+static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams *params,
                             FramesForm *form, Animation *animation, const Shard *shard, Err *err)
 {
     const CellParams cells = picture_cells(&options->picture);
@@ -448,6 +491,7 @@ static Status draw_pictures(const RenderOptions *options, Parsed *parsed, Render
     Scene scene = {0};
     RenderStats stats = {0};
     StageReport staged;
+    Sheet sheet = {0};
     char *line = NULL;
     Progress progress;
     Status status;
@@ -463,8 +507,12 @@ static Status draw_pictures(const RenderOptions *options, Parsed *parsed, Render
                        .shard = *shard,
                        .step = band_rows(form, options->memory_mb)};
     TRY_GOTO(picture_fits(form->width, film.step, 40, err));
+    if (frames_is_page(form->path))
+        TRY_GOTO(picture_fits(form->width, form->height, 12, err));
+    if (is_on_sheet(options))
+        TRY_GOTO(sheet_open(&sheet, err));
     TRY_GOTO(picture_read_source(&options->picture, parsed, &source, err));
-    TRY_GOTO(make_scene(options, parsed, &source, &scene, &staged, animation, err));
+    TRY_GOTO(make_scene(options, parsed, &source, sheet.fonts, &scene, &staged, animation, err));
     TRY_GOTO(check_effects(options, &scene.view, err));
     TRY_GOTO(note_files(animation, form, &parsed->files, err));
     if (options->shard.commands) {
@@ -477,11 +525,17 @@ static Status draw_pictures(const RenderOptions *options, Parsed *parsed, Render
     TRY_GOTO(command_line_text(parsed, &line, err));
     form->provenance = line;
     form->colors = scene.appearance.said;
+    if (is_on_sheet(options)) {
+        TRY_GOTO(fill_sheet(options, source.of.path, &scene, line, &sheet, err));
+        form->page = &sheet.page;
+        form->notes = &sheet.notes;
+    }
     TRY_GOTO(draw_all(&film, form, &stats, err));
     if (options->json)
         status = write_report(options->json, &scene, &stats, &staged, params->threads, err);
 done:
     free(line);
+    sheet_release(&sheet);
     scene_release(&scene);
     picture_source_release(&source);
     return status;
@@ -497,6 +551,7 @@ static Status settle_shard(const ShardOptions *options, bool animated, const Par
     snprintf(shard->kernels, sizeof shard->kernels, "%s",
              render_kernel_names[kernels ? kernels : render_fastest_kernels()]);
     form->height = shard->rows;
+    form->first = shard->first;
     return STATUS_OK;
 }
 
@@ -542,6 +597,7 @@ const Command command_render = {
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},
                {&shard_table, offsetof(RenderOptions, shard)},
+               {&annotation_table, offsetof(RenderOptions, annotation)},
                PICTURE_TABLES(RenderOptions, picture)},
     .run = run_render,
 };

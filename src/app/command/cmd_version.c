@@ -4,6 +4,7 @@
 #include "app/run/output.h"
 #include "app/run/templates.h"
 #include "app/window/window.h"
+#include "figure/figure.h"
 #include "image/image.h"
 #include "render/render.h"
 #include <stdio.h>
@@ -77,6 +78,8 @@ static Status run_version(void *options, Parsed *parsed, Err *err)
     put_kernels(&text);
     text_puts(&text, "libraries  ");
     image_put_libraries(&text);
+    text_puts(&text, ", ");
+    figure_put_libraries(&text);
     text_printf(&text, ", jansson %s\n", jansson_version_str());
     put_templates(&text);
     text_puts(&text, "SDL        ");

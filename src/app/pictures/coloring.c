@@ -319,9 +319,8 @@ static void put_steps(const ColorScale *scale, Text *text)
     text_puts(text, scale->log ? "; logarithmic" : "");
 }
 
-static void put_outside(const ColorScale *scale, const Values *drawn, Text *text)
+static void put_outside(const ColorScale *scale, ScaleOutside outside, Text *text)
 {
-    const ScaleOutside outside = colorscale_outside(scale, drawn->drawn, drawn->n);
     if (outside.below + outside.above && !scale->n_bounds)
         text_printf(text, "; %zu below, %zu above", outside.below, outside.above);
     if (outside.none)
@@ -335,7 +334,8 @@ static Status set_said(const Coloring *coloring, const Values *values, const Val
     colorscale_put_range(&appearance->scale, &text);
     put_source(coloring, values, &text);
     put_steps(&appearance->scale, &text);
-    put_outside(&appearance->scale, drawn, &text);
+    appearance->outside = colorscale_outside(&appearance->scale, drawn->drawn, drawn->n);
+    put_outside(&appearance->scale, appearance->outside, &text);
     Status status = text_take(&text, &appearance->said, err);
     text_release(&text);
     appearance->fitted = !coloring->has_range;

@@ -6,6 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+bool frames_is_page(const char *path)
+{
+    static const char *const known[] = {"pdf", "svg", NULL};
+    return is_one_of(file_extension(path), known);
+}
+
 Status frames_check_output(const char *path, bool planes, Err *err)
 {
     if (strcmp(path, "-") == 0) {
@@ -35,6 +41,8 @@ enum { FRAME_FILES = FILE_PICTURE + 1 };
 struct FramesWriter {
     const FramesForm *form;
     ImageWriter *files[FRAME_FILES]; /* NULL: not wanted */
+    Picture whole;                   /* of a page, or to be kept */
+    int next;                        /* row */
 };
 
 static bool is_wanted(const FramesForm *form, int file)
@@ -49,9 +57,17 @@ static bool is_linear(const FramesForm *form)
     return strcmp(file_extension(form->path), "pfm") == 0;
 }
 
+/* Whether the picture is held in memory until the end. */
+static bool is_held(const FramesForm *form)
+{
+    return form->kept || frames_is_page(form->path);
+}
+
 static Status open_picture(FramesWriter *writer, Err *err)
 {
     const FramesForm *form = writer->form;
+    if (is_held(form))
+        return picture_init(&writer->whole, form->width, form->height, 3, 8, err);
     ImageNote notes[4] = {{"Software", GENERATOR}, {"Comment", form->provenance}};
     ImageNotes all = {.notes = notes, .count = 2, .dpi = form->dpi};
     if (form->colors)
@@ -128,6 +144,19 @@ static Status write_codes(ImageWriter *file, Picture *codes, Err *err)
     return status;
 }
 
+/* Rows of the picture with what is drawn over them. */
+static Status annotate(FramesWriter *writer, Picture *codes, Err *err)
+{
+    const FramesForm *form = writer->form;
+    if (is_held(form))
+        memcpy(writer->whole.codes8 + (size_t)writer->next * picture_stride(codes), codes->codes8,
+               (size_t)codes->height * picture_stride(codes));
+    else if (form->page)
+        TRY(figure_draw(form->page, form->first + writer->next, codes, err));
+    writer->next += codes->height;
+    return STATUS_OK;
+}
+
 static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
 {
     ImageWriter *file = writer->files[FILE_PICTURE];
@@ -137,7 +166,39 @@ static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
         return imagewriter_codes(file, &rows->codes, err);
     Picture codes;
     TRY(picture_from_plane(&codes, &rows->color, writer->form->encoding, writer->form->bits, err));
-    return write_codes(file, &codes, err);
+    Status status = annotate(writer, &codes, err);
+    if (status == STATUS_OK && file)
+        return write_codes(file, &codes, err);
+    picture_release(&codes);
+    return status;
+}
+
+static Status write_page(const FramesForm *form, Err *err)
+{
+    if (strcmp(file_extension(form->path), "pdf") == 0)
+        return figure_write_pdf(form->page, form->notes, form->path, err);
+    Text svg = TEXT_INIT;
+    Status status = figure_put_svg(form->page, form->notes, &svg, err);
+    if (status == STATUS_OK)
+        status = file_write_text(form->path, &svg, err);
+    text_release(&svg);
+    return status;
+}
+
+/* The picture in its page, which is written, or handed over. */
+static Status finish_held(FramesWriter *writer, Err *err)
+{
+    const FramesForm *form = writer->form;
+    if (form->kept) {
+        *form->kept = writer->whole;
+        writer->whole = (Picture){0};
+        return STATUS_OK;
+    }
+    figure_add_picture(form->page, &writer->whole, 0, 0);
+    TRY(figure_check(form->page, err));
+    Status status = write_page(form, err);
+    form->page->n--; /* the next picture takes its place */
+    return status;
 }
 
 Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err)
@@ -152,7 +213,7 @@ Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err)
         TRY(picture_from_ids(&codes, &rows->id, err));
         TRY(write_codes(writer->files[FILE_ID], &codes, err));
     }
-    return writer->files[FILE_PICTURE] ? write_picture(writer, rows, err) : STATUS_OK;
+    return writer->form->picture ? write_picture(writer, rows, err) : STATUS_OK;
 }
 
 Status frames_commit(FramesWriter *writer, Err *err)
@@ -164,6 +225,8 @@ Status frames_commit(FramesWriter *writer, Err *err)
         status = imagewriter_commit(writer->files[file], err);
         writer->files[file] = NULL;
     }
+    if (status == STATUS_OK && writer->whole.codes8)
+        status = finish_held(writer, err);
     frames_discard(writer);
     return status;
 }
@@ -172,6 +235,8 @@ void frames_discard(FramesWriter *writer)
 {
     for (int file = 0; writer && file < FRAME_FILES; file++)
         imagewriter_discard(writer->files[file]);
+    if (writer)
+        picture_release(&writer->whole);
     free(writer);
 }
 

@@ -4,8 +4,11 @@
 
 #include "app/run/files.h"
 #include "base/base.h"
+#include "figure/figure.h"
 #include "image/image.h"
 
+/* Whether the file is a page, .pdf or .svg, that holds a picture. */
+bool frames_is_page(const char *path);
 /* STATUS_USAGE when `path` is no image file, or is standard output although planes are wanted. */
 MUST_CHECK Status frames_check_output(const char *path, bool planes, Err *err);
 
@@ -16,16 +19,21 @@ MUST_CHECK Status bits_check(int bits, Err *err);
 
 /* Which files are to be written for a frame. */
 typedef struct FramesForm {
-    int width, height; /* of the whole picture */
+    int width, height; /* of the file's picture */
+    int first;         /* row of the page that is its first */
     const char *path;  /* of the picture; the planes of P.png are P.color.pfm, P.depth.pfm,
                         * P.normal.pfm and P.id.ppm */
     int bits;          /* of a picture that is no .pfm: 8 or 16 */
     Encoding encoding; /* of its codes; .pfm is linear */
     double dpi;        /* pixels an inch on paper; 0: not known */
     bool picture, color, depth, normal, id;
-    const char *provenance; /* the command line; of the picture */
-    const char *colors;     /* what they mean; of the picture; NULL: nothing */
-    const char *shard;      /* the note that says what part of what it is; NULL: none */
+    const char *provenance;   /* the command line; of the picture */
+    const char *colors;       /* what they mean; of the picture; NULL: nothing */
+    const char *shard;        /* the note that says what part of what it is; NULL: none */
+    FigurePage *page;         /* drawn over the picture, and what holds it if the file is a page;
+                               * NULL: nothing, and it is none */
+    const FigureNotes *notes; /* of a page */
+    Picture *kept;            /* the picture is left here (owned), not written; NULL: it is not */
 } FramesForm;
 
 /* Takes note of the planes that are to be written, of the picture's name or not. */

@@ -3,6 +3,7 @@
  * effect on the picture asked for is refused. */
 #include "app/pictures/picture.h"
 
+#include "app/pictures/frames.h"
 #include "app/run/progress.h"
 #include "app/run/reading.h"
 #include "image/image.h"
@@ -261,8 +262,9 @@ Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, 
 Status picture_check_dpi(const PictureSize *size, const char *output, const Parsed *parsed,
                          Err *err)
 {
-    const OptionNeed needs[] = {{"dpi", size_is_on_paper(size) || image_keeps_dpi(output),
-                                 NEEDS_PAPER ", or a file that keeps it (.png, .tif)"},
+    const bool kept = image_keeps_dpi(output) || frames_is_page(output);
+    const OptionNeed needs[] = {{"dpi", size_is_on_paper(size) || kept,
+                                 NEEDS_PAPER ", or a file that keeps it (.png, .tif, .pdf, .svg)"},
                                 {0}};
     return options_check_needs(parsed, needs, err);
 }

@@ -75,6 +75,7 @@ typedef enum OptionGroup {
     GROUP_CAMERA,
     GROUP_LIGHT,
     GROUP_COLOR,
+    GROUP_PAGE,
     GROUP_ANIMATION,
     GROUP_PARTS,
     GROUP_POVRAY,
@@ -174,7 +175,7 @@ typedef struct OptionTable {
 
 typedef struct Parsed Parsed;
 
-enum { MAX_OPERANDS = 512, MAX_TABLES = 5 };
+enum { MAX_OPERANDS = 512, MAX_TABLES = 6 };
 
 typedef struct Command {
     const char *name;

@@ -1,0 +1,38 @@
+/* What `render` does, for a page of several pictures. */
+#ifndef CORCAST_APP_RENDER_PANEL_H
+#define CORCAST_APP_RENDER_PANEL_H
+
+#include "app/pictures/annotation.h"
+#include "app/pictures/sheet.h"
+#include "image/image.h"
+#include "scene/scene.h"
+
+/* A part of a panel, larger. */
+typedef struct PanelInset {
+    double at[2]; /* its middle, from the panel's upper left corner, over width and height */
+    double magnify;
+    int pixels[2];   /* of the inset itself */
+    Picture picture; /* made; owned */
+} PanelInset;
+
+/* A picture of a tree. */
+typedef struct Panel {
+    const FigureFonts *fonts; /* borrowed */
+    PanelInset *insets;       /* borrowed */
+    size_t n_insets;
+    Picture picture;       /* made, of 8 bits; owned */
+    Scene scene;           /* made; owned */
+    Annotation annotation; /* what the options ask for, to be drawn by the caller */
+} Panel;
+
+/* The part of the panel that an inset shows: left, top, right, bottom over width and height. */
+FigureBox panel_part(const PanelInset *inset, const int panel_pixels[2]);
+
+/* Draws what the options of `render` ask for, parsed from anywhere but a command line: the tree is
+ * the first operand; output, planes, JSON and animations are none of a panel's. Checks and
+ * sentences are those of the command. STATUS_USAGE for insets in perspective. On failure, too,
+ * panel_release is to be called. */
+MUST_CHECK Status panel_draw(Parsed *parsed, Panel *panel, Err *err);
+void panel_release(Panel *panel);
+
+#endif

@@ -1,0 +1,170 @@
+/* An array of items in the order in which they are drawn, each with the box that it covers, so that
+ * what is built up anywhere can be measured, moved to its place, and skipped where it is not. */
+#include "figure/fonts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void figure_init(FigurePage *page, double width_mm, double height_mm, double dpi,
+                 const FigureFonts *fonts)
+{
+    *page = (FigurePage){.width_mm = width_mm,
+                         .height_mm = height_mm,
+                         .dpi = dpi,
+                         .background = {{255, 255, 255}},
+                         .fonts = fonts};
+}
+
+void figure_release(FigurePage *page)
+{
+    for (size_t i = 0; i < page->n; i++) {
+        free(page->items[i].text);
+        free(page->items[i].ramp);
+    }
+    free(page->items);
+    *page = (FigurePage){0};
+}
+
+int figure_pixels(const FigurePage *page, double mm)
+{
+    return (int)lround(mm / MM_PER_INCH * page->dpi);
+}
+
+/* Where the next item goes; NULL when there is no room. */
+static FigureItem *add(FigurePage *page, FigureItem item)
+{
+    if (mem_reserve(&page->items, &page->capacity, page->n + 1, sizeof item, "items", NULL) !=
+        STATUS_OK) {
+        page->failed = true;
+        return NULL;
+    }
+    page->items[page->n] = item;
+    return &page->items[page->n++];
+}
+
+void figure_add_picture(FigurePage *page, const Picture *picture, int column, int row)
+{
+    double pixel = MM_PER_INCH / page->dpi;
+    add(page, (FigureItem){.kind = FIGURE_PICTURE,
+                           .box = {column * pixel, row * pixel, (column + picture->width) * pixel,
+                                   (row + picture->height) * pixel},
+                           .picture = picture,
+                           .column = column,
+                           .row = row});
+}
+
+static void add_corners(FigurePage *page, FigureItem item, const FigurePoint *corner, int n)
+{
+    FigureBox box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    item.n = n;
+    for (int i = 0; i < n; i++) {
+        item.at[i] = corner[i];
+        box.left = fmin(box.left, corner[i].x - item.width_mm / 2);
+        box.right = fmax(box.right, corner[i].x + item.width_mm / 2);
+        box.top = fmin(box.top, corner[i].y - item.width_mm / 2);
+        box.bottom = fmax(box.bottom, corner[i].y + item.width_mm / 2);
+    }
+    item.box = box;
+    add(page, item);
+}
+
+void figure_add_shape(FigurePage *page, const FigurePoint *corner, int n, FigureColor color)
+{
+    add_corners(page, (FigureItem){.kind = FIGURE_SHAPE, .color = color}, corner, n);
+}
+
+void figure_add_box(FigurePage *page, FigureBox box, FigureColor color)
+{
+    const FigurePoint corner[] = {
+        {box.left, box.top}, {box.right, box.top}, {box.right, box.bottom}, {box.left, box.bottom}};
+    figure_add_shape(page, corner, 4, color);
+}
+
+void figure_add_line(FigurePage *page, const FigurePoint *corner, int n, bool closed,
+                     double width_mm, FigureColor color)
+{
+    add_corners(
+        page,
+        (FigureItem){.kind = FIGURE_LINE, .color = color, .closed = closed, .width_mm = width_mm},
+        corner, n);
+}
+
+void figure_add_ramp(FigurePage *page, FigureBox box, bool upwards,
+                     const FigureColor stops[FIGURE_STOPS])
+{
+    FigureColor *ramp = NULL;
+    if (mem_calloc(&ramp, FIGURE_STOPS, sizeof *ramp, "colours", NULL) != STATUS_OK) {
+        page->failed = true;
+        return;
+    }
+    memcpy(ramp, stops, FIGURE_STOPS * sizeof *ramp);
+    if (!add(page, (FigureItem){.kind = FIGURE_RAMP, .box = box, .upwards = upwards, .ramp = ramp}))
+        free(ramp);
+}
+
+void figure_add_text(FigurePage *page, const FigureText *text)
+{
+    double size = text->size_pt * MM_PER_POINT;
+    double width = figure_text_width(page->fonts, text->text, text->size_pt, text->bold);
+    double left = text->x - (text->align == ALIGN_LEFT     ? 0
+                             : text->align == ALIGN_CENTER ? width / 2
+                                                           : width);
+    char *copy = NULL;
+    if (!page->letter)
+        page->letter = fonts_missing(page->fonts, text->text, text->bold);
+    if (mem_strdup(&copy, text->text, NULL) != STATUS_OK) {
+        page->failed = true;
+        return;
+    }
+    if (!add(page, (FigureItem){.kind = FIGURE_TEXT,
+                                .box = {left, text->y - FONT_CAPITALS * size, left + width,
+                                        text->y + FONT_DESCENT * size},
+                                .color = text->color,
+                                .at = {{text->x, text->y}},
+                                .n = 1,
+                                .align = text->align,
+                                .bold = text->bold,
+                                .size_pt = text->size_pt,
+                                .text = copy}))
+        free(copy);
+}
+
+Status figure_check(const FigurePage *page, Err *err)
+{
+    if (page->failed)
+        return mem_out_of("for", "the page", err);
+    if (page->letter)
+        return err_set(err, STATUS_USAGE,
+                       "a text has the letter U+%04X, which the font Liberation Sans lacks",
+                       (unsigned)page->letter);
+    return STATUS_OK;
+}
+
+FigureBox figure_bounds(const FigurePage *page, size_t first)
+{
+    FigureBox bounds = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = first; i < page->n; i++) {
+        const FigureBox *box = &page->items[i].box;
+        bounds.left = fmin(bounds.left, box->left);
+        bounds.top = fmin(bounds.top, box->top);
+        bounds.right = fmax(bounds.right, box->right);
+        bounds.bottom = fmax(bounds.bottom, box->bottom);
+    }
+    return bounds;
+}
+
+void figure_move(FigurePage *page, size_t first, double dx, double dy)
+{
+    for (size_t i = first; i < page->n; i++) {
+        FigureItem *item = &page->items[i];
+        item->box.left += dx;
+        item->box.right += dx;
+        item->box.top += dy;
+        item->box.bottom += dy;
+        for (int k = 0; k < item->n; k++) {
+            item->at[k].x += dx;
+            item->at[k].y += dy;
+        }
+    }
+}

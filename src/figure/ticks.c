@@ -1,0 +1,59 @@
+/* Round numbers are 1, 2 and 5 times powers of ten. On a logarithmic scale of two powers of ten or
+ * more they are these powers, or each second, third, ... of them; of less, 1, 2 and 5 times them;
+ * where that leaves fewer than two, they are as far apart as on a linear scale. */
+#include "figure/figure.h"
+
+#include <math.h>
+
+/* The least of 1, 2, 5, 10, 20, ... times a power of ten that is not below `least`. */
+static double round_step(double least)
+{
+    double power = pow(10, floor(log10(least)));
+    static const double digits[] = {1, 2, 5};
+    for (size_t i = 0; i < sizeof digits / sizeof *digits; i++)
+        if (digits[i] * power >= least * (1 - 1e-9))
+            return digits[i] * power;
+    return 10 * power;
+}
+
+static int even(const double range[2], int most, bool whole, double ticks[FIGURE_TICKS])
+{
+    double step = round_step((range[1] - range[0]) / most), slack = 1e-9 * (range[1] - range[0]);
+    int n = 0;
+    if (whole)
+        step = fmax(step, 1);
+    for (double k = ceil((range[0] - slack) / step); k * step <= range[1] + slack; k++)
+        if (n < FIGURE_TICKS)
+            ticks[n++] = k * step + 0; /* never -0 */
+    return n;
+}
+
+/* `digits` of them: 1 of each `apart` powers of ten, or 1, 2, 5 of each. */
+static int powers(const double range[2], int apart, int digits, double ticks[FIGURE_TICKS])
+{
+    static const double digit[] = {1, 2, 5};
+    int n = 0;
+    for (int k = (int)floor(log10(range[0])); k <= (int)ceil(log10(range[1])); k++)
+        for (int i = 0; i < digits && k % apart == 0; i++) {
+            double value = k < 0 ? digit[i] / pow(10, -k) : digit[i] * pow(10, k);
+            if (value >= range[0] * (1 - 1e-9) && value <= range[1] * (1 + 1e-9) &&
+                n < FIGURE_TICKS)
+                ticks[n++] = value;
+        }
+    return n;
+}
+
+int figure_ticks(const ColorScale *scale, int most, bool whole, double ticks[FIGURE_TICKS])
+{
+    const double *range = scale->range;
+    if (!(range[0] < range[1])) {
+        ticks[0] = range[0];
+        return 1;
+    }
+    if (!scale->log)
+        return even(range, most, whole, ticks);
+    double decades = log10(range[1] / range[0]);
+    int n = decades >= 2 ? powers(range, (int)ceil(decades / most), 1, ticks)
+                         : powers(range, 1, 3, ticks);
+    return n >= 2 ? n : even(range, most, whole, ticks);
+}

@@ -1,0 +1,54 @@
+/* A template holds all markup of its page; what is put into it is escaped here, in one place,
+ * unless the caller says that it is markup already. */
+#include "tmpl/tmpl.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+Text *markup_text(Markup *self, const char *name)
+{
+    assert(self->n < sizeof self->parts / sizeof *self->parts);
+    self->parts[self->n].name = name;
+    self->parts[self->n].markup = false;
+    return &self->parts[self->n++].text;
+}
+
+Text *markup_raw(Markup *self, const char *name)
+{
+    Text *text = markup_text(self, name);
+    self->parts[self->n - 1].markup = true;
+    return text;
+}
+
+void markup_release(Markup *self)
+{
+    for (size_t i = 0; i < self->n; i++)
+        text_release(&self->parts[i].text);
+    self->n = 0;
+}
+
+static void escape(Text *text)
+{
+    Text escaped = TEXT_INIT;
+    text_escaped(&escaped, text_chars(text));
+    text_release(text);
+    *text = escaped;
+}
+
+Status markup_put(Markup *self, const char *templates, const char *file, Text *out, Err *err)
+{
+    TmplValue values[sizeof self->parts / sizeof *self->parts];
+    char *path;
+    for (size_t i = 0; i < self->n; i++) {
+        if (!self->parts[i].markup)
+            escape(&self->parts[i].text);
+        values[i] = (TmplValue){self->parts[i].name, text_chars(&self->parts[i].text)};
+    }
+    Status status = file_join(templates, file, &path, err);
+    if (status == STATUS_OK) {
+        status = tmpl_expand(path, values, self->n, out, err);
+        free(path);
+    }
+    markup_release(self);
+    return status;
+}

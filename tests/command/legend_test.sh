@@ -1,0 +1,146 @@
+#!/usr/bin/env bash
+# Colour bars, scale bars and letters on pictures, and pages of PDF and SVG that hold one. Poppler,
+# xmllint and librsvg are the witnesses.
+. "$(dirname "$0")/../lib.sh"
+
+grow() {
+    run_ok corcast grow --terminals 60 --seed 7 --quiet -o tree.swc
+}
+
+# All that may be drawn about a picture.
+readonly ALL="--quiet --size 61mmx47mm --color-by wss --range 5%,90% --legend --scale-bar 23 --letter c"
+
+test_a_page_has_searchable_text_embedded_fonts_and_the_picture_at_its_resolution() {
+    grow
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc $ALL --dpi 450 -o page.pdf
+    pdftotext -layout page.pdf text.txt
+    for words in '^ *c$' 'wall shear stress' '(Pa)' '23 mm'; do
+        grep -q "$words" text.txt || fail "expected $words in the page's text, got $(cat text.txt)"
+    done
+    [ "$(pdffonts page.pdf | awk 'NR > 2 && /LiberationSans/ && $(NF - 4) == "yes"' | wc -l)" = 2 ] ||
+        fail "expected two fonts, embedded, got $(pdffonts page.pdf)"
+    pdfimages -list page.pdf | awk 'NR == 3' >image.txt
+    read -r _ _ _ width height _ _ _ _ _ _ _ x y _ <image.txt
+    [ "$width $height $x $y" = "1081 833 450 450" ] || fail "expected 1081 x 833 at 450 ppi, got $(cat image.txt)"
+    pdfinfo page.pdf >info.txt
+    grep -q '^CreationDate: .*2000' info.txt || fail "expected a date that is always the same, got $(cat info.txt)"
+    grep -q 'Subject: .*corcast render tree.swc' info.txt || fail "expected the command, got $(cat info.txt)"
+}
+
+test_an_svg_is_sound_and_its_text_is_text() {
+    grow
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc $ALL --legend-title 'shear < "8" & ü' -o page.svg
+    run_ok xmllint --noout page.svg
+    xmllint --encode UTF-8 --xpath '//*[local-name()="text"]/text()' page.svg >texts
+    grep -q '23 mm' texts || fail "expected 23 mm among the texts, got $(cat texts)"
+    grep -q '^shear &lt; "8" &amp; ü$' texts || fail "expected the title, got $(cat texts)"
+}
+
+test_the_picture_in_a_page_has_the_pixels_of_the_picture_alone() {
+    grow
+    run_ok corcast render tree.swc --quiet --size 200x150 -o alone.png
+    run_ok corcast render tree.swc --quiet --size 200x150 --scale-bar 12.5 -o page.pdf
+    pdfimages -png page.pdf inside
+    cmp <(pngtopnm alone.png) <(pngtopnm inside-000.png) || fail "expected the same pixels"
+}
+
+# The three kinds of file show the same page: drawn by others at the picture's resolution, few pixels
+# of PDF and SVG are far from the PNG's.
+test_pdf_svg_and_png_show_the_same_page() {
+    grow
+    for form in png pdf svg; do
+        # shellcheck disable=SC2086
+        run_ok corcast render tree.swc $ALL --background '#ddddee' -o page.$form
+    done
+    pdftocairo -png -singlefile -r 300 page.pdf pdf
+    pngtopnm pdf.png >pdf.ppm
+    rsvg-convert --dpi-x 300 --dpi-y 300 page.svg -o svg.png
+    pngtopnm svg.png >svg.ppm 2>/dev/null
+    pngtopnm page.png >page.ppm
+    for other in pdf svg; do
+        pnmcut -left 0 -top 0 -width 720 -height 555 $other.ppm >other.ppm
+        run corcast compare page.ppm other.ppm --json
+        jq -e '.mean_abs < 0.6' stdout >/dev/null || fail "$other is not the page of the png: $(jq .mean_abs stdout)"
+    done
+}
+
+test_the_same_page_whatever_the_threads_and_bands() {
+    grow
+    for form in png tif pdf svg; do
+        # shellcheck disable=SC2086
+        run_ok corcast render tree.swc $ALL -o one.$form
+        # shellcheck disable=SC2086
+        run_ok corcast render tree.swc $ALL --threads 1 --memory 0.3 -o two.$form
+        expect_same one.$form two.$form
+    done
+    # shellcheck disable=SC2086
+    run_ok corcast render tree.swc $ALL --tile 2/3 -o part.png
+    pngtopnm one.png >one.ppm
+    pngtopnm part.png >part.ppm
+    read -r _ height < <(pnmfile part.ppm | sed 's/.* \([0-9]*\) by \([0-9]*\) .*/\1 \2/')
+    for first in $(seq 0 8 400); do
+        pnmcut -left 0 -top "$first" -width 720 -height "$height" one.ppm | cmp -s - part.ppm && return
+    done
+    fail "expected the tile to be rows of the whole picture"
+}
+
+test_the_legend_leaves_the_tree_alone() {
+    grow
+    for side in right bottom; do
+        run_ok corcast render tree.swc --quiet --size 50mm --color-by flow --log --legend --legend-at $side \
+            --planes id -o p.ppm
+        corner="-left 460 -top 0 -width 130 -height 590"
+        [ $side = right ] || corner="-left 0 -top 500 -width 590 -height 90"
+        # shellcheck disable=SC2086
+        pnmcut $corner p.id.ppm | ppmhist -noheader 2>/dev/null >colors
+        [ "$(wc -l <colors)" = 1 ] || fail "expected no vessel where the legend is, at the $side"
+        # shellcheck disable=SC2086
+        pnmcut $corner p.ppm | ppmhist -noheader 2>/dev/null >colors
+        [ "$(wc -l <colors)" -gt 50 ] || fail "expected the legend at the $side"
+    done
+}
+
+test_a_scale_bar_is_as_long_as_it_says() {
+    grow
+    run_ok corcast render tree.swc --quiet --size 600x500 --height 100 --scale-bar 25 --background white -o bar.png
+    pngtopnm bar.png >bar.ppm
+    # 25 mm of 120 mm in 600 pixels are 125: the longest run of black in the lowest rows.
+    longest=$(pnmcut -left 0 -top 450 -width 300 -height 50 bar.ppm | pnmtoplainpnm | tail -n +4 | tr -s ' \n' '\n\n' |
+        awk 'NF { v[n++] = $1 } END { for (i = 0; i + 2 < n; i += 3) { if (i % 900 == 0) run = 0
+            run = v[i] == 0 ? run + 1 : 0; if (run > most) most = run } print most }')
+    [ "$longest" = 125 ] || fail "expected a bar of 125 pixels, got $longest"
+}
+
+test_what_cannot_be_drawn_is_refused_in_one_sentence_and_nothing_is_written() {
+    grow
+    refused() {
+        run corcast render tree.swc --quiet "${@:2}"
+        expect_status 2
+        expect_sentence "$1"
+    }
+    refused '\-\-legend needs --color-by' --legend -o x.png
+    refused 'scale-bar is for orthographic' --scale-bar 10 --projection perspective -o x.png
+    refused 'scale-bar.*0.*not a number from' --scale-bar 0 -o x.png
+    refused '700 mm is longer than the picture is wide' --scale-bar 700 -o x.png
+    refused '\-\-legend-at needs --legend' --legend-at bottom -o x.png
+    refused 'needs --legend, --scale-bar or --letter' --text-size 6 -o x.png
+    refused '\-\-legend needs .* mm of a picture of 9 mm' --color-by flow --legend --size 9mm -o x.png
+    refused 'letter U\+65E5, which the font' --letter 日 -o x.pdf
+    refused '\.pfm holds numbers to measure' --scale-bar 10 -o x.pfm
+    refused 'a page holds one of 8 bits' --bits 16 -o x.svg
+    expect_only tree.swc
+}
+
+test_a_missing_font_is_named() {
+    grow
+    cp -R "$REPO/templates" templates
+    rm templates/fonts/LiberationSans-Bold.ttf
+    CORCAST_TEMPLATES=$PWD/templates run corcast render tree.swc --quiet --letter b -o x.png
+    expect_status 3
+    expect_sentence 'LiberationSans-Bold\.ttf: the font is missing'
+    [ ! -e x.png ] || fail "expected no picture"
+}
+
+run_tests "$@"
