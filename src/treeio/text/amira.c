@@ -57,6 +57,7 @@ typedef struct Reader {
     size_t count[ELEMENTS];
     Field *field;
     size_t n_fields, capacity;
+    double taken; /* bytes that the numbers of all blocks take so far */
     VtkData data;
 } Reader;
 
@@ -375,6 +376,8 @@ static Status read_block(Reader *reader, Field *field, Err *err)
 {
     size_t n = reader->count[field->of] * field->components;
     TRY(check_claim(reader, field, n, err));
+    reader->taken += (double)n * sizeof *field->value;
+    TRY(mem_check(reader->taken + (double)n * (double)field->type->size, reader->graph->name, err));
     free(field->value);
     field->value = NULL;
     TRY(mem_calloc(&field->value, n, sizeof *field->value, "numbers of a block", err));
