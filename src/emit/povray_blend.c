@@ -55,7 +55,7 @@ Status put_blend_macros(Text *out, void *context, Err *err)
     if (appearance->n_frames > 0)
         return err_set(err, STATUS_USAGE,
                        "`color_blend`: in a scene of POV-Ray colours that change with time do not "
-                       "blend; `frame` chooses one moment");
+                       "blend; `moment` chooses one moment");
     put_map(add_value(&values, "map"), scale);
     add_number(&values, "lowest", scale->under.given ? colorscale_lowest(scale) : -never);
     add_number(&values, "highest", scale->over.given ? colorscale_highest(scale) : never);

@@ -1,7 +1,7 @@
 /* A camera is moved by moving the parameters that make it, so that what a window shows can be said
  * in the options that draw it again. Turning is about the camera's own axes: what is under the hand
  * follows it, whatever is up. */
-#include "stage/stage.h"
+#include "stage/subject.h"
 
 static const double degrees_pi = 3.14159265358979323846 / 180;
 static const double least_angle = 0.01, largest_height_mm = 1e7, least_height_mm = 1e-6;
@@ -110,17 +110,21 @@ void orbit_project(ViewParams *params, Projection projection, const Geometry *ge
 
 void orbit_frame_turn(ViewParams *params, const Geometry *geometry)
 {
+    const Subject subject = subject_of(params, geometry);
+    const Framed framed = framed_of(&subject, params, &(const View){.n_lights = 0});
     Vec3 center = box_center(geometry->bounds), direction, up;
     bool perspective = params->projection == PROJECTION_PERSPECTIVE;
-    view_axes(params->view, &direction, &up);
+    view_axes(params, &direction, &up);
     Vec3 right = vec3_normalized(vec3_cross(direction, up));
     up = vec3_cross(right, direction);
     double aspect = (double)params->width / params->height, used = 1 - 2 * params->margin;
     double tan_x = tan(params->angle_deg * degrees_pi / 2) * used, tan_y = tan_x / aspect;
     double slant_x = sqrt(1 + tan_x * tan_x), slant_y = sqrt(1 + tan_y * tan_y);
     double height = 0, distance = 0;
-    for (size_t i = 0; i < geometry_balls(geometry); i++) {
-        Ball ball = geometry_ball(geometry, i);
+    for (size_t i = 0; i < framed_balls(&framed); i++) {
+        Ball ball;
+        if (!framed_ball(&framed, i, &ball))
+            continue;
         Vec3 from = vec3_sub(ball.center, center);
         double along = fabs(vec3_dot(from, up)), r = ball.radius;
         double off = vec3_length(vec3_cross(from, up));
@@ -129,7 +133,8 @@ void orbit_frame_turn(ViewParams *params, const Geometry *geometry)
         distance = fmax(distance, (off + r) * slant_x / tan_x);
     }
     if (!perspective) {
-        distance = vec3_distance(geometry->bounds.low, geometry->bounds.high);
+        Box all = box_union(framed.box, geometry->bounds);
+        distance = vec3_distance(all.low, all.high);
         params->height_mm = height;
     }
     params->look_at = vec3_add(center, geometry->origin);

@@ -74,7 +74,18 @@ Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)
  * on a bad value. */
 MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
 
-typedef enum NamedView { VIEW_FRONT, VIEW_TOP, VIEW_LEFT, VIEW_ISO } NamedView;
+typedef enum NamedView {
+    VIEW_FRONT,
+    VIEW_BACK,
+    VIEW_LEFT,
+    VIEW_RIGHT,
+    VIEW_TOP,
+    VIEW_BOTTOM,
+    VIEW_ISO
+} NamedView;
+
+/* The axis of the tree's coordinates that points up. */
+typedef enum UpAxis { UP_Y, UP_Z } UpAxis;
 
 /* What a joined model does where vessels are too short, or turn back too sharply, for their
  * joints. */
@@ -96,7 +107,14 @@ typedef struct GeometryParams {
 typedef struct ViewParams {
     int width, height; /* pixels, >= 1 */
     Projection projection;
-    NamedView view; /* used when has_location is false */
+    /* What ground and lights are placed about, and what is framed: the ends of the tree's segments,
+     * so that all models of it have one view; NULL: those of what is drawn. Borrowed. */
+    const Tree *tree;
+    const Box *domain; /* framed in its place, if not NULL; borrowed */
+    UpAxis up_axis;
+    NamedView view; /* used when has_location is false, and the next two, which turn the camera
+                     * about the upright, to the right, and then up */
+    double turn_deg, rise_deg;
     bool has_location, has_look_at, has_up;
     Vec3 location, look_at, up;
     double angle_deg; /* full horizontal angle of a perspective camera, in (0, 180) */
@@ -107,7 +125,7 @@ typedef struct ViewParams {
     bool shadows;     /* whether lights cast them */
 } ViewParams;
 
-/* front, orthographic, 1000 x 1000, 30 degrees, margin 0.05. */
+/* front, orthographic, 1000 x 1000, 30 degrees, margin 0.05, of what is drawn. */
 ViewParams view_defaults(void);
 
 typedef struct StageReport {
@@ -155,15 +173,19 @@ MUST_CHECK Status stage_appearance(const Look *look, const Field *field, const C
  */
 MUST_CHECK Status stage_blend(Appearance *appearance, Err *err);
 
-/* The camera that `params` asks for, with lights, ground and background of the look about the
- * geometry. STATUS_USAGE when the vectors given make no camera, STATUS_INPUT when it is too far
- * away. O(size of the geometry). */
+/* The camera that `params` asks for, with lights, ground and background of the look. A camera whose
+ * place or height is left open shows all that is framed, with the shadows that lights more than 10
+ * degrees over the ground cast on it; with look_at alone, that is moved to the picture's middle.
+ * STATUS_USAGE when the vectors given make no camera, STATUS_INPUT when it is too far away. O(size
+ * of the geometry and the tree). */
 MUST_CHECK Status stage_view(const Look *look, const ViewParams *params, const Geometry *geometry,
                              View *view, Err *err);
 
-/* Unit direction and up vector of a named view: front looks along -z with y up, top along -y with
- * -z up, left along +x with y up, iso along (-1, -1, -1) with y up. */
-void view_axes(NamedView view, Vec3 *direction, Vec3 *up);
+/* Unit direction and up vector of a named view, turned: front looks along -z with y up, back along
+ * z, left, from the left, along x, right along -x, top along -y with -z up, bottom along y with z
+ * up, iso along (-1, -1, -1). Where z is up, front looks along y, and all else is turned with it.
+ */
+void view_axes(const ViewParams *params, Vec3 *direction, Vec3 *up);
 
 /* ---- a camera that is moved about what it looks at: the parameters that make it, location,
  * look_at, up, projection, and height_mm or angle_deg, all of them given */
@@ -172,8 +194,8 @@ void view_axes(NamedView view, Vec3 *direction, Vec3 *up);
  * geometry. */
 void orbit_begin(ViewParams *params, const Camera *camera, const Geometry *geometry);
 
-/* Sets these so that a named view, turned about the upright through the middle of the geometry,
- * shows all of it at any angle. */
+/* Sets these so that a named view, turned about its own up vector through the middle of the
+ * geometry, shows all that is framed, but not its shadow, at any angle. */
 void orbit_frame_turn(ViewParams *params, const Geometry *geometry);
 
 /* Turns what is seen to the right and up, in radians. */

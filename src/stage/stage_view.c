@@ -1,8 +1,9 @@
-/* A camera that frames the geometry shows the balls about the ends of its vessels exactly; the
- * distance of an orthographic camera changes nothing but the depths it reports, so it stands one
- * diagonal of the geometry's box in front of its centre. Ground and lights of the look, which are
- * given in the camera's axes and in sizes of the tree, are placed about it. */
-#include "stage/stage.h"
+/* A camera that frames a subject shows the balls about the ends of its vessels, and their shadows,
+ * exactly; the distance of an orthographic camera changes nothing but the depths it reports, so it
+ * stands one diagonal of what it shows in front of the middle. Ground and lights of the look, which
+ * are given in the camera's axes and in sizes of the tree, are placed about the subject: before the
+ * camera has its place, so that shadows can be framed. */
+#include "stage/subject.h"
 
 ViewParams view_defaults(void)
 {
@@ -18,52 +19,75 @@ ViewParams view_defaults(void)
 
 static const double degrees_pi = 3.14159265358979323846 / 180;
 
-void view_axes(NamedView view, Vec3 *direction, Vec3 *up)
+/* A vector of a world whose y axis is up, in a world whose upright is another. */
+static Vec3 upright(UpAxis up_axis, Vec3 v)
+{
+    return up_axis == UP_Z ? vec3(v.x, -v.z, v.y) : v;
+}
+
+void view_axes(const ViewParams *params, Vec3 *direction, Vec3 *up)
 {
     static const struct {
         Vec3 direction, up;
     } axes[] = {
-        [VIEW_FRONT] = {{0, 0, -1}, {0, 1, 0}},
-        [VIEW_TOP] = {{0, -1, 0}, {0, 0, -1}},
-        [VIEW_LEFT] = {{1, 0, 0}, {0, 1, 0}},
+        [VIEW_FRONT] = {{0, 0, -1}, {0, 1, 0}}, [VIEW_BACK] = {{0, 0, 1}, {0, 1, 0}},
+        [VIEW_LEFT] = {{1, 0, 0}, {0, 1, 0}},   [VIEW_RIGHT] = {{-1, 0, 0}, {0, 1, 0}},
+        [VIEW_TOP] = {{0, -1, 0}, {0, 0, -1}},  [VIEW_BOTTOM] = {{0, 1, 0}, {0, 0, 1}},
         [VIEW_ISO] = {{-1, -1, -1}, {0, 1, 0}},
     };
-    *direction = vec3_normalized(axes[view].direction);
-    *up = axes[view].up;
+    *direction = vec3_normalized(upright(params->up_axis, axes[params->view].direction));
+    *up = upright(params->up_axis, axes[params->view].up);
+    if (params->turn_deg == 0 && params->rise_deg == 0)
+        return;
+    Vec3 axis = upright(params->up_axis, vec3(0, 1, 0));
+    double turn = params->turn_deg * degrees_pi, rise = params->rise_deg * degrees_pi;
+    *direction = vec3_turned(*direction, axis, turn);
+    *up = vec3_turned(*up, axis, turn);
+    Vec3 right = vec3_normalized(vec3_cross(*direction, *up));
+    *up = vec3_turned(vec3_cross(right, *direction), right, -rise);
+    *direction = vec3_turned(*direction, right, -rise);
 }
 
-/* Right and up of unit length, square to the direction. */
-static Status camera_axes(const ViewParams *params, Vec3 center, Vec3 *direction, Vec3 *right,
-                          Vec3 *up, Err *err)
+/* Where the camera looks, and what is up, if not square to it. */
+static Status camera_direction(const ViewParams *params, Vec3 center, Vec3 *direction, Vec3 *sky,
+                               Err *err)
+{
+    view_axes(params, direction, sky);
+    if (!params->has_location)
+        return STATUS_OK;
+    Vec3 target = params->has_look_at ? params->look_at : center;
+    Vec3 span = vec3_sub(target, params->location);
+    if (!isfinite(vec3_length(span)))
+        return err_set(err, STATUS_USAGE,
+                       "`location` and `look_at` (%s) are farther apart than 1e150 mm",
+                       params->has_look_at ? "given" : "the middle of the tree");
+    if (!(vec3_length(span) > 0))
+        return err_set(err, STATUS_USAGE,
+                       "`location` and `look_at` are the same point, so the camera has no "
+                       "direction; give two different points");
+    *direction = vec3_normalized(span);
+    *sky = upright(params->up_axis, vec3(0, 1, 0));
+    return STATUS_OK;
+}
+
+/* Sets direction, right and up of the camera, right and up of unit length and square to the
+ * direction. */
+static Status aim_camera(const ViewParams *params, Vec3 center, Camera *camera, Err *err)
 {
     Vec3 sky;
-    view_axes(params->view, direction, &sky);
-    if (params->has_location) {
-        Vec3 target = params->has_look_at ? params->look_at : center;
-        Vec3 span = vec3_sub(target, params->location);
-        if (!isfinite(vec3_length(span)))
-            return err_set(err, STATUS_USAGE,
-                           "`location` and `look_at` (%s) are farther apart than 1e150 mm",
-                           params->has_look_at ? "given" : "the middle of the tree");
-        if (!(vec3_length(span) > 0))
-            return err_set(err, STATUS_USAGE,
-                           "`location` and `look_at` are the same point, so the camera has no "
-                           "direction; give two different points");
-        *direction = vec3_normalized(span);
-        sky = vec3(0, 1, 0);
-    }
+    TRY(camera_direction(params, center, &camera->direction, &sky, err));
     if (params->has_up)
         sky = params->up;
-    Vec3 across = vec3_cross(*direction, sky);
+    Vec3 across = vec3_cross(camera->direction, sky);
     if (!(vec3_length(across) > 1e-9 * vec3_length(sky)) && !params->has_up) {
-        sky = vec3(0, 0, -1); /* looking along the y axis */
-        across = vec3_cross(*direction, sky);
+        sky = upright(params->up_axis, vec3(0, 0, -1)); /* looking along the upright */
+        across = vec3_cross(camera->direction, sky);
     }
     if (!(vec3_length(across) > 1e-9 * vec3_length(sky)))
         return err_set(err, STATUS_USAGE,
                        "`up` points along the camera's direction; give a vector that does not");
-    *right = vec3_normalized(across);
-    *up = vec3_cross(*right, *direction);
+    camera->right = vec3_normalized(across);
+    camera->up = vec3_cross(camera->right, camera->direction);
     return STATUS_OK;
 }
 
@@ -71,11 +95,13 @@ typedef struct Extent {
     double low_x, high_x, low_y, high_y;
 } Extent;
 
-static Extent extent_along(const Geometry *geometry, Vec3 right, Vec3 up)
+static Extent extent_along(const Framed *framed, Vec3 right, Vec3 up)
 {
     Extent extent = {INFINITY, -INFINITY, INFINITY, -INFINITY};
-    for (size_t i = 0; i < geometry_balls(geometry); i++) {
-        Ball ball = geometry_ball(geometry, i);
+    for (size_t i = 0; i < framed_balls(framed); i++) {
+        Ball ball;
+        if (!framed_ball(framed, i, &ball))
+            continue;
         double x = vec3_dot(ball.center, right), y = vec3_dot(ball.center, up);
         extent.low_x = fmin(extent.low_x, x - ball.radius);
         extent.high_x = fmax(extent.high_x, x + ball.radius);
@@ -87,66 +113,66 @@ static Extent extent_along(const Geometry *geometry, Vec3 right, Vec3 up)
 
 /* The least distance from the middle, against the direction, at which a pinhole whose half-width
  * and half-height at unit distance are tan_x and tan_y sees every ball whole. */
-static double framing_distance(const Geometry *geometry, Vec3 direction, Vec3 right, Vec3 up,
-                               double tan_x, double tan_y)
+static double framing_distance(const Framed *framed, const Camera *camera, double tan_x,
+                               double tan_y)
 {
-    Vec3 center = box_center(geometry->bounds);
+    Vec3 center = box_center(framed->box);
     double slant_x = sqrt(1 + tan_x * tan_x), slant_y = sqrt(1 + tan_y * tan_y);
     double distance = 0;
-    for (size_t i = 0; i < geometry_balls(geometry); i++) {
-        Ball ball = geometry_ball(geometry, i);
+    for (size_t i = 0; i < framed_balls(framed); i++) {
+        Ball ball;
+        if (!framed_ball(framed, i, &ball))
+            continue;
         Vec3 from = vec3_sub(ball.center, center);
-        double towards = -vec3_dot(from, direction), r = ball.radius;
-        double wide = (fabs(vec3_dot(from, right)) + r * slant_x) / tan_x;
-        double high = (fabs(vec3_dot(from, up)) + r * slant_y) / tan_y;
+        double towards = -vec3_dot(from, camera->direction), r = ball.radius;
+        double wide = (fabs(vec3_dot(from, camera->right)) + r * slant_x) / tan_x;
+        double high = (fabs(vec3_dot(from, camera->up)) + r * slant_y) / tan_y;
         distance = fmax(distance, towards + fmax(wide, high));
     }
     return distance;
 }
 
-/* The camera that `params` asks for. Where they leave open where it stands or how much it shows, it
- * shows all of the balls with the margin. STATUS_USAGE when the vectors given make no camera. */
-static Status place_camera(const Geometry *geometry, const ViewParams *params, Camera *camera,
-                           Err *err)
+/* Where an aimed orthographic camera stands and how much it shows. */
+static void place_orthographic(const ViewParams *params, const Framed *framed, Camera *camera)
 {
-    const Box bounds = geometry->bounds;
-    Vec3 center = box_center(bounds), direction = {0}, right = {0}, up = {0};
-    TRY(camera_axes(params, center, &direction, &right, &up, err));
-    double diagonal = vec3_distance(bounds.low, bounds.high);
-    double aspect = (double)params->width / params->height;
-    double used = 1 - 2 * params->margin; /* part of the picture that the tree may fill */
+    double aspect = (double)params->width / params->height, used = 1 - 2 * params->margin;
+    Vec3 right = camera->right, up = camera->up, direction = camera->direction;
+    Vec3 center = box_center(framed->box);
+    Box all = box_union(framed->box, framed->subject->box);
+    Extent extent = extent_along(framed, right, up);
+    double wide = extent.high_x - extent.low_x, high = extent.high_y - extent.low_y;
     double room_x = (double)params->room[0] / params->width;
     double room_y = (double)params->room[1] / params->height;
-    *camera = (Camera){.projection = params->projection,
-                       .direction = direction,
-                       .width = params->width,
-                       .height = params->height};
-    if (params->projection == PROJECTION_ORTHOGRAPHIC) {
-        Extent extent = extent_along(geometry, right, up);
-        double wide = extent.high_x - extent.low_x, high = extent.high_y - extent.low_y;
-        double least = fmax(high / (1 - room_y), wide / (1 - room_x) / aspect) / used;
-        double height = params->height_mm > 0 ? params->height_mm : least;
-        Vec3 middle = vec3_scale(right, (extent.low_x + extent.high_x) / 2);
-        middle = vec3_add_scaled(middle, up, (extent.low_y + extent.high_y) / 2);
-        middle = vec3_add_scaled(middle, direction, vec3_dot(center, direction) - diagonal);
-        if (params->room[0] > 0)
-            middle = vec3_add_scaled(middle, right, room_x / 2 * height * aspect);
-        if (params->room[1] > 0)
-            middle = vec3_add_scaled(middle, up, -room_y / 2 * height);
-        camera->location = params->has_location ? params->location : middle;
-        camera->right = vec3_scale(right, height * aspect);
-        camera->up = vec3_scale(up, height);
-        return STATUS_OK;
+    double least = fmax(high / (1 - room_y), wide / (1 - room_x) / aspect) / used;
+    double height = params->height_mm > 0 ? params->height_mm : least;
+    double x = (extent.low_x + extent.high_x) / 2, y = (extent.low_y + extent.high_y) / 2;
+    if (params->has_look_at) {
+        x = vec3_dot(params->look_at, right);
+        y = vec3_dot(params->look_at, up);
     }
+    x += room_x / 2 * height * aspect;
+    y -= room_y / 2 * height;
+    Vec3 middle = vec3_add_scaled(vec3_scale(right, x), up, y);
+    middle = vec3_add_scaled(middle, direction,
+                             vec3_dot(center, direction) - vec3_distance(all.low, all.high));
+    camera->location = params->has_location ? params->location : middle;
+    camera->right = vec3_scale(right, height * aspect);
+    camera->up = vec3_scale(up, height);
+}
+
+static void place_perspective(const ViewParams *params, const Framed *framed, Camera *camera)
+{
+    double aspect = (double)params->width / params->height, used = 1 - 2 * params->margin;
     double tan_x = tan(params->angle_deg * degrees_pi / 2), tan_y = tan_x / aspect;
-    double distance =
-        framing_distance(geometry, direction, right, up, tan_x * used * (1 - 2 * room_x),
-                         tan_y * used * (1 - 2 * room_y));
-    camera->location =
-        params->has_location ? params->location : vec3_add_scaled(center, direction, -distance);
-    camera->right = vec3_scale(right, 2 * tan_x);
-    camera->up = vec3_scale(up, 2 * tan_y);
-    return STATUS_OK;
+    double room_x = (double)params->room[0] / params->width;
+    double room_y = (double)params->room[1] / params->height;
+    double distance = framing_distance(framed, camera, tan_x * used * (1 - 2 * room_x),
+                                       tan_y * used * (1 - 2 * room_y));
+    Vec3 target = params->has_look_at ? params->look_at : box_center(framed->box);
+    camera->location = params->has_location ? params->location
+                                            : vec3_add_scaled(target, camera->direction, -distance);
+    camera->right = vec3_scale(camera->right, 2 * tan_x);
+    camera->up = vec3_scale(camera->up, 2 * tan_y);
 }
 
 /* ---- ground and lights ------------------------------------------------------------------------
@@ -161,7 +187,7 @@ static Vec3 from_camera(const Camera *camera, Vec3 v)
 }
 
 /* The ground lies just beyond the last ball along its normal, and farther by the gap. */
-static Ground place_ground(const LookGround *look, const Camera *camera, const Geometry *geometry)
+static Ground place_ground(const LookGround *look, const Camera *camera, const Subject *subject)
 {
     if (!look->present)
         return (Ground){0};
@@ -175,12 +201,13 @@ static Ground place_ground(const LookGround *look, const Camera *camera, const G
                                 .brilliance = 1,
                                 .phong_size = 40,
                                 .roughness = 0.05f}};
-    for (size_t i = 0; i < geometry_balls(geometry); i++) {
-        Ball ball = geometry_ball(geometry, i);
-        ground.offset_mm =
-            fmin(ground.offset_mm, vec3_dot(ground.normal, ball.center) - ball.radius);
+    for (size_t i = 0; i < subject_balls(subject); i++) {
+        Ball ball;
+        if (subject_ball(subject, i, &ball))
+            ground.offset_mm =
+                fmin(ground.offset_mm, vec3_dot(ground.normal, ball.center) - ball.radius);
     }
-    ground.offset_mm -= look->gap * vec3_distance(geometry->bounds.low, geometry->bounds.high) / 2;
+    ground.offset_mm -= look->gap * vec3_distance(subject->box.low, subject->box.high) / 2;
     return ground;
 }
 
@@ -217,13 +244,16 @@ static Light place_light(const LookLight *light, const Camera *camera, Box bound
  * of the diagonal of their box where they are less apart: a flat tree face-on does not fade. */
 static const double least_fade = 1.0 / 3;
 
-static void place_fade(const Camera *camera, const Geometry *geometry, Fade *fade)
+static void place_fade(const Camera *camera, const Subject *subject, Fade *fade)
 {
-    double diagonal = vec3_distance(geometry->bounds.low, geometry->bounds.high);
+    double diagonal = vec3_distance(subject->box.low, subject->box.high);
     fade->near_mm = INFINITY;
     fade->far_mm = -INFINITY;
-    for (size_t i = 0; i < geometry_balls(geometry); i++) {
-        Vec3 from = vec3_sub(geometry_ball(geometry, i).center, camera->location);
+    for (size_t i = 0; i < subject_balls(subject); i++) {
+        Ball ball;
+        if (!subject_ball(subject, i, &ball))
+            continue;
+        Vec3 from = vec3_sub(ball.center, camera->location);
         double depth = camera->projection == PROJECTION_PERSPECTIVE
                            ? vec3_length(from)
                            : vec3_dot(from, camera->direction);
@@ -243,27 +273,44 @@ static double thickest_mm(const Geometry *geometry)
     return 2 * radius;
 }
 
-static Effects place_effects(const Look *look, const Camera *camera, const Geometry *geometry)
+static Effects place_effects(const Look *look, const Camera *camera, const Subject *subject)
 {
     double thousandth_px = fmin(camera->width, camera->height) / 1000;
-    Effects effects = look_effects(look, thousandth_px, thickest_mm(geometry));
-    place_fade(camera, geometry, &effects.fade);
+    Effects effects = look_effects(look, thousandth_px, thickest_mm(subject->geometry));
+    place_fade(camera, subject, &effects.fade);
     return effects;
+}
+
+/* Places ground and lights about the subject by the axes of the camera. */
+static void place_surroundings(const Look *look, const ViewParams *params, const Subject *subject,
+                               View *view)
+{
+    view->ground = place_ground(&look->ground, &view->camera, subject);
+    view->n_lights = (size_t)look->n_lights;
+    for (size_t i = 0; i < view->n_lights; i++)
+        view->lights[i] =
+            place_light(&look->lights[i], &view->camera, subject->box, params->shadows);
 }
 
 Status stage_view(const Look *look, const ViewParams *params, const Geometry *geometry, View *view,
                   Err *err)
 {
-    View made = {.background = look->background, .n_lights = (size_t)look->n_lights};
+    const Subject subject = subject_of(params, geometry);
+    View made = {.background = look->background,
+                 .camera = {.projection = params->projection,
+                            .width = params->width,
+                            .height = params->height}};
     ViewParams near = *params; /* to the origin, as the geometry is */
     near.location = vec3_sub(params->location, geometry->origin);
     near.look_at = vec3_sub(params->look_at, geometry->origin);
-    TRY(place_camera(geometry, &near, &made.camera, err));
-    made.effects = place_effects(look, &made.camera, geometry);
-    made.ground = place_ground(&look->ground, &made.camera, geometry);
-    for (size_t i = 0; i < made.n_lights; i++)
-        made.lights[i] =
-            place_light(&look->lights[i], &made.camera, geometry->bounds, params->shadows);
+    TRY(aim_camera(&near, box_center(subject.box), &made.camera, err));
+    place_surroundings(look, params, &subject, &made);
+    const Framed framed = framed_of(&subject, params, &made);
+    if (params->projection == PROJECTION_ORTHOGRAPHIC)
+        place_orthographic(&near, &framed, &made.camera);
+    else
+        place_perspective(&near, &framed, &made.camera);
+    made.effects = place_effects(look, &made.camera, &subject);
     TRY(view_check(&made, err));
     *view = made;
     return STATUS_OK;

@@ -128,7 +128,7 @@ test_failed_allocations_in_animations() {
     printf 'id,flow\n3,25\n' >flows.csv
     run_ok corcast convert tree.swc moments.pvd --values frames.csv
     fail_each 1 many render ../tree.swc --size 9x8 --color-by ../frames.csv --frames all -o o%d.ppm
-    fail_each 3 many render ../tree.swc --size 9x8 --color-by ../rows.csv:q --turn 2 -o o%d.png
+    fail_each 3 many render ../tree.swc --size 9x8 --color-by ../rows.csv:q --turntable 2 -o o%d.png
     fail_each 3 many render ../tree.swc --size 9x8 --color-by flow --terminal-flow ../flows.csv --growth 2 -o o%d.png
     fail_each 3 one render ../moments.pvd --size 9x8 --color-by frames -o o.png
     fail_each 3 many convert ../tree.swc o.pvd --values ../rows.csv

@@ -23,7 +23,7 @@ test_each_frame_is_the_picture_of_its_moment() {
     [ "$(echo f*.ppm)" = "$(echo f0{1..8}{.id,}.ppm)" ] || fail "expected 8 pictures and planes, got $(echo f*)"
     for k in 1 3 8; do
         # shellcheck disable=SC2086
-        run_ok corcast render --exact tree.swc --color-by pulse.csv:pulse --frame $k $SMALL -o still.ppm
+        run_ok corcast render --exact tree.swc --color-by pulse.csv:pulse --moment $k $SMALL -o still.ppm
         expect_same still.ppm f0$k.ppm
     done
     expect_differing 100 3000 f01.ppm f03.ppm
@@ -48,9 +48,9 @@ test_rows_of_a_time_give_the_pictures_of_columns() {
     awk -F, 'NR == 1 { print "name,time,flow_in,flow_out"; n = split($0, time) }
         NR > 1 { for (k = n; k > 1; k--) print $1 "," time[k] "," $k ",0" }' pulse.csv >long.csv
     # shellcheck disable=SC2086
-    run_ok corcast render --exact tree.swc --color-by pulse.csv --frame 6 $SMALL -o columns.ppm
+    run_ok corcast render --exact tree.swc --color-by pulse.csv --moment 6 $SMALL -o columns.ppm
     # shellcheck disable=SC2086
-    run_ok corcast render --exact tree.swc --color-by long.csv:flow_in --frame 6 $SMALL -o rows.ppm
+    run_ok corcast render --exact tree.swc --color-by long.csv:flow_in --moment 6 $SMALL -o rows.ppm
     expect_same columns.ppm rows.ppm
 }
 
@@ -61,9 +61,9 @@ test_a_folder_of_svonedsolver_gives_the_pictures_of_columns() {
         for (k = 2; k <= NF; k++) row = row " " $k
         print "1 2 3 4 5 6 7 8" >file; print row >file; close(file) }' pulse.csv
     # shellcheck disable=SC2086
-    run_ok corcast render --exact tree.swc --color-by pulse.csv --frame 6 $SMALL -o columns.ppm
+    run_ok corcast render --exact tree.swc --color-by pulse.csv --moment 6 $SMALL -o columns.ppm
     # shellcheck disable=SC2086
-    run_ok corcast render --exact tree.swc --color-by steps:flow --frame 6 $SMALL -o steps.ppm
+    run_ok corcast render --exact tree.swc --color-by steps:flow --moment 6 $SMALL -o steps.ppm
     expect_same columns.ppm steps.ppm
     refused() {
         run corcast render tree.swc --quiet --color-by "$1" -o x.ppm
@@ -109,9 +109,9 @@ test_an_index_of_vtp_files_is_a_series() {
     cut -d , -f 1-4 pulse.csv >three.csv
     for k in 1 3; do
         # shellcheck disable=SC2086
-        run_ok corcast render --exact run.pvd --color-by pressure --frame $k $SMALL -o index.ppm
+        run_ok corcast render --exact run.pvd --color-by pressure --moment $k $SMALL -o index.ppm
         # shellcheck disable=SC2086
-        run_ok corcast render --exact tree.swc --color-by three.csv --frame $k $SMALL -o columns.ppm
+        run_ok corcast render --exact tree.swc --color-by three.csv --moment $k $SMALL -o columns.ppm
         expect_same index.ppm columns.ppm
     done
     run_ok corcast info run.pvd
@@ -134,9 +134,9 @@ test_values_become_columns_of_a_converted_tree() {
     make_pulse
     run_ok corcast convert tree.swc pulse.csv.csv --values pulse.csv
     # shellcheck disable=SC2086
-    run_ok corcast render --exact pulse.csv.csv --color-by pulse --frame 3 $SMALL -o converted.ppm
+    run_ok corcast render --exact pulse.csv.csv --color-by pulse --moment 3 $SMALL -o converted.ppm
     # shellcheck disable=SC2086
-    run_ok corcast render --exact tree.swc --color-by pulse.csv --frame 3 $SMALL -o joined.ppm
+    run_ok corcast render --exact tree.swc --color-by pulse.csv --moment 3 $SMALL -o joined.ppm
     expect_same converted.ppm joined.ppm
     run corcast convert tree.swc pulse.csv --values pulse.csv
     expect_status 2
@@ -152,13 +152,13 @@ test_an_index_that_is_written_reads_back() {
     run_ok corcast convert tree.swc run.pvd --values pulse.csv
     [ "$(echo run_*.vtp)" = "$(echo run_000{1..8}.vtp)" ] || fail "expected 8 moments, got $(echo run_*)"
     # shellcheck disable=SC2086
-    run_ok corcast render --exact tree.swc --color-by pulse.csv --frame 6 $SMALL -o columns.ppm
+    run_ok corcast render --exact tree.swc --color-by pulse.csv --moment 6 $SMALL -o columns.ppm
     # shellcheck disable=SC2086
-    run_ok corcast render --exact run.pvd --color-by pulse --frame 6 $SMALL -o index.ppm
+    run_ok corcast render --exact run.pvd --color-by pulse --moment 6 $SMALL -o index.ppm
     expect_same columns.ppm index.ppm
     run_ok corcast convert tree.swc wide.vtp --values pulse.csv
     # shellcheck disable=SC2086
-    run_ok corcast render --exact wide.vtp --color-by pulse --frame 6 $SMALL -o wide.ppm
+    run_ok corcast render --exact wide.vtp --color-by pulse --moment 6 $SMALL -o wide.ppm
     expect_same columns.ppm wide.ppm
     run corcast convert tree.swc x.pvd
     expect_status 2
@@ -184,7 +184,7 @@ test_a_turn_shows_the_whole_tree_from_all_sides() {
     make_pulse
     for projection in orthographic perspective; do
         # shellcheck disable=SC2086
-        run_ok corcast render --exact tree.swc --turn 5 --projection $projection $SMALL -o t%d.ppm
+        run_ok corcast render --exact tree.swc --turntable 5 --projection $projection $SMALL -o t%d.ppm
         for k in 1 2 3 4 5; do
             expect_border_free t$k.ppm
         done
@@ -228,15 +228,15 @@ test_animations_that_cannot_be_are_refused() {
         expect_status 2
         expect_sentence "$sentence"
     }
-    refused "'x.png' has no place for a number" --turn 3 -o x.png
-    refused "'x%s.png' has no place" --turn 3 -o x%s.png
-    refused "'x%d%d.png' has no place" --turn 3 -o x%d%d.png
-    refused "'-' has no place" --turn 3 -o -
-    refused "exclude each other" --turn 3 --growth 3 -o x%d.png
+    refused "'x.png' has no place for a number" --turntable 3 -o x.png
+    refused "'x%s.png' has no place" --turntable 3 -o x%s.png
+    refused "'x%d%d.png' has no place" --turntable 3 -o x%d%d.png
+    refused "'-' has no place" --turntable 3 -o -
+    refused "exclude each other" --turntable 3 --growth 3 -o x%d.png
     refused "does not change with time" --frames all -o x%d.png
     refused "flow does not change with time" --color-by flow --frames all -o x%d.png
     refused "pulse has 8 frames, not 9" --color-by pulse.csv --frames 2..9 -o x%d.png
-    refused "--frame 9: pulse has 8 frames" --color-by pulse.csv --frame 9 -o x.png
+    refused "--moment 9: pulse has 8 frames" --color-by pulse.csv --moment 9 -o x.png
     refused "'4..3' is not all or A..B" --color-by pulse.csv --frames 4..3 -o x%d.png
     refused "pulse.csv:1: there is no column 'x'" --color-by pulse.csv:x -o x.png
     sed -i '4s/^[0-9]*/4711/' pulse.csv

@@ -339,8 +339,8 @@ test_colours_blend_where_vessels_do() {
     printf 'id,0,0.5\n2,1,2\n3,3,4\n' >load.csv
     run corcast scene tree.swc --quiet --color-by load.csv:load --model blob --color-blend blended -o no.pov
     expect_status 2
-    expect_sentence 'colours that change with time do not blend; --frame chooses one moment'
-    run_ok corcast scene tree.swc --quiet --color-by load.csv:load --frame 2 --model blob --color-blend blended -o yes.pov
+    expect_sentence 'colours that change with time do not blend; --moment chooses one moment'
+    run_ok corcast scene tree.swc --quiet --color-by load.csv:load --moment 2 --model blob --color-blend blended -o yes.pov
 }
 
 test_the_maps_are_listed_with_licences_and_drawn() {

@@ -32,13 +32,13 @@ test_a_frame_is_verified_in_every_model() {
     make_pulse
     for model in $(corcast models); do
         # shellcheck disable=SC2086
-        run_ok corcast verify tree.swc --color-by pulse.csv --frame 7 --model "$model" $SIZE -o check
+        run_ok corcast verify tree.swc --color-by pulse.csv --moment 7 --model "$model" $SIZE -o check
     done
     grep -q -e '+K0\.26' check/report.html || fail "expected the clock of frame 7 in the report"
     # shellcheck disable=SC2086
-    run corcast verify tree.swc --quiet --color-by pulse.csv --frame 25 $SIZE -o check
+    run corcast verify tree.swc --quiet --color-by pulse.csv --moment 25 $SIZE -o check
     expect_status 2
-    expect_sentence '--frame 25: pulse has 24 frames'
+    expect_sentence '--moment 25: pulse has 24 frames'
 }
 
 test_a_turn_is_that_of_the_scene() {
@@ -47,7 +47,7 @@ test_a_turn_is_that_of_the_scene() {
     # shellcheck disable=SC2086
     run_ok corcast scene tree.swc $view -o tree.pov
     # shellcheck disable=SC2086
-    run_ok corcast render --exact tree.swc --turn 3 $view -o ours%d.png
+    run_ok corcast render --exact tree.swc --turntable 3 $view -o ours%d.png
     run_ok povray +Itree.pov +Otheirs.png +W40 +H36 -D -A +KFI1 +KFF3 +KC Declare=Turn_Clock=1 File_Gamma=srgb
     for k in 1 2 3; do
         run_ok corcast compare theirs$k.png ours$k.png

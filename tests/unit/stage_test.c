@@ -305,16 +305,172 @@ static void a_perspective_camera_stands_where_the_nearest_ball_just_fits(void **
     tree_release(&tree);
 }
 
+static const double degrees = 3.14159265358979323846 / 180;
+
+static void assert_axes(ViewParams params, Vec3 direction, Vec3 up)
+{
+    Vec3 along, upright;
+    view_axes(&params, &along, &upright);
+    assert_near(along, direction, 1e-15);
+    assert_near(upright, up, 1e-15);
+}
+
 static void views_look_where_their_names_say(void **state)
 {
     (void)state;
+    const double third = 1 / sqrt(3);
+    static const struct {
+        NamedView view;
+        Vec3 direction, up;
+    } cases[] = {
+        {VIEW_FRONT, {0, 0, -1}, {0, 1, 0}}, {VIEW_BACK, {0, 0, 1}, {0, 1, 0}},
+        {VIEW_LEFT, {1, 0, 0}, {0, 1, 0}},   {VIEW_RIGHT, {-1, 0, 0}, {0, 1, 0}},
+        {VIEW_TOP, {0, -1, 0}, {0, 0, -1}},  {VIEW_BOTTOM, {0, 1, 0}, {0, 0, 1}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        assert_axes((ViewParams){.view = cases[i].view}, cases[i].direction, cases[i].up);
     Vec3 direction, up;
-    view_axes(VIEW_TOP, &direction, &up);
-    assert_true(direction.y == -1 && up.z == -1);
-    view_axes(VIEW_LEFT, &direction, &up);
-    assert_true(direction.x == 1 && up.y == 1);
-    view_axes(VIEW_ISO, &direction, &up);
-    assert_true(direction.x < -0.577 && direction.y == direction.x && direction.z == direction.x);
+    view_axes(&(const ViewParams){.view = VIEW_ISO}, &direction, &up);
+    assert_near(direction, vec3(-third, -third, -third), 1e-15);
+}
+
+static void where_z_is_up_the_front_looks_along_y(void **state)
+{
+    (void)state;
+    assert_axes((ViewParams){.up_axis = UP_Z}, vec3(0, 1, 0), vec3(0, 0, 1));
+    assert_axes((ViewParams){.view = VIEW_RIGHT, .up_axis = UP_Z}, vec3(-1, 0, 0), vec3(0, 0, 1));
+    assert_axes((ViewParams){.view = VIEW_TOP, .up_axis = UP_Z}, vec3(0, 0, -1), vec3(0, 1, 0));
+    StageParams params = stage_defaults();
+    params.view.up_axis = UP_Z;
+    params.view.has_location = true;
+    params.view.location = vec3(3, -70, 8);
+    Scene scene = stage(&params, NULL);
+    assert_true(scene.view.camera.right.z == 0 && scene.view.camera.up.z > 0);
+    scene_release(&scene);
+}
+
+static void a_camera_turns_about_the_upright_and_then_rises(void **state)
+{
+    (void)state;
+    const double rise = asin(1 / sqrt(3)) / degrees;
+    assert_axes((ViewParams){.turn_deg = 90}, vec3(-1, 0, 0), vec3(0, 1, 0));
+    assert_axes((ViewParams){.turn_deg = -90}, vec3(1, 0, 0), vec3(0, 1, 0));
+    assert_axes((ViewParams){.rise_deg = 90}, vec3(0, -1, 0), vec3(0, 0, -1));
+    assert_axes((ViewParams){.turn_deg = 90, .rise_deg = -90}, vec3(0, 1, 0), vec3(1, 0, 0));
+    assert_axes((ViewParams){.turn_deg = 180, .up_axis = UP_Z}, vec3(0, -1, 0), vec3(0, 0, 1));
+    for (int up_axis = UP_Y; up_axis <= UP_Z; up_axis++) {
+        const ViewParams iso = {.view = VIEW_ISO, .up_axis = (UpAxis)up_axis};
+        Vec3 expected, direction, up;
+        view_axes(&iso, &expected, &up);
+        view_axes(&(const ViewParams){.turn_deg = 45, .rise_deg = rise, .up_axis = iso.up_axis},
+                  &direction, &up);
+        assert_near(direction, expected, 1e-15);
+    }
+}
+
+static void a_point_that_is_looked_at_moves_the_framed_camera(void **state)
+{
+    (void)state;
+    for (int projection = 0; projection < 2; projection++) {
+        StageParams params = stage_defaults();
+        params.view.view = VIEW_ISO;
+        params.view.projection = (Projection)projection;
+        Scene framed = stage(&params, NULL);
+        params.view.has_look_at = true;
+        params.view.look_at = vec3(-5, 4, 2);
+        Scene moved = stage(&params, NULL);
+        const Camera *camera = &moved.view.camera;
+        double i, j;
+        project(camera, params.view.look_at, &i, &j);
+        assert_true(fabs(i) < 1e-9 && fabs(j) < 1e-9);
+        assert_near(camera->direction, framed.view.camera.direction, 0);
+        assert_near(camera->up, framed.view.camera.up, 0);
+        scene_release(&framed);
+        scene_release(&moved);
+    }
+}
+
+/* The same lights and ground, too. */
+static void all_models_of_a_tree_have_one_view(void **state)
+{
+    (void)state;
+    static const SceneModel drawn[] = {SCENE_CYLINDERS, SCENE_JOINED, SCENE_BLOB, SCENE_ISOSURFACE};
+    Tree tree = make_tree();
+    Look grounded = look;
+    grounded.ground = (LookGround){.present = true, .normal = {0.1, 0.2, 1}, .gap = 0.125};
+    for (int projection = 0; projection < 2; projection++) {
+        StageParams params = stage_defaults();
+        params.view.projection = (Projection)projection;
+        params.view.shadows = projection == 1;
+        params.view.tree = &tree;
+        Scene first;
+        assert_int_equal(stage_all(&tree, &grounded, &params, &first, NULL, NULL), STATUS_OK);
+        for (size_t i = 0; i < sizeof drawn / sizeof *drawn; i++) {
+            Scene scene;
+            params.geometry.model = drawn[i];
+            assert_int_equal(stage_all(&tree, &grounded, &params, &scene, NULL, NULL), STATUS_OK);
+            assert_near(scene.view.camera.location, first.view.camera.location, 0);
+            assert_near(scene.view.camera.right, first.view.camera.right, 0);
+            assert_near(scene.view.camera.direction, first.view.camera.direction, 0);
+            assert_near(scene.view.lights[0].location, first.view.lights[0].location, 0);
+            assert_true(scene.view.ground.offset_mm == first.view.ground.offset_mm);
+            scene_release(&scene);
+        }
+        scene_release(&first);
+    }
+    tree_release(&tree);
+}
+
+static void a_domain_is_framed_about_the_tree(void **state)
+{
+    (void)state;
+    Tree tree = make_tree();
+    const Box domain = {{-30, -12.5, -40}, {30, 27.5, 40}};
+    for (size_t i = 0; i < tree.n; i++)
+        tree.position[i].x += 5e5;
+    const Box far = {vec3_add(domain.low, vec3(5e5, 0, 0)), vec3_add(domain.high, vec3(5e5, 0, 0))};
+    StageParams params = stage_defaults();
+    params.view.tree = &tree;
+    params.view.domain = &far;
+    Scene scene;
+    assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, NULL), STATUS_OK);
+    const Camera *camera = &scene.view.camera;
+    assert_true(fabs(vec3_length(camera->right) - 60 / 0.9) < 1e-9);
+    Vec3 middle = vec3_add(camera->location, scene.geometry.origin);
+    assert_true(fabs(middle.x - 5e5) < 1e-9 && fabs(middle.y - 7.5) < 1e-9 && middle.z > 40);
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
+/* A ball of radius 2.385 whose middle is 5 mm over the sheet, in light from 45 degrees on the left:
+ * the shadow's middle is 5 mm to the right, and its half length 2.385 times the root of 2. */
+static void shadows_on_the_ground_are_framed(void **state)
+{
+    (void)state;
+    Tree tree = make_tree();
+    for (size_t i = 0; i < tree.n; i++)
+        tree.position[i] = vec3(0, i ? 2 : -2, 0);
+    Look grounded = look;
+    grounded.lights[0].direction = vec3(-1, 0, 1);
+    grounded.ground = (LookGround){.present = true, .normal = {0, 0, 1}};
+    const double half = vec3_length(vec3(4.77, 8.77, 4.77)) / 2; /* of the box's diagonal */
+    grounded.ground.gap = (5 - 2.385) / half;
+    StageParams params = stage_defaults();
+    params.view.tree = &tree;
+    params.view.margin = 0;
+    for (int shadows = 0; shadows < 2; shadows++) {
+        Scene scene;
+        params.view.shadows = shadows;
+        params.view.width = 2000; /* so that the height alone counts without shadows */
+        assert_int_equal(stage_all(&tree, &grounded, &params, &scene, NULL, NULL), STATUS_OK);
+        double left = -2.385, right = shadows ? 5 + 2.385 * sqrt(2) : 2.385;
+        double reach = 2.385 * (shadows ? sqrt(2) : 1), height = 2 * (2 + reach);
+        double width = fmax(2 * height, right - left);
+        assert_true(fabs(scene.view.camera.location.x - (left + right) / 2) < 1e-9);
+        assert_true(fabs(scene.view.camera.right.x - width) < 1e-9);
+        scene_release(&scene);
+    }
+    tree_release(&tree);
 }
 
 static void a_given_camera_is_taken_as_it_is(void **state)
@@ -882,6 +1038,12 @@ int main(void)
         cmocka_unit_test(a_framed_picture_has_its_margin_on_each_side),
         cmocka_unit_test(a_perspective_camera_stands_where_the_nearest_ball_just_fits),
         cmocka_unit_test(views_look_where_their_names_say),
+        cmocka_unit_test(where_z_is_up_the_front_looks_along_y),
+        cmocka_unit_test(a_camera_turns_about_the_upright_and_then_rises),
+        cmocka_unit_test(a_point_that_is_looked_at_moves_the_framed_camera),
+        cmocka_unit_test(all_models_of_a_tree_have_one_view),
+        cmocka_unit_test(a_domain_is_framed_about_the_tree),
+        cmocka_unit_test(shadows_on_the_ground_are_framed),
         cmocka_unit_test(a_given_camera_is_taken_as_it_is),
         cmocka_unit_test(cameras_that_cannot_be_are_refused),
         cmocka_unit_test(a_tree_with_nothing_to_draw_is_refused),

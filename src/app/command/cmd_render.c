@@ -95,7 +95,7 @@ static const Option own[] = {
      .group = GROUP_ANIMATION,
      .argument = "all|A..B",
      .help = "a picture for each frame of values that change with time"},
-    {.name = "turn",
+    {.name = "turntable",
      SETS(WHOLE, RenderOptions, animation.turn),
      .group = GROUP_ANIMATION,
      FROM_TO(1, 100000),
@@ -587,7 +587,7 @@ const Command command_render = {
     .examples = "  corcast render tree.swc -o tree.png\n"
                 "  corcast render tree.swc --model isosurface --shadows on -o tree.ppm\n"
                 "  corcast render tree.swc --planes depth,normal,id -o tree.png\n"
-                "  corcast render tree.swc --turn 120 -o turn%03d.png\n"
+                "  corcast render tree.swc --turntable 120 -o turn%03d.png\n"
                 "  corcast render tree.swc --color-by pulse.csv --frames all -o f%04d.png\n",
     .min_operands = 1,
     .max_operands = 1,

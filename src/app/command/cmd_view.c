@@ -177,7 +177,7 @@ static bool is_shown(const PictureOptions *options, const Setting *setting, cons
                      Text *text)
 {
     static const char *const always[] = {"model", "size", "projection", NULL};
-    static const char *const framing[] = {"view", "margin", "angle", "height", NULL};
+    static const char *const framing[] = {"view", "turn", "margin", "angle", "height", NULL};
     const char *name = setting->option->name;
     bool perspective = options->projection == PROJECTION_PERSPECTIVE;
     if (is_one_of(name, always) || strcmp(name, perspective ? "angle" : "height") == 0)
@@ -236,7 +236,7 @@ static Status write_recipe(const Viewer *viewer, Err *err)
 
 static Status use_projection(Viewer *viewer, Err *err)
 {
-    ViewParams stage = picture_view_params(viewer->options);
+    ViewParams stage = picture_view_params(viewer->options, &viewer->source);
     Projection other = stage.projection == PROJECTION_PERSPECTIVE ? PROJECTION_ORTHOGRAPHIC
                                                                   : PROJECTION_PERSPECTIVE;
     orbit_project(&stage, other, &viewer->scene.geometry);
@@ -294,7 +294,7 @@ static Status on_key(Viewer *viewer, int key, Err *err)
 
 static Status on_drag(Viewer *viewer, const WindowEvent *event, Err *err)
 {
-    ViewParams stage = picture_view_params(viewer->options);
+    ViewParams stage = picture_view_params(viewer->options, &viewer->source);
     int side = stage.width < stage.height ? stage.width : stage.height;
     const double half_turn = 3.14159265358979323846;
     if (event->button == WINDOW_LEFT)
@@ -307,7 +307,7 @@ static Status on_drag(Viewer *viewer, const WindowEvent *event, Err *err)
 
 static Status on_wheel(Viewer *viewer, const WindowEvent *event, Err *err)
 {
-    ViewParams stage = picture_view_params(viewer->options);
+    ViewParams stage = picture_view_params(viewer->options, &viewer->source);
     orbit_zoom(&stage, pow(1.15, event->y));
     viewer->options->stage = stage;
     return aim(viewer, err);
@@ -380,7 +380,7 @@ static Status turn_around(Viewer *viewer, int pictures, Err *err)
         WindowEvent event = window_event(viewer->window, false);
         if (event.kind == WINDOW_QUIT)
             viewer->quit = true;
-        ViewParams stage = picture_view_params(viewer->options);
+        ViewParams stage = picture_view_params(viewer->options, &viewer->source);
         orbit_turn(&stage, full_turn / pictures, 0);
         viewer->options->stage = stage;
         TRY(aim(viewer, err));
@@ -402,7 +402,7 @@ static Status open_viewer(Viewer *viewer, Err *err)
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", viewer->tree);
     TRY(status);
-    ViewParams stage = picture_view_params(options);
+    ViewParams stage = picture_view_params(options, &viewer->source);
     orbit_begin(&stage, &viewer->scene.view.camera, &viewer->scene.geometry);
     viewer->home = options->stage = stage;
     TRY(window_open(&viewer->window, file_name(viewer->tree), options->size.pixels[0],
@@ -422,7 +422,7 @@ static const Option own[] = {
      SETS(OUTPUT, ViewOptions, recipe),
      .aside = true,
      .help = "the recipe that key w writes"},
-    {.name = "turn",
+    {.name = "turntable",
      SETS(WHOLE, ViewOptions, turn),
      FROM_TO(1, 100000),
      .group = GROUP_RUN,

@@ -72,7 +72,7 @@ Status animation_read(const AnimationOptions *options, const char *output, Anima
     Animation made = {.first = 1};
     if ((options->frames != NULL) + (options->turn > 0) + (options->growth > 0) > 1)
         return err_set(err, STATUS_USAGE,
-                       "--frames, --turn and --growth exclude each other; give one");
+                       "--frames, --turntable and --growth exclude each other; give one");
     if (options->frames) {
         made.kind = ANIMATION_SERIES;
         if (!read_frames(options->frames, &made))
@@ -127,7 +127,7 @@ Status animation_path(const Animation *animation, const char *pattern, int numbe
 Status animation_frame_turn(const PictureOptions *options, const PictureSource *source,
                             Scene *scene, Err *err)
 {
-    ViewParams params = picture_view_params(options);
+    ViewParams params = picture_view_params(options, source);
     if (params.has_location || options->has_height)
         return STATUS_OK;
     orbit_frame_turn(&params, &scene->geometry);

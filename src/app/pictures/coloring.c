@@ -19,7 +19,7 @@ static const Option rows[] = {
      .list = "fields",
      .help = "a field of the tree, such as radius, flow or wss, a column of its file, or "
              "FILE.csv:COLUMN"},
-    {.name = "frame",
+    {.name = "moment",
      SETS(WHOLE, Coloring, frame),
      FROM_TO(1, 1000000),
      .group = GROUP_COLOR,
@@ -387,7 +387,7 @@ Status coloring_check_frame(int frame, const char *name, size_t frames, Err *err
 {
     if (frames >= (size_t)frame)
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "--frame %d: %s has %zu frame%s", frame, name, frames,
+    return err_set(err, STATUS_USAGE, "--moment %d: %s has %zu frame%s", frame, name, frames,
                    frames == 1 ? "" : "s");
 }
 

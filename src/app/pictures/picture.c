@@ -6,6 +6,7 @@
 #include "app/pictures/frames.h"
 #include "app/run/progress.h"
 #include "app/run/reading.h"
+#include "app/trees/tree_domain.h"
 #include "image/image.h"
 #include "render/render.h"
 #include <stdlib.h>
@@ -17,7 +18,14 @@ static const char *const joint_forms[] = {
 static const char *const projections[] = {
     [PROJECTION_ORTHOGRAPHIC] = "orthographic", [PROJECTION_PERSPECTIVE] = "perspective", NULL};
 static const char *const views[] = {
-    [VIEW_FRONT] = "front", [VIEW_TOP] = "top", [VIEW_LEFT] = "left", [VIEW_ISO] = "iso", NULL};
+    [VIEW_FRONT] = "front", [VIEW_BACK] = "back",     [VIEW_LEFT] = "left", [VIEW_RIGHT] = "right",
+    [VIEW_TOP] = "top",     [VIEW_BOTTOM] = "bottom", [VIEW_ISO] = "iso",   NULL};
+static const char *const up_axes[] = {[UP_Y] = "y", [UP_Z] = "z", NULL};
+
+/* What is framed: the tree, whatever the model; the domain that it tells; or what is drawn. */
+enum { PICTURE_TREE, PICTURE_DOMAIN, PICTURE_DRAWING };
+static const char *const framings[] = {
+    [PICTURE_TREE] = "tree", [PICTURE_DOMAIN] = "domain", [PICTURE_DRAWING] = "drawing", NULL};
 
 /* What a point has the colour of: its largest term, or the mean of all. */
 enum { BLEND_SEGMENT, BLEND_BLENDED };
@@ -85,6 +93,24 @@ static const Option rows[] = {
      .choices = views,
      .group = GROUP_CAMERA,
      .help = "where from"},
+    {.name = "turn",
+     SETS(NUMBERS, PictureOptions, turn),
+     GIVEN(PictureOptions, has_turn),
+     .group = GROUP_CAMERA,
+     .argument = "AZ,EL",
+     .otherwise = "",
+     .help = "from there so many degrees to the right about the upright, and up"},
+    {.name = "up-axis",
+     SETS(CHOICE, PictureOptions, stage.up_axis),
+     .choices = up_axes,
+     .group = GROUP_CAMERA,
+     .help = "the upright of the tree's coordinates; measured trees often have z"},
+    {.name = "frame",
+     SETS(CHOICE, PictureOptions, frame),
+     .choices = framings,
+     .group = GROUP_CAMERA,
+     .help = "what fills the picture: the tree, the same for all models, the domain it was grown "
+             "in, or what is drawn"},
     {.name = "location",
      SETS(VECTOR, PictureOptions, stage.location),
      GIVEN(PictureOptions, stage.has_location),
@@ -96,7 +122,7 @@ static const Option rows[] = {
      GIVEN(PictureOptions, stage.has_look_at),
      .group = GROUP_CAMERA,
      .otherwise = "",
-     .help = "point in the middle of the picture, mm"},
+     .help = "point in the middle of the picture, mm; alone it moves the framed camera"},
     {.name = "up",
      SETS(VECTOR, PictureOptions, stage.up),
      GIVEN(PictureOptions, stage.has_up),
@@ -191,10 +217,11 @@ static Status check_camera(const PictureOptions *options, Err *err)
     if (options->has_angle && !perspective)
         return err_set(err, STATUS_USAGE,
                        "--angle is for perspective pictures; an orthographic one takes --height");
-    if (stage->has_location && options->has_view)
-        return err_set(err, STATUS_USAGE, "--view and --location exclude each other; give one");
-    if (stage->has_look_at && !stage->has_location)
-        return err_set(err, STATUS_USAGE, "--look-at needs --location");
+    if (stage->has_location && (options->has_view || options->has_turn))
+        return err_set(err, STATUS_USAGE, "--%s and --location exclude each other; give one",
+                       options->has_view ? "view" : "turn");
+    if (options->turn.n > 2)
+        return err_set(err, STATUS_USAGE, "--turn takes AZ,EL, degrees, as in 30,15, or AZ alone");
     if (stage->has_up && !(vec3_length(stage->up) > 0 && isfinite(vec3_length(stage->up))))
         return err_set(err, STATUS_USAGE,
                        "--up: the vector must have a length from 1e-150 to 1e150");
@@ -385,15 +412,33 @@ ColoredTree picture_colored_tree(const PictureTree *tree)
                          .whole = tree->whole.n ? &tree->whole : &tree->tree};
 }
 
+static Status find_domain(const PictureTree *of, Box *domain, Err *err)
+{
+    bool found;
+    Status status = tree_domain_box(&of->tree, domain, &found, err);
+    if (status == STATUS_OK && !found)
+        status = err_set(err, STATUS_INPUT,
+                         "does not tell the domain that it was grown in, for --frame domain");
+    if (status != STATUS_OK)
+        err_prefix(err, "%s: ", of->path);
+    return status;
+}
+
 Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                            PictureSource *source, Err *err)
 {
-    PictureSource made;
+    PictureSource made = {0};
     TRY(check_camera(options, err));
     TRY(read_look(options, &made.look, err));
     TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &made.of, err));
-    *source = made;
-    return STATUS_OK;
+    Status status = STATUS_OK;
+    if (options->frame == PICTURE_DOMAIN)
+        status = find_domain(&made.of, &made.domain, err);
+    if (status == STATUS_OK)
+        *source = made;
+    else
+        picture_source_release(&made);
+    return status;
 }
 
 void picture_source_release(PictureSource *source)
@@ -401,9 +446,13 @@ void picture_source_release(PictureSource *source)
     picture_tree_release(&source->of);
 }
 
-ViewParams picture_view_params(const PictureOptions *options)
+ViewParams picture_view_params(const PictureOptions *options, const PictureSource *source)
 {
     ViewParams params = options->stage;
+    params.tree = options->frame == PICTURE_DRAWING ? NULL : &source->of.tree;
+    params.domain = options->frame == PICTURE_DOMAIN ? &source->domain : NULL;
+    params.turn_deg = options->turn.at[0];
+    params.rise_deg = options->turn.at[1];
     params.projection = (Projection)options->projection;
     params.view = (NamedView)options->view;
     params.width = options->size.pixels[0];
@@ -468,7 +517,7 @@ Status picture_appearance(const PictureOptions *options, const PictureSource *so
 Status picture_view(const PictureOptions *options, const PictureSource *source,
                     const Geometry *geometry, View *view, Err *err)
 {
-    const ViewParams params = picture_view_params(options);
+    const ViewParams params = picture_view_params(options, source);
     return stage_view(&source->look, &params, geometry, view, err);
 }
 

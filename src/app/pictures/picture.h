@@ -12,7 +12,8 @@
 
 typedef struct PictureOptions {
     ViewParams stage; /* but projection, view and size, which are below */
-    int model, potential, joints, projection, view, color_blend; /* choices */
+    int model, potential, joints, projection, view, color_blend, frame; /* choices */
+    NumberList turn; /* degrees about the upright, and then up */
     PictureSize size;
     int antialias;
     int occlusion;    /* rays a sample; 0: none */
@@ -23,7 +24,7 @@ typedef struct PictureOptions {
     const char *look;
     Vec3 background; /* sRGB in [0, 1] */
     bool has_background;
-    bool has_height, has_angle, has_view, has_joints, has_antialias;
+    bool has_height, has_angle, has_view, has_turn, has_joints, has_antialias;
     int erf;          /* choice: ErfForm */
     double cell_beta; /* as in CellParams */
     Coloring coloring;
@@ -83,15 +84,17 @@ ColoredTree picture_colored_tree(const PictureTree *tree);
 typedef struct PictureSource {
     PictureTree of;
     Look look;
+    Box domain; /* about the tree's own, where that is framed */
 } PictureSource;
 
 /* Reads look and tree, which is the first operand. STATUS_USAGE when options fight each other, or
- * say of the blood what the law of its viscosity does not take. */
+ * say of the blood what the law of its viscosity does not take; STATUS_INPUT when a domain is to be
+ * framed that the tree does not tell. */
 MUST_CHECK Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                                       PictureSource *source, Err *err);
 void picture_source_release(PictureSource *source);
-/* The view that the options ask for. */
-ViewParams picture_view_params(const PictureOptions *options);
+/* The view that the options ask for, of a source that is borrowed. */
+ViewParams picture_view_params(const PictureOptions *options, const PictureSource *source);
 /* Each of the three things that a picture is of, as the options ask for it. `report` may be NULL.
  */
 MUST_CHECK Status picture_geometry(const PictureOptions *options, const PictureSource *source,

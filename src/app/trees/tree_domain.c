@@ -12,3 +12,14 @@ Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err)
     *found = status == STATUS_OK;
     return status;
 }
+
+Status tree_domain_box(const Tree *tree, Box *box, bool *found, Err *err)
+{
+    Domain domain;
+    TRY(tree_domain(tree, &domain, found, err));
+    if (!*found)
+        return STATUS_OK;
+    *box = domain.bounds;
+    domain_release(&domain);
+    return STATUS_OK;
+}

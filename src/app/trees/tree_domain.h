@@ -8,5 +8,7 @@
 /* The domain that the tree's header names, in *domain (owned); *found is false, and *domain as it
  * was, when it names none. */
 MUST_CHECK Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err);
+/* Likewise the smallest box that holds it. */
+MUST_CHECK Status tree_domain_box(const Tree *tree, Box *box, bool *found, Err *err);
 
 #endif
