@@ -36,6 +36,11 @@ def fill(data, kind):
     # VTK counts vertices, lines, then polygons.
     cells = 5 if kind is vtkPolyData else 4
     data.GetCellData().AddArray(array("flow", [8.5, 7.5, 6.25, 5.125, 4.5][-cells:]))
+    territories = vtkStringArray()
+    territories.SetName("territory")
+    for cell in range(cells):
+        territories.InsertNextValue(f"left anterior descending {cell}")
+    data.GetCellData().AddArray(territories)
     words = vtkStringArray()
     words.SetName("words")
     words.InsertNextValue("a b")

@@ -115,7 +115,7 @@ static Status check_sizes(const VtkData *data, const Graph *graph, Err *err)
     const size_t counts[] = {data->n_points, data->n_cells};
     for (int of = 0; of < 2; of++)
         for (size_t i = 0; i < both[of]->n; i++)
-            if (both[of]->array[i].n != counts[of])
+            if (!both[of]->array[i].text && both[of]->array[i].n != counts[of])
                 return err_set(err, STATUS_INPUT, "%s: the array '%.60s' has %zu values for %zu %s",
                                graph->name, both[of]->array[i].name, both[of]->array[i].n,
                                counts[of], of ? "cells" : "points");

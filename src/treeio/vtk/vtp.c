@@ -106,19 +106,16 @@ static Status begin_piece(Reader *reader, const XmlElement *element, Err *err)
     return STATUS_OK;
 }
 
-/* How many numbers an array can have. Nothing says how long lines are, or the file's own data: a
- * hundred for each point and cell and a million besides are more than any of ours takes. */
+/* How many numbers, or bytes of text, an array can have. Nothing says how long lines, texts and the
+ * file's own data are: a hundred for each point and cell and a million besides are more than any of
+ * ours takes. */
 static double most_numbers(const Reader *reader, const Array *of)
 {
-    switch (of->section) {
-    case POINTS:
-    case POINT_DATA:
+    if (!of->is_text && (of->section == POINTS || of->section == POINT_DATA))
         return reader->points * (double)of->array.components;
-    case CELL_DATA:
+    if (!of->is_text && of->section == CELL_DATA)
         return reader->cells * (double)of->array.components;
-    default:
-        return 100 * (reader->points + reader->cells) + 1e6;
-    }
+    return 100 * (reader->points + reader->cells) + 1e6;
 }
 
 static Status begin_array(Reader *reader, Section section, const XmlElement *element, Err *err)
@@ -364,6 +361,8 @@ static Status add_cells(const Reader *reader, size_t piece, VtkData *data, size_
 static Status append_values(VtkArray *to, const VtkArray *more, Err *err)
 {
     size_t n = to->n * to->components, added = more->n * more->components, capacity = n;
+    if (!to->value && !more->value) /* text, which is left out */
+        return STATUS_OK;
     if (to->components != more->components || !to->value || !more->value)
         return err_set(err, STATUS_INPUT, "the array '%.60s' differs from piece to piece",
                        to->name);
