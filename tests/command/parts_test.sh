@@ -151,7 +151,7 @@ test_commands_run_from_any_folder_under_any_name() {
 
 test_pictures_of_an_animation_are_drawn_one_by_one() {
     make_tree
-    for kind in --turn --growth; do
+    for kind in --turntable --growth; do
         mkdir all one
         run_ok corcast render tree.swc --size 40x30 --quiet $kind 4 --resume -o all/f%02d.png
         run_ok corcast render tree.swc --size 40x30 --quiet $kind 4 --commands -o one/f%02d.png
@@ -161,7 +161,7 @@ test_pictures_of_an_animation_are_drawn_one_by_one() {
         diff -r all one || fail "expected the same pictures from $kind and its commands"
         rm -r all one
     done
-    run corcast render tree.swc --size 40x30 --turn 4 --only 5 -o f%d.png
+    run corcast render tree.swc --size 40x30 --turntable 4 --only 5 -o f%d.png
     expect_status 2
     expect_sentence '--only: 5 is not a picture from 1 to 4'
 }

@@ -76,21 +76,6 @@ static void print_warnings(const GrowReport *report, const Domain *domain, bool 
                 report->broken, report->broken == 1 ? " is" : "s are");
 }
 
-/* Refinement moves all nodes of one tree. */
-static Status check_refining(const Growing *growing, const Refining *refining, Err *err)
-{
-    if (refining->level == GROW_REFINE_NONE)
-        return STATUS_OK;
-    if (growing->from_path)
-        return err_set(err, STATUS_USAGE,
-                       "--refine: would move the tree of --from; use corcast refine afterwards");
-    if (growing->inlet.n > 1)
-        return err_set(err, STATUS_USAGE,
-                       "--refine: takes one tree, not one from each of %zu inlets",
-                       growing->inlet.n);
-    return STATUS_OK;
-}
-
 /* Grows with progress; why growth stopped early, if it did and that is allowed, goes to *why. */
 static Status grow(Growing *growing, bool quiet, Tree *tree, GrowReport *report, Err *why, Err *err)
 {
@@ -152,7 +137,7 @@ static Status run_grow(void *options, Parsed *parsed, Err *err)
     Err why;
     Status status = STATUS_OK;
     TRY(tree_format_check(own_options->output, err));
-    TRY_GOTO(check_refining(growing, refining, err));
+    TRY_GOTO(refining_check_growing(refining, growing, err));
     TRY_GOTO(refining_check(refining, parsed, err));
     TRY_GOTO(growing_prepare(growing, parsed, err));
     TRY_GOTO(grow(growing, parsed->common.quiet, &tree, &report, &why, err));

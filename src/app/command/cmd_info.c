@@ -7,39 +7,11 @@
 #include "app/run/output.h"
 #include "app/run/reading.h"
 #include "app/trees/blood.h"
+#include "app/trees/summary_json.h"
 #include "derive/derive.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
 #include <stdlib.h>
-
-static json_t *summary_json(const TreeSummary *summary)
-{
-    const Box *box = &summary->bounds;
-    const JsonMember members[] = {
-        {"segments", json_integer((json_int_t)summary->segments)},
-        {"terminals", json_integer((json_int_t)summary->terminals)},
-        {"bifurcations", json_integer((json_int_t)summary->bifurcations)},
-        {"roots", json_integer((json_int_t)summary->roots)},
-        {"total_length_mm", json_number(summary->total_length_mm)},
-        {"volume_mm3", json_number(summary->volume_mm3)},
-        {"target", summary->has.target ? json_number(summary->target) : json_null()},
-        {"gamma", summary->has.gamma ? json_number(summary->gamma) : json_null()},
-        {"lambda", summary->has.lambda ? json_number(summary->lambda) : json_null()},
-        {"root_radius_mm", json_number(summary->root_radius_mm)},
-        {"min_radius_mm", json_number(summary->min_radius_mm)},
-        {"max_level", json_integer(summary->max_level)},
-        {"max_strahler", json_integer(summary->max_strahler)},
-        {"bbox_mm", json_pack("[[f,f,f],[f,f,f]]", box->low.x, box->low.y, box->low.z, box->high.x,
-                              box->high.y, box->high.z)},
-    };
-    json_t *json = json_with_members(json_object(), members, sizeof members / sizeof *members);
-    if (summary->has.terminal_pressure)
-        json = json_with(json, "terminal_pressure_mmHg",
-                         json_pack("{s:f, s:f, s:f}", "min", summary->terminal_pressure_min_mmhg,
-                                   "mean", summary->terminal_pressure_mean_mmhg, "max",
-                                   summary->terminal_pressure_max_mmhg));
-    return json;
-}
 
 static void print_summary(const char *path, const TreeSummary *summary)
 {

@@ -5,8 +5,7 @@
 #include "app/pictures/shard.h"
 #include "app/run/output.h"
 #include "app/run/progress.h"
-#include <dirent.h>
-#include <errno.h>
+#include "app/trees/study_table.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,8 +16,9 @@ typedef struct MergeOptions {
 static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, MergeOptions, output),
-     .argument = "P.tif",
-     .help = "the whole: .png, .tif (BigTIFF above 4 GB) or .ppm"},
+     .argument = "P.tif|T.csv",
+     .help = "the whole picture, .png, .tif (BigTIFF above 4 GB) or .ppm; or the table of a study, "
+             ".csv or .jsonl"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -32,6 +32,7 @@ typedef struct Tile {
 typedef struct Tiles {
     Tile *tile; /* owned */
     size_t n, capacity;
+    ImageReader *first; /* owned; of the first that was found, which the others are held against */
 } Tiles;
 
 static void tiles_release(Tiles *tiles)
@@ -39,6 +40,7 @@ static void tiles_release(Tiles *tiles)
     for (size_t i = 0; i < tiles->n; i++)
         free(tiles->tile[i].path);
     free(tiles->tile);
+    imagereader_close(tiles->first);
 }
 
 /* ---- finding tiles --------------------------------------------------------------------------- */
@@ -72,8 +74,9 @@ static Status check_same(const ImageReader *first, const Tile *a, const ImageRea
 }
 
 /* Adds a file if it is a tile; one that is none is passed over if it was not `named`. */
-static Status add_file(Tiles *tiles, ImageReader **first, const char *path, bool named, Err *err)
+static Status add_file(void *user, const char *path, bool named, Err *err)
 {
+    Tiles *tiles = user;
     ImageReader *reader = NULL;
     Tile tile = {0};
     Status status;
@@ -85,55 +88,20 @@ static Status add_file(Tiles *tiles, ImageReader **first, const char *path, bool
     if (!is_tile || imagereader_form(reader)->height != tile.shard.rows)
         TRY_GOTO(err_set(err, STATUS_INPUT, "%s: is no tile that render --tile drew", path));
     TRY_GOTO(mem_strdup(&tile.path, path, err));
-    if (*first)
-        TRY_GOTO(check_same(*first, &tiles->tile[0], reader, &tile, err));
+    if (tiles->first)
+        TRY_GOTO(check_same(tiles->first, &tiles->tile[0], reader, &tile, err));
     TRY_GOTO(mem_reserve(&tiles->tile, &tiles->capacity, tiles->n + 1, sizeof *tiles->tile, "tiles",
                          err));
     tiles->tile[tiles->n++] = tile;
     tile.path = NULL;
-    if (!*first) {
-        *first = reader;
+    if (!tiles->first) {
+        tiles->first = reader;
         reader = NULL;
     }
 done:
     free(tile.path);
     imagereader_close(reader);
     return status;
-}
-
-static int is_picture(const struct dirent *entry)
-{
-    static const char *const extensions[] = {"png", "tif", "tiff", NULL};
-    return is_one_of(file_extension(entry->d_name), extensions);
-}
-
-static Status add_folder(Tiles *tiles, ImageReader **first, const char *folder, Err *err)
-{
-    struct dirent **entries = NULL;
-    int n = scandir(folder, &entries, is_picture, alphasort);
-    if (n < 0)
-        return err_set(err, errno == ENOMEM ? STATUS_MEMORY : STATUS_INPUT,
-                       "%s: cannot be read: %s", folder, strerror(errno));
-    Status status = STATUS_OK;
-    for (int i = 0; i < n; i++) {
-        char *path = NULL;
-        if (status == STATUS_OK)
-            status = file_join(folder, entries[i]->d_name, &path, err);
-        if (status == STATUS_OK)
-            status = add_file(tiles, first, path, false, err);
-        free(path);
-        free(entries[i]);
-    }
-    free(entries);
-    return status;
-}
-
-static bool is_folder(const char *path)
-{
-    DIR *folder = opendir(path);
-    if (folder)
-        closedir(folder);
-    return folder != NULL;
 }
 
 static int by_number(const void *a, const void *b)
@@ -164,13 +132,11 @@ static Status check_complete(Tiles *tiles, Err *err)
     return STATUS_OK;
 }
 
-static Status find_tiles(const Parsed *parsed, Tiles *tiles, ImageReader **first, Err *err)
+static Status find_tiles(const Parsed *parsed, Tiles *tiles, Err *err)
 {
-    for (int i = 0; i < parsed->n_operands; i++) {
-        const char *path = parsed->operands[i];
-        TRY(is_folder(path) ? add_folder(tiles, first, path, err)
-                            : add_file(tiles, first, path, true, err));
-    }
+    static const char *const extensions[] = {"png", "tif", "tiff", NULL};
+    for (int i = 0; i < parsed->n_operands; i++)
+        TRY(files_visit(parsed->operands[i], extensions, add_file, tiles, err));
     return check_complete(tiles, err);
 }
 
@@ -220,10 +186,9 @@ static Status whole_notes(const ImageNotes *of, ImageNote **notes, ImageNotes *w
     return STATUS_OK;
 }
 
-static Status merge(const char *output, const Tiles *tiles, const ImageReader *first,
-                    const Common *common, Err *err)
+static Status merge(const char *output, const Tiles *tiles, const Common *common, Err *err)
 {
-    ImageForm form = *imagereader_form(first);
+    ImageForm form = *imagereader_form(tiles->first);
     ImageNote *notes = NULL;
     ImageNotes whole;
     ImageWriter *writer;
@@ -245,29 +210,53 @@ static Status merge(const char *output, const Tiles *tiles, const ImageReader *f
     return status;
 }
 
-static Status run_merge(void *options, Parsed *parsed, Err *err)
+static Status merge_tiles(const char *output, Parsed *parsed, Err *err)
 {
-    const MergeOptions *own_options = options;
     Tiles tiles = {0};
-    ImageReader *first = NULL;
-    Status status = find_tiles(parsed, &tiles, &first, err);
+    Status status = find_tiles(parsed, &tiles, err);
     for (size_t i = 0; i < tiles.n && status == STATUS_OK; i++)
         status = files_read(&parsed->files, "the tile", tiles.tile[i].path, err);
     if (status == STATUS_OK)
-        status = merge(own_options->output, &tiles, first, &parsed->common, err);
-    imagereader_close(first);
+        status = merge(output, &tiles, &parsed->common, err);
     tiles_release(&tiles);
     return status;
 }
 
+/* ---- runs ------------------------------------------------------------------------------------ */
+
+static Status merge_runs(const char *output, Parsed *parsed, Err *err)
+{
+    StudyTable table = {.shards = true};
+    Status status = STATUS_OK;
+    for (int i = 0; i < parsed->n_operands && status == STATUS_OK; i++)
+        status = study_table_add(&table, parsed->operands[i], err);
+    for (size_t i = 0; i < table.n && status == STATUS_OK; i++)
+        status = files_read(&parsed->files, "the run", table.row[i].path, err);
+    if (status == STATUS_OK)
+        status = study_table_check(&table, err);
+    if (status == STATUS_OK)
+        status = study_table_write(&table, output, err);
+    study_table_release(&table);
+    return status;
+}
+
+static Status run_merge(void *options, Parsed *parsed, Err *err)
+{
+    static const char *const tables[] = {"csv", "jsonl", NULL};
+    const char *output = ((const MergeOptions *)options)->output;
+    return is_one_of(file_extension(output), tables) ? merge_runs(output, parsed, err)
+                                                     : merge_tiles(output, parsed, err);
+}
+
 const Command command_merge = {
     .name = "merge",
-    .summary = "join the tiles of a picture",
-    .operands = "DIR|FILE... -o P.tif",
+    .summary = "join the tiles of a picture, or the runs of a study",
+    .operands = "DIR|FILE... -o P.tif|T.csv",
     .examples = "  corcast render tree.swc --size 30000x30000 -o poster.tif --tiles 64 --commands "
                 "> plan.txt\n"
                 "  parallel -a plan.txt\n"
-                "  corcast merge . -o poster.tif\n",
+                "  corcast merge . -o poster.tif\n"
+                "  corcast merge runs -o study.csv\n",
     .min_operands = 1,
     .max_operands = MAX_OPERANDS,
     .needs_output = true,

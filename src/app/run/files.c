@@ -3,6 +3,8 @@
  * its name. */
 #include "app/run/files.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -130,4 +132,43 @@ Status files_read(Files *files, const char *role, const char *path, Err *err)
 Status files_write(Files *files, const char *role, const char *path, Err *err)
 {
     return note(files, role, path, true, err);
+}
+
+/* ---- folders --------------------------------------------------------------------------------- */
+
+static bool has_extension(const char *name, const char *const *extensions)
+{
+    while (*extensions && strcmp(file_extension(name), *extensions) != 0)
+        extensions++;
+    return *extensions && *name != '.';
+}
+
+static Status visit_in(const char *folder, const char *name, FileVisit *visit, void *user, Err *err)
+{
+    char *path = NULL;
+    TRY(file_join(folder, name, &path, err));
+    Status status = visit(user, path, false, err);
+    free(path);
+    return status;
+}
+
+Status files_visit(const char *path, const char *const *extensions, FileVisit *visit, void *user,
+                   Err *err)
+{
+    struct stat about;
+    struct dirent **entries = NULL;
+    if (stat(path, &about) != 0 || !S_ISDIR(about.st_mode))
+        return visit(user, path, true, err);
+    int n = scandir(path, &entries, NULL, alphasort);
+    if (n < 0)
+        return err_set(err, errno == ENOMEM ? STATUS_MEMORY : STATUS_INPUT,
+                       "%s: cannot be read: %s", path, strerror(errno));
+    Status status = STATUS_OK;
+    for (int i = 0; i < n; i++) {
+        if (status == STATUS_OK && has_extension(entries[i]->d_name, extensions))
+            status = visit_in(path, entries[i]->d_name, visit, user, err);
+        free(entries[i]);
+    }
+    free(entries);
+    return status;
 }

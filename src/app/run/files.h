@@ -22,4 +22,13 @@ MUST_CHECK Status files_read(Files *files, const char *role, const char *path, E
 MUST_CHECK Status files_write(Files *files, const char *role, const char *path, Err *err);
 void files_release(Files *files);
 
+/* Called for a file; `named`: it is not one of a folder's. */
+typedef Status FileVisit(void *user, const char *path, bool named, Err *err);
+
+/* Calls `visit` for `path` or, where that is a folder, for its files of these extensions (a list
+ * that ends in NULL) in the order of their names, until one fails. STATUS_INPUT when a folder
+ * cannot be read. */
+MUST_CHECK Status files_visit(const char *path, const char *const *extensions, FileVisit *visit,
+                              void *user, Err *err);
+
 #endif

@@ -175,7 +175,7 @@ typedef struct OptionTable {
 
 typedef struct Parsed Parsed;
 
-enum { MAX_OPERANDS = 512, MAX_TABLES = 6 };
+enum { MAX_OPERANDS = 4096, MAX_TABLES = 6 };
 
 typedef struct Command {
     const char *name;

@@ -42,6 +42,20 @@ Status refining_check(const Refining *refining, const Parsed *parsed, Err *err)
     return options_check_needs(parsed, needs, err);
 }
 
+Status refining_check_growing(const Refining *refining, const Growing *growing, Err *err)
+{
+    if (refining->level == GROW_REFINE_NONE)
+        return STATUS_OK;
+    if (growing->from_path)
+        return err_set(err, STATUS_USAGE,
+                       "--refine: would move the tree of --from; use corcast refine afterwards");
+    if (growing->inlet.n > 1)
+        return err_set(err, STATUS_USAGE,
+                       "--refine: takes one tree, not one from each of %zu inlets",
+                       growing->inlet.n);
+    return STATUS_OK;
+}
+
 Status refining_apply(const Refining *refining, const Common *common, const Domain *domain,
                       Tree *tree, RefineReport *report, Err *err)
 {

@@ -3,6 +3,7 @@
 #define CORCAST_APP_REFINING_H
 
 #include "app/run/options.h"
+#include "app/trees/growing.h"
 #include "grow/grow.h"
 
 typedef struct Refining {
@@ -15,6 +16,10 @@ extern const OptionTable refining_table; /* sets a Refining; a zeroed one is no 
 
 /* STATUS_USAGE for bounds of a refinement that nobody asks for. */
 MUST_CHECK Status refining_check(const Refining *refining, const Parsed *parsed, Err *err);
+
+/* STATUS_USAGE for growth whose tree cannot be refined: refinement moves all nodes of one tree. */
+MUST_CHECK Status refining_check_growing(const Refining *refining, const Growing *growing,
+                                         Err *err);
 
 /* Refines the tree, if at all, with progress; the first SIGINT keeps the best tree so far. *report
  * is zeroed when nothing was asked for. `domain` may be NULL. */
