@@ -7,13 +7,16 @@
 extern const Command command_grow, command_refine, command_info, command_convert, command_scene,
     command_export, command_povray, command_render, command_view, command_verify, command_compare,
     command_report, command_models, command_fields, command_looks, command_colormaps,
-    command_domains, command_formats, command_morphometries, command_diagram, command_merge,
-    command_study, command_help, command_version;
+    command_domains, command_formats, command_morphometries, command_diagram, command_figure,
+    command_merge, command_study, command_help, command_version;
 
 /* In the order of the help; NULL ends them. */
 extern const Command *const all_commands[];
 /* NULL when no command has this name. */
 const Command *command_find(const char *name);
+/* Reads the arguments after the command's name and runs it. Errors are options_parse's and its own.
+ */
+MUST_CHECK Status command_run(const Command *command, int argc, char **argv, Err *err);
 /* STATUS_USAGE for a name that no command has, with one that may have been meant. */
 Status command_unknown(const char *name, Err *err);
 

@@ -3,7 +3,6 @@
 #include "app/commands.h"
 #include "app/run/output.h"
 
-#include "app/help.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -20,20 +19,6 @@ static int finish(const char *command, Status status, Err *err)
         text_release(&line);
     }
     return status_exit(status);
-}
-
-static Status run(const Command *command, int argc, char **argv, Err *err)
-{
-    Parsed parsed;
-    TRY(parsed_init(&parsed, command, err));
-    Status status = options_parse(&parsed, argc, argv, err);
-    if (status == STATUS_OK)
-        status = parsed.common.help ? help_print(command, err)
-                                    : command->run(parsed.options, &parsed, err);
-    if (status != STATUS_OK)
-        options_name_fields(&parsed, err);
-    parsed_release(&parsed);
-    return status;
 }
 
 /* The command that the first word stands for: by its name, or as an option. */
@@ -61,6 +46,6 @@ int main(int argc, char **argv)
     const Command *command = command_find(name);
     if (!command)
         return finish("", command_unknown(name, &err), &err);
-    Status status = run(command, argc - 2, argv + 2, &err);
+    Status status = command_run(command, argc - 2, argv + 2, &err);
     return finish(command == &command_help ? "" : name, status, &err);
 }

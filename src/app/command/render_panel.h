@@ -25,13 +25,14 @@ typedef struct Panel {
     Annotation annotation; /* what the options ask for, to be drawn by the caller */
 } Panel;
 
-/* The part of the panel that an inset shows: left, top, right, bottom over width and height. */
-FigureBox panel_part(const PanelInset *inset, const int panel_pixels[2]);
+/* The part of a camera's picture that an inset shows, over width and height, and its own view. */
+FigureBox panel_part(const PanelInset *inset, const Camera *camera);
+View panel_inset_view(const PanelInset *inset, const View *view);
 
-/* Draws what the options of `render` ask for, parsed from anywhere but a command line: the tree is
- * the first operand; output, planes, JSON and animations are none of a panel's. Checks and
- * sentences are those of the command. STATUS_USAGE for insets in perspective. On failure, too,
- * panel_release is to be called. */
+/* Draws what options of `render` ask for that come from anywhere but a command line: the tree is
+ * the first operand; there are no output, planes, JSON, parts and animations. Checks and sentences
+ * are those of the command. STATUS_USAGE for insets in perspective. *panel is owned
+ * (panel_release), also on failure. */
 MUST_CHECK Status panel_draw(Parsed *parsed, Panel *panel, Err *err);
 void panel_release(Panel *panel);
 

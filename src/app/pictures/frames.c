@@ -173,14 +173,15 @@ static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
     return status;
 }
 
-static Status write_page(const FramesForm *form, Err *err)
+Status frames_write_page(const FigurePage *page, const FigureNotes *notes, const char *path,
+                         Err *err)
 {
-    if (strcmp(file_extension(form->path), "pdf") == 0)
-        return figure_write_pdf(form->page, form->notes, form->path, err);
+    if (strcmp(file_extension(path), "pdf") == 0)
+        return figure_write_pdf(page, notes, path, err);
     Text svg = TEXT_INIT;
-    Status status = figure_put_svg(form->page, form->notes, &svg, err);
+    Status status = figure_put_svg(page, notes, &svg, err);
     if (status == STATUS_OK)
-        status = file_write_text(form->path, &svg, err);
+        status = file_write_text(path, &svg, err);
     text_release(&svg);
     return status;
 }
@@ -196,7 +197,7 @@ static Status finish_held(FramesWriter *writer, Err *err)
     }
     figure_add_picture(form->page, &writer->whole, 0, 0);
     TRY(figure_check(form->page, err));
-    Status status = write_page(form, err);
+    Status status = frames_write_page(form->page, form->notes, form->path, err);
     form->page->n--; /* the next picture takes its place */
     return status;
 }

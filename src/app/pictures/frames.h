@@ -9,6 +9,9 @@
 
 /* Whether the file is a page, .pdf or .svg, that holds a picture. */
 bool frames_is_page(const char *path);
+/* Writes such a page. Errors are those of figure_write_pdf and figure_put_svg. */
+MUST_CHECK Status frames_write_page(const FigurePage *page, const FigureNotes *notes,
+                                    const char *path, Err *err);
 /* STATUS_USAGE when `path` is no image file, or is standard output although planes are wanted. */
 MUST_CHECK Status frames_check_output(const char *path, bool planes, Err *err);
 

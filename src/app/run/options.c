@@ -19,6 +19,11 @@ static const Option common_options[] = {
      .group = GROUP_RUN,
      .aside = true,
      .help = "read options from an INI file, one name = value a line"},
+    {.name = "dump-recipe",
+     SETS(FLAG, Common, dump),
+     .group = GROUP_RUN,
+     .aside = true,
+     .help = "print a recipe that says all of what was done"},
     {.name = "seed", SETS(SEED, Common, seed), .group = GROUP_RUN, .help = "of what is random"},
     {.name = "threads",
      SETS(WHOLE, Common, threads),
@@ -137,6 +142,47 @@ static Status read_recipe(Parsed *parsed, Err *err)
             ((VectorList *)(setting->base + setting->option->where))->from_recipe = true;
     }
     return STATUS_OK;
+}
+
+static void put_key(const Setting *setting, Text *text)
+{
+    for (size_t at = 0; at < setting_count(setting); at++) {
+        text_printf(text, "%s = ", setting->option->name);
+        setting_put(setting, at, text);
+        text_puts(text, "\n");
+    }
+}
+
+/* Of an option that is not given, its default is what holds, unless it stands for something else.
+ */
+void options_put_keys(const Parsed *parsed, OptionIsKey *is_key, Text *text)
+{
+    Parsed plain;
+    if (parsed_init(&plain, parsed->command, NULL) != STATUS_OK) {
+        text_puts(text, NULL);
+        return;
+    }
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Option *option = parsed->settings[i].option;
+        const bool holds = !option->has_given && !option->otherwise;
+        if (is_key(option) &&
+            (holds || setting_differs(&parsed->settings[i], &plain.settings[i], text)))
+            put_key(&parsed->settings[i], text);
+    }
+    parsed_release(&plain);
+}
+
+static bool is_of_result(const Option *option)
+{
+    return !option->aside && option->kind != OPTION_OUTPUT && option->kind != OPTION_FOLDER;
+}
+
+void options_put_recipe(const Parsed *parsed, Text *text)
+{
+    const Command *command = parsed->command;
+    text_printf(text, "; corcast " CORCAST_VERSION ": %s %s --recipe FILE\n[%s]\n", command->name,
+                command->operands, command->name);
+    options_put_keys(parsed, is_of_result, text);
 }
 
 /* ---- the command line ------------------------------------------------------------------------ */
@@ -317,7 +363,7 @@ static Status settle_size(const Option *option, PictureSize *size, Err *err)
 }
 
 /* What can be said only of all options together. */
-static Status settle(const Parsed *parsed, Err *err)
+Status options_settle(const Parsed *parsed, Err *err)
 {
     for (size_t i = 0; i < parsed->n_settings; i++) {
         const Setting *setting = &parsed->settings[i];
@@ -336,7 +382,7 @@ Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
     TRY(read_arguments(parsed, argc, argv, true, err));
     if (parsed->common.help)
         return STATUS_OK;
-    TRY(settle(parsed, err));
+    TRY(options_settle(parsed, err));
     TRY(check_present(parsed, err));
     return note_files(parsed, err);
 }

@@ -187,6 +187,7 @@ typedef struct Command {
     bool writes_last;  /* the last operand is written; the others are read */
     bool is_lookup;    /* operands are names, not files */
     bool reads_tree;   /* it has the options of reading, which set parsed->reading */
+    bool own_recipe;   /* it prints its --dump-recipe itself */
     size_t size;       /* of the struct that its options set; 0: it has none of its own */
     void (*set_defaults)(void *options); /* of that struct, zeroed before; NULL: zeros */
     struct {
@@ -201,6 +202,7 @@ typedef struct Common {
     bool quiet, help;
     int threads; /* 0: all processors */
     uint64_t seed;
+    bool dump; /* a recipe that says all options is printed */
     const char *recipe;
     char *recipe_text; /* what the values of a recipe point into; owned */
 } Common;
@@ -240,6 +242,18 @@ void parsed_release(Parsed *parsed);
  * files_read and files_write have them for the files that operands and options name. Of a value
  * given twice the last holds. With --help, nothing needs to be there. */
 MUST_CHECK Status options_parse(Parsed *parsed, int argc, char **argv, Err *err);
+
+/* Whether an option is a key of a recipe. */
+typedef bool OptionIsKey(const Option *option);
+/* Appends the lines of a recipe that say what these options say, whether they were given or not:
+ * all that has a value. The text fails when memory runs out. */
+void options_put_keys(const Parsed *parsed, OptionIsKey *is_key, Text *text);
+/* Appends a recipe for the command, of all options but what is written and what the result does not
+ * depend on. Likewise. */
+void options_put_recipe(const Parsed *parsed, Text *text);
+/* Makes pixels of the sizes on paper, once all options are read. STATUS_USAGE when they are too
+ * many. */
+MUST_CHECK Status options_settle(const Parsed *parsed, Err *err);
 
 /* Whether the option stands on the command line. */
 bool options_typed(const Parsed *parsed, const char *name);

@@ -1,0 +1,170 @@
+#!/usr/bin/env bash
+# Figures from recipes: panels, insets, text; and recipes that are printed and run again.
+. "$(dirname "$0")/../lib.sh"
+
+# A figure of everything, small, in folder/all.ini; its tree is grown by the recipe, and read from a
+# file beside it.
+write_recipe() {
+    mkdir -p folder
+    run_ok corcast grow --terminals 40 --seed 5 --quiet -o folder/tree.swc
+    cat >folder/all.ini <<'END'
+; everything that a recipe can say
+[figure]
+size = 80mmx60mm
+dpi = 150
+columns = 2
+gap = 3
+letters = upper
+text-size = 6
+
+[panels]
+grow = --terminals 30 --seed 9 --domain 'disc:37'
+scale-bar = 8
+margin = 0.08
+
+[panel p]
+title = Rounded, whole
+
+[panel q]
+tree = tree.swc
+model = joined
+color-by = flow
+log = on
+legend = on
+legend-title = flow (ml/min)
+scale-bar = 11
+
+[panel r]
+span = 2
+letter = Z
+model = isosurface
+look = dark
+aspect = 2.5
+
+[inset i]
+of = r
+at = 0.5,0.4
+place = 0.85,0.5
+magnify = 3
+width = 11
+height = 9
+scale-bar = 2
+
+[text note]
+text = n = 30 & < 40
+at = 79,59
+align = right
+text-size = 5
+END
+}
+
+test_a_recipe_makes_a_page_of_panels_insets_and_text() {
+    write_recipe
+    run_ok corcast figure folder/all.ini --quiet -o all.pdf
+    pdftotext -layout all.pdf text.txt
+    for words in 'A *Rounded, whole' 'B' 'Z' '8 mm' '11 mm' '2 mm' 'flow (ml/min)' 'n = 30 & < 40'; do
+        grep -q "$words" text.txt || fail "expected '$words' in the text, got $(cat text.txt)"
+    done
+    [ "$(pdfimages -list all.pdf | awk 'NR > 2 { print $13 "x" $14 }' | sort -u)" = 150x150 ] ||
+        fail "expected pictures at 150 ppi, got $(pdfimages -list all.pdf)"
+    [ "$(pdfimages -list all.pdf | awk 'NR > 2' | wc -l)" = 4 ] || fail "expected 4 pictures"
+    run_ok corcast figure folder/all.ini --quiet -o all.svg
+    run_ok xmllint --noout all.svg
+    run_ok corcast figure folder/all.ini --quiet --dpi 100 -o all.png
+    pngtopnm all.png | pnmfile | grep -q '315 by 236' || fail "expected 315 x 236 pixels"
+    run_ok corcast figure folder/all.ini --quiet -o all.tif
+    [ "$(echo all.* folder/*)" = "all.pdf all.png all.svg all.tif folder/all.ini folder/tree.swc" ] ||
+        fail "expected no other file, got $(echo ./* folder/*)"
+}
+
+test_a_printed_recipe_makes_the_same_figure() {
+    write_recipe
+    mkdir again
+    cp folder/tree.swc again
+    for form in pdf svg png; do
+        run_ok corcast figure folder/all.ini --quiet --text-size 6.5 -o one.$form --dump-recipe
+        cp stdout again/all.ini
+        run_ok corcast figure again/all.ini --quiet --threads 1 -o two.$form --dump-recipe
+        cmp stdout again/all.ini || fail "expected the recipe of a printed recipe to be itself"
+        expect_same one.$form two.$form
+    done
+    grep -q '^text-size = 6.5$' again/all.ini || fail "expected what the command line says in the recipe"
+}
+
+test_a_printed_recipe_of_render_makes_the_same_picture() {
+    run_ok corcast grow --terminals 40 --seed 5 --quiet -o tree.swc
+    run_ok corcast render tree.swc --quiet --size 171x153 --color-by wss --range 5%,95% --legend --text-size 3 \
+        --model joined -o a.png --dump-recipe
+    cp stdout r.ini
+    run_ok corcast render tree.swc --quiet --recipe r.ini -o b.png
+    expect_same a.png b.png
+    run corcast render tree.swc --quiet -o - --dump-recipe
+    expect_status 2
+    expect_sentence 'dump-recipe prints a recipe, so it needs -o FILE'
+}
+
+test_an_inset_shows_the_part_of_its_frame_larger() {
+    mkdir f
+    run_ok corcast grow --terminals 40 --seed 5 --quiet -o f/tree.swc
+    printf '[figure]\nsize = 300x300\nletters = none\n[panel a]\ntree = tree.swc\n' >f/plain.ini
+    printf '[inset i]\nof = a\nat = 0.5,0.3\nplace = 0.5,0.5\nmagnify = 4\nwidth = 25.4\n' |
+        cat f/plain.ini - >f/large.ini
+    run_ok corcast figure f/large.ini --quiet -o large.png
+    # The middle of the inset, 300 pixels wide and high, is that of its part.
+    run_ok corcast render f/tree.swc --quiet --size 1200x1200 -o whole.png
+    pngtopnm whole.png | pnmcut -left 590 -top 350 -width 20 -height 20 >expected.ppm
+    pngtopnm large.png | pnmcut -left 140 -top 140 -width 20 -height 20 >inset.ppm
+    expect_differing 0 60 expected.ppm inset.ppm
+}
+
+# refused LINES PATTERN: a recipe of these lines is refused so.
+refused() {
+    printf "$1" >r.ini
+    run corcast figure r.ini --quiet -o x.pdf
+    expect_status 2
+    expect_sentence "$2"
+    [ ! -e x.pdf ] || fail "expected nothing to be written"
+}
+
+test_mistakes_are_named_with_file_and_line() {
+    run_ok corcast grow --terminals 12 --quiet -o t.swc
+    refused '[panel a]\ntree = t.swc\ncolour-by = flow\n' "r\.ini:3: 'colour-by' is not a key of \[panel\]; did you mean color-by"
+    refused '[panel a]\ntree = t.swc\nsize = 3x3\n' "r\.ini:3: 'size' is not a key of"
+    refused '[panel a]\ntree = t.swc\n[panel a]\n' 'r\.ini:3: there is a section \[panel a\] already'
+    refused '[figure]\n[figure]\n' 'r\.ini:2: there is a section \[figure\] already'
+    refused '[panel a]\ntree = t.swc\nmodel = joined\nmodel = blob\n' "r\.ini:4: 'model' is given twice"
+    refused '[panel a]\ntree = t.swc\ngrow = --terminals 9\n' 'r\.ini:3: the tree is given twice'
+    refused '[panel a]\ntree = t.swc\nmodel = jined\n' 'r\.ini:3: .*jined.* is not one of'
+    refused '[panel a]\ntree = t.swc\n[figure]\ncolumns = 0\n' 'r\.ini:4: .*columns.*0'
+    refused '[panel a]\ntree = t.swc\n[panels]\n' 'r\.ini:3: \[panels\] stands before all panels'
+    refused '[panels]\nmodle = joined\n' "r\.ini:2: 'modle'"
+    refused '[boxes]\n' 'r\.ini:1: \[boxes\] is not \[figure\]'
+    refused 'size = 3x3\n' 'r\.ini:1: .* stands before any section'
+    refused '[figure]\n' 'r\.ini: there is no \[panel NAME\]'
+    refused '[panel a]\nmodel = joined\n' 'r\.ini: \[panel a\] has no tree'
+}
+
+test_what_cannot_be_drawn_is_named_with_its_section() {
+    run_ok corcast grow --terminals 12 --quiet -o t.swc
+    refused '[panel a]\ntree = u.swc\n' 'panel a\]: u\.swc'
+    refused '[panel a]\ngrow = --terminals zero\n' "panel a\]: grow: --terminals: 'zero'"
+    refused '[panel a]\ngrow = --terminals 9 -o /tmp/x.swc\n' 'panel a\]: grow: -o is for the command alone'
+    refused "[panel a]\ngrow = --domain 'disc:9\n" 'panel a\]: grow: a quote is not closed'
+    refused '[panel a]\ntree = t.swc\nlegend = on\n' 'panel a\]: --legend needs --color-by'
+    refused '[panel a]\ntree = t.swc\nspan = 2\n' 'panel a\] spans 2 columns, of which there are 1'
+    refused '[figure]\nmargin = 70\n[panel a]\ntree = t.swc\n' 'panel a\] has no room'
+    refused '[panel a]\ntree = t.swc\nprojection = perspective\n[inset i]\nof = a\nat = 0.1,0.1\nplace = 0.8,0.8\nwidth = 9' \
+        'panel a\]: an inset is a part of an orthographic picture'
+    refused '[panel a]\ntree = t.swc\n[inset i]\nof = b\nat = 0.1,0.1\nplace = 0.8,0.8\n' 'inset i\]: of: b is not the name'
+    refused '[panel a]\ntree = t.swc\n[inset i]\nof = a\n' "inset i\] needs 'at'"
+    refused '[panel a]\ntree = t.swc\n[text n]\ntext = x\n' "text n\] needs 'text' and 'at'"
+    run corcast figure r.ini --quiet -o x.bmp
+    expect_status 2
+    expect_sentence 'does not end in \.pdf'
+    run corcast figure nosuch --quiet -o x.pdf
+    expect_status 2
+    expect_sentence 'nosuch'
+    expect_only t.swc r.ini
+}
+
+run_tests "$@"
