@@ -2,9 +2,7 @@
  * what draws `render`, on whole pixels of the page, and then all that is drawn over them: legends,
  * scale bars, letters, insets with their frames, text. Whatever the recipe names, it names from its
  * own folder. */
-#include "app/command/figure_plan.h"
-#include "app/command/figure_trees.h"
-#include "app/command/render_panel.h"
+#include "app/command/figure_making.h"
 #include "app/commands.h"
 #include "app/pictures/frames.h"
 #include "app/run/output.h"
@@ -14,17 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-typedef enum Letters { LETTERS_LOWER, LETTERS_UPPER, LETTERS_NONE } Letters;
-
-typedef struct FigureOptions {
-    const char *output;
-    PictureSize size;
-    int columns;
-    double gap_mm, margin_mm, text_pt;
-    Letters letters;
-    Vec3 background; /* sRGB in [0, 1] */
-} FigureOptions;
 
 static const char *const letter_names[] = {
     [LETTERS_LOWER] = "lower", [LETTERS_UPPER] = "upper", [LETTERS_NONE] = "none", NULL};
@@ -83,175 +70,7 @@ static void set_defaults(void *options)
         .size = {.mm = {89, 89}}, .columns = 1, .gap_mm = 2, .text_pt = 7, .background = {1, 1, 1}};
 }
 
-/* ---- layout ---------------------------------------------------------------------------------- */
-
-/* A panel on the page: pixels from its upper left corner. */
-typedef struct Place {
-    int left, top, width, height;
-    double title_mm; /* height of the line above it */
-} Place;
-
-/* The figure being made. */
-typedef struct Figure {
-    const FigureOptions *options;
-    Parsed *parsed;
-    FigurePlan plan;
-    MadeTrees trees;
-    Sheet sheet;
-    Place *places;      /* of the sections that are panels; owned */
-    Panel *panels;      /* likewise */
-    PanelInset *insets; /* of the sections that are insets, in the order of their panels; owned */
-} Figure;
-
-static bool is_panel(const Figure *figure, size_t i)
-{
-    return figure->plan.sections[i].kind == SECTION_PANEL;
-}
-
-/* The cell in which each panel begins, row by row; how many rows there are. */
-static int find_cells(const Figure *figure, int (*cell)[2])
-{
-    const int columns = figure->options->columns;
-    int row = 0, column = 0;
-    for (size_t i = 0; i < figure->plan.n; i++) {
-        const Section *section = &figure->plan.sections[i];
-        if (!is_panel(figure, i))
-            continue;
-        int span = ((const PanelOptions *)section->own.options)->span;
-        if (column + span > columns) {
-            row++;
-            column = 0;
-        }
-        cell[i][0] = column;
-        cell[i][1] = row;
-        column += span;
-    }
-    return row + 1;
-}
-
-/* Whether any panel of the row has a title: all keep its place then. */
-static bool has_titles(const Figure *figure, int (*cell)[2], int row)
-{
-    for (size_t i = 0; i < figure->plan.n; i++)
-        if (is_panel(figure, i) && cell[i][1] == row &&
-            ((const PanelOptions *)figure->plan.sections[i].own.options)->title)
-            return true;
-    return false;
-}
-
-static Status place_panel(const Figure *figure, const FigureBox *cell, double title_mm, size_t i,
-                          Err *err)
-{
-    const Section *section = &figure->plan.sections[i];
-    const PanelOptions *panel = section->own.options;
-    double width = cell->right - cell->left, height = cell->bottom - cell->top - title_mm;
-    double left = cell->left, top = cell->top + title_mm;
-    if (panel->aspect > 0 && width > 0 && height > 0) {
-        double fitting = fmin(width, height * panel->aspect);
-        left += (width - fitting) / 2;
-        top += (height - fitting / panel->aspect) / 2;
-        width = fitting;
-        height = fitting / panel->aspect;
-    }
-    const FigurePage *page = &figure->sheet.page;
-    Place place = {
-        .left = figure_pixels(page, left), .top = figure_pixels(page, top), .title_mm = title_mm};
-    place.width = figure_pixels(page, left + width) - place.left;
-    place.height = figure_pixels(page, top + height) - place.top;
-    if (place.width < 1 || place.height < 1)
-        return err_set(err, STATUS_USAGE,
-                       "[panel %s] has no room: the page is %.4g x %.4g mm, with `margin_mm` and "
-                       "`gap_mm`",
-                       section->name, page->width_mm, page->height_mm);
-    figure->places[i] = place;
-    return STATUS_OK;
-}
-
-static Status lay_out(Figure *figure, int (*cell)[2], Err *err)
-{
-    const FigureOptions *options = figure->options;
-    const FigurePage *page = &figure->sheet.page;
-    const int rows = find_cells(figure, cell);
-    double margin = options->margin_mm, gap = options->gap_mm;
-    double wide = (page->width_mm - 2 * margin - gap * (options->columns - 1)) / options->columns;
-    double high = (page->height_mm - 2 * margin - gap * (rows - 1)) / rows;
-    for (size_t i = 0; i < figure->plan.n; i++) {
-        if (!is_panel(figure, i))
-            continue;
-        const Section *section = &figure->plan.sections[i];
-        int span = ((const PanelOptions *)section->own.options)->span;
-        if (span > options->columns)
-            return err_set(err, STATUS_USAGE, "[panel %s] spans %d columns, of which there are %d",
-                           section->name, span, options->columns);
-        double left = margin + cell[i][0] * (wide + gap), top = margin + cell[i][1] * (high + gap);
-        double title =
-            has_titles(figure, cell, cell[i][1]) ? 1.7 * options->text_pt * MM_PER_POINT : 0;
-        const FigureBox box = {left, top, left + span * wide + (span - 1) * gap, top + high};
-        TRY(place_panel(figure, &box, title, i, err));
-    }
-    return STATUS_OK;
-}
-
-static Status place_panels(Figure *figure, Err *err)
-{
-    int(*cell)[2];
-    size_t n = figure->plan.n;
-    TRY(mem_calloc(&figure->places, n, sizeof *figure->places, "panels", err));
-    TRY(mem_calloc(&figure->panels, n, sizeof *figure->panels, "panels", err));
-    TRY(mem_calloc(&figure->insets, n, sizeof *figure->insets, "insets", err));
-    TRY(mem_calloc(&cell, n, sizeof *cell, "panels", err));
-    Status status = lay_out(figure, cell, err);
-    free(cell);
-    return status;
-}
-
-/* ---- panels and insets ----------------------------------------------------------------------- */
-
-/* The section of this kind and name; plan.n when there is none. */
-static size_t find_section(const FigurePlan *plan, SectionKind kind, const char *name)
-{
-    size_t i = 0;
-    while (i < plan->n &&
-           (plan->sections[i].kind != kind || strcmp(plan->sections[i].name, name) != 0))
-        i++;
-    return i;
-}
-
-static Status check_inset(const FigurePlan *plan, const Section *section, Err *err)
-{
-    const InsetOptions *inset = section->own.options;
-    if (!inset->of || find_section(plan, SECTION_PANEL, inset->of) == plan->n)
-        return err_set(err, STATUS_USAGE, "[inset %s]: of: %s%s is not the name of a panel",
-                       section->name, inset->of ? "" : "nothing", inset->of ? inset->of : "");
-    if (!inset->has_at || !inset->has_place)
-        return err_set(err, STATUS_USAGE,
-                       "[inset %s] needs 'at', the middle of what it shows, and 'place', where its "
-                       "own middle lies, both over the panel's width and height, as in 0.3,0.6",
-                       section->name);
-    return STATUS_OK;
-}
-
-/* The insets of panel `of`, which follow each other from `first` on. */
-static Status plan_insets(Figure *figure, size_t of, size_t first, size_t *n, Err *err)
-{
-    *n = 0;
-    for (size_t i = 0; i < figure->plan.n; i++) {
-        const Section *section = &figure->plan.sections[i];
-        const InsetOptions *inset = section->own.options;
-        if (section->kind != SECTION_INSET)
-            continue;
-        TRY(check_inset(&figure->plan, section, err));
-        if (find_section(&figure->plan, SECTION_PANEL, inset->of) != of)
-            continue;
-        double height = inset->height_mm > 0 ? inset->height_mm : inset->width_mm;
-        figure->insets[first + (*n)++] =
-            (PanelInset){.at = {inset->at.x, inset->at.y},
-                         .magnify = inset->magnify,
-                         .pixels = {figure_pixels(&figure->sheet.page, inset->width_mm),
-                                    figure_pixels(&figure->sheet.page, height)}};
-    }
-    return STATUS_OK;
-}
+/* ---- panels ---------------------------------------------------------------------------------- */
 
 static Status set_key(Parsed *parsed, const char *name, const char *value, Err *err)
 {
@@ -263,7 +82,7 @@ static Status set_key(Parsed *parsed, const char *name, const char *value, Err *
 static Status set_options(const Figure *figure, size_t i, Err *err)
 {
     const FigureOptions *options = figure->options;
-    Section *section = &figure->plan.sections[i];
+    Section *section = figure->plan.sections[i];
     const PanelOptions *panel = section->own.options;
     const Place *place = &figure->places[i];
     char size[64], dpi[NUMBER_TEXT_SIZE], pt[NUMBER_TEXT_SIZE];
@@ -289,12 +108,12 @@ static Status draw_panels(Figure *figure, Err *err)
     size_t first = 0;
     for (size_t i = 0; i < figure->plan.n; i++) {
         Panel *panel = &figure->panels[i];
-        Section *section = &figure->plan.sections[i];
-        if (!is_panel(figure, i))
+        Section *section = figure->plan.sections[i];
+        if (!figure_is_panel(figure, i))
             continue;
         panel->fonts = figure->sheet.fonts;
         panel->insets = figure->insets + first;
-        TRY(plan_insets(figure, i, first, &panel->n_insets, err));
+        TRY(figure_plan_insets(figure, i, first, &panel->n_insets, err));
         first += panel->n_insets;
         TRY(set_options(figure, i, err));
         Status status = panel_draw(&section->render, panel, err);
@@ -308,14 +127,6 @@ static Status draw_panels(Figure *figure, Err *err)
 }
 
 /* ---- the page -------------------------------------------------------------------------------- */
-
-static FigureBox box_of(const Figure *figure, size_t i)
-{
-    const Place *place = &figure->places[i];
-    double pixel = MM_PER_INCH / figure->sheet.page.dpi;
-    return (FigureBox){place->left * pixel, place->top * pixel,
-                       (place->left + place->width) * pixel, (place->top + place->height) * pixel};
-}
 
 static FigureColor color_of(Vec3 srgb)
 {
@@ -336,7 +147,7 @@ static void put_letter(Figure *figure, size_t i, const char *letter, FigureColor
     const FigureOptions *options = figure->options;
     const Place *place = &figure->places[i];
     const double size = (options->text_pt + 1) * MM_PER_POINT;
-    FigureBox box = box_of(figure, i);
+    FigureBox box = figure_panel_box(figure, i);
     const FigureText text = {.text = letter,
                              .x = box.left,
                              .y = place->title_mm > 0
@@ -350,8 +161,8 @@ static void put_letter(Figure *figure, size_t i, const char *letter, FigureColor
 
 static void put_title(Figure *figure, size_t i, FigureColor ink)
 {
-    const PanelOptions *panel = figure->plan.sections[i].own.options;
-    FigureBox box = box_of(figure, i);
+    const PanelOptions *panel = figure->plan.sections[i]->own.options;
+    FigureBox box = figure_panel_box(figure, i);
     const FigureText text = {.text = panel->title,
                              .x = (box.left + box.right) / 2,
                              .y = box.top - 0.55 * figure->options->text_pt * MM_PER_POINT,
@@ -392,102 +203,8 @@ static Status put_panel(Figure *figure, size_t i, int number, Err *err)
         put_letter(figure, i, shown, ink);
     put_title(figure, i, ink_on(paper));
     annotation.letter = NULL;
-    return annotation_put(&annotation, &panel->scene, box_of(figure, i), &figure->sheet.page, err);
-}
-
-/* ---- insets ---------------------------------------------------------------------------------- */
-
-static void corners_of(const FigureBox *box, FigurePoint corner[4])
-{
-    corner[0] = (FigurePoint){box->left, box->top};
-    corner[1] = (FigurePoint){box->right, box->top};
-    corner[2] = (FigurePoint){box->right, box->bottom};
-    corner[3] = (FigurePoint){box->left, box->bottom};
-}
-
-/* Whether a line has a part within the box, whose edges do not count. */
-static bool crosses(FigurePoint from, FigurePoint to, const FigureBox *box)
-{
-    double begin = 0, end = 1;
-    const double start[] = {from.x, from.y}, way[] = {to.x - from.x, to.y - from.y};
-    const double low[] = {box->left, box->top}, high[] = {box->right, box->bottom};
-    for (int k = 0; k < 2; k++) {
-        double a = (low[k] - start[k]) / way[k], b = (high[k] - start[k]) / way[k];
-        if (way[k] == 0 && (start[k] <= low[k] || start[k] >= high[k]))
-            return false;
-        if (way[k] == 0)
-            continue;
-        begin = fmax(begin, fmin(a, b));
-        end = fmin(end, fmax(a, b));
-    }
-    return end - begin > 1e-6;
-}
-
-/* Lines from corners of the part to those of the inset that cross neither: two, where one does not
- * lie over the other. */
-static void put_ties(FigurePage *page, const FigureBox *part, const FigureBox *inset,
-                     double width_mm, FigureColor ink)
-{
-    FigurePoint from[4], to[4];
-    corners_of(part, from);
-    corners_of(inset, to);
-    for (int k = 0; k < 4; k++) {
-        const FigurePoint line[] = {from[k], to[k]};
-        if (!crosses(from[k], to[k], part) && !crosses(from[k], to[k], inset))
-            figure_add_line(page, line, 2, false, width_mm, ink);
-    }
-}
-
-static Status put_inset(Figure *figure, const Section *section, size_t of, const PanelInset *inset,
-                        Err *err)
-{
-    enum { CORNERS = 4 };
-    const InsetOptions *options = section->own.options;
-    const Panel *panel = &figure->panels[of];
-    const Place *place = &figure->places[of];
-    FigurePage *page = &figure->sheet.page;
-    const double pixel = MM_PER_INCH / page->dpi, line_mm = 0.18;
-    const FigureBox box = box_of(figure, of);
-    const double width = box.right - box.left, height = box.bottom - box.top;
-    int left = place->left + (int)lround(options->place.x * place->width) - inset->pixels[0] / 2;
-    int top = place->top + (int)lround(options->place.y * place->height) - inset->pixels[1] / 2;
-    if (left < 0 || top < 0 || left + inset->pixels[0] > figure_pixels(page, page->width_mm) ||
-        top + inset->pixels[1] > figure_pixels(page, page->height_mm))
-        return err_set(err, STATUS_USAGE, "[inset %s] does not lie on the page", section->name);
-    figure_add_picture(page, &inset->picture, left, top);
-    const FigureBox shown = {left * pixel, top * pixel, (left + inset->pixels[0]) * pixel,
-                             (top + inset->pixels[1]) * pixel};
-    FigureBox part = panel_part(inset, &panel->scene.view.camera);
-    part = (FigureBox){box.left + part.left * width, box.top + part.top * height,
-                       box.left + part.right * width, box.top + part.bottom * height};
-    FigureColor ink = annotation_ink(panel->scene.view.background);
-    FigurePoint corner[CORNERS];
-    corners_of(&part, corner);
-    figure_add_line(page, corner, CORNERS, true, line_mm, ink);
-    corners_of(&shown, corner);
-    figure_add_line(page, corner, CORNERS, true, line_mm, ink);
-    put_ties(page, &part, &shown, line_mm, ink);
-    Scene larger = panel->scene;
-    larger.view = panel_inset_view(inset, &panel->scene.view);
-    const Annotation annotation = {.scale_bar_mm = options->scale_bar_mm,
-                                   .has_scale_bar = options->has_scale_bar,
-                                   .text_pt = figure->options->text_pt};
-    return annotation_put(&annotation, &larger, shown, page, err);
-}
-
-static Status put_insets(Figure *figure, size_t of, Err *err)
-{
-    const Panel *panel = &figure->panels[of];
-    size_t k = 0;
-    for (size_t i = 0; i < figure->plan.n; i++) {
-        const Section *section = &figure->plan.sections[i];
-        const InsetOptions *inset = section->own.options;
-        if (section->kind != SECTION_INSET ||
-            find_section(&figure->plan, SECTION_PANEL, inset->of) != of)
-            continue;
-        TRY(put_inset(figure, section, of, &panel->insets[k++], err));
-    }
-    return STATUS_OK;
+    return annotation_put(&annotation, &panel->scene, figure_panel_box(figure, i),
+                          &figure->sheet.page, err);
 }
 
 /* ---- text ------------------------------------------------------------------------------------ */
@@ -516,13 +233,13 @@ static Status fill_page(Figure *figure, Err *err)
     int number = 0;
     figure->sheet.page.background = color_of(figure->options->background);
     for (size_t i = 0; i < figure->plan.n; i++)
-        if (is_panel(figure, i)) {
+        if (figure_is_panel(figure, i)) {
             TRY(put_panel(figure, i, number++, err));
-            TRY(put_insets(figure, i, err));
+            TRY(figure_put_insets(figure, i, err));
         }
     for (size_t i = 0; i < figure->plan.n; i++)
-        if (figure->plan.sections[i].kind == SECTION_TEXT)
-            TRY(put_text(figure, &figure->plan.sections[i], err));
+        if (figure->plan.sections[i]->kind == SECTION_TEXT)
+            TRY(put_text(figure, figure->plan.sections[i], err));
     return figure_check(&figure->sheet.page, err);
 }
 
@@ -641,7 +358,7 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
     TRY(picture_fits(pixels[0], pixels[1], 12, err));
     TRY(sheet_open(&figure->sheet, err));
     sheet_begin(&figure->sheet, pixels, options->size.dpi > 0 ? options->size.dpi : 300);
-    TRY(place_panels(figure, err));
+    TRY(figure_place_panels(figure, err));
     TRY(madetrees_open(&figure->plan, options->output, &figure->trees, err));
     TRY(draw_in_folder(figure, recipe, err));
     TRY(write_figure(figure, err));

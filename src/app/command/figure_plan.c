@@ -238,12 +238,14 @@ static Status add_section(Reading *reading, SectionKind kind, const char *name, 
 {
     FigurePlan *plan = reading->plan;
     for (size_t i = 0; i < plan->n; i++)
-        if (plan->sections[i].kind == kind && strcmp(plan->sections[i].name, name) == 0)
+        if (plan->sections[i]->kind == kind && strcmp(plan->sections[i]->name, name) == 0)
             return err_set(err, STATUS_USAGE, "there is a section [%s %s] already",
                            kinds[kind].name, name);
     TRY(mem_reserve(&plan->sections, &plan->capacity, plan->n + 1, sizeof *plan->sections,
                     "sections", err));
-    Section *section = &plan->sections[plan->n++];
+    Section *section;
+    TRY(mem_calloc(&section, 1, sizeof *section, "sections", err));
+    plan->sections[plan->n++] = section;
     *section = (Section){.kind = kind, .name = name};
     TRY(parsed_init(&section->own, &kinds[kind], err));
     if (kind != SECTION_PANEL)
@@ -255,7 +257,7 @@ static Status add_section(Reading *reading, SectionKind kind, const char *name, 
 static Status begin_panels(Reading *reading, Err *err)
 {
     for (size_t i = 0; i < reading->plan->n; i++)
-        if (reading->plan->sections[i].kind == SECTION_PANEL)
+        if (reading->plan->sections[i]->kind == SECTION_PANEL)
             return err_set(err, STATUS_USAGE, "[panels] stands before all panels");
     reading->in = IN_PANELS;
     return STATUS_OK;
@@ -324,7 +326,7 @@ static Status take_line(void *user, const char *head, const char *name, const ch
     case IN_PANELS:
         return take_default(reading, name, value, err);
     case IN_SECTION:
-        return take_key(&reading->plan->sections[reading->plan->n - 1], name, value, err);
+        return take_key(reading->plan->sections[reading->plan->n - 1], name, value, err);
     case IN_NOTHING:
         break;
     }
@@ -336,7 +338,7 @@ static Status check_plan(const FigurePlan *plan, Err *err)
 {
     size_t panels = 0;
     for (size_t i = 0; i < plan->n; i++) {
-        const Section *section = &plan->sections[i];
+        const Section *section = plan->sections[i];
         const PanelOptions *panel = section->own.options;
         if (section->kind != SECTION_PANEL)
             continue;
@@ -366,8 +368,9 @@ Status figureplan_read(const char *path, Parsed *figure, FigurePlan *plan, Err *
 void figureplan_release(FigurePlan *plan)
 {
     for (size_t i = 0; i < plan->n; i++) {
-        parsed_release(&plan->sections[i].own);
-        parsed_release(&plan->sections[i].render);
+        parsed_release(&plan->sections[i]->own);
+        parsed_release(&plan->sections[i]->render);
+        free(plan->sections[i]);
     }
     free(plan->sections);
     free(plan->text);
@@ -381,7 +384,7 @@ void figureplan_put(const FigurePlan *plan, const Parsed *figure, Text *text)
     text_puts(text, "[figure]\n");
     options_put_keys(figure, is_own, text);
     for (size_t i = 0; i < plan->n; i++) {
-        const Section *section = &plan->sections[i];
+        const Section *section = plan->sections[i];
         text_printf(text, "\n[%s %s]\n", kinds[section->kind].name, section->name);
         if (section->maker)
             text_printf(text, "%s = %s\n", section->maker->name, section->arguments);

@@ -43,7 +43,7 @@ typedef struct Section {
 } Section;
 
 typedef struct FigurePlan {
-    Section *sections; /* owned; in the order of the recipe */
+    Section **sections; /* owned, and each of them; in the order of the recipe */
     size_t n, capacity;
     char *text; /* owned; what values point into */
 } FigurePlan;

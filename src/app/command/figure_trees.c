@@ -86,10 +86,10 @@ static Status make_tree(const Section *section, int threads, char *file, Err *er
 /* The number of an earlier section whose tree is the same, or its own. */
 static size_t first_of(const FigurePlan *plan, size_t i)
 {
-    const Section *own = &plan->sections[i];
+    const Section *own = plan->sections[i];
     for (size_t k = 0; k < i; k++)
-        if (plan->sections[k].maker == own->maker &&
-            strcmp(plan->sections[k].arguments, own->arguments) == 0)
+        if (plan->sections[k]->maker == own->maker &&
+            strcmp(plan->sections[k]->arguments, own->arguments) == 0)
             return k;
     return i;
 }
@@ -128,7 +128,7 @@ Status madetrees_open(const FigurePlan *plan, const char *output, MadeTrees *tre
     TRY(mem_calloc(&trees->files, plan->n, sizeof *trees->files, "trees", err));
     trees->n = plan->n;
     for (size_t i = 0; i < plan->n; i++)
-        if (plan->sections[i].maker && first_of(plan, i) == i) {
+        if (plan->sections[i]->maker && first_of(plan, i) == i) {
             TRY(open_folder(output, trees, err));
             TRY(name_file(trees, i, err));
         }
@@ -139,7 +139,7 @@ Status madetrees_make(const FigurePlan *plan, int threads, const MadeTrees *tree
 {
     for (size_t i = 0; i < plan->n; i++)
         if (trees->files[i])
-            TRY(make_tree(&plan->sections[i], threads, trees->files[i], err));
+            TRY(make_tree(plan->sections[i], threads, trees->files[i], err));
     return STATUS_OK;
 }
 
