@@ -231,7 +231,7 @@ $(FAILING): tests/alloc/failing.c Makefile
 	$(Q)$(CC) -D_GNU_SOURCE -std=c11 -O1 -g $(WARNINGS) -fPIC -shared -o $@ $<
 
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
-$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/surface/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
+$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/sky/% $(BUILD)/src/surface/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
 
 -include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 

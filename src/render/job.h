@@ -32,8 +32,9 @@ extern const char *const render_kernel_names[];
 enum { RENDER_MOST_ANTIALIAS = 9 };
 
 typedef struct RenderParams {
-    /* Of primitives alone; implicit models have engines of their own. Soft shadows, occlusion and
-     * ground need rays: pictures with one of them are traced whatever the method. */
+    /* Of primitives alone; implicit models have engines of their own. For all of them RENDER_TRACE
+     * says that soft shadows and occlusion are found for every sample, by rays; else samples of a
+     * pixel share them [render/light/sharedlight.h]. */
     RenderMethod method;
     RenderKernels kernels;
     int threads;                /* 0: all processors */
@@ -47,7 +48,8 @@ typedef struct RenderParams {
     double shadow_from_mm; /* what is nearer to a lit place casts no shadow on it; 0: POV-Ray's
                             * limit, 0.001 mm */
     int occlusion;   /* 0: ambient light is the same everywhere; N: the part of it that reaches a
-                      * point is found by N rays, which no POV-Ray picture repeats */
+                      * point is found by N rays, or N beams a pixel, which no POV-Ray picture
+                      * repeats */
     bool cover_thin; /* vessels thinner than a pixel are drawn by the part of it that they cover,
                       * and cast no shadows, which no POV-Ray picture repeats; else samples hit or
                       * miss them. Planes of geometry have what samples hit in any case */
@@ -89,6 +91,7 @@ typedef struct Drawing {
     const RenderParams *params;
     struct Caster *caster; /* for the rays that the engine asks for; NULL where it asks for none */
     const TermMean *mean;  /* of colours that blend; else NULL */
+    const struct SharedLight *shared; /* what samples of a pixel share; NULL: nothing */
     Band band;
 } Drawing;
 

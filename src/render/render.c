@@ -19,6 +19,7 @@
 #include "render/light/rayrender.h"
 #include "render/raster/rasterrender.h"
 #include "render/raster/zbuffer.h"
+#include "render/sky/share.h"
 #include "render/thin/thinvessels.h"
 #include "render/tile/tilekernels.h"
 #include "render/xray/xray.h"
@@ -32,10 +33,12 @@ static const Engine *const engines[] = {&xray_engine, &field_engine, &raster_eng
 
 struct Renderer {
     const Geometry *geometry;
-    RenderParams params; /* with the number of threads */
-    Caster *caster;      /* of the geometry; NULL until a view needs it */
-    TermMean *mean;      /* likewise; NULL until an appearance needs it */
-    RadiusTable radii;   /* likewise; empty until effects need it */
+    RenderParams params;       /* with the number of threads */
+    Caster *caster;            /* of the geometry; NULL until a view needs it */
+    TermMean *mean;            /* likewise; NULL until an appearance needs it */
+    RadiusTable radii;         /* likewise; empty until effects need it */
+    const Geometry *occluders; /* what the sky is hidden by */
+    Beams beams;               /* of that; none until there is occlusion */
     RenderStats stats;
     /* What is kept while engine, camera, lights and antialiasing are these. */
     const Engine *engine; /* NULL: nothing is */
@@ -165,7 +168,7 @@ Status renderer_new(const Geometry *geometry, const RenderParams *params, Render
     double start_cpu_s = clock_cpu_seconds();
     TRY(check_kernels(params->kernels, err));
     TRY(mem_calloc(&renderer, 1, sizeof *renderer, "renderers", err));
-    renderer->geometry = geometry;
+    renderer->geometry = renderer->occluders = geometry;
     renderer->params = *params;
     if (params->threads <= 0)
         renderer->params.threads = threads_available();
@@ -205,6 +208,7 @@ void renderer_free(Renderer *renderer)
     caster_free(renderer->caster);
     termmean_free(renderer->mean);
     radiustable_release(&renderer->radii);
+    beams_release(&renderer->beams);
     free(renderer);
 }
 
@@ -261,6 +265,54 @@ RenderStats renderer_stats(const Renderer *renderer)
     return stats;
 }
 
+/* ---- light that samples share -----------------------------------------------------------------
+ */
+
+/* What the centres of the band's pixels see of vessels. */
+static Status see_vessels(const Renderer *renderer, const Drawing *drawing, Frame *planes, Err *err)
+{
+    RenderParams params = *drawing->params;
+    params.want_color = params.want_id = false;
+    params.want_depth = params.want_normal = true;
+    params.antialias = 1;
+    params.occlusion = 0;
+    params.progress = NULL;
+    Drawing seen = *drawing;
+    seen.params = &params;
+    TRY(make_planes(drawing->view->camera.width, drawing->band.rows, &params, false, planes, err));
+    return renderer->engine->rows(&seen, renderer->prepared, planes, err);
+}
+
+/* The drawing of a band with the rows that its shared light depends on, and that its samples look
+ * at. */
+static Drawing widened(const Drawing *drawing)
+{
+    Drawing wide = *drawing;
+    int left = drawing->view->camera.height - drawing->band.first - drawing->band.rows;
+    int above = drawing->band.first > 0 ? RENDER_BAND_STEP : 0;
+    int below = left < RENDER_BAND_STEP ? left : RENDER_BAND_STEP;
+    wide.band =
+        (Band){.first = drawing->band.first - above, .rows = drawing->band.rows + above + below};
+    return wide;
+}
+
+/* Finds what samples share, if they share anything. */
+static Status share(Renderer *renderer, const Drawing *drawing, SharedLight **out, Err *err)
+{
+    const RenderParams *params = drawing->params;
+    if (!share_is_wanted(drawing->view, params))
+        return STATUS_OK;
+    if (params->occlusion > 0 && !renderer->beams.capsules)
+        TRY(beams_new(renderer->occluders, &renderer->beams, err));
+    Frame planes = {0};
+    Drawing wide = widened(drawing);
+    Status status = see_vessels(renderer, &wide, &planes, err);
+    if (status == STATUS_OK)
+        status = share_light(&wide, &planes, &renderer->beams, out, err);
+    frame_release(&planes);
+    return status;
+}
+
 static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
 {
     const RenderParams *params = drawing->params;
@@ -268,7 +320,14 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
     double start_s = clock_seconds();
     bool codes = params->codes_suffice && params->antialias == 1 && renderer->engine->makes_codes;
     TRY(make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
-    TRY(renderer->engine->rows(drawing, renderer->prepared, frame, err));
+    SharedLight *shared = NULL;
+    Drawing lit = *drawing;
+    Status status = share(renderer, drawing, &shared, err);
+    lit.shared = shared;
+    if (status == STATUS_OK)
+        status = renderer->engine->rows(&lit, renderer->prepared, frame, err);
+    sharedlight_free(shared);
+    TRY(status);
     renderer->stats.trace_s += clock_seconds() - start_s;
     renderer->stats.rays += (size_t)drawing->view->camera.width * (size_t)drawing->band.rows;
     return STATUS_OK;
@@ -423,6 +482,7 @@ static Status prepare_thin(Renderer *renderer, const Camera *camera, Err *err)
         of_rest.want_depth = true;
         TRY(thinvessels_rest(&renderer->thin, camera, &renderer->rest_geometry, err));
         TRY(renderer_new(&renderer->rest_geometry, &of_rest, &renderer->rest, err));
+        renderer->rest->occluders = renderer->geometry;
     }
     memcpy(&renderer->thin_camera, camera, sizeof *camera);
     renderer->stats.prepare_s += clock_seconds() - start_s;

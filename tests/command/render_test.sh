@@ -218,8 +218,9 @@ raster --model cylinders --method fastest
 raster --model joined --method raster --shadows on
 trace --model rounded --method trace
 trace --model rounded --exact --shadows on
-trace --model rounded --method raster --ao 2
-trace --model joined --look print
+raster --model rounded --ao 2
+raster --model joined --look print --shadows on
+trace --model rounded --method trace --ao 2
 zbuffer --model rounded --method zbuffer
 trace --model blob
 field --model isosurface

@@ -159,7 +159,8 @@ static const Option rows[] = {
      SETS(WHOLE, PictureOptions, occlusion),
      FROM_TO(0, 4096),
      .group = GROUP_LIGHT,
-     .help = "ambient occlusion by N rays a sample, best with --look print; 0: none"},
+     .help = "ambient occlusion by N beams a pixel, or with --exact N rays a sample; best with "
+             "--look print; 0: none"},
     {.name = "look",
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,

@@ -16,7 +16,7 @@ typedef struct PictureOptions {
     NumberList turn; /* degrees about the upright, and then up */
     PictureSize size;
     int antialias;
-    int occlusion;    /* rays a sample; 0: none */
+    int occlusion;    /* beams a pixel, or rays a sample; 0: none */
     double tolerance; /* of a mesh, over the local radius */
     bool
         part_overlaps; /* likewise: thin vessels that overlap others that they do not belong with */

@@ -256,8 +256,12 @@ static Status look_to(Asker *asker, Ray ray, double t, Look *seen, Err *err)
     if (ground_hit(ground, ray, cached_slack_mm, t, &t)) {
         bool below = vec3_dot(ground->normal, ray.direction) > 0;
         *seen = (Look){t,
-                       {&ground->finish, ground->color, ray_at(ray, t),
-                        vec3_scale(ground->normal, below ? -1 : 1), ray.direction, 1},
+                       {.finish = &ground->finish,
+                        .pigment = ground->color,
+                        .point = ray_at(ray, t),
+                        .normal = vec3_scale(ground->normal, below ? -1 : 1),
+                        .direction = ray.direction,
+                        .open = 1},
                        0,
                        {0, 0, 0}};
     } else if (t < HUGE_VAL) {

@@ -72,6 +72,8 @@ static const uint8_t (*find_shadows(const FieldPicture *picture, int worker,
         Vec3 point = ray_at(sample_ray(picture, seen, sample), seen_depth(seen, sample));
         Vec3 normal = world_normal(picture, seen, sample);
         for (size_t i = 0; i < view->n_lights; i++) {
+            if (view->lights[i].samples > 1)
+                continue;
             LightWay way = light_way(&view->lights[i], point);
             shadowed[i][sample] =
                 view->lights[i].casts_shadows &&
@@ -124,9 +126,25 @@ static float (*color_tile(const FieldPicture *picture, int worker,
                                                         : NULL);
 }
 
-static void visit_center(const SeenTile *seen, int worker, void *context)
+/* What a tile sees with the ground, where the canvas shades that, in *with and *hits. */
+static const SeenTile *with_ground(const FieldPicture *picture, const SeenTile *vessels,
+                                   TileHits *hits, SeenTile *with)
+{
+    if (picture->canvas.wholly_colored || !picture->canvas.drawing->view->ground.present)
+        return vessels;
+    *with = *vessels;
+    if (vessels->hits)
+        *hits = *vessels->hits;
+    canvas_see_ground(&picture->canvas, with, hits);
+    return with;
+}
+
+static void visit_center(const SeenTile *vessels, int worker, void *context)
 {
     const FieldPicture *picture = context;
+    TileHits hits;
+    SeenTile with;
+    const SeenTile *seen = with_ground(picture, vessels, &hits, &with);
     if (!seen->hits && !picture->canvas.wholly_colored)
         return;
     canvas_draw(&picture->canvas, worker, seen,
@@ -146,10 +164,13 @@ typedef struct FurtherVisit {
     int first_row; /* of the grid */
 } FurtherVisit;
 
-static void visit_further(const SeenTile *seen, int worker, void *context)
+static void visit_further(const SeenTile *vessels, int worker, void *context)
 {
     const FurtherVisit *visit = context;
     const FieldPicture *picture = visit->picture;
+    TileHits hits;
+    SeenTile with;
+    const SeenTile *seen = with_ground(picture, vessels, &hits, &with);
     size_t width = (size_t)picture->pass->grid.n_columns;
     canvas_store(&picture->canvas, seen->n_columns, seen->n_rows, color_tile(picture, worker, seen),
                  picture->further[worker].colors +
@@ -314,7 +335,8 @@ static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Er
     Canvas *canvas = &picture.canvas;
     const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
     TRY_GOTO(canvas_init(drawing, frame, &eye, canvas, err));
-    canvas->wholly_colored = raycolor_is_needed(drawing->view, drawing->params);
+    canvas->wholly_colored = drawing->params->method == RENDER_TRACE &&
+                             raycolor_is_needed(drawing->view, drawing->params);
     TRY_GOTO(canvas_pass(canvas, false, trace_centers, &picture, err));
     picture.pass = &field->further;
     if (canvas->more.side > 0)

@@ -5,6 +5,7 @@
 
 #include "render/light/occlusion.h"
 #include "render/light/shade.h"
+#include "render/light/sharedlight.h"
 #include <math.h>
 
 typedef struct ShadowContext {
@@ -17,6 +18,21 @@ static bool shadowed(void *context, Vec3 point, Vec3 towards, double distance)
 {
     const ShadowContext *shadow = context;
     return caster_shadow(shadow->caster, shadow->worker, shadow->ground, point, towards, distance);
+}
+
+/* What the sample (i, j) shares with its pixel. */
+static void add_shared(const Drawing *drawing, double i, double j, double t, bool on_ground,
+                       float parts[VIEW_MAX_LIGHTS], ShadePoint *at)
+{
+    const SharedLight *shared = drawing->shared;
+    PixelPlace seen =
+        sharedlight_place(shared, on_ground ? PLACE_GROUND : PLACE_VESSEL, at->point, at->normal,
+                          sharedlight_pixel_mm(&drawing->view->camera, t));
+    size_t pixel = sharedlight_pixel(shared, i, j, &seen);
+    at->open = (double)sharedlight_open(shared, pixel);
+    for (size_t k = 0; k < drawing->view->n_lights; k++)
+        parts[k] = sharedlight_part(shared, k, pixel);
+    at->parts = parts;
 }
 
 bool raycolor_is_needed(const View *view, const RenderParams *params)
@@ -46,6 +62,7 @@ Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, c
     bool on_ground = ground_hit(ground, ray, NEAREST_SEEN_MM, t, &t);
     if (!on_ground && !surfel)
         return view->background;
+    float parts[VIEW_MAX_LIGHTS];
     ShadowContext context = {drawing->caster, ground, worker};
     Vec3 point = ray_at(ray, t);
     ShadePoint at = {.finish = on_ground ? &ground->finish : &appearance->finish,
@@ -56,7 +73,9 @@ Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, c
                      .open = 1};
     if (vec3_dot(at.normal, ray.direction) > 0)
         at.normal = vec3_scale(at.normal, -1);
-    if (params->occlusion > 0)
+    if (drawing->shared)
+        add_shared(drawing, i, j, t, on_ground, parts, &at);
+    else if (params->occlusion > 0)
         at.open = occlusion_open(drawing->caster, worker, ground, at.point, at.normal,
                                  params->occlusion, occlusion_turn(i, j));
     return shade(view, &at, params->shadows ? shadowed : NULL, &context);

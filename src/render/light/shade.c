@@ -78,7 +78,9 @@ Rgb shade(const View *view, const ShadePoint *at, ShadowTest *shadow, void *cont
         double cosine = vec3_dot(at->normal, towards);
         if (cosine < LEAST_LIT_COSINE)
             continue;
-        double part = visible_part(light, at->point, shadow, context);
+        double part = at->parts && at->parts[i] >= 0
+                          ? (double)at->parts[i]
+                          : visible_part(light, at->point, shadow, context);
         if (part > 0)
             color = rgb_add(color, lit_by(rgb_scale(light->color, part), at->finish, at->pigment,
                                           at->normal, at->direction, towards, cosine));

@@ -18,14 +18,16 @@ typedef struct ShadePoint {
     const Finish *finish;
     Rgb pigment;
     Vec3 point;
-    Vec3 normal;    /* unit, facing the viewer */
-    Vec3 direction; /* unit, of the ray that sees it */
-    double open;    /* the part of the ambient light that reaches it */
+    Vec3 normal;        /* unit, facing the viewer */
+    Vec3 direction;     /* unit, of the ray that sees it */
+    double open;        /* the part of the ambient light that reaches it */
+    const float *parts; /* of each light the part that reaches it; below 0, or NULL: not known */
 } ShadePoint;
 
 /* The linear colour of a point: ambient light, and for each light of the view that the surface
  * faces the diffuse and specular light of its finish, times the part of the light's points for
- * which `shadow` is false. `shadow` is asked only for lights that cast shadows; NULL: nothing does.
+ * which `shadow` is false, or that the point shares. `shadow` is asked only for lights that cast
+ * shadows; NULL: nothing does.
  */
 Rgb shade(const View *view, const ShadePoint *at, ShadowTest *shadow, void *context);
 

@@ -10,7 +10,6 @@
 #include "render/raster/rasterrender.h"
 
 #include "render/cast/caster.h"
-#include "render/light/raycolor.h"
 #include "render/light/shade.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
@@ -120,7 +119,7 @@ static void ask_lights(const RasterPicture *picture, const BatchTile *tile, int 
     picture->kernels->locate(&tile->raster, &tile->hits, &places);
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
-        if (!light->casts_shadows)
+        if (!light->casts_shadows || light->samples > 1)
             continue;
         uint64_t wanted = find_facing(picture, tile, &picture->canvas.look.lights[i], &places);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
@@ -144,6 +143,18 @@ static void find_shadows(const RasterPicture *picture, int worker, Batch *batch)
             rasterqueue_answer(batch->queues[i], picture->kernels, batch->shadowed[0]);
 }
 
+/* Adds the ground to what the tile sees. */
+static void see_ground(const RasterPicture *picture, BatchTile *tile)
+{
+    canvas_see_ground(&picture->canvas, &tile->seen, &tile->surfels);
+    tile->visible |= tile->seen.ground;
+    for (uint64_t left = tile->seen.ground; left; left &= left - 1) {
+        int sample = __builtin_ctzll(left);
+        tile->hits.z[sample] = (float)(tile->surfels.z[sample] - tile->raster.z_middle);
+        tile->hits.item[sample] = RASTER_NOTHING;
+    }
+}
+
 /* What the tiles of the batch see with their samples at the places of a grid. */
 static void see_batch(const RasterPicture *picture, const RasterGrid *grid, int worker,
                       Batch *batch)
@@ -160,8 +171,10 @@ static void see_batch(const RasterPicture *picture, const RasterGrid *grid, int 
             kernels->resolve(&tile->raster, &tile->hits, &tile->surfels);
         if (tile->visible && (picture->canvas.needs_places || picture->canvas.wants_geometry))
             measure_depths(tile);
+        if (picture->canvas.drawing->view->ground.present)
+            see_ground(picture, tile);
     }
-    if (picture->prepared->has_shadows)
+    if (picture->prepared->has_shadows && picture->canvas.wants_color)
         find_shadows(picture, worker, batch);
 }
 
@@ -291,7 +304,7 @@ static Status draw_row(void *context, int row, int worker, Err *err)
     const uint32_t *offsets = batch->row.offsets;
     for (int column = 0; column < bins->tile_columns; column++) {
         uint32_t n = offsets[column + 1] - offsets[column];
-        if (n == 0)
+        if (n == 0 && !picture->canvas.drawing->view->ground.present)
             continue;
         BatchTile *tile = &batch->tiles[batch->n_tiles];
         RasterTile raster = rasterbins_tile(bins, column, row, batch->row.lists + offsets[column],
@@ -423,8 +436,7 @@ static bool is_asked(const Drawing *drawing)
 
 static bool can_draw(const Drawing *drawing)
 {
-    return drawing->geometry->n_primitives > 0 && is_asked(drawing) &&
-           !raycolor_is_needed(drawing->view, drawing->params);
+    return drawing->geometry->n_primitives > 0 && is_asked(drawing);
 }
 
 static bool needs_rays(const Drawing *drawing)

@@ -241,7 +241,7 @@ Status rastershadows_new(const Geometry *geometry, const View *view, const Raste
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
         shadows[i] = NULL;
-        if (light->casts_shadows && sees_all(geometry, light))
+        if (light->casts_shadows && light->samples <= 1 && sees_all(geometry, light))
             making[n++] = (Making){
                 .geometry = geometry, .camera = camera, .light = light, .out = &shadows[i]};
     }
@@ -253,7 +253,8 @@ Status rastershadows_new(const Geometry *geometry, const View *view, const Raste
 bool rastershadows_need_rays(const Geometry *geometry, const View *view)
 {
     for (size_t i = 0; i < view->n_lights; i++)
-        if (view->lights[i].casts_shadows && !sees_all(geometry, &view->lights[i]))
+        if (view->lights[i].casts_shadows &&
+            (view->lights[i].samples > 1 || !sees_all(geometry, &view->lights[i])))
             return true;
     return false;
 }

@@ -8,15 +8,15 @@
 /* The geometry as one light sees it; constant once built. */
 typedef struct RasterShadow RasterShadow;
 
-/* That of light i of the view in shadows[i], NULL where the light casts none or is too near to see
- * all of the geometry in one view, for places in the frame of `camera`. Borrows the geometry. The
- * shadows are the caller's even when this fails. */
+/* That of light i of the view in shadows[i], NULL where the light casts none, is an area light or
+ * is too near to see all of the geometry in one view, for places in the frame of `camera`. Borrows
+ * the geometry. The shadows are the caller's even when this fails. */
 MUST_CHECK Status rastershadows_new(const Geometry *geometry, const View *view,
                                     const RasterView *camera, int threads, RasterShadow **shadows,
                                     Err *err);
 void rastershadow_free(RasterShadow *shadow);
 
-/* Whether a light that casts shadows is too near for a RasterShadow. */
+/* Whether a light that casts shadows is an area light, or too near for a RasterShadow. */
 bool rastershadows_need_rays(const Geometry *geometry, const View *view);
 
 /* Shadow queries to one light, for the places of up to RASTER_BATCH tiles of the picture. They are

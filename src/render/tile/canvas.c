@@ -3,6 +3,8 @@
  * fails draws nothing any more, and its error is returned when all others are done. */
 #include "render/tile/canvas.h"
 
+#include "render/cast/caster.h"
+#include "render/light/sharedlight.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,6 +46,18 @@ static void begin_surface(Rgb color, TileSurface *surface)
     }
 }
 
+/* Lets the worker's surfaces have what samples share. */
+static void share_surfaces(const SharedLight *shared, CanvasWorker *own)
+{
+    TileSurface *surfaces[] = {&own->surface, &own->ground};
+    for (int i = 0; shared && i < 2; i++) {
+        surfaces[i]->open = own->open;
+        surfaces[i]->parts = (const float(*)[TILE_SAMPLES])own->parts;
+        for (int light = 0; light < VIEW_MAX_LIGHTS; light++)
+            surfaces[i]->is_shared[light] = shared->parts[light] != NULL;
+    }
+}
+
 /* Fills a row with the mean of so many samples of the background, summed in float. */
 static void fill_row(const Canvas *canvas, int samples, float *row)
 {
@@ -79,20 +93,26 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
 {
     const RenderParams *params = drawing->params;
     const Appearance *appearance = drawing->appearance;
-    *canvas = (Canvas){.drawing = drawing,
-                       .frame = frame,
-                       .workers = params->threads,
-                       .eye = *eye,
-                       .kernels = tilekernels[kernels_kind(params->kernels)],
-                       .more = resampling_for(frame->color.values ? params->antialias : 1),
-                       .look = tilelook_of(drawing->view, &appearance->finish, eye),
-                       .needs_places = needs_places(drawing->view) || drawing->mean,
-                       .wants_color = frame->color.values || frame->codes.codes8,
-                       .wants_geometry = planes_want_geometry(frame)};
+    *canvas =
+        (Canvas){.drawing = drawing,
+                 .frame = frame,
+                 .workers = params->threads,
+                 .eye = *eye,
+                 .kernels = tilekernels[kernels_kind(params->kernels)],
+                 .more = resampling_for(frame->color.values ? params->antialias : 1),
+                 .look = tilelook_of(drawing->view, &appearance->finish, eye),
+                 .ground_look = tilelook_of(drawing->view, &drawing->view->ground.finish, eye),
+                 .needs_places = needs_places(drawing->view) || drawing->mean || drawing->shared ||
+                                 drawing->view->ground.present,
+                 .wants_color = frame->color.values || frame->codes.codes8,
+                 .wants_geometry = planes_want_geometry(frame)};
     TRY(make_background(canvas, err));
     TRY(mem_calloc(&canvas->each, (size_t)canvas->workers, sizeof *canvas->each, "canvases", err));
-    for (int i = 0; i < canvas->workers; i++)
+    for (int i = 0; i < canvas->workers; i++) {
         begin_surface(appearance->color, &canvas->each[i].surface);
+        begin_surface(drawing->view->ground.color, &canvas->each[i].ground);
+        share_surfaces(drawing->shared, &canvas->each[i]);
+    }
     return STATUS_OK;
 }
 
@@ -144,7 +164,7 @@ static void set_pigments(const Canvas *canvas, const SeenTile *seen, TileSurface
 {
     const TileHits *hits = seen->hits;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        if (hits->state[sample] != TILE_HIT)
+        if (hits->state[sample] != TILE_HIT || seen->ground >> sample & 1)
             continue;
         Vec3 point = {0, 0, 0};
         if (canvas->drawing->mean)
@@ -169,6 +189,72 @@ static void set_places(const SeenTile *seen, TileSurface *surface)
     }
 }
 
+/* The parts of light that samples share with their pixels. */
+static void set_shared(const Canvas *canvas, const SeenTile *seen, CanvasWorker *own)
+{
+    const SharedLight *shared = canvas->drawing->shared;
+    const Camera *camera = &canvas->drawing->view->camera;
+    double per_x = camera->width / vec3_length(camera->right);
+    double per_y = camera->height / vec3_length(camera->up);
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        if (seen->hits->state[sample] != TILE_HIT)
+            continue;
+        Vec3 line = seen_line(seen, sample), normal = load_vec3(seen->hits->normal, sample);
+        double away = seen->perspective ? vec3_dot(normal, line) : normal.z;
+        PixelPlace place = sharedlight_place(
+            shared, seen->ground >> sample & 1 ? PLACE_GROUND : PLACE_VESSEL,
+            viewpoint_point(&canvas->eye, seen_place(seen, sample)),
+            viewpoint_to_world(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
+            sharedlight_pixel_mm(camera, seen->hits->z[sample]));
+        size_t pixel = sharedlight_pixel(shared, line.x * per_x + (camera->width - 1) / 2.0,
+                                         (camera->height - 1) / 2.0 - line.y * per_y, &place);
+        own->open[sample] = sharedlight_open(shared, pixel);
+        for (size_t i = 0; i < canvas->look.n_lights; i++)
+            if (shared->parts[i])
+                own->parts[i][sample] = sharedlight_part(shared, i, pixel);
+    }
+}
+
+void canvas_see_ground(const Canvas *canvas, SeenTile *seen, TileHits *hits)
+{
+    const Ground *ground = &canvas->drawing->view->ground;
+    Vec3 n = viewpoint_to_frame(&canvas->eye, ground->normal);
+    double offset = ground->offset_mm - vec3_dot(ground->normal, canvas->eye.location);
+    if (!seen->hits)
+        memset(hits->state, TILE_MISS, sizeof hits->state);
+    seen->ground = 0;
+    for (int sample = 0; ground->present && sample < TILE_SAMPLES; sample++) {
+        Vec3 line = seen_line(seen, sample);
+        double across = n.x * line.x + n.y * line.y;
+        double z = seen->perspective ? offset / (across + n.z) : (offset - across) / n.z;
+        bool before = hits->state[sample] == TILE_HIT && hits->z[sample] <= z;
+        if (!(z >= NEAREST_SEEN_MM) || !isfinite(z) || before)
+            continue;
+        double away = seen->perspective ? across + n.z : n.z;
+        store_vec3(hits->normal, sample, away > 0 ? vec3_scale(n, -1) : n);
+        hits->z[sample] = z;
+        hits->state[sample] = TILE_HIT;
+        seen->ground |= (uint64_t)1 << sample;
+    }
+    if (seen->ground)
+        seen->hits = hits;
+}
+
+/* Gives the samples that see the ground its colours. */
+static void shade_ground(const Canvas *canvas, const SeenTile *seen,
+                         const uint8_t (*shadowed)[TILE_SAMPLES], CanvasWorker *own)
+{
+    float color[3][TILE_SAMPLES];
+    own->ground.hits = seen->hits;
+    own->ground.shadowed = shadowed;
+    if (canvas->needs_places)
+        set_places(seen, &own->ground);
+    canvas->kernels->shade(&canvas->ground_look, &own->ground, color);
+    for (uint64_t left = seen->ground; left; left &= left - 1)
+        for (int c = 0, sample = __builtin_ctzll(left); c < 3; c++)
+            own->color[c][sample] = color[c][sample];
+}
+
 float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES]
 {
@@ -179,7 +265,11 @@ float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
         set_pigments(canvas, seen, &own->surface);
     if (canvas->needs_places)
         set_places(seen, &own->surface);
+    if (canvas->drawing->shared)
+        set_shared(canvas, seen, own);
     canvas->kernels->shade(&canvas->look, &own->surface, own->color);
+    if (seen->ground)
+        shade_ground(canvas, seen, shadowed, own);
     if (canvas->frame->color.values)
         canvas->kernels->clear(seen->hits->state, canvas->background, own->color);
     return own->color;
@@ -222,7 +312,7 @@ static void store_geometry(const Canvas *canvas, const SeenTile *seen)
         for (int i = 0; i < seen->n_columns; i++) {
             size_t pixel = canvas_pixel(canvas, seen->column + i, seen->row + j);
             int sample = hits ? tile_sample_at(i, j) : 0;
-            if (!hits || hits->state[sample] != TILE_HIT) {
+            if (!hits || hits->state[sample] != TILE_HIT || seen->ground >> sample & 1) {
                 planes_store_nothing(canvas->frame, pixel);
                 continue;
             }

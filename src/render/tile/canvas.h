@@ -13,7 +13,9 @@ TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *ey
 
 /* What one thread works with. */
 typedef struct CanvasWorker {
-    TileSurface surface;
+    TileSurface surface, ground; /* of vessels and of the ground */
+    float open[TILE_SAMPLES];    /* of both, what samples share: */
+    float parts[VIEW_MAX_LIGHTS][TILE_SAMPLES];
     float color[3][TILE_SAMPLES];                    /* of the tile at hand */
     uint8_t shadowed[VIEW_MAX_LIGHTS][TILE_SAMPLES]; /* likewise, for engines to fill */
     int column; /* the first of the row of tiles that is not drawn yet, in pixels */
@@ -31,7 +33,7 @@ typedef struct Canvas {
                         * TileHits.z */
     bool wants_color, wants_geometry;
     bool wholly_colored; /* the engine sets colours where nothing is seen, too; at first false */
-    TileLook look;
+    TileLook look, ground_look;
     Resampling more;   /* owned, as all that follows */
     SrgbCodes codes;   /* if the frame has codes */
     float *background; /* a row of the picture */
@@ -70,6 +72,10 @@ static inline size_t canvas_pixel(const Canvas *canvas, int column, int row)
                (size_t)canvas->drawing->view->camera.width +
            (size_t)column;
 }
+
+/* Sets what samples see of the view's ground, where no vessel is before it, in *hits, which has
+ * what they see of vessels if seen->hits is not NULL, and in *seen. */
+void canvas_see_ground(const Canvas *canvas, SeenTile *seen, TileHits *hits);
 
 /* The colours of a tile's samples, the background's where nothing is seen; the latter is left out
  * if the frame has codes. `seen` has hits. shadowed[light][sample]: whether the sample gets none of

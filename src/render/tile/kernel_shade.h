@@ -96,9 +96,12 @@ LANE_FN void add_light(Shading *shading, size_t number)
         highlight += phong(shading, towards);
     if (finish->specular > 0)
         highlight += specular(shading, towards);
+    Lanes part = lanes_set(1);
+    if (shading->surface->parts && shading->surface->is_shared[number])
+        part = lanes_load(&shading->surface->parts[number][shading->first]);
     for (int c = 0; c < 3; c++) {
         Lanes pigment = lanes_load(&shading->surface->pigment[c][shading->first]);
-        Lanes sum = lanes_fma(pigment, diffuse, highlight) * light->color[c];
+        Lanes sum = lanes_fma(pigment, diffuse, highlight) * (part * light->color[c]);
         shading->color[c] += lanes_select(lit, sum, lanes_set(0));
     }
 }
@@ -113,10 +116,13 @@ LANE_TARGET static void TILE_KERNEL(shade)(const TileLook *look, const TileSurfa
         shading.look = look;
         shading.surface = surface;
         shading.first = first;
+        Lanes ambient = lanes_set(look->finish.ambient);
+        if (surface->open)
+            ambient *= lanes_load(&surface->open[first]);
         for (int c = 0; c < 3; c++) {
             shading.normal[c] = lanes_load(&surface->hits->normal[c][first]);
             shading.direction[c] = lanes_load(&surface->direction[c][first]);
-            shading.color[c] = lanes_load(&surface->pigment[c][first]) * look->finish.ambient;
+            shading.color[c] = lanes_load(&surface->pigment[c][first]) * ambient;
         }
         Lanes away = inner(shading.normal, shading.direction);
         for (int c = 0; c < 3; c++)

@@ -55,6 +55,7 @@ typedef struct SeenTile {
     const float *x, *y; /* where samples are in the view's plane, from the tile's middle */
     double middle_x, middle_y;
     const TileHits *hits; /* NULL: nothing is seen in the whole tile */
+    uint64_t ground;      /* bit i: the hit of sample i is on the ground [canvas_see_ground] */
 } SeenTile;
 
 /* How many of a tile's columns or rows are in a picture of which so many are left. */

@@ -30,6 +30,9 @@ typedef struct TileSurface {
                                        * parallel */
     float pigment[3][TILE_SAMPLES];
     const uint8_t (*shadowed)[TILE_SAMPLES]; /* whether from each light; NULL: none is */
+    const float *open; /* the part of the ambient light that reaches each; NULL: all */
+    const float (*parts)[TILE_SAMPLES]; /* that of each light, where `is_shared`; NULL: of none */
+    bool is_shared[VIEW_MAX_LIGHTS];
 } TileSurface;
 
 typedef struct TileKernels {

@@ -1,0 +1,69 @@
+/* Light that the samples of a pixel share: the part of the sky that a surface sees, and the parts
+ * of area lights, found once for what the centre of a pixel sees. */
+#ifndef CORCAST_RENDER_SHAREDLIGHT_H
+#define CORCAST_RENDER_SHAREDLIGHT_H
+
+#include "render/job.h"
+#include "scene/scene.h"
+
+typedef enum PlaceKind { PLACE_NONE, PLACE_VESSEL, PLACE_GROUND } PlaceKind;
+
+/* What the centre of a pixel sees. */
+typedef struct PixelPlace {
+    float at[3];     /* mm from SharedLight.origin */
+    float normal[3]; /* unit, facing the viewer */
+    float size;      /* mm that a pixel is wide there, across the view */
+    int kind;        /* PlaceKind; all else is undefined where that is PLACE_NONE */
+} PixelPlace;
+
+/* Constant once made [render/sky/share.h]. */
+typedef struct SharedLight {
+    int width, first, rows; /* of the picture's pixels; `first` row of so many */
+    Vec3 origin;
+    PixelPlace *places;            /* owned, as the parts; row by row */
+    float *open;                   /* of each place the part of the sky that it sees; NULL: all */
+    float *parts[VIEW_MAX_LIGHTS]; /* likewise of each light; NULL: it is no area light */
+} SharedLight;
+
+/* Whether b is of the surface that a is of: of the same kind, and each within 5 / 4 of a pixel's
+ * width of the other's tangent plane. */
+static inline bool places_are_of_one(const PixelPlace *a, const PixelPlace *b)
+{
+    float off_a = 0, off_b = 0, most = 1.25f * a->size;
+    for (int c = 0; c < 3; c++) {
+        float way = b->at[c] - a->at[c];
+        off_a += way * a->normal[c];
+        off_b += way * b->normal[c];
+    }
+    return a->kind == b->kind && off_a < most && off_a > -most && off_b < most && off_b > -most;
+}
+
+/* The pixel, as an index of the places, whose light the sample at (i, j) of the picture has, which
+ * sees `seen`: the pixel that it lies in if that is of its surface, else the one nearest to it in
+ * space of those no farther than two pixels, of one kind with it; SIZE_MAX if there is none. */
+size_t sharedlight_pixel(const SharedLight *shared, double i, double j, const PixelPlace *seen);
+
+/* A place at a point of the world. `mm_a_pixel` as in PixelPlace.size. */
+PixelPlace sharedlight_place(const SharedLight *shared, PlaceKind kind, Vec3 point, Vec3 normal,
+                             double mm_a_pixel);
+
+/* The width of a pixel at so many mm along the camera's ray. */
+double sharedlight_pixel_mm(const Camera *camera, double t);
+
+/* What the pixel shares: the part of the sky that it sees, and that of a light, or -1 of one that
+ * is no area light that casts shadows. SIZE_MAX: all of both. */
+static inline float sharedlight_open(const SharedLight *shared, size_t pixel)
+{
+    return shared->open && pixel != SIZE_MAX ? shared->open[pixel] : 1;
+}
+
+static inline float sharedlight_part(const SharedLight *shared, size_t light, size_t pixel)
+{
+    if (!shared->parts[light])
+        return -1;
+    return pixel != SIZE_MAX ? shared->parts[light][pixel] : 1;
+}
+
+void sharedlight_free(SharedLight *shared);
+
+#endif
