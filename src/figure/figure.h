@@ -9,6 +9,7 @@
 
 #include "base/base.h"
 #include "image/image.h"
+#include "scene/scene.h"
 #include <stddef.h>
 #include <stdint.h>
 
@@ -49,7 +50,8 @@ typedef enum FigureKind {
     FIGURE_SHAPE, /* a polygon, filled */
     FIGURE_LINE,  /* a polyline, stroked */
     FIGURE_RAMP,  /* a rectangle whose colour changes from the left to the right, or upwards */
-    FIGURE_TEXT
+    FIGURE_TEXT,
+    FIGURE_STROKES
 } FigureKind;
 
 enum { FIGURE_CORNERS = 4, FIGURE_STOPS = 65 };
@@ -66,6 +68,7 @@ typedef struct FigureItem {
     double size_pt;         /* of a text */
     char *text;             /* owned */
     FigureColor *ramp;      /* owned; FIGURE_STOPS colours at equal distances */
+    const Strokes *strokes; /* borrowed; their paper's corner is at at[0] */
     const Picture *picture; /* borrowed; 8 bits */
     int column, row;        /* of the picture's first pixel */
 } FigureItem;
@@ -96,6 +99,10 @@ void figure_add_line(FigurePage *page, const FigurePoint *corner, int n, bool cl
                      double width_mm, FigureColor color);
 void figure_add_ramp(FigurePage *page, FigureBox box, bool upwards,
                      const FigureColor stops[FIGURE_STOPS]);
+
+/* A line drawing, borrowed, whose paper has its upper left corner at a point. */
+void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at,
+                        FigureColor color);
 
 typedef struct FigureText {
     const char *text; /* one line of UTF-8; copied */

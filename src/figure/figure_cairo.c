@@ -135,6 +135,25 @@ static Status put_text(const Canvas *canvas, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
+static void put_strokes(const Canvas *canvas, const FigureItem *item)
+{
+    const Strokes *all = item->strokes;
+    cairo_save(canvas->cairo);
+    cairo_translate(canvas->cairo, item->at[0].x, item->at[0].y);
+    cairo_set_line_cap(canvas->cairo, CAIRO_LINE_CAP_ROUND);
+    cairo_set_line_join(canvas->cairo, CAIRO_LINE_JOIN_ROUND);
+    set_color(canvas, item->color);
+    for (size_t i = 0; i < all->n; i++) {
+        const Stroke *stroke = &all->strokes[i];
+        cairo_set_line_width(canvas->cairo, stroke->width_mm);
+        for (size_t k = 0; k < stroke->n; k++)
+            cairo_line_to(canvas->cairo, all->points[stroke->first + k][0],
+                          all->points[stroke->first + k][1]);
+        cairo_stroke(canvas->cairo);
+    }
+    cairo_restore(canvas->cairo);
+}
+
 static Status put_item(const Canvas *canvas, const FigureItem *item, Err *err)
 {
     switch (item->kind) {
@@ -149,6 +168,9 @@ static Status put_item(const Canvas *canvas, const FigureItem *item, Err *err)
         break;
     case FIGURE_TEXT:
         return put_text(canvas, item, err);
+    case FIGURE_STROKES:
+        put_strokes(canvas, item);
+        break;
     case FIGURE_PICTURE:
         break;
     }

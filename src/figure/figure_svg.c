@@ -117,14 +117,34 @@ static Status put_line(const Svg *svg, const FigureItem *item, Text *out, Err *e
     return markup_put(&parts, svg->notes->templates, "figure/line.svg", out, err);
 }
 
+/* Strokes of one width, which follow one another, are one path. */
+static Status put_strokes(const Svg *svg, const FigureItem *item, Text *out, Err *err)
+{
+    const Strokes *all = item->strokes;
+    for (size_t i = 0; i < all->n;) {
+        Markup parts = {0};
+        Text *points = markup_text(&parts, "points");
+        const double width_mm = all->strokes[i].width_mm;
+        for (; i < all->n && all->strokes[i].width_mm == width_mm; i++)
+            for (size_t k = 0; k < all->strokes[i].n; k++) {
+                const double *point = all->points[all->strokes[i].first + k];
+                text_puts(points, k ? " " : "M");
+                put_mm(item->at[0].x + point[0], points);
+                text_puts(points, ",");
+                put_mm(item->at[0].y + point[1], points);
+            }
+        put_color(item->color, markup_text(&parts, "color"));
+        put_mm(width_mm, markup_text(&parts, "width"));
+        TRY(markup_put(&parts, svg->notes->templates, "figure/strokes.svg", out, err));
+    }
+    return STATUS_OK;
+}
+
 static Status put_items(Text *out, void *context, Err *err)
 {
-    static Status (*const put[])(const Svg *, const FigureItem *, Text *,
-                                 Err *) = {[FIGURE_PICTURE] = put_picture,
-                                           [FIGURE_SHAPE] = put_shape,
-                                           [FIGURE_LINE] = put_line,
-                                           [FIGURE_RAMP] = put_ramp,
-                                           [FIGURE_TEXT] = put_text};
+    static Status (*const put[])(const Svg *, const FigureItem *, Text *, Err *) = {
+        [FIGURE_PICTURE] = put_picture, [FIGURE_SHAPE] = put_shape, [FIGURE_LINE] = put_line,
+        [FIGURE_RAMP] = put_ramp,       [FIGURE_TEXT] = put_text,   [FIGURE_STROKES] = put_strokes};
     const Svg *svg = context;
     for (size_t i = 0; i < svg->page->n; i++) {
         const FigureItem *item = &svg->page->items[i];

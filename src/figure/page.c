@@ -103,6 +103,16 @@ void figure_add_ramp(FigurePage *page, FigureBox box, bool upwards,
         free(ramp);
 }
 
+void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at, FigureColor color)
+{
+    add(page, (FigureItem){.kind = FIGURE_STROKES,
+                           .box = {at.x, at.y, at.x + strokes->width_mm, at.y + strokes->height_mm},
+                           .color = color,
+                           .at = {at},
+                           .n = 1,
+                           .strokes = strokes});
+}
+
 void figure_add_text(FigurePage *page, const FigureText *text)
 {
     double size = text->size_pt * MM_PER_POINT;

@@ -5,6 +5,7 @@
 
 #include "base/base.h"
 #include "image/image.h"
+#include "render/ink/ink.h"
 #include "render/job.h"
 #include "render/light/shade.h"
 #include "scene/scene.h"

@@ -12,6 +12,7 @@
 #include "scene/effects.h"
 #include "scene/geometry.h"
 #include "scene/models.h"
+#include "scene/strokes.h"
 #include "scene/triangles.h"
 #include "scene/vesseltree.h"
 #include "scene/view.h"

@@ -20,6 +20,22 @@ Ray camera_ray(const Camera *camera, double i, double j)
     return (Ray){camera->location, vec3_normalized(vec3_add(camera->direction, offset))};
 }
 
+CameraPoint camera_point(const Camera *camera, Vec3 point)
+{
+    Vec3 from = vec3_sub(point, camera->location);
+    double width = vec3_length(camera->right), height = vec3_length(camera->up);
+    double z = vec3_dot(from, camera->direction);
+    bool perspective = camera->projection == PROJECTION_PERSPECTIVE;
+    double scale = perspective ? 1 / z : 1;
+    if (perspective && !(z > 0))
+        return (CameraPoint){0};
+    return (CameraPoint){
+        .x = (vec3_dot(from, camera->right) / (width * width) * scale + 0.5) * camera->width,
+        .y = (0.5 - vec3_dot(from, camera->up) / (height * height) * scale) * camera->height,
+        .depth_mm = perspective ? vec3_length(from) : z,
+        .per_mm = camera->width / width * scale};
+}
+
 Camera camera_of_pixel(const Camera *camera, int i, int j)
 {
     Camera one = *camera;

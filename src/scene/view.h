@@ -29,6 +29,16 @@ typedef struct Camera {
  * camera point (perspective) or from the plane through location (orthographic). */
 Ray camera_ray(const Camera *camera, double i, double j);
 
+/* Where a camera sees a point. */
+typedef struct CameraPoint {
+    double x, y;     /* pixels from the left and upper edges of the picture */
+    double depth_mm; /* as camera_ray has it */
+    double per_mm; /* pixels that 1 mm across the view takes there; 0: the point is not in front of
+                    * a perspective camera, and nothing else is said of it */
+} CameraPoint;
+
+CameraPoint camera_point(const Camera *camera, Vec3 point);
+
 /* A camera of 1 x 1 pixels that sees what pixel (i, j) sees, the further samples of antialiasing
  * included. In perspective its direction is neither unit nor square to right and up. */
 Camera camera_of_pixel(const Camera *camera, int i, int j);

@@ -4,6 +4,7 @@
 #include "app/commands.h"
 #include "app/pictures/animation.h"
 #include "app/pictures/frames.h"
+#include "app/pictures/line_drawing.h"
 #include "app/pictures/picture.h"
 #include "app/pictures/shard.h"
 #include "app/run/output.h"
@@ -19,7 +20,7 @@ typedef struct RenderOptions {
     bool exact, has_method;
     RenderMethod method;
     RenderKernels kernels;
-    double threshold, memory_mb, min_width_px;
+    double threshold, memory_mb, min_width_px, ink_mm;
     AnimationOptions animation;
     ShardOptions shard;
     Annotation annotation;
@@ -66,6 +67,13 @@ static const Option own[] = {
      .argument = "PX",
      .group = GROUP_VESSELS,
      .help = "vessels are drawn at least so many pixels wide; 0: as wide as they are"},
+    {.name = "ink",
+     SETS(NUMBER, RenderOptions, ink_mm),
+     .range = &ink_range,
+     .group = GROUP_VESSELS,
+     .unit = "mm",
+     .otherwise = "",
+     .help = "a drawing in lines of this width instead, hidden lines left out: .svg or .pdf"},
     {.name = "hits",
      SETS(CHOICE, RenderOptions, hits),
      .choices = hits_names,
@@ -349,6 +357,8 @@ static Status check(const RenderOptions *options, const Parsed *parsed, Err *err
 {
     const PictureOptions *picture = &options->picture;
     TRY(check_codes(options, parsed, err));
+    if (options->ink_mm > 0)
+        TRY(line_drawing_check(picture, options->output, parsed, err));
     if (options->min_width_px > 0 && !covers_thin(options))
         return err_set(err, STATUS_USAGE,
                        "--min-width is for --method fastest, without --exact and --hits povray");
@@ -529,6 +539,10 @@ static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams
         TRY_GOTO(fill_sheet(options, source.of.path, &scene, line, &sheet, err));
         form->page = &sheet.page;
         form->notes = &sheet.notes;
+    }
+    if (options->ink_mm > 0) {
+        status = line_drawing_write(&scene, options->ink_mm, params->threads, form, err);
+        goto done;
     }
     TRY_GOTO(draw_all(&film, form, &stats, err));
     if (options->json)

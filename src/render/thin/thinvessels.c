@@ -25,30 +25,6 @@
 
 enum { LINES = 4, SHADED = 3, ROWS = 8 };
 
-/* ---- projection ------------------------------------------------------------------------------ */
-
-/* A point in the picture; `per_mm` is how many pixels a millimetre across the view takes there, 0
- * where the point is not in front of the camera. */
-typedef struct Projected {
-    double x, y, depth_mm, per_mm;
-} Projected;
-
-static Projected project(const Camera *camera, Vec3 point)
-{
-    Vec3 from = vec3_sub(point, camera->location);
-    double width = vec3_length(camera->right), height = vec3_length(camera->up);
-    double z = vec3_dot(from, camera->direction);
-    bool perspective = camera->projection == PROJECTION_PERSPECTIVE;
-    double scale = perspective ? 1 / z : 1;
-    if (perspective && !(z > 0))
-        return (Projected){0};
-    return (Projected){
-        .x = (vec3_dot(from, camera->right) / (width * width) * scale + 0.5) * camera->width,
-        .y = (0.5 - vec3_dot(from, camera->up) / (height * height) * scale) * camera->height,
-        .depth_mm = perspective ? vec3_length(from) : z,
-        .per_mm = camera->width / width * scale};
-}
-
 /* ---- which are thin -------------------------------------------------------------------------- */
 
 /* A vessel of a geometry: a primitive, or a segment of a field. */
@@ -77,7 +53,7 @@ static Vessel vessel_at(const Geometry *geometry, size_t i)
 }
 
 /* The greater width of the vessel in pixels; infinite if an end is not in front of the camera. */
-static double widest(const Vessel *vessel, const Projected *a, const Projected *b)
+static double widest(const Vessel *vessel, const CameraPoint *a, const CameraPoint *b)
 {
     if (!(a->per_mm > 0) || !(b->per_mm > 0))
         return HUGE_VAL;
@@ -87,7 +63,7 @@ static double widest(const Vessel *vessel, const Projected *a, const Projected *
 static double width_of(const Geometry *geometry, const Camera *camera, size_t i)
 {
     const Vessel vessel = vessel_at(geometry, i);
-    const Projected a = project(camera, vessel.a), b = project(camera, vessel.b);
+    const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
     return widest(&vessel, &a, &b);
 }
 
@@ -111,7 +87,7 @@ static void take(ThinVessels *thin, const Camera *camera, double below)
     uint32_t last = UINT32_MAX;
     for (size_t i = 0; i < count_vessels(thin->whole); i++) {
         const Vessel vessel = vessel_at(thin->whole, i);
-        const Projected a = project(camera, vessel.a), b = project(camera, vessel.b);
+        const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
         if (!vessel.has_length || widest(&vessel, &a, &b) >= below)
             continue;
         bool follows = last != UINT32_MAX && vec3_distance(end, vessel.a) == 0;

@@ -1,0 +1,155 @@
+/* Ends are sorted by the square of a grid that they lie in; two of one square and width are mates.
+ * Ends near a grid line may miss each other: then a stroke is two, which looks the same. */
+#include "render/ink/inkpieces.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define GRID_MM 0.02
+
+Status inkpieces_begin(InkPieces *pieces, double width_mm, Err *err)
+{
+    Strokes *list = &pieces->list;
+    TRY(mem_reserve(&list->strokes, &pieces->strokes_capacity, list->n + 1, sizeof *list->strokes,
+                    "strokes", err));
+    list->strokes[list->n++] = (Stroke){list->n_points, 0, width_mm};
+    return STATUS_OK;
+}
+
+Status inkpieces_add(InkPieces *pieces, const double point[2], Err *err)
+{
+    Strokes *list = &pieces->list;
+    TRY(mem_reserve(&list->points, &pieces->points_capacity, list->n_points + 1,
+                    sizeof *list->points, "strokes", err));
+    memcpy(list->points[list->n_points++], point, sizeof *list->points);
+    list->strokes[list->n - 1].n++;
+    return STATUS_OK;
+}
+
+static Status add_points(InkPieces *pieces, const Strokes *from, size_t piece, bool backwards,
+                         size_t skip, Err *err)
+{
+    const Stroke *stroke = &from->strokes[piece];
+    for (size_t k = skip; k < stroke->n; k++)
+        TRY(inkpieces_add(pieces, from->points[stroke->first + (backwards ? stroke->n - 1 - k : k)],
+                          err));
+    return STATUS_OK;
+}
+
+Status inkpieces_append(InkPieces *pieces, const InkPieces *more, Err *err)
+{
+    for (size_t i = 0; i < more->list.n; i++) {
+        TRY(inkpieces_begin(pieces, more->list.strokes[i].width_mm, err));
+        TRY(add_points(pieces, &more->list, i, false, 0, err));
+    }
+    return STATUS_OK;
+}
+
+void inkpieces_release(InkPieces *pieces)
+{
+    strokes_release(&pieces->list);
+    *pieces = (InkPieces){0};
+}
+
+/* ---- joining ----------------------------------------------------------------------------------
+ */
+
+/* An end of a piece: number 2 i of the first point of piece i, 2 i + 1 of the last one. */
+typedef struct End {
+    double x, y, width; /* in squares */
+    size_t number;
+} End;
+
+static int end_order(const void *a, const void *b)
+{
+    const End *p = a, *q = b;
+    int order = number_order(p->x, q->x);
+    order = order ? order : number_order(p->y, q->y);
+    order = order ? order : number_order(p->width, q->width);
+    return order ? order : (p->number > q->number) - (p->number < q->number);
+}
+
+static End end_of(const Strokes *list, size_t number)
+{
+    const Stroke *stroke = &list->strokes[number / 2];
+    const double *point = list->points[stroke->first + (number % 2 ? stroke->n - 1 : 0)];
+    return (End){round(point[0] / GRID_MM), round(point[1] / GRID_MM), stroke->width_mm, number};
+}
+
+static bool fits(const End *a, const End *b)
+{
+    return a->x == b->x && a->y == b->y && a->width == b->width && a->number / 2 != b->number / 2;
+}
+
+/* mates[e]: the end that end e is joined to, or SIZE_MAX. */
+static Status find_mates(const Strokes *list, size_t *mates, Err *err)
+{
+    End *ends;
+    size_t n = 2 * list->n;
+    TRY(mem_calloc(&ends, n, sizeof *ends, "strokes", err));
+    for (size_t i = 0; i < n; i++) {
+        ends[i] = end_of(list, i);
+        mates[i] = SIZE_MAX;
+    }
+    qsort(ends, n, sizeof *ends, end_order);
+    for (size_t i = 0; i + 1 < n; i++) {
+        if (!fits(&ends[i], &ends[i + 1]))
+            continue;
+        mates[ends[i].number] = ends[i + 1].number;
+        mates[ends[i + 1].number] = ends[i].number;
+        i++;
+    }
+    free(ends);
+    return STATUS_OK;
+}
+
+/* The end at which the stroke of a piece begins, walking from its first point from mate to mate; of
+ * a closed stroke that is its own first point. */
+static size_t beginning(const size_t *mates, size_t piece)
+{
+    size_t end = 2 * piece;
+    while (mates[end] != SIZE_MAX) {
+        end = mates[end] ^ 1;
+        if (end == 2 * piece)
+            break;
+    }
+    return end;
+}
+
+static Status put_stroke(const Strokes *list, const size_t *mates, size_t piece, bool *used,
+                         InkPieces *out, Err *err)
+{
+    size_t end = beginning(mates, piece), skip = 0;
+    TRY(inkpieces_begin(out, list->strokes[piece].width_mm, err));
+    while (end != SIZE_MAX && !used[end / 2]) {
+        used[end / 2] = true;
+        TRY(add_points(out, list, end / 2, end % 2, skip, err));
+        skip = 1;
+        end = mates[end ^ 1];
+    }
+    return STATUS_OK;
+}
+
+Status inkpieces_join(const InkPieces *pieces, Strokes *strokes, Err *err)
+{
+    const Strokes *list = &pieces->list;
+    InkPieces joined = {0};
+    size_t *mates = NULL;
+    bool *used = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&mates, 2 * list->n, sizeof *mates, "strokes", err));
+    TRY_GOTO(mem_calloc(&used, list->n, sizeof *used, "strokes", err));
+    TRY_GOTO(find_mates(list, mates, err));
+    for (size_t i = 0; i < list->n; i++)
+        if (!used[i])
+            TRY_GOTO(put_stroke(list, mates, i, used, &joined, err));
+    *strokes = joined.list;
+    joined = (InkPieces){0};
+done:
+    inkpieces_release(&joined);
+    free(mates);
+    free(used);
+    return status;
+}

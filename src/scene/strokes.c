@@ -1,0 +1,11 @@
+/* Plain data. */
+#include "scene/strokes.h"
+
+#include <stdlib.h>
+
+void strokes_release(Strokes *strokes)
+{
+    free(strokes->points);
+    free(strokes->strokes);
+    *strokes = (Strokes){0};
+}
