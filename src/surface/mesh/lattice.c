@@ -159,17 +159,6 @@ static Status corner_at(Cutter *cutter, const ZoneCell *from, const uint32_t at[
     return STATUS_OK;
 }
 
-static PatchPoint wall_point(const ZoneField *field, Vec3 x, const FieldValue *value, Vec3 gradient)
-{
-    const ZoneTerm *term = &field->terms[value->largest];
-    return (PatchPoint){.x = x,
-                        .normal = vec3_scale(gradient, -1 / vec3_length(gradient)),
-                        .radius_mm = term->radius_mm,
-                        .segment = term->segment,
-                        .tube = term->arm,
-                        .arm = NO_ARM};
-}
-
 /* Where the wall crosses the way from a point inside to one outside: Newton's steps from where it
  * would if the height were linear, which it nearly is; a step that would leave what is left of the
  * way halves that. A last step is made without looking where it ends. */
@@ -188,9 +177,9 @@ static PatchPoint find_crossing(const Cutter *cutter, const FieldPart *part,
         if (!(t > low && t < high))
             t = 0.5 * (low + high);
         else if (fabs(step) < last_step)
-            return wall_point(field, vec3_add_scaled(inside->x, way, t), &value, gradient);
+            return patch_wall_point(field, vec3_add_scaled(inside->x, way, t), &value, gradient);
         if (i == MOST_STEPS)
-            return wall_point(field, x, &value, gradient);
+            return patch_wall_point(field, x, &value, gradient);
     }
 }
 
@@ -201,7 +190,7 @@ static PatchPoint find_middle(const Cutter *cutter, const FieldPart *part,
     const ZoneField *field = &cutter->plan->field;
     Vec3 x = vec3_scale(vec3_add(inside->x, outside->x), 0.5), gradient;
     FieldValue value = fieldpart_gradient(field, &cutter->tree->kept, part, x, &gradient);
-    return wall_point(field, x, &value, gradient);
+    return patch_wall_point(field, x, &value, gradient);
 }
 
 /* The point of the wall between two points of the lattice, of which `a` is inside. */

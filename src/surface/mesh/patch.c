@@ -10,6 +10,17 @@ void patch_release(Patch *patch)
     *patch = (Patch){0};
 }
 
+PatchPoint patch_wall_point(const ZoneField *field, Vec3 x, const FieldValue *value, Vec3 gradient)
+{
+    const ZoneTerm *term = &field->terms[value->largest];
+    return (PatchPoint){.x = x,
+                        .normal = vec3_scale(gradient, -1 / vec3_length(gradient)),
+                        .radius_mm = term->radius_mm,
+                        .segment = term->segment,
+                        .tube = term->arm,
+                        .arm = NO_ARM};
+}
+
 Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *number, Err *err)
 {
     TRY(mem_reserve(&patch->points, &patch->point_capacity, patch->n_points + 1,

@@ -28,6 +28,10 @@ typedef struct Patch {
 } Patch;
 
 void patch_release(Patch *patch);
+
+/* A point of the wall where the field has this value and gradient. */
+PatchPoint patch_wall_point(const ZoneField *field, Vec3 x, const FieldValue *value, Vec3 gradient);
+
 MUST_CHECK Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *number, Err *err);
 MUST_CHECK Status patch_add_triangle(Patch *patch, Triangle triangle, Err *err);
 

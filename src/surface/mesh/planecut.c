@@ -1,15 +1,23 @@
 /* A plane is put into the widest gap between the points near it, so that no sliver is cut off. What
  * is on an arm's tube and beyond its plane is behind; each edge from before to behind gets
- * one point, found by the lattice's straight line and put on the circle. */
+ * one point, found by the lattice's straight line and put on the circle, or on the wall. */
 #include "surface/mesh/planecut.h"
 
 #include <stdlib.h>
 
 /* How far the wall of an arm may be from its axis, in radii. */
 static const double tube_reach = 1.1;
+/* Cosine: the wall of an arm faces away from where its plane meets its axis. That of a thin vessel
+ * close to it may not, where the arm's term is the larger one. */
+static const double least_outward = 0.25;
+
+/* Newton's steps of a point from a triangle to the wall. */
+enum { WALL_STEPS = 4 };
 
 typedef struct Cut {
     PlaneCutter *cutter;
+    const ZoneTree *tree;
+    const ZoneField *field;
     Patch *patch;
     Arm *arms;
     size_t n_arms;
@@ -22,6 +30,7 @@ void planecutter_release(PlaneCutter *cutter)
     free(cutter->behind);
     free(cutter->renamed);
     free(cutter->near);
+    free(cutter->arms);
     *cutter = (PlaneCutter){0};
 }
 
@@ -33,8 +42,9 @@ static double along_tube(const Cut *cut, const PatchPoint *point)
     const Arm *arm = &cut->arms[point->tube];
     Vec3 from = vec3_sub(point->x, arm->at);
     double along = vec3_dot(from, arm->outward), reach = tube_reach * arm->radius_mm;
-    double across2 = vec3_dot(from, from) - along * along;
-    if (across2 > reach * reach || along > (ARM_TAIL + 1) * arm->radius_mm)
+    double from2 = vec3_dot(from, from), across2 = from2 - along * along;
+    if (across2 > reach * reach || along > (ARM_TAIL + 1) * arm->radius_mm ||
+        vec3_dot(from, point->normal) < least_outward * sqrt(from2))
         return -HUGE_VAL;
     return along;
 }
@@ -58,8 +68,14 @@ static void move_plane(Arm *arm, const PlaneNear *places, size_t n)
     arm->at = vec3_add_scaled(arm->at, arm->outward, by);
 }
 
-/* Moves each plane into the widest gap between points within `room` radii of it. */
-static Status move_planes(const Cut *cut, double room, Err *err)
+/* How far the plane of an arm may be moved, mm. */
+static double room_of(const Arm *arm, double ratio)
+{
+    return fmin(0.25 * ratio, arm->is_close ? CLOSE_MOVE : PLANE_MOVE) * arm->radius_mm;
+}
+
+/* Moves each plane into the widest gap between points near it. */
+static Status move_planes(const Cut *cut, double ratio, Err *err)
 {
     PlaneCutter *cutter = cut->cutter;
     size_t n = 0;
@@ -67,11 +83,11 @@ static Status move_planes(const Cut *cut, double room, Err *err)
                     sizeof *cutter->near, "points of a junction", err));
     for (size_t k = 0; k < cut->n_arms; k++)
         for (int side = -1; side < 2; side += 2)
-            cutter->near[n++] = (PlaneNear){(uint16_t)k, side * room * cut->arms[k].radius_mm};
+            cutter->near[n++] = (PlaneNear){(uint16_t)k, side * room_of(&cut->arms[k], ratio)};
     for (size_t i = 0; i < cut->patch->n_points; i++) {
         const PatchPoint *point = &cut->patch->points[i];
         double along = along_tube(cut, point);
-        if (point->tube != NO_ARM && fabs(along) < room * cut->arms[point->tube].radius_mm)
+        if (point->tube != NO_ARM && fabs(along) < room_of(&cut->arms[point->tube], ratio))
             cutter->near[n++] = (PlaneNear){point->tube, along};
     }
     qsort(cutter->near, n, sizeof *cutter->near, compare_places);
@@ -88,6 +104,26 @@ static void mark_behind(const Cut *cut)
     for (size_t i = 0; i < cut->patch->n_points; i++) {
         const PatchPoint *point = &cut->patch->points[i];
         cut->cutter->behind[i] = along_tube(cut, point) > 0 ? point->tube : NO_ARM;
+    }
+}
+
+/* Moves a point of a rim that is no circle onto the wall, in the plane, towards the axis or away
+ * from it: by Newton's steps. */
+static void reach_wall(const Cut *cut, const Arm *arm, Vec3 away, PatchPoint *point)
+{
+    const ZoneCell *cell = zonetree_leaf(cut->tree, point->x);
+    if (!cell || cell->state != CELL_ACTIVE)
+        return;
+    for (int i = 0; i < WALL_STEPS; i++) {
+        Vec3 gradient;
+        FieldValue value =
+            fieldpart_gradient(cut->field, &cut->tree->kept, &cell->part, point->x, &gradient);
+        double slope = vec3_dot(gradient, away), most = 0.1 * arm->radius_mm;
+        double by = (FIELD_LEVEL - value.phi) / slope;
+        if (!(slope < 0) || !(fabs(by) < most))
+            return;
+        point->x = vec3_add_scaled(point->x, away, by);
+        point->normal = vec3_scale(gradient, -1 / vec3_length(gradient));
     }
 }
 
@@ -114,6 +150,10 @@ static Status rim_point(const Cut *cut, uint32_t before, uint32_t behind, uint32
                             .segment = arm->segment,
                             .tube = arm_number,
                             .arm = arm_number};
+        if (arm->is_close) {
+            point.x = vec3_add(arm->at, across);
+            reach_wall(cut, arm, normal, &point);
+        }
         TRY(patch_add_point(cut->patch, point, place, err));
     }
     *number = *place;
@@ -164,15 +204,19 @@ static Status cut_triangle(const Cut *cut, size_t i, bool *sound, Err *err)
     return add_part(cut, triangle, lone, n_behind == 2, err);
 }
 
-Status planecut_make(PlaneCutter *cutter, const ZonePlan *plan, double ratio, Patch *patch,
-                     bool *sound, Err *err)
+Status planecut_make(PlaneCutter *cutter, const ZonePlan *plan, const ZoneTree *tree, double ratio,
+                     Patch *patch, bool *sound, Err *err)
 {
-    Cut cut = {cutter, patch, plan->arms, plan->n_arms, patch->n_triangles};
     *sound = true;
+    TRY(mem_reserve(&cutter->arms, &cutter->arm_capacity, plan->n_arms, sizeof *cutter->arms,
+                    "arms", err));
+    for (size_t k = 0; k < plan->n_arms; k++)
+        cutter->arms[k] = plan->arms[k];
+    Cut cut = {cutter, tree, &plan->field, patch, cutter->arms, plan->n_arms, patch->n_triangles};
     TRY(pairtable_begin(&cutter->crossings, 0, err));
     TRY(mem_reserve(&cutter->behind, &cutter->behind_capacity, patch->n_points,
                     sizeof *cutter->behind, "points of a junction", err));
-    TRY(move_planes(&cut, 0.25 * ratio, err));
+    TRY(move_planes(&cut, ratio, err));
     mark_behind(&cut);
     for (size_t i = 0; i < cut.n_whole; i++)
         TRY(cut_triangle(&cut, i, sound, err));

@@ -4,7 +4,7 @@
 
 #include "surface/mesh/pairtable.h"
 #include "surface/mesh/patch.h"
-#include "surface/mesh/zones.h"
+#include "surface/mesh/zonetree.h"
 
 /* A point on an arm's tube: how far it lies beyond the plane, mm. */
 typedef struct PlaneNear {
@@ -18,15 +18,17 @@ typedef struct PlaneCutter {
     uint16_t *behind;    /* one a point: the arm whose plane it lies behind, or NO_ARM */
     uint32_t *renamed;
     PlaneNear *near;
-    size_t behind_capacity, renamed_capacity, near_capacity;
+    Arm *arms; /* with their planes moved */
+    size_t arm_capacity, behind_capacity, renamed_capacity, near_capacity;
 } PlaneCutter;
 
 void planecutter_release(PlaneCutter *cutter);
 
-/* Moves the planes by at most a quarter of `ratio` radii to where few points lie, and cuts the wall
- * there; points on the rims lie on the circle about the axis, and name the arm. *sound is false
- * when a triangle reaches behind two planes. */
-MUST_CHECK Status planecut_make(PlaneCutter *cutter, const ZonePlan *plan, double ratio,
-                                Patch *patch, bool *sound, Err *err);
+/* Moves the planes by at most a quarter of `ratio` radii, or so many as they may, to where few
+ * points lie, and cuts the wall there; points on the rims lie on the circle about the axis, or of
+ * close planes on the wall, and name the arm. *sound is false when a triangle reaches behind two
+ * planes. */
+MUST_CHECK Status planecut_make(PlaneCutter *cutter, const ZonePlan *plan, const ZoneTree *tree,
+                                double ratio, Patch *patch, bool *sound, Err *err);
 
 #endif

@@ -1,6 +1,7 @@
-/* Lattice, cut, collapse, and then the proof: every edge has two triangles, one each way, or lies
- * on a rim; the rims are one closed way for each arm, which goes about its axis once; the piece is
- * connected; and points - edges + triangles = 2 - arms, that of a sphere with so many holes. */
+/* Lattice, cut, collapse, split, and then the proof: every edge has two triangles, one each way, or
+ * lies on a rim; the rims are one closed way for each arm, which goes about its axis once; the
+ * piece is connected; and points - edges + triangles = 2 - arms, that of a sphere with so many
+ * holes. */
 #include "surface/mesh/zonepiece.h"
 
 #include "surface/mesh/nearpairs.h"
@@ -8,13 +9,8 @@
 
 #define NONE UINT32_MAX
 
-enum { MOST_REPEATS = 7, MOST_REFINEMENTS = 2 };
-/* A zone of more cells takes as long as thousands of others: it is not made anew to be nearer. */
-enum { CELLS_TO_REFINE = 2000000 };
+enum { MOST_REPEATS = 7 };
 static const double finer = 0.85;
-/* Over the distance: a change of it by finer cells where the wall bends, after which those are not
- * tried again. Finer cells everywhere are, beyond so many times the distance that should be. */
-static const double alike = 0.02, far_off = 1.5;
 /* Over the radius of the thinner: gaps that cells may be too wide for. */
 static const double narrow_gap = 0.3;
 /* Over the usual cell: a hole that is no flaw of the lattice. Where vessels do not blend, cells are
@@ -45,6 +41,7 @@ void zoneworker_release(ZoneWorker *worker)
     mender_release(&worker->mender);
     planecutter_release(&worker->cutter);
     collapser_release(&worker->collapser);
+    refiner_release(&worker->refiner);
     pairtable_release(&worker->edges);
     patch_release(&worker->patch);
     free(worker->next);
@@ -295,103 +292,20 @@ static Status find_fates(const Maker *maker, double ratio, uint8_t *fates)
     return STATUS_OK;
 }
 
-/* Whether a place is inside the wall, as far as is known: behind a plane it is as `otherwise`. */
-static bool is_inside(const Maker *maker, Vec3 x, bool otherwise)
-{
-    const ZoneTree *tree = &maker->worker->tree;
-    const ZoneCell *cell = zonetree_leaf(tree, x);
-    if (!cell || cell->state == CELL_OUTSIDE)
-        return false;
-    if (cell->state == CELL_ACTIVE)
-        return fieldpart_value(&maker->plan->field, &tree->kept, &cell->part, x).phi >= FIELD_LEVEL;
-    return cell->state == CELL_INSIDE || otherwise;
-}
-
-/* How far x, which is inside or not, is from the wall along `outward` or against it, up to a
- * radius. */
-static double search_wall(const Maker *maker, Vec3 x, bool inside, Vec3 outward, double radius_mm)
-{
-    double low = 0, high = 0.01 * radius_mm, sign = inside ? 1 : -1;
-    while (high < radius_mm &&
-           is_inside(maker, vec3_add_scaled(x, outward, sign * high), inside) == inside) {
-        low = high;
-        high *= 1.5;
-    }
-    for (int i = 0; i < 8 && high < radius_mm; i++) {
-        double middle = 0.5 * (low + high);
-        bool same = is_inside(maker, vec3_add_scaled(x, outward, sign * middle), inside) == inside;
-        *(same ? &low : &high) = middle;
-    }
-    return fmin(high, radius_mm);
-}
-
-/* How far a point of a triangle is off the wall: by the field's value and slope if it is near and
- * the field about as steep as at a vessel's wall, where its slope is 4 FIELD_LEVEL / r; else
- * searched for along the field's slope and the triangle's normal. */
-static double measure_at(const Maker *maker, Vec3 x, Vec3 normal, double radius_mm)
-{
-    static const double near = 0.01, steep = FIELD_LEVEL;
-    const ZoneTree *tree = &maker->worker->tree;
-    const ZoneCell *cell = zonetree_leaf(tree, x);
-    Vec3 gradient;
-    if (!cell || cell->state == CELL_BEHIND)
-        return 0;
-    if (cell->state != CELL_ACTIVE)
-        return search_wall(maker, x, cell->state == CELL_INSIDE, normal, radius_mm);
-    FieldValue value =
-        fieldpart_gradient(&maker->plan->field, &tree->kept, &cell->part, x, &gradient);
-    double slope = vec3_length(gradient), off = fabs(value.phi - FIELD_LEVEL) / slope;
-    if (off <= near * radius_mm && slope * radius_mm >= steep)
-        return off;
-    bool inside = value.phi >= FIELD_LEVEL;
-    double one = search_wall(maker, x, inside, normal, radius_mm);
-    return slope > 0 ? fmin(one, search_wall(maker, x, inside, vec3_scale(gradient, -1 / slope),
-                                             radius_mm))
-                     : one;
-}
-
-/* Measures the middle of a triangle and that of its longest edge. */
-static void measure_triangle(const Maker *maker, const Triangle *triangle)
-{
-    const PatchPoint *points = maker->worker->patch.points, *at[3];
-    Vec3 middle = vec3(0, 0, 0), of_longest = middle;
-    double longest = 0, radius = HUGE_VAL;
-    for (int k = 0; k < 3; k++) {
-        at[k] = &points[triangle->at[k]];
-        middle = vec3_add_scaled(middle, at[k]->x, 1.0 / 3);
-        radius = fmin(radius, at[k]->radius_mm);
-    }
-    for (int k = 0; k < 3; k++) {
-        Vec3 a = at[k]->x, b = at[(k + 1) % 3]->x;
-        if (vec3_distance(a, b) > longest) {
-            longest = vec3_distance(a, b);
-            of_longest = vec3_scale(vec3_add(a, b), 0.5);
-        }
-    }
-    Vec3 normal =
-        vec3_normalized(vec3_cross(vec3_sub(at[1]->x, at[0]->x), vec3_sub(at[2]->x, at[0]->x)));
-    MeshOff *off = &maker->piece->off;
-    meshoff_add(off, measure_at(maker, middle, normal, radius), radius);
-    meshoff_add(off, measure_at(maker, of_longest, normal, radius), radius);
-}
-
-static void measure_off(const Maker *maker)
-{
-    for (size_t i = 0; i < maker->worker->patch.n_triangles; i++)
-        measure_triangle(maker, &maker->worker->patch.triangles[i]);
-}
-
 /* Makes what the lattice has left into a piece. */
 static Status finish(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates, bool *sound)
 {
     ZoneWorker *worker = maker->worker;
-    TRY(planecut_make(&worker->cutter, maker->plan, fineness->cells.ratio, &worker->patch, sound,
-                      maker->err));
+    TRY(planecut_make(&worker->cutter, maker->plan, &worker->tree, fineness->cells.ratio,
+                      &worker->patch, sound, maker->err));
     if (!*sound)
         return STATUS_OK;
     TRY(keep_largest(worker, maker->err));
     TRY(find_fates(maker, fineness->cells.ratio, fates));
     TRY(collapse_make(&worker->collapser, &worker->patch, fineness->sagitta, maker->err));
+    maker->piece->off = (MeshOff){0};
+    TRY(refine_make(&worker->refiner, maker->plan, &worker->tree, fineness->split, &worker->patch,
+                    &maker->piece->off, maker->err));
     return prove(maker, sound);
 }
 
@@ -537,48 +451,23 @@ static int steps_finer(const Maker *maker, double hole, double cell, int left)
     return gap >= 0 && gap < narrow_gap ? left : 0;
 }
 
-/* One attempt, measured: all of the piece but its points and triangles. */
-static Status attempt_measured(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates,
-                               bool *sound, double *hole)
-{
-    zonepiece_release(maker->piece);
-    TRY(attempt(maker, fineness, fates, sound, hole));
-    if (*sound)
-        measure_off(maker);
-    return STATUS_OK;
-}
-
-/* Finer cells can put a triangle across a groove that wider ones did not. So the attempt that is
- * the least off is made again, which takes no room meanwhile, unless it was the last. */
 Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
                       const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates, Err *err)
 {
     ZonePiece made = {0};
     const Maker maker = {worker, tree, plan, &made, err};
-    ZoneFineness used = *fineness, best = used;
+    ZoneFineness used = *fineness;
     bool sound = false;
-    double hole, before = 0, least = HUGE_VAL;
+    double hole;
     int repeats = 0;
     Status status = STATUS_OK;
     for (int steps = 1; steps; repeats += steps) {
-        TRY_GOTO(attempt_measured(&maker, &used, fates, &sound, &hole));
-        double ratio = sound ? made.off.ratio : HUGE_VAL;
-        if (ratio < least) {
-            least = ratio;
-            best = used;
-        }
-        bool stuck = sound && fabs(ratio - before) < alike * before;
-        if (sound)
-            steps = ratio > (stuck ? far_off : 1) * fineness->farthest &&
-                    repeats < MOST_REFINEMENTS && worker->tree.n_cells <= CELLS_TO_REFINE;
-        else
-            steps = steps_finer(&maker, hole, used.cells.ratio, MOST_REPEATS - repeats);
-        before = sound ? ratio : 0;
-        used.cells.ratio *= sound && !stuck ? 1 : pow(finer, steps);
-        used.cells.bending *= pow(finer, sound ? 1 : 2 * steps);
+        zonepiece_release(&made);
+        TRY_GOTO(attempt(&maker, &used, fates, &sound, &hole));
+        steps = sound ? 0 : steps_finer(&maker, hole, used.cells.ratio, MOST_REPEATS - repeats);
+        used.cells.ratio *= pow(finer, steps);
+        used.cells.bending *= pow(finer, 2 * steps);
     }
-    if (isfinite(least) && !(sound && made.off.ratio <= least))
-        TRY_GOTO(attempt_measured(&maker, &best, fates, &sound, &hole));
     made.repeats = repeats;
     status = sound ? keep_patch(worker, fineness->grid_mm, &made, err) : refuse(&maker, err);
     if (status == STATUS_OK) {

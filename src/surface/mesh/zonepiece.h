@@ -5,6 +5,7 @@
 #include "surface/mesh/collapse.h"
 #include "surface/mesh/mend.h"
 #include "surface/mesh/planecut.h"
+#include "surface/mesh/refine.h"
 
 /* The points on the rim of an arm: rim_points[first .. first + n), by rising angle about the axis
  * of the segment, from its first to its second end. */
@@ -43,7 +44,8 @@ typedef enum SegmentFate {
 typedef struct ZoneFineness {
     CellSize cells;
     double sagitta;  /* of the local radius, for edges */
-    double farthest; /* likewise, that triangles should be off the wall */
+    double split;    /* likewise, triangles that are farther off the wall are split */
+    double farthest; /* likewise, of points that close a gap, off the wall */
     double grid_mm;  /* coordinates are rounded to its multiples */
 } ZoneFineness;
 
@@ -59,6 +61,7 @@ typedef struct ZoneWorker {
     Mender mender;
     PlaneCutter cutter;
     Collapser collapser;
+    Refiner refiner;
     PairTable edges;
     Patch patch;
     uint32_t *next;
@@ -69,9 +72,8 @@ typedef struct ZoneWorker {
 void zoneworker_release(ZoneWorker *worker);
 
 /* Makes the wall of a zone; of the segments that lie wholly in it, fates[segment] is set. Repeats
- * with finer cells what is not a sphere with one hole for each arm, and a time or two what is too
- * far off, of which the attempt that is the least off is kept. STATUS_INFEASIBLE, naming the id of
- * a segment, when that does not help. */
+ * with finer cells what is not a sphere with one hole for each arm. STATUS_INFEASIBLE, naming the
+ * id of a segment, when that does not help. */
 MUST_CHECK Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
                                  const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates,
                                  Err *err);

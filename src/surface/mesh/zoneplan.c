@@ -36,8 +36,8 @@ static Status add_arm(Planner *planner, uint32_t segment, int end, Err *err)
     *term = zoneterm_of(from, vec3_add_scaled(from, outward, plane + ARM_TAIL * radius), radius,
                         segment, planner->tree->body);
     term->arm = (uint16_t)plan->n_arms;
-    plan->arms[plan->n_arms++] =
-        (Arm){segment, end, vec3_add_scaled(from, outward, plane), outward, radius};
+    plan->arms[plan->n_arms++] = (Arm){segment, end,    vec3_add_scaled(from, outward, plane),
+                                       outward, radius, planner->zones->is_close[segment]};
     return STATUS_OK;
 }
 

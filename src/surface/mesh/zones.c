@@ -1,6 +1,7 @@
-/* From each end a segment is free where, on the circle of its wall, all that blends with it there
- * adds at most `disturbance` to its own potential. Free from both ends, with room for the planes to
- * move, it is a tube; else its two nodes lie in one zone.
+/* A segment that is clear of both its ends somewhere [freeends.h], with room for the planes to
+ * move, is a tube. So is one that is not, as many are along a trunk: it is cut by two planes close
+ * together, each clear of the end beyond the other and where the wall is nearly round; that rim is
+ * no circle then. Where that cannot be, the two nodes of the segment lie in one zone.
  *
  * Inside a zone two vessels without a common node may pass each other closely, where the tube of
  * one, made of long triangles, could cut the other: so the planes of both are pushed past the near
@@ -9,24 +10,31 @@
  * this ends. */
 #include "surface/mesh/zones.h"
 
+#include "surface/mesh/freeends.h"
 #include "surface/mesh/nearpairs.h"
 #include <stdlib.h>
 
-static const double disturbance = 5e-3 * FIELD_LEVEL;
-/* Of the radius: the step of the search, what planes at either end need to move in. */
-static const double search_step = 0.15, plane_room = 0.375;
-enum { CIRCLE_POINTS = 12 };
-/* Beyond so many of its radii from its axis a vessel adds less than a tenth of `disturbance`:
- * e^(-2 x^2) = 5e-4 e^-2. */
-static const double field_reach = 2.2;
+/* Of the radius: what a plane needs to move in, and what is left between two then; the step in
+ * which parts near others are searched for. */
+static const double plane_room = PLANE_MOVE, plane_gap = 0.05, search_step = 0.15;
+/* Of the radius: where a segment's own term is within a hundredth of what it is far from its end.
+ */
+static const double term_room = 1.17;
+/* Of the radius: what is left between planes that are close, at least and at most. */
+static const double close_least = 0.2, close_most = 0.35;
+/* Of the radius: how far planes stay off the ends of a round body. */
+static const double round_room = 0.375;
 
 typedef struct Divider {
     const VesselTree *tree;
     const NumberLists *incident, *blending;
     uint32_t *root; /* union-find over nodes */
     bool *joined;   /* whether a node is in a zone with others */
+    FreeEnd (*ends)[2];
+    TreeOrder order;
     double (*plane)[2];
-    bool *is_tube;
+    bool *is_tube, *is_close;
+    bool *is_whole; /* one a segment: it must not be a tube */
 } Divider;
 
 void zones_release(Zones *zones)
@@ -35,6 +43,7 @@ void zones_release(Zones *zones)
     numberlists_release(&zones->nodes);
     free(zones->plane);
     free(zones->is_tube);
+    free(zones->is_close);
     free(zones->strangers);
     *zones = (Zones){0};
 }
@@ -51,40 +60,6 @@ static Vec3 point_from(const FieldSegment *segment, int end, double mm)
     return vec3_add_scaled(from, vec3_normalized(vec3_sub(to, from)), mm);
 }
 
-static bool is_disturbed_at(const ZoneTerm *others, size_t n, Vec3 x)
-{
-    double sum = 0;
-    for (size_t i = 0; i < n && sum <= disturbance; i++)
-        sum += zoneterm_value(&others[i], x);
-    return sum > disturbance;
-}
-
-/* The point of the other vessel's axis that is nearest to x. */
-static Vec3 nearest_of(const ZoneTerm *other, Vec3 x)
-{
-    double along = vec3_dot(vec3_sub(x, other->a), other->axis);
-    return vec3_add_scaled(other->a, other->axis, fmin(fmax(along, 0), other->length_k / other->k));
-}
-
-/* Tries points all round the circle, and those that face each other vessel, which may be thinner
- * than the points are apart. */
-static bool is_disturbed(const ZoneTerm *others, size_t n, Vec3 center, Vec3 axis, double radius)
-{
-    Vec3 u, v;
-    vec3_across(axis, &u, &v);
-    for (size_t i = 0; i < CIRCLE_POINTS + n; i++) {
-        double angle = 6.283185307179586 * (double)i / CIRCLE_POINTS;
-        if (i >= CIRCLE_POINTS) {
-            Vec3 towards = vec3_sub(nearest_of(&others[i - CIRCLE_POINTS], center), center);
-            angle = atan2(vec3_dot(towards, v), vec3_dot(towards, u));
-        }
-        Vec3 x = vec3_add_scaled(center, u, radius * cos(angle));
-        if (is_disturbed_at(others, n, vec3_add_scaled(x, v, radius * sin(angle))))
-            return true;
-    }
-    return false;
-}
-
 static bool is_end(const NumberLists *incident, uint32_t node)
 {
     return incident->first[node + 1] - incident->first[node] == 1;
@@ -96,147 +71,17 @@ static bool is_flat_end(const Divider *divider, uint32_t node)
     return divider->tree->body != BODY_ROUND && is_end(divider->incident, node);
 }
 
-static double distance_at(const FieldSegment *self, int end, double mm, const FieldSegment *other)
-{
-    return segment_distance_to(other, point_from(self, end, mm));
-}
-
-/* How far from the end of a segment the place is that is nearest to another. The distance is convex
- * along a line. */
-static double nearest_place(const FieldSegment *self, int end, double length,
-                            const FieldSegment *other)
-{
-    double low = 0, high = length;
-    for (int i = 0; i < 40; i++) {
-        double one = low + (high - low) / 3, two = high - (high - low) / 3;
-        if (distance_at(self, end, one, other) < distance_at(self, end, two, other))
-            high = two;
-        else
-            low = one;
-    }
-    return low;
-}
-
-/* How far from the end of a segment another may disturb its wall: the last place whose distance
- * from the other's axis is within reach. */
-static double last_near(const FieldSegment *self, int end, double length, const FieldSegment *other)
-{
-    double reach = self->radius_mm + field_reach * other->radius_mm, low = 0, high = length;
-    if (distance_at(self, end, 0, other) > reach)
-        low = nearest_place(self, end, length, other);
-    if (distance_at(self, end, low, other) > reach)
-        return 0;
-    if (distance_at(self, end, length, other) <= reach)
-        return length;
-    while (high - low > 1e-3 * self->radius_mm) {
-        double middle = 0.5 * (low + high);
-        *(distance_at(self, end, middle, other) <= reach ? &low : &high) = middle;
-    }
-    return high;
-}
-
-/* A vessel that blends at the end of another, and how far from there it may disturb that one. */
-typedef struct Neighbor {
-    double last_mm;
-    uint32_t segment;
-} Neighbor;
-
-static int compare_reach(const void *a, const void *b)
-{
-    const Neighbor *one = a, *other = b;
-    if (one->last_mm != other->last_mm)
-        return one->last_mm > other->last_mm ? -1 : 1;
-    return (one->segment > other->segment) - (one->segment < other->segment);
-}
-
-/* The vessels that may disturb the segment near its end, those that reach farthest from there
- * first. */
-static size_t find_neighbors(const Divider *divider, uint32_t segment, int end, Neighbor *neighbors)
+/* The planes of a round body stay off the balls at its ends. */
+static void keep_off_ends(const Divider *divider)
 {
     const VesselTree *tree = divider->tree;
-    const FieldSegment *self = &tree->segments[segment];
-    const uint32_t *first = &divider->blending->first[tree->nodes[segment][end]];
-    double length = length_of(self);
-    size_t n = 0;
-    for (uint32_t i = first[0]; i < first[1]; i++) {
-        uint32_t other = divider->blending->items[i];
-        double last = other == segment ? 0 : last_near(self, end, length, &tree->segments[other]);
-        if (last > 0)
-            neighbors[n++] = (Neighbor){last, other};
-    }
-    qsort(neighbors, n, sizeof *neighbors, compare_reach);
-    return n;
-}
-
-/* How far from its end the segment is free: beyond the last place that is disturbed, as a thin
- * vessel that leaves a thick one at a small angle comes out of its wall far from the node. */
-static double last_disturbed(const VesselTree *tree, uint32_t segment, int end,
-                             const Neighbor *neighbors, size_t n, ZoneTerm *others)
-{
-    const FieldSegment *self = &tree->segments[segment];
-    Vec3 axis = vec3_normalized(vec3_sub(self->b, self->a));
-    double step = search_step * self->radius_mm;
-    size_t near = 0;
-    for (double steps = n ? ceil(neighbors[0].last_mm / step) : 0; steps > 0; steps--) {
-        double at = (steps - 1) * step;
-        for (; near < n && neighbors[near].last_mm >= at; near++) {
-            uint32_t number = neighbors[near].segment;
-            const FieldSegment *other = &tree->segments[number];
-            others[near] = zoneterm_of(other->a, other->b, other->radius_mm, number, tree->body);
+    for (uint32_t i = 0; i < tree->n_segments && tree->body == BODY_ROUND; i++)
+        for (int end = 0; end < 2; end++) {
+            double least = round_room * tree->segments[i].radius_mm;
+            FreeEnd *own = &divider->ends[i][end];
+            if (is_end(divider->incident, tree->nodes[i][end]))
+                *own = (FreeEnd){fmax(own->even_mm, least), fmax(own->clear_mm, least)};
         }
-        if (is_disturbed(others, near, point_from(self, end, at), axis, self->radius_mm))
-            return steps * step;
-    }
-    return 0;
-}
-
-static Status find_free(const Divider *divider, uint32_t segment, int end, double *free_mm,
-                        Err *err)
-{
-    const VesselTree *tree = divider->tree;
-    uint32_t node = tree->nodes[segment][end];
-    const uint32_t *first = &divider->blending->first[node];
-    Neighbor *neighbors = NULL;
-    ZoneTerm *others = NULL;
-    Status status;
-    TRY_GOTO(mem_calloc(&neighbors, first[1] - first[0], sizeof *neighbors, "terms", err));
-    TRY_GOTO(mem_calloc(&others, first[1] - first[0], sizeof *others, "terms", err));
-    size_t n = find_neighbors(divider, segment, end, neighbors);
-    *free_mm = last_disturbed(tree, segment, end, neighbors, n, others);
-    if (tree->body == BODY_ROUND && is_end(divider->incident, node))
-        *free_mm = fmax(*free_mm, plane_room * tree->segments[segment].radius_mm);
-done:
-    free(neighbors);
-    free(others);
-    return status;
-}
-
-typedef struct FreeSearch {
-    const Divider *divider;
-    Status *statuses; /* one a segment */
-} FreeSearch;
-
-static void find_both_free(size_t index, int worker, void *context)
-{
-    (void)worker;
-    const FreeSearch *search = context;
-    for (int end = 0; end < 2 && search->statuses[index] == STATUS_OK; end++)
-        search->statuses[index] = find_free(search->divider, (uint32_t)index, end,
-                                            &search->divider->plane[index][end], NULL);
-}
-
-static Status find_all_free(const Divider *divider, int threads, Err *err)
-{
-    size_t n = divider->tree->n_segments;
-    FreeSearch search = {.divider = divider};
-    TRY(mem_calloc(&search.statuses, n, sizeof *search.statuses, "segments", err));
-    threads_for(n, threads, find_both_free, &search);
-    Status status = STATUS_OK;
-    for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        if (search.statuses[i] != STATUS_OK)
-            status = mem_out_of("for", "the terms of a junction", err);
-    free(search.statuses);
-    return status;
 }
 
 static uint32_t root_of(const Divider *divider, uint32_t node)
@@ -257,13 +102,62 @@ static bool join_nodes(const Divider *divider, uint32_t a, uint32_t b)
     return a != b;
 }
 
+/* Joins all nodes on the way between two. */
+static bool join_way(const Divider *divider, uint32_t a, uint32_t b)
+{
+    const TreeOrder *order = &divider->order;
+    bool changed = false;
+    while (a != b) {
+        uint32_t *later = order->place[a] > order->place[b] ? &a : &b;
+        changed |= join_nodes(divider, *later, order->up[*later]);
+        *later = order->up[*later];
+    }
+    return changed;
+}
+
+/* What the planes of a segment need between them. */
 static double room_needed(const Divider *divider, uint32_t segment)
 {
-    double radii = 0.1;
+    double radii = 2 * plane_gap;
     for (int end = 0; end < 2; end++)
         if (!is_flat_end(divider, divider->tree->nodes[segment][end]))
             radii += plane_room;
     return radii * divider->tree->segments[segment].radius_mm;
+}
+
+/* Finds the planes of a segment that is not clear of both its ends anywhere. Each is where the wall
+ * is even, with room to move, and clear of the end beyond the other; they are as far from both ends
+ * as they may be, but for what is left between them. */
+static bool place_close(const Divider *divider, uint32_t segment, double length)
+{
+    const FreeEnd *ends = divider->ends[segment];
+    double radius = divider->tree->segments[segment].radius_mm, low[2], high[2];
+    for (int end = 0; end < 2; end++) {
+        if (divider->tree->body == BODY_ROUND ||
+            is_flat_end(divider, divider->tree->nodes[segment][end]))
+            return false;
+        low[end] = ends[end].even_mm + CLOSE_MOVE * radius;
+        high[end] = length - fmax(ends[!end].clear_mm, term_room * radius);
+        if (low[end] > high[end])
+            return false;
+    }
+    double spare = length - close_most * radius - low[0] - low[1];
+    for (int end = 0; end < 2; end++)
+        divider->plane[segment][end] = fmin(high[end], low[end] + fmax(0, 0.5 * spare));
+    return low[0] + low[1] + close_least * radius <= length;
+}
+
+/* Finds the planes of a segment. False when it has no room for them. */
+static bool place_planes(const Divider *divider, uint32_t segment)
+{
+    const FreeEnd *ends = divider->ends[segment];
+    double length = length_of(&divider->tree->segments[segment]);
+    double room = room_needed(divider, segment);
+    bool is_clear = ends[0].clear_mm + ends[1].clear_mm + room <= length;
+    divider->is_close[segment] = !is_clear && place_close(divider, segment, length);
+    for (int end = 0; end < 2 && !divider->is_close[segment]; end++)
+        divider->plane[segment][end] = ends[end].clear_mm;
+    return is_clear || divider->is_close[segment];
 }
 
 /* Joins the nodes of segments that are no tubes. */
@@ -273,9 +167,8 @@ static bool join_short(Divider *divider)
     bool changed = false;
     for (uint32_t i = 0; i < tree->n_segments; i++) {
         uint32_t a = tree->nodes[i][0], b = tree->nodes[i][1];
-        double length = length_of(&tree->segments[i]);
-        double taken = divider->plane[i][0] + divider->plane[i][1] + room_needed(divider, i);
-        divider->is_tube[i] = taken <= length && root_of(divider, a) != root_of(divider, b);
+        divider->is_tube[i] = !divider->is_whole[i] && place_planes(divider, i) &&
+                              root_of(divider, a) != root_of(divider, b);
         if (!divider->is_tube[i])
             changed |= join_nodes(divider, a, b);
     }
@@ -323,9 +216,10 @@ static bool push_plane(Divider *divider, uint32_t a, uint32_t b)
         if (!ends_share_zone(divider, tree->nodes[a][end], b))
             needed[end] = HUGE_VAL;
     int end = needed[1] < needed[0];
-    if (!isfinite(needed[end]) || needed[end] <= divider->plane[a][end])
+    FreeEnd *own = &divider->ends[a][end];
+    if (!isfinite(needed[end]) || needed[end] <= own->even_mm)
         return false;
-    divider->plane[a][end] = needed[end];
+    *own = (FreeEnd){needed[end], fmax(own->clear_mm, needed[end])};
     return true;
 }
 
@@ -360,14 +254,97 @@ static bool part_near(Divider *divider, const NearPair *pairs, size_t n)
     for (size_t i = 0; i < n; i++) {
         uint32_t a = pairs[i].segments[0], b = pairs[i].segments[1];
         if (!share_zone(divider, a, b) && blend_somewhere(divider, a, b))
-            changed |= join_nodes(divider, nearer_node(divider->tree, a, b),
-                                  nearer_node(divider->tree, b, a));
+            changed |= join_way(divider, nearer_node(divider->tree, a, b),
+                                nearer_node(divider->tree, b, a));
         if (share_zone(divider, a, b)) {
             changed |= push_plane(divider, a, b);
             changed |= push_plane(divider, b, a);
         }
     }
     return changed;
+}
+
+/* Lists the nodes of each zone under its root. */
+static Status list_nodes(const Divider *divider, NumberLists *lists, Err *err)
+{
+    size_t n = divider->tree->n_nodes;
+    TRY(mem_calloc(&lists->first, n + 2, sizeof *lists->first, "zones", err));
+    TRY(mem_calloc(&lists->items, n, sizeof *lists->items, "zones", err));
+    for (uint32_t i = 0; i < n; i++)
+        lists->first[root_of(divider, i) + 2]++;
+    for (size_t i = 2; i < n + 2; i++)
+        lists->first[i] += lists->first[i - 1];
+    for (uint32_t i = 0; i < n; i++)
+        lists->items[lists->first[root_of(divider, i) + 1]++] = i;
+    return STATUS_OK;
+}
+
+/* A segment as it is in the zone that it has an end in: as an arm it ends behind its plane. */
+static FieldSegment part_in_zone(const Divider *divider, uint32_t segment, int end, double from)
+{
+    FieldSegment part = divider->tree->segments[segment];
+    double to = divider->plane[segment][end] + ARM_TAIL * part.radius_mm;
+    if (!divider->is_tube[segment])
+        to = length_of(&part);
+    Vec3 a = point_from(&part, end, from), b = point_from(&part, end, to);
+    part.a = a;
+    part.b = b;
+    return part;
+}
+
+/* Whether what lies behind the plane of an arm keeps off the vessels of the zone that do not blend
+ * with it. */
+static bool is_off(const Divider *divider, const NumberLists *nodes, uint32_t segment, int end)
+{
+    uint32_t node = divider->tree->nodes[segment][end], root = root_of(divider, node);
+    FieldSegment tail = part_in_zone(divider, segment, end, divider->plane[segment][end]);
+    for (uint32_t i = nodes->first[root]; i < nodes->first[root + 1]; i++) {
+        const uint32_t *first = &divider->incident->first[nodes->items[i]];
+        for (uint32_t k = first[0]; k < first[1]; k++) {
+            uint32_t other = divider->incident->items[k];
+            if (other == segment || numberlists_hold(divider->blending, node, other))
+                continue;
+            int its_end = segment_end_at(divider->tree, other, nodes->items[i]);
+            FieldSegment part = part_in_zone(divider, other, its_end, 0);
+            double gap = segments_distance(&tail, &part) - tail.radius_mm - part.radius_mm;
+            if (gap < NEAR_GAP * fmin(tail.radius_mm, part.radius_mm))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* Has the nodes of tubes joined that are too short for what lies behind their planes. */
+static Status join_crowded(Divider *divider, bool *changed, Err *err)
+{
+    const VesselTree *tree = divider->tree;
+    NumberLists nodes = {0};
+    Status status;
+    TRY_GOTO(list_nodes(divider, &nodes, err));
+    for (uint32_t i = 0; i < tree->n_segments; i++)
+        for (int end = 0; end < 2 && divider->is_tube[i]; end++) {
+            double tail = divider->plane[i][end] + ARM_TAIL * tree->segments[i].radius_mm;
+            if (is_flat_end(divider, tree->nodes[i][end]) ||
+                tail <= length_of(&tree->segments[i]) || is_off(divider, &nodes, i, end))
+                continue;
+            divider->is_whole[i] = *changed = true;
+        }
+done:
+    numberlists_release(&nodes);
+    return status;
+}
+
+/* Joins nodes until nothing changes. */
+static Status divide(Divider *divider, const NearPair *pairs, size_t n_pairs, Err *err)
+{
+    bool changed = true;
+    while (changed) {
+        changed = join_short(divider);
+        changed |= part_near(divider, pairs, n_pairs);
+        if (!changed)
+            TRY(join_crowded(divider, &changed, err));
+    }
+    return STATUS_OK;
 }
 
 /* Gives the zones numbers by their first nodes. An end that a tube reaches is cut off flat. */
@@ -426,27 +403,34 @@ Status zones_find(const VesselTree *tree, const NumberLists *incident, const Num
     Status status;
     TRY_GOTO(mem_calloc(&zones.plane, tree->n_segments, sizeof *zones.plane, "segments", err));
     TRY_GOTO(mem_calloc(&zones.is_tube, tree->n_segments, sizeof *zones.is_tube, "segments", err));
+    TRY_GOTO(
+        mem_calloc(&zones.is_close, tree->n_segments, sizeof *zones.is_close, "segments", err));
+    TRY_GOTO(mem_calloc(&divider.ends, tree->n_segments, sizeof *divider.ends, "segments", err));
+    TRY_GOTO(
+        mem_calloc(&divider.is_whole, tree->n_segments, sizeof *divider.is_whole, "segments", err));
     TRY_GOTO(mem_calloc(&divider.root, tree->n_nodes, sizeof *divider.root, "nodes", err));
     TRY_GOTO(mem_calloc(&divider.joined, tree->n_nodes, sizeof *divider.joined, "nodes", err));
     for (uint32_t i = 0; i < tree->n_nodes; i++)
         divider.root[i] = i;
     divider.plane = zones.plane;
     divider.is_tube = zones.is_tube;
-    TRY_GOTO(find_all_free(&divider, threads, err));
+    divider.is_close = zones.is_close;
+    TRY_GOTO(treeorder_make(tree, incident, &divider.order, err));
+    TRY_GOTO(freeends_find(tree, incident, blending, &divider.order, threads, divider.ends, err));
+    keep_off_ends(&divider);
     TRY_GOTO(nearpairs_find(tree, threads, &pairs, &n_pairs, err));
-    bool changed = true;
-    while (changed) {
-        changed = join_short(&divider);
-        changed |= part_near(&divider, pairs, n_pairs);
-    }
+    TRY_GOTO(divide(&divider, pairs, n_pairs, err));
     TRY_GOTO(number_zones(&divider, &zones, err));
     keep_strangers(&divider, pairs, n_pairs, &zones);
     pairs = NULL;
     *out = zones;
     zones = (Zones){0};
 done:
+    free(divider.ends);
+    free(divider.is_whole);
     free(divider.root);
     free(divider.joined);
+    treeorder_release(&divider.order);
     free(pairs);
     zones_release(&zones);
     return status;

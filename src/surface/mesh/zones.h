@@ -15,6 +15,8 @@ typedef struct Zones {
     double (*plane)[2];  /* one a segment: where its tube begins, from either end, mm; where the end
                           * is flat, 0 */
     bool *is_tube;       /* one a segment; else it lies in one zone, whole */
+    bool *is_close;      /* one a segment: its planes are so near its ends that their rims are no
+                          * circles */
     NearPair *strangers; /* near pairs without a common zone; those that overlap first */
     size_t n_strangers, n_overlapping;
 } Zones;
@@ -24,13 +26,14 @@ MUST_CHECK Status zones_find(const VesselTree *tree, const NumberLists *incident
                              const NumberLists *blending, int threads, Zones *out, Err *err);
 void zones_release(Zones *zones);
 
-/* A tube that leaves a zone: cut across at `at`, where `outward` (unit) leads out of the zone along
- * the axis. */
+/* A tube that leaves a zone: to be cut across at `at`, where `outward` (unit) leads out of the zone
+ * along the axis. */
 typedef struct Arm {
     uint32_t segment;
     int end; /* of the segment, that lies in the zone */
     Vec3 at, outward;
     double radius_mm;
+    bool is_close; /* the rim is no circle */
 } Arm;
 
 /* What a lattice needs to know of one zone. Arms run on behind their planes by ARM_TAIL radii. */
@@ -41,6 +44,9 @@ typedef struct ZonePlan {
 } ZonePlan;
 
 #define ARM_TAIL 1.6
+/* Of the radius: how far a plane may be moved, and one of those that are close. */
+#define PLANE_MOVE 0.125
+#define CLOSE_MOVE 0.06
 
 MUST_CHECK Status zoneplan_make(const VesselTree *tree, const NumberLists *incident,
                                 const NumberLists *blending, const Zones *zones, uint32_t zone,

@@ -1,0 +1,20 @@
+/* Where a segment may be cut across. */
+#ifndef CORCAST_SURFACE_FREEENDS_H
+#define CORCAST_SURFACE_FREEENDS_H
+
+#include "surface/mesh/treeorder.h"
+
+/* What the vessels that meet at one end of a segment do to its wall. */
+typedef struct FreeEnd {
+    double even_mm;  /* from here on, from the end, the wall is nearly the cylinder */
+    double clear_mm; /* from here on it is the cylinder as far as those at this end matter; may be
+                      * beyond the other end */
+} FreeEnd;
+
+/* Fills ends[], one pair a segment, zeroed before; `blending` lists the segments that blend at each
+ * node. */
+MUST_CHECK Status freeends_find(const VesselTree *tree, const NumberLists *incident,
+                                const NumberLists *blending, const TreeOrder *order, int threads,
+                                FreeEnd (*ends)[2], Err *err);
+
+#endif
