@@ -4,6 +4,8 @@
 #include "base/json.h"
 
 #include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
 
 json_t *json_number(double value)
 {
@@ -65,4 +67,33 @@ void text_json(Text *text, json_t *json, int indent)
     if (json_dump_callback(json, append_dump, text, form) != 0)
         text_puts(text, NULL);
     json_decref(json);
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+static _Thread_local bool refused; /* jansson was, memory */
+
+static void *allocate(size_t size)
+{
+    void *memory = malloc(size);
+    refused = refused || !memory;
+    return memory;
+}
+
+static void set_allocator(void)
+{
+    json_set_alloc_funcs(allocate, free);
+}
+
+json_t *json_read(const char *text, size_t size, size_t flags, json_error_t *error, bool *no_memory)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, set_allocator);
+    refused = false;
+    json_t *json = json_loadb(text, size, flags, error);
+    *no_memory = refused;
+    if (!refused)
+        return json;
+    json_decref(json);
+    return NULL;
 }

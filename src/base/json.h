@@ -29,6 +29,11 @@ MUST_CHECK json_t *json_with_members(json_t *object, const JsonMember *members, 
 /* Likewise `array` with an item more. */
 MUST_CHECK json_t *json_with_item(json_t *array, json_t *value);
 
+/* json_loadb of jansson, which may go on without a character that it has no room for: NULL then,
+ * and *no_memory is set, as it is when there was no room for the whole. */
+json_t *json_read(const char *text, size_t size, size_t flags, json_error_t *error,
+                  bool *no_memory);
+
 /* Appends `json` as text, in lines with `indent` blanks a level or, with 0, in one, and lets go of
  * it. Numbers read back to the same double. The text fails when `json` is NULL or memory runs
  * out. */

@@ -47,6 +47,8 @@ static Status begin(ImageReader *reader, const char *path, Err *err)
     TRY(mem_strdup(&reader->path, path, err));
     TRY(file_check_regular(path, err));
     reader->stream = fopen(path, "rb");
+    if (!reader->stream && errno == ENOMEM)
+        return mem_out_of("to read", path, err);
     if (!reader->stream)
         return err_set(err, STATUS_INPUT, "%s: cannot be read: %s", path, strerror(errno));
     TRY(choose_decoder(reader, err));

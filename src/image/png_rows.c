@@ -72,7 +72,9 @@ static Status begin_guarded(Rows *self, Err *err)
 {
     if (setjmp(png_jmpbuf(self->png)))
         return unsound(self, err);
-    return read_header(self, err);
+    TRY(read_header(self, err));
+    /* libpng goes on without a chunk that it had no room for. */
+    return errno == ENOMEM ? mem_out_of("to read", self->name, err) : STATUS_OK;
 }
 
 static Status begin(FILE *stream, const char *name, ImageForm *form, void **self, Err *err)

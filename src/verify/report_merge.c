@@ -4,7 +4,6 @@
 #include "verify/report.h"
 #include "verify/rounded.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,9 +25,8 @@ static Status read_json(json_t **out, const char *path, Err *err)
     size_t size;
     json_error_t error;
     TRY(file_read(path, &json_file, &text, &size, err));
-    errno = 0;
-    json_t *json = json_loadb(text, size, 0, &error);
-    bool no_memory = !json && errno == ENOMEM;
+    bool no_memory;
+    json_t *json = json_read(text, size, 0, &error, &no_memory);
     free(text);
     if (no_memory)
         return mem_out_of("to read", path, err);

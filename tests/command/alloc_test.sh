@@ -117,6 +117,43 @@ test_failed_allocations_in_render() {
     THREADS=2 fail_each 3 one render ../tree.swc --size 64x64 --method raster --shadows on -o o.png
 }
 
+test_failed_allocations_in_parts() {
+    inputs
+    mkdir tiles
+    for i in 1 2; do
+        run_ok corcast render tree.swc --size 21x15 --tile $i/2 --quiet -o tiles/$i.png
+        run_ok corcast render tree.swc --size 21x15 --tile $i/2 --quiet -o tiles/$i.tif
+    done
+    printf '[grow]\nterminals = 5\nseed = 1, 2\n' >plan.ini
+    run_ok corcast study plan.ini -o runs --quiet
+    fail_each 5 one render ../tree.swc --size 21x15 --tile 2/2 --resume -o o.png
+    fail_each 1 one merge ../tiles/2.png ../tiles/1.png -o o.png
+    fail_each 1 one merge ../tiles/2.tif ../tiles/1.tif -o o.tif
+    fail_each 5 many study ../plan.ini --trees -o o
+    fail_each 3 one study --table ../runs
+    fail_each 3 one merge ../runs -o o.csv
+}
+
+# fail_here COMMAND ...: fails every 7th of 200 allocations of a command that prints the folder it is in.
+fail_here() {
+    run_ok corcast "$@" --threads 1
+    mv stdout undisturbed
+    for i in $(seq 1 7 200); do
+        run env FAILING_ONLY="$i" LD_PRELOAD="$FAILING" "$CORCAST" "$@" --threads 1
+        [ "$status" -ne 3 ] || expect_sentence 'out of memory'
+        [ "$status" -ne 3 ] || [ ! -s stdout ] || fail "expected no output, got: $(cat stdout)"
+        [ "$status" -eq 3 ] || expect_status 0
+        [ "$status" -eq 3 ] || expect_same undisturbed stdout
+    done
+}
+
+test_failed_allocations_in_commands() {
+    inputs
+    printf '[grow]\nterminals = 5\nseed = 1, 2\n' >plan.ini
+    fail_here render tree.swc --size 21x15 -o o.png --tiles 2 --commands
+    fail_here study plan.ini -o o --commands
+}
+
 test_failed_allocations_in_colormaps() {
     fail_each 3 one colormaps -o o.ppm
 }

@@ -100,12 +100,26 @@ static bool is_text(const json_t *object, const char *key, const char *text)
     return has && strcmp(has, text) == 0;
 }
 
-/* What the file holds if it is right; NULL when it is not, or is not there. */
+static json_t *read_report(const char *path)
+{
+    static const FileForm form = {.name = "a JSON file", .most_bytes = 1e6, .is_text = true};
+    char *text;
+    size_t size;
+    json_error_t error;
+    bool no_memory;
+    if (file_read(path, &form, &text, &size, NULL) != STATUS_OK)
+        return NULL;
+    json_t *report = json_read(text, size, JSON_REJECT_DUPLICATES, &error, &no_memory);
+    free(text);
+    return report;
+}
+
+/* What the file holds if it is right; NULL when it is not, is not there, or memory ran out to read
+ * it: then it is made again. */
 static json_t *read_right(const StudyRunParams *params, const Run *run)
 {
-    json_error_t error;
     HashText tree;
-    json_t *report = json_load_file(run->report, JSON_REJECT_DUPLICATES, &error);
+    json_t *report = read_report(run->report);
     const json_t *shard = json_object_get(report, "shard");
     bool right =
         is_text(shard, "made_from", run->made_from.chars) && json_object_get(shard, "tree");
@@ -200,7 +214,7 @@ static Status grow_and_measure(const StudyRunParams *params, Run *run, json_t **
 
 /* ---- the file -------------------------------------------------------------------------------- */
 
-/* The line: place and values first, then what was found. Takes `hash`. */
+/* The line: place and values first, then what was found; NULL when that is. Takes `hash`. */
 static json_t *line_json(const StudyRunParams *params, const Run *run, json_t *said, json_t *hash)
 {
     const StudyPlan *plan = params->plan;
@@ -216,7 +230,8 @@ static json_t *line_json(const StudyRunParams *params, const Run *run, json_t *s
         {"generator", json_text(GENERATOR)},
         {"command", json_text(run->command)},
         {"shard", json_with_members(json_object(), of_shard, sizeof of_shard / sizeof *of_shard)}};
-    json_t *line = json_with_members(json_object(), first, sizeof first / sizeof *first);
+    json_t *line =
+        json_with_members(said ? json_object() : NULL, first, sizeof first / sizeof *first);
     json_object_foreach(said, key, value)
     {
         if (!json_object_get(line, key))

@@ -65,8 +65,9 @@ static Status add_objects(StudyTable *table, const char *path, bool named, const
     const size_t form = JSON_REJECT_DUPLICATES | JSON_DISABLE_EOF_CHECK;
     do {
         json_error_t error;
-        json_t *json = json_loadb(text, size, form, &error);
-        if (!json && json_error_code(&error) == json_error_out_of_memory)
+        bool no_memory;
+        json_t *json = json_read(text, size, form, &error, &no_memory);
+        if (no_memory)
             return mem_out_of("to read", path, err);
         if (!json)
             return err_set(err, STATUS_INPUT, "%s: is not sound JSON: line %d: %s", path,
@@ -149,10 +150,12 @@ static json_t *flatten(json_t *flat, const char *prefix, json_t *object)
         Text name = TEXT_INIT;
         text_printf(&name, "%s%s%s", prefix, *prefix ? "." : "", key);
         const char *chars = text_chars(&name);
-        if (json_is_object(value) && chars && strcmp(chars, "shard") != 0)
+        if (!chars)
+            flat = json_with(flat, "", NULL);
+        else if (json_is_object(value) && strcmp(chars, "shard") != 0)
             flat = flatten(flat, chars, value);
         else if (!json_is_object(value) && !json_is_array(value))
-            flat = json_with(flat, chars ? chars : "", json_incref(chars ? value : NULL));
+            flat = json_with(flat, chars, json_incref(value));
         text_release(&name);
     }
     return flat;
@@ -231,7 +234,7 @@ static void put_csv(Text *text, const StudyTable *table)
         comma = "\n";
         json_object_foreach(columns, key, none)
         {
-            text_puts(text, comma);
+            text_puts(text, flat ? comma : NULL);
             put_value(text, json_object_get(flat, key));
             comma = ",";
         }
