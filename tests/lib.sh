@@ -22,6 +22,7 @@ REPO=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 DATA=$REPO/tests/data
 CORCAST=${CORCAST:-$REPO/build/corcast}
 CHECK_TREE=${CHECK_TREE:-$REPO/build/release/tests/check_tree}
+CMYK=/usr/share/color/icc/ghostscript/default_cmyk.icc # of libgs-common
 SHARED=${CORCAST_SHARED:-$REPO/../shared}/data
 
 corcast() {

@@ -1,7 +1,7 @@
 /* OpenEXR through the C library OpenEXRCore: one flat image in scan lines or tiles, its channels R
- * G B, X Y Z or a single one, as 32-bit floats whatever they are in the file. Chunks are decoded
- * one after the other straight into a plane of the data window, from the file in memory; what the
- * display window shows of it is the image. */
+ * G B, whatever there is besides, X Y Z or a single one, as 32-bit floats whatever they are in the
+ * file. Chunks are decoded one after the other straight into a plane of the data window, from the
+ * file in memory; what the display window shows of it is the image. */
 #include "image/formats.h"
 
 #include <errno.h>
@@ -92,8 +92,8 @@ static Status choose_channels(Exr *self, Err *err)
     self->has_alpha = has_channel(list, "A");
     int others = list->num_channels - self->has_alpha;
     for (int t = 0; t < 2 && self->channels == 0; t++)
-        if (others == 3 && has_channel(list, triples[t][0]) && has_channel(list, triples[t][1]) &&
-            has_channel(list, triples[t][2])) {
+        if ((t == 0 || others == 3) && has_channel(list, triples[t][0]) &&
+            has_channel(list, triples[t][1]) && has_channel(list, triples[t][2])) {
             memcpy(self->names, triples[t], sizeof triples[t]);
             self->channels = 3;
         }

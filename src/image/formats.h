@@ -70,9 +70,32 @@ typedef struct RowEncoder {
     void (*release)(void *self);         /* NULL is allowed */
     bool plain;                          /* the file has the size of its values, and a header */
     bool keeps_dpi;                      /* has a place for the resolution on paper */
+    bool keeps_inks;                     /* takes codes of 4 channels: cyan magenta yellow black */
+    bool floats;                         /* takes floats, not codes */
 } RowEncoder;
 
-extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, pfm_encoder;
+extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, jpeg_encoder,
+    pfm_encoder, exr_encoder;
+
+/* The text of a note; NULL when there is none of this key. */
+const char *image_note(const ImageNotes *notes, const char *key);
+/* All notes but software and shard, a line each, for formats that have one place for them; in *text
+ * (owned). */
+MUST_CHECK Status image_description(const ImageNotes *notes, char **text, Err *err);
+
+/* The bytes of an ICC profile. */
+typedef struct ImageProfile {
+    uint8_t *bytes;
+    size_t size;
+} ImageProfile;
+
+/* The profile that a file of this form carries, in *profile (its bytes owned): the press's, or
+ * sRGB's; without bytes where the codes are grey or linear. */
+MUST_CHECK Status image_profile(const ImageForm *form, ImageProfile *profile, Err *err);
+
+/* `n` pixels of three codes, of as many bits as the inks were read for, to four. */
+void inks_convert(const Inks *inks, const void *rgb, void *cmyk, size_t n);
+int inks_bits(const Inks *inks);
 
 /* How a format is read a few rows at a time, from a stream with places. */
 typedef struct RowDecoder {

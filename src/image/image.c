@@ -54,7 +54,7 @@ static Status allocate(void *out, int width, int height, int channels, size_t it
 
 Status plane_init(Plane *plane, int width, int height, int channels, Err *err)
 {
-    assert(channels >= 1 && channels <= 4);
+    assert(channels >= 1 && channels <= IMAGE_MAX_CHANNELS);
     float *values;
     TRY(allocate(&values, width, height, channels, sizeof *values, err));
     *plane = (Plane){.width = width, .height = height, .channels = channels, .values = values};

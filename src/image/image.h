@@ -13,10 +13,10 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { IMAGE_MAX_SIDE = 1 << 20 };
+enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 8 };
 
 /* Linear floats: colour (3 channels, 0 black to 1 white), depth (1, mm, INFINITY where nothing is
- * seen), normal (3, unit vector, 0 0 0 where nothing is seen). */
+ * seen), normal (3, unit vector, 0 0 0 where nothing is seen), or several of them for one file. */
 typedef struct Plane {
     int width, height, channels;
     float *values; /* owned; width * height * channels */
@@ -127,9 +127,9 @@ MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *er
  * bits; it is unchanged then. */
 MUST_CHECK Status ids_take_picture(IdPlane *ids, Picture *picture, Err *err);
 
-/* Provenance written into a PNG as tEXt chunks, or iTXt chunks where it is not ASCII; a TIFF has
- * Software, PageName for "Shard", and ImageDescription for the last of the others. The other
- * formats hold none. Never a date or a path. */
+/* Provenance: in a PNG as tEXt chunks, or iTXt chunks where it is not ASCII, in a TIFF as Software,
+ * PageName for "Shard", and ImageDescription for the others, a line each, in a JPEG as comments, in
+ * OpenEXR as attributes; PNM and PFM hold none. Never a date or a path. */
 typedef struct ImageNote {
     const char *key;  /* "Software", "Comment", "Colors", "Shard"; at most 79 characters */
     const char *text; /* UTF-8 */
@@ -138,29 +138,63 @@ typedef struct ImageNote {
 typedef struct ImageNotes {
     const ImageNote *notes; /* borrowed */
     int count;
-    double dpi; /* pHYs of a PNG, XResolution and YResolution of a TIFF; 0: not written */
+    double dpi; /* pixels an inch: pHYs of a PNG, XResolution and YResolution of a TIFF, the density
+                 * of a JPEG, xDensity of OpenEXR; 0: not written */
 } ImageNotes;
+
+/* What becomes of colours that a press cannot print: all are moved, so that none fall together, or
+ * they alone, to the nearest that it can. */
+typedef enum InkIntent { INKS_PERCEPTUAL, INKS_RELATIVE } InkIntent;
+
+/* The way from sRGB to the cyan, magenta, yellow and black of a press. */
+typedef struct Inks Inks;
+
+/* Reads the press's ICC profile, for codes of 8 or 16 `bits`. STATUS_INPUT with a sentence naming
+ * the file when it is missing, broken or no profile of a press of four inks. Some 50 ms. */
+MUST_CHECK Status inks_read(Inks **out, const char *path, InkIntent intent, int bits, Err *err);
+void inks_free(Inks *inks); /* NULL is allowed */
+
+typedef enum ImageCompression { IMAGE_LZW, IMAGE_DEFLATE, IMAGE_UNCOMPRESSED } ImageCompression;
+
+/* Where a format leaves a choice; zeros are the usual one. */
+typedef struct ImagePacking {
+    ImageCompression compression; /* of a TIFF; none loses anything */
+    int quality;                  /* of a JPEG, from 1 to 100; 0: 95 */
+    bool half;                    /* OpenEXR: channels of 16 bits, but the exact ones */
+    const Inks *inks; /* borrowed; TIFF and JPEG in colours of a press, its profile in the file;
+                       * of as many bits as the form. NULL: sRGB */
+} ImagePacking;
+
+/* A channel of an OpenEXR file. */
+typedef struct ImageChannel {
+    const char *name;
+    bool is_exact; /* of 32 bits, also where others are half */
+} ImageChannel;
 
 /* What is to be written. */
 typedef struct ImageForm {
     int width, height;
-    int channels;            /* 1 or 3 */
+    int channels;            /* 1 or 3; of an OpenEXR file with `named` as many as that has */
     int bits;                /* 8 or 16: codes; 32: floats */
     Encoding encoding;       /* of codes */
     const ImageNotes *notes; /* borrowed; may be NULL */
+    ImagePacking packing;
+    const ImageChannel *named; /* borrowed; NULL: R G B, or Y */
 } ImageForm;
 
 /* An image being written a few rows at a time from the top down, whatever order its file has. It
  * has its final name only after imagewriter_commit. */
 typedef struct ImageWriter ImageWriter;
 
-/* Floats go to PFM ("PF" 3 channels, "Pf" 1), little-endian, rows bottom-up in the file. Codes go
- * by extension: .ppm (P6; a grey picture with its channel three times), .pgm (P5, 1 channel), .png,
- * .tif or .tiff (deflated strips; BigTIFF above 4 GB); "-" is standard output and a PPM. PNG
- * carries an sRGB chunk when `encoding` is sRGB and gAMA 1.0 when it is linear, and no tIME.
- * STATUS_USAGE on another extension and on a colour picture that is to be a .pgm; STATUS_IO when
- * the disk has no room for what is certain to be written. Follow with exactly one of
- * imagewriter_commit and imagewriter_discard, each of which frees the writer, also on failure. */
+/* Floats go to .exr or PFM ("PF" 3 channels, "Pf" 1), little-endian, rows bottom-up in the file.
+ * Codes go by extension: .ppm (P6; a grey picture with its channel three times), .pgm (P5, 1
+ * channel), .png, .tif or .tiff (strips; BigTIFF above 4 GB), .jpg or .jpeg (8 bits, which loses a
+ * little; 65500 pixels a side); "-" is standard output and a PPM. PNG carries an sRGB chunk when
+ * `encoding` is sRGB and gAMA 1.0 when it is linear, and no tIME; colours of TIFF and JPEG carry
+ * their ICC profile. STATUS_USAGE on another extension, on what the format cannot hold, and on inks
+ * for a grey picture; STATUS_IO when the disk has no room for what is certain to be written. Follow
+ * with exactly one of imagewriter_commit and imagewriter_discard, each of which frees the writer,
+ * also on failure. */
 MUST_CHECK Status imagewriter_open(ImageWriter **out, const char *path, const ImageForm *form,
                                    Err *err);
 /* The next rows, all of the form's width, channels and bits. PFM and TIFF in parts need a file, not
@@ -173,11 +207,16 @@ void imagewriter_discard(ImageWriter *writer);
 /* Writes a whole picture, as imagewriter_open says. `notes` may be NULL. */
 MUST_CHECK Status picture_write(const Picture *picture, const char *path, Encoding encoding,
                                 const ImageNotes *notes, Err *err);
+MUST_CHECK Status picture_write_packed(const Picture *picture, const char *path, Encoding encoding,
+                                       const ImageNotes *notes, ImagePacking packing, Err *err);
 /* Appends the bytes of the PNG file that picture_write would write to `out`. */
 MUST_CHECK Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNotes *notes,
                                  Text *out, Err *err);
-/* Whether files of this name keep ImageNotes.dpi. */
+/* Whether files of this name keep ImageNotes.dpi; whether colours in them may be inks; whether they
+ * are of floats. */
 bool image_keeps_dpi(const char *path);
+bool image_keeps_inks(const char *path);
+bool image_is_floats(const char *path);
 
 /* A PNG or TIFF being read a few rows at a time, from the top down, so that a picture of any size
  * takes the memory of its rows. */
@@ -213,11 +252,11 @@ void image_release(Image *image);
  * 65535 is rescaled to 8 bits below 255 and to 16 above), PNG (8 and 16 bit, grey, RGB, palette;
  * gamma by gAMA, unless sRGB says otherwise; 0.4550 to 0.4560 is sRGB's), TIFF (8 and 16 bit, grey
  * and RGB, interleaved; turned as Orientation says). Floats: PFM (both byte orders, scale 1),
- * OpenEXR (half and float; channels R G B, X Y Z or a single one; the display window, 0 outside the
- * data window), TIFF (32 bit). Infinities and NaN are kept. An alpha channel is refused unless
- * opaque throughout, and so are colours of another space than sRGB (profiles, primaries),
- * animations and TIFF files of several pages. STATUS_INPUT with a sentence naming the file on
- * truncated, corrupt and other files. */
+ * OpenEXR (half and float; channels R G B and any others, X Y Z or a single one; the display
+ * window, 0 outside the data window), TIFF (32 bit). Infinities and NaN are kept. An alpha channel
+ * is refused unless opaque throughout, and so are colours of another space than sRGB (profiles,
+ * primaries), animations and TIFF files of several pages. STATUS_INPUT with a sentence naming the
+ * file on truncated, corrupt and other files. */
 MUST_CHECK Status image_read(Image *image, const char *path, Err *err);
 /* Likewise, and STATUS_INPUT when the file does not hold codes, or floats. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, Err *err);
@@ -226,8 +265,10 @@ MUST_CHECK Status picture_read(Picture *picture, const char *path, Err *err);
 MUST_CHECK Status picture_read_mask(Picture *picture, const char *path, Err *err);
 MUST_CHECK Status plane_read(Plane *plane, const char *path, Err *err);
 
-/* Writes a whole plane of 1 or 3 channels as PFM; "-" is standard output. */
+/* Writes a whole plane of 1 or 3 channels as .exr or else PFM; "-" is standard output. */
 MUST_CHECK Status plane_write(const Plane *plane, const char *path, Err *err);
+MUST_CHECK Status plane_write_packed(const Plane *plane, const char *path, ImagePacking packing,
+                                     Err *err);
 /* What a renderer delivers, or what is read back from another's files. Planes that were not asked
  * for have NULL values. */
 typedef struct Frame {

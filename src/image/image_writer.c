@@ -12,22 +12,41 @@ struct ImageWriter {
     const RowEncoder *encoder;
     void *state;
     OutFile file;
-    char *path; /* owned; for sentences */
-    ImageForm form;
-    int next; /* row */
+    char *path;      /* owned; for sentences */
+    ImageForm form;  /* of what is handed over */
+    int next;        /* row */
+    void *inked_row; /* owned; NULL unless colours become inks */
 };
 
-/* Of codes; NULL when the extension is none of theirs. */
+const char *image_note(const ImageNotes *notes, const char *key)
+{
+    for (int i = 0; notes && i < notes->count; i++)
+        if (strcmp(notes->notes[i].key, key) == 0)
+            return notes->notes[i].text;
+    return NULL;
+}
+
+Status image_description(const ImageNotes *notes, char **text, Err *err)
+{
+    Text lines = TEXT_INIT;
+    for (int i = 0, n = 0; notes && i < notes->count; i++)
+        if (strcmp(notes->notes[i].key, "Software") != 0 &&
+            strcmp(notes->notes[i].key, "Shard") != 0)
+            text_printf(&lines, "%s%s", n++ ? "\n" : "", notes->notes[i].text);
+    Status status = text_take(&lines, text, err);
+    text_release(&lines);
+    return status;
+}
+
+/* NULL when the extension is none of theirs. */
 static const RowEncoder *encoder_of(const char *path)
 {
     static const struct {
         const char *extension;
         const RowEncoder *encoder;
-    } formats[] = {{"ppm", &ppm_encoder},
-                   {"pgm", &pgm_encoder},
-                   {"png", &png_encoder},
-                   {"tif", &tiff_encoder},
-                   {"tiff", &tiff_encoder}};
+    } formats[] = {{"ppm", &ppm_encoder},   {"pgm", &pgm_encoder},   {"png", &png_encoder},
+                   {"tif", &tiff_encoder},  {"tiff", &tiff_encoder}, {"jpg", &jpeg_encoder},
+                   {"jpeg", &jpeg_encoder}, {"pfm", &pfm_encoder},   {"exr", &exr_encoder}};
     const char *extension = strcmp(path, "-") ? file_extension(path) : "ppm";
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
         if (strcasecmp(formats[i].extension, extension) == 0)
@@ -41,30 +60,63 @@ bool image_keeps_dpi(const char *path)
     return encoder && encoder->keeps_dpi;
 }
 
+bool image_keeps_inks(const char *path)
+{
+    const RowEncoder *encoder = encoder_of(path);
+    return encoder && encoder->keeps_inks;
+}
+
+bool image_is_floats(const char *path)
+{
+    const RowEncoder *encoder = encoder_of(path);
+    return encoder && encoder->floats;
+}
+
+static Status check_inks(const char *path, const ImageForm *form, const RowEncoder *encoder,
+                         Err *err)
+{
+    if (!form->packing.inks)
+        return STATUS_OK;
+    if (!encoder->keeps_inks)
+        return err_set(err, STATUS_USAGE, "%s: only .tif and .jpg hold colours of a press", path);
+    if (form->channels != 3)
+        return err_set(err, STATUS_USAGE, "%s: a grey picture has no colours of a press", path);
+    assert(inks_bits(form->packing.inks) == form->bits && form->encoding == ENCODING_SRGB);
+    return STATUS_OK;
+}
+
 static Status choose_encoder(const char *path, const ImageForm *form, const RowEncoder **encoder,
                              Err *err)
 {
-    *encoder = form->bits == 32 ? &pfm_encoder : encoder_of(path);
-    if (!*encoder)
+    *encoder = encoder_of(path);
+    if (form->bits == 32 && *encoder != &exr_encoder)
+        *encoder = &pfm_encoder;
+    if (!*encoder || (*encoder)->floats != (form->bits == 32))
         return err_set(err, STATUS_USAGE,
-                       "%s: the extension of a picture must be .ppm, .pgm, .png or .tif", path);
+                       "%s: the extension of a picture must be .ppm, .pgm, .png, .tif or .jpg",
+                       path);
     if (*encoder == &pgm_encoder && form->channels != 1)
         return err_set(err, STATUS_USAGE,
-                       "%s: a colour picture cannot be a .pgm; use .ppm, .png or .tif", path);
+                       "%s: a colour picture cannot be a .pgm; use .ppm, .png, .tif or .jpg", path);
     if (*encoder == &pfm_encoder && form->channels != 1 && form->channels != 3)
         return err_set(err, STATUS_USAGE, "%s: PFM holds 1 or 3 channels, not %d", path,
                        form->channels);
-    return STATUS_OK;
+    return check_inks(path, form, *encoder, err);
 }
 
 static Status begin(ImageWriter *writer, Err *err)
 {
-    const ImageForm *form = &writer->form;
-    int channels = writer->encoder == &ppm_encoder ? 3 : form->channels;
-    double bytes = (double)form->width * form->height * channels * form->bits / 8;
+    ImageForm form = writer->form; /* as the file has it */
+    int channels = writer->encoder == &ppm_encoder ? 3 : form.channels;
+    double bytes = (double)form.width * form.height * channels * form.bits / 8;
     if (writer->encoder->plain)
         TRY(outfile_check_room(&writer->file, bytes, err));
-    Status status = writer->encoder->begin(writer->file.stream, form, &writer->state, err);
+    if (form.packing.inks) {
+        form.channels = 4;
+        TRY(mem_calloc(&writer->inked_row, (size_t)form.width, (size_t)form.bits / 2,
+                       "bytes of a row", err));
+    }
+    Status status = writer->encoder->begin(writer->file.stream, &form, &writer->state, err);
     if (status != STATUS_OK)
         err_prefix(err, "%s: ", writer->path);
     return status;
@@ -92,14 +144,30 @@ Status imagewriter_open(ImageWriter **out, const char *path, const ImageForm *fo
 
 static void release(ImageWriter *writer)
 {
+    free(writer->inked_row);
     free(writer->path);
     free(writer);
+}
+
+/* Row by row, in the colours of the press. */
+static Status write_inked(ImageWriter *writer, const uint8_t *values, int n, Err *err)
+{
+    const ImageForm *form = &writer->form;
+    size_t row_bytes = (size_t)form->width * (size_t)form->channels * (size_t)form->bits / 8;
+    for (int y = 0; y < n; y++) {
+        inks_convert(form->packing.inks, values + (size_t)y * row_bytes, writer->inked_row,
+                     (size_t)form->width);
+        TRY(writer->encoder->rows(writer->state, writer->inked_row, writer->next + y, 1, err));
+    }
+    return STATUS_OK;
 }
 
 static Status write_rows(ImageWriter *writer, const void *values, int n, Err *err)
 {
     assert(n >= 0 && writer->next + n <= writer->form.height);
-    Status status = writer->encoder->rows(writer->state, values, writer->next, n, err);
+    Status status = writer->inked_row
+                        ? write_inked(writer, values, n, err)
+                        : writer->encoder->rows(writer->state, values, writer->next, n, err);
     writer->next += n;
     if (status == STATUS_OK && ferror(writer->file.stream))
         status = err_set(err, STATUS_IO, "writing failed: %s", strerror(errno));
@@ -171,7 +239,14 @@ static Status finish(ImageWriter *writer, Status status, Err *err)
 Status picture_write(const Picture *picture, const char *path, Encoding encoding,
                      const ImageNotes *notes, Err *err)
 {
-    const ImageForm form = form_of(picture, encoding, notes);
+    return picture_write_packed(picture, path, encoding, notes, (ImagePacking){0}, err);
+}
+
+Status picture_write_packed(const Picture *picture, const char *path, Encoding encoding,
+                            const ImageNotes *notes, ImagePacking packing, Err *err)
+{
+    ImageForm form = form_of(picture, encoding, notes);
+    form.packing = packing;
     ImageWriter *writer;
     TRY(imagewriter_open(&writer, path, &form, err));
     return finish(writer, imagewriter_codes(writer, picture, err), err);
@@ -179,8 +254,16 @@ Status picture_write(const Picture *picture, const char *path, Encoding encoding
 
 Status plane_write(const Plane *plane, const char *path, Err *err)
 {
-    const ImageForm form = {
-        .width = plane->width, .height = plane->height, .channels = plane->channels, .bits = 32};
+    return plane_write_packed(plane, path, (ImagePacking){0}, err);
+}
+
+Status plane_write_packed(const Plane *plane, const char *path, ImagePacking packing, Err *err)
+{
+    const ImageForm form = {.width = plane->width,
+                            .height = plane->height,
+                            .channels = plane->channels,
+                            .bits = 32,
+                            .packing = packing};
     ImageWriter *writer;
     TRY(imagewriter_open(&writer, path, &form, err));
     return finish(writer, imagewriter_floats(writer, plane, err), err);

@@ -1,11 +1,16 @@
-/* Asked of the libraries themselves, as they are loaded; libdeflate alone tells its version only
- * when it is compiled against. */
+/* Asked of the libraries themselves, as they are loaded; libdeflate and libjpeg tell their versions
+ * only when they are compiled against. */
 #include "image/image.h"
 
+#include <jpeglib.h>
+#include <lcms2.h>
 #include <libdeflate.h>
 #include <openexr_base.h>
 #include <png.h>
 #include <tiffio.h>
+
+#define QUOTED(word) #word
+#define TEXT_OF(macro) QUOTED(macro)
 
 void image_put_libraries(Text *text)
 {
@@ -16,5 +21,8 @@ void image_put_libraries(Text *text)
     exr_get_library_version(&major, &minor, &patch, &extra);
     text_printf(text, "libpng %s, libdeflate " LIBDEFLATE_VERSION_STRING ", libtiff %.*s, ",
                 png_get_libpng_ver(NULL), (int)strspn(tiff, "0123456789."), tiff);
+    int lcms = cmsGetEncodedCMMversion(); /* 2140 */
+    text_puts(text, "libjpeg-turbo " TEXT_OF(LIBJPEG_TURBO_VERSION) ", ");
+    text_printf(text, "lcms2 %d.%d, ", lcms / 1000, lcms % 1000 / 10);
     text_printf(text, "OpenEXR %d.%d.%d", major, minor, patch);
 }

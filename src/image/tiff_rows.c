@@ -55,6 +55,15 @@ static void take_notes(Rows *self)
         self->notes.dpi = (double)dpi;
 }
 
+static ImageCompression compression_of(TIFF *handle)
+{
+    uint16_t compression;
+    TIFFGetFieldDefaulted(handle, TIFFTAG_COMPRESSION, &compression);
+    return compression == COMPRESSION_NONE            ? IMAGE_UNCOMPRESSED
+           : compression == COMPRESSION_ADOBE_DEFLATE ? IMAGE_DEFLATE
+                                                      : IMAGE_LZW;
+}
+
 static Status read_header(void *work, Err *err)
 {
     Rows *self = work;
@@ -85,7 +94,8 @@ static Status read_header(void *work, Err *err)
                              .channels = samples,
                              .bits = bits,
                              .encoding = ENCODING_SRGB,
-                             .notes = &self->notes};
+                             .notes = &self->notes,
+                             .packing = {.compression = compression_of(handle)}};
     return STATUS_OK;
 }
 

@@ -1,5 +1,6 @@
-/* TIFF through libtiff, strip by strip: little-endian whatever the machine, deflated with the
- * horizontal predictor, no date, so that equal pictures are equal files. BigTIFF where offsets
+/* TIFF through libtiff, strip by strip: little-endian whatever the machine, compressed with the
+ * horizontal predictor, no date, so that equal pictures are equal files. The usual compression is
+ * LZW, which every journal takes and some ask for, though deflate is smaller. BigTIFF where offsets
  * could need more than 32 bits. libtiff goes back to the header at the end, so it needs a file with
  * places. */
 #include "image/tiff_stream.h"
@@ -10,11 +11,14 @@
 #include <tiffio.h>
 
 enum { STRIP_BYTES = 1 << 18 };
-static const double classic_bytes = 4.0e9; /* deflate may add a little to 4 GB less that */
+static const double classic_bytes = 4.0e9; /* a little may be added to 4 GB less that */
+static const double worst_growth = 1.5;    /* of LZW, which writes 8 bits as up to 12 */
 
 typedef struct Writer {
     TiffStream tiff;
     const ImageForm *form; /* while it is begun */
+    ImageProfile profile;  /* owned */
+    char *description;     /* owned */
     size_t row_bytes;
     int rows_per_strip, height;
     uint8_t *strip; /* owned */
@@ -36,46 +40,54 @@ static Status guarded(TiffWork *work, Writer *self, Err *err)
     return tiff_guard(work, self, &self->tiff, "that is written", err);
 }
 
-/* The field that a note is kept in. */
-static uint32_t field_of(const char *key)
+static bool set_notes(TIFF *handle, const ImageNotes *notes, const char *description)
 {
-    if (strcmp(key, "Software") == 0)
-        return TIFFTAG_SOFTWARE;
-    return strcmp(key, "Shard") == 0 ? TIFFTAG_PAGENAME : TIFFTAG_IMAGEDESCRIPTION;
+    bool set = *description ? TIFFSetField(handle, TIFFTAG_IMAGEDESCRIPTION, description) : true;
+    if (notes->dpi > 0)
+        set = set && TIFFSetField(handle, TIFFTAG_XRESOLUTION, notes->dpi) &&
+              TIFFSetField(handle, TIFFTAG_YRESOLUTION, notes->dpi) &&
+              TIFFSetField(handle, TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
+    const char *software = image_note(notes, "Software"), *shard = image_note(notes, "Shard");
+    return set && (!software || TIFFSetField(handle, TIFFTAG_SOFTWARE, software)) &&
+           (!shard || TIFFSetField(handle, TIFFTAG_PAGENAME, shard));
 }
 
-static bool set_fields(TIFF *handle, const ImageForm *form, int rows_per_strip)
+static bool set_fields(const Writer *self)
 {
+    static const uint16_t photometric[] = {
+        [1] = PHOTOMETRIC_MINISBLACK, [3] = PHOTOMETRIC_RGB, [4] = PHOTOMETRIC_SEPARATED};
+    static const uint16_t compression[] = {[IMAGE_LZW] = COMPRESSION_LZW,
+                                           [IMAGE_DEFLATE] = COMPRESSION_ADOBE_DEFLATE,
+                                           [IMAGE_UNCOMPRESSED] = COMPRESSION_NONE};
+    TIFF *handle = self->tiff.handle;
+    const ImageForm *form = self->form;
     bool set = TIFFSetField(handle, TIFFTAG_IMAGEWIDTH, (uint32_t)form->width) &&
                TIFFSetField(handle, TIFFTAG_IMAGELENGTH, (uint32_t)form->height) &&
                TIFFSetField(handle, TIFFTAG_SAMPLESPERPIXEL, form->channels) &&
                TIFFSetField(handle, TIFFTAG_BITSPERSAMPLE, form->bits) &&
                TIFFSetField(handle, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT) &&
                TIFFSetField(handle, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) &&
-               TIFFSetField(handle, TIFFTAG_PHOTOMETRIC,
-                            form->channels == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK) &&
+               TIFFSetField(handle, TIFFTAG_PHOTOMETRIC, photometric[form->channels]) &&
                TIFFSetField(handle, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT) &&
-               TIFFSetField(handle, TIFFTAG_ROWSPERSTRIP, (uint32_t)rows_per_strip) &&
-               TIFFSetField(handle, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE) &&
-               TIFFSetField(handle, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
-    if (form->notes && form->notes->dpi > 0)
-        set = set && TIFFSetField(handle, TIFFTAG_XRESOLUTION, form->notes->dpi) &&
-              TIFFSetField(handle, TIFFTAG_YRESOLUTION, form->notes->dpi) &&
-              TIFFSetField(handle, TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
-    for (int i = 0; form->notes && set && i < form->notes->count; i++) {
-        const ImageNote *note = &form->notes->notes[i];
-        set = TIFFSetField(handle, field_of(note->key), note->text);
-    }
-    return set;
+               TIFFSetField(handle, TIFFTAG_ROWSPERSTRIP, (uint32_t)self->rows_per_strip) &&
+               TIFFSetField(handle, TIFFTAG_COMPRESSION, compression[form->packing.compression]);
+    if (form->packing.compression != IMAGE_UNCOMPRESSED)
+        set = set && TIFFSetField(handle, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
+    if (form->channels == 4)
+        set = set && TIFFSetField(handle, TIFFTAG_INKSET, INKSET_CMYK);
+    if (self->profile.size > 0)
+        set = set && TIFFSetField(handle, TIFFTAG_ICCPROFILE, (uint32_t)self->profile.size,
+                                  self->profile.bytes);
+    return set && (!form->notes || set_notes(handle, form->notes, self->description));
 }
 
 static Status begin_handle(void *self, Err *err)
 {
     Writer *writer = self;
     const ImageForm *form = writer->form;
-    bool big = (double)writer->row_bytes * form->height > classic_bytes;
-    if (!tiff_open(&writer->tiff, "picture", big ? "wl8" : "wl") ||
-        !set_fields(writer->tiff.handle, form, writer->rows_per_strip))
+    double growth = form->packing.compression == IMAGE_LZW ? worst_growth : 1;
+    bool big = (double)writer->row_bytes * form->height * growth > classic_bytes;
+    if (!tiff_open(&writer->tiff, "picture", big ? "wl8" : "wl") || !set_fields(writer))
         return failed(writer, err);
     return STATUS_OK;
 }
@@ -98,6 +110,8 @@ static Status begin(FILE *stream, const ImageForm *form, void **self, Err *err)
     TRY(mem_calloc(&writer->strip, (size_t)writer->rows_per_strip, writer->row_bytes, "strips",
                    err));
     writer->form = form;
+    TRY(image_profile(form, &writer->profile, err));
+    TRY(image_description(form->notes, &writer->description, err));
     return guarded(begin_handle, writer, err);
 }
 
@@ -154,9 +168,15 @@ static void release_writer(void *self)
         return;
     if (writer->tiff.handle)
         (void)!guarded(clean_up, writer, NULL);
+    free(writer->profile.bytes);
+    free(writer->description);
     free(writer->strip);
     free(writer);
 }
 
-const RowEncoder tiff_encoder = {
-    .begin = begin, .rows = write_rows, .end = end, .release = release_writer, .keeps_dpi = true};
+const RowEncoder tiff_encoder = {.begin = begin,
+                                 .rows = write_rows,
+                                 .end = end,
+                                 .release = release_writer,
+                                 .keeps_dpi = true,
+                                 .keeps_inks = true};

@@ -65,6 +65,10 @@ test_failed_allocations_in_convert() {
     fail_each 1 one convert ../a.png o.ppm
     fail_each 1 one convert "$DATA/images/depth.exr" o.pfm
     fail_each 1 one convert ../a.png o.tif
+    fail_each 3 one convert ../a.png o.tif --cmyk-profile "$CMYK"
+    fail_each 1 one convert ../a.png o.jpg
+    fail_each 3 one convert ../a.png o.jpg --cmyk-profile "$CMYK"
+    fail_each 1 one convert ../a.depth.pfm o.exr
     fail_each 1 one convert "$DATA/images/rgb8-lzw.tif" o.ppm
 }
 

@@ -35,17 +35,23 @@ static Picture rows_of(const Picture *picture, int first, int n)
 }
 
 static const ImageNote note = {"Software", "corcast 0.1"};
-static const ImageNotes notes = {&note, 1, 0};
+static const ImageNotes notes = {&note, 1, 238.5};
 
 static ImageForm form_of(const Picture *picture)
 {
-    return (ImageForm){picture->width, picture->height, picture->channels,
-                       picture->bits,  ENCODING_SRGB,   &notes};
+    return (ImageForm){.width = picture->width,
+                       .height = picture->height,
+                       .channels = picture->channels,
+                       .bits = picture->bits,
+                       .encoding = ENCODING_SRGB,
+                       .notes = &notes};
 }
 
-static void write_in_parts(const Picture *picture, const char *path)
+static void write_packed(const Picture *picture, const char *path, ImagePacking packing)
 {
-    const ImageForm form = form_of(picture);
+    ImageForm form = form_of(picture);
+    form.packing = packing;
+    unlink(path);
     ImageWriter *writer;
     assert_int_equal(imagewriter_open(&writer, path, &form, &err), STATUS_OK);
     for (int first = 0, n = 1; first < picture->height; first += n, n = 1 + n * 2 % 5) {
@@ -56,6 +62,11 @@ static void write_in_parts(const Picture *picture, const char *path)
         assert_int_not_equal(access(path, F_OK), 0);
     }
     assert_int_equal(imagewriter_commit(writer, &err), STATUS_OK);
+}
+
+static void write_in_parts(const Picture *picture, const char *path)
+{
+    write_packed(picture, path, (ImagePacking){0});
 }
 
 static void assert_same_files(const char *a, const char *b)
@@ -88,7 +99,6 @@ static void writes_in_parts_the_bytes_of_the_whole(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Picture picture, read;
         make(&picture, cases[i].width, cases[i].height, cases[i].channels, cases[i].bits);
-        unlink(cases[i].parts);
         assert_int_equal(picture_write(&picture, cases[i].whole, ENCODING_SRGB, &notes, &err),
                          STATUS_OK);
         write_in_parts(&picture, cases[i].parts);
@@ -105,6 +115,135 @@ static void writes_in_parts_the_bytes_of_the_whole(void **state)
     }
 }
 
+static void writes_a_tiff_of_the_same_codes_however_it_is_packed(void **state)
+{
+    (void)state;
+    static const ImageCompression compressions[] = {IMAGE_LZW, IMAGE_DEFLATE, IMAGE_UNCOMPRESSED};
+    size_t sizes[3];
+    for (int bits = 8; bits <= 16; bits += 8) {
+        Picture picture, read;
+        make(&picture, 97, 71, 3, bits);
+        for (int i = 0; i < 3; i++) {
+            char *bytes;
+            write_packed(&picture, "build/packed.tif",
+                         (ImagePacking){.compression = compressions[i]});
+            assert_int_equal(file_read("build/packed.tif", &any_file, &bytes, &sizes[i], &err),
+                             STATUS_OK);
+            assert_non_null(memmem(bytes, sizes[i], "acsp", 4)); /* in each ICC profile */
+            assert_int_equal(picture_read(&read, "build/packed.tif", &err), STATUS_OK);
+            for (int y = 0; y < 71; y++)
+                assert_true(picture_rows_equal(&picture, &read, y, 0, 97));
+            free(bytes);
+            picture_release(&read);
+        }
+        assert_true(sizes[0] != sizes[1] && sizes[0] != sizes[2] && sizes[1] != sizes[2]);
+        picture_release(&picture);
+    }
+    unlink("build/packed.tif");
+}
+
+static void writes_a_jpeg_in_parts_the_smaller_the_worse(void **state)
+{
+    (void)state;
+    static const int qualities[] = {100, 0, 60, 1};
+    Picture picture;
+    size_t size, last = SIZE_MAX;
+    make(&picture, 97, 71, 3, 8);
+    for (int i = 0; i < 4; i++) {
+        const ImagePacking packing = {.quality = qualities[i]};
+        char *bytes;
+        write_packed(&picture, "build/parts.jpg", packing);
+        assert_int_equal(
+            picture_write_packed(&picture, "build/whole.jpg", ENCODING_SRGB, &notes, packing, &err),
+            STATUS_OK);
+        assert_same_files("build/whole.jpg", "build/parts.jpg");
+        assert_int_equal(file_read("build/whole.jpg", &any_file, &bytes, &size, &err), STATUS_OK);
+        static const uint8_t jfif[] = {0xff, 0xd8, 0xff, 0xe0, 0, 16, 'J', 'F', 'I',
+                                       'F',  0,    1,    1,    1, 0,  239, 0,   239};
+        assert_memory_equal(bytes, jfif, sizeof jfif); /* 238.5 dots an inch, rounded */
+        assert_true(size < last);
+        last = size;
+        free(bytes);
+    }
+    unlink("build/whole.jpg");
+    unlink("build/parts.jpg");
+    picture_release(&picture);
+}
+
+static void refuses_what_a_jpeg_cannot_hold(void **state)
+{
+    (void)state;
+    Picture picture;
+    ImageWriter *writer;
+    const ImageForm wide = {.width = 65501, .height = 2, .channels = 3, .bits = 8};
+    make(&picture, 5, 3, 3, 16);
+    assert_int_equal(picture_write(&picture, "build/x.jpg", ENCODING_SRGB, NULL, &err),
+                     STATUS_USAGE);
+    assert_string_equal(err.text, "build/x.jpg: a JPEG has `bits` 8, not 16");
+    assert_int_equal(imagewriter_open(&writer, "build/x.jpg", &wide, &err), STATUS_USAGE);
+    assert_string_equal(err.text,
+                        "build/x.jpg: a JPEG has at most 65500 x 65500 pixels, not 65501 x 2");
+    assert_int_not_equal(access("build/x.jpg", F_OK), 0);
+    picture_release(&picture);
+}
+
+/* More channels than a chunk of 16 rows ends with, infinities and ids included. */
+static void writes_an_exr_of_channels_by_name_that_reads_back_exactly(void **state)
+{
+    (void)state;
+    static const ImageChannel named[] = {{"R", false}, {"Z", true}, {"G", false}, {"B", false}};
+    static const int order[] = {0, 2, 3};
+    const ImageForm form = {.width = 13,
+                            .height = 37,
+                            .channels = 4,
+                            .bits = 32,
+                            .encoding = ENCODING_LINEAR,
+                            .notes = &notes,
+                            .named = named};
+    Plane plane, rows, read;
+    ImageWriter *writer;
+    assert_int_equal(plane_init(&plane, 13, 37, 4, &err), STATUS_OK);
+    for (int i = 0; i < 13 * 37 * 4; i++)
+        plane.values[i] = i % 7 ? (float)i * 0.2385f : INFINITY;
+    assert_int_equal(imagewriter_open(&writer, "build/parts.exr", &form, &err), STATUS_OK);
+    for (int first = 0; first < 37; first += 5) {
+        rows = plane;
+        rows.values += first * 13 * 4;
+        rows.height = first < 35 ? 5 : 2;
+        assert_int_equal(imagewriter_floats(writer, &rows, &err), STATUS_OK);
+    }
+    assert_int_equal(imagewriter_commit(writer, &err), STATUS_OK);
+    assert_int_equal(plane_read(&read, "build/parts.exr", &err), STATUS_OK);
+    assert_int_equal(read.channels, 3);
+    for (int i = 0; i < 13 * 37; i++)
+        for (int c = 0; c < 3; c++)
+            assert_true(read.values[3 * i + c] == plane.values[4 * i + order[c]]);
+    unlink("build/parts.exr");
+    plane_release(&plane);
+    plane_release(&read);
+}
+
+static void rounds_the_floats_of_an_exr_to_half_when_it_is_to(void **state)
+{
+    (void)state;
+    Plane plane, read;
+    assert_int_equal(plane_init(&plane, 3, 2, 1, &err), STATUS_OK);
+    for (int i = 0; i < 6; i++)
+        plane.values[i] = 0.2385f * (float)i;
+    assert_int_equal(
+        plane_write_packed(&plane, "build/half.exr", (ImagePacking){.half = true}, &err),
+        STATUS_OK);
+    assert_int_equal(plane_read(&read, "build/half.exr", &err), STATUS_OK);
+    assert_int_equal(read.channels, 1);
+    for (int i = 1; i < 6; i++) {
+        assert_true(fabsf(read.values[i] - plane.values[i]) < plane.values[i] / 2048);
+        assert_true(read.values[i] != plane.values[i]);
+    }
+    unlink("build/half.exr");
+    plane_release(&plane);
+    plane_release(&read);
+}
+
 static void writes_a_pfm_from_the_bottom_up_though_rows_come_from_the_top(void **state)
 {
     (void)state;
@@ -113,7 +252,8 @@ static void writes_a_pfm_from_the_bottom_up_though_rows_come_from_the_top(void *
     for (int i = 0; i < 13 * 9 * 3; i++)
         plane.values[i] = i % 7 ? (float)i * 0.2385f : INFINITY;
     assert_int_equal(plane_write(&plane, "build/whole.pfm", &err), STATUS_OK);
-    const ImageForm form = {13, 9, 3, 32, ENCODING_LINEAR, NULL};
+    const ImageForm form = {
+        .width = 13, .height = 9, .channels = 3, .bits = 32, .encoding = ENCODING_LINEAR};
     ImageWriter *writer;
     assert_int_equal(imagewriter_open(&writer, "build/parts.pfm", &form, &err), STATUS_OK);
     for (int first = 0; first < 9; first += 4) {
@@ -133,12 +273,12 @@ static void leaves_nothing_of_what_is_given_up(void **state)
 {
     (void)state;
     static const char *const paths[] = {"build/given_up.ppm", "build/given_up.png",
-                                        "build/given_up.tif"};
+                                        "build/given_up.tif", "build/given_up.jpg"};
     Picture picture;
     make(&picture, 31, 17, 3, 8);
     const ImageForm form = form_of(&picture);
     const Picture rows = rows_of(&picture, 0, 9);
-    for (size_t i = 0; i < 3; i++) {
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         ImageWriter *writer;
         assert_int_equal(imagewriter_open(&writer, paths[i], &form, &err), STATUS_OK);
         assert_int_equal(imagewriter_codes(writer, &rows, &err), STATUS_OK);
@@ -151,7 +291,8 @@ static void leaves_nothing_of_what_is_given_up(void **state)
 static void refuses_what_the_disk_has_no_room_for(void **state)
 {
     (void)state;
-    const ImageForm form = {IMAGE_MAX_SIDE, IMAGE_MAX_SIDE, 3, 16, ENCODING_SRGB, NULL};
+    const ImageForm form = {
+        .width = IMAGE_MAX_SIDE, .height = IMAGE_MAX_SIDE, .channels = 3, .bits = 16};
     ImageWriter *writer;
     assert_int_equal(imagewriter_open(&writer, "build/vast.ppm", &form, &err), STATUS_IO);
     assert_non_null(strstr(err.text, "build/vast.ppm: needs 6.6 TB, and its disk has "));
@@ -170,7 +311,7 @@ static void refuses_a_pipe_for_what_is_written_out_of_order(void **state)
         snprintf(target, sizeof target, "/dev/fd/%d", ends[1]);
         unlink(paths[i]);
         assert_int_equal(symlink(target, paths[i]), 0);
-        const ImageForm form = {3, 4, 3, i ? 32 : 8, ENCODING_SRGB, NULL};
+        const ImageForm form = {.width = 3, .height = 4, .channels = 3, .bits = i ? 32 : 8};
         ImageWriter *writer;
         Status status = imagewriter_open(&writer, paths[i], &form, &err);
         if (i) {
@@ -194,6 +335,11 @@ int main(void)
         return 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(writes_in_parts_the_bytes_of_the_whole),
+        cmocka_unit_test(writes_a_tiff_of_the_same_codes_however_it_is_packed),
+        cmocka_unit_test(writes_a_jpeg_in_parts_the_smaller_the_worse),
+        cmocka_unit_test(refuses_what_a_jpeg_cannot_hold),
+        cmocka_unit_test(writes_an_exr_of_channels_by_name_that_reads_back_exactly),
+        cmocka_unit_test(rounds_the_floats_of_an_exr_to_half_when_it_is_to),
         cmocka_unit_test(writes_a_pfm_from_the_bottom_up_though_rows_come_from_the_top),
         cmocka_unit_test(leaves_nothing_of_what_is_given_up),
         cmocka_unit_test(refuses_what_the_disk_has_no_room_for),

@@ -1,6 +1,7 @@
 /* What a file holds is told by its extension, and what is read becomes what is to be written: a
  * tree a tree, a picture a picture of sRGB, a plane of floats a plane. */
 #include "app/commands.h"
+#include "app/pictures/press.h"
 #include "app/run/options.h"
 #include "app/run/output.h"
 #include "app/run/reading.h"
@@ -17,6 +18,8 @@ typedef struct ConvertOptions {
     const char *values; /* "FILE" or "FILE:COLUMN"; NULL: none */
     const char *fields; /* "all" or "NAME,..."; NULL: none */
     BloodOptions blood;
+    PressOptions press;
+    double dpi; /* of a picture; 0: not written */
 } ConvertOptions;
 
 static const Option own[] = {
@@ -31,9 +34,21 @@ static const Option own[] = {
      .argument = "all|NAME,...",
      .list = "fields",
      .help = "what follows from the tree, and is to be in its file as columns"},
+    {.name = "dpi",
+     SETS(NUMBER, ConvertOptions, dpi),
+     FROM_TO(1, 1e5),
+     .group = GROUP_PRESS,
+     .argument = "N",
+     .otherwise = "",
+     .help = "pixels an inch on paper, kept in a .png, .tif or .jpg"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    press_set_defaults(&((ConvertOptions *)options)->press);
+}
 
 /* Reads the values that are asked for into the tree. */
 static Status join_values(const ConvertOptions *options, Parsed *parsed, Tree *tree, Err *err)
@@ -117,35 +132,58 @@ static Status read_srgb(const char *path, Picture *srgb, Err *err)
     return status;
 }
 
-static Status convert_picture(const char *from, const char *to, Err *err)
+/* The picture in as many bits as are asked for. */
+static Status read_in_bits(const char *path, int bits, Picture *out, Err *err)
 {
     Picture picture;
-    TRY(read_srgb(from, &picture, err));
-    const ImageNote note = {"Software", GENERATOR};
-    const ImageNotes notes = {.notes = &note, .count = 1};
-    Status status = picture_write(&picture, to, ENCODING_SRGB, &notes, err);
+    TRY(read_srgb(path, &picture, err));
+    if (bits == 0 || bits == picture.bits) {
+        *out = picture;
+        return STATUS_OK;
+    }
+    Status status = picture_to_srgb(out, &picture, bits, err);
     picture_release(&picture);
     return status;
 }
 
-static Status convert_plane(const char *from, const char *to, Err *err)
+static Status convert_picture(const ConvertOptions *options, const char *from, const char *to,
+                              Err *err)
 {
+    const ImageNote note = {"Software", GENERATOR};
+    const ImageNotes notes = {.notes = &note, .count = 1, .dpi = options->dpi};
+    Picture picture;
+    Press press = {0};
+    TRY(read_in_bits(from, options->press.bits, &picture, err));
+    PressOptions asked = options->press;
+    asked.bits = picture.bits;
+    Status status = press_open(&asked, to, &press, err);
+    if (status == STATUS_OK)
+        status = picture_write_packed(&picture, to, ENCODING_SRGB, &notes, press.packing, err);
+    press_release(&press);
+    picture_release(&picture);
+    return status;
+}
+
+static Status convert_plane(const ConvertOptions *options, const char *from, const char *to,
+                            Err *err)
+{
+    const ImagePacking packing = {.half = options->press.bits == 16};
     Plane plane;
     TRY(plane_read(&plane, from, err));
-    Status status = plane_write(&plane, to, err);
+    Status status = plane_write_packed(&plane, to, packing, err);
     plane_release(&plane);
     return status;
 }
 
 /* What an output is to hold; an input that is no tree is told by its first bytes. */
-typedef enum FileKind { FILE_TREE, FILE_PICTURE, FILE_PLANE, FILE_INPUT, FILE_UNKNOWN } FileKind;
+typedef enum FileKind { FILE_TREE, FILE_PICTURE, FILE_PLANE, FILE_UNKNOWN } FileKind;
 
 static const struct {
     const char *extension;
     FileKind kind;
-} images[] = {{"png", FILE_PICTURE}, {"ppm", FILE_PICTURE}, {"pgm", FILE_PICTURE},
-              {"tif", FILE_PICTURE}, {"pfm", FILE_PLANE},   {"exr", FILE_INPUT},
-              {"tiff", FILE_PICTURE}};
+} images[] = {{"png", FILE_PICTURE},  {"ppm", FILE_PICTURE}, {"pgm", FILE_PICTURE},
+              {"tif", FILE_PICTURE},  {"pfm", FILE_PLANE},   {"exr", FILE_PLANE},
+              {"tiff", FILE_PICTURE}, {"jpg", FILE_PICTURE}, {"jpeg", FILE_PICTURE}};
 
 enum { N_IMAGES = sizeof images / sizeof *images };
 
@@ -167,7 +205,7 @@ static Status unknown_kind(const char *path, Err *err)
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE,
                          "'%s' has an unknown extension; known are %s for trees, and .png, .ppm, "
-                         ".pgm, .tif and .pfm for images, and .exr for one that is read",
+                         ".pgm, .tif, .pfm and .exr for images, and .jpg for one that is written",
                          path, text_chars(&trees));
     text_release(&trees);
     if (status != STATUS_USAGE)
@@ -181,6 +219,16 @@ static Status unknown_kind(const char *path, Err *err)
     return status;
 }
 
+/* STATUS_USAGE for what has no effect on an image of this name. */
+static Status check_press(const ConvertOptions *options, const char *to, const Parsed *parsed,
+                          Err *err)
+{
+    const OptionNeed needs[] = {
+        {"dpi", image_keeps_dpi(to) && !image_is_floats(to), "is for .png, .tif and .jpg"}, {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    return press_check(&options->press, to, parsed, err);
+}
+
 static Status run_convert(void *options, Parsed *parsed, Err *err)
 {
     const ConvertOptions *own_options = options;
@@ -188,21 +236,24 @@ static Status run_convert(void *options, Parsed *parsed, Err *err)
     FileKind kind = kind_of(to), kind_from = parsed->reading.format ? FILE_TREE : kind_of(from);
     if (kind_from == FILE_UNKNOWN || kind == FILE_UNKNOWN)
         return unknown_kind(kind == FILE_UNKNOWN ? to : from, err);
-    if (kind == FILE_INPUT)
-        return err_set(err, STATUS_USAGE,
-                       "'%s' cannot be written: OpenEXR is only read; floats become .pfm", to);
     if ((kind_from == FILE_TREE) != (kind == FILE_TREE))
         return err_set(err, STATUS_USAGE,
                        "'%s' cannot become '%s': a tree and an image are different things", from,
                        to);
-    if (kind == FILE_TREE)
+    if (kind == FILE_TREE) {
+        const OptionNeed picture[] = {{"dpi", false, "is for pictures"}, {0}};
+        TRY(options_check_needs(parsed, picture, err));
+        TRY(press_refuse(parsed, "is for pictures", err));
         return convert_tree(own_options, parsed, err);
+    }
     const OptionNeed needs[] = {
         {"values", false, "is for trees"}, {"fields", false, "is for trees"}, {0}};
     TRY(options_check_needs(parsed, needs, err));
     TRY(reading_refuse(parsed, "is for trees", err));
     TRY(blood_refuse(parsed, "is for trees", err));
-    return kind == FILE_PICTURE ? convert_picture(from, to, err) : convert_plane(from, to, err);
+    TRY(check_press(own_options, to, parsed, err));
+    return kind == FILE_PICTURE ? convert_picture(own_options, from, to, err)
+                                : convert_plane(own_options, from, to, err);
 }
 
 const Command command_convert = {
@@ -214,6 +265,7 @@ const Command command_convert = {
                 "  corcast convert tree.swc tree.segments.csv --fields all\n"
                 "  corcast convert tree.swc pulse.pvd --values pulse.csv\n"
                 "  corcast convert picture.ppm picture.png\n"
+                "  corcast convert picture.png picture.tif --dpi 600 --cmyk-profile press.icc\n"
                 "  corcast convert render.exr render.pfm\n"
                 "  corcast convert - - < measured.swc > tidy.swc\n",
     .min_operands = 2,
@@ -221,6 +273,9 @@ const Command command_convert = {
     .writes_last = true,
     .reads_tree = true,
     .size = sizeof(ConvertOptions),
-    .tables = {{&own_table, 0}, {&blood_table, offsetof(ConvertOptions, blood)}},
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0},
+               {&blood_table, offsetof(ConvertOptions, blood)},
+               {&press_table, offsetof(ConvertOptions, press)}},
     .run = run_convert,
 };

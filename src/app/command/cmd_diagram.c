@@ -3,6 +3,7 @@
 #include "app/pictures/coloring.h"
 #include "app/pictures/frames.h"
 #include "app/pictures/picture.h"
+#include "app/pictures/press.h"
 #include "app/run/output.h"
 #include "app/run/templates.h"
 #include "diagram/diagram.h"
@@ -12,17 +13,17 @@
 typedef struct DiagramOptions {
     const char *output, *look;
     PictureSize size;
-    int bits;
     double gap_mm, prune_radius_mm, margin;
     Vec3 background; /* sRGB in [0, 1] */
     Coloring coloring;
+    PressOptions press;
 } DiagramOptions;
 
 static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, DiagramOptions, output),
      .argument = "D.svg",
-     .help = "the diagram: .svg, true to size, or .png, .tif, .ppm"},
+     .help = "the diagram: .svg, true to size, or .png, .tif, .jpg, .ppm"},
     {.name = "gap",
      SETS(NUMBER, DiagramOptions, gap_mm),
      FROM_TO(0, 1e7),
@@ -43,17 +44,12 @@ static const Option own[] = {
      .group = GROUP_CAMERA,
      .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
     {DPI_OF_SIZE(DiagramOptions, size), .group = GROUP_CAMERA,
-     .help = "pixels an inch on paper, which .png and .tif keep"},
+     .help = "pixels an inch on paper, which .png, .tif and .jpg keep"},
     {.name = "margin",
      SETS(NUMBER, DiagramOptions, margin),
      FROM_TO(0, 0.45),
      .group = GROUP_CAMERA,
      .help = "free part on each side"},
-    {.name = "bits",
-     SETS(WHOLE, DiagramOptions, bits),
-     .range = &bits_range,
-     .argument = "8|16",
-     .help = "of a PNG or PPM"},
     {.name = "look",
      SETS(LOOKUP, DiagramOptions, look),
      .group = GROUP_COLOR,
@@ -70,12 +66,10 @@ static const OptionTable own_table = OPTION_TABLE(own);
 static void set_defaults(void *options)
 {
     DiagramOptions *own_options = options;
-    *own_options = (DiagramOptions){.look = "cast",
-                                    .size = {.pixels = {1200, 900}},
-                                    .bits = 8,
-                                    .margin = 0.05,
-                                    .background = {1, 1, 1}};
+    *own_options = (DiagramOptions){
+        .look = "cast", .size = {.pixels = {1200, 900}}, .margin = 0.05, .background = {1, 1, 1}};
     coloring_set_defaults(&own_options->coloring);
+    press_set_defaults(&own_options->press);
 }
 
 /* What the diagram is drawn of. */
@@ -131,14 +125,15 @@ static Status make_drawing(const DiagramOptions *options, const Parsed *parsed, 
 }
 
 static Status write_picture(const DiagramOptions *options, const Drawing *drawing,
-                            const char *command, Err *err)
+                            const Press *press, const char *command, Err *err)
 {
     Frame frame = {0};
     TRY(picture_fits(options->size.pixels[0], options->size.pixels[1], 40, err));
     TRY(diagram_draw(&drawing->diagram, &drawing->paint, options->size.pixels[0],
                      options->size.pixels[1], &frame.color, err));
     const FramesForm form = {.path = options->output,
-                             .bits = options->bits,
+                             .bits = press->bits,
+                             .packing = press->packing,
                              .encoding = ENCODING_SRGB,
                              .picture = true,
                              .dpi = options->size.dpi,
@@ -195,15 +190,15 @@ static bool is_svg(const DiagramOptions *options)
 static Status check(const DiagramOptions *options, const Parsed *parsed, Err *err)
 {
     static const char of_pixels[] = "is for pixels; an .svg is true to size";
-    const OptionNeed needs[] = {{"size", !is_svg(options), of_pixels},
-                                {"dpi", !is_svg(options), of_pixels},
-                                {"bits", !is_svg(options), of_pixels},
-                                {0}};
+    const OptionNeed needs[] = {
+        {"size", !is_svg(options), of_pixels}, {"dpi", !is_svg(options), of_pixels}, {0}};
     TRY(options_check_needs(parsed, needs, err));
-    TRY(picture_check_dpi(&options->size, options->output, parsed, err));
-    TRY(bits_check(options->bits, err));
     TRY(coloring_check_needs(&options->coloring, parsed, err));
-    return is_svg(options) ? STATUS_OK : frames_check_output(options->output, false, err);
+    if (is_svg(options))
+        return press_refuse(parsed, of_pixels, err);
+    TRY(picture_check_dpi(&options->size, options->output, parsed, err));
+    TRY(press_check(&options->press, options->output, parsed, err));
+    return frames_check_output(options->output, false, err);
 }
 
 static Status run_diagram(void *options, Parsed *parsed, Err *err)
@@ -212,16 +207,19 @@ static Status run_diagram(void *options, Parsed *parsed, Err *err)
     Drawing drawing = {0};
     char *command = NULL;
     Status status;
+    Press press = {0};
     TRY(check(own_options, parsed, err));
+    TRY(press_open(&own_options->press, own_options->output, &press, err));
     TRY_GOTO(make_drawing(own_options, parsed, &drawing, err));
     TRY_GOTO(command_line_text(parsed, &command, err));
     if (is_svg(own_options))
         status = write_svg(own_options, &drawing, parsed->operands[0], command, err);
     else
-        status = write_picture(own_options, &drawing, command, err);
+        status = write_picture(own_options, &drawing, &press, command, err);
 done:
     free(command);
     drawing_release(&drawing);
+    press_release(&press);
     return status;
 }
 
@@ -237,6 +235,8 @@ const Command command_diagram = {
     .reads_tree = true,
     .size = sizeof(DiagramOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0}, COLORING_TABLES(DiagramOptions, coloring)},
+    .tables = {{&own_table, 0},
+               COLORING_TABLES(DiagramOptions, coloring),
+               {&press_table, offsetof(DiagramOptions, press)}},
     .run = run_diagram,
 };

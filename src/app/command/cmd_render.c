@@ -6,7 +6,9 @@
 #include "app/pictures/frames.h"
 #include "app/pictures/line_drawing.h"
 #include "app/pictures/picture.h"
+#include "app/pictures/press.h"
 #include "app/pictures/shard.h"
+
 #include "app/run/output.h"
 #include "app/run/progress.h"
 #include "render/render.h"
@@ -15,7 +17,6 @@
 
 typedef struct RenderOptions {
     const char *output, *planes, *json;
-    int bits;
     unsigned hits;
     bool exact, has_method;
     RenderMethod method;
@@ -25,6 +26,7 @@ typedef struct RenderOptions {
     ShardOptions shard;
     Annotation annotation;
     PictureOptions picture;
+    PressOptions press;
 } RenderOptions;
 
 enum { HITS_EXACT, HITS_POVRAY };
@@ -39,16 +41,12 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, RenderOptions, output),
      .argument = "P",
-     .help = "the picture: .png, .ppm, .tif or .pfm, or a page that holds it: .pdf, .svg"},
+     .help = "the picture: .png, .ppm, .tif, .jpg, .exr or .pfm, or a page that holds it: .pdf, "
+             ".svg"},
     {.name = "planes",
      SETS(TEXT, RenderOptions, planes),
      .argument = "LIST",
-     .help = "planes beside it: color,depth,normal,id"},
-    {.name = "bits",
-     SETS(WHOLE, RenderOptions, bits),
-     .range = &bits_range,
-     .argument = "8|16",
-     .help = "of a PNG or PPM"},
+     .help = "planes beside it, or in an .exr: color,depth,normal,id"},
     {.name = "exact",
      SETS(FLAG, RenderOptions, exact),
      .group = GROUP_RUN,
@@ -124,7 +122,7 @@ static void set_defaults(void *options)
     RenderOptions *own_options = options;
     picture_set_defaults(&own_options->picture);
     annotation_set_defaults(&own_options->annotation);
-    own_options->bits = 8;
+    press_set_defaults(&own_options->press);
     own_options->picture.antialias = PICTURE_ANTIALIAS;
     own_options->method = RENDER_FASTEST;
     own_options->kernels = KERNELS_FASTEST;
@@ -179,6 +177,8 @@ static Status write_report(const char *path, const Scene *scene, const RenderSta
 static int band_rows(const FramesForm *form, double memory_mb)
 {
     int bytes = 12 + form->bits / 8 * 3 + 1 + 4 * form->depth + 12 * form->normal + 7 * form->id;
+    if (image_is_floats(form->path))
+        bytes += 12 + 4 * form->depth + 12 * form->normal + 4 * form->id;
     double rows = memory_mb * 1e6 / ((double)bytes * form->width);
     if (rows >= form->height)
         return form->height;
@@ -337,26 +337,23 @@ static Status check_method(const RenderOptions *options, Err *err)
     return status;
 }
 
-/* What is written as codes: 8 bits of a page, and nothing over floats. */
-static Status check_codes(const RenderOptions *options, const Parsed *parsed, Err *err)
+/* What the file holds: 8 bits of a page, and nothing over floats. */
+static Status check_file(const RenderOptions *options, const Parsed *parsed, Err *err)
 {
-    const bool floats = strcmp(file_extension(options->output), "pfm") == 0;
-    const OptionNeed needs[] = {
-        {"bits", !floats, "is for whole numbers; a .pfm holds floats"},
-        {"bits", !frames_is_page(options->output), "is for pictures; a page holds one of 8 bits"},
-        {0}};
-    TRY(bits_check(options->bits, err));
-    if (floats && annotation_is_any(&options->annotation))
+    if (frames_is_page(options->output))
+        return press_refuse(parsed, "is for pictures; a page holds one of 8 bits", err);
+    if (image_is_floats(options->output) && annotation_is_any(&options->annotation))
         return err_set(err, STATUS_USAGE,
-                       "-o: a .pfm holds numbers to measure, and no legend, scale bar or letter");
-    return options_check_needs(parsed, needs, err);
+                       "-o: %s holds numbers to measure, and no legend, scale bar or letter",
+                       strcmp(file_extension(options->output), "exr") ? "a .pfm" : "an .exr");
+    return press_check(&options->press, options->output, parsed, err);
 }
 
 /* Options that fight each other, or that the method does not know. */
 static Status check(const RenderOptions *options, const Parsed *parsed, Err *err)
 {
     const PictureOptions *picture = &options->picture;
-    TRY(check_codes(options, parsed, err));
+    TRY(check_file(options, parsed, err));
     if (options->ink_mm > 0)
         TRY(line_drawing_check(picture, options->output, parsed, err));
     if (options->min_width_px > 0 && !covers_thin(options))
@@ -391,14 +388,15 @@ static bool is_on_sheet(const RenderOptions *options)
 }
 
 /* The files that --planes asks for, beside the picture. */
-static Status plan_files(const RenderOptions *options, RenderParams *params, FramesForm *form,
-                         Err *err)
+static Status plan_files(const RenderOptions *options, const Press *press, RenderParams *params,
+                         FramesForm *form, Err *err)
 {
     TRY(read_planes(options->planes, params, err));
     *form = (FramesForm){.width = options->picture.size.pixels[0],
                          .height = options->picture.size.pixels[1],
                          .path = options->output,
-                         .bits = options->bits,
+                         .bits = press->bits,
+                         .packing = press->packing,
                          .encoding = ENCODING_SRGB,
                          .dpi = options->picture.size.dpi,
                          .picture = true,
@@ -406,8 +404,8 @@ static Status plan_files(const RenderOptions *options, RenderParams *params, Fra
                          .depth = params->want_depth,
                          .normal = params->want_normal,
                          .id = params->want_id};
-    params->codes_suffice = form->bits == 8 && !form->color && !is_on_sheet(options) &&
-                            strcmp(file_extension(form->path), "pfm") != 0;
+    params->codes_suffice =
+        form->bits == 8 && !form->color && !is_on_sheet(options) && !image_is_floats(form->path);
     params->want_color = true;
     return frames_is_page(options->output)
                ? STATUS_OK
@@ -688,12 +686,18 @@ static Status run_render(void *options, Parsed *parsed, Err *err)
     RenderParams params = params_of(own_options, parsed->common.threads);
     Animation animation;
     Shard shard;
+    Press press = {0};
+    Status status;
     TRY(check(own_options, parsed, err));
-    TRY(plan_files(own_options, &params, &form, err));
     TRY(animation_read(&own_options->animation, own_options->output, &animation, err));
-    TRY(settle_shard(&own_options->shard, animation.kind != ANIMATION_NONE, parsed, &form, &shard,
-                     err));
-    return draw_pictures(own_options, parsed, &params, &form, &animation, &shard, err);
+    TRY(press_open(&own_options->press, own_options->output, &press, err));
+    TRY_GOTO(plan_files(own_options, &press, &params, &form, err));
+    TRY_GOTO(settle_shard(&own_options->shard, animation.kind != ANIMATION_NONE, parsed, &form,
+                          &shard, err));
+    status = draw_pictures(own_options, parsed, &params, &form, &animation, &shard, err);
+done:
+    press_release(&press);
+    return status;
 }
 
 const Command command_render = {
@@ -714,6 +718,7 @@ const Command command_render = {
     .tables = {{&own_table, 0},
                {&shard_table, offsetof(RenderOptions, shard)},
                {&annotation_table, offsetof(RenderOptions, annotation)},
-               PICTURE_TABLES(RenderOptions, picture)},
+               PICTURE_TABLES(RenderOptions, picture),
+               {&press_table, offsetof(RenderOptions, press)}},
     .run = run_render,
 };

@@ -1,5 +1,7 @@
 /* One writer a file. The planes take their final names first and the picture last, so that a
- * picture never stands beside planes of another. */
+ * picture never stands beside planes of another. OpenEXR holds planes itself: they become channels
+ * of the picture, floats throughout, as few programs take whole numbers: ids, below 2^24, are exact
+ * in 32 bits. */
 #include "app/pictures/frames.h"
 
 #include "app/run/output.h"
@@ -19,11 +21,12 @@ Status frames_check_output(const char *path, bool planes, Err *err)
             return err_set(err, STATUS_USAGE, "--planes needs -o FILE, to name the planes after");
         return STATUS_OK;
     }
-    static const char *const known[] = {"png", "ppm", "pfm", "tif", "tiff"};
+    static const char *const known[] = {"png", "ppm", "pfm", "tif", "tiff", "jpg", "jpeg", "exr"};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcmp(file_extension(path), known[i]) == 0)
             return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png, .ppm, .tif or .pfm", path);
+    return err_set(err, STATUS_USAGE,
+                   "-o: '%s' does not end in .png, .ppm, .tif, .jpg, .exr or .pfm", path);
 }
 
 const Range bits_range = {8, 16};
@@ -38,23 +41,48 @@ Status bits_check(int bits, Err *err)
 typedef enum FrameFile { FILE_COLOR, FILE_DEPTH, FILE_NORMAL, FILE_ID, FILE_PICTURE } FrameFile;
 enum { FRAME_FILES = FILE_PICTURE + 1 };
 
+/* The channels of an OpenEXR file, in their order in memory. */
+static const struct {
+    FrameFile of;
+    ImageChannel channel;
+} layers[] = {{FILE_PICTURE, {"R", false}},  {FILE_PICTURE, {"G", false}},
+              {FILE_PICTURE, {"B", false}},  {FILE_DEPTH, {"Z", true}},
+              {FILE_NORMAL, {"N.X", false}}, {FILE_NORMAL, {"N.Y", false}},
+              {FILE_NORMAL, {"N.Z", false}}, {FILE_ID, {"id", true}}};
+enum { LAYERS = sizeof layers / sizeof *layers };
+
 struct FramesWriter {
     const FramesForm *form;
+    ImageChannel channels[LAYERS]; /* of an OpenEXR file */
+    int n_channels;
     ImageWriter *files[FRAME_FILES]; /* NULL: not wanted */
     Picture whole;                   /* of a page, or to be kept */
     int next;                        /* row */
 };
 
-static bool is_wanted(const FramesForm *form, int file)
+static bool is_asked_for(const FramesForm *form, int file)
 {
-    const bool wanted[FRAME_FILES] = {form->color, form->depth, form->normal, form->id,
-                                      form->picture};
-    return wanted[file];
+    const bool asked_for[FRAME_FILES] = {form->color, form->depth, form->normal, form->id,
+                                         form->picture};
+    return asked_for[file];
 }
 
-static bool is_linear(const FramesForm *form)
+static bool is_layered(const FramesForm *form)
 {
-    return strcmp(file_extension(form->path), "pfm") == 0;
+    return form->picture && strcmp(file_extension(form->path), "exr") == 0;
+}
+
+/* Whether there is such a file. */
+static bool is_wanted(const FramesForm *form, int file)
+{
+    return is_asked_for(form, file) && (file == FILE_PICTURE || !is_layered(form));
+}
+
+static void choose_channels(FramesWriter *writer)
+{
+    for (int i = 0; i < LAYERS; i++)
+        if (is_asked_for(writer->form, layers[i].of))
+            writer->channels[writer->n_channels++] = layers[i].channel;
 }
 
 /* Whether the picture is held in memory until the end. */
@@ -74,12 +102,18 @@ static Status open_picture(FramesWriter *writer, Err *err)
         notes[all.count++] = (ImageNote){"Colors", form->colors};
     if (form->shard)
         notes[all.count++] = (ImageNote){"Shard", form->shard};
-    const ImageForm image = {.width = form->width,
-                             .height = form->height,
-                             .channels = 3,
-                             .bits = is_linear(form) ? 32 : form->bits,
-                             .encoding = form->encoding,
-                             .notes = &all};
+    ImageForm image = {.width = form->width,
+                       .height = form->height,
+                       .channels = 3,
+                       .bits = image_is_floats(form->path) ? 32 : form->bits,
+                       .encoding = form->encoding,
+                       .notes = &all,
+                       .packing = form->packing};
+    if (is_layered(form)) {
+        choose_channels(writer);
+        image.channels = writer->n_channels;
+        image.named = writer->channels;
+    }
     return imagewriter_open(&writer->files[FILE_PICTURE], form->path, &image, err);
 }
 
@@ -157,10 +191,42 @@ static Status annotate(FramesWriter *writer, Picture *codes, Err *err)
     return STATUS_OK;
 }
 
+/* Puts all that is asked for into one plane. */
+static void merge(const FramesForm *form, const Frame *rows, Plane *merged)
+{
+    const Plane *const values[] = {
+        [FILE_DEPTH] = &rows->depth, [FILE_NORMAL] = &rows->normal, [FILE_PICTURE] = &rows->color};
+    size_t n = (size_t)merged->width * (size_t)merged->height;
+    size_t stride = (size_t)merged->channels, at = 0;
+    for (size_t i = 0, c = 0; i < LAYERS; i++) {
+        FrameFile of = layers[i].of;
+        c = i > 0 && of == layers[i - 1].of ? c + 1 : 0;
+        if (!is_asked_for(form, of))
+            continue;
+        for (size_t p = 0; p < n; p++)
+            merged->values[p * stride + at] =
+                of == FILE_ID ? (float)rows->id.ids[p]
+                              : values[of]->values[p * (size_t)values[of]->channels + c];
+        at++;
+    }
+}
+
+static Status write_layers(FramesWriter *writer, const Frame *rows, Err *err)
+{
+    Plane merged;
+    TRY(plane_init(&merged, rows->color.width, rows->color.height, writer->n_channels, err));
+    merge(writer->form, rows, &merged);
+    Status status = imagewriter_floats(writer->files[FILE_PICTURE], &merged, err);
+    plane_release(&merged);
+    return status;
+}
+
 static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
 {
     ImageWriter *file = writer->files[FILE_PICTURE];
-    if (is_linear(writer->form))
+    if (is_layered(writer->form))
+        return write_layers(writer, rows, err);
+    if (image_is_floats(writer->form->path))
         return imagewriter_floats(file, &rows->color, err);
     if (rows->codes.codes8)
         return imagewriter_codes(file, &rows->codes, err);

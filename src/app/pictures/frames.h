@@ -25,10 +25,12 @@ typedef struct FramesForm {
     int width, height; /* of the file's picture */
     int first;         /* row of the page that is its first */
     const char *path;  /* of the picture; the planes of P.png are P.color.pfm, P.depth.pfm,
-                        * P.normal.pfm and P.id.ppm */
-    int bits;          /* of a picture that is no .pfm: 8 or 16 */
-    Encoding encoding; /* of its codes; .pfm is linear */
-    double dpi;        /* pixels an inch on paper; 0: not known */
+                        * P.normal.pfm and P.id.ppm, those of P.exr its channels Z, N.X, N.Y, N.Z
+                        * and id */
+    int bits;          /* of a picture of codes: 8 or 16 */
+    Encoding encoding; /* of its codes; .pfm and .exr are linear */
+    ImagePacking packing;
+    double dpi; /* pixels an inch on paper; 0: not known */
     bool picture, color, depth, normal, id;
     const char *provenance;   /* the command line; of the picture */
     const char *colors;       /* what they mean; of the picture; NULL: nothing */

@@ -81,7 +81,7 @@ static const Option rows[] = {
      .group = GROUP_CAMERA,
      .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
     {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
-     .help = "pixels an inch on paper, which .png and .tif keep"},
+     .help = "pixels an inch on paper, which .png, .tif and .jpg keep"},
     {.name = "projection",
      SETS(CHOICE, PictureOptions, projection),
      .choices = projections,
@@ -292,7 +292,8 @@ Status picture_check_dpi(const PictureSize *size, const char *output, const Pars
 {
     const bool kept = image_keeps_dpi(output) || frames_is_page(output);
     const OptionNeed needs[] = {{"dpi", size_is_on_paper(size) || kept,
-                                 NEEDS_PAPER ", or a file that keeps it (.png, .tif, .pdf, .svg)"},
+                                 NEEDS_PAPER
+                                 ", or a file that keeps it (.png, .tif, .jpg, .pdf, .svg)"},
                                 {0}};
     return options_check_needs(parsed, needs, err);
 }

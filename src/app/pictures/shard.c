@@ -70,6 +70,7 @@ Status shard_check(const ShardOptions *options, bool animated, const FramesForm 
         {"commands", animated || options->tiles > 0, "needs --tiles N or an animation"},
         {"planes", !parts, "is not for parts: --tile, --commands and --resume know pictures only"},
         {"json", !parts, "is not for parts: --tile, --commands and --resume know pictures only"},
+        {"cmyk-profile", !parts, "is not for parts: they are put together as sRGB"},
         {0}};
     TRY(options_check_needs(parsed, needs, err));
     if (parts && !is_one_of(file_extension(form->path), noted))

@@ -14,8 +14,8 @@ const char *const option_group_names[OPTION_GROUPS] = {
     [GROUP_CAMERA] = "camera",       [GROUP_LIGHT] = "light",
     [GROUP_COLOR] = "color",         [GROUP_PAGE] = "legend and scale bar",
     [GROUP_ANIMATION] = "animation", [GROUP_PARTS] = "parts",
-    [GROUP_POVRAY] = "POV-Ray",      [GROUP_JUDGE] = "judgement",
-    [GROUP_RUN] = "this run",
+    [GROUP_PRESS] = "press",         [GROUP_POVRAY] = "POV-Ray",
+    [GROUP_JUDGE] = "judgement",     [GROUP_RUN] = "this run",
 };
 
 /* ---- reading --------------------------------------------------------------------------------- */

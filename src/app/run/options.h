@@ -78,6 +78,7 @@ typedef enum OptionGroup {
     GROUP_PAGE,
     GROUP_ANIMATION,
     GROUP_PARTS,
+    GROUP_PRESS,
     GROUP_POVRAY,
     GROUP_JUDGE,
     GROUP_RUN,
@@ -175,7 +176,7 @@ typedef struct OptionTable {
 
 typedef struct Parsed Parsed;
 
-enum { MAX_OPERANDS = 4096, MAX_TABLES = 6 };
+enum { MAX_OPERANDS = 4096, MAX_TABLES = 8 };
 
 typedef struct Command {
     const char *name;

@@ -1,0 +1,112 @@
+/* Options that have no effect on a file of the format that its name says are refused. */
+#include "app/pictures/press.h"
+
+#include <string.h>
+#include <strings.h>
+
+static const char *const compressions[] = {
+    [IMAGE_LZW] = "lzw", [IMAGE_DEFLATE] = "deflate", [IMAGE_UNCOMPRESSED] = "none", NULL};
+static const char *const intents[] = {
+    [INKS_PERCEPTUAL] = "perceptual", [INKS_RELATIVE] = "relative", NULL};
+
+static const Option rows[] = {
+    {.name = "bits",
+     SETS(WHOLE, PressOptions, bits),
+     FROM_TO(8, 32),
+     .group = GROUP_PRESS,
+     .argument = "8|16|32",
+     .otherwise = "8; 32 of an .exr",
+     .help = "of a channel; of an .exr, which has floats, 16 or 32"},
+    {.name = "compression",
+     SETS(CHOICE, PressOptions, compression),
+     .choices = compressions,
+     .group = GROUP_PRESS,
+     .help = "of a .tif; none loses anything"},
+    {.name = "quality",
+     SETS(WHOLE, PressOptions, quality),
+     FROM_TO(1, 100),
+     .group = GROUP_PRESS,
+     .help = "of a .jpg, which loses a little even at 100"},
+    {.name = "cmyk-profile",
+     SETS(INPUT, PressOptions, cmyk_profile),
+     .group = GROUP_PRESS,
+     .argument = "P.icc",
+     .help = "a .tif or .jpg in the inks of the press that this ICC profile is of"},
+    {.name = "cmyk-intent",
+     SETS(CHOICE, PressOptions, intent),
+     .choices = intents,
+     .group = GROUP_PRESS,
+     .help = "colours that the press has not: all make way, or they alone"},
+};
+
+const OptionTable press_table = OPTION_TABLE(rows);
+
+void press_set_defaults(PressOptions *options)
+{
+    *options = (PressOptions){.intent = INKS_RELATIVE, .quality = 95};
+}
+
+static bool is_of(const char *output, const char *extension, const char *other)
+{
+    return strcasecmp(file_extension(output), extension) == 0 ||
+           strcasecmp(file_extension(output), other) == 0;
+}
+
+static Status check_bits(const char *output, int bits, Err *err)
+{
+    static const struct {
+        const char *extension, *other;
+        int bits[2];
+        const char *sentence;
+    } rules[] = {{"exr", "exr", {16, 32}, "an .exr has floats of 16 or 32 bits"},
+                 {"pfm", "pfm", {0, 0}, "a .pfm has floats of 32 bits anyway"},
+                 {"jpg", "jpeg", {8, 8}, "a .jpg has 8 bits"},
+                 {"", "", {8, 16}, "a picture has 8 or 16 bits"}};
+    size_t i = 0, last = sizeof rules / sizeof *rules - 1;
+    while (i < last && !is_of(output, rules[i].extension, rules[i].other))
+        i++;
+    if (bits == 0 || bits == rules[i].bits[0] || bits == rules[i].bits[1])
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "--bits: '%d': %s", bits, rules[i].sentence);
+}
+
+Status press_check(const PressOptions *options, const char *output, const Parsed *parsed, Err *err)
+{
+    const OptionNeed needs[] = {
+        {"compression", is_of(output, "tif", "tiff"), "is for .tif"},
+        {"quality", is_of(output, "jpg", "jpeg"), "is for .jpg"},
+        {"cmyk-profile", image_keeps_inks(output), "is for .tif and .jpg"},
+        {"cmyk-intent", options->cmyk_profile != NULL, "needs --cmyk-profile"},
+        {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    return check_bits(output, options->bits, err);
+}
+
+Status press_refuse(const Parsed *parsed, const char *sentence, Err *err)
+{
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const OptionNeed needs[] = {{rows[i].name, false, sentence}, {0}};
+        TRY(options_check_needs(parsed, needs, err));
+    }
+    return STATUS_OK;
+}
+
+Status press_open(const PressOptions *options, const char *output, Press *press, Err *err)
+{
+    bool floats = image_is_floats(output);
+    Press made = {.bits = floats || options->bits == 0 ? 8 : options->bits};
+    if (options->cmyk_profile && image_keeps_inks(output))
+        TRY(inks_read(&made.inks, options->cmyk_profile, (InkIntent)options->intent, made.bits,
+                      err));
+    made.packing = (ImagePacking){.compression = (ImageCompression)options->compression,
+                                  .quality = options->quality,
+                                  .half = floats && options->bits == 16,
+                                  .inks = made.inks};
+    *press = made;
+    return STATUS_OK;
+}
+
+void press_release(Press *press)
+{
+    inks_free(press->inks);
+}
