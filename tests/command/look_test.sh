@@ -86,14 +86,13 @@ test_pictures_with_effects_are_the_same_whatever_the_memory_and_threads() {
     expect_same whole.ppm bands.ppm
 }
 
-# All but those with shadows of a sheet, which take seconds each.
 test_the_document_shows_every_look_as_its_command_draws_it() {
     local look
     for look in $(corcast looks | cut -f 1); do
         grep -q "^    corcast render .* --look $look .*-o $look.png$" "$REPO/docs/LOOKS.md" || fail "expected docs/LOOKS.md to draw $look"
         expect_file "$REPO/docs/images/looks/$look.png"
     done
-    sed -n 's/^    corcast \(.*\)/\1 --quiet/p' "$REPO/docs/LOOKS.md" | grep -v -- --shadows >commands
+    sed -n 's/^    corcast \(.*\)/\1 --quiet/p' "$REPO/docs/LOOKS.md" >commands
     while read -r command; do
         # shellcheck disable=SC2086
         run_ok corcast $command
