@@ -57,12 +57,13 @@ static Status run(Parsed *parsed, Err *err)
     if (parsed->common.help)
         return help_print(command, err);
     TRY(check_dump(parsed, err));
-    TRY(command->run(parsed->options, parsed, err));
     if (!parsed->common.dump || command->own_recipe)
-        return STATUS_OK;
-    Text recipe = TEXT_INIT;
+        return command->run(parsed->options, parsed, err);
+    Text recipe = TEXT_INIT; /* made first: what is written is not to be followed by a failure */
     options_put_recipe(parsed, &recipe);
     Status status = text_check(&recipe, err);
+    if (status == STATUS_OK)
+        status = command->run(parsed->options, parsed, err);
     if (status == STATUS_OK)
         fputs(text_chars(&recipe), stdout);
     text_release(&recipe);

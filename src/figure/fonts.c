@@ -1,11 +1,10 @@
-/* FreeType reads the two files, HarfBuzz turns a line into glyphs and places them, with the font's
- * kerning, and cairo draws these. Pango does the same, but finds fonts through fontconfig, whose
- * choice depends on what is installed; here no file but the two is opened, and without hinting the
- * places of glyphs depend neither on the resolution nor on FreeType's settings. */
+/* FreeType reads the two files, and no other font is looked for: Pango and fontconfig would choose
+ * by what is installed. A line is its letters one after another, moved together as the font's table
+ * of pairs says; sizes are those of the design, unhinted, so that a line has the same form at every
+ * resolution. That is all that Latin, Greek and Cyrillic need; the fonts have no other scripts that
+ * need more. */
 #include "figure/fonts.h"
 
-#include <cairo-ft.h>
-#include <hb.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,27 +13,15 @@ enum { REGULAR, BOLD, FACES };
 struct FigureFonts {
     FT_Library library;
     FT_Face face[FACES];
-    hb_font_t *shaper[FACES];
-    cairo_font_face_t *cairo[FACES];
 };
 
 static Status load_face(FigureFonts *fonts, int i, const char *path, Err *err)
 {
-    hb_codepoint_t glyph;
     FT_Error failed = FT_New_Face(fonts->library, path, 0, &fonts->face[i]);
     if (failed == FT_Err_Out_Of_Memory)
         return mem_out_of("to read", path, err);
-    if (failed)
+    if (failed || !FT_IS_SCALABLE(fonts->face[i]) || !FT_HAS_KERNING(fonts->face[i]))
         return err_set(err, STATUS_IO, "%s: the font is missing or cannot be read", path);
-    hb_blob_t *file = hb_blob_create_from_file(path);
-    hb_face_t *face = hb_face_create(file, 0);
-    fonts->shaper[i] = hb_font_create(face);
-    hb_face_destroy(face);
-    hb_blob_destroy(file);
-    fonts->cairo[i] = cairo_ft_font_face_create_for_ft_face(fonts->face[i], FT_LOAD_NO_HINTING);
-    if (cairo_font_face_status(fonts->cairo[i]) != CAIRO_STATUS_SUCCESS ||
-        !hb_font_get_nominal_glyph(fonts->shaper[i], 'x', &glyph))
-        return mem_out_of("to read", path, err);
     return STATUS_OK;
 }
 
@@ -66,17 +53,10 @@ Status figurefonts_load(const char *templates, FigureFonts **out, Err *err)
     return status;
 }
 
-/* cairo keeps what it has drawn with a face for a while, and FreeType counts who holds it: the
- * library's own hold goes last. */
 void figurefonts_free(FigureFonts *fonts)
 {
     if (!fonts)
         return;
-    for (int i = 0; i < FACES; i++) {
-        cairo_font_face_destroy(fonts->cairo[i]);
-        hb_font_destroy(fonts->shaper[i]);
-    }
-    cairo_debug_reset_static_data();
     for (int i = 0; i < FACES; i++)
         if (fonts->face[i])
             FT_Done_Face(fonts->face[i]);
@@ -85,83 +65,70 @@ void figurefonts_free(FigureFonts *fonts)
     free(fonts);
 }
 
-cairo_font_face_t *fonts_cairo(const FigureFonts *fonts, bool bold)
+FT_Library fonts_library(const FigureFonts *fonts)
 {
-    return fonts->cairo[bold ? BOLD : REGULAR];
+    return fonts->library;
+}
+
+FT_Face fonts_face(const FigureFonts *fonts, bool bold)
+{
+    return fonts->face[bold ? BOLD : REGULAR];
 }
 
 void glyphs_release(Glyphs *glyphs)
 {
     free(glyphs->glyph);
-    free(glyphs->cluster);
     *glyphs = (Glyphs){0};
 }
 
-/* A cluster is the glyphs of the same bytes, and these are all up to those of the next. */
-static void fill(const hb_glyph_info_t *info, const hb_glyph_position_t *at, int n, double em,
-                 unsigned bytes, Glyphs *out)
+/* The character at the start of well-formed UTF-8, or the one that stands for what is none. */
+static uint32_t character(const char *at, size_t length)
 {
-    for (int i = 0; i < n; i++) {
-        out->glyph[i] = (cairo_glyph_t){.index = info[i].codepoint,
-                                        .x = out->width + at[i].x_offset / em,
-                                        .y = -at[i].y_offset / em};
-        out->width += at[i].x_advance / em;
-        if (i == 0 || info[i].cluster != info[i - 1].cluster)
-            out->n_clusters++;
-        cairo_text_cluster_t *cluster = &out->cluster[out->n_clusters - 1];
-        cluster->num_glyphs++;
-        cluster->num_bytes = (int)(bytes - info[i].cluster);
-        if (cluster > out->cluster && cluster->num_glyphs == 1)
-            cluster[-1].num_bytes -= cluster->num_bytes;
-    }
-    out->n = n;
+    static const unsigned char firsts[] = {0, 0x7f, 0x1f, 0x0f, 0x07};
+    if (length == 0)
+        return 0xfffd;
+    uint32_t code = (unsigned char)*at & firsts[length];
+    for (size_t i = 1; i < length; i++)
+        code = code << 6 | ((unsigned char)at[i] & 0x3f);
+    return code;
 }
 
-static Status shape(const FigureFonts *fonts, hb_buffer_t *buffer, const char *text, int face,
-                    Glyphs *out, Err *err)
+/* FreeType fails here only where memory does. */
+static Status add_letter(FT_Face face, uint32_t letter, int bytes, Glyphs *glyphs, Err *err)
 {
-    hb_buffer_add_utf8(buffer, text, -1, 0, -1);
-    hb_buffer_set_direction(buffer, HB_DIRECTION_LTR);
-    hb_buffer_guess_segment_properties(buffer);
-    hb_buffer_set_language(buffer, hb_language_from_string("en", -1));
-    hb_shape(fonts->shaper[face], buffer, NULL, 0);
-    if (!hb_buffer_allocation_successful(buffer))
-        return mem_out_of("for", "glyphs", err);
-    unsigned n;
-    const hb_glyph_info_t *info = hb_buffer_get_glyph_infos(buffer, &n);
-    const hb_glyph_position_t *at = hb_buffer_get_glyph_positions(buffer, NULL);
-    TRY(mem_calloc(&out->glyph, n, sizeof *out->glyph, "glyphs", err));
-    TRY(mem_calloc(&out->cluster, n, sizeof *out->cluster, "glyphs", err));
-    fill(info, at, (int)n, fonts->face[face]->units_per_EM, (unsigned)strlen(text), out);
+    const double em = face->units_per_EM;
+    const unsigned before = glyphs->n ? glyphs->glyph[glyphs->n - 1].index : 0;
+    const unsigned index = FT_Get_Char_Index(face, letter);
+    FT_Vector pair = {0, 0};
+    if (before && index)
+        (void)!FT_Get_Kerning(face, before, index, FT_KERNING_UNSCALED, &pair);
+    if (!index && !glyphs->missing)
+        glyphs->missing = letter;
+    if (FT_Load_Glyph(face, index, FT_LOAD_NO_SCALE))
+        return mem_out_of("for", "letters", err);
+    glyphs->glyph[glyphs->n++] =
+        (Glyph){.index = index, .bytes = bytes, .x = glyphs->width + (double)pair.x / em};
+    glyphs->width += ((double)pair.x + (double)face->glyph->advance.x) / em;
     return STATUS_OK;
 }
 
 Status fonts_shape(const FigureFonts *fonts, const char *text, bool bold, Glyphs *out, Err *err)
 {
     Glyphs made = {0};
-    hb_buffer_t *buffer = hb_buffer_create();
-    Status status = shape(fonts, buffer, text, bold ? BOLD : REGULAR, &made, err);
-    hb_buffer_destroy(buffer);
-    if (status == STATUS_OK)
-        *out = made;
-    else
-        glyphs_release(&made);
-    return status;
-}
-
-uint32_t fonts_missing(const FigureFonts *fonts, const char *text, bool bold)
-{
-    hb_buffer_t *buffer = hb_buffer_create();
-    hb_buffer_add_utf8(buffer, text, -1, 0, -1);
-    unsigned n;
-    uint32_t missing = 0, glyph;
-    const hb_glyph_info_t *letter = hb_buffer_get_glyph_infos(buffer, &n);
-    for (unsigned i = 0; i < n && !missing; i++)
-        if (!hb_font_get_nominal_glyph(fonts->shaper[bold ? BOLD : REGULAR], letter[i].codepoint,
-                                       &glyph))
-            missing = letter[i].codepoint;
-    hb_buffer_destroy(buffer);
-    return missing;
+    TRY(mem_calloc(&made.glyph, strlen(text), sizeof *made.glyph, "letters", err));
+    for (const char *at = text; *at;) {
+        size_t length = utf8_length(at);
+        size_t bytes = length ? length : 1;
+        Status status =
+            add_letter(fonts_face(fonts, bold), character(at, length), (int)bytes, &made, err);
+        if (status != STATUS_OK) {
+            glyphs_release(&made);
+            return status;
+        }
+        at += bytes;
+    }
+    *out = made;
+    return STATUS_OK;
 }
 
 double figure_text_width(const FigureFonts *fonts, const char *text, double size_pt, bool bold)

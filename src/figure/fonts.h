@@ -3,14 +3,21 @@
 #define CORCAST_FIGURE_FONTS_H
 
 #include "figure/figure.h"
-#include <cairo.h>
+#include <ft2build.h>
+#include FT_FREETYPE_H
 
-/* A line as cairo draws it, from the origin on, in units of the font's size. */
+/* A letter of a line. */
+typedef struct Glyph {
+    unsigned index;
+    int bytes; /* of the text */
+    double x;  /* from where the line begins, in sizes of the font */
+} Glyph;
+
 typedef struct Glyphs {
-    cairo_glyph_t *glyph;          /* owned */
-    cairo_text_cluster_t *cluster; /* owned; which bytes of the text which glyphs stand for */
-    int n, n_clusters;
-    double width;
+    Glyph *glyph; /* owned */
+    size_t n;
+    double width;     /* in sizes of the font */
+    uint32_t missing; /* the first letter that the font lacks; 0: none */
 } Glyphs;
 
 /* STATUS_MEMORY; *out is owned (glyphs_release). */
@@ -18,13 +25,11 @@ MUST_CHECK Status fonts_shape(const FigureFonts *fonts, const char *text, bool b
                               Err *err);
 void glyphs_release(Glyphs *glyphs);
 
-cairo_font_face_t *fonts_cairo(const FigureFonts *fonts, bool bold);
+FT_Library fonts_library(const FigureFonts *fonts);
+FT_Face fonts_face(const FigureFonts *fonts, bool bold);
 
 /* How high capitals are, and how far letters reach below the baseline, over the font's size. */
 #define FONT_CAPITALS 0.73
 #define FONT_DESCENT 0.21
-
-/* The first letter of a text that a font lacks; 0: none. */
-uint32_t fonts_missing(const FigureFonts *fonts, const char *text, bool bold);
 
 #endif

@@ -113,16 +113,15 @@ void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at
                            .strokes = strokes});
 }
 
-void figure_add_text(FigurePage *page, const FigureText *text)
+/* The item of a line of these glyphs. */
+static void add_line_of_text(FigurePage *page, const FigureText *text, const Glyphs *glyphs)
 {
-    double size = text->size_pt * MM_PER_POINT;
-    double width = figure_text_width(page->fonts, text->text, text->size_pt, text->bold);
-    double left = text->x - (text->align == ALIGN_LEFT     ? 0
-                             : text->align == ALIGN_CENTER ? width / 2
-                                                           : width);
+    const double size = text->size_pt * MM_PER_POINT, width = glyphs->width * size;
+    const double before[] = {[ALIGN_LEFT] = 0, [ALIGN_CENTER] = width / 2, [ALIGN_RIGHT] = width};
+    const double left = text->x - before[text->align];
     char *copy = NULL;
     if (!page->letter)
-        page->letter = fonts_missing(page->fonts, text->text, text->bold);
+        page->letter = glyphs->missing;
     if (mem_strdup(&copy, text->text, NULL) != STATUS_OK) {
         page->failed = true;
         return;
@@ -138,6 +137,17 @@ void figure_add_text(FigurePage *page, const FigureText *text)
                                 .size_pt = text->size_pt,
                                 .text = copy}))
         free(copy);
+}
+
+void figure_add_text(FigurePage *page, const FigureText *text)
+{
+    Glyphs glyphs;
+    if (fonts_shape(page->fonts, text->text, text->bold, &glyphs, NULL) != STATUS_OK) {
+        page->failed = true;
+        return;
+    }
+    add_line_of_text(page, text, &glyphs);
+    glyphs_release(&glyphs);
 }
 
 Status figure_check(const FigurePage *page, Err *err)

@@ -158,6 +158,16 @@ test_failed_allocations_in_commands() {
     fail_here study plan.ini -o o --commands
 }
 
+# A PDF is cairo's, which is not safe from them.
+test_failed_allocations_in_pages() {
+    inputs
+    fail_each 5 one render ../tree.swc --size 121x115 --color-by flow --legend --scale-bar 20 --text-size 2 -o o.png
+    fail_each 9 one render ../tree.swc --size 21x15 --color-by flow --letter a --text-size 2 -o o.svg
+    printf '[figure]\nsize = 40x30\ntext-size = 2\n[panel a]\ngrow = --terminals 3\n[inset i]\nof = a
+        at = 0.5,0.5\nplace = 0.7,0.7\nwidth = 1\n[text t]\ntext = x\nat = 1,1\n' >r.ini
+    fail_each 7 one figure ../r.ini --dump-recipe -o o.png
+}
+
 test_failed_allocations_in_colormaps() {
     fail_each 3 one colormaps -o o.ppm
 }

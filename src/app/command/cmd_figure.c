@@ -280,12 +280,15 @@ static Status write_figure(Figure *figure, Err *err)
                              err);
 }
 
-static Status print_recipe(const Figure *figure, Err *err)
+/* The recipe is made first: what is written is not to be followed by a failure. */
+static Status write_and_print(Figure *figure, Err *err)
 {
     Text recipe = TEXT_INIT;
     text_puts(&recipe, "; " GENERATOR ": figure FILE -o F.pdf\n");
     figureplan_put(&figure->plan, figure->parsed, &recipe);
     Status status = text_check(&recipe, err);
+    if (status == STATUS_OK)
+        status = write_figure(figure, err);
     if (status == STATUS_OK)
         fputs(text_chars(&recipe), stdout);
     text_release(&recipe);
@@ -361,8 +364,7 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
     TRY(figure_place_panels(figure, err));
     TRY(madetrees_open(&figure->plan, options->output, &figure->trees, err));
     TRY(draw_in_folder(figure, recipe, err));
-    TRY(write_figure(figure, err));
-    return figure->parsed->common.dump ? print_recipe(figure, err) : STATUS_OK;
+    return figure->parsed->common.dump ? write_and_print(figure, err) : write_figure(figure, err);
 }
 
 static void figure_done(Figure *figure)

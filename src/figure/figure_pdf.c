@@ -1,0 +1,314 @@
+/* A page as PDF, through cairo: text as text, in subsets of the two fonts, and no date but one that
+ * is always the same. */
+#include "figure/fonts.h"
+
+#include <cairo-ft.h>
+#include <cairo-pdf.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { REGULAR, BOLD, FACES };
+
+/* What is drawn to: the context's unit is the mm. */
+typedef struct Canvas {
+    cairo_t *cairo;
+    cairo_font_face_t *face[FACES];
+    const FigurePage *page;
+} Canvas;
+
+static Status check(cairo_status_t failed, Err *err)
+{
+    if (failed == CAIRO_STATUS_SUCCESS)
+        return STATUS_OK;
+    if (failed == CAIRO_STATUS_NO_MEMORY || failed == CAIRO_STATUS_WRITE_ERROR)
+        return mem_out_of("for", "the page", err);
+    return err_set(err, STATUS_IO, "the page: %s", cairo_status_to_string(failed));
+}
+
+static void set_color(const Canvas *canvas, FigureColor color)
+{
+    cairo_set_source_rgb(canvas->cairo, color.rgb[0] / 255.0, color.rgb[1] / 255.0,
+                         color.rgb[2] / 255.0);
+}
+
+static void put_path(const Canvas *canvas, const FigureItem *item)
+{
+    set_color(canvas, item->color);
+    for (int i = 0; i < item->n; i++)
+        cairo_line_to(canvas->cairo, item->at[i].x, item->at[i].y);
+    if (item->closed || item->kind == FIGURE_SHAPE)
+        cairo_close_path(canvas->cairo);
+}
+
+static void put_ramp(const Canvas *canvas, const FigureItem *item)
+{
+    const FigureBox *box = &item->box;
+    cairo_pattern_t *ramp = item->upwards
+                                ? cairo_pattern_create_linear(0, box->bottom, 0, box->top)
+                                : cairo_pattern_create_linear(box->left, 0, box->right, 0);
+    for (int i = 0; i < FIGURE_STOPS; i++) {
+        const uint8_t *rgb = item->ramp[i].rgb;
+        cairo_pattern_add_color_stop_rgb(ramp, (double)i / (FIGURE_STOPS - 1), rgb[0] / 255.0,
+                                         rgb[1] / 255.0, rgb[2] / 255.0);
+    }
+    cairo_set_source(canvas->cairo, ramp);
+    cairo_rectangle(canvas->cairo, box->left, box->top, box->right - box->left,
+                    box->bottom - box->top);
+    cairo_fill(canvas->cairo);
+    cairo_pattern_destroy(ramp);
+}
+
+/* A cluster says which bytes of the text a glyph stands for, so that it can be searched. */
+static Status show_glyphs(const Canvas *canvas, const FigureItem *item, const Glyphs *glyphs,
+                          Err *err)
+{
+    const double size = item->size_pt * MM_PER_POINT;
+    cairo_glyph_t *glyph = NULL;
+    cairo_text_cluster_t *cluster = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&glyph, glyphs->n, sizeof *glyph, "letters", err));
+    TRY_GOTO(mem_calloc(&cluster, glyphs->n, sizeof *cluster, "letters", err));
+    for (size_t i = 0; i < glyphs->n; i++) {
+        const Glyph *from = &glyphs->glyph[i];
+        glyph[i] = (cairo_glyph_t){from->index, item->box.left + from->x * size, item->at[0].y};
+        cluster[i] = (cairo_text_cluster_t){from->bytes, 1};
+    }
+    cairo_set_font_face(canvas->cairo, canvas->face[item->bold ? BOLD : REGULAR]);
+    cairo_set_font_size(canvas->cairo, size);
+    cairo_show_text_glyphs(canvas->cairo, item->text, -1, glyph, (int)glyphs->n, cluster,
+                           (int)glyphs->n, 0);
+done:
+    free(glyph);
+    free(cluster);
+    return status;
+}
+
+static Status put_text(const Canvas *canvas, const FigureItem *item, Err *err)
+{
+    Glyphs glyphs;
+    TRY(fonts_shape(canvas->page->fonts, item->text, item->bold, &glyphs, err));
+    set_color(canvas, item->color);
+    Status status = show_glyphs(canvas, item, &glyphs, err);
+    glyphs_release(&glyphs);
+    return status;
+}
+
+static void put_strokes(const Canvas *canvas, const FigureItem *item)
+{
+    const Strokes *all = item->strokes;
+    cairo_save(canvas->cairo);
+    cairo_translate(canvas->cairo, item->at[0].x, item->at[0].y);
+    cairo_set_line_cap(canvas->cairo, CAIRO_LINE_CAP_ROUND);
+    cairo_set_line_join(canvas->cairo, CAIRO_LINE_JOIN_ROUND);
+    set_color(canvas, item->color);
+    for (size_t i = 0; i < all->n; i++) {
+        const Stroke *stroke = &all->strokes[i];
+        cairo_set_line_width(canvas->cairo, stroke->width_mm);
+        for (size_t k = 0; k < stroke->n; k++)
+            cairo_line_to(canvas->cairo, all->points[stroke->first + k][0],
+                          all->points[stroke->first + k][1]);
+        cairo_stroke(canvas->cairo);
+    }
+    cairo_restore(canvas->cairo);
+}
+
+static Status put_item(const Canvas *canvas, const FigureItem *item, Err *err)
+{
+    switch (item->kind) {
+    case FIGURE_SHAPE:
+        put_path(canvas, item);
+        cairo_fill(canvas->cairo);
+        break;
+    case FIGURE_LINE:
+        put_path(canvas, item);
+        cairo_set_line_width(canvas->cairo, item->width_mm);
+        cairo_stroke(canvas->cairo);
+        break;
+    case FIGURE_RAMP:
+        put_ramp(canvas, item);
+        break;
+    case FIGURE_TEXT:
+        return put_text(canvas, item, err);
+    case FIGURE_STROKES:
+        put_strokes(canvas, item);
+        break;
+    case FIGURE_PICTURE:
+        break;
+    }
+    return STATUS_OK;
+}
+
+/* Letters as they are: neither hinted nor moved. */
+static Status set_fonts(Canvas *canvas, Err *err)
+{
+    cairo_font_options_t *options = cairo_font_options_create();
+    cairo_status_t failed = cairo_font_options_status(options);
+    cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+    cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+    cairo_set_font_options(canvas->cairo, options);
+    cairo_font_options_destroy(options);
+    for (int i = 0; i < FACES; i++) {
+        canvas->face[i] = cairo_ft_font_face_create_for_ft_face(
+            fonts_face(canvas->page->fonts, i == BOLD), FT_LOAD_NO_HINTING);
+        if (failed == CAIRO_STATUS_SUCCESS)
+            failed = cairo_font_face_status(canvas->face[i]);
+    }
+    return check(failed, err);
+}
+
+/* The picture in cairo's form. */
+static Status make_surface(const Picture *picture, cairo_surface_t **out, Err *err)
+{
+    if (picture->width > FIGURE_PDF_SIDE || picture->height > FIGURE_PDF_SIDE)
+        return err_set(err, STATUS_USAGE,
+                       "a picture of %dx%d pixels is too large for a PDF, which takes %d a side: "
+                       "use .png or .tif",
+                       picture->width, picture->height, FIGURE_PDF_SIDE);
+    cairo_surface_t *surface =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture->width, picture->height);
+    TRY(check(cairo_surface_status(surface), err));
+    unsigned char *bytes = cairo_image_surface_get_data(surface);
+    int stride = cairo_image_surface_get_stride(surface);
+    for (int y = 0; y < picture->height; y++)
+        for (int x = 0; x < picture->width; x++) {
+            const uint8_t *rgb =
+                picture->codes8 + (size_t)y * picture_stride(picture) + 3 * (size_t)x;
+            uint32_t pixel = (uint32_t)rgb[0] << 16 | (uint32_t)rgb[1] << 8 | rgb[2];
+            memcpy(bytes + (size_t)y * (size_t)stride + 4 * (size_t)x, &pixel, sizeof pixel);
+        }
+    cairo_surface_mark_dirty(surface);
+    *out = surface;
+    return STATUS_OK;
+}
+
+/* Nearest: a viewer is not asked to smooth it. */
+static Status put_picture(const Canvas *canvas, const FigureItem *item, Err *err)
+{
+    cairo_surface_t *surface = NULL;
+    double pixel = MM_PER_INCH / canvas->page->dpi;
+    TRY(make_surface(item->picture, &surface, err));
+    cairo_save(canvas->cairo);
+    cairo_translate(canvas->cairo, item->box.left, item->box.top);
+    cairo_scale(canvas->cairo, pixel, pixel);
+    cairo_set_source_surface(canvas->cairo, surface, 0, 0);
+    cairo_pattern_set_filter(cairo_get_source(canvas->cairo), CAIRO_FILTER_NEAREST);
+    cairo_paint(canvas->cairo);
+    cairo_restore(canvas->cairo);
+    cairo_surface_destroy(surface);
+    return STATUS_OK;
+}
+
+static Status put_page(const Canvas *canvas, Err *err)
+{
+    const FigurePage *page = canvas->page;
+    set_color(canvas, page->background);
+    cairo_paint(canvas->cairo);
+    for (size_t i = 0; i < page->n; i++)
+        if (page->items[i].kind == FIGURE_PICTURE)
+            TRY(put_picture(canvas, &page->items[i], err));
+    for (size_t i = 0; i < page->n; i++)
+        TRY(put_item(canvas, &page->items[i], err));
+    return STATUS_OK;
+}
+
+static cairo_status_t take_bytes(void *bytes, const unsigned char *from, unsigned int n)
+{
+    text_append(bytes, (const char *)from, n);
+    return text_chars(bytes) ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+}
+
+/* Whether number `i` of the table of objects tells where object `i` begins. */
+static bool has_object(const Text *pdf, size_t table, size_t i)
+{
+    enum { ENTRY_BYTES = 20 };
+    const char *bytes = text_chars(pdf);
+    const size_t entry = table + i * ENTRY_BYTES;
+    char head[32];
+    if (entry + ENTRY_BYTES > pdf->length)
+        return false;
+    size_t at = strtoul(bytes + entry, NULL, 10), length;
+    length = (size_t)snprintf(head, sizeof head, "%zu 0 obj", i);
+    return at + length <= pdf->length && strncmp(bytes + at, head, length) == 0;
+}
+
+/* cairo 1.16 does not tell that memory has run out while it ended a page: then its table of objects
+ * is missing, or some of these are. */
+static bool is_whole(const Text *pdf)
+{
+    static const char begin[] = "startxref\n", end[] = "%%EOF\n";
+    const char *bytes = text_chars(pdf);
+    size_t at = pdf->length < 40 ? 0 : pdf->length - 40, n = 0;
+    int length = 0;
+    if (at == 0 || strcmp(bytes + pdf->length - strlen(end), end) != 0)
+        return false;
+    const char *last = memmem(bytes + at, pdf->length - at, begin, strlen(begin));
+    size_t table = last ? strtoul(last + strlen(begin), NULL, 10) : 0;
+    if (table == 0 || table >= pdf->length ||
+        sscanf(bytes + table, "xref\n0 %zu\n%n", &n, &length) != 1 || length == 0)
+        return false;
+    for (size_t i = 1; i < n; i++)
+        if (!has_object(pdf, table + (size_t)length, i))
+            return false;
+    return n > 1;
+}
+
+/* cairo would write today's. */
+static void set_notes(cairo_surface_t *pdf, const FigureNotes *notes)
+{
+    static const char date[] = "2000-01-01T00:00:00Z";
+    cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_TITLE, notes->description);
+    cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_SUBJECT, notes->command);
+    cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_CREATOR, notes->generator);
+    cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_CREATE_DATE, date);
+    cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_MOD_DATE, date);
+}
+
+/* What is drawn with a font, cairo keeps: the fonts are to outlive it, and it is given up here. */
+static void release_fonts(const Canvas *canvas)
+{
+    for (int i = 0; i < FACES; i++)
+        cairo_font_face_destroy(canvas->face[i]);
+    cairo_debug_reset_static_data();
+}
+
+static Status put_pdf(const FigurePage *page, const FigureNotes *notes, Text *bytes, Err *err)
+{
+    cairo_surface_t *pdf = cairo_pdf_surface_create_for_stream(
+        take_bytes, bytes, page->width_mm / MM_PER_POINT, page->height_mm / MM_PER_POINT);
+    Canvas canvas = {.cairo = cairo_create(pdf), .page = page};
+    set_notes(pdf, notes);
+    cairo_scale(canvas.cairo, 1 / MM_PER_POINT, 1 / MM_PER_POINT);
+    Status status = set_fonts(&canvas, err);
+    if (status == STATUS_OK)
+        status = put_page(&canvas, err);
+    cairo_show_page(canvas.cairo);
+    cairo_status_t failed = cairo_status(canvas.cairo);
+    cairo_destroy(canvas.cairo);
+    cairo_surface_finish(pdf);
+    if (failed == CAIRO_STATUS_SUCCESS)
+        failed = cairo_surface_status(pdf);
+    cairo_surface_destroy(pdf);
+    release_fonts(&canvas);
+    TRY(status);
+    TRY(check(failed, err));
+    return is_whole(bytes) ? STATUS_OK : mem_out_of("for", "the page", err);
+}
+
+Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, const char *path,
+                        Err *err)
+{
+    Text bytes = TEXT_INIT;
+    Status status = put_pdf(page, notes, &bytes, err);
+    if (status == STATUS_OK)
+        status = file_write_text(path, &bytes, err);
+    text_release(&bytes);
+    return status;
+}
+
+void figure_put_libraries(Text *text)
+{
+    text_printf(text, "FreeType %d.%d.%d, cairo %s", FREETYPE_MAJOR, FREETYPE_MINOR, FREETYPE_PATCH,
+                cairo_version_string());
+}

@@ -1,0 +1,318 @@
+/* FreeType's rasterizer fills letters, polygons and lines alike: outlines in, spans of exact
+ * coverage out, which are blended into the rows at once, whatever part of the page these are. Boxes
+ * and lines along the grid keep to whole pixels, so that they are sharp; a ramp has the colour of
+ * each pixel's middle. Lines are polygons themselves, one for each of their parts. */
+#include "figure/fonts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include FT_OUTLINE_H
+#include FT_STROKER_H
+
+/* Rows of the page that are drawn on. Outlines are in 1/64 pixels, x to the right and y up from the
+ * upper left corner of `left`, `top`, as spans have short places. */
+typedef struct Target {
+    const FigurePage *page;
+    Picture *rows;
+    int first; /* row of the page */
+    int left, top;
+    const uint8_t *color;
+} Target;
+
+static double pixels_of(const Target *target, double mm)
+{
+    return mm / MM_PER_INCH * target->page->dpi;
+}
+
+/* Lays a colour of 8 bits over a pixel that it covers by `alpha` of 255. */
+static void blend(Picture *rows, size_t pixel, const uint8_t color[3], unsigned alpha)
+{
+    const unsigned scale = rows->bits == 8 ? 1 : 257;
+    for (size_t c = 0; c < 3; c++) {
+        unsigned below = picture_code(rows, 3 * pixel + c);
+        unsigned sum = color[c] * scale * alpha + below * (255 - alpha);
+        picture_set(rows, 3 * pixel + c, (uint16_t)((sum + 127) / 255));
+    }
+}
+
+/* ---- outlines -------------------------------------------------------------------------------- */
+
+static void take_spans(int y, int count, const FT_Span *spans, void *user)
+{
+    const Target *target = user;
+    const int row = target->top - 1 - y - target->first;
+    if (row < 0 || row >= target->rows->height)
+        return;
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < spans[i].len; k++) {
+            int column = target->left + spans[i].x + k;
+            if (column >= 0 && column < target->rows->width)
+                blend(target->rows, (size_t)row * (size_t)target->rows->width + (size_t)column,
+                      target->color, spans[i].coverage);
+        }
+}
+
+static Status fill(Target *target, FT_Outline *outline, Err *err)
+{
+    FT_Raster_Params params = {.source = outline,
+                               .flags = FT_RASTER_FLAG_AA | FT_RASTER_FLAG_DIRECT,
+                               .gray_spans = take_spans,
+                               .user = target};
+    if (FT_Outline_Render(fonts_library(target->page->fonts), outline, &params))
+        return mem_out_of("for", "the page", err);
+    return STATUS_OK;
+}
+
+/* In pixels of the page. */
+static FT_Vector vector_of(const Target *target, double x, double y)
+{
+    return (FT_Vector){lround(64 * (x - target->left)), lround(64 * (target->top - y))};
+}
+
+static Status fill_polygon(Target *target, const FigurePoint *corner, int n, Err *err)
+{
+    FT_Vector points[FIGURE_CORNERS];
+    char on[FIGURE_CORNERS];
+    short end = (short)(n - 1);
+    for (int i = 0; i < n; i++) {
+        points[i] = vector_of(target, corner[i].x, corner[i].y);
+        on[i] = FT_CURVE_TAG_ON;
+    }
+    FT_Outline outline = {
+        .n_contours = 1, .n_points = (short)n, .points = points, .tags = on, .contours = &end};
+    return fill(target, &outline, err);
+}
+
+/* ---- items ----------------------------------------------------------------------------------- */
+
+static bool is_box(const FigureItem *item)
+{
+    return item->n == 4 && item->at[0].x == item->at[3].x && item->at[1].x == item->at[2].x &&
+           item->at[0].y == item->at[1].y && item->at[2].y == item->at[3].y;
+}
+
+static Status draw_shape(Target *target, const FigureItem *item, Err *err)
+{
+    FigurePoint corner[FIGURE_CORNERS];
+    for (int i = 0; i < item->n; i++) {
+        double x = pixels_of(target, item->at[i].x), y = pixels_of(target, item->at[i].y);
+        corner[i] = is_box(item) ? (FigurePoint){round(x), round(y)} : (FigurePoint){x, y};
+    }
+    return fill_polygon(target, corner, item->n, err);
+}
+
+/* A part of a line with square ends. */
+static Status draw_stroke(Target *target, FigurePoint from, FigurePoint to, double width, Err *err)
+{
+    double x = to.x - from.x, y = to.y - from.y, length = hypot(x, y);
+    if (!(length > 0))
+        return STATUS_OK;
+    x *= width / 2 / length;
+    y *= width / 2 / length;
+    const FigurePoint corner[] = {{from.x - x - y, from.y - y + x},
+                                  {to.x + x - y, to.y + y + x},
+                                  {to.x + x + y, to.y + y - x},
+                                  {from.x - x + y, from.y - y - x}};
+    return fill_polygon(target, corner, 4, err);
+}
+
+/* A line of a whole number of pixels, at least one; along the grid its edges are those of pixels.
+ */
+static Status draw_line(Target *target, const FigureItem *item, Err *err)
+{
+    const double width = fmax(1, round(pixels_of(target, item->width_mm)));
+    const double half = fmod(width, 2) / 2;
+    const bool along =
+        is_box(item) ||
+        (item->n == 2 && (item->at[0].x == item->at[1].x || item->at[0].y == item->at[1].y));
+    FigurePoint at[FIGURE_CORNERS];
+    for (int i = 0; i < item->n; i++) {
+        double x = pixels_of(target, item->at[i].x), y = pixels_of(target, item->at[i].y);
+        at[i] = along ? (FigurePoint){round(x - half) + half, round(y - half) + half}
+                      : (FigurePoint){x, y};
+    }
+    for (int i = 0; i + 1 < item->n + item->closed; i++)
+        TRY(draw_stroke(target, at[i], at[(i + 1) % item->n], width, err));
+    return STATUS_OK;
+}
+
+static void draw_ramp(Target *target, const FigureItem *item)
+{
+    const int left = (int)round(pixels_of(target, item->box.left));
+    const int right = (int)round(pixels_of(target, item->box.right));
+    const int top = (int)round(pixels_of(target, item->box.top));
+    const int bottom = (int)round(pixels_of(target, item->box.bottom));
+    for (int y = 0; y < target->rows->height; y++)
+        for (int x = left < 0 ? 0 : left; x < right && x < target->rows->width; x++) {
+            int row = target->first + y;
+            double place = item->upwards ? (bottom - row - 0.5) / (bottom - top)
+                                         : (x + 0.5 - left) / (right - left);
+            if (row < top || row >= bottom)
+                continue;
+            double stop = place * (FIGURE_STOPS - 1);
+            int i = (int)fmin(stop, FIGURE_STOPS - 2);
+            uint8_t color[3];
+            for (int c = 0; c < 3; c++) {
+                double a = item->ramp[i].rgb[c], b = item->ramp[i + 1].rgb[c];
+                color[c] = (uint8_t)lround(a + (stop - i) * (b - a));
+            }
+            blend(target->rows, (size_t)y * (size_t)target->rows->width + (size_t)x, color, 255);
+        }
+}
+
+/* The glyph's outline is FreeType's own, until the next one is loaded: its points are moved to
+ * their places. */
+static Status draw_glyph(Target *target, FT_Face face, const Glyph *glyph, FigurePoint at,
+                         double size, Err *err)
+{
+    if (FT_Load_Glyph(face, glyph->index, FT_LOAD_NO_SCALE))
+        return mem_out_of("for", "letters", err);
+    FT_Outline *outline = &face->glyph->outline;
+    const double scale = size / face->units_per_EM;
+    for (int i = 0; i < outline->n_points; i++) {
+        FT_Vector *point = &outline->points[i];
+        *point = vector_of(target, at.x + glyph->x * size + (double)point->x * scale,
+                           at.y - (double)point->y * scale);
+    }
+    return fill(target, outline, err);
+}
+
+static Status draw_text(Target *target, const FigureItem *item, Err *err)
+{
+    const FigureFonts *fonts = target->page->fonts;
+    const FigurePoint at = {pixels_of(target, item->box.left), pixels_of(target, item->at[0].y)};
+    const double size = pixels_of(target, item->size_pt * MM_PER_POINT);
+    Glyphs glyphs;
+    TRY(fonts_shape(fonts, item->text, item->bold, &glyphs, err));
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < glyphs.n && status == STATUS_OK; i++)
+        status = draw_glyph(target, fonts_face(fonts, item->bold), &glyphs.glyph[i], at, size, err);
+    glyphs_release(&glyphs);
+    return status;
+}
+
+/* ---- strokes --------------------------------------------------------------------------------- */
+
+enum { STROKE_POINTS = 256 }; /* at once: an outline has a short number of points */
+
+/* The outline of a part of a stroke, whose points are mm on its paper. */
+static FT_Error stroke_outline(Target *target, FT_Stroker stroker, FigurePoint at,
+                               const double (*point)[2], size_t n, FT_Outline *outline)
+{
+    FT_UInt points, contours;
+    FT_Error failed = FT_Err_Ok;
+    target->left = (int)floor(pixels_of(target, at.x + point[0][0]));
+    target->top = (int)floor(pixels_of(target, at.y + point[0][1]));
+    FT_Stroker_Rewind(stroker);
+    for (size_t i = 0; i < n && !failed; i++) {
+        FT_Vector to = vector_of(target, pixels_of(target, at.x + point[i][0]),
+                                 pixels_of(target, at.y + point[i][1]));
+        failed = i ? FT_Stroker_LineTo(stroker, &to) : FT_Stroker_BeginSubPath(stroker, &to, 1);
+    }
+    if (!failed)
+        failed = FT_Stroker_EndSubPath(stroker);
+    if (!failed)
+        failed = FT_Stroker_GetCounts(stroker, &points, &contours);
+    if (!failed)
+        failed =
+            FT_Outline_New(fonts_library(target->page->fonts), points, (FT_Int)contours, outline);
+    if (failed)
+        return failed;
+    outline->n_points = outline->n_contours = 0;
+    FT_Stroker_Export(stroker, outline);
+    return FT_Err_Ok;
+}
+
+static Status draw_stroke_part(Target *target, FT_Stroker stroker, FigurePoint at,
+                               const double (*point)[2], size_t n, Err *err)
+{
+    FT_Outline outline;
+    if (stroke_outline(target, stroker, at, point, n, &outline))
+        return mem_out_of("for", "lines", err);
+    Status status = fill(target, &outline, err);
+    FT_Outline_Done(fonts_library(target->page->fonts), &outline);
+    return status;
+}
+
+static Status draw_strokes(Target *target, const FigureItem *item, Err *err)
+{
+    const Strokes *all = item->strokes;
+    FT_Stroker stroker;
+    Status status = STATUS_OK;
+    if (FT_Stroker_New(fonts_library(target->page->fonts), &stroker))
+        return mem_out_of("for", "lines", err);
+    for (size_t i = 0; i < all->n && status == STATUS_OK; i++) {
+        const Stroke *stroke = &all->strokes[i];
+        FT_Stroker_Set(stroker, lround(32 * pixels_of(target, stroke->width_mm)),
+                       FT_STROKER_LINECAP_ROUND, FT_STROKER_LINEJOIN_ROUND, 0);
+        for (size_t k = 0; k + 1 < stroke->n && status == STATUS_OK; k += STROKE_POINTS - 1) {
+            size_t n = stroke->n - k < STROKE_POINTS ? stroke->n - k : STROKE_POINTS;
+            status =
+                draw_stroke_part(target, stroker, item->at[0],
+                                 (const double(*)[2]) & all->points[stroke->first + k], n, err);
+        }
+    }
+    FT_Stroker_Done(stroker);
+    return status;
+}
+
+static void draw_picture(const Target *target, const FigureItem *item)
+{
+    const Picture *picture = item->picture;
+    Picture *rows = target->rows;
+    int columns = picture->width;
+    if (columns > rows->width - item->column)
+        columns = rows->width - item->column;
+    for (int y = 0; y < picture->height; y++) {
+        int row = item->row + y - target->first;
+        if (row < 0 || row >= rows->height)
+            continue;
+        size_t to = (size_t)row * picture_stride(rows) + 3 * (size_t)item->column;
+        for (size_t i = 0; i < 3 * (size_t)columns; i++) {
+            uint16_t code = picture_code(picture, (size_t)y * picture_stride(picture) + i);
+            picture_set(rows, to + i, rows->bits == 8 ? code : (uint16_t)(code * 257));
+        }
+    }
+}
+
+static Status draw_item(Target *target, const FigureItem *item, Err *err)
+{
+    target->color = item->color.rgb;
+    target->left = (int)floor(pixels_of(target, item->box.left)) - 1;
+    target->top = (int)floor(pixels_of(target, item->box.top)) - 1;
+    switch (item->kind) {
+    case FIGURE_SHAPE:
+        return draw_shape(target, item, err);
+    case FIGURE_LINE:
+        return draw_line(target, item, err);
+    case FIGURE_TEXT:
+        return draw_text(target, item, err);
+    case FIGURE_STROKES:
+        return draw_strokes(target, item, err);
+    case FIGURE_RAMP:
+        draw_ramp(target, item);
+        break;
+    case FIGURE_PICTURE:
+        break;
+    }
+    return STATUS_OK;
+}
+
+/* Whether the item may have a pixel in the rows; snapping moves it by one at most. */
+static bool meets(const Target *target, const FigureItem *item)
+{
+    return pixels_of(target, item->box.bottom) + 2 > target->first &&
+           pixels_of(target, item->box.top) - 2 < target->first + target->rows->height;
+}
+
+Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err)
+{
+    Target target = {.page = page, .rows = rows, .first = first};
+    for (size_t i = 0; i < page->n; i++)
+        if (page->items[i].kind == FIGURE_PICTURE)
+            draw_picture(&target, &page->items[i]);
+    for (size_t i = 0; i < page->n; i++)
+        if (meets(&target, &page->items[i]))
+            TRY(draw_item(&target, &page->items[i], err));
+    return STATUS_OK;
+}
