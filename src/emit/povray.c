@@ -314,6 +314,7 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     add_float(&values, "background_red", scene->view.background.r);
     add_float(&values, "background_green", scene->view.background.g);
     add_float(&values, "background_blue", scene->view.background.b);
+    text_puts(add_value(&values, "background_transmit"), scene->view.transparent ? "1" : "0");
     add_number(&values, "depth_near", near_mm);
     add_number(&values, "depth_far", far_mm);
     add_part(&values, "lights", put_lights, geometry);
@@ -425,6 +426,8 @@ Status povray_write_settings(const EmitParams *params, Text *out, Err *err)
     text_puts(add_value(&values, "method"), adaptive ? "2" : "1");
     text_puts(add_value(&values, "threshold"), adaptive ? "0.1" : "0");
     text_printf(add_value(&values, "depth"), "%d", adaptive ? 3 : params->antialias);
+    text_puts(add_value(&values, "alpha"),
+              params->scene->view.transparent ? "Output_Alpha=on\n" : "");
     EmitParams all = *params;
     add_part(&values, "frames", put_frame_settings, &all);
     return values_expand(&values, params, "povray/scene.ini", out, err);

@@ -97,6 +97,22 @@ Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encodin
     return STATUS_OK;
 }
 
+Status picture_from_transparent(Picture *picture, const Plane *plane, const Plane *alpha,
+                                Encoding encoding, int bits, Err *err)
+{
+    TRY(picture_init(picture, plane->width, plane->height, 4, bits, err));
+    picture->gamma = encoding == ENCODING_LINEAR ? 1 : 0;
+    const size_t n = (size_t)plane->width * (size_t)plane->height;
+    for (size_t i = 0; i < n; i++) {
+        float part = alpha->values[i];
+        for (size_t c = 0; c < 3 && part > 0; c++)
+            picture_set(picture, 4 * i + c,
+                        image_code(plane->values[3 * i + c] / part, encoding, bits));
+        picture_set(picture, 4 * i + 3, image_code(part, ENCODING_LINEAR, bits));
+    }
+    return STATUS_OK;
+}
+
 static float decode(float encoded, double gamma)
 {
     return gamma == 0   ? srgb_decode(encoded)

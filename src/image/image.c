@@ -63,7 +63,7 @@ Status plane_init(Plane *plane, int width, int height, int channels, Err *err)
 
 Status picture_init(Picture *picture, int width, int height, int channels, int bits, Err *err)
 {
-    assert(channels == 1 || channels == 3);
+    assert(channels == 1 || channels == 3 || channels == 4);
     assert(bits == 8 || bits == 16);
     Picture made = {.width = width, .height = height, .channels = channels, .bits = bits};
     if (bits == 8)
@@ -146,6 +146,7 @@ Status plane_drop_alpha(Plane *plane, const char *name, Err *err)
 void frame_release(Frame *frame)
 {
     plane_release(&frame->color);
+    plane_release(&frame->alpha);
     picture_release(&frame->codes);
     plane_release(&frame->depth);
     plane_release(&frame->normal);

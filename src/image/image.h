@@ -24,7 +24,8 @@ typedef struct Plane {
 
 /* Integer codes of 8 or 16 bits, each kept in as many. */
 typedef struct Picture {
-    int width, height, channels; /* channels 1 (grey) or 3 (red green blue) */
+    int width, height, channels; /* channels 1 (grey), 3 (red green blue) or, to be written,
+                                  * 4: with alpha */
     int bits;                    /* 8 or 16 */
     double gamma;                /* 0: sRGB's codes; else code / largest code = linear^gamma */
     uint8_t *codes8;             /* owned; width * height * channels of 8 bits, else NULL */
@@ -115,6 +116,10 @@ static inline uint8_t srgb_code(const SrgbCodes *codes, float linear)
 /* New picture of a colour plane (1 or 3 channels), its gamma 0 or 1. */
 MUST_CHECK Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encoding,
                                      int bits, Err *err);
+/* New picture of 4 channels: the colours of a plane that is multiplied by `alpha`, without that,
+ * and alpha, linear. Where alpha is 0 all four are 0. */
+MUST_CHECK Status picture_from_transparent(Picture *picture, const Plane *plane, const Plane *alpha,
+                                           Encoding encoding, int bits, Err *err);
 /* The linear colours of a picture, as its gamma says. */
 MUST_CHECK Status plane_from_picture(Plane *plane, const Picture *picture, Err *err);
 /* The same colours in sRGB's codes. */
@@ -174,7 +179,8 @@ typedef struct ImageChannel {
 /* What is to be written. */
 typedef struct ImageForm {
     int width, height;
-    int channels;            /* 1 or 3; of an OpenEXR file with `named` as many as that has */
+    int channels;            /* 1, 3 or, of PNG and TIFF, 4: with alpha, not multiplied; of an
+                              * OpenEXR file with `named` as many as that has */
     int bits;                /* 8 or 16: codes; 32: floats */
     Encoding encoding;       /* of codes */
     const ImageNotes *notes; /* borrowed; may be NULL */
@@ -272,7 +278,8 @@ MUST_CHECK Status plane_write_packed(const Plane *plane, const char *path, Image
 /* What a renderer delivers, or what is read back from another's files. Planes that were not asked
  * for have NULL values. */
 typedef struct Frame {
-    Plane color;   /* linear */
+    Plane color;   /* linear; where there is an alpha plane, times alpha */
+    Plane alpha;   /* part of the pixel that is covered, 0 to 1; of transparent views */
     Picture codes; /* 8-bit sRGB codes in its place, if they suffice and the renderer chose so */
     Plane depth;   /* mm */
     Plane normal;  /* unit, world, towards the viewer */

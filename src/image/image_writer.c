@@ -95,6 +95,10 @@ static Status choose_encoder(const char *path, const ImageForm *form, const RowE
         return err_set(err, STATUS_USAGE,
                        "%s: the extension of a picture must be .ppm, .pgm, .png, .tif or .jpg",
                        path);
+    if (form->channels == 4 && *encoder != &png_encoder && *encoder != &tiff_encoder &&
+        !form->named)
+        return err_set(err, STATUS_USAGE, "%s: a transparent picture must be .png, .tif or .exr",
+                       path);
     if (*encoder == &pgm_encoder && form->channels != 1)
         return err_set(err, STATUS_USAGE,
                        "%s: a colour picture cannot be a .pgm; use .ppm, .png, .tif or .jpg", path);

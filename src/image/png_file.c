@@ -271,6 +271,13 @@ static void set_provenance(Writer *self, const ImageNotes *notes)
 
 enum { MANY_ROWS = 6000 };
 
+static int color_type(int channels)
+{
+    return channels == 1   ? PNG_COLOR_TYPE_GRAY
+           : channels == 3 ? PNG_COLOR_TYPE_RGB
+                           : PNG_COLOR_TYPE_RGB_ALPHA;
+}
+
 static void write_header(Writer *self)
 {
     const ImageForm *form = &self->form;
@@ -282,8 +289,8 @@ static void write_header(Writer *self)
                    form->height < MANY_ROWS ? PNG_FILTER_NONE : PNG_FILTER_UP);
     png_set_user_limits(self->png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);
     png_set_IHDR(self->png, self->info, (png_uint_32)form->width, (png_uint_32)form->height,
-                 form->bits, form->channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+                 form->bits, color_type(form->channels), PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (form->encoding == ENCODING_SRGB)
         png_set_sRGB(self->png, self->info, PNG_sRGB_INTENT_PERCEPTUAL);
     else

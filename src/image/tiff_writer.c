@@ -54,8 +54,10 @@ static bool set_notes(TIFF *handle, const ImageNotes *notes, const char *descrip
 
 static bool set_fields(const Writer *self)
 {
-    static const uint16_t photometric[] = {
-        [1] = PHOTOMETRIC_MINISBLACK, [3] = PHOTOMETRIC_RGB, [4] = PHOTOMETRIC_SEPARATED};
+    const bool press = self->form->packing.inks;
+    const uint16_t photometric[] = {[1] = PHOTOMETRIC_MINISBLACK,
+                                    [3] = PHOTOMETRIC_RGB,
+                                    [4] = press ? PHOTOMETRIC_SEPARATED : PHOTOMETRIC_RGB};
     static const uint16_t compression[] = {[IMAGE_LZW] = COMPRESSION_LZW,
                                            [IMAGE_DEFLATE] = COMPRESSION_ADOBE_DEFLATE,
                                            [IMAGE_UNCOMPRESSED] = COMPRESSION_NONE};
@@ -73,8 +75,11 @@ static bool set_fields(const Writer *self)
                TIFFSetField(handle, TIFFTAG_COMPRESSION, compression[form->packing.compression]);
     if (form->packing.compression != IMAGE_UNCOMPRESSED)
         set = set && TIFFSetField(handle, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
-    if (form->channels == 4)
+    if (press)
         set = set && TIFFSetField(handle, TIFFTAG_INKSET, INKSET_CMYK);
+    else if (form->channels == 4)
+        set = set && TIFFSetField(handle, TIFFTAG_EXTRASAMPLES, 1,
+                                  (const uint16_t[]){EXTRASAMPLE_UNASSALPHA});
     if (self->profile.size > 0)
         set = set && TIFFSetField(handle, TIFFTAG_ICCPROFILE, (uint32_t)self->profile.size,
                                   self->profile.bytes);

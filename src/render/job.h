@@ -57,8 +57,8 @@ typedef struct RenderParams {
         least_px; /* likewise: vessels are drawn at least so wide, from 0 to 64; 0: as they are */
     const CellParams *povray_cells; /* an isosurface is drawn where POV-Ray's root finder sees it in
                                      * these cells; NULL: where it is, by proof */
-    bool
-        codes_suffice; /* the frame may have 8-bit codes instead of colours, where that is faster */
+    bool codes_suffice; /* the frame may have 8-bit codes instead of colours, where that is faster,
+                         * and of transparent views the background */
     bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
     void (*progress)(double fraction, void *context);  /* called by one thread; may be NULL */
     void *progress_context;

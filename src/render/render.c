@@ -544,8 +544,8 @@ static Status covered_rows(Renderer *renderer, const View *view, const Appearanc
     return status;
 }
 
-Status renderer_rows(Renderer *renderer, const View *view, const Appearance *appearance, int first,
-                     int rows, Frame *frame, Err *err)
+static Status opaque_rows(Renderer *renderer, const View *view, const Appearance *appearance,
+                          int first, int rows, Frame *frame, Err *err)
 {
     assert(first >= 0 && rows > 0 && first + rows <= view->camera.height &&
            first % RENDER_BAND_STEP == 0);
@@ -556,6 +556,49 @@ Status renderer_rows(Renderer *renderer, const View *view, const Appearance *app
     if (covers && renderer->rest)
         return covered_rows(renderer, view, appearance, first, rows, frame, err);
     return sampled_rows(renderer, view, appearance, first, rows, frame, err);
+}
+
+/* ---- what is transparent --------------------------------------------------------------------- */
+
+/* The part of each pixel that its background has no share in, of pictures over black and white. */
+static Status find_alpha(Frame *over_black, const Frame *over_white, Err *err)
+{
+    const Plane *black = &over_black->color, *white = &over_white->color;
+    Plane *alpha = &over_black->alpha;
+    TRY(plane_init(alpha, black->width, black->height, 1, err));
+    for (size_t i = 0; i < (size_t)black->width * (size_t)black->height; i++)
+        alpha->values[i] = 1 - (white->values[3 * i + 1] - black->values[3 * i + 1]);
+    return STATUS_OK;
+}
+
+/* Whatever the engine and the effects, a pixel's colour is that of what is drawn plus its
+ * background's, linear, times the part that is left: two backgrounds tell both. */
+static Status transparent_rows(Renderer *renderer, const View *view, const Appearance *appearance,
+                               int first, int rows, Frame *frame, Err *err)
+{
+    View over = *view;
+    Frame black = {0}, white = {0};
+    Status status;
+    over.background = (Rgb){0, 0, 0};
+    TRY_GOTO(opaque_rows(renderer, &over, appearance, first, rows, &black, err));
+    over.background = (Rgb){1, 1, 1};
+    TRY_GOTO(opaque_rows(renderer, &over, appearance, first, rows, &white, err));
+    TRY_GOTO(find_alpha(&black, &white, err));
+    *frame = black;
+    black = (Frame){0};
+done:
+    frame_release(&black);
+    frame_release(&white);
+    return status;
+}
+
+Status renderer_rows(Renderer *renderer, const View *view, const Appearance *appearance, int first,
+                     int rows, Frame *frame, Err *err)
+{
+    const RenderParams *params = &renderer->params;
+    const bool transparent = view->transparent && params->want_color && !params->codes_suffice;
+    return (transparent ? transparent_rows : opaque_rows)(renderer, view, appearance, first, rows,
+                                                          frame, err);
 }
 
 Status render(const Scene *scene, const RenderParams *params, Frame *frame, RenderStats *stats,

@@ -30,10 +30,10 @@ void renderer_free(Renderer *renderer);
  *
  * What the view needs of the geometry is prepared with its first rows and kept for the next ones as
  * long as camera and lights, bit by bit, and antialiasing stay the same. Another appearance, ground
- * or background costs its pixels alone. Neither view nor appearance is kept. Not to be called by
- * two threads at once. STATUS_MEMORY when the planes do not fit; STATUS_USAGE when the method
- * cannot draw this view (RENDER_ZBUFFER from among the vessels, RENDER_RASTER of more than 524,280
- * pixels a side). */
+ * or background costs its pixels alone, a transparent view, whose frame has alpha, twice. Neither
+ * view nor appearance is kept. Not to be called by two threads at once. STATUS_MEMORY when the
+ * planes do not fit; STATUS_USAGE when the method cannot draw this view (RENDER_ZBUFFER from among
+ * the vessels, RENDER_RASTER of more than 524,280 pixels a side). */
 MUST_CHECK Status renderer_rows(Renderer *renderer, const View *view, const Appearance *appearance,
                                 int first, int rows, Frame *frame, Err *err);
 

@@ -102,7 +102,8 @@ typedef struct View {
     Light lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
     Ground ground;
-    Rgb background; /* the paper */
+    Rgb background;   /* the paper */
+    bool transparent; /* there is none; `background` is for those who cannot leave it out */
     Effects effects;
 } View;
 

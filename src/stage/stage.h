@@ -123,6 +123,7 @@ typedef struct ViewParams {
     int room[2];      /* pixels at the right edge and the lower one that framing leaves free; of a
                        * perspective picture at the edges across from them, too */
     bool shadows;     /* whether lights cast them */
+    bool transparent; /* as in View */
 } ViewParams;
 
 /* front, orthographic, 1000 x 1000, 30 degrees, margin 0.05, of what is drawn. */

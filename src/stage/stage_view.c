@@ -297,6 +297,7 @@ Status stage_view(const Look *look, const ViewParams *params, const Geometry *ge
 {
     const Subject subject = subject_of(params, geometry);
     View made = {.background = look->background,
+                 .transparent = params->transparent,
                  .camera = {.projection = params->projection,
                             .width = params->width,
                             .height = params->height}};

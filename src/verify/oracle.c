@@ -86,13 +86,14 @@ static Status make_arguments(const OracleParams *params, const char *scene, cons
     } else {
         TRY(add_argument(arguments, err, "-A"));
     }
+    TRY(add_argument(arguments, err, color && params->alpha ? "+UA" : "-UA"));
     if (params->clock > 0) {
         char clock[NUMBER_TEXT_SIZE];
         TRY(add_argument(arguments, err, "+K%s", number_text(params->clock, clock)));
     }
     if (params->threads > 0)
         TRY(add_argument(arguments, err, "+WT%d", params->threads));
-    static const char *const always[] = {"+Q9", "-UA", "-TH", "-C", "-D", "+GW", "+V"};
+    static const char *const always[] = {"+Q9", "-TH", "-C", "-D", "+GW", "+V"};
     for (size_t i = 0; i < sizeof always / sizeof *always; i++)
         TRY(add_argument(arguments, err, "%s", always[i]));
     return STATUS_OK;
@@ -352,7 +353,7 @@ static bool is_whole_picture(const char *path, const OracleParams *params)
 {
     static const unsigned char begin[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
     static const unsigned char end[] = "\0\0\0\0IEND\xae\x42\x60\x82";
-    enum { BEGIN = sizeof begin - 1, HEADER = BEGIN + 10, END = sizeof end - 1, RGB = 2 };
+    enum { BEGIN = sizeof begin - 1, HEADER = BEGIN + 10, END = sizeof end - 1, RGB = 2, RGBA = 6 };
     unsigned char header[HEADER] = {0}, tail[END] = {0};
     struct stat about;
     FILE *file = lstat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
@@ -365,7 +366,7 @@ static bool is_whole_picture(const char *path, const OracleParams *params)
     for (int i = 0; i < 8; i++)
         read = read && header[BEGIN + i] == (sides[i / 4] >> (24 - 8 * (i % 4)) & 255);
     return read && memcmp(header, begin, BEGIN) == 0 && header[BEGIN + 8] == bits_of(params) &&
-           header[BEGIN + 9] == RGB && memcmp(tail, end, END) == 0;
+           header[BEGIN + 9] == (params->alpha ? RGBA : RGB) && memcmp(tail, end, END) == 0;
 }
 
 static Status judge(const OracleParams *params, const Text *log, int exit_status,
@@ -382,8 +383,9 @@ static Status judge(const OracleParams *params, const Text *log, int exit_status
     if (exit_status == 0)
         return err_set(err, STATUS_TOOL,
                        "POV-Ray ended without a picture of %s: no whole PNG of %d x %d pixels of "
-                       "3 x %d bits",
-                       params->scene, params->width, params->height, bits_of(params));
+                       "%d x %d bits",
+                       params->scene, params->width, params->height, params->alpha ? 4 : 3,
+                       bits_of(params));
     reason_of_failure(log, file_name(params->scene), reason, sizeof reason);
     return err_set(err, STATUS_TOOL, "POV-Ray failed on %s (exit status %d): %s", params->scene,
                    exit_status, reason[0] ? reason : "it gave no reason");

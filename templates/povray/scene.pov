@@ -62,7 +62,7 @@ camera {
 #ifndef (Background_Red)      #declare Background_Red      = ${background_red}; #end // linear
 #ifndef (Background_Green)    #declare Background_Green    = ${background_green}; #end
 #ifndef (Background_Blue)     #declare Background_Blue     = ${background_blue}; #end
-#ifndef (Background_Transmit) #declare Background_Transmit = 0; #end
+#ifndef (Background_Transmit) #declare Background_Transmit = ${background_transmit}; #end
 #ifndef (Background_Color)
   #declare Background_Color = rgbt <Background_Red, Background_Green, Background_Blue, Background_Transmit>;
 #end

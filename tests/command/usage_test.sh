@@ -161,7 +161,7 @@ test_lists_hold_what_options_take() {
         run_ok corcast render --exact tree.swc --quiet --size 16x12 --color-by "$name" -o picture.ppm
     done
     for name in $(corcast looks | cut -f 1); do
-        run_ok corcast render --exact tree.swc --quiet --size 16x12 --look "$name" -o picture.ppm
+        run_ok corcast render --antialias 1 tree.swc --quiet --size 16x12 --look "$name" -o picture.ppm
     done
     for name in $(corcast colormaps | cut -f 1); do
         run_ok corcast render --exact tree.swc --quiet --size 16x12 --color-by level --colormap "$name" -o picture.ppm

@@ -32,6 +32,7 @@ typedef struct PovrayOptions {
     PictureSize size;
     bool has_size;
     int antialias, bits;
+    bool alpha;
     OraclePlane plane;
 } PovrayOptions;
 
@@ -61,6 +62,10 @@ static const Option own[] = {
      .range = &bits_range,
      .argument = "8|16",
      .help = "of the colours: 8, sRGB, or 16, linear"},
+    {.name = "alpha",
+     SETS(FLAG, PovrayOptions, alpha),
+     .group = GROUP_LIGHT,
+     .help = "transparent where the scene's background is: of a scene of --background none"},
     {.name = "plane",
      SETS(CHOICE, PovrayOptions, plane),
      .choices = planes,
@@ -79,6 +84,7 @@ static Status check(PovrayOptions *options, const Parsed *parsed, Err *err)
     bool color = options->plane == ORACLE_COLOR;
     const OptionNeed needs[] = {{"antialias", color, "is for --plane color"},
                                 {"bits", color, "is for --plane color"},
+                                {"alpha", color, "is for --plane color"},
                                 {"dpi", size_is_on_paper(&options->size), NEEDS_PAPER},
                                 {0}};
     if (strcmp(file_extension(options->output), "png") != 0)
@@ -103,6 +109,7 @@ static Status run_povray(void *options, Parsed *parsed, Err *err)
                            .threads = parsed->common.threads,
                            .plane = own_options->plane,
                            .bits = own_options->bits,
+                           .alpha = own_options->alpha,
                            .progress = progress_report,
                            .progress_context = &progress};
     TRY(povray_from_environment(&params, err));

@@ -349,6 +349,29 @@ static Status check_file(const RenderOptions *options, const Parsed *parsed, Err
     return press_check(&options->press, options->output, parsed, err);
 }
 
+/* Nothing can be drawn over what is transparent, nor parts of it joined; and every pixel is to be
+ * of the same samples over any background. */
+static Status check_transparent(const RenderOptions *options, const Parsed *parsed, Err *err)
+{
+    static const char *const able[] = {"png", "tif", "tiff", "exr", NULL};
+    if (!picture_is_transparent(&options->picture))
+        return STATUS_OK;
+    if (!is_one_of(file_extension(options->output), able))
+        return err_set(err, STATUS_USAGE,
+                       "-o: '%s' cannot be transparent; --background none takes .png, .tif or .exr",
+                       options->output);
+    if (annotation_is_any(&options->annotation))
+        return err_set(err, STATUS_USAGE,
+                       "--background none: a legend, a scale bar or a letter needs a background");
+    const OptionNeed needs[] = {
+        {"tile", false, "needs a background: tiles that are transparent cannot be merged"},
+        {"tiles", false, "needs a background: tiles that are transparent cannot be merged"},
+        {"cmyk-profile", false, "needs a background, not --background none"},
+        {"antialias-threshold", false, "needs a background, not --background none"},
+        {0}};
+    return options_check_needs(parsed, needs, err);
+}
+
 /* Options that fight each other, or that the method does not know. */
 static Status check(const RenderOptions *options, const Parsed *parsed, Err *err)
 {
@@ -364,6 +387,7 @@ static Status check(const RenderOptions *options, const Parsed *parsed, Err *err
                        models[picture->model].name);
     TRY(picture_check_needs(picture, parsed, err));
     TRY(annotation_check(&options->annotation, picture, parsed, err));
+    TRY(check_transparent(options, parsed, err));
     TRY(picture_check_dpi(&picture->size, options->output, parsed, err));
     if (options->threshold > 0 && picture->antialias == 1)
         return err_set(err, STATUS_USAGE,
@@ -404,8 +428,9 @@ static Status plan_files(const RenderOptions *options, const Press *press, Rende
                          .depth = params->want_depth,
                          .normal = params->want_normal,
                          .id = params->want_id};
-    params->codes_suffice =
-        form->bits == 8 && !form->color && !is_on_sheet(options) && !image_is_floats(form->path);
+    form->alpha = picture_is_transparent(&options->picture);
+    params->codes_suffice = form->bits == 8 && !form->color && !form->alpha &&
+                            !is_on_sheet(options) && !image_is_floats(form->path);
     params->want_color = true;
     return frames_is_page(options->output)
                ? STATUS_OK

@@ -246,6 +246,7 @@ static Status verify(Verification *v, int frame, Folder *folder, Parsed *parsed,
     TRY(picture_say_effects(v->picture, &v->scene.view, "left out on both sides",
                             parsed->common.quiet, err));
     v->scene.view.effects = (Effects){0};
+    v->scene.view.transparent = false; /* shown over the look's background */
     TRY(verification_pick_frame(v, frame, err));
     TRY(file_make_folder(v->folder, err));
     TRY(claim_folder(folder, &parsed->files, err));

@@ -39,16 +39,16 @@ Status bits_check(int bits, Err *err)
 }
 
 typedef enum FrameFile { FILE_COLOR, FILE_DEPTH, FILE_NORMAL, FILE_ID, FILE_PICTURE } FrameFile;
-enum { FRAME_FILES = FILE_PICTURE + 1 };
+enum { FRAME_FILES = FILE_PICTURE + 1, LAYER_ALPHA = FRAME_FILES };
 
 /* The channels of an OpenEXR file, in their order in memory. */
 static const struct {
-    FrameFile of;
+    int of; /* a FrameFile, or LAYER_ALPHA */
     ImageChannel channel;
-} layers[] = {{FILE_PICTURE, {"R", false}},  {FILE_PICTURE, {"G", false}},
-              {FILE_PICTURE, {"B", false}},  {FILE_DEPTH, {"Z", true}},
-              {FILE_NORMAL, {"N.X", false}}, {FILE_NORMAL, {"N.Y", false}},
-              {FILE_NORMAL, {"N.Z", false}}, {FILE_ID, {"id", true}}};
+} layers[] = {
+    {FILE_PICTURE, {"R", false}},  {FILE_PICTURE, {"G", false}},  {FILE_PICTURE, {"B", false}},
+    {LAYER_ALPHA, {"A", false}},   {FILE_DEPTH, {"Z", true}},     {FILE_NORMAL, {"N.X", false}},
+    {FILE_NORMAL, {"N.Y", false}}, {FILE_NORMAL, {"N.Z", false}}, {FILE_ID, {"id", true}}};
 enum { LAYERS = sizeof layers / sizeof *layers };
 
 struct FramesWriter {
@@ -62,8 +62,8 @@ struct FramesWriter {
 
 static bool is_asked_for(const FramesForm *form, int file)
 {
-    const bool asked_for[FRAME_FILES] = {form->color, form->depth, form->normal, form->id,
-                                         form->picture};
+    const bool asked_for[] = {form->color, form->depth,   form->normal,
+                              form->id,    form->picture, form->alpha};
     return asked_for[file];
 }
 
@@ -104,7 +104,7 @@ static Status open_picture(FramesWriter *writer, Err *err)
         notes[all.count++] = (ImageNote){"Shard", form->shard};
     ImageForm image = {.width = form->width,
                        .height = form->height,
-                       .channels = 3,
+                       .channels = form->alpha ? 4 : 3,
                        .bits = image_is_floats(form->path) ? 32 : form->bits,
                        .encoding = form->encoding,
                        .notes = &all,
@@ -194,12 +194,14 @@ static Status annotate(FramesWriter *writer, Picture *codes, Err *err)
 /* Puts all that is asked for into one plane. */
 static void merge(const FramesForm *form, const Frame *rows, Plane *merged)
 {
-    const Plane *const values[] = {
-        [FILE_DEPTH] = &rows->depth, [FILE_NORMAL] = &rows->normal, [FILE_PICTURE] = &rows->color};
+    const Plane *const values[] = {[FILE_DEPTH] = &rows->depth,
+                                   [FILE_NORMAL] = &rows->normal,
+                                   [FILE_PICTURE] = &rows->color,
+                                   [LAYER_ALPHA] = &rows->alpha};
     size_t n = (size_t)merged->width * (size_t)merged->height;
     size_t stride = (size_t)merged->channels, at = 0;
     for (size_t i = 0, c = 0; i < LAYERS; i++) {
-        FrameFile of = layers[i].of;
+        int of = layers[i].of;
         c = i > 0 && of == layers[i - 1].of ? c + 1 : 0;
         if (!is_asked_for(form, of))
             continue;
@@ -230,8 +232,11 @@ static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
         return imagewriter_floats(file, &rows->color, err);
     if (rows->codes.codes8)
         return imagewriter_codes(file, &rows->codes, err);
+    const FramesForm *form = writer->form;
     Picture codes;
-    TRY(picture_from_plane(&codes, &rows->color, writer->form->encoding, writer->form->bits, err));
+    TRY(form->alpha ? picture_from_transparent(&codes, &rows->color, &rows->alpha, form->encoding,
+                                               form->bits, err)
+                    : picture_from_plane(&codes, &rows->color, form->encoding, form->bits, err));
     Status status = annotate(writer, &codes, err);
     if (status == STATUS_OK && file)
         return write_codes(file, &codes, err);

@@ -32,6 +32,7 @@ typedef struct FramesForm {
     ImagePacking packing;
     double dpi; /* pixels an inch on paper; 0: not known */
     bool picture, color, depth, normal, id;
+    bool alpha; /* the picture is transparent; of PNG and TIFF, with nothing drawn over it */
     const char *provenance;   /* the command line; of the picture */
     const char *colors;       /* what they mean; of the picture; NULL: nothing */
     const char *shard;        /* the note that says what part of what it is; NULL: none */

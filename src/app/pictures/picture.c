@@ -184,9 +184,10 @@ static const Option rows[] = {
     {.name = "background",
      SETS(COLOR, PictureOptions, background),
      GIVEN(PictureOptions, has_background),
+     .can_be_none = true,
      .group = GROUP_LIGHT,
      .otherwise = "the look's",
-     .help = "sRGB, each from 0 to 1"},
+     .help = "a name as in CSS, #RRGGBB, R,G,B from 0 to 1, or none: transparent"},
 };
 
 const OptionTable picture_table = OPTION_TABLE(rows);
@@ -350,7 +351,7 @@ static Status read_look(const PictureOptions *options, Look *look, Err *err)
         return err_set(err, STATUS_USAGE,
                        "--look %s has two colours of its own; --color-by has no effect",
                        options->look);
-    if (options->has_background)
+    if (options->has_background && !color_is_none(options->background))
         look->background = rgb_of_option(options->background);
     return STATUS_OK;
 }
@@ -448,11 +449,17 @@ void picture_source_release(PictureSource *source)
     picture_tree_release(&source->of);
 }
 
+bool picture_is_transparent(const PictureOptions *options)
+{
+    return options->has_background && color_is_none(options->background);
+}
+
 ViewParams picture_view_params(const PictureOptions *options, const PictureSource *source)
 {
     ViewParams params = options->stage;
     params.tree = options->frame == PICTURE_DRAWING ? NULL : &source->of.tree;
     params.domain = options->frame == PICTURE_DOMAIN ? &source->domain : NULL;
+    params.transparent = picture_is_transparent(options);
     params.turn_deg = options->turn.at[0];
     params.rise_deg = options->turn.at[1];
     params.projection = (Projection)options->projection;

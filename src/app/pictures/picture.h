@@ -93,6 +93,8 @@ typedef struct PictureSource {
 MUST_CHECK Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                                       PictureSource *source, Err *err);
 void picture_source_release(PictureSource *source);
+/* Whether there is to be nothing behind what is drawn. */
+bool picture_is_transparent(const PictureOptions *options);
 /* The view that the options ask for, of a source that is borrowed. */
 ViewParams picture_view_params(const PictureOptions *options, const PictureSource *source);
 /* Each of the three things that a picture is of, as the options ask for it. `report` may be NULL.

@@ -3,6 +3,7 @@
  * say the same when their texts are the same. */
 #include "app/run/options.h"
 
+#include "app/run/color_names.h"
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -228,49 +229,40 @@ static Status read_list(const Option *option, const char *value, void *where, Er
     return STATUS_OK;
 }
 
-/* The 16 of HTML, and what else they are called. */
-static const struct {
-    const char *name;
-    uint32_t rgb;
-} color_names[] = {
-    {"black", 0x000000},  {"white", 0xffffff},  {"gray", 0x808080},    {"grey", 0x808080},
-    {"silver", 0xc0c0c0}, {"red", 0xff0000},    {"maroon", 0x800000},  {"orange", 0xffa500},
-    {"yellow", 0xffff00}, {"olive", 0x808000},  {"lime", 0x00ff00},    {"green", 0x008000},
-    {"aqua", 0x00ffff},   {"cyan", 0x00ffff},   {"teal", 0x008080},    {"blue", 0x0000ff},
-    {"navy", 0x000080},   {"purple", 0x800080}, {"fuchsia", 0xff00ff}, {"magenta", 0xff00ff},
-};
-
-/* A name, or #RRGGBB. */
+/* #RGB or #RRGGBB. */
 static bool read_code(const char *value, uint32_t *rgb)
 {
-    if (value[0] == '#' && strspn(value + 1, "0123456789abcdefABCDEF") == 6 && !value[7]) {
-        *rgb = (uint32_t)strtoul(value + 1, NULL, 16);
-        return true;
-    }
-    for (size_t i = 0; i < sizeof color_names / sizeof *color_names; i++)
-        if (strcmp(color_names[i].name, value) == 0) {
-            *rgb = color_names[i].rgb;
-            return true;
-        }
-    return false;
+    const size_t digits = strspn(value + 1, "0123456789abcdefABCDEF");
+    if ((digits != 3 && digits != 6) || value[1 + digits])
+        return false;
+    uint32_t code = (uint32_t)strtoul(value + 1, NULL, 16);
+    *rgb = digits == 6 ? code : ((code & 0xf00) << 8 | (code & 0xf0) << 4 | (code & 0xf)) * 17;
+    return true;
 }
 
 static Status read_color(const Option *option, const char *value, void *where, Err *err)
 {
     uint32_t code;
-    if (read_code(value, &code)) {
+    double rgb[3];
+    if (option->can_be_none && strcmp(value, "none") == 0) {
+        *(Vec3 *)where = COLOR_NONE;
+        return STATUS_OK;
+    }
+    if (*value == '#' ? read_code(value, &code) : color_by_name(value, &code)) {
         *(Vec3 *)where =
             vec3((code >> 16) / 255.0, (code >> 8 & 255) / 255.0, (code & 255) / 255.0);
         return STATUS_OK;
     }
-    double rgb[3];
     bool read = read_numbers(value, ',', 3, 3, rgb);
     for (int i = 0; i < 3; i++)
         read = read && rgb[i] >= 0 && rgb[i] <= 1;
     if (!read)
         return wrong(option, value,
-                     "R,G,B, three numbers from 0 to 1 parted by commas, #RRGGBB or the name of a "
-                     "colour, as in red",
+                     option->can_be_none
+                         ? "none, R,G,B, three numbers from 0 to 1 parted by commas, #RRGGBB or "
+                           "the name of a colour, as in red"
+                         : "R,G,B, three numbers from 0 to 1 parted by commas, #RRGGBB or the name "
+                           "of a colour, as in red",
                      err);
     *(Vec3 *)where = vec3(rgb[0], rgb[1], rgb[2]);
     return STATUS_OK;
@@ -378,6 +370,14 @@ static void put_vector(const void *where, Text *text)
     put_numbers(text, numbers, 3);
 }
 
+static void put_color(const void *where, Text *text)
+{
+    if (color_is_none(*(const Vec3 *)where))
+        text_puts(text, "none");
+    else
+        put_vector(where, text);
+}
+
 static void put_list(const void *where, Text *text)
 {
     put_numbers(text, ((const NumberList *)where)->at, ((const NumberList *)where)->n);
@@ -432,7 +432,7 @@ static const Kind kinds[] = {
     [OPTION_VECTOR] = {"X,Y,Z", read_vector, count_one, put_vector, false},
     [OPTION_VECTORS] = {"X,Y,Z", read_vectors, count_vectors, put_vector, false},
     [OPTION_NUMBERS] = {"A,B,...", read_list, count_list, put_list, false},
-    [OPTION_COLOR] = {"R,G,B", read_color, count_one, put_vector, false},
+    [OPTION_COLOR] = {"COLOR", read_color, count_one, put_color, false},
     [OPTION_SIZE] = {"WxH", read_size, count_one, put_size, false},
     [OPTION_RANGE] = {"A,B", read_range, count_one, put_range, false},
     [OPTION_CHOICE] = {"NAME", read_choice, count_one, NULL, false},

@@ -26,13 +26,20 @@ typedef enum OptionKind {
     OPTION_VECTOR,  /* Vec3: X,Y or X,Y,Z */
     OPTION_VECTORS, /* VectorList: X,Y or X,Y,Z, given several times */
     OPTION_NUMBERS, /* NumberList: A,B,... */
-    OPTION_COLOR,   /* Vec3: R,G,B, each in [0, 1], sRGB; #RRGGBB or a name */
+    OPTION_COLOR,   /* Vec3: R,G,B, each in [0, 1], sRGB; #RGB, #RRGGBB or a name; COLOR_NONE */
     OPTION_SIZE,    /* PictureSize: WxH in pixels, each in the range, or in lengths, as 89mmx60mm */
     OPTION_RANGE,   /* RangeEnds: A,B with A below B */
     OPTION_CHOICE   /* int or an enum: index into choices */
 } OptionKind;
 
 enum { MAX_LIST = 64 };
+
+/* What an option sets whose colour is none. */
+#define COLOR_NONE vec3(-1, -1, -1)
+static inline bool color_is_none(Vec3 color)
+{
+    return color.x < 0;
+}
 
 typedef struct VectorList {
     Vec3 at[MAX_LIST];
@@ -94,6 +101,7 @@ typedef struct Option {
     size_t given;       /* offset of a bool that is set when the option is present ... */
     bool has_given;     /* ... if there is one */
     bool aside;         /* what a command makes does not depend on it */
+    bool can_be_none;   /* of OPTION_COLOR: it takes "none" */
     bool is_told;       /* of a file that is written: the command that it tells has its own name */
     OptionKind kind;
     OptionGroup group;

@@ -1,0 +1,112 @@
+#!/usr/bin/env bash
+# --background: colours by name and code, and none, whose pictures are held over backgrounds against those that have them.
+. "$(dirname "$0")/../lib.sh"
+
+# rgba FILE.png: a line a pixel.
+rgba() {
+    pngtopam -alphapam "$1" | sed '1,/^ENDHDR/d' | od -A n -v -t u1 -w4
+}
+
+# over R G B: the pixels on standard input over a colour, in linear light, as sRGB.
+over() {
+    awk -v ground="$*" '
+        function linear(c) { c /= 255; return c < 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ^ 2.4 }
+        function code(v) { return int(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ^ (1 / 2.4) - 0.055) + 0.5) }
+        BEGIN { split(ground, b); for (i = 0; i < 256; i++) l[i] = linear(i) }
+        { a = $4 / 255; print code(a * l[$1] + (1 - a) * l[b[1]]), code(a * l[$2] + (1 - a) * l[b[2]]),
+              code(a * l[$3] + (1 - a) * l[b[3]]) }'
+}
+
+expect_corner() {
+    [ "$(pngtopnm "$1" | tail -c 3 | od -A n -t u1 | xargs)" = "$2" ] ||
+        fail "expected a corner of $2 from: $command_line"
+}
+
+test_a_transparent_picture_over_a_colour_is_the_picture_on_it() {
+    local how
+    run_ok corcast grow --terminals 60 --domain ball:20 -o tree.swc
+    for how in '--model joined --shadows on' '--model isosurface' '--model blob --exact --antialias 2' '--look journal' '--look depth'; do
+        run_ok corcast render tree.swc --quiet $how --size 70x60 --background none -o none.png
+        rgba none.png >none
+        awk '{ seen[$4 == 0 ? 0 : $4 == 255 ? 2 : 1]++ } END { exit !(seen[0] > 999 && seen[1] > 99) }' none ||
+            fail "expected pixels that are transparent and others that are so in part, from: $how"
+        while read -r name ground; do
+            run_ok corcast render tree.swc --quiet $how --size 70x60 --background $name -o solid.png
+            paste -d ' ' <(over $ground <none) <(rgba solid.png) | awk '
+                { for (c = 1; c <= 3; c++) { d = ($c - $(c + 3)) ^ 2; if (d > 1) far++; if (d > 9) exit 1 } }
+                END { exit far > 20 }' || fail "expected the picture over $name, of: $how"
+        done <<'END'
+white 255 255 255
+navy 0 0 128
+END
+    done
+}
+
+test_sixteen_bits_and_tiff_hold_the_same() {
+    cp "$DATA/bifurcation.swc" tree.swc
+    run_ok corcast render tree.swc --size 40x30 --background none -o eight.png
+    run_ok corcast render tree.swc --size 40x30 --background none --memory 0.001 -o eight.tif
+    tifftopnm -byrow -alphaout=alpha.pgm eight.tif >color.ppm 2>stderr || fail "expected a TIFF with alpha$(said)"
+    paste -d ' ' <(tail -c 3600 color.ppm | od -A n -v -t u1 -w3) <(tail -c 1200 alpha.pgm | od -A n -v -t u1 -w1) |
+        awk '{ print $1, $2, $3, $4 }' >tiff
+    rgba eight.png | awk '{ print $1, $2, $3, $4 }' | diff -q - tiff >difference || fail "expected the pixels of the PNG"
+    run_ok corcast render tree.swc --size 40x30 --background none --bits 16 -o sixteen.png
+    [ "$(pngtopam -alphapam sixteen.png | sed '/^ENDHDR/,$d' | grep -a MAXVAL)" = "MAXVAL 65535" ] || fail "expected 16 bits"
+}
+
+test_what_cannot_be_transparent_is_refused() {
+    local options sentence
+    cp "$DATA/bifurcation.swc" tree.swc
+    while IFS='|' read -r options sentence; do
+        run corcast render tree.swc --size 40x30 --background none $options
+        expect_status 2
+        expect_sentence "$sentence"
+        expect_only tree.swc
+    done <<'END'
+-o p.ppm|'p\.ppm' cannot be transparent; --background none takes \.png, \.tif or \.exr
+-o p.pfm|'p\.pfm' cannot be transparent
+-o p.pdf|'p\.pdf' cannot be transparent
+-o p.jpg|'p\.jpg' cannot be transparent
+-o -|'-' cannot be transparent
+--scale-bar 2 -o p.png|needs a background
+--tile 1/2 -o p.png|--tile needs a background
+--antialias-threshold 0.1 -o p.png|--antialias-threshold needs a background
+END
+    run corcast diagram tree.swc --background none -o p.svg
+    expect_status 2
+    expect_sentence "--background: 'none' is not R,G,B"
+}
+
+test_colours_have_the_names_of_css_and_codes() {
+    local color codes
+    cp "$DATA/bifurcation.swc" tree.swc
+    while read -r color codes; do
+        run_ok corcast render tree.swc --size 20x20 --background "$color" -o p.png
+        expect_corner p.png "$codes"
+    done <<'END'
+rebeccapurple 102 51 153
+SteelBlue 70 130 180
+aliceblue 240 248 255
+yellowgreen 154 205 50
+#fa8 255 170 136
+#12ABef 18 171 239
+0.5,1,0 128 255 0
+END
+    for color in '#12' '#1234' '#ggg' 'blu' '0.5,1' '#'; do
+        run corcast render tree.swc --background "$color" -o no.png
+        expect_status 2
+        expect_sentence "--background: '$color' is not none, R,G,B"
+    done
+}
+
+test_a_scene_is_transparent_for_povray() {
+    cp "$DATA/bifurcation.swc" tree.swc
+    run_ok corcast scene tree.swc --background none --ini on -o none.pov
+    grep -q '#declare Background_Transmit = 1;' none.pov || fail "expected a transparent background"
+    grep -qx 'Output_Alpha=on' none.ini || fail "expected alpha"
+    run_ok corcast scene tree.swc --ini on -o plain.pov
+    grep -q '#declare Background_Transmit = 0;' plain.pov || fail "expected a background"
+    ! grep -q Output_Alpha plain.ini || fail "expected no alpha"
+}
+
+run_tests "$@"
