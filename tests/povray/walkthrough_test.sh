@@ -6,7 +6,8 @@
 # commands DOCUMENT: its code lines that run programs, in their order, the name of an INI block in front of it as
 # `file NAME`, its lines as `line TEXT`.
 commands() {
-    awk '!/^    / { inside = 0; next }
+    awk '/^$/ { next }
+         !/^    / { inside = 0; next }
          { text = substr($0, 5) }
          text ~ /^; / { inside = 1; print "file " substr(text, 3); next }
          text ~ /^(build\/corcast|povray|make|awk|ffmpeg) / { inside = 0; print "run " text; next }
@@ -40,7 +41,7 @@ run_commands() {
     while read -r kind text; do
         case $kind$text in
         file*) file=$text && : >"$file" ;;
-        line*) echo "$text" | sed -E 's/^size = .*/size = 64x48/' >>"$file" ;;
+        line*) echo "$text" | sed -E 's/^size = [0-9]+x[0-9]+$/size = 64x48/' >>"$file" ;;
         run*'# needs '*) ;;
         runmake*) make_target "$text" ;;
         run*) run_ok bash -c "$(small "$text" | sed "s|build/corcast|'$CORCAST'|g")" ;;

@@ -68,6 +68,7 @@ static void set_defaults(void *options)
     FigureOptions *own_options = options;
     *own_options = (FigureOptions){
         .size = {.mm = {89, 89}}, .columns = 1, .gap_mm = 2, .text_pt = 7, .background = {1, 1, 1}};
+    press_set_defaults(&own_options->press);
 }
 
 /* ---- panels ---------------------------------------------------------------------------------- */
@@ -245,22 +246,50 @@ static Status fill_page(Figure *figure, Err *err)
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
+static Status write_picture(const Figure *figure, const Picture *picture, Err *err)
+{
+    const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", figure->sheet.notes.command}};
+    const ImageNotes all = {.notes = notes, .count = 2, .dpi = figure->sheet.page.dpi};
+    const ImageForm form = {.width = picture->width,
+                            .height = picture->height,
+                            .channels = 3,
+                            .bits = picture->bits,
+                            .encoding = ENCODING_SRGB,
+                            .notes = &all,
+                            .packing = figure->press.packing};
+    ImageWriter *writer;
+    TRY(imagewriter_open(&writer, figure->options->output, &form, err));
+    Status status = imagewriter_codes(writer, picture, err);
+    if (status == STATUS_OK)
+        return imagewriter_commit(writer, err);
+    imagewriter_discard(writer);
+    return status;
+}
+
 /* The page as pixels. */
-static Status write_pixels(Figure *figure, Err *err)
+static Status write_pixels(const Figure *figure, Err *err)
 {
     const FigurePage *page = &figure->sheet.page;
-    const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", figure->sheet.notes.command}};
-    const ImageNotes all = {.notes = notes, .count = 2, .dpi = page->dpi};
+    const int bits = figure->press.bits;
+    const unsigned scale = bits == 8 ? 1 : 257;
     Picture picture;
     TRY(picture_init(&picture, figure_pixels(page, page->width_mm),
-                     figure_pixels(page, page->height_mm), 3, 8, err));
+                     figure_pixels(page, page->height_mm), 3, bits, err));
     for (size_t i = 0; i < picture_stride(&picture) * (size_t)picture.height; i++)
-        picture.codes8[i] = page->background.rgb[i % 3];
+        picture_set(&picture, i, (uint16_t)(page->background.rgb[i % 3] * scale));
     Status status = figure_draw(page, 0, &picture, err);
     if (status == STATUS_OK)
-        status = picture_write(&picture, figure->options->output, ENCODING_SRGB, &all, err);
+        status = write_picture(figure, &picture, err);
     picture_release(&picture);
     return status;
+}
+
+static Status write_file(const Figure *figure, Err *err)
+{
+    const char *output = figure->options->output;
+    return frames_is_page(output)
+               ? frames_write_page(&figure->sheet.page, &figure->sheet.notes, output, err)
+               : write_pixels(figure, err);
 }
 
 static Status write_figure(Figure *figure, Err *err)
@@ -274,10 +303,7 @@ static Status write_figure(Figure *figure, Err *err)
     text_release(&description);
     free(line);
     TRY(status);
-    if (!frames_is_page(figure->options->output))
-        return write_pixels(figure, err);
-    return frames_write_page(&figure->sheet.page, &figure->sheet.notes, figure->options->output,
-                             err);
+    return write_file(figure, err);
 }
 
 /* The recipe is made first: what is written is not to be followed by a failure. */
@@ -328,10 +354,24 @@ static Status leave_folder(int home, Status status, Err *err)
     return status;
 }
 
+/* The press's profile is named from the recipe's folder, or on the command line from where that is
+ * typed. */
+static Status open_press(Figure *figure, bool in_folder, Err *err)
+{
+    const FigureOptions *options = figure->options;
+    if (frames_is_page(options->output) ||
+        options_typed(figure->parsed, "cmyk-profile") == in_folder)
+        return STATUS_OK;
+    return press_open(&options->press, options->output, &figure->press, err);
+}
+
 static Status draw_in_folder(Figure *figure, const char *recipe, Err *err)
 {
     int home = -1;
+    TRY(open_press(figure, false, err));
     Status status = enter_folder(recipe, &home, err);
+    if (status == STATUS_OK)
+        status = open_press(figure, true, err);
     if (status == STATUS_OK)
         status = madetrees_make(&figure->plan, figure->parsed->common.threads, &figure->trees, err);
     if (status == STATUS_OK)
@@ -343,11 +383,13 @@ static Status draw_in_folder(Figure *figure, const char *recipe, Err *err)
 
 /* ---- the command ----------------------------------------------------------------------------- */
 
-static Status check_output(const FigureOptions *options, Err *err)
+static Status check_output(const FigureOptions *options, const Parsed *parsed, Err *err)
 {
     static const char *const known[] = {"pdf", "svg", "png", "tif", "tiff", "jpg", "jpeg", NULL};
+    if (frames_is_page(options->output))
+        return press_refuse(parsed, "is for pictures; a page holds one of 8 bits", err);
     if (is_one_of(file_extension(options->output), known))
-        return STATUS_OK;
+        return press_check(&options->press, options->output, parsed, err);
     return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pdf, .svg, .png, .tif or .jpg",
                    options->output);
 }
@@ -374,6 +416,7 @@ static void figure_done(Figure *figure)
     madetrees_release(&figure->trees);
     figureplan_release(&figure->plan);
     sheet_release(&figure->sheet);
+    press_release(&figure->press);
     free(figure->places);
     free(figure->panels);
     free(figure->insets);
@@ -383,7 +426,7 @@ static Status run_figure(void *options, Parsed *parsed, Err *err)
 {
     Figure figure = {.options = options, .parsed = parsed};
     char *recipe = NULL;
-    TRY(check_output(options, err));
+    TRY(check_output(options, parsed, err));
     TRY(find_recipe(parsed->operands[0], &recipe, err));
     Status status = make_figure(&figure, recipe, err);
     figure_done(&figure);
@@ -405,6 +448,6 @@ const Command command_figure = {
     .own_recipe = true,
     .size = sizeof(FigureOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0}},
+    .tables = {{&own_table, 0}, {&press_table, offsetof(FigureOptions, press)}},
     .run = run_figure,
 };

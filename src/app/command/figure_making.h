@@ -5,11 +5,13 @@
 #include "app/command/figure_plan.h"
 #include "app/command/figure_trees.h"
 #include "app/command/render_panel.h"
+#include "app/pictures/press.h"
 
 typedef enum Letters { LETTERS_LOWER, LETTERS_UPPER, LETTERS_NONE } Letters;
 
 typedef struct FigureOptions {
     const char *output;
+    PressOptions press;
     PictureSize size;
     int columns;
     double gap_mm, margin_mm, text_pt;
@@ -28,6 +30,7 @@ typedef struct Figure {
     Parsed *parsed;
     FigurePlan plan;
     MadeTrees trees;
+    Press press; /* of pictures */
     Sheet sheet;
     Place *places;      /* of the sections that are panels; owned */
     Panel *panels;      /* likewise */
