@@ -35,6 +35,8 @@ test_tiles_are_the_whole_picture_to_the_byte() {
     expect_same whole.png merged.png
     draw_parts 2 --ao 2 --antialias 2
     expect_same whole.png merged.png
+    draw_parts 6 --look journal --color-by flow --legend --scale-bar 10 --min-width 1.3
+    expect_same whole.png merged.png
 }
 
 test_a_tile_says_what_part_of_what_it_is() {

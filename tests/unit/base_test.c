@@ -544,9 +544,33 @@ static void the_likeliest_name_is_suggested(void **state)
     }
 }
 
+/* FIPS 180-2, appendix B. */
+static void a_hash_is_sha_256(void **state)
+{
+    (void)state;
+    Hash hash;
+    hash_begin(&hash);
+    hash_add(&hash, "ab", 2);
+    hash_add(&hash, NULL, 0);
+    hash_add(&hash, "c", 1);
+    assert_string_equal(hash_text(&hash).chars,
+                        "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    HashText parted, joined;
+    hash_begin(&hash);
+    hash_add_text(&hash, "a");
+    hash_add_text(&hash, "bc");
+    parted = hash_text(&hash);
+    hash_begin(&hash);
+    hash_add_text(&hash, "ab");
+    hash_add_text(&hash, "c");
+    joined = hash_text(&hash);
+    assert_string_not_equal(parted.chars, joined.chars);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_hash_is_sha_256),
         cmocka_unit_test(a_number_reads_back_to_the_same_double),
         cmocka_unit_test(a_number_is_as_short_as_it_can_be),
         cmocka_unit_test(a_number_reads_as_strtod_reads_it),
