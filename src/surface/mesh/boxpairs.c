@@ -6,12 +6,23 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { RUN = 8, UNITS = 256 };
+enum { RUN = 8, UNITS = 256, KEPT_RUNS = 256 };
 
 typedef struct Leaf {
     uint64_t code;
     uint32_t number;
 } Leaf;
+
+/* The boxes of a run. */
+typedef struct RunBoxes {
+    uint32_t run; /* and 1; 0: of none */
+    FloatBox boxes[RUN];
+} RunBoxes;
+
+/* What one unit of work keeps of runs that it has met: each at its number's place. */
+typedef struct KeptRuns {
+    RunBoxes runs[KEPT_RUNS];
+} KeptRuns;
 
 typedef struct UnitPair {
     uint32_t a, b; /* nodes, a <= b */
@@ -102,58 +113,78 @@ static void order_leaves(Forest *forest)
     }
 }
 
-/* The boxes of those of a run that meet `other`, and their numbers. */
-static uint32_t boxes_near(const Forest *forest, uint32_t run, const FloatBox *other,
-                           FloatBox boxes[RUN], uint32_t items[RUN])
+static const FloatBox *boxes_of(const Forest *forest, KeptRuns *kept, uint32_t run)
+{
+    RunBoxes *place = &kept->runs[run % KEPT_RUNS];
+    for (uint32_t i = 0; i < run_length(forest, run) && place->run != run + 1; i++)
+        place->boxes[i] = forest->pairs->box(run * RUN + i, forest->pairs->context);
+    place->run = run + 1;
+    return place->boxes;
+}
+
+/* Those of a run whose boxes meet `other`, and their boxes. */
+static uint32_t boxes_near(const Forest *forest, KeptRuns *kept, uint32_t run,
+                           const FloatBox *other, FloatBox near[RUN], uint32_t items[RUN])
 {
     uint32_t n = 0;
-    for (uint32_t i = 0; i < run_length(forest, run); i++) {
-        boxes[n] = forest->pairs->box(run * RUN + i, forest->pairs->context);
-        items[n] = run * RUN + i;
-        n += floatbox_meets(&boxes[n], other);
-    }
+    const FloatBox *boxes = boxes_of(forest, kept, run);
+    for (uint32_t i = 0; i < run_length(forest, run); i++)
+        if (floatbox_meets(&boxes[i], other)) {
+            near[n] = boxes[i];
+            items[n++] = run * RUN + i;
+        }
     return n;
 }
 
-static void tell_pairs(const Forest *forest, uint32_t node_a, uint32_t node_b, int worker)
+/* One unit of work. */
+typedef struct Descent {
+    const Forest *forest;
+    KeptRuns kept;
+    int worker;
+} Descent;
+
+static void tell_pairs(Descent *descent, uint32_t node_a, uint32_t node_b)
 {
+    const Forest *forest = descent->forest;
     const BoxPairs *pairs = forest->pairs;
     uint32_t items[2][RUN], n[2] = {0};
     FloatBox boxes[2][RUN];
-    n[0] = boxes_near(forest, forest->leaves[node_a - forest->size].number, &forest->boxes[node_b],
-                      boxes[0], items[0]);
+    n[0] = boxes_near(forest, &descent->kept, forest->leaves[node_a - forest->size].number,
+                      &forest->boxes[node_b], boxes[0], items[0]);
     if (n[0] > 0)
-        n[1] = boxes_near(forest, forest->leaves[node_b - forest->size].number,
+        n[1] = boxes_near(forest, &descent->kept, forest->leaves[node_b - forest->size].number,
                           &forest->boxes[node_a], boxes[1], items[1]);
     for (uint32_t i = 0; i < n[0]; i++)
         for (uint32_t j = node_a == node_b ? i + 1 : 0; j < n[1]; j++) {
             uint32_t a = items[0][i], b = items[1][j];
             if (floatbox_meets(&boxes[0][i], &boxes[1][j]))
-                pairs->found(a < b ? a : b, a < b ? b : a, worker, pairs->context);
+                pairs->found(a < b ? a : b, a < b ? b : a, descent->worker, pairs->context);
         }
 }
 
 /* Both nodes are of one level, a <= b. */
-static void descend(const Forest *forest, uint32_t a, uint32_t b, int worker)
+static void descend(Descent *descent, uint32_t a, uint32_t b)
 {
+    const Forest *forest = descent->forest;
     if (!floatbox_meets(&forest->boxes[a], &forest->boxes[b]))
         return;
     if (a >= forest->size) {
         if (b - forest->size < forest->n_leaves)
-            tell_pairs(forest, a, b, worker);
+            tell_pairs(descent, a, b);
         return;
     }
-    descend(forest, 2 * a, 2 * b, worker);
-    descend(forest, 2 * a, 2 * b + 1, worker);
+    descend(descent, 2 * a, 2 * b);
+    descend(descent, 2 * a, 2 * b + 1);
     if (a != b)
-        descend(forest, 2 * a + 1, 2 * b, worker);
-    descend(forest, 2 * a + 1, 2 * b + 1, worker);
+        descend(descent, 2 * a + 1, 2 * b);
+    descend(descent, 2 * a + 1, 2 * b + 1);
 }
 
 static void descend_unit(size_t index, int worker, void *context)
 {
     const Forest *forest = context;
-    descend(forest, forest->units[index].a, forest->units[index].b, worker);
+    Descent descent = {.forest = forest, .worker = worker};
+    descend(&descent, forest->units[index].a, forest->units[index].b);
 }
 
 static Status find_units(Forest *forest, Err *err)

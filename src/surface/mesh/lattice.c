@@ -30,7 +30,8 @@ typedef struct Cutter {
     Patch *patch;
     Err *err;
     TetrahedronList *list; /* where all tetrahedra go instead of being cut; or NULL */
-    ZoneTree *away;        /* for the list: the tree, whose stack has `whole`: */
+    ZoneTree *away;        /* where also those away from active cells count: the tree, whose stack
+                            * has `whole`: */
     FieldPart whole;       /* all terms, for points away from active cells */
     FieldPart local;       /* of many terms, those that matter within local_mm of local_at */
     Vec3 local_at;
@@ -98,15 +99,14 @@ static Status find_local(Cutter *cutter, Vec3 x)
     return cutter->local.n_terms > MOST_PART_TERMS ? zonefield_refuse(cutter->err) : STATUS_OK;
 }
 
-/* The field at a point away from active cells: of all terms, or, where those are too many at once,
- * of those that matter near by; the points of a walk lie close together. */
-static Status value_away(Cutter *cutter, Vec3 x, FieldValue *value)
+/* What matters at a point away from active cells: all terms, or, where those are too many at once,
+ * those that matter near by; the points of a walk lie close together. */
+static Status part_away(Cutter *cutter, Vec3 x, const FieldPart **part)
 {
     bool few = cutter->whole.n_terms <= MOST_PART_TERMS;
     if (!few && !(vec3_distance(x, cutter->local_at) < cutter->local_mm))
         TRY(find_local(cutter, x));
-    *value = fieldpart_value(&cutter->plan->field, &cutter->away->stack,
-                             few ? &cutter->whole : &cutter->local, x);
+    *part = few ? &cutter->whole : &cutter->local;
     return STATUS_OK;
 }
 
@@ -120,8 +120,11 @@ static Status add_point(Cutter *cutter, const ZoneCell *from, Vec3 x, uint32_t *
     FieldValue value;
     if (is_near)
         value = fieldpart_value(&cutter->plan->field, &cutter->tree->kept, &from->part, x);
-    else
-        TRY(value_away(cutter, x, &value));
+    else {
+        const FieldPart *part;
+        TRY(part_away(cutter, x, &part));
+        value = fieldpart_value(&cutter->plan->field, &cutter->away->stack, part, x);
+    }
     LatticePoint point = {x, field_height(value.phi), NO_CROSSING, false};
     if (is_near && fabs(point.height) < nearly)
         clear_wall(cutter, &from->part, zonetree_side(cutter->tree, from->level), &point);
@@ -159,6 +162,14 @@ static Status corner_at(Cutter *cutter, const ZoneCell *from, const uint32_t at[
     return STATUS_OK;
 }
 
+/* What the field lacks of the level, bent so that over the slope it is the way to a lone vessel's
+ * wall: to second order that of field_height, which is linear in the distance. */
+static double step_to_wall(double phi)
+{
+    double lacks = FIELD_LEVEL - phi;
+    return fabs(lacks) < 0.5 * phi ? lacks * (1 - 0.375 * lacks / phi) : lacks;
+}
+
 /* Where the wall crosses the way from a point inside to one outside: Newton's steps from where it
  * would if the height were linear, which it nearly is; a step that would leave what is left of the
  * way halves that. A last step is made without looking where it ends. */
@@ -171,7 +182,7 @@ static PatchPoint find_crossing(const Cutter *cutter, const FieldPart *part,
     for (int i = 0;; i++) {
         Vec3 x = vec3_add_scaled(inside->x, way, t);
         FieldValue value = fieldpart_gradient(field, &cutter->tree->kept, part, x, &gradient);
-        double step = (FIELD_LEVEL - value.phi) / vec3_dot(gradient, way);
+        double step = step_to_wall(value.phi) / vec3_dot(gradient, way);
         *(value.phi > FIELD_LEVEL ? &low : &high) = t;
         t += step;
         if (!(t > low && t < high))
@@ -183,14 +194,20 @@ static PatchPoint find_crossing(const Cutter *cutter, const FieldPart *part,
     }
 }
 
-/* In place of a crossing, where a point is inside only by decree. */
-static PatchPoint find_middle(const Cutter *cutter, const FieldPart *part,
-                              const LatticePoint *inside, const LatticePoint *outside)
+/* In place of a crossing, where a point is inside only by decree; away from active cells there is
+ * no other. */
+static Status find_middle(Cutter *cutter, const ZoneCell *from, const LatticePoint *inside,
+                          const LatticePoint *outside, PatchPoint *point)
 {
     const ZoneField *field = &cutter->plan->field;
+    const FieldPart *part = from ? &from->part : NULL;
     Vec3 x = vec3_scale(vec3_add(inside->x, outside->x), 0.5), gradient;
-    FieldValue value = fieldpart_gradient(field, &cutter->tree->kept, part, x, &gradient);
-    return patch_wall_point(field, x, &value, gradient);
+    if (!from)
+        TRY(part_away(cutter, x, &part));
+    const PartPool *pool = from ? &cutter->tree->kept : &cutter->away->stack;
+    FieldValue value = fieldpart_gradient(field, pool, part, x, &gradient);
+    *point = patch_wall_point(field, x, &value, gradient);
+    return STATUS_OK;
 }
 
 /* The point of the wall between two points of the lattice, of which `a` is inside. */
@@ -205,9 +222,11 @@ static Status crossing_of(Cutter *cutter, const ZoneCell *from, uint32_t a, uint
             return STATUS_OK;
     TRY(mem_reserve(&lattice->crossings, &lattice->crossing_capacity, cutter->patch->n_points + 1,
                     sizeof *lattice->crossings, "points of a junction", cutter->err));
-    PatchPoint point = points[a].is_mended
-                           ? find_middle(cutter, &from->part, &points[a], &points[b])
-                           : find_crossing(cutter, &from->part, &points[a], &points[b]);
+    PatchPoint point;
+    if (points[a].is_mended || !from)
+        TRY(find_middle(cutter, from, &points[a], &points[b], &point));
+    else
+        point = find_crossing(cutter, &from->part, &points[a], &points[b]);
     TRY(patch_add_point(cutter->patch, point, number, cutter->err));
     lattice->crossings[*number] = (LatticeCrossing){b, points[a].first};
     points[a].first = *number;
@@ -312,14 +331,15 @@ static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
         if (cells[around[i]].state == CELL_ACTIVE)
             active = &cells[around[i]];
     }
-    if ((!active || is_behind) && !cutter->list)
+    if (((!active && !cutter->away) || is_behind) && !cutter->list)
         return STATUS_OK;
     uint32_t at[4];
     TRY(edge_ends(cutter, around, axis, active, at));
     for (int i = 0; i < 4; i++) {
         uint32_t a = around[turn[i]], b = around[turn[i + 1]];
         const ZoneCell *from = cells[a].state == CELL_ACTIVE ? &cells[a] : &cells[b];
-        if (a == b || (from->state != CELL_ACTIVE && !cutter->list))
+        from = from->state == CELL_ACTIVE ? from : NULL;
+        if (a == b || (!from && !cutter->away))
             continue;
         TRY(center_of(cutter, from, a, &at[2]));
         TRY(center_of(cutter, from, b, &at[3]));
@@ -428,9 +448,27 @@ static Status walk_cell(Cutter *cutter, uint32_t cell)
     return STATUS_OK;
 }
 
+/* Walks the tree with all that counts away from active cells, too. */
+static Status walk_all(Cutter *cutter)
+{
+    ZoneTree *tree = cutter->away;
+    TRY(fieldpart_all(&cutter->plan->field, &tree->stack, &cutter->whole, cutter->err));
+    Status status = walk_cell(cutter, 0);
+    tree->stack.n_terms = tree->stack.n_groups = 0;
+    return status;
+}
+
+static void begin_cut(Lattice *lattice, Patch *patch)
+{
+    patch->n_points = patch->n_triangles = 0;
+    for (size_t i = 0; i < lattice->n_points; i++)
+        lattice->points[i].first = NO_CROSSING;
+}
+
 Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan, Patch *patch,
                     Err *err)
 {
+    Cutter cutter = {lattice, tree, plan, patch, err, .list = NULL};
     TRY(pairtable_begin(&lattice->corners, tree->n_cells / 2, err));
     TRY(mem_reserve(&lattice->centers, &lattice->center_capacity, tree->n_cells,
                     sizeof *lattice->centers, "points of a junction", err));
@@ -439,25 +477,20 @@ Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan
     TRY(mem_reserve(&lattice->points, &lattice->capacity, 1, sizeof *lattice->points,
                     "points of a junction", err));
     lattice->n_points = 1; /* the first is none, so that 0 says "not yet" */
-    return lattice_cut(lattice, tree, plan, patch, err);
+    begin_cut(lattice, patch);
+    return walk_cell(&cutter, 0);
 }
 
-Status lattice_cut(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan, Patch *patch,
-                   Err *err)
+Status lattice_cut(Lattice *lattice, ZoneTree *tree, const ZonePlan *plan, Patch *patch, Err *err)
 {
-    Cutter cutter = {lattice, tree, plan, patch, err, .list = NULL};
-    patch->n_points = patch->n_triangles = 0;
-    for (size_t i = 0; i < lattice->n_points; i++)
-        lattice->points[i].first = NO_CROSSING;
-    return walk_cell(&cutter, 0);
+    Cutter cutter = {lattice, tree, plan, patch, err, .away = tree};
+    begin_cut(lattice, patch);
+    return walk_all(&cutter);
 }
 
 Status lattice_list(Lattice *lattice, ZoneTree *tree, const ZonePlan *plan, TetrahedronList *list,
                     Err *err)
 {
     Cutter cutter = {lattice, tree, plan, NULL, err, list, .away = tree};
-    TRY(fieldpart_all(&plan->field, &tree->stack, &cutter.whole, err));
-    Status status = walk_cell(&cutter, 0);
-    tree->stack.n_terms = tree->stack.n_groups = 0;
-    return status;
+    return walk_all(&cutter);
 }

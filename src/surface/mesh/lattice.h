@@ -48,13 +48,14 @@ void lattice_release(Lattice *lattice);
 MUST_CHECK Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan,
                                Patch *patch, Err *err);
 
-/* The same again, of the points that lattice_make has left, whatever their heights are now. */
-MUST_CHECK Status lattice_cut(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan,
-                              Patch *patch, Err *err);
-
 /* Adds all tetrahedra of the octree to the list, and the points that lattice_make had no need of to
  * the lattice. */
 MUST_CHECK Status lattice_list(Lattice *lattice, ZoneTree *tree, const ZonePlan *plan,
                                TetrahedronList *list, Err *err);
+
+/* The wall again, of the points that lattice_list has left, whatever their heights are now; also
+ * away from where the field has it. */
+MUST_CHECK Status lattice_cut(Lattice *lattice, ZoneTree *tree, const ZonePlan *plan, Patch *patch,
+                              Err *err);
 
 #endif

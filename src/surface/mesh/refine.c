@@ -12,6 +12,8 @@ enum { MOST_ROUNDS = 6, MOST_STEPS = 8 };
 /* Cosines: the least that the normals at the ends of an edge and at its point agree, and that point
  * and the triangles at it. */
 static const double alike = 0.3, least_facing = 0.1;
+/* Over what is too far off. */
+static const double little = 0.6;
 /* Over the length of an edge: how far its middle may be moved. */
 static const double most_moved = 0.3;
 /* Of the level: how near it the field is at a point of the wall. */
@@ -29,7 +31,7 @@ typedef struct Refining {
     const ZoneTree *tree;
     Patch *patch;
     MeshOff *off;
-    double limit;
+    double split, limit; /* in the last round nothing is too far off */
     Err *err;
 } Refining;
 
@@ -178,23 +180,36 @@ static Status mark_edge(const Refining *refining, uint32_t a, uint32_t b, bool *
     return STATUS_OK;
 }
 
-/* Measures a triangle; if it is too far off, has its longest edge split. */
-static Status measure_triangle(const Refining *refining, size_t number)
+/* How far a triangle is off the wall, mm: at its middle and that of its longest edge, and where
+ * that is not a little at those of the others. */
+static double measure_triangle(const Refining *refining, const Triangle *triangle, int longest,
+                               double radius_mm)
+{
+    const PatchPoint *a = corner(refining, triangle, 0), *b = corner(refining, triangle, 1);
+    const PatchPoint *c = corner(refining, triangle, 2);
+    Vec3 normal = vec3_normalized(normal_of(a->x, b->x, c->x));
+    Vec3 middle = vec3_scale(vec3_add(vec3_add(a->x, b->x), c->x), 1.0 / 3);
+    double off = measure_at(refining, middle, normal, radius_mm);
+    for (int i = 0; i < 3 && (i == 0 || off > little * refining->split * radius_mm); i++) {
+        uint32_t from = triangle->at[(longest + i) % 3], to = triangle->at[(longest + i + 1) % 3];
+        off = fmax(off, measure_at(refining, middle_of(refining, from, to), normal, radius_mm));
+    }
+    return off;
+}
+
+/* Looks at a triangle; if it is too far off, has its longest edge split. */
+static Status look_at(const Refining *refining, size_t number)
 {
     const Triangle triangle = refining->patch->triangles[number];
     uint8_t *state = &refining->refiner->states[number];
-    const PatchPoint *a = corner(refining, &triangle, 0), *b = corner(refining, &triangle, 1);
-    const PatchPoint *c = corner(refining, &triangle, 2);
     int longest = longest_edge(refining, &triangle);
-    uint32_t from = triangle.at[longest], to = triangle.at[(longest + 1) % 3];
-    double radius = fmin(a->radius_mm, fmin(b->radius_mm, c->radius_mm));
-    Vec3 normal = vec3_normalized(normal_of(a->x, b->x, c->x));
-    Vec3 middle = vec3_scale(vec3_add(vec3_add(a->x, b->x), c->x), 1.0 / 3);
-    double off = measure_at(refining, middle, normal, radius);
-    off = fmax(off, measure_at(refining, middle_of(refining, from, to), normal, radius));
+    double radius = HUGE_VAL;
+    for (int i = 0; i < 3; i++)
+        radius = fmin(radius, corner(refining, &triangle, i)->radius_mm);
+    double off = measure_triangle(refining, &triangle, longest, radius);
     bool marked = false;
     if (off > refining->limit * radius && *state == TRIANGLE_NEW)
-        TRY(mark_edge(refining, from, to, &marked));
+        TRY(mark_edge(refining, triangle.at[longest], triangle.at[(longest + 1) % 3], &marked));
     *state = marked ? TRIANGLE_FAR : TRIANGLE_STUBBORN;
     if (!marked)
         meshoff_add(refining->off, off, radius);
@@ -272,7 +287,7 @@ static Status refine_once(const Refining *refining, bool *changed)
     TRY(pairtable_begin(&refiner->edges, 0, refining->err));
     for (size_t i = 0; i < n; i++)
         if (refiner->states[i] != TRIANGLE_STUBBORN)
-            TRY(measure_triangle(refining, i));
+            TRY(look_at(refining, i));
     *changed = patch->n_points > n_points;
     for (size_t i = 0; i < n && *changed; i++)
         spare_edges(refining, &patch->triangles[i]);
@@ -284,7 +299,7 @@ static Status refine_once(const Refining *refining, bool *changed)
 Status refine_make(Refiner *refiner, const ZonePlan *plan, const ZoneTree *tree, double limit,
                    Patch *patch, MeshOff *off, Err *err)
 {
-    Refining refining = {refiner, &plan->field, tree, patch, off, limit, err};
+    Refining refining = {refiner, &plan->field, tree, patch, off, limit, limit, err};
     size_t n_points = patch->n_points;
     bool changed = true;
     TRY(mem_reserve(&refiner->states, &refiner->state_capacity, patch->n_triangles,

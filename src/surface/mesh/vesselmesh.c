@@ -15,8 +15,8 @@
 
 /* What the tolerance means for cells and edges, measured so that the mean distance to the surface
  * stays below 0.15 of it, and one sample of a thousand is beyond it. */
-static const double cells_at = 0.02, cell_ratio = 0.48, bending_ratio = 0.2, sagitta_part = 0.30,
-                    split_part = 0.6, cap_part = 0.2, farthest_part = 1.4;
+static const double cells_at = 0.02, cell_ratio = 0.54, bending_ratio = 0.25, sagitta_part = 0.35,
+                    split_part = 0.65, cap_part = 0.2, farthest_part = 1.4;
 /* Of a round body: its balls bend both ways, and its creases are cut off. */
 static const double round_sagitta_part = 0.24, round_farthest_part = 1.75;
 
@@ -34,8 +34,9 @@ typedef struct Build {
     ZoneWorker *workers;
     uint8_t *fates; /* one a segment: SegmentFate */
     Status *statuses;
-    Err *errors; /* the first failure of each thread */
-    atomic_size_t done;
+    Err *errors;    /* of the lowest zone that has failed in each thread */
+    size_t *failed; /* that zone */
+    atomic_size_t lowest_failed, done;
 } Build;
 
 void meshreport_release(MeshReport *report)
@@ -144,25 +145,41 @@ static void release_build(Build *build, int n_workers)
     free(build->fates);
     free(build->statuses);
     free(build->errors);
+    free(build->failed);
 }
 
+static void note_failure(Build *build, size_t index, int worker, Status status, const Err *err)
+{
+    size_t lowest = atomic_load(&build->lowest_failed);
+    while (index < lowest && !atomic_compare_exchange_weak(&build->lowest_failed, &lowest, index))
+        continue;
+    if (build->statuses[worker] != STATUS_OK && build->failed[worker] < index)
+        return;
+    build->statuses[worker] = status;
+    build->errors[worker] = *err;
+    build->failed[worker] = index;
+}
+
+/* Zones beyond one that has failed are left out; those before it are made, so that what is said is
+ * the same for any number of threads. */
 static void make_zone(size_t index, int worker, void *context)
 {
     Build *build = context;
-    Err *err = &build->errors[worker];
+    Err err = {0};
     ZonePlan plan;
-    if (build->statuses[worker] != STATUS_OK)
+    if (index > atomic_load(&build->lowest_failed))
         return;
     Status status = zoneplan_make(build->tree, &build->incident, &build->blending, &build->zones,
-                                  (uint32_t)index, &plan, err);
+                                  (uint32_t)index, &plan, &err);
     if (status == STATUS_OK) {
         status = zonepiece_make(&build->workers[worker], build->tree, &plan, &build->fineness,
-                                &build->pieces[index], build->fates, err);
+                                &build->pieces[index], build->fates, &err);
         if (plan.field.n_terms > TERMS_TO_KEEP)
             zoneworker_release(&build->workers[worker]);
         zoneplan_release(&plan);
     }
-    build->statuses[worker] = status;
+    if (status != STATUS_OK)
+        note_failure(build, index, worker, status, &err);
     size_t done = atomic_fetch_add(&build->done, 1) + 1;
     if (build->params->progress && worker == 0)
         build->params->progress((double)done / (double)build->zones.n_zones,
@@ -177,12 +194,15 @@ static Status make_zones(Build *build, int n_workers, Err *err)
     TRY(mem_calloc(&build->fates, build->tree->n_segments, sizeof *build->fates, "segments", err));
     TRY(mem_calloc(&build->statuses, n, sizeof *build->statuses, "threads", err));
     TRY(mem_calloc(&build->errors, n, sizeof *build->errors, "threads", err));
+    TRY(mem_calloc(&build->failed, n, sizeof *build->failed, "threads", err));
+    atomic_store(&build->lowest_failed, SIZE_MAX);
     for (size_t i = 0; i < build->tree->n_segments; i++)
         build->fates[i] = build->zones.is_tube[i] ? SEGMENT_PRESENT : SEGMENT_MISSING;
     threads_for(n_zones, n_workers, make_zone, build);
     release_workers(build, n_workers);
+    size_t lowest = atomic_load(&build->lowest_failed);
     for (int i = 0; i < n_workers; i++)
-        if (build->statuses[i] != STATUS_OK)
+        if (build->statuses[i] != STATUS_OK && build->failed[i] == lowest)
             return err_set(err, build->statuses[i], "%s", build->errors[i].text);
     return STATUS_OK;
 }

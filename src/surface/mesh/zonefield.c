@@ -58,8 +58,8 @@ static double axial(double u, double v)
 /* The squared distance to the segment itself, in units of 1 / k. */
 static double distance2(const TermPlace *place)
 {
-    double beyond = fmax(0, -fmin(place->u, place->v));
-    return place->e2 + beyond * beyond;
+    double inside = place->u < place->v ? place->u : place->v;
+    return inside < 0 ? place->e2 + inside * inside : place->e2;
 }
 
 static double value_at(const ZoneTerm *term, const TermPlace *place)
@@ -91,9 +91,10 @@ static Vec3 term_gradient(const ZoneTerm *term, const TermPlace *place, double v
     double slope = 0;
     if (term->is_round)
         return vec3_scale(from_nearest(term, place), -2 * term->k * term->k * value);
-    if (fabs(place->u) < saturated || fabs(place->v) < saturated)
-        slope =
-            exp_minus(place->e2 + place->u * place->u) - exp_minus(place->e2 + place->v * place->v);
+    if (fabs(place->u) < saturated)
+        slope += exp_minus(place->e2 + place->u * place->u);
+    if (fabs(place->v) < saturated)
+        slope -= exp_minus(place->e2 + place->v * place->v);
     return vec3_add_scaled(vec3_scale(place->across, -2 * term->k * term->k * value), term->axis,
                            term->k * inv_sqrt_pi * slope);
 }

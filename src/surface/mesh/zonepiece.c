@@ -16,6 +16,9 @@ static const double narrow_gap = 0.3;
 /* Over the usual cell: a hole that is no flaw of the lattice. Where vessels do not blend, cells are
  * a sixth of that. */
 static const double wide_hole = 0.25;
+/* Over the radius: a tunnel up to so wide is stopped up yet, where finer cells leave it that part
+ * of its width: it is the wall's own, as where a twig blends with its trunk again. */
+static const double most_stopped = 0.1, lasting = 0.9;
 
 typedef struct Maker {
     ZoneWorker *worker;
@@ -458,13 +461,16 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
     const Maker maker = {worker, tree, plan, &made, err};
     ZoneFineness used = *fineness;
     bool sound = false;
-    double hole;
+    double hole, before = HUGE_VAL;
     int repeats = 0;
     Status status = STATUS_OK;
     for (int steps = 1; steps; repeats += steps) {
         zonepiece_release(&made);
         TRY_GOTO(attempt(&maker, &used, fates, &sound, &hole));
         steps = sound ? 0 : steps_finer(&maker, hole, used.cells.ratio, MOST_REPEATS - repeats);
+        if (hole > lasting * before && hole <= most_stopped)
+            used.farthest = most_stopped;
+        before = hole;
         used.cells.ratio *= pow(finer, steps);
         used.cells.bending *= pow(finer, 2 * steps);
     }
