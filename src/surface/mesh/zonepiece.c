@@ -443,6 +443,14 @@ static Status refuse(const Maker *maker, Err *err)
                    ids[maker->plan->field.terms[0].segment]);
 }
 
+/* Whether a tunnel, as wide as it was with wider cells, is one of the wall itself, and may be
+ * stopped up: not where vessels overlap that do not blend. */
+static bool is_own_tunnel(const Maker *maker, double hole, double before)
+{
+    uint32_t pair[2];
+    return hole > lasting * before && hole <= most_stopped && find_gap(maker, pair) >= 0;
+}
+
 /* How many steps finer the cells of the next attempt are; 0: none would help. A wide hole is there
  * for good, unless it is closed by a gap that cells are too wide for. */
 static int steps_finer(const Maker *maker, double hole, double cell, int left)
@@ -468,7 +476,7 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
         zonepiece_release(&made);
         TRY_GOTO(attempt(&maker, &used, fates, &sound, &hole));
         steps = sound ? 0 : steps_finer(&maker, hole, used.cells.ratio, MOST_REPEATS - repeats);
-        if (hole > lasting * before && hole <= most_stopped)
+        if (steps && is_own_tunnel(&maker, hole, before))
             used.farthest = most_stopped;
         before = hole;
         used.cells.ratio *= pow(finer, steps);
