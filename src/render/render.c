@@ -285,19 +285,21 @@ static Status see_vessels(const Renderer *renderer, const Drawing *drawing, Fram
 
 /* The drawing of a band with the rows that its shared light depends on, and that its samples look
  * at. */
-static Drawing widened(const Drawing *drawing)
+static Drawing widened(const Drawing *drawing, int margin)
 {
     Drawing wide = *drawing;
     int left = drawing->view->camera.height - drawing->band.first - drawing->band.rows;
-    int above = drawing->band.first > 0 ? RENDER_BAND_STEP : 0;
-    int below = left < RENDER_BAND_STEP ? left : RENDER_BAND_STEP;
+    int above = drawing->band.first < margin ? drawing->band.first : margin;
+    int below = left < margin ? left : margin;
     wide.band =
         (Band){.first = drawing->band.first - above, .rows = drawing->band.rows + above + below};
     return wide;
 }
 
-/* Finds what samples share, if they share anything. */
-static Status share(Renderer *renderer, const Drawing *drawing, SharedLight **out, Err *err)
+/* Finds what samples share, if they share anything, in the drawing's band and so many rows about
+ * it. */
+static Status share(Renderer *renderer, const Drawing *drawing, int margin, SharedLight **out,
+                    Err *err)
 {
     const RenderParams *params = drawing->params;
     if (!share_is_wanted(drawing->view, params))
@@ -305,7 +307,7 @@ static Status share(Renderer *renderer, const Drawing *drawing, SharedLight **ou
     if (params->occlusion > 0 && !renderer->beams.capsules)
         TRY(beams_new(renderer->occluders, &renderer->beams, err));
     Frame planes = {0};
-    Drawing wide = widened(drawing);
+    Drawing wide = widened(drawing, margin);
     Status status = see_vessels(renderer, &wide, &planes, err);
     if (status == STATUS_OK)
         status = share_light(&wide, &planes, &renderer->beams, out, err);
@@ -322,8 +324,11 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
     TRY(make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
     SharedLight *shared = NULL;
     Drawing lit = *drawing;
-    Status status = share(renderer, drawing, &shared, err);
-    lit.shared = shared;
+    Status status = STATUS_OK;
+    if (!drawing->shared) {
+        status = share(renderer, drawing, RENDER_BAND_STEP, &shared, err);
+        lit.shared = shared;
+    }
     if (status == STATUS_OK)
         status = renderer->engine->rows(&lit, renderer->prepared, frame, err);
     sharedlight_free(shared);
@@ -381,6 +386,22 @@ static Status draw_samples(Renderer *renderer, const Drawing *fine, int first, i
     return status;
 }
 
+/* What the samples of pixels share where each is a pixel of a finer drawing. */
+static Status share_for_effects(Renderer *renderer, const Drawing *drawing, SharedLight **out,
+                                Err *err)
+{
+    const Effects *effects = &drawing->view->effects;
+    int side = drawing->params->antialias;
+    if (!share_is_wanted(drawing->view, drawing->params))
+        return STATUS_OK;
+    TRY(prepare_view(renderer, drawing, err));
+    TRY(share(renderer, drawing, RENDER_BAND_STEP + rounded_up(effects_reach(effects, side)), out,
+              err));
+    if (*out)
+        (*out)->side = side;
+    return STATUS_OK;
+}
+
 /* The colours of the drawing's band. */
 static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
 {
@@ -389,6 +410,7 @@ static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *fr
     RenderParams once = *params;
     View fine = *drawing->view;
     Drawing of_samples = *drawing;
+    SharedLight *shared = NULL;
     fine.camera.width *= params->antialias;
     fine.camera.height *= params->antialias;
     once.antialias = 1;
@@ -400,13 +422,18 @@ static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *fr
     if (!renderer->radii.rows)
         TRY(radiustable_make(renderer->geometry, &renderer->radii, err));
     TRY(plane_init(&frame->color, drawing->view->camera.width, band->rows, 3, err));
+    TRY(share_for_effects(renderer, drawing, &shared, err));
+    of_samples.shared = shared;
+    Status status = STATUS_OK;
     int step = (int)fmin(samples_at_once / fine.camera.width / params->antialias, 1e6);
     step = step < RENDER_BAND_STEP ? RENDER_BAND_STEP : step / RENDER_BAND_STEP * RENDER_BAND_STEP;
-    for (int row = 0; row < band->rows; row += step) {
+    for (int row = 0; row < band->rows && status == STATUS_OK; row += step) {
         int rows = step < band->rows - row ? step : band->rows - row;
-        TRY(draw_samples(renderer, &of_samples, band->first + row, rows, &frame->color, row, err));
+        status =
+            draw_samples(renderer, &of_samples, band->first + row, rows, &frame->color, row, err);
     }
-    return STATUS_OK;
+    sharedlight_free(shared);
+    return status;
 }
 
 /* The planes of geometry, of the pixels' centres, and the colours with effects. */

@@ -173,12 +173,14 @@ static Status write_report(const char *path, const Scene *scene, const RenderSta
     return json_write(report, path, err);
 }
 
-/* Rows of a band so that it takes about `memory_mb`: floats, codes and masks. */
-static int band_rows(const FramesForm *form, double memory_mb)
+/* Rows of a band so that it takes about `memory_mb`: floats, codes and masks, and with occlusion
+ * what pixels share, of which half see something. */
+static int band_rows(const FramesForm *form, int occlusion, double memory_mb)
 {
     int bytes = 12 + form->bits / 8 * 3 + 1 + 4 * form->depth + 12 * form->normal + 7 * form->id;
     if (image_is_floats(form->path))
         bytes += 12 + 4 * form->depth + 12 * form->normal + 4 * form->id;
+    bytes += occlusion > 0 ? 42 + occlusion : 0;
     double rows = memory_mb * 1e6 / ((double)bytes * form->width);
     if (rows >= form->height)
         return form->height;
@@ -538,7 +540,7 @@ static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams
                        .resume = options->shard.resume,
                        .part = options->shard.resume || options->shard.tile,
                        .shard = *shard,
-                       .step = band_rows(form, options->memory_mb)};
+                       .step = band_rows(form, options->picture.occlusion, options->memory_mb)};
     TRY_GOTO(picture_fits(form->width, film.step, 40, err));
     if (frames_is_page(form->path))
         TRY_GOTO(picture_fits(form->width, form->height, 12, err));
@@ -640,7 +642,7 @@ static Status draw_kept(Renderer *renderer, const Scene *scene, Picture *kept, E
                              .encoding = ENCODING_SRGB,
                              .picture = true,
                              .kept = kept};
-    const Film film = {.shard = {.rows = camera->height}, .step = band_rows(&form, 128)};
+    const Film film = {.shard = {.rows = camera->height}, .step = band_rows(&form, 0, 128)};
     return draw(renderer, scene, &form, &film, err);
 }
 

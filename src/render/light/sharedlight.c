@@ -16,36 +16,41 @@ static float distance2(const PixelPlace *a, const PixelPlace *b)
     return sum;
 }
 
-/* The pixel of the window about (column, row) whose place is nearest to that seen. */
-static size_t nearest_pixel(const SharedLight *shared, int column, int row, const PixelPlace *seen)
+static uint32_t number_at(const SharedLight *shared, int column, int row)
 {
-    size_t nearest = SIZE_MAX;
+    if (column < 0 || column >= shared->width || row < 0 || row >= shared->rows)
+        return PLACE_NONE;
+    return shared->numbers[(size_t)row * (size_t)shared->width + (size_t)column];
+}
+
+/* That of the window about (column, row) that is nearest to what is seen. */
+static uint32_t nearest_number(const SharedLight *shared, int column, int row,
+                               const PixelPlace *seen)
+{
+    uint32_t nearest = PLACE_NONE;
     float least = HUGE_VALF;
     for (int j = row - SEARCHED; j <= row + SEARCHED; j++)
         for (int i = column - SEARCHED; i <= column + SEARCHED; i++) {
-            if (i < 0 || i >= shared->width || j < 0 || j >= shared->rows)
+            uint32_t number = number_at(shared, i, j);
+            if (number == PLACE_NONE || shared->places[number].kind != seen->kind)
                 continue;
-            size_t pixel = (size_t)j * (size_t)shared->width + (size_t)i;
-            if (shared->places[pixel].kind != seen->kind)
-                continue;
-            float far = distance2(&shared->places[pixel], seen);
+            float far = distance2(&shared->places[number], seen);
             if (far < least) {
                 least = far;
-                nearest = pixel;
+                nearest = number;
             }
         }
     return nearest;
 }
 
-size_t sharedlight_pixel(const SharedLight *shared, double i, double j, const PixelPlace *seen)
+uint32_t sharedlight_number(const SharedLight *shared, double i, double j, const PixelPlace *seen)
 {
-    int column = (int)(i + 0.5), row = (int)(j + 0.5) - shared->first;
-    if (column >= 0 && column < shared->width && row >= 0 && row < shared->rows) {
-        size_t own = (size_t)row * (size_t)shared->width + (size_t)column;
-        if (places_are_of_one(&shared->places[own], seen))
-            return own;
-    }
-    return nearest_pixel(shared, column, row, seen);
+    int column = (int)floor((i + 0.5) / shared->side);
+    int row = (int)floor((j + 0.5) / shared->side) - shared->first;
+    uint32_t own = number_at(shared, column, row);
+    if (own != PLACE_NONE && places_are_of_one(&shared->places[own], seen))
+        return own;
+    return nearest_number(shared, column, row, seen);
 }
 
 PixelPlace sharedlight_place(const SharedLight *shared, PlaceKind kind, Vec3 point, Vec3 normal,
@@ -72,5 +77,6 @@ void sharedlight_free(SharedLight *shared)
         free(shared->parts[i]);
     free(shared->open);
     free(shared->places);
+    free(shared->numbers);
     free(shared);
 }

@@ -6,22 +6,28 @@
 #include "render/job.h"
 #include "scene/scene.h"
 
-typedef enum PlaceKind { PLACE_NONE, PLACE_VESSEL, PLACE_GROUND } PlaceKind;
+typedef enum PlaceKind { PLACE_VESSEL, PLACE_GROUND } PlaceKind;
 
 /* What the centre of a pixel sees. */
 typedef struct PixelPlace {
     float at[3];     /* mm from SharedLight.origin */
     float normal[3]; /* unit, facing the viewer */
     float size;      /* mm that a pixel is wide there, across the view */
-    int kind;        /* PlaceKind; all else is undefined where that is PLACE_NONE */
+    PlaceKind kind;
 } PixelPlace;
+
+/* In SharedLight.numbers: nothing is seen. */
+#define PLACE_NONE UINT32_MAX
 
 /* Constant once made [render/sky/share.h]. */
 typedef struct SharedLight {
     int width, first, rows; /* of the picture's pixels; `first` row of so many */
+    int side;               /* samples of the drawing that a pixel's side has, mostly 1 */
     Vec3 origin;
-    PixelPlace *places;            /* owned, as the parts; row by row */
-    float *open;                   /* of each place the part of the sky that it sees; NULL: all */
+    uint32_t
+        *numbers; /* owned, as all that follows; of each pixel, row by row, that of its place */
+    PixelPlace *places;            /* of each number */
+    float *open;                   /* of each number the part of the sky that is seen; NULL: all */
     float *parts[VIEW_MAX_LIGHTS]; /* likewise of each light; NULL: it is no area light */
 } SharedLight;
 
@@ -38,10 +44,10 @@ static inline bool places_are_of_one(const PixelPlace *a, const PixelPlace *b)
     return a->kind == b->kind && off_a < most && off_a > -most && off_b < most && off_b > -most;
 }
 
-/* The pixel, as an index of the places, whose light the sample at (i, j) of the picture has, which
- * sees `seen`: the pixel that it lies in if that is of its surface, else the one nearest to it in
- * space of those no farther than two pixels, of one kind with it; SIZE_MAX if there is none. */
-size_t sharedlight_pixel(const SharedLight *shared, double i, double j, const PixelPlace *seen);
+/* The number of the place whose light the sample at (i, j) of the drawing has, which sees `seen`:
+ * that of the pixel that it lies in if that is of its surface, else the one nearest to it in space
+ * of those no farther than two pixels, of one kind with it; PLACE_NONE if there is none. */
+uint32_t sharedlight_number(const SharedLight *shared, double i, double j, const PixelPlace *seen);
 
 /* A place at a point of the world. `mm_a_pixel` as in PixelPlace.size. */
 PixelPlace sharedlight_place(const SharedLight *shared, PlaceKind kind, Vec3 point, Vec3 normal,
@@ -50,18 +56,18 @@ PixelPlace sharedlight_place(const SharedLight *shared, PlaceKind kind, Vec3 poi
 /* The width of a pixel at so many mm along the camera's ray. */
 double sharedlight_pixel_mm(const Camera *camera, double t);
 
-/* What the pixel shares: the part of the sky that it sees, and that of a light, or -1 of one that
- * is no area light that casts shadows. SIZE_MAX: all of both. */
-static inline float sharedlight_open(const SharedLight *shared, size_t pixel)
+/* What the place shares: the part of the sky that it sees, and that of a light, or -1 of one that
+ * is no area light that casts shadows. PLACE_NONE: all of both. */
+static inline float sharedlight_open(const SharedLight *shared, uint32_t number)
 {
-    return shared->open && pixel != SIZE_MAX ? shared->open[pixel] : 1;
+    return shared->open && number != PLACE_NONE ? shared->open[number] : 1;
 }
 
-static inline float sharedlight_part(const SharedLight *shared, size_t light, size_t pixel)
+static inline float sharedlight_part(const SharedLight *shared, size_t light, uint32_t number)
 {
     if (!shared->parts[light])
         return -1;
-    return pixel != SIZE_MAX ? shared->parts[light][pixel] : 1;
+    return number != PLACE_NONE ? shared->parts[light][number] : 1;
 }
 
 void sharedlight_free(SharedLight *shared);

@@ -26,7 +26,7 @@ static const float quarter_turn = 0.7853982f;
 static const double golden_turn = 2.399963229728653;
 /* So many capsules for each tile of a view. */
 static const double capsules_a_tile = 9;
-enum { MOST_TILES = 1024 };
+enum { MOST_TILES = 1024, VIEWS_BYTES = 256 << 20 };
 
 typedef struct Capsule {
     float a[3], b[3]; /* from the origin */
@@ -79,12 +79,6 @@ Status beams_new(const Geometry *geometry, Beams *beams, Err *err)
     return STATUS_OK;
 }
 
-void beams_release(Beams *beams)
-{
-    free(beams->capsules);
-    *beams = (Beams){0};
-}
-
 /* Fibonacci's lattice: rings of equal area, each a golden angle on from the last. */
 Vec3 beams_direction(int n, int k)
 {
@@ -94,70 +88,61 @@ Vec3 beams_direction(int n, int k)
 
 /* ---- views ----------------------------------------------------------------------------------- */
 
-/* A capsule as a view sees it. */
-typedef struct SeenCapsule {
-    float x, y, z, ux, uy, length, slope, radius, round;
-    int first_column, last_column, first_row, last_row; /* of tiles */
-} SeenCapsule;
+static float least_of(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static float most_of(float a, float b)
+{
+    return a > b ? a : b;
+}
 
 static void project(const BeamView *view, const float point[3], float to[3])
 {
     for (int i = 0; i < 3; i++)
-        to[i] = (float)(view->axes[i].x * (double)point[0] + view->axes[i].y * (double)point[1] +
-                        view->axes[i].z * (double)point[2]);
+        to[i] =
+            view->axes[i][0] * point[0] + view->axes[i][1] * point[1] + view->axes[i][2] * point[2];
 }
 
-static int tile_of(float at, float first, float per_tile, int count)
-{
-    float tile = (at - first) * per_tile;
-    return tile < 0 ? 0 : tile < (float)count ? (int)tile : count - 1;
-}
-
+/* A capsule across the view, in the square that a beam must begin in to touch it. */
 static SeenCapsule see(const Beams *beams, const BeamView *view, const Capsule *capsule)
 {
     float a[3], b[3], reach = capsule->radius + beams->wide;
     project(view, capsule->a, a);
     project(view, capsule->b, b);
-    /* One that points to the sky is where its upper end is. */
-    const float *low = a[2] > b[2] ? a : b, *high = a[2] > b[2] ? b : a;
+    const float *low = a[2] > b[2] ? b : a, *high = a[2] > b[2] ? a : b;
     float x = high[0] - low[0], y = high[1] - low[1], length = sqrtf(x * x + y * y);
+    /* One that points to the sky is a ball at its upper end. */
     bool stands = length < 1e-3f * capsule->radius;
-    return (SeenCapsule){
-        .x = low[0],
-        .y = low[1],
-        .z = low[2],
-        .ux = stands ? 1 : x / length,
-        .uy = stands ? 0 : y / length,
-        .length = stands ? 0 : length,
-        .slope = stands ? 0 : (high[2] - low[2]) / length,
-        .radius = capsule->radius,
-        .round = stands ? quarter_turn * capsule->radius : 0,
-        .first_column =
-            tile_of(fminf(a[0], b[0]) - reach, view->left, view->per_tile, view->columns),
-        .last_column =
-            tile_of(fmaxf(a[0], b[0]) + reach, view->left, view->per_tile, view->columns),
-        .first_row = tile_of(fminf(a[1], b[1]) - reach, view->top, view->per_tile, view->rows),
-        .last_row = tile_of(fmaxf(a[1], b[1]) + reach, view->top, view->per_tile, view->rows),
-    };
+    const float *from = stands ? high : low;
+    return (SeenCapsule){.x = from[0],
+                         .y = from[1],
+                         .z = from[2],
+                         .ux = stands ? 1 : x / length,
+                         .uy = stands ? 0 : y / length,
+                         .length = stands ? 0 : length,
+                         .slope = stands ? 0 : (high[2] - low[2]) / length,
+                         .radius = capsule->radius,
+                         .round = stands ? quarter_turn * capsule->radius : 0,
+                         .low = {least_of(a[0], b[0]) - reach, least_of(a[1], b[1]) - reach},
+                         .high = {most_of(a[0], b[0]) + reach, most_of(a[1], b[1]) + reach}};
 }
 
-/* Sets the tiles of the view: squares, over all that a beam may touch. */
-static void lay_tiles(const Beams *beams, BeamView *view)
+/* Sees all capsules, and sets the tiles of the view: squares, over all that a beam may touch. */
+static void see_all(const Beams *beams, BeamView *view)
 {
-    float low[2] = {HUGE_VALF, HUGE_VALF}, high[2] = {-HUGE_VALF, -HUGE_VALF}, ends[2][3];
+    float low[2] = {HUGE_VALF, HUGE_VALF}, high[2] = {-HUGE_VALF, -HUGE_VALF};
     for (size_t i = 0; i < beams->n; i++) {
-        const Capsule *capsule = &beams->capsules[i];
-        float reach = capsule->radius + beams->wide;
-        project(view, capsule->a, ends[0]);
-        project(view, capsule->b, ends[1]);
+        view->seen[i] = see(beams, view, &beams->capsules[i]);
         for (int c = 0; c < 2; c++) {
-            low[c] = fminf(low[c], fminf(ends[0][c], ends[1][c]) - reach);
-            high[c] = fmaxf(high[c], fmaxf(ends[0][c], ends[1][c]) + reach);
+            low[c] = least_of(low[c], view->seen[i].low[c]);
+            high[c] = most_of(high[c], view->seen[i].high[c]);
         }
     }
     float width = high[0] - low[0], height = high[1] - low[1];
-    float side = fmaxf(sqrtf(width * height) / (float)beams->tiles,
-                       fmaxf(width, height) / (float)MOST_TILES);
+    float side = most_of(sqrtf(width * height) / (float)beams->tiles,
+                         most_of(width, height) / (float)MOST_TILES);
     view->left = low[0];
     view->top = low[1];
     view->per_tile = 1 / side;
@@ -165,13 +150,36 @@ static void lay_tiles(const Beams *beams, BeamView *view)
     view->rows = (int)ceilf(height / side);
 }
 
+/* The tiles from first to last, in columns and rows, that a capsule touches. */
+typedef struct Span {
+    int first[2], last[2];
+} Span;
+
+static int tile_of(float at, float first, float per_tile, int count)
+{
+    float tile = (at - first) * per_tile;
+    return tile < 0 ? 0 : tile < (float)count ? (int)tile : count - 1;
+}
+
+static Span span_of(const BeamView *view, const SeenCapsule *seen)
+{
+    const float first[2] = {view->left, view->top};
+    const int count[2] = {view->columns, view->rows};
+    Span span;
+    for (int c = 0; c < 2; c++) {
+        span.first[c] = tile_of(seen->low[c], first[c], view->per_tile, count[c]);
+        span.last[c] = tile_of(seen->high[c], first[c], view->per_tile, count[c]);
+    }
+    return span;
+}
+
 /* Counts in view->taken how many capsules each tile has. */
 static void count_capsules(const Beams *beams, BeamView *view)
 {
     for (size_t i = 0; i < beams->n; i++) {
-        SeenCapsule seen = see(beams, view, &beams->capsules[i]);
-        for (int row = seen.first_row; row <= seen.last_row; row++)
-            for (int column = seen.first_column; column <= seen.last_column; column++)
+        const Span span = span_of(view, &view->seen[i]);
+        for (int row = span.first[1]; row <= span.last[1]; row++)
+            for (int column = span.first[0]; column <= span.last[0]; column++)
                 view->taken[row * view->columns + column]++;
     }
 }
@@ -192,12 +200,13 @@ static void put(const SeenCapsule *seen, CapsuleBlock *block, uint32_t place)
 static void fill_blocks(const Beams *beams, BeamView *view)
 {
     for (size_t i = 0; i < beams->n; i++) {
-        SeenCapsule seen = see(beams, view, &beams->capsules[i]);
-        for (int row = seen.first_row; row <= seen.last_row; row++)
-            for (int column = seen.first_column; column <= seen.last_column; column++) {
+        const SeenCapsule *seen = &view->seen[i];
+        const Span span = span_of(view, seen);
+        for (int row = span.first[1]; row <= span.last[1]; row++)
+            for (int column = span.first[0]; column <= span.last[0]; column++) {
                 size_t tile = (size_t)(row * view->columns + column);
                 uint32_t number = view->taken[tile]++;
-                put(&seen, &view->blocks[view->first[tile] + number / CAPSULES], number % CAPSULES);
+                put(seen, &view->blocks[view->first[tile] + number / CAPSULES], number % CAPSULES);
             }
     }
 }
@@ -215,10 +224,13 @@ static void fill_up(BeamView *view)
 Status beamview_make(const Beams *beams, Vec3 direction, BeamView *view, Err *err)
 {
     Vec3 other = fabs(direction.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
-    view->axes[0] = vec3_normalized(vec3_cross(direction, other));
-    view->axes[1] = vec3_cross(direction, view->axes[0]);
-    view->axes[2] = direction;
-    lay_tiles(beams, view);
+    Vec3 across = vec3_normalized(vec3_cross(direction, other));
+    store_point(view->axes[0], across, vec3(0, 0, 0));
+    store_point(view->axes[1], vec3_cross(direction, across), vec3(0, 0, 0));
+    store_point(view->axes[2], direction, vec3(0, 0, 0));
+    TRY(mem_reserve(&view->seen, &view->seen_capacity, beams->n, sizeof *view->seen, "occlusion",
+                    err));
+    see_all(beams, view);
     size_t tiles = (size_t)view->columns * (size_t)view->rows;
     TRY(mem_reserve(&view->first, &view->tiles_capacity, tiles + 1, sizeof *view->first,
                     "occlusion", err));
@@ -234,19 +246,54 @@ Status beamview_make(const Beams *beams, Vec3 direction, BeamView *view, Err *er
     memset(view->taken, 0, tiles * sizeof *view->taken);
     fill_blocks(beams, view);
     fill_up(view);
+    free(view->seen);
+    view->seen = NULL;
+    view->seen_capacity = 0;
     return STATUS_OK;
 }
 
-void beamview_release(BeamView *view)
+static void release_view(BeamView *view)
 {
+    free(view->seen);
     free(view->first);
     free(view->taken);
     free(view->blocks);
     *view = (BeamView){0};
 }
 
-size_t beamview_bytes(const Beams *beams)
+static void release_views(Beams *beams)
 {
-    return (3 * beams->n / CAPSULES + (size_t)beams->tiles * (size_t)beams->tiles) *
-           sizeof(CapsuleBlock);
+    for (int i = 0; i < beams->room; i++)
+        release_view(&beams->views[i]);
+    free(beams->views);
+    beams->views = NULL;
+    beams->room = beams->kept = 0;
+}
+
+void beams_release(Beams *beams)
+{
+    release_views(beams);
+    free(beams->capsules);
+    *beams = (Beams){0};
+}
+
+/* About how many bytes a view takes. */
+static size_t bytes_of_view(const Beams *beams)
+{
+    size_t tiles = (size_t)beams->tiles * (size_t)beams->tiles;
+    return (3 * beams->n / CAPSULES + tiles) * sizeof(CapsuleBlock);
+}
+
+Status beams_make_room(Beams *beams, int n, int threads, int *room, Err *err)
+{
+    size_t most = VIEWS_BYTES / (bytes_of_view(beams) + 1);
+    int wanted = most < (size_t)threads ? threads : most < (size_t)n ? (int)most : n;
+    wanted = wanted < n ? wanted : n;
+    if (beams->room != wanted) {
+        release_views(beams);
+        TRY(mem_calloc(&beams->views, (size_t)wanted, sizeof *beams->views, "occlusion", err));
+        beams->room = wanted;
+    }
+    *room = wanted;
+    return STATUS_OK;
 }

@@ -57,17 +57,11 @@ LANE_FN int32_t beam_tile(float at, float first, float per_tile, int32_t count)
 
 LANE_TARGET static void BEAM_KERNEL(open)(const BeamView *view, float wide, BeamQueries *queries)
 {
-    float axes[3][3];
-    for (int c = 0; c < 3; c++) {
-        axes[c][0] = (float)view->axes[c].x;
-        axes[c][1] = (float)view->axes[c].y;
-        axes[c][2] = (float)view->axes[c].z;
-    }
     for (int i = 0; i < queries->n; i++) {
         float at[3];
         for (int c = 0; c < 3; c++)
-            at[c] = axes[c][0] * queries->at[0][i] + axes[c][1] * queries->at[1][i] +
-                    axes[c][2] * queries->at[2][i];
+            at[c] = view->axes[c][0] * queries->at[0][i] + view->axes[c][1] * queries->at[1][i] +
+                    view->axes[c][2] * queries->at[2][i];
         int32_t column = beam_tile(at[0], view->left, view->per_tile, view->columns);
         int32_t row = beam_tile(at[1], view->top, view->per_tile, view->rows);
         queries->open[i] = 1;

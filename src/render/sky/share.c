@@ -16,27 +16,31 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SETS = 4, MOST_A_SET = 256, VIEWS_BYTES = 96 << 20, MOST_VIEWS = 32 };
+enum { SETS = 4, SQUARE = 32, MOST_A_SET = 256 };
 
-/* The pixels of a set that see something, row by row; a pixel's number is its index in `pixels`. */
+/* Places are numbered set by set, and in a set square by square of SQUARE x SQUARE pixels, so that
+ * those that follow one another ask about the same few tiles of a view. */
 typedef struct Share {
     const Drawing *drawing;
     SharedLight *light;
     const BeamKernels *kernels;
-    const Beams *beams;
-    uint32_t *pixels, *numbers; /* owned; of each number its pixel, of each pixel its number */
-    size_t first[SETS + 1];     /* numbers of set i are [first[i], first[i + 1]) */
-    int asked, stride;          /* beams of a set, and bytes of answers to a pixel */
-    uint8_t *answers;           /* owned; of each number */
-    float *directions[3];       /* owned; of set i [i * stride, i * stride + asked) */
-    BeamView *views;            /* owned */
-    int first_view, n_views;    /* direction numbers at hand */
-    Status *failed;             /* of each view */
-    float *cosines;             /* owned; one row of SETS * stride a worker */
-    BeamQueries *queries;       /* owned; one a worker */
-    int number;                 /* of the light at hand */
-    uint16_t *reach;            /* owned; of each number, how many points of that it sees */
+    Beams *beams;
+    uint32_t *pixels;        /* owned; of each number */
+    size_t first[SETS + 1];  /* numbers of set i are [first[i], first[i + 1]) */
+    int asked, stride;       /* beams of a set, and bytes of answers to a pixel */
+    uint8_t *answers;        /* owned; of each number */
+    float *directions[3];    /* owned; of set i [i * stride, i * stride + asked) */
+    int first_view, n_views; /* directions that beams->views are of */
+    float *cosines;          /* owned; one row of SETS * stride a worker */
+    BeamQueries *queries;    /* owned; one a worker */
+    int number;              /* of the light at hand */
+    uint16_t *reach;         /* owned; of each number, how many points of that it sees */
 } Share;
+
+static size_t squares_in(int pixels)
+{
+    return ((size_t)pixels + SQUARE - 1) / SQUARE;
+}
 
 static int set_of(int column, int row)
 {
@@ -45,65 +49,131 @@ static int set_of(int column, int row)
 
 /* ---- places ---------------------------------------------------------------------------------- */
 
+/* What the centre of a pixel sees. */
+typedef struct CenterSight {
+    Ray ray;
+    double t;
+    bool on_ground;
+} CenterSight;
+
 typedef struct PlaceJob {
-    const Drawing *drawing;
+    const Share *share;
     const Frame *planes;
-    SharedLight *light;
+    uint32_t (*next)[SETS]; /* of each square, the next number of each set */
 } PlaceJob;
 
-static Vec3 facing(Vec3 normal, Vec3 direction)
+/* False where it sees nothing. */
+static bool look(const PlaceJob *job, int column, int row, CenterSight *sight)
 {
-    return vec3_dot(normal, direction) > 0 ? vec3_scale(normal, -1) : normal;
+    const SharedLight *light = job->share->light;
+    const View *view = job->share->drawing->view;
+    size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
+    sight->t = (double)job->planes->depth.values[pixel];
+    sight->on_ground = false;
+    if (!view->ground.present && !isfinite(sight->t))
+        return false;
+    sight->ray = camera_ray(&view->camera, column, light->first + row);
+    sight->on_ground = ground_hit(&view->ground, sight->ray, NEAREST_SEEN_MM, sight->t, &sight->t);
+    return isfinite(sight->t);
 }
 
-static PixelPlace place_at(const PlaceJob *job, int column, int row, size_t pixel)
+static PixelPlace place_of(const PlaceJob *job, int column, int row, const CenterSight *sight)
 {
-    const View *view = job->drawing->view;
-    Ray ray = camera_ray(&view->camera, column, row);
-    double t = (double)job->planes->depth.values[pixel];
-    const float *normal = &job->planes->normal.values[3 * pixel];
-    if (ground_hit(&view->ground, ray, NEAREST_SEEN_MM, t, &t))
-        return sharedlight_place(job->light, PLACE_GROUND, ray_at(ray, t),
-                                 facing(view->ground.normal, ray.direction),
-                                 sharedlight_pixel_mm(&view->camera, t));
-    if (!isfinite(t))
-        return (PixelPlace){.kind = PLACE_NONE};
-    return sharedlight_place(job->light, PLACE_VESSEL, ray_at(ray, t),
-                             vec3((double)normal[0], (double)normal[1], (double)normal[2]),
-                             sharedlight_pixel_mm(&view->camera, t));
+    const SharedLight *light = job->share->light;
+    const View *view = job->share->drawing->view;
+    size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
+    const float *of_vessel = &job->planes->normal.values[3 * pixel];
+    Vec3 normal = view->ground.normal;
+    if (!sight->on_ground)
+        normal = vec3((double)of_vessel[0], (double)of_vessel[1], (double)of_vessel[2]);
+    else if (vec3_dot(normal, sight->ray.direction) > 0)
+        normal = vec3_scale(normal, -1);
+    return sharedlight_place(light, sight->on_ground ? PLACE_GROUND : PLACE_VESSEL,
+                             ray_at(sight->ray, sight->t), normal,
+                             sharedlight_pixel_mm(&view->camera, sight->t));
 }
 
-static void find_places(size_t row, int worker, void *context)
+/* Calls visit for the places of a square of pixels, row by row. */
+static void visit_places(const PlaceJob *job, size_t square,
+                         void (*visit)(const PlaceJob *job, int column, int row, size_t square,
+                                       const CenterSight *sight))
+{
+    const SharedLight *light = job->share->light;
+    size_t across = squares_in(light->width);
+    int first_column = (int)(square % across) * SQUARE, first_row = (int)(square / across) * SQUARE;
+    CenterSight sight;
+    for (int row = first_row; row < first_row + SQUARE && row < light->rows; row++)
+        for (int column = first_column; column < first_column + SQUARE && column < light->width;
+             column++)
+            if (look(job, column, row, &sight))
+                visit(job, column, row, square, &sight);
+}
+
+static void count_place(const PlaceJob *job, int column, int row, size_t square,
+                        const CenterSight *sight)
+{
+    (void)sight;
+    job->next[square][set_of(column, job->share->light->first + row)]++;
+}
+
+static void set_place(const PlaceJob *job, int column, int row, size_t square,
+                      const CenterSight *sight)
+{
+    const SharedLight *light = job->share->light;
+    size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
+    uint32_t number = job->next[square][set_of(column, light->first + row)]++;
+    light->numbers[pixel] = number;
+    light->places[number] = place_of(job, column, row, sight);
+    job->share->pixels[number] = (uint32_t)pixel;
+}
+
+static void count_places(size_t square, int worker, void *context)
 {
     (void)worker;
-    const PlaceJob *job = context;
-    const SharedLight *light = job->light;
-    for (int column = 0; column < light->width; column++) {
-        size_t pixel = row * (size_t)light->width + (size_t)column;
-        light->places[pixel] = place_at(job, column, light->first + (int)row, pixel);
-    }
+    visit_places(context, square, count_place);
 }
 
-/* Lists the pixels that see something, set by set. */
-static Status list_pixels(Share *share, Err *err)
+static void set_places(size_t square, int worker, void *context)
 {
-    const SharedLight *light = share->light;
-    size_t n = (size_t)light->width * (size_t)light->rows, taken = 0;
-    TRY(mem_calloc(&share->pixels, n, sizeof *share->pixels, "places", err));
-    TRY(mem_calloc(&share->numbers, n, sizeof *share->numbers, "places", err));
+    (void)worker;
+    visit_places(context, square, set_place);
+}
+
+/* Turns counts into first numbers: set by set, square by square. */
+static void number_squares(Share *share, size_t n, uint32_t (*next)[SETS])
+{
+    uint32_t taken = 0;
     for (int set = 0; set < SETS; set++) {
         share->first[set] = taken;
-        for (int row = (set / 2 ^ light->first) & 1; row < light->rows; row += 2)
-            for (int column = set & 1; column < light->width; column += 2) {
-                size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
-                if (light->places[pixel].kind == PLACE_NONE)
-                    continue;
-                share->numbers[pixel] = (uint32_t)taken;
-                share->pixels[taken++] = (uint32_t)pixel;
-            }
+        for (size_t square = 0; square < n; square++) {
+            uint32_t count = next[square][set];
+            next[square][set] = taken;
+            taken += count;
+        }
     }
     share->first[SETS] = taken;
-    return STATUS_OK;
+}
+
+static Status make_places(Share *share, const Frame *planes, Err *err)
+{
+    SharedLight *light = share->light;
+    size_t pixels = (size_t)light->width * (size_t)light->rows;
+    size_t squares = squares_in(light->width) * squares_in(light->rows);
+    int threads = share->drawing->params->threads;
+    PlaceJob job = {share, planes, NULL};
+    TRY(mem_calloc(&light->numbers, pixels, sizeof *light->numbers, "places", err));
+    memset(light->numbers, 0xff, pixels * sizeof *light->numbers); /* PLACE_NONE */
+    TRY(mem_calloc(&job.next, squares, sizeof *job.next, "places", err));
+    threads_for(squares, threads, count_places, &job);
+    number_squares(share, squares, job.next);
+    size_t n = share->first[SETS];
+    Status status = mem_calloc(&light->places, n, sizeof *light->places, "places", err);
+    if (status == STATUS_OK)
+        status = mem_calloc(&share->pixels, n, sizeof *share->pixels, "places", err);
+    if (status == STATUS_OK)
+        threads_for(squares, threads, set_places, &job);
+    free(job.next);
+    return status;
 }
 
 /* ---- the sky --------------------------------------------------------------------------------- */
@@ -125,12 +195,12 @@ static void ask_view(const Share *share, const BeamView *view, int column, size_
                      BeamQueries *queries)
 {
     const float widest = sqrtf(3.14159265f / (float)(SETS * share->asked));
-    const Vec3 towards = view->axes[2];
-    const float d[3] = {(float)towards.x, (float)towards.y, (float)towards.z};
+    const float *d = view->axes[2];
+    const Vec3 towards = {(double)d[0], (double)d[1], (double)d[2]};
     size_t numbers[BEAMS_AT_ONCE];
     queries->n = 0;
     for (size_t number = from; number < to; number++) {
-        const PixelPlace *place = &share->light->places[share->pixels[number]];
+        const PixelPlace *place = &share->light->places[number];
         uint8_t *answer = &share->answers[number * (size_t)share->stride + (size_t)column];
         float cosine = d[0] * place->normal[0] + d[1] * place->normal[1] + d[2] * place->normal[2];
         *answer = cosine > 0 ? 0 : BEAM_UNASKED;
@@ -180,7 +250,8 @@ static void ask_run(size_t index, int worker, void *context)
     for (int i = 0; i < share->n_views; i++) {
         int direction = share->first_view + i;
         if (direction % SETS == set)
-            ask_view(share, &share->views[i], direction / SETS, from, to, &share->queries[worker]);
+            ask_view(share, &share->beams->views[i], direction / SETS, from, to,
+                     &share->queries[worker]);
     }
 }
 
@@ -189,74 +260,81 @@ static void make_view(size_t index, int worker, void *context)
     (void)worker;
     const Share *share = context;
     int direction = share->first_view + (int)index, n = SETS * share->asked;
-    share->failed[index] =
-        beamview_make(share->beams, beams_direction(n, direction), &share->views[index], NULL);
+    BeamView *view = &share->beams->views[index];
+    view->status = beamview_make(share->beams, beams_direction(n, direction), view, NULL);
+}
+
+/* Makes the views of the next directions, as many as there is room for, unless they are kept. */
+static Status make_views(Share *share, int room, Err *err)
+{
+    Beams *beams = share->beams;
+    int n = SETS * share->asked, left = n - share->first_view;
+    share->n_views = left < room ? left : room;
+    if (beams->kept == n)
+        return STATUS_OK;
+    threads_for((size_t)share->n_views, share->drawing->params->threads, make_view, share);
+    beams->kept = share->n_views == n ? n : 0;
+    for (int i = 0; i < share->n_views; i++)
+        if (beams->views[i].status != STATUS_OK) {
+            beams->kept = 0;
+            return err_set(err, beams->views[i].status, "out of memory: no room for occlusion");
+        }
+    return STATUS_OK;
 }
 
 static Status ask_sky(Share *share, Err *err)
 {
-    int threads = share->drawing->params->threads, n = SETS * share->asked;
-    size_t room = VIEWS_BYTES / (beamview_bytes(share->beams) + 1);
-    int most = room < (size_t)threads ? threads : room < MOST_VIEWS ? (int)room : MOST_VIEWS;
-    TRY(mem_calloc(&share->views, (size_t)most, sizeof *share->views, "occlusion", err));
-    TRY(mem_calloc(&share->failed, (size_t)most, sizeof *share->failed, "occlusion", err));
-    Status status = STATUS_OK;
-    for (int k = 0; k < n && status == STATUS_OK; k += most) {
-        share->first_view = k;
-        share->n_views = n - k < most ? n - k : most;
-        threads_for((size_t)share->n_views, threads, make_view, share);
-        for (int i = 0; i < share->n_views && status == STATUS_OK; i++)
-            status = share->failed[i];
-        if (status == STATUS_OK)
-            threads_for(all_runs(share), threads, ask_run, share);
+    int threads = share->drawing->params->threads, n = SETS * share->asked, room;
+    TRY(beams_make_room(share->beams, n, threads, &room, err));
+    for (share->first_view = 0; share->first_view < n; share->first_view += room) {
+        TRY(make_views(share, room, err));
+        threads_for(all_runs(share), threads, ask_run, share);
     }
-    for (int i = 0; i < most; i++)
-        beamview_release(&share->views[i]);
-    if (status != STATUS_OK)
-        return err_set(err, status, "out of memory: no room for occlusion");
     return STATUS_OK;
 }
 
 /* ---- what neighbours share ------------------------------------------------------------------- */
 
-/* A pixel of the three by three about another that is on its surface, and its weight there. */
+/* The place of one of the three by three pixels about another's, on its surface, and its weight. */
 typedef struct Neighbour {
     uint32_t number;
     int set;
     float part;
 } Neighbour;
 
-static int neighbours_of(const Share *share, uint32_t pixel, Neighbour found[9])
+static int neighbours_of(const Share *share, uint32_t number, Neighbour found[9])
 {
     const SharedLight *light = share->light;
+    uint32_t pixel = share->pixels[number];
     int column = (int)(pixel % (uint32_t)light->width), row = (int)(pixel / (uint32_t)light->width);
     int n = 0;
     for (int j = row - 1; j <= row + 1; j++)
         for (int i = column - 1; i <= column + 1; i++) {
             if (i < 0 || i >= light->width || j < 0 || j >= light->rows)
                 continue;
-            size_t other = (size_t)j * (size_t)light->width + (size_t)i;
-            if (places_are_of_one(&light->places[pixel], &light->places[other]))
-                found[n++] = (Neighbour){share->numbers[other], set_of(i, light->first + j),
+            uint32_t other = light->numbers[(size_t)j * (size_t)light->width + (size_t)i];
+            if (other != PLACE_NONE &&
+                places_are_of_one(&light->places[number], &light->places[other]))
+                found[n++] = (Neighbour){other, set_of(i, light->first + j),
                                          (float)((i == column ? 2 : 1) * (j == row ? 2 : 1))};
         }
     return n;
 }
 
-static void gather_open(const Share *share, uint32_t pixel, float *cosines)
+static void gather_open(const Share *share, uint32_t number, float *cosines)
 {
     const float *const directions[3] = {share->directions[0], share->directions[1],
                                         share->directions[2]};
     Neighbour found[9];
-    int n = neighbours_of(share, pixel, found);
+    int n = neighbours_of(share, number, found);
     float sums[2] = {0, 0};
-    share->kernels->cosines(directions, share->light->places[pixel].normal, SETS * share->stride,
+    share->kernels->cosines(directions, share->light->places[number].normal, SETS * share->stride,
                             cosines);
     for (int i = 0; i < n; i++)
         share->kernels->sum(cosines + found[i].set * share->stride,
                             share->answers + (size_t)found[i].number * (size_t)share->stride,
                             share->stride, found[i].part, sums);
-    share->light->open[pixel] = sums[1] > 0 ? sums[0] / (BEAM_FREE * sums[1]) : 1;
+    share->light->open[number] = sums[1] > 0 ? sums[0] / (BEAM_FREE * sums[1]) : 1;
 }
 
 static void gather_run(size_t index, int worker, void *context)
@@ -264,7 +342,7 @@ static void gather_run(size_t index, int worker, void *context)
     const Share *share = context;
     size_t end = share->first[SETS], from = index * BEAMS_AT_ONCE;
     for (size_t number = from; number < end && number < from + BEAMS_AT_ONCE; number++)
-        gather_open(share, share->pixels[number],
+        gather_open(share, (uint32_t)number,
                     share->cosines + (size_t)worker * SETS * (size_t)share->stride);
 }
 
@@ -293,8 +371,7 @@ static Status prepare_sky(Share *share, Err *err)
 static Status share_sky(Share *share, Err *err)
 {
     SharedLight *light = share->light;
-    size_t pixels = (size_t)light->width * (size_t)light->rows;
-    TRY(mem_calloc(&light->open, pixels, sizeof *light->open, "occlusion", err));
+    TRY(mem_calloc(&light->open, share->first[SETS], sizeof *light->open, "occlusion", err));
     TRY(prepare_sky(share, err));
     TRY(ask_sky(share, err));
     threads_for((share->first[SETS] + BEAMS_AT_ONCE - 1) / BEAMS_AT_ONCE,
@@ -348,8 +425,7 @@ static void ask_light(size_t index, int worker, void *context)
     size_t from, to;
     find_run(share, index, &set, &from, &to);
     for (size_t number = from; number < to; number++)
-        share->reach[number] =
-            points_seen(share, &share->light->places[share->pixels[number]], set, worker);
+        share->reach[number] = points_seen(share, &share->light->places[number], set, worker);
 }
 
 static void gather_reach(size_t index, int worker, void *context)
@@ -359,15 +435,15 @@ static void gather_reach(size_t index, int worker, void *context)
     const Light *light = &share->drawing->view->lights[share->number];
     size_t end = share->first[SETS], from = index * BEAMS_AT_ONCE;
     for (size_t number = from; number < end && number < from + BEAMS_AT_ONCE; number++) {
-        uint32_t pixel = share->pixels[number];
         Neighbour found[9];
-        int n = neighbours_of(share, pixel, found);
+        int n = neighbours_of(share, (uint32_t)number, found);
         float sum = 0, all = 0;
         for (int i = 0; i < n; i++) {
             sum += found[i].part * (float)share->reach[found[i].number];
             all += found[i].part;
         }
-        share->light->parts[share->number][pixel] = sum * SETS / (all * (float)light_points(light));
+        share->light->parts[share->number][number] =
+            sum * SETS / (all * (float)light_points(light));
     }
 }
 
@@ -375,13 +451,13 @@ static Status share_lights(Share *share, Err *err)
 {
     const View *view = share->drawing->view;
     SharedLight *light = share->light;
-    size_t n = share->first[SETS], pixels = (size_t)light->width * (size_t)light->rows;
+    size_t n = share->first[SETS];
     int threads = share->drawing->params->threads;
     TRY(mem_calloc(&share->reach, n, sizeof *share->reach, "lights", err));
     for (size_t i = 0; i < view->n_lights; i++) {
         if (!is_soft(&view->lights[i]))
             continue;
-        TRY(mem_calloc(&light->parts[i], pixels, sizeof *light->parts[i], "lights", err));
+        TRY(mem_calloc(&light->parts[i], n, sizeof *light->parts[i], "lights", err));
         share->number = (int)i;
         threads_for(all_runs(share), threads, ask_light, share);
         threads_for((n + BEAMS_AT_ONCE - 1) / BEAMS_AT_ONCE, threads, gather_reach, share);
@@ -397,42 +473,29 @@ bool share_is_wanted(const View *view, const RenderParams *params)
     for (size_t i = 0; i < view->n_lights; i++)
         soft |= is_soft(&view->lights[i]);
     return params->want_color && params->method != RENDER_TRACE &&
-           (params->occlusion > 0 || (params->shadows && soft));
+           !(view->effects.xray.per_mm > 0) && (params->occlusion > 0 || (params->shadows && soft));
 }
 
 static void release(Share *share)
 {
     free(share->pixels);
-    free(share->numbers);
     free(share->answers);
     for (int c = 0; c < 3; c++)
         free(share->directions[c]);
-    free(share->views);
-    free(share->failed);
     free(share->cosines);
     free(share->queries);
     free(share->reach);
 }
 
-static Status make_places(Share *share, const Frame *planes, Err *err)
-{
-    SharedLight *light = share->light;
-    const Drawing *drawing = share->drawing;
-    TRY(mem_calloc(&light->places, (size_t)light->width * (size_t)light->rows,
-                   sizeof *light->places, "places", err));
-    PlaceJob job = {drawing, planes, light};
-    threads_for((size_t)light->rows, drawing->params->threads, find_places, &job);
-    return list_pixels(share, err);
-}
-
-Status share_light(const Drawing *drawing, const Frame *planes, const Beams *beams,
-                   SharedLight **out, Err *err)
+Status share_light(const Drawing *drawing, const Frame *planes, Beams *beams, SharedLight **out,
+                   Err *err)
 {
     const RenderParams *params = drawing->params;
     Share share = {
         .drawing = drawing, .beams = beams, .kernels = beamkernels[kernels_kind(params->kernels)]};
     Status status;
     TRY(mem_calloc(&share.light, 1, sizeof *share.light, "places", err));
+    share.light->side = 1;
     share.light->width = drawing->view->camera.width;
     share.light->first = drawing->band.first;
     share.light->rows = drawing->band.rows;

@@ -7,17 +7,19 @@
 #include "render/sky/beams.h"
 
 /* Whether samples share light: there is occlusion, or an area light that casts shadows, and not
- * every ray is to be traced [RENDER_TRACE]. */
+ * every ray is to be traced [RENDER_TRACE]; and there is light at all, not the length of vessels.
+ */
 bool share_is_wanted(const View *view, const RenderParams *params);
 
 /* Rows of pixels to either side of a band whose places its light depends on. */
 enum { SHARE_MARGIN = 3 };
 
 /* Finds it for the drawing's band, whose centre rays have seen what `planes` has, depth and normal
- * of vessels. `beams` is of the geometry, and needed for occlusion alone; area lights ask the
+ * of vessels. `beams` is of what hides the sky, and needed for occlusion alone; it keeps
+ * views for the next band where they take little memory; area lights ask the
  * drawing's caster. *out is owned. The rows at the band's edges are right where they are the
  * picture's too, or SHARE_MARGIN away. STATUS_MEMORY. */
-MUST_CHECK Status share_light(const Drawing *drawing, const Frame *planes, const Beams *beams,
+MUST_CHECK Status share_light(const Drawing *drawing, const Frame *planes, Beams *beams,
                               SharedLight **out, Err *err);
 
 #endif

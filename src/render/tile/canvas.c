@@ -206,12 +206,12 @@ static void set_shared(const Canvas *canvas, const SeenTile *seen, CanvasWorker 
             viewpoint_point(&canvas->eye, seen_place(seen, sample)),
             viewpoint_to_world(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
             sharedlight_pixel_mm(camera, seen->hits->z[sample]));
-        size_t pixel = sharedlight_pixel(shared, line.x * per_x + (camera->width - 1) / 2.0,
-                                         (camera->height - 1) / 2.0 - line.y * per_y, &place);
-        own->open[sample] = sharedlight_open(shared, pixel);
+        uint32_t number = sharedlight_number(shared, line.x * per_x + (camera->width - 1) / 2.0,
+                                             (camera->height - 1) / 2.0 - line.y * per_y, &place);
+        own->open[sample] = sharedlight_open(shared, number);
         for (size_t i = 0; i < canvas->look.n_lights; i++)
             if (shared->parts[i])
-                own->parts[i][sample] = sharedlight_part(shared, i, pixel);
+                own->parts[i][sample] = sharedlight_part(shared, i, number);
     }
 }
 
