@@ -7,19 +7,15 @@
 #include <string.h>
 
 const Command *const all_commands[] = {
-    &command_grow,          &command_refine,
-    &command_study,         &command_info,
-    &command_convert,       &command_scene,
-    &command_export,        &command_povray,
-    &command_render,        &command_merge,
-    &command_diagram,       &command_figure,
-    &command_view,          &command_verify,
-    &command_compare,       &command_report,
-    &command_models,        &command_fields,
-    &command_looks,         &command_colormaps,
-    &command_domains,       &command_formats,
-    &command_morphometries, &command_help,
-    &command_version,       NULL,
+    &command_grow,    &command_refine,  &command_study,
+    &command_info,    &command_certify, &command_convert,
+    &command_scene,   &command_export,  &command_povray,
+    &command_render,  &command_merge,   &command_diagram,
+    &command_figure,  &command_view,    &command_verify,
+    &command_compare, &command_report,  &command_models,
+    &command_fields,  &command_looks,   &command_colormaps,
+    &command_domains, &command_formats, &command_morphometries,
+    &command_help,    &command_version, NULL,
 };
 
 const Command *command_find(const char *name)

@@ -8,6 +8,7 @@
 #include "base/base.h"
 #include "domain/domain.h"
 #include "geom/geom.h"
+#include "grow/bound/bound.h" // IWYU pragma: export
 #include "tree/tree.h"
 #include <stdbool.h>
 #include <stddef.h>

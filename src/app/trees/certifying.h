@@ -1,0 +1,38 @@
+/* A bound of a tree's target, and what the target is above it by, told apart. */
+#ifndef CORCAST_APP_CERTIFYING_H
+#define CORCAST_APP_CERTIFYING_H
+
+#include "app/trees/blood.h"
+#include "grow/grow.h"
+
+typedef struct Certifying {
+    bool parts, has_lambda;
+    double lambda;
+    BloodOptions blood; /* of which only law, flow of the terminals and gamma are set */
+} Certifying;
+
+extern const OptionTable certifying_table; /* sets a Certifying; zeroed: nothing is asked for */
+
+/* The parts that a target is above the bound by, in its unit. */
+enum { PART_SEARCH, PART_RULES, PART_RADII, PART_UNPROVED, PARTS };
+
+extern const struct PartRow {
+    const char *key, *meaning;
+} part_rows[PARTS];
+
+typedef struct Certified {
+    Bound bound;        /* owned; bound_release */
+    Text certificate;   /* owned; text_release */
+    double refined;     /* the target of the tree with its geometry refined; NAN: not asked for */
+    double part[PARTS]; /* NAN: not told apart from the next */
+    double seconds;     /* wall clock, of the bound */
+} Certified;
+
+/* Bounds the target of the tree that is the first operand; spoils the tree. *found is the caller's
+ * to release, also on failure. Errors as blood_settle, bound_tree and, with `parts`, refine_tree
+ * and tree_domain; STATUS_INPUT, too, where lambda is not known or out of range, and where
+ * viscosity follows the radius. */
+MUST_CHECK Status certifying_apply(const Certifying *certifying, const Parsed *parsed, Tree *tree,
+                                   Certified *found, Err *err);
+
+#endif

@@ -1,0 +1,44 @@
+/* Numbers are written so that they read back to the same double; what is proved holds for the
+ * decimals, too, as their margin is far wider than the last digit. The last line is the SHA-256 of
+ * all before it, so that a slip of one digit is found even where the proof survives it. */
+#include "grow/bound/bound.h"
+
+#include <string.h>
+
+static void put_said(Text *text, const char *key, double value)
+{
+    text_printf(text, "# %s: ", key);
+    text_number(text, value);
+    text_puts(text, "\n");
+}
+
+static void put_outlet(const Outlet *outlet, const Tree *tree, Text *text)
+{
+    const double numbers[] = {outlet->flow, outlet->pull.x, outlet->pull.y, outlet->pull.z,
+                              outlet->charge};
+    text_printf(text, "%d", tree->id[outlet->node]);
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
+        text_puts(text, " ");
+        text_number(text, numbers[k]);
+    }
+    text_puts(text, "\n");
+}
+
+void bound_put_certificate(const Bound *bound, const Tree *tree, Text *text)
+{
+    Text body = TEXT_INIT;
+    text_puts(&body, "# corcast certificate 1\n");
+    put_said(&body, "lambda", bound->lambda);
+    put_said(&body, "bound", bound->bound);
+    text_puts(&body, "# id flow pull_x pull_y pull_z charge\n");
+    for (size_t i = 0; i < bound->outlets; i++)
+        put_outlet(&bound->outlet[i], tree, &body);
+    Hash hash;
+    hash_begin(&hash);
+    const char *chars = text_chars(&body);
+    if (chars)
+        hash_add(&hash, chars, strlen(chars));
+    text_add(text, &body);
+    text_printf(text, "# sha256: %s\n", hash_text(&hash).chars);
+    text_release(&body);
+}

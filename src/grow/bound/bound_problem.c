@@ -1,0 +1,201 @@
+/* Shares are summed towards the inlets; drops of the tree are summed from them, in units that leave
+ * out what all segments have in common, so that neither viscosity nor flow need be known: the drop
+ * on a segment is share * length / radius^4. Then one forward loop numbers the joints that stay.
+ *
+ * Free joints begin with drops as Murray's law (radius^3 ~ flow) would part them among the segments
+ * on the longest way below, every segment a twentieth of the mean length longer, so that none has a
+ * drop of 0. Of the drops of all outlets below the least is parted, so that drops rise along every
+ * way. */
+#include "grow/bound/bound_problem.h"
+
+#include "grow/bound/bound.h"
+#include <stdlib.h>
+
+static const double added_length = 0.05; /* of the mean, at the start */
+
+/* What the tree says of each node; owned. */
+typedef struct Survey {
+    double *share; /* what leaves there */
+    double *flow;  /* the shares at and below it */
+    double *drop;  /* from the inlet */
+    int32_t *ways; /* children with flow, and one more at an outlet */
+    int32_t *joint;
+} Survey;
+
+static void survey_release(Survey *survey)
+{
+    free(survey->share);
+    free(survey->flow);
+    free(survey->drop);
+    free(survey->ways);
+    free(survey->joint);
+}
+
+/* Whether blood flows through segment i. */
+static bool is_open(const Tree *tree, const Survey *survey, size_t i)
+{
+    return tree_is_segment(tree, i) && survey->flow[i] > 0;
+}
+
+static bool is_outlet(const Tree *tree, const Survey *survey, size_t i)
+{
+    return tree_is_segment(tree, i) && survey->share[i] > 0;
+}
+
+static Status survey_node(const Tree *tree, Survey *survey, size_t i, Problem *problem, Err *err)
+{
+    double length = tree_segment_length(tree, i), radius = tree->radius_mm[i];
+    if (!(radius > 0))
+        return err_set(err, STATUS_INPUT,
+                       "node %d: blood flows to it through a radius of 0, where all pressure drops",
+                       tree->id[i]);
+    double radius2 = radius * radius;
+    survey->drop[i] =
+        survey->drop[tree->parent[i]] + survey->flow[i] * length / (radius2 * radius2);
+    if (is_outlet(tree, survey, i) && !(survey->drop[i] > 0))
+        return err_set(err, STATUS_INPUT,
+                       "node %d: blood leaves the tree where its root is, without a way to it",
+                       tree->id[i]);
+    if (!isfinite(survey->drop[i]))
+        return err_set(err, STATUS_INPUT, "node %d: radius %g mm lets too little blood through",
+                       tree->id[i], radius);
+    problem->target += length * pow(radius, 4 * problem->a);
+    problem->mean_length += length;
+    return STATUS_OK;
+}
+
+static Status survey_init(Survey *survey, const Tree *tree, Problem *problem, Err *err)
+{
+    size_t n = tree->n;
+    TRY(tree_flow_shares(tree, &survey->share, err));
+    TRY(mem_calloc(&survey->flow, n, sizeof *survey->flow, "flows", err));
+    TRY(mem_calloc(&survey->drop, n, sizeof *survey->drop, "drops of pressure", err));
+    TRY(mem_calloc(&survey->ways, n, sizeof *survey->ways, "counts", err));
+    TRY(mem_calloc(&survey->joint, n, sizeof *survey->joint, "numbers of nodes", err));
+    for (size_t i = n; i-- > 0;) {
+        survey->flow[i] += survey->share[i];
+        survey->ways[i] += is_outlet(tree, survey, i);
+        if (!is_open(tree, survey, i))
+            continue;
+        survey->flow[tree->parent[i]] += survey->flow[i];
+        survey->ways[tree->parent[i]]++;
+    }
+    for (size_t i = 0; i < n; i++)
+        if (is_open(tree, survey, i))
+            TRY(survey_node(tree, survey, i, problem, err));
+    return STATUS_OK;
+}
+
+/* Whether node i is a joint, and not only passed. */
+static bool is_joint(const Tree *tree, const Survey *survey, size_t i)
+{
+    return !tree_is_segment(tree, i) || (survey->flow[i] > 0 && survey->ways[i] > 1) ||
+           is_outlet(tree, survey, i);
+}
+
+/* Appends a joint at node i. */
+static Joint *add_joint(Problem *problem, const Tree *tree, size_t i, int32_t parent, double flow)
+{
+    Joint *joint = &problem->joint[problem->n++];
+    const Vec3 at = tree->position[i];
+    *joint = (Joint){.at = {at.x, at.y, at.z},
+                     .flow = flow,
+                     .factor = pow(flow, problem->a),
+                     .parent = parent,
+                     .outlet = -1};
+    return joint;
+}
+
+/* Numbers node i, which leads on where its parent's number leads if it is no joint. */
+static void add_node(Problem *problem, const Tree *tree, Survey *survey, size_t i)
+{
+    int32_t parent = tree_is_segment(tree, i) ? survey->joint[tree->parent[i]] : -1;
+    survey->joint[i] = parent;
+    if (!is_joint(tree, survey, i))
+        return;
+    survey->joint[i] = (int32_t)problem->n;
+    Joint *joint = add_joint(problem, tree, i, parent, survey->flow[i]);
+    joint->is_free = parent >= 0 && survey->ways[i] > 1;
+    if (!is_outlet(tree, survey, i))
+        return;
+    if (joint->is_free)
+        joint = add_joint(problem, tree, i, survey->joint[i], survey->share[i]);
+    joint->at[DROP] = survey->drop[i];
+    joint->outlet = (int32_t)problem->outlets;
+    problem->node[problem->outlets++] = (int32_t)i;
+}
+
+/* The ways below joints. */
+typedef struct Way {
+    double weight; /* of the way that leads to the joint */
+    double below;  /* the greatest sum of weights from there to an outlet */
+    double least;  /* the least drop of the outlets below */
+} Way;
+
+static void start(Problem *problem, Way *way)
+{
+    double added = added_length * problem->mean_length;
+    for (size_t i = 0; i < problem->n; i++)
+        way[i].least = INFINITY;
+    for (size_t i = problem->n; i-- > 0;) {
+        const Joint *joint = &problem->joint[i];
+        if (joint_is_inlet(joint))
+            continue;
+        Reach reach = problem_reach(problem, i, 0);
+        way[i].weight = (sqrt(reach.length2) + added) / cbrt(joint->flow);
+        if (!joint->is_free)
+            way[i].least = joint->at[DROP];
+        Way *above = &way[joint->parent];
+        above->below = fmax(above->below, way[i].weight + way[i].below);
+        above->least = fmin(above->least, way[i].least);
+    }
+    for (size_t i = 0; i < problem->n; i++) {
+        Joint *joint = &problem->joint[i];
+        if (!joint->is_free)
+            continue;
+        double from = problem->joint[joint->parent].at[DROP];
+        joint->at[DROP] =
+            from + (way[i].least - from) * way[i].weight / (way[i].weight + way[i].below);
+    }
+}
+
+static Status build(Problem *problem, const Tree *tree, Survey *survey, Err *err)
+{
+    TRY(survey_init(survey, tree, problem, err));
+    size_t outlets = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        outlets += is_outlet(tree, survey, i);
+    if (outlets == 0)
+        return err_set(err, STATUS_INPUT, "no blood flows through the tree");
+    size_t most = tree->n + outlets;
+    TRY(mem_calloc(&problem->joint, most, sizeof *problem->joint, "joints", err));
+    TRY(mem_calloc(&problem->node, outlets, sizeof *problem->node, "outlets", err));
+    for (size_t i = 0; i < tree->n; i++)
+        add_node(problem, tree, survey, i);
+    problem->mean_length /= (double)problem->n;
+    Way *way = NULL;
+    TRY(mem_calloc(&way, problem->n, sizeof *way, "ways", err));
+    start(problem, way);
+    free(way);
+    return STATUS_OK;
+}
+
+Status problem_init(Problem *problem, const Tree *tree, double lambda, Err *err)
+{
+    Problem made = {.a = lambda / 4};
+    Survey survey = {0};
+    Status status = build(&made, tree, &survey, err);
+    survey_release(&survey);
+    if (status == STATUS_OK)
+        *problem = made;
+    else
+        problem_release(&made);
+    return status;
+}
+
+void problem_release(Problem *problem)
+{
+    free(problem->joint);
+    free(problem->node);
+    *problem = (Problem){0};
+}
