@@ -35,6 +35,7 @@ test_tiles_are_the_whole_picture_to_the_byte() {
     expect_same whole.png merged.png
     draw_parts 2 --ao 2 --antialias 2
     expect_same whole.png merged.png
+    SMALL="--size 303x271 --quiet"
     draw_parts 6 --look journal --color-by flow --legend --scale-bar 10 --min-width 1.3
     expect_same whole.png merged.png
 }
