@@ -1,0 +1,320 @@
+/* Pages: round numbers, legends, letters, and pixels that do not depend on the part drawn. */
+#include "figure/figure.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static FigureFonts *fonts;
+
+static int load_fonts(void **state)
+{
+    Err err;
+    (void)state;
+    return figurefonts_load("templates", &fonts, &err) != STATUS_OK;
+}
+
+static int free_fonts(void **state)
+{
+    (void)state;
+    figurefonts_free(fonts);
+    return 0;
+}
+
+/* ---- ticks ----------------------------------------------------------------------------------- */
+
+static void expect_ticks(double low, double high, bool log, bool whole, int most,
+                         const double *expected, int n)
+{
+    const ColorScale scale = {.range = {low, high}, .log = log};
+    double ticks[FIGURE_TICKS];
+    assert_int_equal(figure_ticks(&scale, most, whole, ticks), n);
+    for (int i = 0; i < n; i++)
+        assert_true(fabs(ticks[i] - expected[i]) <= 1e-12 * fabs(expected[i]));
+}
+
+#define EXPECT_TICKS(low, high, log, whole, most, ...)                                             \
+    expect_ticks(low, high, log, whole, most, (const double[]){__VA_ARGS__},                       \
+                 (int)(sizeof(double[]){__VA_ARGS__} / sizeof(double)))
+
+static void ticks_are_round_numbers_within_the_range(void **state)
+{
+    (void)state;
+    EXPECT_TICKS(7.55, 49.8, false, false, 5, 10, 20, 30, 40);
+    EXPECT_TICKS(-0.31, 0.47, false, false, 4, -0.2, 0, 0.2, 0.4);
+    EXPECT_TICKS(0, 1, false, false, 5, 0, 0.2, 0.4, 0.6, 0.8, 1);
+    EXPECT_TICKS(60.02, 98.8, false, false, 3, 80);
+    EXPECT_TICKS(2.5e7, 9.9e7, false, false, 4, 4e7, 6e7, 8e7);
+}
+
+static void ticks_of_a_logarithm_are_powers_of_ten_where_there_are_two(void **state)
+{
+    (void)state;
+    EXPECT_TICKS(0.5, 500, true, false, 6, 1, 10, 100);
+    EXPECT_TICKS(3e-9, 2e6, true, false, 5, 1e-6, 1e-3, 1, 1e3, 1e6);
+    EXPECT_TICKS(4.3, 38, true, false, 6, 5, 10, 20);
+    EXPECT_TICKS(21, 29, true, false, 4, 22, 24, 26, 28);
+}
+
+static void ticks_of_whole_numbers_are_whole(void **state)
+{
+    (void)state;
+    EXPECT_TICKS(1, 4, false, true, 8, 1, 2, 3, 4);
+    EXPECT_TICKS(1, 2, false, false, 8, 1, 1.2, 1.4, 1.6, 1.8, 2);
+    EXPECT_TICKS(5.5, 5.5, false, false, 8, 5.5);
+}
+
+/* ---- text ------------------------------------------------------------------------------------ */
+
+static void a_line_is_as_wide_as_its_letters_moved_together(void **state)
+{
+    (void)state;
+    double a = figure_text_width(fonts, "A", 12, false),
+           v = figure_text_width(fonts, "V", 12, false);
+    double both = figure_text_width(fonts, "AV", 12, false);
+    /* Arial's A and V are 0.667 of the size wide, and a pair of them 0.074 narrower. */
+    assert_true(fabs(a - 0.667 * 12 * MM_PER_POINT) < 0.002);
+    assert_true(fabs(a + v - both - 0.074 * 12 * MM_PER_POINT) < 0.002);
+    assert_true(figure_text_width(fonts, "AV", 12, true) > both);
+}
+
+static void a_letter_that_the_fonts_lack_is_told(void **state)
+{
+    FigurePage page;
+    Err err;
+    (void)state;
+    figure_init(&page, 30, 20, 300, fonts);
+    figure_add_text(&page, &(FigureText){.text = "\xC2\xB5m \xE2\x88\x92", .size_pt = 7});
+    assert_int_equal(figure_check(&page, &err), STATUS_OK);
+    figure_add_text(&page, &(FigureText){.text = "a\xE6\x97\xA5z", .size_pt = 7});
+    assert_int_equal(figure_check(&page, &err), STATUS_USAGE);
+    assert_non_null(strstr(err.text, "U+65E5"));
+    figure_release(&page);
+}
+
+static void text_stands_where_its_alignment_says(void **state)
+{
+    static const FigureAlign aligns[] = {ALIGN_LEFT, ALIGN_CENTER, ALIGN_RIGHT};
+    FigurePage page;
+    (void)state;
+    figure_init(&page, 30, 20, 300, fonts);
+    double width = figure_text_width(fonts, "12.5", 9, false);
+    for (int i = 0; i < 3; i++) {
+        figure_add_text(
+            &page,
+            &(FigureText){.text = "12.5", .x = 11.5, .y = 7, .size_pt = 9, .align = aligns[i]});
+        FigureBox box = figure_bounds(&page, (size_t)i);
+        assert_true(fabs(box.left - (11.5 - i * width / 2)) < 1e-9);
+        assert_true(box.bottom > 7 && box.top < 7);
+    }
+    figure_release(&page);
+}
+
+/* ---- pixels ---------------------------------------------------------------------------------- */
+
+/* A page of all kinds of items, 61 x 47 pixels. */
+static void fill(FigurePage *page, const Picture *picture)
+{
+    FigureColor stops[FIGURE_STOPS];
+    const double pixel = MM_PER_INCH / 127;
+    const FigurePoint tie[] = {{1.3, 8.1}, {9.7, 2.2}};
+    const FigurePoint frame[] = {{0.4, 0.4}, {11, 0.4}, {11, 8.9}, {0.4, 8.9}};
+    const FigurePoint arrow[] = {{6.1, 6}, {7.3, 6}, {6.7, 7.9}};
+    for (int i = 0; i < FIGURE_STOPS; i++)
+        stops[i] = (FigureColor){{(uint8_t)(3 * i), 77, (uint8_t)(255 - 2 * i)}};
+    figure_init(page, 61 * pixel, 47 * pixel, 127, fonts);
+    figure_add_picture(page, picture, 3, 5);
+    figure_add_ramp(page, (FigureBox){2, 1, 3, 7.5}, true, stops);
+    figure_add_shape(page, arrow, 3, (FigureColor){{200, 20, 10}});
+    figure_add_line(page, frame, 4, true, 0.18, (FigureColor){{0, 0, 0}});
+    figure_add_line(page, tie, 2, false, 0.31, (FigureColor){{0, 0, 0}});
+    figure_add_text(page, &(FigureText){.text = "Ag\xC2\xB5", .x = 4, .y = 5.5, .size_pt = 8});
+}
+
+static void init_picture(Picture *picture, int width, int height, int bits)
+{
+    Err err;
+    assert_int_equal(picture_init(picture, width, height, 3, bits, &err), STATUS_OK);
+    for (size_t i = 0; i < picture_stride(picture) * (size_t)height; i++)
+        picture_set(picture, i, (uint16_t)((i * 7919 % 256) * (bits == 8 ? 1 : 257)));
+}
+
+static void rows_are_the_same_whatever_parts_the_page_is_drawn_in(void **state)
+{
+    Picture photo, whole;
+    FigurePage page;
+    Err err;
+    (void)state;
+    init_picture(&photo, 40, 30, 8);
+    init_picture(&whole, 61, 47, 8);
+    fill(&page, &photo);
+    Picture parts = whole;
+    size_t bytes = picture_stride(&whole) * 47;
+    uint8_t *copy = malloc(bytes);
+    assert_non_null(copy);
+    memcpy(copy, whole.codes8, bytes);
+    assert_int_equal(figure_draw(&page, 0, &whole, &err), STATUS_OK);
+    for (int first = 0; first < 47; first += 5) {
+        parts.height = first + 5 < 47 ? 5 : 47 - first;
+        parts.codes8 = copy + (size_t)first * picture_stride(&whole);
+        assert_int_equal(figure_draw(&page, first, &parts, &err), STATUS_OK);
+    }
+    assert_memory_equal(copy, whole.codes8, bytes);
+    free(copy);
+    figure_release(&page);
+    picture_release(&whole);
+    picture_release(&photo);
+}
+
+static void sixteen_bits_are_the_eight_to_rounding(void **state)
+{
+    Picture photo, eight, sixteen;
+    FigurePage page;
+    Err err;
+    (void)state;
+    init_picture(&photo, 40, 30, 8);
+    init_picture(&eight, 61, 47, 8);
+    init_picture(&sixteen, 61, 47, 16);
+    fill(&page, &photo);
+    assert_int_equal(figure_draw(&page, 0, &eight, &err), STATUS_OK);
+    assert_int_equal(figure_draw(&page, 0, &sixteen, &err), STATUS_OK);
+    for (size_t i = 0; i < picture_stride(&eight) * 47; i++)
+        assert_true(abs(picture_code(&sixteen, i) - 257 * picture_code(&eight, i)) <= 257);
+    figure_release(&page);
+    picture_release(&sixteen);
+    picture_release(&eight);
+    picture_release(&photo);
+}
+
+static void boxes_and_ramps_cover_whole_pixels_in_their_own_colours(void **state)
+{
+    const double pixel = MM_PER_INCH / 300;
+    FigureColor stops[FIGURE_STOPS];
+    Picture rows;
+    FigurePage page;
+    Err err;
+    (void)state;
+    for (int i = 0; i < FIGURE_STOPS; i++)
+        stops[i] = (FigureColor){{(uint8_t)(255 - 3 * i), (uint8_t)(2 * i), 31}};
+    init_picture(&rows, 80, 10, 8);
+    memset(rows.codes8, 255, picture_stride(&rows) * 10);
+    figure_init(&page, 80 * pixel, 10 * pixel, 300, fonts);
+    figure_add_ramp(&page, (FigureBox){5.3 * pixel, 2 * pixel, 69.6 * pixel, 6 * pixel}, false,
+                    stops);
+    figure_add_box(&page, (FigureBox){1.2 * pixel, 0.6 * pixel, 2.7 * pixel, 3.4 * pixel},
+                   (FigureColor){{9, 8, 7}});
+    assert_int_equal(figure_draw(&page, 0, &rows, &err), STATUS_OK);
+    for (int x = 0; x < 80; x++)
+        for (int y = 0; y < 10; y++) {
+            const uint8_t *rgb = rows.codes8 + 3 * ((size_t)y * 80 + (size_t)x);
+            if (x >= 5 && x < 70 && y >= 2 && y < 6) {
+                assert_int_equal(rgb[0], lround(255 - 3 * (x - 4.5) * 64 / 65));
+                assert_int_equal(rgb[2], 31);
+            } else if (x >= 1 && x < 3 && y >= 1 && y < 3) {
+                assert_memory_equal(rgb, ((uint8_t[]){9, 8, 7}), 3);
+            } else {
+                assert_memory_equal(rgb, ((uint8_t[]){255, 255, 255}), 3);
+            }
+        }
+    figure_release(&page);
+    picture_release(&rows);
+}
+
+/* ---- legends --------------------------------------------------------------------------------- */
+
+/* How many items of a kind a legend of this scale has. */
+static size_t count_items(const FigureLegend *legend, FigureKind kind)
+{
+    FigurePage page;
+    Err err;
+    size_t n = 0;
+    figure_init(&page, 80, 60, 300, fonts);
+    figure_add_legend(&page, legend);
+    assert_int_equal(figure_check(&page, &err), STATUS_OK);
+    for (size_t i = 0; i < page.n; i++)
+        n += page.items[i].kind == kind;
+    figure_release(&page);
+    return n;
+}
+
+static float two_colors[2][3] = {{0, 0, 1}, {1, 1, 0}};
+
+static void a_legend_has_points_and_a_swatch_only_for_values_that_need_them(void **state)
+{
+    const ColorScale scale = {
+        .name = "wss", .unit = "Pa", .range = {3, 41}, .map = {two_colors, 2, false}};
+    FigureLegend legend = {.scale = &scale, .title = "wss (Pa)", .length_mm = 30, .size_pt = 7};
+    (void)state;
+    assert_int_equal(count_items(&legend, FIGURE_SHAPE), 0);
+    assert_int_equal(count_items(&legend, FIGURE_RAMP), 1);
+    assert_int_equal(count_items(&legend, FIGURE_LINE), 4); /* 10, 20, 30, 40 */
+    legend.outside = (ScaleOutside){.below = 2};
+    assert_int_equal(count_items(&legend, FIGURE_SHAPE), 1);
+    legend.outside = (ScaleOutside){.below = 2, .above = 1, .none = 7};
+    assert_int_equal(count_items(&legend, FIGURE_SHAPE), 3);
+    legend.across = true;
+    assert_int_equal(count_items(&legend, FIGURE_SHAPE), 3);
+}
+
+static void a_legend_of_classes_has_a_box_each(void **state)
+{
+    ColorScale scale = {.name = "q", .unit = "", .range = {1, 100}, .map = {two_colors, 2, false}};
+    const FigureLegend legend = {.scale = &scale, .title = "q", .length_mm = 30, .size_pt = 7};
+    (void)state;
+    scale.classes = 5;
+    assert_int_equal(count_items(&legend, FIGURE_SHAPE), 5);
+    assert_int_equal(count_items(&legend, FIGURE_LINE), 6);
+    scale.classes = 1;
+    scale.n_bounds = 3;
+    scale.bounds[0] = 5;
+    scale.bounds[1] = 10;
+    scale.bounds[2] = 50;
+    assert_int_equal(count_items(&legend, FIGURE_SHAPE), 4);
+    assert_int_equal(count_items(&legend, FIGURE_LINE), 3);
+    scale.n_bounds = 0;
+    scale.map.separate = true;
+    scale.range[1] = 2;
+    assert_int_equal(count_items(&legend, FIGURE_SHAPE), 2);
+}
+
+static void a_legend_can_be_measured_and_moved(void **state)
+{
+    const ColorScale scale = {
+        .name = "wss", .unit = "Pa", .range = {3, 41}, .map = {two_colors, 2, false}};
+    const FigureLegend legend = {
+        .scale = &scale, .title = "wss (Pa)", .length_mm = 30, .size_pt = 7};
+    FigurePage page;
+    (void)state;
+    figure_init(&page, 80, 60, 300, fonts);
+    figure_add_legend(&page, &legend);
+    FigureBox before = figure_bounds(&page, 0);
+    assert_true(before.bottom - before.top > 30 && before.bottom - before.top < 37);
+    figure_move(&page, 0, 3.5, -2.25);
+    FigureBox after = figure_bounds(&page, 0);
+    assert_true(fabs(after.left - before.left - 3.5) < 1e-9);
+    assert_true(fabs(after.bottom - before.bottom + 2.25) < 1e-9);
+    figure_release(&page);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ticks_are_round_numbers_within_the_range),
+        cmocka_unit_test(ticks_of_a_logarithm_are_powers_of_ten_where_there_are_two),
+        cmocka_unit_test(ticks_of_whole_numbers_are_whole),
+        cmocka_unit_test(a_line_is_as_wide_as_its_letters_moved_together),
+        cmocka_unit_test(a_letter_that_the_fonts_lack_is_told),
+        cmocka_unit_test(text_stands_where_its_alignment_says),
+        cmocka_unit_test(rows_are_the_same_whatever_parts_the_page_is_drawn_in),
+        cmocka_unit_test(sixteen_bits_are_the_eight_to_rounding),
+        cmocka_unit_test(boxes_and_ramps_cover_whole_pixels_in_their_own_colours),
+        cmocka_unit_test(a_legend_has_points_and_a_swatch_only_for_values_that_need_them),
+        cmocka_unit_test(a_legend_of_classes_has_a_box_each),
+        cmocka_unit_test(a_legend_can_be_measured_and_moved),
+    };
+    return cmocka_run_group_tests(tests, load_fonts, free_fonts);
+}
