@@ -142,21 +142,23 @@ static FigureColor ink_on(FigureColor paper)
     return annotation_ink(rgb_of_option(srgb));
 }
 
-/* In the line above the panel, or over its upper left corner. */
-static void put_letter(Figure *figure, size_t i, const char *letter, FigureColor ink)
+/* In the line above the panel, or in its upper left corner: at the edge where nobody sees one. */
+static void put_letter(Figure *figure, size_t i, const char *letter, FigureColor paper)
 {
     const FigureOptions *options = figure->options;
-    const Place *place = &figure->places[i];
-    const double size = (options->text_pt + 1) * MM_PER_POINT;
+    const bool above = figure->places[i].title_mm > 0;
+    const double em = options->text_pt * MM_PER_POINT;
+    const Rgb inside = figure->panels[i].scene.view.background;
+    const FigureColor around = annotation_color(inside);
+    const bool is_seen = !above && memcmp(&around, &paper, sizeof paper) != 0;
     FigureBox box = figure_panel_box(figure, i);
     const FigureText text = {.text = letter,
-                             .x = box.left,
-                             .y = place->title_mm > 0
-                                      ? box.top - 0.55 * options->text_pt * MM_PER_POINT
-                                      : box.top + size,
+                             .x = box.left + (is_seen ? 0.6 * em : 0),
+                             .y =
+                                 above ? box.top - 0.55 * em : box.top + (is_seen ? 1.5 : 1.1) * em,
                              .size_pt = options->text_pt + 1,
                              .bold = true,
-                             .color = ink};
+                             .color = above ? ink_on(paper) : annotation_ink(inside)};
     figure_add_text(&figure->sheet.page, &text);
 }
 
@@ -198,10 +200,8 @@ static Status put_panel(Figure *figure, size_t i, int number, Err *err)
     automatic_letter(number, letters == LETTERS_UPPER, letter);
     const char *shown = annotation.letter ? annotation.letter : letter;
     FigureColor paper = figure->sheet.page.background;
-    FigureColor ink =
-        place->title_mm > 0 ? ink_on(paper) : annotation_ink(panel->scene.view.background);
     if (annotation.letter || letters != LETTERS_NONE)
-        put_letter(figure, i, shown, ink);
+        put_letter(figure, i, shown, paper);
     put_title(figure, i, ink_on(paper));
     annotation.letter = NULL;
     return annotation_put(&annotation, &panel->scene, figure_panel_box(figure, i),

@@ -83,6 +83,13 @@ double annotation_dpi(const PictureOptions *picture)
     return picture->size.dpi > 0 ? picture->size.dpi : 300;
 }
 
+FigureColor annotation_color(Rgb linear)
+{
+    return (FigureColor){{(uint8_t)image_code(linear.r, ENCODING_SRGB, 8),
+                          (uint8_t)image_code(linear.g, ENCODING_SRGB, 8),
+                          (uint8_t)image_code(linear.b, ENCODING_SRGB, 8)}};
+}
+
 FigureColor annotation_ink(Rgb background)
 {
     float luminance = 0.2126f * background.r + 0.7152f * background.g + 0.0722f * background.b;

@@ -44,6 +44,8 @@ MUST_CHECK Status annotation_make_room(const Annotation *annotation, const Figur
 MUST_CHECK Status annotation_put(const Annotation *annotation, const Scene *scene, FigureBox where,
                                  FigurePage *page, Err *err);
 
+/* The colour as a page has it. */
+FigureColor annotation_color(Rgb linear);
 /* Black or white, whichever is read on this colour. */
 FigureColor annotation_ink(Rgb background);
 
