@@ -51,6 +51,33 @@ void fuzz_check_refusal(Status status, const Err *err, const char *path)
     assert(strstr(err->text, path));
 }
 
+/* Row by row, what can be read so has the codes of the whole. */
+static void read_by_rows(const char *path, const Picture *whole)
+{
+    Err err = {{0}};
+    ImageReader *reader;
+    Picture row;
+    Status status = imagereader_open(&reader, path, &err);
+    fuzz_check_refusal(status, &err, path);
+    if (status != STATUS_OK)
+        return;
+    const ImageForm *form = imagereader_form(reader);
+    status = picture_init(&row, form->width, 1, form->channels, form->bits, &err);
+    assert(status == STATUS_OK);
+    for (int y = 0; y < form->height && y < 5000 && status == STATUS_OK; y++) {
+        status = imagereader_codes(reader, &row, &err);
+        fuzz_check_refusal(status, &err, path);
+        if (status != STATUS_OK || whole->width == 0)
+            continue;
+        assert(whole->width == row.width && whole->bits == row.bits);
+        for (size_t i = 0; i < picture_stride(&row); i++)
+            assert(picture_code(&row, i) ==
+                   picture_code(whole, (size_t)y * picture_stride(whole) + i));
+    }
+    picture_release(&row);
+    imagereader_close(reader);
+}
+
 void fuzz_image(const uint8_t *bytes, size_t size)
 {
     const char *path = fuzz_file("picture", bytes, size);
@@ -58,6 +85,8 @@ void fuzz_image(const uint8_t *bytes, size_t size)
     Image image;
     Status status = image_read(&image, path, &err);
     fuzz_check_refusal(status, &err, path);
+    const Picture none = {0};
+    read_by_rows(path, status == STATUS_OK ? &image.picture : &none);
     if (status == STATUS_OK)
         image_release(&image);
 }

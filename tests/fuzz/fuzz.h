@@ -31,7 +31,7 @@ FuzzPart fuzz_part(const uint8_t **bytes, size_t *size);
 /* A refusal is one line of its own, and names the file. */
 void fuzz_check_refusal(Status status, const Err *err, const char *path);
 
-/* Reads the bytes as an image, whatever its format. */
+/* Reads the bytes as an image, whatever its format, whole and row by row. */
 void fuzz_image(const uint8_t *bytes, size_t size);
 
 #endif
