@@ -29,6 +29,8 @@ MUST_CHECK Status image_check_memory(int width, int height, size_t bytes, Err *e
 bool image_is_srgb(const double xy[8]);
 /* STATUS_INPUT naming the file: its colours are of another space, as `where` in it says. */
 Status image_other_colors(const char *name, const char *where, Err *err);
+/* The description in an ICC profile, what is no printable ASCII left out; "" when it has none. */
+void image_profile_name(const uint8_t *profile, size_t size, char text[IMAGE_PROFILE_NAME]);
 /* STATUS_INPUT, naming file and profile, unless an ICC profile is of sRGB. */
 MUST_CHECK Status image_check_profile(const char *name, const uint8_t *profile, size_t size,
                                       Err *err);

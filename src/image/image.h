@@ -288,6 +288,25 @@ typedef struct Frame {
 
 void frame_release(Frame *frame);
 
+enum { IMAGE_PROFILE_NAME = 80 };
+
+/* What a file says of itself. */
+typedef struct ImageFacts {
+    const char *format; /* "png", "tif", "jpg"; of these alone the rest but `bytes` is known, of
+                         * "pdf", "eps", "svg", "exr", "ppm", "pgm", "pfm" and "psd" it is 0 */
+    size_t bytes;
+    int width, height, bits, pages;
+    double dpi; /* across; 0: not said */
+    bool has_alpha;
+    const char *colors;               /* "rgb", "grey", "cmyk", "another" */
+    const char *compression;          /* "lzw", "deflate", "none", "jpeg", "packbits", "another" */
+    char profile[IMAGE_PROFILE_NAME]; /* its name; "": none */
+} ImageFacts;
+
+/* Of a file told by its first bytes; pixels are not looked at. STATUS_INPUT naming the file when it
+ * is of no such format or its header is broken. */
+MUST_CHECK Status image_facts(const char *path, ImageFacts *out, Err *err);
+
 /* Appends the names and versions of the libraries that read and write images. */
 void image_put_libraries(Text *text);
 

@@ -22,7 +22,7 @@ Status image_other_colors(const char *name, const char *where, Err *err)
                    name, where);
 }
 
-enum { TAGS = 128, TAG = 12, DESCRIPTION = 80 };
+enum { TAGS = 128, TAG = 12 };
 
 /* Where the text of a tag begins and ends: ASCII in a "desc", the first translation, of 16-bit
  * letters, in a "mluc". */
@@ -40,8 +40,7 @@ static void find_text(const uint8_t *tag, size_t size, size_t *begin, size_t *en
         *end = size;
 }
 
-/* The profile's description, what is no printable ASCII left out; "" when it has none. */
-static void describe(const uint8_t *profile, size_t size, char text[DESCRIPTION])
+void image_profile_name(const uint8_t *profile, size_t size, char text[IMAGE_PROFILE_NAME])
 {
     size_t length = 0;
     size_t tags = size >= TAGS + 4 ? image_u32(profile + TAGS) : 0;
@@ -50,8 +49,8 @@ static void describe(const uint8_t *profile, size_t size, char text[DESCRIPTION]
         size_t offset = image_u32(entry + 4), tag_size = image_u32(entry + 8), at, end;
         if (memcmp(entry, "desc", 4) != 0 || offset > size || tag_size > size - offset)
             continue;
-        for (find_text(profile + offset, tag_size, &at, &end); at < end && length < DESCRIPTION - 1;
-             at++)
+        for (find_text(profile + offset, tag_size, &at, &end);
+             at < end && length < IMAGE_PROFILE_NAME - 1; at++)
             if (profile[offset + at] >= ' ' && profile[offset + at] <= '~')
                 text[length++] = (char)profile[offset + at];
     }
@@ -60,8 +59,8 @@ static void describe(const uint8_t *profile, size_t size, char text[DESCRIPTION]
 
 Status image_check_profile(const char *name, const uint8_t *profile, size_t size, Err *err)
 {
-    char text[DESCRIPTION];
-    describe(profile, size, text);
+    char text[IMAGE_PROFILE_NAME];
+    image_profile_name(profile, size, text);
     if (strstr(text, "sRGB") && !strstr(text, "inear"))
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,

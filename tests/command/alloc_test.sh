@@ -72,6 +72,13 @@ test_failed_allocations_in_convert() {
     fail_each 1 one convert "$DATA/images/rgb8-lzw.tif" o.ppm
 }
 
+test_failed_allocations_in_check_figure() {
+    inputs
+    fail_each 3 one check-figure ../a.png --preset nature
+    fail_each 3 one check-figure "$DATA/images/rgb8-lzw.tif" --preset plos --json
+    fail_each 5 one render ../tree.swc --size 21x15 --preset plos -o o.jpg
+}
+
 test_failed_allocations_in_networks() {
     local corpus=$REPO/tests/fuzz/corpus
     fail_each 1 one convert "$corpus/vtp/packed" --input-format vtu o.vtp

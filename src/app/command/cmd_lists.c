@@ -87,6 +87,11 @@ static Status list_looks(Text *lines, Err *err)
     return status;
 }
 
+static Status list_presets(Text *lines, Err *err)
+{
+    return template_names("presets", ".ini", lines, err);
+}
+
 static Status list_morphometries(Text *lines, Err *err)
 {
     return template_names("morphometry", ".txt", lines, err);
@@ -127,11 +132,9 @@ static Status run_list(void *options, Parsed *parsed, Err *err)
     static const struct {
         const Command *command;
         ListNames *names;
-    } lists[] = {{&command_fields, list_fields},
-                 {&command_looks, list_looks},
-                 {&command_domains, list_domains},
-                 {&command_formats, list_formats},
-                 {&command_morphometries, list_morphometries}};
+    } lists[] = {{&command_fields, list_fields},   {&command_looks, list_looks},
+                 {&command_domains, list_domains}, {&command_formats, list_formats},
+                 {&command_presets, list_presets}, {&command_morphometries, list_morphometries}};
     size_t i = 0;
     while (lists[i].command != parsed->command)
         i++;
@@ -150,6 +153,8 @@ const Command command_fields = {.name = "fields",
                                 .run = run_list};
 const Command command_looks = {
     .name = "looks", .summary = "the values of --look", .operands = "", .run = run_list};
+const Command command_presets = {
+    .name = "presets", .summary = "the values of --preset", .operands = "", .run = run_list};
 const Command command_domains = {
     .name = "domains", .summary = "the shapes of --domain", .operands = "", .run = run_list};
 const Command command_formats = {

@@ -1,6 +1,7 @@
 /* Options that have no effect on a file of the format that its name says are refused. */
 #include "app/pictures/press.h"
 
+#include "app/pictures/preset.h"
 #include <string.h>
 #include <strings.h>
 
@@ -9,7 +10,20 @@ static const char *const compressions[] = {
 static const char *const intents[] = {
     [INKS_PERCEPTUAL] = "perceptual", [INKS_RELATIVE] = "relative", NULL};
 
+enum { COLUMN_SINGLE, COLUMN_DOUBLE };
+static const char *const columns[] = {"single", "double", NULL};
+
 static const Option rows[] = {
+    {.name = "preset",
+     SETS(LOOKUP, PressOptions, preset),
+     .group = GROUP_PRESS,
+     .list = "presets",
+     .help = "size, dpi and compression as a publisher wants them, where nothing else is said"},
+    {.name = "column",
+     SETS(CHOICE, PressOptions, column),
+     .choices = columns,
+     .group = GROUP_PRESS,
+     .help = "how many columns of the preset's the picture is wide"},
     {.name = "bits",
      SETS(WHOLE, PressOptions, bits),
      FROM_TO(8, 32),
@@ -39,7 +53,37 @@ static const Option rows[] = {
      .help = "colours that the press has not: all make way, or they alone"},
 };
 
-const OptionTable press_table = OPTION_TABLE(rows);
+/* What nobody has said is as the preset says. */
+static Status imply(const Parsed *parsed, const char *name, const char *value, Err *err)
+{
+    const Setting *setting = parsed_find(parsed, name, strlen(name));
+    return setting && !setting->said ? setting_read(setting, value, err) : STATUS_OK;
+}
+
+/* A picture is square, but no higher than a page. */
+static Status settle(const void *set, const Parsed *parsed, Err *err)
+{
+    const PressOptions *options = set;
+    Preset preset;
+    char size[80], dpi[40];
+    if (!options->preset)
+        return STATUS_OK;
+    TRY(preset_read(options->preset, &preset, err));
+    double width = options->column == COLUMN_DOUBLE ? preset.double_mm : preset.single_mm;
+    double height = preset.height_mm > 0 && preset.height_mm < width ? preset.height_mm : width;
+    snprintf(size, sizeof size, "%gmmx%gmm", width, height);
+    snprintf(dpi, sizeof dpi, "%g", preset.render_dpi);
+    Status status = imply(parsed, "size", size, err);
+    if (status == STATUS_OK)
+        status = imply(parsed, "dpi", dpi, err);
+    if (status == STATUS_OK && strcmp(preset.compression, "any") != 0)
+        status = imply(parsed, "compression", preset.compression, err);
+    preset_release(&preset);
+    return status;
+}
+
+const OptionTable press_table = {
+    .options = rows, .n = sizeof rows / sizeof *rows, .settle = settle};
 
 void press_set_defaults(PressOptions *options)
 {
@@ -73,6 +117,7 @@ static Status check_bits(const char *output, int bits, Err *err)
 Status press_check(const PressOptions *options, const char *output, const Parsed *parsed, Err *err)
 {
     const OptionNeed needs[] = {
+        {"column", options->preset != NULL, "needs --preset"},
         {"compression", is_of(output, "tif", "tiff"), "is for .tif"},
         {"quality", is_of(output, "jpg", "jpeg"), "is for .jpg"},
         {"cmyk-profile", image_keeps_inks(output), "is for .tif and .jpg"},
@@ -82,13 +127,25 @@ Status press_check(const PressOptions *options, const char *output, const Parsed
     return check_bits(output, options->bits, err);
 }
 
-Status press_refuse(const Parsed *parsed, const char *sentence, Err *err)
+enum { OF_SIZE = 2 /* the first rows */ };
+
+static Status refuse_from(size_t first, const Parsed *parsed, const char *sentence, Err *err)
 {
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    for (size_t i = first; i < sizeof rows / sizeof *rows; i++) {
         const OptionNeed needs[] = {{rows[i].name, false, sentence}, {0}};
         TRY(options_check_needs(parsed, needs, err));
     }
     return STATUS_OK;
+}
+
+Status press_refuse(const Parsed *parsed, const char *sentence, Err *err)
+{
+    return refuse_from(0, parsed, sentence, err);
+}
+
+Status press_refuse_packing(const Parsed *parsed, const char *sentence, Err *err)
+{
+    return refuse_from(OF_SIZE, parsed, sentence, err);
 }
 
 Status press_open(const PressOptions *options, const char *output, Press *press, Err *err)

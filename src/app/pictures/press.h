@@ -8,6 +8,8 @@
 #include "image/image.h"
 
 typedef struct PressOptions {
+    const char *preset;      /* NULL: none */
+    int column;              /* choice: the width that a preset gives */
     int bits;                /* 0: what is usual of the format */
     int compression, intent; /* choices: ImageCompression, InkIntent */
     int quality;             /* of a JPEG */
@@ -25,6 +27,9 @@ MUST_CHECK Status press_check(const PressOptions *options, const char *output, c
 /* STATUS_USAGE for the first of the table's options that stands on the command line, which
  * `sentence` says are without effect. */
 MUST_CHECK Status press_refuse(const Parsed *parsed, const char *sentence, Err *err);
+
+/* Likewise of those but preset and column, which are of sizes. */
+MUST_CHECK Status press_refuse_packing(const Parsed *parsed, const char *sentence, Err *err);
 
 /* What writers take. */
 typedef struct Press {

@@ -50,7 +50,8 @@ static const OptionTable common_table = OPTION_TABLE(common_options);
 static void bind(Parsed *parsed, const OptionTable *table, void *base)
 {
     for (size_t i = 0; i < table->n; i++)
-        parsed->settings[parsed->n_settings++] = (Setting){&table->options[i], base, false};
+        parsed->settings[parsed->n_settings++] =
+            (Setting){.option = &table->options[i], .base = base};
 }
 
 Status parsed_init(Parsed *parsed, const Command *command, Err *err)
@@ -124,11 +125,12 @@ static Status take_recipe_line(void *user, const char *section, const char *name
                    : err_set(err, STATUS_USAGE, "[%s] is not the name of a command", section);
     if (!name)
         return STATUS_OK;
-    const Setting *setting = find(parsed, name, strlen(name));
+    Setting *setting = find(parsed, name, strlen(name));
     if (!setting || strcmp(name, "recipe") == 0) {
         (void)err_set(err, STATUS_USAGE, "'%s' is not an option of %s", name, command->name);
         return suggest_option(parsed, name, strlen(name), "", err);
     }
+    setting->said = true;
     return setting_read(setting, value, err);
 }
 
@@ -269,6 +271,7 @@ static Status read_option(Parsed *parsed, int argc, char **argv, int *at, bool a
     const char *value;
     TRY(take_value(setting->option, &as, argc, argv, at, &value, err));
     TRY(note_typed(setting, err));
+    setting->said = true;
     bool is_recipe = strcmp(setting->option->name, "recipe") == 0;
     return apply || is_recipe ? setting_read(setting, value, err) : STATUS_OK;
 }
@@ -365,6 +368,12 @@ static Status settle_size(const Option *option, PictureSize *size, Err *err)
 /* What can be said only of all options together. */
 Status options_settle(const Parsed *parsed, Err *err)
 {
+    for (int t = 0; t < MAX_TABLES && parsed->command->tables[t].table; t++) {
+        const OptionTable *table = parsed->command->tables[t].table;
+        if (table->settle)
+            TRY(table->settle((char *)parsed->options + parsed->command->tables[t].at, parsed,
+                              err));
+    }
     for (size_t i = 0; i < parsed->n_settings; i++) {
         const Setting *setting = &parsed->settings[i];
         if (setting->option->kind == OPTION_SIZE)

@@ -171,18 +171,21 @@ static inline const char *option_unit(const Option *option)
 #define OPTION_TYPE_RANGE RangeEnds
 #define OPTION_TYPE_CHOICE int : (char)0, unsigned
 
+typedef struct Parsed Parsed;
+
 /* Descriptions that set members of one struct. */
 typedef struct OptionTable {
     const Option *options;
     size_t n;
+    /* Once all are read, sets options, of other tables as well, that nobody has (setting->said);
+     * NULL: nothing follows from these. */
+    Status (*settle)(const void *set, const Parsed *parsed, Err *err);
 } OptionTable;
 
 #define OPTION_TABLE(array)                                                                        \
     {                                                                                              \
-        array, sizeof(array) / sizeof *(array)                                                     \
+        .options = array, .n = sizeof(array) / sizeof *(array)                                     \
     }
-
-typedef struct Parsed Parsed;
 
 enum { MAX_OPERANDS = 4096, MAX_TABLES = 8 };
 
@@ -221,6 +224,7 @@ typedef struct Setting {
     const Option *option;
     char *base; /* the struct that `where` and `given` are offsets in */
     bool typed; /* it stands on the command line */
+    bool said;  /* there, or in the recipe */
 } Setting;
 
 struct Parsed {

@@ -1,0 +1,203 @@
+#!/bin/bash
+# What publishers would refuse: files of our own, and faults that other programs put in.
+. "$(dirname "$0")/../lib.sh"
+
+# taken PRESET FILE [OPTION...]: the preset has nothing against the file.
+taken() {
+    run corcast check-figure "$2" --preset "$1" "${@:3}"
+    expect_status 0
+    expect_stdout "^$2: $1 takes it; not checked: "
+    [ "$(wc -l <stdout)" = 1 ] || fail "expected one line, got: $(cat stdout)"
+}
+
+# refused PRESET FILE REGEX [OPTION...]: it has just this against it.
+refused() {
+    run corcast check-figure "$2" --preset "$1" "${@:4}"
+    expect_status 1
+    expect_stdout "^$2: $3\$"
+    [ "$(wc -l <stdout)" = 1 ] || fail "expected one line, got: $(cat stdout)"
+    [ ! -s stderr ] || fail "expected no error$(said)"
+}
+
+# refused_twice PRESET FILE REGEX REGEX: it has just these two against it.
+refused_twice() {
+    run corcast check-figure "$2" --preset "$1"
+    expect_status 1
+    expect_stdout "^$2: $3\$"
+    expect_stdout "^$2: $4\$"
+    [ "$(wc -l <stdout)" = 2 ] || fail "expected two lines, got: $(cat stdout)"
+}
+
+# A small picture stands for a large one: what counts is what the file says.
+test_each_preset_takes_what_render_draws_by_it() {
+    local preset file
+    grow_tree 3
+    while read -r preset pixels formats; do
+        for file in $formats; do
+            run_ok corcast render tree.swc --antialias 1 --preset "$preset" --json "$file.json" -o "$file"
+            expect_json "$file.json" ".width == $pixels"
+            taken "$preset" "$file"
+        done
+    done <<'END'
+nature 1577 n.tif n.png n.jpg n.pdf
+elsevier 1772 e.tif e.jpg
+plos 1559 p.tif
+springer 1984 s.tif
+END
+    run_ok corcast render tree.swc --preset poster-a0 --dpi 3 -o a.tif
+    refused poster-a0 a.tif 'resolution: 3 dpi, less than 150 for halftone'
+}
+
+test_a_preset_says_what_nobody_else_does() {
+    grow_tree 3
+    run_ok corcast render tree.swc --preset plos --column double --dpi 30 -o p.tif
+    oiiotool --info p.tif | grep -q ' 225 x  *225,' || fail "expected 190.5 mm at 30 dpi: $(oiiotool --info p.tif)"
+    run_ok corcast render tree.swc --preset nature --column double --dpi 30 -o n.tif
+    oiiotool --info n.tif | grep -q ' 216 x  *201,' || fail "expected the height of a page: $(oiiotool --info n.tif)"
+    printf 'size = 30x20\n' >r.ini
+    run_ok corcast render tree.swc --preset nature --recipe r.ini -o r.png
+    oiiotool --info -v r.png | grep -q 'XResolution: 450' || fail "expected 450 dpi"
+    oiiotool --info r.png | grep -q ' 30 x  *20,' || fail "expected the recipe's size"
+    run corcast render tree.swc --column double -o x.png
+    expect_status 2
+    expect_sentence '--column needs --preset'
+    run corcast render tree.swc --preset sience -o x.png
+    expect_status 2
+    expect_sentence "--preset: 'sience' is not elsevier, nature, plos, poster-a0 or springer"
+}
+
+# A picture of 300 dpi, 80 x 60 mm, that all take.
+fine() {
+    ppmmake rgb:80/20/20 945 709 >fine.ppm
+    run_ok corcast convert fine.ppm fine.tif --dpi 300
+}
+
+test_faults_of_pictures_are_named_one_each() {
+    fine
+    taken nature fine.tif
+    taken plos fine.tif
+    refused springer fine.tif 'resolution: 300 dpi, less than 600 for combination' --kind combination
+    refused elsevier fine.tif 'resolution: 300 dpi, less than 1000 for line' --kind line
+    run_ok corcast convert fine.ppm low.tif --dpi 250
+    refused nature low.tif 'resolution: 250 dpi, less than 300 for halftone'
+    run_ok corcast convert fine.ppm dense.tif --dpi 601
+    refused plos dense.tif 'width: 39.9 mm, less than 66.8 mm'
+    run_ok corcast convert fine.ppm denser.tif --dpi 610
+    refused_twice plos denser.tif 'resolution: 610 dpi, more than 600' 'width: 39.3 mm, less than 66.8 mm'
+    run_ok corcast convert fine.ppm none.jpg
+    refused_twice nature none.jpg 'resolution: the file has none; 945 pixels are 270 dpi over a column of 89 mm' \
+        'pixels: 945 across, fewer than the 1051 of a column of 89 mm at 300 dpi'
+    run_ok corcast convert fine.ppm deep.tif --dpi 300 --bits 16
+    refused plos deep.tif 'bits: 16 a channel, more than 8'
+    run_ok corcast convert fine.ppm zip.tif --dpi 300 --compression deflate
+    refused plos zip.tif 'compression: deflate; wanted is lzw'
+    run_ok corcast convert fine.ppm inks.tif --dpi 300 --cmyk-profile "$CMYK"
+    refused nature inks.tif 'colours: cmyk; taken are rgb grey'
+    taken elsevier inks.tif
+    oiiotool fine.tif --ch R,G,B,A=0.5 --compression lzw -o glassy.tif
+    refused plos glassy.tif 'alpha: a channel of transparency; figures are to be flat'
+    run_ok corcast convert fine.ppm fine.png --dpi 300
+    refused springer fine.png 'format: png; taken are eps tif'
+    ppmmake black 2204 709 >wide.ppm
+    run_ok corcast convert wide.ppm wide.tif --dpi 300
+    refused nature wide.tif 'width: 186.6 mm, more than 183 mm'
+    ppmmake black 945 2100 >high.ppm
+    run_ok corcast convert high.ppm high.tif --dpi 300
+    refused nature high.tif 'height: 177.8 mm, more than 170 mm'
+    ppmmake black 2240 1600 >large.ppm
+    run_ok corcast convert large.ppm large.tif --dpi 300 --compression none
+    refused_twice plos large.tif 'size: 10.8 MB, not less than 10 MB' 'compression: none; wanted is lzw'
+    run corcast check-figure "$DATA/images/pages.tif" --preset nature
+    expect_stdout 'pages: 2; one is wanted'
+    run corcast check-figure "$DATA/images/wide-profile.tif" --preset nature
+    expect_stdout 'profile: "Wide built-in"; colours without ado are sRGB'
+}
+
+# helvetica FILE: a page with a font that is not in it.
+helvetica() {
+    {
+        printf '%%PDF-1.4\n1 0 obj<</Type/Catalog/Pages 2 0 R>>endobj\n2 0 obj<</Type/Pages/Kids[3 0 R]/Count 1>>endobj\n'
+        printf '3 0 obj<</Type/Page/Parent 2 0 R/MediaBox[0 0 200 100]/Contents 5 0 R/Resources<</Font<</F 4 0 R>>>>>>endobj\n'
+        printf '4 0 obj<</Type/Font/Subtype/Type1/BaseFont/Helvetica>>endobj\n5 0 obj<</Length 30>>stream\n'
+        printf 'BT /F 12 Tf 9 9 Td (mm) Tj ET \nendstream endobj\ntrailer<</Root 1 0 R>>\n'
+    } >"$1"
+}
+
+test_faults_of_pages_are_named() {
+    grow_tree 3
+    run_ok corcast render tree.swc --size 80mmx50mm --dpi 300 --scale-bar 10 -o fine.pdf
+    taken nature fine.pdf
+    refused elsevier fine.pdf 'resolution: 300 dpi of picture 1, less than 500 for combination' --kind combination
+    run_ok corcast render tree.swc --size 80mmx50mm --dpi 200 -o low.pdf
+    refused nature low.pdf 'resolution: 200 dpi of picture 1, less than 300 for halftone'
+    run_ok corcast render tree.swc --size 200mmx50mm --dpi 300 --antialias 1 -o wide.pdf
+    refused nature wide.pdf 'width: 200.0 mm, more than 183 mm'
+    helvetica bare.pdf
+    refused nature bare.pdf 'fonts: Helvetica is not embedded'
+    head -c 900 fine.pdf >cut.pdf
+    run corcast check-figure cut.pdf --preset nature
+    expect_status 2
+    expect_sentence 'cut.pdf: is not a sound PDF, as pdfinfo has it'
+    PATH=/nowhere "$CORCAST" check-figure fine.pdf --preset nature >stdout 2>stderr
+    [ $? = 3 ] || fail "expected status 3 without poppler"
+    expect_sentence 'pdfinfo is not there; it comes with poppler-utils'
+}
+
+test_what_nobody_can_check_is_said() {
+    printf '%%!PS-Adobe-3.0 EPSF-3.0\n' >f.eps
+    run corcast check-figure f.eps --preset plos
+    expect_status 0
+    expect_stdout '^f.eps: plos takes it; not checked: anything in a .eps but its format and size$'
+}
+
+test_the_verdict_is_json_too() {
+    fine
+    run corcast check-figure fine.tif --preset nature --json
+    expect_status 0
+    expect_json stdout '.accepted and .refused == [] and (.not_checked | length) == 1 and .file == "fine.tif"'
+    run corcast check-figure fine.tif --preset springer --kind combination --json
+    expect_status 1
+    expect_json stdout '(.accepted | not) and .preset == "springer" and (.refused | length) == 1'
+}
+
+test_bad_input_is_refused_in_a_sentence() {
+    fine
+    run_ok corcast convert fine.ppm fine.png
+    run_ok corcast convert fine.ppm fine.jpg
+    while read -r bytes name format; do
+        head -c "$bytes" "fine.$name" >"cut.$name"
+        run corcast check-figure "cut.$name" --preset nature
+        expect_status 2
+        expect_sentence "cut.$name: is not a sound $format file: "
+    done <<'END'
+30 png PNG
+200 jpg JPEG
+50 tif TIFF
+END
+    echo words >words.txt
+    run corcast check-figure words.txt --preset nature
+    expect_status 2
+    expect_sentence 'words.txt: is not a picture or a page'
+    run corcast check-figure none.tif --preset nature
+    expect_status 2
+    expect_sentence 'none.tif: cannot be read: No such file'
+    run corcast check-figure fine.tif
+    expect_status 2
+    expect_sentence '--preset is missing; corcast presets lists those there are'
+    while IFS='|' read -r change sentence; do
+        sed "$change" "$REPO/templates/presets/nature.ini" >mine.ini
+        run corcast check-figure fine.tif --preset ./mine.ini
+        expect_status 2
+        expect_sentence "mine.ini:.*$sentence"
+    done <<'END'
+s/single = 89/single = -1/|'-1' of .width. is not a number of at least 0
+s/double = 183/single = 3/|'single' of .width. is there twice
+/^bits/d|'bits' of .file. is missing
+END
+    printf '[width]\nhalf = 3\n' >mine.ini
+    run corcast check-figure fine.tif --preset ./mine.ini
+    expect_status 2
+    expect_sentence "mine.ini:2: a preset has no 'half' in \[width\]"
+}
+
+run_tests "$@"
