@@ -229,7 +229,7 @@ bool image_is_floats(const char *path);
 typedef struct ImageReader ImageReader;
 
 /* STATUS_INPUT, naming the file, when it is missing or no sound PNG or TIFF of the form that
- * imagewriter_open writes: sRGB or linear codes of 8 or 16 bits in 1 or 3 channels, interleaved,
+ * imagewriter_open writes: sRGB or linear codes of 8 or 16 bits in 1, 3 or 4 channels, interleaved,
  * not turned, a single page. Close with imagereader_close. */
 MUST_CHECK Status imagereader_open(ImageReader **out, const char *path, Err *err);
 /* What the file says of itself, its notes and resolution included; borrowed. Of a TIFF's notes,

@@ -52,8 +52,9 @@ static Status read_header(Rows *self, Err *err)
     png_set_user_limits(png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);
     png_read_info(png, info);
     int type = png_get_color_type(png, info), bits = png_get_bit_depth(png, info);
-    bool plain = (type == PNG_COLOR_TYPE_GRAY || type == PNG_COLOR_TYPE_RGB) && bits >= 8 &&
-                 png_get_interlace_type(png, info) == PNG_INTERLACE_NONE;
+    bool plain = (type == PNG_COLOR_TYPE_GRAY || type == PNG_COLOR_TYPE_RGB ||
+                  type == PNG_COLOR_TYPE_RGB_ALPHA) &&
+                 bits >= 8 && png_get_interlace_type(png, info) == PNG_INTERLACE_NONE;
     double gamma = 0;
     bool linear = png_get_gAMA(png, info, &gamma) && gamma == 1;
     if (!plain || png_get_valid(png, info, PNG_INFO_tRNS))
@@ -61,7 +62,7 @@ static Status read_header(Rows *self, Err *err)
     TRY(take_notes(self, err));
     self->form = (ImageForm){.width = (int)png_get_image_width(png, info),
                              .height = (int)png_get_image_height(png, info),
-                             .channels = type == PNG_COLOR_TYPE_RGB ? 3 : 1,
+                             .channels = png_get_channels(png, info),
                              .bits = bits,
                              .encoding = linear ? ENCODING_LINEAR : ENCODING_SRGB,
                              .notes = &self->notes};

@@ -64,17 +64,29 @@ static ImageCompression compression_of(TIFF *handle)
                                                       : IMAGE_LZW;
 }
 
+/* Grey, RGB, or RGB with alpha that the colours are not multiplied by. */
+static bool has_known_samples(TIFF *handle, int samples)
+{
+    uint16_t photometric = PHOTOMETRIC_YCBCR, extra = 0;
+    const uint16_t *kinds = NULL;
+    TIFFGetField(handle, TIFFTAG_PHOTOMETRIC, &photometric);
+    TIFFGetFieldDefaulted(handle, TIFFTAG_EXTRASAMPLES, &extra, &kinds);
+    if (samples == 1)
+        return photometric == PHOTOMETRIC_MINISBLACK;
+    bool alpha = extra == 1 && kinds[0] == EXTRASAMPLE_UNASSALPHA;
+    return photometric == PHOTOMETRIC_RGB && (samples == 3 || (samples == 4 && alpha));
+}
+
 static Status read_header(void *work, Err *err)
 {
     Rows *self = work;
     uint32_t width = 0, height = 0;
-    uint16_t samples, bits, format, planar, orientation, photometric = PHOTOMETRIC_YCBCR;
+    uint16_t samples, bits, format, planar, orientation;
     if (!tiff_open(&self->tiff, self->name, "r"))
         return unsound(self, err);
     TIFF *handle = self->tiff.handle;
     TIFFGetField(handle, TIFFTAG_IMAGEWIDTH, &width);
     TIFFGetField(handle, TIFFTAG_IMAGELENGTH, &height);
-    TIFFGetField(handle, TIFFTAG_PHOTOMETRIC, &photometric);
     TIFFGetFieldDefaulted(handle, TIFFTAG_SAMPLESPERPIXEL, &samples);
     TIFFGetFieldDefaulted(handle, TIFFTAG_BITSPERSAMPLE, &bits);
     TIFFGetFieldDefaulted(handle, TIFFTAG_SAMPLEFORMAT, &format);
@@ -82,8 +94,7 @@ static Status read_header(void *work, Err *err)
     TIFFGetFieldDefaulted(handle, TIFFTAG_ORIENTATION, &orientation);
     TRY(image_check_sides(self->name, width, height, err));
     size_t row_bytes = (size_t)width * samples * (bits / 8);
-    if (photometric != (samples == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK) ||
-        (samples != 1 && samples != 3) || (bits != 8 && bits != 16) ||
+    if (!has_known_samples(handle, samples) || (bits != 8 && bits != 16) ||
         format != SAMPLEFORMAT_UINT || planar != PLANARCONFIG_CONTIG ||
         orientation != ORIENTATION_TOPLEFT || TIFFIsTiled(handle) ||
         (size_t)TIFFScanlineSize(handle) != row_bytes)

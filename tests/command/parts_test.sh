@@ -33,7 +33,7 @@ test_tiles_are_the_whole_picture_to_the_byte() {
     expect_same whole.png merged.png
     draw_parts 3 --method raster --model rounded --antialias 2 --projection perspective --view iso
     expect_same whole.png merged.png
-    draw_parts 2 --ao 2 --antialias 2
+    draw_parts 2 --ao 2 --antialias 2 --background none
     expect_same whole.png merged.png
     SMALL="--size 303x271 --quiet"
     draw_parts 6 --look journal --color-by flow --legend --scale-bar 10 --min-width 1.3
@@ -54,10 +54,10 @@ test_a_tile_says_what_part_of_what_it_is() {
 test_tiffs_merge_like_pngs() {
     make_tree
     # shellcheck disable=SC2086
-    run_ok corcast render tree.swc $SMALL --dpi 299.7 -o whole.tif
+    run_ok corcast render tree.swc $SMALL --dpi 299.7 --color-by flow --background none -o whole.tif
     for i in 1 2 3; do
         # shellcheck disable=SC2086
-        run_ok corcast render tree.swc $SMALL --dpi 299.7 --tile $i/3 -o "$i.tif"
+        run_ok corcast render tree.swc $SMALL --dpi 299.7 --color-by flow --background none --tile $i/3 -o "$i.tif"
     done
     run_ok corcast merge 3.tif 1.tif 2.tif -o merged.tif
     expect_same whole.tif merged.tif

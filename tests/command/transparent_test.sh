@@ -69,7 +69,6 @@ test_what_cannot_be_transparent_is_refused() {
 -o p.jpg|'p\.jpg' cannot be transparent
 -o -|'-' cannot be transparent
 --scale-bar 2 -o p.png|needs a background
---tile 1/2 -o p.png|--tile needs a background
 --antialias-threshold 0.1 -o p.png|--antialias-threshold needs a background
 END
     run corcast diagram tree.swc --background none -o p.svg

@@ -67,7 +67,7 @@ static void read_by_rows(const char *path, const Picture *whole)
     for (int y = 0; y < form->height && y < 5000 && status == STATUS_OK; y++) {
         status = imagereader_codes(reader, &row, &err);
         fuzz_check_refusal(status, &err, path);
-        if (status != STATUS_OK || whole->width == 0)
+        if (status != STATUS_OK || whole->channels != row.channels)
             continue;
         assert(whole->width == row.width && whole->bits == row.bits);
         for (size_t i = 0; i < picture_stride(&row); i++)

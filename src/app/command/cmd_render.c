@@ -366,8 +366,6 @@ static Status check_transparent(const RenderOptions *options, const Parsed *pars
         return err_set(err, STATUS_USAGE,
                        "--background none: a legend, a scale bar or a letter needs a background");
     const OptionNeed needs[] = {
-        {"tile", false, "needs a background: tiles that are transparent cannot be merged"},
-        {"tiles", false, "needs a background: tiles that are transparent cannot be merged"},
         {"cmyk-profile", false, "needs a background, not --background none"},
         {"antialias-threshold", false, "needs a background, not --background none"},
         {0}};
