@@ -3,7 +3,7 @@
 #include "surface/mesh/boxpairs.h"
 #include "surface/mesh/meshcheck.h"
 #include "surface/mesh/nearpairs.h"
-#include "surface/mesh/zones.h"
+#include "surface/mesh/zonetree.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -173,6 +173,85 @@ static void triangles_that_are_too_far_off_are_split(void **state)
         assert_true(made.report.off.ratio < 0.0225);
         release(&made);
     }
+}
+
+/* What leads from a tree to its zones. */
+typedef struct Cut {
+    NumberLists incident, blending;
+    Zones zones;
+} Cut;
+
+static void cut(const VesselTree *tree, Cut *made)
+{
+    *made = (Cut){.zones = {0}};
+    assert_int_equal(vesseltree_incident(tree, &made->incident, NULL), STATUS_OK);
+    assert_int_equal(vesseltree_blending(tree, &made->incident, &made->blending, NULL), STATUS_OK);
+    assert_int_equal(zones_find(tree, &made->incident, &made->blending, 1, &made->zones, NULL),
+                     STATUS_OK);
+}
+
+static void release_cut(Cut *made)
+{
+    numberlists_release(&made->incident);
+    numberlists_release(&made->blending);
+    zones_release(&made->zones);
+}
+
+/* A trunk with twigs 2.25 radii apart, whose segments are clear of both ends nowhere. */
+static void sketch_trunk(Sketch *sketch)
+{
+    sketch_begin(sketch, vec3(0, 0, 0));
+    uint32_t node = sketch_to(sketch, 0, vec3(4.1, 0, 0), 0.83);
+    for (int i = 1; i <= 4; i++) {
+        double x = 4.1 + 1.87 * i, up = i % 2 ? 3.1 : -3.1;
+        sketch_to(sketch, node, vec3(x - 1.2, up, 0.2 * i), 0.14);
+        node = sketch_to(sketch, node, vec3(x, 0.03 * up, 0), 0.83 - 0.002 * i);
+    }
+    sketch_to(sketch, node, vec3(15.1, 1.9, 0), 0.61);
+    sketch_to(sketch, node, vec3(15.3, -1.4, 0), 0.58);
+}
+
+static void a_trunk_is_cut_between_its_twigs(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    Cut zones;
+    sketch_trunk(&sketch);
+    cut(&sketch.tree, &zones);
+    assert_int_equal(zones.zones.n_zones, 5);
+    int n_close = 0;
+    for (size_t i = 0; i < sketch.tree.n_segments; i++)
+        n_close += zones.zones.is_close[i];
+    assert_int_equal(n_close, 4);
+    release_cut(&zones);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    expect_near(&sketch.tree, &made, 0.003, 0.025);
+    release(&made);
+}
+
+static void a_zone_of_too_many_cells_is_refused(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Cut zones;
+    ZonePlan plan;
+    ZoneTree tree = {0};
+    Err err;
+    CellSize size = {.ratio = 0.5, .bending = 0.2, .most = 2385};
+    sketch_trunk(&sketch);
+    cut(&sketch.tree, &zones);
+    assert_int_equal(
+        zoneplan_make(&sketch.tree, &zones.incident, &zones.blending, &zones.zones, 0, &plan, NULL),
+        STATUS_OK);
+    assert_int_equal(zonetree_build(&tree, &plan, &size, &err), STATUS_INFEASIBLE);
+    assert_non_null(strstr(err.text, "its surface needs more than 2385 cells"));
+    size.most = 100000;
+    assert_int_equal(zonetree_build(&tree, &plan, &size, NULL), STATUS_OK);
+    zonetree_release(&tree);
+    zoneplan_release(&plan);
+    release_cut(&zones);
 }
 
 static void a_trifurcation_of_unlike_radii_is_one_sphere(void **state)
@@ -492,6 +571,8 @@ int main(void)
         cmocka_unit_test(a_bifurcation_is_one_sphere_near_its_surface),
         cmocka_unit_test(a_tree_far_from_the_origin_is_as_near_its_surface),
         cmocka_unit_test(triangles_that_are_too_far_off_are_split),
+        cmocka_unit_test(a_trunk_is_cut_between_its_twigs),
+        cmocka_unit_test(a_zone_of_too_many_cells_is_refused),
         cmocka_unit_test(a_trifurcation_of_unlike_radii_is_one_sphere),
         cmocka_unit_test(a_twig_in_a_groove_is_one_sphere),
         cmocka_unit_test(fine_steps_keep_the_radius),

@@ -20,6 +20,9 @@ static const double cells_at = 0.02, cell_ratio = 0.54, bending_ratio = 0.25, sa
 /* Of a round body: its balls bend both ways, and its creases are cut off. */
 static const double round_sagitta_part = 0.24, round_farthest_part = 1.75;
 
+/* With all that is made from them, so many cells of a zone take 4 GB of memory. */
+enum { MOST_CELLS = 5000000 };
+
 /* After a zone of more terms a thread does not keep its room: it would be ten times what most need.
  */
 enum { TERMS_TO_KEEP = 100 };
@@ -74,7 +77,7 @@ static ZoneFineness fineness_of(const VesselTree *tree, double tolerance, double
 {
     bool is_round = tree->body == BODY_ROUND;
     double ratio = fmin(cell_ratio * sqrt(tolerance / cells_at), 0.7);
-    return (ZoneFineness){{ratio, bending_ratio * tolerance / cells_at},
+    return (ZoneFineness){{ratio, bending_ratio * tolerance / cells_at, MOST_CELLS},
                           (is_round ? round_sagitta_part : sagitta_part) * tolerance,
                           split_part * tolerance,
                           (is_round ? round_farthest_part : farthest_part) * tolerance,

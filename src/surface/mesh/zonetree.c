@@ -25,9 +25,6 @@ static const double surely = 1e-3;
 /* Where others add less than this, the wall is that of one tube. */
 static const double lone = 0.03;
 
-/* With all that is made from them, so many cells take 4 GB of memory. */
-enum { MOST_CELLS = 5000000 };
-
 typedef struct Builder {
     ZoneTree *tree;
     const ZonePlan *plan;
@@ -147,16 +144,16 @@ static Status refuse(const Builder *builder, Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
                    "a chain of junctions, of %u segments, has no free interval to be cut at, and "
-                   "its surface needs more than %d cells, 4 GB of memory; a larger `tolerance` "
+                   "its surface needs more than %zu cells, 4 GB of memory; a larger `tolerance` "
                    "needs fewer",
-                   builder->plan->field.n_terms, MOST_CELLS);
+                   builder->plan->field.n_terms, builder->size->most);
 }
 
 /* Gives a cell children; of an active one they are settled, else they are as it is. */
 static Status split(Builder *builder, uint32_t number, const FieldPart *part, Err *err)
 {
     ZoneTree *tree = builder->tree;
-    if (tree->n_cells + 8 > MOST_CELLS)
+    if (tree->n_cells + 8 > builder->size->most)
         return refuse(builder, err);
     TRY(mem_reserve(&tree->cells, &tree->capacity, tree->n_cells + 8, sizeof *tree->cells,
                     "cells of a junction", err));

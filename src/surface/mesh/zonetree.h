@@ -34,9 +34,11 @@ typedef struct ZoneTree {
 typedef struct CellSize {
     double ratio;   /* the side of a cell over the local radius */
     double bending; /* side times turn of the normal across it over the local radius: not more */
+    size_t most;    /* how many there may be */
 } CellSize;
 
 /* Makes the tree anew, graded so that cells with a common face or edge differ by one level at most.
+ * STATUS_INFEASIBLE when that takes more cells than there may be.
  * Zeroed before the first use; keeps its room. Release with zonetree_release. */
 MUST_CHECK Status zonetree_build(ZoneTree *tree, const ZonePlan *plan, const CellSize *size,
                                  Err *err);
