@@ -64,7 +64,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo validate bench bench-grow bench-render bench-compare bench-mesh export-all verify-all power power-program fit-blob check check-all check-quick program unit \
+.PHONY: all deps demo figures validate bench bench-grow bench-render bench-compare bench-mesh export-all verify-all power power-program fit-blob check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
@@ -84,6 +84,11 @@ demo: ## grow a tree, have POV-Ray and corcast draw it, verify; results in out/d
 	$(Q).ci/deps build run
 	$(Q)$(AGAIN) all
 	$(Q)docs/demo
+
+figures: ## the figures of the paper, as pages and by POV-Ray; results in out/figures/
+	$(Q).ci/deps build run
+	$(Q)$(AGAIN) all
+	$(Q)docs/figures
 
 validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
 	$(Q).ci/deps build check

@@ -8,8 +8,8 @@ extern const Command command_grow, command_refine, command_info, command_convert
     command_export, command_povray, command_render, command_view, command_verify, command_compare,
     command_report, command_models, command_fields, command_looks, command_colormaps,
     command_domains, command_formats, command_morphometries, command_diagram, command_figure,
-    command_merge, command_study, command_certify, command_check_figure, command_presets,
-    command_help, command_version;
+    command_merge, command_study, command_certify, command_bifurcation, command_check_figure,
+    command_presets, command_help, command_version;
 
 /* In the order of the help; NULL ends them. */
 extern const Command *const all_commands[];
