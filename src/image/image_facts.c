@@ -51,6 +51,8 @@ static void read_bytes(png_structp png, png_bytep out, size_t size)
     self->at += size;
 }
 
+enum { MOST_OF_A_CHUNK = 1 << 26 }; /* bytes; a profile's */
+
 static void take_png(Png *self, ImageFacts *facts)
 {
     png_structp png = self->png;
@@ -60,6 +62,8 @@ static void take_png(Png *self, ImageFacts *facts)
     png_uint_32 size;
     int method;
     png_set_read_fn(png, self, read_bytes);
+    png_set_chunk_malloc_max(png, MOST_OF_A_CHUNK);
+    png_set_user_limits(png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);
     png_read_info(png, info);
     int type = png_get_color_type(png, info);
     *facts = (ImageFacts){.format = "png",

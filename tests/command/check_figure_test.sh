@@ -66,6 +66,17 @@ test_a_preset_says_what_nobody_else_does() {
     expect_sentence "--preset: 'sience' is not elsevier, nature, plos, poster-a0 or springer"
 }
 
+test_figures_and_pages_of_several_parts_go_by_presets() {
+    grow_tree 3
+    run_ok corcast render tree.swc --preset nature --legend --color-by radius --scale-bar 10 --letter a -o legend.pdf
+    taken nature legend.pdf --kind combination
+    printf '[panel a]\ntree = tree.swc\n' >two.ini
+    run_ok corcast figure two.ini --preset nature -o two.pdf
+    taken nature two.pdf
+    run_ok corcast figure two.ini --preset springer --dpi 300 -o two.tif
+    taken springer two.tif
+}
+
 # A picture of 300 dpi, 80 x 60 mm, that all take.
 fine() {
     ppmmake rgb:80/20/20 945 709 >fine.ppm

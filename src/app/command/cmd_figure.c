@@ -387,7 +387,7 @@ static Status check_output(const FigureOptions *options, const Parsed *parsed, E
 {
     static const char *const known[] = {"pdf", "svg", "png", "tif", "tiff", "jpg", "jpeg", NULL};
     if (frames_is_page(options->output))
-        return press_refuse(parsed, "is for pictures; a page holds one of 8 bits", err);
+        return press_refuse_packing(parsed, "is for pictures; a page holds one of 8 bits", err);
     if (is_one_of(file_extension(options->output), known))
         return press_check(&options->press, options->output, parsed, err);
     return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pdf, .svg, .png, .tif or .jpg",
