@@ -213,8 +213,8 @@ test_the_cause_is_said_where_it_is_certain() {
 
 test_other_shades_within_the_same_outlines_are_told_from_other_shapes() {
     run_ok corcast grow --terminals 30 --seed 3 -o tree.swc
-    sed 's/^phong = 0.32/phong = 0.39/' "$REPO/templates/looks/cast.ini" >shiny.ini
-    run_ok corcast render --exact tree.swc --size 121x93 --planes id -o a.png
+    sed 's/^phong = 0.32/phong = 0.39/' "$REPO/tests/golden/red.ini" >shiny.ini
+    run_ok corcast render --exact tree.swc --size 121x93 --planes id --look "$REPO/tests/golden/red.ini" -o a.png
     run_ok corcast render --exact tree.swc --size 121x93 --planes id --look ./shiny.ini -o b.png
     expect_cause 'only shading differs, by up to [0-9.]+ levels on [0-9.]+ % of the pixels, B being brighter; the outlines against the background are equal'
     run corcast compare a.png b.png --ids-a a.id.ppm --ids-b b.id.ppm
@@ -222,7 +222,7 @@ test_other_shades_within_the_same_outlines_are_told_from_other_shapes() {
     run corcast compare b.png a.png --json
     expect_json stdout '.cause | test("B being darker")'
     awk '/^#/ { print; next } $1 == 5 { $6 *= 1.3 } { print }' tree.swc >thick.swc
-    run_ok corcast render --exact thick.swc --size 121x93 -o b.png
+    run_ok corcast render --exact thick.swc --size 121x93 --look "$REPO/tests/golden/red.ini" -o b.png
     run corcast compare a.png b.png --json
     expect_json stdout '.verdict == "differ" and .cause == null'
 }

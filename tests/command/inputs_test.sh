@@ -174,7 +174,7 @@ test_a_name_that_templates_lack_is_answered_with_those_there_are() {
     expect_sentence "^corcast render: --colormap: 'jet' is not Dark2, .*, inferno, magma, plasma, romaO, vik or viridis"
     run corcast render "$DATA/bifurcation.swc" --look nosuch -o p.png
     expect_status 2
-    expect_sentence "--look: 'nosuch' is not cast, clinical, .*, print or wax"
+    expect_sentence "--look: 'nosuch' is not cast, clinical, .*, wax or xray"
 }
 
 # A letter, black on nothing, and the same in white on black.

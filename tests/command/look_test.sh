@@ -9,7 +9,7 @@ make_crossing() {
 
 test_looks_are_listed_with_what_povray_does_not_draw() {
     run_ok corcast looks
-    expect_stdout '^clinical	POV-Ray draws the same	the red of textbooks'
+    expect_stdout '^clinical	POV-Ray draws the same	the bright red of textbooks'
     expect_stdout '^journal	POV-Ray draws it without outlines and halos	true colours'
     expect_stdout '^depth	POV-Ray draws it without halos and fading with depth	'
     [ "$(corcast looks | wc -l)" = "$(ls "$REPO"/templates/looks | wc -l)" ] || fail "expected every look to be listed"

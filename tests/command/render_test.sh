@@ -155,9 +155,9 @@ test_antialiasing_gives_colours_in_between() {
 
 test_perspective_and_shadows_change_the_picture() {
     run_ok corcast grow --terminals 40 --domain ball:20 -o tree.swc
-    run_ok corcast render --exact tree.swc --size 80x80 -o flat.ppm
-    run_ok corcast render --exact tree.swc --size 80x80 --shadows on -o shadows.ppm
-    run_ok corcast render --exact tree.swc --size 80x80 --projection perspective -o perspective.ppm
+    run_ok corcast render --exact tree.swc --look "$REPO/tests/golden/red.ini" --size 80x80 -o flat.ppm
+    run_ok corcast render --exact tree.swc --look "$REPO/tests/golden/red.ini" --size 80x80 --shadows on -o shadows.ppm
+    run_ok corcast render --exact tree.swc --look "$REPO/tests/golden/red.ini" --size 80x80 --projection perspective -o perspective.ppm
     expect_differing 96 96 flat.ppm shadows.ppm
     expect_differing 954 954 flat.ppm perspective.ppm
 }
@@ -529,8 +529,8 @@ test_methods_say_what_they_do_not_draw() {
 
 test_the_potential_of_the_graph_keeps_strangers_apart() {
     rows '1 3 -9 1.1 0 1 -1' '2 3 9 1.1 0 1 1' '3 3 -9 -1.1 0 1 -1' '4 3 9 -1.1 0 1 3'
-    run_ok corcast render --exact tree.swc --model isosurface --size 90x60 -o paper.ppm
-    run_ok corcast render --exact tree.swc --model isosurface --size 90x60 --potential graph -o graph.ppm
+    run_ok corcast render --exact tree.swc --look "$REPO/tests/golden/red.ini" --model isosurface --size 90x60 -o paper.ppm
+    run_ok corcast render --exact tree.swc --look "$REPO/tests/golden/red.ini" --model isosurface --size 90x60 --potential graph -o graph.ppm
     expect_differing 420 440 paper.ppm graph.ppm
     run_ok corcast scene tree.swc --model isosurface --potential graph --color-by radius --ids on -o tree.pov
     grep -q 'Fn_Max(Fm0(x,y,z),Fm1(x,y,z))' tree.inc || fail "expected the larger of two potentials in a cell"

@@ -469,7 +469,7 @@ test_another_finish_is_found_out() {
     for change in Vessel_Phong=0.33 Vessel_Diffuse=0.727 Vessel_Ambient=0.126 Vessel_Phong_Size=33 \
         Light_Intensity=1.01; do
         povray_with "Declare=$change"
-        run corcast verify tree.swc --model rounded --size 160x120 -o report
+        run corcast verify tree.swc --look "$REPO/tests/golden/red.ini" --model rounded --size 160x120 -o report
         [ "$status" -eq 1 ] || fail "expected exit status 1 with $change, got $status$(said)"
         expect_json report/report.json '.verdict == "differ"'
     done
