@@ -23,6 +23,6 @@ void hash_add_text(Hash *hash, const char *text)
 HashText hash_text(Hash *hash)
 {
     HashText text;
-    SHA256End(&hash->state, text.chars);
+    SHA256End(&hash->state, text.hex);
     return text;
 }

@@ -11,7 +11,7 @@ typedef struct Hash {
 } Hash;
 
 typedef struct HashText {
-    char chars[SHA256_DIGEST_STRING_LENGTH]; /* 64 hexadecimal digits and the zero */
+    char hex[SHA256_DIGEST_STRING_LENGTH]; /* 64 hexadecimal digits and the zero */
 } HashText;
 
 void hash_begin(Hash *hash);

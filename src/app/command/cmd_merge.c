@@ -62,7 +62,7 @@ static Status check_same(const ImageReader *first, const Tile *a, const ImageRea
     }
     if (!why && strcmp(a->shard.kernels, b->shard.kernels) != 0)
         why = "a processor with other instructions drew it (--kernels)";
-    if (!why && strcmp(a->shard.made_from.chars, b->shard.made_from.chars) != 0)
+    if (!why && strcmp(a->shard.made_from.hex, b->shard.made_from.hex) != 0)
         why = "it was made from another tree, or other files besides";
     if (!why && (one->width != other->width || one->channels != other->channels ||
                  one->bits != other->bits || one->encoding != other->encoding ||

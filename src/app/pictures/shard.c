@@ -165,7 +165,7 @@ void shard_put(const Shard *shard, Text *text)
 {
     text_printf(text, "tile %d of %d, rows %d to %d of %d, %s, made from %s", shard->number,
                 shard->count, shard->first, shard->first + shard->rows - 1, shard->height,
-                shard->kernels, shard->made_from.chars);
+                shard->kernels, shard->made_from.hex);
 }
 
 /* What is read is written again and compared, so that nothing but a note is one. */
@@ -175,10 +175,10 @@ bool shard_parse(const char *note, Shard *shard)
     int first, last;
     if (sscanf(note, "tile %d of %d, rows %d to %d of %d, %15[a-z0-9], made from %64[0-9a-f]",
                &made.number, &made.count, &first, &last, &made.height, made.kernels,
-               made.made_from.chars) != 7)
+               made.made_from.hex) != 7)
         return false;
     if (made.height < 1 || made.count < 1 || made.count > made.height || made.number < 1 ||
-        made.number > made.count || strlen(made.made_from.chars) != sizeof(HashText) - 1)
+        made.number > made.count || strlen(made.made_from.hex) != sizeof(HashText) - 1)
         return false;
     place(&made);
     *shard = made;

@@ -64,7 +64,7 @@ static Status name_file(const Run *run, const char *folder, const char *extensio
                         Err *err)
 {
     char name[NAME_DIGITS + 8];
-    snprintf(name, sizeof name, "%.*s.%s", NAME_DIGITS, run->made_from.chars, extension);
+    snprintf(name, sizeof name, "%.*s.%s", NAME_DIGITS, run->made_from.hex, extension);
     return file_join(folder, name, path, err);
 }
 
@@ -121,11 +121,10 @@ static json_t *read_right(const StudyRunParams *params, const Run *run)
     HashText tree;
     json_t *report = read_report(run->report);
     const json_t *shard = json_object_get(report, "shard");
-    bool right =
-        is_text(shard, "made_from", run->made_from.chars) && json_object_get(shard, "tree");
+    bool right = is_text(shard, "made_from", run->made_from.hex) && json_object_get(shard, "tree");
     if (right && params->trees && !json_object_get(report, "error"))
         right =
-            hash_of_tree(run->tree, &tree, NULL) == STATUS_OK && is_text(shard, "tree", tree.chars);
+            hash_of_tree(run->tree, &tree, NULL) == STATUS_OK && is_text(shard, "tree", tree.hex);
     if (right)
         return report;
     json_decref(report);
@@ -187,7 +186,7 @@ static Status keep_tree(const StudyRunParams *params, const Run *run, const Tree
     }
     TRY(tree_write(tree, run->tree, err));
     TRY(hash_of_tree(run->tree, &text, err));
-    *hash = json_text(text.chars);
+    *hash = json_text(text.hex);
     return STATUS_OK;
 }
 
@@ -220,9 +219,9 @@ static json_t *line_json(const StudyRunParams *params, const Run *run, json_t *s
     const StudyPlan *plan = params->plan;
     const char *key;
     json_t *value;
-    const JsonMember of_shard[] = {{"plan", json_text(plan->hash.chars)},
+    const JsonMember of_shard[] = {{"plan", json_text(plan->hash.hex)},
                                    {"runs", json_integer((json_int_t)plan->runs)},
-                                   {"made_from", json_text(run->made_from.chars)},
+                                   {"made_from", json_text(run->made_from.hex)},
                                    {"tree", hash}};
     const JsonMember first[] = {
         {"run", json_integer((json_int_t)run->number)},

@@ -39,6 +39,6 @@ void bound_put_certificate(const Bound *bound, const Tree *tree, Text *text)
     if (chars)
         hash_add(&hash, chars, strlen(chars));
     text_add(text, &body);
-    text_printf(text, "# sha256: %s\n", hash_text(&hash).chars);
+    text_printf(text, "# sha256: %s\n", hash_text(&hash).hex);
     text_release(&body);
 }

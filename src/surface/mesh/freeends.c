@@ -213,6 +213,8 @@ static Status find_neighbors(EndSearch *search)
 {
     const VesselTree *tree = search->tree;
     const uint32_t *others = search->others;
+    if (search->n_others == 0)
+        return STATUS_OK;
     TRY(mem_calloc(&search->neighbors, search->n_others, sizeof *search->neighbors, "terms", NULL));
     TRY(mem_calloc(&search->terms, search->n_others, sizeof *search->terms, "terms", NULL));
     qsort(search->others, search->n_others, sizeof *search->others, compare_numbers);
