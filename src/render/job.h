@@ -12,8 +12,8 @@ typedef enum RenderMethod {
     RENDER_TRACE,   /* ray by ray in double precision, as POV-Ray does */
     RENDER_RASTER,  /* tile by tile in single precision: the same picture but for rounding */
     RENDER_ZBUFFER, /* by points of the surfaces and a depth buffer, as the paper does */
-    RENDER_FASTEST  /* the fastest within the bounds of tier B [verify.h]: RENDER_RASTER of what it
-                     * takes, RENDER_TRACE of the rest */
+    RENDER_FASTEST  /* the fastest within the bounds of tier B [verify.h], but for what samples
+                     * share: RENDER_RASTER of what it takes, rays of the rest */
 } RenderMethod;
 
 /* The instructions that a tile's samples are drawn with, several at once: those of any processor,
