@@ -166,14 +166,16 @@ static double bound_of(const ColorScale *scale, int step)
     return scale->log ? low * pow(high / low, part) : low + part * (high - low);
 }
 
-/* Classes of one height each; the numbers between them, and of a range also at its ends. */
+/* Classes of one height each; the numbers between them, as far as there is room for them, and of a
+ * range also at its ends. */
 static void put_classes(const Layout *layout)
 {
     const ColorScale *scale = layout->legend->scale;
     int steps = colorscale_steps(scale), n = 0;
     double each = layout->length / steps;
     double values[COLORSCALE_MOST_BOUNDS + 2], along[COLORSCALE_MOST_BOUNDS + 2];
-    int apart = steps / COLORSCALE_MOST_BOUNDS + 1;
+    double pitch = (layout->legend->across ? 2.9 : 1.2) * layout->em;
+    int apart = (int)fmax(ceil(pitch / each), steps / COLORSCALE_MOST_BOUNDS + 1);
     for (int i = 0; i < steps; i++) {
         float color[3];
         bool is_under = scale->n_bounds && i == 0, is_over = scale->n_bounds && i == steps - 1;

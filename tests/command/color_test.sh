@@ -356,4 +356,10 @@ test_the_maps_are_listed_with_licences_and_drawn() {
         fail "expected the last strip to begin with viridis' first colour"
 }
 
+test_ends_of_a_range_may_be_any_numbers() {
+    run_ok corcast grow --terminals 9 --seed 3 --quiet -o tree.swc
+    run_ok corcast render tree.swc --color-by flow --range=-3e9,7.5e8 --size 20x20 -o p.ppm
+    grep -q 'flow -3.00e+09 to 750000000' stderr || grep -q 'as given' stderr || fail "expected the range: $(cat stderr)"
+}
+
 run_tests "$@"

@@ -268,6 +268,9 @@ static void a_legend_of_classes_has_a_box_each(void **state)
     scale.classes = 5;
     assert_int_equal(count_items(&legend, FIGURE_SHAPE), 5);
     assert_int_equal(count_items(&legend, FIGURE_LINE), 6);
+    scale.classes = 60; /* of half a millimetre each, and 3 mm from number to number */
+    assert_int_equal(count_items(&legend, FIGURE_SHAPE), 60);
+    assert_int_equal(count_items(&legend, FIGURE_LINE), 11);
     scale.classes = 1;
     scale.n_bounds = 3;
     scale.bounds[0] = 5;

@@ -250,8 +250,10 @@ static ScaleColor own_color(bool given, Vec3 srgb)
 /* The ends that --range gives. */
 static Status take_range(const RangeEnds *ends, const Values *values, ColorScale *scale, Err *err)
 {
+    const double percent[] = {ends->percent[0] ? ends->at[0] : 0,
+                              ends->percent[1] ? ends->at[1] : 0};
     double range[2];
-    TRY(colorscale_percentiles(scale, values->drawn, values->n, ends->at, range, err));
+    TRY(colorscale_percentiles(scale, values->drawn, values->n, percent, range, err));
     for (int i = 0; i < 2; i++)
         range[i] = ends->percent[i] ? range[i] : ends->at[i];
     if (scale->log && !(range[0] > 0))
