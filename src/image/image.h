@@ -198,9 +198,9 @@ typedef struct ImageWriter ImageWriter;
  * little; 65500 pixels a side); "-" is standard output and a PPM. PNG carries an sRGB chunk when
  * `encoding` is sRGB and gAMA 1.0 when it is linear, and no tIME; colours of TIFF and JPEG carry
  * their ICC profile. STATUS_USAGE on another extension, on what the format cannot hold, and on inks
- * for a grey picture; STATUS_IO when the disk has no room for what is certain to be written. Follow
- * with exactly one of imagewriter_commit and imagewriter_discard, each of which frees the writer,
- * also on failure. */
+ * for a picture of other than 3 channels; STATUS_IO when the disk has no room for what is certain
+ * to be written. Follow with exactly one of imagewriter_commit and imagewriter_discard, each of
+ * which frees the writer, also on failure. */
 MUST_CHECK Status imagewriter_open(ImageWriter **out, const char *path, const ImageForm *form,
                                    Err *err);
 /* The next rows, all of the form's width, channels and bits. PFM and TIFF in parts need a file, not

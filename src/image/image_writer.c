@@ -80,7 +80,7 @@ static Status check_inks(const char *path, const ImageForm *form, const RowEncod
     if (!encoder->keeps_inks)
         return err_set(err, STATUS_USAGE, "%s: only .tif and .jpg hold colours of a press", path);
     if (form->channels != 3)
-        return err_set(err, STATUS_USAGE, "%s: a grey picture has no colours of a press", path);
+        return err_set(err, STATUS_USAGE, "%s: only opaque pictures in colour go to a press", path);
     assert(inks_bits(form->packing.inks) == form->bits && form->encoding == ENCODING_SRGB);
     return STATUS_OK;
 }

@@ -125,7 +125,7 @@ Status image_profile(const ImageForm *form, ImageProfile *profile, Err *err)
     const Inks *inks = form->packing.inks;
     *profile = (ImageProfile){0};
     if (!inks)
-        return form->channels == 3 && form->encoding == ENCODING_SRGB ? srgb_profile(profile, err)
+        return form->channels >= 3 && form->encoding == ENCODING_SRGB ? srgb_profile(profile, err)
                                                                       : STATUS_OK;
     TRY(mem_calloc(&profile->bytes, inks->profile.size, 1, "bytes of a profile", err));
     memcpy(profile->bytes, inks->profile.bytes, inks->profile.size);

@@ -104,6 +104,8 @@ test_a_tiff_is_compressed_as_asked_for_and_carries_its_profile() {
     expect_says usual.tif 'compression: "lzw"'
     run_ok corcast render tree.swc --size 40x30 --bits 16 -o again.tif
     expect_same usual.tif again.tif
+    run_ok corcast render tree.swc --size 40x30 --background none -o clear.tif
+    [ "$(icc_of clear.tif)" = "sRGB built-in" ] || fail "expected the profile of sRGB beside alpha: $(icc_of clear.tif)"
 }
 
 test_a_jpeg_is_near_the_picture_and_keeps_its_resolution() {
@@ -123,6 +125,14 @@ test_a_jpeg_is_near_the_picture_and_keeps_its_resolution() {
 expect_inks() {
     oiiotool --iconfig oiio:RawColor 1 "$1" --cut "1x1+$2+0" --printstats | grep -qE "Avg: $3 " ||
         fail "expected inks $3 at $2: $(oiiotool --iconfig oiio:RawColor 1 "$1" --cut "1x1+$2+0" --printstats)"
+}
+
+test_a_grey_picture_has_no_inks() {
+    printf 'P2 2 1 255 9 200\n' >grey.pgm
+    run corcast convert grey.pgm grey.tif --cmyk-profile "$CMYK"
+    expect_status 2
+    expect_sentence 'grey.tif: only opaque pictures in colour go to a press'
+    expect_only grey.pgm
 }
 
 test_inks_are_those_of_the_profile_and_go_with_it() {
