@@ -49,8 +49,11 @@ static const OptionTable table = OPTION_TABLE(rows);
 
 static void set_defaults(void *options)
 {
-    *(Values *)options =
-        (Values){.whole = 4, .size = {.pixels = {1, 1}}, .count = 4, .number = 4, .range.at[1] = 1};
+    *(Values *)options = (Values){.whole = 4,
+                                  .size = {.pixels = {1, 1}, .dpi = 300},
+                                  .count = 4,
+                                  .number = 4,
+                                  .range.at[1] = 1};
 }
 
 static const Command command = {.name = "render",
