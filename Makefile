@@ -64,7 +64,7 @@ CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-co
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo figures validate bench bench-grow bench-render bench-compare bench-mesh export-all verify-all power power-program fit-blob check check-all check-quick program unit \
+.PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-compare bench-mesh export-all verify-all power power-program fit-blob check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
@@ -89,6 +89,9 @@ figures: ## the figures of the paper, as pages and by POV-Ray; results in out/fi
 	$(Q).ci/deps build run
 	$(Q)$(AGAIN) all
 	$(Q)docs/figures
+
+gallery: build/corcast ## the pictures of docs/GALLERY.md anew, each by the command beside it
+	$(Q)docs/images/gallery-pictures
 
 validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
 	$(Q).ci/deps build check

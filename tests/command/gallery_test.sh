@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# The pictures of README and docs/GALLERY.md, and the commands beside them.
+. "$(dirname "$0")/../lib.sh"
+
+# pictures: of the gallery, the command of each and its file.
+pictures() {
+    awk '/^    corcast (figure|render) / { command = substr($0, 5) }
+         /^!\[/ { file = $0; gsub(/.*\(|\).*/, "", file); print command "|" file }' "$REPO/docs/GALLERY.md"
+}
+
+test_the_gallery_shows_ten_pictures_each_by_the_command_beside_it() {
+    local n=0 command file
+    while IFS='|' read -r command file; do
+        n=$((n + 1))
+        [ "${command##* }" = "${file##*/}" ] || fail "expected $file beside its command, found $command"
+        grep -qF "](docs/$file) | \`$command\` |" "$REPO/README.md" || fail "expected $file in README.md beside: $command"
+        [ "$(stat -c %s "$REPO/docs/$file")" -le 60000 ] || fail "expected at most 60 kB of $file"
+    done < <(pictures)
+    [ $n = 10 ] || fail "expected 10 pictures, found $n"
+    [ "$(find "$REPO/docs/images/gallery" -name '*.png' | wc -l)" = 10 ] || fail "expected no other picture"
+}
+
+# As they stand, but small.
+test_the_commands_of_the_gallery_run() {
+    local command
+    cp "$DATA/coronary.swc" .
+    while read -r command; do
+        command=$(sed -E 's/--size [0-9]+x[0-9]+/--size 40x30/; s/--dpi [0-9]+/--dpi 20/; s/--terminals [0-9]{3,}/--terminals 40/' <<<"$command")
+        # shellcheck disable=SC2086
+        run_ok corcast $command --quiet
+        expect_file "${command##* }"
+    done < <(sed -n 's/^    corcast //p' "$REPO/docs/GALLERY.md")
+}
+
+run_tests "$@"
