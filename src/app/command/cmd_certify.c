@@ -7,18 +7,10 @@
 
 typedef struct CertifyOptions {
     bool json;
-    const char *certificate; /* NULL: none is written */
     Certifying certifying;
 } CertifyOptions;
 
-static const Option own[] = {
-    {.name = "json", SETS(FLAG, CertifyOptions, json), .help = "as JSON"},
-    {.name = "certificate",
-     SETS(OUTPUT, CertifyOptions, certificate),
-     .argument = "FILE",
-     .otherwise = "",
-     .help = "the proof, for a checker that shares no code with corcast"},
-};
+static const Option own[] = {{.name = "json", SETS(FLAG, CertifyOptions, json), .help = "as JSON"}};
 
 static const OptionTable own_table = OPTION_TABLE(own);
 
@@ -69,8 +61,8 @@ static Status run_certify(void *options, Parsed *parsed, Err *err)
     Certified found = {0};
     TRY(reading_tree(parsed, path, &tree, NULL, err));
     TRY_GOTO(certifying_apply(&own_options->certifying, parsed, &tree, &found, err));
-    if (own_options->certificate)
-        TRY_GOTO(file_write_text(own_options->certificate, &found.certificate, err));
+    if (own_options->certifying.certificate)
+        TRY_GOTO(file_write_text(own_options->certifying.certificate, &found.certificate, err));
     if (own_options->json)
         status = show_json(&found, err);
     else

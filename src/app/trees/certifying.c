@@ -11,6 +11,11 @@
 static const char of_tree[] = "the tree's";
 
 static const Option rows[] = {
+    {.name = "certificate",
+     SETS(OUTPUT, Certifying, certificate),
+     .argument = "FILE",
+     .otherwise = "",
+     .help = "the proof, for a checker that shares no code with corcast"},
     {.name = "parts",
      SETS(FLAG, Certifying, parts),
      .group = GROUP_OPTIMUM,
@@ -135,7 +140,8 @@ Status certifying_apply(const Certifying *certifying, const Parsed *parsed, Tree
     *found = (Certified){.certificate = TEXT_INIT, .refined = NAN};
     TRY(blood_settle(&certifying->blood, parsed, tree, err));
     TRY(bound(certifying, path, tree, found, err));
-    bound_put_certificate(&found->bound, tree, &found->certificate);
+    if (certifying->certificate)
+        bound_put_certificate(&found->bound, tree, &found->certificate);
     if (certifying->parts)
         TRY(refine(path, tree, found, err));
     part_distance(found);

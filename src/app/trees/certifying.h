@@ -6,12 +6,13 @@
 #include "grow/grow.h"
 
 typedef struct Certifying {
+    const char *certificate; /* a file to write it to; NULL: it is not made */
     bool parts, has_lambda;
     double lambda;
     BloodOptions blood; /* of which only law, flow of the terminals and gamma are set */
 } Certifying;
 
-extern const OptionTable certifying_table; /* sets a Certifying; zeroed: nothing is asked for */
+extern const OptionTable certifying_table; /* sets a Certifying; zeroed: a bound alone */
 
 /* The parts that a target is above the bound by, in its unit. */
 enum { PART_SEARCH, PART_RULES, PART_RADII, PART_UNPROVED, PARTS };
@@ -22,7 +23,7 @@ extern const struct PartRow {
 
 typedef struct Certified {
     Bound bound;        /* owned; bound_release */
-    Text certificate;   /* owned; text_release */
+    Text certificate;   /* owned, text_release; empty where none is asked for */
     double refined;     /* the target of the tree with its geometry refined; NAN: not asked for */
     double part[PARTS]; /* NAN: not told apart from the next */
     double seconds;     /* wall clock, of the bound */

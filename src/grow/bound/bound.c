@@ -4,20 +4,23 @@
  * are smoothed: by much at first, and by less as soon as a step gains little. Gaps by smoothing
  * over the mean length, 1,000 terminals: 0.3: 5.5 %, 0.09: 0.6 %, 0.03: 0.09 %, 0.008: 0.016 %.
  *
- * It ends when bound and target are within `wanted` of each other, or where rounding or the budget
- * of steps end it: what is proved is right wherever it ends. */
+ * It ends when bound and target are within `wanted` of each other, or where less smoothing gains
+ * little or the budget of steps is spent: what is proved is right wherever it ends. */
 #include "grow/bound/bound.h"
 
 #include "grow/bound/bound_dual.h"
 #include "grow/cco/law.h"
 #include <stdlib.h>
 
-/* The share of the bound within which the best target is to be; smoothing over the mean length. */
+/* The share of the bound within which the best target is to be; the next smoothing over the last.
+ */
 static const double wanted = 2e-4;
-static const double first_smoothing = 0.3, next_smoothing = 0.3, last_smoothing = 1e-5;
+static const double next_smoothing = 0.3;
+/* Less smoothing that does not lessen the gap by this share is the last. */
+static const double least_progress = 0.05;
 /* A step of less slope, as a share of the target, is worth a look at its proof, or is the last of
  * its smoothing. */
-static const double slope_to_prove = 0.1, slope_to_end = 2e-6;
+static const double slope_to_prove = 0.1, slope_to_end = 2e-4;
 enum { MAX_STEPS = 80, MAX_STEPS_A_SMOOTHING = 25 };
 /* Outlets whose drops differ by a smaller share have one pressure. */
 static const double same_drop = 1e-6;
@@ -38,9 +41,10 @@ static void search_release(Search *search)
     dual_release(&search->dual);
 }
 
-static bool is_close(const Search *search)
+/* INFINITY as long as nothing is proved. */
+static double gap(const Search *search)
 {
-    return search->best <= search->dual.bound * (1 + wanted);
+    return search->best / search->dual.bound - 1;
 }
 
 /* Minimises at the present smoothing. */
@@ -56,7 +60,7 @@ static void settle(Search *search)
         if (!newton_move(problem, newton, search->smoothing, slope))
             return;
         search->best = fmin(search->best, newton_cost(problem, newton, 0, 0));
-        if (is_close(search) || -slope < slope_to_end * search->best)
+        if (gap(search) <= wanted || -slope < slope_to_end * search->best)
             return;
     }
 }
@@ -96,11 +100,13 @@ static Status run(Search *search, Err *err)
     TRY(newton_init(&search->newton, problem->n, err));
     TRY(dual_init(&search->dual, problem, err));
     search->best = fmin(problem->target, newton_cost(problem, &search->newton, 0, 0));
-    for (double smoothing = first_smoothing;
-         smoothing > last_smoothing && search->steps < MAX_STEPS && !is_close(search);
-         smoothing *= next_smoothing) {
-        search->smoothing = smoothing * problem->mean_length;
+    search->smoothing = FIRST_SMOOTHING * problem->mean_length;
+    for (double before = INFINITY, now; search->steps < MAX_STEPS; before = now) {
         settle(search);
+        now = gap(search);
+        if (now <= wanted || now > before * (1 - least_progress))
+            break;
+        search->smoothing *= next_smoothing;
     }
     return STATUS_OK;
 }

@@ -40,7 +40,7 @@ typedef struct Bound {
 } Bound;
 
 /* Bounds the target with this exponent, in *out (owned; bound_release). The same tree gives the
- * same bits. O(n) for each of about 30 steps: 15 s for 10^6 outlets, and 300 bytes a node.
+ * same bits. O(n) for each of 15 to 30 steps: 20 s for 10^6 outlets, and 300 bytes a node.
  * STATUS_USAGE for an exponent out of range, STATUS_INPUT when no blood flows, when flow passes a
  * segment of radius 0, or when nothing drops on the way to an outlet, STATUS_MEMORY. */
 MUST_CHECK Status bound_tree(const Tree *tree, double lambda, Bound *out, Err *err);

@@ -1,10 +1,12 @@
 /* Forces y and charges z of the outlets, summed to Y and Z of every segment, prove the bound B =
  * sum over the segments of Y . v - Z d, v from end to end of the segment, wherever its ends are, as
  * long as no |Y| is above what a mm costs, dual_mm [METHODS 1.5]. At the optimum |Y| is that cost,
- * but for smoothed lengths, which only make it less. So those of Newton's linearised forces, which
- * balance exactly, need but one factor for all of them to become a proof: y / m with m the greatest
- * |Y| over cost. Charges may then be multiplied by any s, and y by s^(a / (1 + a)), which the cost
- * of a mm follows, and the best s is known. A share of `margin` covers rounding. */
+ * but for smoothed lengths, which only make it less. Newton's linearised forces balance exactly, so
+ * they need little to become a proof: from the outlets upwards, where |Y| is too large, all pulls
+ * below are made smaller by one factor. What a few segments that have not settled yet lose by that
+ * is little, where one factor for the whole tree would spoil the bound. Charges may then be
+ * multiplied by any s, and y by s^(a / (1 + a)), which the cost of a mm follows, and the best s is
+ * known. A share of `margin` covers rounding. */
 #include "grow/bound/bound_dual.h"
 
 #include <stdlib.h>
@@ -15,13 +17,15 @@ static const double margin = 1e-9;
 Status dual_init(Dual *dual, const Problem *problem, Err *err)
 {
     TRY(mem_calloc(&dual->force, problem->outlets, sizeof *dual->force, "forces", err));
-    return mem_calloc(&dual->sum, problem->n, sizeof *dual->sum, "sums of forces", err);
+    TRY(mem_calloc(&dual->sum, problem->n, sizeof *dual->sum, "sums of forces", err));
+    return mem_calloc(&dual->kept, problem->n, sizeof *dual->kept, "shares of forces", err);
 }
 
 void dual_release(Dual *dual)
 {
     free(dual->force);
     free(dual->sum);
+    free(dual->kept);
     *dual = (Dual){0};
 }
 
@@ -30,74 +34,89 @@ double dual_mm(double a, double flow, double charge)
     return (1 + a) * pow(flow * charge / a, a / (1 + a));
 }
 
-/* The forces of all outlets, summed. False when one of them would rather have less drop. */
-static bool sum_forces(Dual *dual, const Problem *problem, const Newton *newton, double smoothing)
+static double length_of(const State force)
 {
+    return sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+}
+
+/* The forces of all outlets, summed, made smaller where a segment cannot bear them. An outlet that
+ * would rather have less drop pays nothing. Returns the factor, at least 1, by which all pulls may
+ * grow. */
+static double sum_forces(Dual *dual, const Problem *problem, const Newton *newton, double smoothing)
+{
+    double room = INFINITY;
     memset(dual->sum, 0, problem->n * sizeof *dual->sum);
     for (size_t i = problem->n; i-- > 0;) {
         const Joint *joint = &problem->joint[i];
+        double *sum = dual->sum[i];
+        dual->kept[i] = 1;
         if (joint_is_inlet(joint))
             continue;
-        double *sum = dual->sum[i];
         if (!joint->is_free) {
             newton_force(problem, newton, smoothing, i, sum);
-            sum[DROP] = -sum[DROP];
-            if (!(sum[DROP] > 0))
-                return false;
+            sum[DROP] = fmax(0, -sum[DROP]);
         }
-        for (int k = 0; k < STATE; k++)
-            dual->sum[joint->parent][k] += sum[k];
+        double borne = dual_mm(problem->a, joint->flow, sum[DROP]) * (1 - margin) / length_of(sum);
+        dual->kept[i] = fmin(1, borne);
+        room = fmin(room, borne);
+        for (int k = 0; k < PLACE_AXES; k++)
+            dual->sum[joint->parent][k] += sum[k] * dual->kept[i];
+        dual->sum[joint->parent][DROP] += sum[DROP];
     }
-    return true;
+    return fmax(1, room);
 }
 
-/* What the proof is made of. */
+/* What the proof is made of: the sums of Y . v and of Z d. */
 typedef struct Sums {
-    double pull, charge; /* the sums of Y . v and of Z d */
-    double excess;       /* m */
+    double pull, charge;
 } Sums;
 
-static Sums add_up(const Dual *dual, const Problem *problem)
+/* From here on `kept` is what pulls are multiplied by: `grown` times the shares that the segments
+ * from the inlet to the joint let pass. */
+static Sums add_up(Dual *dual, const Problem *problem, double grown)
 {
     Sums sums = {0};
     for (size_t i = 0; i < problem->n; i++) {
-        if (joint_is_inlet(&problem->joint[i]))
+        if (joint_is_inlet(&problem->joint[i])) {
+            dual->kept[i] = grown;
             continue;
+        }
         const double *sum = dual->sum[i];
         const Reach reach = problem_reach(problem, i, 0);
-        double pull2 = 0;
-        for (int k = 0; k < PLACE_AXES; k++) {
-            sums.pull += sum[k] * reach.by[k];
-            pull2 += sum[k] * sum[k];
-        }
+        dual->kept[i] *= dual->kept[problem->joint[i].parent];
+        for (int k = 0; k < PLACE_AXES; k++)
+            sums.pull += sum[k] * dual->kept[i] * reach.by[k];
         sums.charge += sum[DROP] * reach.by[DROP];
-        double cost = dual_mm(problem->a, problem->joint[i].flow, sum[DROP]);
-        sums.excess = fmax(sums.excess, sqrt(pull2) / cost);
     }
     return sums;
 }
 
-void dual_take(Dual *dual, const Problem *problem, const Newton *newton, double smoothing)
+/* Keeps the proof, charges multiplied by `scale`. */
+static void keep(Dual *dual, const Problem *problem, double scale)
 {
-    if (!sum_forces(dual, problem, newton, smoothing))
-        return;
-    const Sums sums = add_up(dual, problem);
-    const double power = problem->a / (1 + problem->a);
-    const double pull = sums.pull * (1 - margin) / sums.excess;
-    if (!(pull > 0) || !(sums.charge > 0))
-        return;
-    const double scale = pow(power * pull / sums.charge, 1 + problem->a);
-    const double bound = (pow(scale, power) * pull - scale * sums.charge) * (1 - margin);
-    if (!(bound > dual->bound) || !isfinite(bound))
-        return;
-    dual->bound = bound;
+    const double pull_scale = pow(scale, problem->a / (1 + problem->a));
     for (size_t i = 0; i < problem->n; i++) {
         const Joint *joint = &problem->joint[i];
         if (joint->outlet < 0)
             continue;
         double *force = dual->force[joint->outlet];
         for (int k = 0; k < PLACE_AXES; k++)
-            force[k] = dual->sum[i][k] * pow(scale, power) * (1 - margin) / sums.excess;
+            force[k] = dual->sum[i][k] * dual->kept[i] * pull_scale;
         force[DROP] = dual->sum[i][DROP] * scale;
     }
+}
+
+void dual_take(Dual *dual, const Problem *problem, const Newton *newton, double smoothing)
+{
+    const double grown = sum_forces(dual, problem, newton, smoothing);
+    const Sums sums = add_up(dual, problem, grown);
+    const double power = problem->a / (1 + problem->a);
+    if (!(sums.pull > 0) || !(sums.charge > 0))
+        return;
+    const double scale = pow(power * sums.pull / sums.charge, 1 + problem->a);
+    const double bound = (pow(scale, power) * sums.pull - scale * sums.charge) * (1 - margin);
+    if (!(bound > dual->bound) || !isfinite(bound))
+        return;
+    dual->bound = bound;
+    keep(dual, problem, scale);
 }

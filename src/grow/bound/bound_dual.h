@@ -8,6 +8,7 @@ typedef struct Dual {
     double bound; /* the best so far; 0: none */
     State *force; /* of each outlet, scaled to prove it: its pull, and its charge */
     State *sum;   /* workspace: of each joint, the forces of the outlets at and below it */
+    double *kept; /* likewise: the share of its pulls that a segment lets pass */
 } Dual;
 
 /* Ends with dual_release, also on failure, STATUS_MEMORY. */

@@ -156,16 +156,25 @@ static void eliminate(const Problem *problem, Newton *newton, double smoothing, 
         load_above[k] += handed[k] - gradient[k];
 }
 
-/* The step of the free joint i, whose parent's is known. */
-static void descend(const Problem *problem, Newton *newton, double smoothing, size_t i)
+/* The step of joint i, whose parent's is known. Returns by how much what its segment costs changes
+ * along it, to first order. */
+static double descend(const Problem *problem, Newton *newton, double smoothing, size_t i)
 {
+    const Joint *joint = &problem->joint[i];
+    const double *above = newton->step[joint->parent];
     State gradient, right;
     Symmetric curvature;
     derive(problem, i, smoothing, gradient, curvature);
-    multiply(curvature, newton->step[problem->joint[i].parent], right);
+    if (joint->is_free) {
+        multiply(curvature, above, right);
+        for (int k = 0; k < STATE; k++)
+            right[k] -= newton->load[i][k];
+        solve(newton->spring[i], right, newton->step[i]);
+    }
+    double slope = 0;
     for (int k = 0; k < STATE; k++)
-        right[k] -= newton->load[i][k];
-    solve(newton->spring[i], right, newton->step[i]);
+        slope += gradient[k] * (newton->step[i][k] - above[k]);
+    return slope;
 }
 
 double newton_step(const Problem *problem, Newton *newton, double smoothing)
@@ -176,17 +185,9 @@ double newton_step(const Problem *problem, Newton *newton, double smoothing)
         if (!joint_is_inlet(&problem->joint[i]))
             eliminate(problem, newton, smoothing, i);
     double slope = 0;
-    for (size_t i = 0; i < problem->n; i++) {
-        if (joint_is_inlet(&problem->joint[i]))
-            continue;
-        if (problem->joint[i].is_free)
-            descend(problem, newton, smoothing, i);
-        State gradient;
-        Symmetric curvature;
-        derive(problem, i, smoothing, gradient, curvature);
-        for (int k = 0; k < STATE; k++)
-            slope += gradient[k] * (newton->step[i][k] - newton->step[problem->joint[i].parent][k]);
-    }
+    for (size_t i = 0; i < problem->n; i++)
+        if (!joint_is_inlet(&problem->joint[i]))
+            slope += descend(problem, newton, smoothing, i);
     return slope;
 }
 

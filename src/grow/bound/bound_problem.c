@@ -2,16 +2,16 @@
  * out what all segments have in common, so that neither viscosity nor flow need be known: the drop
  * on a segment is share * length / radius^4. Then one forward loop numbers the joints that stay.
  *
- * Free joints begin with drops as Murray's law (radius^3 ~ flow) would part them among the segments
- * on the longest way below, every segment a twentieth of the mean length longer, so that none has a
- * drop of 0. Of the drops of all outlets below the least is parted, so that drops rise along every
- * way. */
+ * Free joints begin with the drops that are best where they are, which has a closed form as long as
+ * all outlets have one drop D: all below and including a segment costs W^(1 + a) D^-a at the least,
+ * W = w + (sum of W^(1 + a) over its daughters)^(1 / (1 + a)), w = flow^(a / (1 + a)) length, and
+ * the segment's part of D is w / W. Lengths are smoothed, as at the first step. Of the drops of all
+ * outlets below the least is parted, so that drops rise along every way.
+ */
 #include "grow/bound/bound_problem.h"
 
 #include "grow/bound/bound.h"
 #include <stdlib.h>
-
-static const double added_length = 0.05; /* of the mean, at the start */
 
 /* What the tree says of each node; owned. */
 typedef struct Survey {
@@ -125,37 +125,45 @@ static void add_node(Problem *problem, const Tree *tree, Survey *survey, size_t 
     problem->node[problem->outlets++] = (int32_t)i;
 }
 
-/* The ways below joints. */
-typedef struct Way {
-    double weight; /* of the way that leads to the joint */
-    double below;  /* the greatest sum of weights from there to an outlet */
+/* What hangs on a joint, at the start. */
+typedef struct Hanging {
+    double weight; /* w of the segment to the joint */
+    double costs;  /* the sum of W^(1 + a) over its daughters */
     double least;  /* the least drop of the outlets below */
-} Way;
+} Hanging;
 
-static void start(Problem *problem, Way *way)
+/* Gathers what hangs on all joints, which is zeroed. */
+static void gather(const Problem *problem, Hanging *hanging)
 {
-    double added = added_length * problem->mean_length;
+    const double a = problem->a, smoothing = FIRST_SMOOTHING * problem->mean_length;
     for (size_t i = 0; i < problem->n; i++)
-        way[i].least = INFINITY;
+        hanging[i].least = INFINITY;
     for (size_t i = problem->n; i-- > 0;) {
         const Joint *joint = &problem->joint[i];
+        Hanging *at = &hanging[i];
         if (joint_is_inlet(joint))
             continue;
-        Reach reach = problem_reach(problem, i, 0);
-        way[i].weight = (sqrt(reach.length2) + added) / cbrt(joint->flow);
         if (!joint->is_free)
-            way[i].least = joint->at[DROP];
-        Way *above = &way[joint->parent];
-        above->below = fmax(above->below, way[i].weight + way[i].below);
-        above->least = fmin(above->least, way[i].least);
+            at->least = joint->at[DROP];
+        Reach reach = problem_reach(problem, i, smoothing);
+        at->weight = pow(joint->flow, a / (1 + a)) * sqrt(reach.length2);
+        Hanging *above = &hanging[joint->parent];
+        above->costs += pow(at->weight + pow(at->costs, 1 / (1 + a)), 1 + a);
+        above->least = fmin(above->least, at->least);
     }
+}
+
+/* Parts drops among the segments. */
+static void start(Problem *problem, const Hanging *hanging)
+{
     for (size_t i = 0; i < problem->n; i++) {
         Joint *joint = &problem->joint[i];
         if (!joint->is_free)
             continue;
+        const Hanging *at = &hanging[i];
+        double below = pow(at->costs, 1 / (1 + problem->a));
         double from = problem->joint[joint->parent].at[DROP];
-        joint->at[DROP] =
-            from + (way[i].least - from) * way[i].weight / (way[i].weight + way[i].below);
+        joint->at[DROP] = from + (at->least - from) * at->weight / (at->weight + below);
     }
 }
 
@@ -173,10 +181,11 @@ static Status build(Problem *problem, const Tree *tree, Survey *survey, Err *err
     for (size_t i = 0; i < tree->n; i++)
         add_node(problem, tree, survey, i);
     problem->mean_length /= (double)problem->n;
-    Way *way = NULL;
-    TRY(mem_calloc(&way, problem->n, sizeof *way, "ways", err));
-    start(problem, way);
-    free(way);
+    Hanging *hanging = NULL;
+    TRY(mem_calloc(&hanging, problem->n, sizeof *hanging, "sums", err));
+    gather(problem, hanging);
+    start(problem, hanging);
+    free(hanging);
     return STATUS_OK;
 }
 

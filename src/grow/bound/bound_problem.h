@@ -9,6 +9,9 @@
 /* x, y, z in mm, and the drop of pressure from the inlet in the unit of Outlet. */
 enum { PLACE_AXES = 3, DROP = 3, STATE = 4 };
 
+/* By how much lengths are smoothed at first, over the mean length. */
+#define FIRST_SMOOTHING 0.3
+
 /* A node and the segment that leads to it. */
 typedef struct Joint {
     double at[STATE];
