@@ -180,6 +180,19 @@ static Status mark_edge(const Refining *refining, uint32_t a, uint32_t b, bool *
     return STATUS_OK;
 }
 
+/* How far a place on a triangle is off the wall: no farther than over one of its corners. Where the
+ * triangle stops up a tunnel, the wall is not where its normal or the slope leads. */
+static double measure_on(const Refining *refining, const Triangle *triangle, Vec3 x, Vec3 normal,
+                         double radius_mm)
+{
+    double off = measure_at(refining, x, normal, radius_mm);
+    for (int i = 0; i < 3 && off > refining->split * radius_mm; i++) {
+        Vec3 at = corner(refining, triangle, i)->x;
+        off = fmin(off, vec3_distance(x, at) + measure_at(refining, at, normal, radius_mm));
+    }
+    return off;
+}
+
 /* How far a triangle is off the wall, mm: at its middle and that of its longest edge, and where
  * that is not a little at those of the others. */
 static double measure_triangle(const Refining *refining, const Triangle *triangle, int longest,
@@ -189,10 +202,11 @@ static double measure_triangle(const Refining *refining, const Triangle *triangl
     const PatchPoint *c = corner(refining, triangle, 2);
     Vec3 normal = vec3_normalized(normal_of(a->x, b->x, c->x));
     Vec3 middle = vec3_scale(vec3_add(vec3_add(a->x, b->x), c->x), 1.0 / 3);
-    double off = measure_at(refining, middle, normal, radius_mm);
+    double off = measure_on(refining, triangle, middle, normal, radius_mm);
     for (int i = 0; i < 3 && (i == 0 || off > little * refining->split * radius_mm); i++) {
         uint32_t from = triangle->at[(longest + i) % 3], to = triangle->at[(longest + i + 1) % 3];
-        off = fmax(off, measure_at(refining, middle_of(refining, from, to), normal, radius_mm));
+        Vec3 half_way = middle_of(refining, from, to);
+        off = fmax(off, measure_on(refining, triangle, half_way, normal, radius_mm));
     }
     return off;
 }
