@@ -54,6 +54,14 @@ test_sixteen_bits_and_tiff_hold_the_same() {
     [ "$(pngtopam -alphapam sixteen.png | sed '/^ENDHDR/,$d' | grep -a MAXVAL)" = "MAXVAL 65535" ] || fail "expected 16 bits"
 }
 
+test_an_openexr_file_has_alpha_among_its_channels() {
+    cp "$DATA/bifurcation.swc" tree.swc
+    run_ok corcast render tree.swc --size 40x30 --background none -o p.exr
+    head -c 400 p.exr | strings -n 1 | tr -d '\n' | grep -q 'chlist.ABGR' || fail "expected the channels A, B, G and R"
+    run_ok corcast render tree.swc --size 40x30 -o p.exr
+    ! head -c 400 p.exr | strings -n 1 | tr -d '\n' | grep -q 'ABGR' || fail "expected no alpha"
+}
+
 test_what_cannot_be_transparent_is_refused() {
     local options sentence
     cp "$DATA/bifurcation.swc" tree.swc
