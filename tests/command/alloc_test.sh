@@ -46,6 +46,12 @@ test_failed_allocations_in_info() {
     fail_each 5 one info ../tree.swc --stats --json
 }
 
+test_failed_allocations_in_certify() {
+    inputs
+    fail_each 1 one certify ../tree.swc --certificate o.cert --json
+    fail_each 1 one certify ../tree.swc --parts
+}
+
 test_failed_allocations_in_help() {
     inputs
     fail_each 9 one help grow

@@ -61,12 +61,12 @@ static Status run_certify(void *options, Parsed *parsed, Err *err)
     Certified found = {0};
     TRY(reading_tree(parsed, path, &tree, NULL, err));
     TRY_GOTO(certifying_apply(&own_options->certifying, parsed, &tree, &found, err));
-    if (own_options->certifying.certificate)
-        TRY_GOTO(file_write_text(own_options->certifying.certificate, &found.certificate, err));
     if (own_options->json)
-        status = show_json(&found, err);
+        TRY_GOTO(show_json(&found, err));
     else
         show_text(path, &found);
+    if (own_options->certifying.certificate)
+        status = file_write_text(own_options->certifying.certificate, &found.certificate, err);
 done:
     bound_release(&found.bound);
     text_release(&found.certificate);
