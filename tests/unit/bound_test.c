@@ -310,7 +310,7 @@ static void forces_balance_at_the_end_of_a_step(void **state)
         left_over(&parts, i, after);
         newton_force(&parts.problem, &parts.newton, 0.3, i, before);
         for (int axis = 0; axis < STATE; axis++)
-            assert_true(fabs(after[axis]) < 1e-9 * (1 + fabs(before[axis])));
+            assert_true(fabs(after[axis]) < 1e-7 * fabs(before[axis]));
     }
     parts_release(&parts);
 }
