@@ -46,7 +46,8 @@ static void take_mask(const Sums *sums, double code_levels, CompareResult *resul
     result->silhouette_px = sums->silhouette ? moved / (PX_PER_EDGE * (double)sums->silhouette) : 0;
 }
 
-/* b = gain a + offset by least squares: with d = b - a, gain - 1 = cov(a, d) / var(a). */
+/* b = gain a + offset by least squares: with d = b - a, gain - 1 = cov(a, d) / var(a). What is left
+ * of d says how well both are known: a few pixels at the rims of shadows move them, too. */
 static void take_regression(const Sums *sums, double code_levels, CompareResult *result)
 {
     double n = (double)sums->n, a = (double)sums->a, d = (double)sums->d;
@@ -56,6 +57,10 @@ static void take_regression(const Sums *sums, double code_levels, CompareResult 
     double slope = (n * (double)sums->ad - a * d) / variance;
     result->gain = 1 + slope;
     result->offset_levels = (d - slope * a) / n * code_levels;
+    double rest = (double)sums->dd - d * d / n - slope * slope * variance / n;
+    double spread = sqrt(fmax(0, rest) / n);
+    result->gain_error = spread / sqrt(variance / n);
+    result->offset_error = spread * sqrt((1 + a * a / variance) / n) * code_levels;
 }
 
 static Status check_views(const Rendering *a, const Rendering *b, Err *err)

@@ -67,6 +67,12 @@ static void add_coverage_rules(CompareResult *result)
                              : "shift of the outline of what is not background");
 }
 
+/* What is left of a distance when it is as near as two of its standard errors let it be. */
+static double beyond_error(double distance, double error)
+{
+    return fmax(0, fabs(distance) - 2 * error);
+}
+
 /* Faults of one segment, and of all colours alike, that limits of single pixels let pass. */
 static void add_segment_rules(CompareResult *result)
 {
@@ -75,8 +81,10 @@ static void add_segment_rules(CompareResult *result)
     const Tolerance *tolerance = &result->tolerance;
     Finding levels = {"levels", result->segment_levels, result->segment_levels_at, "its middle is"};
     Finding moved = {"px", result->segment_px, result->segment_px_at, "its middle is"};
-    Finding gain = {"", fabs(result->gain - 1), result->worst, "the worst pixel is"};
-    Finding offset = {"levels", fabs(result->offset_levels), result->worst, "the worst pixel is"};
+    Finding gain = {"", beyond_error(result->gain - 1, result->gain_error), result->worst,
+                    "the worst pixel is"};
+    Finding offset = {"levels", beyond_error(result->offset_levels, result->offset_error),
+                      result->worst, "the worst pixel is"};
     add_rule(result, moved, tolerance->segment_px, "shift of the outline of a segment");
     add_rule(result, levels, tolerance->segment_levels, "mean difference of a segment");
     add_rule(result, gain, tolerance->gain, "distance of the gain from 1");

@@ -164,6 +164,7 @@ static void add_regression(const Row *row, int width, int channels, Sums *sums)
             sums->aa += (uint64_t)(a * a);
             sums->d += d;
             sums->ad += a * d;
+            sums->dd += (uint64_t)(d * d);
         }
         sums->n += (uint64_t)channels;
     }
@@ -233,6 +234,7 @@ static void add_sums(Sums *to, const Sums *from)
     to->aa += from->aa;
     to->d += from->d;
     to->ad += from->ad;
+    to->dd += from->dd;
     if (from->interior_max > to->interior_max)
         to->interior_max = from->interior_max;
     if (from->max > to->max) {

@@ -18,6 +18,7 @@ typedef struct Sums {
     uint64_t silhouette; /* sides of A's pixels that part something from nothing */
     uint64_t n, a, aa;   /* over samples seen in both: count, a, a a */
     int64_t d, ad;       /* ... d = b - a, a d */
+    uint64_t dd;         /* ... d d */
 } Sums;
 
 /* What is counted, and where to. */

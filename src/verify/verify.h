@@ -33,7 +33,8 @@ typedef struct Tolerance {
     double bias_levels;     /* mean of B - A over all pixels, the worst channel */
     double sign_sigma;      /* |m - n| / sqrt(m + n), of m pixels brighter and n darker in B: chance
                              * gives 1, an error of a shading model any number */
-    double gain;            /* |1 - g| of b = g a + o, least squares over the pixels seen in both */
+    double gain;            /* |1 - g| of b = g a + o, least squares over the pixels seen in both,
+                             * less two standard errors of g; likewise |o| */
     double offset_levels;   /* |o| of it */
     double silhouette_px;   /* by how much the outline of what is seen has moved outwards */
     double segment_levels;  /* mean of B - A over one segment's pixels, the worst channel */
@@ -185,6 +186,7 @@ typedef struct CompareResult {
     double edge_mismatch_fraction;       /* of the band's pixels, those whose ids differ */
     double silhouette_px;                /* outline of what is seen, outwards; px */
     double gain, offset_levels;          /* b = gain a + offset over pixels seen in both */
+    double gain_error, offset_error;     /* standard errors of both; levels of the offset */
 
     /* Where ids are known: of segments of at least 64 common pixels, or with outlines of at least 8
      * px, the one that is off most. */
