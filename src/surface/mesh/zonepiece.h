@@ -3,9 +3,9 @@
 #define CORCAST_SURFACE_ZONEPIECE_H
 
 #include "surface/mesh/collapse.h"
+#include "surface/mesh/facerefine.h"
 #include "surface/mesh/mend.h"
 #include "surface/mesh/planecut.h"
-#include "surface/mesh/refine.h"
 
 /* The points on the rim of an arm: rim_points[first .. first + n), by rising angle about the axis
  * of the segment, from its first to its second end. */

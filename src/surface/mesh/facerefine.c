@@ -3,7 +3,7 @@
  * not where that would turn one of the triangles at the edge over, or where the wall's normal there
  * is unlike those at the ends: then two walls face each other in a groove. A triangle with several
  * such edges is halved at the longest of them first, so that both triangles at an edge agree. */
-#include "surface/mesh/refine.h"
+#include "surface/mesh/facerefine.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 /* Smaller triangles where they are too far off the wall. */
-#ifndef CORCAST_SURFACE_REFINE_H
-#define CORCAST_SURFACE_REFINE_H
+#ifndef CORCAST_SURFACE_FACEREFINE_H
+#define CORCAST_SURFACE_FACEREFINE_H
 
 #include "surface/mesh/pairtable.h"
 #include "surface/mesh/patch.h"
