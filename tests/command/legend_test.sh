@@ -104,7 +104,7 @@ test_the_legend_leaves_the_tree_alone() {
 
 test_a_scale_bar_is_as_long_as_it_says() {
     grow
-    run_ok corcast render tree.swc --quiet --size 600x500 --height 100 --scale-bar 25 --background white -o bar.png
+    run_ok corcast render tree.swc --quiet --size 600x500 --height 100 --scale-bar 25mm --background white -o bar.png
     pngtopnm bar.png >bar.ppm
     # 25 mm of 120 mm in 600 pixels are 125: the longest run of black in the lowest rows.
     longest=$(pnmcut -left 0 -top 450 -width 300 -height 50 bar.ppm | pnmtoplainpnm | tail -n +4 | tr -s ' \n' '\n\n' |

@@ -134,10 +134,22 @@ static Status read_seed(const Option *option, const char *value, void *where, Er
     return STATUS_OK;
 }
 
+/* A number, after which its option's unit may stand: "10mm". */
+static bool parse_with_unit(const Option *option, const char *value, double *number)
+{
+    char digits[64];
+    const char *unit = option_unit(option);
+    size_t length = strlen(value), tail = unit ? strlen(unit) : 0;
+    if (tail == 0 || length <= tail || strcmp(value + length - tail, unit) != 0)
+        return number_parse(value, number);
+    snprintf(digits, sizeof digits, "%.*s", (int)(length - tail), value);
+    return length - tail < sizeof digits && number_parse(digits, number);
+}
+
 static Status read_number(const Option *option, const char *value, void *where, Err *err)
 {
     double number;
-    if (!number_parse(value, &number) || !isfinite(number) ||
+    if (!parse_with_unit(option, value, &number) || !isfinite(number) ||
         (option_range(option) && !range_has(*option_range(option), number)))
         return wrong_number(option, value, "a number", err);
     *(double *)where = number;
