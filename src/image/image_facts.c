@@ -173,17 +173,7 @@ static Status take_tiff(void *work, Err *err)
 static Status tiff_facts(const ImageBytes *file, ImageFacts *facts, Err *err)
 {
     TiffFacts self = {.file = file};
-    errno = 0;
-    /* It is only read, whatever fmemopen's declaration says. */
-    self.tiff.bytes = (void *)(uintptr_t)file->bytes;
-    self.tiff.size = file->size;
-    self.tiff.stream = fmemopen(self.tiff.bytes, file->size, "rb");
-    if (!self.tiff.stream)
-        return mem_out_of("to read", file->name, err);
-    Status status = tiff_guard(take_tiff, &self, &self.tiff, file->name, err);
-    if (self.tiff.handle)
-        TIFFClose(self.tiff.handle);
-    fclose(self.tiff.stream);
+    Status status = tiff_guard_bytes(take_tiff, &self, &self.tiff, file, err);
     if (status == STATUS_OK)
         *facts = self.facts;
     return status;

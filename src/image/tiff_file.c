@@ -259,17 +259,7 @@ static Status decode(void *work, Err *err)
 static Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
 {
     Tiff self = {.file = *file};
-    errno = 0;
-    /* It is only read, whatever fmemopen's declaration says. */
-    self.tiff.bytes = (void *)(uintptr_t)file->bytes;
-    self.tiff.size = file->size;
-    self.tiff.stream = fmemopen(self.tiff.bytes, file->size, "rb");
-    if (!self.tiff.stream)
-        return mem_out_of("to read", file->name, err);
-    Status status = tiff_guard(decode, &self, &self.tiff, file->name, err);
-    if (self.tiff.handle)
-        TIFFClose(self.tiff.handle);
-    fclose(self.tiff.stream);
+    Status status = tiff_guard_bytes(decode, &self, &self.tiff, file, err);
     free(self.part);
     if (status == STATUS_OK)
         *image = self.image;

@@ -5,7 +5,9 @@
  * is linked so that it calls its own, these are never called, and all is as libtiff has it. */
 #include "image/tiff_stream.h"
 
+#include <errno.h>
 #include <setjmp.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/types.h>
@@ -51,6 +53,23 @@ Status tiff_guard(TiffWork *work, void *self, TiffStream *tiff, const char *name
 }
 
 /* ---- what libtiff calls ---------------------------------------------------------------------- */
+
+Status tiff_guard_bytes(TiffWork *work, void *self, TiffStream *tiff, const ImageBytes *file,
+                        Err *err)
+{
+    errno = 0;
+    /* It is only read, whatever fmemopen's declaration says. */
+    tiff->bytes = (void *)(uintptr_t)file->bytes;
+    tiff->size = file->size;
+    tiff->stream = fmemopen(tiff->bytes, file->size, "rb");
+    if (!tiff->stream)
+        return mem_out_of("to read", file->name, err);
+    Status status = tiff_guard(work, self, tiff, file->name, err);
+    if (tiff->handle)
+        TIFFClose(tiff->handle);
+    fclose(tiff->stream);
+    return status;
+}
 
 static tmsize_t on_read(thandle_t user, void *out, tmsize_t size)
 {

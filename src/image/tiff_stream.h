@@ -24,4 +24,9 @@ typedef Status TiffWork(void *self, Err *err);
 MUST_CHECK Status tiff_guard(TiffWork *work, void *self, TiffStream *tiff, const char *name,
                              Err *err);
 
+/* The same for a file that is in memory: *tiff, which is in `self`, reads its bytes while `work`
+ * runs, which opens it, and is closed behind it. STATUS_MEMORY. */
+MUST_CHECK Status tiff_guard_bytes(TiffWork *work, void *self, TiffStream *tiff,
+                                   const ImageBytes *file, Err *err);
+
 #endif
