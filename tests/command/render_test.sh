@@ -570,6 +570,9 @@ test_a_least_width_needs_a_picture_that_can_have_it() {
     run corcast render tree.swc --min-width 1.5 --exact -o wide.png
     expect_status 2
     expect_sentence 'min-width is for --method fastest'
+    run corcast render tree.swc --min-width 1.5 --look journal -o wide.png
+    expect_status 2
+    expect_sentence 'min-width: --look journal'
     run corcast render tree.swc --min-width 65 -o wide.png
     expect_status 2
     expect_sentence 'min-width.*from 0 to 64'

@@ -1,0 +1,129 @@
+/* Draws band by band, each as many rows as --memory holds, and writes each before the next, so that
+ * a picture of any size needs the memory of one band. */
+#include "app/command/render_film.h"
+
+#include "app/run/progress.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Floats, codes and masks, and with occlusion what pixels share, of which half see something. */
+int film_band_rows(const FramesForm *form, int occlusion, double memory_mb)
+{
+    int bytes = 12 + form->bits / 8 * 3 + 1 + 4 * form->depth + 12 * form->normal + 7 * form->id;
+    if (image_is_floats(form->path))
+        bytes += 12 + 4 * form->depth + 12 * form->normal + 4 * form->id;
+    bytes += occlusion > 0 ? 42 + occlusion : 0;
+    double rows = memory_mb * 1e6 / ((double)bytes * form->width);
+    if (rows >= form->height)
+        return form->height;
+    return rows < 2 * RENDER_BAND_STEP ? RENDER_BAND_STEP
+                                       : (int)rows / RENDER_BAND_STEP * RENDER_BAND_STEP;
+}
+
+/* Draws the shard's rows band after band and writes each before the next. */
+static Status draw_bands(Renderer *renderer, const Scene *scene, FramesWriter *writer,
+                         const Film *film, Err *err)
+{
+    const int end = film->shard.first + film->shard.rows;
+    for (int first = film->shard.first; first < end; first += film->step) {
+        Frame band;
+        int rows = film->step < end - first ? film->step : end - first;
+        TRY(renderer_rows(renderer, &scene->view, &scene->appearance, first, rows, &band, err));
+        Status status = frames_rows(writer, &band, err);
+        frame_release(&band);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+Status film_draw_one(const Film *film, Renderer *renderer, const Scene *scene,
+                     const FramesForm *form, Err *err)
+{
+    FramesWriter *writer = NULL;
+    TRY(frames_open(&writer, form, err));
+    Status status = draw_bands(renderer, scene, writer, film, err);
+    if (status == STATUS_OK)
+        return frames_commit(writer, err);
+    frames_discard(writer);
+    return status;
+}
+
+static void add_stats(RenderStats *all, const RenderStats *one)
+{
+    all->prepare_s += one->prepare_s;
+    all->trace_s += one->trace_s;
+    all->cpu_s += one->cpu_s;
+    all->rays += one->rays;
+    all->engine = one->engine;
+}
+
+/* The note of picture `number`, which the form then has, and whether the file has it already. */
+static Status find_shard(const Film *film, FramesForm *form, int number, Text *note, bool *there,
+                         Err *err)
+{
+    Shard shard = film->shard;
+    const Tree *tree = &film->subject.source->of.tree;
+    TRY(shard_hash(&shard, film->parsed, form->provenance, tree, number, err));
+    shard_put(&shard, note);
+    TRY(text_check(note, err));
+    form->shard = text_chars(note);
+    if (film->resume)
+        TRY(shard_is_there(form->path, &shard, there, err));
+    if (*there && !film->subject.common->quiet)
+        fprintf(stderr, "%s is there\n", form->path);
+    return STATUS_OK;
+}
+
+/* The tree as it grows has a geometry, and with it a renderer, for each picture; else the first
+ * picture that is drawn makes *prepared for all. */
+static Status draw_frame(const Film *film, int number, const FramesForm *form, Renderer **prepared,
+                         RenderStats *stats, Err *err)
+{
+    Scene shown, grown = {0};
+    Renderer *young = NULL;
+    Renderer **renderer = film->animation->kind == ANIMATION_GROWTH ? &young : prepared;
+    FramesForm named = *form;
+    Text note = TEXT_INIT;
+    bool there = false;
+    char *path = NULL;
+    Status status;
+    TRY_GOTO(animation_path(film->animation, form->path, number, &path, err));
+    named.path = path;
+    if (film->part)
+        TRY_GOTO(find_shard(film, &named, number, &note, &there, err));
+    if (there)
+        goto done;
+    TRY_GOTO(animation_scene(film->animation, &film->subject, number, &shown, &grown, err));
+    if (!*renderer)
+        TRY_GOTO(renderer_new(&shown.geometry, film->params, renderer, err));
+    TRY_GOTO(film_draw_one(film, *renderer, &shown, &named, err));
+    if (young) {
+        const RenderStats one = renderer_stats(young);
+        add_stats(stats, &one);
+    }
+done:
+    renderer_free(young);
+    scene_release(&grown);
+    text_release(&note);
+    free(path);
+    return status;
+}
+
+Status film_draw(const Film *film, const FramesForm *form, RenderStats *stats, Err *err)
+{
+    const Animation *animation = film->animation;
+    Progress *progress = film->params->progress_context;
+    Renderer *prepared = NULL;
+    Status status = STATUS_OK;
+    for (int k = animation->first; k <= animation->last && status == STATUS_OK; k++) {
+        char what[48];
+        snprintf(what, sizeof what, "rendering %d of %d", k, animation->last);
+        progress_start(progress, animation->kind ? what : "rendering", film->subject.common->quiet);
+        status = draw_frame(film, k, form, &prepared, stats, err);
+        progress_end(progress);
+    }
+    if (prepared)
+        *stats = renderer_stats(prepared);
+    renderer_free(prepared);
+    return status;
+}

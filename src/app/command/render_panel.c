@@ -1,0 +1,97 @@
+/* A panel is drawn as `render` draws, kept instead of written, and its insets by the same renderer
+ * with cameras that see a part of its view. */
+#include "app/command/render_panel.h"
+
+#include "app/command/render_film.h"
+#include "app/command/render_options.h"
+#include "app/run/progress.h"
+
+FigureBox panel_part(const PanelInset *inset, const Camera *camera)
+{
+    double wide = inset->pixels[0] / inset->magnify / camera->width / 2;
+    double high = inset->pixels[1] / inset->magnify / camera->height / 2;
+    return (FigureBox){inset->at[0] - wide, inset->at[1] - high, inset->at[0] + wide,
+                       inset->at[1] + high};
+}
+
+View panel_inset_view(const PanelInset *inset, const View *view)
+{
+    View shown = *view;
+    Camera *camera = &shown.camera;
+    const FigureBox part = panel_part(inset, camera);
+    camera->location = vec3_add_scaled(camera->location, camera->right, inset->at[0] - 0.5);
+    camera->location = vec3_add_scaled(camera->location, camera->up, 0.5 - inset->at[1]);
+    camera->right = vec3_scale(camera->right, part.right - part.left);
+    camera->up = vec3_scale(camera->up, part.bottom - part.top);
+    camera->width = inset->pixels[0];
+    camera->height = inset->pixels[1];
+    return shown;
+}
+
+static Status draw_kept(Renderer *renderer, const Scene *scene, Picture *kept, Err *err)
+{
+    const Camera *camera = &scene->view.camera;
+    const FramesForm form = {.width = camera->width,
+                             .height = camera->height,
+                             .path = "panel",
+                             .bits = 8,
+                             .encoding = ENCODING_SRGB,
+                             .picture = true,
+                             .kept = kept};
+    const Film film = {.shard = {.rows = camera->height}, .step = film_band_rows(&form, 0, 128)};
+    return film_draw_one(&film, renderer, scene, &form, err);
+}
+
+static Status draw_panel(const RenderParams *params, Panel *panel, Err *err)
+{
+    Renderer *renderer;
+    TRY(renderer_new(&panel->scene.geometry, params, &renderer, err));
+    Status status = draw_kept(renderer, &panel->scene, &panel->picture, err);
+    for (size_t i = 0; i < panel->n_insets && status == STATUS_OK; i++) {
+        Scene shown = panel->scene;
+        shown.view = panel_inset_view(&panel->insets[i], &panel->scene.view);
+        status = draw_kept(renderer, &shown, &panel->insets[i].picture, err);
+    }
+    renderer_free(renderer);
+    return status;
+}
+
+Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
+{
+    RenderOptions *options = parsed->options;
+    const int *pixels = options->picture.size.pixels;
+    PictureSource source = {0};
+    Animation still = {.first = 1, .last = 1, .n = 1};
+    StageReport staged;
+    Progress progress;
+    options->output = "panel";
+    render_settle(options);
+    CellParams cells;
+    RenderParams params = render_params_of(options, parsed->common.threads, &cells);
+    params.want_color = true;
+    params.progress = progress_report;
+    params.progress_context = &progress;
+    if (panel->n_insets > 0 && options->picture.projection == PROJECTION_PERSPECTIVE)
+        return err_set(err, STATUS_USAGE, "an inset is a part of an orthographic picture");
+    TRY(render_check(options, parsed, err));
+    TRY(picture_fits(pixels[0], pixels[1], 40, err));
+    Status status = picture_read_source(&options->picture, parsed, &source, err);
+    if (status == STATUS_OK)
+        status = render_make_scene(options, parsed, &source, panel->fonts, &panel->scene, &staged,
+                                   &still, err);
+    progress_start(&progress, "rendering", parsed->common.quiet);
+    if (status == STATUS_OK)
+        status = draw_panel(&params, panel, err);
+    progress_end(&progress);
+    panel->annotation = options->annotation;
+    picture_source_release(&source);
+    return status;
+}
+
+void panel_release(Panel *panel)
+{
+    for (size_t i = 0; i < panel->n_insets; i++)
+        picture_release(&panel->insets[i].picture);
+    picture_release(&panel->picture);
+    scene_release(&panel->scene);
+}
