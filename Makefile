@@ -304,6 +304,7 @@ install: build/corcast build/share ## install under $(DESTDIR)$(PREFIX), with ma
 	install -Dm644 -t $(SHARE)/doc/corcast/docs/decisions docs/decisions/*.md
 	install -Dm644 -t $(SHARE)/doc/corcast/docs/images docs/images/*.png
 	install -Dm644 -t $(SHARE)/doc/corcast/docs/images/looks docs/images/looks/*.png
+	install -Dm644 -t $(SHARE)/doc/corcast/docs/images/gallery docs/images/gallery/*.png
 
 uninstall: ## remove what `make install` put there
 	rm -f $(DESTDIR)$(PREFIX)/bin/corcast $(SHARE)/man/man1/corcast.1 $(SHARE)/man/man1/corcast-*.1
