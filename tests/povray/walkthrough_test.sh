@@ -14,12 +14,12 @@ commands() {
          inside { print "line " text }' "$REPO/$1"
 }
 
-# small COMMAND: with pictures of at most 64 x 48 pixels.
+# small COMMAND: with pictures of at most 64 x 48 pixels, unless a preset sets their size.
 small() {
     local small
     small=$(echo "$1" | sed -E 's/ #.*//; s/--size [0-9]+x[0-9]+/--size 64x48/; s/\+W[0-9]+ \+H[0-9]+/+W64 +H48/')
     case $small in
-    *' --size '* | *--recipe*) ;;
+    *' --size '* | *' --preset '* | *--recipe*) ;;
     *'corcast render '* | *'corcast povray '* | *'corcast verify '*) small="$small --size 64x48" ;;
     esac
     echo "$small"
