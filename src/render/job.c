@@ -27,3 +27,12 @@ Rgb drawing_color(const Drawing *drawing, uint32_t segment, Vec3 point)
         return appearance_color(appearance, segment);
     return appearance_blended(appearance, termmean_at(drawing->mean, appearance->places, point));
 }
+
+void renderstats_add(RenderStats *all, const RenderStats *more)
+{
+    all->prepare_s += more->prepare_s;
+    all->trace_s += more->trace_s;
+    all->cpu_s += more->cpu_s;
+    all->rays += more->rays;
+    all->engine = more->engine;
+}

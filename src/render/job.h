@@ -75,6 +75,9 @@ typedef struct RenderStats {
                             before */
 } RenderStats;
 
+/* Adds what another renderer has done, whose engine drew last; preparations stay those of *all. */
+void renderstats_add(RenderStats *all, const RenderStats *more);
+
 /* Rows first .. first + rows of the picture. The first `above` and the last `below` of them are
  * drawn only because adaptive antialiasing compares pixels with their neighbours: they get no
  * further samples and are cut off at the end. */

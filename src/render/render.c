@@ -254,15 +254,18 @@ void renderer_antialias(Renderer *renderer, int antialias)
 RenderStats renderer_stats(const Renderer *renderer)
 {
     RenderStats stats = renderer->stats;
-    if (renderer->rest) {
-        const RenderStats *rest = &renderer->rest->stats;
-        stats.prepare_s += rest->prepare_s;
-        stats.trace_s += rest->trace_s;
-        stats.cpu_s += rest->cpu_s;
-        stats.rays += rest->rays;
-        stats.engine = rest->engine;
-    }
+    if (renderer->rest)
+        renderstats_add(&stats, &renderer->rest->stats);
     return stats;
+}
+
+/* Rows of a picture of `height` rows, with up to `margin` more above and below for their sake. */
+static Band band_between(int first, int rows, int margin, int height)
+{
+    int left = height - first - rows;
+    int above = first < margin ? first : margin, below = left < margin ? left : margin;
+    return (Band){
+        .first = first - above, .rows = rows + above + below, .above = above, .below = below};
 }
 
 /* ---- light that samples share -----------------------------------------------------------------
@@ -284,16 +287,14 @@ static Status see_vessels(const Renderer *renderer, const Drawing *drawing, Fram
 }
 
 /* The drawing of a band with the rows that its shared light depends on, and that its samples look
- * at. */
+ * at: all of them count. */
 static Drawing widened(const Drawing *drawing, int margin)
 {
-    Drawing wide = *drawing;
-    int left = drawing->view->camera.height - drawing->band.first - drawing->band.rows;
-    int above = drawing->band.first < margin ? drawing->band.first : margin;
-    int below = left < margin ? left : margin;
-    wide.band =
-        (Band){.first = drawing->band.first - above, .rows = drawing->band.rows + above + below};
-    return wide;
+    const Band *band = &drawing->band;
+    const Band wide = band_between(band->first, band->rows, margin, drawing->view->camera.height);
+    Drawing all = *drawing;
+    all.band = (Band){.first = wide.first, .rows = wide.rows};
+    return all;
 }
 
 /* Finds what samples share, if they share anything, in the drawing's band and so many rows about
@@ -352,14 +353,8 @@ static int rounded_up(int rows)
 /* The rows of samples of the pixels' rows first .. first + rows, with those that decide them. */
 static Band band_of_samples(const View *fine, int side, int first, int rows)
 {
-    int margin = rounded_up(effects_reach(&fine->effects, side));
-    Band band = {.first = first * side, .rows = rows * side};
-    int left = fine->camera.height - band.first - band.rows;
-    band.above = margin < band.first ? margin : band.first;
-    band.below = margin < left ? margin : left;
-    band.first -= band.above;
-    band.rows += band.above + band.below;
-    return band;
+    return band_between(first * side, rows * side, rounded_up(effects_reach(&fine->effects, side)),
+                        fine->camera.height);
 }
 
 /* Draws rows of pixels, counted in the picture, into the rows of `color` from `row` on. */
@@ -448,34 +443,22 @@ static Status draw_with_effects(Renderer *renderer, const Drawing *drawing, Fram
     return draw_effects(renderer, drawing, frame, err);
 }
 
-/* The band with the neighbours that adaptive antialiasing looks at. */
-static Band band_of(bool adaptive, int height, int first, int rows)
-{
-    Band band = {.first = first, .rows = rows};
-    int left = height - first - rows;
-    if (adaptive) {
-        band.above = first > 0 ? RENDER_BAND_STEP : 0;
-        band.below = left < RENDER_BAND_STEP ? left : RENDER_BAND_STEP;
-    }
-    band.first -= band.above;
-    band.rows += band.above + band.below;
-    return band;
-}
-
 /* The rows as samples see all vessels. */
 static Status sampled_rows(Renderer *renderer, const View *view, const Appearance *appearance,
                            int first, int rows, Frame *frame, Err *err)
 {
     const RenderParams *params = &renderer->params;
     const bool effects = params->want_color && effects_present(&view->effects);
+    /* Adaptive antialiasing looks at neighbours. */
     const bool adaptive = !effects && params->antialias > 1 && params->antialias_threshold > 0;
     Frame made = {0};
     double start_cpu_s = clock_cpu_seconds();
-    Drawing drawing = {.geometry = renderer->geometry,
-                       .view = view,
-                       .appearance = appearance,
-                       .params = params,
-                       .band = band_of(adaptive, view->camera.height, first, rows)};
+    Drawing drawing = {
+        .geometry = renderer->geometry,
+        .view = view,
+        .appearance = appearance,
+        .params = params,
+        .band = band_between(first, rows, adaptive ? RENDER_BAND_STEP : 0, view->camera.height)};
     Status status = prepare_caster(renderer, &drawing, err);
     if (status == STATUS_OK)
         status = prepare_mean(renderer, &drawing, err);
@@ -525,7 +508,6 @@ static Status cover_rows(Renderer *renderer, const View *view, const Appearance 
                        .view = view,
                        .appearance = appearance,
                        .params = &rest->params,
-                       .caster = rest->caster,
                        .band = {.first = first, .rows = frame->color.height}};
     double start_s = clock_seconds(), start_cpu_s = clock_cpu_seconds();
     TRY(rest->params.shadows ? make_caster(rest, err) : STATUS_OK);

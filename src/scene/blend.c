@@ -120,20 +120,6 @@ done:
     return status;
 }
 
-/* The place of a number in a rising list; `n` where it is not. */
-static size_t place_of(const uint32_t *list, size_t n, uint32_t number)
-{
-    size_t low = 0, high = n;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (list[middle] < number)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < n && list[low] == number ? low : n;
-}
-
 /* Appends those members of a group that are among `indices`, unless the first of them is not
  * number `i`: then the group is listed elsewhere. */
 static bool add_members(const NumberLists *members, uint32_t group, const uint32_t *indices,
@@ -141,7 +127,7 @@ static bool add_members(const NumberLists *members, uint32_t group, const uint32
 {
     size_t end = *n_items;
     for (uint32_t k = members->first[group]; k < members->first[group + 1]; k++) {
-        size_t place = place_of(indices, n, members->items[k]);
+        size_t place = numbers_place(indices, n, members->items[k]);
         if (place < n)
             items[end++] = (uint32_t)place;
     }

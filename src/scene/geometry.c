@@ -36,17 +36,23 @@ void numberlists_release(NumberLists *lists)
     *lists = (NumberLists){0};
 }
 
-bool numberlists_hold(const NumberLists *lists, size_t i, uint32_t number)
+size_t numbers_place(const uint32_t *rising, size_t n, uint32_t number)
 {
-    uint32_t low = lists->first[i], high = lists->first[i + 1];
+    size_t low = 0, high = n;
     while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (lists->items[middle] < number)
+        size_t middle = low + (high - low) / 2;
+        if (rising[middle] < number)
             low = middle + 1;
         else
             high = middle;
     }
-    return low < lists->first[i + 1] && lists->items[low] == number;
+    return low < n && rising[low] == number ? low : n;
+}
+
+bool numberlists_hold(const NumberLists *lists, size_t i, uint32_t number)
+{
+    size_t n = lists->first[i + 1] - lists->first[i];
+    return numbers_place(lists->items + lists->first[i], n, number) < n;
 }
 
 void geometry_release(Geometry *geometry)

@@ -85,6 +85,9 @@ typedef struct NumberLists {
 
 void numberlists_release(NumberLists *lists);
 
+/* The place of a number in a rising list of n; n where it is not. O(log n). */
+size_t numbers_place(const uint32_t *rising, size_t n, uint32_t number);
+
 /* Whether the list of i holds the number. O(log of the length of the list). */
 bool numberlists_hold(const NumberLists *lists, size_t i, uint32_t number);
 

@@ -48,15 +48,6 @@ Status film_draw_one(const Film *film, Renderer *renderer, const Scene *scene,
     return status;
 }
 
-static void add_stats(RenderStats *all, const RenderStats *one)
-{
-    all->prepare_s += one->prepare_s;
-    all->trace_s += one->trace_s;
-    all->cpu_s += one->cpu_s;
-    all->rays += one->rays;
-    all->engine = one->engine;
-}
-
 /* The note of picture `number`, which the form then has, and whether the file has it already. */
 static Status find_shard(const Film *film, FramesForm *form, int number, Text *note, bool *there,
                          Err *err)
@@ -99,7 +90,7 @@ static Status draw_frame(const Film *film, int number, const FramesForm *form, R
     TRY_GOTO(film_draw_one(film, *renderer, &shown, &named, err));
     if (young) {
         const RenderStats one = renderer_stats(young);
-        add_stats(stats, &one);
+        renderstats_add(stats, &one);
     }
 done:
     renderer_free(young);

@@ -1,8 +1,8 @@
 /* A drawing has lines and paper: what says how surfaces look has no effect on it. */
 #include "app/pictures/line_drawing.h"
 
+#include "app/run/output.h"
 #include "render/render.h"
-#include <string.h>
 
 const Range ink_range = {0.01, 10};
 
@@ -10,14 +10,11 @@ const Range ink_range = {0.01, 10};
 static bool is_of_surfaces(const Option *option)
 {
     static const char *const others[] = {
-        "potential", "joints",    "min-width", "exact",     "method",  "legend",
-        "planes",    "antialias", "frames",    "turntable", "growth",  "tile",
-        "tiles",     "json",      "memory",    "bits",      "kernels", "part-overlaps"};
-    bool is_other = false;
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        is_other |= strcmp(option->name, others[i]) == 0;
-    return is_other || option->group == GROUP_LIGHT || option->group == GROUP_COLOR ||
-           option->group == GROUP_POVRAY;
+        "potential", "joints", "min-width", "exact",         "method", "legend", "planes",
+        "antialias", "frames", "turntable", "growth",        "tile",   "tiles",  "json",
+        "memory",    "bits",   "kernels",   "part-overlaps", NULL};
+    return is_one_of(option->name, others) || option->group == GROUP_LIGHT ||
+           option->group == GROUP_COLOR || option->group == GROUP_POVRAY;
 }
 
 Status line_drawing_check(const PictureOptions *picture, const char *output, const Parsed *parsed,

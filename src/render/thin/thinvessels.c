@@ -81,16 +81,15 @@ static double thin_below(const Geometry *whole, const Camera *camera, double lea
     return fmin(most, limit_px(least_px));
 }
 
-static void take(ThinVessels *thin, const Camera *camera, double below)
+static void take(ThinVessels *thin, const Camera *camera)
 {
     Vec3 end = {0};
-    uint32_t last = UINT32_MAX;
     for (size_t i = 0; i < count_vessels(thin->whole); i++) {
         const Vessel vessel = vessel_at(thin->whole, i);
         const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
-        if (!vessel.has_length || widest(&vessel, &a, &b) >= below)
+        if (!vessel.has_length || widest(&vessel, &a, &b) >= thin->below_px)
             continue;
-        bool follows = last != UINT32_MAX && vec3_distance(end, vessel.a) == 0;
+        bool follows = thin->n > 0 && vec3_distance(end, vessel.a) == 0;
         double width = vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm;
         thin->strips[thin->n] = (ThinStrip){
             .x = {(float)a.x, (float)b.x},
@@ -103,7 +102,6 @@ static void take(ThinVessels *thin, const Camera *camera, double below)
         };
         thin->n++;
         end = vessel.b;
-        last = (uint32_t)i;
     }
 }
 
@@ -117,13 +115,14 @@ Status thinvessels_find(const Geometry *whole, const Camera *camera, double leas
                         ThinVessels *thin, Err *err)
 {
     ThinVessels made = {.whole = whole, .least_px = least_px};
-    double below = thin_below(whole, camera, least_px);
     size_t n = 0;
-    for (size_t i = 0; i < count_vessels(whole) && !model_has(whole->model, MODEL_TRIANGLES); i++)
-        n += width_of(whole, camera, i) < below;
+    if (!model_has(whole->model, MODEL_TRIANGLES))
+        made.below_px = thin_below(whole, camera, least_px);
+    for (size_t i = 0; i < count_vessels(whole) && made.below_px > 0; i++)
+        n += width_of(whole, camera, i) < made.below_px;
     if (n > 0) {
         TRY(mem_calloc(&made.strips, n, sizeof *made.strips, "thin vessels", err));
-        take(&made, camera, below);
+        take(&made, camera);
     }
     *thin = made;
     return STATUS_OK;
@@ -136,11 +135,10 @@ static Status list_rest(const ThinVessels *thin, const Camera *camera, uint32_t 
                         Err *err)
 {
     const Geometry *whole = thin->whole;
-    double below = thin_below(whole, camera, thin->least_px);
     TRY(mem_calloc(rest, count_vessels(whole), sizeof **rest, "vessels", err));
     *n = 0;
     for (size_t i = 0; i < count_vessels(whole); i++)
-        if (width_of(whole, camera, i) >= below)
+        if (width_of(whole, camera, i) >= thin->below_px)
             (*rest)[(*n)++] = (uint32_t)i;
     return STATUS_OK;
 }

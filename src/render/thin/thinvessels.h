@@ -21,6 +21,7 @@ typedef struct ThinVessels {
     ThinStrip *strips;     /* owned; by rising vessel */
     size_t n;
     double least_px; /* strips are drawn at least so wide; 0: as wide as they are */
+    double below_px; /* narrower vessels are thin */
 } ThinVessels;
 
 void thinvessels_release(ThinVessels *thin);
