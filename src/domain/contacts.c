@@ -4,6 +4,8 @@
  * needs no case of its own. */
 #include "domain/contacts.h"
 
+#include "domain/kinds.h"
+
 void contacts_add(Contacts *contacts, double t)
 {
     if (contacts->n < CONTACTS_MAX)
@@ -21,7 +23,7 @@ bool contacts_hold_segment(Contacts *contacts, const Domain *domain, Vec3 a, Vec
     for (int i = 0; i <= contacts->n; i++) {
         double to = i < contacts->n ? contacts->t[i] : 1;
         if (to - from > shortest &&
-            !domain_inside(domain, vec3_add_scaled(a, along, (from + to) / 2), 0))
+            !domain->ops->inside(domain, vec3_add_scaled(a, along, (from + to) / 2), 0))
             return false;
         from = to;
     }

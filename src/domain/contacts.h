@@ -19,9 +19,10 @@ typedef struct Contacts {
 /* Adds a contact at `t`, moved into [0, 1]. */
 void contacts_add(Contacts *contacts, double t);
 
-/* Whether the segment from `a` to `b`, mm, stays inside: that is, the middle of every stretch
- * between neighbouring contacts or ends is inside, unless the stretch is shorter than the domain's
- * slack_mm. Sorts the contacts. False when there were more than CONTACTS_MAX. */
+/* Whether the segment from `a` to `b`, mm, in the domain's own coordinates, stays inside: that is,
+ * the middle of every stretch between neighbouring contacts or ends is inside, unless the stretch
+ * is shorter than the domain's slack_mm. Sorts the contacts. False when there were more than
+ * CONTACTS_MAX. */
 bool contacts_hold_segment(Contacts *contacts, const Domain *domain, Vec3 a, Vec3 b);
 
 #endif

@@ -1,16 +1,18 @@
 /* Every kind of domain is a row of `kinds`, a DomainOps, defined in the file of its family:
- * shapes.c, polygon.c, mask.c, mesh.c. What is here is the same for all. Points are sampled by
- * rejection from the bounding box (acceptance pi/4 in the disc, pi/6 in the ball) unless a kind
- * knows better: exactly uniform, and without functions whose last bit differs between machines. */
+ * shapes.c, polygon.c, mask.c, mesh.c, hull.c. What is here is the same for all: the place (`@`)
+ * that a domain's own coordinates are put at, and sampling. Points are sampled by rejection from
+ * the bounding box (acceptance pi/4 in the disc, pi/6 in the ball) unless a kind knows better:
+ * exactly uniform, and without functions whose last bit differs between machines. */
 #include "domain/domain.h"
 
+#include "domain/hull.h"
 #include "domain/kinds.h"
 #include <stdlib.h>
 #include <string.h>
 
-static const DomainOps *const kinds[] = {&disc_ops,    &ball_ops,      &rect_ops,
-                                         &box_ops,     &ellipsoid_ops, &shell_ops,
-                                         &polygon_ops, &mask_ops,      &mesh_ops};
+static const DomainOps *const kinds[] = {&disc_ops,      &ball_ops,  &rect_ops,    &box_ops,
+                                         &ellipsoid_ops, &shell_ops, &polygon_ops, &mask_ops,
+                                         &mesh_ops,      &hull_ops};
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
@@ -39,7 +41,9 @@ static Status refuse_shape(const char *spec, Err *err)
                     kinds[kind]->name, kinds[kind]->parameters);
     Status status = text_check(&shapes, err);
     if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "`domain` %s: unknown shape; use %s, lengths in mm",
+        status = err_set(err, STATUS_USAGE,
+                         "`domain` %s: unknown shape; use %s, lengths in mm, and @X,Y,Z behind it "
+                         "to place it",
                          spec, text_chars(&shapes));
     text_release(&shapes);
     return status;
@@ -59,17 +63,91 @@ static Status check_filling(const Domain *domain, Err *err)
                    least_filled);
 }
 
-static Status load(const DomainOps *ops, const char *values, Domain *out, Err *err)
+/* What every kind has in common once it is loaded. */
+static Status complete(Domain *domain, Vec3 at, Err *err)
+{
+    TRY(check_filling(domain, err));
+    domain->slack_mm = slack * vec3_distance(domain->bounds.low, domain->bounds.high);
+    domain->own_bounds = domain->bounds;
+    domain->is_placed = vec3_length(at) > 0;
+    if (!domain->is_placed)
+        return STATUS_OK;
+    if (domain->dimension == 2 && at.z != 0)
+        return err_set(err, STATUS_USAGE,
+                       "a domain of two dimensions lies in the plane z = 0, so its place is @X,Y");
+    domain->at = at;
+    domain->bounds = (Box){vec3_add(domain->bounds.low, at), vec3_add(domain->bounds.high, at)};
+    domain->inlet = vec3_add(domain->inlet, at);
+    return STATUS_OK;
+}
+
+static Status load(const DomainOps *ops, const char *values, Vec3 at, Domain *out, Err *err)
 {
     Domain domain = {.ops = ops};
     Status status = STATUS_OK;
     TRY_GOTO(ops->load(&domain, values, err));
-    TRY_GOTO(check_filling(&domain, err));
-    domain.slack_mm = slack * vec3_distance(domain.bounds.low, domain.bounds.high);
+    TRY_GOTO(complete(&domain, at, err));
     *out = domain;
     return STATUS_OK;
 done:
     domain_release(&domain);
+    return status;
+}
+
+/* Reads X,Y or X,Y,Z. */
+static bool parse_place(const char *text, Vec3 *at)
+{
+    double number[3] = {0};
+    int n = 0;
+    do {
+        if (n == 3 || !number_take(&text, &number[n]))
+            return false;
+        n++;
+    } while (*text++ == ',');
+    *at = vec3(number[0], number[1], number[2]);
+    return text[-1] == '\0' && n >= 2;
+}
+
+/* Reads the place behind the last `@` of a text, and copies what is before it to *values (owned). A
+ * file's name may have an `@` with no place behind it. */
+static Status read_place(const DomainOps *ops, const char *text, char **values, Vec3 *at, Err *err)
+{
+    const char *mark = strrchr(text, '@');
+    bool has_place = mark && parse_place(mark + 1, at);
+    if (!has_place)
+        *at = vec3(0, 0, 0);
+    if (mark && !has_place && !ops->release)
+        return err_set(err, STATUS_USAGE, "the place '%s' is not X,Y or X,Y,Z in mm", mark);
+    if (has_place && !(fmax(fabs(at->x), fmax(fabs(at->y), fabs(at->z))) <= DOMAIN_MAX_MM))
+        return err_set(err, STATUS_USAGE, "the place '%s' is beyond %g mm", mark, DOMAIN_MAX_MM);
+    TRY(mem_strdup(values, text, err));
+    if (has_place)
+        (*values)[mark - text] = '\0';
+    return STATUS_OK;
+}
+
+static Status parse_kind(const DomainOps *ops, const char *text, Domain *domain, Err *err)
+{
+    char *values = NULL;
+    Vec3 at;
+    TRY(read_place(ops, text, &values, &at, err));
+    Status status = load(ops, values, at, domain, err);
+    free(values);
+    return status;
+}
+
+Status domain_of_tubes(Domain *domain, const DomainTube *tubes, size_t n, double mm,
+                       const char *file, Err *err)
+{
+    Domain made = {.ops = &hull_ops, .size = {mm}, .n_sizes = 1};
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_strdup(&made.file, file, err));
+    TRY_GOTO(hull_build(&made, tubes, n, err));
+    TRY_GOTO(complete(&made, vec3(0, 0, 0), err));
+    *domain = made;
+    return STATUS_OK;
+done:
+    domain_release(&made);
     return status;
 }
 
@@ -80,7 +158,7 @@ Status domain_parse(Domain *domain, const char *spec, Err *err)
     for (int kind = 0; kind < KINDS; kind++) {
         if (strlen(kinds[kind]->name) != length || memcmp(spec, kinds[kind]->name, length) != 0)
             continue;
-        Status status = load(kinds[kind], values, domain, err);
+        Status status = parse_kind(kinds[kind], values, domain, err);
         if (status == STATUS_USAGE)
             err_prefix(err, "`domain` %s: ", spec);
         return status;
@@ -106,6 +184,13 @@ void domain_text(const Domain *domain, Text *text)
             text_puts(text, ",");
         text_number(text, domain->size[i]);
     }
+    if (!domain->is_placed)
+        return;
+    const double at[3] = {domain->at.x, domain->at.y, domain->at.z};
+    for (int axis = 0; axis < domain->dimension; axis++) {
+        text_puts(text, axis ? "," : "@");
+        text_number(text, at[axis]);
+    }
 }
 
 bool domain_is_convex(const Domain *domain)
@@ -113,11 +198,17 @@ bool domain_is_convex(const Domain *domain)
     return domain->ops->is_convex;
 }
 
+/* The point in the domain's own coordinates. */
+static Vec3 to_own(const Domain *domain, Vec3 point)
+{
+    return domain->is_placed ? vec3_sub(point, domain->at) : point;
+}
+
 bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     if (domain->dimension == 2 && point.z != 0)
         return false;
-    return domain->ops->inside(domain, point, tolerance_mm);
+    return domain->ops->inside(domain, to_own(domain, point), tolerance_mm);
 }
 
 bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
@@ -125,16 +216,33 @@ bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     if (domain->dimension == 2 && (a.z != 0 || b.z != 0))
         return false;
     const DomainOps *ops = domain->ops;
+    a = to_own(domain, a);
+    b = to_own(domain, b);
     if (ops->is_convex || vec3_distance(a, b) <= domain->slack_mm)
         return ops->inside(domain, a, domain->slack_mm) && ops->inside(domain, b, domain->slack_mm);
     return ops->holds_segment(domain, a, b);
 }
 
+double domain_distance(const Domain *domain, Vec3 point, double most)
+{
+    double near = 0, far = most;
+    if (domain_inside(domain, point, 0))
+        return 0;
+    for (int halvings = 0; halvings < 20 && far - near > 1e-3 * far; halvings++) {
+        double middle = (near + far) / 2;
+        if (domain_inside(domain, point, middle))
+            far = middle;
+        else
+            near = middle;
+    }
+    return far;
+}
+
 /* Uniform in the bounds; draws x, y and, in three dimensions, z. */
 static Vec3 sample_bounds(const Domain *domain, Random *random)
 {
-    Vec3 center = box_center(domain->bounds);
-    Vec3 half = vec3_scale(vec3_sub(domain->bounds.high, domain->bounds.low), 0.5);
+    Vec3 center = box_center(domain->own_bounds);
+    Vec3 half = vec3_scale(vec3_sub(domain->own_bounds.high, domain->own_bounds.low), 0.5);
     double x = 2 * random_uniform(random) - 1;
     double y = 2 * random_uniform(random) - 1;
     double z = domain->dimension == 3 ? 2 * random_uniform(random) - 1 : 0;
@@ -146,7 +254,9 @@ Vec3 domain_sample(const Domain *domain, Random *random)
     const DomainOps *ops = domain->ops;
     for (;;) {
         Vec3 point = ops->sample ? ops->sample(domain, random) : sample_bounds(domain, random);
-        if (ops->inside(domain, point, 0))
+        if (domain->is_placed)
+            point = vec3_add(point, domain->at);
+        if (domain_inside(domain, point, 0))
             return point;
     }
 }

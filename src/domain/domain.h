@@ -19,6 +19,13 @@ enum { DOMAIN_MAX_SIZES = 5 };
 typedef struct Polygon Polygon;
 typedef struct Mask Mask;
 typedef struct Mesh Mesh;
+typedef struct Hull Hull;
+
+/* A straight piece of vessel, mm. */
+typedef struct DomainTube {
+    Vec3 a, b;
+    double radius;
+} DomainTube;
 
 /* Constant once parsed, so that threads may share it. A copy shares what the original owns. */
 typedef struct Domain {
@@ -32,7 +39,11 @@ typedef struct Domain {
         Polygon *polygon;
         Mask *mask;
         Mesh *mesh;
+        Hull *hull;
     };
+    bool is_placed;  /* by `at`, where its own coordinates have their origin, mm */
+    Vec3 at;         /* in the plane z = 0 in two dimensions */
+    Box own_bounds;  /* the bounds in its own coordinates */
     Box bounds;      /* the smallest box that holds it, mm; flat in two dimensions */
     double volume;   /* mm^3, or mm^2 in two dimensions */
     Vec3 inlet;      /* where no other is asked for, mm: at its top, where y is largest */
@@ -40,11 +51,18 @@ typedef struct Domain {
 } Domain;
 
 /* Makes *domain from a text, reading the file it names. STATUS_USAGE,
- * naming `domain`, the text and what is allowed, for a wrong text; STATUS_INPUT, naming the file,
+ * naming `domain`, the text and what is allowed, for a wrong text, and for one that names a tree
+ * (hull:), of which domain_of_tubes makes a domain; STATUS_INPUT, naming the file,
  * for a file that is missing, malformed or no domain (an empty mask, a mesh that is open or inside
  * out, a polygon that crosses itself). Both also for a domain that fills less than 1e-3 of its
  * bounds, masks excepted. Release with domain_release. */
 MUST_CHECK Status domain_parse(Domain *domain, const char *spec, Err *err);
+
+/* Makes *domain of all that is within `mm` of the n > 0 tubes (borrowed), of two dimensions if they
+ * all lie in the plane z = 0; `file` (copied) is what they were read from. Its inlet is where the
+ * first begins. Release with domain_release. STATUS_USAGE as domain_parse, STATUS_MEMORY. */
+MUST_CHECK Status domain_of_tubes(Domain *domain, const DomainTube *tubes, size_t n, double mm,
+                                  const char *file, Err *err);
 
 /* Frees what the domain owns. A zeroed or released domain is allowed. */
 void domain_release(Domain *domain);
@@ -66,6 +84,9 @@ bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm);
  * to slack_mm, so that it can begin at an inlet on the boundary. O(log n) in the n edges or
  * triangles of a boundary, O(m) in the m voxels on the way through a mask. */
 bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b);
+
+/* How far outside the domain the point is, mm, to a thousandth of it, at most `most`; 0 inside. */
+double domain_distance(const Domain *domain, Vec3 point, double most);
 
 /* A random point, mm, uniformly distributed in the domain; domain_inside at tolerance 0. */
 Vec3 domain_sample(const Domain *domain, Random *random);

@@ -1,4 +1,5 @@
-/* What each kind of domain supplies to domain.c; private to the room. */
+/* What each kind of domain supplies to domain.c, all in the domain's own coordinates; private to
+ * the room. */
 #ifndef CORCAST_DOMAIN_KINDS_H
 #define CORCAST_DOMAIN_KINDS_H
 
@@ -22,7 +23,7 @@ typedef struct DomainOps {
 } DomainOps;
 
 extern const DomainOps disc_ops, ball_ops, rect_ops, box_ops, ellipsoid_ops, shell_ops;
-extern const DomainOps polygon_ops, mask_ops, mesh_ops;
+extern const DomainOps polygon_ops, mask_ops, mesh_ops, hull_ops;
 
 /* Reads FILE[,MM] into file, size and n_sizes; size[0] is 1 where MM is not given. */
 MUST_CHECK Status domain_load_file_name(Domain *domain, const char *values, Err *err);

@@ -102,7 +102,7 @@ static bool is_near(const Mesh *mesh, Vec3 point, double reach)
 
 static bool mesh_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    return is_odd(domain->mesh, &domain->bounds, point) ||
+    return is_odd(domain->mesh, &domain->own_bounds, point) ||
            (tolerance_mm > 0 && is_near(domain->mesh, point, tolerance_mm));
 }
 

@@ -42,7 +42,7 @@ static bool is_near(const Polygon *polygon, Vec3 point, double reach)
 
 static bool polygon_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    return is_odd(domain->polygon, &domain->bounds, point, NO_EDGE) ||
+    return is_odd(domain->polygon, &domain->own_bounds, point, NO_EDGE) ||
            (tolerance_mm > 0 && is_near(domain->polygon, point, tolerance_mm));
 }
 

@@ -99,7 +99,7 @@ const DomainOps ball_ops = {
 
 static bool box_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    Vec3 half = domain->bounds.high;
+    Vec3 half = domain->own_bounds.high;
     return fabs(point.x) <= half.x + tolerance_mm && fabs(point.y) <= half.y + tolerance_mm &&
            fabs(point.z) <= half.z + tolerance_mm;
 }

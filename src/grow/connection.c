@@ -5,6 +5,8 @@
  * are in the domain (connection_is_inside), and clear of all others (connection_clearance). */
 #include "grow/connection.h"
 
+#include "grow/trunk.h"
+
 #include <string.h>
 
 /* Vessels widen as the tree below them grows: the rules hold for radii this much greater, and so at
@@ -46,9 +48,45 @@ static Bifurcation bifurcation_of(const Network *net, const Rules *rules, int32_
     return out;
 }
 
+/* The part of a segment at which the point of it next to `terminal` lies, `least` mm or more off
+ * the ends. */
+static double nearest_part(Vec3 a, Vec3 b, Vec3 terminal, double length, double least)
+{
+    double part = vec3_dot(vec3_sub(terminal, a), vec3_sub(b, a)) / (length * length);
+    return fmin(fmax(part, least / length), 1 - least / length);
+}
+
+/* The connection to a segment that keeps its radius: the straight one to the nearest place, as what
+ * is spent on the way there changes little along a segment. */
+static bool connect_to_trunk(const Network *net, const Rules *rules, int32_t i, Vec3 terminal,
+                             Connection *out)
+{
+    const Segment *segment = &net->segment[i];
+    double kept = net->trunk->radius[i], length = segment->length;
+    double width = fmax(2 * length_reserve * rules->thickness * kept, rules->least_length);
+    Vec3 from = net->position[segment->parent], to = net->position[i];
+    double part =
+        nearest_part(from, to, terminal, length, fmin(width, least_part_of_piece * length));
+    double gauge =
+        trunk_gauge((double)segment->gauge, trunk_spent(net, i, segment->terminals + 1, part));
+    Vec3 place = vec3_add_scaled(from, vec3_sub(to, from), part);
+    Below nothing = {0};
+    Reduced fresh =
+        law_extend(&net->law, net->fresh_weight, vec3_distance(place, terminal), &nothing);
+    *out = (Connection){.segment = i,
+                        .bifurcation = place,
+                        .radius = {kept, kept, net->radius_unit * gauge * fresh.rho},
+                        .price = law_lambda_power(&net->law, gauge) * fresh.cost +
+                                 net->sensitivity[i].extra +
+                                 net->trunk->stake[i] * trunk_spent(net, i, 1, part)};
+    return isfinite(out->price);
+}
+
 bool connection_estimate(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
                          Connection *out)
 {
+    if (network_kept_radius(net, segment) > 0)
+        return connect_to_trunk(net, rules, segment, terminal, out);
     Bifurcation problem = bifurcation_of(net, rules, segment, terminal);
     BifurcationState state;
     Vec3 middle = vec3_scale(vec3_add(problem.end[PROXIMAL], problem.end[DISTAL]), 0.5), place;
@@ -64,7 +102,7 @@ bool connection_estimate(const Network *net, const Rules *rules, int32_t segment
 
 bool connection_may_split(const Network *net, const Grid *grid, const Rules *rules, int32_t segment)
 {
-    if (network_is_piece(net, segment))
+    if (network_is_piece(net, segment) || network_kept_radius(net, segment) > 0)
         return true;
     const GridItem *item = &grid->item[segment];
     double width = 2 * length_reserve * rules->thickness * (double)item->radius;
@@ -72,9 +110,18 @@ bool connection_may_split(const Network *net, const Grid *grid, const Rules *rul
     return grid_length2(item) > least * least;
 }
 
+/* Whether the new segment of a connection to the trunk is longer than wide. */
+static bool is_long_enough(const Rules *rules, const Connection *connection, Vec3 terminal)
+{
+    double width = 2 * length_reserve * rules->thickness * connection->radius[FRESH];
+    return vec3_distance(connection->bifurcation, terminal) >= fmax(width, rules->least_length);
+}
+
 bool connection_optimise(const Network *net, const Rules *rules, Vec3 terminal,
                          Connection *connection)
 {
+    if (network_kept_radius(net, connection->segment) > 0)
+        return is_long_enough(rules, connection, terminal);
     Bifurcation problem = bifurcation_of(net, rules, connection->segment, terminal);
     Vec3 place = connection->bifurcation;
     for (int round = 0; round <= ROUNDS; round++) {

@@ -17,7 +17,7 @@ size_t continue_inlets(const Tree *from)
 
 /* Node i, which has so many children. */
 static Status check_node(const Tree *from, size_t i, int32_t children, const Domain *domain,
-                         Err *err)
+                         bool keep_radii, Err *err)
 {
     int32_t id = from->id[i];
     if (children > 2)
@@ -33,6 +33,9 @@ static Status check_node(const Tree *from, size_t i, int32_t children, const Dom
                        "`from`: node %d, a terminal, is where its parent is; its segment needs a "
                        "length",
                        id);
+    if (keep_radii && tree_is_segment(from, i) && !(from->radius_mm[i] > 0))
+        return err_set(err, STATUS_INPUT,
+                       "`from`: node %d has the radius 0, which `keep_radii` cannot keep", id);
     if (domain->dimension == 2 && from->position[i].z != 0)
         return err_set(err, STATUS_INPUT,
                        "`from`: node %d is at z = %g; with a `domain` of two dimensions the tree "
@@ -41,26 +44,48 @@ static Status check_node(const Tree *from, size_t i, int32_t children, const Dom
     return STATUS_OK;
 }
 
-size_t continue_outside(const Tree *from, const Domain *domain)
+/* How far a point is outside the bounds, along the axis along which it is farthest. */
+static double beyond(Box box, Vec3 point)
+{
+    Vec3 below = vec3_sub(box.low, point), above = vec3_sub(point, box.high);
+    return fmax(fmax(fmax(below.x, above.x), fmax(below.y, above.y)), fmax(below.z, above.z));
+}
+
+size_t continue_outside(const Tree *from, const Domain *domain, size_t *farthest, double *mm)
 {
     size_t count = 0;
-    for (size_t i = 0; i < from->n; i++)
-        count += !domain_inside(domain, from->position[i], domain->slack_mm);
+    double most = -INFINITY;
+    for (size_t i = 0; i < from->n; i++) {
+        Vec3 at = from->position[i];
+        if (domain_inside(domain, at, domain->slack_mm))
+            continue;
+        count++;
+        if (beyond(domain->bounds, at) <= most)
+            continue;
+        most = beyond(domain->bounds, at);
+        *farthest = i;
+    }
+    double size = vec3_distance(domain->bounds.low, domain->bounds.high);
+    *mm = count ? domain_distance(domain, from->position[*farthest], 2 * fmax(most, 0) + size) : 0;
     return count;
 }
 
 /* Whether a part of the tree at least is in the domain. */
 static Status check_place(const Tree *from, const Domain *domain, Err *err)
 {
-    if (continue_outside(from, domain) < from->n)
+    size_t farthest = 0;
+    double mm;
+    if (continue_outside(from, domain, &farthest, &mm) < from->n)
         return STATUS_OK;
     Box tree = tree_bounds(from), box = domain->bounds;
-    return err_set(err, STATUS_INPUT,
-                   "`from`: the domain does not hold the tree: it is at x %.4g to %.4g, y %.4g to "
-                   "%.4g, z %.4g to %.4g mm, and the domain at x %.4g to %.4g, y %.4g to %.4g, "
-                   "z %.4g to %.4g mm",
-                   tree.low.x, tree.high.x, tree.low.y, tree.high.y, tree.low.z, tree.high.z,
-                   box.low.x, box.high.x, box.low.y, box.high.y, box.low.z, box.high.z);
+    return err_set(
+        err, STATUS_INPUT,
+        "`from`: the domain does not hold the tree: it is at x %.4g to %.4g, y %.4g to "
+        "%.4g, z %.4g to %.4g mm, and the domain at x %.4g to %.4g, y %.4g to %.4g, "
+        "z %.4g to %.4g mm; node %d is outside by %.3g mm. Place the domain with @X,Y,Z, "
+        "or let it be a hull about the tree, hull:MM",
+        tree.low.x, tree.high.x, tree.low.y, tree.high.y, tree.low.z, tree.high.z, box.low.x,
+        box.high.x, box.low.y, box.high.y, box.low.z, box.high.z, from->id[farthest], mm);
 }
 
 Status continue_check(const GrowParams *params, const Domain *domain, Err *err)
@@ -77,7 +102,7 @@ Status continue_check(const GrowParams *params, const Domain *domain, Err *err)
     TRY(tree_child_counts(from, &children, err));
     Status status = STATUS_OK;
     for (size_t i = 0; i < from->n; i++) {
-        TRY_GOTO(check_node(from, i, children[i], domain, err));
+        TRY_GOTO(check_node(from, i, children[i], domain, params->keep_radii, err));
         terminals += children[i] == 0;
     }
     TRY_GOTO(check_place(from, domain, err));
@@ -107,6 +132,8 @@ void continue_from(const Tree *from, Network *net)
     }
     for (size_t i = 0; i < net->n; i++)
         net->trait[i].piece = net->trait[i].given && is_piece(net, (int32_t)i);
+    for (size_t i = 0; net->trunk && i < net->n; i++)
+        net->trunk->radius[i] = net->trait[i].given ? from->radius_mm[i] : 0;
     network_resum(net);
 }
 

@@ -13,7 +13,8 @@ size_t continue_inlets(const Tree *from);
 MUST_CHECK Status continue_check(const GrowParams *params, const Domain *domain, Err *err);
 
 /* Copies the tree, which continue_check accepts, into `net`, which is empty and has traits; node i
- * becomes node i. Leaves right sums, and no radii. O(n). */
+ * becomes node i; if `net` has a trunk, all segments keep their radii. Leaves right sums, and no
+ * other radii. O(n). */
 void continue_from(const Tree *from, Network *net);
 
 /* `out` has the nodes of `net`, in its order. Gives those that were in `from` their ids, types and
@@ -25,7 +26,8 @@ MUST_CHECK Status continue_restore(const Tree *from, const Network *net, Tree *o
  * the median, least and greatest factor by which they changed, 0 when none had a radius. */
 MUST_CHECK Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err);
 
-/* How many nodes of the tree are outside the domain. */
-size_t continue_outside(const Tree *from, const Domain *domain);
+/* How many nodes of the tree are outside the domain; if any, *farthest is that of them which is the
+ * farthest from its bounds, and *mm how far from the domain it is. */
+size_t continue_outside(const Tree *from, const Domain *domain, size_t *farthest, double *mm);
 
 #endif

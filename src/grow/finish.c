@@ -11,6 +11,7 @@
 
 #include "grow/continue_tree.h"
 #include "grow/segment_weights.h"
+#include "grow/trunk.h"
 #include <assert.h>
 #include <float.h>
 #include <stdlib.h>
@@ -21,7 +22,11 @@ static void sweep_node(const Network *net, size_t i, double *gauge, Tree *tree)
 {
     const Segment *segment = &net->segment[i];
     double below = 1;
-    if (segment->parent >= 0) {
+    double kept = network_kept_radius(net, (int32_t)i);
+    if (kept > 0 && segment->parent >= 0) {
+        tree->radius_mm[i] = kept;
+        below = trunk_gauge(gauge[i], trunk_spent(net, (int32_t)i, segment->terminals, 1));
+    } else if (segment->parent >= 0) {
         Reduced reduced = network_reduce(net, (int32_t)i);
         tree->radius_mm[i] = net->radius_unit * gauge[i] * reduced.rho;
         below = gauge[i] * reduced.widening;
@@ -79,6 +84,26 @@ static Status settle_radii(Network *net, const GrowParams *params, double *flow,
                    "the vessels of %zu terminals are too thin for `viscosity_law` pries: radii and "
                    "viscosities do not settle; lower `terminals` or raise `q_perf`",
                    net->terminals);
+}
+
+/* Whether the trunk that is kept leaves all that hangs on it some of the drop of pressure. */
+static Status check_trunk(const Network *net, const GrowParams *params, Err *err)
+{
+    double *spent = NULL;
+    size_t where = 0;
+    TRY(mem_calloc(&spent, net->n, sizeof *spent, "drops of pressure", err));
+    double most = trunk_most_spent(net, spent, &where);
+    free(spent);
+    if (most <= TRUNK_MOST_SPENT)
+        return STATUS_OK;
+    Vec3 at = net->position[where];
+    return err_set(err, STATUS_INFEASIBLE,
+                   "`keep_radii`: the vessels of `from` are too narrow for `q_perf` %g ml/min: on "
+                   "the way to (%.4g, %.4g, %.4g), where the radius is %.4g mm, they take %.4g "
+                   "times the drop from `p_perf` to `p_term`; this tree passes a flow below %.4g "
+                   "ml/min",
+                   params->q_perf_ml_min, at.x, at.y, at.z, net->trunk->radius[where], most,
+                   params->q_perf_ml_min * TRUNK_MOST_SPENT / most);
 }
 
 /* Radii, and flow shares where terminals have their own. */
@@ -146,6 +171,8 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
         made.position[i] = net->position[i];
     }
     tree_renumber(&made);
+    if (net->trunk)
+        TRY_GOTO(check_trunk(net, params, err));
     if (params->from)
         TRY_GOTO(continue_restore(params->from, net, &made, err));
     *out = made;

@@ -190,14 +190,18 @@ static Status be_patient(Growth *growth, size_t made, Err *err)
     }
     if (troubled == 0 || growth->crowded + growth->outside < LAST_PATIENCE)
         return STATUS_OK;
-    size_t outside =
-        growth->params->from ? continue_outside(growth->params->from, growth->domain) : 0;
+    size_t farthest = 0, outside = 0;
+    double mm = 0;
+    if (growth->params->from)
+        outside = continue_outside(growth->params->from, growth->domain, &farthest, &mm);
     if (outside > 0)
         return err_set(err, STATUS_INFEASIBLE,
                        "no room for terminal %zu of `terminals` %zu in %zu tries: the domain does "
-                       "not hold the tree of `from`, of which %zu of %zu nodes are outside",
+                       "not hold the tree of `from`, of which %zu of %zu nodes are outside, node "
+                       "%d by %.3g mm",
                        growth->net.terminals + 1, growth->params->terminals,
-                       growth->crowded + growth->outside, outside, growth->params->from->n);
+                       growth->crowded + growth->outside, outside, growth->params->from->n,
+                       growth->params->from->id[farthest], mm);
     return err_set(err, STATUS_INFEASIBLE,
                    "no room for terminal %zu of `terminals` %zu in %zu tries: lower `terminals`, "
                    "choose a larger `domain`, or move `gamma` and `lambda` towards 3 and 2",
@@ -289,6 +293,8 @@ static Status start(Growth *growth, Err *err)
     size_t given = params->from ? params->from->n : 0;
     TRY(network_init(&growth->net, (Law){params->gamma, params->lambda}, scale,
                      given + 2 * params->terminals, inlets, traits, err));
+    if (params->keep_radii)
+        TRY(network_add_trunk(&growth->net, err));
     if (params->from)
         continue_from(params->from, &growth->net);
     else

@@ -32,7 +32,8 @@ typedef struct GrowParams {
      * children, an inlet one or two. Its radii, its flow shares and what is known of it are not
      * looked at. */
     const Tree *from;
-    size_t inlets; /* at most GROW_MAX_INLETS; 0: one, the domain's default, or those of `from` */
+    bool keep_radii; /* whether the segments of `from` keep theirs, too, which are then looked at */
+    size_t inlets;   /* at most GROW_MAX_INLETS; 0: one, the domain's default, or those of `from` */
     const Vec3 *inlet; /* mm (borrowed); one tree grows from each */
     size_t
         inlet_shares; /* the number of shares: that of inlets, or 0: all trees get as many terminals
@@ -97,12 +98,16 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  * If a tree is continued (`from`), all its nodes are in *out with their ids, types and columns, and
  * so are its remarks; new nodes take the smallest ids that are free. New segments are in the domain
  * and keep clear of each other and of the given segments; of a given vessel of several segments
- * they only keep off the centrelines. Given segments may be anywhere.
+ * they only keep off the centrelines. Given segments may be anywhere. If they keep their radii
+ * (`keep_radii`), what flows through them drops pressure by Poiseuille's law, and what leaves them
+ * has radii by Murray's law, down to p_term; Murray's law does not hold where it leaves them, and
+ * terminals that `from` had end at the pressure there.
  *
  * Fails with STATUS_USAGE as grow_params_check does, STATUS_INPUT when `from` is not as above or
  * leaves the plane of a domain of two dimensions, STATUS_INFEASIBLE when there is no room for all
- * terminals, when the radii span more than a double can hold, or when vessels are too thin for
- * blood to pass by Pries's law, and STATUS_MEMORY. */
+ * terminals, when the radii span more than a double can hold, when vessels are too thin for blood
+ * to pass by Pries's law, or when those that keep their radii are too narrow for their flow, and
+ * STATUS_MEMORY. */
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
                             GrowReport *report, Err *err);
 

@@ -17,6 +17,7 @@
  * between candidates, never the tree's own figures. */
 #include "grow/network.h"
 
+#include "grow/trunk.h"
 #include <float.h>
 #include <stdlib.h>
 
@@ -46,8 +47,28 @@ done:
     return status;
 }
 
+Status network_add_trunk(Network *net, Err *err)
+{
+    TRY(mem_calloc(&net->trunk, 1, sizeof *net->trunk, "segments", err));
+    Trunk *trunk = net->trunk;
+    TRY(mem_calloc(&trunk->radius, net->capacity, sizeof *trunk->radius, "radii", err));
+    TRY(mem_calloc(&trunk->stake, net->capacity, sizeof *trunk->stake, "segments", err));
+    return mem_calloc(&trunk->order, net->capacity, sizeof *trunk->order, "segments", err);
+}
+
+static void release_trunk(Network *net)
+{
+    if (!net->trunk)
+        return;
+    free(net->trunk->radius);
+    free(net->trunk->stake);
+    free(net->trunk->order);
+    free(net->trunk);
+}
+
 void network_release(Network *net)
 {
+    release_trunk(net);
     free(net->segment);
     free(net->sensitivity);
     free(net->trait);
@@ -115,6 +136,10 @@ static void recompute(Network *net, int32_t i)
 static void set_from_parent(Network *net, int32_t i, const Reduced *reduced, int32_t parent,
                             const Reduced *above)
 {
+    if (network_kept_radius(net, parent) > 0) {
+        trunk_set_daughter(net, i, reduced, parent);
+        return;
+    }
     const Segment *mother = &net->segment[parent];
     double gauge = (double)mother->gauge;
     Adjoint adjoint = {net->sensitivity[parent].load, law_lambda_power(&net->law, gauge)};
@@ -130,8 +155,9 @@ static void set_from_parent(Network *net, int32_t i, const Reduced *reduced, int
 
 static void set_root_from_parent(Network *net, int32_t root, const Reduced *reduced)
 {
+    double kept = network_kept_radius(net, root);
     net->segment[root].gauge = 1;
-    net->segment[root].radius = narrow(net->radius_unit * reduced->rho);
+    net->segment[root].radius = narrow(kept > 0 ? kept : net->radius_unit * reduced->rho);
     net->sensitivity[root] = (Sensitivity){0, 0};
 }
 
@@ -210,13 +236,19 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
         net->trait[fresh] =
             (Trait){.weight = net->fresh_weight, .tree = net->trait[segment].tree, .origin = -1};
     }
+    if (net->trunk) {
+        net->trunk->radius[proximal] = net->trunk->radius[segment];
+        net->trunk->stake[proximal] = net->trunk->stake[segment];
+        net->trunk->radius[fresh] = 0;
+    }
 
     Reduced daughters[2] = {network_reduce(net, segment), network_reduce(net, fresh)};
     tell_parent(net, segment, &daughters[0]);
     tell_parent(net, fresh, &daughters[1]);
     Reduced mother = network_reduce(net, proximal);
-    net->segment[proximal].radius =
-        narrow(net->radius_unit * (double)net->segment[proximal].gauge * mother.rho);
+    double kept = network_kept_radius(net, proximal);
+    net->segment[proximal].radius = narrow(
+        kept > 0 ? kept : net->radius_unit * (double)net->segment[proximal].gauge * mother.rho);
     set_from_parent(net, segment, &daughters[0], proximal, &mother);
     set_from_parent(net, fresh, &daughters[1], proximal, &mother);
     tell_ancestors(net, proximal, &mother, zone);
@@ -373,6 +405,8 @@ void network_refresh(Network *net, int threads)
         else
             count_terminals(net, *i);
     }
+    if (net->trunk)
+        trunk_refresh(net);
     while (end-- > first)
         refresh_daughters(net, *end);
     threads_for(count, threads, refresh_subtree, net);
@@ -415,6 +449,10 @@ Status network_reorder(Network *net, Err *err)
         TRY_GOTO(permute(net->sensitivity, sizeof *net->sensitivity, order, n, err));
     if (net->trait)
         TRY_GOTO(permute(net->trait, sizeof *net->trait, order, n, err));
+    if (net->trunk) {
+        TRY_GOTO(permute(net->trunk->radius, sizeof *net->trunk->radius, order, n, err));
+        TRY_GOTO(permute(net->trunk->stake, sizeof *net->trunk->stake, order, n, err));
+    }
     TRY_GOTO(permute(net->position, sizeof *net->position, order, n, err));
     net->n = n;
     net->spares = 0;

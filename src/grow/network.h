@@ -51,6 +51,13 @@ typedef struct Trait {
     bool piece;     /* a given one that makes up a vessel together with others */
 } Trait;
 
+/* Segments that keep the radius they had, whatever flows through them [trunk.h]. */
+typedef struct Trunk {
+    double *radius; /* by segment, mm; 0: it follows the law */
+    double *stake;  /* by kept segment: dS_root / d share of the drop of pressure spent on it */
+    int32_t *order; /* workspace of trunk_refresh */
+} Trunk;
+
 typedef struct Network {
     Law law;
     double radius_scale; /* q N^(1/4), mm^(3/4), the same for any number N of terminals */
@@ -62,6 +69,7 @@ typedef struct Network {
     Segment *segment;
     Sensitivity *sensitivity;
     Trait *trait;        /* NULL: all weights are 1, there is one tree, and no segment is given */
+    Trunk *trunk;        /* NULL: every radius follows the law */
     double fresh_weight; /* the weight that a new terminal's segment gets */
     Vec3 *position;      /* mm */
     int32_t *spare;      /* nodes that are part of no tree, to be used by network_split */
@@ -74,6 +82,8 @@ typedef struct Network {
 MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, size_t capacity,
                                size_t inlets, bool traits, Err *err);
 void network_release(Network *net);
+/* Has segments keep radii, which the caller then sets: all are 0. STATUS_MEMORY. */
+MUST_CHECK Status network_add_trunk(Network *net, Err *err);
 
 /* The index of the tree that segment i belongs to. */
 static inline int32_t network_tree(const Network *net, int32_t i)
@@ -91,6 +101,12 @@ static inline bool network_is_given(const Network *net, int32_t i)
 static inline bool network_is_piece(const Network *net, int32_t i)
 {
     return net->trait && net->trait[i].piece;
+}
+
+/* The radius, mm, that segment i keeps; 0: it has the one that follows. */
+static inline double network_kept_radius(const Network *net, int32_t i)
+{
+    return net->trunk ? net->trunk->radius[i] : 0;
 }
 
 /* Whether node i is a terminal. */

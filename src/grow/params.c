@@ -126,6 +126,8 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
         return err_set(err, STATUS_USAGE, "`candidates` %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);
+    if (params->keep_radii && !params->from)
+        return err_set(err, STATUS_USAGE, "`keep_radii`: needs a tree to grow on from, `from`");
     if (params->from) {
         TRY(continue_check(params, domain, err));
         return check_shares(params, continue_inlets(params->from), err);

@@ -80,7 +80,8 @@ static double fault(const Repair *repair, int32_t i, double margin, int32_t belo
     const Grid *grid = repair->grid;
     double radius = width(repair, i), scale = 1 + margin, gap = repair->rules->gap;
     Vec3 a = proximal(net, i), b = net->position[i];
-    double worst = network_is_piece(net, i) ? 0 : fmax(0, 2 * scale * radius - vec3_distance(a, b));
+    bool may_be_short = network_is_piece(net, i) || network_kept_radius(net, i) > 0;
+    double worst = may_be_short ? 0 : fmax(0, 2 * scale * radius - vec3_distance(a, b));
     GridItem item = grid_item(grid, (Capsule){a, b, scale * radius + gap}, radius);
     GridBoxQuery probe =
         grid_box_query(&item, scale * radius + gap, scale * repair->rules->thickness);

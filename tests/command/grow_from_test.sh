@@ -241,4 +241,45 @@ test_the_points_are_not_those_that_the_same_seed_tosses_for_a_new_tree() {
     [ "$(comm -12 <(terminals new.swc) <(terminals grown.swc) | wc -l)" -eq 0 ] || fail "expected no terminal in both"
 }
 
+# expect_radii_kept OLD NEW: every node of OLD but roots has its very radius in NEW.
+expect_radii_kept() {
+    awk '/^#/ { next } FNR == NR { if ($7 != -1) radius[$1] = $6; next }
+         $1 in radius && radius[$1] != $6 { print "node " $1 ": " radius[$1] " became " $6; exit }' "$1" "$2" >radii.out
+    [ ! -s radii.out ] || fail "$(cat radii.out)"
+}
+
+test_a_measured_trunk_keeps_its_radii_and_fills_its_hull() {
+    local brava=$SHARED/brava/BG0002records.swc
+    [ -r "$brava" ] || skip "no measured tree"
+    run_ok corcast convert "$brava" trunk.swc
+    run_ok corcast grow --from trunk.swc --keep-radii --domain hull:8.5 --q-perf 30 --terminals 800 -o grown.swc
+    expect_kept trunk.swc grown.swc
+    expect_radii_kept trunk.swc grown.swc
+    grep -qx '# domain: hull:trunk.swc,8.5' grown.swc || fail "expected the hull in the header"
+    run_ok corcast info grown.swc --json
+    expect_json stdout '.terminals == 800 and .root_radius_mm > 1.68 and .terminal_pressure_mmHg.max < 100 and
+        (.terminal_pressure_mmHg.min - 60 | fabs) < 1e-6'
+    run corcast grow --from trunk.swc --keep-radii --domain hull:8.5 --q-perf 900 --terminals 200 -o thick.swc
+    expect_status 2
+    expect_sentence '^corcast grow: --keep-radii: the vessels of --from are too narrow for --q-perf 900 ml/min: on the way to .* passes a flow below [0-9.]+ ml/min$'
+}
+
+test_domains_stand_where_they_are_placed() {
+    run_ok corcast grow --domain ellipsoid:12,9,7@100,-20.5,33 --terminals 120 -o placed.swc
+    run_ok corcast info placed.swc --json
+    expect_json stdout '.bbox_mm[0][0] > 87 and .bbox_mm[1][0] < 113 and .bbox_mm[1][2] < 41 and .bbox_mm[0][2] > 25'
+    grep -qx '# domain: ellipsoid:12,9,7@100,-20.5,33' placed.swc || fail "expected the place in the header"
+    run_ok corcast refine placed.swc --refine geometry -o refined.swc
+    run corcast grow --domain hull:5 -o hull.swc
+    expect_status 2
+    expect_sentence "is about the tree of --from, and there is none"
+}
+
+test_a_tree_outside_its_domain_is_said_where_and_by_how_much() {
+    write_measured
+    run corcast grow --from measured.swc --domain rect:40,40@203.5,0 --terminals 50 -o grown.swc
+    expect_status 2
+    expect_sentence 'node 20 is outside by (189|190) mm. Place the domain with @X,Y,Z'
+}
+
 run_tests "$@"

@@ -176,6 +176,12 @@ static const struct Known {
     {"mask:oblique.nii.gz", NULL, 3, false, 1350},
     {"mesh:hollow.obj", NULL, 3, false, 26},
     {"mesh:hollow.obj,2", NULL, 3, false, 208},
+    {"disc:2.385@31.5,-7.25", NULL, 2, true, 17.8700859},
+    {"box:3.1,1.75,0.5@-2,1.5,90.25", NULL, 3, true, 2.7125},
+    {"shell:30,50,30,10,12.5@1,2,3", NULL, 3, false, 0},
+    {"polygon:comb.txt,0.5@100,-3", NULL, 2, false, 350},
+    {"mask:hollow.nii@0.5,0.25,-8", NULL, 3, false, 2728},
+    {"mesh:hollow.obj@4,5,6", NULL, 3, false, 26},
 };
 enum { KNOWN = sizeof known / sizeof *known };
 
@@ -579,6 +585,95 @@ static void a_heart_is_a_domain(void **state)
     expect_whole_segments("mesh:heart.stl");
 }
 
+/* A bent tree of two tubes, 9 and 4.5 mm long, and what is within 2.385 mm of it. */
+static const DomainTube bent[] = {{{1, 2, 3}, {1, 2, 12}, 0.615},
+                                  {{1, 2, 12}, {5.5, 2, 12}, 0.115}};
+
+static bool is_in_bent(Vec3 point, double reach)
+{
+    bool in = false;
+    for (int i = 0; i < 2; i++) {
+        Vec3 to = vec3_sub(point, bent[i].a), along = vec3_sub(bent[i].b, bent[i].a);
+        double limit = bent[i].radius + reach;
+        in = in || vec3_distance2_along(to, along) <= limit * limit;
+    }
+    return in;
+}
+
+static Domain hull_of_bent(double reach)
+{
+    Domain domain;
+    Err err;
+    must(domain_of_tubes(&domain, bent, 2, reach, "bent.swc", &err), &err);
+    return domain;
+}
+
+static void a_hull_is_all_that_is_near_its_tubes(void **state)
+{
+    (void)state;
+    Domain hull = hull_of_bent(2.385);
+    Random random;
+    random_seed(&random, 31);
+    size_t inside = 0, drawn = 200000;
+    Vec3 size = vec3_sub(hull.bounds.high, hull.bounds.low);
+    for (size_t i = 0; i < drawn; i++) {
+        Vec3 at = vec3(random_uniform(&random) * size.x, random_uniform(&random) * size.y,
+                       random_uniform(&random) * size.z);
+        at = vec3_add(hull.bounds.low, at);
+        bool in = is_in_bent(at, 2.385);
+        assert_int_equal(domain_inside(&hull, at, 0), in);
+        assert_int_equal(domain_inside(&hull, at, 0.4), is_in_bent(at, 2.785));
+        inside += in;
+    }
+    double counted = size.x * size.y * size.z * (double)inside / (double)drawn;
+    assert_true(fabs(hull.volume / counted - 1) < 0.02);
+    for (int i = 0; i < 5000; i++)
+        assert_true(is_in_bent(domain_sample(&hull, &random), 2.385));
+    assert_true(domain_distance(&hull, vec3(1, 2, -10), 99) >= 9.99);
+    assert_true(domain_distance(&hull, vec3(1, 2, -10), 99) <= 10.2);
+    domain_release(&hull);
+}
+
+static void a_hull_holds_segments_that_never_leave_it(void **state)
+{
+    (void)state;
+    Domain hull = hull_of_bent(1.1);
+    Random random;
+    random_seed(&random, 37);
+    size_t held = 0;
+    for (int i = 0; i < 4000; i++) {
+        Vec3 a = domain_sample(&hull, &random), b = domain_sample(&hull, &random);
+        bool whole = true;
+        for (int k = 0; k <= 400 && whole; k++)
+            whole = is_in_bent(vec3_add_scaled(a, vec3_sub(b, a), k / 400.0), 1.1 + 1e-9);
+        bool says = domain_holds_segment(&hull, a, b);
+        assert_true(!says || whole);
+        held += says;
+        for (int k = 0; k <= 400 && !says && whole; k++) /* it leaves by less than a step shows */
+            whole = is_in_bent(vec3_add_scaled(a, vec3_sub(b, a), k / 400.0), 1.1 - 1e-3);
+        assert_true(says || !whole);
+    }
+    assert_in_range(held, 1500, 3500);
+    domain_release(&hull);
+}
+
+static void a_hull_in_the_plane_has_two_dimensions(void **state)
+{
+    (void)state;
+    const DomainTube flat = {{0, 0, 0}, {7, 0, 0}, 0.5};
+    Domain hull;
+    Text text = TEXT_INIT;
+    assert_int_equal(domain_of_tubes(&hull, &flat, 1, 1.5, "flat.swc", NULL), STATUS_OK);
+    assert_int_equal(hull.dimension, 2);
+    assert_true(fabs(hull.volume / (28 + 4 * pi) - 1) < 0.02);
+    assert_false(domain_inside(&hull, vec3(3, 1, 0.1), 0));
+    domain_text(&hull, &text);
+    assert_string_equal(text.chars, "hull:flat.swc,1.5");
+    text_release(&text);
+    domain_release(&hull);
+    assert_int_equal(domain_of_tubes(&hull, &flat, 1, 0, "flat.swc", NULL), STATUS_USAGE);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -594,6 +689,9 @@ int main(void)
         cmocka_unit_test(a_tolerance_reaches_as_far_as_it_says),
         cmocka_unit_test(a_released_domain_may_be_released_again),
         cmocka_unit_test(a_heart_is_a_domain),
+        cmocka_unit_test(a_hull_is_all_that_is_near_its_tubes),
+        cmocka_unit_test(a_hull_holds_segments_that_never_leave_it),
+        cmocka_unit_test(a_hull_in_the_plane_has_two_dimensions),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);
 }

@@ -27,11 +27,11 @@ static Status write_report(const char *path, const GrowReport *report, const Ref
     return json_write(json_with(json, "radius_change", change), path, err);
 }
 
-static void print_report(const GrowReport *report)
+static void print_report(const GrowReport *report, bool keeps_radii)
 {
     fprintf(stderr, "grew %zu terminals in %.3g s: target %.6g, root radius %.4g mm\n",
             report->terminals, report->seconds, report->target, report->root_radius_mm);
-    if (report->median_change > 0)
+    if (report->median_change > 0 && !keeps_radii)
         fprintf(stderr,
                 "the radii of the tree of --from changed by a median factor of %.2g (%.2g to "
                 "%.2g)\n",
@@ -119,7 +119,7 @@ static Status finish(const GrowOptions *options, const Common *common, const Tre
     if (!report->complete)
         fprintf(stderr, "corcast grow: %s\n", why->text);
     if (!common->quiet)
-        print_report(report);
+        print_report(report, options->growing.params.keep_radii);
     print_warnings(report, &options->growing.domain, refined->target_before > 0);
     if (!common->quiet)
         refining_print(refined);

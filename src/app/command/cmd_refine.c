@@ -38,7 +38,7 @@ static Status find_domain(const char *spec, const Tree *tree, Domain *domain, bo
     if (!spec)
         return tree_domain(tree, domain, found, err);
     *found = true;
-    return domain_parse(domain, spec, err);
+    return tree_domain_parse(spec, NULL, NULL, domain, err);
 }
 
 static Status run_refine(void *options, Parsed *parsed, Err *err)

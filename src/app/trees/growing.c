@@ -21,8 +21,10 @@ static const Option rows[] = {
      .group = GROUP_TREE,
      .argument = "SHAPE",
      .otherwise = plain_domain,
-     .help = "tissue, mm: disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
-             "shell:A,B,C,THICKNESS, polygon:FILE, mask:FILE, mesh:FILE"},
+     .help =
+         "tissue, mm: disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
+         "shell:A,B,C,THICKNESS, polygon:FILE, mask:FILE, mesh:FILE, hull:MM (what is within MM "
+         "of the tree of --from); @X,Y,Z behind it places it"},
     {.name = "inlet",
      SETS(VECTORS, Growing, inlet),
      .group = GROUP_TREE,
@@ -40,6 +42,10 @@ static const Option rows[] = {
      .help = "grow on from this tree: its nodes keep places, ids and types, its segments stay "
              "straight; all radii follow anew. What its header says holds unless options say "
              "otherwise"},
+    {.name = "keep-radii",
+     SETS(FLAG, Growing, params.keep_radii),
+     .group = GROUP_TREE,
+     .help = "the tree of --from keeps its radii, too; what leaves it has those that follow"},
     {.name = "gamma",
      SETS_KEY(Growing, params.gamma, given, GAMMA),
      .group = GROUP_BLOOD,
@@ -162,8 +168,8 @@ Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
     else
         TRY(read_from(growing, parsed, &has_domain, err));
     if (!has_domain)
-        TRY(domain_parse(&growing->domain,
-                         growing->domain_spec ? growing->domain_spec : plain_domain, err));
+        TRY(tree_domain_parse(growing->domain_spec ? growing->domain_spec : plain_domain,
+                              growing->params.from, growing->from_path, &growing->domain, err));
     return check(growing, parsed, err);
 }
 

@@ -1,0 +1,321 @@
+/* The hull of a tree is the union of its tubes, each widened by the reach. A tree of boxes finds
+ * the few tubes near a point. A grid over it says of most cells that they are wholly inside or
+ * outside: a point, or a segment, in cells that are inside needs no tube looked at, and points are
+ * sampled from the cells that are not outside, however thin the hull is for its bounds.
+ *
+ * A segment is inside when the stretches of it that single tubes hold cover it: a tube is convex,
+ * so it holds one stretch (stretch_in), and the next stretch is any that goes on furthest. */
+#include "domain/hull.h"
+
+#include "domain/kinds.h"
+#include <stdlib.h>
+
+/* Cells along the reach, and how many of them there are at most. */
+static const double cells_per_reach = 4, most_cells = 1 << 22;
+/* A segment looks at no more cells than this along each axis before it looks at the tubes. */
+enum { FEW_CELLS = 3 };
+
+static double tube_distance2(const DomainTube *tube, Vec3 point)
+{
+    return vec3_distance2_along(vec3_sub(point, tube->a), vec3_sub(tube->b, tube->a));
+}
+
+static bool is_near(const Hull *hull, Vec3 point, double tolerance_mm)
+{
+    uint32_t i;
+    Box around = box_with_ball(box_empty(), point, tolerance_mm);
+    for (BoxWalk walk = boxwalk_box(&hull->tree, around); boxwalk_next(&walk, &i);) {
+        double reach = hull->tube[i].radius + tolerance_mm;
+        if (tube_distance2(&hull->tube[i], point) <= reach * reach)
+            return true;
+    }
+    return false;
+}
+
+/* The cell of a point along each axis; false when it is off the grid. */
+static bool find_cell(const Hull *hull, Vec3 point, int cell[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        double at = (vec3_component(point, axis) - vec3_component(hull->low, axis)) / hull->edge;
+        if (!(at >= 0 && at < hull->count[axis]))
+            return false;
+        cell[axis] = (int)at;
+    }
+    return true;
+}
+
+static size_t index_of(const Hull *hull, int x, int y, int z)
+{
+    return ((size_t)z * (size_t)hull->count[1] + (size_t)y) * (size_t)hull->count[0] + (size_t)x;
+}
+
+static bool hull_inside(const Domain *domain, Vec3 point, double tolerance_mm)
+{
+    const Hull *hull = domain->hull;
+    int cell[3];
+    if (!find_cell(hull, point, cell))
+        return tolerance_mm > 0 && is_near(hull, point, tolerance_mm);
+    HullCell here = hull->cell[index_of(hull, cell[0], cell[1], cell[2])];
+    if (here == HULL_INSIDE || (here == HULL_OUTSIDE && tolerance_mm == 0))
+        return here == HULL_INSIDE;
+    return is_near(hull, point, tolerance_mm);
+}
+
+/* Whether all cells of the box about the segment are inside; false, too, when they are many. */
+static bool is_deep(const Hull *hull, Vec3 a, Vec3 b)
+{
+    int from[3], to[3];
+    if (!find_cell(hull, a, from) || !find_cell(hull, b, to))
+        return false;
+    for (int axis = 0; axis < 3; axis++) {
+        int low = from[axis] < to[axis] ? from[axis] : to[axis];
+        to[axis] += from[axis] - low;
+        from[axis] = low;
+        if (to[axis] - low >= FEW_CELLS)
+            return false;
+    }
+    for (int z = from[2]; z <= to[2]; z++)
+        for (int y = from[1]; y <= to[1]; y++)
+            for (int x = from[0]; x <= to[0]; x++)
+                if (hull->cell[index_of(hull, x, y, z)] != HULL_INSIDE)
+                    return false;
+    return true;
+}
+
+/* Widens [out[0], out[1]] by where the line a + t d is within `radius` of the point c. */
+static void add_ball(Vec3 a, Vec3 d, Vec3 c, double radius, double out[2])
+{
+    Vec3 from = vec3_sub(a, c);
+    double dd = vec3_dot(d, d), half = vec3_dot(from, d) / dd;
+    double root = half * half - (vec3_dot(from, from) - radius * radius) / dd;
+    if (root < 0)
+        return;
+    out[0] = fmin(out[0], -half - sqrt(root));
+    out[1] = fmax(out[1], -half + sqrt(root));
+}
+
+/* Likewise where it is in the cylinder about the tube's axis, between its ends. */
+static void add_cylinder(Vec3 a, Vec3 d, const DomainTube *tube, double radius, double out[2])
+{
+    Vec3 axis = vec3_sub(tube->b, tube->a), from = vec3_sub(a, tube->a);
+    double length2 = vec3_dot(axis, axis);
+    double start = vec3_dot(from, axis) / length2, rise = vec3_dot(d, axis) / length2;
+    Vec3 across = vec3_add_scaled(from, axis, -start), drift = vec3_add_scaled(d, axis, -rise);
+    double dd = vec3_dot(drift, drift), low = -INFINITY, high = INFINITY;
+    if (dd > 0) {
+        double half = vec3_dot(across, drift) / dd;
+        double root = half * half - (vec3_dot(across, across) - radius * radius) / dd;
+        if (root < 0)
+            return;
+        low = -half - sqrt(root);
+        high = -half + sqrt(root);
+    } else if (vec3_dot(across, across) > radius * radius) {
+        return;
+    }
+    if (rise != 0) {
+        low = fmax(low, fmin(-start / rise, (1 - start) / rise));
+        high = fmin(high, fmax(-start / rise, (1 - start) / rise));
+    } else if (start < 0 || start > 1) {
+        return;
+    }
+    if (low > high)
+        return;
+    out[0] = fmin(out[0], low);
+    out[1] = fmax(out[1], high);
+}
+
+/* The stretch of the line a + t d in the tube; empty, INFINITY to -INFINITY, where it misses it. */
+static void stretch_in(Vec3 a, Vec3 d, const DomainTube *tube, double out[2])
+{
+    out[0] = INFINITY;
+    out[1] = -INFINITY;
+    add_ball(a, d, tube->a, tube->radius, out);
+    add_ball(a, d, tube->b, tube->radius, out);
+    if (vec3_distance(tube->a, tube->b) > 0)
+        add_cylinder(a, d, tube, tube->radius, out);
+}
+
+static bool hull_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
+{
+    const Hull *hull = domain->hull;
+    if (is_deep(hull, a, b))
+        return true;
+    Vec3 d = vec3_sub(b, a);
+    double slack = domain->slack_mm / vec3_length(d), covered = 0;
+    for (double before = -1; covered + slack < 1 && covered > before;) {
+        uint32_t i;
+        before = covered;
+        for (BoxWalk walk = boxwalk_segment(&hull->tree, a, b); boxwalk_next(&walk, &i);) {
+            double stretch[2];
+            stretch_in(a, d, &hull->tube[i], stretch);
+            if (stretch[0] <= covered + slack)
+                covered = fmax(covered, stretch[1]);
+        }
+    }
+    return covered + slack >= 1;
+}
+
+static Vec3 hull_sample(const Domain *domain, Random *random)
+{
+    const Hull *hull = domain->hull;
+    size_t index = hull->some[(size_t)(random_uniform(random) * (double)hull->n_some)];
+    size_t x = index % (size_t)hull->count[0], rest = index / (size_t)hull->count[0];
+    size_t y = rest % (size_t)hull->count[1], z = rest / (size_t)hull->count[1];
+    Vec3 point = hull->low;
+    point.x += ((double)x + random_uniform(random)) * hull->edge;
+    point.y += ((double)y + random_uniform(random)) * hull->edge;
+    if (domain->dimension == 3)
+        point.z += ((double)z + random_uniform(random)) * hull->edge;
+    return point;
+}
+
+/* ---- building ---------------------------------------------------------------------------------
+ */
+
+static Status set_tubes(Domain *domain, const DomainTube *tubes, size_t n, Err *err)
+{
+    Hull *hull = domain->hull;
+    Box *boxes = NULL;
+    TRY(mem_calloc(&hull->tube, n, sizeof *hull->tube, "tubes", err));
+    TRY(mem_calloc(&boxes, n, sizeof *boxes, "boxes", err));
+    domain->dimension = 2;
+    domain->bounds = box_empty();
+    hull->n = n;
+    for (size_t i = 0; i < n; i++) {
+        DomainTube *tube = &hull->tube[i];
+        *tube = tubes[i];
+        tube->radius += domain->size[0];
+        if (tube->a.z != 0 || tube->b.z != 0)
+            domain->dimension = 3;
+        boxes[i] =
+            box_with_ball(box_with_ball(box_empty(), tube->a, tube->radius), tube->b, tube->radius);
+        domain->bounds = box_union(domain->bounds, boxes[i]);
+    }
+    if (domain->dimension == 2)
+        domain->bounds.low.z = domain->bounds.high.z = 0;
+    Status status = boxtree_build(boxes, n, &hull->tree, err);
+    free(boxes);
+    return status;
+}
+
+static Status lay_grid(Domain *domain, Err *err)
+{
+    Hull *hull = domain->hull;
+    Vec3 size = vec3_sub(domain->bounds.high, domain->bounds.low);
+    bool flat = domain->dimension == 2;
+    double edge = domain->size[0] / cells_per_reach;
+    while ((size.x / edge + 1) * (size.y / edge + 1) * (flat ? 1 : size.z / edge + 1) > most_cells)
+        edge *= 1.25;
+    hull->edge = edge;
+    hull->low = domain->bounds.low;
+    for (int axis = 0; axis < 3; axis++)
+        hull->count[axis] = (int)(vec3_component(size, axis) / edge) + 1;
+    size_t cells = index_of(hull, 0, 0, hull->count[2]);
+    return mem_calloc(&hull->cell, cells, sizeof *hull->cell, "cells", err);
+}
+
+static Vec3 middle_of(const Hull *hull, int x, int y, int z, bool flat)
+{
+    Vec3 half = vec3(x + 0.5, y + 0.5, flat ? 0 : z + 0.5);
+    return vec3_add_scaled(hull->low, half, hull->edge);
+}
+
+/* Marks the cells that a tube meets, or holds as a whole. */
+static void mark(Hull *hull, const DomainTube *tube, bool flat)
+{
+    double half = hull->edge / 2 * sqrt(flat ? 2 : 3);
+    double outer = tube->radius + half, inner = fmax(tube->radius - half, 0);
+    Box box =
+        box_with_ball(box_with_ball(box_empty(), tube->a, tube->radius), tube->b, tube->radius);
+    int low[3], high[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double from = vec3_component(box.low, axis) - vec3_component(hull->low, axis);
+        double to = vec3_component(box.high, axis) - vec3_component(hull->low, axis);
+        low[axis] = flat && axis == 2 ? 0 : (int)fmax(0, floor(from / hull->edge) - 1);
+        high[axis] =
+            flat && axis == 2 ? 0 : (int)fmin(hull->count[axis] - 1, floor(to / hull->edge) + 1);
+    }
+    for (int z = low[2]; z <= high[2]; z++)
+        for (int y = low[1]; y <= high[1]; y++)
+            for (int x = low[0]; x <= high[0]; x++) {
+                uint8_t *cell = &hull->cell[index_of(hull, x, y, z)];
+                double apart2 = tube_distance2(tube, middle_of(hull, x, y, z, flat));
+                if (apart2 < inner * inner)
+                    *cell = HULL_INSIDE;
+                else if (apart2 <= outer * outer && *cell == HULL_OUTSIDE)
+                    *cell = HULL_EDGE;
+            }
+}
+
+/* Lists the cells that are not outside, and sums up the volume: of those at the edge, by the share
+ * of a few points that is inside. */
+static Status list_cells(Domain *domain, Err *err)
+{
+    enum { STEPS = 2 };
+    Hull *hull = domain->hull;
+    bool flat = domain->dimension == 2;
+    size_t cells = index_of(hull, 0, 0, hull->count[2]);
+    TRY(mem_calloc(&hull->some, cells, sizeof *hull->some, "cells", err));
+    size_t inside = 0, of = 0;
+    for (size_t i = 0; i < cells; i++) {
+        if (hull->cell[i] == HULL_OUTSIDE)
+            continue;
+        hull->some[hull->n_some++] = (uint32_t)i;
+        size_t x = i % (size_t)hull->count[0], rest = i / (size_t)hull->count[0];
+        size_t y = rest % (size_t)hull->count[1], z = rest / (size_t)hull->count[1];
+        for (int k = 0; k < (flat ? STEPS * STEPS : STEPS * STEPS * STEPS); k++, of++) {
+            Vec3 at = vec3((double)x + (k % STEPS + 0.5) / STEPS,
+                           (double)y + (k / STEPS % STEPS + 0.5) / STEPS,
+                           flat ? 0 : (double)z + (k / STEPS / STEPS + 0.5) / STEPS);
+            inside += hull->cell[i] == HULL_INSIDE ||
+                      is_near(hull, vec3_add_scaled(hull->low, at, hull->edge), 0);
+        }
+    }
+    double cell = pow(hull->edge, domain->dimension);
+    domain->volume = cell * (double)hull->n_some * (double)inside / (double)of;
+    return STATUS_OK;
+}
+
+Status hull_build(Domain *domain, const DomainTube *tubes, size_t n, Err *err)
+{
+    double mm = domain->size[0];
+    if (!(mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
+        return err_set(err, STATUS_USAGE,
+                       "`domain` hull:%g: the reach must be a number of mm from %g to %g", mm,
+                       DOMAIN_MIN_MM, DOMAIN_MAX_MM);
+    TRY(mem_calloc(&domain->hull, 1, sizeof *domain->hull, "hulls", err));
+    TRY(set_tubes(domain, tubes, n, err));
+    TRY(lay_grid(domain, err));
+    for (size_t i = 0; i < n; i++)
+        mark(domain->hull, &domain->hull->tube[i], domain->dimension == 2);
+    domain->inlet = tubes[0].a;
+    return list_cells(domain, err);
+}
+
+static void hull_release(Domain *domain)
+{
+    if (!domain->hull)
+        return;
+    boxtree_release(&domain->hull->tree);
+    free(domain->hull->tube);
+    free(domain->hull->cell);
+    free(domain->hull->some);
+    free(domain->hull);
+}
+
+static Status hull_load(Domain *domain, const char *values, Err *err)
+{
+    (void)domain;
+    (void)values;
+    return err_set(err, STATUS_USAGE, "takes a tree, which is not known here");
+}
+
+const DomainOps hull_ops = {
+    .name = "hull",
+    .parameters = "[FILE,]MM",
+    .load = hull_load,
+    .inside = hull_inside,
+    .holds_segment = hull_holds_segment,
+    .sample = hull_sample,
+    .release = hull_release,
+};

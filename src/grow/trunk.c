@@ -1,0 +1,104 @@
+/* Along the trunk, pressures follow from the flows, which are counts of terminals. One walk lists
+ * the kept segments, mothers first; forward along the list gauges are handed down, and backward
+ * stakes are gathered: what it costs all subtrees that leave the trunk at or below the end of a
+ * segment when more of the drop is spent on it. A terminal more then costs, on every kept segment
+ * on its way, the stake times what the terminal spends there, which `extra` [network.h] sums up.
+ *
+ * Sums of kept segments are as if their radii followed; nothing but the check of the range of
+ * doubles looks at them. */
+#include "grow/trunk.h"
+
+#include <float.h>
+
+double trunk_gauge(double gauge, double spent)
+{
+    double gauge2 = gauge * gauge, left = 1 / (gauge2 * gauge2) - spent;
+    return 1 / sqrt(sqrt(fmax(left, 1 - TRUNK_MOST_SPENT)));
+}
+
+static bool is_kept(const Network *net, int32_t i)
+{
+    return i >= 0 && net->trunk->radius[i] > 0;
+}
+
+void trunk_set_daughter(Network *net, int32_t i, const Reduced *reduced, int32_t parent)
+{
+    const Segment *mother = &net->segment[parent];
+    double kept = net->trunk->radius[i];
+    double gauge =
+        trunk_gauge((double)mother->gauge, trunk_spent(net, parent, mother->terminals, 1));
+    net->segment[i].gauge = (float)gauge;
+    net->segment[i].radius =
+        (float)(kept > 0 ? kept : fmin(net->radius_unit * gauge * reduced->rho, (double)FLT_MAX));
+    net->sensitivity[i] =
+        (Sensitivity){0, net->sensitivity[parent].extra +
+                             net->trunk->stake[parent] * trunk_spent(net, parent, 1, 1)};
+}
+
+/* Lists the kept segments, mothers first. */
+static size_t list_trunk(const Network *net)
+{
+    int32_t *order = net->trunk->order;
+    size_t n = 0, next = 0;
+    for (size_t k = 0; k < net->inlets; k++)
+        order[n++] = net->inlet[k];
+    for (size_t inlets = n; next < n; next++)
+        for (int slot = 0; slot < 2; slot++) {
+            int32_t child = net->segment[order[next]].child[slot];
+            if (is_kept(net, child))
+                order[n++] = child;
+            if (next < inlets && is_kept(net, child))
+                net->segment[child].gauge = 1;
+        }
+    return n;
+}
+
+/* What it costs the free daughter, if it is one, when more of the drop is spent above it. */
+static double stake_of(const Network *net, int32_t i, double gauge)
+{
+    if (i < 0 || is_kept(net, i))
+        return 0;
+    double gauge2 = gauge * gauge, cost = network_reduce(net, i).cost;
+    return net->law.lambda / 4 * law_lambda_power(&net->law, gauge) * cost * gauge2 * gauge2;
+}
+
+void trunk_refresh(Network *net)
+{
+    Trunk *trunk = net->trunk;
+    size_t n = list_trunk(net);
+    for (size_t k = net->inlets; k < n; k++) {
+        int32_t i = trunk->order[k];
+        const Segment *segment = &net->segment[i];
+        double gauge =
+            trunk_gauge((double)segment->gauge, trunk_spent(net, i, segment->terminals, 1));
+        trunk->stake[i] = 0;
+        for (int slot = 0; slot < 2; slot++) {
+            trunk->stake[i] += stake_of(net, segment->child[slot], gauge);
+            if (is_kept(net, segment->child[slot]))
+                net->segment[segment->child[slot]].gauge = (float)gauge;
+        }
+    }
+    while (n-- > net->inlets) {
+        int32_t above = net->segment[trunk->order[n]].parent;
+        if (net->segment[above].parent >= 0)
+            trunk->stake[above] += trunk->stake[trunk->order[n]];
+    }
+}
+
+double trunk_most_spent(const Network *net, double *spent, size_t *where)
+{
+    double most = 0;
+    for (size_t i = 0; i < net->n; i++) {
+        const Segment *segment = &net->segment[i];
+        if (segment->parent < 0 || !is_kept(net, (int32_t)i)) {
+            spent[i] = 0;
+            continue;
+        }
+        spent[i] = spent[segment->parent] + trunk_spent(net, (int32_t)i, segment->terminals, 1);
+        if (spent[i] > most) {
+            most = spent[i];
+            *where = i;
+        }
+    }
+    return most;
+}
