@@ -34,6 +34,20 @@ const Emitter emitters[] = {
      .binary = true,
      .of_meshes = true,
      .write = stl_write},
+    {.name = "stl-parts",
+     .extension = "stl",
+     .description = "triangles of named parts for solvers",
+     .of_meshes = true,
+     .has_parts = true,
+     .option = "parts",
+     .write = stl_write_parts},
+    {.name = "vtp",
+     .extension = "vtp",
+     .description = "triangles of named parts for VTK and SimVascular",
+     .binary = true,
+     .of_meshes = true,
+     .has_parts = true,
+     .write = vtp_write_mesh},
     {.name = "ply",
      .extension = "ply",
      .description = "triangles with normals and the segment of each",
@@ -73,10 +87,25 @@ const Emitter emitters[] = {
     {0},
 };
 
+/* Whether its extension stands for it among those of scenes, or of meshes. */
+static bool is_listed(const Emitter *emitter, bool of_meshes)
+{
+    return emitter->of_meshes == of_meshes && !emitter->option;
+}
+
 const Emitter *emitter_find(const char *extension, bool of_meshes)
 {
     for (const Emitter *emitter = emitters; emitter->name; emitter++)
-        if (emitter->of_meshes == of_meshes && strcmp(emitter->extension, extension) == 0)
+        if (is_listed(emitter, of_meshes) && strcmp(emitter->extension, extension) == 0)
+            return emitter;
+    return NULL;
+}
+
+const Emitter *emitter_asked(const char *extension, const char *option)
+{
+    for (const Emitter *emitter = emitters; emitter->name; emitter++)
+        if (emitter->option && strcmp(emitter->option, option) == 0 &&
+            strcmp(emitter->extension, extension) == 0)
             return emitter;
     return NULL;
 }
@@ -85,9 +114,9 @@ void emitter_extensions(bool of_meshes, Text *out)
 {
     size_t n = 0, at = 0;
     for (const Emitter *emitter = emitters; emitter->name; emitter++)
-        n += emitter->of_meshes == of_meshes;
+        n += is_listed(emitter, of_meshes);
     for (const Emitter *emitter = emitters; emitter->name; emitter++)
-        if (emitter->of_meshes == of_meshes) {
+        if (is_listed(emitter, of_meshes)) {
             text_puts(out, at == 0 ? "." : at + 1 == n ? " or ." : ", .");
             text_puts(out, emitter->extension);
             at++;
@@ -106,9 +135,9 @@ Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err)
     return status;
 }
 
-/* What is written: the file, the second one, the manifest, and the settings. Those that there are
- * stand in `files` one after another. */
-enum { OUTPUTS = 4 };
+/* What is written: the file, the second one, the settings, and what stands beside. Those that there
+ * are stand in `files` one after another. */
+enum { SETTINGS = 2, BESIDE = 3, OUTPUTS = BESIDE + BESIDES };
 
 typedef struct Outputs {
     Text text[OUTPUTS];
@@ -156,10 +185,11 @@ static Status fill_outputs(const Emitter *emitter, const EmitParams *params, Out
 {
     Text *text = outputs->text;
     Status status = emitter->write(params, &text[0], &text[1], report, err);
-    if (params->manifest)
-        text_puts(&text[2], params->manifest);
     if (status == STATUS_OK && params->settings)
-        status = emitter->write_settings(params, &text[3], err);
+        status = emitter->write_settings(params, &text[SETTINGS], err);
+    for (size_t i = 0; i < BESIDES; i++)
+        if (params->beside[i])
+            text_add(&text[BESIDE + i], params->beside[i]);
     for (size_t i = 0, n = 0; i < OUTPUTS && status == STATUS_OK; i++)
         if (outputs->path[i])
             status = end_output(&text[i], outputs->files[n++].stream, err);
@@ -171,13 +201,15 @@ static Status fill_outputs(const Emitter *emitter, const EmitParams *params, Out
 Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
                   const char *second_path, EmitReport *report, Err *err)
 {
-    Outputs outputs = {.path = {path, second_path, params->manifest_path, params->settings_path}};
+    Outputs outputs = {.path = {path, second_path, params->settings_path}};
     EmitReport written = {0};
     Status status;
     if (!emitter->of_meshes)
         TRY(emit_check_model(emitter, params->scene->geometry.model, err));
     if (second_path && emitter->check_name)
         TRY(emitter->check_name(params->second_file, err));
+    for (size_t i = 0; i < BESIDES; i++)
+        outputs.path[BESIDE + i] = params->beside_path[i];
     TRY_GOTO(open_outputs(&outputs, err));
     TRY_GOTO(fill_outputs(emitter, params, &outputs, &written, err));
     TRY_GOTO(outfiles_commit(outputs.files, outputs.n, err));

@@ -10,19 +10,28 @@
 /* So many vessels OpenSCAD unites in good time; of more, a mesh is the better model. */
 #define OPENSCAD_QUICK 100
 
+/* What may stand beside a mesh, each in a file of its own. */
+typedef enum EmitBeside {
+    BESIDE_MANIFEST,
+    BESIDE_ENDS,       /* a table of its ends */
+    BESIDE_CENTERLINE, /* its tree */
+    BESIDES
+} EmitBeside;
+
 /* What is written, and how it is called. All is borrowed. */
 typedef struct EmitParams {
-    const Scene *scene;           /* NULL for an emitter of meshes */
-    const Anatomy *anatomy;       /* of its tree; NULL: orders are 0, and nothing is named */
-    const VesselMesh *mesh;       /* NULL for all others, and so are those that follow: */
-    const VesselTree *vessels;    /* whose segments the mesh's labels name */
-    const Appearance *appearance; /* for an emitter with colours */
-    const double *orders;         /* Strahler order of each segment, by its number; likewise */
-    const char *manifest;         /* what stands beside the mesh, */
-    const char *manifest_path;    /* in this file; both or neither */
-    const char *templates;        /* the folder of templates, one folder for each language */
-    const char *file;             /* names of the files as they stand in them, without folders; */
-    const char *second_file;      /* NULL: what would go to the second file stands in the first */
+    const Scene *scene;               /* NULL for an emitter of meshes */
+    const Anatomy *anatomy;           /* of its tree; NULL: orders are 0, and nothing is named */
+    const VesselMesh *mesh;           /* NULL for all others, and so are those that follow: */
+    const VesselTree *vessels;        /* whose segments the mesh's labels name */
+    const Appearance *appearance;     /* for an emitter with colours */
+    const double *orders;             /* Strahler order of each segment, by its number; likewise */
+    const MeshEnds *ends;             /* of the mesh, for an emitter with parts */
+    const Text *beside[BESIDES];      /* what stands beside the mesh; NULL: nothing */
+    const char *beside_path[BESIDES]; /* where; NULL: it is not written */
+    const char *templates;            /* the folder of templates, one folder for each language */
+    const char *file;        /* names of the files as they stand in them, without folders; */
+    const char *second_file; /* NULL: what would go to the second file stands in the first */
     const char *description; /* what the scene shows; what would break its line becomes a blank */
     const char *settings; /* NULL, or the file, beside those, that its program is started with; */
     const char *settings_path; /* where it is written; both or neither */
@@ -50,10 +59,12 @@ typedef struct Emitter {
         *settings_extension; /* of the file that its program is started with: "ini"; or NULL */
     const char *description; /* "a scene for POV-Ray 3.7" */
     bool binary;
-    bool has_view;     /* it holds camera, lights and background, and not the vessels alone */
-    bool of_meshes;    /* it writes params->mesh, not the scene */
-    bool has_colors;   /* of meshes: it writes params->appearance and groups by params->orders */
-    unsigned elements; /* it can write what is made of these: bits ModelElement */
+    bool has_view;      /* it holds camera, lights and background, and not the vessels alone */
+    bool of_meshes;     /* it writes params->mesh, not the scene */
+    bool has_colors;    /* of meshes: it writes params->appearance and groups by params->orders */
+    bool has_parts;     /* of meshes: it writes params->ends */
+    const char *option; /* that asks for it; NULL: it is the format of its extension */
+    unsigned elements;  /* it can write what is made of these: bits ModelElement */
     /* STATUS_USAGE when the format cannot name a second file so. NULL: it takes any name. */
     Status (*check_name)(const char *second_file, Err *err);
     /* Likewise of params->settings, which it appends to *out; NULL: there is none. */
@@ -71,6 +82,8 @@ typedef struct Emitter {
 extern const Emitter emitters[];
 /* The emitter of scenes, or of meshes, whose files have this extension ("pov"), or NULL. */
 const Emitter *emitter_find(const char *extension, bool of_meshes);
+/* The emitter of meshes with this extension that an option of this name asks for, or NULL. */
+const Emitter *emitter_asked(const char *extension, const char *option);
 /* Appends the extensions of one or the other: ".pov or .scad". */
 void emitter_extensions(bool of_meshes, Text *out);
 
@@ -78,9 +91,8 @@ void emitter_extensions(bool of_meshes, Text *out);
 MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err);
 
 /* Writes `path`, "-" being standard output, `second_path`, which is NULL when and only when
- * params->second_file is, the settings and the manifest: all take their final names, or none does.
- * `report` may be NULL.
- * As emit_check_model, and all that `write` returns. */
+ * params->second_file is, the settings and what stands beside: all take their final names, or none
+ * does. `report` may be NULL. As emit_check_model, and all that `write` returns. */
 MUST_CHECK Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
                              const char *second_path, EmitReport *report, Err *err);
 

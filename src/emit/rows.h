@@ -18,6 +18,10 @@ Status openscad_write_mesh(const EmitParams *params, Text *out, Text *second, Em
                            Err *err);
 
 Status stl_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
+Status stl_write_parts(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                       Err *err);
+Status vtp_write_mesh(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                      Err *err);
 Status ply_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
 Status obj_check_name(const char *second_file, Err *err);
 Status obj_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);

@@ -11,6 +11,7 @@
 #include "scene/appearance.h"
 #include "scene/effects.h"
 #include "scene/geometry.h"
+#include "scene/meshends.h"
 #include "scene/models.h"
 #include "scene/strokes.h"
 #include "scene/triangles.h"

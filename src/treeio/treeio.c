@@ -608,3 +608,24 @@ Status tree_write(const Tree *tree, const char *path, Err *err)
     outfile_discard(&file);
     return status;
 }
+
+Status tree_write_text(const Tree *tree, const char *path, Text *out, Err *err)
+{
+    char *bytes = NULL;
+    size_t size = 0;
+    TRY(tree_format_check(path, err));
+    TRY(tree_check(tree, err));
+    FILE *stream = open_memstream(&bytes, &size);
+    if (!stream)
+        return mem_out_of("for", "a tree", err);
+    Status status = find_written(path)->write(tree, stream, err);
+    /* Closing tells only by NULL that there was no room for the bytes. */
+    if ((fclose(stream) != 0 || !bytes) && status == STATUS_OK)
+        status = mem_out_of("for", "a tree", err);
+    if (status == STATUS_OK) {
+        text_append(out, bytes, size);
+        status = text_check(out, err);
+    }
+    free(bytes);
+    return status;
+}

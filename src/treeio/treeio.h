@@ -56,6 +56,9 @@ MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *
  * tree_format_check, STATUS_INPUT for a tree that tree_check refuses. */
 MUST_CHECK Status tree_write(const Tree *tree, const char *path, Err *err);
 
+/* Appends what tree_write would write to such a path to *out. As tree_write. */
+MUST_CHECK Status tree_write_text(const Tree *tree, const char *path, Text *out, Err *err);
+
 /* Writes a tree whose columns are series [tree/series.h] as an index for ParaView, P.pvd, and a
  * file for each moment, P_0001.vtp, ..., in which the columns have the names of their series. The
  * index comes last. STATUS_INPUT, naming no file, when the tree has no series, or some of different

@@ -166,7 +166,7 @@ test_names_stay_in_their_place_in_every_format() {
 # The limit is on the size of files, so that writing fails half way.
 test_a_disk_that_is_full_leaves_no_file() {
     local extension
-    for extension in stl ply glb obj 3mf inc; do
+    for extension in stl vtp ply glb obj 3mf inc; do
         run bash -c 'trap "" XFSZ; ulimit -f 8; exec "$@"' sh "$CORCAST" export "$DATA/bifurcation.swc" \
             -o "m.$extension" --quiet
         expect_status 3
@@ -338,7 +338,7 @@ test_level_of_detail_keeps_about_that_part_of_the_triangles() {
 test_refuses_an_unknown_extension() {
     run corcast export "$DATA/bifurcation.swc" -o m.xyz
     expect_status 2
-    expect_sentence "'m.xyz' does not end in .scad, .stl, .ply, .glb, .obj, .3mf or .inc"
+    expect_sentence "'m.xyz' does not end in .scad, .stl, .vtp, .ply, .glb, .obj, .3mf or .inc"
 }
 
 run_tests "$@"

@@ -9,6 +9,7 @@
 typedef struct ExportOptions {
     const char *output;
     double prune_radius_mm;
+    bool parts;
     MeshingOptions meshing;
 } ExportOptions;
 
@@ -43,6 +44,10 @@ static const Option own[] = {
      SETS(FLAG, ExportOptions, meshing.part_overlaps),
      .group = GROUP_VESSELS,
      .help = "thin vessels that overlap others that they do not belong with"},
+    {.name = "parts",
+     SETS(FLAG, ExportOptions, parts),
+     .group = GROUP_VESSELS,
+     .help = "of an STL: the wall and each end as a named solid, as text; a VTP has them always"},
     {.name = "look",
      SETS(LOOKUP, ExportOptions, meshing.look),
      .group = GROUP_COLOR,
@@ -73,12 +78,26 @@ static Status check_colors(const ExportOptions *options, const Emitter *emitter,
     return coloring_check_needs(&options->meshing.coloring, parsed, err);
 }
 
+/* The emitter for the extension of the output, or the one that an option asks for. */
+static Status find_emitter(const ExportOptions *options, const Emitter **emitter, Err *err)
+{
+    const Emitter *asked = NULL;
+    TRY(scene_files_find(options->output, true, emitter, err));
+    if (options->parts)
+        asked = emitter_asked((*emitter)->extension, "parts");
+    if (options->parts && !asked && !(*emitter)->has_parts)
+        return err_set(err, STATUS_USAGE,
+                       "--parts is for .stl and .vtp, which hold names of parts");
+    *emitter = asked ? asked : *emitter;
+    return STATUS_OK;
+}
+
 static Status run_export(void *options, Parsed *parsed, Err *err)
 {
     const ExportOptions *own_options = options;
     const Emitter *emitter;
     PictureTree of;
-    TRY(scene_files_find(own_options->output, true, &emitter, err));
+    TRY(find_emitter(own_options, &emitter, err));
     TRY(check_colors(own_options, emitter, parsed, err));
     TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));
     TRY(picture_read_tree(&own_options->meshing.coloring, own_options->prune_radius_mm, parsed, &of,

@@ -4,6 +4,7 @@
 
 #include "app/pictures/picture.h"
 #include "app/pictures/povfiles.h"
+#include "app/pictures/solver_files.h"
 #include "app/run/output.h"
 #include "app/run/progress.h"
 #include "derive/derive.h"
@@ -21,7 +22,9 @@ typedef struct Meshing {
     VesselTree vessels;
     VesselMesh mesh;
     MeshReport report;
-    uint32_t *thinned; /* indices of segments, by --part-overlaps */
+    MeshEnds ends;        /* for an emitter with parts */
+    Text beside[BESIDES]; /* what stands beside the mesh; empty: nothing */
+    uint32_t *thinned;    /* indices of segments, by --part-overlaps */
     size_t n_thinned;
 } Meshing;
 
@@ -186,35 +189,54 @@ static json_t *manifest(const Meshing *made)
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
+static Status write_beside(bool parts, Meshing *made, Err *err)
+{
+    Text *beside = made->beside;
+    text_json(&beside[BESIDE_MANIFEST], manifest(made), 2);
+    text_puts(&beside[BESIDE_MANIFEST], "\n");
+    TRY(text_check(&beside[BESIDE_MANIFEST], err));
+    if (!parts)
+        return STATUS_OK;
+    TRY(meshends_find(&made->mesh, &made->vessels, &made->ends, err));
+    TRY(solver_ends(&made->ends, &made->of->tree, &made->vessels, &beside[BESIDE_ENDS], err));
+    return solver_centerline(&made->of->tree, &made->vessels, &beside[BESIDE_CENTERLINE], err);
+}
+
+static void release(Meshing *made)
+{
+    appearance_release(&made->appearance);
+    field_release(&made->orders);
+    anatomy_release(&made->anatomy);
+    vesseltree_release(&made->vessels);
+    vesselmesh_release(&made->mesh);
+    meshreport_release(&made->report);
+    meshends_release(&made->ends);
+    for (size_t i = 0; i < BESIDES; i++)
+        text_release(&made->beside[i]);
+    free(made->thinned);
+}
+
 Status meshing_write(const Emitter *emitter, const MeshingOptions *options, const PictureTree *of,
                      const char *output, const Parsed *parsed, Err *err)
 {
     Meshing made = {.of = of};
-    Text said = TEXT_INIT;
     char *line = NULL;
     Status status;
     TRY_GOTO(make(&parsed->common, options, emitter->has_colors, &made, err));
-    text_json(&said, manifest(&made), 2);
-    text_puts(&said, "\n");
-    TRY_GOTO(text_check(&said, err));
+    TRY_GOTO(write_beside(emitter->has_parts, &made, err));
     TRY_GOTO(command_line_text(parsed, &line, err));
-    const EmitParams params = {.mesh = &made.mesh,
-                               .vessels = &made.vessels,
-                               .appearance = &made.appearance,
-                               .orders = made.orders.value,
-                               .anatomy = emitter->has_colors ? &made.anatomy : NULL,
-                               .manifest = text_chars(&said),
-                               .command = line};
+    EmitParams params = {.mesh = &made.mesh,
+                         .vessels = &made.vessels,
+                         .appearance = &made.appearance,
+                         .orders = made.orders.value,
+                         .anatomy = emitter->has_colors ? &made.anatomy : NULL,
+                         .ends = &made.ends,
+                         .command = line};
+    for (size_t i = 0; i < BESIDES; i++)
+        params.beside[i] = &made.beside[i];
     TRY_GOTO(scene_files_write(emitter, &params, of->path, output, false, NULL, err));
 done:
     free(line);
-    text_release(&said);
-    appearance_release(&made.appearance);
-    field_release(&made.orders);
-    anatomy_release(&made.anatomy);
-    vesseltree_release(&made.vessels);
-    vesselmesh_release(&made.mesh);
-    meshreport_release(&made.report);
-    free(made.thinned);
+    release(&made);
     return status;
 }

@@ -22,16 +22,28 @@ Status scene_files_find(const char *output, bool of_meshes, const Emitter **emit
     return status;
 }
 
+/* What stands beside a mesh: what is known of it, and of one of parts how it may be used. */
+static const struct {
+    const char *role, *suffix;
+    bool keeps_extension; /* of the mesh, before the suffix */
+    bool of_parts;
+} besides[BESIDES] = {
+    [BESIDE_MANIFEST] = {"the manifest", ".json", .keeps_extension = true},
+    [BESIDE_ENDS] = {"the table of ends", ".ends.csv", .of_parts = true},
+    [BESIDE_CENTERLINE] = {"the centreline", ".centreline.vtp", .of_parts = true},
+};
+
 /* The files beside a scene or mesh; NULL where there is none. */
 typedef struct Beside {
-    char *second, *manifest, *settings; /* owned */
+    char *second, *settings, *of_mesh[BESIDES]; /* owned */
 } Beside;
 
 static void beside_release(Beside *beside)
 {
     free(beside->second);
-    free(beside->manifest);
     free(beside->settings);
+    for (size_t i = 0; i < BESIDES; i++)
+        free(beside->of_mesh[i]);
 }
 
 static Status find_beside(const Emitter *emitter, const char *path, bool settings, Beside *beside,
@@ -40,9 +52,13 @@ static Status find_beside(const Emitter *emitter, const char *path, bool setting
     char suffix[24];
     if (strcmp(path, "-") == 0)
         return STATUS_OK;
-    snprintf(suffix, sizeof suffix, ".%s.json", emitter->extension);
-    if (emitter->of_meshes)
-        TRY(file_with_suffix(path, suffix, &beside->manifest, err));
+    for (size_t i = 0; i < BESIDES; i++) {
+        bool keeps = besides[i].keeps_extension;
+        snprintf(suffix, sizeof suffix, "%s%s%s", keeps ? "." : "", keeps ? emitter->extension : "",
+                 besides[i].suffix);
+        if (emitter->of_meshes && (emitter->has_parts || !besides[i].of_parts))
+            TRY(file_with_suffix(path, suffix, &beside->of_mesh[i], err));
+    }
     snprintf(suffix, sizeof suffix, ".%s", emitter->settings_extension);
     if (settings)
         TRY(file_with_suffix(path, suffix, &beside->settings, err));
@@ -62,8 +78,9 @@ Status scene_files_note(const Emitter *emitter, const char *path, bool settings,
         TRY_GOTO(emitter->check_name(file_name(beside.second), err));
     if (beside.second)
         TRY_GOTO(files_write(files, emitter->second_holds, beside.second, err));
-    if (beside.manifest)
-        TRY_GOTO(files_write(files, "the manifest", beside.manifest, err));
+    for (size_t i = 0; i < BESIDES; i++)
+        if (beside.of_mesh[i])
+            TRY_GOTO(files_write(files, besides[i].role, beside.of_mesh[i], err));
     if (beside.settings)
         TRY_GOTO(files_write(files, "the settings", beside.settings, err));
 done:
@@ -104,7 +121,8 @@ Status scene_files_write(const Emitter *emitter, const EmitParams *params, const
     all.templates = templates;
     all.file = strcmp(path, "-") == 0 ? "scene.pov" : file_name(path);
     all.second_file = beside.second ? file_name(beside.second) : NULL;
-    all.manifest_path = beside.manifest;
+    for (size_t i = 0; i < BESIDES; i++)
+        all.beside_path[i] = beside.of_mesh[i];
     all.settings = beside.settings ? file_name(beside.settings) : NULL;
     all.settings_path = beside.settings;
     all.description = text_chars(&description);

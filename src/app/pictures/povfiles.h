@@ -18,8 +18,8 @@ MUST_CHECK Status scene_files_find(const char *output, bool of_meshes, const Emi
 MUST_CHECK Status scene_files_note(const Emitter *emitter, const char *path, bool settings,
                                    Files *files, Err *err);
 
-/* Writes `path` and, beside it, the emitter's second file, its settings if asked, and of a mesh the
- * manifest as `path`.json; "-" is one file on standard output. `params` lacks what follows from the
+/* Writes `path` and, beside it, the emitter's second file, its settings if asked, and of a mesh
+ * what params->beside has; "-" is one file on standard output. `params` lacks what follows from the
  * paths, the templates, and who writes. The rest as emit_files. */
 MUST_CHECK Status scene_files_write(const Emitter *emitter, const EmitParams *params,
                                     const char *tree_path, const char *path, bool settings,

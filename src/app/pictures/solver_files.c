@@ -1,0 +1,66 @@
+/* Ends are those of the mesh; how the flow parts among them is the tree's. Radii come from the
+ * vessels, which --part-overlaps may have thinned. */
+#include "app/pictures/solver_files.h"
+
+#include "treeio/treeio.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* The part of all blood that passes each segment, in *parts (owned). */
+static Status find_flow_parts(const Tree *tree, double **parts, Err *err)
+{
+    double total = 0;
+    TRY(tree_flow_shares(tree, parts, err));
+    double *part = *parts;
+    for (size_t i = tree->n; i-- > 0;)
+        if (tree_is_segment(tree, i))
+            part[tree->parent[i]] += part[i];
+        else
+            total += part[i];
+    for (size_t i = 0; i < tree->n && total > 0; i++)
+        part[i] /= total;
+    return STATUS_OK;
+}
+
+static void put_vector(Vec3 v, Text *out)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        text_number(out, vec3_component(v, axis) + 0);
+        text_puts(out, ",");
+    }
+}
+
+Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels, Text *out,
+                   Err *err)
+{
+    double *parts;
+    TRY(find_flow_parts(tree, &parts, err));
+    text_puts(out, "name,face,id,x_mm,y_mm,z_mm,normal_x,normal_y,normal_z,radius_mm,area_mm2,"
+                   "flow_part\n");
+    for (size_t i = 0; i < ends->n; i++) {
+        const MeshEnd *end = &ends->ends[i];
+        text_printf(out, "%s,%zu,%u,", end->name, i + 2, vessels->ids[end->segment]);
+        put_vector(end->center, out);
+        put_vector(end->normal, out);
+        text_number(out, end->radius_mm);
+        text_puts(out, ",");
+        text_number(out, end->area_mm2);
+        text_puts(out, ",");
+        text_number(out, parts[vessels->segments[end->segment].segment]);
+        text_puts(out, "\n");
+    }
+    free(parts);
+    return text_check(out, err);
+}
+
+Status solver_centerline(const Tree *tree, const VesselTree *vessels, Text *out, Err *err)
+{
+    Tree drawn = *tree;
+    TRY(mem_calloc(&drawn.radius_mm, tree->n, sizeof *drawn.radius_mm, "radii", err));
+    memcpy(drawn.radius_mm, tree->radius_mm, tree->n * sizeof *drawn.radius_mm);
+    for (size_t i = 0; i < vessels->n_segments; i++)
+        drawn.radius_mm[vessels->segments[i].segment] = vessels->segments[i].radius_mm;
+    Status status = tree_write_text(&drawn, "centreline.vtp", out, err);
+    free(drawn.radius_mm);
+    return status;
+}

@@ -1,0 +1,97 @@
+/* The triangles as VTK's XML PolyData, in the arrays that SimVascular reads: `ModelFaceID` says of
+ * each triangle the number of its part, from 1 on, and `FaceNames`, in the field data, which VTK
+ * hands on, the names in that order. Arrays stand behind the document, as bytes, each with its size
+ * before it. */
+#include "emit/meshparts.h"
+#include "emit/record.h"
+#include "emit/rows.h"
+#include "emit/values.h"
+
+#include <inttypes.h>
+
+/* In the order of the file. */
+enum { FACES, SEGMENTS, POINTS, CORNERS, OFFSETS, ARRAYS };
+static const char *const places[ARRAYS] = {"at_faces", "at_segments", "at_points", "at_corners",
+                                           "at_offsets"};
+
+/* How many numbers of 4 bytes it takes. */
+static size_t array_length(const VesselMesh *mesh, int array)
+{
+    return array == POINTS    ? 3 * mesh->n_points
+           : array == CORNERS ? 3 * mesh->n_triangles
+                              : mesh->n_triangles;
+}
+
+static void put_number(const EmitParams *params, int array, size_t i, Record *record)
+{
+    const VesselMesh *mesh = params->mesh;
+    if (array == POINTS)
+        put_float(record, mesh->points[i / 3][i % 3]);
+    else if (array == CORNERS)
+        put_word(record, mesh->triangles[i / 3][i % 3], 4);
+    else if (array == FACES)
+        put_word(record, params->ends->parts[i] + 1, 4);
+    else if (array == SEGMENTS)
+        put_word(record, params->vessels->ids[mesh_segment(mesh, i)], 4);
+    else
+        put_word(record, (uint32_t)(3 * (i + 1)), 4);
+}
+
+static Status put_arrays(Text *out, void *context, Err *err)
+{
+    const EmitParams *params = context;
+    Record record = {.length = 0};
+    for (int array = 0; array < ARRAYS; array++) {
+        size_t n = array_length(params->mesh, array);
+        uint64_t bytes = 4 * (uint64_t)n;
+        put_word(&record, (uint32_t)bytes, 4);
+        put_word(&record, (uint32_t)(bytes >> 32), 4);
+        flush_record(&record, out);
+        for (size_t i = 0; i < n; i++) {
+            put_number(params, array, i, &record);
+            flush_record(&record, out);
+        }
+    }
+    return text_check(out, err);
+}
+
+/* As the numbers of its letters, and a 0: the only form of text that VTK's XML has. */
+static void put_letters(Text *text, const char *chars)
+{
+    for (; *chars; chars++)
+        text_printf(text, "%d ", (unsigned char)*chars);
+    text_puts(text, "0\n");
+}
+
+static void add_texts(Values *values, const EmitParams *params)
+{
+    Text *names = add_value(values, "names");
+    for (size_t part = 0; part <= params->ends->n; part++)
+        put_letters(names, meshends_part_name(params->ends, part));
+    text_printf(add_value(values, "n_names"), "%zu", params->ends->n + 1);
+    Text *about = add_value(values, "about");
+    put_letters(about, params->generator);
+    put_letters(about, params->description);
+    put_letters(about, params->command);
+    put_letters(about, "mm");
+}
+
+Status vtp_write_mesh(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                      Err *err)
+{
+    (void)second;
+    (void)report;
+    const VesselMesh *mesh = params->mesh;
+    EmitParams context = *params;
+    Values values = {0};
+    uint64_t offset = 0;
+    add_texts(&values, params);
+    text_printf(add_value(&values, "n_points"), "%zu", mesh->n_points);
+    text_printf(add_value(&values, "n_triangles"), "%zu", mesh->n_triangles);
+    for (int array = 0; array < ARRAYS; array++) {
+        text_printf(add_value(&values, places[array]), "%" PRIu64, offset);
+        offset += 8 + 4 * (uint64_t)array_length(mesh, array);
+    }
+    add_part(&values, "arrays", put_arrays, &context);
+    return values_expand(&values, params, "vtk/surface.vtp", out, err);
+}

@@ -1,0 +1,134 @@
+#!/usr/bin/env bash
+# `export` for solvers: named parts, and what stands beside them, read by VTK and filled by TetGen.
+. "$(dirname "$0")/../lib.sh"
+
+# A grown tree of 23 terminals.
+grown() {
+    run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 -o t.swc --quiet
+}
+
+# volume_of_tetrahedra NAME: of NAME.1.node and NAME.1.ele.
+volume_of_tetrahedra() {
+    awk 'FNR == 1 || /^#/ { next }
+        FILENAME ~ /node$/ { for (k = 0; k < 3; k++) x[$1, k] = $(k + 2); next }
+        {
+            for (i = 0; i < 3; i++) for (k = 0; k < 3; k++) v[i, k] = x[$(i + 3), k] - x[$2, k]
+            for (k = 0; k < 3; k++) {
+                m = (k + 1) % 3; n = (k + 2) % 3
+                sum += v[0, k] * (v[1, m] * v[2, n] - v[1, n] * v[2, m]) / 6
+            }
+        }
+        END { printf "%.9g\n", sum < 0 ? -sum : sum }' "$1.1.node" "$1.1.ele"
+}
+
+# The areas of ends are those of regular polygons within circles.
+test_vtk_reads_the_parts_with_the_names_areas_and_normals_of_the_table() {
+    /usr/bin/python3 -c 'import vtk' 2>import.log || skip "python3-vtk9 is not installed"
+    grown
+    run_ok corcast export t.swc -o t.vtp --quiet
+    /usr/bin/python3 - >said <<'END' || fail "$(cat said)"
+import csv, json, math, sys
+import numpy as np, vtk
+from vtk.util.numpy_support import vtk_to_numpy
+reader = vtk.vtkXMLPolyDataReader()
+reader.SetFileName("t.vtp")
+reader.Update()
+mesh = reader.GetOutput()
+manifest = json.load(open("t.vtp.json"))
+def expect(what, is_so):
+    if not is_so:
+        sys.exit(print("VTK:", what))
+names = mesh.GetFieldData().GetAbstractArray("FaceNames")
+names = [names.GetValue(i) for i in range(names.GetNumberOfValues())]
+faces = vtk_to_numpy(mesh.GetCellData().GetArray("ModelFaceID"))
+segments = vtk_to_numpy(mesh.GetCellData().GetArray("segment"))
+corners = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+points = vtk_to_numpy(mesh.GetPoints().GetData()).astype(float)
+a, b, c = (points[corners[:, k]] for k in range(3))
+areas = np.cross(b - a, c - a) / 2
+ends = list(csv.DictReader(open("t.ends.csv")))
+expect("triangles", len(corners) == manifest["triangles"])
+expect("names of faces", names == ["wall"] + [end["name"] for end in ends])
+expect("an inlet and 23 outlets", names[1] == "inlet" and len(set(names)) == 25)
+expect("numbers of faces", sorted(set(faces)) == list(range(1, 26)))
+for end in ends:
+    at = faces == int(end["face"])
+    area = areas[at].sum(axis=0)
+    size, normal = np.linalg.norm(area), np.array([float(end["normal_" + k]) for k in "xyz"])
+    center, circle = [float(end[k + "_mm"]) for k in "xyz"], math.pi * float(end["radius_mm"])**2
+    expect("segments of " + end["name"], set(segments[at]) == {int(end["id"])})
+    expect("area of " + end["name"], abs(size / float(end["area_mm2"]) - 1) < 1e-6 and 0.98 * circle < size < circle)
+    expect("normal of " + end["name"], np.linalg.norm(area / size - normal) < 1e-4)
+    mean = np.average((a + b + c)[at] / 3, axis=0, weights=np.linalg.norm(areas[at], axis=1))
+    expect("middle of " + end["name"], np.linalg.norm(mean - center) < 1e-3 * float(end["radius_mm"]))
+    flat = (np.concatenate([a[at], b[at], c[at]]) - center) @ normal
+    expect("flatness of " + end["name"], abs(flat).max() < 1e-5)
+expect("flow", abs(sum(float(end["flow_part"]) for end in ends) - 2) < 1e-12 and float(ends[0]["flow_part"]) == 1)
+edges = vtk.vtkFeatureEdges()
+edges.SetInputData(mesh)
+edges.FeatureEdgesOff()
+edges.Update()
+expect("open edges", edges.GetOutput().GetNumberOfCells() == 0)
+mass = vtk.vtkMassProperties()
+mass.SetInputData(mesh)
+mass.Update()
+expect("volume", abs(mass.GetVolume() / manifest["volume_mm3"] - 1) < 1e-5)
+END
+}
+
+test_stl_has_a_named_solid_for_each_part_and_the_same_triangles() {
+    grown
+    run_ok corcast export t.swc -o plain.stl --quiet
+    run_ok corcast export t.swc --parts -o t.stl --quiet
+    expect_same plain.stl.json t.stl.json
+    sed -n 's/^solid //p' t.stl >solids
+    expect_same solids <(echo wall && sed '1d; s/,.*//' t.ends.csv)
+    expect_same solids <(sed -n 's/^endsolid //p' t.stl)
+    [ "$(head -2 solids | tail -1) $(wc -l <solids)" = "inlet 25" ] || fail "expected an inlet and 23 outlets: $(cat solids)"
+    # admesh reads one solid.
+    grep -v solid t.stl | sed '1i solid all' | sed '$a endsolid all' >all.stl
+    run_ok admesh all.stl
+    mv stdout said
+    grep -qE 'Total disconnected facets *: +0 ' said || fail "admesh finds gaps"
+    grep -qE "Number of facets *: +$(jq .triangles t.stl.json) " said || fail "admesh finds other triangles: $(cat said)"
+}
+
+test_tetgen_fills_the_surface_as_it_is() {
+    command -v tetgen >/dev/null || skip "tetgen is not installed"
+    grown
+    run_ok corcast export t.swc --parts -o t.stl --quiet
+    run_ok timeout 60 tetgen -pYQ t.stl
+    awk -v a="$(jq .volume_mm3 t.stl.json)" -v b="$(volume_of_tetrahedra t)" 'BEGIN { exit !(a > 100 && (a / b - 1) ^ 2 < 1e-5 ^ 2) }' ||
+        fail "TetGen fills $(volume_of_tetrahedra t) mm^3 of $(jq .volume_mm3 t.stl.json)"
+    # -Y: no point is added on the surface.
+    [ "$(awk '!/^#/ && NR > 1 { n++ } END { print n }' t.1.face)" = "$(jq .triangles t.stl.json)" ] ||
+        fail "TetGen's surface has other triangles"
+}
+
+test_the_centreline_beside_it_is_the_tree() {
+    grown
+    run_ok corcast export t.swc -o t.vtp --quiet
+    run_ok corcast convert t.centreline.vtp again.swc --quiet
+    expect_same <(grep -v '^#' t.swc) <(grep -v '^#' again.swc)
+    run_ok corcast export "$REPO/tests/golden/strangers.swc" --part-overlaps -o thin.vtp --quiet
+    run_ok corcast convert thin.centreline.vtp thin.swc --quiet
+    # The ends of the mesh are as thick as the centreline.
+    awk -F '[ ,]' 'NR == FNR { if (!/^#/) radius[$1] = $6; next } FNR > 1 && (d = radius[$3] - $10) * d > 1e-24 { exit 1 }' \
+        thin.swc thin.ends.csv || fail "expected the radii of the mesh"
+}
+
+test_several_trees_have_inlets_by_their_ids() {
+    run_ok corcast grow --terminals 9 --domain ball:41 --inlet 0,41,0 --inlet 0,-41,0 --seed 7 --quiet -o t.swc
+    run_ok corcast export t.swc --parts -o t.stl --quiet
+    [ "$(grep -cE '^solid inlet_[0-9]{3}$' t.stl) $(grep -cE '^solid outlet_[0-9]{3}$' t.stl)" = "2 9" ] ||
+        fail "expected two inlets: $(grep ^solid t.stl)"
+}
+
+test_refuses_parts_where_a_format_has_no_names_of_parts() {
+    run corcast export "$DATA/bifurcation.swc" --parts -o m.glb
+    expect_status 2
+    expect_sentence '--parts is for \.stl and \.vtp'
+    expect_only
+}
+
+run_tests "$@"
