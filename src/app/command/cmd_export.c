@@ -4,6 +4,7 @@
 #include "app/pictures/meshing.h"
 #include "app/pictures/picture.h"
 #include "app/pictures/povfiles.h"
+#include "app/pictures/volumes.h"
 #include "emit/emit.h"
 
 typedef struct ExportOptions {
@@ -11,13 +12,14 @@ typedef struct ExportOptions {
     double prune_radius_mm;
     bool parts;
     MeshingOptions meshing;
+    VolumeOptions volume;
 } ExportOptions;
 
 static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, ExportOptions, output),
      .argument = "M.stl",
-     .help = "the mesh; its extension chooses the format"},
+     .help = "the mesh, or a volume as V.nii.gz; its extension chooses the format"},
     {.name = "model",
      SETS(CHOICE, ExportOptions, meshing.body),
      .choices = vessel_body_names,
@@ -92,11 +94,26 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
     return STATUS_OK;
 }
 
+static Status export_volume(const ExportOptions *options, const VolumeFormat *format,
+                            Parsed *parsed, Err *err)
+{
+    PictureTree of;
+    TRY(volumes_note(&options->volume, format, options->output, &parsed->files, err));
+    TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, &of, err));
+    Status status = volumes_write(&options->volume, format, &of, options->output, parsed, err);
+    picture_tree_release(&of);
+    return status;
+}
+
 static Status run_export(void *options, Parsed *parsed, Err *err)
 {
     const ExportOptions *own_options = options;
+    const VolumeFormat *volume = volume_format_find(own_options->output);
     const Emitter *emitter;
     PictureTree of;
+    TRY(volumes_check_needs(volume != NULL, parsed, err));
+    if (volume)
+        return export_volume(own_options, volume, parsed, err);
     TRY(find_emitter(own_options, &emitter, err));
     TRY(check_colors(own_options, emitter, parsed, err));
     TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));
@@ -110,17 +127,20 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
 
 const Command command_export = {
     .name = "export",
-    .summary = "write the vessels' surface as a closed mesh",
+    .summary = "write the vessels as a closed mesh, or as voxels",
     .operands = "T.swc -o M.stl",
     .examples = "  corcast export tree.swc -o tree.stl\n"
                 "  corcast export tree.swc --color-by strahler -o tree.glb\n"
-                "  corcast export tree.swc --tolerance 0.05 -o tree.ply\n",
+                "  corcast export tree.swc --tolerance 0.05 -o tree.ply\n"
+                "  corcast export tree.swc --voxel 0.1 --labels segment -o tree.nii.gz\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
     .reads_tree = true,
     .size = sizeof(ExportOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0}, COLORING_TABLES(ExportOptions, meshing.coloring)},
+    .tables = {{&own_table, 0},
+               {&volume_table, offsetof(ExportOptions, volume)},
+               COLORING_TABLES(ExportOptions, meshing.coloring)},
     .run = run_export,
 };

@@ -2,6 +2,7 @@
 #include "app/pictures/povfiles.h"
 
 #include "app/pictures/picture.h"
+#include "app/pictures/volumes.h"
 #include "app/run/output.h"
 #include "app/run/templates.h"
 #include <math.h>
@@ -16,6 +17,10 @@ Status scene_files_find(const char *output, bool of_meshes, const Emitter **emit
         return STATUS_OK;
     Text extensions = TEXT_INIT;
     emitter_extensions(of_meshes, &extensions);
+    if (of_meshes) {
+        text_puts(&extensions, ", or for volumes in ");
+        volumes_extensions(&extensions);
+    }
     Status status =
         err_set(err, STATUS_USAGE, "-o: '%s' does not end in %s", output, text_chars(&extensions));
     text_release(&extensions);

@@ -9,14 +9,23 @@
 #include <string.h>
 
 const char *const option_group_names[OPTION_GROUPS] = {
-    [GROUP_FILES] = "files",         [GROUP_INPUT] = "input",
-    [GROUP_TREE] = "tree",           [GROUP_BLOOD] = "blood",
-    [GROUP_OPTIMUM] = "optimum",     [GROUP_VESSELS] = "vessels",
-    [GROUP_CAMERA] = "camera",       [GROUP_LIGHT] = "light",
-    [GROUP_COLOR] = "color",         [GROUP_PAGE] = "legend and scale bar",
-    [GROUP_ANIMATION] = "animation", [GROUP_PARTS] = "parts",
-    [GROUP_PRESS] = "press",         [GROUP_POVRAY] = "POV-Ray",
-    [GROUP_JUDGE] = "judgement",     [GROUP_RUN] = "this run",
+    [GROUP_FILES] = "files",
+    [GROUP_INPUT] = "input",
+    [GROUP_TREE] = "tree",
+    [GROUP_BLOOD] = "blood",
+    [GROUP_OPTIMUM] = "optimum",
+    [GROUP_VESSELS] = "vessels",
+    [GROUP_VOXELS] = "voxels",
+    [GROUP_CAMERA] = "camera",
+    [GROUP_LIGHT] = "light",
+    [GROUP_COLOR] = "color",
+    [GROUP_PAGE] = "legend and scale bar",
+    [GROUP_ANIMATION] = "animation",
+    [GROUP_PARTS] = "parts",
+    [GROUP_PRESS] = "press",
+    [GROUP_POVRAY] = "POV-Ray",
+    [GROUP_JUDGE] = "judgement",
+    [GROUP_RUN] = "this run",
 };
 
 /* ---- reading --------------------------------------------------------------------------------- */

@@ -79,6 +79,7 @@ typedef enum OptionGroup {
     GROUP_BLOOD,
     GROUP_OPTIMUM,
     GROUP_VESSELS,
+    GROUP_VOXELS,
     GROUP_CAMERA,
     GROUP_LIGHT,
     GROUP_COLOR,

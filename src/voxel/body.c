@@ -1,0 +1,299 @@
+/* The part of a cylinder in a box is exact. By the divergence theorem, of the field that points
+ * along the cylinder's axis and is the height along it, cut off at its two ends: the divergence is
+ * 1 within the cylinder and 0 beyond its ends, and the flow through its wall is 0, so the volume is
+ * the flow through the box's faces where they are in the infinite cylinder. Seen along the axis
+ * those are parallelograms in a disc, and the height is linear, or constant where it is cut off:
+ * see disc.h. A ball is integrated over discs across z; as a function of the angle t, z = r sin t,
+ * their part in the box is smooth but where a disc touches an edge of the box. */
+#include "voxel/body.h"
+
+#include "voxel/disc.h"
+
+Body body_make(Vec3 a, Vec3 b, double radius, uint32_t segment)
+{
+    Body body = {.start = a, .radius = radius, .segment = segment};
+    body.length = vec3_distance(a, b);
+    if (body.length > 0) {
+        body.axis = vec3_scale(vec3_sub(b, a), 1 / body.length);
+        vec3_across(body.axis, &body.u, &body.v);
+    }
+    return body;
+}
+
+/* How far a disc across the axis reaches along each coordinate, over its radius. */
+static Vec3 disc_reach(Vec3 axis)
+{
+    return vec3(sqrt(fmax(0, 1 - axis.x * axis.x)), sqrt(fmax(0, 1 - axis.y * axis.y)),
+                sqrt(fmax(0, 1 - axis.z * axis.z)));
+}
+
+Box body_box(const Body *body)
+{
+    Vec3 end = vec3_add_scaled(body->start, body->axis, body->length);
+    Box box = box_with_ball(box_with_ball(box_empty(), body->start, 0), end, 0);
+    Vec3 reach =
+        vec3_scale(body_is_ball(body) ? vec3(1, 1, 1) : disc_reach(body->axis), body->radius);
+    return (Box){vec3_sub(box.low, reach), vec3_add(box.high, reach)};
+}
+
+/* How far the cell reaches from its middle along a direction. */
+static double support(const Cell *cell, Vec3 direction)
+{
+    return cell->half.x * fabs(direction.x) + cell->half.y * fabs(direction.y) +
+           cell->half.z * fabs(direction.z);
+}
+
+static double beyond(double distance, double half)
+{
+    return distance > half ? distance - half : 0;
+}
+
+static double square(double x)
+{
+    return x * x;
+}
+
+bool body_meets(const Body *body, const Cell *cell)
+{
+    Vec3 from = vec3_sub(cell->center, body->start);
+    if (body_is_ball(body))
+        return square(beyond(fabs(from.x), cell->half.x)) +
+                   square(beyond(fabs(from.y), cell->half.y)) +
+                   square(beyond(fabs(from.z), cell->half.z)) <
+               square(body->radius);
+    double along = vec3_dot(from, body->axis);
+    if (fabs(along - body->length / 2) >= body->length / 2 + support(cell, body->axis))
+        return false;
+    Vec3 across = vec3_add_scaled(from, body->axis, -along);
+    double distance = vec3_length(across);
+    return distance * distance < (distance * body->radius) + support(cell, across) ||
+           distance < body->radius;
+}
+
+static Vec3 cell_corner(const Cell *cell, int corner)
+{
+    return vec3(cell->center.x + (corner & 1 ? cell->half.x : -cell->half.x),
+                cell->center.y + (corner & 2 ? cell->half.y : -cell->half.y),
+                cell->center.z + (corner & 4 ? cell->half.z : -cell->half.z));
+}
+
+static bool ball_holds(const Body *ball, const Cell *cell)
+{
+    Vec3 from = vec3_sub(cell->center, ball->start);
+    return square(fabs(from.x) + cell->half.x) + square(fabs(from.y) + cell->half.y) +
+               square(fabs(from.z) + cell->half.z) <=
+           square(ball->radius);
+}
+
+bool body_holds(const Body *body, const Cell *cell)
+{
+    if (body_is_ball(body))
+        return ball_holds(body, cell);
+    for (int corner = 0; corner < 8; corner++) {
+        Vec3 from = vec3_sub(cell_corner(cell, corner), body->start);
+        double along = vec3_dot(from, body->axis);
+        if (along < 0 || along > body->length ||
+            vec3_dot(from, from) - along * along > square(body->radius))
+            return false;
+    }
+    return true;
+}
+
+/* ---- a cylinder in a box --------------------------------------------------------------------- */
+
+/* A point as the axis sees it: across it, and along it from the point nearest to the cell. */
+typedef struct Seen {
+    DiscPoint at;
+    double height;
+} Seen;
+
+/* The height is level + slope_u u + slope_v v in the plane of a face. */
+typedef struct Plane {
+    double level, slope_u, slope_v;
+} Plane;
+
+enum { MOST_CORNERS = 6 }; /* of a face from which two planes cut */
+
+typedef struct Face {
+    Seen corner[MOST_CORNERS];
+    int n;
+} Face;
+
+static Seen between(Seen p, Seen q, double height)
+{
+    double t = (height - p.height) / (q.height - p.height);
+    return (Seen){{p.at.u + t * (q.at.u - p.at.u), p.at.v + t * (q.at.v - p.at.v)}, height};
+}
+
+/* The part of the face on one side of a height: above it if `side` is 1, below if -1. */
+static Face cut_face(const Face *face, double height, int side)
+{
+    Face out = {.n = 0};
+    for (int i = 0; i < face->n; i++) {
+        Seen p = face->corner[i], q = face->corner[(i + 1) % face->n];
+        bool has_p = side * (p.height - height) >= 0, has_q = side * (q.height - height) >= 0;
+        if (has_p)
+            out.corner[out.n++] = p;
+        if (has_p != has_q)
+            out.corner[out.n++] = between(p, q, height);
+    }
+    return out;
+}
+
+static double flow(const Face *face, double radius, Plane plane)
+{
+    DiscPart part = {0};
+    for (int i = 0; i < face->n; i++)
+        discpart_add(&part, face->corner[i].at, face->corner[(i + 1) % face->n].at, radius);
+    return plane.level * part.one + plane.slope_u * part.u + plane.slope_v * part.v;
+}
+
+/* The flow through a face of the height, cut off at low and high. */
+static double cut_flow(const Face *face, double radius, Plane plane, double low, double high)
+{
+    double least = face->corner[0].height, most = least;
+    for (int i = 1; i < face->n; i++) {
+        least = fmin(least, face->corner[i].height);
+        most = fmax(most, face->corner[i].height);
+    }
+    if (low <= least && most <= high)
+        return flow(face, radius, plane);
+    Face below = cut_face(face, low, -1), above = cut_face(face, high, 1);
+    Face middle = cut_face(face, low, 1);
+    middle = cut_face(&middle, high, -1);
+    return flow(&below, radius, (Plane){low, 0, 0}) + flow(&middle, radius, plane) +
+           flow(&above, radius, (Plane){high, 0, 0});
+}
+
+/* Corners of the faces across an axis towards high coordinates, counterclockwise from outside; bits
+ * are the axes. */
+static const uint8_t face_corners[3][4] = {{1, 3, 7, 5}, {2, 6, 7, 3}, {4, 5, 7, 6}};
+
+/* A face less steep to the axis than this is left out: less than so much of the cell is lost. */
+static const double least_slope = 1e-7;
+
+static double cylinder_volume(const Body *body, const Cell *cell)
+{
+    Vec3 from = vec3_sub(cell->center, body->start);
+    double along = vec3_dot(from, body->axis), volume = 0;
+    Vec3 base = vec3_add_scaled(body->start, body->axis, along);
+    Seen seen[8];
+    for (int i = 0; i < 8; i++) {
+        Vec3 p = vec3_sub(cell_corner(cell, i), base);
+        seen[i] = (Seen){{vec3_dot(p, body->u), vec3_dot(p, body->v)}, vec3_dot(p, body->axis)};
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        double rise = vec3_component(body->axis, axis);
+        Plane plane = {.slope_u = -vec3_component(body->u, axis) / rise,
+                       .slope_v = -vec3_component(body->v, axis) / rise};
+        for (int side = -1; side <= 1 && fabs(rise) > least_slope; side += 2) {
+            double place = vec3_component(vec3_sub(cell->center, base), axis) +
+                           side * vec3_component(cell->half, axis);
+            Face face = {.n = 4};
+            plane.level = place / rise;
+            for (int i = 0; i < 4; i++)
+                face.corner[i] = seen[face_corners[axis][i] ^ (side < 0 ? 1 << axis : 0)];
+            volume += side * cut_flow(&face, body->radius, plane, -along, body->length - along);
+        }
+    }
+    return volume;
+}
+
+/* ---- a ball in a box ------------------------------------------------------------------------- */
+
+static double rectangle_in_disc(const DiscPoint corner[4], double radius)
+{
+    DiscPart part = {0};
+    for (int i = 0; i < 4; i++)
+        discpart_add(&part, corner[i], corner[(i + 1) % 4], radius);
+    return part.one;
+}
+
+/* Half the nodes in [-1, 1] and the weights of Gauss and Legendre's rule of 12. */
+static const double nodes[6][2] = {
+    {0.1252334085114689, 0.2491470458134028}, {0.3678314989981802, 0.2334925365383548},
+    {0.5873179542866175, 0.2031674267230659}, {0.7699026741943047, 0.1600783285433462},
+    {0.9041172563704749, 0.1069393259953184}, {0.9815606342467192, 0.0471753363865118}};
+
+static double ball_volume(const Body *ball, const Cell *cell)
+{
+    Vec3 from = vec3_sub(cell->center, ball->start), half = cell->half;
+    double radius = ball->radius, volume = 0;
+    const DiscPoint corner[4] = {{from.x - half.x, from.y - half.y},
+                                 {from.x + half.x, from.y - half.y},
+                                 {from.x + half.x, from.y + half.y},
+                                 {from.x - half.x, from.y + half.y}};
+    double low = asin(fmax(-1, (from.z - half.z) / radius));
+    double high = asin(fmin(1, (from.z + half.z) / radius));
+    for (int i = 0; i < 12; i++) {
+        double node = i < 6 ? nodes[i][0] : -nodes[i - 6][0];
+        double across = radius * cos((low + high) / 2 + node * (high - low) / 2);
+        volume += nodes[i % 6][1] * across * rectangle_in_disc(corner, across);
+    }
+    return volume * (high - low) / 2;
+}
+
+double body_part(const Body *body, const Cell *cell)
+{
+    if (!body_meets(body, cell))
+        return 0;
+    if (body_holds(body, cell))
+        return 1;
+    double volume = body_is_ball(body) ? ball_volume(body, cell) : cylinder_volume(body, cell);
+    return fmin(fmax(volume / cell_volume(cell), 0), 1);
+}
+
+/* ---- lines ----------------------------------------------------------------------------------- */
+
+/* Narrows [*low, *high] to where 0 <= from + rise t <= length. */
+static void clip_heights(double from, double rise, double length, double *low, double *high)
+{
+    double inverse = 1 / rise, to_start = -from * inverse, to_end = (length - from) * inverse;
+    if (rise == 0) {
+        if (from < 0 || from > length)
+            *high = -INFINITY;
+        return;
+    }
+    *low = fmax(*low, fmin(to_start, to_end));
+    *high = fmin(*high, fmax(to_start, to_end));
+}
+
+bool body_chord(const Body *body, Vec3 at, int axis, double wider, double longer, double *low,
+                double *high)
+{
+    Vec3 from = vec3_sub(at, body->start);
+    double radius = body->radius + wider, rise = vec3_component(body->axis, axis);
+    double height = vec3_dot(from, body->axis);
+    double a = 1 - rise * rise, b = vec3_component(from, axis) - height * rise;
+    double c = vec3_dot(from, from) - height * height - radius * radius;
+    double root2 = b * b - a * c;
+    if (a < 1e-14) {
+        *low = c < 0 ? -INFINITY : INFINITY;
+        *high = -*low;
+    } else if (root2 > 0) {
+        double root = sqrt(root2);
+        *low = (-b - root) / a;
+        *high = (-b + root) / a;
+    } else {
+        return false;
+    }
+    if (!body_is_ball(body))
+        clip_heights(height + longer, rise, body->length + 2 * longer, low, high);
+    return *low < *high;
+}
+
+bool body_axis_in(const Body *body, const Cell *cell, double *from, double *to)
+{
+    *from = 0;
+    *to = body->length;
+    if (body_is_ball(body))
+        return false;
+    for (int axis = 0; axis < 3; axis++) {
+        double rise = vec3_component(body->axis, axis), half = vec3_component(cell->half, axis);
+        double place = vec3_component(vec3_sub(body->start, cell->center), axis);
+        if (rise == 0 && !(place >= -half && place < half))
+            return false;
+        clip_heights(place + half, rise, 2 * half, from, to);
+    }
+    return *from <= *to;
+}

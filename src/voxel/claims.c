@@ -1,0 +1,291 @@
+/* A label holds the first voxel, from the middle of its axes on, that it fills the most of. Those
+ * that fill the most of none are then given one that no label holds, or one whose holder can move
+ * on to another: augmenting paths [Kuhn, Naval Research Logistics Quarterly 2 (1955) 83-97], so
+ * that a label is refused a voxel only where labels are more than the voxels that their axes pass.
+ * What is held stands in a table of linear probing, by voxel; a voxel that is held once stays so.
+ */
+#include "voxel/claims.h"
+
+#include <stdlib.h>
+
+/* The axis of a vessel, and the label that it has. */
+typedef struct Axis {
+    uint32_t label, body;
+} Axis;
+
+typedef struct Held {
+    int64_t voxel;
+    size_t label; /* number of its first axis */
+    size_t visit; /* the last that came by; 0: no label holds the voxel */
+} Held;
+
+typedef struct VoxelList {
+    int64_t *item; /* owned */
+    size_t n, capacity;
+} VoxelList;
+
+typedef struct Claimer {
+    const RowSource *source;
+    Axis *axes; /* by rising label */
+    size_t n_axes;
+    Held *held;
+    size_t mask; /* entries less one, which are a power of two */
+    size_t visit;
+    BodyList near;
+} Claimer;
+
+enum { MOST_MOVES = 64 };
+
+/* ---- voxels along an axis -------------------------------------------------------------------- */
+
+static Status push_voxel(const VoxelGrid *grid, const int64_t at[3], VoxelList *list, Err *err)
+{
+    TRY(mem_reserve(&list->item, &list->capacity, list->n + 1, sizeof *list->item, "voxels", err));
+    list->item[list->n++] = (at[2] * grid->n[1] + at[1]) * grid->n[0] + at[0];
+    return STATUS_OK;
+}
+
+/* Lists the voxels that the axis passes, from its start to its end. */
+static Status list_axis(const VoxelGrid *grid, const Body *body, VoxelList *list, Err *err)
+{
+    Vec3 end = vec3_add_scaled(body->start, body->axis, body->length);
+    int64_t at[3], last[3], left = 0;
+    double next[3], step[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double start = vec3_component(body->start, axis), mm = vec3_component(grid->step, axis);
+        double rise = vec3_component(body->axis, axis);
+        at[axis] = grid_index(grid, axis, start);
+        last[axis] = grid_index(grid, axis, vec3_component(end, axis));
+        left += llabs(last[axis] - at[axis]);
+        double face =
+            vec3_component(grid->first, axis) + ((double)at[axis] + (rise > 0 ? 0.5 : -0.5)) * mm;
+        next[axis] = (face - start) / rise;
+        step[axis] = mm / fabs(rise);
+    }
+    list->n = 0;
+    TRY(push_voxel(grid, at, list, err));
+    for (; left > 0; left--) {
+        int axis = -1;
+        for (int i = 0; i < 3; i++)
+            if (at[i] != last[i] && (axis < 0 || next[i] < next[axis]))
+                axis = i;
+        at[axis] += last[axis] > at[axis] ? 1 : -1;
+        next[axis] += step[axis];
+        TRY(push_voxel(grid, at, list, err));
+    }
+    return STATUS_OK;
+}
+
+/* Voxel `i` of a list, from its middle on. */
+static int64_t from_middle(const VoxelList *list, size_t i)
+{
+    return list->item[(list->n / 2 + i) % list->n];
+}
+
+/* The label of the segment that fills the most of a voxel, 0 of an empty one. */
+static Status find_owner(Claimer *claimer, int64_t voxel, uint32_t *label, Err *err)
+{
+    const RowSource *source = claimer->source;
+    const VoxelGrid *grid = source->grid;
+    int64_t row = voxel / grid->n[0];
+    Cell cell = grid_cell(grid, voxel % grid->n[0], row % grid->n[1], row / grid->n[1]);
+    BodyList *near = &claimer->near;
+    TRY(bodies_in(source->bodies, cell_box(&cell), near, err));
+    *label = near->n ? source->labels[cell_owner(source->bodies, near->item, near->n, &cell)] : 0;
+    return STATUS_OK;
+}
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+/* The entry of the voxel, or the one where it is to stand. */
+static Held *find_held(const Claimer *claimer, int64_t voxel)
+{
+    size_t at = (size_t)((uint64_t)voxel * 0x9e3779b97f4a7c15u >> 20) & claimer->mask;
+    while (claimer->held[at].visit && claimer->held[at].voxel != voxel)
+        at = (at + 1) & claimer->mask;
+    return &claimer->held[at];
+}
+
+static int by_label(const void *a, const void *b)
+{
+    const Axis *first = a, *second = b;
+    if (first->label != second->label)
+        return first->label < second->label ? -1 : 1;
+    return (first->body > second->body) - (first->body < second->body);
+}
+
+static Status claimer_init(Claimer *claimer, Err *err)
+{
+    const Bodies *bodies = claimer->source->bodies;
+    TRY(mem_calloc(&claimer->axes, bodies->n, sizeof *claimer->axes, "vessels", err));
+    for (uint32_t i = 0; i < bodies->n; i++)
+        if (!body_is_ball(&bodies->body[i]))
+            claimer->axes[claimer->n_axes++] =
+                (Axis){claimer->source->labels[bodies->body[i].segment], i};
+    qsort(claimer->axes, claimer->n_axes, sizeof *claimer->axes, by_label);
+    size_t entries = 16;
+    while (entries < 2 * claimer->n_axes)
+        entries *= 2;
+    claimer->mask = entries - 1;
+    return mem_calloc(&claimer->held, entries, sizeof *claimer->held, "labels", err);
+}
+
+static void claimer_release(Claimer *claimer)
+{
+    free(claimer->axes);
+    free(claimer->held);
+    free(claimer->near.item);
+}
+
+/* ---- who holds what -------------------------------------------------------------------------- */
+
+static const Body *axis_body(const Claimer *claimer, size_t axis)
+{
+    return &claimer->source->bodies->body[claimer->axes[axis].body];
+}
+
+static bool has_label_of(const Claimer *claimer, size_t axis, size_t first)
+{
+    return axis < claimer->n_axes && claimer->axes[axis].label == claimer->axes[first].label;
+}
+
+/* Has a label, given by its first axis, hold a voxel that it fills the most of, if there is one. */
+static Status hold_own(Claimer *claimer, size_t first, bool *done, Err *err)
+{
+    VoxelList list = {0};
+    Status status = STATUS_OK;
+    *done = false;
+    for (size_t axis = first; !*done && has_label_of(claimer, axis, first); axis++) {
+        TRY_GOTO(list_axis(claimer->source->grid, axis_body(claimer, axis), &list, err));
+        for (size_t i = 0; i < list.n && !*done; i++) {
+            int64_t voxel = from_middle(&list, i);
+            uint32_t owner;
+            TRY_GOTO(find_owner(claimer, voxel, &owner, err));
+            *done = owner == claimer->axes[first].label;
+            if (*done)
+                *find_held(claimer, voxel) = (Held){voxel, first, claimer->visit};
+        }
+    }
+done:
+    free(list.item);
+    return status;
+}
+
+static Status hold_any(Claimer *claimer, size_t first, int moves, bool *done, Err *err);
+
+/* Has the label hold one of the voxels: one that is free, or one whose holder finds another. */
+static Status hold_one_of(Claimer *claimer, const VoxelList *list, size_t first, int moves,
+                          bool *done, Err *err)
+{
+    for (size_t i = 0; i < list->n && !*done; i++) {
+        Held *held = find_held(claimer, from_middle(list, i));
+        *done = !held->visit;
+        if (*done)
+            *held = (Held){from_middle(list, i), first, claimer->visit};
+    }
+    for (size_t i = 0; i < list->n && !*done && moves < MOST_MOVES; i++) {
+        Held *held = find_held(claimer, from_middle(list, i));
+        if (held->visit == claimer->visit)
+            continue;
+        held->visit = claimer->visit;
+        TRY(hold_any(claimer, held->label, moves + 1, done, err));
+        if (*done)
+            held->label = first;
+    }
+    return STATUS_OK;
+}
+
+static Status hold_any(Claimer *claimer, size_t first, int moves, bool *done, Err *err)
+{
+    VoxelList list = {0};
+    Status status = STATUS_OK;
+    *done = false;
+    for (size_t axis = first; !*done && has_label_of(claimer, axis, first); axis++) {
+        TRY_GOTO(list_axis(claimer->source->grid, axis_body(claimer, axis), &list, err));
+        TRY_GOTO(hold_one_of(claimer, &list, first, moves, done, err));
+    }
+done:
+    free(list.item);
+    return status;
+}
+
+static Status no_voxel(const Claimer *claimer, const Geometry *geometry, size_t axis, Err *err)
+{
+    Vec3 step = claimer->source->grid->step;
+    return err_set(
+        err, STATUS_INFEASIBLE,
+        "`voxel` %g x %g x %g mm: segment %u has no voxel for its label; others need all "
+        "that it passes: take smaller voxels",
+        step.x, step.y, step.z, (unsigned)geometry->ids[axis_body(claimer, axis)->segment]);
+}
+
+/* First those that need nothing from others; *taken counts the rest. */
+static Status hold_all(Claimer *claimer, const Geometry *geometry, size_t *taken, Err *err)
+{
+    uint8_t *lack;
+    Status status = STATUS_OK;
+    TRY(mem_calloc(&lack, claimer->n_axes, 1, "labels", err));
+    claimer->visit = 1;
+    for (size_t axis = 0; axis < claimer->n_axes; axis++) {
+        bool done = true;
+        if (axis == 0 || !has_label_of(claimer, axis, axis - 1))
+            TRY_GOTO(hold_own(claimer, axis, &done, err));
+        lack[axis] = !done;
+    }
+    for (size_t axis = 0; axis < claimer->n_axes; axis++) {
+        bool done = true;
+        claimer->visit++;
+        if (lack[axis])
+            TRY_GOTO(hold_any(claimer, axis, 0, &done, err));
+        if (!done)
+            TRY_GOTO(no_voxel(claimer, geometry, axis, err));
+        *taken += lack[axis];
+    }
+done:
+    free(lack);
+    return status;
+}
+
+static int by_voxel(const void *a, const void *b)
+{
+    const Claim *first = a, *second = b;
+    return (first->voxel > second->voxel) - (first->voxel < second->voxel);
+}
+
+Status claims_make(const RowSource *source, const Geometry *geometry, Claims *out, Err *err)
+{
+    Claimer claimer = {.source = source};
+    Claims made = {0};
+    Status status;
+    TRY_GOTO(claimer_init(&claimer, err));
+    TRY_GOTO(hold_all(&claimer, geometry, &made.taken, err));
+    TRY_GOTO(mem_calloc(&made.claim, claimer.n_axes, sizeof *made.claim, "labels", err));
+    for (size_t i = 0; i <= claimer.mask; i++)
+        if (claimer.held[i].visit)
+            made.claim[made.n++] =
+                (Claim){claimer.held[i].voxel, claimer.axes[claimer.held[i].label].label};
+    qsort(made.claim, made.n, sizeof *made.claim, by_voxel);
+    *out = made;
+done:
+    claimer_release(&claimer);
+    return status;
+}
+
+void claims_release(Claims *claims)
+{
+    free(claims->claim);
+    *claims = (Claims){0};
+}
+
+size_t claims_from(const Claims *claims, int64_t voxel)
+{
+    size_t low = 0, high = claims->n;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (claims->claim[middle].voxel < voxel)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}

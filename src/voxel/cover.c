@@ -1,0 +1,145 @@
+/* A cell that one body holds is full, and what one body alone meets has a closed form (body.c). A
+ * cell that several meet is cut in eight until it is no wider than the thinnest of them, and then
+ * crossed by lines along the axis that lies most across all of them: how long a line is in their
+ * union is exact, and the lines stand where the Fibonacci lattice has its points [Sloan, Joe:
+ * Lattice Methods for Multiple Integration, 1994], which has no direction of its own. Thin vessels
+ * are thus found wherever they pass, and the work grows with the logarithm of their thinness. */
+#include "voxel/cover.h"
+
+#include <stdlib.h>
+
+enum { LINES = 89, LATTICE_STEP = 55, DEEPEST = 7 };
+
+Status cover_reserve(CoverRoom *room, size_t n_bodies, Err *err)
+{
+    TRY(mem_reserve(&room->lists, &room->n_lists, (DEEPEST + 1) * n_bodies, sizeof *room->lists,
+                    "vessels in a voxel", err));
+    return mem_reserve(&room->chords, &room->n_chords, n_bodies, sizeof *room->chords,
+                       "vessels in a voxel", err);
+}
+
+void cover_release(CoverRoom *room)
+{
+    free(room->lists);
+    free(room->chords);
+    *room = (CoverRoom){0};
+}
+
+/* Puts a chord, cut off at both ends of the cell, into its place among those that begin before. */
+static size_t insert_chord(double (*chords)[2], size_t n, double low, double high)
+{
+    size_t at = n;
+    for (; at > 0 && chords[at - 1][0] > low; at--) {
+        chords[at][0] = chords[at - 1][0];
+        chords[at][1] = chords[at - 1][1];
+    }
+    chords[at][0] = low;
+    chords[at][1] = high;
+    return n + 1;
+}
+
+static double union_length(double (*chords)[2], size_t n)
+{
+    double length = 0, end = -INFINITY;
+    for (size_t i = 0; i < n; i++) {
+        double from = chords[i][0] > end ? chords[i][0] : end;
+        if (chords[i][1] > from) {
+            length += chords[i][1] - from;
+            end = chords[i][1];
+        }
+    }
+    return length;
+}
+
+static double line_in_union(const Body *bodies, const uint32_t *list, size_t n, Vec3 middle,
+                            int axis, double half, CoverRoom *room)
+{
+    size_t n_chords = 0;
+    for (size_t i = 0; i < n; i++) {
+        double low, high;
+        if (!body_chord(&bodies[list[i]], middle, axis, 0, 0, &low, &high))
+            continue;
+        low = low > -half ? low : -half;
+        high = high < half ? high : half;
+        if (low < high)
+            n_chords = insert_chord(room->chords, n_chords, low, high);
+    }
+    return union_length(room->chords, n_chords);
+}
+
+/* The axis to which the one of the bodies that is most along it is least so. */
+static int axis_across(const Body *bodies, const uint32_t *list, size_t n)
+{
+    Vec3 along = {0};
+    for (size_t i = 0; i < n; i++) {
+        Vec3 axis = bodies[list[i]].axis;
+        along = vec3(fmax(along.x, fabs(axis.x)), fmax(along.y, fabs(axis.y)),
+                     fmax(along.z, fabs(axis.z)));
+    }
+    return along.z <= along.x && along.z <= along.y ? 2 : along.y <= along.x ? 1 : 0;
+}
+
+static Vec3 along_axis(int axis, double x)
+{
+    return vec3(axis == 0 ? x : 0, axis == 1 ? x : 0, axis == 2 ? x : 0);
+}
+
+static double part_by_lines(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
+                            CoverRoom *room)
+{
+    int axis = axis_across(bodies, list, n), first = (axis + 1) % 3, second = (axis + 2) % 3;
+    double half = vec3_component(cell->half, axis), length = 0;
+    for (int i = 0; i < LINES; i++) {
+        double s = (2 * i + 1.0) / LINES - 1;
+        double t = (2 * (i * LATTICE_STEP % LINES) + 1.0) / LINES - 1;
+        Vec3 at = vec3_add(cell->center, along_axis(first, s * vec3_component(cell->half, first)));
+        at = vec3_add(at, along_axis(second, t * vec3_component(cell->half, second)));
+        length += line_in_union(bodies, list, n, at, axis, half, room);
+    }
+    return length / (LINES * 2 * half);
+}
+
+static double part_of(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
+                      int depth, uint32_t *lists, CoverRoom *room);
+
+static double part_in_eight(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
+                            int depth, uint32_t *lists, CoverRoom *room)
+{
+    Vec3 half = vec3_scale(cell->half, 0.5);
+    double part = 0;
+    for (int i = 0; i < 8; i++) {
+        Vec3 move = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
+        Cell eighth = {vec3_add(cell->center, move), half};
+        part += part_of(bodies, list, n, &eighth, depth + 1, lists, room);
+    }
+    return part / 8;
+}
+
+/* `lists` has room for what of the list meets the cell, and for that of its eighths. */
+static double part_of(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
+                      int depth, uint32_t *lists, CoverRoom *room)
+{
+    double thinnest = INFINITY;
+    size_t met = 0;
+    for (size_t i = 0; i < n; i++) {
+        const Body *body = &bodies[list[i]];
+        if (!body_meets(body, cell))
+            continue;
+        if (body_holds(body, cell))
+            return 1;
+        lists[met++] = list[i];
+        thinnest = fmin(thinnest, body->radius);
+    }
+    if (met <= 1)
+        return met ? body_part(&bodies[lists[0]], cell) : 0;
+    double widest = fmax(cell->half.x, fmax(cell->half.y, cell->half.z));
+    if (widest > thinnest && depth < DEEPEST)
+        return part_in_eight(bodies, lists, met, cell, depth, lists + met, room);
+    return part_by_lines(bodies, lists, met, cell, room);
+}
+
+double cover_part(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
+                  CoverRoom *room)
+{
+    return part_of(bodies, list, n, cell, 0, room->lists, room);
+}

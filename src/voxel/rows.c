@@ -1,0 +1,307 @@
+/* For each row that a body's box meets, the line through the middle of the row, in the body made
+ * wider by half the row's diagonal, says which voxels the body may meet, and the lines along the
+ * row's four edges which ones it holds: it is convex. A sweep along the row then knows the bodies
+ * of each voxel; only those that none holds take work. */
+#include "voxel/rows.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void rowroom_release(RowRoom *room)
+{
+    free(room->list.item);
+    free(room->met.item);
+    free(room->spans);
+    free(room->active);
+    cover_release(&room->cover);
+    *room = (RowRoom){0};
+}
+
+static int64_t clamped(double x, int64_t low, int64_t high)
+{
+    return x < (double)low ? low : x > (double)high ? high : (int64_t)x;
+}
+
+/* ---- spans ----------------------------------------------------------------------------------- */
+
+/* Where the lines along the four edges of the row are all in the body, as indices. */
+static void find_full(const VoxelGrid *grid, const Body *body, const Cell *cell, Span *span)
+{
+    double low = -INFINITY, high = INFINITY;
+    for (int edge = 0; edge < 4 && low < high; edge++) {
+        double from, to;
+        Vec3 at = vec3(cell->center.x - cell->half.x,
+                       cell->center.y + (edge & 1 ? cell->half.y : -cell->half.y),
+                       cell->center.z + (edge & 2 ? cell->half.z : -cell->half.z));
+        if (!body_chord(body, at, 0, 0, 0, &from, &to))
+            return;
+        low = fmax(low, from);
+        high = fmin(high, to);
+    }
+    span->full_first = clamped(ceil(low / grid->step.x), 0, grid->n[0]);
+    span->full_end = clamped(floor(high / grid->step.x), 0, grid->n[0]);
+}
+
+/* False when the body meets nothing of the row, whose first voxel is given. */
+static bool find_span(const VoxelGrid *grid, const Body *body, const Cell *cell, Span *span)
+{
+    double low, high, diagonal = hypot(cell->half.y, cell->half.z);
+    double longer = cell->half.y * fabs(body->axis.y) + cell->half.z * fabs(body->axis.z);
+    if (!body_chord(body, cell->center, 0, diagonal, longer, &low, &high))
+        return false;
+    span->first = clamped(floor(low / grid->step.x + 0.5), 0, grid->n[0]);
+    span->end = clamped(floor(high / grid->step.x + 0.5) + 1, 0, grid->n[0]);
+    if (body->radius > diagonal)
+        find_full(grid, body, cell, span);
+    return span->first < span->end;
+}
+
+static Status add_row(const RowSource *source, uint32_t number, int64_t row, RowRoom *room,
+                      Err *err)
+{
+    const VoxelGrid *grid = source->grid;
+    Cell cell = grid_cell(grid, 0, row % grid->n[1], row / grid->n[1]);
+    Span span = {.row = row, .body = number};
+    if (!find_span(grid, &source->bodies->body[number], &cell, &span))
+        return STATUS_OK;
+    TRY(mem_reserve(&room->spans, &room->span_capacity, room->n_spans + 1, sizeof *room->spans,
+                    "voxels", err));
+    room->spans[room->n_spans++] = span;
+    return STATUS_OK;
+}
+
+static Status add_body(const RowSource *source, const Rows *rows, uint32_t number, RowRoom *room,
+                       Err *err)
+{
+    const VoxelGrid *grid = source->grid;
+    Box box = body_box(&source->bodies->body[number]);
+    int64_t end = rows->first + rows->n, n_y = grid->n[1];
+    int64_t low_z = grid_index(grid, 2, box.low.z), high_z = grid_index(grid, 2, box.high.z);
+    int64_t low_y = grid_index(grid, 1, box.low.y), high_y = grid_index(grid, 1, box.high.y);
+    low_z = low_z > rows->first / n_y ? low_z : rows->first / n_y;
+    high_z = high_z < (end - 1) / n_y ? high_z : (end - 1) / n_y;
+    for (int64_t z = low_z; z <= high_z; z++) {
+        int64_t from = z * n_y + low_y, to = z * n_y + high_y;
+        from = from > rows->first ? from : rows->first;
+        to = to < end - 1 ? to : end - 1;
+        for (int64_t row = from; row <= to; row++)
+            TRY(add_row(source, number, row, room, err));
+    }
+    return STATUS_OK;
+}
+
+static int by_place(const void *a, const void *b)
+{
+    const Span *first = a, *second = b;
+    if (first->row != second->row)
+        return first->row < second->row ? -1 : 1;
+    if (first->first != second->first)
+        return first->first < second->first ? -1 : 1;
+    return (first->body > second->body) - (first->body < second->body);
+}
+
+static Status find_spans(const RowSource *source, const Rows *rows, RowRoom *room, Err *err)
+{
+    const VoxelGrid *grid = source->grid;
+    int64_t last = rows->first + rows->n - 1, n_y = grid->n[1];
+    bool one_layer = rows->first / n_y == last / n_y;
+    Cell low = grid_cell(grid, 0, one_layer ? rows->first % n_y : 0, rows->first / n_y);
+    Cell high = grid_cell(grid, grid->n[0] - 1, one_layer ? last % n_y : n_y - 1, last / n_y);
+    Box box = box_union(cell_box(&low), cell_box(&high));
+    room->n_spans = 0;
+    TRY(bodies_in(source->bodies, box, &room->list, err));
+    for (size_t i = 0; i < room->list.n; i++)
+        TRY(add_body(source, rows, room->list.item[i], room, err));
+    if (room->n_spans)
+        qsort(room->spans, room->n_spans, sizeof *room->spans, by_place);
+    return STATUS_OK;
+}
+
+/* ---- voxels ---------------------------------------------------------------------------------- */
+
+/* The samples of one row. */
+typedef struct Row {
+    const RowSource *source;
+    Rows *rows;
+    RowRoom *room;
+    uint8_t *values;
+    uint32_t *labels;
+    int64_t y, z;
+} Row;
+
+/* A sample for a part of a voxel; of a voxel that an axis passes, at least 1. */
+static double rounded(const Row *row, double part, const Cell *cell)
+{
+    const BodyList *met = &row->room->met;
+    double sample = floor(part * sample_full(row->source->type) + 0.5);
+    for (size_t i = 0; i < met->n && sample == 0; i++) {
+        double from, to;
+        sample = body_axis_in(&row->source->bodies->body[met->item[i]], cell, &from, &to);
+    }
+    return sample;
+}
+
+static void put_value(const Row *row, int64_t x, double part, const Cell *cell)
+{
+    SampleType type = row->source->type;
+    double sample = type == SAMPLE_FLOAT ? part : rounded(row, part, cell);
+    if (type == SAMPLE_8)
+        row->values[x] = (uint8_t)sample;
+    else if (type == SAMPLE_16)
+        ((uint16_t *)(void *)row->values)[x] = (uint16_t)sample;
+    else
+        ((float *)(void *)row->values)[x] = (float)sample;
+    row->rows->filled += part;
+    row->rows->said += sample / sample_full(type);
+    row->rows->n_filled += sample > 0;
+    if (row->labels && sample > 0)
+        row->labels[x] = row->source->labels[cell_owner(row->source->bodies, row->room->met.item,
+                                                        row->room->met.n, cell)];
+}
+
+static void fill_voxel(const Row *row, int64_t x)
+{
+    const RowSource *source = row->source;
+    RowRoom *room = row->room;
+    Cell cell = grid_cell(source->grid, x, row->y, row->z);
+    double part =
+        cover_part(source->bodies->body, room->met.item, room->met.n, &cell, &room->cover);
+    if (part > 0)
+        put_value(row, x, part, &cell);
+}
+
+static void fill_run(const Row *row, int64_t x, int64_t end)
+{
+    SampleType type = row->source->type;
+    if (type != SAMPLE_FLOAT)
+        memset(row->values + (size_t)x * sample_size(type), 0xff,
+               (size_t)(end - x) * sample_size(type));
+    else
+        for (int64_t i = x; i < end; i++)
+            ((float *)(void *)row->values)[i] = 1;
+    row->rows->filled += (double)(end - x);
+    row->rows->said += (double)(end - x);
+    row->rows->n_filled += end - x;
+}
+
+/* Where the run of voxels that one of the active spans holds from x on ends; x: there is none. Of
+ * labels, the first such segment's run, as long as no other begins. */
+static int64_t full_end(const Row *row, size_t n_active, int64_t x, uint32_t *owner)
+{
+    const RowRoom *room = row->room;
+    const Body *body = row->source->bodies->body;
+    int64_t end = x;
+    *owner = UINT32_MAX;
+    for (size_t i = 0; i < n_active; i++) {
+        const Span *span = &room->spans[room->active[i]];
+        uint32_t segment = body[span->body].segment;
+        if (span->full_first > x || span->full_end <= x)
+            continue;
+        end = !row->labels && span->full_end > end ? span->full_end : end > x ? end : x + 1;
+        *owner = segment < *owner ? segment : *owner;
+    }
+    return end;
+}
+
+static void list_active(RowRoom *room, size_t n_active)
+{
+    room->met.n = 0;
+    for (size_t i = 0; i < n_active; i++)
+        room->met.item[room->met.n++] = room->spans[room->active[i]].body;
+}
+
+static size_t drop_ended(RowRoom *room, size_t n_active, int64_t x)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < n_active; i++)
+        if (room->spans[room->active[i]].end > x)
+            room->active[kept++] = room->active[i];
+    return kept;
+}
+
+/* Goes along the spans from number `from` to before `to`, those of one row. */
+static void sweep(const Row *row, size_t from, size_t to)
+{
+    RowRoom *room = row->room;
+    size_t n_active = 0, next = from;
+    for (int64_t x = room->spans[from].first; next < to || n_active;) {
+        uint32_t owner;
+        if (!n_active && room->spans[next].first > x)
+            x = room->spans[next].first;
+        while (next < to && room->spans[next].first <= x)
+            room->active[n_active++] = next++;
+        n_active = drop_ended(room, n_active, x);
+        if (!n_active)
+            continue;
+        int64_t end = full_end(row, n_active, x, &owner);
+        if (end > x) {
+            fill_run(row, x, end);
+            for (int64_t i = x; row->labels && i < end; i++)
+                row->labels[i] = row->source->labels[owner];
+            x = end;
+        } else {
+            list_active(room, n_active);
+            fill_voxel(row, x++);
+        }
+    }
+}
+
+/* ---- centrelines ----------------------------------------------------------------------------- */
+
+/* Marks the voxels of a row that the axis of a body passes. */
+static void mark_axis(const RowSource *source, const Body *body, const Cell *first, uint8_t *marks)
+{
+    const VoxelGrid *grid = source->grid;
+    double from, to, half = (double)grid->n[0] * first->half.x;
+    Cell row = *first;
+    row.center.x += half - row.half.x;
+    row.half.x = half;
+    if (!body_axis_in(body, &row, &from, &to))
+        return;
+    int64_t a = grid_index(grid, 0, body->start.x + from * body->axis.x);
+    int64_t b = grid_index(grid, 0, body->start.x + to * body->axis.x);
+    memset(marks + (a < b ? a : b), 1, (size_t)(a < b ? b - a : a - b) + 1);
+}
+
+/* ---------------------------------------------------------------------------------------------- */
+
+static Status reserve(RowRoom *room, size_t n, Err *err)
+{
+    TRY(mem_reserve(&room->active, &room->active_capacity, n, sizeof *room->active, "vessels",
+                    err));
+    TRY(mem_reserve(&room->met.item, &room->met.capacity, n, sizeof *room->met.item, "vessels",
+                    err));
+    return cover_reserve(&room->cover, n, err);
+}
+
+static Status fill_row(const RowSource *source, RowRoom *room, Rows *rows, size_t from, size_t to,
+                       Err *err)
+{
+    const VoxelGrid *grid = source->grid;
+    int64_t number = room->spans[from].row;
+    size_t at = (size_t)(number - rows->first) * (size_t)grid->n[0];
+    Row row = {.source = source, .rows = rows, .room = room};
+    row.y = number % grid->n[1];
+    row.z = number / grid->n[1];
+    row.values = rows->values + at * sample_size(source->type);
+    row.labels = rows->labels ? rows->labels + at : NULL;
+    TRY(reserve(room, to - from, err));
+    sweep(&row, from, to);
+    Cell first = grid_cell(grid, 0, row.y, row.z);
+    for (size_t i = from; i < to && rows->centreline; i++)
+        mark_axis(source, &source->bodies->body[room->spans[i].body], &first,
+                  rows->centreline + at);
+    return STATUS_OK;
+}
+
+Status rows_fill(const RowSource *source, RowRoom *room, Rows *rows, Err *err)
+{
+    TRY(find_spans(source, rows, room, err));
+    for (size_t from = 0, to; from < room->n_spans; from = to) {
+        for (to = from + 1; to < room->n_spans && room->spans[to].row == room->spans[from].row;)
+            to++;
+        TRY(fill_row(source, room, rows, from, to, err));
+    }
+    return STATUS_OK;
+}
