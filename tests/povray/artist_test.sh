@@ -57,7 +57,8 @@ test_colours_are_set_by_numbers_on_the_command_line() {
     local model
     for model in $MODELS; do
         scene_of_a_vessel "$model" "$model.pov"
-        draw "$model" Declare=Vessel_Red=0 Declare=Vessel_Green=0 Declare=Vessel_Blue=1 Declare=Vessel_Phong=0
+        draw "$model" Declare=Vessel_Red=0 Declare=Vessel_Green=0 Declare=Vessel_Blue=1 \
+            Declare=Vessel_Phong=0 Declare=Vessel_Specular=0
         [[ $(values "$model.png" 30 22) =~ ^0\ 0\ [12][0-9][0-9]$ ]] ||
             fail "expected a blue vessel as $model, got $(values "$model.png" 30 22)"
     done
@@ -72,7 +73,7 @@ test_glass_is_declared_before_the_geometry() {
     for model in $MODELS; do
         scene_of_a_vessel "$model" plain.pov
         { printf '#version 3.7;\n#declare Vessel_Color = rgbf <1, 1, 1, 1>;\n#declare Vessel_Ambient = 0;\n'
-          printf '#declare Vessel_Diffuse = 0;\n#declare Vessel_Phong = 0;\n#declare Background_Color = rgb <1, 0, 0>;\n'
+          printf '#declare Vessel_Diffuse = 0;\n#declare Vessel_Phong = 0;\n#declare Vessel_Specular = 0;\n#declare Background_Color = rgb <1, 0, 0>;\n'
           printf '#include "plain.pov"\n'; } >"$model.pov"
         draw "$model"
         expect_no_warning "$model"
