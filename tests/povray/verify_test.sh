@@ -50,6 +50,19 @@ test_joints_seen_close_up_agree() {
     agrees joined --projection perspective --location 12,25,9 --look-at 1,16,2 --angle 30 --shadows on
 }
 
+# The panels of templates/figures/fig3.ini, but for ambient occlusion, which POV-Ray has not; `make figures` holds them
+# large and smoothed.
+test_bifurcations_of_three_angles_agree_in_three_models() {
+    local angles model
+    for angles in 20,30 35,50 60,70; do
+        run_ok corcast bifurcation --radii 3.2,2.8,2.1 --lengths 13,13,13 --angles $angles -o tree.swc
+        for model in cylinders joined isosurface; do
+            agrees $model --look resin --shadows on --look-at 0,0,0 --height 33 --size 64x64
+            rm -r report
+        done
+    done
+}
+
 # Two vessels at both ends of a short segment, so near that the potential of the paper merges them.
 test_the_potential_of_the_graph_agrees() {
     printf '%s\n' '1 3 -9 1.1 0 1 -1' '2 3 0 1.1 0 1 1' '3 3 9 1.1 0 1 2' '4 3 0 -1.1 0 0.6 2' '5 3 9 -1.1 0 1 4' \
