@@ -569,7 +569,7 @@ Status outfile_check_room(const OutFile *file, double bytes, Err *err)
     if (bytes <= left)
         return STATUS_OK;
     char needs[BYTES_TEXT_SIZE], has[BYTES_TEXT_SIZE];
-    return err_set(err, STATUS_IO, "%s: needs %s, and its disk has %s left", file->path,
+    return err_set(err, STATUS_IO, "%s: needs at least %s, and its disk has %s left", file->path,
                    bytes_text(bytes, needs), bytes_text(left, has));
 }
 

@@ -204,5 +204,6 @@ const RowEncoder exr_encoder = {.begin = begin,
                                 .rows = write_rows,
                                 .end = end,
                                 .release = release_writer,
+                                .folds = 2 * DEFLATE_MAX_RATIO, /* halves */
                                 .keeps_dpi = true,
                                 .floats = true};

@@ -70,10 +70,10 @@ typedef struct RowEncoder {
     Status (*rows)(void *self, const void *values, int first, int n, Err *err);
     Status (*end)(void *self, Err *err); /* writes what comes last; may be NULL */
     void (*release)(void *self);         /* NULL is allowed */
-    bool plain;                          /* the file has the size of its values, and a header */
-    bool keeps_dpi;                      /* has a place for the resolution on paper */
-    bool keeps_inks;                     /* takes codes of 4 channels: cyan magenta yellow black */
-    bool floats;                         /* takes floats, not codes */
+    double folds;    /* a file is at most so many times smaller than its values; 0: not known */
+    bool keeps_dpi;  /* has a place for the resolution on paper */
+    bool keeps_inks; /* takes codes of 4 channels: cyan magenta yellow black */
+    bool floats;     /* takes floats, not codes */
 } RowEncoder;
 
 extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, jpeg_encoder,

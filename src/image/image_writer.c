@@ -113,8 +113,8 @@ static Status begin(ImageWriter *writer, Err *err)
     ImageForm form = writer->form; /* as the file has it */
     int channels = writer->encoder == &ppm_encoder ? 3 : form.channels;
     double bytes = (double)form.width * form.height * channels * form.bits / 8;
-    if (writer->encoder->plain)
-        TRY(outfile_check_room(&writer->file, bytes, err));
+    if (writer->encoder->folds > 0)
+        TRY(outfile_check_room(&writer->file, bytes / writer->encoder->folds, err));
     if (form.packing.inks) {
         form.channels = 4;
         TRY(mem_calloc(&writer->inked_row, (size_t)form.width, (size_t)form.bits / 2,

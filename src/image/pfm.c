@@ -116,4 +116,4 @@ static Status write_rows(void *self, const void *values, int first, int n, Err *
 }
 
 const RowEncoder pfm_encoder = {
-    .begin = begin, .rows = write_rows, .release = release_writer, .plain = true, .floats = true};
+    .begin = begin, .rows = write_rows, .release = release_writer, .folds = 1, .floats = true};

@@ -383,5 +383,9 @@ static void release_writer(void *self)
     free(writer);
 }
 
-const RowEncoder png_encoder = {
-    .begin = begin, .rows = write_rows, .end = end, .release = release_writer, .keeps_dpi = true};
+const RowEncoder png_encoder = {.begin = begin,
+                                .rows = write_rows,
+                                .end = end,
+                                .release = release_writer,
+                                .folds = DEFLATE_MAX_RATIO,
+                                .keeps_dpi = true};

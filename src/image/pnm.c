@@ -183,6 +183,6 @@ static Status write_rows(void *self, const void *values, int first, int n, Err *
 }
 
 const RowEncoder ppm_encoder = {
-    .begin = begin_ppm, .rows = write_rows, .release = release_writer, .plain = true};
+    .begin = begin_ppm, .rows = write_rows, .release = release_writer, .folds = 1};
 const RowEncoder pgm_encoder = {
-    .begin = begin_pgm, .rows = write_rows, .release = release_writer, .plain = true};
+    .begin = begin_pgm, .rows = write_rows, .release = release_writer, .folds = 1};

@@ -183,5 +183,6 @@ const RowEncoder tiff_encoder = {.begin = begin,
                                  .rows = write_rows,
                                  .end = end,
                                  .release = release_writer,
+                                 .folds = 1400, /* LZW */
                                  .keeps_dpi = true,
                                  .keeps_inks = true};

@@ -278,9 +278,23 @@ test_a_picture_beyond_the_disk_is_refused_and_the_old_one_stays() {
     cp picture.ppm before
     run corcast render tree.swc --size 1000000x1000000 -o picture.ppm
     expect_status 3
-    expect_sentence 'picture\.ppm: needs 3\.0 TB, and its disk has [0-9.]+ .?B left'
+    expect_sentence 'picture\.ppm: needs at least 3\.0 TB, and its disk has [0-9.]+ .?B left'
     expect_same picture.ppm before
     expect_only before picture.ppm tree.swc
+}
+
+# However well it is compressed, of a disk of 1 MB.
+test_a_compressed_picture_beyond_the_disk_is_refused_before_it_is_drawn() {
+    local extension
+    grow_tree 3
+    mkdir disk
+    unshare -rm mount -t tmpfs -o size=1m tmpfs disk 2>/dev/null || skip "no disk of 1 MB can be made here"
+    for extension in png tif exr; do
+        run unshare -rm sh -c 'mount -t tmpfs -o size=1m tmpfs disk && "$@"' - \
+            "$CORCAST" render tree.swc --size 100000x100000 -o disk/picture.$extension
+        expect_status 3
+        expect_sentence "picture\.$extension: needs at least [0-9.]+ MB, and its disk has 1\.[0-9]+ MB left"
+    done
 }
 
 test_a_band_beyond_memory_is_refused() {

@@ -9,8 +9,9 @@
 
 #include <cmocka.h>
 
-/* What is said in a log at 30 % of something that began so many seconds ago. */
-static void said_in_a_log(double seconds_ago, double since_last_s, bool quiet, char out[80])
+/* What is said in a log of something that began so many seconds ago. */
+static void said_at(double fraction, double seconds_ago, double since_last_s, bool quiet,
+                    char out[80])
 {
     Progress progress;
     FILE *log = tmpfile();
@@ -20,14 +21,19 @@ static void said_in_a_log(double seconds_ago, double since_last_s, bool quiet, c
     progress_start(&progress, "growing", quiet);
     progress.start_s -= seconds_ago;
     progress.last_s -= since_last_s;
-    progress_show(&progress, 0.3);
-    progress_show(&progress, 0.31);
+    progress_show(&progress, fraction);
+    progress_show(&progress, fraction + 0.01);
     progress_end(&progress);
     dup2(kept, STDERR_FILENO);
     close(kept);
     rewind(log);
     out[fread(out, 1, 79, log)] = '\0';
     fclose(log);
+}
+
+static void said_in_a_log(double seconds_ago, double since_last_s, bool quiet, char out[80])
+{
+    said_at(0.3, seconds_ago, since_last_s, quiet, out);
 }
 
 static void a_log_gets_a_line_of_progress_every_ten_seconds(void **state)
@@ -48,10 +54,21 @@ static void a_log_gets_a_line_of_progress_every_ten_seconds(void **state)
     assert_string_equal(said, "");
 }
 
+static void work_of_days_says_so_after_ten_seconds(void **state)
+{
+    (void)state;
+    char said[80];
+    said_at(0.0001, 12, 10.5, false, said);
+    assert_string_equal(said, "growing: 0 %, 33 h left\n");
+    said_at(0, 12, 10.5, false, said);
+    assert_string_equal(said, "growing: 0 %\n");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_log_gets_a_line_of_progress_every_ten_seconds),
+        cmocka_unit_test(work_of_days_says_so_after_ten_seconds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,12 +14,13 @@ void progress_start(Progress *progress, const char *what, bool quiet)
     progress->last_s = progress->terminal ? 0 : now_s;
 }
 
-/* ", 12 s left" once there is something to tell it by, else nothing. */
+/* ", 12 s left" once there is something to tell it by, else nothing: after a hundredth of the work,
+ * or ten seconds of it. */
 static const char *time_left(double elapsed_s, double fraction, char out[32])
 {
     double left_s = elapsed_s * (1 - fraction) / fraction;
     out[0] = '\0';
-    if (elapsed_s < 1 || !(fraction >= 0.01))
+    if (elapsed_s < 1 || !(fraction >= (elapsed_s < 10 ? 0.01 : 1e-6)))
         return out;
     if (left_s < 100)
         snprintf(out, 32, ", %.0f s left", left_s);
