@@ -52,11 +52,9 @@ Status mem_calloc(void *out, size_t count, size_t size, const char *what, Err *e
     return STATUS_OK;
 }
 
-Status mem_reserve(void *items, size_t *capacity, size_t needed, size_t size, const char *what,
-                   Err *err)
+Status mem_grow(void *items, size_t *capacity, size_t needed, size_t size, const char *what,
+                Err *err)
 {
-    if (needed <= *capacity)
-        return STATUS_OK;
     size_t wanted = *capacity < 8 ? 8 : *capacity;
     while (wanted < needed && wanted <= SIZE_MAX / 2)
         wanted *= 2;

@@ -15,11 +15,18 @@ double mem_of_machine(void);
  * memory than there is, and would end the program in the middle of a run. */
 MUST_CHECK Status mem_check(double bytes, const char *name, Err *err);
 
+/* As mem_reserve, of an array that has not room enough. */
+MUST_CHECK Status mem_grow(void *items, size_t *capacity, size_t needed, size_t size,
+                           const char *what, Err *err);
+
 /* Makes room for at least `needed` items of `size` bytes in the array *items, whose capacity is
  * *capacity items; doubles, so that appending is O(1) amortised. `items` is a pointer to the
  * array's pointer. Unchanged on failure. */
-MUST_CHECK Status mem_reserve(void *items, size_t *capacity, size_t needed, size_t size,
-                              const char *what, Err *err);
+MUST_CHECK static inline Status mem_reserve(void *items, size_t *capacity, size_t needed,
+                                            size_t size, const char *what, Err *err)
+{
+    return needed <= *capacity ? STATUS_OK : mem_grow(items, capacity, needed, size, what, err);
+}
 
 /* Hands memory that has been freed back to the system, which the C library keeps else where small
  * blocks lie about it. Milliseconds. */

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { RUN = 8, UNITS = 256, KEPT_RUNS = 256 };
 
@@ -13,15 +14,10 @@ typedef struct Leaf {
     uint32_t number;
 } Leaf;
 
-/* The boxes of a run. */
-typedef struct RunBoxes {
-    uint32_t run; /* and 1; 0: of none */
-    FloatBox boxes[RUN];
-} RunBoxes;
-
-/* What one unit of work keeps of runs that it has met: each at its number's place. */
+/* The boxes that one unit of work keeps of runs that it has met: each at its number's place. */
 typedef struct KeptRuns {
-    RunBoxes runs[KEPT_RUNS];
+    uint32_t runs[KEPT_RUNS]; /* and 1; 0: none yet */
+    FloatBox boxes[KEPT_RUNS][RUN];
 } KeptRuns;
 
 typedef struct UnitPair {
@@ -115,11 +111,12 @@ static void order_leaves(Forest *forest)
 
 static const FloatBox *boxes_of(const Forest *forest, KeptRuns *kept, uint32_t run)
 {
-    RunBoxes *place = &kept->runs[run % KEPT_RUNS];
-    for (uint32_t i = 0; i < run_length(forest, run) && place->run != run + 1; i++)
-        place->boxes[i] = forest->pairs->box(run * RUN + i, forest->pairs->context);
-    place->run = run + 1;
-    return place->boxes;
+    uint32_t *place = &kept->runs[run % KEPT_RUNS];
+    FloatBox *boxes = kept->boxes[run % KEPT_RUNS];
+    for (uint32_t i = 0; i < run_length(forest, run) && *place != run + 1; i++)
+        boxes[i] = forest->pairs->box(run * RUN + i, forest->pairs->context);
+    *place = run + 1;
+    return boxes;
 }
 
 /* Those of a run whose boxes meet `other`, and their boxes. */
@@ -183,7 +180,11 @@ static void descend(Descent *descent, uint32_t a, uint32_t b)
 static void descend_unit(size_t index, int worker, void *context)
 {
     const Forest *forest = context;
-    Descent descent = {.forest = forest, .worker = worker};
+    Descent descent;
+    descent.forest = forest;
+    descent.worker = worker;
+    memset(descent.kept.runs, 0,
+           sizeof descent.kept.runs); /* and not the boxes: fifty times that */
     descend(&descent, forest->units[index].a, forest->units[index].b);
 }
 

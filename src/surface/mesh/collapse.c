@@ -61,7 +61,7 @@ static bool find_ring(const Work *work, uint32_t point, Ring *ring)
     return ring->n > 0;
 }
 
-static bool edge_is_near(const Work *work, uint32_t a, uint32_t b)
+static inline bool edge_is_near(const Work *work, uint32_t a, uint32_t b)
 {
     const PatchPoint *one = &work->patch->points[a], *other = &work->patch->points[b];
     Vec3 edge = vec3_sub(other->x, one->x), turn = vec3_sub(other->normal, one->normal);

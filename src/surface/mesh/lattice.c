@@ -133,14 +133,10 @@ static Status add_point(Cutter *cutter, const ZoneCell *from, Vec3 x, uint32_t *
     return STATUS_OK;
 }
 
-static Status center_of(Cutter *cutter, const ZoneCell *from, uint32_t cell, uint32_t *number)
+static Status add_center(Cutter *cutter, const ZoneCell *from, uint32_t cell)
 {
-    uint32_t *center = &cutter->lattice->centers[cell];
-    if (*center == 0)
-        TRY(add_point(cutter, from, zonetree_center(cutter->tree, &cutter->tree->cells[cell]),
-                      center));
-    *number = *center;
-    return STATUS_OK;
+    return add_point(cutter, from, zonetree_center(cutter->tree, &cutter->tree->cells[cell]),
+                     &cutter->lattice->centers[cell]);
 }
 
 /* `at` in units of the smallest cells. */
@@ -333,7 +329,7 @@ static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
     }
     if (((!active && !cutter->away) || is_behind) && !cutter->list)
         return STATUS_OK;
-    uint32_t at[4];
+    uint32_t at[4], *centers = cutter->lattice->centers;
     TRY(edge_ends(cutter, around, axis, active, at));
     for (int i = 0; i < 4; i++) {
         uint32_t a = around[turn[i]], b = around[turn[i + 1]];
@@ -341,8 +337,10 @@ static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
         from = from->state == CELL_ACTIVE ? from : NULL;
         if (a == b || (!from && !cutter->away))
             continue;
-        TRY(center_of(cutter, from, a, &at[2]));
-        TRY(center_of(cutter, from, b, &at[3]));
+        TRY(centers[a] ? STATUS_OK : add_center(cutter, from, a));
+        TRY(centers[b] ? STATUS_OK : add_center(cutter, from, b));
+        at[2] = centers[a];
+        at[3] = centers[b];
         TRY(cutter->list ? list_tetrahedron(cutter, at) : cut_tetrahedron(cutter, from, at));
     }
     return STATUS_OK;
@@ -360,9 +358,21 @@ static bool is_leaf(const Cutter *cutter, uint32_t cell)
     return cutter->tree->cells[cell].children == 0;
 }
 
+/* Whether the wall may pass one of some cells, or leaves below them; a cell that is not active has
+ * none below it that is. */
+static bool may_cut(const Cutter *cutter, const uint32_t *cells, int n)
+{
+    bool may = cutter->away != NULL;
+    for (int i = 0; i < n && !may; i++)
+        may = cutter->tree->cells[cells[i]].state == CELL_ACTIVE;
+    return may;
+}
+
 /* around[i + 2 j] stands at the lower or upper side along the next axis but one (i, j). */
 static Status walk_edge(Cutter *cutter, const uint32_t around[4], int axis)
 {
+    if (!may_cut(cutter, around, 4))
+        return STATUS_OK;
     if (is_leaf(cutter, around[0]) && is_leaf(cutter, around[1]) && is_leaf(cutter, around[2]) &&
         is_leaf(cutter, around[3]))
         return cut_about_edge(cutter, around, axis);
@@ -400,7 +410,7 @@ static Status walk_face_edges(Cutter *cutter, const uint32_t sides[2], int norma
 
 static Status walk_face(Cutter *cutter, const uint32_t sides[2], int normal)
 {
-    if (is_leaf(cutter, sides[0]) && is_leaf(cutter, sides[1]))
+    if (!may_cut(cutter, sides, 2) || (is_leaf(cutter, sides[0]) && is_leaf(cutter, sides[1])))
         return STATUS_OK;
     for (int i = 0; i < 4; i++) {
         uint32_t parts[2];
@@ -432,7 +442,7 @@ static Status walk_inner_edges(Cutter *cutter, uint32_t children, int axis)
 
 static Status walk_cell(Cutter *cutter, uint32_t cell)
 {
-    if (is_leaf(cutter, cell))
+    if (is_leaf(cutter, cell) || !may_cut(cutter, &cell, 1))
         return STATUS_OK;
     uint32_t children = cutter->tree->cells[cell].children;
     for (uint32_t i = 0; i < 8; i++)

@@ -11,8 +11,6 @@
 static const double significant = 0.1 * FIELD_LEVEL;
 /* exp(-x^2) is below 10^-5 beyond this. */
 static const double out_of_reach = 3.4;
-/* From here on 1 - erf(x) is below 2e-9. */
-static const double saturated = 4.25;
 /* Walls bend away from the planes that they are taken for. */
 static const double crease_slack = 1.2;
 static const double inv_sqrt_pi = 0.56418958354775628695;
@@ -36,7 +34,7 @@ typedef struct TermPlace {
     Vec3 across; /* mm */
 } TermPlace;
 
-static TermPlace place_in(const ZoneTerm *term, Vec3 x)
+static inline TermPlace place_in(const ZoneTerm *term, Vec3 x)
 {
     Vec3 from_a = vec3_sub(x, term->a);
     double along = vec3_dot(from_a, term->axis);
@@ -45,24 +43,20 @@ static TermPlace place_in(const ZoneTerm *term, Vec3 x)
                        term->k * term->k * vec3_dot(across, across), across};
 }
 
-static double clamped_erf(double x)
+static inline double axial(double u, double v)
 {
-    return x > saturated ? 1 : x < -saturated ? -1 : fast_erf(x);
-}
-
-static double axial(double u, double v)
-{
-    return 0.5 * (clamped_erf(u) + clamped_erf(v));
+    Pair both = erf_pair((Pair){u, v});
+    return 0.5 * (both[0] + both[1]);
 }
 
 /* The squared distance to the segment itself, in units of 1 / k. */
-static double distance2(const TermPlace *place)
+static inline double distance2(const TermPlace *place)
 {
     double inside = place->u < place->v ? place->u : place->v;
     return inside < 0 ? place->e2 + inside * inside : place->e2;
 }
 
-static double value_at(const ZoneTerm *term, const TermPlace *place)
+static inline double value_at(const ZoneTerm *term, const TermPlace *place)
 {
     double from_segment = distance2(place);
     if (from_segment > out_of_reach * out_of_reach)
@@ -86,17 +80,15 @@ double zoneterm_value(const ZoneTerm *term, Vec3 x)
 }
 
 /* Of a term at a place, given its value there. */
-static Vec3 term_gradient(const ZoneTerm *term, const TermPlace *place, double value)
+static inline Vec3 term_gradient(const ZoneTerm *term, const TermPlace *place, double value)
 {
-    double slope = 0;
     if (term->is_round)
         return vec3_scale(from_nearest(term, place), -2 * term->k * term->k * value);
-    if (fabs(place->u) < saturated)
-        slope += exp_minus(place->e2 + place->u * place->u);
-    if (fabs(place->v) < saturated)
-        slope -= exp_minus(place->e2 + place->v * place->v);
+    Pair ends = {place->u, place->v}, none = {0, 0};
+    Pair felt = exp_minus_pair(place->e2 + ends * ends);
+    felt = pair_select((PairBits)(pair_abs(ends) < GAUSS_SATURATED), felt, none);
     return vec3_add_scaled(vec3_scale(place->across, -2 * term->k * term->k * value), term->axis,
-                           term->k * inv_sqrt_pi * slope);
+                           term->k * inv_sqrt_pi * (felt[0] - felt[1]));
 }
 
 static double upper_bound(const ZoneTerm *term, const TermPlace *place, double rho)
@@ -422,41 +414,74 @@ static FieldValue largest_group(const PartPool *pool, const FieldPart *part, con
 FieldValue fieldpart_value(const ZoneField *field, const PartPool *pool, const FieldPart *part,
                            Vec3 x)
 {
-    double values[MOST_PART_TERMS];
+    double values[MOST_PART_TERMS], sum = 0;
     const uint32_t *terms = &pool->terms[part->first_term];
-    values[0] = 0; /* where there is no term */
+    for (uint32_t i = 0; i < part->n_terms && part->n_groups == 1; i++)
+        sum += zoneterm_value(&field->terms[terms[i]], x);
+    if (part->n_groups < 2)
+        return (FieldValue){.phi = sum};
     for (uint32_t i = 0; i < part->n_terms; i++)
         values[i] = zoneterm_value(&field->terms[terms[i]], x);
     return largest_group(pool, part, values);
 }
 
-FieldValue fieldpart_gradient(const ZoneField *field, const PartPool *pool, const FieldPart *part,
-                              Vec3 x, Vec3 *gradient)
+/* The gradient of a sum, and its largest term, while it is added up. */
+typedef struct GradientSum {
+    Vec3 gradient;
+    double phi, largest;
+    uint32_t largest_term;
+} GradientSum;
+
+static inline void add_term(GradientSum *sum, const ZoneTerm *term, uint32_t number,
+                            const TermPlace *place, double value)
 {
-    double values[MOST_PART_TERMS], largest = -1;
+    if (value == 0)
+        return;
+    sum->phi += value;
+    sum->gradient = vec3_add(sum->gradient, term_gradient(term, place, value));
+    if (value > sum->largest) {
+        sum->largest = value;
+        sum->largest_term = number;
+    }
+}
+
+/* Of many groups the values tell which one's gradient it is. */
+static FieldValue gradient_of_largest(const ZoneField *field, const PartPool *pool,
+                                      const FieldPart *part, Vec3 x, Vec3 *gradient)
+{
+    double values[MOST_PART_TERMS];
     TermPlace places[MOST_PART_TERMS];
     const uint32_t *terms = &pool->terms[part->first_term];
-    values[0] = 0; /* where there is no term */
+    GradientSum sum = {.largest = 0};
     for (uint32_t i = 0; i < part->n_terms; i++) {
         places[i] = place_in(&field->terms[terms[i]], x);
         values[i] = value_at(&field->terms[terms[i]], &places[i]);
     }
     FieldValue best = largest_group(pool, part, values);
-    const uint64_t *group = &pool->groups[part->first_group + (size_t)best.group * part->words];
-    *gradient = vec3(0, 0, 0);
-    if (part->n_groups == 0)
-        return best;
-    for (uint32_t i = 0; i < part->n_terms; i++) {
-        if (!(group[i / 64] >> i % 64 & 1) || values[i] == 0)
-            continue;
-        Vec3 own = term_gradient(&field->terms[terms[i]], &places[i], values[i]);
-        *gradient = vec3_add(*gradient, own);
-        if (values[i] > largest) {
-            largest = values[i];
-            best.largest = terms[i];
-        }
-    }
+    const uint64_t *group = group_of(pool, part, best.group);
+    for (uint32_t i = 0; i < part->n_terms; i++)
+        if (group[i / 64] >> i % 64 & 1)
+            add_term(&sum, &field->terms[terms[i]], terms[i], &places[i], values[i]);
+    *gradient = sum.gradient;
+    best.largest = sum.largest_term;
     return best;
+}
+
+/* A lone group, as most parts have, holds all terms. */
+FieldValue fieldpart_gradient(const ZoneField *field, const PartPool *pool, const FieldPart *part,
+                              Vec3 x, Vec3 *gradient)
+{
+    const uint32_t *terms = &pool->terms[part->first_term];
+    GradientSum sum = {.largest = 0};
+    if (part->n_groups > 1)
+        return gradient_of_largest(field, pool, part, x, gradient);
+    for (uint32_t i = 0; i < part->n_terms && part->n_groups == 1; i++) {
+        const ZoneTerm *term = &field->terms[terms[i]];
+        TermPlace place = place_in(term, x);
+        add_term(&sum, term, terms[i], &place, value_at(term, &place));
+    }
+    *gradient = sum.gradient;
+    return (FieldValue){.phi = sum.phi, .largest = sum.largest_term};
 }
 
 double field_height(double phi)

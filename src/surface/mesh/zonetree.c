@@ -210,6 +210,15 @@ static Status split_leaf(Builder *builder, uint32_t number, Err *err)
     return STATUS_OK;
 }
 
+/* Whether the cell that stands by this from another is one of the same eight. */
+static bool is_sibling(const ZoneCell *cell, const int by[3])
+{
+    bool same = true;
+    for (int axis = 0; axis < 3; axis++)
+        same = same && (cell->at[axis] + by[axis]) >> 1 == cell->at[axis] >> 1;
+    return same;
+}
+
 /* Splits the leaves next to a cell that has children, over faces and edges, that are larger than
  * it. */
 static Status grade_about(Builder *builder, uint32_t number, Err *err)
@@ -218,7 +227,7 @@ static Status grade_about(Builder *builder, uint32_t number, Err *err)
     const ZoneCell cell = tree->cells[number];
     for (int i = 0; i < 27; i++) {
         const int by[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
-        if (i == 13 || abs(by[0]) + abs(by[1]) + abs(by[2]) > 2)
+        if (abs(by[0]) + abs(by[1]) + abs(by[2]) > 2 || is_sibling(&cell, by))
             continue;
         const int64_t at[3] = {cell.at[0] + by[0], cell.at[1] + by[1], cell.at[2] + by[2]};
         uint32_t other = leaf_at(tree, at, cell.level);

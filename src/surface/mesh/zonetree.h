@@ -49,7 +49,7 @@ const ZoneCell *zonetree_leaf(const ZoneTree *tree, Vec3 x);
 
 static inline double zonetree_side(const ZoneTree *tree, int level)
 {
-    return ldexp(tree->side, -level);
+    return tree->side / (double)(1u << level); /* exact */
 }
 
 static inline Vec3 zonetree_center(const ZoneTree *tree, const ZoneCell *cell)
