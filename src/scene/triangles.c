@@ -62,7 +62,7 @@ Status vesselmesh_part(const VesselMesh *mesh, const uint32_t *segments, size_t 
         for (int k = 0; k < 3; k++)
             made.triangles[made.n_triangles][k] =
                 take_point(mesh, mesh->triangles[i][k], number, &made);
-        made.labels[made.n_triangles++] = place | (mesh->labels[i] & MESH_CAP);
+        made.labels[made.n_triangles++] = place | (mesh->labels[i] & MESH_FLAGS);
     }
     *out = made;
     made = (VesselMesh){0};

@@ -8,8 +8,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Set in the label of a triangle that closes an end. */
+/* Set in the label of a triangle that is flat, as one that closes an end; of the inner side of a
+ * wall; or of a block or a plate, and not of the segment. */
 #define MESH_CAP 0x80000000u
+#define MESH_LUMEN 0x40000000u
+#define MESH_FRAME 0x20000000u
+#define MESH_FLAGS (MESH_CAP | MESH_LUMEN | MESH_FRAME)
 
 /* Triangles, counterclockwise seen from outside. Points are single precision, as most formats hold
  * them, so that what is checked is what is written. */
@@ -18,7 +22,7 @@ typedef struct VesselMesh {
     float (*normals)[3]; /* unit, outward, of the exact surface; on the rim of a cap, of the wall */
     size_t n_points;
     uint32_t (*triangles)[3];
-    uint32_t *labels; /* one a triangle: index of its segment, and MESH_CAP */
+    uint32_t *labels; /* one a triangle: index of its segment, and MESH_FLAGS */
     size_t n_triangles;
 } VesselMesh;
 
@@ -36,10 +40,10 @@ static inline Vec3 mesh_point(const VesselMesh *mesh, uint32_t i)
 MUST_CHECK Status vesselmesh_part(const VesselMesh *mesh, const uint32_t *segments, size_t n,
                                   VesselMesh *out, Err *err);
 
-/* Index of the segment that a triangle belongs to, and whether the triangle closes an end. */
+/* Index of the segment that a triangle belongs to, and whether the triangle is flat. */
 static inline uint32_t mesh_segment(const VesselMesh *mesh, size_t triangle)
 {
-    return mesh->labels[triangle] & ~MESH_CAP;
+    return mesh->labels[triangle] & ~MESH_FLAGS;
 }
 static inline bool mesh_is_cap(const VesselMesh *mesh, size_t triangle)
 {

@@ -15,6 +15,7 @@
 #include "surface/fieldindex.h"      // IWYU pragma: export
 #include "surface/localgroups.h"     // IWYU pragma: export
 #include "surface/mesh/vesselmesh.h" // IWYU pragma: export
+#include "surface/print/print.h"     // IWYU pragma: export
 #include "surface/termmean.h"        // IWYU pragma: export
 
 /* 1 / (sqrt2 s), 1/mm: with lengths in units of 1 / k a term is exp(-E^2) (erf u + erf v) / 2, E

@@ -7,10 +7,14 @@
 #include "app/pictures/volumes.h"
 #include "emit/emit.h"
 
+#include <string.h>
+
 typedef struct ExportOptions {
     const char *output;
     double prune_radius_mm;
     bool parts;
+    const char *print;
+    PrintSettings settings; /* what it says */
     MeshingOptions meshing;
     VolumeOptions volume;
 } ExportOptions;
@@ -50,6 +54,13 @@ static const Option own[] = {
      SETS(FLAG, ExportOptions, parts),
      .group = GROUP_VESSELS,
      .help = "of an STL: the wall and each end as a named solid, as text; a VTP has them always"},
+    {.name = "print",
+     SETS(TEXT, ExportOptions, print),
+     .argument = "KEY=VALUE,...",
+     .group = GROUP_VESSELS,
+     .otherwise = "",
+     .help = "make it fit for a printer: scale=N, min-diameter=MM, thin=clamp|prune, nozzle=MM, "
+             "wall=MM or as 0.2r, bed=AxBxC"},
     {.name = "look",
      SETS(LOOKUP, ExportOptions, meshing.look),
      .group = GROUP_COLOR,
@@ -94,6 +105,26 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
     return STATUS_OK;
 }
 
+/* STATUS_USAGE where --print would not do what it says. */
+static Status read_print(ExportOptions *options, const Emitter *emitter, Err *err)
+{
+    PrintSettings *print = &options->settings;
+    if (!options->print)
+        return STATUS_OK;
+    TRY(printing_parse(options->print, print, err));
+    options->meshing.print = print;
+    if (print->prunes)
+        options->prune_radius_mm =
+            fmax(options->prune_radius_mm, print->min_diameter_mm / print->scale / 2);
+    if (!strcmp(emitter->name, "mesh2"))
+        return err_set(err, STATUS_USAGE, "`print` is for solids, and .inc is a scene's");
+    if (print_is_joined(&print->params) && options->meshing.body != BODY_POTENTIAL)
+        return err_set(err, STATUS_USAGE,
+                       "`print`: walls, blocks and bases need --model isosurface, whose ends are "
+                       "flat");
+    return STATUS_OK;
+}
+
 static Status export_volume(const ExportOptions *options, const VolumeFormat *format,
                             Parsed *parsed, Err *err)
 {
@@ -107,7 +138,7 @@ static Status export_volume(const ExportOptions *options, const VolumeFormat *fo
 
 static Status run_export(void *options, Parsed *parsed, Err *err)
 {
-    const ExportOptions *own_options = options;
+    ExportOptions *own_options = options;
     const VolumeFormat *volume = volume_format_find(own_options->output);
     const Emitter *emitter;
     PictureTree of;
@@ -116,6 +147,7 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
         return export_volume(own_options, volume, parsed, err);
     TRY(find_emitter(own_options, &emitter, err));
     TRY(check_colors(own_options, emitter, parsed, err));
+    TRY(read_print(own_options, emitter, err));
     TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));
     TRY(picture_read_tree(&own_options->meshing.coloring, own_options->prune_radius_mm, parsed, &of,
                           err));

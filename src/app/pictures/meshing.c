@@ -22,9 +22,12 @@ typedef struct Meshing {
     VesselTree vessels;
     VesselMesh mesh;
     MeshReport report;
-    MeshEnds ends;        /* for an emitter with parts */
-    Text beside[BESIDES]; /* what stands beside the mesh; empty: nothing */
-    uint32_t *thinned;    /* indices of segments, by --part-overlaps */
+    MeshEnds ends;              /* for an emitter with parts */
+    Text beside[BESIDES];       /* what stands beside the mesh; empty: nothing */
+    const PrintSettings *print; /* NULL: none */
+    PrintChanges changes;
+    PrintReport printed;
+    uint32_t *thinned; /* indices of segments, by --part-overlaps */
     size_t n_thinned;
 } Meshing;
 
@@ -68,8 +71,14 @@ static Status say_estimate(const VesselTree *vessels, const MeshParams *params, 
     return mem_check(estimate.bytes, "the mesh", err);
 }
 
-static void say_result(const MeshReport *report, const VesselMesh *mesh, bool quiet)
+static void say_result(const Meshing *made, bool quiet)
 {
+    const MeshReport *report = &made->report;
+    if (made->n_thinned)
+        fprintf(stderr,
+                "corcast: %zu segments are thinned, because they overlap others that they do not "
+                "belong with, or blend with such\n",
+                made->n_thinned);
     if (report->n_swallowed)
         fprintf(stderr, "corcast: %zu segments lie wholly within others and have no wall\n",
                 report->n_swallowed);
@@ -81,8 +90,31 @@ static void say_result(const MeshReport *report, const VesselMesh *mesh, bool qu
         fprintf(stderr, "corcast: %zu pairs of vessels that do not belong together come near\n",
                 report->n_near);
     if (!quiet)
-        fprintf(stderr, "corcast: %zu triangles, %.6g mm^3\n", mesh->n_triangles,
+        fprintf(stderr, "corcast: %zu triangles, %.6g mm^3\n", made->mesh.n_triangles,
                 report->volume_mm3);
+}
+
+static Status print_vessels(Meshing *made, const MeshParams *mesh, bool part_overlaps, Err *err)
+{
+    PrintReport *printed = &made->printed;
+    PrintParams params = made->print->params;
+    params.mesh = *mesh;
+    params.part_overlaps = part_overlaps;
+    TRY(print_build(&made->vessels, &params, &made->mesh, &made->report, printed, err));
+    made->thinned = printed->thinned;
+    made->n_thinned = printed->n_thinned;
+    printed->thinned = NULL;
+    return printing_check_bed(made->print, &made->mesh, err);
+}
+
+static Status build(Meshing *made, const MeshParams *params, bool part_overlaps, Err *err)
+{
+    if (made->print)
+        return print_vessels(made, params, part_overlaps, err);
+    if (part_overlaps)
+        TRY(vesseltree_part(&made->vessels, params->threads, &made->thinned, &made->n_thinned,
+                            err));
+    return vesselmesh_build(&made->vessels, params, &made->mesh, &made->report, err);
 }
 
 static Status triangulate(Meshing *made, const MeshingOptions *options, const Common *common,
@@ -96,33 +128,24 @@ static Status triangulate(Meshing *made, const MeshingOptions *options, const Co
                          .context = &progress};
     TRY(say_estimate(&made->vessels, &params, common->quiet, err));
     progress_start(&progress, "triangulating", common->quiet);
-    Status status = vesselmesh_build(&made->vessels, &params, &made->mesh, &made->report, err);
+    Status status = build(made, &params, options->part_overlaps, err);
     progress_end(&progress);
     return status;
-}
-
-static Status part(Meshing *made, int threads, Err *err)
-{
-    TRY(vesseltree_part(&made->vessels, threads, &made->thinned, &made->n_thinned, err));
-    if (made->n_thinned)
-        fprintf(stderr,
-                "corcast: %zu segments are thinned, because they overlap others that they do not "
-                "belong with, or blend with such\n",
-                made->n_thinned);
-    return STATUS_OK;
 }
 
 static Status make(const Common *common, const MeshingOptions *options, bool colored, Meshing *made,
                    Err *err)
 {
     TRY(take_vessels(made, (VesselBody)options->body, err));
+    if (made->print)
+        TRY(printing_prepare(made->print, &made->vessels, &made->changes, err));
     if (colored)
         TRY(color_vessels(options, common->quiet, made, err));
-    if (options->part_overlaps)
-        TRY(part(made, common->threads, err));
     TRY(triangulate(made, options, common, err));
     TRY(meshreport_check(&made->report, &made->vessels, err));
-    say_result(&made->report, &made->mesh, common->quiet);
+    say_result(made, common->quiet);
+    if (made->print && !common->quiet)
+        printing_say(made->print, &made->changes, &made->printed, &made->mesh);
     return STATUS_OK;
 }
 
@@ -186,7 +209,12 @@ static json_t *manifest(const Meshing *made)
         {"max_distance_mm", json_number(report->off.mm)},
         {"max_distance_over_radius", json_number(report->off.ratio)},
     };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    json_t *all = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    if (!made->print)
+        return all;
+    return json_with(all, "print",
+                     printing_json(made->print, &made->changes, made->of->pruned, vessels,
+                                   &made->printed, mesh));
 }
 
 static Status write_beside(bool parts, Meshing *made, Err *err)
@@ -211,6 +239,7 @@ static void release(Meshing *made)
     vesselmesh_release(&made->mesh);
     meshreport_release(&made->report);
     meshends_release(&made->ends);
+    printreport_release(&made->printed);
     for (size_t i = 0; i < BESIDES; i++)
         text_release(&made->beside[i]);
     free(made->thinned);
@@ -219,7 +248,7 @@ static void release(Meshing *made)
 Status meshing_write(const Emitter *emitter, const MeshingOptions *options, const PictureTree *of,
                      const char *output, const Parsed *parsed, Err *err)
 {
-    Meshing made = {.of = of};
+    Meshing made = {.of = of, .print = options->print};
     char *line = NULL;
     Status status;
     TRY_GOTO(make(&parsed->common, options, emitter->has_colors, &made, err));

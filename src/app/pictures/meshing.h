@@ -4,6 +4,7 @@
 
 #include "app/pictures/coloring.h"
 #include "app/pictures/picture.h"
+#include "app/pictures/printing.h"
 #include "app/run/options.h"
 #include "base/base.h"
 #include "emit/emit.h"
@@ -12,11 +13,12 @@
 extern const char *const vessel_body_names[];
 
 typedef struct MeshingOptions {
-    int body;           /* choice: VesselBody */
-    double tolerance;   /* over the local radius */
-    double lod;         /* the part of the triangles that are to be made; 0: as 1 */
-    bool part_overlaps; /* thin vessels that overlap others that they do not belong with */
-    const char *look;   /* for an emitter with colours, as the coloring */
+    int body;                   /* choice: VesselBody */
+    double tolerance;           /* over the local radius */
+    double lod;                 /* the part of the triangles that are to be made; 0: as 1 */
+    bool part_overlaps;         /* thin vessels that overlap others that they do not belong with */
+    const PrintSettings *print; /* NULL: the surface as it is */
+    const char *look;           /* for an emitter with colours, as the coloring */
     Coloring coloring;
 } MeshingOptions;
 

@@ -51,17 +51,13 @@ Status volumes_check_needs(bool is_volume, const Parsed *parsed, Err *err)
 {
     static const char of_volumes[] = "is for volumes, as V.nii.gz";
     static const char of_meshes[] = "is for meshes; volumes are of rounded vessels";
-    const OptionNeed needs[] = {{"voxel", is_volume, of_volumes},
-                                {"depth", is_volume, of_volumes},
-                                {"labels", is_volume, of_volumes},
-                                {"centreline", is_volume, of_volumes},
-                                {"model", !is_volume, of_meshes},
-                                {"tolerance", !is_volume, of_meshes},
-                                {"lod", !is_volume, of_meshes},
-                                {"look", !is_volume, of_meshes},
-                                {"part-overlaps", !is_volume, of_meshes},
-                                {"color-by", !is_volume, of_meshes},
-                                {0}};
+    const OptionNeed needs[] = {
+        {"voxel", is_volume, of_volumes},         {"depth", is_volume, of_volumes},
+        {"labels", is_volume, of_volumes},        {"centreline", is_volume, of_volumes},
+        {"model", !is_volume, of_meshes},         {"tolerance", !is_volume, of_meshes},
+        {"lod", !is_volume, of_meshes},           {"look", !is_volume, of_meshes},
+        {"part-overlaps", !is_volume, of_meshes}, {"print", !is_volume, of_meshes},
+        {"color-by", !is_volume, of_meshes},      {0}};
     return options_check_needs(parsed, needs, err);
 }
 

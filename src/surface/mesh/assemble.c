@@ -163,7 +163,7 @@ static Status add_strip(Assembly *assembly, uint32_t segment, Err *err)
     return STATUS_OK;
 }
 
-double mesh_grid(const VesselTree *tree)
+double mesh_reach(const VesselTree *tree)
 {
     double farthest = 0;
     for (size_t i = 0; i < tree->n_segments; i++) {
@@ -173,8 +173,13 @@ double mesh_grid(const VesselTree *tree)
                             2 * segment->radius_mm + fmax(fabs(vec3_component(segment->a, axis)),
                                                           fabs(vec3_component(segment->b, axis))));
     }
+    return farthest;
+}
+
+double mesh_grid(double reach_mm)
+{
     int exponent;
-    frexp(farthest, &exponent);
+    frexp(reach_mm, &exponent);
     return ldexp(1, exponent - 24);
 }
 

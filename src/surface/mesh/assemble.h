@@ -4,10 +4,12 @@
 
 #include "surface/mesh/zonepiece.h"
 
-/* The step of the grid that the points of a mesh of the tree lie on: the spacing of floats at the
- * coordinate farthest from the origin, so that each coordinate is a whole number of less than 26
- * bits of it, and a float. */
-double mesh_grid(const VesselTree *tree);
+/* No coordinate of the tree's mesh is farther from 0, mm. */
+double mesh_reach(const VesselTree *tree);
+/* The step of the grid that the points of a mesh lie on: the spacing of floats at the coordinate
+ * farthest from 0, so that each coordinate is a whole number of less than 26 bits of it, and a
+ * float. */
+double mesh_grid(double reach_mm);
 
 /* Joins all into *mesh (owned by the caller), its points on the grid; a cap has `sides` sides. The
  * pieces are released on the way. Every segment that is a tube has triangles then. *off is widened

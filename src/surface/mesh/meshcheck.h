@@ -4,6 +4,10 @@
 
 #include "surface/mesh/vesselmesh.h"
 
+/* The trees that segments are of, each by its lowest node, in *trees (owned). */
+MUST_CHECK Status meshcheck_trees(const VesselTree *tree, uint32_t **trees, size_t *n_trees,
+                                  Err *err);
+
 /* Fills components, genus, euler, open_edges and volume_mm3 of the report, and bridges: trees[i] is
  * the tree that segment i is of. O(triangles). */
 MUST_CHECK Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *trees,

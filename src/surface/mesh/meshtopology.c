@@ -122,7 +122,7 @@ static size_t count_bridges(const VesselMesh *mesh, uint32_t *root, uint32_t *tr
         tree[i] = no_tree;
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         uint32_t component = root_of(root, mesh->triangles[i][0]);
-        uint32_t own = trees[mesh->labels[i] & ~MESH_CAP];
+        uint32_t own = trees[mesh_segment(mesh, i)];
         if (tree[component] == no_tree)
             tree[component] = own;
         bridges += tree[component] != own;
@@ -143,6 +143,43 @@ double vesselmesh_volume(const VesselMesh *mesh)
         six += vec3_dot(at[0], vec3_cross(at[1], at[2]));
     }
     return six / 6;
+}
+
+Status meshcheck_trees(const VesselTree *tree, uint32_t **trees, size_t *n_trees, Err *err)
+{
+    uint32_t *root, *of_segment;
+    TRY(mem_calloc(&root, tree->n_nodes, sizeof *root, "nodes", err));
+    Status status = mem_calloc(&of_segment, tree->n_segments, sizeof *of_segment, "segments", err);
+    if (status != STATUS_OK) {
+        free(root);
+        return status;
+    }
+    for (uint32_t i = 0; i < tree->n_nodes; i++)
+        root[i] = i;
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t i = 0; i < tree->n_segments; i++) {
+            uint32_t ends[2];
+            for (int end = 0; end < 2; end++) {
+                uint32_t node = tree->nodes[i][end];
+                while (root[node] != node)
+                    node = root[node] = root[root[node]];
+                ends[end] = node;
+            }
+            root[ends[0] > ends[1] ? ends[0] : ends[1]] = ends[0] < ends[1] ? ends[0] : ends[1];
+            of_segment[i] = ends[0] < ends[1] ? ends[0] : ends[1];
+        }
+    uint8_t *used = (uint8_t *)root; /* one node is as many bytes as needed, and more */
+    size_t n = 0;
+    for (size_t i = 0; i < tree->n_nodes; i++)
+        used[i] = 0;
+    for (size_t i = 0; i < tree->n_segments; i++) {
+        n += !used[of_segment[i]];
+        used[of_segment[i]] = 1;
+    }
+    free(root);
+    *trees = of_segment;
+    *n_trees = n;
+    return STATUS_OK;
 }
 
 Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *trees, MeshReport *report,

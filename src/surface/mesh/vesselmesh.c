@@ -53,8 +53,9 @@ void meshreport_release(MeshReport *report)
 
 bool meshreport_is_sound(const MeshReport *report)
 {
-    return report->open_edges == 0 && report->components == report->trees && report->genus == 0 &&
-           report->crossings == 0 && report->bridges == 0 && report->n_missing == 0;
+    return report->open_edges == 0 && report->components == report->expected_components &&
+           report->genus == report->expected_genus && report->crossings == 0 &&
+           report->bridges == 0 && report->n_missing == 0;
 }
 
 Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *err)
@@ -210,44 +211,6 @@ static Status make_zones(Build *build, int n_workers, Err *err)
     return STATUS_OK;
 }
 
-/* The trees that segments are of, numbered from 0, in *trees (owned). */
-static Status find_trees(const VesselTree *tree, uint32_t **trees, size_t *n_trees, Err *err)
-{
-    uint32_t *root, *of_segment;
-    TRY(mem_calloc(&root, tree->n_nodes, sizeof *root, "nodes", err));
-    Status status = mem_calloc(&of_segment, tree->n_segments, sizeof *of_segment, "segments", err);
-    if (status != STATUS_OK) {
-        free(root);
-        return status;
-    }
-    for (uint32_t i = 0; i < tree->n_nodes; i++)
-        root[i] = i;
-    for (int pass = 0; pass < 2; pass++)
-        for (size_t i = 0; i < tree->n_segments; i++) {
-            uint32_t ends[2];
-            for (int end = 0; end < 2; end++) {
-                uint32_t node = tree->nodes[i][end];
-                while (root[node] != node)
-                    node = root[node] = root[root[node]];
-                ends[end] = node;
-            }
-            root[ends[0] > ends[1] ? ends[0] : ends[1]] = ends[0] < ends[1] ? ends[0] : ends[1];
-            of_segment[i] = ends[0] < ends[1] ? ends[0] : ends[1];
-        }
-    uint8_t *used = (uint8_t *)root; /* one node is as many bytes as needed, and more */
-    size_t n = 0;
-    for (size_t i = 0; i < tree->n_nodes; i++)
-        used[i] = 0;
-    for (size_t i = 0; i < tree->n_segments; i++) {
-        n += !used[of_segment[i]];
-        used[of_segment[i]] = 1;
-    }
-    free(root);
-    *trees = of_segment;
-    *n_trees = n;
-    return STATUS_OK;
-}
-
 /* The segments of one fate, in *list (owned). */
 static Status list_fate(const Build *build, SegmentFate fate, uint32_t **list, size_t *n, Err *err)
 {
@@ -293,7 +256,8 @@ static Status refuse_overlap(const Build *build, Err *err)
 static Status fill_report(Build *build, const VesselMesh *mesh, MeshReport *report, Err *err)
 {
     uint32_t *trees;
-    TRY(find_trees(build->tree, &trees, &report->trees, err));
+    TRY(meshcheck_trees(build->tree, &trees, &report->trees, err));
+    report->expected_components = report->trees;
     Status status = meshcheck_topology(mesh, trees, report, err);
     free(trees);
     TRY(status);
@@ -324,8 +288,10 @@ Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, Vessel
 {
     int n_workers = workers_of(params);
     double tolerance = tolerance_of(params);
-    Build build = {
-        .tree = tree, .params = params, .fineness = fineness_of(tree, tolerance, mesh_grid(tree))};
+    Build build = {.tree = tree,
+                   .params = params,
+                   .fineness = fineness_of(tree, tolerance,
+                                           mesh_grid(fmax(mesh_reach(tree), params->reach_mm)))};
     VesselMesh made = {0};
     MeshReport found = {.tolerance = tolerance};
     Status status;

@@ -16,9 +16,10 @@ double vesselmesh_volume(const VesselMesh *mesh);
 
 typedef struct MeshParams {
     double tolerance; /* of the local radius, in [0.001, 0.2]: what few places exceed */
-    double lod;  /* in (0, 1]: about this part of the triangles that the tolerance takes, and no
-                  * fewer than about 9 for each radius of length; 0: as 1 */
-    int threads; /* 0: all processors */
+    double lod;      /* in (0, 1]: about this part of the triangles that the tolerance takes, and no
+                      * fewer than about 9 for each radius of length; 0: as 1 */
+    int threads;     /* 0: all processors */
+    double reach_mm; /* 0, or a coordinate of what it is to be joined with: both lie on one grid */
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *context;
 } MeshParams;
@@ -42,10 +43,12 @@ static inline void meshoff_add(MeshOff *off, double mm, double radius_mm)
 
 /* What is true of a mesh, established on its final points. */
 typedef struct MeshReport {
-    size_t trees;       /* of the input */
-    size_t components;  /* of the mesh */
-    size_t genus;       /* all components together */
-    long long euler;    /* points - edges + triangles, of all */
+    size_t trees;                               /* of the input */
+    size_t components;                          /* of the mesh */
+    size_t genus;                               /* all components together */
+    size_t expected_components, expected_genus; /* of a sound mesh: one for each tree, and 0, unless
+                                                 * it was made into a solid for printing */
+    long long euler;                            /* points - edges + triangles, of all */
     size_t open_edges;  /* that not two triangles share, one each way; 0: closed and oriented */
     size_t crossings;   /* pairs of triangles that meet elsewhere than in what they share */
     size_t bridges;     /* components that hold segments of several trees */
@@ -76,6 +79,13 @@ MUST_CHECK Status meshreport_check(const MeshReport *report, const VesselTree *t
  * a twentieth of a radius. */
 MUST_CHECK Status vesseltree_part(VesselTree *tree, int threads, uint32_t **thinned, size_t *n,
                                   Err *err);
+
+/* Lengthens ends that could not be cut off flat because of what meets nearby, along their axes by
+ * at most LENGTHENED_MOST of their radii and not into other vessels, until they can; *lengthened
+ * (owned) lists the indices of their segments, rising. */
+#define LENGTHENED_MOST 3
+MUST_CHECK Status vesseltree_free_ends(VesselTree *tree, int threads, uint32_t **lengthened,
+                                       size_t *n, Err *err);
 
 /* What the mesh of a tree takes, within a factor of 2 as a rule. */
 typedef struct MeshEstimate {

@@ -1,0 +1,246 @@
+/* The two sides of a wall are surfaces of one machinery: of the vessels, and of the vessels with
+ * radii larger by the wall. Their flat ends lie in the same planes with rims of as many points, and
+ * a flat ring joins them. No boolean is needed, and what is proved of both is true of the wall but
+ * for crossings, for which it is searched as a whole. */
+#include "surface/print/print.h"
+
+#include "surface/mesh/assemble.h"
+#include "surface/mesh/meshcheck.h"
+#include "surface/print/proof.h"
+#include "surface/print/solid.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* A surface, and where it is cut off flat. */
+typedef struct Side {
+    VesselMesh mesh;
+    MeshReport report;
+    CutEnds ends;
+} Side;
+
+typedef struct Making {
+    VesselTree *tree;
+    VesselTree outer; /* of a wall; segments are its own, all else the tree's */
+    PrintParams params;
+    Side sides[2]; /* the outer one, and that of the lumen */
+    Solid solid;
+    Seams seams;
+    PrintReport report;
+} Making;
+
+void printreport_release(PrintReport *report)
+{
+    free(report->closed);
+    free(report->longer);
+    free(report->thinned);
+    *report = (PrintReport){0};
+}
+
+static void release_side(Side *side)
+{
+    vesselmesh_release(&side->mesh);
+    meshreport_release(&side->report);
+    cutends_release(&side->ends);
+}
+
+static void release_making(Making *making)
+{
+    free(making->outer.segments);
+    release_side(&making->sides[0]);
+    release_side(&making->sides[1]);
+    solid_release(&making->solid);
+    seams_release(&making->seams);
+    printreport_release(&making->report);
+}
+
+static double outer_radius(const PrintParams *params, double radius_mm)
+{
+    return radius_mm * (1 + params->wall_ratio) + params->wall_mm;
+}
+
+static Status take_outer(Making *making, Err *err)
+{
+    VesselTree *outer = &making->outer;
+    const VesselTree *tree = making->tree;
+    *outer = *tree;
+    outer->segments = NULL;
+    TRY(mem_calloc(&outer->segments, tree->n_segments, sizeof *outer->segments, "segments", err));
+    for (size_t i = 0; i < tree->n_segments; i++) {
+        outer->segments[i] = tree->segments[i];
+        outer->segments[i].radius_mm = outer_radius(&making->params, tree->segments[i].radius_mm);
+    }
+    return STATUS_OK;
+}
+
+/* What was changed on the outer side is changed in the tree, which keeps its wall. */
+static Status take_changes(Making *making, Err *err)
+{
+    const PrintParams *params = &making->params;
+    const PrintReport *report = &making->report;
+    VesselTree *tree = making->tree;
+    for (size_t i = 0; i < report->n_longer; i++) {
+        uint32_t k = report->longer[i];
+        tree->segments[k].a = making->outer.segments[k].a;
+        tree->segments[k].b = making->outer.segments[k].b;
+    }
+    for (size_t i = 0; i < report->n_thinned; i++) {
+        uint32_t k = report->thinned[i];
+        double *radius = &tree->segments[k].radius_mm, before = *radius;
+        *radius =
+            (making->outer.segments[k].radius_mm - params->wall_mm) / (1 + params->wall_ratio);
+        if (*radius < 0.05 * before)
+            return err_set(
+                err, STATUS_INPUT,
+                "segment %u and one that it does not belong with come so near that their "
+                "walls leave it no lumen; they cannot be parted",
+                tree->ids[k]);
+    }
+    return STATUS_OK;
+}
+
+/* Parts overlaps and lengthens ends. */
+static Status prepare(Making *making, Err *err)
+{
+    const PrintParams *params = &making->params;
+    PrintReport *report = &making->report;
+    TRY(take_outer(making, err));
+    if (params->part_overlaps)
+        TRY(vesseltree_part(&making->outer, params->mesh.threads, &report->thinned,
+                            &report->n_thinned, err));
+    if (print_has_wall(params))
+        TRY(vesseltree_free_ends(&making->outer, params->mesh.threads, &report->longer,
+                                 &report->n_longer, err));
+    return take_changes(making, err);
+}
+
+static Status build_side(const VesselTree *tree, const MeshParams *params, Side *side, Err *err)
+{
+    TRY(vesselmesh_build(tree, params, &side->mesh, &side->report, err));
+    TRY(meshreport_check(&side->report, tree, err));
+    return cutends_find(&side->mesh, &side->ends, err);
+}
+
+static Status build_sides(Making *making, Err *err)
+{
+    const PrintParams *params = &making->params;
+    Status status = build_side(&making->outer, &params->mesh, &making->sides[0], err);
+    if (status != STATUS_OK && print_has_wall(params))
+        err_prefix(err, "with their walls, ");
+    TRY(status);
+    if (!print_has_wall(params))
+        return STATUS_OK;
+    status = build_side(making->tree, &params->mesh, &making->sides[1], err);
+    if (status != STATUS_OK)
+        err_prefix(err, "inside the walls, ");
+    return status;
+}
+
+/* Opens the ends that both sides are cut off flat at. */
+static void open_ends(Making *making)
+{
+    CutEnds *ends = &making->sides[0].ends;
+    for (size_t i = 0; i < ends->n; i++) {
+        CutEnd *end = &ends->items[i];
+        CutEnd *other = cutends_at(&making->sides[1].ends, end->segment, end->end);
+        if (other)
+            end->opened = other->opened = true;
+    }
+}
+
+/* Joins the sides where they are open. */
+static Status join_sides(Making *making, Err *err)
+{
+    const CutEnds *ends = &making->sides[0].ends;
+    for (size_t i = 0; i < ends->n; i++) {
+        const CutEnd *end = &ends->items[i];
+        if (!end->opened)
+            continue;
+        const CutEnd *other = cutends_at(&making->sides[1].ends, end->segment, end->end);
+        TRY(solid_ring(&making->solid, end->end ? end->rim : other->rim,
+                       end->end ? other->rim : end->rim, end->n, end->segment | MESH_CAP, err));
+        seams_ring(&making->seams, end->segment, end->segment | MESH_LUMEN);
+        making->report.openings++;
+    }
+    return STATUS_OK;
+}
+
+static Status add_sides(Making *making, Err *err)
+{
+    Side *outer = &making->sides[0], *lumen = &making->sides[1];
+    for (uint32_t i = 0; i < making->tree->n_segments; i++)
+        seams_add(&making->seams, i);
+    if (print_has_wall(&making->params)) {
+        open_ends(making);
+        for (uint32_t i = 0; i < making->tree->n_segments; i++)
+            seams_add(&making->seams, i | MESH_LUMEN);
+        TRY(solid_surface(&making->solid, &lumen->mesh, &lumen->ends, true, MESH_LUMEN, err));
+    }
+    TRY(solid_surface(&making->solid, &outer->mesh, &outer->ends, false, 0, err));
+    return join_sides(making, err);
+}
+
+/* Lists the segments with an end that nothing meets and that is not open. */
+static Status list_closed(Making *making, Err *err)
+{
+    PrintReport *report = &making->report;
+    const VesselTree *tree = making->tree;
+    NumberLists incident = {0};
+    Status status;
+    TRY_GOTO(vesseltree_incident(tree, &incident, err));
+    TRY_GOTO(
+        mem_calloc(&report->closed, 2 * tree->n_segments, sizeof *report->closed, "ends", err));
+    for (uint32_t i = 0; i < tree->n_segments; i++)
+        for (int end = 0; end < 2; end++) {
+            const uint32_t *first = &incident.first[tree->nodes[i][end]];
+            const CutEnd *at = cutends_at(&making->sides[0].ends, i, end);
+            if (first[1] - first[0] == 1 && !(at && at->opened))
+                report->closed[report->n_closed++] = i;
+        }
+done:
+    numberlists_release(&incident);
+    return status;
+}
+
+/* The report of the solid: what is said of segments is what the outer side has. */
+static Status prove(Making *making, MeshReport *report, Err *err)
+{
+    Side *outer = &making->sides[0];
+    *report = outer->report;
+    outer->report = (MeshReport){0};
+    making->report.outer_mm3 = vesselmesh_volume(&outer->mesh);
+    if (print_has_wall(&making->params)) {
+        making->report.lumen_mm3 = making->sides[1].report.volume_mm3;
+        report->off.mm = fmax(report->off.mm, making->sides[1].report.off.mm);
+        report->off.ratio = fmax(report->off.ratio, making->sides[1].report.off.ratio);
+        TRY(list_closed(making, err));
+    }
+    making->report.rings = making->seams.n_rings;
+    TRY(seams_prove(&making->seams, &making->solid.mesh, making->solid.grid_mm,
+                    making->params.mesh.threads, report, err));
+    return meshreport_check(report, making->tree, err);
+}
+
+Status print_build(VesselTree *tree, const PrintParams *params, VesselMesh *mesh,
+                   MeshReport *report, PrintReport *print, Err *err)
+{
+    Making making = {.tree = tree, .params = *params};
+    MeshReport found = {0};
+    Status status;
+    TRY_GOTO(prepare(&making, err));
+    making.params.mesh.reach_mm = mesh_reach(&making.outer);
+    making.solid.grid_mm = mesh_grid(making.params.mesh.reach_mm);
+    TRY_GOTO(build_sides(&making, err));
+    TRY_GOTO(seams_make(tree, &making.seams, err));
+    TRY_GOTO(add_sides(&making, err));
+    TRY_GOTO(prove(&making, &found, err));
+    *mesh = making.solid.mesh;
+    *report = found;
+    *print = making.report;
+    making.solid.mesh = (VesselMesh){0};
+    making.report = (PrintReport){0};
+    found = (MeshReport){0};
+done:
+    meshreport_release(&found);
+    release_making(&making);
+    return status;
+}

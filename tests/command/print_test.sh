@@ -1,0 +1,120 @@
+#!/usr/bin/env bash
+# `export --print`: solids for printers, proved and looked at by programs that are not ours.
+. "$(dirname "$0")/../lib.sh"
+
+# grown TERMINALS: a grown tree, t.swc.
+grown() {
+    run_ok corcast grow --terminals "$1" --domain ball:41 --seed 7 -o t.swc --quiet
+}
+
+# expect_solid FILE PARTS: admesh repairs nothing, and finds so many parts and the volume in the manifest.
+expect_solid() {
+    admesh "$1" >said 2>&1 || fail "admesh fails: $(tail -1 said)"
+    for fault in 'Total disconnected facets' 'Degenerate facets' 'Edges fixed' 'Backwards edges' 'Facets reversed' \
+        'Facets removed' 'Facets added' 'Normals fixed'; do
+        grep -qE "$fault *: +0( |$)" said || fail "admesh finds: $(grep "$fault" said)"
+    done
+    grep -qE "Number of parts +: +$2 " said || fail "admesh finds: $(grep 'Number of parts' said)"
+    awk -v a="$(jq .volume_mm3 "$1.json")" -v b="$(sed -n 's/.*Volume *: *//p' said)" \
+        'BEGIN { exit !(a > 10 && (a / b - 1) ^ 2 < 1e-4 ^ 2) }' || fail "admesh measures $(grep Volume said)"
+}
+
+test_a_wall_is_one_closed_solid_with_a_hole_for_each_end() {
+    run_ok corcast export "$DATA/bifurcation.swc" --print wall=0.617 -o m.stl --quiet
+    expect_solid m.stl 1
+    expect_json m.stl.json '.components == 1 and .genus == 2 and .euler == -2 and .self_intersections == 0'
+    expect_json m.stl.json '.print | .openings == 3 and .rings == 3 and .closed_ends == []'
+    grown 23
+    run_ok corcast export t.swc --print wall=0.3r --tolerance 0.07 -o t.stl --quiet
+    expect_solid t.stl 1
+    expect_json t.stl.json '.genus == 23 and .print.openings == 24'
+}
+
+# The wall of a lone vessel is a tube of known volume; of a tree it is what its two sides enclose, each of which
+# `export` makes of a tree of such radii.
+test_a_wall_has_the_volume_between_its_sides() {
+    printf '%s\n' '1 3 0.4 0 0 1.3 -1' '2 3 9.7 3.1 -5.3 1.3 1' >t.swc
+    run_ok corcast export t.swc --print wall=0.617 --tolerance 0.005 -o t.stl --quiet
+    awk -v v="$(jq .volume_mm3 t.stl.json)" 'BEGIN { pi = atan2(0, -1)
+        length_mm = sqrt(9.3 ^ 2 + 3.1 ^ 2 + 5.3 ^ 2); exit !((v / (pi * (1.917 ^ 2 - 1.3 ^ 2) * length_mm) - 1) ^ 2 < 0.005 ^ 2) }' ||
+        fail "a tube of $(jq .volume_mm3 t.stl.json) mm^3"
+    awk '/^#/ { print; next } { $6 += 0.617; print }' "$DATA/bifurcation.swc" >thick.swc
+    run_ok corcast export "$DATA/bifurcation.swc" --print wall=0.617 -o wall.stl --quiet
+    run_ok corcast export thick.swc -o thick.stl --quiet
+    run_ok corcast export "$DATA/bifurcation.swc" -o lumen.stl --quiet
+    awk -v wall="$(jq .volume_mm3 wall.stl.json)" -v a="$(jq .volume_mm3 thick.stl.json)" -v b="$(jq .volume_mm3 lumen.stl.json)" \
+        'BEGIN { exit !(wall > 100 && (wall / (a - b) - 1) ^ 2 < 1e-5 ^ 2) }' || fail "the wall is not the difference"
+}
+
+test_refuses_walls_that_meet_or_parts_them() {
+    cp "$REPO/tests/golden/strangers.swc" t.swc
+    run corcast export t.swc --print wall=0.31 -o m.stl --quiet
+    expect_status 2
+    expect_sentence 'with their walls, the vessels of segments 5 and 6, which do not belong together, overlap by 1\.15'
+    expect_only t.swc
+    run_ok corcast export t.swc --print wall=0.31 --part-overlaps -o m.stl --quiet
+    expect_solid m.stl "$(jq .trees m.stl.json)"
+    expect_json m.stl.json '.segments_thinned | index(5) != null and index(6) != null'
+}
+
+test_thin_vessels_are_thickened_or_pruned_and_counted() {
+    grown 23
+    run_ok corcast export t.swc --print scale=2,min-diameter=1.9 -o m.stl --tolerance 0.1
+    expect_json m.stl.json '.print.segments_thickened == 23 and .print.thinnest_diameter_mm == 1.9 and .segments == 45'
+    grep -q '23 segments are thickened to 1.9 mm' stderr || fail "it does not say so: $(cat stderr)"
+    run_ok corcast export t.swc --print scale=2,min-diameter=1.9,thin=prune -o p.stl --tolerance 0.1
+    expect_json p.stl.json '.print.segments_pruned == 23 and .print.segments_thickened == 0 and .segments == 22'
+    expect_json p.stl.json '.print.thinnest_diameter_mm > 1.9'
+}
+
+test_scales_the_whole_model() {
+    run_ok corcast export "$DATA/bifurcation.swc" -o one.stl --quiet
+    run_ok corcast export "$DATA/bifurcation.swc" --print scale=2.5 -o m.stl --quiet
+    awk -v a="$(jq .volume_mm3 one.stl.json)" -v b="$(jq .volume_mm3 m.stl.json)" \
+        'BEGIN { exit !((b / a / 2.5 ^ 3 - 1) ^ 2 < 1e-5 ^ 2) }' || fail "another volume than 2.5^3 as much"
+}
+
+test_refuses_what_the_printer_cannot_make() {
+    local said
+    while IFS='|' read -r print said; do
+        run corcast export "$DATA/bifurcation.swc" --print "$print" -o m.stl --quiet
+        expect_status 2
+        expect_sentence "$said"
+        expect_only
+    done <<'END'
+nozzle=7.3|the nozzle of 7.3 mm is wider than the trunk, [0-9.]* mm when printed
+scale=0.01,nozzle=0.4|the nozzle of 0.4 mm is wider than the trunk, 0.0[0-9]* mm
+nozzle=0.4,wall=0.3|the nozzle of 0.4 mm is wider than the wall, 0.3 mm at its thinnest
+bed=30x31x200|the print of [0-9.]* x [0-9.]* x [0-9.]* mm does not fit the bed of 30 x 31 x 200 mm
+END
+    run_ok corcast export "$DATA/bifurcation.swc" --print bed=33x23x6 -o m.stl --quiet
+}
+
+test_refuses_what_is_no_key_or_value() {
+    local said
+    while IFS='|' read -r print said; do
+        run corcast export "$DATA/bifurcation.swc" --print "$print" -o m.stl --quiet
+        expect_status 2
+        expect_sentence "$said"
+    done <<'END'
+walls=2|--print: 'walls' is not one of scale, .*; did you mean wall
+wall=thick|--print: 'wall=thick' is wrong: wall takes a thickness in mm, or over the radius, as 0.2r
+scale=-1|--print: 'scale=-1' is wrong: scale takes a factor above 0
+bed=2x3|--print: 'bed=2x3' is wrong: bed takes three lengths in mm
+thin=prune|--print: thin=prune needs min-diameter
+END
+    run corcast export "$DATA/bifurcation.swc" --print wall=1 --model rounded -o m.stl
+    expect_sentence '--print: walls, blocks and bases need --model isosurface'
+    run corcast export "$DATA/bifurcation.swc" --print wall=1 -o m.inc
+    expect_sentence '--print is for solids, and .inc is a scene'
+}
+
+test_a_wall_has_the_same_bytes_for_any_number_of_threads() {
+    grown 9
+    run_ok corcast export t.swc --print wall=0.4 --tolerance 0.1 -o one.ply --threads 1 --quiet
+    run_ok corcast export t.swc --print wall=0.4 --tolerance 0.1 -o three.ply --threads 3 --quiet
+    expect_same one.ply three.ply
+    expect_same one.ply.json three.ply.json
+}
+
+run_tests "$@"
