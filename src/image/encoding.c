@@ -137,12 +137,24 @@ Status plane_from_picture(Plane *plane, const Picture *picture, Err *err)
     return status;
 }
 
+/* Alpha is no colour: it has no gamma. */
+static void copy_alpha(Picture *to, const Picture *from)
+{
+    const uint32_t most = (1u << to->bits) - 1, most_before = (1u << from->bits) - 1;
+    size_t n = picture_stride(to) * (size_t)to->height;
+    for (size_t i = 3; i < n; i += 4)
+        picture_set(to, i,
+                    (uint16_t)((picture_code(from, i) * most + most_before / 2) / most_before));
+}
+
 Status picture_to_srgb(Picture *srgb, const Picture *picture, int bits, Err *err)
 {
     Plane plane;
     TRY(plane_from_picture(&plane, picture, err));
     Status status = picture_from_plane(srgb, &plane, ENCODING_SRGB, bits, err);
     plane_release(&plane);
+    if (status == STATUS_OK && picture->channels == 4)
+        copy_alpha(srgb, picture);
     return status;
 }
 

@@ -19,7 +19,7 @@ typedef struct Exr {
     const char *names[MAX_CHANNELS];  /* of the channels of the plane, the last one perhaps "A" */
     int channels;                     /* alpha not counted */
     bool has_alpha;
-    Plane plane; /* owned; of the data window, then of the display; alpha until it is checked */
+    Plane plane;         /* owned; of the data window, then of the display; alpha last */
     char complaint[200]; /* the library's, "" when there is none */
 } Exr;
 
@@ -104,8 +104,8 @@ static Status choose_channels(Exr *self, Err *err)
         }
     if (self->channels == 0)
         return err_set(err, STATUS_INPUT,
-                       "%s: has %d channels; only R G B, X Y Z or a single one, with an opaque A "
-                       "or without, can be read",
+                       "%s: has %d channels; only R G B, X Y Z or a single one, with an A or "
+                       "without, can be read",
                        self->file.name, list->num_channels);
     for (int i = 0; i < list->num_channels; i++)
         if (list->entries[i].x_sampling != 1 || list->entries[i].y_sampling != 1)
@@ -310,8 +310,7 @@ static Status decode(Exr *self, Err *err)
     errno = 0;
     if (!decode_chunks(self) || errno == ENOMEM)
         return unsound(self, err);
-    TRY(show_window(self, err));
-    return self->has_alpha ? plane_drop_alpha(&self->plane, self->file.name, err) : STATUS_OK;
+    return show_window(self, err);
 }
 
 static Status exr_decode(const ImageBytes *file, Image *image, Err *err)

@@ -11,7 +11,6 @@ typedef struct ImageBytes {
     const char *name;
     const uint8_t *bytes;
     size_t size;
-    bool for_mask; /* as picture_read_mask reads it */
 } ImageBytes;
 
 /* STATUS_INPUT unless both sides, as a header states them, are in [1, IMAGE_MAX_SIDE]. */
@@ -70,10 +69,11 @@ typedef struct RowEncoder {
     Status (*rows)(void *self, const void *values, int first, int n, Err *err);
     Status (*end)(void *self, Err *err); /* writes what comes last; may be NULL */
     void (*release)(void *self);         /* NULL is allowed */
-    double folds;    /* a file is at most so many times smaller than its values; 0: not known */
-    bool keeps_dpi;  /* has a place for the resolution on paper */
-    bool keeps_inks; /* takes codes of 4 channels: cyan magenta yellow black */
-    bool floats;     /* takes floats, not codes */
+    double folds;     /* a file is at most so many times smaller than its values; 0: not known */
+    bool keeps_dpi;   /* has a place for the resolution on paper */
+    bool keeps_inks;  /* takes codes of 4 channels: cyan magenta yellow black */
+    bool keeps_alpha; /* takes codes of 4 channels: red green blue alpha */
+    bool floats;      /* takes floats, not codes */
 } RowEncoder;
 
 extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, jpeg_encoder,
@@ -129,8 +129,15 @@ enum { DEFLATE_MAX_RATIO = 1032 };
  * included. */
 bool png_decode_plain(const ImageBytes *file, Picture *picture);
 
-/* Removes the last channel of a plane of 2 or 4. STATUS_INPUT, naming the file, unless it is 1
- * throughout. */
-MUST_CHECK Status plane_drop_alpha(Plane *plane, const char *name, Err *err);
+/* What becomes of an alpha channel that is not opaque throughout; one that is, is left out. */
+typedef enum ImageAlpha {
+    ALPHA_REFUSED,
+    ALPHA_KEPT,   /* grey pictures become coloured */
+    ALPHA_IS_MASK /* as picture_read_mask reads it */
+} ImageAlpha;
+
+/* Makes an image as a decoder hands it over, alpha the last of 2 or 4 channels, what readers of
+ * this kind expect. STATUS_INPUT, naming the file, when it is transparent and refused. */
+MUST_CHECK Status image_settle_alpha(Image *image, ImageAlpha alpha, const char *name, Err *err);
 
 #endif

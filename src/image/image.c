@@ -63,7 +63,7 @@ Status plane_init(Plane *plane, int width, int height, int channels, Err *err)
 
 Status picture_init(Picture *picture, int width, int height, int channels, int bits, Err *err)
 {
-    assert(channels == 1 || channels == 3 || channels == 4);
+    assert(channels >= 1 && channels <= 4);
     assert(bits == 8 || bits == 16);
     Picture made = {.width = width, .height = height, .channels = channels, .bits = bits};
     if (bits == 8)
@@ -124,23 +124,6 @@ void image_release(Image *image)
 {
     picture_release(&image->picture);
     plane_release(&image->plane);
-}
-
-Status plane_drop_alpha(Plane *plane, const char *name, Err *err)
-{
-    size_t n = (size_t)plane->width * (size_t)plane->height;
-    size_t samples = (size_t)plane->channels, kept = samples - 1;
-    for (size_t i = 0; i < n; i++) {
-        if (plane->values[i * samples + kept] != 1)
-            return err_set(err, STATUS_INPUT,
-                           "%s: is transparent at column %zu, row %zu; only opaque pictures can be "
-                           "read",
-                           name, i % (size_t)plane->width, i / (size_t)plane->width);
-        memmove(plane->values + i * kept, plane->values + i * samples,
-                kept * sizeof *plane->values);
-    }
-    plane->channels--;
-    return STATUS_OK;
 }
 
 void frame_release(Frame *frame)

@@ -122,7 +122,7 @@ MUST_CHECK Status picture_from_transparent(Picture *picture, const Plane *plane,
                                            Encoding encoding, int bits, Err *err);
 /* The linear colours of a picture, as its gamma says. */
 MUST_CHECK Status plane_from_picture(Plane *plane, const Picture *picture, Err *err);
-/* The same colours in sRGB's codes. */
+/* The same colours in sRGB's codes, and the same alpha. */
 MUST_CHECK Status picture_to_srgb(Picture *srgb, const Picture *picture, int bits, Err *err);
 /* Makes codes of 8 bits codes of 16, of the same brightness. */
 MUST_CHECK Status picture_widen(Picture *picture, Err *err);
@@ -218,10 +218,11 @@ MUST_CHECK Status picture_write_packed(const Picture *picture, const char *path,
 /* Appends the bytes of the PNG file that picture_write would write to `out`. */
 MUST_CHECK Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNotes *notes,
                                  Text *out, Err *err);
-/* Whether files of this name keep ImageNotes.dpi; whether colours in them may be inks; whether they
- * are of floats. */
+/* Whether files of this name keep ImageNotes.dpi; whether colours in them may be inks; whether
+ * pictures in them may be transparent; whether they are of floats. */
 bool image_keeps_dpi(const char *path);
 bool image_keeps_inks(const char *path);
+bool image_keeps_alpha(const char *path);
 bool image_is_floats(const char *path);
 
 /* A PNG or TIFF being read a few rows at a time, from the top down, so that a picture of any size
@@ -264,10 +265,22 @@ void image_release(Image *image);
  * primaries), animations and TIFF files of several pages. STATUS_INPUT with a sentence naming the
  * file on truncated, corrupt and other files. */
 MUST_CHECK Status image_read(Image *image, const char *path, Err *err);
+/* As image_read, but a picture or plane that is transparent anywhere keeps its alpha as the last
+ * channel: pictures have 4 then, their colours not multiplied by it, planes 2 or 4, whose colours
+ * are. */
+MUST_CHECK Status image_read_transparent(Image *image, const char *path, Err *err);
+/* Likewise, and STATUS_INPUT when the file holds floats. */
+MUST_CHECK Status picture_read_transparent(Picture *picture, const char *path, Err *err);
+/* Likewise, and STATUS_INPUT when the file holds codes. */
+MUST_CHECK Status plane_read_transparent(Plane *plane, const char *path, Err *err);
+/* Lays what has alpha on a background, red, green and blue from 0 to 1, in linear light; what is
+ * left has 3 channels, its codes sRGB's unless they are linear. STATUS_MEMORY; *image is unchanged
+ * then. */
+MUST_CHECK Status image_lay_on(Image *image, const float background[3], Err *err);
 /* Likewise, and STATUS_INPUT when the file does not hold codes, or floats. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, Err *err);
-/* As picture_read; but of a PNG that is transparent anywhere only the opacity counts: the codes of
- * a pixel are not 0 where it is at least half opaque, and 0 elsewhere. */
+/* As picture_read; but of a picture that is transparent anywhere only the opacity counts: the codes
+ * of a pixel are not 0 where it is at least half opaque, and 0 elsewhere. */
 MUST_CHECK Status picture_read_mask(Picture *picture, const char *path, Err *err);
 MUST_CHECK Status plane_read(Plane *plane, const char *path, Err *err);
 

@@ -29,7 +29,7 @@ static const char *name_of(const char *path)
     return strcmp(path, "-") ? path : "standard input";
 }
 
-static Status read_image(Image *image, const char *path, bool for_mask, Err *err)
+static Status read_image(Image *image, const char *path, ImageAlpha alpha, Err *err)
 {
     static const FileForm form = {.name = "a PPM, PGM, PFM, PNG, TIFF or OpenEXR file",
                                   .most_bytes = 16e9,
@@ -37,26 +37,35 @@ static Status read_image(Image *image, const char *path, bool for_mask, Err *err
     char *bytes;
     size_t size;
     TRY(file_read(path, &form, &bytes, &size, err));
-    ImageBytes file = {name_of(path), (const uint8_t *)bytes, size, for_mask};
+    ImageBytes file = {name_of(path), (const uint8_t *)bytes, size};
     Image made = {0};
     Status status = decoder_of(&file)->decode(&file, &made, err);
     free(bytes);
     if (status == STATUS_OK)
-        *image = made;
-    else if (status == STATUS_MEMORY)
+        status = image_settle_alpha(&made, alpha, file.name, err);
+    if (status == STATUS_MEMORY)
         err_prefix(err, "%s: ", file.name);
+    if (status == STATUS_OK)
+        *image = made;
+    else
+        image_release(&made);
     return status;
 }
 
 Status image_read(Image *image, const char *path, Err *err)
 {
-    return read_image(image, path, false, err);
+    return read_image(image, path, ALPHA_REFUSED, err);
 }
 
-static Status read_picture(Picture *picture, const char *path, bool for_mask, Err *err)
+Status image_read_transparent(Image *image, const char *path, Err *err)
+{
+    return read_image(image, path, ALPHA_KEPT, err);
+}
+
+static Status read_picture(Picture *picture, const char *path, ImageAlpha alpha, Err *err)
 {
     Image image;
-    TRY(read_image(&image, path, for_mask, err));
+    TRY(read_image(&image, path, alpha, err));
     if (image.plane.values) {
         image_release(&image);
         return err_set(err, STATUS_INPUT,
@@ -68,18 +77,23 @@ static Status read_picture(Picture *picture, const char *path, bool for_mask, Er
 
 Status picture_read(Picture *picture, const char *path, Err *err)
 {
-    return read_picture(picture, path, false, err);
+    return read_picture(picture, path, ALPHA_REFUSED, err);
+}
+
+Status picture_read_transparent(Picture *picture, const char *path, Err *err)
+{
+    return read_picture(picture, path, ALPHA_KEPT, err);
 }
 
 Status picture_read_mask(Picture *picture, const char *path, Err *err)
 {
-    return read_picture(picture, path, true, err);
+    return read_picture(picture, path, ALPHA_IS_MASK, err);
 }
 
-Status plane_read(Plane *plane, const char *path, Err *err)
+static Status read_plane(Plane *plane, const char *path, ImageAlpha alpha, Err *err)
 {
     Image image;
-    TRY(image_read(&image, path, err));
+    TRY(read_image(&image, path, alpha, err));
     if (!image.plane.values) {
         image_release(&image);
         return err_set(
@@ -90,4 +104,14 @@ Status plane_read(Plane *plane, const char *path, Err *err)
     }
     *plane = image.plane;
     return STATUS_OK;
+}
+
+Status plane_read(Plane *plane, const char *path, Err *err)
+{
+    return read_plane(plane, path, ALPHA_REFUSED, err);
+}
+
+Status plane_read_transparent(Plane *plane, const char *path, Err *err)
+{
+    return read_plane(plane, path, ALPHA_KEPT, err);
 }

@@ -66,6 +66,12 @@ bool image_keeps_inks(const char *path)
     return encoder && encoder->keeps_inks;
 }
 
+bool image_keeps_alpha(const char *path)
+{
+    const RowEncoder *encoder = encoder_of(path);
+    return encoder && encoder->keeps_alpha;
+}
+
 bool image_is_floats(const char *path)
 {
     const RowEncoder *encoder = encoder_of(path);
@@ -95,8 +101,7 @@ static Status choose_encoder(const char *path, const ImageForm *form, const RowE
         return err_set(err, STATUS_USAGE,
                        "%s: the extension of a picture must be .ppm, .pgm, .png, .tif or .jpg",
                        path);
-    if (form->channels == 4 && *encoder != &png_encoder && *encoder != &tiff_encoder &&
-        !form->named)
+    if (form->channels == 4 && !(*encoder)->keeps_alpha && !form->named)
         return err_set(err, STATUS_USAGE, "%s: a transparent picture must be .png, .tif or .exr",
                        path);
     if (*encoder == &pgm_encoder && form->channels != 1)

@@ -63,44 +63,18 @@ static Status allocate_rows(Reader *self, int height, size_t row_size)
     return STATUS_OK;
 }
 
-/* Alpha is the last of a pixel's samples, its high byte first. */
-static void take_opacity(Reader *self, int samples)
+/* Takes the rows into the picture, alpha among its channels. */
+static void take_rows(Reader *self)
 {
     Picture *picture = &self->picture;
-    size_t sample = picture->bits == 16 ? 2 : 1, next = 0;
-    for (int y = 0; y < picture->height; y++)
-        for (int x = 0; x < picture->width; x++) {
-            const uint8_t *alpha = self->rows[y] + (size_t)((x + 1) * samples - 1) * sample;
-            for (int c = 0; c < picture->channels; c++)
-                picture_set(picture, next++, *alpha < 128 ? 0 : 255);
-        }
-}
-
-/* Takes the rows, of `samples` samples a pixel, into the picture, which has no alpha. */
-static Status take_rows(Reader *self, int samples)
-{
-    Picture *picture = &self->picture;
-    bool deep = picture->bits == 16;
-    uint16_t opaque = deep ? 65535 : 255;
-    size_t next = 0;
+    size_t stride = picture_stride(picture);
     for (int y = 0; y < picture->height; y++) {
-        const uint8_t *at = self->rows[y];
-        for (int x = 0; x < picture->width; x++)
-            for (int c = 0; c < samples; c++) {
-                uint16_t value = (uint16_t)(deep ? at[0] << 8 | at[1] : at[0]);
-                at += deep ? 2 : 1;
-                if (c < picture->channels)
-                    picture_set(picture, next++, value);
-                else if (value != opaque && self->file.for_mask)
-                    return take_opacity(self, samples), STATUS_OK;
-                else if (value != opaque)
-                    return err_set(self->err, STATUS_INPUT,
-                                   "%s: is transparent at column %d, row %d; only opaque pictures "
-                                   "can be read",
-                                   self->file.name, x, y);
-            }
+        const uint8_t *row = self->rows[y];
+        for (size_t i = 0; i < stride; i++)
+            picture_set(
+                picture, (size_t)y * stride + i,
+                (uint16_t)(picture->bits == 16 ? row[2 * i] << 8 | row[2 * i + 1] : row[i]));
     }
-    return STATUS_OK;
 }
 
 /* -- what the codes mean */
@@ -183,14 +157,14 @@ static Status read_picture(Reader *self)
     png_set_expand(png);
     png_set_interlace_handling(png);
     png_read_update_info(png, info);
-    int samples = png_get_channels(png, info);
-    TRY(picture_init(&self->picture, width, height, samples < 3 ? 1 : 3,
+    TRY(picture_init(&self->picture, width, height, png_get_channels(png, info),
                      png_get_bit_depth(png, info), self->err));
     self->picture.gamma = self->gamma;
     TRY(allocate_rows(self, height, png_get_rowbytes(png, info)));
     png_read_image(png, self->rows);
     png_read_end(png, NULL);
-    return take_rows(self, samples);
+    take_rows(self);
+    return STATUS_OK;
 }
 
 static Status unsound(Reader *self)
@@ -388,4 +362,5 @@ const RowEncoder png_encoder = {.begin = begin,
                                 .end = end,
                                 .release = release_writer,
                                 .folds = DEFLATE_MAX_RATIO,
-                                .keeps_dpi = true};
+                                .keeps_dpi = true,
+                                .keeps_alpha = true};

@@ -161,26 +161,18 @@ static Status read_header(Tiff *self, Err *err)
     return set_parts(self, err);
 }
 
-/* `n` pixels of row `y` of the file, from column `x` on, at `values`; alpha must be opaque. */
-static Status take_codes(const Tiff *self, const uint8_t *values, uint32_t x, uint32_t y,
-                         uint32_t n, Picture *picture, Err *err)
+/* `n` pixels of row `y` of the file, from column `x` on, at `values`. */
+static void take_codes(const Tiff *self, const uint8_t *values, uint32_t x, uint32_t y, uint32_t n,
+                       Picture *picture)
 {
     const uint16_t *deep = (const void *)values;
     size_t at = 0;
     for (uint32_t i = 0; i < n; i++) {
         int64_t place = self->origin + (x + i) * self->across + y * self->down;
-        for (int c = 0; c < self->samples; c++, at++) {
-            uint16_t code = self->bits == 8 ? values[at] : deep[at];
-            if (c < picture->channels)
-                picture_set(picture, (size_t)(place * picture->channels + c), code);
-            else if (code != (self->bits == 8 ? 255 : 65535))
-                return err_set(err, STATUS_INPUT,
-                               "%s: is transparent at column %u, row %u; only opaque pictures can "
-                               "be read",
-                               self->file.name, x + i, y);
-        }
+        for (int c = 0; c < self->samples; c++, at++)
+            picture_set(picture, (size_t)(place * self->samples + c),
+                        self->bits == 8 ? values[at] : deep[at]);
     }
-    return STATUS_OK;
 }
 
 static void take_floats(const Tiff *self, const uint8_t *values, uint32_t x, uint32_t y, uint32_t n,
@@ -208,9 +200,35 @@ static Status read_part(Tiff *self, uint32_t x, uint32_t y, Image *image, Err *e
         if (self->floats)
             take_floats(self, values, x, y + row, n, &image->plane);
         else
-            TRY(take_codes(self, values, x, y + row, n, &image->picture, err));
+            take_codes(self, values, x, y + row, n, &image->picture);
     }
     return STATUS_OK;
+}
+
+/* Divides a pixel's codes by its alpha, the last of them. */
+static void divide_codes(Picture *picture, size_t first, int colors)
+{
+    uint32_t alpha = picture_code(picture, first + (size_t)colors);
+    uint32_t most = picture->bits == 8 ? 255 : 65535;
+    for (size_t i = first; i < first + (size_t)colors && alpha > 0; i++) {
+        uint32_t code = (picture_code(picture, i) * most + alpha / 2) / alpha;
+        picture_set(picture, i, (uint16_t)(code < most ? code : most));
+    }
+}
+
+/* Codes are to be without alpha, floats multiplied by it. */
+static void settle_colors(const Tiff *self, Image *image)
+{
+    uint16_t extra, *kinds;
+    TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_EXTRASAMPLES, &extra, &kinds);
+    const size_t samples = (size_t)self->samples, n = (size_t)self->width * self->height;
+    bool divide = !self->floats && extra == 1 && kinds[0] == EXTRASAMPLE_ASSOCALPHA;
+    bool multiply = self->floats && extra == 1 && kinds[0] == EXTRASAMPLE_UNASSALPHA;
+    for (size_t i = 0; divide && i < n; i++)
+        divide_codes(&image->picture, i * samples, self->samples - 1);
+    for (size_t i = 0; multiply && i < n * samples; i++)
+        if (i % samples != samples - 1)
+            image->plane.values[i] *= image->plane.values[i - i % samples + samples - 1];
 }
 
 static Status read_parts(Tiff *self, Image *image, Err *err)
@@ -218,8 +236,9 @@ static Status read_parts(Tiff *self, Image *image, Err *err)
     for (uint32_t y = 0; y < self->height; y += self->part_height)
         for (uint32_t x = 0; x < self->width; x += self->part_width)
             TRY(read_part(self, x, y, image, err));
-    bool alpha = self->floats && (self->samples == 2 || self->samples == 4);
-    return alpha ? plane_drop_alpha(&image->plane, self->file.name, err) : STATUS_OK;
+    if (self->samples == 2 || self->samples == 4)
+        settle_colors(self, image);
+    return STATUS_OK;
 }
 
 /* Smaller versions of the page and masks are no pages. */
@@ -250,8 +269,7 @@ static Status decode(void *work, Err *err)
     if (self->floats)
         TRY(plane_init(&image->plane, width, height, self->samples, err));
     else
-        TRY(picture_init(&image->picture, width, height, self->samples < 3 ? 1 : 3, self->bits,
-                         err));
+        TRY(picture_init(&image->picture, width, height, self->samples, self->bits, err));
     TRY(read_parts(self, image, err));
     return check_single(self, err);
 }

@@ -185,4 +185,5 @@ const RowEncoder tiff_encoder = {.begin = begin,
                                  .release = release_writer,
                                  .folds = 1400, /* LZW */
                                  .keeps_dpi = true,
-                                 .keeps_inks = true};
+                                 .keeps_inks = true,
+                                 .keeps_alpha = true};

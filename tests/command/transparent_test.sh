@@ -84,6 +84,51 @@ END
     expect_sentence "--background: 'none' is not R,G,B"
 }
 
+test_convert_keeps_alpha_or_lays_it_on_a_colour() {
+    cp "$DATA/bifurcation.swc" tree.swc
+    run_ok corcast render tree.swc --size 40x30 --background none --quiet -o none.png
+    rgba none.png >none
+    run_ok corcast convert none.png none.tif
+    run_ok corcast convert none.tif back.png
+    rgba back.png | diff -q - none >difference || fail "expected the pixels of the PNG"
+    run_ok corcast convert none.png deep.png --bits 16
+    run_ok corcast convert deep.png --bits 8 back.png
+    rgba back.png | diff -q - none >difference || fail "expected the pixels of the PNG"
+    run_ok corcast convert none.png solid.ppm --background teal
+    paste -d ' ' <(over 0 128 128 <none) <(tail -c 3600 solid.ppm | od -A n -v -t u1 -w3) | awk '
+        { for (c = 1; c <= 3; c++) if (($c - $(c + 3)) ^ 2 > 1) exit 1 }' || fail "expected the picture over teal"
+    run corcast convert none.png no.jpg
+    expect_status 2
+    expect_sentence "none\.png: is transparent, which 'no\.jpg' cannot be; --background lays it on a colour"
+    run_ok corcast render tree.swc --size 40x30 --background none --quiet -o none.exr
+    run corcast convert none.exr no.pfm
+    expect_status 2
+    expect_sentence 'none\.exr: is transparent at column 0, row 0'
+    run_ok corcast convert none.exr solid.pfm --background teal
+    run_ok corcast compare none.exr solid.pfm --background teal
+}
+
+test_compare_lays_what_is_transparent_on_a_background() {
+    cp "$DATA/bifurcation.swc" tree.swc
+    run_ok corcast render tree.swc --size 40x30 --background none --quiet -o none.png
+    run_ok corcast convert none.png white.ppm --background white
+    run_ok corcast compare none.png white.ppm
+    run corcast compare none.png white.ppm --background black
+    expect_status 1
+    pngtopnm -alpha none.png >alpha.pgm 2>error
+    pngtopnm none.png 2>error | ppmtopgm >grey.pgm
+    pnmtopng -alpha=alpha.pgm grey.pgm >grey.png 2>error
+    run_ok corcast convert grey.png grey.ppm --background '#808080'
+    run_ok corcast compare grey.png grey.ppm --background '#808080'
+    paste -d ' ' <(tail -c 1200 grey.pgm | od -A n -v -t u1 -w1) <(tail -c 1200 alpha.pgm | od -A n -v -t u1 -w1) |
+        awk '{ print $1, $1, $1, $2 }' | over 128 128 128 >expected
+    tail -c 3600 grey.ppm | od -A n -v -t u1 -w3 | paste -d ' ' expected - | awk '
+        { for (c = 1; c <= 3; c++) if (($c - $(c + 3)) ^ 2 > 1) exit 1 }' || fail "expected the grey picture over grey"
+    run corcast compare none.png none.png --kind depth --background black
+    expect_status 2
+    expect_sentence 'background is for two pictures'
+}
+
 test_colours_have_the_names_of_css_and_codes() {
     local color codes
     cp "$DATA/bifurcation.swc" tree.swc

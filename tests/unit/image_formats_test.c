@@ -238,6 +238,35 @@ static void says_what_it_does_not_read(void **state)
     assert_non_null(strstr(err.text, "holds whole numbers"));
 }
 
+/* The TIFF's codes are multiplied by alpha, 128 of 255: 30 becomes 60. */
+static void keeps_alpha_or_lays_it_on_a_background(void **state)
+{
+    (void)state;
+    static const float grey[3] = {0.3f, 0.3f, 0.3f};
+    Picture picture;
+    assert_int_equal(picture_read_transparent(&picture, "tests/data/images/glassy.tif", &err),
+                     STATUS_OK);
+    assert_int_equal(picture.channels, 4);
+    for (size_t i = 0; i < 4; i++)
+        assert_int_equal(picture_code(&picture, 4 + i), ((const uint16_t[]){60, 6, 10, 128})[i]);
+    picture_release(&picture);
+    Image kept = {0}, laid = {0};
+    const char *path = "tests/data/images/glassy.exr";
+    assert_int_equal(image_read_transparent(&kept, path, &err), STATUS_OK);
+    assert_int_equal(image_read_transparent(&laid, path, &err), STATUS_OK);
+    assert_int_equal(image_lay_on(&laid, grey, &err), STATUS_OK);
+    assert_int_equal(kept.plane.channels, 4);
+    assert_int_equal(laid.plane.channels, 3);
+    for (int i = 0; i < W * H; i++)
+        for (int c = 0; c < 3; c++) {
+            const float *value = kept.plane.values + 4 * i;
+            assert_float_equal(laid.plane.values[3 * i + c], value[c] + 0.3f * (1 - value[3]),
+                               1e-6);
+        }
+    image_release(&kept);
+    image_release(&laid);
+}
+
 /* A header of some hundred bytes that asks for gigabytes. */
 static void refuses_pixels_that_no_file_of_that_size_holds(void **state)
 {
@@ -362,6 +391,7 @@ int main(void)
         cmocka_unit_test(knows_the_gamma_of_a_png),
         cmocka_unit_test(decodes_codes_by_their_gamma),
         cmocka_unit_test(says_what_it_does_not_read),
+        cmocka_unit_test(keeps_alpha_or_lays_it_on_a_background),
         cmocka_unit_test(refuses_pixels_that_no_file_of_that_size_holds),
         cmocka_unit_test(survives_files_cut_anywhere),
         cmocka_unit_test(survives_files_with_damaged_bytes),

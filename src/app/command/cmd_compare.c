@@ -2,6 +2,7 @@
  * verify they go to, and the tolerance is made of a tier, a file and single limits, each over the
  * one before. The exit status is the verdict. */
 #include "app/commands.h"
+#include "app/pictures/coloring.h"
 #include "app/run/options.h"
 #include "app/run/output.h"
 #include "app/run/templates.h"
@@ -22,6 +23,7 @@ typedef struct CompareOptions {
     char *line; /* owned; the command */
     bool json, metrics, has_metrics, has_tier, has_levels, has_ppm, has_pixelmatch;
     double levels, ppm, depth_mm, pixelmatch;
+    Vec3 background; /* sRGB in [0, 1] */
 } CompareOptions;
 
 /* What is compared. */
@@ -32,6 +34,8 @@ typedef struct Sides {
     Status status[4];
     Err err[4];
     const char *id_paths[2];
+    float background[3]; /* linear; what is transparent is laid on it */
+    bool color;
 } Sides;
 
 static void sides_release(Sides *sides)
@@ -72,6 +76,18 @@ static Status read_ids(IdPlane *ids, const char *path, Err *err)
     return status;
 }
 
+/* Of a plane of geometry every value counts: it has no alpha. */
+static Status read_side(const Sides *sides, const char *path, Image *image, Err *err)
+{
+    if (!sides->color)
+        return image_read(image, path, err);
+    TRY(image_read_transparent(image, path, err));
+    Status status = image_lay_on(image, sides->background, err);
+    if (status != STATUS_OK)
+        image_release(image);
+    return status;
+}
+
 /* File 0 and 1 are the images, 2 and 3 their ids. */
 static void read_file(size_t index, int worker, void *context)
 {
@@ -81,8 +97,9 @@ static void read_file(size_t index, int worker, void *context)
     const char *path = index < 2 ? sides->paths[side] : sides->id_paths[side];
     if (!path)
         return;
-    sides->status[index] = index < 2 ? image_read(&sides->images[side], path, &sides->err[index])
-                                     : read_ids(&sides->ids[side], path, &sides->err[index]);
+    sides->status[index] = index < 2
+                               ? read_side(sides, path, &sides->images[side], &sides->err[index])
+                               : read_ids(&sides->ids[side], path, &sides->err[index]);
 }
 
 /* Reads all files at once; of several errors the first file's is reported. */
@@ -379,6 +396,9 @@ static const Option own[] = {
      SETS(CHOICE, CompareOptions, kind),
      .choices = kinds,
      .help = "what the files hold; auto: by their names"},
+    {.name = "background",
+     SETS(COLOR, CompareOptions, background),
+     .help = "what transparent pictures are laid on"},
     {.name = "tier",
      SETS(CHOICE, CompareOptions, tier),
      GIVEN(CompareOptions, has_tier),
@@ -454,7 +474,9 @@ static const OptionTable own_table = OPTION_TABLE(own);
 
 static void set_defaults(void *options)
 {
-    ((CompareOptions *)options)->kind = PLANE_KINDS;
+    CompareOptions *own_options = options;
+    own_options->kind = PLANE_KINDS;
+    own_options->background = vec3(1, 1, 1);
 }
 
 /* Reads, compares and says what was found. */
@@ -464,7 +486,10 @@ static Status compare(const CompareOptions *options, PlaneKind kind, const Parse
     CompareResult result;
     Tolerance tolerance;
     char *tier_name = NULL, *name = NULL;
-    Sides sides = {.paths = {parsed->operands[0], parsed->operands[1]}};
+    const Rgb ground = rgb_of_option(options->background);
+    Sides sides = {.paths = {parsed->operands[0], parsed->operands[1]},
+                   .background = {ground.r, ground.g, ground.b},
+                   .color = kind == PLANE_COLOR};
     double start_s = clock_seconds();
     Status status = STATUS_OK;
     TRY_GOTO(make_tolerance(options, &tolerance, &tier_name, err));
@@ -490,6 +515,7 @@ static Status run_compare(void *options, Parsed *parsed, Err *err)
     bool color = kind == PLANE_COLOR;
     const OptionNeed needs[] = {{"depth-mm", kind == PLANE_DEPTH, "is for two depth planes"},
                                 {"levels", color, "is for two pictures"},
+                                {"background", color, "is for two pictures"},
                                 {"pixelmatch", color, "is for two pictures"},
                                 {"ids-a", kind != PLANE_ID, "is for other planes than ids"},
                                 {"ids-b", kind != PLANE_ID, "is for other planes than ids"},

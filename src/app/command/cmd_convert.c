@@ -1,6 +1,7 @@
 /* What a file holds is told by its extension, and what is read becomes what is to be written: a
  * tree a tree, a picture a picture of sRGB, a plane of floats a plane. */
 #include "app/commands.h"
+#include "app/pictures/coloring.h"
 #include "app/pictures/press.h"
 #include "app/run/options.h"
 #include "app/run/output.h"
@@ -19,7 +20,9 @@ typedef struct ConvertOptions {
     const char *fields; /* "all" or "NAME,..."; NULL: none */
     BloodOptions blood;
     PressOptions press;
-    double dpi; /* of a picture; 0: not written */
+    double dpi;      /* of a picture; 0: not written */
+    Vec3 background; /* sRGB in [0, 1] */
+    bool has_background;
 } ConvertOptions;
 
 static const Option own[] = {
@@ -41,6 +44,12 @@ static const Option own[] = {
      .argument = "N",
      .otherwise = "",
      .help = "pixels an inch on paper, kept in a .png, .tif or .jpg"},
+    {.name = "background",
+     SETS(COLOR, ConvertOptions, background),
+     GIVEN(ConvertOptions, has_background),
+     .group = GROUP_PRESS,
+     .otherwise = "none",
+     .help = "what a transparent picture is laid on"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -118,26 +127,43 @@ static Status convert_tree(const ConvertOptions *options, Parsed *parsed, Err *e
     return status;
 }
 
-/* Codes of another gamma become sRGB's, which all formats hold. */
-static Status read_srgb(const char *path, Picture *srgb, Err *err)
+/* What is transparent is laid on the background, if one is given. */
+static Status lay_down(const ConvertOptions *options, Image *image, Err *err)
 {
-    Picture picture;
-    TRY(picture_read(&picture, path, err));
-    if (picture.gamma == 0) {
-        *srgb = picture;
-        return STATUS_OK;
-    }
-    Status status = picture_to_srgb(srgb, &picture, picture.bits, err);
-    picture_release(&picture);
+    const Rgb ground = rgb_of_option(options->background);
+    Status status = STATUS_OK;
+    if (options->has_background)
+        status = image_lay_on(image, (const float[3]){ground.r, ground.g, ground.b}, err);
+    if (status != STATUS_OK)
+        image_release(image);
     return status;
 }
 
-/* The picture in as many bits as are asked for. */
-static Status read_in_bits(const char *path, int bits, Picture *out, Err *err)
+static Status read_picture(const ConvertOptions *options, const char *from, const char *to,
+                           Picture *picture, Err *err)
+{
+    Image image = {0};
+    TRY(picture_read_transparent(&image.picture, from, err));
+    TRY(lay_down(options, &image, err));
+    *picture = image.picture;
+    if (picture->channels != 4 || image_keeps_alpha(to))
+        return STATUS_OK;
+    picture_release(picture);
+    return err_set(err, STATUS_USAGE,
+                   "%s: is transparent, which '%s' cannot be; --background lays it on a colour, "
+                   "and .png and .tif keep it",
+                   from, to);
+}
+
+/* Codes of another gamma become sRGB's, which all formats hold, and have as many bits as are asked
+ * for. */
+static Status read_in_bits(const ConvertOptions *options, const char *from, const char *to,
+                           Picture *out, Err *err)
 {
     Picture picture;
-    TRY(read_srgb(path, &picture, err));
-    if (bits == 0 || bits == picture.bits) {
+    TRY(read_picture(options, from, to, &picture, err));
+    int bits = options->press.bits ? options->press.bits : picture.bits;
+    if (picture.gamma == 0 && bits == picture.bits) {
         *out = picture;
         return STATUS_OK;
     }
@@ -153,7 +179,7 @@ static Status convert_picture(const ConvertOptions *options, const char *from, c
     const ImageNotes notes = {.notes = &note, .count = 1, .dpi = options->dpi};
     Picture picture;
     Press press = {0};
-    TRY(read_in_bits(from, options->press.bits, &picture, err));
+    TRY(read_in_bits(options, from, to, &picture, err));
     PressOptions asked = options->press;
     asked.bits = picture.bits;
     Status status = press_open(&asked, to, &press, err);
@@ -168,10 +194,12 @@ static Status convert_plane(const ConvertOptions *options, const char *from, con
                             Err *err)
 {
     const ImagePacking packing = {.half = options->press.bits == 16};
-    Plane plane;
-    TRY(plane_read(&plane, from, err));
-    Status status = plane_write_packed(&plane, to, packing, err);
-    plane_release(&plane);
+    Image image = {0};
+    TRY(options->has_background ? plane_read_transparent(&image.plane, from, err)
+                                : plane_read(&image.plane, from, err));
+    TRY(lay_down(options, &image, err));
+    Status status = plane_write_packed(&image.plane, to, packing, err);
+    image_release(&image);
     return status;
 }
 
@@ -241,7 +269,8 @@ static Status run_convert(void *options, Parsed *parsed, Err *err)
                        "'%s' cannot become '%s': a tree and an image are different things", from,
                        to);
     if (kind == FILE_TREE) {
-        const OptionNeed picture[] = {{"dpi", false, "is for pictures"}, {0}};
+        const OptionNeed picture[] = {
+            {"dpi", false, "is for pictures"}, {"background", false, "is for pictures"}, {0}};
         TRY(options_check_needs(parsed, picture, err));
         TRY(press_refuse(parsed, "is for pictures", err));
         return convert_tree(own_options, parsed, err);

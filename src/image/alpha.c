@@ -1,0 +1,158 @@
+/* Decoders hand over what a file holds, alpha as the last channel; what becomes of it is decided
+ * here, for all formats. Codes are not multiplied by alpha, floats are, as PNG and OpenEXR have
+ * them; light adds up, so that colours are laid on a background linear. */
+#include "image/formats.h"
+
+static int channels_of(const Image *image)
+{
+    return image->plane.values ? image->plane.channels : image->picture.channels;
+}
+
+static size_t pixels_of(const Image *image)
+{
+    return image->plane.values ? (size_t)image->plane.width * (size_t)image->plane.height
+                               : (size_t)image->picture.width * (size_t)image->picture.height;
+}
+
+static bool has_alpha(const Image *image)
+{
+    int channels = channels_of(image);
+    return channels == 2 || channels == 4;
+}
+
+/* From 0 to 1 */
+static float alpha_at(const Image *image, size_t pixel)
+{
+    size_t at = (pixel + 1) * (size_t)channels_of(image) - 1;
+    if (image->plane.values)
+        return image->plane.values[at];
+    return (float)picture_code(&image->picture, at) / (image->picture.bits == 8 ? 255 : 65535);
+}
+
+/* How many of the first pixels are opaque. */
+static size_t count_opaque(const Image *image)
+{
+    size_t n = pixels_of(image), i = 0;
+    while (i < n && alpha_at(image, i) == 1)
+        i++;
+    return i;
+}
+
+static void drop_alpha(Image *image)
+{
+    Picture *picture = &image->picture;
+    size_t n = pixels_of(image), samples = (size_t)channels_of(image), kept = samples - 1;
+    for (size_t i = 0; i < n; i++)
+        for (size_t c = 0; c < kept; c++)
+            if (image->plane.values)
+                image->plane.values[i * kept + c] = image->plane.values[i * samples + c];
+            else
+                picture_set(picture, i * kept + c, picture_code(picture, i * samples + c));
+    *(image->plane.values ? &image->plane.channels : &picture->channels) = (int)kept;
+}
+
+static void take_opacity(Image *image)
+{
+    Picture *picture = &image->picture;
+    size_t samples = (size_t)picture->channels;
+    for (size_t i = 0; i < pixels_of(image); i++)
+        for (size_t c = 0, code = alpha_at(image, i) < 0.5f ? 0 : 255; c + 1 < samples; c++)
+            picture_set(picture, i * samples + c, (uint16_t)code);
+    drop_alpha(image);
+}
+
+/* Grey and alpha become red, green, blue and alpha. */
+static Status widen_grey(Picture *picture, Err *err)
+{
+    Picture wide;
+    TRY(picture_init(&wide, picture->width, picture->height, 4, picture->bits, err));
+    wide.gamma = picture->gamma;
+    size_t n = picture_stride(&wide) * (size_t)wide.height;
+    for (size_t i = 0; i < n; i++)
+        picture_set(&wide, i, picture_code(picture, i / 4 * 2 + (i % 4 == 3)));
+    picture_release(picture);
+    *picture = wide;
+    return STATUS_OK;
+}
+
+static Status refuse(const Image *image, size_t pixel, const char *name, Err *err)
+{
+    size_t width = (size_t)(image->plane.values ? image->plane.width : image->picture.width);
+    return err_set(err, STATUS_INPUT,
+                   "%s: is transparent at column %zu, row %zu; only opaque pictures can be read",
+                   name, pixel % width, pixel / width);
+}
+
+Status image_settle_alpha(Image *image, ImageAlpha alpha, const char *name, Err *err)
+{
+    if (!has_alpha(image))
+        return STATUS_OK;
+    size_t opaque = count_opaque(image);
+    if (opaque == pixels_of(image))
+        drop_alpha(image);
+    else if (alpha == ALPHA_IS_MASK && image->picture.width > 0)
+        take_opacity(image);
+    else if (alpha != ALPHA_KEPT)
+        return refuse(image, opaque, name, err);
+    else if (channels_of(image) == 2 && image->picture.width > 0)
+        return widen_grey(&image->picture, err);
+    return STATUS_OK;
+}
+
+/* ---- backgrounds ----------------------------------------------------------------------------- */
+
+static Status lay_plane(const Plane *plane, const float background[3], Plane *laid, Err *err)
+{
+    const size_t samples = (size_t)plane->channels;
+    TRY(plane_init(laid, plane->width, plane->height, 3, err));
+    for (size_t i = 0; i < (size_t)plane->width * (size_t)plane->height; i++) {
+        const float *pixel = plane->values + i * samples;
+        for (size_t c = 0; c < 3; c++)
+            laid->values[3 * i + c] =
+                pixel[samples == 2 ? 0 : c] + (1 - pixel[samples - 1]) * background[c];
+    }
+    return STATUS_OK;
+}
+
+/* The linear colours, multiplied by alpha. */
+static Status multiply(const Image *image, Plane *plane, Err *err)
+{
+    TRY(plane_from_picture(plane, &image->picture, err));
+    for (size_t i = 0; i < pixels_of(image); i++) {
+        float alpha = alpha_at(image, i);
+        for (size_t c = 0; c < 3; c++)
+            plane->values[4 * i + c] *= alpha;
+        plane->values[4 * i + 3] = alpha;
+    }
+    return STATUS_OK;
+}
+
+static Status lay_picture(Image *image, const float background[3], Err *err)
+{
+    Plane plane, laid = {0};
+    Picture made = {0};
+    Encoding encoding = image->picture.gamma == 1 ? ENCODING_LINEAR : ENCODING_SRGB;
+    TRY(multiply(image, &plane, err));
+    Status status = lay_plane(&plane, background, &laid, err);
+    plane_release(&plane);
+    if (status == STATUS_OK)
+        status = picture_from_plane(&made, &laid, encoding, image->picture.bits, err);
+    plane_release(&laid);
+    TRY(status);
+    picture_release(&image->picture);
+    image->picture = made;
+    return STATUS_OK;
+}
+
+Status image_lay_on(Image *image, const float background[3], Err *err)
+{
+    Plane laid;
+    if (!has_alpha(image))
+        return STATUS_OK;
+    if (!image->plane.values)
+        return lay_picture(image, background, err);
+    TRY(lay_plane(&image->plane, background, &laid, err));
+    plane_release(&image->plane);
+    image->plane = laid;
+    return STATUS_OK;
+}
