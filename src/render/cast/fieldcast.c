@@ -324,18 +324,23 @@ static bool answer(const RaySearch *search, bool hit, double *t, Vec3 *normal, u
     return hit;
 }
 
+static bool search_list(RaySearch *search, const uint32_t *list, size_t n)
+{
+    rayterms_clear(search->scratch);
+    for (size_t i = 0; i < n; i++) {
+        FieldTube tube = fieldtube_of(&search->geometry->segments[list[i]], list[i]);
+        if (tube.reach2 > 0)
+            rayterms_add(search->scratch, &tube, search->ray, search->t_min, search->t_max);
+    }
+    return first_hit(search);
+}
+
 bool field_first_hit_among(const Geometry *geometry, const uint32_t *list, size_t n,
                            FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
                            Vec3 *normal, uint32_t *segment)
 {
     RaySearch search = {geometry, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
-    rayterms_clear(scratch);
-    for (size_t i = 0; i < n; i++) {
-        FieldTube tube = fieldtube_of(&geometry->segments[list[i]], list[i]);
-        if (tube.reach2 > 0)
-            rayterms_add(scratch, &tube, ray, search.t_min, search.t_max);
-    }
-    return answer(&search, first_hit(&search), t, normal, segment);
+    return answer(&search, search_list(&search, list, n), t, normal, segment);
 }
 
 static bool search_index(const FieldIndex *index, RaySearch *search)
@@ -358,4 +363,11 @@ bool field_is_shadowed(const FieldIndex *index, FieldScratch *scratch, Ray ray, 
     RaySearch search = {index->geometry,    scratch, ray, t_min, fmin(t_max, DBL_MAX),
                         .off_surface = true};
     return search_index(index, &search);
+}
+
+bool field_is_shadowed_among(const Geometry *geometry, const uint32_t *list, size_t n,
+                             FieldScratch *scratch, Ray ray, double t_min, double t_max)
+{
+    RaySearch search = {geometry, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = true};
+    return search_list(&search, list, n);
 }

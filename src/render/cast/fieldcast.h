@@ -33,4 +33,8 @@ bool field_first_hit_among(const Geometry *geometry, const uint32_t *list, size_
 bool field_is_shadowed(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
                        double t_max);
 
+/* The same among `n` segments, as field_first_hit_among. */
+bool field_is_shadowed_among(const Geometry *geometry, const uint32_t *list, size_t n,
+                             FieldScratch *scratch, Ray ray, double t_min, double t_max);
+
 #endif

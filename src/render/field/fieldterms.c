@@ -74,7 +74,7 @@ static bool make_term(const FieldTile *tile, const FrameSegment *segment, uint32
 {
     double x = tile->middle_x, y = tile->middle_y, far = (double)tile->half_size;
     if (tile->perspective)
-        far *= max_of(max_of(segment->a.z, segment->b.z) + segment->reach, 0);
+        far *= max_of(fabs(segment->a.z), fabs(segment->b.z)) + segment->reach;
     far += segment->reach;
     Encounter met =
         tile->perspective ? meet_in_perspective(segment, x, y) : meet_parallel(segment, x, y);
@@ -141,7 +141,7 @@ void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t 
 {
     tile->terms = terms;
     tile->n_terms = 0;
-    tile->plane = !tile->perspective && !tile->groups;
+    tile->plane = !tile->perspective && !tile->groups && !tile->any_depth;
     for (size_t i = 0; i < n; i++) {
         TileTerm *term = &terms[tile->n_terms];
         if (!make_term(tile, &segments[list[i]], list[i], term))

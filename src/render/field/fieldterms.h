@@ -39,6 +39,7 @@ typedef struct FieldTile {
     size_t n_terms;
     LocalGroups *groups; /* a workspace; NULL where all segments blend */
     bool perspective;
+    bool any_depth;     /* samples are places, not rays from the eye: no plane is looked for */
     bool plane;         /* all blend, and lie in one plane, square to all rays */
     const float *x, *y; /* of the samples, relative to the middle ray */
     double middle_x, middle_y;

@@ -3,21 +3,13 @@
  * precision among the terms of the tile. */
 #include "render/field/fieldtiles.h"
 
-#include "render/cast/fieldcast.h"
-#include "surface/surface.h"
+#include "render/field/fieldspace.h"
 #include <stdlib.h>
 
 typedef struct Workspace {
     TileSpan *columns; /* of the row's segments; as long as the longest row */
     BinLists lists;    /* of the row's tiles */
-    TileTerm *terms;
-    size_t terms_capacity;
-    uint32_t *candidates; /* segments of the terms; as long as `terms` */
-    size_t candidates_capacity;
-    TileWork work;
-    LocalGroups *groups;   /* NULL where all segments blend */
-    FieldScratch *scratch; /* made when first needed */
-    size_t scratch_capacity;
+    FieldSpace terms;
 } Workspace;
 
 /* Where the samples of a column or a row of tiles are in the camera's plane. */
@@ -60,8 +52,7 @@ static Status make_workspaces(FieldTiles *tiles, Err *err)
         Workspace *space = &tiles->workspaces[i];
         TRY(mem_calloc(&space->columns, tiles->lists.longest, sizeof *space->columns,
                        "rows of tiles", err));
-        if (tiles->geometry->blend.n_groups)
-            TRY(localgroups_new(tiles->geometry, &space->groups, err));
+        TRY(fieldspace_init(tiles->geometry, &space->terms, err));
     }
     return STATUS_OK;
 }
@@ -101,11 +92,7 @@ void fieldtiles_free(FieldTiles *tiles)
         Workspace *space = &tiles->workspaces[i];
         free(space->columns);
         binlists_release(&space->lists);
-        free(space->terms);
-        free(space->candidates);
-        tilework_release(&space->work);
-        localgroups_free(space->groups);
-        fieldscratch_free(space->scratch);
+        fieldspace_release(&space->terms);
     }
     free(tiles->workspaces);
     vessellists_release(&tiles->lists);
@@ -138,18 +125,14 @@ static Status list_row(const FieldTiles *tiles, size_t row, Workspace *space, Er
         size_t length = space->lists.offsets[i + 1] - space->lists.offsets[i];
         longest = length > longest ? length : longest;
     }
-    TRY(mem_reserve(&space->terms, &space->terms_capacity, longest, sizeof *space->terms, "terms",
-                    err));
-    TRY(mem_reserve(&space->candidates, &space->candidates_capacity, longest,
-                    sizeof *space->candidates, "terms", err));
-    return tilework_reserve(&space->work, longest, err);
+    return fieldspace_reserve(&space->terms, longest, err);
 }
 
 /* Sets what all tiles of a row share. */
 static void place_row(const FieldTiles *tiles, size_t row, const Workspace *space, FieldTile *tile)
 {
     const TilePlaces *y = &tiles->tile_y[row];
-    *tile = (FieldTile){.groups = space->groups,
+    *tile = (FieldTile){.groups = space->terms.groups,
                         .perspective = tiles->lists.eye.perspective,
                         .y = y->samples,
                         .middle_y = y->middle,
@@ -179,24 +162,11 @@ static SeenTile place_samples(const FieldTiles *tiles, int column, size_t row)
                       .middle_y = y->middle};
 }
 
-static Status grow_scratch(const FieldTiles *tiles, Workspace *space, size_t n, Err *err)
-{
-    if (n <= space->scratch_capacity)
-        return STATUS_OK;
-    FieldScratch *larger;
-    size_t capacity = n > 2 * space->scratch_capacity ? n : 2 * space->scratch_capacity;
-    TRY(fieldscratch_new(tiles->geometry, capacity, &larger, err));
-    fieldscratch_free(space->scratch);
-    space->scratch = larger;
-    space->scratch_capacity = capacity;
-    return STATUS_OK;
-}
-
 /* Decides one sample in double precision. */
-static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile *tile, Ray ray,
+static Status decide(const FieldTiles *tiles, FieldSpace *space, const FieldTile *tile, Ray ray,
                      int sample, TileHits *hits, Err *err)
 {
-    TRY(grow_scratch(tiles, space, tile->n_terms, err));
+    TRY(fieldspace_reserve_rays(space, tile->n_terms, err));
     double t;
     Vec3 normal;
     uint32_t segment = 0;
@@ -216,7 +186,7 @@ static Status decide(const FieldTiles *tiles, Workspace *space, const FieldTile 
     return STATUS_OK;
 }
 
-static Status decide_all(const FieldTiles *tiles, Workspace *space, const FieldTile *tile,
+static Status decide_all(const FieldTiles *tiles, FieldSpace *space, const FieldTile *tile,
                          const SeenTile *seen, TileHits *hits, Err *err)
 {
     const SampleGrid *grid = &tiles->lists.grid;
@@ -247,10 +217,10 @@ Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t
         if (list[0] < list[1]) {
             place_column(tiles, (size_t)column, row, &tile);
             fieldterms_make(tiles->lists.segments, space->lists.items + list[0], list[1] - list[0],
-                            &tile, space->terms, space->candidates);
+                            &tile, space->terms.terms, space->terms.candidates);
             if (tile.n_terms) {
-                tiles->trace(&tile, &space->work, &hits);
-                TRY(decide_all(tiles, space, &tile, &seen, &hits, err));
+                tiles->trace(&tile, &space->terms.work, &hits);
+                TRY(decide_all(tiles, &space->terms, &tile, &seen, &hits, err));
                 seen.hits = hits.any_hit ? &hits : NULL;
             }
         }

@@ -96,32 +96,13 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
     }
 }
 
-static void place_grid(const Camera *camera, VesselLists *lists)
-{
-    const SampleGrid *grid = &lists->grid;
-    double width = vec3_length(camera->right), height = vec3_length(camera->up);
-    for (int i = 0; i < grid->n_columns; i++)
-        lists->x[i] = ((grid->columns[i] + 0.5) / camera->width - 0.5) * width;
-    for (int j = 0; j < grid->n_rows; j++)
-        lists->y[j] = (0.5 - (grid->rows[j] + 0.5) / camera->height) * height;
-    lists->per_x = camera->width / (grid->spacing * width);
-    lists->per_y = -camera->height / (grid->spacing * height);
-}
-
-Status vessellists_make(const Geometry *geometry, const Camera *camera, const SampleGrid *grid,
-                        int threads, VesselLists *lists, Err *err)
+/* Sorts the segments into rows, once all about the view but the places of its samples is set. */
+static Status fill_lists(const Geometry *geometry, int threads, VesselLists *lists, Err *err)
 {
     size_t n = lists->n_segments = geometry->n_segments;
     SegmentsJob job = {geometry, lists};
-    lists->eye = viewpoint_of_camera(camera);
-    lists->grid = *grid;
-    lists->tile_columns = (grid->n_columns + TILE_SIDE - 1) / TILE_SIDE;
-    lists->tile_rows = (grid->n_rows + TILE_SIDE - 1) / TILE_SIDE;
-    TRY(mem_calloc(&lists->x, (size_t)grid->n_columns, sizeof *lists->x, "columns", err));
-    TRY(mem_calloc(&lists->y, (size_t)grid->n_rows, sizeof *lists->y, "rows", err));
     TRY(mem_calloc(&lists->segments, n, sizeof *lists->segments, "segments", err));
     TRY(mem_calloc(&lists->segment_rows, n, sizeof *lists->segment_rows, "segments", err));
-    place_grid(camera, lists);
     threads_for((n + CHUNK - 1) / CHUNK, threads, prepare_chunk, &job);
     TRY(sort_into_bins(lists->segment_rows, NULL, n, lists->tile_rows, &lists->rows, err));
     for (int row = 0; row < lists->tile_rows; row++) {
@@ -129,6 +110,48 @@ Status vessellists_make(const Geometry *geometry, const Camera *camera, const Sa
         lists->longest = length > lists->longest ? length : lists->longest;
     }
     return STATUS_OK;
+}
+
+/* Makes room for the places of so many samples. */
+static Status begin_lists(const Viewpoint *eye, const SampleGrid *grid, VesselLists *lists,
+                          Err *err)
+{
+    lists->eye = *eye;
+    lists->grid = *grid;
+    lists->tile_columns = (grid->n_columns + TILE_SIDE - 1) / TILE_SIDE;
+    lists->tile_rows = (grid->n_rows + TILE_SIDE - 1) / TILE_SIDE;
+    TRY(mem_calloc(&lists->x, (size_t)grid->n_columns, sizeof *lists->x, "columns", err));
+    return mem_calloc(&lists->y, (size_t)grid->n_rows, sizeof *lists->y, "rows", err);
+}
+
+Status vessellists_make(const Geometry *geometry, const Camera *camera, const SampleGrid *grid,
+                        int threads, VesselLists *lists, Err *err)
+{
+    const Viewpoint eye = viewpoint_of_camera(camera);
+    double width = vec3_length(camera->right), height = vec3_length(camera->up);
+    TRY(begin_lists(&eye, grid, lists, err));
+    for (int i = 0; i < grid->n_columns; i++)
+        lists->x[i] = ((grid->columns[i] + 0.5) / camera->width - 0.5) * width;
+    for (int j = 0; j < grid->n_rows; j++)
+        lists->y[j] = (0.5 - (grid->rows[j] + 0.5) / camera->height) * height;
+    lists->per_x = camera->width / (grid->spacing * width);
+    lists->per_y = -camera->height / (grid->spacing * height);
+    return fill_lists(geometry, threads, lists, err);
+}
+
+Status vessellists_of_light(const Geometry *geometry, const LightView *view, int threads,
+                            VesselLists *lists, Err *err)
+{
+    const int samples = view->tiles * TILE_SIDE;
+    const SampleGrid grid = {.n_columns = samples, .n_rows = samples, .spacing = 1};
+    TRY(begin_lists(&view->eye, &grid, lists, err));
+    for (int i = 0; i < samples; i++) {
+        lists->x[i] = view->left + i * view->step_x;
+        lists->y[i] = view->top + i * view->step_y;
+    }
+    lists->per_x = 1 / view->step_x;
+    lists->per_y = 1 / view->step_y;
+    return fill_lists(geometry, threads, lists, err);
 }
 
 void vessellists_release(VesselLists *lists)

@@ -4,7 +4,7 @@
 
 #include "render/field/fieldterms.h"
 #include "render/tile/interval.h"
-#include "render/tile/viewpoint.h"
+#include "render/tile/lightview.h"
 
 /* Where rays go through the picture: every pair of a column and a row, in pixels as camera_ray
  * takes them. Both ascend in steps of `spacing`. */
@@ -41,6 +41,9 @@ typedef struct VesselLists {
 MUST_CHECK Status vessellists_make(const Geometry *geometry, const Camera *camera,
                                    const SampleGrid *grid, int threads, VesselLists *lists,
                                    Err *err);
+/* The same for the tiles of a light's view. */
+MUST_CHECK Status vessellists_of_light(const Geometry *geometry, const LightView *view, int threads,
+                                       VesselLists *lists, Err *err);
 void vessellists_release(VesselLists *lists);
 
 /* Sets the lists of the tiles of one row: *tiles, zeroed before or used for these lists; `columns`

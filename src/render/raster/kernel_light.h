@@ -12,7 +12,7 @@
 /* ---- aiming ---------------------------------------------------------------------------------- */
 
 LANE_TARGET static void RASTER_KERNEL(locate)(const RasterTile *tile, const RasterHits *hits,
-                                              RasterPlaces *places)
+                                              SeenPlaces *places)
 {
     const RasterGrid *grid = tile->grid;
     double middle_x = tile->x, middle_y = tile->y, z_middle = tile->z_middle;
@@ -23,81 +23,6 @@ LANE_TARGET static void RASTER_KERNEL(locate)(const RasterTile *tile, const Rast
         places->y[sample] = (middle_y + (double)grid->y[sample]) * scale;
         places->z[sample] = z;
     }
-}
-
-/* `near`: the light is not parallel; `slanted`: the camera's view is not. */
-RASTER_FN void face_samples(const RasterTile *tile, const RasterPlaces *places,
-                            const float normal[3][TILE_SAMPLES], const TileLight *light, bool near,
-                            bool slanted, uint8_t facing[TILE_SAMPLES])
-{
-    const RasterGrid *grid = tile->grid;
-    const float to_x = light->towards[0], to_y = light->towards[1], to_z = light->towards[2];
-    float middle_x = (float)tile->x, middle_y = (float)tile->y;
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        float nx = normal[0][sample], ny = normal[1][sample], nz = normal[2][sample];
-        float x = to_x, y = to_y, z = to_z, away = nz;
-        if (near) {
-            x -= (float)places->x[sample];
-            y -= (float)places->y[sample];
-            z -= (float)places->z[sample];
-        }
-        if (slanted)
-            away += nx * (middle_x + grid->x[sample]) + ny * (middle_y + grid->y[sample]);
-        float along = nx * x + ny * y + nz * z;
-        facing[sample] = (uint8_t)((away > 0 ? -along : along) > 0);
-    }
-}
-
-LANE_TARGET static void RASTER_KERNEL(face)(const RasterTile *tile, const RasterPlaces *places,
-                                            const float normal[3][TILE_SAMPLES],
-                                            const TileLight *light, uint8_t facing[TILE_SAMPLES])
-{
-    if (light->parallel && !tile->perspective)
-        face_samples(tile, places, normal, light, false, false, facing);
-    else
-        face_samples(tile, places, normal, light, !light->parallel, tile->perspective, facing);
-}
-
-/* The tile, of `count`, that a place in tiles lies in. */
-RASTER_FN int32_t tile_at(double place, double count)
-{
-    place = place > 0 ? place : 0;
-    return (int32_t)(place < count ? place : count - 1);
-}
-
-LANE_TARGET static void RASTER_KERNEL(aim)(const RasterAim *aim, const RasterPlaces *places,
-                                           AimedPlaces *restrict aimed)
-{
-    const RasterAim a = *aim;
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        double px = places->x[sample], py = places->y[sample], pz = places->z[sample];
-        double x = px * a.axes[0].x + py * a.axes[0].y + pz * a.axes[0].z + a.offset.x;
-        double y = px * a.axes[1].x + py * a.axes[1].y + pz * a.axes[1].z + a.offset.y;
-        double z = px * a.axes[2].x + py * a.axes[2].y + pz * a.axes[2].z + a.offset.z;
-        double depth = a.perspective ? z : 1;
-        x /= depth;
-        y /= depth;
-        double slope2 = a.perspective ? x * x + y * y : 0;
-        aimed->x[sample] = x;
-        aimed->y[sample] = y;
-        aimed->z[sample] = (float)(z - a.slack / sqrt(1 + slope2) - a.z_middle);
-    }
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        int32_t row = tile_at((aimed->y[sample] - a.top) * a.per_y, a.rows);
-        int32_t column = tile_at((aimed->x[sample] - a.left) * a.per_x, a.columns);
-        aimed->tile[sample] = row * (int32_t)a.columns + column;
-    }
-}
-
-LANE_TARGET static uint64_t RASTER_KERNEL(within)(const AimedPlaces *aimed, int32_t tile)
-{
-    uint64_t bits = 0;
-    for (int first = 0; first < TILE_SAMPLES; first += LANES) {
-        LaneMask tiles;
-        __builtin_memcpy(&tiles, &aimed->tile[first], sizeof tiles);
-        bits |= (uint64_t)lanes_bits(tiles == tile) << first;
-    }
-    return bits;
 }
 
 /* ---- what is in the way ---------------------------------------------------------------------- */
@@ -322,7 +247,4 @@ LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, ShadowQueri
 const RasterKernels RASTER_KERNEL(rasterkernels) = {.trace = RASTER_KERNEL(trace),
                                                     .resolve = RASTER_KERNEL(resolve),
                                                     .locate = RASTER_KERNEL(locate),
-                                                    .face = RASTER_KERNEL(face),
-                                                    .aim = RASTER_KERNEL(aim),
-                                                    .within = RASTER_KERNEL(within),
                                                     .cover = RASTER_KERNEL(cover)};

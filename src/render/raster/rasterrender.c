@@ -83,11 +83,11 @@ static void face_viewer(BatchTile *tile)
 
 /* Of the samples that see something, as bits, those whose surface faces the light. */
 static uint64_t find_facing(const RasterPicture *picture, const BatchTile *tile,
-                            const TileLight *light, const RasterPlaces *places)
+                            const TileLight *light, const SeenPlaces *places)
 {
     uint8_t facing[TILE_SAMPLES];
     uint64_t wanted = 0;
-    picture->kernels->face(&tile->raster, places, tile->surfels.normal, light, facing);
+    picture->canvas.kernels->face(&tile->seen, places, tile->surfels.normal, light, facing);
     for (uint64_t left = tile->visible; left; left &= left - 1) {
         int sample = __builtin_ctzll(left);
         wanted |= (uint64_t)facing[sample] << sample;
@@ -97,8 +97,7 @@ static uint64_t find_facing(const RasterPicture *picture, const BatchTile *tile,
 
 /* One light, ray by ray. */
 static void cast_shadows(const RasterPicture *picture, const Light *light, int worker,
-                         const RasterPlaces *places, uint64_t wanted,
-                         uint8_t shadowed[TILE_SAMPLES])
+                         const SeenPlaces *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
 {
     const Drawing *drawing = picture->canvas.drawing;
     for (; wanted; wanted &= wanted - 1) {
@@ -115,7 +114,7 @@ static void ask_lights(const RasterPicture *picture, const BatchTile *tile, int 
                        Batch *batch)
 {
     const View *view = picture->canvas.drawing->view;
-    RasterPlaces places;
+    SeenPlaces places;
     picture->kernels->locate(&tile->raster, &tile->hits, &places);
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
@@ -124,8 +123,8 @@ static void ask_lights(const RasterPicture *picture, const BatchTile *tile, int 
         uint64_t wanted = find_facing(picture, tile, &picture->canvas.look.lights[i], &places);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
-            rasterqueue_ask(batch->queues[i], picture->kernels, &places, tile->hits.item, wanted,
-                            (uint32_t)answer);
+            rasterqueue_ask(batch->queues[i], picture->canvas.kernels, &places, tile->hits.item,
+                            wanted, (uint32_t)answer);
         else
             cast_shadows(picture, light, worker, &places, wanted, tile->shadowed[i]);
     }
@@ -381,7 +380,7 @@ static Status make_batch(const RasterPicture *picture, Batch *batch, Err *err)
 static Status make_batches(RasterPicture *picture, Err *err)
 {
     int workers = picture->canvas.workers;
-    picture->batch_size = picture->prepared->has_shadows ? RASTER_BATCH : 1;
+    picture->batch_size = picture->prepared->has_shadows ? LIGHT_BATCH : 1;
     TRY(mem_calloc(&picture->batches, (size_t)workers, sizeof *picture->batches, "canvases", err));
     for (int i = 0; i < workers; i++)
         TRY(make_batch(picture, &picture->batches[i], err));

@@ -11,9 +11,6 @@
 
 /* Blockers nearer than this to the lit place cast no shadow [docs/POVRAY.md section 3]. */
 static const double slack_mm = 1e-3;
-/* A point light must be as far from the middle of the scene, in radii of the scene: it sees less
- * than 60 degrees to each side then. */
-static const double least_radii = 1.16;
 /* RasterKernels.cover reads up to as many words from a list's end on. */
 enum { MOST_LANES = 16 };
 /* What is asked of memory ahead of its use: the beginning of the next list. */
@@ -40,27 +37,8 @@ struct RasterShadow {
     ShadowRow *rows;
     Store *stores; /* one a worker */
     int workers;
-    RasterAim aim;
+    LightAim aim;
 };
-
-static double geometry_radius(const Geometry *geometry, Vec3 *center)
-{
-    *center = box_center(geometry->bounds);
-    return vec3_distance(*center, geometry->bounds.high);
-}
-
-static bool sees_all(const Geometry *geometry, const Light *light)
-{
-    Vec3 center;
-    double radius = geometry_radius(geometry, &center);
-    return light->parallel || vec3_distance(light->location, center) > least_radii * radius;
-}
-
-static Vec3 corner(const Box *box, int number)
-{
-    return vec3(number & 1 ? box->high.x : box->low.x, number & 2 ? box->high.y : box->low.y,
-                number & 4 ? box->high.z : box->low.z);
-}
 
 /* Tiles on a side: about sixteen primitives a tile. */
 static int tiles_for(const Geometry *geometry)
@@ -69,36 +47,18 @@ static int tiles_for(const Geometry *geometry)
     return side < LEAST_SIDE ? LEAST_SIDE : side > MOST_SIDE ? MOST_SIDE : (int)side;
 }
 
-/* The view of a light, just wide enough for the scene. */
-static RasterView light_view(const Geometry *geometry, const Light *light)
+static RasterView view_of(const LightView *light)
 {
-    RasterView view = {.eye = {.location = light->location, .perspective = !light->parallel},
-                       .light = true};
-    Vec3 center, towards = vec3_sub(light->target, light->location);
-    geometry_radius(geometry, &center);
-    if (!light->parallel)
-        towards = vec3_sub(center, light->location);
-    view.eye.axes[2] = vec3_normalized(towards);
-    Vec3 other = fabs(view.eye.axes[2].x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
-    view.eye.axes[0] = vec3_normalized(vec3_cross(view.eye.axes[2], other));
-    view.eye.axes[1] = vec3_cross(view.eye.axes[0], view.eye.axes[2]);
-    Box box = box_empty();
-    for (int i = 0; i < 8; i++) {
-        Vec3 at = vec3_sub(corner(&geometry->bounds, i), light->location);
-        at = viewpoint_to_frame(&view.eye, at);
-        if (view.eye.perspective)
-            at = vec3(at.x / at.z, at.y / at.z, at.z);
-        box = box_with_ball(box, at, 0);
-    }
-    int tiles = tiles_for(geometry);
-    view.columns = view.rows = tiles * TILE_SIDE;
-    view.stray = 0.5;
-    view.step_x = (box.high.x - box.low.x) * 1.0001 / view.columns;
-    view.step_y = -(box.high.y - box.low.y) * 1.0001 / view.rows;
-    view.left = (box.low.x + box.high.x) / 2 - (view.columns - 1) / 2.0 * view.step_x;
-    view.top = (box.low.y + box.high.y) / 2 - (view.rows - 1) / 2.0 * view.step_y;
-    view.z_middle = (box.low.z + box.high.z) / 2;
-    return view;
+    return (RasterView){.eye = light->eye,
+                        .light = true,
+                        .columns = light->tiles * TILE_SIDE,
+                        .rows = light->tiles * TILE_SIDE,
+                        .stray = 0.5,
+                        .step_x = light->step_x,
+                        .step_y = light->step_y,
+                        .left = light->left,
+                        .top = light->top,
+                        .z_middle = light->z_middle};
 }
 
 static Status take_words(Store *store, size_t n, uint32_t **out)
@@ -157,32 +117,16 @@ static Status list_rows(RasterShadow *shadow, Err *err)
     return STATUS_OK;
 }
 
-static RasterAim aim_of(const Geometry *geometry, const RasterView *view, const RasterView *camera)
-{
-    Vec3 center;
-    RasterAim aim = {.perspective = view->eye.perspective,
-                     .left = view->left - view->step_x / 2,
-                     .top = view->top - view->step_y / 2,
-                     .per_x = 1 / (TILE_SIDE * view->step_x),
-                     .per_y = 1 / (TILE_SIDE * view->step_y),
-                     .columns = view->columns / TILE_SIDE,
-                     .rows = view->rows / TILE_SIDE,
-                     .z_middle = view->z_middle};
-    /* Places and depths are rounded to 2^-24 of the scene's size, thrice. */
-    aim.slack = slack_mm + 0x3p-23 * geometry_radius(geometry, &center);
-    for (int i = 0; i < 3; i++)
-        aim.axes[i] = viewpoint_to_frame(&camera->eye, view->eye.axes[i]);
-    aim.offset = viewpoint_place(&view->eye, camera->eye.location);
-    return aim;
-}
-
 static Status make_shadow(const Geometry *geometry, const Light *light, const RasterView *camera,
                           int threads, RasterShadow **out, Err *err)
 {
     RasterShadow *shadow = NULL;
     TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
-    RasterView view = light_view(geometry, light);
-    shadow->aim = aim_of(geometry, &view, camera);
+    LightView seen = lightview_of(geometry, light, tiles_for(geometry));
+    RasterView view = view_of(&seen);
+    /* Places and depths are rounded to 2^-24 of the scene's size, thrice. */
+    double slack = slack_mm + 0x3p-23 * lightview_radius(geometry);
+    shadow->aim = lightview_aim(&seen, &camera->eye, slack);
     shadow->grid = rastergrid_make(&view, 0.5, 0.5);
     shadow->workers = threads;
     Status status = rasterbins_new(geometry, &view, threads, &shadow->bins, err);
@@ -241,7 +185,7 @@ Status rastershadows_new(const Geometry *geometry, const View *view, const Raste
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
         shadows[i] = NULL;
-        if (light->casts_shadows && light->samples <= 1 && sees_all(geometry, light))
+        if (light->casts_shadows && light->samples <= 1 && lightview_sees_all(geometry, light))
             making[n++] = (Making){
                 .geometry = geometry, .camera = camera, .light = light, .out = &shadows[i]};
     }
@@ -254,7 +198,7 @@ bool rastershadows_need_rays(const Geometry *geometry, const View *view)
 {
     for (size_t i = 0; i < view->n_lights; i++)
         if (view->lights[i].casts_shadows &&
-            (view->lights[i].samples > 1 || !sees_all(geometry, &view->lights[i])))
+            (view->lights[i].samples > 1 || !lightview_sees_all(geometry, &view->lights[i])))
             return true;
     return false;
 }
@@ -275,66 +219,39 @@ void rastershadow_free(RasterShadow *shadow)
 
 /* ---- asking ---------------------------------------------------------------------------------- */
 
-/* Places of one tile of the picture that lie in one tile of the light. */
-typedef struct Request {
-    uint64_t places; /* as bits */
-    int tile;        /* of the picture: its number in the queue */
-    int before;      /* the request before it in the tile of the light, or -1 */
-} Request;
-
 struct RasterQueue {
     const RasterShadow *shadow;
-    int n; /* tiles of the picture */
-    AimedPlaces aimed[RASTER_BATCH];
-    const uint32_t *items[RASTER_BATCH];
-    uint32_t answer[RASTER_BATCH];
-    Request requests[MOST_QUERIES];
-    int n_requests, n_tiles;
-    int tiles[MOST_QUERIES]; /* of the light, that are asked, in the order of their first request */
-    int *last;               /* of each tile of the light, the last request there, or -1 */
+    LightQueue *places;
+    const uint32_t *items[LIGHT_BATCH]; /* of each call */
+    uint32_t answer[LIGHT_BATCH];
+    const RasterKernels *kernels;
+    uint8_t *shadowed;
     ShadowQueries queries;
 };
 
 Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out, Err *err)
 {
-    RasterQueue *queue;
-    size_t n = (size_t)shadow->bins->tile_columns * (size_t)shadow->bins->tile_rows;
-    TRY(mem_calloc(&queue, 1, sizeof *queue, "shadows", err));
-    *out = queue;
-    queue->shadow = shadow;
-    queue->queries.aimed = queue->aimed;
-    TRY(mem_calloc(&queue->last, n, sizeof *queue->last, "shadows", err));
-    memset(queue->last, -1, n * sizeof *queue->last);
-    return STATUS_OK;
+    TRY(mem_calloc(out, 1, sizeof **out, "shadows", err));
+    (*out)->shadow = shadow;
+    return lightqueue_new(&shadow->aim, &(*out)->places, err);
 }
 
 void rasterqueue_free(RasterQueue *queue)
 {
     if (!queue)
         return;
-    free(queue->last);
+    lightqueue_free(queue->places);
     free(queue);
 }
 
-void rasterqueue_ask(RasterQueue *queue, const RasterKernels *kernels, const RasterPlaces *places,
+void rasterqueue_ask(RasterQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
                      const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer)
 {
     if (!wanted)
         return;
-    int number = queue->n++;
-    AimedPlaces *aimed = &queue->aimed[number];
-    kernels->aim(&queue->shadow->aim, places, aimed);
-    queue->items[number] = items;
-    queue->answer[number] = answer;
-    while (wanted) {
-        int tile = aimed->tile[__builtin_ctzll(wanted)], n = queue->n_requests++;
-        uint64_t within = wanted & kernels->within(aimed, tile);
-        if (queue->last[tile] < 0)
-            queue->tiles[queue->n_tiles++] = tile;
-        queue->requests[n] = (Request){within, number, queue->last[tile]};
-        queue->last[tile] = n;
-        wanted &= ~within;
-    }
+    int call = lightqueue_ask(queue->places, kernels, places, wanted);
+    queue->items[call] = items;
+    queue->answer[call] = answer;
 }
 
 /* A tile of the light with its list. */
@@ -347,52 +264,52 @@ static RasterTile tile_of(const RasterShadow *shadow, int number)
     size_t n = offsets[1] - offsets[0];
     RasterTile tile = rasterbins_tile(bins, column, row, list, n, &shadow->grid);
     tile.nears = (const float *)(const void *)(list + 2 * n);
-    for (size_t word = 0; word < 3 * n && word < MOST_FETCHED; word += LINE_WORDS)
-        __builtin_prefetch(list + word);
     return tile;
 }
 
-static void add_queries(RasterQueue *queue, const RasterTile *tile, const Request *request)
+static void fetch_list(const RasterShadow *shadow, int number)
+{
+    RasterTile tile = tile_of(shadow, number);
+    for (size_t word = 0; word < 3 * tile.n && word < MOST_FETCHED; word += LINE_WORDS)
+        __builtin_prefetch(tile.list + word);
+}
+
+static void set_queries(RasterQueue *queue, const RasterTile *tile, const LightRequest *request)
 {
     ShadowQueries *queries = &queue->queries;
-    const AimedPlaces *aimed = &queue->aimed[request->tile];
-    const uint32_t *items = queue->items[request->tile];
-    for (uint64_t places = request->places; places; places &= places - 1) {
-        int place = __builtin_ctzll(places), n = queries->n++;
-        queries->place[n] = (uint32_t)(request->tile * TILE_SAMPLES + place);
-        queries->x[n] = (float)(aimed->x[place] - tile->x);
-        queries->y[n] = (float)(aimed->y[place] - tile->y);
-        queries->z[n] = aimed->z[place];
-        queries->item[n] = items[place];
+    queries->aimed = request->aimed;
+    queries->n = request->n;
+    for (int i = 0; i < request->n; i++) {
+        uint32_t call = request->places[i] / TILE_SAMPLES,
+                 place = request->places[i] % TILE_SAMPLES;
+        const AimedPlaces *aimed = &request->aimed[call];
+        queries->place[i] = request->places[i];
+        queries->x[i] = (float)(aimed->x[place] - tile->x);
+        queries->y[i] = (float)(aimed->y[place] - tile->y);
+        queries->z[i] = (float)aimed->z[place];
+        queries->item[i] = queue->items[call][place];
     }
 }
 
-static void test_tile(RasterQueue *queue, const RasterKernels *kernels, const RasterTile *tile,
-                      int last, uint8_t *shadowed)
+static void test_tile(const LightRequest *request, void *context)
 {
+    RasterQueue *queue = context;
     ShadowQueries *queries = &queue->queries;
-    queries->n = 0;
-    for (int i = last; i >= 0; i = queue->requests[i].before)
-        add_queries(queue, tile, &queue->requests[i]);
-    kernels->cover(tile, queries);
+    RasterTile tile = tile_of(queue->shadow, request->tile);
+    if (request->next >= 0)
+        fetch_list(queue->shadow, request->next);
+    set_queries(queue, &tile, request);
+    queue->kernels->cover(&tile, queries);
     for (int i = 0; i < queries->n; i++) {
         uint32_t place = queries->place[i];
-        shadowed[queue->answer[place / TILE_SAMPLES] + place % TILE_SAMPLES] = queries->covered[i];
+        queue->shadowed[queue->answer[place / TILE_SAMPLES] + place % TILE_SAMPLES] =
+            queries->covered[i];
     }
 }
 
 void rasterqueue_answer(RasterQueue *queue, const RasterKernels *kernels, uint8_t *shadowed)
 {
-    RasterTile next = {0};
-    if (queue->n_tiles > 0)
-        next = tile_of(queue->shadow, queue->tiles[0]);
-    for (int i = 0; i < queue->n_tiles; i++) {
-        RasterTile tile = next;
-        int *last = &queue->last[queue->tiles[i]];
-        if (i + 1 < queue->n_tiles)
-            next = tile_of(queue->shadow, queue->tiles[i + 1]);
-        test_tile(queue, kernels, &tile, *last, shadowed);
-        *last = -1;
-    }
-    queue->n = queue->n_requests = queue->n_tiles = 0;
+    queue->kernels = kernels;
+    queue->shadowed = shadowed;
+    lightqueue_visit(queue->places, test_tile, queue);
 }

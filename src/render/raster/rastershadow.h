@@ -4,6 +4,7 @@
 
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
+#include "render/tile/lightview.h"
 
 /* The geometry as one light sees it; constant once built. */
 typedef struct RasterShadow RasterShadow;
@@ -19,7 +20,7 @@ void rastershadow_free(RasterShadow *shadow);
 /* Whether a light that casts shadows is an area light, or too near for a RasterShadow. */
 bool rastershadows_need_rays(const Geometry *geometry, const View *view);
 
-/* Shadow queries to one light, for the places of up to RASTER_BATCH tiles of the picture. They are
+/* Shadow queries to one light, for the places of up to LIGHT_BATCH tiles of the picture. They are
  * answered together because places that lie in one tile of the light share its list. Not
  * thread-safe: each worker has a queue of its own for each light. */
 typedef struct RasterQueue RasterQueue;
@@ -31,8 +32,8 @@ void rasterqueue_free(RasterQueue *queue);
 
 /* Adds a query for each place i whose bit is set in `wanted`; place i lies on items[i], as in
  * RasterHits. `items` is borrowed until rasterqueue_answer, which writes the answer for place i to
- * shadowed[answer + i]. At most RASTER_BATCH calls between two answers. */
-void rasterqueue_ask(RasterQueue *queue, const RasterKernels *kernels, const RasterPlaces *places,
+ * shadowed[answer + i]. At most LIGHT_BATCH calls between two answers. */
+void rasterqueue_ask(RasterQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
                      const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer);
 /* Answers all queries and empties the queue. An answer is 1 if a primitive stands between the light
  * and the place, by more than POV-Ray's 0.001 mm or the rounding of the light's view, else 0.

@@ -230,7 +230,86 @@ LANE_TARGET static void TILE_KERNEL(clear)(const uint8_t *state, const float bac
     }
 }
 
+/* ---- lights ---------------------------------------------------------------------------------- */
+
+/* `near`: the light is not parallel; `slanted`: the camera's view is not. */
+LANE_FN void face_samples(const SeenTile *seen, const SeenPlaces *places,
+                          const float normal[3][TILE_SAMPLES], const TileLight *light, bool near,
+                          bool slanted, uint8_t facing[TILE_SAMPLES])
+{
+    const float to_x = light->towards[0], to_y = light->towards[1], to_z = light->towards[2];
+    float middle_x = (float)seen->middle_x, middle_y = (float)seen->middle_y;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        float nx = normal[0][sample], ny = normal[1][sample], nz = normal[2][sample];
+        float x = to_x, y = to_y, z = to_z, away = nz;
+        if (near) {
+            x -= (float)places->x[sample];
+            y -= (float)places->y[sample];
+            z -= (float)places->z[sample];
+        }
+        if (slanted)
+            away += nx * (middle_x + seen->x[sample]) + ny * (middle_y + seen->y[sample]);
+        float along = nx * x + ny * y + nz * z;
+        facing[sample] = (uint8_t)((away > 0 ? -along : along) > 0);
+    }
+}
+
+LANE_TARGET static void TILE_KERNEL(face)(const SeenTile *seen, const SeenPlaces *places,
+                                          const float normal[3][TILE_SAMPLES],
+                                          const TileLight *light, uint8_t facing[TILE_SAMPLES])
+{
+    if (light->parallel && !seen->perspective)
+        face_samples(seen, places, normal, light, false, false, facing);
+    else
+        face_samples(seen, places, normal, light, !light->parallel, seen->perspective, facing);
+}
+
+/* The tile, of `count`, that a place in tiles lies in. */
+LANE_FN int32_t tile_at(double place, double count)
+{
+    place = place > 0 ? place : 0;
+    return (int32_t)(place < count ? place : count - 1);
+}
+
+LANE_TARGET static void TILE_KERNEL(aim)(const LightAim *aim, const SeenPlaces *places,
+                                         AimedPlaces *restrict aimed)
+{
+    const LightAim a = *aim;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        double px = places->x[sample], py = places->y[sample], pz = places->z[sample];
+        double x = px * a.axes[0].x + py * a.axes[0].y + pz * a.axes[0].z + a.offset.x;
+        double y = px * a.axes[1].x + py * a.axes[1].y + pz * a.axes[1].z + a.offset.y;
+        double z = px * a.axes[2].x + py * a.axes[2].y + pz * a.axes[2].z + a.offset.z;
+        double depth = a.perspective ? z : 1;
+        x /= depth;
+        y /= depth;
+        double slope2 = a.perspective ? x * x + y * y : 0;
+        aimed->x[sample] = x;
+        aimed->y[sample] = y;
+        aimed->z[sample] = z - a.slack / sqrt(1 + slope2) - a.z_middle;
+    }
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        int32_t row = tile_at((aimed->y[sample] - a.top) * a.per_y, a.rows);
+        int32_t column = tile_at((aimed->x[sample] - a.left) * a.per_x, a.columns);
+        aimed->tile[sample] = row * (int32_t)a.columns + column;
+    }
+}
+
+LANE_TARGET static uint64_t TILE_KERNEL(within)(const AimedPlaces *aimed, int32_t tile)
+{
+    uint64_t bits = 0;
+    for (int first = 0; first < TILE_SAMPLES; first += LANES) {
+        LaneMask tiles;
+        __builtin_memcpy(&tiles, &aimed->tile[first], sizeof tiles);
+        bits |= (uint64_t)lanes_bits(tiles == tile) << first;
+    }
+    return bits;
+}
+
 const TileKernels TILE_KERNEL(tilekernels) = {.shade = TILE_KERNEL(shade),
                                               .clear = TILE_KERNEL(clear),
                                               .paint = TILE_KERNEL(paint),
-                                              .encode = TILE_KERNEL(encode)};
+                                              .encode = TILE_KERNEL(encode),
+                                              .face = TILE_KERNEL(face),
+                                              .aim = TILE_KERNEL(aim),
+                                              .within = TILE_KERNEL(within)};

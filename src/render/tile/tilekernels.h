@@ -35,6 +35,28 @@ typedef struct TileSurface {
     bool is_shared[VIEW_MAX_LIGHTS];
 } TileSurface;
 
+/* Where the samples of a tile see something, mm in the frame of the view; undefined for samples
+ * that see nothing. */
+typedef struct SeenPlaces {
+    double x[TILE_SAMPLES], y[TILE_SAMPLES], z[TILE_SAMPLES];
+} SeenPlaces;
+
+/* How a light looks at places in the frame of the camera. */
+typedef struct LightAim {
+    Vec3 axes[3], offset; /* the light's axes there, and the camera's location in the light's */
+    bool perspective;
+    double left, top, per_x, per_y; /* edge of the first tile, tiles per unit */
+    double columns, rows;           /* tiles */
+    double slack, z_middle;
+} LightAim;
+
+/* Places as the light sees them. */
+typedef struct AimedPlaces {
+    double x[TILE_SAMPLES], y[TILE_SAMPLES];
+    double z[TILE_SAMPLES];     /* before which a blocker must stand, less z_middle */
+    int32_t tile[TILE_SAMPLES]; /* row by row */
+} AimedPlaces;
+
 typedef struct TileKernels {
     /* Colours of the hits as shade() gives, to 2e-5 of the light's colour. Reads of the surface
      * what the look asks for, and sets the colours of other samples in the same block to anything.
@@ -50,6 +72,15 @@ typedef struct TileKernels {
      * Colours that are not a number have code 0. */
     void (*encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES], const uint8_t *state,
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
+    /* facing[i] is 1 where the visible side of the surface at a place faces the light, else 0. */
+    void (*face)(const SeenTile *seen, const SeenPlaces *places,
+                 const float normal[3][TILE_SAMPLES], const TileLight *light,
+                 uint8_t facing[TILE_SAMPLES]);
+    /* Sets the places as the light sees them; where a sample sees nothing, to a tile of the light
+     * all the same. */
+    void (*aim)(const LightAim *aim, const SeenPlaces *places, AimedPlaces *aimed);
+    /* Of the samples, as bits, those that lie in a tile. */
+    uint64_t (*within)(const AimedPlaces *aimed, int32_t tile);
 } TileKernels;
 
 /* Kernels come in kinds: the portable ones first, then those for ever more able processors. */

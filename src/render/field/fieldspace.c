@@ -1,0 +1,41 @@
+/* Workspaces only grow, so that memory is asked for a few times a picture. */
+#include "render/field/fieldspace.h"
+
+#include <stdlib.h>
+
+Status fieldspace_init(const Geometry *geometry, FieldSpace *space, Err *err)
+{
+    *space = (FieldSpace){.geometry = geometry};
+    return geometry->blend.n_groups ? localgroups_new(geometry, &space->groups, err) : STATUS_OK;
+}
+
+void fieldspace_release(FieldSpace *space)
+{
+    free(space->terms);
+    free(space->candidates);
+    tilework_release(&space->work);
+    localgroups_free(space->groups);
+    fieldscratch_free(space->scratch);
+    *space = (FieldSpace){0};
+}
+
+Status fieldspace_reserve(FieldSpace *space, size_t n, Err *err)
+{
+    TRY(mem_reserve(&space->terms, &space->terms_capacity, n, sizeof *space->terms, "terms", err));
+    TRY(mem_reserve(&space->candidates, &space->candidates_capacity, n, sizeof *space->candidates,
+                    "terms", err));
+    return tilework_reserve(&space->work, n, err);
+}
+
+Status fieldspace_reserve_rays(FieldSpace *space, size_t n, Err *err)
+{
+    if (n <= space->scratch_capacity)
+        return STATUS_OK;
+    FieldScratch *larger;
+    size_t capacity = n > 2 * space->scratch_capacity ? n : 2 * space->scratch_capacity;
+    TRY(fieldscratch_new(space->geometry, capacity, &larger, err));
+    fieldscratch_free(space->scratch);
+    space->scratch = larger;
+    space->scratch_capacity = capacity;
+    return STATUS_OK;
+}

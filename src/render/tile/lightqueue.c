@@ -1,0 +1,88 @@
+/* Each tile of the light has a chain of requests, each for those places of one tile of the picture
+ * that lie in it: few, as neighbours in the picture mostly are neighbours in the light's view. */
+#include "render/tile/lightqueue.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Places of one tile of the picture that lie in one tile of the light. */
+typedef struct Request {
+    uint64_t places; /* as bits */
+    int call;
+    int before; /* the request before it in the tile of the light, or -1 */
+} Request;
+
+struct LightQueue {
+    LightAim aim;
+    int n_calls, n_requests, n_tiles;
+    AimedPlaces aimed[LIGHT_BATCH];
+    Request requests[LIGHT_MOST_PLACES];
+    int tiles[LIGHT_MOST_PLACES]; /* of the light, that are asked, in the order of their first
+                                   * request */
+    uint32_t places[LIGHT_MOST_PLACES];
+    int *last; /* of each tile of the light, the last request there, or -1 */
+};
+
+Status lightqueue_new(const LightAim *aim, LightQueue **out, Err *err)
+{
+    LightQueue *queue;
+    size_t n = (size_t)aim->columns * (size_t)aim->rows;
+    TRY(mem_calloc(&queue, 1, sizeof *queue, "shadows", err));
+    *out = queue;
+    queue->aim = *aim;
+    TRY(mem_calloc(&queue->last, n, sizeof *queue->last, "shadows", err));
+    memset(queue->last, -1, n * sizeof *queue->last);
+    return STATUS_OK;
+}
+
+void lightqueue_free(LightQueue *queue)
+{
+    if (!queue)
+        return;
+    free(queue->last);
+    free(queue);
+}
+
+int lightqueue_ask(LightQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
+                   uint64_t wanted)
+{
+    int call = queue->n_calls++;
+    AimedPlaces *aimed = &queue->aimed[call];
+    kernels->aim(&queue->aim, places, aimed);
+    while (wanted) {
+        int tile = aimed->tile[__builtin_ctzll(wanted)], n = queue->n_requests++;
+        uint64_t within = wanted & kernels->within(aimed, tile);
+        if (queue->last[tile] < 0)
+            queue->tiles[queue->n_tiles++] = tile;
+        queue->requests[n] = (Request){within, call, queue->last[tile]};
+        queue->last[tile] = n;
+        wanted &= ~within;
+    }
+    return call;
+}
+
+/* Collects what a tile is asked, and forgets it. */
+static int take_places(LightQueue *queue, int tile)
+{
+    int n = 0;
+    for (int i = queue->last[tile]; i >= 0; i = queue->requests[i].before) {
+        const Request *request = &queue->requests[i];
+        for (uint64_t left = request->places; left; left &= left - 1)
+            queue->places[n++] = (uint32_t)(request->call * TILE_SAMPLES + __builtin_ctzll(left));
+    }
+    queue->last[tile] = -1;
+    return n;
+}
+
+void lightqueue_visit(LightQueue *queue, LightVisitor *visit, void *context)
+{
+    for (int i = 0; i < queue->n_tiles; i++) {
+        LightRequest request = {.tile = queue->tiles[i],
+                                .next = i + 1 < queue->n_tiles ? queue->tiles[i + 1] : -1,
+                                .places = queue->places,
+                                .n = take_places(queue, queue->tiles[i]),
+                                .aimed = queue->aimed};
+        visit(&request, context);
+    }
+    queue->n_calls = queue->n_requests = queue->n_tiles = 0;
+}

@@ -1,0 +1,71 @@
+/* The view is the smallest rectangle about the corners of the geometry's box, widened a little for
+ * rounding. */
+#include "render/tile/lightview.h"
+
+/* A point light must be as far from the middle of the scene, in radii of the scene: it sees less
+ * than 60 degrees to each side then. */
+static const double least_radii = 1.16;
+
+double lightview_radius(const Geometry *geometry)
+{
+    return vec3_distance(box_center(geometry->bounds), geometry->bounds.high);
+}
+
+bool lightview_sees_all(const Geometry *geometry, const Light *light)
+{
+    double distance = vec3_distance(light->location, box_center(geometry->bounds));
+    return light->parallel || distance > least_radii * lightview_radius(geometry);
+}
+
+static Vec3 corner(const Box *box, int number)
+{
+    return vec3(number & 1 ? box->high.x : box->low.x, number & 2 ? box->high.y : box->low.y,
+                number & 4 ? box->high.z : box->low.z);
+}
+
+static Viewpoint eye_of(const Geometry *geometry, const Light *light)
+{
+    Viewpoint eye = {.location = light->location, .perspective = !light->parallel};
+    Vec3 target = light->parallel ? light->target : box_center(geometry->bounds);
+    eye.axes[2] = vec3_normalized(vec3_sub(target, light->location));
+    Vec3 other = fabs(eye.axes[2].x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    eye.axes[0] = vec3_normalized(vec3_cross(eye.axes[2], other));
+    eye.axes[1] = vec3_cross(eye.axes[0], eye.axes[2]);
+    return eye;
+}
+
+LightView lightview_of(const Geometry *geometry, const Light *light, int tiles)
+{
+    LightView view = {.eye = eye_of(geometry, light), .tiles = tiles};
+    const int samples = tiles * TILE_SIDE;
+    Box box = box_empty();
+    for (int i = 0; i < 8; i++) {
+        Vec3 at = viewpoint_place(&view.eye, corner(&geometry->bounds, i));
+        if (view.eye.perspective)
+            at = vec3(at.x / at.z, at.y / at.z, at.z);
+        box = box_with_ball(box, at, 0);
+    }
+    view.step_x = (box.high.x - box.low.x) * 1.0001 / samples;
+    view.step_y = -(box.high.y - box.low.y) * 1.0001 / samples;
+    view.left = (box.low.x + box.high.x) / 2 - (samples - 1) / 2.0 * view.step_x;
+    view.top = (box.low.y + box.high.y) / 2 - (samples - 1) / 2.0 * view.step_y;
+    view.z_middle = (box.low.z + box.high.z) / 2;
+    return view;
+}
+
+LightAim lightview_aim(const LightView *view, const Viewpoint *camera, double slack)
+{
+    LightAim aim = {.perspective = view->eye.perspective,
+                    .left = view->left - view->step_x / 2,
+                    .top = view->top - view->step_y / 2,
+                    .per_x = 1 / (TILE_SIDE * view->step_x),
+                    .per_y = 1 / (TILE_SIDE * view->step_y),
+                    .columns = view->tiles,
+                    .rows = view->tiles,
+                    .slack = slack,
+                    .z_middle = view->z_middle,
+                    .offset = viewpoint_place(&view->eye, camera->location)};
+    for (int i = 0; i < 3; i++)
+        aim.axes[i] = viewpoint_to_frame(camera, view->eye.axes[i]);
+    return aim;
+}
