@@ -3,18 +3,39 @@
 #define CORCAST_RENDER_FIELDKERNELS_H
 
 #include "render/field/fieldterms.h"
-#include "render/tile/tilekernels.h"
+#include "render/tile/lightqueue.h"
 
 /* Finds the first hits of a tile that has terms: sets all of *hits. `work` has room for those terms
  * [TILE_WORK_BYTES each] and holds nothing from one call to the next. Reads x and y of all
  * TILE_SAMPLES samples, those outside the picture included. */
 typedef void FieldKernel(const FieldTile *tile, TileWork *work, TileHits *hits);
 
+typedef enum PlaceState {
+    PLACE_LIT, /* proven: nothing is between the place and the light */
+    PLACE_DARK,
+    PLACE_UNSURE /* within the margin of the arithmetic */
+} PlaceState;
+
+/* Places in a tile of a light's view, whose lines of sight lead to the light. */
+typedef struct FieldPlaces {
+    int n;
+    float x[LIGHT_MOST_PLACES], y[LIGHT_MOST_PLACES]; /* as those of a FieldTile */
+    double z[LIGHT_MOST_PLACES];                      /* from where on something is in the way */
+    uint8_t state[LIGHT_MOST_PLACES];                 /* PlaceState, the answer */
+} FieldPlaces;
+
+/* Says of places what state they are in; x and y of the tile are not read. A place within 0.2 % of
+ * the level is taken to be on a surface that it leaves, as by field_is_shadowed(). */
+typedef void ShadowKernel(const FieldTile *tile, TileWork *work, FieldPlaces *places);
+
 FieldKernel trace_portable;
+ShadowKernel shadow_portable;
 #ifdef __x86_64__
 FieldKernel trace_avx2, trace_avx512;
+ShadowKernel shadow_avx2, shadow_avx512;
 #endif
 /* As tilekernels. */
 extern FieldKernel *const fieldkernels[KINDS_OF_KERNELS];
+extern ShadowKernel *const shadowkernels[KINDS_OF_KERNELS];
 
 #endif

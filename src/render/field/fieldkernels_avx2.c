@@ -4,8 +4,11 @@
 #define LANES_AVX2
 #define FIELD_KERNEL trace_avx2
 #define PLANE_KERNEL trace_plane_avx2
+#define SHADOW_KERNEL shadow_avx2
 #include "render/field/fieldkernels.h"
 #include "render/field/kernel_trace.h"
+
+#include "render/field/kernel_shadow.h"
 
 #else
 typedef int NotForThisProcessor;

@@ -6,6 +6,7 @@
 #include "render/field/fieldrender.h"
 
 #include "render/cast/caster.h"
+#include "render/field/fieldshadow.h"
 #include "render/field/fieldtiles.h"
 #include "render/light/raycolor.h"
 #include "render/light/shade.h"
@@ -20,10 +21,30 @@ typedef struct FieldPass {
     FieldTiles *tiles; /* owned */
 } FieldPass;
 
-/* The centres of all pixels, and the further samples. */
+/* The centres of all pixels, and the further samples; and what lights see. */
 typedef struct FieldPrepared {
     FieldPass center, further;
+    FieldShadow *shadows[VIEW_MAX_LIGHTS]; /* owned; NULL where the light casts none, or rays do */
 } FieldPrepared;
+
+/* A tile of a batch. */
+typedef struct BatchTile {
+    SeenTile seen; /* its hits are these, or NULL */
+    TileHits hits;
+    uint8_t (*shadowed)[TILE_SAMPLES]; /* one a light; of the batch */
+} BatchTile;
+
+/* The tiles that a worker shades together, so that what many places ask of one tile of a light is
+ * answered in one go. */
+typedef struct Batch {
+    BatchTile *tiles;
+    int n_tiles;
+    uint8_t (*shadowed)[TILE_SAMPLES];   /* tile by tile, one a light */
+    FieldQueue *queues[VIEW_MAX_LIGHTS]; /* NULL where the light has no FieldShadow */
+    FieldSpace space;
+    Status status; /* of what a visitor could not report */
+    Err err;
+} Batch;
 
 /* What a worker's further samples are kept in until a band is added up. */
 typedef struct FurtherRows {
@@ -33,8 +54,12 @@ typedef struct FurtherRows {
 
 typedef struct FieldPicture {
     Canvas canvas;
-    const FieldPass *pass; /* borrowed */
-    FurtherRows *further;  /* one a worker */
+    const FieldPrepared *prepared; /* borrowed, as is `pass` */
+    const FieldPass *pass;
+    bool has_shadows;
+    int batch_size;       /* tiles */
+    Batch *batches;       /* one a worker */
+    FurtherRows *further; /* likewise */
 } FieldPicture;
 
 static bool is_inside(const SeenTile *seen, int sample)
@@ -58,30 +83,83 @@ static Vec3 world_normal(const FieldPicture *picture, const SeenTile *seen, int 
         vec3((double)normal[0][sample], (double)normal[1][sample], (double)normal[2][sample]));
 }
 
-/* Whether each light is hidden from the hits of a tile, ray by ray. */
-static const uint8_t (*find_shadows(const FieldPicture *picture, int worker,
-                                    const SeenTile *seen))[TILE_SAMPLES]
+/* Where the hits of a tile are. */
+static void locate(const SeenTile *seen, SeenPlaces *places)
+{
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        double z = seen->hits->z[sample], scale = seen->perspective ? z : 1;
+        places->x[sample] = (seen->middle_x + (double)seen->x[sample]) * scale;
+        places->y[sample] = (seen->middle_y + (double)seen->y[sample]) * scale;
+        places->z[sample] = z;
+    }
+}
+
+/* Of the hits, as bits, those whose surface faces the light. */
+static uint64_t find_facing(const FieldPicture *picture, const SeenTile *seen,
+                            const SeenPlaces *places, const TileLight *light)
+{
+    uint8_t facing[TILE_SAMPLES];
+    uint64_t wanted = 0;
+    picture->canvas.kernels->face(seen, places, seen->hits->normal, light, facing);
+    for (int sample = 0; sample < TILE_SAMPLES; sample++)
+        if (seen->hits->state[sample] == TILE_HIT && is_inside(seen, sample))
+            wanted |= (uint64_t)facing[sample] << sample;
+    return wanted;
+}
+
+/* One light, ray by ray. */
+static void cast_shadows(const FieldPicture *picture, const SeenTile *seen, const Light *light,
+                         int worker, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
+{
+    const Drawing *drawing = picture->canvas.drawing;
+    for (; wanted; wanted &= wanted - 1) {
+        int sample = __builtin_ctzll(wanted);
+        Vec3 point = ray_at(sample_ray(picture, seen, sample), seen_depth(seen, sample));
+        LightWay way = light_way(light, point);
+        shadowed[sample] =
+            vec3_dot(world_normal(picture, seen, sample), way.towards) >= LEAST_LIT_COSINE &&
+            caster_shadow(drawing->caster, worker, &drawing->view->ground, point, way.towards,
+                          way.distance);
+    }
+}
+
+static void ask_lights(const FieldPicture *picture, int worker, const BatchTile *tile)
 {
     const View *view = picture->canvas.drawing->view;
-    Caster *caster = picture->canvas.drawing->caster;
-    uint8_t(*shadowed)[TILE_SAMPLES] = picture->canvas.each[worker].shadowed;
-    memset(shadowed, 0, view->n_lights * sizeof *shadowed);
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        if (seen->hits->state[sample] != TILE_HIT || !is_inside(seen, sample))
+    const Batch *batch = &picture->batches[worker];
+    SeenPlaces places;
+    locate(&tile->seen, &places);
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
+        if (!light->casts_shadows || light->samples > 1)
             continue;
-        Vec3 point = ray_at(sample_ray(picture, seen, sample), seen_depth(seen, sample));
-        Vec3 normal = world_normal(picture, seen, sample);
-        for (size_t i = 0; i < view->n_lights; i++) {
-            if (view->lights[i].samples > 1)
-                continue;
-            LightWay way = light_way(&view->lights[i], point);
-            shadowed[i][sample] =
-                view->lights[i].casts_shadows &&
-                vec3_dot(normal, way.towards) >= LEAST_LIT_COSINE &&
-                caster_shadow(caster, worker, &view->ground, point, way.towards, way.distance);
-        }
+        uint64_t wanted =
+            find_facing(picture, &tile->seen, &places, &picture->canvas.look.lights[i]);
+        size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
+        if (batch->queues[i])
+            fieldqueue_ask(batch->queues[i], picture->canvas.kernels, &places, wanted,
+                           (uint32_t)answer);
+        else
+            cast_shadows(picture, &tile->seen, light, worker, wanted, tile->shadowed[i]);
     }
-    return (const uint8_t(*)[TILE_SAMPLES])shadowed;
+}
+
+/* Sets whether each light is hidden from the hits of the batch. */
+static Status find_shadows(const FieldPicture *picture, int worker, Err *err)
+{
+    Batch *batch = &picture->batches[worker];
+    const Drawing *drawing = picture->canvas.drawing;
+    size_t n_lights = drawing->view->n_lights;
+    ShadowKernel *kernel = shadowkernels[kernels_kind(drawing->params->kernels)];
+    memset(batch->shadowed, 0, (size_t)batch->n_tiles * n_lights * sizeof *batch->shadowed);
+    for (int i = 0; i < batch->n_tiles; i++)
+        if (batch->tiles[i].seen.hits)
+            ask_lights(picture, worker, &batch->tiles[i]);
+    for (size_t i = 0; i < n_lights; i++)
+        if (batch->queues[i])
+            TRY(fieldqueue_answer(batch->queues[i], kernel, &batch->space, batch->shadowed[0],
+                                  err));
+    return STATUS_OK;
 }
 
 /* Every sample on its own, with all that the kernel does not know. */
@@ -112,8 +190,9 @@ static void color_samples(const FieldPicture *picture, int worker, const SeenTil
 
 /* The colours of a tile; NULL: the background's. */
 static float (*color_tile(const FieldPicture *picture, int worker,
-                          const SeenTile *seen))[TILE_SAMPLES]
+                          const BatchTile *tile))[TILE_SAMPLES]
 {
+    const SeenTile *seen = &tile->seen;
     if (picture->canvas.wholly_colored) {
         float(*color)[TILE_SAMPLES] = picture->canvas.each[worker].color;
         color_samples(picture, worker, seen, color);
@@ -122,40 +201,72 @@ static float (*color_tile(const FieldPicture *picture, int worker,
     if (!seen->hits)
         return NULL;
     return canvas_shade(&picture->canvas, worker, seen,
-                        picture->canvas.drawing->caster ? find_shadows(picture, worker, seen)
-                                                        : NULL);
+                        picture->has_shadows ? (const uint8_t(*)[TILE_SAMPLES])tile->shadowed
+                                             : NULL);
 }
 
-/* What a tile sees with the ground, where the canvas shades that, in *with and *hits. */
-static const SeenTile *with_ground(const FieldPicture *picture, const SeenTile *vessels,
-                                   TileHits *hits, SeenTile *with)
+/* Shades the tiles of the batch, and has `keep` store each. */
+static Status shade_batch(const FieldPicture *picture, int worker,
+                          void (*keep)(const BatchTile *tile, float (*color)[TILE_SAMPLES],
+                                       int worker, void *context),
+                          void *context, Err *err)
 {
-    if (picture->canvas.wholly_colored || !picture->canvas.drawing->view->ground.present)
-        return vessels;
-    *with = *vessels;
-    if (vessels->hits)
-        *hits = *vessels->hits;
-    canvas_see_ground(&picture->canvas, with, hits);
-    return with;
+    Batch *batch = &picture->batches[worker];
+    if (picture->has_shadows && !picture->canvas.wholly_colored && picture->canvas.wants_color)
+        TRY(find_shadows(picture, worker, err));
+    for (int i = 0; i < batch->n_tiles; i++) {
+        const BatchTile *tile = &batch->tiles[i];
+        keep(tile, picture->canvas.wants_color ? color_tile(picture, worker, tile) : NULL, worker,
+             context);
+    }
+    batch->n_tiles = 0;
+    return STATUS_OK;
+}
+
+/* Adds a tile to the batch, with the ground where the canvas shades that. */
+static void add_tile(const FieldPicture *picture, const SeenTile *vessels, Batch *batch)
+{
+    BatchTile *tile = &batch->tiles[batch->n_tiles++];
+    tile->seen = *vessels;
+    if (vessels->hits) {
+        tile->hits = *vessels->hits;
+        tile->seen.hits = &tile->hits;
+    }
+    if (!picture->canvas.wholly_colored && picture->canvas.drawing->view->ground.present)
+        canvas_see_ground(&picture->canvas, &tile->seen, &tile->hits);
+}
+
+static void keep_center(const BatchTile *tile, float (*color)[TILE_SAMPLES], int worker,
+                        void *context)
+{
+    const FieldPicture *picture = context;
+    if (tile->seen.hits || picture->canvas.wholly_colored)
+        canvas_draw(&picture->canvas, worker, &tile->seen, color);
 }
 
 static void visit_center(const SeenTile *vessels, int worker, void *context)
 {
-    const FieldPicture *picture = context;
-    TileHits hits;
-    SeenTile with;
-    const SeenTile *seen = with_ground(picture, vessels, &hits, &with);
-    if (!seen->hits && !picture->canvas.wholly_colored)
-        return;
-    canvas_draw(&picture->canvas, worker, seen,
-                picture->canvas.wants_color ? color_tile(picture, worker, seen) : NULL);
+    FieldPicture *picture = context;
+    Batch *batch = &picture->batches[worker];
+    add_tile(picture, vessels, batch);
+    if (batch->n_tiles == picture->batch_size && batch->status == STATUS_OK)
+        batch->status = shade_batch(picture, worker, keep_center, picture, &batch->err);
+}
+
+static Status batch_status(const Batch *batch, Err *err)
+{
+    if (batch->status != STATUS_OK && err)
+        *err = batch->err;
+    return batch->status;
 }
 
 static Status trace_centers(void *context, int row, int worker, Err *err)
 {
     FieldPicture *picture = context;
-    return fieldtiles_trace(picture->pass->tiles, (size_t)row, worker, NULL, visit_center, picture,
-                            err);
+    TRY(fieldtiles_trace(picture->pass->tiles, (size_t)row, worker, NULL, visit_center, picture,
+                         err));
+    TRY(batch_status(&picture->batches[worker], err));
+    return shade_batch(picture, worker, keep_center, picture, err);
 }
 
 /* Where the colours of a row of pixel tiles' further samples go. */
@@ -164,18 +275,26 @@ typedef struct FurtherVisit {
     int first_row; /* of the grid */
 } FurtherVisit;
 
-static void visit_further(const SeenTile *vessels, int worker, void *context)
+static void keep_further(const BatchTile *tile, float (*color)[TILE_SAMPLES], int worker,
+                         void *context)
 {
     const FurtherVisit *visit = context;
     const FieldPicture *picture = visit->picture;
-    TileHits hits;
-    SeenTile with;
-    const SeenTile *seen = with_ground(picture, vessels, &hits, &with);
+    const SeenTile *seen = &tile->seen;
     size_t width = (size_t)picture->pass->grid.n_columns;
-    canvas_store(&picture->canvas, seen->n_columns, seen->n_rows, color_tile(picture, worker, seen),
+    canvas_store(&picture->canvas, seen->n_columns, seen->n_rows, color,
                  picture->further[worker].colors +
                      3 * ((size_t)(seen->row - visit->first_row) * width + (size_t)seen->column),
                  3 * width);
+}
+
+static void visit_further(const SeenTile *vessels, int worker, void *context)
+{
+    FurtherVisit *visit = context;
+    Batch *batch = &visit->picture->batches[worker];
+    add_tile(visit->picture, vessels, batch);
+    if (batch->n_tiles == visit->picture->batch_size && batch->status == STATUS_OK)
+        batch->status = shade_batch(visit->picture, worker, keep_further, visit, &batch->err);
 }
 
 static bool wants_more(const FieldPicture *picture, int i, int j)
@@ -234,6 +353,8 @@ static Status trace_further(void *context, int row, int worker, Err *err)
         if (mark_wanted(picture, i, end, own->wanted))
             TRY(fieldtiles_trace(picture->pass->tiles, (size_t)i, worker, own->wanted,
                                  visit_further, &visit, err));
+    TRY(batch_status(&picture->batches[worker], err));
+    TRY(shade_batch(picture, worker, keep_further, &visit, err));
     size_t pixels = 3 * (size_t)picture->pass->grid.n_columns * (size_t)n; /* of a row of pixels */
     for (int j = first; j < end; j++)
         for (int i = 0; i < width; i++)
@@ -276,7 +397,38 @@ static void release_prepared(void *prepared)
     FieldPrepared *field = prepared;
     release_pass(&field->center);
     release_pass(&field->further);
+    for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
+        fieldshadow_free(field->shadows[i]);
     free(field);
+}
+
+/* Whether a light that casts hard shadows is looked at from. */
+static bool has_view(const Drawing *drawing, const Light *light)
+{
+    return drawing->params->shadows && drawing->params->method != RENDER_TRACE &&
+           light->casts_shadows && light->samples <= 1 &&
+           fieldshadow_can(drawing->geometry, drawing->view, light);
+}
+
+/* Tiles on a side of a light's view: about as many as those of the picture. */
+static int tiles_for(const Camera *camera)
+{
+    enum { LEAST = 16, MOST = 384 };
+    int side = (camera->width > camera->height ? camera->width : camera->height) / TILE_SIDE;
+    return side < LEAST ? LEAST : side > MOST ? MOST : side;
+}
+
+static Status prepare_shadows(const Drawing *drawing, FieldPrepared *field, Err *err)
+{
+    const RenderParams *params = drawing->params;
+    const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
+    for (size_t i = 0; i < drawing->view->n_lights; i++)
+        if (has_view(drawing, &drawing->view->lights[i]))
+            TRY(fieldshadow_new(drawing->geometry, &drawing->view->lights[i], &eye,
+                                tiles_for(&drawing->view->camera),
+                                params->shadow_from_mm > 0 ? params->shadow_from_mm : 1e-3,
+                                params->threads, &field->shadows[i], err));
+    return STATUS_OK;
 }
 
 static Status prepare(const Drawing *drawing, void **prepared, Err *err)
@@ -289,11 +441,45 @@ static Status prepare(const Drawing *drawing, void **prepared, Err *err)
     TRY_GOTO(prepare_pass(drawing, 1, &center, &field->center, err));
     if (more.side > 0)
         TRY_GOTO(prepare_pass(drawing, more.side, more.offsets, &field->further, err));
+    TRY_GOTO(prepare_shadows(drawing, field, err));
     *prepared = field;
 done:
     if (status != STATUS_OK)
         release_prepared(field);
     return status;
+}
+
+static Status make_batch(const FieldPicture *picture, Batch *batch, Err *err)
+{
+    size_t n = (size_t)picture->batch_size, n_lights = picture->canvas.drawing->view->n_lights;
+    TRY(mem_calloc(&batch->tiles, n, sizeof *batch->tiles, "tiles", err));
+    TRY(mem_calloc(&batch->shadowed, n * n_lights, sizeof *batch->shadowed, "lights", err));
+    TRY(fieldspace_init(picture->canvas.drawing->geometry, &batch->space, err));
+    for (size_t i = 0; i < n; i++)
+        batch->tiles[i].shadowed = batch->shadowed + i * n_lights;
+    for (size_t i = 0; i < n_lights; i++)
+        if (picture->prepared->shadows[i])
+            TRY(fieldqueue_new(picture->prepared->shadows[i], &batch->queues[i], err));
+    return STATUS_OK;
+}
+
+static Status make_batches(FieldPicture *picture, Err *err)
+{
+    int workers = picture->canvas.workers;
+    picture->batch_size = picture->has_shadows ? LIGHT_BATCH : 1;
+    TRY(mem_calloc(&picture->batches, (size_t)workers, sizeof *picture->batches, "canvases", err));
+    for (int i = 0; i < workers; i++)
+        TRY(make_batch(picture, &picture->batches[i], err));
+    return STATUS_OK;
+}
+
+static void release_batch(Batch *batch)
+{
+    free(batch->tiles);
+    free(batch->shadowed);
+    fieldspace_release(&batch->space);
+    for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
+        fieldqueue_free(batch->queues[i]);
 }
 
 static Status make_further_rows(FieldPicture *picture, Err *err)
@@ -324,6 +510,9 @@ static void release(FieldPicture *picture)
         free(picture->further[i].wanted);
     }
     free(picture->further);
+    for (int i = 0; picture->batches && i < picture->canvas.workers; i++)
+        release_batch(&picture->batches[i]);
+    free(picture->batches);
     canvas_release(&picture->canvas);
 }
 
@@ -331,12 +520,14 @@ static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Er
 {
     Status status;
     const FieldPrepared *field = prepared;
-    FieldPicture picture = {.pass = &field->center};
+    FieldPicture picture = {
+        .prepared = field, .pass = &field->center, .has_shadows = drawing->params->shadows};
     Canvas *canvas = &picture.canvas;
     const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
     TRY_GOTO(canvas_init(drawing, frame, &eye, canvas, err));
     canvas->wholly_colored = drawing->params->method == RENDER_TRACE &&
                              raycolor_is_needed(drawing->view, drawing->params);
+    TRY_GOTO(make_batches(&picture, err));
     TRY_GOTO(canvas_pass(canvas, false, trace_centers, &picture, err));
     picture.pass = &field->further;
     if (canvas->more.side > 0)
@@ -353,7 +544,12 @@ static bool can_draw(const Drawing *drawing)
 
 static bool needs_rays(const Drawing *drawing)
 {
-    return drawing->params->shadows || drawing->params->occlusion > 0;
+    const RenderParams *params = drawing->params;
+    bool rays = params->occlusion > 0 && params->method == RENDER_TRACE;
+    for (size_t i = 0; i < drawing->view->n_lights; i++)
+        rays |= params->shadows && drawing->view->lights[i].casts_shadows &&
+                !has_view(drawing, &drawing->view->lights[i]);
+    return rays;
 }
 
 const Engine field_engine = {.name = "field",

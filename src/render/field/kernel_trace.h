@@ -394,12 +394,14 @@ LANE_FN void describe_hits(const Group *group, int first, LaneMask hit, Lanes z,
     store_hits(tile, first, hit, group->base, z, normal, at.segment, hits);
 }
 
-/* Makes the terms from `first` on that overlap a group, and returns the number of the next. */
-LANE_FN size_t next_group(const Packet *packet, size_t first, Group *group, float *extent)
+/* Makes the terms from `first` on that overlap a group, and returns the number of the next. What is
+ * nearer than `nearest` does not matter. */
+LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Group *group,
+                          float *extent)
 {
     PacketTerm **terms = packet->sum;
-    double begin = terms[first]->term->on, end = terms[first]->term->off;
-    double base = terms[first]->term->z_near;
+    double begin = fmax(terms[first]->term->on, nearest), end = terms[first]->term->off;
+    double base = fmax(terms[first]->term->z_near, nearest);
     size_t last = first + 1;
     for (; last < packet->n_sum && terms[last]->term->on <= end; last++)
         end = terms[last]->term->off > end ? terms[last]->term->off : end;
@@ -411,7 +413,7 @@ LANE_FN size_t next_group(const Packet *packet, size_t first, Group *group, floa
     double reach = end - base > base - begin ? end - base : base - begin;
     double width = (double)packet->tile->half_size;
     *group = (Group){packet, terms + first, last - first, base, lanes_set(0)};
-    *extent = (float)(reach + width * (packet->tile->perspective ? fabs(end) : 1));
+    *extent = (float)(reach + width * (packet->tile->perspective ? fmax(fabs(begin), fabs(end)) : 1));
     return last;
 }
 
@@ -423,7 +425,7 @@ LANE_FN void trace_sum(const Packet *packet, int first, TileHits *hits)
         Group group;
         Lanes start, end;
         float extent;
-        i = next_group(packet, i, &group, &extent);
+        i = next_group(packet, i, -HUGE_VAL, &group, &extent);
         LaneMask live = open, hit = {0}, unsure = {0};
         if (!group_window(&group, extent, &live, &start, &end))
             continue;

@@ -62,7 +62,8 @@ static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
     if (side > 0)
         range = capsule_shadow(lists->eye.perspective, segment->a.y, segment->a.z, segment->b.y,
                                segment->b.z, segment->reach);
-    return tiles_within(samples_within(range, lists->y[0], lists->per_y), 0, lists->grid.n_rows);
+    return tiles_within(samples_within(range, lists->y[0], lists->per_y), lists->stray,
+                        lists->grid.n_rows);
 }
 
 enum { CHUNK = 2048 };
@@ -149,6 +150,7 @@ Status vessellists_of_light(const Geometry *geometry, const LightView *view, int
         lists->x[i] = view->left + i * view->step_x;
         lists->y[i] = view->top + i * view->step_y;
     }
+    lists->stray = 0.5 + SLACK_PIXELS;
     lists->per_x = 1 / view->step_x;
     lists->per_y = 1 / view->step_y;
     return fill_lists(geometry, threads, lists, err);
@@ -192,7 +194,8 @@ static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment
     Vec3 last = vec3_add_scaled(segment->a, span, to);
     Interval range =
         capsule_shadow(lists->eye.perspective, first.x, first.z, last.x, last.z, segment->reach);
-    return tiles_within(samples_within(range, lists->x[0], lists->per_x), 0, lists->grid.n_columns);
+    return tiles_within(samples_within(range, lists->x[0], lists->per_x), lists->stray,
+                        lists->grid.n_columns);
 }
 
 Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns, BinLists *tiles,
@@ -202,8 +205,9 @@ Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns, 
     size_t n = lists->rows.offsets[row + 1] - lists->rows.offsets[row];
     int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
     last = last < lists->grid.n_rows ? last : lists->grid.n_rows - 1;
+    double more = lists->stray / lists->per_y;
     for (size_t i = 0; i < n; i++)
-        columns[i] =
-            columns_of(lists, &lists->segments[segments[i]], lists->y[last], lists->y[first]);
+        columns[i] = columns_of(lists, &lists->segments[segments[i]], lists->y[last] + more,
+                                lists->y[first] - more);
     return sort_into_bins(columns, segments, n, lists->tile_columns, tiles, err);
 }

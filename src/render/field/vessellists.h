@@ -28,6 +28,7 @@ typedef struct VesselLists {
     SampleGrid grid;
     double *x, *y;       /* of the grid's columns and rows, in the camera's plane */
     double per_x, per_y; /* samples in a unit there, per_y below 0 */
+    double stray;        /* samples are up to so much off their places, in samples */
     int tile_columns, tile_rows;
     FrameSegment *segments;
     size_t n_segments;

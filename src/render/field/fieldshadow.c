@@ -1,0 +1,262 @@
+/* A light's view has lists of segments as a camera's has, for all its tiles at once, as places come
+ * in the order of the picture. Kernels look from the places to the light: so once the lists are
+ * made, segments are reflected, in the plane of a parallel light, in the place of a point, such that
+ * lines of sight keep their places in the view and z rises towards the light. */
+#include "render/field/fieldshadow.h"
+
+#include "render/field/vessellists.h"
+#include <stdlib.h>
+
+struct FieldShadow {
+    const Geometry *geometry;
+    LightView view;
+    LightAim aim;
+    VesselLists lists;
+    BinLists *rows; /* of tiles: the lists of each */
+    TileSpan *columns;
+    Status status; /* of making them */
+    int workers;
+};
+
+struct FieldQueue {
+    const FieldShadow *shadow;
+    LightQueue *queue;
+    uint32_t answer[LIGHT_BATCH]; /* of each call */
+    /* Of the answers at hand: */
+    ShadowKernel *kernel;
+    FieldSpace *space;
+    uint8_t *shadowed;
+    Status status;
+    Err *err;
+    FieldPlaces places;
+};
+
+/* ---- what a light sees ----------------------------------------------------------------------- */
+
+static bool is_before_ground(const View *view, const Geometry *geometry, const Light *light)
+{
+    const Ground *ground = &view->ground;
+    Vec3 center = box_center(geometry->bounds);
+    if (!ground->present)
+        return true;
+    double above = vec3_dot(ground->normal, center) - ground->offset_mm;
+    return above * vec3_dot(ground->normal, light_way(light, center).towards) > 0 &&
+           (light->parallel ||
+            above * (vec3_dot(ground->normal, light->location) - ground->offset_mm) > 0);
+}
+
+bool fieldshadow_can(const Geometry *geometry, const View *view, const Light *light)
+{
+    LightWay way = light_way(light, box_center(geometry->bounds));
+    return lightview_sees_all(geometry, light) && way.distance > lightview_radius(geometry) &&
+           is_before_ground(view, geometry, light);
+}
+
+typedef struct Listing {
+    FieldShadow *shadow;
+    Status *status; /* of each worker */
+} Listing;
+
+static void list_row(size_t row, int worker, void *context)
+{
+    const Listing *listing = context;
+    FieldShadow *shadow = listing->shadow;
+    if (listing->status[worker] == STATUS_OK)
+        listing->status[worker] =
+            vessellists_row(&shadow->lists, row,
+                            shadow->columns + (size_t)worker * shadow->lists.longest,
+                            &shadow->rows[row], NULL);
+}
+
+static Status list_rows(FieldShadow *shadow, Err *err)
+{
+    size_t n = (size_t)shadow->lists.tile_rows, workers = (size_t)shadow->workers;
+    Listing listing = {shadow, NULL};
+    TRY(mem_calloc(&shadow->rows, n, sizeof *shadow->rows, "rows of tiles", err));
+    TRY(mem_calloc(&shadow->columns, workers * shadow->lists.longest, sizeof *shadow->columns,
+                   "rows of tiles", err));
+    TRY(mem_calloc(&listing.status, workers, sizeof *listing.status, "rows of tiles", err));
+    threads_for(n, shadow->workers, list_row, &listing);
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < workers && status == STATUS_OK; i++)
+        if (listing.status[i] != STATUS_OK)
+            status = err_set(err, listing.status[i], "out of memory: no room for shadows");
+    free(listing.status);
+    free(shadow->columns);
+    shadow->columns = NULL;
+    return status;
+}
+
+static Vec3 reflected(const VesselLists *lists, Vec3 v)
+{
+    return lists->eye.perspective ? vec3_scale(v, -1) : vec3(v.x, v.y, -v.z);
+}
+
+static void reflect_segments(VesselLists *lists)
+{
+    for (size_t i = 0; i < lists->n_segments; i++) {
+        FrameSegment *segment = &lists->segments[i];
+        segment->a = reflected(lists, segment->a);
+        segment->b = reflected(lists, segment->b);
+        segment->axis = reflected(lists, segment->axis);
+    }
+}
+
+Status fieldshadow_new(const Geometry *geometry, const Light *light, const Viewpoint *camera,
+                       int tiles, double from_mm, int threads, FieldShadow **out, Err *err)
+{
+    Status status;
+    FieldShadow *shadow = NULL;
+    TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
+    shadow->geometry = geometry;
+    shadow->workers = threads;
+    shadow->view = lightview_of(geometry, light, tiles);
+    shadow->aim = lightview_aim(&shadow->view, camera, from_mm);
+    TRY_GOTO(vessellists_of_light(geometry, &shadow->view, threads, &shadow->lists, err));
+    TRY_GOTO(list_rows(shadow, err));
+    reflect_segments(&shadow->lists);
+    *out = shadow;
+    return STATUS_OK;
+done:
+    fieldshadow_free(shadow);
+    return status;
+}
+
+void fieldshadow_free(FieldShadow *shadow)
+{
+    if (!shadow)
+        return;
+    for (int i = 0; shadow->rows && i < shadow->lists.tile_rows; i++)
+        binlists_release(&shadow->rows[i]);
+    free(shadow->rows);
+    free(shadow->columns);
+    vessellists_release(&shadow->lists);
+    free(shadow);
+}
+
+/* ---- asking ---------------------------------------------------------------------------------- */
+
+Status fieldqueue_new(const FieldShadow *shadow, FieldQueue **out, Err *err)
+{
+    TRY(mem_calloc(out, 1, sizeof **out, "shadows", err));
+    (*out)->shadow = shadow;
+    return lightqueue_new(&shadow->aim, &(*out)->queue, err);
+}
+
+void fieldqueue_free(FieldQueue *queue)
+{
+    if (!queue)
+        return;
+    lightqueue_free(queue->queue);
+    free(queue);
+}
+
+void fieldqueue_ask(FieldQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
+                    uint64_t wanted, uint32_t answer)
+{
+    if (wanted)
+        queue->answer[lightqueue_ask(queue->queue, kernels, places, wanted)] = answer;
+}
+
+/* A tile of the light but for its terms. */
+static FieldTile tile_of(const FieldShadow *shadow, int number, LocalGroups *groups)
+{
+    const LightView *view = &shadow->view;
+    const double half = TILE_SIDE / 2.0, middle = half - 0.5;
+    int row = number / view->tiles, column = number % view->tiles;
+    return (FieldTile){
+        .groups = groups,
+        .perspective = view->eye.perspective,
+        .any_depth = true,
+        .middle_x = view->left + (column * TILE_SIDE + middle) * view->step_x,
+        .middle_y = view->top + (row * TILE_SIDE + middle) * view->step_y,
+        .half_size = (float)(1.0001 * half * hypot(view->step_x, view->step_y)),
+        .z_min = -HUGE_VAL};
+}
+
+/* Sets the places of a request but for those outside the tile, and so outside the view: these see
+ * the light. Moves the numbers of those that are set to the front of `kept`. */
+static void set_places(FieldQueue *queue, const LightRequest *request, const FieldTile *tile,
+                       uint32_t *kept)
+{
+    FieldPlaces *places = &queue->places;
+    const LightAim *aim = &queue->shadow->aim;
+    places->n = 0;
+    for (int i = 0; i < request->n; i++) {
+        uint32_t place = request->places[i] % TILE_SAMPLES;
+        const AimedPlaces *aimed = &request->aimed[request->places[i] / TILE_SAMPLES];
+        double x = aimed->x[place] - tile->middle_x, y = aimed->y[place] - tile->middle_y;
+        int n = places->n;
+        if (!(fabs(x * aim->per_x) <= 0.50005 && fabs(y * aim->per_y) <= 0.50005))
+            continue;
+        kept[n] = request->places[i];
+        places->x[n] = (float)x;
+        places->y[n] = (float)y;
+        places->z[n] = -(aimed->z[place] + aim->z_middle);
+        places->n++;
+    }
+}
+
+/* Decides a place in double precision. */
+static Status decide(FieldQueue *queue, const FieldTile *tile, int number, Err *err)
+{
+    const FieldShadow *shadow = queue->shadow;
+    const Viewpoint *eye = &shadow->view.eye;
+    FieldPlaces *places = &queue->places;
+    double z = -places->z[number], scale = eye->perspective ? z : 1;
+    Vec3 place = {(tile->middle_x + (double)places->x[number]) * scale,
+                  (tile->middle_y + (double)places->y[number]) * scale, z};
+    Vec3 towards = viewpoint_to_world(eye, eye->perspective ? place : vec3(0, 0, 1));
+    Ray ray = {viewpoint_point(eye, place), vec3_normalized(vec3_scale(towards, -1))};
+    TRY(fieldspace_reserve_rays(queue->space, tile->n_terms, err));
+    places->state[number] =
+        field_is_shadowed_among(shadow->geometry, queue->space->candidates, tile->n_terms,
+                                queue->space->scratch, ray, 0, HUGE_VAL)
+            ? PLACE_DARK
+            : PLACE_LIT;
+    return STATUS_OK;
+}
+
+static Status answer_tile(FieldQueue *queue, const LightRequest *request, Err *err)
+{
+    const FieldShadow *shadow = queue->shadow;
+    FieldPlaces *places = &queue->places;
+    FieldSpace *space = queue->space;
+    uint32_t kept[LIGHT_MOST_PLACES];
+    FieldTile tile = tile_of(shadow, request->tile, space->groups);
+    const BinLists *row = &shadow->rows[request->tile / shadow->view.tiles];
+    const size_t *list = &row->offsets[request->tile % shadow->view.tiles];
+    set_places(queue, request, &tile, kept);
+    if (list[0] == list[1] || places->n == 0)
+        return STATUS_OK;
+    TRY(fieldspace_reserve(space, list[1] - list[0], err));
+    fieldterms_make(shadow->lists.segments, row->items + list[0], list[1] - list[0], &tile,
+                    space->terms, space->candidates);
+    queue->kernel(&tile, &space->work, places);
+    for (int i = 0; i < places->n; i++) {
+        if (places->state[i] == PLACE_UNSURE)
+            TRY(decide(queue, &tile, i, err));
+        queue->shadowed[queue->answer[kept[i] / TILE_SAMPLES] + kept[i] % TILE_SAMPLES] =
+            places->state[i] == PLACE_DARK;
+    }
+    return STATUS_OK;
+}
+
+static void visit_tile(const LightRequest *request, void *context)
+{
+    FieldQueue *queue = context;
+    if (queue->status == STATUS_OK)
+        queue->status = answer_tile(queue, request, queue->err);
+}
+
+Status fieldqueue_answer(FieldQueue *queue, ShadowKernel *kernel, FieldSpace *space,
+                         uint8_t *shadowed, Err *err)
+{
+    queue->kernel = kernel;
+    queue->space = space;
+    queue->shadowed = shadowed;
+    queue->status = STATUS_OK;
+    queue->err = err;
+    lightqueue_visit(queue->queue, visit_tile, queue);
+    return queue->status;
+}

@@ -1,0 +1,286 @@
+/* Whether something stands between places and a light, several places at once: included after
+ * kernel_trace.h by each source that compiles it for its lanes, and told by SHADOW_KERNEL how to
+ * call it.
+ *
+ * Lines of sight lead from the places to the light, which is at the end of z. On most nothing is in
+ * the way, and that is proven at once:
+ *
+ * - Start. Phi, its slope and the bound M of its curvature at the place give the stretch on which
+ *   Phi stays below the level, as a step of kernel_trace.h's march does.
+ * - Beyond. A term is a Gaussian convolved with a segment, and log-concave along a line. Where it
+ *   recedes from the segment's line it is at most exp(-E^2 - w^2) from there on, beyond an end that
+ *   it leaves at most exp(-E^2 - w^2 - x^2) / 2, and elsewhere at most B. A place is lit if at the
+ *   end of the stretch these sum up to less than the level.
+ * - Dark. A term that is passed at E^2 <= 1.9, both its ends 1.5 / k or more away, is 1.06 times
+ *   the level there alone.
+ *
+ * What is left is marched in full packets, each step of which may end in a proof of either kind;
+ * that Phi is above the level somewhere on the way is proof enough, where is not asked.
+ *
+ * - Rim. Places are on the surface as well as it was found: until Phi has fallen below RIM of the
+ *   level on leaving it, the level is SKIN times that. */
+#ifndef SHADOW_KERNEL
+#error "define SHADOW_KERNEL, the name of the function"
+#endif
+
+#define RIM 0.998f
+#define SKIN 1.002f
+#define SURELY_BELOW (0.999f * LEVEL)
+
+/* Places, LANES of them, and the terms on the ways from there to the light. */
+typedef struct Departures {
+    Packet packet;
+    double base;   /* about which z is */
+    Lanes z;       /* of the places */
+    float from, to; /* the least and the largest of these */
+} Departures;
+
+/* The lanes on which a term alone is above the level somewhere beyond z. */
+LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z)
+{
+    LaneMask near = term->e2 <= 1.9f;
+    if (!lanes_any(near))
+        return near;
+    Lanes dz = -term->w0 * inverse(term->w1);
+    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
+    return near & (lanes_min(u, v) >= 1.5f) & (dz + term->z > z);
+}
+
+/* Sets the terms beyond the places, and returns the lanes on which one of them hides the light. */
+LANE_FN LaneMask depart(Departures *way, LaneMask open)
+{
+    const FieldTile *tile = way->packet.tile;
+    LaneMask hidden = {0};
+    way->packet.n = 0;
+    for (size_t i = 0; i < tile->n_terms; i++) {
+        const TileTerm *term = &tile->terms[i];
+        size_t n = way->packet.n;
+        if (term->off < way->base + (double)way->from)
+            continue;
+        add_to_packet(&way->packet, term);
+        if (way->packet.n == n)
+            continue;
+        PacketTerm *added = &way->packet.terms[n];
+        added->z = (float)(term->z_near - way->base);
+        added->on = (float)(term->on - way->base);
+        added->off = (float)(term->off - way->base);
+        hidden |= term_hides(added, way->z);
+        if (!lanes_any(open & ~hidden))
+            break;
+    }
+    return hidden;
+}
+
+/* No more than this is the term anywhere from z on. */
+LANE_FN Lanes most_beyond(const PacketTerm *term, Lanes z)
+{
+    const Lanes zero = lanes_set(0);
+    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
+    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
+    Lanes past = lanes_min(lanes_select(term->u1 > 0.0f, v, u), zero);
+    Lanes away = lanes_max(w, zero); /* w1 >= 0 */
+    Lanes most = lanes_exp_minus(lanes_fma(past, past, lanes_fma(away, away, term->e2)));
+    most *= lanes_select(past < 0.0f, lanes_set(0.5f), lanes_set(1));
+    return lanes_min(most, term->peak);
+}
+
+/* Phi at the places. Sets the margin for it. */
+LANE_FN PacketSample sample_places(const Departures *way, LaneMask open, Lanes *margin)
+{
+    const Packet *packet = &way->packet;
+    PacketSample sample = {lanes_set(0), lanes_set(0), lanes_set(0), 1e30f};
+    Lanes places = lanes_set(0);
+    float extent = 0, width = packet->tile->half_size;
+    for (size_t i = 0; i < packet->n; i++) {
+        PacketTerm *term = &packet->terms[i];
+        if (term->on > way->to) {
+            sample.next = term->on;
+            break;
+        }
+        if (term->off < way->from || !matters(term, open))
+            continue;
+        complete_term(term, packet->tile->perspective);
+        add_sample(term, way->z, &sample);
+        places = lanes_fma(term->peak, lanes_set(term->term->k), places);
+        extent = fmaxf(extent, fabsf(term->z));
+    }
+    if (packet->tile->perspective)
+        width *= (float)fabs(way->base);
+    *margin = places * ((extent + width + way->to - way->from) * MARGIN_PLACE) +
+              (MARGIN_DROPPED + MARGIN_TERM * (float)packet->n);
+    return sample;
+}
+
+/* Of the open lanes, those that are proven lit by what is at the places and beyond the first
+ * stretch. */
+LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open)
+{
+    const Packet *packet = &way->packet;
+    Lanes margin;
+    PacketSample at = sample_places(way, open, &margin);
+    LaneMask leaving = at.phi > RIM * LEVEL;
+    Lanes safe = lanes_select(leaving, lanes_set(SKIN * LEVEL), lanes_set(LEVEL)) - at.phi - margin;
+    open &= (safe > 0.0f) & (margin <= CLOSE_ENOUGH);
+    if (!lanes_any(open))
+        return open;
+    Lanes curvature = lanes_max(at.curvature, lanes_set(1e-30f)), slope = at.slope;
+    Lanes root = lanes_sqrt(lanes_fma(slope, slope, 2.0f * curvature * lanes_max(safe, lanes_set(0))));
+    Lanes step = lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
+    Lanes to = lanes_min(way->z + step, lanes_set(at.next));
+    Lanes sum = lanes_set(MARGIN_DROPPED + MARGIN_TERM * (float)packet->n);
+    for (size_t i = 0; i < packet->n; i++)
+        sum += most_beyond(&packet->terms[i], to);
+    return open & (sum < SURELY_BELOW);
+}
+
+/* Marches the live lanes from z to `end`, or until they are proven dark or undecided; `leaving` are
+ * those that start where they left the surface. */
+LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving, Lanes z, Lanes end,
+                            LaneMask *dark, LaneMask *unsure)
+{
+    for (int steps = 0; lanes_any(live); steps++) {
+        PacketSample at = sample_at(group, z, live);
+        leaving &= at.phi > RIM * LEVEL;
+        Lanes level = lanes_select(leaving, lanes_set(SKIN * LEVEL), lanes_set(LEVEL));
+        Lanes lack = level - at.phi, safe = lack - group->margin, slope = at.slope;
+        Lanes curvature = lanes_max(at.curvature, lanes_set(1e-30f)), slope2 = square(slope);
+        LaneMask rises = (slope > 0.0f) & (slope2 >= 4.6f * curvature * (lack + group->margin));
+        LaneMask met = live & ~leaving & ((lack <= -group->margin) | rises);
+        *dark |= met;
+        live &= ~met;
+        Lanes root = lanes_sqrt(lanes_max(slope2 + 2.0f * curvature * safe, lanes_set(0)));
+        Lanes step =
+            lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
+        Lanes to = lanes_min(z + step, lanes_set(at.next));
+        LaneMask stuck = live & ~((safe > 0.0f) & (to > z));
+        if (steps == MOST_STEPS)
+            stuck = live;
+        *unsure |= stuck;
+        live &= ~stuck & (to <= end);
+        z = lanes_select(live, to, z);
+        if (!lanes_any(live))
+            break;
+        Lanes beyond = lanes_set(0);
+        for (size_t i = 0; i < group->n; i++)
+            beyond += most_beyond(group->terms[i], z);
+        live &= ~(beyond + group->margin < SURELY_BELOW);
+    }
+}
+
+/* Looks for the light through the sum of the terms chosen. */
+LANE_FN void look_through_sum(const Departures *way, LaneMask *open, LaneMask *dark,
+                              LaneMask *unsure)
+{
+    const Packet *packet = &way->packet;
+    const double nearest = way->base + (double)way->from;
+    for (size_t i = 0; i < packet->n_sum && lanes_any(*open);) {
+        Group group;
+        Lanes start, end;
+        float extent;
+        i = next_group(packet, i, nearest, &group, &extent);
+        extent += way->to - way->from;
+        LaneMask live = *open, stuck = {0};
+        if (!group_window(&group, extent, &live, &start, &end))
+            continue;
+        Lanes from = way->z + (float)(way->base - group.base);
+        live &= end >= from;
+        stuck = live & (group.margin > CLOSE_ENOUGH);
+        live &= ~stuck;
+        march_to_light(&group, live, start <= from, lanes_max(start, from), end, dark, &stuck);
+        *unsure |= stuck;
+        *open &= ~*dark;
+    }
+}
+
+/* Likewise through the sums of the groups that blend, one after the other. */
+LANE_FN void look_through_union(Departures *way, LaneMask *open, LaneMask *dark, LaneMask *unsure)
+{
+    Packet *packet = &way->packet;
+    LocalGroups *groups = packet->tile->groups;
+    for (size_t i = 0; i < packet->n; i++)
+        packet->segments[i] = packet->terms[i].term->segment;
+    size_t n_groups = localgroups_find(groups, packet->segments, packet->n);
+    for (size_t group = 0; group < n_groups; group++) {
+        const uint32_t *members = localgroups_members(groups, group, &packet->n_sum);
+        for (size_t i = 0; i < packet->n_sum; i++)
+            packet->sum[i] = &packet->terms[members[i]];
+        look_through_sum(way, open, dark, unsure);
+    }
+}
+
+/* Loads LANES places, by number; the last stands for those that are missing. Returns which are
+ * there. */
+LANE_FN LaneMask load_places(const FieldPlaces *places, const uint16_t *numbers, int n,
+                             Departures *way)
+{
+    LaneMask open = {0};
+    way->base = places->z[numbers[0]];
+    for (int lane = 0; lane < LANES; lane++) {
+        int number = numbers[lane < n ? lane : n - 1];
+        way->packet.x[lane] = places->x[number];
+        way->packet.y[lane] = places->y[number];
+        way->z[lane] = (float)(places->z[number] - way->base);
+        open[lane] = -(lane < n);
+    }
+    way->from = lanes_least(way->z);
+    way->to = lanes_largest(way->z);
+    return open;
+}
+
+LANE_FN void set_states(FieldPlaces *places, const uint16_t *numbers, LaneMask which,
+                        PlaceState state)
+{
+    for (uint32_t left = lanes_bits(which); left; left &= left - 1)
+        places->state[numbers[__builtin_ctz(left)]] = (uint8_t)state;
+}
+
+/* Decides what is decided fast, and returns the lanes that are left. */
+LANE_FN LaneMask decide_at_once(FieldPlaces *places, const uint16_t *numbers, int n,
+                                Departures *way)
+{
+    LaneMask open = load_places(places, numbers, n, way);
+    LaneMask dark = open & depart(way, open);
+    set_states(places, numbers, dark, PLACE_DARK);
+    open &= ~dark;
+    if (lanes_any(open))
+        open &= ~lit_at_once(way, open);
+    return open;
+}
+
+LANE_FN void decide_by_march(FieldPlaces *places, const uint16_t *numbers, int n, Departures *way)
+{
+    LaneMask open = load_places(places, numbers, n, way), dark = {0}, unsure = {0};
+    depart(way, open);
+    if (way->packet.tile->groups) {
+        look_through_union(way, &open, &dark, &unsure);
+    } else {
+        way->packet.n_sum = way->packet.n;
+        for (size_t i = 0; i < way->packet.n; i++)
+            way->packet.sum[i] = &way->packet.terms[i];
+        look_through_sum(way, &open, &dark, &unsure);
+    }
+    set_states(places, numbers, unsure, PLACE_UNSURE);
+    set_states(places, numbers, dark, PLACE_DARK);
+}
+
+LANE_TARGET void SHADOW_KERNEL(const FieldTile *tile, TileWork *work, FieldPlaces *places)
+{
+    uint16_t numbers[LIGHT_MOST_PLACES];
+    int left = 0;
+    assert(tile->n_terms <= work->capacity);
+    Departures way = {.packet = {.tile = tile, .terms = work->memory}};
+    way.packet.sum = (PacketTerm **)(way.packet.terms + tile->n_terms);
+    way.packet.segments = (uint32_t *)(way.packet.sum + tile->n_terms);
+    __builtin_memset(places->state, PLACE_LIT, (size_t)places->n);
+    for (int first = 0; first < places->n; first += LANES) {
+        uint16_t own[LANES];
+        int n = places->n - first < LANES ? places->n - first : LANES;
+        for (int i = 0; i < n; i++)
+            own[i] = (uint16_t)(first + i);
+        for (uint32_t open = lanes_bits(decide_at_once(places, own, n, &way)); open;
+             open &= open - 1)
+            numbers[left++] = own[__builtin_ctz(open)];
+    }
+    for (int first = 0; first < left; first += LANES)
+        decide_by_march(places, numbers + first, left - first < LANES ? left - first : LANES, &way);
+}
