@@ -33,8 +33,9 @@ enum { RENDER_MOST_ANTIALIAS = 9 };
 
 typedef struct RenderParams {
     /* Of primitives alone; implicit models have engines of their own. For all of them RENDER_TRACE
-     * says that soft shadows and occlusion are found for every sample, by rays; else samples of a
-     * pixel share them [render/light/sharedlight.h]. */
+     * says that shadows and occlusion are found for every sample, by rays; else soft shadows and
+     * occlusion are shared by the samples of a pixel [render/light/sharedlight.h], and hard shadows
+     * are those of the lights' views. */
     RenderMethod method;
     RenderKernels kernels;
     int threads;                /* 0: all processors */

@@ -1,9 +1,9 @@
 /* What the frames of a film cost: a renderer is made for one geometry and draws a first frame, one
  * of other colours and one of another view. For each the medians of wall time in ms, what is
- * prepared apart from pixels. A frame of other colours prepares nothing; the program fails if it
- * does.
+ * prepared apart from pixels, and of the processor time of both. A frame of other colours prepares
+ * nothing; the program fails if it does.
  *
- *   frames TREE.swc MODEL SIZE THREADS RUNS LOOK.ini MAP.txt */
+ *   frames TREE.swc MODEL SIZE THREADS RUNS LOOK.ini MAP.txt [shadows] */
 #include "derive/derive.h"
 #include "render/render.h"
 #include "stage/stage.h"
@@ -23,7 +23,7 @@ typedef struct Film {
 } Film;
 
 typedef struct Times {
-    double prepare_ms[MOST_RUNS], draw_ms[MOST_RUNS];
+    double prepare_ms[MOST_RUNS], draw_ms[MOST_RUNS], cpu_ms[MOST_RUNS];
 } Times;
 
 static void must(Status status, const Err *err)
@@ -66,6 +66,7 @@ static void draw(Renderer *renderer, const View *view, const Appearance *appeara
     RenderStats now = renderer_stats(renderer);
     times->prepare_ms[run] = 1e3 * (now.prepare_s - before->prepare_s);
     times->draw_ms[run] = 1e3 * (now.trace_s - before->trace_s);
+    times->cpu_ms[run] = 1e3 * (now.cpu_s - before->cpu_s);
     *before = now;
 }
 
@@ -103,18 +104,21 @@ int main(int argc, char **argv)
     Err err;
     Tree tree;
     Look look;
-    if (argc != 8) {
-        fprintf(stderr, "usage: frames TREE.swc MODEL SIZE THREADS RUNS LOOK.ini MAP.txt\n");
+    if (argc != 8 && argc != 9) {
+        fprintf(stderr,
+                "usage: frames TREE.swc MODEL SIZE THREADS RUNS LOOK.ini MAP.txt [shadows]\n");
         return 2;
     }
     int runs = atoi(argv[5]) < MOST_RUNS ? atoi(argv[5]) : MOST_RUNS;
     const GeometryParams shape = {.model = model_called(argv[2])};
     ViewParams from = view_defaults();
     from.width = from.height = atoi(argv[3]);
+    from.shadows = argc == 9;
     film.params = (RenderParams){.method = RENDER_RASTER,
                                  .threads = atoi(argv[4]),
                                  .antialias = 1,
                                  .codes_suffice = true,
+                                 .shadows = argc == 9,
                                  .want_color = true};
     must(tree_read(&tree, argv[1], &err), &err);
     must(look_read(&look, argv[6], &err), &err);
@@ -127,8 +131,8 @@ int main(int argc, char **argv)
     for (int run = 0; run < runs; run++)
         run_film(&film, times, run, &err);
     for (int i = 0; i < FRAMES; i++)
-        printf("%s %.1f %.1f\n", frame_names[i], median(times[i].prepare_ms, runs),
-               median(times[i].draw_ms, runs));
+        printf("%s %.1f %.1f %.1f\n", frame_names[i], median(times[i].prepare_ms, runs),
+               median(times[i].draw_ms, runs), median(times[i].cpu_ms, runs));
     geometry_release(&film.geometry);
     appearance_release(&film.appearances[0]);
     appearance_release(&film.appearances[1]);

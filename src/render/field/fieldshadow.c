@@ -1,7 +1,7 @@
 /* A light's view has lists of segments as a camera's has, for all its tiles at once, as places come
  * in the order of the picture. Kernels look from the places to the light: so once the lists are
- * made, segments are reflected, in the plane of a parallel light, in the place of a point, such that
- * lines of sight keep their places in the view and z rises towards the light. */
+ * made, segments are reflected, in the plane of a parallel light, in the place of a point, such
+ * that lines of sight keep their places in the view and z rises towards the light. */
 #include "render/field/fieldshadow.h"
 
 #include "render/field/vessellists.h"
@@ -62,10 +62,9 @@ static void list_row(size_t row, int worker, void *context)
     const Listing *listing = context;
     FieldShadow *shadow = listing->shadow;
     if (listing->status[worker] == STATUS_OK)
-        listing->status[worker] =
-            vessellists_row(&shadow->lists, row,
-                            shadow->columns + (size_t)worker * shadow->lists.longest,
-                            &shadow->rows[row], NULL);
+        listing->status[worker] = vessellists_row(
+            &shadow->lists, row, shadow->columns + (size_t)worker * shadow->lists.longest,
+            &shadow->rows[row], NULL);
 }
 
 static Status list_rows(FieldShadow *shadow, Err *err)
@@ -164,14 +163,13 @@ static FieldTile tile_of(const FieldShadow *shadow, int number, LocalGroups *gro
     const LightView *view = &shadow->view;
     const double half = TILE_SIDE / 2.0, middle = half - 0.5;
     int row = number / view->tiles, column = number % view->tiles;
-    return (FieldTile){
-        .groups = groups,
-        .perspective = view->eye.perspective,
-        .any_depth = true,
-        .middle_x = view->left + (column * TILE_SIDE + middle) * view->step_x,
-        .middle_y = view->top + (row * TILE_SIDE + middle) * view->step_y,
-        .half_size = (float)(1.0001 * half * hypot(view->step_x, view->step_y)),
-        .z_min = -HUGE_VAL};
+    return (FieldTile){.groups = groups,
+                       .perspective = view->eye.perspective,
+                       .any_depth = true,
+                       .middle_x = view->left + (column * TILE_SIDE + middle) * view->step_x,
+                       .middle_y = view->top + (row * TILE_SIDE + middle) * view->step_y,
+                       .half_size = (float)(1.0001 * half * hypot(view->step_x, view->step_y)),
+                       .z_min = -HUGE_VAL};
 }
 
 /* Sets the places of a request but for those outside the tile, and so outside the view: these see

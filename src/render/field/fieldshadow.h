@@ -9,8 +9,8 @@
 /* The segments as one light sees them; constant once built. */
 typedef struct FieldShadow FieldShadow;
 
-/* Whether one view of the light sees all of the geometry, nothing of it is beyond the light, and the
- * view's ground is not between the two. */
+/* Whether one view of the light sees all of the geometry, nothing of it is beyond the light, and
+ * the view's ground is not between the two. */
 bool fieldshadow_can(const Geometry *geometry, const View *view, const Light *light);
 
 /* For places in the frame of `camera`, in `tiles` x `tiles` tiles of the light; nothing within

@@ -30,8 +30,8 @@
 /* Places, LANES of them, and the terms on the ways from there to the light. */
 typedef struct Departures {
     Packet packet;
-    double base;   /* about which z is */
-    Lanes z;       /* of the places */
+    double base;    /* about which z is */
+    Lanes z;        /* of the places */
     float from, to; /* the least and the largest of these */
 } Departures;
 
@@ -124,8 +124,10 @@ LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open)
     if (!lanes_any(open))
         return open;
     Lanes curvature = lanes_max(at.curvature, lanes_set(1e-30f)), slope = at.slope;
-    Lanes root = lanes_sqrt(lanes_fma(slope, slope, 2.0f * curvature * lanes_max(safe, lanes_set(0))));
-    Lanes step = lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
+    Lanes root =
+        lanes_sqrt(lanes_fma(slope, slope, 2.0f * curvature * lanes_max(safe, lanes_set(0))));
+    Lanes step =
+        lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
     Lanes to = lanes_min(way->z + step, lanes_set(at.next));
     Lanes sum = lanes_set(MARGIN_DROPPED + MARGIN_TERM * (float)packet->n);
     for (size_t i = 0; i < packet->n; i++)

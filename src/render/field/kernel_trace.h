@@ -413,7 +413,8 @@ LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Gr
     double reach = end - base > base - begin ? end - base : base - begin;
     double width = (double)packet->tile->half_size;
     *group = (Group){packet, terms + first, last - first, base, lanes_set(0)};
-    *extent = (float)(reach + width * (packet->tile->perspective ? fmax(fabs(begin), fabs(end)) : 1));
+    *extent =
+        (float)(reach + width * (packet->tile->perspective ? fmax(fabs(begin), fabs(end)) : 1));
     return last;
 }
 
